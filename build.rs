@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::exit;
 use std::{env, fs};
 
-use lizard_core::numbers::section::START;
+use lizard_core::numbers::section::{SPACE, START};
 use lizard_robot::{Report, Robot};
 
 fn main() {
@@ -28,6 +28,8 @@ fn main() {
     println!("cargo::rerun-if-changed={}", script.display());
     println!("cargo::rustc-link-arg-bins=-Wl,-T,{}", script.display());
     println!("cargo::rustc-link-arg-bins=-Wl,--defsym=__robot_start={START:#x}");
+    let end = START + SPACE;
+    println!("cargo::rustc-link-arg-bins=-Wl,--defsym=__robot_end={end:#x}");
     // No instruction names it, the mark of the code, or what simavr reads.
     for name in ["ROBOT", "MARK", "SIMAVR"] {
         println!("cargo::rustc-link-arg-bins=-Wl,--undefined={name}");

@@ -86,8 +86,8 @@ function crates(folder, top, of, ...filter) {
   relate(of, 'CONTAINS', visit(first.id));
 }
 const machine = run('rustc', '--print', 'host-tuple').trim();
-crates('host', 'lizard-host', program, '--filter-platform', machine);
-crates('host', 'lizard-web', page, '--filter-platform', 'wasm32-unknown-unknown');
+crates('crates', 'lizard-host', program, '--filter-platform', machine);
+crates('crates', 'lizard-web', page, '--filter-platform', 'wasm32-unknown-unknown');
 // Cargo knows the AVR's target by a file; what these crates need does not depend on it.
 crates('.', 'lizard', image);
 
@@ -113,7 +113,7 @@ function nodePackages(folder) {
   }
 }
 nodePackages('web');
-nodePackages('judge');
+nodePackages('tools/judge');
 
 // --- Libraries from Debian -------------------------------------------------
 

@@ -3,39 +3,21 @@
 use std::path::PathBuf;
 
 fn main() {
-    let parts = [
-        "adc",
-        "boot",
-        "call_timer",
-        "chip",
-        "chip_access",
-        "eeprom",
-        "disturbance",
-        "handlers",
-        "hook",
-        "instruction",
-        "interrupts",
-        "list",
-        "pin_toggle",
-        "recorder",
-        "reset",
-        "restart",
-        "sender",
-        "serial_bytes",
-        "stock_uart",
-        "supply",
-        "timer1",
-        "uno",
-        "usart",
-        "watchdog",
-    ];
     println!("cargo:rerun-if-changed=shim");
+    let files = std::fs::read_dir("shim").expect("the folder shim/ is part of the package");
+    let files = files.map(|file| file.expect("a file of shim/").path());
+    let mut sources: Vec<PathBuf> = files
+        .filter(|file| file.extension().is_some_and(|end| end == "c"))
+        .collect();
+    sources.sort();
     let compiled = cc::Build::new()
-        .files(parts.map(|part| format!("shim/{part}.c")))
+        .files(sources)
         .opt_level(2)
         .std("gnu11")
         .warnings(true)
         .extra_warnings(true)
+        // simavr's callbacks have parameters that most have no use for.
+        .flag("-Wno-unused-parameter")
         .try_compile("simulated_uno_shim");
     if let Err(error) = compiled {
         panic!(
@@ -43,8 +25,8 @@ fn main() {
              sudo apt-get install libsimavr-dev libelf-dev\n{error}"
         );
     }
-    // A program for which the C library is linked statically takes no shared library at all;
-    // without the word `static` the linker may take libelf.so, which nothing loads then.
+    // Where the C library is linked statically, the program can load no shared library. Without the
+    // word `static` the linker may choose libelf.so.
     let features = std::env::var("CARGO_CFG_TARGET_FEATURE").unwrap_or_default();
     if features.split(',').any(|feature| feature == "crt-static") {
         for library in ["simavr", "elf", "z"] {
@@ -60,12 +42,12 @@ fn main() {
     println!("cargo:rustc-link-lib=m");
 }
 
-/// Where the C compiler finds a library, which rustc looks for only in folders it is told.
+/// The folder in which the C compiler finds a library; rustc looks only in folders that it is given.
 fn folder_of(library: &str) -> Option<PathBuf> {
     let compiler = cc::Build::new().try_get_compiler().ok()?;
     let argument = format!("-print-file-name={library}");
-    let said = compiler.to_command().arg(argument).output().ok()?;
-    let path = PathBuf::from(String::from_utf8(said.stdout).ok()?.trim());
-    // A compiler that does not find it says the bare name again.
+    let output = compiler.to_command().arg(argument).output().ok()?;
+    let path = PathBuf::from(String::from_utf8(output.stdout).ok()?.trim());
+    // A compiler that does not find it prints the bare name.
     Some(path.parent()?.to_owned()).filter(|folder| folder.is_absolute())
 }

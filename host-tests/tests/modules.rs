@@ -7,13 +7,15 @@ use std::path::{Path, PathBuf};
 use lizard_host_tests::root;
 
 /// The crates whose modules are read.
-const CRATES: [&str; 11] = [
+const CRATES: [&str; 13] = [
     "crates/contact",
     "crates/core",
     "crates/host",
     "crates/kinematics",
     "crates/parts",
+    "crates/pulses",
     "crates/robot",
+    "crates/simulated-uno",
     "crates/tune",
     "crates/twin",
     "tools/linker",
@@ -24,7 +26,14 @@ const CRATES: [&str; 11] = [
 /// The rooms of the core, the top one first. A room may use those below it.
 const ROOMS: [&str; 6] = ["console", "control", "motion", "guard", "memory", "numbers"];
 
-/// What each module of a folder uses of the others.
+/// Folders whose face, too, may not be used by a module that it uses: its own functions and
+/// types count as one more module.
+const WITH_FACE: [(&str, &str); 2] = [
+    ("crates/host", "crate::"),
+    ("crates/host", "crate::commands::"),
+];
+
+/// The modules of a folder that each module uses.
 type Uses = BTreeMap<String, BTreeSet<String>>;
 
 #[test]
@@ -32,7 +41,7 @@ fn no_modules_use_each_other_in_a_circle() {
     let mut count = 0;
     for name in CRATES {
         for folder in folders(&root().join(name).join("src")) {
-            let uses = folder.uses();
+            let uses = folder.uses(WITH_FACE.contains(&(name, &folder.path)));
             count += uses.values().map(BTreeSet::len).sum::<usize>();
             let circles = in_circles(uses);
             assert!(
@@ -48,7 +57,7 @@ fn no_modules_use_each_other_in_a_circle() {
 #[test]
 fn a_room_of_the_core_uses_only_rooms_below_it() {
     let core = folders(&root().join("crates/core/src")).remove(0);
-    for (room, used) in core.uses() {
+    for (room, used) in core.uses(false) {
         if let Some(place) = ROOMS.iter().position(|name| *name == room) {
             for other in used {
                 assert!(
@@ -77,6 +86,17 @@ fn a_circle_is_found_and_what_leads_to_it_or_from_it_is_no_part_of_it() {
         ("below", &[]),
     ]);
     assert_eq!(in_circles(circle), ["a", "b", "c"]);
+}
+
+#[test]
+fn a_use_of_a_module_above_is_read_as_its_path_and_a_faces_own_items_are_found() {
+    let text = "use super::{Link, status};\nuse super::super::recorder::Event;";
+    assert_eq!(
+        absolute(text, "crate::drive::console::"),
+        "use crate::drive::console::{Link, status};\nuse crate::drive::recorder::Event;"
+    );
+    let face = "mod menu;\npub fn run() {}\nconst KNOWN: u8 = 1;\nuse menu::Choice;";
+    assert_eq!(items(face).collect::<Vec<_>>(), ["run", "KNOWN"]);
 }
 
 /// The modules that are left when those that use no other, and those that no other
@@ -133,9 +153,9 @@ impl Folder {
         self.face.lines().filter_map(module).collect()
     }
 
-    /// What its modules use of each other. A module and those within it count as one;
-    /// tests do not count.
-    fn uses(&self) -> Uses {
+    /// The uses among its modules, and its face if `with_face`. A module and those within it
+    /// count as one; tests do not count.
+    fn uses(&self, with_face: bool) -> Uses {
         let modules = self.modules();
         // `crate::Name` uses the module that the folder's face has the name from.
         let mut homes: BTreeMap<&str, &str> = modules.iter().map(|name| (*name, *name)).collect();
@@ -151,12 +171,28 @@ impl Folder {
             }
         }
         let mut uses = Uses::new();
+        if with_face {
+            homes.extend(items(&self.face).map(|name| (name, FACE)));
+            let used = modules
+                .iter()
+                .filter(|module| self.face.contains(&format!("{module}::")));
+            uses.insert(FACE.to_owned(), used.map(ToString::to_string).collect());
+        }
         for module in &modules {
             let place = self.place.join(module);
-            let own = read(&place.with_extension("rs")) + &read(&place.join("mod.rs"));
-            let mut text = own.replace("super::", &self.path);
+            let mut text = absolute(&read(&place.with_extension("rs")), &self.path);
             for path in files(&place) {
-                text += &read(&path);
+                let within = path.strip_prefix(&self.place).expect("it is in the folder");
+                let parents = within.parent().expect("a folder").iter();
+                let parents = parents.map(|name| name.to_string_lossy());
+                let parents: Vec<_> = std::iter::once((*module).into()).chain(parents).collect();
+                // `mod.rs` is the module of its folder.
+                let depth = parents.len() - usize::from(path.ends_with("mod.rs"));
+                let above: String = parents[..depth]
+                    .iter()
+                    .map(|name| format!("{name}::"))
+                    .collect();
+                text += &absolute(&read(&path), &format!("{}{above}", self.path));
             }
             let used = named(&text, &self.path).into_iter();
             let others = used
@@ -171,6 +207,33 @@ impl Folder {
     }
 }
 
+/// The name of a folder's face among its modules.
+const FACE: &str = "(mod.rs)";
+
+/// The names of the functions, types and constants that a text defines.
+fn items(text: &str) -> impl Iterator<Item = &str> {
+    const KINDS: [&str; 6] = ["fn ", "struct ", "enum ", "trait ", "type ", "const "];
+    text.lines().filter_map(|line| {
+        let line = line.trim_start_matches("pub(crate) ");
+        let line = line.trim_start_matches("pub ");
+        let name = KINDS.iter().find_map(|kind| line.strip_prefix(kind))?;
+        words(name).next()
+    })
+}
+
+/// The text of a file with every `super::` as the path of the module above it.
+fn absolute(text: &str, above: &str) -> String {
+    let mut text = text.to_owned();
+    let parts: Vec<&str> = above.split_inclusive("::").collect();
+    for up in (1..=parts.len()).rev() {
+        text = text.replace(
+            &"super::".repeat(up),
+            &parts[..parts.len() + 1 - up].concat(),
+        );
+    }
+    text
+}
+
 /// The name that a line of a folder's face declares a module by.
 fn module(line: &str) -> Option<&str> {
     let line = line
@@ -179,7 +242,7 @@ fn module(line: &str) -> Option<&str> {
     line.strip_prefix("mod ")?.strip_suffix(';')
 }
 
-/// What follows each `crate::`, or another path, in a text: a name, or those in braces.
+/// The names behind each `crate::`, or another path, in a text: one, or those in braces.
 fn named<'a>(text: &'a str, path: &str) -> BTreeSet<&'a str> {
     let after = text.split(path).skip(1);
     after

@@ -1,7 +1,7 @@
 //! `servo-pulses` apart from the lizard: its example, eight servos beside a flood of serial
 //! bytes, measured in the simulated UNO.
 
-use lizard_host_tests::root;
+use lizard_host_tests::{FirmwareBench, root};
 use servo_pulses::{LEAST_WIDTH, frame_cycles, most_width};
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin, State, Uno, most_pins_high};
 
@@ -17,7 +17,7 @@ fn width(servo: u64, frame: u64) -> u64 {
 }
 
 fn sweep(fidelity: Fidelity) -> Uno {
-    let elf = root().join("target/avr-atmega328p/release/examples/sweep.elf");
+    let elf = FirmwareBench::elf().with_file_name("examples/sweep.elf");
     Uno::load(&elf, fidelity).unwrap_or_else(|error| panic!("`make sweep` builds it: {error}"))
 }
 

@@ -5,7 +5,6 @@ use lizard_host::sim::script::{Script, Step};
 use lizard_host::sim::session::play;
 use lizard_host::sim::spans::spans;
 use lizard_host::sim::supplies;
-use lizard_host::twin::html::page;
 use lizard_host::twin::replay::Replay;
 use lizard_host::twin::report::Report;
 use lizard_host_tests::{FirmwareBench, robot};
@@ -68,17 +67,4 @@ fn the_image_takes_the_body_where_its_gaits_are_predicted_to_go() {
         assert!(margin > least - 0.01, "{} {name} {margin}", row.command);
     }
     assert!(compared > 0, "every gait depends on a tie");
-}
-
-#[test]
-fn a_replay_is_one_page_that_asks_no_network() {
-    let replay = walk_all(ServoModel::SG90);
-    let report = Report::of(robot(), &replay, false);
-    let page = page(&replay, &report).expect("a page");
-    for word in ["http:", "https:", "src=", "import(", "url(", "/*RUN*/"] {
-        assert!(!page.contains(word), "{word}");
-    }
-    let frames = format!("\"to\":{}", replay.states.len());
-    assert!(page.contains(&frames), "the last command ends with the run");
-    assert!(page.len() < 3_000_000, "{}", page.len());
 }

@@ -24,28 +24,28 @@ impl Eeprom {
     /// Waits for a write that a reset has left under way, 3.4 ms at most: until then
     /// nothing can be read.
     pub fn new(registers: EEPROM) -> Self {
-        while registers.eecr().read().eepe().bit_is_set() {}
+        while registers.eecr.read().eepe().bit_is_set() {}
         // Erase and write in one operation, and no interrupt; the boot loader may
         // have left something else.
-        registers.eecr().reset();
+        registers.eecr.reset();
         Self { registers }
     }
 }
 
 impl Memory for Eeprom {
     fn is_ready(&self) -> bool {
-        self.registers.eecr().read().eepe().bit_is_clear()
+        self.registers.eecr.read().eepe().bit_is_clear()
     }
 
     fn read(&self, address: u16) -> u8 {
-        self.registers.eear().write(|w| w.set(address));
-        self.registers.eecr().write(|w| w.eere().set_bit());
-        self.registers.eedr().read().bits()
+        self.registers.eear.write(|w| w.bits(address));
+        self.registers.eecr.write(|w| w.eere().set_bit());
+        self.registers.eedr.read().bits()
     }
 
     fn write(&mut self, address: u16, byte: u8) {
-        self.registers.eear().write(|w| w.set(address));
-        self.registers.eedr().write(|w| w.set(byte));
+        self.registers.eear.write(|w| w.bits(address));
+        self.registers.eedr.write(|w| w.bits(byte));
         interrupt::free(|_| {
             // SAFETY: sets two bits of EECR, which nobody else touches; the second
             // two cycles after the first.

@@ -51,7 +51,7 @@ fn cell(at: usize) -> &'static Byte {
 /// Returns the cause of the reset and the state from before it, and marks the program as
 /// running. Once, with interrupts off, before the watchdog starts.
 pub fn restart(cpu: &CPU) -> Restart {
-    let register = cpu.mcusr().read();
+    let register = cpu.mcusr.read();
     // Several may be set; none is where a boot loader has cleared them.
     let reported = if register.porf().bit_is_set() {
         Some(Cause::Power)
@@ -65,7 +65,7 @@ pub fn restart(cpu: &CPU) -> Restart {
         None
     };
     // The watchdog cannot be changed while WDRF is set.
-    cpu.mcusr().reset();
+    cpu.mcusr.reset();
     kept::begin(&Ram, reported)
 }
 

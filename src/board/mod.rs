@@ -58,11 +58,11 @@ impl Uno {
         // Which of them are the servos' is known later; none of them stays high until then.
         // SAFETY: any value of a port is sound; D0 and D1, the serial line, keep theirs.
         unsafe {
-            board.PORTB.portb().write(|w| w.bits(0));
-            board.PORTC.portc().write(|w| w.bits(0));
+            board.PORTB.portb.write(|w| w.bits(0));
+            board.PORTC.portc.write(|w| w.bits(0));
             board
                 .PORTD
-                .portd()
+                .portd
                 .modify(|port, w| w.bits(port.bits() & 0x03));
         }
         let restart = kept::restart(&board.CPU);

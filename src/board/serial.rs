@@ -8,6 +8,7 @@
 
 
 use avr_device::atmega328p::USART0;
+use avr_device::atmega328p::usart0::RegisterBlock;
 use lizard_core::console::line::GARBLED;
 use lizard_core::console::output::Output;
 
@@ -89,9 +90,9 @@ static LOST: Counter = Counter::new();
 pub fn start(usart: USART0) {
     // Double speed before the divisor: stock simavr takes the baud rate at the
     // moment the divisor is written.
-    usart.ucsr0a().write(|w| w.u2x0().set_bit());
-    usart.ubrr0().write(|w| w.set(BAUD_DIVISOR));
-    usart.ucsr0c().write(|w| {
+    usart.ucsr0a.write(|w| w.u2x0().set_bit());
+    usart.ubrr0.write(|w| w.bits(BAUD_DIVISOR));
+    usart.ucsr0c.write(|w| {
         w.umsel0()
             .usart_async()
             .upm0()
@@ -148,15 +149,15 @@ fn send(byte: u8) {
     // SAFETY: main writes UCSR0B, whole, to a value that is right whenever there is
     // something to send, as there was a moment ago; if the handler has sent it
     // meanwhile, it runs once more for nothing.
-    listen(&unsafe { USART0::steal() }, true);
+    listen(unsafe { &*USART0::ptr() }, true);
 }
 
 /// Receiver, transmitter and the receive interrupt on; the transmit interrupt on
 /// while there is something to send. One store, never a read and a write, so that
 /// main and a handler cannot undo each other's.
 #[inline(always)]
-fn listen(usart: &USART0, and_send: bool) {
-    usart.ucsr0b().write(|w| {
+fn listen(usart: &RegisterBlock, and_send: bool) {
+    usart.ucsr0b.write(|w| {
         w.rxcie0()
             .set_bit()
             .rxen0()
@@ -172,10 +173,10 @@ fn listen(usart: &USART0, and_send: bool) {
 #[avr_device::interrupt(atmega328p)]
 fn USART_RX() {
     // SAFETY: the handler reads UCSR0A and UDR0, which main never touches.
-    let usart = unsafe { USART0::steal() };
+    let usart = unsafe { &*USART0::ptr() };
     // The status belongs to the byte that UDR0 gives next.
-    let status = usart.ucsr0a().read();
-    let mut byte = usart.udr0().read().bits();
+    let status = usart.ucsr0a.read();
+    let mut byte = usart.udr0.read().bits();
     if status.fe0().bit_is_set() {
         byte = GARBLED;
         LOST.count();
@@ -194,9 +195,9 @@ fn USART_RX() {
 #[avr_device::interrupt(atmega328p)]
 fn USART_UDRE() {
     // SAFETY: UDR0 is written here alone; for UCSR0B see `Writer`.
-    let usart = unsafe { USART0::steal() };
+    let usart = unsafe { &*USART0::ptr() };
     match TO_SEND.take() {
-        Some(byte) => _ = usart.udr0().write(|w| w.set(byte)),
-        None => listen(&usart, false),
+        Some(byte) => _ = usart.udr0.write(|w| w.bits(byte)),
+        None => listen(usart, false),
     }
 }

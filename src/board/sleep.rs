@@ -13,7 +13,7 @@ use super::{pulses, serial};
 
 /// Chooses idle, the sleep in which the timer and the USART run on. Once.
 pub fn start(cpu: CPU) {
-    cpu.smcr().write(|w| w.sm().idle().se().set_bit());
+    cpu.smcr.write(|w| w.sm().idle().se().set_bit());
 }
 
 /// Returns when the tick is no longer `seen`, a byte waits to be read or the last

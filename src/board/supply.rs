@@ -40,7 +40,7 @@ impl Converter {
     pub fn new(registers: ADC) -> Self {
         choose(&registers, REFERENCE);
         // SAFETY: any value of ADCSRA is sound; this one switches the converter on.
-        registers.adcsra().write(|w| unsafe { w.bits(ON) });
+        registers.adcsra.write(|w| unsafe { w.bits(ON) });
         Self {
             registers,
             reading: Reading::default(),
@@ -63,10 +63,10 @@ impl Converter {
             self.chosen = false;
             // SAFETY: as above; and it begins to convert.
             self.registers
-                .adcsra()
+                .adcsra
                 .write(|w| unsafe { w.bits(ON | START) });
         } else {
-            let value = self.registers.adc().read().bits();
+            let value = self.registers.adc.read().bits();
             self.take(value);
             self.chosen = true;
         }
@@ -100,7 +100,5 @@ impl Converter {
 
 fn choose(registers: &ADC, channel: u8) {
     // SAFETY: AVcc as the reference is how the UNO is wired, and `channel` exists.
-    registers
-        .admux()
-        .write(|w| unsafe { w.bits(AVCC | channel) });
+    registers.admux.write(|w| unsafe { w.bits(AVCC | channel) });
 }

@@ -1,6 +1,7 @@
-// Loads the packages of a folder's package-lock.json into its node_modules, as `npm ci --ignore-scripts` does,
-// where there is no npm: node fetch.js [FOLDER], the judge's by default. What is there in the right
-// version stays. Packages for other machines than this one are left out.
+// Loads the packages of a folder's package-lock.json into its node_modules, as `npm ci --ignore-scripts` does:
+// node fetch.js [FOLDER], the judge's by default. Debian's Node comes without npm, whose package brings 390
+// others for the one that `make test` needs. Packages that are present in the right version stay.
+// Packages for other machines than this one are left out.
 import { createHash } from 'node:crypto';
 import { mkdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
 import { dirname, join, normalize, resolve } from 'node:path';
@@ -9,7 +10,7 @@ import { gunzipSync } from 'node:zlib';
 const judge = import.meta.dirname ?? dirname(new URL(import.meta.url).pathname);
 const here = process.argv[2] ? resolve(process.argv[2]) : judge;
 
-/** The version that is installed in a folder, if any. */
+/** Returns the version that is installed in a folder, if any. */
 function installed(folder) {
   try {
     return JSON.parse(readFileSync(join(folder, 'package.json'), 'utf8')).version;
@@ -18,7 +19,7 @@ function installed(folder) {
   }
 }
 
-/** The files of a tar archive, `{ name, bytes, mode }`; what is no file is left out. */
+/** Yields the files of a tar archive, `{ name, bytes, mode }`; folders and links are left out. */
 function* files(tar) {
   const text = (from, length) => tar.toString('utf8', from, from + length).replace(/\0.*$/s, '');
   for (let at = 0; at + 512 <= tar.length && tar[at] !== 0; ) {
@@ -32,20 +33,20 @@ function* files(tar) {
   }
 }
 
-/** Whether a package is for this machine. */
+/** True for a package that this machine can use. */
 function suits({ os, cpu, libc }) {
   const glibc = process.report.getReport().header.glibcVersionRuntime !== undefined;
   const among = (list, mine) => !list || [list].flat().includes(mine);
   return among(os, process.platform) && among(cpu, process.arch) && among(libc, glibc ? 'glibc' : 'musl');
 }
 
-/** Where the registry has a package; a lock file may leave that out. */
+/** Returns a package's address in the registry, for lock files that leave it out. */
 function address(path, version) {
   const name = path.replace(/^.*node_modules\//, '');
   return `https://registry.npmjs.org/${name}/-/${name.replace(/^.*\//, '')}-${version}.tgz`;
 }
 
-/** The bytes of an address. A line that breaks is tried again. */
+/** Downloads an address. A broken connection is tried again. */
 async function download(from, tries = 4) {
   try {
     const response = await fetch(from);

@@ -1,11 +1,11 @@
 // Runs a firmware on avr8js: node run.js FIRMWARE.hex < SCRIPT
 //
-// SCRIPT is explained in src/script.js. Printed is, a line each and all cycles counted from power-on,
+// src/script.js explains SCRIPT. Prints these lines, with all cycles counted from power-on:
 //   pulse <pin> <rise> <width>   a pin was high; 14 to 19 are A0 to A5
-//   sent <cycle> <hex byte>      the UNO has sent a byte; the cycle is its stop bit's end
+//   sent <cycle> <hex byte>      the UNO has sent a byte; the cycle is the end of its stop bit
 //   eeprom <2048 hex digits>     at the end
-//   cpu <ms>                     processor time that the simulation took
-// What the judge cannot simulate ends the run with a sentence and exit code 1.
+//   cpu <ms>                     processor time of the simulation
+// A program that needs more than the judge can simulate ends the run with a sentence and exit code 1.
 import { readFileSync } from 'node:fs';
 
 import { corrections } from './src/corrections/index.js';

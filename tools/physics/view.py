@@ -3,7 +3,7 @@
 
 Usage: target/physics/bin/python tools/physics/view.py out/walk.xml
 The file is to be written with --drive; the last cycle is repeated until the window is
-closed. Space stops and goes on. `make physics` installs MuJoCo; so does
+closed. Space pauses and resumes. `make physics` installs MuJoCo; so does
 `python3 -m pip install -r tools/physics/requirements.txt`.
 """
 
@@ -28,7 +28,7 @@ def main():
     except ValueError as wrong:
         sys.exit(f"view.py: {sys.argv[1]}: {' '.join(str(wrong).split())}")
     if walk.model.nkey == 0:
-        print("view.py: the servos are told nothing; write the file with --drive GAIT")
+        print("view.py: the servos do not move; write the file with --drive GAIT")
     stopped = False
 
     def key(code):

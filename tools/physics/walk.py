@@ -1,7 +1,7 @@
-"""A robot that `lizard mjcf` has written, walked by MuJoCo.
+"""Walks a robot that `lizard mjcf` has written, by MuJoCo.
 
-The file has a keyframe for each frame of 20 ms: when it begins, and what the servos are
-told in it. They are told so until the next one begins, as by the pulses of the board.
+The file has a keyframe for each frame of 20 ms: its time and the servos' angles, which stay
+set until the next frame begins, as by the pulses of the board.
 """
 
 import math
@@ -10,7 +10,7 @@ import mujoco
 
 
 class Walk:
-    """The robot, its keyframes, and when the cycle begins that can be repeated."""
+    """The robot, its keyframes, and the beginning of the cycle that can be repeated."""
 
     def __init__(self, path):
         self.model = mujoco.MjModel.from_xml_path(str(path))
@@ -28,20 +28,20 @@ class Walk:
         return min(frame, self.model.nkey - 1)
 
     def step(self):
-        """One step of the engine, with the servos told what they are to be told."""
+        """Makes one step of the engine, with the servos set to the present frame's angles."""
         if self.model.nkey > 0:
             self.data.ctrl[:] = self.model.key_ctrl[self.frame(self.data.time)]
         mujoco.mj_step(self.model, self.data)
 
     def place(self):
-        """The chassis on the floor: forward and left, mm, and its heading, rad."""
+        """The chassis's place on the floor: forward and left, mm, and its heading, rad."""
         x, y, _, w, qx, qy, qz = self.data.qpos[:7]
         heading = math.atan2(2 * (w * qz + qx * qy), 1 - 2 * (qy * qy + qz * qz))
         return 1000 * y, -1000 * x, heading
 
     def cycle(self):
-        """Walks to the end of the cycle that the file names: where that one leads, seen
-        from where it began, as mm forward, mm to the left, deg counter-clockwise."""
+        """Walks to the end of the cycle that the file names. Returns the displacement by that
+        cycle, relative to its beginning: mm forward, mm to the left, deg counter-clockwise."""
         step = self.model.opt.timestep
         for _ in range(round(self.begin / step)):
             self.step()

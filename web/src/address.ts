@@ -3,37 +3,37 @@ import { linkTo } from './link-text';
 import type { Session } from './session';
 
 const FILE = '#file=';
-/** Changes that follow on each other are one, ms: browsers refuse an address that changes too often. */
+/** Changes closer together than this are written as one, ms: browsers refuse an address that changes too often. */
 const QUIET = 300;
 
-/** The name of the file that an address asks for; null where it asks for none. */
+/** The file name in an address; null if it has none. */
 export function fileIn(hash: string): string | null {
   return hash.startsWith(FILE) ? decodeURIComponent(hash.slice(FILE.length)) : null;
 }
 
 export class Address {
   private timer = 0;
-  /** Whether what the page was opened with has been read. */
+  /** True once the address that the page was opened with has been read. */
   private isRead = false;
 
   constructor(
     private readonly session: () => Session,
-    /** The file that the page begins with when nothing is asked for. */
+    /** The file that the page starts with if the address names none. */
     private readonly first: string,
   ) {}
 
-  /** What the page was opened with has been read: from now on its address follows the robot. */
+  /** Starts to keep the address in step with the robot; called once the first address has been read. */
   begin(): void {
     this.isRead = true;
     this.follow();
   }
 
-  /** The robot is another one. */
+  /** Schedules the address of a changed robot. */
   follow(): void {
     if (!this.isRead) return;
     clearTimeout(this.timer);
     this.timer = setTimeout(() => {
-      // A browser that cannot compress has the address of before; the button for a link says why.
+      // A browser that cannot compress keeps the old address; the button for a link says why.
       this.show().catch((error: unknown) => console.info(`The address does not follow the robot: ${String(error)}`));
     }, QUIET);
   }
@@ -43,7 +43,7 @@ export class Address {
     const plain = location.href.split('#')[0] ?? location.href;
     const own = file === '' || file === this.first ? plain : `${plain}${FILE}${encodeURIComponent(file)}`;
     const address = toml === original ? own : await linkTo(toml);
-    // It may have changed meanwhile, and then it is shown later.
+    // The robot may have changed meanwhile; a later call then shows it.
     if (this.session().toml === toml && address !== location.href) history.replaceState(null, '', address);
   }
 }

@@ -1,11 +1,10 @@
-// Real time for the simulation: as much of it passes as on the wall, and not more than the
-// page can keep up with.
+// Runs the simulation in real time, or slower where the page cannot keep up.
 
-/** A page that was hidden or slow does not make up for more than this, ms. */
+/** The most time that a hidden or slow page makes up for, ms. */
 const MOST = 100;
-/** The simulation is run in parts of this, ms; between two of them, answers are answered. */
+/** Slice of simulated time, ms; promises are settled between two slices. */
 const PART = 4;
-/** It takes no more of a picture's time than this, ms; then it falls behind the wall. */
+/** CPU time that the simulation may take of a picture's time, ms; beyond it, it falls behind real time. */
 const BUDGET = 30;
 
 export function run(advance: (ms: number) => void, draw: () => void): void {
@@ -22,7 +21,7 @@ export function run(advance: (ms: number) => void, draw: () => void): void {
         await Promise.resolve();
       }
     } catch (error) {
-      // What has stopped is said once; the page goes on.
+      // The stop is reported once; the page goes on.
       failed = true;
       console.error(error);
     }

@@ -1,7 +1,7 @@
-// A second robot on the same floor: the firmware's core with the same numbers and another gait.
+// A second robot on the same floor: the firmware's core with the same robot and another gait.
 import { isRefused, type Floor, type Frame, Robot } from './robot';
 
-/** Frames of 20 ms in which a robot that was switched on has woken and stands. */
+/** Frames of 20 ms from power-on until the robot stands. */
 const WAKES = 200;
 
 export class Companion {
@@ -13,7 +13,7 @@ export class Companion {
     private readonly volts: number,
   ) {}
 
-  /** One that stands at the start, as heavy and on the same floor as the page's robot. Throws a sentence. */
+  /** Creates a companion that stands at the start, with the mass and the floor of the page's robot. Throws a sentence. */
   static async standing(module: WebAssembly.Module, toml: string, floor: Floor, servos: string, volts: number): Promise<Companion> {
     const robot = await Robot.load(module);
     const read = robot.read(toml);
@@ -33,7 +33,7 @@ export class Companion {
     this.line += `${line}\n`;
   }
 
-  /** A frame of 20 ms goes by. */
+  /** Advances by one frame of 20 ms. */
   step(): void {
     const said = this.robot.coreFrame(this.line, this.volts);
     this.line = '';

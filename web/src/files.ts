@@ -1,9 +1,9 @@
-// What `make web` has put beside the page: robots, the firmware's code, the boot loader.
+// The files that `make web` puts beside the page: robots, the firmware's code, the boot loader.
 
-/** A robot.toml says in the comment at its top what it is for. */
+/** The sentence in the first comment of a robot.toml that is meant for tests. */
 const FOR_TESTS = /\bIt is for the tests\b/;
 
-/** Whether a robot.toml says of itself that it is for tests first of all. */
+/** Returns true for a robot.toml that is meant for tests. */
 export function isForTests(toml: string): boolean {
   const lines = toml.split('\n');
   const end = lines.findIndex((line) => !line.startsWith('#'));
@@ -21,15 +21,15 @@ const text = async (path: string): Promise<string> => (await get(path)).text();
 const compiled = async (path: string): Promise<WebAssembly.Module> => WebAssembly.compile(await (await get(path)).arrayBuffer());
 
 export const files = {
-  /** The names of the robots' files, without their ends. */
+  /** The names of the robots' files, without extension. */
   robots: async (): Promise<string[]> => (await get('files/robots.json')).json() as Promise<string[]>,
   toml: (name: string): Promise<string> => text(`files/${name}.toml`),
   /** The firmware without a robot, as a HEX file. */
   code: (): Promise<string> => text('files/code.hex'),
   bootLoader: (): Promise<string> => text('files/optiboot.hex'),
   wasm: (): Promise<WebAssembly.Module> => compiled('files/lizard.wasm'),
-  /** The same with the search of a gait, for who wants one. */
+  /** The same with the search for a faster gait; loaded on demand. */
   tune: (): Promise<WebAssembly.Module> => compiled('files/tune.wasm'),
-  /** The parts, which only their panel asks for. */
+  /** The parts; loaded when their panel is opened. */
   parts: (): Promise<WebAssembly.Module> => compiled('files/parts.wasm'),
 };

@@ -1,15 +1,15 @@
-// What a person has changed, over a reload: the browser keeps it for the page's address.
+// Keeps the user's changes across a reload, in the browser's storage.
 import type { Floor } from './robot';
 
-/** A robot with what was changed of it. */
+/** A robot and the user's changes to it. */
 export interface Kept {
   /** The name of its file. */
   file: string;
-  /** The robot.toml of the file as it was then: the changes belong to this one alone. */
+  /** The robot.toml of the file at that time: the changes apply only to this text. */
   original: string;
   /** The robot.toml with its changes. */
   toml: string;
-  /** What the page has set of floor, weight, feet and drive; null for what robot.toml says. */
+  /** Floor, mass, feet and drive as set in the page; null for those of robot.toml. */
   floor: Floor | null;
   servos: string;
   volts: number;
@@ -19,7 +19,7 @@ export interface Kept {
 const KEY = `lizard ${location.pathname}`;
 
 export const kept = {
-  /** Keeps it; a browser that keeps nothing for a page loses it with a reload. */
+  /** Stores it; a browser without storage loses it at a reload. */
   put(state: Kept): void {
     try {
       localStorage.setItem(KEY, JSON.stringify(state));
@@ -28,13 +28,14 @@ export const kept = {
     }
   },
 
-  /** What was kept; null where there is nothing of use. */
+  /** The stored state; null if there is none that can be used. */
   get(): Kept | null {
     try {
       const state = JSON.parse(localStorage.getItem(KEY) ?? 'null') as Kept | null;
       if (!state || typeof state.toml !== 'string' || typeof state.file !== 'string') return null;
-      // An earlier page kept springs in another form: what it had set is let go.
-      return { ...state, floor: state.floor && typeof state.floor.twist === 'number' ? state.floor : null };
+      // An earlier page stored springs in another form, which is dropped.
+      const isKnown = typeof state.floor?.twist === 'number' && ['rigid', 'strut'].includes(state.floor.kind);
+      return { ...state, floor: isKnown ? state.floor : null };
     } catch {
       return null;
     }

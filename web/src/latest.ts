@@ -1,18 +1,18 @@
-// Questions for a worker that come faster than it answers, as while a person drags: of those that are asked while it is
-// at work, only the last is answered, and no answer comes after that of a later question.
+// Questions for a worker that arrive faster than it answers, as while the user drags. Of the questions that arrive
+// while it works, only the last is answered, and answers come in the order of their questions.
 
 export class Latest<Question, Answer> {
   private readonly worker: Worker;
   private next: Question | null = null;
   private isBusy = false;
 
-  /** The worker gets the module of the robot first, and then one question at a time. */
+  /** Sends the module of the robot first, then one question at a time. */
   constructor(worker: Worker, module: WebAssembly.Module, onAnswer: (answer: Answer) => void) {
     this.worker = worker;
     worker.postMessage(module);
     worker.addEventListener('message', ({ data }: MessageEvent<Answer>) => {
       this.isBusy = false;
-      // Whoever hears the answer may ask at once, and that is then the later question.
+      // The listener may ask again at once; that question replaces the waiting one.
       onAnswer(data);
       if (this.next !== null && !this.isBusy) this.ask(this.next);
     });

@@ -1,7 +1,7 @@
-// A robot as an address: the text of its robot.toml, compressed, behind the page's own address, where no server sees it.
+// A robot as a link: its robot.toml, compressed, behind the # of the page's address, where no server sees it.
 
 const KEY = '#robot=';
-/** A robot.toml is some kilobytes; what is far longer is none. */
+/** The longest text that is taken for a robot.toml, which has some kilobytes. */
 const LONGEST = 200_000;
 
 async function through(bytes: Uint8Array<ArrayBuffer>, stream: CompressionStream | DecompressionStream): Promise<Uint8Array<ArrayBuffer>> {
@@ -17,15 +17,15 @@ async function through(bytes: Uint8Array<ArrayBuffer>, stream: CompressionStream
   return new Uint8Array(await new Blob(pieces).arrayBuffer());
 }
 
-/** The address of a robot. */
+/** The link to a robot. */
 export async function linkTo(toml: string): Promise<string> {
   const packed = await through(new TextEncoder().encode(toml), new CompressionStream('deflate-raw'));
   const letters = btoa(String.fromCharCode(...packed));
-  // As base64url, which an address takes as it is.
+  // base64url, which needs no escapes in an address.
   return `${location.href.split('#')[0]}${KEY}${letters.replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '')}`;
 }
 
-/** The robot.toml that an address has behind its #; null where it has none. Throws a sentence. */
+/** Reads the robot.toml behind the # of an address; null if there is none. Throws a sentence. */
 export async function linked(hash: string): Promise<string | null> {
   if (!hash.startsWith(KEY)) return null;
   try {

@@ -36,14 +36,14 @@ import { World } from './view/world';
 import { Writer } from './view/writer';
 import { WORDS, unknownWords } from './words';
 
-/** Texts that follow the robot are written so many times a second. */
+/** Updates of the numbers per second. */
 const TEXTS = 10;
-/** Scope, margins and maps are drawn in each third picture: painting is what costs. */
+/** Scope, margins and maps are drawn in every third picture, since painting costs most. */
 const PANELS = 3;
 
 declare global {
   interface Window {
-    /** For tests and the curious. */
+    /** The session, for tests and for the browser's console. */
     lizard?: Session;
   }
 }
@@ -82,7 +82,7 @@ async function start(): Promise<void> {
     const first = description.gaits.findIndex(({ command }) => command === session.gait);
     predictor.ask({ toml, floor, servos, gaits: description.gaits.length, first: Math.max(0, first) });
   };
-  // Whoever opens the page sees it walk, slowly, unless they have asked their system for less motion.
+  // The robot walks slowly when the page opens, unless the system asks for reduced motion.
   let begun = matchMedia('(prefers-reduced-motion: reduce)').matches;
   const begin = () => {
     const gait = gaitFor({ ahead: 1, left: 0 }, drive.ways());
@@ -90,7 +90,7 @@ async function start(): Promise<void> {
     begun = true;
     void drive.ask(`${WORDS.speed} 50`).then(() => drive.ask(gait));
   };
-  // A person who has done something knows what they want.
+  // The user has taken over.
   for (const act of ['pointerdown', 'keydown']) document.addEventListener(act, () => (begun = true), { once: true });
   const world = new World(now, predict);
   const health = new Health(now);
@@ -102,7 +102,7 @@ async function start(): Promise<void> {
   let writing = false;
   const writer = new Writer(now, (busy) => {
     writing = health.held = busy;
-    // The line belongs to the boot loader: what would take it away waits.
+    // The boot loader uses the line, so nothing else may take it.
     choice.enabled = !busy;
     connect.disabled = busy || !hasSerial();
     flash.update();
@@ -120,7 +120,7 @@ async function start(): Promise<void> {
       margins.robot(description);
       maps.robot(robot);
       drive.take(description);
-      // A board that stays connected does what it did.
+      // A board that stays connected goes on with its gait.
       drive.doing(session.gait);
       const strange = unknownWords([...drive.words], description.words);
       if (strange.length > 0) troubles.say('page', `The core does not know these words of the page: ${strange.join(', ')}.`);
@@ -148,9 +148,9 @@ async function start(): Promise<void> {
       scope.pulse(pin, rise, width);
     },
     sent: (line) => log.sent(line),
-    came(line) {
-      log.came(line);
-      setup.came(line);
+    received(line) {
+      log.received(line);
+      setup.received(line);
     },
     isUno: (from) =>
       confirm(
@@ -171,7 +171,7 @@ async function start(): Promise<void> {
       latest = 0;
       scope.link(session.isReal);
       element('where').textContent = `waiting for the ${link.name}`;
-      // What most probably comes.
+      // The line most likely to come, for the row's height.
       const { version, name, hash } = session.description;
       element('where').parentElement!.dataset.room = whereOf(link.name, { version, robot: { name, hash } }, hash);
       element('connect').textContent = session.isReal ? 'Back to the simulation' : 'Connect a board…';
@@ -179,7 +179,7 @@ async function start(): Promise<void> {
       setup.link();
     },
     trouble(cause, said) {
-      // A board without this firmware can have it.
+      // Offers this firmware to a board without it.
       const remedy = { label: 'Write firmware and robot to it', act: () => flash.write('all') };
       troubles.say(cause, said, cause === 'board' ? remedy : null);
     },
@@ -195,7 +195,7 @@ async function start(): Promise<void> {
     put('doing', gait || '–');
     if (last) {
       const { x, y, heading } = last.place;
-      // Without the sign of a zero.
+      // Avoids -0.
       const round = (value: number, digits: number) => (Number(value.toFixed(digits)) + 0).toFixed(digits);
       put('ahead', `${round(y, 0)} mm`);
       put('sideways', `${round(x, 0)} mm`);
@@ -242,8 +242,8 @@ async function start(): Promise<void> {
     }
   }
   connect.addEventListener('click', () => void connectBoard());
-  // A board goes on walking when its page is closed: it is stopped, and the browser asks. It asks, too, before half
-  // an image is left on a board.
+  // A board would walk on when its page is closed: it is stopped, and the browser asks. The browser also asks while an
+  // image is being written.
   addEventListener('beforeunload', (event) => {
     if (session.walksAlone) void session.stop();
     else if (!(writing && session.isReal)) return;
@@ -257,7 +257,7 @@ async function start(): Promise<void> {
   await choose();
   const missing = (file: string) => troubles.say('robot', `This page has no ${file}.toml, which its address asks for.`);
   if (asked !== null && !isThere) missing(asked);
-  // What the address has is not lost, whatever was kept.
+  // The robot in the address wins over a stored one.
   const isAsked = location.hash !== '';
   if (before && session.file === before.file && !(await session.recall(before)) && !isAsked) {
     const remedy = { label: 'Download what was changed', act: () => void download(robot, before.toml, before.floor) };
@@ -265,14 +265,16 @@ async function start(): Promise<void> {
     troubles.say('robot', said, remedy);
   }
   if (await text.fromAddress()) address.begin();
-  addEventListener('hashchange', () => {
-    const file = fileIn(location.hash);
-    if (file === null) return void text.fromAddress().then((isRight) => isRight && address.begin());
+  addEventListener('hashchange', ({ newURL }) => {
+    // Not the page's own one, which may have followed the robot before this is heard.
+    const { hash } = new URL(newURL);
+    const file = fileIn(hash);
+    if (file === null) return void text.fromAddress(hash).then((isRight) => isRight && address.begin());
     if (choice.show(file)) void choose();
     else missing(file);
   });
   window.lizard = session;
-  // After what the first step needs has come.
+  // Only after everything for the first step is loaded.
   void keepOffline((take) => {
     element('fresh').hidden = false;
     element('fresh-take').onclick = take;
@@ -287,7 +289,7 @@ async function start(): Promise<void> {
     },
     () => {
       steer.look();
-      // Where no robot could be read, there is nothing to draw.
+      // Without a robot there is nothing to draw.
       if (!session.description) return;
       floor.draw(session.description.plate, keep.shown(session.last), keep.beside);
       keep.drawn();
@@ -309,7 +311,7 @@ async function start(): Promise<void> {
   );
 }
 
-/** What runs where, in words. */
+/** The sentence that names the board and its robot. */
 function whereOf(name: string, has: Has, hash: string): string {
   if (has === null) return `on a ${name} without this firmware`;
   if (has === 'unknown') return `on a ${name} that has not begun anew: its reset button makes it say which robot it is`;

@@ -1,11 +1,11 @@
 /// <reference types="vite/client" />
-// The page without a network: a service worker (service-worker.js) keeps all of its files, and a newer page is taken when a
-// person says so, never under a robot that walks.
+// The page without a network: a service worker (service-worker.js) stores all files, and a newer page is loaded only when
+// the user says so, never while the robot walks.
 import { sentence } from './trouble';
 
-/** Keeps the page on this machine; `fresh` is told of a newer one, and calls what it gets to take that. */
+/** Stores the page on this machine. Calls `fresh` when a newer page is ready, with the function that loads it. */
 export async function keepOffline(fresh: (take: () => void) => void): Promise<void> {
-  // Browsers have it over https and on localhost; without it the page works as long as there is a network.
+  // Only over https and on localhost; otherwise the page needs the network.
   if (!import.meta.env.PROD || !('serviceWorker' in navigator)) return;
   const { serviceWorker } = navigator;
   const isFirst = serviceWorker.controller === null;

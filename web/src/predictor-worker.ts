@@ -1,4 +1,4 @@
-// The other end of the Predictor: the robot in WebAssembly once more, in a thread of its own.
+// The worker of the Predictor, with its own instance of the robot in WebAssembly.
 import type { Answer, Question } from './predictor';
 import { Robot } from './robot';
 
@@ -13,7 +13,7 @@ addEventListener('message', ({ data }: MessageEvent<WebAssembly.Module | (Questi
   }
 });
 
-/** Gait by gait, and in between what has been asked since is heard. */
+/** Predicts gait by gait; a newer question, handled in between, ends it. */
 async function answer({ question, toml, floor, servos, gaits, first }: Question & { question: number }): Promise<void> {
   const known = await robot;
   if (question !== asked) return;

@@ -1,19 +1,19 @@
-// Where each gait leads, asked of a worker: a prediction takes tenths of a second, and the page
+// Predicts each gait's displacement in a worker: a prediction takes tenths of a second, and the page
 // has 16 ms for a picture.
 import type { Floor, Outlook } from './robot';
 
-/** What is asked: every gait of a robot on a floor. */
+/** The question: every gait of a robot on a floor. */
 export interface Question {
   toml: string;
   floor: Floor;
-  /** The name of what its servos are taken for. */
+  /** The name of the servo model. */
   servos: string;
   gaits: number;
-  /** The gait to begin with. */
+  /** The gait to predict first. */
   first: number;
 }
 
-/** One gait's answer, to the question of this number. */
+/** The prediction of one gait, and the number of its question. */
 export interface Answer {
   question: number;
   gait: number;
@@ -31,7 +31,7 @@ export class Predictor {
     });
   }
 
-  /** Asks anew; what was asked before is not answered any more. */
+  /** Asks a new question; the previous one is not answered any further. */
   ask(question: Question): void {
     this.question += 1;
     this.worker.postMessage({ ...question, question: this.question });

@@ -1,25 +1,25 @@
-// A run of the robot, kept frame by frame: to be seen again, and to be read by other programs.
+// A recorded run of the robot, frame by frame, for replay and for export.
 import type { Four, Frame } from './robot';
 
-/** A frame of it. */
+/** One frame of a recording. */
 export interface Moment {
-  /** Since the recording began, s. */
+  /** Time since the recording began, s. */
   time: number;
-  /** What the robot did. */
+  /** The gait or command of this frame. */
   doing: string;
   frame: Frame;
-  /** CPU cycles; null where a board on USB does not show its pulses. */
+  /** Pulse widths, CPU cycles; null for a board on USB, which does not show its pulses. */
   widths: Four<number> | null;
 }
 
-/** No more than so many seconds are kept, so that a forgotten recording does not fill the memory. */
+/** Length limit, s, so that a forgotten recording does not fill the memory. */
 export const LONGEST = 180;
 const CYCLES_PER_US = 16;
 
 export class Recording {
   readonly moments: Moment[] = [];
 
-  /** Notes a frame that took so many seconds; whether there is room for more. */
+  /** Adds a frame of some seconds; returns true while there is room for more. */
   note(frame: Frame, widths: Four<number> | null, doing: string, seconds: number): boolean {
     const last = this.moments[this.moments.length - 1];
     this.moments.push({ time: last ? last.time + seconds : 0, doing, frame, widths });
@@ -30,7 +30,7 @@ export class Recording {
     return this.moments[this.moments.length - 1]?.time ?? 0;
   }
 
-  /** The last frame that had come at a time, s. */
+  /** The latest frame at a time, s. */
   at(time: number): Moment | null {
     const after = this.moments.findIndex((moment) => moment.time > time + 1e-9);
     return this.moments[after < 0 ? this.moments.length - 1 : Math.max(0, after - 1)] ?? null;
@@ -46,7 +46,7 @@ export class Recording {
     const none = ['', '', '', ''];
     const lines = this.moments.map(({ time, doing, frame: { scene, place, lag }, widths }) => [
       time.toFixed(2),
-      // A gait's name is a robot file's: it may begin no formula and end no field.
+      // A gait's name comes from a file: it must neither start a formula nor end a field.
       `"${doing.replaceAll('"', '""')}"`,
       ...(scene?.angles.map((angle) => angle.toFixed(3)) ?? none),
       ...[place.x, place.y, place.heading].map((value) => (Number(value.toFixed(2)) + 0).toFixed(2)),

@@ -1,7 +1,7 @@
-// The robot in WebAssembly (wasm/): everything that is computed of it. Types are those that
-// wasm/src writes as JSON; no formula is in this language.
+// Calls of the robot in WebAssembly (wasm/), which computes everything. The types are those that
+// wasm/src writes as JSON; no formula is repeated in TypeScript.
 
-/** mm, chassis frame: to the right, forward. */
+/** A point in the chassis frame, mm: right, forward. */
 export type Spot = [number, number];
 export type Four<T> = [T, T, T, T];
 
@@ -17,14 +17,14 @@ export interface Servo {
   leg: string;
   pin: number;
   neutral: number;
-  /** deg from neutral. */
+  /** Travel, deg from neutral. */
   travel: [number, number];
 }
 
 export interface Length {
   key: string;
   label: string;
-  /** The key of its mirror image, or of the length that must equal it. */
+  /** The key of the mirrored length, or of the length that must be equal. */
   twin: string;
   unit: string;
   value: number;
@@ -32,11 +32,11 @@ export interface Length {
 
 export interface Description {
   hash: string;
-  /** Its name, as a banner says it. */
+  /** Its name, as in a banner. */
   name: string;
-  /** The version of the firmware that it is for. */
+  /** The firmware version that it fits. */
   version: string;
-  /** Where in flash its section begins. */
+  /** Address in flash at which its section begins. */
   start: number;
   servos: Four<Servo>;
   gaits: Gait[];
@@ -49,15 +49,15 @@ export interface Description {
   rail: [number, number] | null;
   floor: Floor;
   models: ServoModel[];
-  /** Frames without motion after which it stands still. */
+  /** Frames without motion after which the robot counts as standing still. */
   still: number;
-  /** The words of the console that mean the same to every robot. */
+  /** The console's words, which are the same for every robot. */
   words: string[];
 }
 
 /** The chassis from above, mm. */
 export interface Plate {
-  /** Half its width and half its length, without the arms. */
+  /** Half the width and half the length, without the arms. */
   half: Spot;
   corner: number;
   /** The arms that the legs are pivoted on, and half their width. */
@@ -68,42 +68,38 @@ export interface Plate {
   case: Spot;
 }
 
-/** What drives the legs, as robot.toml calls it. */
-export type Kind = 'rigid' | 'strut' | 'spring';
+/** The kind of leg drive, by its name in robot.toml. */
+export type Kind = 'rigid' | 'strut';
 
-/** What the robot stands on, what it weighs, and what drives its legs. */
+/** The floor, the robot's mass and its leg drive. */
 export interface Floor {
-  /** Of a pad that slides forward. */
+  /** Friction of a pad that slides forward. */
   friction: number;
-  /** Of a pad that slides backward over that. */
+  /** Friction of a pad that slides backward, over `friction`. */
   ratio: number;
-  /** g */
+  /** Mass, g. */
   mass: number;
   kind: Kind;
-  /** Of an ideal spring, N mm/deg. */
-  stiffness: number;
-  /** Torque up to which a leg on it does not lag at all, N mm. */
-  preload: number;
-  /** What the spring in a strut pulls, N, and how much more for each mm, N/mm. */
+  /** Preload of the spring in a strut, N, and its rate, N/mm. */
   force: number;
   rate: number;
-  /** A leg's play to either side, deg. */
+  /** Play of a leg to either side, deg. */
   play: number;
-  /** What lifts a foot by a mm, N. */
+  /** Stiffness of a foot's leaf, N/mm. */
   leaf: number;
-  /** By how much the front left foot is too long, mm. */
+  /** Excess length of the front left foot, mm. */
   twist: number;
 }
 
-/** Whether legs can be elsewhere than their servos. */
+/** Returns true if a leg can deviate from its servo. */
 export const lags = ({ kind, play }: Floor) => kind !== 'rigid' || play > 0;
 
-/** What servos may be taken for. */
+/** A model of the servos. */
 export interface ServoModel {
   name: string;
-  /** deg/s; null where it has no bound. */
+  /** Rate, deg/s; null for no limit. */
   rate: number | null;
-  /** us */
+  /** Dead band, us. */
   dead_band: number;
 }
 
@@ -119,7 +115,7 @@ export interface Scene {
   tips: Four<Spot>;
   points: [Spot, Spot];
   sliders: { shafts: [Spot, Spot]; tips: [Spot, Spot]; tube: Spot; travel: number }[];
-  /** The driven pivot first; the strut from the servo's link to the leg's crank. */
+  /** Pivots and joints, the driven one first; the strut goes from the servo's link to the leg's crank. */
   legs: Four<{ pivots: [Spot, Spot]; joints: [Spot, Spot]; foot: Spot; strut: [Spot, Spot]; sprung: boolean }>;
   margins: { name: string; value: number }[];
   smallest: { name: string; value: number };
@@ -127,7 +123,7 @@ export interface Scene {
   map: [[number, number], [number, number]];
 }
 
-/** Where the body is on the floor: mm, and deg counter-clockwise. */
+/** Place of the body on the floor, mm, and heading, deg counter-clockwise. */
 export interface Place {
   x: number;
   y: number;
@@ -139,22 +135,22 @@ export interface Frame {
   fault: string | null;
   place: Place;
   slides: Four<number>;
-  /** How far each leg is behind its servo, deg. */
+  /** Lag of each leg behind its servo, deg. */
   lag: Four<number>;
-  /** How far each servo is from what its pulse asks for, deg. */
+  /** Position error of each servo against its pulse, deg. */
   errors: Four<number>;
 }
 
-/** What a cycle of a gait makes, mm and deg; null where that is undecided. */
+/** Displacement per cycle, mm and deg; null where the model leaves it undetermined. */
 export interface Way {
   forward: number | null;
   left: number | null;
   turn: number | null;
 }
 
-/** What a cycle of a gait comes to; the lag and the share of rigid legs' way where legs are on springs. */
+/** Prediction for one cycle of a gait; with springs also the lag, and the share of the displacement with rigid legs. */
 export interface Outlook extends Way {
-  /** deg */
+  /** Largest lag, deg. */
   lag: number | null;
   share: number | null;
 }
@@ -177,76 +173,76 @@ export interface Said {
 /** A gait as four bars: numbers in servo order, LF, RF, RH, LH. */
 export interface Bars {
   name: string;
-  /** Whether legs move one after the other and hold in between. */
+  /** True if legs move one after the other and hold in between. */
   held: boolean;
-  /** s */
+  /** Period, s. */
   period: number;
-  /** The stance's share of the cycle. */
+  /** Duty factor: the stance's share of the cycle. */
   duty: number;
-  /** deg */
+  /** Amplitude, deg. */
   amplitude: number;
-  /** Where in the cycle each stance begins, 0 to 1; of legs that hold only the order counts. */
+  /** Phase at which each stance begins, 0 to 1; of legs that hold only the order counts. */
   start: Four<number>;
-  /** Each leg's share of the amplitude. */
+  /** Gain of each leg: its share of the amplitude. */
   gain: Four<number>;
 }
 
-/** What becomes of a gait on the page's robot. */
+/** Trial of an edited gait on the page's robot. */
 export interface Trial extends Outlook {
-  /** For robot.toml. */
+  /** The table for robot.toml. */
   table: string;
   margin: string;
   least: number;
   limit: number;
   servo: string;
-  /** deg/s */
+  /** Fastest servo, deg/s. */
   speed: number;
-  /** s */
+  /** Period, s. */
   period: number;
 }
 
-/** What is wanted of a search for a faster gait. */
+/** Goal and limits of a search for a faster gait. */
 export interface Wish {
-  /** The gait that is to be surpassed. */
+  /** The gait to beat. */
   bars: Bars;
-  /** How fast a servo may turn, deg/s; null for as fast as in that gait. */
+  /** Fastest servo allowed, deg/s; null for that of the gait to beat. */
   rate: number | null;
-  /** As `lizard tune --rounds` and `--seed` have them. */
+  /** Rounds and seed, as for `lizard tune`. */
   rounds: number;
   seed: number;
 }
 
-/** A gait that was found, beside the one that was to be surpassed. */
+/** A gait that the search found, compared with the gait to beat. */
 export interface Found {
   bars: Bars;
-  /** On random robots and floors that the search has not seen. */
+  /** Comparison on random robots and floors that the search did not use. */
   comparison: { unit: string; rate: number; robots: number; faster: number };
-  /** Whether it surpasses the other one. */
+  /** True if it is better. */
   better: boolean;
-  /** By what share, where 5 % of the robots are slower. */
+  /** Gain as a share, at the fifth percentile of the robots. */
   gain: number;
 }
 
-/** A gait whose head or tail goes round a line that was drawn. */
+/** A gait whose head or tail follows a drawn line. */
 export interface Drawn {
   name: string;
   end: End;
-  /** s */
+  /** Period, s. */
   period: number;
-  /** Over what was drawn, about the neutral point. */
+  /** Scale of the drawn line, about the neutral point. */
   size: number;
-  /** How many harmonics are kept of the line, 1 to 16. */
+  /** Harmonics of the line that are kept, 1 to 16. */
   terms: number;
-  /** mm in the end's own frame: from the middle of its base, outward positive in y. */
+  /** Points in the end's own frame, mm: from the middle of its base, outward positive in y. */
   points: [number, number][];
 }
 
 export type End = 'head' | 'tail';
 
-/** A gait that is being made. */
+/** An edited gait. */
 export type Made = Bars | Drawn;
 
-/** Where the point of an end may be while the other stands: mm, as the points of `Drawn`. */
+/** Points that the head or tail may reach while the other end stands, in the frame of `Drawn`, mm. */
 export interface Room {
   from: [number, number];
   step: number;
@@ -256,14 +252,14 @@ export interface Room {
   shafts: [[number, number], [number, number]];
 }
 
-/** Why a gait will not do, and the nearest values of which each alone would. */
+/** Refusal of a gait, with the nearest values each of which alone would be accepted. */
 export interface NoTrial extends Refused {
   instead: { what: Instead; value: number }[];
 }
 
 export type Instead = 'amplitude' | 'size' | 'period';
 
-/** What wasm/src/abi.rs exports. */
+/** The exports of wasm/src/abi.rs. */
 interface Exports {
   memory: WebAssembly.Memory;
   lizard_input(length: number): number;
@@ -289,45 +285,45 @@ export class Robot {
     return new Robot(exports as unknown as Exports);
   }
 
-  /** Takes the robot of a robot.toml. If that is refused, the one of before stays. */
+  /** Loads the robot of a robot.toml. If it is refused, the previous robot stays. */
   read(toml: string): Description | Refused {
     return this.ask('read', toml);
   }
 
-  /** A robot.toml with another number at a key, and whether it will do. */
+  /** Returns the robot.toml with another number at a key, and its refusal, if any. */
   edit(toml: string, key: string, value: number): { text: string; refusal: Refused | null } | Refused {
     return this.ask('edit', [toml, key, value]);
   }
 
-  /** A robot.toml with this floor, weight, feet and drive, and whether it will do. */
+  /** Returns the robot.toml with this floor, mass, feet and drive, and its refusal, if any. */
   editFloor(toml: string, floor: Floor): { text: string; refusal: Refused | null } | Refused {
     return this.ask('edit_floor', [toml, floor]);
   }
 
   /**
-   * What the robot that was read is to the firmware: its section of flash, with the certified cells of its guard; empty
-   * without a robot. Takes some hundredths of a second.
+   * Makes the robot's section of flash, with the certified cells of its guard; empty without a robot. Takes some
+   * hundredths of a second.
    */
   section(): Uint8Array {
     return Uint8Array.from(this.ask<number[] | null>('section') ?? []);
   }
 
-  /** The next frame's pulse widths, CPU cycles; 0 for none. */
+  /** Moves the robot by a frame with these pulse widths, CPU cycles; 0 for none. */
   pulses(widths: Four<number>): Frame | null {
     return this.ask('pulses', widths);
   }
 
-  /** The next pose, deg, so many frames after the one before. */
+  /** Moves the robot to a pose, deg, reached some frames after the previous one. */
   pose(angles: Four<number>, frames: number): Frame | null {
     return this.ask('pose', [angles, frames]);
   }
 
-  /** Back to the start of the way. */
+  /** Returns the robot to the start of its path. */
   restart(): void {
     this.ask('restart');
   }
 
-  /** The way from one place to another, seen from the first: mm and deg. */
+  /** The displacement between two places in the frame of the first, mm and deg. */
   between(from: Place, to: Place): { forward: number; left: number; turn: number } {
     return this.ask('way', [from, to]);
   }
@@ -336,39 +332,39 @@ export class Robot {
     this.ask('set_floor', floor);
   }
 
-  /** What its servos are taken for, by its name among the models of the description. */
+  /** Selects the servo model by its name in the description. */
   setServos(name: string): void {
     this.ask('set_servos', name);
   }
 
-  /** Takes tenths of a second; the page asks its Predictor. */
+  /** Predicts a gait. Takes tenths of a second, so the page asks its Predictor. */
   predict(gait: number): Outlook | null {
     return this.ask('predict', gait);
   }
 
-  /** Of the head (0) or the tail (1). */
+  /** The map of the head (0) or the tail (1). */
   map(end: number): SingularityMap | null {
     return this.ask('map', end);
   }
 
-  /** The gait whose time runs backwards. */
+  /** The gait in reverse. */
   turnedRound(bars: Bars): Bars {
-    return this.ask('turned_round', bars);
+    return this.ask('reversed', bars);
   }
 
-  /** A gait as bars; null for one along a path and one that stands. */
+  /** A gait as bars; null for a gait along a path and for one that stands. */
   bars(gait: number): Bars | null {
     return this.ask('bars', gait);
   }
 
-  /** Tries a gait on the robot of a robot.toml that was read; takes tenths of a second. Null of a line without length. */
-  trial(toml: string, made: Made): Trial | NoTrial | null {
-    return this.ask('points' in made ? 'trial_drawn' : 'trial', [toml, made]);
+  /** Tries a gait on the robot that was read; takes tenths of a second. Null for a line without length. */
+  trial(made: Made): Trial | NoTrial | null {
+    return this.ask('trial', made);
   }
 
-  /** Begins to search a faster gait for the robot of a robot.toml that was read: how many it will try, at which deg/s. */
-  makeFaster(toml: string, wish: Wish): { all: number; rate: number } | Refused {
-    return this.ask('faster', [toml, wish]);
+  /** Prepares the search of a faster gait for the robot that was read: the number of gaits to try, and the servos' deg/s. */
+  makeFaster(wish: Wish): { all: number; rate: number } | Refused {
+    return this.ask('faster', wish);
   }
 
   /** Tries one more gait; `best` is the score of the best so far. */
@@ -376,37 +372,37 @@ export class Robot {
     return this.ask('faster_step');
   }
 
-  /** The best so far, compared on so many random robots; null as long as no gait was one that the limits allow. */
+  /** The best so far, compared on a number of random robots; null while no gait kept the limits. */
   fasterFound(robots: number): Found | null {
     return this.ask('faster_found', robots);
   }
 
-  /** A robot.toml with this gait, in place of the one of its name. */
+  /** Returns the robot.toml with this gait in place of the one of that name. */
   putGait(toml: string, made: Made): string {
-    return this.ask('points' in made ? 'put_drawn' : 'put_gait', [toml, made]);
+    return this.ask('put_gait', [toml, made]);
   }
 
-  /** The line that the point really goes along; null of a line without length. */
+  /** The path that the point really follows; null if the drawn line has no length. */
   path(drawn: Drawn): [number, number][] | null {
     return this.ask('path', drawn);
   }
 
-  /** Where the point of an end may be. */
+  /** The points that an end may reach. */
   room(end: End): Room | null {
     return this.ask('room', end === 'head' ? 0 : 1);
   }
 
-  /** Begins to run the firmware's core with this robot's numbers. */
+  /** Starts the firmware's core with this robot. */
   runCore(): void {
     this.ask('run_core');
   }
 
-  /** A frame of the core, 20 ms. */
+  /** Runs the core for a frame of 20 ms. */
   coreFrame(line: string, volts: number): Said | null {
     return this.ask('core_frame', [line, volts]);
   }
 
-  /** Asks a `Question` of wasm/src/abi.rs. */
+  /** Sends a `Question` of wasm/src/abi.rs and returns its answer. */
   private ask<T>(question: string, needs: unknown = null): T {
     const { wasm, encoder, decoder } = this;
     const bytes = encoder.encode(JSON.stringify({ [question]: needs }));

@@ -1,8 +1,8 @@
-// The robot that the page shows, and what is at the other end of its serial line. Views only
-// look at it and ask it to do things.
+// The robot that the page shows and the board at the other end of its serial line. Views only read it
+// and ask it to act.
 import { files } from './files';
 import { type Kept, kept } from './kept';
-import { type Answer, Dialogue, Forgotten } from './link/dialogue';
+import { type Answer, Dialogue, Forgotten, GREETING } from './link/dialogue';
 import type { Link, Simulated } from './link/link';
 import { PortLink } from './link/port-link';
 import { flash, identify, imageOf, type Piece, type Progress, Unfit } from './link/stk500';
@@ -21,50 +21,48 @@ import { type Cause, sentence } from './trouble';
 import { SimulatedBoard } from './uno/board';
 import { WORDS } from './words';
 
-/** How often a board on USB says where it is, in frames of 20 ms. */
+/** Frames of 20 ms between two poses of a board on USB. */
 const WATCH = 2;
-/** A board with this firmware has greeted so long after its reset, ms. */
+/** Time from a reset within which this firmware sends its banner, ms. */
 const GREETS = 2500;
-/** One that was not reset by its port answers within this, ms. */
+/** Time within which a board that its port did not reset answers, ms. */
 const ANSWERS = 500;
-/** A board that is left has stopped within this, ms. */
+/** Time a board gets to stop before the port is closed, ms. */
 const STOPS = 1000;
-/** What the firmware's first line begins with. */
-const GREETING = '# lizard ';
-/** `boot` acts three seconds after a reset, ms. */
+/** Time after a reset within which `boot` has acted (three seconds), ms. */
 const BOOTS = 4000;
-/** The pace with which the firmware begins, percent. */
+/** The firmware's pace after a reset, percent. */
 const FULL_PACE = 100;
 const FRAME_SECONDS = 0.02;
-/** The way of the last seconds that is kept to measure a cycle. */
+/** Seconds of path kept for measuring a cycle. */
 const KEPT_SECONDS = 12;
 
-/** What a board has, as it greets; `unknown` where this firmware answers but has not greeted, null where it does not. */
+/** A board's banner; `unknown` if this firmware answers but sent no banner, null if it does not answer. */
 export type Has = Banner | 'unknown' | null;
 
 export interface Listener {
-  /** Another robot, or the same with other lengths. */
+  /** Called for another robot, or the same with other lengths. */
   robot(description: Description): void;
-  /** A frame that took so many seconds. */
+  /** Called for each frame and its duration in seconds. */
   frame(frame: Frame, widths: Four<number> | null, seconds: number): void;
   pulse(pin: number, rise: number, width: number): void;
   sent(line: string): void;
-  came(line: string): void;
-  /** What the robot does, as its answers say. */
+  received(line: string): void;
+  /** Called when the robot does something else: a gait or a command. */
   doing(gait: string): void;
-  /** What the other end has. */
+  /** Called when it is known what the board has. */
   found(has: Has): void;
-  /** The pace that the robot has, percent. */
+  /** Called with the robot's pace, percent. */
   speed(percent: number): void;
-  /** Another end of the line. */
+  /** Called when another board is connected. */
   link(link: Link): void;
-  /** Whether a person says that a board is a UNO, and not a Nano, which would be ruined by what is written from a byte on. */
+  /** Asks the user to confirm a UNO: on a Nano, writing beyond `from` would overwrite the boot loader. */
   isUno(from: number): boolean;
-  /** What is wrong; null where that is so no more. */
+  /** Called with the current problem, or null once it is solved. */
   trouble(cause: Cause, sentence: string | null): void;
 }
 
-/** The last cycle: mm ahead and left, seen from its start, deg, and how far a leg was behind its servo at most, deg. */
+/** The last cycle: mm forward and left in the frame of its start, turn and largest lag of a leg, deg. */
 export interface Measured {
   forward: number;
   left: number;
@@ -72,31 +70,31 @@ export interface Measured {
   lag: number;
 }
 
-/** Where a Nano's boot section begins: its high fuse is 0xDA. A UNO's begins 1.5 KB later. */
+/** Start of a Nano's boot section (high fuse 0xDA). A UNO's begins 1.5 KB later. */
 const NANO_BOOT = 0x7800;
 
 const isBanner = (has: Has | undefined): has is Banner => typeof has === 'object' && has !== null;
 
 export class Session {
   description!: Description;
-  /** The name of its file; empty until that is there. */
+  /** The name of its file; empty until it is loaded. */
   file = '';
   /** The robot.toml of the page's robot. */
   toml = '';
-  /** The robot.toml as its file has it. */
+  /** The unchanged robot.toml of its file. */
   original = '';
-  /** What the robot is to the firmware: its section of flash. */
+  /** The robot's section of flash. */
   section: Uint8Array = new Uint8Array();
   last: Frame | null = null;
   gait = '';
   volts = 5;
-  /** What the servos are taken for, among the models of the description. */
+  /** The servo model, by its name in the description. */
   servos = 'sg90';
-  /** Whether the page may ask on its own. */
+  /** True if the page may send lines of its own. */
   mayAsk = false;
   link!: Link;
   dialogue!: Dialogue;
-  /** How often a board has greeted: one that begins anew has lost what was not saved. */
+  /** Banners received: a board that restarts has lost its unsaved settings. */
   beginnings = 0;
   /** The firmware, which is the same for every robot. */
   private code: Uint8Array | null = null;
@@ -106,13 +104,13 @@ export class Session {
   private time = 0;
   private step = FRAME_SECONDS;
   private onBanner: () => void = () => {};
-  /** What is at the other end; undefined until that is known. */
+  /** The board's firmware and robot; undefined until known. */
   private there: Has | undefined;
-  /** Whether a board without this firmware has the boot loader of an UNO. */
+  /** True if a board without this firmware has the boot loader of a UNO. */
   hasLoader = false;
-  /** Whether a board on USB says where it is. */
+  /** True while a board on USB sends its poses. */
   private watching = false;
-  /** Counts what was chosen: a file that comes late is not taken. */
+  /** Number of choices so far: a file that arrives after a later choice is dropped. */
   private choices = 0;
 
   constructor(
@@ -121,8 +119,8 @@ export class Session {
   ) {}
 
   /**
-   * Takes a robot of the files, on a new simulated UNO; a board on USB stays connected. Throws a sentence, and then the
-   * robot of before stays.
+   * Loads a robot of the files on a new simulated UNO; a board on USB stays connected. Throws a sentence, and then the
+   * previous robot stays.
    */
   async choose(name: string): Promise<void> {
     const choice = ++this.choices;
@@ -139,14 +137,14 @@ export class Session {
       this.file = name;
       this.keep();
     } catch (error) {
-      // What another choice has overtaken is of no interest any more.
+      // A later choice has replaced this one.
       if (choice !== this.choices) return;
       this.file = before;
       throw error;
     }
   }
 
-  /** Takes a changed robot.toml: the simulated UNO begins anew with it, and keeps what it has saved. */
+  /** Loads a changed robot.toml: the simulated UNO restarts with it and keeps its saved settings. */
   async change(toml: string): Promise<Refused | null> {
     const refused = this.take(toml);
     if (refused) return refused;
@@ -155,7 +153,7 @@ export class Session {
     return null;
   }
 
-  /** Takes again what was changed before a reload, if its robot's file is still the same; whether it was. */
+  /** Restores the changes of before a reload, if the robot's file is still the same; returns true if it did. */
   async recall({ original, toml, floor, servos, volts }: Kept): Promise<boolean> {
     if (original !== this.original) return false;
     this.setServos(servos);
@@ -171,7 +169,7 @@ export class Session {
     if (file !== '') kept.put({ file, original, toml, floor, servos, volts });
   }
 
-  /** Back to the robot of the file. */
+  /** Restores the robot of the file. */
   async restore(): Promise<void> {
     await this.change(this.original);
   }
@@ -189,7 +187,7 @@ export class Session {
     return null;
   }
 
-  /** Has the robot at the other end: a simulation begins anew, a board goes on with its own robot. */
+  /** Restarts a simulated board with the robot; a real board goes on with its own. */
   private async begin(keepsSaved: boolean): Promise<void> {
     if (!this.isReal) await this.simulate(keepsSaved && this.link instanceof UnoLink ? this.link.board.eeprom : undefined);
     else {
@@ -198,7 +196,7 @@ export class Session {
     }
   }
 
-  /** Firmware and robot, as flash begins with them. */
+  /** Firmware and robot as one image of flash. */
   get image(): Uint8Array {
     const { code, section, description } = this;
     if (!code) throw new Error('the firmware has not come yet');
@@ -208,7 +206,7 @@ export class Session {
     return image;
   }
 
-  /** Whether this firmware answers at the other end. */
+  /** True if this firmware answers. */
   get answers(): boolean {
     return this.there !== undefined && this.there !== null;
   }
@@ -218,7 +216,7 @@ export class Session {
     return this.there;
   }
 
-  /** Whether the other end has this very robot. */
+  /** True if the board has exactly this robot. */
   get hasThis(): boolean {
     return isBanner(this.there) && this.there.robot?.hash === this.description.hash;
   }
@@ -227,7 +225,7 @@ export class Session {
     return this.link instanceof PortLink;
   }
 
-  /** Begins anew at power-on, on a simulated UNO with this robot, and with what was saved on another one. */
+  /** Starts a simulated UNO with this robot at power-on, with the saved EEPROM of another one. */
   async simulate(saved?: Uint8Array): Promise<void> {
     this.bootLoader ??= await files.bootLoader();
     const pins = this.description.servos.map(({ pin }) => pin);
@@ -240,7 +238,7 @@ export class Session {
     this.simulated?.supply(this.volts);
   }
 
-  /** Takes a board on USB and says what it is; whether a person picked one and it is still there. Throws a sentence. */
+  /** Connects a board on USB and identifies it; returns true if the user picked one and it is still there. Throws a sentence. */
   async connect(): Promise<boolean> {
     const link = await PortLink.open();
     if (!link) return false;
@@ -249,7 +247,7 @@ export class Session {
     };
     await this.attach(link);
     this.listener.trouble('port', null);
-    // Opening the port has reset the board. What comes before its banner goes to the boot loader.
+    // Opening the port has reset the board. Bytes sent before its banner would go to the boot loader.
     const greeted = await this.greeting();
     if (this.link !== link) return false;
     if (!greeted && (await this.replies())) this.found('unknown');
@@ -259,13 +257,13 @@ export class Session {
     return this.link === link;
   }
 
-  /** Whether a board that was begun anew greets in time. */
+  /** Waits for the banner of a restarted board; returns true if it came in time. */
   async greeting(): Promise<boolean> {
     const greeted = new Promise<boolean>((yes) => (this.onBanner = () => yes(true)));
     return Promise.race([greeted, this.link.wait(GREETS).then(() => false)]);
   }
 
-  /** Whether this firmware is there: not every port resets its board. */
+  /** Returns true if this firmware answers a question: not every port resets its board. */
   private async replies(): Promise<boolean> {
     const answer = await this.dialogue.ask(WORDS.status, true, ANSWERS).catch(() => null);
     const read = answer && status(answer.text);
@@ -273,7 +271,7 @@ export class Session {
     return read !== null;
   }
 
-  /** Says what a board is that does not have this firmware, as its boot loader knows. */
+  /** Identifies a board without this firmware by its boot loader. */
   private async identify(link: Link): Promise<void> {
     this.hasLoader = false;
     let said = 'The board is an Arduino UNO, an ATmega328P by its boot loader, and this firmware is not on it.';
@@ -282,7 +280,7 @@ export class Session {
       await identify(link);
       this.hasLoader = true;
     } catch (error) {
-      said = `The board does not speak as this firmware does, and asked for its boot loader ${sentence(error)}. Is it the right port, and an UNO?`;
+      said = `The board does not speak as this firmware does, and asked for its boot loader ${sentence(error)}. Is it the right port, and a UNO?`;
     } finally {
       if (this.link === link) this.listen();
     }
@@ -291,13 +289,13 @@ export class Session {
     this.listener.trouble('board', said);
   }
 
-  /** Has a board say where it is. */
+  /** Makes a board send its poses. */
   private async watch(): Promise<void> {
     this.watching = true;
     await this.ask(`${WORDS.watch} ${WATCH}`);
   }
 
-  /** Leaves a board, which stops, for the simulation. */
+  /** Stops a board, disconnects it and returns to the simulation. */
   async disconnect(): Promise<void> {
     const stopped = await this.stop();
     await this.simulate();
@@ -306,15 +304,15 @@ export class Session {
     }
   }
 
-  /** Whether a board walks that nobody would see any more if the page were closed. */
+  /** True if a real board is walking, and would walk on without the page. */
   get walksAlone(): boolean {
     const { stop, rest, center, pose } = WORDS;
-    // A board may have another robot, with gaits that this one does not know.
+    // A board with another robot may have gaits that this one does not have.
     const known = this.description.gaits.find(({ command }) => command === this.gait);
     return this.isReal && (known ? known.moves : !['', stop, rest, center, pose].includes(this.gait));
   }
 
-  /** Stops a board that is about to be left; whether it says so, or was not of this firmware. */
+  /** Stops a board that is about to be disconnected; returns true if it confirms, or does not have this firmware. */
   async stop(): Promise<boolean> {
     if (!this.isReal || !this.there) return true;
     const answer = await this.dialogue.ask(WORDS.stop, false, STOPS).catch(() => null);
@@ -337,19 +335,17 @@ export class Session {
   private listen(): void {
     this.dialogue = new Dialogue(this.link, {
       sent: (line) => this.listener.sent(line),
-      came: (line) => this.came(line),
+      received: (line) => this.received(line),
     });
   }
 
-  private came(text: string): void {
-    // A reset cuts off what the board was saying, and its first line follows on that.
-    const line = text.slice(Math.max(0, text.indexOf(GREETING)));
+  private received(line: string): void {
     const angles = watched(line);
     if (angles && this.isReal) {
       this.pose(angles);
       return;
     }
-    this.listener.came(line);
+    this.listener.received(line);
     const word = /^ok (.+)$/.exec(line)?.[1] ?? '';
     const { stop, rest, center, pose, speed } = WORDS;
     const doing = [...this.description.gaits.map(({ command }) => command), stop, rest, center];
@@ -362,18 +358,19 @@ export class Session {
   }
 
   private greeted(line: string): void {
-    const { link } = this;
-    this.beginnings += 1;
+    const { dialogue } = this;
+    const beginning = ++this.beginnings;
     this.doing('stand');
     this.listener.speed(FULL_PACE);
     this.watching = false;
     this.listener.trouble('board', null);
     this.found(banner(line) ?? 'unknown');
     this.onBanner();
-    // A byte would call off what `boot` is set to.
+    // A byte would cancel `boot`.
     this.mayAsk = false;
-    void link.wait(BOOTS).then(() => {
-      if (this.link !== link) return;
+    void this.link.wait(BOOTS).then(() => {
+      // The board may have restarted meanwhile, or the boot loader may use the line.
+      if (this.beginnings !== beginning || dialogue.over) return;
       this.mayAsk = true;
       if (this.isReal && !this.watching) void this.watch();
     });
@@ -390,7 +387,7 @@ export class Session {
     this.listener.doing(gait);
   }
 
-  /** Asks the robot; what goes wrong is shown. */
+  /** Sends a line and returns its answer; shows an error. */
   async ask(line: string, quiet = false): Promise<Answer | null> {
     if (!quiet) this.mayAsk = true;
     try {
@@ -423,8 +420,8 @@ export class Session {
   }
 
   /**
-   * Writes the page's robot behind the firmware that is there, and starts it. Throws a sentence; an `Unfit` where that
-   * firmware is another one than the page's, and then nothing was written.
+   * Writes the page's robot behind the board's firmware and starts it. Throws a sentence; an `Unfit` if that
+   * firmware is not the page's, and then nothing was written.
    */
   async flashRobot(progress: Progress): Promise<void> {
     const { there, code, section, description } = this;
@@ -433,7 +430,7 @@ export class Session {
     if (isBanner(there) && there.version !== description.version) {
       throw new Unfit(`the board has firmware ${there.version}, and this robot is for ${description.version}: write firmware and robot`);
     }
-    // A board that has not greeted has not said which firmware it has: its code itself is looked at.
+    // Without a banner the firmware's version is unknown, so its code is compared.
     await this.write({ at: description.start, bytes: section }, progress, isBanner(there) ? null : { at: 0, bytes: code });
   }
 
@@ -456,7 +453,7 @@ export class Session {
     }
   }
 
-  /** What is wrong with a board that was just written, perhaps the robot of a hash; null if nothing is. */
+  /** Waits for a board that was just written, with the robot of a hash if one is given; returns what is wrong, or null. */
   async begins(hash: string | null): Promise<string | null> {
     const { link } = this;
     const greeted = await this.greeting();
@@ -474,7 +471,7 @@ export class Session {
     return this.link && 'advance' in this.link ? (this.link as Simulated) : null;
   }
 
-  /** Lets the simulation run. */
+  /** Runs the simulation. */
   advance(ms: number): void {
     try {
       this.simulated?.advance(ms);
@@ -503,12 +500,12 @@ export class Session {
     this.listener.frame(frame, widths, seconds);
   }
 
-  /** The last whole cycle of the gait, if it has walked so long. */
+  /** Displacement in the last complete cycle of the gait; null before one is complete. */
   measured(): Measured | null {
     const gait = this.description.gaits.find(({ command }) => command === this.gait);
     const now = this.way[this.way.length - 1];
     if (!gait?.moves || !now) return null;
-    // The nearest that is known: a board on USB does not tell every frame.
+    // The nearest known frame: a board on USB does not send every frame.
     const begun = now.time - gait.period;
     const from = this.way.findLastIndex(({ time }) => time <= begun + this.step / 2);
     if (from < 0) return null;
@@ -523,12 +520,12 @@ export class Session {
     this.way = [];
   }
 
-  /** Floor, weight and springs: what the page has set, or else what the file says. */
+  /** Floor, mass and leg drive: as set in the page, or else as in the file. */
   get floor(): Floor {
     return this.set ?? this.description.floor;
   }
 
-  /** Sets them; null takes those of the file. */
+  /** Sets floor, mass and leg drive; null restores those of the file. */
   setFloor(floor: Floor | null): void {
     this.set = floor;
     this.robot.setFloor(this.floor);

@@ -1,14 +1,14 @@
-// The banner, the answer to `status`, `# t=` lines and `cal` lines, read.
+// Reads the banner, the answer to `status`, `# t=` lines and `cal` lines.
 import type { Four } from './robot';
 
-/** What the firmware says of itself when it begins. */
+/** The firmware's first line after a reset. */
 export interface Banner {
   version: string;
-  /** The robot in its flash; null where there is none, or one that is damaged. */
+  /** The robot in its flash; null if there is none or it is damaged. */
   robot: { name: string; hash: string } | null;
 }
 
-/** Reads a banner; null for any other line, that of a firmware with its robot compiled in among them. */
+/** Reads a banner; null for any other line, also for that of an old firmware with its robot compiled in. */
 export function banner(line: string): Banner | null {
   const [, version, name, hash] = /^# lizard (\S+) (?:robot (\S+) ([0-9a-f]{8})|without a robot),/.exec(line) ?? [];
   if (version === undefined) return null;
@@ -17,11 +17,11 @@ export function banner(line: string): Banner | null {
 
 export interface Status {
   gait: string;
-  /** Null without a robot in the flash. */
+  /** Pose, deg; null without a robot in the flash. */
   pose: Four<number> | null;
-  /** Since its reset. */
+  /** Frames since the reset. */
   frames: number;
-  /** Null without a robot in the flash. */
+  /** Smallest margin; null without a robot in the flash. */
   margin: number | null;
   guard: string;
   fault: string;
@@ -38,7 +38,7 @@ function four(text: string | undefined): Four<number> | null {
   return numbers.length === 4 && numbers.every(Number.isFinite) ? (numbers as Four<number>) : null;
 }
 
-/** Reads `ok gait=...`; null for any other line. */
+/** Reads an answer `ok gait=...`; null for any other line. */
 export function status(line: string): Status | null {
   if (!line.startsWith('ok gait=')) return null;
   const pairs = new Map(line.slice(3).split(' ').map((pair) => pair.split('=') as [string, string]));
@@ -61,7 +61,7 @@ export function status(line: string): Status | null {
   };
 }
 
-/** The pose of a `# t=<frame> pose=...` line. */
+/** Reads the pose of a line `# t=<frame> pose=...`. */
 export function watched(line: string): Four<number> | null {
   const match = /^# t=\d+ pose=(\S+)/.exec(line);
   return match ? four(match[1]) : null;

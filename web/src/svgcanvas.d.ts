@@ -1,6 +1,6 @@
-// The package has no types of its own; this is what the page uses of it.
+// Types of the package svgcanvas, as far as the page uses it.
 declare module 'svgcanvas' {
-  /** A canvas's pen that writes SVG. */
+  /** A canvas context that writes SVG. */
   export class Context {
     constructor(width: number, height: number);
     getSvg(): SVGSVGElement;

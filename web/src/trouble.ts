@@ -1,9 +1,9 @@
-// What can go wrong, by its cause: a sentence about one is withdrawn only when that one is gone.
+// Problems by their cause: a message stays until its own cause is gone.
 
 /**
- * `robot`: a robot's file. `line`: a line that is not answered. `port`: the port of a board, or the board
- * itself is gone. `board`: a board without this firmware. `simulation`: the simulated UNO has
- * stopped. `page`: the page cannot begin.
+ * `robot`: a robot's file. `line`: a line without an answer. `port`: the port of a board, or the board
+ * is gone. `board`: a board without this firmware. `simulation`: the simulated UNO has
+ * stopped. `page`: the page cannot start.
  */
 export type Cause = 'robot' | 'line' | 'port' | 'board' | 'simulation' | 'page';
 

@@ -25,7 +25,7 @@ export const WORDS = {
 /** Gaits that the page asks for by name: the core has `stand` in every robot, and `walk` is looked for first. */
 export const GAITS = { stand: 'stand', walk: 'walk' } as const;
 
-/** What the firmware says after a reset where nothing was ever saved. */
+/** The firmware's line after a reset if nothing was ever saved. */
 export const NOTHING_SAVED = '# calibration: none is saved';
 
 /** Words of the page and of its buttons that are not among the core's. */

@@ -1,7 +1,5 @@
 // A board behind the page's Web Serial, in the page's own time.
-import assert from 'node:assert/strict';
-
-import { page } from './browser.js';
+import { page, within } from './browser.js';
 import { fakeSerial } from './fake-serial.js';
 
 /** The page with a board that has the firmware and this robot, or nothing where it is null, so long after it was connected. */
@@ -14,11 +12,11 @@ export async function connected(robot, ms) {
   return opened;
 }
 
-/** Lets the page's time go on until this is so, for 20 s of it at most. */
-export async function until(opened, what, isSo) {
-  for (let ms = 0; ms < 20_000; ms += 250) {
-    if (await isSo()) return;
-    await opened.clock.runFor(250);
-  }
-  assert.fail(`waited 20 s of the page's time until ${what}`);
+/** Lets the page's time go on until this is so. It is not counted, since the page may wait for the machine, too. */
+export async function until(opened, what, isSo, step = 100) {
+  let waits = true;
+  const goes = async () => {
+    while (waits && !(await isSo())) await opened.clock.runFor(step);
+  };
+  await within(what, goes()).finally(() => (waits = false));
 }

@@ -32,8 +32,7 @@ test('a new UNO is named after some seconds, and is given the firmware by one bu
   for (const control of ['#robot', '#connect']) {
     assert.ok(await opened.locator(control).isDisabled(), `${control} would take the line away from the boot loader`);
   }
-  for (let n = 0; n < 400 && !/^written/.test(await text(opened, '#flash-said')); n++) await opened.clock.runFor(100);
-  assert.match(await text(opened, '#flash-said'), /^written and verified in [\d.]+ s$/);
+  await until(opened, 'it is written', async () => /^written and verified in [\d.]+ s$/.test(await text(opened, '#flash-said')));
   await opened.clock.runFor(8000);
   assert.match(await text(opened, '#where'), /^on a board on USB, robot paper [0-9a-f]{8}$/);
   for (const control of ['#robot', '#connect']) assert.ok(await opened.locator(control).isEnabled(), control);
@@ -48,7 +47,7 @@ test('a board that nothing answers from is asked about', async () => {
   await opened.waitForFunction(() => window.otherBoard);
   await opened.evaluate(() => (window.otherBoard.send = () => {}));
   await opened.clock.runFor(6000);
-  await opened.locator('#trouble', { hasText: 'Is it the right port, and an UNO?' }).waitFor();
+  await opened.locator('#trouble', { hasText: 'Is it the right port, and a UNO?' }).waitFor();
 });
 
 test('a board that its port does not reset is asked what it does, and followed', async () => {
@@ -118,6 +117,25 @@ test('after a reset the board is followed again', async () => {
   await until(opened, 'the robot of the page has gone 5 mm', async () => (await place()) - before > 5);
 });
 
+test('a board that begins anew in the middle of an answer is followed again', async () => {
+  const opened = await connected('robot', 4000);
+  await said(opened, /^ok watch 2$/);
+  // Its status is asked twice a second.
+  await opened.evaluate(() => {
+    const board = window.otherBoard;
+    const { onByte } = board;
+    let answer = '';
+    board.onByte = (byte) => {
+      onByte(byte);
+      answer += String.fromCharCode(byte);
+      if (!answer.endsWith('ok gait=')) return;
+      board.onByte = onByte;
+      setTimeout(() => board.reset('external'));
+    };
+  });
+  await said(opened, /^ok watch 2$/, 2);
+});
+
 test('pulses that a board does not show are not made up', async () => {
   const opened = await connected('robot', 5000);
   const cells = await opened.locator('#widths td:nth-child(3)').allInnerTexts();
@@ -144,8 +162,7 @@ test('a HEX file of another program is named, and written only when a person say
   assert.equal(await question.isVisible(), false);
   await choose();
   await opened.getByRole('button', { name: 'Write it', exact: true }).click();
-  const said = opened.locator('#flash-said');
-  for (let n = 0; n < 100 && !/^(not )?written/.test(await said.innerText()); n++) await opened.clock.runFor(100);
+  await until(opened, 'it is written', async () => /^(not )?written/.test(await text(opened, '#flash-said')));
   await opened.clock.runFor(3000);
   await opened.locator('#trouble', { hasText: 'is not this firmware: it does not greet.' }).waitFor();
   await opened.getByRole('button', { name: 'Write firmware and robot to it' }).waitFor();

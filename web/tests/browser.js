@@ -27,10 +27,10 @@ const FIREFOX = {
   executablePath: process.env.FIREFOX ?? '/usr/bin/firefox-esr',
   firefoxUserPrefs: { 'ui.prefersReducedMotion': 1 },
 };
-/** A machine may be busy: only what hangs is to fail by time. */
-export const PATIENCE = 300_000;
+/** A machine may be busy: only what hangs is to fail by time. PATIENCE names another one, ms, for who writes a test. */
+export const PATIENCE = Number(process.env.PATIENCE ?? 300_000);
 
-/** What a promise comes to; fails with what was waited for if it comes to nothing. */
+/** Awaits a promise; fails with the name of the wait if it does not settle in time. */
 export function within(what, promise) {
   let timer;
   const late = new Promise((_, fail) => {
@@ -48,7 +48,7 @@ function limit(object, name, methods) {
   }
 }
 
-/** What the page has complained of, in all pages. */
+/** Errors and warnings of all pages so far. */
 export const complaints = [];
 
 let browser;
@@ -92,7 +92,7 @@ export async function close() {
   server?.close();
 }
 
-/** Where the page is. */
+/** Address of the page. */
 export const address = (of = server) => `http://127.0.0.1:${of.address().port}${FOLDER}`;
 
 /**
@@ -103,7 +103,7 @@ export async function blank(options = {}) {
   const opened = await within('a new page', browser.newPage({ reducedMotion: 'reduce', serviceWorkers: 'block', ...options }));
   pages.push(opened);
   limit(opened, 'page', ['evaluate', 'addInitScript', 'addScriptTag', 'addStyleTag']);
-  limit(opened.clock, 'clock', ['install', 'runFor']);
+  limit(opened.clock, 'clock', ['install', 'pauseAt', 'runFor']);
   limit(opened.keyboard, 'keyboard', ['press', 'down', 'up']);
   limit(opened.mouse, 'mouse', ['move', 'down', 'up', 'wheel']);
   opened.setDefaultTimeout(PATIENCE);
@@ -142,7 +142,19 @@ export async function page(options = {}, before = undefined) {
   });
   opened.on('pageerror', (error) => complaints.push(error.stack ?? String(error)));
   if (before) {
-    await opened.clock.install();
+    // The clock takes a turn of the browser for each timer, and a chain of turns is slowed to one in 4 ms.
+    await opened.addInitScript(() => {
+      const { setTimeout } = window;
+      window.setTimeout = (then, ms, ...more) => {
+        if (ms) return setTimeout(then, ms, ...more);
+        const { port1, port2 } = new MessageChannel();
+        port1.onmessage = () => then(...more);
+        port2.postMessage(null);
+      };
+    });
+    await opened.clock.install({ time: 0 });
+    // Else it would also go on by itself, and how far would depend on the machine.
+    await opened.clock.pauseAt(1000);
     await opened.addInitScript(before);
   }
   await opened.goto(address());

@@ -28,7 +28,7 @@ export function fakeSerial() {
       const { board: first } = window.lizard.link;
       const name = window.flashed === undefined ? 'robot' : window.flashed;
       if (!window.same) board = new first.constructor(name && (await image(name)), await (await fetch('files/optiboot.hex')).text());
-      // What it says before the port is open goes nowhere.
+      // Bytes that it sends before the port is open are lost.
       if (window.awake) board.run(16_000 * 4000);
       let out;
       port.readable = new ReadableStream({ start: (controller) => (out = controller) });

@@ -2,7 +2,7 @@
 import { load } from '../../tools/judge/src/hex.js';
 import { file, robot } from './wasm.js';
 
-/** What flash begins with for the robot of a file of the page. */
+/** The image of flash for a robot file of the page. */
 export async function imageOf(name) {
   const { ask } = await robot();
   const { start } = ask('read', await file(`${name}.toml`, 'utf8'));

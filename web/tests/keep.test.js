@@ -15,9 +15,15 @@ async function opened(options) {
   return page;
 }
 
+/** Cycles of the simulated board in a frame of 20 ms, and the frames since it was switched on. */
+const FRAME = 320_000;
+const frames = (page) => page.evaluate((cycles) => window.lizard.link.board.cycle / cycles, FRAME);
+/** Waits until the page itself has run so many frames. */
+const passes = async (page, count) =>
+  page.waitForFunction((end) => window.lizard.link.board.cycle > end, FRAME * ((await frames(page)) + count));
 const button = (page, name) => page.locator('#keep').getByRole('button', { name, exact: true });
 
-/** What a button saves. */
+/** The file that a button saves. */
 async function saved(page, name) {
   const download = page.waitForEvent('download');
   await button(page, name).click();
@@ -34,17 +40,17 @@ function table(csv) {
 test('the table of a run has its poses, places and pulses, frame by frame', async () => {
   const page = await opened();
   await type(page, 'walk', 'ok walk');
+  const begun = await frames(page);
   await button(page, 'Record').click();
   await advance(page, 3000);
+  const angles = await page.evaluate(() => window.lizard.last.scene.angles);
+  await advance(page, 100);
   await button(page, 'Stop recording').click();
-  const seen = await page.evaluate(() => {
-    const { scene, place } = window.lizard.last;
-    return { angles: scene.angles, place };
-  });
+  const passed = (await frames(page)) - begun;
   const { name, bytes } = await saved(page, 'Table (CSV)');
   assert.equal(name, 'run.csv');
   const rows = table(bytes.toString());
-  assert.ok(Math.abs(rows.length - 150) <= 60, `${rows.length} frames`);
+  assert.ok(rows.length >= 150 && rows.length <= passed + 1, `${rows.length} of ${passed} frames`);
   rows.forEach((row, n) => assert.equal(Number(row.time_s), Number((n * 0.02).toFixed(2))));
   assert.ok(rows.every(({ doing }) => doing === '"walk"'));
   // The pulses ask for the angles, by the servo's line in robot.toml: 10 us for a degree about 1500 us.
@@ -52,7 +58,7 @@ test('the table of a run has its poses, places and pulses, frame by frame', asyn
   const off = rows.map((row) => Math.abs(servo(row) - Number(row.a1_deg)));
   assert.ok(Math.max(...off) < 8, `A1 is ${Math.max(...off)} deg from what its pulse asks for`);
   assert.ok(Number(rows[rows.length - 1].ahead_mm) > Number(rows[0].ahead_mm) + 10, 'it went ahead');
-  const last = rows.findIndex((row) => Math.abs(Number(row.a2_deg) - seen.angles[1]) < 0.001);
+  const last = rows.findIndex((row) => Math.abs(Number(row.a2_deg) - angles[1]) < 0.001);
   assert.ok(last > 0, 'a pose of the session is in it');
 });
 
@@ -90,7 +96,7 @@ test('pictures of the floor are points or lines, and a film moves', async () => 
   assert.ok(shapes > 50, `${shapes} shapes`);
   assert.match(svg.bytes.toString(), />100 mm<|>50 mm</, 'its scale');
   await button(page, 'Film').click();
-  await page.waitForTimeout(2500);
+  await passes(page, 50);
   const film = await saved(page, 'Stop the film');
   assert.match(film.name, /^run\.(webm|mp4)$/);
   assert.ok(film.bytes.length > 2000, `${film.bytes.length} bytes`);
@@ -109,9 +115,9 @@ test('two robots walk side by side, each as far as its gait leads alone', async 
   // The gait back is walk, backwards: it leads as far.
   assert.ok(walk > 40 && Math.abs(walk - back) < 0.25 * walk, `${walk} mm ahead, ${back} mm back`);
   await page.locator('.stop').click();
-  // Texts are written ten times a second.
+  // Texts are written ten times in a second of the page's own time.
   const written = async () => {
-    await page.evaluate(() => new Promise((later) => setTimeout(later, 400)));
+    await passes(page, 20);
     return said.innerText();
   };
   await advance(page, 3000);

@@ -1,4 +1,4 @@
-// What a person drags for an hour leaves nothing behind: the robot's memory does not grow with what was tried.
+// An hour of dragging leaves nothing behind: the memory of WebAssembly does not grow with the robots that were tried.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
@@ -6,7 +6,7 @@ import { file, robot } from './wasm.js';
 
 const toml = await file('robot.toml', 'utf8');
 
-/** How much the memory grows while something is done so many times, after it was done often enough to have its room; bytes. */
+/** Growth of the memory over a number of repetitions, bytes, after a warm-up. */
 async function grown(times, does) {
   const page = await robot();
   page.ask('read', toml);
@@ -32,7 +32,7 @@ test('gaits that are refused are not kept, nor those that are tried to offer wha
   let bars;
   const grew = await grown(100, (page, n) => {
     bars ??= page.ask('bars', 1);
-    const { refused, instead } = page.ask('trial', [toml, { ...bars, amplitude: 30 + n / 20 }]);
+    const { refused, instead } = page.ask('trial', { ...bars, amplitude: 30 + n / 20 });
     assert.match(refused, /margin/);
     assert.equal(instead[0].what, 'amplitude');
   });

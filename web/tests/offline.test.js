@@ -7,7 +7,7 @@ import { after, afterEach, before, test } from 'node:test';
 import { gzipSync } from 'node:zlib';
 
 import { writeServiceWorker } from '../offline.js';
-import { DIST, address, advance, blank, close, complaints, open, serve, tidy, until, within } from './browser.js';
+import { DIST, PATIENCE, address, advance, blank, close, complaints, open, serve, tidy, until, within } from './browser.js';
 
 let folder;
 const servers = [];
@@ -103,7 +103,7 @@ test('a page of which a part is missing on the server is not taken, and the one 
     const registration = await navigator.serviceWorker.ready;
     return !registration.installing && !registration.waiting;
   });
-  for (let n = 0; n < 100 && !asked.includes('/index.html'); n++) await new Promise((next) => setTimeout(next, 100));
+  for (let ms = 0; ms < PATIENCE && !asked.includes('/index.html'); ms += 100) await new Promise((next) => setTimeout(next, 100));
   assert.ok(asked.includes('/index.html'), 'it was asked for');
   assert.equal(await opened.locator('#fresh').isVisible(), false);
   assert.ok((await opened.evaluate(() => window.caches.keys())).includes(before[0]));

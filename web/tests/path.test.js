@@ -18,7 +18,7 @@ async function opened(options) {
   return page;
 }
 
-/** Where a point of the plane, mm in the head's own frame, is on the screen. */
+/** Screen position of a point in the head's own frame, mm. */
 const onScreen = (page, [x, y]) =>
   page.evaluate(([x, y]) => {
     const at = new DOMPoint(x, -y).matrixTransform(document.querySelector('#path-plane').getScreenCTM());

@@ -16,7 +16,7 @@ after(close);
 
 const ROOT = new URL('../../', import.meta.url).pathname;
 const FILE = join(ROOT, 'robot.toml');
-/** What the compiler makes of it. */
+/** The image that the compiler makes of it. */
 const HEX = join(ROOT, 'target/avr-atmega328p/release/lizard.hex');
 
 /** ms since power-on, and what is said then. */
@@ -88,7 +88,7 @@ for (const [what, toml] of [['robot.toml', TOML], ['a robot that was typed into 
       const { pin } = lizard.description.servos[3];
       const frames = [];
       const rises = [];
-      // What the page itself follows, frame by frame.
+      // The page's own path, frame by frame.
       lizard.robot.setServos('ideal');
       const follow = lizard.robot.pulses.bind(lizard.robot);
       lizard.robot.pulses = (widths) => {

@@ -12,7 +12,7 @@ after(close);
 const PORTRAIT = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 const LANDSCAPE = { viewport: { width: 844, height: 390 }, hasTouch: true, isMobile: true };
 
-/** Where an element is on the screen, CSS pixels. */
+/** Screen position of an element, CSS pixels. */
 const place = (opened, selector) =>
   opened.evaluate((selector) => document.querySelector(selector).getBoundingClientRect().toJSON(), selector);
 const screen = (opened) => opened.evaluate(() => ({ width: innerWidth, height: innerHeight }));

@@ -9,7 +9,7 @@ import { after, afterEach, before, test } from 'node:test';
 import { promisify } from 'node:util';
 
 import { connected, until } from './board.js';
-import { advance, close, complaints, open, page, sideways, standing, tidy } from './browser.js';
+import { PATIENCE, advance, close, complaints, open, page, sideways, standing, tidy } from './browser.js';
 import { fakeSerial } from './fake-serial.js';
 
 before(open);
@@ -49,7 +49,7 @@ async function cal(opened) {
 test('a new UNO becomes a robot that walks, is saved, and has a file that lizard restore takes', async () => {
   const opened = await connected(null, 5000);
   await setup(opened).getByText('2 of 9: Write the firmware').waitFor();
-  await setup(opened).getByText('The board on USB is an UNO by its boot loader, and this firmware is not on it.').waitFor();
+  await setup(opened).getByText('The board on USB is a UNO by its boot loader, and this firmware is not on it.').waitFor();
   await does(opened, 'Write firmware and robot', /^written and verified in [\d.]+ s$/);
   await until(opened, 'it greets', async () => (await setup(opened).getByText('has this firmware and this robot, robot.toml.').count()) > 0);
   await press(opened, 'Go on');
@@ -133,7 +133,7 @@ test('a new UNO becomes a robot that walks, is saved, and has a file that lizard
     await writeFile(kept, await readFile(file));
     const root = new URL('../..', import.meta.url).pathname;
     const robot = ['--sim', '--robot', 'robot.toml'];
-    const { stdout } = await promisify(execFile)(process.env.LIZARD, ['restore', kept, ...robot], { cwd: root, timeout: 120_000 });
+    const { stdout } = await promisify(execFile)(process.env.LIZARD, ['restore', kept, ...robot], { cwd: root, timeout: PATIENCE });
     assert.match(stdout, /has the calibration of .* and has saved it/);
   } finally {
     await rm(folder, { recursive: true });
@@ -235,7 +235,7 @@ test('who leaves leaves the robot as it was, and comes back to the same step', a
   assert.deepEqual(await cal(opened), before);
   await opened.getByRole('button', { name: 'Set up…' }).click();
   await setup(opened).getByText('5 of 9: Straighten the cranks').waitFor();
-  // What was proven and is not taken back counts on.
+  // Proven signs stay proven unless they are taken back.
   await step(opened, 'Signs');
   await does(opened, 'Turn A1', /^A1 was told to turn 10°/);
   await press(opened, 'Yes');

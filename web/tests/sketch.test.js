@@ -19,7 +19,7 @@ async function opened(options) {
 const length = (page, key) => page.evaluate((key) => window.lizard.description.lengths.find((each) => each.key === key).value, key);
 const joint = (page, name) => page.locator(`#sketch circle[data-joint="${name}"]`);
 
-/** Where a joint is on the screen, and so many mm of the robot ahead of it and to its right. */
+/** Screen positions of a joint, and of points some mm ahead of it and to its right. */
 async function place(page, name, [right, ahead] = [0, 0]) {
   return joint(page, name).evaluate(
     (mark, [right, ahead]) => {

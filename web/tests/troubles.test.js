@@ -1,4 +1,4 @@
-// What goes wrong is said where a person looks, and stays said until it is over.
+// A problem is shown where the user looks, and stays until it is solved.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 

@@ -127,7 +127,7 @@ test('a board that is unplugged half way has no robot, says so, moves nothing, a
   const opened = await panel(await connected('large', 8000));
   await robotAlone(opened);
   // Some of its twenty pages, which take 17 ms each.
-  for (let ms = 0; ms < 20_000 && !(await text(opened, '#flash-said')).startsWith('writing'); ms += 20) await opened.clock.runFor(20);
+  await until(opened, 'it is written', async () => (await text(opened, '#flash-said')).startsWith('writing'), 20);
   await opened.clock.runFor(60);
   await opened.evaluate(() => window.unplug());
   await said(opened, /^not written: .*\. Only a part of the robot is on the board, which moves nothing until it is written again: try again$/);
@@ -144,6 +144,15 @@ test('a board that is unplugged half way has no robot, says so, moves nothing, a
   await until(opened, 'it stands', async () => (await moved(opened)).length === 4);
 });
 
+test('nothing is asked of a board that is written as soon as it has greeted', async () => {
+  const opened = await panel(await connected('robot', 2000));
+  assert.match(await text(opened, '#where'), /^on a board on USB, robot paper /);
+  await opened.locator('#flash-write').click();
+  await opened.clock.runFor(4000);
+  assert.match(await text(opened, '#flash-said'), /^(writ|verify)ing/);
+  assert.equal(await opened.locator('#trouble').innerText(), '');
+});
+
 test('a board that is unplugged while the firmware is written does nothing, and is written again', async () => {
   const opened = await panel(await connected('robot', 8000));
   assert.equal((await moved(opened)).length, 4, 'it stands');
@@ -152,7 +161,7 @@ test('a board that is unplugged while the firmware is written does nothing, and 
   await opened.clock.runFor(1500);
   await opened.evaluate(() => window.unplug());
   await said(opened, /^not written: .*\. Only a part of it is on the board, which does nothing until it is written again: try again$/);
-  // What it does by itself, with its own power.
+  // Its own behaviour, without the page.
   const pulses = await opened.evaluate(() => {
     window.otherBoard.reset('external');
     window.pulses = {};

@@ -7,12 +7,19 @@
 
 use crate::{Flash, Plain};
 
+/// True in a build whose code is longer, because avr-gcc alone links it. It is for simulators,
+/// so its region may end where the flash does, behind an UNO's boot loader.
+const IS_PLAIN: bool = match option_env!("LIZARD_PLAIN_LINK") {
+    Some(set) => matches!(set.as_bytes(), b"1"),
+    None => false,
+};
+
 /// The region's first address, behind 27.5 KiB of code. The region ends where the boot loader
 /// of an Arduino UNO begins.
-pub const START: u16 = 0x6e00;
+pub const START: u16 = if IS_PLAIN { 0x7780 } else { 0x6e00 };
 
 /// The size of the region in bytes.
-pub const SPACE: u16 = 0x7e00 - START;
+pub const SPACE: u16 = if IS_PLAIN { 0x8000 } else { 0x7e00 } - START;
 
 /// The region of flash that holds the robot's section.
 #[derive(Clone, Copy, Debug)]

@@ -1,84 +1,68 @@
-//! What drives a leg from its servo's link: `[leg.drive]` in robot.toml.
+//! The drive of a leg from its servo's link: `[leg.drive]` in robot.toml.
 //!
-//! Parts, bill, contact model, twin and page all use this table. With a bar with two
-//! holes, the leg moves exactly with its servo. A strut with a slot and a spring does the
-//! same up to the pull of its spring; beyond that it yields in one direction. An ideal
-//! spring yields in both directions: no part of `lizard parts` does that, but the paper's
-//! robot may have had one. In each case pins and gears have play, within which nothing
-//! drives the leg.
+//! Parts, bill, contact model, twin and page all use this table. With a rigid strut, a bar with
+//! two holes, the leg moves exactly with its servo. A strut with a slot and a spring does the
+//! same up to the pull of its spring; beyond that it yields in one direction. In both cases pins
+//! and gears have play, within which nothing drives the leg.
 
-use crate::spring::Spring;
 use crate::strut::Strut;
 use crate::yields::{Side, Yield};
 
-/// What drives the legs; all four are equal.
+/// The drive of the legs; all four are equal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drive {
-    /// Its kind.
+    /// Kind of the connection.
     pub kind: Kind,
-    /// How far a leg moves freely to either side, deg.
+    /// Free movement of a leg to either side, deg.
     pub play: f64,
 }
 
-/// What stands between a servo's link and its leg.
+/// The connection between a servo's link and its leg.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Kind {
-    /// A bar: the leg is where its servo is, but for the play.
+    /// A rigid strut: the leg follows its servo exactly, except for the play.
     Rigid,
     /// A strut with a slot and a tension spring, which yields one way.
     Strut(Strut),
-    /// A spring that yields both ways.
-    Spring(Spring),
 }
 
 impl Kind {
-    /// Their words in robot.toml, in the order of the kinds.
-    pub const WORDS: [&str; 3] = ["rigid", "strut", "spring"];
+    /// Names of the kinds in robot.toml.
+    pub const WORDS: [&str; 2] = ["rigid", "strut"];
 }
 
 impl Drive {
-    /// A leg that is always where its servo is.
+    /// A leg that follows its servo exactly.
     pub const RIGID: Self = Self {
         kind: Kind::Rigid,
         play: 0.0,
     };
 
-    /// The same legs on an ideal spring, without play.
-    #[must_use]
-    pub const fn spring(rate: f64, preload: f64) -> Self {
-        Self {
-            kind: Kind::Spring(Spring { rate, preload }),
-            play: 0.0,
-        }
-    }
-
-    /// Whether a leg can be elsewhere than its servo.
+    /// True if a leg can lag behind its servo.
     #[must_use]
     pub fn lags(&self) -> bool {
         self.kind != Kind::Rigid || self.play > 0.0
     }
 
-    /// Its strut with a slot, if that is what drives the legs.
+    /// The slotted strut; none for another kind.
     #[must_use]
     pub fn strut(&self) -> Option<&Strut> {
         match &self.kind {
             Kind::Strut(strut) => Some(strut),
-            _ => None,
+            Kind::Rigid => None,
         }
     }
 
-    /// Its word in robot.toml.
+    /// Name of the kind in robot.toml.
     #[must_use]
     pub fn word(&self) -> &'static str {
         match self.kind {
             Kind::Rigid => Kind::WORDS[0],
             Kind::Strut(_) => Kind::WORDS[1],
-            Kind::Spring(_) => Kind::WORDS[2],
         }
     }
 
-    /// The lag (deg) nearest to this one that the leg can have without a load while its
-    /// servo is at this sweep, deg.
+    /// Limits a lag (deg) to the range between the stops while the servo is at this sweep, deg.
     pub(crate) fn within(&self, leg: usize, sweep: f64, lag: f64) -> f64 {
         let stops = self
             .of_leg(leg, sweep, 1.0, 1.0)
@@ -87,14 +71,12 @@ impl Drive {
         lag.clamp(stops[0], stops[1])
     }
 
-    /// What a lag of this leg costs while its servo is at this sweep, deg. Forces are
-    /// counted in `force` N, and no pad turns its leg with more than `most` of them at a
-    /// lever of 1 mm.
+    /// The energy of this leg's lag while its servo is at this sweep, deg. The unit of forces is
+    /// `force` N, and no pad turns its leg with more than `most` of them at a lever of 1 mm.
     pub(crate) fn of_leg(&self, leg: usize, sweep: f64, force: f64, most: f64) -> Yield {
         let [lower, upper] = match &self.kind {
             Kind::Rigid => [Side::Stop; 2],
             Kind::Strut(strut) => strut.sides(leg, sweep, force),
-            Kind::Spring(spring) => [spring.side(force); 2],
         };
         Yield {
             play: self.play.to_radians(),

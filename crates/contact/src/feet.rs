@@ -1,29 +1,29 @@
-//! Where the feet are, and what stands on them.
+//! The geometry of the feet, and the body that stands on them.
 
 use crate::friction::Point;
 
-/// Which legs are in front, servo order: 1 in front, -1 behind.
+/// The end of each leg, servo order: 1 in front, -1 behind.
 pub const FRONT: [f64; 4] = [1.0, 1.0, -1.0, -1.0];
-/// Which legs are on the left, servo order: 1 on the left, -1 on the right.
+/// The side of each leg, servo order: 1 on the left, -1 on the right.
 pub const LEFT: [f64; 4] = [1.0, -1.0, -1.0, 1.0];
-/// Which way each leg turns, counter-clockwise positive, when its foot goes forward: a
-/// leg on the left clockwise.
+/// The sense in which each leg turns when its foot goes forward, counter-clockwise positive: a
+/// leg on the left turns clockwise.
 pub const FORWARD: [f64; 4] = [-LEFT[0], -LEFT[1], -LEFT[2], -LEFT[3]];
 
 /// Standard gravity, m/s^2.
 pub const GRAVITY: f64 = 9.80665;
 
-/// Where the feet are.
+/// The geometry of the feet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Feet {
-    /// Hips ahead of and behind the chassis centre, mm.
+    /// Distance of the hips ahead of and behind the chassis centre, mm.
     pub hip_forward: f64,
-    /// Hips of the front and of the hind legs to either side, mm.
+    /// Distances of the front and of the hind hips to either side, mm.
     pub hip_side: [f64; 2],
     /// Outward sweep of the legs at neutral, deg: front legs forward, hind legs
     /// back.
     pub mount: f64,
-    /// Length of a leg's crank: from the hip to the foot, mm.
+    /// Length of a leg's crank, from the hip to the foot, mm.
     pub reach: f64,
 }
 
@@ -38,8 +38,8 @@ impl Feet {
         })
     }
 
-    /// Where the feet are for sweeps in deg, servo order: (forward, left) from
-    /// the chassis centre, mm.
+    /// Places of the feet for sweeps in deg, servo order: (forward, left) from the chassis
+    /// centre, mm.
     #[must_use]
     pub fn at(&self, sweeps: [f64; 4]) -> [Point; 4] {
         let hips = self.hips();
@@ -52,7 +52,7 @@ impl Feet {
         })
     }
 
-    /// How far the feet go for each radian of sweep, mm.
+    /// Derivatives of the feet's places by the sweep, mm/rad.
     pub(crate) fn along(&self, sweeps: [f64; 4]) -> [Point; 4] {
         std::array::from_fn(|i| {
             let (sin, cos) = self.swept(i, sweeps[i]);
@@ -65,24 +65,23 @@ impl Feet {
     }
 }
 
-/// What stands on the feet.
+/// The mass on the feet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Body {
-    /// All of the robot, g.
+    /// Mass of the whole robot, g.
     pub mass: f64,
-    /// Its mass centre: forward, left from the chassis centre, mm.
+    /// Mass centre: forward, left from the chassis centre, mm.
     pub centre: Point,
 }
 
 impl Body {
-    /// What robot.toml means where it says nothing: what the parts of the paper's robot
-    /// weigh.
+    /// The default of robot.toml: the weight of the paper's parts.
     pub const DEFAULT: Self = Self {
         mass: 396.4,
         centre: [0.0; 2],
     };
 
-    /// What a foot carries on average, N.
+    /// Mean load of a foot, N.
     #[must_use]
     pub fn mean_load(&self) -> f64 {
         self.mass / 1000.0 * GRAVITY / 4.0

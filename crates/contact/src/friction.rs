@@ -1,15 +1,15 @@
 //! The slide that costs the least friction: a small convex problem.
 //!
 //! Each pad's cost is the length of its slide, stretched by the friction ratio where it
-//! slides backward. A leg on a spring may lag behind its servo, which costs the spring's
+//! slides backward. A leg on a spring may lag behind its servo at the cost of the spring's
 //! energy; a rigid leg does not lag. A sum of lengths has kinks at the pads that hold,
 //! which are the ones that matter. So every length is rounded off, `sqrt(length^2 +
 //! eps^2)`, and the sum is minimised by Newton's method; eps is lowered in stages from
 //! the size of the slides to a hundred-millionth of it. The result is above the true
 //! minimum by at most eps for each pad; the tests prove that with the dual problem. Where
 //! the minimum is not unique (two pads against two), this ends at the point that the
-//! rounding favours, which is the symmetric one; [`crate::Ground::predict`] finds out
-//! where that matters.
+//! rounding favours, which is the symmetric one; [`crate::Ground::predict`] finds the
+//! movements that depend on it.
 
 use crate::linear::solve;
 use crate::yields::Yield;
@@ -17,59 +17,58 @@ use crate::yields::Yield;
 /// Position or slide of a pad: forward, left.
 pub type Point = [f64; 2];
 
-/// How the body moves: forward, left in mm, counter-clockwise in rad.
+/// A small movement of the body: forward, left in mm, counter-clockwise in rad.
 pub(crate) type Twist = [f64; 3];
 
-/// The last rounding over the size of the slides.
+/// Smallest rounding over the size of the slides.
 const SMALLEST: f64 = 1e-8;
 /// Stages from the first rounding, the size of the slides, to the last.
 const STAGES: i32 = 5;
-/// The stage to begin with where the answer is nearly known.
+/// First stage if a guess of the solution is given.
 const NEARLY: i32 = 2;
-/// Newton steps for each stage; five to eight are usual.
+/// Most Newton steps of a stage; five to eight are usual.
 const STEPS: usize = 40;
-/// Forces (in units of one pad's friction) that count as balanced.
+/// Largest force (over one pad's friction) that counts as balanced.
 const BALANCED: f64 = 1e-9;
 
-/// A Newton step that gains less than this (of a pad's friction times the size of
-/// the slides) gains nothing that numbers can show.
+/// Smallest gain of a Newton step (over a pad's friction times the size of the slides) that
+/// floating point can show.
 const LEAST_GAIN: f64 = 1e-23;
 
-/// Pads on the floor.
+/// The four pads in a small step.
 #[derive(Clone, Copy)]
 pub(crate) struct Pads {
-    /// Where they are in the body frame, mm.
+    /// Places of the pads in the body frame, mm.
     pub at: [Point; 4],
-    /// How far their legs swing them in the body frame if their lags stay as they
-    /// are, mm.
+    /// Swings of the pads in the body frame by their legs, at unchanged lags, mm.
     pub swing: [Point; 4],
     /// Friction backward over forward.
     pub ratio: f64,
-    /// Weight that each pad carries, over the mean.
+    /// Load of each pad, over the mean.
     pub load: [f64; 4],
-    /// How the legs give way; none where they are rigid.
+    /// Drives of the legs that lag; none if legs are rigid.
     pub give: Option<Give>,
 }
 
-/// Legs that lag behind their servos.
+/// The drives of legs that lag behind their servos.
 #[derive(Clone, Copy)]
 pub(crate) struct Give {
-    /// How far each pad is back for a radian of lag, mm.
+    /// Derivatives of the pads' places by the lag, backward, mm/rad.
     pub along: [Point; 4],
-    /// The lags before the step, rad.
+    /// Lags before the step, rad.
     pub before: [f64; 4],
-    /// What each leg's lag costs.
+    /// Energies of the legs' lags.
     pub yields: [Yield; 4],
 }
 
-/// What the pads do.
+/// The movement in a small step.
 #[derive(Clone, Copy)]
 pub(crate) struct Displacement {
-    /// How the body moves.
+    /// Movement of the body.
     pub twist: Twist,
-    /// How far each leg lags behind its servo after it, rad; 0 where legs are rigid.
+    /// Lags of the legs after the step, rad; 0 if legs are rigid.
     pub lag: [f64; 4],
-    /// By how much that is more than before, rad.
+    /// Changes of the lags, rad.
     pub change: [f64; 4],
 }
 
@@ -77,13 +76,13 @@ pub(crate) struct Displacement {
 /// its row of the Hessian is eliminated at once.
 struct Expansion {
     cost: f64,
-    /// By the twist, lags eliminated.
+    /// Gradient by the twist, with the lags eliminated.
     gradient: [f64; 3],
     hessian: [[f64; 3]; 3],
     legs: [Row; 4],
 }
 
-/// A leg's row: slope and curvature by its lag, and how both unknowns mix.
+/// A leg's row: slope and curvature by its lag, and the mixed derivatives with the twist.
 #[derive(Clone, Copy, Default)]
 struct Row {
     slope: f64,
@@ -91,7 +90,7 @@ struct Row {
     mixed: [f64; 3],
 }
 
-/// Units in which all unknowns are near 1.
+/// The units in which all unknowns are near 1.
 struct Scale {
     size: f64,
     twist: Twist,
@@ -99,13 +98,12 @@ struct Scale {
 }
 
 impl Pads {
-    /// The displacement of the body and the legs that drags the pads over the floor at
-    /// least cost.
+    /// Finds the displacement of the body and the legs with the least cost.
     pub fn least(&self) -> Displacement {
         self.least_from(None)
     }
 
-    /// The same, with a displacement to begin with that is nearly the answer.
+    /// Finds the displacement with the least cost, starting at a guess.
     pub fn least_from(&self, guess: Option<&Displacement>) -> Displacement {
         let size = largest(&self.swing).max(self.springs_back());
         if size == 0.0 {
@@ -132,8 +130,8 @@ impl Pads {
             let eps = size * SMALLEST.powf(f64::from(stage) / f64::from(STAGES));
             let around = |x, z| self.expand(&scale.displacement(self, x, z), eps, &scale);
             let mut here = around(x, z);
-            // Where a pad holds, its slide shrinks as the rounding does, so the answers of
-            // two stages tell the next one. A guess counts as the last stage's answer.
+            // The slide of a pad that holds shrinks with the rounding, so the solutions of two
+            // stages extrapolate to the next one. A guess counts as the last stage's solution.
             if let [Some((far, far_x, far_z)), Some((near, ..))] = answers {
                 let on = (near - eps) / (far - near);
                 let next_x: [f64; 3] = std::array::from_fn(|i| x[i] + on * (x[i] - far_x[i]));
@@ -160,7 +158,7 @@ impl Pads {
                     let z: [f64; 4] = std::array::from_fn(|i| z[i] - share * dz[i]);
                     (x, z)
                 };
-                // Halve until the cost falls, as far as rounding lets one see.
+                // Halve the step until the cost falls, within rounding.
                 let least = here.cost * (1.0 + 1e-14);
                 let shares = std::iter::successors(Some(1.0), |share| Some(share / 2.0));
                 let mut points = shares.take_while(|&share| share > 1e-9).map(|share| {
@@ -179,7 +177,7 @@ impl Pads {
         scale.displacement(self, x, z)
     }
 
-    /// The displacement with this twist, and with lags that change by so much.
+    /// The displacement with this twist and these changes of the lags.
     fn moved(&self, twist: Twist, change: [f64; 4]) -> Displacement {
         let before = self.give.map_or([0.0; 4], |give| give.before);
         Displacement {
@@ -189,8 +187,8 @@ impl Pads {
         }
     }
 
-    /// How far a leg may jump back, mm, since its spring pulls harder than its pad
-    /// can hold: 0 unless pads or springs were changed.
+    /// Largest distance that a leg may jump back, mm, because its spring pulls harder than its pad
+    /// holds: 0 unless pads or springs were changed.
     fn springs_back(&self) -> f64 {
         let Some(give) = &self.give else { return 0.0 };
         let back = |i: usize| {
@@ -218,12 +216,12 @@ impl Pads {
         })
     }
 
-    /// How much a slide's parts weigh: backward slides by the ratio.
+    /// Weights of a slide's parts: backward slides cost more by the ratio.
     pub fn weight(&self, slide: Point) -> Point {
         [if slide[0] < 0.0 { self.ratio } else { 1.0 }, 1.0]
     }
 
-    /// The rounded cost of a displacement, its gradient and its Hessian by the scaled
+    /// Computes the rounded cost of a displacement, its gradient and its Hessian by the scaled
     /// unknowns.
     fn expand(&self, displacement: &Displacement, eps: f64, scale: &Scale) -> Expansion {
         let (mut cost, mut gradient, mut hessian) = (0.0, [0.0; 3], [[0.0; 3]; 3]);
@@ -233,7 +231,7 @@ impl Pads {
             let [wx, wy] = self.weight(slide);
             let [ux, uy] = [wx * slide[0], wy * slide[1]];
             let length = (ux * ux + uy * uy + eps * eps).sqrt();
-            // Rows: how each unknown moves the weighted slide.
+            // Derivatives of the weighted slide by each unknown.
             let rows = [
                 [wx * scale.twist[0], 0.0],
                 [0.0, wy * scale.twist[1]],
@@ -283,7 +281,7 @@ impl Pads {
 }
 
 impl Scale {
-    /// A displacement in its own units.
+    /// Converts scaled unknowns to a displacement.
     fn displacement(&self, pads: &Pads, x: [f64; 3], z: [f64; 4]) -> Displacement {
         pads.moved(
             std::array::from_fn(|i| x[i] * self.twist[i]),
@@ -291,12 +289,12 @@ impl Scale {
         )
     }
 
-    /// The twist of a displacement in these units.
+    /// Converts the twist of a displacement to these units.
     fn of_twist(&self, displacement: &Displacement) -> [f64; 3] {
         std::array::from_fn(|i| displacement.twist[i] / self.twist[i])
     }
 
-    /// The lags of a displacement in these units, as changes.
+    /// Converts the changes of the lags to these units.
     fn of_lag(&self, displacement: &Displacement) -> [f64; 4] {
         std::array::from_fn(|i| match self.lag[i] {
             0.0 => 0.0,
@@ -306,7 +304,7 @@ impl Scale {
 }
 
 impl Expansion {
-    /// What the legs' own steps gain, to first order, besides that of the twist.
+    /// First-order gain of the legs' own steps, besides that of the twist.
     fn gained(&self) -> f64 {
         let own = |leg: &Row| match leg.curvature {
             0.0 => 0.0,
@@ -317,7 +315,7 @@ impl Expansion {
 }
 
 impl Row {
-    /// The leg's step together with this step of the twist.
+    /// Step of the leg together with this step of the twist.
     fn step(&self, twist: [f64; 3]) -> f64 {
         if self.curvature == 0.0 {
             return 0.0;

@@ -1,43 +1,42 @@
-//! Feet that are never lifted: how the robot moves when its legs swing.
+//! The robot and its floor, as the contact model has them.
 //!
 //! Planar, quasi-static, Coulomb friction. At each instant the pads slide so that the
 //! power lost to friction is least: the body takes the twist (vx, vy, omega) that
 //! minimises `sum mu N |v + omega x r_i + dr_i/dt|` over the feet. Three feet that move
 //! together win against one that returns, and the body advances. Speed, weight and a
-//! common friction coefficient cancel, as long as the legs are rigid. Where springs pull
-//! them, each step minimises the friction's work and the springs' energy together, and
-//! friction against stiffness decides how far a leg lags behind its servo.
+//! common friction coefficient cancel, as long as the legs are rigid. If springs drive the
+//! legs, each step minimises the friction's work and the springs' energy together, and the
+//! ratio of friction to stiffness decides the lag of a leg behind its servo.
 
 use crate::drive::Drive;
 use crate::feet::{Body, Feet};
 use crate::stance::Stance;
 
-/// The contact model.
+/// A robot on a floor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ground {
-    /// Where the feet are.
+    /// Geometry of the feet.
     pub feet: Feet,
-    /// What they carry.
+    /// Mass and mass centre.
     pub body: Body,
-    /// How they share it.
+    /// Stiffness and lengths of the feet, which decide their loads.
     pub stance: Stance,
-    /// Friction coefficient of a pad that slides forward. It matters only together with a
-    /// spring.
+    /// Friction coefficient of a pad that slides forward. It has an effect only together with
+    /// a spring.
     pub friction: f64,
     /// Friction of a pad that slides backward over that of one that slides
     /// forward.
     pub ratio: f64,
-    /// What drives each leg from its servo's link.
+    /// Drive of each leg from its servo's link.
     pub drive: Drive,
 }
 
-/// The friction coefficient that robot.toml means where it says nothing: rubber on
-/// a smooth floor.
+/// The default friction coefficient: rubber on a smooth floor.
 pub const DEFAULT_FRICTION: f64 = 0.7;
 
 impl Ground {
-    /// The same with legs that do not lag: where a step leads then depends on nothing
-    /// before it.
+    /// Returns the same ground with legs that do not lag, so that no step depends on earlier
+    /// ones.
     #[must_use]
     pub fn rigid(&self) -> Self {
         Self {
@@ -46,13 +45,13 @@ impl Ground {
         }
     }
 
-    /// What each of the feet (forward, left in mm, servo order) carries over the mean.
+    /// Loads of the feet at these places (forward, left in mm, servo order), over the mean.
     #[must_use]
     pub fn loads(&self, feet: [[f64; 2]; 4]) -> [f64; 4] {
         self.stance.loads(&self.body, feet)
     }
 
-    /// The friction of a foot that carries the mean, N: what a spring works against.
+    /// Friction of a foot with the mean load, N: the force against which a spring works.
     #[must_use]
     pub fn grip(&self) -> f64 {
         self.friction * self.body.mean_load()

@@ -1,16 +1,19 @@
-//! The contact model: where a body goes whose feet are never lifted.
+//! The contact model: the movement of a body whose feet are never lifted.
 //!
 //! Four pads stand on the floor and every one of them drags. When the legs swing, not all
-//! pads can hold, and friction decides which of them slide. So the body goes where the
-//! least power is lost to friction, which is a small convex problem: the formula is in
-//! `ground.rs`, its solution in `friction.rs`. How the feet share the weight
-//! (`stance.rs`) and how far a leg lags behind its servo on a spring or a slotted strut
-//! (`drive.rs`) are part of the same problem.
+//! pads can hold, and friction decides which of them slide. The body takes the movement that
+//! loses the least power to friction, which is a small convex problem: the formula is in
+//! `ground.rs`, its solution in `friction.rs`. The shares of the weight (`stance.rs`) and the lag
+//! of a leg behind its servo (`drive.rs`) are part of the same problem.
 //!
-//! [`Ground`] is one robot on one floor. [`Ground::predict`] says where a series of sweeps
-//! leads, as far as that can be known; a [`Walker`] follows one step by step.
-//! `lizard-robot` predicts the way of each gait of a robot.toml with it, and `lizard-twin`
-//! walks behind the pulses of a board. The crate reads no file and knows no gait.
+//! [`Ground`] is one robot on one floor. [`Ground::predict`] predicts the movement for a series of
+//! sweeps, as far as it can be known; a [`Walker`] follows the sweeps step by step.
+//! `lizard-robot` predicts each gait of a robot.toml with it, and `lizard-twin` follows the pulses
+//! of a board. The crate reads no file and knows no gait.
+//!
+//! # When not to use it
+//! The model has no inertia, and feet neither lift nor tilt. Speed changes nothing. For a robot
+//! that lifts its feet, or moves so fast that its mass counts, use a physics engine.
 //!
 //! ```
 //! use lizard_contact::{Body, DEFAULT_FRICTION, Drive, Feet, Ground, Stance};
@@ -42,7 +45,6 @@ mod ground;
 mod linear;
 mod place;
 mod prediction;
-mod spring;
 mod stance;
 mod strut;
 mod travel;
@@ -54,7 +56,6 @@ pub use feet::{Body, FORWARD, FRONT, Feet, GRAVITY, LEFT};
 pub use friction::Point;
 pub use ground::{DEFAULT_FRICTION, Ground};
 pub use place::Place;
-pub use spring::Spring;
 pub use stance::Stance;
 pub use strut::{SLOT, Strut};
 pub use travel::{Prediction, Travel};

@@ -1,7 +1,7 @@
-//! Three linear equations.
+//! The solution of three linear equations.
 
-/// Solves a symmetric 3x3 system by Gauss with pivots. A direction without
-/// curvature is left alone: of a cost it is flat and any point will do.
+/// Solves a symmetric 3x3 system by Gaussian elimination with pivots. Along a direction without
+/// curvature the cost is flat, and any solution is as good.
 pub(crate) fn solve(mut a: [[f64; 3]; 3], mut b: [f64; 3]) -> [f64; 3] {
     let largest = (0..3).fold(0.0f64, |largest, i| largest.max(a[i][i]));
     for (i, row) in a.iter_mut().enumerate() {

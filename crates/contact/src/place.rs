@@ -1,29 +1,29 @@
-//! Where the body is on the floor.
+//! The place of the body on the floor.
 
 use crate::friction::Twist;
 use crate::travel::Travel;
 
-/// Position and heading of the body on the floor, seen from where it started.
+/// Position and heading of the body on the floor, seen from its start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
-    /// Ahead, mm.
+    /// Distance ahead, mm.
     pub forward: f64,
-    /// To the left, mm.
+    /// Distance to the left, mm.
     pub left: f64,
-    /// Counter-clockwise, rad.
+    /// Heading, rad, counter-clockwise positive.
     pub heading: f64,
 }
 
 impl Place {
-    /// Where it started.
+    /// The start.
     pub const START: Self = Self {
         forward: 0.0,
         left: 0.0,
         heading: 0.0,
     };
 
-    /// After a twist of the body, held for a unit of time: the screw motion, so
-    /// that the opposite twist leads back.
+    /// Moves the body by a twist, held for a unit of time: the screw motion, so that the opposite
+    /// twist leads back.
     pub(crate) fn moved(self, [forward, left, turn]: Twist) -> Self {
         // sin(turn)/turn and (1 - cos(turn))/turn without a division by zero.
         let half = turn / 2.0;
@@ -36,7 +36,7 @@ impl Place {
         }
     }
 
-    /// This place as seen from an earlier one.
+    /// The movement from an earlier place to this one, seen from the earlier one.
     #[must_use]
     pub fn seen_from(self, earlier: Self) -> Travel {
         let (sin, cos) = earlier.heading.sin_cos();
@@ -48,7 +48,7 @@ impl Place {
         }
     }
 
-    /// A point of the body (forward, left, mm) on the floor.
+    /// Converts a point of the body (forward, left, mm) to the floor.
     #[must_use]
     pub fn on_floor(self, [forward, left]: [f64; 2]) -> [f64; 2] {
         let (sin, cos) = self.heading.sin_cos();
@@ -58,7 +58,7 @@ impl Place {
         ]
     }
 
-    /// The way from the start.
+    /// The movement from the start.
     #[must_use]
     pub fn travel(self) -> Travel {
         self.seen_from(Self::START)
@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn a_way_is_seen_from_where_it_began() {
+    fn a_movement_is_seen_from_its_start() {
         let begin = Place::START.moved([3.0, 4.0, FRAC_PI_2]);
         let twist = [10.0, -2.0, 0.3];
         let way = begin.moved(twist).seen_from(begin);

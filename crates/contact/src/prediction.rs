@@ -1,4 +1,4 @@
-//! How far the contact model moves a robot whose legs take given sweeps.
+//! The prediction of a robot's movement for given sweeps of its legs.
 //!
 //! Two feet against two are a tie: every twist between the two pairs costs the same, and
 //! the smallest difference between the pads decides. The model cannot know that
@@ -9,25 +9,24 @@ use crate::ground::Ground;
 use crate::travel::{Prediction, Travel};
 use crate::walker::Walker;
 
-/// By how much pads are made uneven to see whether a way depends on a tie. No
-/// print and no floor is more even than that.
+/// Unevenness of the pads in the test for ties, as a share. No print and no floor is more even.
 const UNEVEN: f64 = 0.01;
-/// A way that then differs by less than this share of its length is decided.
+/// Share of the path's length by which a decided movement may differ on uneven pads.
 const DECIDED_SHARE: f64 = 0.05;
-/// So is one that differs by less than this, mm.
+/// Distance by which a decided movement may differ on uneven pads, mm.
 const DECIDED_LENGTH: f64 = 1.0;
-/// So is a turn that differs by less than this, rad.
+/// Angle by which a decided turn may differ on uneven pads, rad.
 const DECIDED_TURN: f64 = 0.5 * std::f64::consts::PI / 180.0;
 
-/// The movement with slightly uneven pads, and that with even ones.
+/// A walk on slightly uneven pads, compared with the walk on even ones.
 struct Uneven {
     walker: Walker,
-    /// All differences of its steps from the even ones: forward, left, turn.
+    /// Sums of the differences of all steps: forward, left, turn.
     differs: Twist,
 }
 
 impl Uneven {
-    /// Each pad in turn pressed harder, and a little more friction one way.
+    /// Makes walks in which each pad in turn is pressed harder, or the friction backward differs.
     fn all(ground: &Ground, sweeps: [f64; 4]) -> [Self; 6] {
         let uneven = |load, ratio| Self {
             walker: Walker::uneven(*ground, sweeps, load, ratio),
@@ -58,20 +57,17 @@ impl Uneven {
 }
 
 impl Ground {
-    /// Where the robot gets to when its legs take these sweeps (deg, foot
-    /// forward positive, servo order) one after another, as far as that does not
-    /// depend on ties.
+    /// Predicts the movement for these sweeps (deg, foot forward positive, servo order) one after
+    /// another, as far as it does not depend on ties.
     ///
-    /// The same sweeps are followed on pads made uneven by a hundredth, each pad
-    /// in turn and all of them backward against forward. Where two feet agree
-    /// against two, the body then goes with one pair or with the other. A part
-    /// of the way is undecided if its end differs by more than 1 mm (0.5 deg) and
-    /// by more than a twentieth of the length of the way. Ahead and turn are
-    /// compared step by step as well: a body dragged to and fro by one pair of
-    /// feet ends where it began, as it does with the other pair, but pads that
-    /// change on the way lead it anywhere between. Sideways only the end counts:
-    /// legs that swing together always spread and close, and bring the body
-    /// back within one swing.
+    /// The same sweeps are followed on pads made uneven by a hundredth, each pad in turn and all
+    /// of them backward against forward. If two feet pull against two, the body then goes with one
+    /// pair or with the other. A part of the movement is undecided if its end differs by more than
+    /// 1 mm (0.5 deg) and by more than a twentieth of the length of the path. Ahead and turn are
+    /// also compared step by step: a body dragged to and fro by one pair of feet ends at its start,
+    /// as it does with the other pair, but pads that change in between lead it anywhere between.
+    /// Sideways only the end counts: legs that swing together always spread and close, and bring
+    /// the body back within one swing.
     pub fn predict(&self, sweeps: impl IntoIterator<Item = [f64; 4]>) -> Prediction {
         let mut sweeps = sweeps.into_iter();
         let first = sweeps.next().unwrap_or_default();
@@ -112,8 +108,8 @@ impl Ground {
         }
     }
 
-    /// Where the model leads, whether or not that depends on ties: then by the
-    /// twist in the middle between the two pairs of feet.
+    /// Computes the movement for these sweeps, also if it depends on ties: then with the twist in
+    /// the middle between the two pairs of feet.
     pub fn travel(&self, sweeps: impl IntoIterator<Item = [f64; 4]>) -> Travel {
         let mut sweeps = sweeps.into_iter();
         let mut walker = Walker::new(*self, sweeps.next().unwrap_or_default());

@@ -1,4 +1,4 @@
-//! How four feet share the weight, and the load that statics leaves open.
+//! The loads of four feet, one of which statics leaves open.
 //!
 //! The loads of a stiff body on three feet follow from statics. On four feet they do not:
 //! one diagonal may carry more and the other less, and all forces still balance. The
@@ -14,50 +14,50 @@ use crate::feet::Body;
 use crate::friction::Point;
 use crate::linear::solve;
 
-/// How the feet stand.
+/// The stiffness and the lengths of the feet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stance {
-    /// What lifts a foot by a mm, N: its leaf and its pad.
+    /// Stiffness of a foot, N/mm: its leaf and its pad.
     pub stiffness: f64,
-    /// By how much the front left foot is too long for the other three, mm; negative
-    /// where it is too short. Too long by as much at the hind right foot does the same,
-    /// at another foot the opposite.
+    /// Excess length of the front left foot over the other three, mm; negative if it is too
+    /// short. The same excess at the hind right foot has the same effect, at another foot the
+    /// opposite one.
     pub twist: f64,
-    /// What levelling leaves of such a length on either side, mm. No prediction knows
-    /// it but those that try random robots.
+    /// Uncertainty of that length after levelling, mm to either side. Only predictions on
+    /// random robots use it.
     pub level: f64,
 }
 
-/// A load (over the mean) that counts as none.
+/// Largest load (over the mean) that counts as zero.
 const NONE: f64 = 1e-9;
 
 impl Stance {
-    /// What robot.toml means where it says nothing.
+    /// The defaults of robot.toml.
     pub const DEFAULT: Self = Self {
         stiffness: 0.5,
         twist: 0.0,
         level: 0.5,
     };
 
-    /// Feet that are all of the right length.
+    /// Feet of equal length.
     pub const LEVEL: Self = Self {
         twist: 0.0,
         ..Self::DEFAULT
     };
 
-    /// What the front left foot carries more on a robot whose feet stand in a rectangle,
-    /// N: as much as the one across, and as much as the other two lack.
+    /// Extra load of the front left foot and of the one across, if the feet stand in a rectangle,
+    /// N; the other two carry as much less.
     #[must_use]
     pub fn diagonal(&self) -> f64 {
         self.stiffness * self.twist / 4.0
     }
 
-    /// What each foot carries over the mean, if the feet (forward, left in mm, servo order)
-    /// stand there; 0 where one is in the air.
+    /// Computes the load of each foot over the mean, with feet at these places (forward, left in
+    /// mm, servo order); 0 for a foot in the air.
     ///
-    /// Feet that give under a chassis that does not: the chassis sinks and tilts, so the
-    /// load is a foot's own length plus a part that is linear in its place, and three
-    /// equations of balance say how.
+    /// The feet give, and the chassis does not: it sinks and tilts, so the load has a part of
+    /// the foot's own length and a part that is linear in its place. Three equations of balance
+    /// determine the latter.
     #[must_use]
     pub fn loads(&self, body: &Body, feet: [Point; 4]) -> [f64; 4] {
         let own = [
@@ -66,8 +66,8 @@ impl Stance {
             0.0,
             0.0,
         ];
-        // All four stand, or all but one: of these five exactly one lets no foot pull,
-        // and none be in the floor.
+        // All four feet stand, or all but one: in exactly one of these five cases no foot
+        // pulls and none is below the floor.
         let all_but = |lifted: Option<usize>| {
             let stands = std::array::from_fn(|i| lifted != Some(i));
             (stands, pressures(feet, own, body.centre, stands))
@@ -80,7 +80,7 @@ impl Stance {
                 false => *pressure <= NONE,
             })
         };
-        // A robot that falls over stands on none of them; that is no walking.
+        // A robot that falls over fits none of these cases.
         let (stands, pressures) = some.iter().find(holds).unwrap_or(&some[0]);
         std::array::from_fn(|i| {
             if stands[i] {
@@ -92,8 +92,8 @@ impl Stance {
     }
 }
 
-/// How hard each foot is pressed where only some of them stand, over the mean load:
-/// below 0 it is above the floor.
+/// Computes the load of each foot over the mean, if only some of them stand; a foot with a
+/// negative one is above the floor.
 fn pressures(feet: [Point; 4], own: [f64; 4], centre: Point, stands: [bool; 4]) -> [f64; 4] {
     let mut matrix = [[0.0; 3]; 3];
     let mut whole = [4.0, 4.0 * centre[0], 4.0 * centre[1]];
@@ -132,7 +132,7 @@ mod tests {
         }
     }
 
-    /// The same by letting the body sink until its springs carry it: heave, nod and roll
+    /// Computes the loads by letting the body sink until its feet carry it: heave, nod and roll
     /// follow their forces.
     fn settled(stance: &Stance, body: &Body, feet: [Point; 4]) -> [f64; 4] {
         let (mut sinks, mut nods, mut rolls) = (0.0, 0.0, 0.0);
@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_feet_carry_balances_the_body_and_is_where_it_settles() {
+    fn the_loads_balance_the_body_and_are_those_at_which_it_settles() {
         for centre in [[0.0, 0.0], [6.0, -4.0], [-11.0, 9.0]] {
             for twist in [0.0, 0.3, -0.6, 1.0, 3.0] {
                 let loads = twisted(twist).loads(&body(centre), SWUNG);

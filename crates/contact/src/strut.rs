@@ -13,29 +13,29 @@ use lizard_kinematics::wrap;
 use crate::feet::FORWARD;
 use crate::yields::{Side, Stretch};
 
-/// How far the leg's screw can run in its slot, mm.
+/// Length that the leg's screw can run in its slot, mm.
 pub const SLOT: f64 = 5.0;
 
-/// A slotted strut and its spring; all four are equal.
+/// A slotted strut and its spring; all four struts are equal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Strut {
-    /// What the spring pulls while the screw is at its end of the slot, N.
+    /// Pull of the spring while the screw is at its end of the slot, N.
     pub force: f64,
-    /// What it pulls more for each mm that the screw runs, N/mm.
+    /// Rate of the spring, N/mm.
     pub rate: f64,
-    /// How far the screw runs until the slot ends, mm.
+    /// Length that the screw runs until the slot ends, mm.
     pub slot: f64,
-    /// From screw to screw while the leg does not lag, mm.
+    /// Distance from screw to screw while the leg does not lag, mm.
     pub length: f64,
     /// Length of both arms, mm.
     pub radius: f64,
-    /// From the strut's direction to the servo's arm at neutral, deg, for each leg in
+    /// Angle from the strut's direction to the servo's arm at neutral, deg, for each leg in
     /// servo order.
     pub angles: [f64; 4],
 }
 
 impl Strut {
-    /// How a leg can stretch it while its servo is at this sweep (deg, foot forward
+    /// The geometry of stretching the strut while the servo is at this sweep (deg, foot forward
     /// positive).
     fn stretch(&self, leg: usize, sweep: f64) -> Stretch {
         let arm = self.angles[leg] + FORWARD[leg] * sweep;
@@ -48,19 +48,13 @@ impl Strut {
         Stretch::new(far[0].hypot(far[1]), self.radius, angle)
     }
 
-    /// The lever of its pull at the leg's pivot, mm, while the leg does not lag.
+    /// Lever of the strut's pull at the leg's pivot, mm, while the leg does not lag.
     #[must_use]
     pub fn lever(&self, leg: usize, sweep: f64) -> f64 {
         self.stretch(leg, sweep).lever().abs()
     }
 
-    /// What the leg withstands before it lags at all, N mm.
-    #[must_use]
-    pub fn preload(&self, leg: usize, sweep: f64) -> f64 {
-        self.force * self.lever(leg, sweep)
-    }
-
-    /// How far the leg can lag until the slot ends (deg), and the torque there, N mm.
+    /// Lag at the end of the slot, deg, and the torque there, N mm.
     #[must_use]
     pub fn end(&self, leg: usize, sweep: f64) -> (f64, f64) {
         let stretch = self.stretch(leg, sweep);
@@ -70,14 +64,7 @@ impl Strut {
         (way.to_degrees(), torque)
     }
 
-    /// Whether a leg yields when its foot is held on its way forward; else on its way
-    /// back.
-    #[must_use]
-    pub fn yields_forward(&self, leg: usize, sweep: f64) -> bool {
-        self.stretch(leg, sweep).lever() > 0.0
-    }
-
-    /// What a lag against the sweep's direction and along it costs, in `force` N.
+    /// The energy of a lag against the sweep's direction and along it, in units of `force` N.
     pub(crate) fn sides(&self, leg: usize, sweep: f64, force: f64) -> [Side; 2] {
         let stretch = self.stretch(leg, sweep);
         let side = Side::strut(stretch, self.force / force, self.rate / force, self.slot);

@@ -1,35 +1,34 @@
-//! How far the robot gets on its floor, and how much of that is known in advance.
+//! The movement of the body over the floor, and its prediction.
 
-/// Where the robot got to, seen from where it started.
+/// The movement of the body, seen from its start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Travel {
-    /// mm.
+    /// Distance ahead, mm.
     pub forward: f64,
-    /// mm.
+    /// Distance to the left, mm.
     pub left: f64,
-    /// deg, counter-clockwise.
+    /// Turn, deg, counter-clockwise positive.
     pub turn: f64,
 }
 
-/// What is known of a way in advance, seen from where it started. None is what
-/// depends on a tie.
+/// A movement as far as it is known in advance. A part that depends on a tie is none.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Prediction {
-    /// mm.
+    /// Distance ahead, mm.
     pub forward: Option<f64>,
-    /// mm.
+    /// Distance to the left, mm.
     pub left: Option<f64>,
-    /// deg, counter-clockwise.
+    /// Turn, deg, counter-clockwise positive.
     pub turn: Option<f64>,
 }
 
 impl Prediction {
-    /// True if nothing depends on a tie.
+    /// True if no part depends on a tie.
     pub fn is_decided(&self) -> bool {
         self.forward.is_some() && self.left.is_some() && self.turn.is_some()
     }
 
-    /// Another way over the same ties: as much of it is known as of this one.
+    /// Keeps the parts of a movement that are known in this prediction.
     #[must_use]
     pub fn known_of(&self, travel: Travel) -> Self {
         Self {

@@ -1,59 +1,54 @@
 //! The robot on its floor, step by step.
 //!
-//! The body's movement in a step depends on the steps before, because a leg on a spring
-//! lags behind its servo by what those steps have left. So a [`Walker`] follows a walk:
-//! it holds the servos, the lags and the place on the floor.
+//! The body's movement in a step depends on earlier steps, because they leave each leg a lag
+//! behind its servo. So a [`Walker`] follows a walk: it holds the servos, the lags and the place on
+//! the floor.
 
 use crate::feet::Feet;
 use crate::friction::{Displacement, Give, Pads, Point};
 use crate::ground::Ground;
 use crate::place::Place;
 
-/// Legs that sweep further than this (deg) from one pose to the next are
-/// followed in equal parts.
+/// Largest sweep of a step, deg. A larger one is divided into equal steps.
 const PART: f64 = 0.5;
-/// The pads are taken in the middle of a step, which a lagging leg knows only
-/// after it. Each round brings the middle nearer.
+/// Most rounds of a step. The pads are taken in the middle of a step, which depends on the lags
+/// after it; each round improves the middle.
 const ROUNDS: usize = 4;
-/// Lags that differ by less than this (rad) from one round to the next are known.
+/// Largest change of a lag in a round that counts as settled, rad.
 const KNOWN: f64 = 1e-4;
 
-/// A robot that walks.
+/// A robot that walks on a floor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Walker {
     ground: Ground,
-    /// By how much each pad presses harder than its load says, and all of them
-    /// hold backward against forward.
+    /// Factors on the load of each pad, and on the friction backward over forward.
     uneven: ([f64; 4], f64),
-    /// Sweeps that the servos have, deg.
+    /// Sweeps of the servos, deg.
     servos: [f64; 4],
-    /// How far the legs are behind, deg.
+    /// Lags of the legs behind their servos, deg.
     lag: [f64; 4],
     place: Place,
 }
 
-/// What happened from one pose to the next.
+/// The slides and loads of the feet from one pose to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slip {
-    /// How far each foot slid over the floor, mm, along its way.
+    /// Distance that each foot slid over the floor, mm.
     pub feet: [f64; 4],
-    /// Length of the body's way over the floor, mm.
-    pub way: f64,
-    /// All turns of the body without their sign, deg.
-    pub turned: f64,
-    /// What each foot carried at the end over the mean.
+    /// Load of each foot at the end, over the mean.
     pub loads: [f64; 4],
 }
 
 impl Walker {
-    /// A robot that stands with its servos at these sweeps (deg, foot forward
+    /// Makes a robot that stands with its servos at these sweeps (deg, foot forward
     /// positive, servo order) and its springs at rest.
     #[must_use]
     pub fn new(ground: Ground, sweeps: [f64; 4]) -> Self {
         Self::uneven(ground, sweeps, [1.0; 4], 1.0)
     }
 
-    /// The same on pads that press and hold otherwise by these factors.
+    /// Makes such a robot with factors on the loads of the pads and on the friction backward over
+    /// forward.
     #[must_use]
     pub fn uneven(ground: Ground, sweeps: [f64; 4], load: [f64; 4], ratio: f64) -> Self {
         Self {
@@ -65,55 +60,50 @@ impl Walker {
         }
     }
 
-    /// Where it is on the floor.
+    /// Place of the body on the floor.
     #[must_use]
     pub fn place(&self) -> Place {
         self.place
     }
 
-    /// Puts it elsewhere on the floor.
+    /// Moves the robot to another place on the floor.
     pub fn set_place(&mut self, place: Place) {
         self.place = place;
     }
 
-    /// The floor, the pads and the springs.
+    /// The floor, the pads and the drive of the legs.
     #[must_use]
     pub fn ground(&self) -> &Ground {
         &self.ground
     }
 
-    /// Changes floor, pads or springs from here on. A leg that is further behind than its
-    /// drive allows comes to its stop.
+    /// Changes floor, pads or drive from the next step on. A leg that lags more than its new
+    /// drive allows moves to the stop.
     pub fn set_ground(&mut self, ground: Ground) {
         self.ground = ground;
         let (drive, servos) = (&self.ground.drive, self.servos);
         self.lag = std::array::from_fn(|i| drive.within(i, servos[i], self.lag[i]));
     }
 
-    /// How far each leg is behind its servo, deg.
+    /// Lag of each leg behind its servo, deg.
     #[must_use]
     pub fn lag(&self) -> [f64; 4] {
         self.lag
     }
 
-    /// The legs' own sweeps, deg.
+    /// Sweeps of the legs, deg.
     #[must_use]
     pub fn legs(&self) -> [f64; 4] {
         std::array::from_fn(|i| self.servos[i] - self.lag[i])
     }
 
-    /// Takes the servos to these sweeps, deg.
+    /// Moves the servos to these sweeps, deg.
     pub fn step(&mut self, sweeps: [f64; 4]) -> Slip {
         let mut slip = Slip {
             feet: [0.0; 4],
-            way: 0.0,
-            turned: 0.0,
             loads: [1.0; 4],
         };
         self.parts(sweeps, |pads, displacement| {
-            let [forward, left, turn] = displacement.twist;
-            slip.way += forward.hypot(left);
-            slip.turned += turn.abs().to_degrees();
             slip.loads = pads.load;
             for (sum, [x, y]) in slip.feet.iter_mut().zip(pads.slides(displacement)) {
                 *sum += x.hypot(y);
@@ -122,7 +112,7 @@ impl Walker {
         slip
     }
 
-    /// Takes the servos to these sweeps and hands each small step to `visit`.
+    /// Moves the servos to these sweeps in small steps and calls `visit` after each.
     pub(crate) fn parts(&mut self, sweeps: [f64; 4], mut visit: impl FnMut(&Pads, &Displacement)) {
         let here = self.servos;
         let furthest = (0..4).fold(0.0f64, |most, i| most.max((sweeps[i] - here[i]).abs()));
@@ -138,7 +128,7 @@ impl Walker {
         }
     }
 
-    /// A small step: what the pads do while the servos go to these sweeps.
+    /// Finds the displacement of a small step of the servos to these sweeps.
     fn part(&self, servos: [f64; 4]) -> (Pads, Displacement) {
         let feet = &self.ground.feet;
         let from = feet.at(self.legs());
@@ -159,8 +149,8 @@ impl Walker {
         (pads, displacement)
     }
 
-    /// The pads of a small step, as far as they are known before it: the legs end
-    /// about `lag` rad behind their servos.
+    /// Sets up the pads of a small step, after which the legs lag about `lag` rad behind their
+    /// servos.
     fn pads(&self, feet: &Feet, from: [Point; 4], servos: [f64; 4], lag: [f64; 4]) -> Pads {
         let ends: [f64; 4] = std::array::from_fn(|i| servos[i] - lag[i].to_degrees());
         let to = feet.at(ends);

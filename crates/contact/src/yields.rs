@@ -1,59 +1,52 @@
-//! The energy that a leg needs to lag behind its servo.
+//! The energy of a leg's lag behind its servo.
 //!
 //! In the contact model a single function describes the drive of a leg, the energy of its
 //! lag: zero within the play, beyond it the energy of the spring on that side, and beyond
 //! a stop a slope that no pad can climb. It has kinks at the lags that are most likely.
 //! They are rounded off within `eps`, like the lengths of slides in `friction.rs`.
 
-/// A lag's energy, in the units of the contact problem: forces over the mean friction of a
+/// The energy of a lag, in the units of the contact problem: forces over the mean friction of a
 /// pad, mm and radians.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Yield {
-    /// How far the leg moves freely to either side.
+    /// Free movement of the leg to either side, rad.
     pub play: f64,
-    /// What a stop pushes back with: more than a pad can. Much more would only make the
-    /// cost harder to minimise.
+    /// Torque of a stop, more than that of a pad. Much more would only make the cost harder to
+    /// minimise.
     pub stop: f64,
-    /// What a lag below 0 meets.
+    /// Resistance to a lag below 0.
     pub lower: Side,
-    /// And one above 0.
+    /// Resistance to a lag above 0.
     pub upper: Side,
 }
 
-/// What a leg meets on one side, beyond its play.
+/// The resistance to a lag on one side, beyond the play.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Side {
-    /// A stop.
+    /// A rigid stop.
     Stop,
-    /// A spring.
-    Spring {
-        /// Its torque at the smallest lag.
-        preload: f64,
-        /// How much more it is per radian.
-        rate: f64,
-    },
-    /// A spring in a strut, and where its slot ends a stop.
+    /// A spring in a strut, and a stop at the end of its slot.
     Strut {
-        /// How the strut is stretched.
+        /// Geometry of the strut.
         stretch: Stretch,
-        /// What it pulls before.
+        /// Pull of the spring without a lag.
         force: f64,
-        /// How much more for each mm.
+        /// Rate of the spring, per mm.
         rate: f64,
-        /// The lag at which the slot ends, beyond the play, rad.
+        /// Lag at the end of the slot, beyond the play, rad.
         way: f64,
     },
 }
 
-/// How a leg's lag stretches its strut: the strut is the third side of a triangle, between
+/// The stretching of a strut by a leg's lag: the strut is the third side of a triangle, between
 /// the leg's arm and the line from the leg's pivot to the strut's other end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stretch {
-    /// Length of that line, mm.
+    /// Length of the line from the pivot to the strut's other end, mm.
     far: f64,
-    /// Length of the arm, mm.
+    /// Length of the leg's arm, mm.
     near: f64,
-    /// Between both while the leg does not lag, rad; a lag adds to it.
+    /// Angle between both while the leg does not lag, rad; a lag adds to it.
     angle: f64,
     /// Sine and cosine of that angle without its sign.
     sin_cos: (f64, f64),
@@ -61,10 +54,10 @@ pub(crate) struct Stretch {
     still: f64,
 }
 
-/// Energy, slope and curvature.
+/// The energy, its slope and its curvature.
 type Expansion = (f64, f64, f64);
 
-/// How far x is above 0, rounded off within `eps`.
+/// The part of x above 0, rounded off within `eps`.
 fn above(x: f64, eps: f64) -> Expansion {
     let length = (x * x + eps * eps).sqrt();
     if length == 0.0 {
@@ -80,7 +73,7 @@ fn above(x: f64, eps: f64) -> Expansion {
 }
 
 impl Stretch {
-    /// Of a line and an arm (mm) with an angle between them, rad.
+    /// Makes the triangle of a line and an arm (mm) with an angle between them, rad.
     pub fn new(far: f64, near: f64, angle: f64) -> Self {
         let sin_cos = angle.abs().sin_cos();
         Self {
@@ -92,19 +85,19 @@ impl Stretch {
         }
     }
 
-    /// By how much the strut is longer for each radian more, mm, while the leg does not
-    /// lag: the lever of its pull. It is negative where a lag makes the strut shorter.
+    /// Lever of the strut's pull while the leg does not lag: the derivative of its length by the
+    /// lag, mm/rad. It is negative if a lag makes the strut shorter.
     pub fn lever(&self) -> f64 {
         (self.far * self.near * self.sin_cos.0 / self.still).copysign(self.angle)
     }
 
-    /// The same without its sign, at a lag in the direction in which the strut grows.
+    /// Lever without its sign, after a lag in the direction in which the strut grows.
     pub fn lever_after(&self, lag: f64) -> f64 {
         self.at(lag).1
     }
 
-    /// The lag at which the strut is longer by so much, rad, without its sign; infinite
-    /// where it never is.
+    /// Lag at which the strut has grown by this length, rad, without its sign; infinite if it
+    /// cannot.
     pub fn way(&self, longer: f64) -> f64 {
         let Self { far, near, .. } = self;
         let length = self.still + longer;
@@ -115,8 +108,8 @@ impl Stretch {
         }
     }
 
-    /// After a lag in the direction in which the strut grows: by how much it is longer
-    /// (mm), its lever (mm for each radian), and how much that has grown for each radian.
+    /// Growth of the strut's length (mm) after a lag in the direction in which it grows, with its
+    /// first and second derivative by the lag: the lever (mm/rad) and its slope.
     ///
     /// Lags are often a hundred-thousandth of a radian. The difference of two lengths
     /// would then be mostly rounding, and Newton's method would look for a minimum in it.
@@ -131,8 +124,8 @@ impl Stretch {
         (more / (length + self.still), lever, grows)
     }
 
-    /// What a spring takes that pulls the strut together with `force` and `rate`, where
-    /// `lag` is counted in the direction in which it grows; less `preload * lag`.
+    /// Energy of a spring that pulls the strut together with `force` and `rate`, less
+    /// `preload * lag`; `lag` is in the direction in which the strut grows.
     fn energy(&self, lag: f64, force: f64, rate: f64, preload: f64) -> Expansion {
         let (longer, lever, grows) = self.at(lag);
         let pull = force + rate * longer;
@@ -147,7 +140,7 @@ impl Stretch {
 }
 
 impl Side {
-    /// A strut's side.
+    /// The side of a strut.
     pub fn strut(stretch: Stretch, force: f64, rate: f64, slot: f64) -> Self {
         Self::Strut {
             stretch,
@@ -157,18 +150,13 @@ impl Side {
         }
     }
 
-    /// What so much lag beyond the play costs.
+    /// Energy of a lag beyond the play.
     fn expand(&self, beyond: f64, eps: f64, stop: f64) -> Expansion {
         let (far, slope, bend) = above(beyond, eps);
         let kink = |height: f64| (height * far, height * slope, height * bend);
         let sum = |a: Expansion, b: Expansion| (a.0 + b.0, a.1 + b.1, a.2 + b.2);
         match *self {
             Self::Stop => kink(stop),
-            Self::Spring { preload, rate } => {
-                let x = beyond.max(0.0);
-                let curvature = if beyond > 0.0 { rate } else { 0.0 };
-                sum(kink(preload), (rate * x * x / 2.0, rate * x, curvature))
-            }
             Self::Strut {
                 stretch,
                 force,
@@ -191,12 +179,11 @@ impl Side {
         }
     }
 
-    /// With how much torque the spring pulls at so much lag beyond the play.
+    /// Torque of the spring at a lag beyond the play.
     fn pulls(&self, beyond: f64) -> f64 {
         match *self {
             _ if beyond <= 0.0 => 0.0,
             Self::Stop => 0.0,
-            Self::Spring { preload, rate } => preload + rate * beyond,
             Self::Strut {
                 stretch,
                 force,
@@ -206,47 +193,42 @@ impl Side {
         }
     }
 
-    /// How far a leg can be beyond its play.
+    /// Largest lag beyond the play.
     fn end(&self) -> f64 {
         match self {
             Self::Stop => 0.0,
-            Self::Spring { .. } => f64::INFINITY,
             Self::Strut { way, .. } => *way,
         }
     }
 }
 
 impl Yield {
-    /// The energy at a lag (rad), its slope and its curvature, with kinks that are rounded
-    /// off within `eps` rad.
+    /// Energy at a lag (rad), its slope and its curvature, with kinks rounded off within `eps`
+    /// rad.
     pub fn expand(&self, lag: f64, eps: f64) -> Expansion {
         let (up, by_up, bend_up) = self.upper.expand(lag - self.play, eps, self.stop);
         let (down, by_down, bend_down) = self.lower.expand(-lag - self.play, eps, self.stop);
         (up + down, by_up - by_down, bend_up + bend_down)
     }
 
-    /// With how much torque the spring pulls the leg back, without its sign.
+    /// Torque with which the spring pulls the leg back, without its sign.
     pub fn pulls(&self, lag: f64) -> f64 {
         self.upper.pulls(lag - self.play) + self.lower.pulls(-lag - self.play)
     }
 
-    /// The least and the greatest lag that the stops allow, rad.
+    /// Least and greatest lag that the stops allow, rad.
     pub fn stops(&self) -> [f64; 2] {
         [-self.play - self.lower.end(), self.play + self.upper.end()]
     }
 
-    /// The most that a torque can gain on this drive: the convex conjugate of the energy,
-    /// which the proof by duality needs. A torque that no stop bears gains without end.
+    /// Largest gain of a torque on this drive: the convex conjugate of the energy, for the proof
+    /// by duality. It is infinite for a torque that no stop bears.
     #[cfg(test)]
     pub fn conjugate(&self, torque: f64) -> f64 {
         let side = if torque > 0.0 { self.upper } else { self.lower };
         let torque = torque.abs();
         let beyond = match side {
             Side::Stop if torque <= self.stop => 0.0,
-            Side::Spring { preload, rate } => {
-                let beyond = (torque - preload).max(0.0);
-                beyond * beyond / (2.0 * rate)
-            }
             // By golden section: torque times lag less the energy has one top.
             Side::Strut { .. } if torque <= self.stop => {
                 let gain = |x: f64| torque * x - side.expand(x, 0.0, self.stop).0;
@@ -271,10 +253,6 @@ mod tests {
     use super::*;
 
     const STOP: f64 = 400.0;
-    const SPRING: Side = Side::Spring {
-        preload: 30.0,
-        rate: 570.0,
-    };
 
     /// A strut with arms of 22 mm across a line of 30.2 mm, turned by `angle` deg.
     fn strut(angle: f64) -> Stretch {
@@ -313,28 +291,31 @@ mod tests {
                 lower,
                 upper,
             };
-            assert_slopes(drive(SPRING, SPRING), lags.clone());
-            assert_slopes(drive(Side::Stop, Side::Stop), lags.clone());
             let side = Side::strut(strut(70.0), 8.0, 0.7, 5.0);
-            assert_slopes(drive(Side::Stop, side), lags.clone());
+            for sides in [[Side::Stop; 2], [Side::Stop, side], [side; 2]] {
+                assert_slopes(drive(sides[0], sides[1]), lags.clone());
+            }
         }
     }
 
     #[test]
     fn a_leg_is_free_within_its_play_and_no_further() {
+        let strut = strut(70.0);
         let drive = Yield {
             play: 0.1,
             stop: STOP,
             lower: Side::Stop,
-            upper: SPRING,
+            upper: Side::strut(strut, 8.0, 0.7, 5.0),
         };
         for lag in [-0.1, -0.05, 0.0, 0.1] {
             assert_eq!(drive.expand(lag, 0.0).0, 0.0, "{lag}");
         }
-        assert!((drive.expand(0.11, 0.0).1 - 35.7).abs() < 1e-9);
+        let (longer, lever, _) = strut.at(0.01);
+        let torque = (8.0 + 0.7 * longer) * lever;
+        assert!((drive.expand(0.11, 0.0).1 - torque).abs() < 1e-9);
         assert_eq!(drive.expand(-0.11, 0.0).1, -STOP);
-        assert_eq!(drive.stops(), [-0.1, f64::INFINITY]);
-        assert!((drive.pulls(0.11) - 35.7).abs() < 1e-9);
+        assert_eq!(drive.stops(), [-0.1, 0.1 + strut.way(5.0)]);
+        assert!((drive.pulls(0.11) - torque).abs() < 1e-9);
         assert_eq!(drive.pulls(-0.2), 0.0, "a stop does not pull");
     }
 
@@ -349,6 +330,7 @@ mod tests {
         assert!((longer - 5.0).abs() < 1e-9, "{longer}");
         assert_eq!(strut.way(50.0), f64::INFINITY);
     }
+
     #[test]
     fn the_energy_of_a_hair_of_lag_is_no_rounding() {
         let strut = strut(70.0);

@@ -1,45 +1,31 @@
-//! What the `lizard` program does, one module for each subcommand: its
-//! `Args` and its `run`. `commands` has the table of them.
+//! The program `lizard`, divided by what its user does. Each command is a module with its
+//! `Args` and its `run`; `commands` has the table of them.
 
-#[cfg(feature = "simulator")]
-pub mod bench;
-#[cfg(feature = "simulator")]
-pub mod board;
+mod change;
 pub mod commands;
 #[cfg(feature = "console")]
-pub mod console;
-pub mod draw;
-mod failure;
-mod files;
-#[cfg(any(feature = "simulator", feature = "console"))]
-pub mod firmware;
-#[cfg(feature = "console")]
-pub mod flash;
-pub mod gaits;
-#[cfg(feature = "console")]
-pub mod image;
-mod json;
-pub mod merge;
-#[cfg(all(feature = "simulator", feature = "parts"))]
-pub mod mjcf;
+mod drive;
+mod make;
 #[cfg(feature = "paper")]
-pub mod paper;
-#[cfg(feature = "parts")]
-pub mod parts;
-pub mod plain;
-pub mod pose_args;
-#[cfg(feature = "paper")]
-pub mod prove;
-mod robot_file;
+mod paper;
+mod shared;
 #[cfg(feature = "simulator")]
-pub mod sim;
-pub mod spread;
-mod suggestion;
-#[cfg(all(feature = "simulator", feature = "paper"))]
-pub mod tune;
-#[cfg(feature = "simulator")]
-pub mod twin;
+mod simulate;
 
-pub use failure::Failure;
-pub use pose_args::PoseArgs;
-pub use robot_file::RobotFile;
+pub use shared::failure::Failure;
+pub use shared::plain::readable_lines;
+pub use shared::pose_args::PoseArgs;
+pub use shared::robot_file::RobotFile;
+
+// Modules that tests use.
+#[cfg(feature = "paper")]
+pub use change::prove;
+#[cfg(feature = "console")]
+pub use drive::flash;
+pub use make::draw;
+#[cfg(feature = "paper")]
+pub use paper::errata;
+#[cfg(any(feature = "simulator", feature = "console"))]
+pub use shared::firmware;
+#[cfg(feature = "simulator")]
+pub use simulate::{bench, board, sim, twin};

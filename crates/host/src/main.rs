@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 
 use lizard_host::commands;
-use lizard_host::plain::readable_lines;
+use lizard_host::readable_lines;
 
 fn main() -> ExitCode {
     match commands::run(std::env::args_os().collect()) {

@@ -504,7 +504,7 @@ fn state(child: &Child) -> char {
     after.chars().next().expect("a letter")
 }
 
-/// Whether keys come line by line and are shown, as a shell wants its terminal.
+/// True if keys come line by line and are echoed, as a shell expects of its terminal.
 fn is_cooked(terminal: &File) -> bool {
     let modes = rustix::termios::tcgetattr(terminal)
         .expect("it is a terminal")

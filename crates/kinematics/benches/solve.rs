@@ -1,12 +1,11 @@
-//! Poses of the paper's robot solved per second on one core: one by one, and eight in step.
+//! Poses of the paper's robot solved per second on one core.
 
 use std::hint::black_box;
 use std::time::Instant;
 
-use lizard_kinematics::{Lanes, Leg, Lizard, Pose};
+use lizard_kinematics::{Leg, Lizard, Pose};
 
 const POSES: usize = 200_000;
-const LANES: usize = 8;
 
 /// The paper's links, l0 to l19, mm.
 const LINKS: [f64; 20] = [
@@ -25,20 +24,6 @@ fn pose(number: usize) -> [f64; 4] {
     })
 }
 
-/// Prints the rate of the fastest of five passes over all poses.
-fn measure(what: &str, mut pass: impl FnMut()) {
-    let seconds = (0..5).map(|_| {
-        let begin = Instant::now();
-        pass();
-        begin.elapsed().as_secs_f64()
-    });
-    let best = seconds.fold(f64::INFINITY, f64::min);
-    println!(
-        "{what:12} {:6.2} million poses/s",
-        POSES as f64 / best / 1e6
-    );
-}
-
 fn main() {
     let leg = Leg {
         ground: 1.0,
@@ -51,17 +36,14 @@ fn main() {
         leg,
     };
     let poses: Vec<[f64; 4]> = (0..POSES).map(pose).collect();
-    measure("one by one", || {
+    // The fastest of five passes over all poses.
+    let seconds = (0..5).map(|_| {
+        let begin = Instant::now();
         for pose in &poses {
             let _ = black_box(lizard.solve(&Pose::from(*pose)));
         }
+        begin.elapsed().as_secs_f64()
     });
-    measure("8 in step", || {
-        for eight in poses.chunks_exact(LANES) {
-            let lanes: [_; 4] = std::array::from_fn(|servo| {
-                Lanes::<LANES>(std::array::from_fn(|i| eight[i][servo]))
-            });
-            let _ = black_box(lizard.solve_lanes(&Pose::from(lanes)));
-        }
-    });
+    let rate = POSES as f64 / seconds.fold(f64::INFINITY, f64::min) / 1e6;
+    println!("one by one   {rate:6.2} million poses/s");
 }

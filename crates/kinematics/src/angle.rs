@@ -7,7 +7,7 @@
 //! functions of a mathematics library. Only IEEE additions, multiplications, divisions
 //! and comparisons are used, never fused: the same bits on every host.
 //!
-//! The polynomials come from `examples/polynomials.rs`, which computes them with
+//! The polynomials come from `src/angle/polynomials.rs`, which computes them with
 //! 256 bits; their own errors are at most 2.1e-17 of the result, a fifth of an
 //! f64's rounding.
 
@@ -152,31 +152,21 @@ fn reduce(degrees: &mut [f64]) {
 /// ```
 #[inline]
 pub fn atan2(y: f64, x: f64) -> f64 {
-    atan2_all([y], [x])[0]
-}
-
-/// The angles of several vectors, the same bits as one by one.
-#[inline(always)]
-pub fn atan2_all<const N: usize>(y: [f64; N], x: [f64; N]) -> [f64; N] {
-    let mut degrees = [0.0; N];
-    for i in 0..N {
-        let (ax, ay) = (x[i].abs(), y[i].abs());
-        let steep = mask(ay > ax);
-        let (long, short) = (choose(steep, ay, ax), choose(steep, ax, ay));
-        // In the first 45 degrees: about 0 or about 45, whichever is nearer.
-        let diagonal = mask(short > HALF_EIGHTH * long);
-        let numerator = choose(diagonal, short - long, short);
-        let denominator = choose(diagonal, short + long, long);
-        let zero = mask(denominator == 0.0);
-        let u = numerator / choose(zero, 1.0, denominator);
-        let z = u * u;
-        let base = choose(diagonal, 45.0, 0.0);
-        let eighth = base + (u + u * (z * horner(&ATAN, z))) * (180.0 / PI);
-        let quarter = choose(steep, 90.0 - eighth, eighth);
-        let half = choose(mask(x[i] < 0.0), 180.0 - quarter, quarter);
-        degrees[i] = choose(mask(y[i] < 0.0), -half, half);
-    }
-    degrees
+    let (ax, ay) = (x.abs(), y.abs());
+    let steep = mask(ay > ax);
+    let (long, short) = (choose(steep, ay, ax), choose(steep, ax, ay));
+    // In the first 45 degrees: about 0 or about 45, whichever is nearer.
+    let diagonal = mask(short > HALF_EIGHTH * long);
+    let numerator = choose(diagonal, short - long, short);
+    let denominator = choose(diagonal, short + long, long);
+    let zero = mask(denominator == 0.0);
+    let u = numerator / choose(zero, 1.0, denominator);
+    let z = u * u;
+    let base = choose(diagonal, 45.0, 0.0);
+    let eighth = base + (u + u * (z * horner(&ATAN, z))) * (180.0 / PI);
+    let quarter = choose(steep, 90.0 - eighth, eighth);
+    let half = choose(mask(x < 0.0), 180.0 - quarter, quarter);
+    choose(mask(y < 0.0), -half, half)
 }
 
 /// The same direction in (-180, 180] degrees, exactly. Not a number if the angle
@@ -203,7 +193,6 @@ pub fn wrap(degrees: f64) -> f64 {
 }
 
 #[cfg(test)]
-#[path = "../examples/polynomials.rs"]
 mod polynomials;
 
 #[cfg(test)]
@@ -295,14 +284,10 @@ mod tests {
     fn the_polynomials_are_what_the_generator_gives() {
         let here: [&[f64]; 3] = [&SIN, &COS, &ATAN];
         for (polynomial, coefficients) in polynomials::POLYNOMIALS.iter().zip(here) {
-            assert_eq!(
-                polynomial.coefficients(),
-                coefficients,
-                "{}",
-                polynomial.name
-            );
+            let name = polynomial.name;
+            assert_eq!(polynomial.coefficients(), coefficients, "{name}");
             let error = polynomial.error(coefficients);
-            assert!(error < 2.1e-17, "{} {error:e}", polynomial.name);
+            assert!(error < 2.1e-17, "{name} {error:e}");
         }
     }
 
@@ -318,18 +303,11 @@ mod tests {
             (1e308, 1e308 % 360.0),
             (-1e308, -1e308 % 360.0),
         ] {
-            let wrapped = if wrapped > 180.0 {
-                wrapped - 360.0
-            } else {
-                wrapped
-            };
-            let wrapped = if wrapped <= -180.0 {
-                wrapped + 360.0
-            } else {
-                wrapped
-            };
-            assert_eq!(wrap(degrees), wrapped, "{degrees}");
-            assert_eq!(sin_cos(degrees), sin_cos(wrapped), "{degrees}");
+            // Of the two angles a turn away, the one in range.
+            let turns = [wrapped - 360.0, wrapped, wrapped + 360.0];
+            let wrapped = turns.into_iter().find(|of| *of > -180.0 && *of <= 180.0);
+            assert_eq!(Some(wrap(degrees)), wrapped, "{degrees}");
+            assert_eq!(sin_cos(degrees), sin_cos(wrap(degrees)), "{degrees}");
         }
         assert!(wrap(f64::INFINITY).is_nan() && wrap(f64::NAN).is_nan());
     }

@@ -8,30 +8,29 @@
 
 use crate::end::End;
 use crate::lizard::{Lizard, Solution};
-use crate::real::Real;
 use crate::side::Side;
 use crate::vector::Vector;
 
-/// The joints that follow, chassis frame. phi and s of a slider stand for the
+/// The passive joints, chassis frame. phi and s of a slider stand for the
 /// paper's theta10, theta11 (right: theta14, theta15).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Passive<T = f64> {
+pub struct Passive {
     /// Head, left coupler: degrees, (-180, 180].
-    pub theta2: T,
+    pub theta2: f64,
     /// Head, right coupler: degrees, (-180, 180].
-    pub theta3: T,
+    pub theta3: f64,
     /// Tail, left coupler: degrees, (-180, 180].
-    pub theta6: T,
+    pub theta6: f64,
     /// Tail, right coupler: degrees, (-180, 180].
-    pub theta7: T,
+    pub theta7: f64,
     /// Direction of the left slider, rear to front: degrees, (-180, 180].
-    pub phi_left: T,
+    pub phi_left: f64,
     /// Travel of the left slider from nominal, mm.
-    pub s_left: T,
+    pub s_left: f64,
     /// Direction of the right slider, rear to front: degrees, (-180, 180].
-    pub phi_right: T,
+    pub phi_right: f64,
     /// Travel of the right slider from nominal, mm.
-    pub s_right: T,
+    pub s_right: f64,
 }
 
 /// Determinants of the four diagonal blocks of K*.
@@ -54,40 +53,21 @@ impl Blocks {
     }
 }
 
-impl<T: Real> Solution<T> {
-    /// The passive joints of this solution; all six angles at once, which is
-    /// faster than one by one, and the same bits.
-    #[inline(always)]
-    pub fn passive(&self) -> Passive<T> {
-        let [theta2, theta3] = self.couplers(End::Head);
-        let [theta6, theta7] = self.couplers(End::Tail);
-        let along = [
-            theta2,
-            theta3,
-            theta6,
-            theta7,
-            self.left.span,
-            self.right.span,
-        ];
-        let (mut x, mut y) = ([along[0].x; 6], [along[0].y; 6]);
-        for i in 1..6 {
-            (x[i], y[i]) = (along[i].x, along[i].y);
-        }
-        let [theta2, theta3, theta6, theta7, phi_left, phi_right] = T::atan2_each(y, x);
+impl Solution {
+    /// The passive joints of this solution.
+    pub fn passive(&self) -> Passive {
         Passive {
-            theta2,
-            theta3,
-            theta6,
-            theta7,
-            phi_left,
+            theta2: self.theta2(),
+            theta3: self.theta3(),
+            theta6: self.theta6(),
+            theta7: self.theta7(),
+            phi_left: self.left.phi(),
             s_left: self.left.s,
-            phi_right,
+            phi_right: self.right.phi(),
             s_right: self.right.s,
         }
     }
-}
 
-impl Solution {
     /// K: derivatives of the loop equations by theta1, theta4, theta8, theta5,
     /// mm per radian. 8x4.
     pub fn active_matrix(&self) -> [[f64; 4]; 8] {
@@ -143,8 +123,8 @@ impl Solution {
 }
 
 impl Lizard {
-    /// By how much the eight loop equations miss for any values of the joints,
-    /// mm: active angles in servo order. Zero at a solution.
+    /// The residuals of the eight loop equations for any values of the joints, mm; zero at
+    /// a solution. Active angles in servo order.
     pub fn residual(&self, active: [f64; 4], passive: &Passive) -> [f64; 8] {
         let (shafts, cis) = (self.shafts(), Vector::direction);
         let couplers = [
@@ -196,21 +176,15 @@ fn put<const N: usize>(matrix: &mut [[f64; N]; 8], row: usize, column: usize, en
 mod tests {
     use proptest::prelude::*;
 
-    use crate::reference::{any_lizard, any_pose};
+    use crate::reference::{any_solved, cases};
 
     proptest! {
-        #![proptest_config(ProptestConfig {
-            cases: 2048, max_global_rejects: 100_000,
-            ..ProptestConfig::default()
-        })]
+        #![proptest_config(cases(2048))]
 
         #[test]
         fn k_and_k_star_are_the_derivatives_of_the_loop_equations(
-            robot in any_lizard(), pose in any_pose(),
+            (robot, pose, solved) in any_solved(),
         ) {
-            let solved = robot.solve(&pose.into());
-            prop_assume!(solved.is_ok());
-            let solved = solved.unwrap();
             let passive = solved.passive();
             let step = 1e-4;
             let radian = 1f64.to_degrees();
@@ -248,11 +222,8 @@ mod tests {
 
         #[test]
         fn the_blocks_multiply_to_the_determinant_of_k_star(
-            robot in any_lizard(), pose in any_pose(),
+            (robot, _, solved) in any_solved(),
         ) {
-            let solved = robot.solve(&pose.into());
-            prop_assume!(solved.is_ok());
-            let solved = solved.unwrap();
             let product = solved.blocks().determinant();
             let eliminated = determinant(solved.passive_matrix());
             let l = robot.links;

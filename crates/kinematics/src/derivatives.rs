@@ -14,12 +14,12 @@ use crate::side::Side;
 use crate::slider::SliderPose;
 use crate::vector::Vector;
 
-/// How the four servos move, in servo order A1, A2, A3, A4, chassis frame.
+/// Rates and accelerations of the four servos, in servo order A1, A2, A3, A4, chassis frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Drive {
-    /// deg/s.
+    /// Rates, deg/s.
     pub rate: [f64; 4],
-    /// deg/s^2.
+    /// Accelerations, deg/s^2.
     pub acceleration: [f64; 4],
 }
 
@@ -32,7 +32,7 @@ pub struct Derivative<T> {
     pub acceleration: T,
 }
 
-/// How everything passive moves, chassis frame. Legs follow their servos.
+/// Rates and accelerations of the passive joints, chassis frame. Legs follow their servos.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Derivatives {
     /// Head, left coupler; degrees.
@@ -61,14 +61,11 @@ pub struct Derivatives {
 type Spin = Derivative<f64>;
 
 impl Solution {
-    /// How the passive joints move with the servos. Not finite at a type-2
+    /// Rates and accelerations of the passive joints. Not finite at a type-2
     /// singularity, where no rates follow from the servos'.
     pub fn derivatives(&self, drive: &Drive) -> Derivatives {
-        let spin = |servo: usize| Spin {
-            rate: drive.rate[servo] * (PI / 180.0),
-            acceleration: drive.acceleration[servo] * (PI / 180.0),
-        };
-        let spins = [spin(0), spin(1), spin(2), spin(3)];
+        let spin = |servo: usize| Spin::new(drive.rate[servo], drive.acceleration[servo]);
+        let spins = [0, 1, 2, 3].map(|servo| spin(servo).map(|degrees| degrees * (PI / 180.0)));
         let of_end = |end: End| {
             let signed = |w: f64| end.sign() * w;
             let [left, right] = end.pick(spins).map(|spin| spin.map(signed));
@@ -105,11 +102,12 @@ impl Solution {
 }
 
 impl<T> Derivative<T> {
+    fn new(rate: T, acceleration: T) -> Self {
+        Self { rate, acceleration }
+    }
+
     fn map<U>(self, f: impl Fn(T) -> U) -> Derivative<U> {
-        Derivative {
-            rate: f(self.rate),
-            acceleration: f(self.acceleration),
-        }
+        Derivative::new(f(self.rate), f(self.acceleration))
     }
 }
 
@@ -144,14 +142,8 @@ fn loop_derivatives(pose: &FiveBarPose, crank_left: Spin, crank_right: Spin) -> 
     let (e1, e4) = (crank_left.acceleration, crank_right.acceleration);
     let (e2, e3) = free(inward + r4.left() * e4 - r1.left() * e1);
     LoopDerivatives {
-        left: Spin {
-            rate: w2,
-            acceleration: e2,
-        },
-        right: Spin {
-            rate: w3,
-            acceleration: e3,
-        },
+        left: Spin::new(w2, e2),
+        right: Spin::new(w3, e3),
         point: Derivative {
             rate: r1.left() * w1 + r2.left() * w2,
             acceleration: turning(r1, crank_left) + r2.left() * e2 - r2 * (w2 * w2),
@@ -175,14 +167,8 @@ fn slider_derivatives(
     let a = turning(front, front_spin) - turning(rear, rear_spin);
     let (slide, turn) = (v.dot(along), along.cross(v) / pose.d);
     (
-        Spin {
-            rate: turn,
-            acceleration: (along.cross(a) - 2.0 * slide * turn) / pose.d,
-        },
-        Derivative {
-            rate: slide,
-            acceleration: a.dot(along) + pose.d * turn * turn,
-        },
+        Spin::new(turn, (along.cross(a) - 2.0 * slide * turn) / pose.d),
+        Derivative::new(slide, a.dot(along) + pose.d * turn * turn),
     )
 }
 
@@ -192,7 +178,7 @@ mod tests {
 
     use super::*;
     use crate::lizard::{Lizard, Pose};
-    use crate::reference::{any_lizard, any_pose};
+    use crate::reference::{any_solved, cases};
     use crate::wrap;
 
     /// Longest step of the central differences, s.
@@ -222,35 +208,20 @@ mod tests {
     /// Rates and accelerations in the order of [`values`].
     fn numbers(s: &Solution, drive: &Drive) -> ([f64; 12], [f64; 12]) {
         let m = s.derivatives(drive);
+        let angles = [
+            m.theta2,
+            m.theta3,
+            m.theta6,
+            m.theta7,
+            m.phi_left,
+            m.phi_right,
+        ];
+        let points = [m.head, m.tail].map(|of| [of.map(|v| v.x), of.map(|v| v.y)]);
+        let all = [&angles[..], points.as_flattened(), &[m.s_left, m.s_right]].concat();
+        let (rates, accelerations) = (|i: usize| all[i].rate, |i: usize| all[i].acceleration);
         (
-            [
-                m.theta2.rate,
-                m.theta3.rate,
-                m.theta6.rate,
-                m.theta7.rate,
-                m.phi_left.rate,
-                m.phi_right.rate,
-                m.head.rate.x,
-                m.head.rate.y,
-                m.tail.rate.x,
-                m.tail.rate.y,
-                m.s_left.rate,
-                m.s_right.rate,
-            ],
-            [
-                m.theta2.acceleration,
-                m.theta3.acceleration,
-                m.theta6.acceleration,
-                m.theta7.acceleration,
-                m.phi_left.acceleration,
-                m.phi_right.acceleration,
-                m.head.acceleration.x,
-                m.head.acceleration.y,
-                m.tail.acceleration.x,
-                m.tail.acceleration.y,
-                m.s_left.acceleration,
-                m.s_right.acceleration,
-            ],
+            std::array::from_fn(rates),
+            std::array::from_fn(accelerations),
         )
     }
 
@@ -269,18 +240,12 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig {
-            cases: 2048, max_global_rejects: 100_000,
-            ..ProptestConfig::default()
-        })]
+        #![proptest_config(cases(2048))]
 
         #[test]
         fn rates_and_accelerations_are_the_differences_of_positions(
-            robot in any_lizard(), pose in any_pose(), drive in drives(),
+            (robot, pose, now) in any_solved(), drive in drives(),
         ) {
-            let now = robot.solve(&pose.into());
-            prop_assume!(now.is_ok());
-            let now = now.unwrap();
             // Near a singularity the third derivative swamps any fixed step.
             prop_assume!(now.margins.type2[0] > 0.3 && now.margins.type2[1] > 0.3);
             prop_assume!(now.head.gap.length() > 5.0 && now.tail.gap.length() > 5.0);

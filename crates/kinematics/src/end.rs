@@ -3,7 +3,7 @@
 //! The tail is the mirror image of the head at the chassis frame's x axis. So each end
 //! has its own frame: x to the robot's right, y away from the chassis, origin in the
 //! middle of the end's base. In that frame one closed form solves both ends. Only this
-//! module knows how the ends differ.
+//! module knows the differences between them.
 
 use core::fmt;
 
@@ -46,7 +46,7 @@ impl End {
         if servo < 2 { Self::Head } else { Self::Tail }
     }
 
-    /// Where its y axis points in the chassis frame: 1 forward, -1 backward.
+    /// Direction of its y axis in the chassis frame: 1 forward, -1 backward.
     /// Angles, rates and y coordinates change frame by this factor.
     pub const fn sign(self) -> f64 {
         match self {
@@ -71,8 +71,7 @@ impl End {
         wrap(self.sign() * degrees)
     }
 
-    /// What belongs to the left and the right crank, picked from four in servo
-    /// order.
+    /// The values of the left and the right crank, picked from four in servo order.
     #[inline(always)]
     pub fn pick<T: Copy>(self, of: [T; 4]) -> [T; 2] {
         let [left, right] = self.servos();

@@ -1,4 +1,4 @@
-//! Why a position does not exist, in the sentence the user sees.
+//! The reasons why a position does not exist, as the sentences that the user sees.
 
 use core::fmt;
 
@@ -23,7 +23,7 @@ impl fmt::Display for Part {
     }
 }
 
-/// Why one loop has no position, or no single one. Lengths in mm.
+/// A reason why one loop has no position, or no unique one. Lengths in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fault {
     /// An input is infinite or not a number, or a result would be: lengths beyond
@@ -99,12 +99,12 @@ impl fmt::Display for Fault {
 
 impl core::error::Error for Fault {}
 
-/// Why the robot cannot take a pose.
+/// A pose that the robot cannot take, with the mechanism and the reason.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Infeasible {
     /// The mechanism that does not close.
     pub part: Part,
-    /// What is wrong with it.
+    /// The reason.
     pub fault: Fault,
 }
 

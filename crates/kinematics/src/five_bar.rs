@@ -1,4 +1,4 @@
-//! Two motors, two cranks, two couplers, one point: the RRRRR five-bar.
+//! The RRRRR five-bar: two motors, two cranks, two couplers, one end point.
 //!
 //! The couplers meet in the end point. Given the crank tips, the end point is
 //! where two circles meet; given the end point, each crank tip is where two
@@ -17,8 +17,8 @@ use crate::fault::Fault;
 use crate::real::{Lanes, Real};
 use crate::vector::Vector;
 
-/// Below this gap (mm) between the crank tips the end point has no direction
-/// left: rounding alone moves it by more than a tenth of a millimetre.
+/// Gap between the crank tips, mm, below which the end point is undefined: rounding alone
+/// moves it by more than 0.1 mm.
 const LEAST_GAP: f64 = 1e-12;
 
 /// Link lengths of a five-bar in mm, all above 0. Its frame has the origin in the
@@ -112,8 +112,8 @@ impl<T: Real> FiveBarPose<T> {
         self.right.cross(self.right_coupler)
     }
 
-    /// Finite if, and only if, every number of the pose is: it holds each of them
-    /// in a sum or a product.
+    /// A number that is finite if, and only if, every number of the pose is: each of them is
+    /// in its sums and products.
     #[inline(always)]
     fn probe(&self) -> T {
         self.end_point.x + self.end_point.y + self.type2 + self.type1_left() + self.type1_right()
@@ -121,6 +121,19 @@ impl<T: Real> FiveBarPose<T> {
 }
 
 impl FiveBar {
+    /// The five-bar of five lengths in mm: base, then left crank, left coupler, right
+    /// coupler, right crank.
+    pub const fn new(lengths: [f64; 5]) -> Self {
+        let [base, crank_left, coupler_left, coupler_right, crank_right] = lengths;
+        Self {
+            base,
+            crank_left,
+            coupler_left,
+            coupler_right,
+            crank_right,
+        }
+    }
+
     /// Shaft of the left crank, mm.
     #[inline]
     pub fn left_shaft(&self) -> Vector {
@@ -143,9 +156,7 @@ impl FiveBar {
     /// [`Fault::NotFinite`] for what is no number or overflows.
     ///
     /// ```
-    /// let head = lizard_kinematics::FiveBar {
-    ///     base: 20.0, crank_left: 30.0, coupler_left: 50.0, coupler_right: 50.0, crank_right: 30.0,
-    /// };
+    /// let head = lizard_kinematics::FiveBar::new([20.0, 30.0, 50.0, 50.0, 30.0]);
     /// let pose = head.forward(90.0, 90.0).unwrap();
     /// assert!((pose.end_point.y - 30.0 - 2400.0f64.sqrt()).abs() < 1e-12);
     /// ```
@@ -164,11 +175,8 @@ impl FiveBar {
         theta_left: f64,
         theta_right: f64,
     ) -> Result<FiveBarPose, Fault> {
-        self.close(
-            mode,
-            Vector::direction(theta_left),
-            Vector::direction(theta_right),
-        )
+        let [left, right] = [theta_left, theta_right].map(Vector::direction);
+        self.close(mode, left, right)
     }
 
     /// The pose at two crank directions of length one: all of the solution except
@@ -188,13 +196,13 @@ impl FiveBar {
         Ok(pose)
     }
 
-    /// Why a pose has no meaning, if it has none.
+    /// Checks that the loop of a pose closes.
     #[inline]
     pub(crate) fn check(&self, pose: &FiveBarPose) -> Result<(), Fault> {
         self.check_numbers(pose.gap.length(), pose.probe())
     }
 
-    /// In which lanes the loop closes; [`FiveBar::close`] says why one does not.
+    /// True in each lane whose loop closes; [`FiveBar::close`] gives the reason if not.
     #[inline(always)]
     pub fn closes<const N: usize>(&self, pose: &FiveBarPose<Lanes<N>>) -> [bool; N] {
         let (Lanes(d), Lanes(probe)) = (pose.gap.length(), pose.probe());
@@ -224,10 +232,9 @@ impl FiveBar {
         }
     }
 
-    /// The pose at crank directions of length one, of one robot or in several
-    /// lanes, without asking whether the loop closes: it has a meaning only
-    /// where [`FiveBar::closes`] says so. What the caller does not use, the
-    /// compiler leaves out.
+    /// The pose at crank directions of length one, without checking that the loop closes:
+    /// it is meaningless if not, see [`FiveBar::closes`]. The compiler leaves out the parts
+    /// that the caller does not use.
     #[inline(always)]
     pub fn shape<T: Real>(
         &self,

@@ -4,8 +4,8 @@
 //! stays parallel to the crank and the coupler never turns. At crank angles 0 and 180
 //! degrees, the change points, all four joints lie on one line, and from there the
 //! linkage may continue as an anti-parallelogram, whose coupler turns. After a change
-//! point nobody knows which of the two it is, so the margin is signed: positive between
-//! the change points on the side where the leg was assembled, negative beyond them.
+//! point the branch is unknown, so the margin is signed: positive between the change points
+//! on the side where the leg was assembled, negative beyond them.
 //!
 //! The paper's half-angle formulas for the follower take the root of the
 //! anti-parallelogram for 0 < theta_lg < 180, have wrong signs in J and L, and have

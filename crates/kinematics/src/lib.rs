@@ -1,4 +1,4 @@
-//! Where every joint of the robotic lizard is, given its four servo angles.
+//! Closed-form kinematics of a robotic lizard: every joint from four servo angles, and back.
 //!
 //! The body is a planar mechanism. Two five-bars (RRRRR) carry the head and the tail. On
 //! each side two arms and a prismatic joint form a loop (RRPRR). Four parallelograms are
@@ -6,7 +6,15 @@
 //! circles, so each has a closed form. This crate uses the geometric forms, which stay
 //! accurate where the paper's half-angle formulas divide zero by zero.
 //!
-//! # Where the joints are, and back
+//! # When not to use it
+//! - For a mechanism with other loops: this is no general solver. It knows five-bars,
+//!   sliders between two arms, and parallelograms.
+//! - For forces, masses or contact with the floor: it knows geometry and rates only.
+//! - On a small chip: it computes in f64. The firmware of this robot has integer forms.
+//! - For a path or a choice among working modes: it solves one pose at a time and returns
+//!   all four solutions of a five-bar's inverse.
+//!
+//! # Example
 //!
 //! ```
 //! use lizard_kinematics::{End, Infeasible, Leg, Lizard, Vector};
@@ -89,7 +97,11 @@ mod workspace;
 #[path = "../tests/kinematics/reference.rs"]
 mod reference;
 
-pub use angle::{atan2, atan2_all, sin_cos, sin_cos_all, wrap};
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}
+
+pub use angle::{atan2, sin_cos, sin_cos_all, wrap};
 pub use conditioning::Jacobian;
 pub use constraints::{Blocks, Passive};
 pub use derivatives::{Derivative, Derivatives, Drive};

@@ -1,4 +1,4 @@
-//! What a pose must keep clear of, and the sentence when it does not.
+//! The limits of a safe pose, and the sentence for each violation.
 
 use core::fmt;
 
@@ -6,6 +6,7 @@ use crate::end::End;
 use crate::five_bar::FiveBarPose;
 use crate::lizard::Solution;
 use crate::margins::Check;
+use crate::side::Side;
 
 /// Smallest margins and the slider's travel that a robot allows.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,11 +26,11 @@ pub struct Limits {
 /// A limit that a pose breaks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Violation {
-    /// What is out of bounds.
+    /// The condition that is out of bounds.
     pub what: Check,
     /// Its value: a sine for margins, mm for stroke and crossing.
     pub value: f64,
-    /// The bound that it passes, in the same unit.
+    /// The violated limit, in the same unit.
     pub limit: f64,
 }
 
@@ -38,33 +39,26 @@ impl fmt::Display for Violation {
         let Self { what, value, limit } = *self;
         // To the last digit shown, without the sign of a zero.
         let shown = |scale: f64| libm::round(value * scale) / scale + 0.0;
+        let (thousandths, hundredths) = (shown(1e3), shown(100.0));
+        let stroke = |f: &mut fmt::Formatter<'_>, side: Side| {
+            let passes = if value < limit { "below" } else { "above" };
+            write!(
+                f,
+                "{side} slider travel {hundredths:+.2} mm is {passes} {limit:+.2} mm"
+            )
+        };
+        let crossed = |f: &mut fmt::Formatter<'_>, end: End| {
+            write!(
+                f,
+                "{end} crank tips are crossed: {hundredths:+.2} mm from left to right"
+            )
+        };
         match what {
-            Check::StrokeLeft | Check::StrokeRight => {
-                let side = if what == Check::StrokeLeft {
-                    "left"
-                } else {
-                    "right"
-                };
-                let passes = if value < limit { "below" } else { "above" };
-                write!(
-                    f,
-                    "{side} slider travel {:+.2} mm is {passes} {limit:+.2} mm",
-                    shown(100.0)
-                )
-            }
-            Check::UncrossedHead | Check::UncrossedTail => {
-                let part = if what == Check::UncrossedHead {
-                    "head"
-                } else {
-                    "tail"
-                };
-                write!(
-                    f,
-                    "{part} crank tips are crossed: {:+.2} mm from left to right",
-                    shown(100.0)
-                )
-            }
-            _ => write!(f, "margin {what} {:.3} is below {limit:.3}", shown(1e3)),
+            Check::StrokeLeft => stroke(f, Side::Left),
+            Check::StrokeRight => stroke(f, Side::Right),
+            Check::UncrossedHead => crossed(f, End::Head),
+            Check::UncrossedTail => crossed(f, End::Tail),
+            _ => write!(f, "margin {what} {thousandths:.3} is below {limit:.3}"),
         }
     }
 }
@@ -73,34 +67,26 @@ impl Limits {
     /// The limit that a condition breaks with a value (a sine, or mm), if it
     /// breaks one. A value at its limit is safe; crank tips at 0 mm are crossed.
     pub fn broken(&self, what: Check, value: f64) -> Option<Violation> {
-        let (least, most) = match what {
-            Check::Type2Head | Check::Type2Tail => (self.type2, f64::INFINITY),
-            Check::Type1A1 | Check::Type1A2 | Check::Type1A3 | Check::Type1A4 => {
-                (self.type1, f64::INFINITY)
+        let below = |limit: f64| (value < limit).then_some(limit);
+        let limit = match what {
+            Check::Type2Head | Check::Type2Tail => below(self.type2),
+            Check::Type1A1 | Check::Type1A2 | Check::Type1A3 | Check::Type1A4 => below(self.type1),
+            Check::LegLf | Check::LegRf | Check::LegRh | Check::LegLh => below(self.leg),
+            Check::StrokeLeft | Check::StrokeRight => {
+                let most = self.stroke_max;
+                below(self.stroke_min).or((value > most).then_some(most))
             }
-            Check::LegLf | Check::LegRf | Check::LegRh | Check::LegLh => (self.leg, f64::INFINITY),
-            Check::StrokeLeft | Check::StrokeRight => (self.stroke_min, self.stroke_max),
-            Check::UncrossedHead | Check::UncrossedTail => {
-                let limit = 0.0;
-                return (value <= limit).then_some(Violation { what, value, limit });
-            }
+            Check::UncrossedHead | Check::UncrossedTail => (value <= 0.0).then_some(0.0),
         };
-        let limit = if value < least {
-            least
-        } else if value > most {
-            most
-        } else {
-            return None;
-        };
-        Some(Violation { what, value, limit })
+        limit.map(|limit| Violation { what, value, limit })
     }
 
-    /// Every limit that a solved pose breaks; none if it is safe. This is what
-    /// safe means, everywhere.
+    /// Every limit that a solved pose breaks; none if it is safe. This is the only
+    /// definition of a safe pose.
     ///
-    /// Besides margins and strokes it asks that the crank tips are not crossed
-    /// (K2 > 0): beyond d = 0 lies a second region with good margins that the
-    /// robot cannot be in.
+    /// Besides margins and strokes it requires that the crank tips are not crossed
+    /// (K2 > 0): beyond d = 0 lies a second region with good margins, which the
+    /// robot cannot reach.
     pub fn violations(&self, solution: &Solution) -> impl Iterator<Item = Violation> + use<> {
         let limits = *self;
         solution

@@ -1,7 +1,7 @@
 //! The paper's table of link lengths.
 
-/// Every link of the body in mm, all above 0 but l0 and l5, by the paper's symbols. The table prints l16
-/// twice; its second is l17.
+/// The links of the body in mm, by the paper's symbols. All are above 0 except l0 and l5,
+/// which may be 0. The paper's table prints l16 twice; the second one is l17.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Links {
     /// Base of the head, between A1 and A2, mm.
@@ -59,49 +59,27 @@ impl Links {
 
 impl From<[f64; 20]> for Links {
     fn from(l: [f64; 20]) -> Self {
-        let [
-            l0,
-            l1,
-            l2,
-            l3,
-            l4,
-            l5,
-            l6,
-            l7,
-            l8,
-            l9,
-            l10,
-            l11,
-            l12,
-            l13,
-            l14,
-            l15,
-            l16,
-            l17,
-            l18,
-            l19,
-        ] = l;
         Self {
-            l0,
-            l1,
-            l2,
-            l3,
-            l4,
-            l5,
-            l6,
-            l7,
-            l8,
-            l9,
-            l10,
-            l11,
-            l12,
-            l13,
-            l14,
-            l15,
-            l16,
-            l17,
-            l18,
-            l19,
+            l0: l[0],
+            l1: l[1],
+            l2: l[2],
+            l3: l[3],
+            l4: l[4],
+            l5: l[5],
+            l6: l[6],
+            l7: l[7],
+            l8: l[8],
+            l9: l[9],
+            l10: l[10],
+            l11: l[11],
+            l12: l[12],
+            l13: l[13],
+            l14: l[14],
+            l15: l[15],
+            l16: l[16],
+            l17: l[17],
+            l18: l[18],
+            l19: l[19],
         }
     }
 }

@@ -1,32 +1,33 @@
 //! The whole robot: four servo angles in, every joint out (Algorithm 1).
 
+use crate::angle::sin_cos_all;
 use crate::end::End;
 use crate::fault::{Fault, Infeasible, Part};
 use crate::five_bar::{AssemblyMode, FiveBar, FiveBarPose};
 use crate::leg::{Leg, LegPose};
 use crate::links::Links;
 use crate::margins::Margins;
-use crate::real::{Lanes, Real};
+use crate::real::Real;
 use crate::side::Side;
 use crate::slider::{Slider, SliderPose};
 use crate::vector::Vector;
 
 /// Four servo angles in degrees, chassis frame. Declared in servo order.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose<T = f64> {
+pub struct Pose {
     /// A1, front left; any finite angle, as are all four.
-    pub theta1: T,
+    pub theta1: f64,
     /// A2, front right.
-    pub theta4: T,
+    pub theta4: f64,
     /// A3, back right.
-    pub theta8: T,
+    pub theta8: f64,
     /// A4, back left.
-    pub theta5: T,
+    pub theta5: f64,
 }
 
-impl<T> From<[T; 4]> for Pose<T> {
+impl From<[f64; 4]> for Pose {
     /// From A1, A2, A3, A4.
-    fn from([theta1, theta4, theta8, theta5]: [T; 4]) -> Self {
+    fn from([theta1, theta4, theta8, theta5]: [f64; 4]) -> Self {
         Self {
             theta1,
             theta4,
@@ -36,9 +37,9 @@ impl<T> From<[T; 4]> for Pose<T> {
     }
 }
 
-impl<T> From<Pose<T>> for [T; 4] {
+impl From<Pose> for [f64; 4] {
     /// To A1, A2, A3, A4.
-    fn from(pose: Pose<T>) -> Self {
+    fn from(pose: Pose) -> Self {
         [pose.theta1, pose.theta4, pose.theta8, pose.theta5]
     }
 }
@@ -53,25 +54,25 @@ pub struct Lizard {
     pub leg: Leg,
 }
 
-/// Everything that follows from a pose.
+/// All joints of the robot at a pose, and its margins.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Solution<T = f64> {
+pub struct Solution {
     /// The servo angles it belongs to.
-    pub pose: Pose<T>,
+    pub pose: Pose,
     /// The head in its own frame, whose axes are the chassis frame's and whose
     /// origin is the middle of l0.
-    pub head: FiveBarPose<T>,
+    pub head: FiveBarPose,
     /// The tail in its own frame: origin in the middle of l5, y backwards. Its
     /// left crank is A4's. See [`Solution::point`] for the chassis frame.
-    pub tail: FiveBarPose<T>,
+    pub tail: FiveBarPose,
     /// The slider between A1 and A4; axes are the chassis frame's.
-    pub left: SliderPose<T>,
+    pub left: SliderPose,
     /// The slider between A2 and A3; axes are the chassis frame's.
-    pub right: SliderPose<T>,
+    pub right: SliderPose,
     /// Legs in servo order: LF, RF, RH, LH.
-    pub legs: [LegPose<T>; 4],
+    pub legs: [LegPose; 4],
     /// Distance from each singularity.
-    pub margins: Margins<T>,
+    pub margins: Margins,
     /// The robot it belongs to.
     lizard: Lizard,
 }
@@ -96,12 +97,9 @@ impl Solution {
     pub fn theta7(&self) -> f64 {
         self.couplers(End::Tail)[1].angle()
     }
-}
 
-impl<T: Real> Solution<T> {
     /// The five-bar of an end, in the end's own frame.
-    #[inline(always)]
-    pub const fn end(&self, end: End) -> &FiveBarPose<T> {
+    pub const fn end(&self, end: End) -> &FiveBarPose {
         match end {
             End::Head => &self.head,
             End::Tail => &self.tail,
@@ -109,8 +107,7 @@ impl<T: Real> Solution<T> {
     }
 
     /// The slider of a side.
-    #[inline(always)]
-    pub const fn side(&self, side: Side) -> &SliderPose<T> {
+    pub const fn side(&self, side: Side) -> &SliderPose {
         match side {
             Side::Left => &self.left,
             Side::Right => &self.right,
@@ -118,36 +115,29 @@ impl<T: Real> Solution<T> {
     }
 
     /// The end point of an end, mm, chassis frame.
-    #[inline(always)]
-    pub fn point(&self, end: End) -> Vector<T> {
+    pub fn point(&self, end: End) -> Vector {
         self.lizard.to_chassis(end, self.end(end).end_point)
     }
 
     /// The head point, mm, chassis frame.
-    #[inline(always)]
-    pub fn head_point(&self) -> Vector<T> {
+    pub fn head_point(&self) -> Vector {
         self.point(End::Head)
     }
 
     /// The tail point, mm, chassis frame.
-    #[inline(always)]
-    pub fn tail_point(&self) -> Vector<T> {
+    pub fn tail_point(&self) -> Vector {
         self.point(End::Tail)
     }
 
     /// Directions of the left and the right coupler of an end, length one,
     /// chassis frame.
-    #[inline(always)]
-    pub fn couplers(&self, end: End) -> [Vector<T>; 2] {
+    pub fn couplers(&self, end: End) -> [Vector; 2] {
         let bars = self.end(end);
-        [
-            end.mirror(bars.left_coupler),
-            end.mirror(bars.right_coupler),
-        ]
+        [bars.left_coupler, bars.right_coupler].map(|coupler| end.mirror(coupler))
     }
 
     /// Tips of the four cranks in servo order, mm, chassis frame.
-    pub fn crank_tips(&self) -> [Vector<T>; 4] {
+    pub fn crank_tips(&self) -> [Vector; 4] {
         let mut tips = [self.head.left_tip; 4];
         for end in End::ALL {
             let ([left, right], bars) = (end.servos(), self.end(end));
@@ -164,20 +154,8 @@ impl Lizard {
     pub const fn end(&self, end: End) -> FiveBar {
         let l = &self.links;
         match end {
-            End::Head => FiveBar {
-                base: l.l0,
-                crank_left: l.l1,
-                coupler_left: l.l2,
-                coupler_right: l.l3,
-                crank_right: l.l4,
-            },
-            End::Tail => FiveBar {
-                base: l.l5,
-                crank_left: l.l6,
-                coupler_left: l.l7,
-                coupler_right: l.l8,
-                crank_right: l.l9,
-            },
+            End::Head => FiveBar::new([l.l0, l.l1, l.l2, l.l3, l.l4]),
+            End::Tail => FiveBar::new([l.l5, l.l6, l.l7, l.l8, l.l9]),
         }
     }
 
@@ -185,22 +163,16 @@ impl Lizard {
     #[inline]
     pub const fn side(&self, side: Side) -> Slider {
         let l = &self.links;
-        let offset = side.sign() * (l.l5 - l.l0) / 2.0;
-        match side {
-            Side::Left => Slider {
-                offset,
-                base: l.l10,
-                front: l.l14,
-                rear: l.l11,
-                nominal: l.l12 + l.l13,
-            },
-            Side::Right => Slider {
-                offset,
-                base: l.l15,
-                front: l.l19,
-                rear: l.l16,
-                nominal: l.l17 + l.l18,
-            },
+        let (base, front, rear, nominal) = match side {
+            Side::Left => (l.l10, l.l14, l.l11, l.l12 + l.l13),
+            Side::Right => (l.l15, l.l19, l.l16, l.l17 + l.l18),
+        };
+        Slider {
+            offset: side.sign() * (l.l5 - l.l0) / 2.0,
+            base,
+            front,
+            rear,
+            nominal,
         }
     }
 
@@ -236,7 +208,7 @@ impl Lizard {
     /// The whole robot at a pose.
     ///
     /// # Errors
-    /// The first loop that does not close, and why: see [`FiveBar::forward`] and
+    /// The first loop that does not close, with the reason: see [`FiveBar::forward`] and
     /// [`Slider::forward`].
     #[inline]
     pub fn solve(&self, pose: &Pose) -> Result<Solution, Infeasible> {
@@ -245,28 +217,7 @@ impl Lizard {
         Ok(solution)
     }
 
-    /// Several poses at once, one in each lane, several times faster than one by
-    /// one. What a lane holds has a meaning only if [`Lizard::closes`] says so.
-    #[inline(always)]
-    pub fn solve_lanes<const N: usize>(&self, poses: &Pose<Lanes<N>>) -> Solution<Lanes<N>> {
-        self.shape(poses)
-    }
-
-    /// In which lanes every loop closes; [`Lizard::solve`] says why one does not.
-    #[inline(always)]
-    pub fn closes<const N: usize>(&self, solution: &Solution<Lanes<N>>) -> [bool; N] {
-        let head = self.end(End::Head).closes(&solution.head);
-        let tail = self.end(End::Tail).closes(&solution.tail);
-        let left = self.side(Side::Left).closes(&solution.left);
-        let right = self.side(Side::Right).closes(&solution.right);
-        let mut closes = [false; N];
-        for i in 0..N {
-            closes[i] = head[i] && tail[i] && left[i] && right[i];
-        }
-        closes
-    }
-
-    /// Why a solution has no meaning, if it has none.
+    /// Checks that every loop of a solution closes.
     #[inline]
     fn check(&self, solution: &Solution) -> Result<(), Infeasible> {
         let at = |part: Part| move |fault: Fault| Infeasible { part, fault };
@@ -281,25 +232,16 @@ impl Lizard {
         Ok(())
     }
 
-    /// Every closed form, without a question asked.
-    #[inline(always)]
-    fn shape<T: Real>(&self, pose: &Pose<T>) -> Solution<T> {
-        // Loops rather than `map`, which is not always inlined into the
-        // functions with vector instructions that call this.
-        let angles = [pose.theta1, pose.theta4, pose.theta8, pose.theta5];
-        let (sines, cosines) = T::sin_cos_each(angles);
-        let mut cranks = [Vector::new(sines[0], sines[0]); 4];
-        for i in 0..4 {
-            cranks[i] = Vector::new(cosines[i], sines[i]);
-        }
+    /// Evaluates every closed form, without checking that the loops close.
+    #[inline]
+    fn shape(&self, pose: &Pose) -> Solution {
+        let angles: [f64; 4] = (*pose).into();
+        let (sines, cosines) = sin_cos_all(angles);
+        let cranks = core::array::from_fn(|i| Vector::new(cosines[i], sines[i]));
         let head = self.shape_end(End::Head, cranks);
         let tail = self.shape_end(End::Tail, cranks);
-        let left = self.shape_side(Side::Left, cranks);
-        let right = self.shape_side(Side::Right, cranks);
-        let mut legs = [self.leg.shape(End::Head, angles[0], cranks[0]); 4];
-        for i in 1..4 {
-            legs[i] = self.leg.shape(End::of_servo(i), angles[i], cranks[i]);
-        }
+        let leg = |i: usize| self.leg.shape(End::of_servo(i), angles[i], cranks[i]);
+        let legs: [LegPose; 4] = core::array::from_fn(leg);
         let mut type1 = [head.type2; 4];
         for (end, bars) in [(End::Head, &head), (End::Tail, &tail)] {
             let [left, right] = end.servos();
@@ -310,26 +252,21 @@ impl Lizard {
             pose: *pose,
             head,
             tail,
-            left,
-            right,
+            left: self.shape_side(Side::Left, cranks),
+            right: self.shape_side(Side::Right, cranks),
             legs,
             margins: Margins {
                 type2: [head.type2, tail.type2],
                 type1,
-                leg: [
-                    legs[0].margin,
-                    legs[1].margin,
-                    legs[2].margin,
-                    legs[3].margin,
-                ],
+                leg: legs.map(|leg| leg.margin),
             },
             lizard: *self,
         }
     }
 
     /// The five-bar of an end at crank directions in servo order (length one,
-    /// chassis frame), of one robot or in several lanes; only the end's own two
-    /// are read. It has a meaning only where [`FiveBar::closes`] says so.
+    /// chassis frame); only the end's own two are read. It is meaningless if the loop
+    /// does not close: see [`FiveBar::closes`].
     #[inline(always)]
     pub fn shape_end<T: Real>(&self, end: End, cranks: [Vector<T>; 4]) -> FiveBarPose<T> {
         let [left, right] = end.pick(cranks);
@@ -362,12 +299,10 @@ impl Lizard {
     /// As [`FiveBar::inverse`].
     pub fn point_angles(&self, end: End, point: Vector) -> Result<[f64; 2], Infeasible> {
         let part = Part::End(end);
-        let [outward, ..] = self
-            .end(end)
-            .inverse(point)
-            .map_err(|fault| Infeasible { part, fault })?;
-        let [left, right] =
-            [outward.theta_left, outward.theta_right].map(|theta| end.mirror_angle(theta));
+        let found = self.end(end).inverse(point);
+        let [outward, ..] = found.map_err(|fault| Infeasible { part, fault })?;
+        let angles = [outward.theta_left, outward.theta_right];
+        let [left, right] = angles.map(|theta| end.mirror_angle(theta));
         Ok(match end {
             End::Head => [left, right],
             End::Tail => [right, left],

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-/// A condition that a limit is about.
+/// A condition of a safe pose, to which a limit applies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Check {
     /// Type-2 of the head, sin(theta3 - theta2).
@@ -29,24 +29,24 @@ pub enum Check {
     StrokeLeft,
     /// Travel of the right slider, mm.
     StrokeRight,
-    /// Across, in mm, from the tip of A1's crank to the tip of A2's: K2 in the
-    /// paper. Not above 0, the cranks are crossed, a state that the robot can
-    /// only have been assembled in.
+    /// Distance to the right, mm, from the tip of A1's crank to the tip of A2's: K2 in the
+    /// paper. At 0 or below the cranks are crossed, which the robot can only be if it was
+    /// assembled so.
     UncrossedHead,
-    /// Likewise from A4's to A3's.
+    /// The same distance from the tip of A4's crank to the tip of A3's.
     UncrossedTail,
 }
 
 impl Check {
-    /// Of both ends, in the order of [`End::ALL`](crate::End::ALL).
+    /// The type-2 margins of both ends, in the order of [`End::ALL`](crate::End::ALL).
     pub const TYPE2: [Self; 2] = [Self::Type2Head, Self::Type2Tail];
-    /// Of the four arms, in servo order.
+    /// The type-1 margins of the four arms, in servo order.
     pub const TYPE1: [Self; 4] = [Self::Type1A1, Self::Type1A2, Self::Type1A3, Self::Type1A4];
-    /// Of the four legs, in servo order.
+    /// The margins of the four legs, in servo order.
     pub const LEG: [Self; 4] = [Self::LegLf, Self::LegRf, Self::LegRh, Self::LegLh];
-    /// Of both sides, in the order of [`Side::ALL`](crate::Side::ALL).
+    /// The strokes of both sides, in the order of [`Side::ALL`](crate::Side::ALL).
     pub const STROKE: [Self; 2] = [Self::StrokeLeft, Self::StrokeRight];
-    /// Of both ends, in the order of [`End::ALL`](crate::End::ALL).
+    /// The crank tips of both ends, in the order of [`End::ALL`](crate::End::ALL).
     pub const UNCROSSED: [Self; 2] = [Self::UncrossedHead, Self::UncrossedTail];
 
     /// The name in JSON and in answers, such as `type2_head`.
@@ -80,13 +80,13 @@ impl fmt::Display for Check {
 /// to 1: 0 at a singularity or a change point, positive on the side on which the
 /// robot is built. [`Check`] documents each.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Margins<T = f64> {
+pub struct Margins {
     /// Of head and tail: [`Check::TYPE2`].
-    pub type2: [T; 2],
+    pub type2: [f64; 2],
     /// Of the four arms, in servo order: [`Check::TYPE1`].
-    pub type1: [T; 4],
+    pub type1: [f64; 4],
     /// Of the four legs, in servo order: [`Check::LEG`].
-    pub leg: [T; 4],
+    pub leg: [f64; 4],
 }
 
 impl Margins {

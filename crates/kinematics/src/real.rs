@@ -1,14 +1,14 @@
-//! A number, or several at once.
+//! Numbers for the closed forms: one f64, or several at once.
 //!
-//! The closed forms are written once, for any [`Real`]: a pose takes an f64, a
-//! batch of poses takes [`Lanes`], whose operations the compiler turns into
-//! vector instructions. Every lane has the bits that the pose alone would have.
+//! The closed forms are written once, for any [`Real`]. A pose takes an f64; a batch of
+//! five-bars or sliders takes [`Lanes`], whose operations the compiler turns into vector
+//! instructions. Every lane has the bits that an f64 alone would have.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use crate::angle::{atan2_all, sin_cos_all};
+use crate::angle::sin_cos_all;
 
-/// What the closed forms ask of a number.
+/// A number that the closed forms can be computed with.
 pub trait Real:
     Copy
     + Add<Output = Self>
@@ -18,14 +18,12 @@ pub trait Real:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// A constant.
+    /// The number that equals a constant.
     fn of(value: f64) -> Self;
     /// Square root, rounded correctly; of a negative number it is 0.
     fn root(self) -> Self;
     /// Sines and cosines of angles in degrees.
     fn sin_cos_each<const K: usize>(degrees: [Self; K]) -> ([Self; K], [Self; K]);
-    /// Angles of vectors in (-180, 180] degrees.
-    fn atan2_each<const K: usize>(y: [Self; K], x: [Self; K]) -> [Self; K];
 }
 
 impl Real for f64 {
@@ -44,14 +42,9 @@ impl Real for f64 {
     fn sin_cos_each<const K: usize>(degrees: [Self; K]) -> ([Self; K], [Self; K]) {
         sin_cos_all(degrees)
     }
-
-    #[inline(always)]
-    fn atan2_each<const K: usize>(y: [Self; K], x: [Self; K]) -> [Self; K] {
-        atan2_all(y, x)
-    }
 }
 
-/// Several numbers that take the same steps.
+/// Several numbers on which every operation is carried out at once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lanes<const N: usize>(pub [f64; N]);
 
@@ -75,43 +68,25 @@ impl<const N: usize> Lanes<N> {
     }
 }
 
-impl<const N: usize> Add for Lanes<N> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        self.zip(other, |a, b| a + b)
-    }
+macro_rules! lane_by_lane {
+    ($($operator:ident $method:ident $symbol:tt)*) => {$(
+        impl<const N: usize> $operator for Lanes<N> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                self.zip(other, |a, b| a $symbol b)
+            }
+        }
+    )*};
 }
 
-impl<const N: usize> Sub for Lanes<N> {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        self.zip(other, |a, b| a - b)
-    }
-}
-
-impl<const N: usize> Mul for Lanes<N> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        self.zip(other, |a, b| a * b)
-    }
-}
+lane_by_lane!(Add add + Sub sub - Mul mul * Div div /);
 
 impl<const N: usize> Mul<f64> for Lanes<N> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, factor: f64) -> Self {
         self.each(|a| a * factor)
-    }
-}
-
-impl<const N: usize> Div for Lanes<N> {
-    type Output = Self;
-    #[inline(always)]
-    fn div(self, other: Self) -> Self {
-        self.zip(other, |a, b| a / b)
     }
 }
 
@@ -141,14 +116,5 @@ impl<const N: usize> Real for Lanes<N> {
             (sines[i].0, cosines[i].0) = sin_cos_all(degrees[i].0);
         }
         (sines, cosines)
-    }
-
-    #[inline(always)]
-    fn atan2_each<const K: usize>(y: [Self; K], x: [Self; K]) -> [Self; K] {
-        let mut degrees = y;
-        for i in 0..K {
-            degrees[i].0 = atan2_all(y[i].0, x[i].0);
-        }
-        degrees
     }
 }

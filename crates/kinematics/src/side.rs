@@ -40,7 +40,7 @@ impl Side {
         }
     }
 
-    /// Where the side lies: 1 on the left, -1 on the right. The front arm stands
+    /// The sign of the side: 1 on the left, -1 on the right. The front arm stands
     /// at this times +90 degrees from its crank, the rear arm at this times -90.
     pub const fn sign(self) -> f64 {
         match self {
@@ -69,8 +69,7 @@ impl Side {
         }
     }
 
-    /// What belongs to the front and the rear servo, picked from four in servo
-    /// order.
+    /// The values of the front and the rear servo, picked from four in servo order.
     #[inline(always)]
     pub fn pick<T: Copy>(self, of: [T; 4]) -> [T; 2] {
         let [front, rear] = self.servos();

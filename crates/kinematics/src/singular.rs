@@ -1,4 +1,4 @@
-//! Where a five-bar is singular, as curves in the plane of its crank angles.
+//! The singular positions of a five-bar, as curves in the plane of its crank angles.
 //!
 //! The paper finds singular configurations at sin(theta2 + theta3) = 0, which holds in
 //! every symmetrical pose, including the neutral one. In fact the determinant of K* is
@@ -6,7 +6,7 @@
 //! if that is fixed, the intersection of two circles gives the singular right crank.
 
 use crate::angle::wrap;
-use crate::five_bar::{AssemblyMode, FiveBar};
+use crate::five_bar::{AssemblyMode, FiveBar, FiveBarPose};
 use crate::vector::Vector;
 
 /// A kind of singular position.
@@ -25,7 +25,7 @@ pub enum Singularity {
 /// A singular position of a five-bar. Crank angles in (-180, 180] degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SingularPose {
-    /// What lines up.
+    /// The links that line up.
     pub kind: Singularity,
     /// Left crank.
     pub theta_left: f64,
@@ -101,19 +101,23 @@ impl FiveBar {
     fn is_singular(&self, pose: &SingularPose) -> bool {
         match self.forward_in(AssemblyMode::Ahead, pose.theta_left, pose.theta_right) {
             Err(_) => pose.kind == Singularity::Couplers,
-            Ok(closed) => {
-                let margin = match pose.kind {
-                    Singularity::Couplers => closed.type2,
-                    Singularity::LeftArm => closed.type1_left(),
-                    Singularity::RightArm => closed.type1_right(),
-                };
-                margin.abs() < 1e-6
-            }
+            Ok(closed) => pose.kind.margin(&closed).abs() < 1e-6,
         }
     }
 }
 
-/// Where two circles meet: none or two points.
+impl Singularity {
+    /// The margin that vanishes at a singularity of this kind.
+    fn margin(self, pose: &FiveBarPose) -> f64 {
+        match self {
+            Self::Couplers => pose.type2,
+            Self::LeftArm => pose.type1_left(),
+            Self::RightArm => pose.type1_right(),
+        }
+    }
+}
+
+/// The points in which two circles meet: none or two.
 fn meet(a: Vector, r: f64, b: Vector, s: f64) -> impl Iterator<Item = Vector> {
     let between = b - a;
     let square = between.square();
@@ -135,20 +139,12 @@ mod tests {
 
     fn margin(bars: &FiveBar, kind: Singularity, left: f64, right: f64) -> Option<f64> {
         let pose = bars.forward(left, right).ok()?;
-        Some(match kind {
-            Singularity::Couplers => pose.type2,
-            Singularity::LeftArm => pose.type1_left(),
-            Singularity::RightArm => pose.type1_right(),
-        })
+        Some(kind.margin(&pose))
     }
 
     #[test]
     fn every_sign_change_of_a_type_1_margin_lies_on_a_named_curve() {
-        let unequal = FiveBar {
-            crank_left: 25.0,
-            coupler_left: 55.0,
-            ..HEAD
-        };
+        let unequal = FiveBar::new([20.0, 25.0, 55.0, 50.0, 30.0]);
         let mut crossings = 0;
         for bars in [HEAD, unequal] {
             for left in (-175..180).step_by(10).map(f64::from) {
@@ -180,11 +176,7 @@ mod tests {
 
     #[test]
     fn what_is_named_is_singular() {
-        let short = FiveBar {
-            coupler_left: 30.0,
-            coupler_right: 25.0,
-            ..HEAD
-        };
+        let short = FiveBar::new([20.0, 30.0, 30.0, 25.0, 30.0]);
         let mut kinds = [0; 3];
         for bars in [HEAD, short] {
             for left in -180..180 {

@@ -67,10 +67,8 @@ impl Slider {
     /// [`Fault::Collapsed`] where the arm tips coincide, [`Fault::NotFinite`] for
     /// what is no number or overflows.
     pub fn forward(&self, theta_rear: f64, theta_front: f64) -> Result<SliderPose, Fault> {
-        self.close(
-            Vector::direction(theta_rear),
-            Vector::direction(theta_front),
-        )
+        let [rear, front] = [theta_rear, theta_front].map(Vector::direction);
+        self.close(rear, front)
     }
 
     /// The slider between arms of two directions of length one.
@@ -84,14 +82,14 @@ impl Slider {
         Ok(pose)
     }
 
-    /// Why a pose has no meaning, if it has none.
+    /// Checks that the slider of a pose has a direction.
     #[inline]
     pub(crate) fn check(&self, pose: &SliderPose) -> Result<(), Fault> {
         check_numbers(pose.d, pose.s)
     }
 
-    /// In which lanes the slider has a direction; [`Slider::close`] says why one
-    /// has not.
+    /// True in each lane whose slider has a direction; [`Slider::close`] gives the reason if
+    /// not.
     #[inline(always)]
     pub fn closes<const N: usize>(&self, pose: &SliderPose<Lanes<N>>) -> [bool; N] {
         let (Lanes(d), Lanes(s)) = (pose.d, pose.s);
@@ -102,9 +100,9 @@ impl Slider {
         closes
     }
 
-    /// The pose at arm directions of length one, of one robot or in several
-    /// lanes, without asking whether it has a direction: see [`Slider::closes`].
-    /// What the caller does not use, the compiler leaves out.
+    /// The pose at arm directions of length one, without checking that the slider has a
+    /// direction: see [`Slider::closes`]. The compiler leaves out the parts that the caller
+    /// does not use.
     #[inline(always)]
     pub fn shape<T: Real>(&self, rear: Vector<T>, front: Vector<T>) -> SliderPose<T> {
         let rear_tip = rear * self.rear;

@@ -1,5 +1,5 @@
-//! Where the end point of a symmetrical five-bar can go: inside two rings, one about
-//! each shaft, with radii |l1 - l2| and l1 + l2.
+//! The workspace of a symmetrical five-bar's end point: the intersection of two rings, one
+//! about each shaft, with radii |l1 - l2| and l1 + l2.
 
 use core::f64::consts::PI;
 
@@ -9,9 +9,9 @@ use crate::vector::Vector;
 /// A circle in the five-bar's frame, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Circle {
-    /// Its centre.
+    /// The centre.
     pub centre: Vector,
-    /// Its radius.
+    /// The radius, mm.
     pub radius: f64,
 }
 

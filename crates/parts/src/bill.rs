@@ -1,4 +1,4 @@
-//! What the robot is made of: a list to buy, its mass and its mass centre.
+//! The bill of a robot: parts to print, things to buy, mass and mass centre.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -21,8 +21,8 @@ const PRINTED: f64 = 1.0e-3;
 /// PrusaSlicer's are within a tenth of it in sum.
 const HOURS_A_PIECE: f64 = 0.02;
 const HOURS_A_GRAM: f64 = 0.095;
-/// What is bought, g: a servo, its horn, an UNO, a battery for each mm^3, a spring's
-/// steel for each mm^3, screws and standoffs for each mm and a head, a nut.
+/// Masses of bought things, g: a servo, its horn, a UNO, a battery per mm^3, a spring's
+/// steel per mm^3, screws per mm and per head, standoffs per mm, nuts and so on.
 const SERVO: f64 = 9.5;
 const HORN: f64 = 0.8;
 const BOARD: f64 = 25.0;
@@ -36,8 +36,8 @@ const HORN_SCREW: f64 = 0.1;
 const SERVO_SCREW: f64 = 0.2;
 const PAD: f64 = 0.2;
 
-/// What is bought and hangs in the wires or between them: how many, what, g each. Their
-/// middle is that of the rest.
+/// Things to buy that have no place of their own on the robot, such as wires: count, name
+/// and mass of one, g. Their centre is taken to be that of the rest.
 const MORE: [(usize, &str, f64); 12] = [
     (
         4,
@@ -55,11 +55,7 @@ const MORE: [(usize, &str, f64); 12] = [
         "plug for the battery's own, with two wires of 0.75 mm2, 10 cm long",
         4.0,
     ),
-    (
-        1,
-        "round plug 5.5 x 2.1 mm with two wires, from the battery's switch to the UNO's socket",
-        4.0,
-    ),
+    (1, ROUND_PLUG, 4.0),
     (2, "wire of 0.5 mm2, one red and one black, 0.5 m long", 3.0),
     (
         12,
@@ -76,18 +72,20 @@ const MORE: [(usize, &str, f64); 12] = [
         0.0,
     ),
 ];
+const ROUND_PLUG: &str =
+    "round plug 5.5 x 2.1 mm with two wires, from the battery's switch to the UNO's socket";
 
-/// One kind of thing, and how many.
+/// A line of the bill.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Item {
-    /// How many.
+    /// The number of pieces.
     pub count: usize,
-    /// What.
+    /// The name, with the measures needed to buy it.
     pub what: String,
-    /// Of one, g.
+    /// Mass of one piece, g.
     #[serde(serialize_with = "decimals::one::<10, _>")]
     pub grams: f64,
-    /// To print one, h; `None` for what is bought.
+    /// Hours to print one piece; `None` for bought things.
     #[serde(
         serialize_with = "decimals::optional::<100, _>",
         skip_serializing_if = "Option::is_none"
@@ -116,102 +114,99 @@ impl Item {
     }
 }
 
-/// Everything, and what it weighs.
+/// The bill of a robot.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Bill {
-    /// To print.
+    /// Parts to print.
     pub printed: Vec<Item>,
-    /// To print instead of some of it: the other kind of strut.
+    /// Parts to print instead of some of these: struts of the other kind.
     pub instead: Vec<Item>,
-    /// To buy.
+    /// Things to buy.
     pub bought: Vec<Item>,
-    /// All of it at neutral, g.
+    /// The robot's mass, g.
     #[serde(serialize_with = "decimals::one::<10, _>")]
     pub grams: f64,
-    /// The mass centre: ahead of, left of and above the plate's middle, mm.
+    /// The mass centre at neutral: ahead of, left of and above the plate's middle, mm.
     #[serde(serialize_with = "decimals::each::<10, _>")]
     pub centre: [f64; 3],
-    /// What the leg feels of its spring; `None` where its strut is rigid.
+    /// The effect of the springs on the legs; `None` for rigid struts.
     pub hold: Option<Hold>,
 }
 
-/// A name for what is not printed, and its mass in g.
+/// The line of the bill for a bought body, empty if it is printed or comes with another
+/// one, and the body's mass, g.
 fn bought(body: &Body, assembly: &Assembly, hold: Option<&Hold>) -> (String, f64) {
     let parts = assembly.robot().parts();
     let diameter = parts.screw.diameter;
     match body.kind {
-        Kind::Printed => (String::new(), 0.0),
+        Kind::Printed => (String::new(), PRINTED * volume(&body.prisms)),
         Kind::Servo => ("servo SG-90 with its horn and screws".to_owned(), SERVO),
         Kind::Horn => (String::new(), HORN),
-        Kind::Screw(length) => (
-            format!("screw M{diameter} x {length}, button head (ISO 7380)"),
-            SCREW_HEAD + SCREW_MM * length,
-        ),
-        Kind::HexScrew(length) => (
-            format!("screw M{diameter} x {length}, hexagon head (ISO 4017)"),
-            SCREW_HEAD + SCREW_MM * length,
-        ),
+        Kind::Screw(length) | Kind::HexScrew(length) => {
+            let head = match body.kind {
+                Kind::Screw(_) => "button head (ISO 7380)",
+                _ => "hexagon head (ISO 4017)",
+            };
+            let what = format!("screw M{diameter} x {length}, {head}");
+            (what, SCREW_HEAD + SCREW_MM * length)
+        }
         Kind::ServoScrew => (String::new(), SERVO_SCREW),
-        Kind::HornScrew(length) => (
-            format!(
-                "self-tapping screw, 1.7 to 2 mm thick, {length} mm long and no longer, for the horns"
-            ),
-            HORN_SCREW,
-        ),
+        Kind::HornScrew(length) => {
+            let size = format!("1.7 to 2 mm thick, {length} mm long and no longer");
+            (
+                format!("self-tapping screw, {size}, for the horns"),
+                HORN_SCREW,
+            )
+        }
         Kind::Lead => (String::new(), 0.0),
         Kind::Fitting(fitting) => (fitting.what(), fitting.grams()),
-        Kind::Pad => (
-            "rubber pad, self-adhesive, 8 mm wide and 1.5 mm thick, all four of one kind"
-                .to_owned(),
-            PAD,
-        ),
+        Kind::Pad => {
+            let size = "8 mm wide and 1.5 mm thick";
+            (
+                format!("rubber pad, self-adhesive, {size}, all four of one kind"),
+                PAD,
+            )
+        }
         Kind::Nut => (format!("lock nut M{diameter} (DIN 985)"), NUT),
-        Kind::Standoff(length) => (
-            format!("standoff M{diameter}, {length} mm, thread in both ends"),
-            STANDOFF_MM * length,
-        ),
+        Kind::Standoff(length) => {
+            let what = format!("standoff M{diameter}, {length} mm, thread in both ends");
+            (what, STANDOFF_MM * length)
+        }
         Kind::Spring => {
             let Coil {
                 wire,
                 outer,
                 length,
             } = parts.spring;
-            let volume = coil_volume(&parts.spring);
+            let coil = format!("wire {wire} mm, coil {outer} mm, {length} mm inside its hooks");
             let pull = hold.map_or(String::new(), |hold| {
                 format!(", {:.1} N at {:.1} mm", hold.force, hold.installed)
             });
             (
-                format!(
-                    "tension spring, wire {wire} mm, coil {outer} mm, {length} mm inside its hooks{pull}"
-                ),
-                STEEL * volume,
+                format!("tension spring, {coil}{pull}"),
+                spring(&parts.spring),
             )
         }
         Kind::Board => ("Arduino UNO".to_owned(), BOARD),
         Kind::Battery => {
             let [x, y, z] = parts.battery;
-            (
-                format!("battery, two lithium cells, at most {x} x {y} x {z} mm"),
-                BATTERY * x * y * z,
-            )
+            let what = format!("battery, two lithium cells, at most {x} x {y} x {z} mm");
+            (what, BATTERY * x * y * z)
         }
     }
 }
 
-/// What the spring of a strut weighs, g.
+/// Mass of the spring of a strut, g.
 pub(crate) fn spring(coil: &Coil) -> f64 {
     STEEL * coil_volume(coil)
 }
 
-/// What a body weighs, g.
+/// Mass of a body, g.
 pub(crate) fn grams(body: &Body, assembly: &Assembly) -> f64 {
-    match body.kind {
-        Kind::Printed => PRINTED * volume(&body.prisms),
-        _ => bought(body, assembly, None).1,
-    }
+    bought(body, assembly, None).1
 }
 
-/// The wire of a spring, mm^3: its coils and one more for the hooks.
+/// Volume of a spring's wire, mm^3: its coils and three more for the hooks.
 fn coil_volume(coil: &Coil) -> f64 {
     use std::f64::consts::PI;
     (coil.coils() + 3.0) * PI * coil.mean() * PI * coil.wire * coil.wire / 4.0
@@ -225,23 +220,14 @@ impl Bill {
         let mut list: BTreeMap<String, (usize, f64)> = BTreeMap::new();
         let (mut grams, mut moment) = (0.0, [0.0; 3]);
         for body in assembly.bodies() {
-            let (volume, middle) = middle(&body.prisms);
-            let mass = match body.kind {
-                Kind::Printed => PRINTED * volume,
-                _ => {
-                    let (what, mass) = bought(body, assembly, hold.as_ref());
-                    if !what.is_empty() {
-                        let known = list.entry(what).or_insert((0, mass));
-                        known.0 += 1;
-                    }
-                    mass
-                }
-            };
-            let at = assembly
-                .place(body.mount, pose)
-                .map(Vector::new(middle[0], middle[1]));
+            let (what, mass) = bought(body, assembly, hold.as_ref());
+            if !what.is_empty() {
+                list.entry(what).or_insert((0, mass)).0 += 1;
+            }
+            let [x, y, z] = middle(&body.prisms);
+            let at = assembly.place(body.mount, pose).map(Vector::new(x, y));
             grams += mass;
-            for (sum, part) in moment.iter_mut().zip([at.y, -at.x, middle[2]]) {
+            for (sum, part) in moment.iter_mut().zip([at.y, -at.x, z]) {
                 *sum += mass * part;
             }
         }
@@ -250,9 +236,8 @@ impl Bill {
             let some = parts.filter(|part| part.instead_of.is_some() == instead);
             some.map(Item::printed).collect()
         };
-        let bought = list
-            .into_iter()
-            .map(|(what, (count, grams))| Item::bought(count, what, grams));
+        let bought = list.into_iter();
+        let bought = bought.map(|(what, (count, grams))| Item::bought(count, what, grams));
         let more = MORE.map(|(count, what, each)| {
             grams += count as f64 * each;
             Item::bought(count, what.to_owned(), each)
@@ -267,7 +252,7 @@ impl Bill {
         }
     }
 
-    /// To print all of it, h.
+    /// Hours to print all parts.
     #[must_use]
     pub fn hours(&self) -> f64 {
         let each = self.printed.iter();
@@ -275,19 +260,17 @@ impl Bill {
             .sum()
     }
 
-    /// Screws, nuts and so on whose name begins so, in all.
+    /// The number of bought things whose name begins with some words.
     #[must_use]
     pub fn count(&self, what: &str) -> usize {
-        let alike = self
-            .bought
-            .iter()
-            .filter(|item| item.what.starts_with(what));
+        let bought = self.bought.iter();
+        let alike = bought.filter(|item| item.what.starts_with(what));
         alike.map(|item| item.count).sum()
     }
 }
 
-/// Volume and middle of a body in its own frame, mm^3 and mm.
-fn middle(prisms: &[Prism]) -> (f64, [f64; 3]) {
+/// The centroid of a body in its own frame, mm.
+fn middle(prisms: &[Prism]) -> [f64; 3] {
     let (mut volume, mut sum) = (0.0, [0.0; 3]);
     for prism in prisms {
         let outline = Outline::of(prism);
@@ -298,7 +281,7 @@ fn middle(prisms: &[Prism]) -> (f64, [f64; 3]) {
         sum[1] += moment.y * high;
         sum[2] += area * high * (prism.z[0] + prism.z[1]) / 2.0;
     }
-    (volume, sum.map(|part| part / volume))
+    sum.map(|part| part / volume)
 }
 
 impl fmt::Display for Bill {
@@ -319,10 +302,8 @@ impl fmt::Display for Bill {
             Some(_) => ("without springs", "rigid"),
             None => ("with springs", "strut"),
         };
-        for Item {
-            count, what, grams, ..
-        } in &self.instead
-        {
+        for item in &self.instead {
+            let (count, what, grams) = (item.count, &item.what, item.grams);
             writeln!(
                 f,
                 "\nInstead of the struts, {count} x {what}, {grams:.1} g each, which make legs {other}; with \
@@ -334,32 +315,31 @@ impl fmt::Display for Bill {
         for Item { count, what, .. } in &self.bought {
             writeln!(f, "| {count} | {what} |")?;
         }
+        let (grams, beside, up) = (self.grams, self.beside(), self.centre[2]);
         writeln!(
             f,
-            "\nIn all about {:.0} g; the mass centre is {} the middle of the plate, \
-             {:.1} mm above its top.\n",
-            self.grams,
-            self.beside(),
-            self.centre[2]
+            "\nIn all about {grams:.0} g; the mass centre is {beside} the middle of the plate, {up:.1} mm above its top.\n"
         )?;
-        if let Some(hold) = &self.hold {
-            write!(f, "{hold}")?;
-        } else {
-            writeln!(f, "{RIGID}")?;
-        }
-        writeln!(f, "\nIn robot.toml:\n\n```toml")?;
-        match &self.hold {
-            Some(Hold { force, rate, .. }) => writeln!(
-                f,
-                "[leg.drive]\nkind = \"strut\"\nforce = {force:.2}\nrate = {rate:.3}\n"
-            )?,
-            None => writeln!(f, "[leg.drive]\nkind = \"rigid\"\n")?,
-        }
-        writeln!(f, "{}```", self.body_toml())
+        let drive = match &self.hold {
+            Some(hold) => {
+                write!(f, "{hold}")?;
+                let (force, rate) = (hold.force, hold.rate);
+                format!("kind = \"strut\"\nforce = {force:.2}\nrate = {rate:.3}")
+            }
+            None => {
+                writeln!(f, "{RIGID}")?;
+                "kind = \"rigid\"".to_owned()
+            }
+        };
+        let body = self.body_toml();
+        writeln!(
+            f,
+            "\nIn robot.toml:\n\n```toml\n[leg.drive]\n{drive}\n\n{body}```"
+        )
     }
 }
 
-/// What rigid struts come to.
+/// The guide's words about rigid struts.
 const RIGID: &str = "The struts are rigid: a foot follows its servo but for the play of pins and gears. A foot that is caught \
                      can stall its servo, which gets hot and may burn out; a strut with a spring is no help there. Watch the robot while it \
                      walks, and switch the servos' supply off when a foot is caught.";

@@ -1,20 +1,20 @@
-//! Numbers in JSON with as many decimals as they are known to: `UNIT` is 10 for tenths, 1000
-//! for thousandths.
+//! Numbers in JSON with no more decimals than are known: `UNIT` is 10 for tenths, 1000 for
+//! thousandths.
 
 use serde::{Serialize, Serializer};
 
-/// No number has a minus before 0.
+/// Rounds a number, without leaving a minus before 0.
 fn rounded<const UNIT: u32>(value: f64) -> f64 {
     let unit = f64::from(UNIT);
     (unit * value).round() / unit + 0.0
 }
 
-/// Writes one number.
+/// Writes a number.
 pub(crate) fn one<const UNIT: u32, S: Serializer>(value: &f64, out: S) -> Result<S::Ok, S::Error> {
     rounded::<UNIT>(*value).serialize(out)
 }
 
-/// Writes one that may be missing.
+/// Writes a number that may be missing.
 pub(crate) fn optional<const UNIT: u32, S: Serializer>(
     value: &Option<f64>,
     out: S,
@@ -22,7 +22,7 @@ pub(crate) fn optional<const UNIT: u32, S: Serializer>(
     value.map(rounded::<UNIT>).serialize(out)
 }
 
-/// Writes a list.
+/// Writes a list of numbers.
 pub(crate) fn each<const UNIT: u32, S: Serializer>(
     values: &[f64],
     out: S,

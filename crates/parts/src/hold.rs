@@ -1,5 +1,5 @@
-//! What a leg feels of the spring in its strut: from which torque on it lags behind its
-//! servo, and what a servo must bear when a foot is caught.
+//! The effect of the spring in a leg's strut: the torque above which the leg lags behind
+//! its servo, and the torque on the servo when a foot is caught.
 
 use std::fmt;
 
@@ -8,49 +8,48 @@ use serde::Serialize;
 use crate::bodies::assembly::Assembly;
 use crate::decimals;
 
-/// What an SG-90 turns at a stall with 4.8 V, N mm: 1.8 kg cm.
+/// Stall torque of an SG-90 at 4.8 V, N mm: 1.8 kg cm.
 pub const STALL: f64 = 176.0;
 
-/// A leg's spring in its strut.
+/// The effect of a leg's spring in its strut.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Hold {
-    /// Length inside its hooks in the strut, mm.
+    /// Length of the spring inside its hooks in the strut, mm.
     #[serde(serialize_with = "decimals::one::<1000, _>")]
     pub installed: f64,
-    /// Its pull there, N.
+    /// Force at that length, N.
     #[serde(serialize_with = "decimals::one::<1000, _>")]
     pub force: f64,
-    /// N/mm.
+    /// Rate of the spring, N/mm.
     #[serde(serialize_with = "decimals::one::<1000, _>")]
     pub rate: f64,
-    /// Lever of the strut about the leg's pivot, mm: the least and the greatest that any
-    /// leg has in any gait. The pull acts square to the anchor's arm at one pose only.
+    /// Lever of the strut about the leg's pivot, mm: the least and the greatest of any leg
+    /// in any gait. The pull is perpendicular to the anchor's arm at one pose only.
     #[serde(serialize_with = "decimals::each::<1000, _>")]
     pub lever: [f64; 2],
-    /// Up to this torque the leg follows its servo exactly wherever gaits lead, N mm.
+    /// Torque up to which the leg follows its servo exactly in all gaits, N mm.
     #[serde(serialize_with = "decimals::one::<1000, _>")]
     pub preload: f64,
-    /// How far a leg lags at the slot's end, deg: the least and the most that gaits' poses
-    /// have.
+    /// Lag of a leg at the slot's end, deg: the least and the greatest of all gaits.
     #[serde(serialize_with = "decimals::each::<1000, _>")]
     pub way: [f64; 2],
-    /// What holds the leg there, N mm, likewise.
+    /// Torque on the leg there, N mm, likewise.
     #[serde(serialize_with = "decimals::each::<1000, _>")]
     pub end: [f64; 2],
-    /// What dry friction of its pad asks of a leg, N mm.
+    /// Torque that the friction of its pad exerts on a leg, N mm.
     #[serde(serialize_with = "decimals::one::<1000, _>")]
     pub friction: f64,
 }
 
 impl Hold {
-    /// Whether a servo can go on turning at the slot's end: with less than seven tenths of
-    /// the torque at which it stalls.
+    /// True if a servo can go on turning at the slot's end, with less than seven tenths of
+    /// its stall torque.
     #[must_use]
     pub fn spares(&self) -> bool {
         self.end[1] < 0.7 * STALL
     }
 
-    /// Of the robot's legs, whose struts are equal. `None` where these are rigid.
+    /// The effect on the robot's legs, whose struts are equal; `None` if these are rigid.
     #[must_use]
     pub fn of(assembly: &Assembly) -> Option<Self> {
         let robot = assembly.robot();
@@ -87,41 +86,30 @@ impl Hold {
 
 impl fmt::Display for Hold {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self {
-            installed,
-            force,
-            rate,
-            lever,
-            preload,
-            way,
-            end,
-            friction,
-        } = self;
+        let (installed, force, rate) = (self.installed, self.force, self.rate);
+        let (preload, friction) = (self.preload, self.friction);
+        let ([near, far], [least, most], [low, high]) = (self.lever, self.way, self.end);
+        let spared = match self.spares() {
+            true => "So much less spares it.",
+            false => {
+                "So a caught foot can stall its servo as with a rigid strut: switch the servos' supply off."
+            }
+        };
         writeln!(
             f,
             "Each spring is {installed:.1} mm long in its strut and pulls {force:.1} N ({rate:.2} N/mm), at a lever of \
-             {:.1} to {:.1} mm in gaits. So a leg follows its servo up to {preload:.0} N mm, and the pad's friction asks for \
-             about {friction:.0}: what the spring does is to take up the play of its strut's two screws. With foot and body \
-             both held, a front foot on its way forward or a hind foot on its way back, the slot ends after {:.0} to {:.0} \
-             deg, at {:.0} to {:.0} N mm; the other way the strut is a bar. An SG-90 stalls at {STALL:.0} N mm. {}",
-            lever[0],
-            lever[1],
-            way[0],
-            way[1],
-            end[0],
-            end[1],
-            match self.spares() {
-                true => "So much less spares it.",
-                false =>
-                    "So a caught foot can stall its servo as with a rigid strut: switch the servos' supply off.",
-            }
+             {near:.1} to {far:.1} mm in gaits. So a leg follows its servo up to {preload:.0} N mm, and the pad's friction \
+             asks for about {friction:.0}: what the spring does is to take up the play of its strut's two screws. With foot \
+             and body both held, a front foot on its way forward or a hind foot on its way back, the slot ends after \
+             {least:.0} to {most:.0} deg, at {low:.0} to {high:.0} N mm; the other way the strut is a bar. An SG-90 stalls \
+             at {STALL:.0} N mm. {spared}"
         )?;
-        if preload < friction {
-            writeln!(
+        match preload < friction {
+            true => writeln!(
                 f,
                 "That is less than the friction: the legs will lag. Take a stronger spring."
-            )?;
+            ),
+            false => Ok(()),
         }
-        Ok(())
     }
 }

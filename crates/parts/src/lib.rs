@@ -5,7 +5,7 @@
 //! robot ([`Stack`]). A pose turns and shifts each body in the plane; nothing moves up or
 //! down.
 //!
-//! # How it is meant
+//! # Example
 //! ```
 //! let robot = lizard_robot::Robot::parse(include_str!("../../../robots/paper.toml"))?;
 //! let assembly = lizard_parts::Assembly::new(&robot);
@@ -20,23 +20,23 @@
 //! ```
 //! - A [`Body`] is rigid: a printed part, a servo, a screw, a nut, a spring, the board,
 //!   the battery. Its layers ([`Prism`]) are given in its own frame; z is the robot's.
-//! - A [`Mount`] says what a body moves with, hence on which servos its place depends:
-//!   `Link`, `Crank`, `Follower`, `Foot` and `Strut` on their servo alone, `Coupler` on
-//!   both servos of its end, `Sleeve` and `Rod` on both of their side, `Chassis` on none.
-//!   Links, cranks and followers turn about a fixed point by the servo's angle; feet and
-//!   struts do not turn. [`Assembly::place`] has this rule.
+//! - A [`Mount`] is the moving frame that a body is fixed to, so it decides on which servos
+//!   the body's place depends: `Link`, `Crank`, `Follower`, `Foot` and `Strut` on their servo
+//!   alone, `Coupler` on both servos of its end, `Sleeve` and `Rod` on both of their side,
+//!   `Chassis` on none. Links, cranks and followers turn about a fixed point by the servo's
+//!   angle; feet and struts do not turn. [`Assembly::place`] computes this.
 //! - A [`Shape`] is convex: the hull of some points, grown by a radius. A layer is the
-//!   union of its shapes less its holes, so the shapes without the holes are a safe hull
-//!   for collision proofs: what is clear of the hull is clear of the part.
+//!   union of its shapes less its holes, so its shapes without the holes are a safe hull
+//!   for collision proofs: a body that is clear of the hull is clear of the part.
 //!   [`Shape::distance`] is exact.
-//! - [`Assembly::meet`] says which pairs touch by design: bodies that move together, and
-//!   bodies that name the other in [`Body::meets`], as a screw names what it passes
-//!   through, the rod its sleeve, and the strut the leg's crank that its spring pulls.
+//! - [`Assembly::meet`] is true for pairs that touch by design: bodies that move together,
+//!   and bodies that name the other in [`Body::meets`], as a screw names the parts that it
+//!   passes through, the rod its sleeve, and the strut the leg's crank that its spring pulls.
 //! - [`Assembly::prove`] proves how close any two bodies come at any pose that the guard
 //!   accepts; [`Assembly::nearest`] only checks some poses.
-//! - [`Assembly::instead`] has bodies that may replace others: the kind of strut that
+//! - [`Assembly::instead`] are bodies that may replace others: struts of the kind that
 //!   robot.toml does not choose.
-//! - [`Layout`] has pivots and anchors seen from above. Those of the legs are
+//! - [`Layout`] is the plan of pivots and anchors from above. Those of the legs are
 //!   [`lizard_robot::LegPlan`], which the drawings use as well.
 
 mod bill;
@@ -56,21 +56,12 @@ mod weight;
 pub use bill::{Bill, Item};
 pub use bodies::assembly::Assembly;
 pub use bodies::layout::Layout;
-pub use bodies::sliders::SliderLengths;
 pub use files::coupon::coupon;
-pub use files::dxf::dxf;
 pub use files::mesh::Mesh;
-pub use files::sheet::{Layer, Sheet, extent, sheets};
+pub use files::sheet::{Layer, Sheet, sheets};
 pub use files::solid::{Edge, Face, Solid, Surface};
-pub use files::step::step;
-pub use files::stl::stl;
-pub use files::svg::sheet_svg;
 pub use files::{File, part_files};
-pub use guide::ink::Label;
 pub use guide::papers::papers;
-pub use guide::picture::{Drawn, View, labelled, picture, whole};
-pub use guide::placements::placements;
-pub use guide::{CORNER, guide};
 pub use hold::{Hold, STALL};
 pub use layers::body::{Body, Kind, Mount, Prism};
 pub use layers::fitting::Fitting;
@@ -79,7 +70,7 @@ pub use layers::placement::Placement;
 pub use layers::shape::Shape;
 pub use layers::stack::{Span, Stack};
 pub use mjcf::{Course, Motor, Pieces, Pull, Scene, mjcf};
-pub use order::reach::{Act, Aside, Blocked, KEY, SOCKET};
+pub use order::reach::{Act, Aside, Blocked};
 pub use order::steps::Near as NearView;
 pub use order::steps::{Stage, Step, Where, steps};
 pub use part::{Lies, Part};

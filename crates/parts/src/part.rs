@@ -1,4 +1,6 @@
-//! What is made for a body: a part as it lies on the printer's bed, and how many of it.
+//! A printed part: its layers as it lies on the printer's bed, and the bodies made so.
+
+use std::iter::zip;
 
 use lizard_kinematics::{Side, Vector};
 use lizard_robot::servo::{LEGS, NAMES};
@@ -11,55 +13,67 @@ use crate::layers::placement::Placement;
 use crate::layers::roof;
 use crate::layers::shape::Shape;
 
-/// Rings are known by their length, not by where they are.
+/// The word in the names of rings, which are told apart by length, not by place.
 const SPACER: &str = "spacer";
 
 /// A printed part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// Its name: `link A1 A3` is twice the same, for A1 and for A3.
+    /// The name. `link A1 A3` is needed twice, for A1 and for A3.
     pub name: String,
-    /// The bodies that are made so.
+    /// Names of the bodies that it is printed for.
     pub bodies: Vec<String>,
-    /// Its layers as it is printed: from z = 0 up, the larger face below.
+    /// Its layers as printed: from z = 0 up, the larger face below.
     pub prisms: Vec<Prism>,
-    /// Whether it lies on its back to be printed.
+    /// True if it is printed on its back.
     pub turned: bool,
-    /// What it may be put in instead of; `None` of a part that the robot has.
+    /// The part that it may replace; `None` for a part that the robot has.
     pub instead_of: Option<String>,
-    /// The numbers of its servos, which are engraved where a part comes in several kinds:
-    /// `13` for A1 and A3. Empty of others.
+    /// Numbers of its servos, engraved if the part comes in several kinds: `13` for A1 and
+    /// A3. Otherwise empty.
     pub mark: String,
 }
 
 impl Part {
-    /// How many are needed.
+    /// A part of one piece, printed as its layers lie, without a mark.
+    pub(crate) fn single(name: &str, prisms: Vec<Prism>) -> Self {
+        Self {
+            name: name.to_owned(),
+            bodies: vec![name.to_owned()],
+            prisms,
+            turned: false,
+            instead_of: None,
+            mark: String::new(),
+        }
+    }
+
+    /// The number of pieces needed.
     #[must_use]
     pub fn count(&self) -> usize {
         self.bodies.len()
     }
 
-    /// The name of its files, without an ending.
+    /// The name of its files, without extension.
     #[must_use]
     pub fn file(&self) -> String {
         self.name.replace(' ', "-")
     }
 
-    /// Its layers as they are printed: with its mark, and with the holes closed that would
-    /// begin in the air; and how many those are.
+    /// Its layers as printed, with its mark and with the holes closed that would begin in
+    /// the air, and the number of those holes.
     #[must_use]
     pub fn printed(&self) -> (Vec<Prism>, usize) {
         let marked = mark::engraved(&self.prisms, &self.mark);
         roof::closed(&marked.unwrap_or_else(|| self.prisms.clone()))
     }
 
-    /// The middles of the holes that are to be drilled, as the part is printed, mm.
+    /// Centres of the holes to be drilled, in the frame of the printed part, mm.
     #[must_use]
     pub fn closed_holes(&self) -> Vec<Vector> {
         roof::in_air(&self.prisms)
     }
 
-    /// How the part as it is printed becomes one of its bodies, in that body's frame.
+    /// The motion that takes the printed part to the place of a body, in that body's frame.
     #[must_use]
     pub fn lies(&self, body: &Body) -> Lies {
         let [low, high] = body.z();
@@ -77,15 +91,15 @@ impl Part {
     }
 }
 
-/// How a printed part is laid into its body's frame: turned over if need be, lifted, then
-/// turned and shifted in the plane.
+/// The motion from a printed part's frame to its body's: flip, lift, then turn and shift
+/// in the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lies {
-    /// Whether it is turned over first: x, y, z to x, -y, -z.
+    /// True if it is turned over first: x, y, z to x, -y, -z.
     pub flipped: bool,
-    /// By how much it is lifted then, mm.
+    /// The lift after that, mm.
     pub lift: f64,
-    /// Where the printed part's own frame is in the body's.
+    /// The place of the printed part's frame in the body's.
     pub home: Placement,
 }
 
@@ -98,8 +112,7 @@ pub(crate) fn volume(prisms: &[Prism]) -> f64 {
 }
 
 impl Assembly {
-    /// Every printed part, each kind once; those that may be put in instead of others
-    /// come last.
+    /// Every printed part, each kind once. Parts that may replace others come last.
     #[must_use]
     pub fn parts(&self) -> Vec<Part> {
         let mut parts = kinds(self.bodies());
@@ -112,10 +125,10 @@ impl Assembly {
             instead_of: strut.clone(),
             ..part
         }));
-        let several: Vec<_> = parts.iter().map(|part| what(&part.bodies[0])).collect();
-        for (number, part) in parts.iter_mut().enumerate() {
-            let alone = several.iter().filter(|of| **of == several[number]).count() == 1;
-            if !alone {
+        let first = |part: &Part| split(&part.bodies[0]).0.to_owned();
+        let nouns: Vec<_> = parts.iter().map(first).collect();
+        for (part, noun) in parts.iter_mut().zip(&nouns) {
+            if nouns.iter().filter(|other| *other == noun).count() > 1 {
                 part.mark = numbers(&part.bodies);
             }
         }
@@ -123,17 +136,16 @@ impl Assembly {
     }
 }
 
-/// A body's name without what it is of: `link` of `link A1`.
-fn what(name: &str) -> String {
-    let (what, _) = name.rsplit_once(' ').unwrap_or((name, ""));
-    what.to_owned()
+/// A body's name as noun and owner: `link` and `A1`. A name of one word has no owner.
+fn split(name: &str) -> (&str, &str) {
+    name.rsplit_once(' ').unwrap_or((name, ""))
 }
 
-/// The numbers of the servos that some bodies are of.
+/// The numbers of the servos that own some bodies.
 fn numbers(names: &[String]) -> String {
     let mut numbers: Vec<usize> = Vec::new();
     for name in names {
-        let of = name.rsplit_once(' ').map_or("", |(_, of)| of);
+        let (_, of) = split(name);
         let servo = |list: [&str; 4]| list.iter().position(|known| *known == of);
         let side = Side::ALL.into_iter().find(|side| side.name() == of);
         numbers.extend(servo(NAMES).or(servo(LEGS)));
@@ -146,7 +158,7 @@ fn numbers(names: &[String]) -> String {
         .collect()
 }
 
-/// The printed parts that some bodies are made as.
+/// The printed parts from which some bodies are made.
 fn kinds(bodies: &[Body]) -> Vec<Part> {
     let mut parts: Vec<Part> = Vec::new();
     for body in bodies.iter().filter(|body| body.kind == Kind::Printed) {
@@ -154,12 +166,8 @@ fn kinds(bodies: &[Body]) -> Vec<Part> {
         match parts.iter_mut().find(|part| alike(&part.prisms, &prisms)) {
             Some(part) => part.bodies.push(body.name.clone()),
             None => parts.push(Part {
-                name: String::new(),
-                bodies: vec![body.name.clone()],
-                prisms,
                 turned,
-                instead_of: None,
-                mark: String::new(),
+                ..Part::single(&body.name, prisms)
             }),
         }
     }
@@ -174,42 +182,36 @@ fn kinds(bodies: &[Body]) -> Vec<Part> {
     parts
 }
 
-/// A body's layers as they are printed, and whether they lie on their back. Its first
-/// shape is at the origin and its first bar along x, so that what is made alike is known
-/// to be alike wherever it is used.
+/// A body's layers as printed, and true if they lie on their back. The first shape is at
+/// the origin and the first bar along x, so equal parts have equal layers wherever they
+/// are used.
 fn lying(body: &Body) -> (Vec<Prism>, bool) {
     let area = |prism: Option<&Prism>| prism.map_or(0.0, |prism| Outline::of(prism).area());
     let turned = area(body.prisms.first()) < 0.7 * area(body.prisms.last());
     let [low, high] = body.z();
     let home = home(body);
     let lay = |shape: &Shape| {
-        let points = shape
-            .points
-            .iter()
-            .map(|&point| home.unmap(point))
-            .collect();
-        let radius = shape.radius;
-        let shape = Shape { points, radius };
+        let points = shape.points.iter().map(|&point| home.unmap(point));
+        let shape = Shape {
+            points: points.collect(),
+            radius: shape.radius,
+        };
         if turned { shape.mirrored() } else { shape }
     };
-    let mut prisms: Vec<Prism> = body
-        .prisms
-        .iter()
-        .map(|prism| Prism {
-            add: prism.add.iter().map(lay).collect(),
-            cut: prism.cut.iter().map(lay).collect(),
-            z: if turned {
-                [high - prism.z[1], high - prism.z[0]]
-            } else {
-                prism.z.map(|z| z - low)
-            },
-        })
-        .collect();
+    let prism = |prism: &Prism| Prism {
+        add: prism.add.iter().map(lay).collect(),
+        cut: prism.cut.iter().map(lay).collect(),
+        z: match turned {
+            true => [high - prism.z[1], high - prism.z[0]],
+            false => prism.z.map(|z| z - low),
+        },
+    };
+    let mut prisms: Vec<Prism> = body.prisms.iter().map(prism).collect();
     prisms.sort_by(|a, b| a.z[0].total_cmp(&b.z[0]));
     (prisms, turned)
 }
 
-/// The frame in which a part is drawn.
+/// The frame in which a body's part is printed.
 fn home(body: &Body) -> Placement {
     if body.mount == Mount::Chassis {
         return Placement::CHASSIS;
@@ -228,46 +230,30 @@ fn home(body: &Body) -> Placement {
     }
 }
 
-/// Whether two parts are one, but for rounding.
+/// True if two parts are equal but for rounding.
 fn alike(a: &[Prism], b: &[Prism]) -> bool {
     let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
+    let points = |a: &Shape, b: &Shape| {
+        a.points.len() == b.points.len()
+            && zip(&a.points, &b.points).all(|(a, b)| near(a.x, b.x) && near(a.y, b.y))
+    };
+    let shapes = |a: &[Shape], b: &[Shape]| {
+        a.len() == b.len() && zip(a, b).all(|(a, b)| near(a.radius, b.radius) && points(a, b))
+    };
     a.len() == b.len()
-        && a.iter().zip(b).all(|(a, b)| {
-            let shapes = |a: &[Shape], b: &[Shape]| {
-                a.len() == b.len()
-                    && a.iter().zip(b).all(|(a, b)| {
-                        near(a.radius, b.radius)
-                            && a.points.len() == b.points.len()
-                            && a.points
-                                .iter()
-                                .zip(&b.points)
-                                .all(|(a, b)| near(a.x, b.x) && near(a.y, b.y))
-                    })
-            };
-            near(a.z[0], b.z[0])
-                && near(a.z[1], b.z[1])
-                && shapes(&a.add, &b.add)
-                && shapes(&a.cut, &b.cut)
+        && zip(a, b).all(|(a, b)| {
+            let heights = near(a.z[0], b.z[0]) && near(a.z[1], b.z[1]);
+            heights && shapes(&a.add, &b.add) && shapes(&a.cut, &b.cut)
         })
 }
 
-/// One name for several bodies: what they share, then what they are of.
+/// One name for several bodies: the noun that they share, then their owners.
 fn together(names: &[String]) -> String {
-    let Some(first) = names.first() else {
-        return String::new();
-    };
-    let what = first.rsplit_once(' ').map_or("", |(what, _)| what);
-    let same = |name: &&String| {
-        name.rsplit_once(' ')
-            .is_some_and(|(other, _)| other == what)
-    };
-    if names.len() > 1 && names.iter().filter(same).count() == names.len() {
-        let owners = names.iter().filter_map(|name| name.rsplit_once(' '));
-        let owners: Vec<_> = owners.map(|(_, owner)| owner).collect();
-        if owners.len() == 4 {
-            return what.to_owned();
-        }
-        return format!("{what} {}", owners.join(" "));
+    let (nouns, owners): (Vec<_>, Vec<_>) = names.iter().map(|name| split(name)).unzip();
+    match names.len() {
+        2.. if nouns.iter().any(|noun| *noun != nouns[0]) => names[0].clone(),
+        4 => nouns[0].to_owned(),
+        2.. => format!("{} {}", nouns[0], owners.join(" ")),
+        _ => names.concat(),
     }
-    first.clone()
 }

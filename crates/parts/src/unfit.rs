@@ -1,117 +1,52 @@
-//! Why a robot cannot be built.
+//! The reasons why a robot cannot be built.
 
 use lizard_kinematics::Vector;
 
 use crate::bodies::assembly::Assembly;
-use crate::bodies::sliders::slider_range;
+use crate::bodies::sliders::{SliderLengths, slider_range};
 use crate::layers::body::{Body, Kind, Prism};
 use crate::layers::shape::Shape;
 use crate::order::reach::Blocked;
 use crate::order::steps::steps;
 use crate::proof::Clash;
 
-/// What does not fit, in the sentence that the user sees.
+/// A reason why a robot cannot be built, as the sentence that the user sees.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Unfit {
-    /// Two parts would be in one place, or nearly.
+    /// Two parts that collide, or come too near to each other.
     #[error("{0}; other links, or other measures under [parts] in robot.toml, may keep them apart")]
     Clash(#[from] Clash),
-    /// A bar is too narrow for the head of its screw.
-    #[error(
-        "parts.bar is {bar} mm, but the head of a screw and a wall on each side need {least:.1} mm"
-    )]
-    Narrow {
-        /// Its width, mm.
-        bar: f64,
-        /// What it needs, mm.
-        least: f64,
-    },
-    /// The sunk nut would come out of the crank.
-    #[error(
-        "the nut of a leg's anchor does not fit into its crank with a screw from the shop; raise parts.thickness or the servo's horn"
-    )]
-    Nut,
-    /// An ideal spring, which no part is.
-    #[error(
-        "leg.drive.kind is \"spring\", an ideal that no part here is; parts need \"rigid\" or \"strut\""
-    )]
-    Ideal,
-    /// The leg's strut is shorter than its spring.
-    #[error(
-        "leg strut {leg} is {strut:.1} mm from screw to screw, but its spring is {spring:.1} mm long inside its hooks without load and must be pulled; parts.pivot sets the one, parts.spring.length the other; [leg.drive] kind = \"rigid\" needs no spring"
-    )]
-    Spring {
-        /// LF, RF, RH, LH.
-        leg: &'static str,
-        /// mm
-        strut: f64,
-        /// mm
-        spring: f64,
-    },
-    /// The foot's post would be too short.
-    #[error(
-        "parts.height is {height} mm; the feet need {least:.1} mm to keep the servos off the floor"
-    )]
-    Low {
-        /// mm
-        height: f64,
-        /// mm
-        least: f64,
-    },
-    /// A slider whose sleeve would be too short.
-    #[error(
-        "the {side} slider is {shortest:.1} mm at its shortest and {longest:.1} mm at its longest; a rod that stays in its sleeve does not fit between: raise limits.stroke_min or lower limits.stroke_max"
-    )]
-    Slider {
-        /// left or right
-        side: &'static str,
-        /// mm
-        shortest: f64,
-        /// mm
-        longest: f64,
-    },
-    /// Two parts that move together would be in one place.
-    #[error(
-        "{first} and {second}, which move together, overlap by {mm:.2} mm; other links, or other measures under [parts] in robot.toml, may keep them apart"
-    )]
-    Inside {
-        /// One body.
-        first: String,
-        /// The other.
-        second: String,
-        /// mm
-        mm: f64,
-    },
+    /// A measure of robot.toml with which the parts cannot be made.
+    #[error("{0}")]
+    Measure(String),
     /// A screw that cannot be reached.
     #[error(
         "{0}, at every pose; other links, or other measures under [parts] in robot.toml, may make room"
     )]
     Blocked(#[from] Blocked),
-    /// The layers of a part do not make a body.
+    /// A part whose layers do not make a body.
     #[error(
         "the layers of {0} do not make one body; a measure under [parts] in robot.toml is too small or too large for it"
     )]
     Surface(String),
-    /// Screws that no shop has.
-    #[error(
-        "{0} would have to be {1:.1} mm long, which no shop has; lower parts.thickness or parts.plate"
-    )]
-    Screw(String, f64),
 }
 
-/// Air between servos and floor, mm.
+/// Least gap between servos and floor, mm.
 const OFF_FLOOR: f64 = 8.0;
 /// The shortest sleeve that guides a rod, mm.
 const SLEEVE: f64 = 25.0;
 
+const NUT: &str = "the nut of a leg's anchor does not fit into its crank with a screw from the shop; \
+                   raise parts.thickness or the servo's horn";
+
 impl Assembly {
-    /// Whether the robot can be built: measures go together, every screw can be reached,
-    /// and no two parts meet at any pose that the guard accepts, which is proved and takes
-    /// seconds.
+    /// Checks that the robot can be built: that its measures go together, every screw can
+    /// be reached, and no two parts meet at any pose that the guard accepts. The proof of
+    /// the last takes seconds.
     ///
     /// # Errors
     /// The first measure that does not fit, else the two parts that overlap most, else a
-    /// screw.
+    /// screw that cannot be reached.
     pub fn fits(&self) -> Result<(), Unfit> {
         self.measures_fit()?;
         self.prove(|_, _| ()).judge()?;
@@ -119,54 +54,59 @@ impl Assembly {
         Ok(())
     }
 
-    /// Whether measures go together.
+    /// Checks that the measures of robot.toml go together.
     ///
     /// # Errors
-    /// The first that does not fit.
+    /// The first measure that does not fit.
     pub fn measures_fit(&self) -> Result<(), Unfit> {
-        let (parts, stack) = (self.robot().parts(), self.stack());
+        let (robot, stack) = (self.robot(), self.stack());
+        let (parts, drive) = (robot.parts(), robot.drive());
+        let refuse = |sentence: String| Err(Unfit::Measure(sentence));
         let least = parts.screw.head + 2.0 * parts.fit + 1.2;
         if parts.bar < least {
-            let bar = parts.bar;
-            return Err(Unfit::Narrow { bar, least });
+            return refuse(format!(
+                "parts.bar is {} mm, but the head of a screw and a wall on each side need {least:.1} mm",
+                parts.bar
+            ));
         }
         if !stack.holds_nut(parts) {
-            return Err(Unfit::Nut);
+            return refuse(NUT.to_owned());
         }
         let least = OFF_FLOOR - stack.servo;
         if parts.height < least {
-            let height = parts.height;
-            return Err(Unfit::Low { height, least });
+            return refuse(format!(
+                "parts.height is {} mm; the feet need {least:.1} mm to keep the servos off the floor",
+                parts.height
+            ));
         }
-        if matches!(self.robot().drive().kind, lizard_robot::Kind::Spring(_)) {
-            return Err(Unfit::Ideal);
-        }
-        let legs = lizard_robot::servo::LEGS.iter().zip(&self.layout().legs);
-        for (leg, layout) in legs.filter(|_| self.robot().drive().strut().is_some()) {
-            if self.robot().hung() <= parts.spring.length {
-                return Err(Unfit::Spring {
-                    leg,
-                    strut: layout.strut_length,
-                    spring: parts.spring.length,
-                });
-            }
+        if drive.strut().is_some() && robot.hung() <= parts.spring.length {
+            return refuse(format!(
+                "leg strut {} is {:.1} mm from screw to screw, but its spring is {:.1} mm long inside its hooks \
+                 without load and must be pulled; parts.pivot sets the one, parts.spring.length the other; \
+                 [leg.drive] kind = \"rigid\" needs no spring",
+                lizard_robot::servo::LEGS[0],
+                self.layout().legs[0].strut_length,
+                parts.spring.length
+            ));
         }
         for side in lizard_kinematics::Side::ALL {
-            let range = slider_range(self.robot(), side);
-            let lengths = crate::SliderLengths::new(side, range);
-            if lengths.sleeve < SLEEVE {
-                return Err(Unfit::Slider {
-                    side: side.name(),
-                    shortest: range[0],
-                    longest: range[1],
-                });
+            let range = slider_range(robot, side);
+            if SliderLengths::new(side, range).sleeve < SLEEVE {
+                let [shortest, longest] = range;
+                return refuse(format!(
+                    "the {side} slider is {shortest:.1} mm at its shortest and {longest:.1} mm at its longest; a rod \
+                     that stays in its sleeve does not fit between: raise limits.stroke_min or lower limits.stroke_max"
+                ));
             }
         }
         for body in self.bodies() {
             if let Kind::Screw(length) | Kind::HexScrew(length) = body.kind
                 && !crate::layers::stack::is_sold(length)
             {
-                return Err(Unfit::Screw(body.name.clone(), length));
+                return refuse(format!(
+                    "{} would have to be {length:.1} mm long, which no shop has; lower parts.thickness or parts.plate",
+                    body.name
+                ));
             }
             if body.prisms.iter().any(|prism| prism.z[1] <= prism.z[0]) {
                 return Err(Unfit::Surface(body.name.clone()));
@@ -175,28 +115,28 @@ impl Assembly {
         self.none_is_in_another()
     }
 
-    /// Whether of the bodies that move together none is in another one's place.
+    /// Checks that no two bodies that move together overlap.
     fn none_is_in_another(&self) -> Result<(), Unfit> {
-        /// What is pressed in may touch, mm.
+        /// Overlap allowed for press fits, mm.
         const TOUCH: f64 = 0.02;
         let bodies = self.bodies();
         for (i, a) in bodies.iter().enumerate() {
             for b in bodies[i + 1..].iter().filter(|b| b.mount == a.mount) {
                 let air = air(self.outside_threads(a), self.outside_threads(b));
                 if air < -TOUCH {
-                    return Err(Unfit::Inside {
-                        first: a.name.clone(),
-                        second: b.name.clone(),
-                        mm: -air,
-                    });
+                    return Err(Unfit::Measure(format!(
+                        "{} and {}, which move together, overlap by {:.2} mm; other links, or other measures \
+                         under [parts] in robot.toml, may keep them apart",
+                        a.name, b.name, -air
+                    )));
                 }
             }
         }
         Ok(())
     }
 
-    /// The layers of a body, but of a screw without a nut only its head: what it is
-    /// turned into has its thread.
+    /// The layers of a body; for a screw without a nut only its head, since the shank cuts
+    /// its thread into a part.
     fn outside_threads<'a>(&self, body: &'a Body) -> &'a [Prism] {
         let nut = body.name.replacen("screw", "nut", 1);
         match (body.kind, &body.prisms[..]) {
@@ -209,7 +149,7 @@ impl Assembly {
     }
 }
 
-/// How far some layers are from others at the heights that they share, or in their
+/// The distance of two bodies' layers at the heights that they share, or within their
 /// holes, mm; below 0 they overlap.
 fn air(a: &[Prism], b: &[Prism]) -> f64 {
     let still = Vector::default();

@@ -1,19 +1,18 @@
-//! What the contact model gets from the bill: the weight on the feet, and where it is.
+//! Mass and mass centre from the bill, for the contact model.
 
 use lizard_robot::Body;
 
 use crate::bill::Bill;
 
-/// A mass centre nearer than this to the middle of the plate is in the middle, mm.
+/// Distance from the plate's middle below which a mass centre counts as in the middle, mm.
 const MIDDLE: f64 = 1.0;
-/// A robot.toml may be off by this share of the mass, or by this many mm, and still say
-/// what the bill says.
+/// Tolerances within which robot.toml agrees with the bill: a share of the mass, and mm.
 const SHARE: f64 = 0.05;
 const OFF: f64 = 3.0;
 
 impl Bill {
-    /// `[body]` as robot.toml should have it: whole grams, and the mass centre to a tenth
-    /// of a mm where it is not in the middle.
+    /// The values for `[body]` of robot.toml: whole grams, and the mass centre to 0.1 mm
+    /// unless it is in the middle.
     #[must_use]
     pub fn body(&self) -> Body {
         let [ahead, left, _] = self.centre;
@@ -39,8 +38,7 @@ impl Bill {
         }
     }
 
-    /// Whether a robot.toml that has this `[body]` is off by more than 5 %, or by more
-    /// than 3 mm.
+    /// True if a robot.toml with this `[body]` is off by more than 5 % or 3 mm.
     #[must_use]
     pub fn differs(&self, body: &Body) -> bool {
         let [ahead, left, _] = self.centre;
@@ -48,8 +46,8 @@ impl Bill {
         (body.mass - self.grams).abs() > SHARE * self.grams || off > OFF
     }
 
-    /// Where the mass centre is, in words that end before the name of what it is beside:
-    /// "0.1 mm behind and 0.1 mm to the right of".
+    /// The place of the mass centre relative to the plate's middle, such as "0.1 mm behind
+    /// and 0.1 mm to the right of".
     #[must_use]
     pub fn beside(&self) -> String {
         let [ahead, left, _] = self.centre;

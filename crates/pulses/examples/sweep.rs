@@ -9,7 +9,7 @@
 #![feature(abi_avr_interrupt)]
 #![allow(unsafe_code)] // Registers, and interrupts let in.
 
-use avr_device::atmega328p::Peripherals;
+use avr_device::atmega328p::{Peripherals, USART0};
 use panic_halt as _;
 use servo_pulses::cells::Byte;
 use servo_pulses::{CYCLES_PER_US, Pin};
@@ -58,12 +58,12 @@ fn main() -> ! {
     // SAFETY: nothing has run before this but the boot loader.
     let chip = unsafe { Peripherals::steal() };
     // 16 MHz / 8 / (16 + 1) = 117 647 baud, as the boot loader has it; 8N1.
-    chip.USART0.ucsr0a().write(|w| w.u2x0().set_bit());
-    chip.USART0.ubrr0().write(|w| w.set(16));
+    chip.USART0.ucsr0a.write(|w| w.u2x0().set_bit());
+    chip.USART0.ubrr0.write(|w| w.bits(16));
     chip.USART0
-        .ucsr0b()
+        .ucsr0b
         .write(|w| w.rxen0().set_bit().txen0().set_bit().rxcie0().set_bit());
-    chip.PORTB.ddrb().modify(|_, w| w.pb5().set_bit());
+    chip.PORTB.ddrb.modify(|_, w| w.pb5().set_bit());
     servos::connect(PINS);
     // SAFETY: interrupts are off, and nothing else uses Timer1.
     unsafe { servos::start() };
@@ -82,13 +82,13 @@ fn main() -> ! {
             // A toggle by one instruction: PORTB has servo pins, too.
             if tick & 15 == 0 {
                 // SAFETY: a one in this register toggles a pin of PORTB.
-                unsafe { chip.PORTB.pinb().write(|w| w.bits(1 << 5)) };
+                unsafe { chip.PORTB.pinb.write(|w| w.bits(1 << 5)) };
             }
         }
-        if CAME.get() != echoed && chip.USART0.ucsr0a().read().udre0().bit_is_set() {
+        if CAME.get() != echoed && chip.USART0.ucsr0a.read().udre0().bit_is_set() {
             let byte = RING[usize::from(echoed & 15)].get();
             echoed = echoed.wrapping_add(1);
-            chip.USART0.udr0().write(|w| w.set(byte));
+            chip.USART0.udr0.write(|w| w.bits(byte));
         }
     }
 }
@@ -96,10 +96,7 @@ fn main() -> ! {
 #[avr_device::interrupt(atmega328p)]
 fn USART_RX() {
     // SAFETY: only this handler reads UDR0.
-    let byte = unsafe { avr_device::atmega328p::USART0::steal() }
-        .udr0()
-        .read()
-        .bits();
+    let byte = unsafe { &*USART0::ptr() }.udr0.read().bits();
     let came = CAME.get();
     RING[usize::from(came & 15)].set(byte);
     CAME.set(came.wrapping_add(1));

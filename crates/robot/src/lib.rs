@@ -7,16 +7,20 @@
 //! of the core ([`CoreRobot`]) and the section of flash that carries these to the board
 //! ([`Robot::section`]).
 //!
-//! The way through the folders: the text and its mistakes (`file/`), what each measurement
-//! may be (`measures/`), what a gait is (`gaits/`), what becomes of both on the chip
-//! (`tables/`), and whether every sample of it may be walked (`checks/`): that is a `Robot`, and its
-//! gaits have tables for people to read (`reports/`). Where a gait leads
-//! on the floor is computed by `lizard-contact`, whose types are also exported here.
+//! The folders, in the order of the work: `file/` has the text and its mistakes, `measures/`
+//! the measurements and their ranges, `gaits/` the gaits in floating point, `tables/` the
+//! integers for the chip, `checks/` the check of every sample, `reports/` tables for people. The
+//! movement over the floor is computed by `lizard-contact`, whose types are exported here, too.
 //!
-//! Inside, a file without its gaits becomes `Measures`. These and the gaits' `Tables`
-//! become the integers, [`lizard_core::numbers::section::Content`]. A [`Robot`] holds all of them,
-//! and a [`CoreRobot`] is what the core reads of them. docs/firmware.md lists the types
-//! of other crates that also are a robot.
+//! A file without its gaits becomes `Measures`. These and the gaits' `Tables` become the
+//! integers, [`lizard_core::numbers::section::Content`]. A [`Robot`] holds all of them, and a
+//! [`CoreRobot`] is the core's view of it. docs/firmware.md lists the types of other crates that
+//! also describe a robot.
+//!
+//! # When not to use it
+//! For the geometry alone take `lizard-kinematics`, and for feet on a floor `lizard-contact`:
+//! neither needs a file. On a microcontroller take `lizard-core`: this crate needs `std` and
+//! floating point.
 
 mod checks;
 mod file;
@@ -29,22 +33,19 @@ mod tables;
 mod testing;
 mod units;
 
-pub use checks::{Audit, CheckedGait, Least, Peak, Walked};
-pub use file::{Error, Hint, LONGEST, Problem, mistake};
-pub use gaits::{Harmonic, Path, PathLeg, Stride, Waveform};
+pub use checks::{Audit, CheckedGait, Least, Peak, TableError, Walked};
+pub use file::{Error, LONGEST, edit, mistake};
+pub use gaits::{Bars, Harmonic, Path, PathLeg, Stride, Waveform};
 pub use lizard_contact::{
     Body, DEFAULT_FRICTION, Drive, Feet, GRAVITY, Ground, Kind, Place, Prediction, SLOT, Slip,
-    Spring, Stance, Strut, Travel, Walker,
+    Stance, Strut, Travel, Walker,
 };
 pub use measures::servo;
 pub use measures::{
     Coil, Horn, LegPlace, LegPlan, Pace, Parts, Plate, Rail, Screw, Servo, ServoBody, Supplies,
     healthy_rail_mv,
 };
-pub use reports::{
-    LEAVES, LONG, MOUNTS, PLAYS, RATIOS, Report, Row, Sensitive, Sensitivity, Sprung, TWISTS,
-    UNDECIDED,
-};
+pub use reports::{Report, Row, Sensitivity, Sprung, UNDECIDED};
 pub use robot::Robot;
-pub use tables::{CellMaps, CoreRobot, TableError, flash};
+pub use tables::{CellMaps, CoreRobot, flash};
 pub use units::{FRAMES_PER_SECOND, STEPS_PER_DEGREE, STILL_FRAMES};

@@ -1,21 +1,21 @@
-//! A whole robot.toml.
+//! A complete robot.toml: measures, gaits, and the section of flash that is made of them.
 
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
 use lizard_avr::Region;
 use lizard_contact::{Drive, Ground, Prediction, Strut, Travel};
-use lizard_core::numbers::gaits::{Gait, MOST_WAVES};
+use lizard_core::numbers::gaits::Gait;
 use lizard_core::numbers::section::{Content, LONGEST_NAME, SPACE};
 use lizard_kinematics::{Limits, Lizard, Pose, Solution, wrap};
 use toml::de::DeTable;
 
-use crate::checks::{CheckedGait, audit};
-use crate::file::{self, Checked, Error, Fault, Problem, Section};
+use crate::checks::CheckedGait;
+use crate::file::{self, Checked, Error, Fault, Section};
 use crate::gaits::define;
-use crate::measures::servo::{self, FORWARD};
+use crate::measures::servo::FORWARD;
 use crate::measures::{self, Coil, LegPlan, Measures, Pace, Parts, Plate, Servo, Supplies};
-use crate::tables::{CellMaps, CoreRobot, TabledGait, Tables, Unfit, flash, numbers};
+use crate::tables::{CellMaps, CoreRobot, Tables, flash, numbers};
 
 /// A robot whose every value and gait has been checked.
 #[derive(Debug, Clone)]
@@ -23,9 +23,9 @@ pub struct Robot {
     measures: Measures,
     gaits: Vec<CheckedGait>,
     content: Content,
-    /// What the core reads of it: the content without the maps of certified cells.
+    /// The section without the maps of certified cells, as the core on a host reads it.
     section: Arc<[u8]>,
-    /// The same for as long as the program runs, once somebody has asked for it.
+    /// The core's robot in memory that is never freed; made at the first use.
     firmware: OnceLock<CoreRobot>,
 }
 
@@ -48,57 +48,28 @@ impl Robot {
         let file = path.display().to_string();
         match file::read(path) {
             Ok(text) => Self::parse(&text).map_err(|error| Error { file, ..error }),
-            Err(problem) => Err(Error {
-                file,
-                line: None,
-                key: String::new(),
-                problem,
-            }),
+            Err(problem) => Err(Fault::new("", problem).in_file(file, None)),
         }
     }
 
-    /// Reads and checks the text of a robot.toml. A byte order mark at its start
-    /// is passed over.
+    /// Reads and checks the text of a robot.toml. A byte order mark at the start is skipped.
     ///
     /// # Errors
     /// If the text holds a mistake.
     pub fn parse(text: &str) -> Result<Self, Error> {
-        Self::checked(text, Self::read)
+        file::parse(text, Self::read)
     }
 
-    /// The same body with other gaits, which are checked: the text has the tables `gait.*`
-    /// of a robot.toml, `gait.stand` first, and nothing else.
+    /// Gives the same body `stand` and one other gait, whose table of robot.toml this is, and
+    /// checks it. The other gaits are left out.
     ///
     /// # Errors
-    /// If the text holds a mistake.
-    pub fn with_gaits(&self, text: &str) -> Result<Self, Error> {
-        Self::checked(text, |table| {
+    /// If the table holds a mistake, or the gait breaks a limit.
+    pub fn with_gait(&self, table: &str) -> Result<Self, Error> {
+        const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
+        file::parse(&format!("{STAND}{table}"), |table| {
             let root = Section::root(table, &["gait"])?;
-            Self::walking(self.name(), self.measures.clone(), &root)
-        })
-    }
-
-    fn checked(text: &str, read: impl Fn(&DeTable) -> Checked<Self>) -> Result<Self, Error> {
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let file = "robot.toml".to_string();
-        let document = DeTable::parse(text).map_err(|fault| Error {
-            file: file.clone(),
-            line: fault
-                .span()
-                .map(|span| text[..span.start].matches('\n').count() + 1),
-            key: String::new(),
-            problem: Problem::Syntax(file::mistake(
-                text,
-                fault.span().map_or(text.len(), |span| span.start),
-                fault.message(),
-            )),
-        })?;
-        let table = document.get_ref();
-        read(table).map_err(|Fault { key, problem }| Error {
-            file,
-            line: file::line(text, table, &key),
-            key,
-            problem,
+            Self::with_measures(self.name(), self.measures.clone(), &root)
         })
     }
 
@@ -111,40 +82,30 @@ impl Robot {
             ],
         )?;
         let name = name(&root)?;
-        Self::walking(name, Measures::read(&root)?, &root)
+        Self::with_measures(name, Measures::read(&root)?, &root)
     }
 
-    /// A body with the gaits of a file.
-    fn walking(name: &str, measures: Measures, root: &Section) -> Checked<Self> {
+    /// Reads and checks the gaits of a body, and makes its tables.
+    fn with_measures(name: &str, measures: Measures, root: &Section) -> Checked<Self> {
         let gaits = define::gaits(root, &measures)?;
-        let key = |name: &str| format!("gait.{name}");
-        let tables = Tables::new(&gaits).map_err(|(gait, unfit)| {
-            match unfit {
-                Unfit::HalfTurn(servo) => Problem::HalfTurn {
-                    servo: servo::NAMES[servo],
-                },
-                Unfit::Waves => Problem::ManyWaves { most: MOST_WAVES },
-            }
-            .at(key(&gaits[gait].name))
-        })?;
+        let tables = Tables::new(&gaits)?;
         let content = numbers::content(name, &measures, &tables);
         let tables = Arc::new(tables);
         let length = content.length();
         if length > usize::from(SPACE) {
-            return Err(too_large(&content, length).at("gait"));
+            return Err(too_large(&content, length));
         }
         let section: Arc<[u8]> = content.section().into();
         let flash = Region::new(&section);
-        let impossible = || Problem::Impossible.at("");
+        let impossible = || {
+            let sentence =
+                "the firmware would not take this robot: its numbers cannot be worked with";
+            Fault::new("", sentence)
+        };
         let unchecked =
             lizard_core::numbers::robot::Robot::unchecked(flash).ok_or_else(impossible)?;
-        let gaits = gaits.into_iter().enumerate().map(|(index, gait)| {
-            let gait = TabledGait::new(gait, index, &tables);
-            match audit::check(&gait, &measures, &unchecked) {
-                Ok(audit) => Ok(CheckedGait::new(gait, audit)),
-                Err(problem) => Err(problem.at(key(gait.name()))),
-            }
-        });
+        let check = |(index, gait)| CheckedGait::new(gait, index, &tables, &measures, &unchecked);
+        let gaits = gaits.into_iter().enumerate().map(check);
         let gaits = gaits.collect::<Checked<_>>()?;
         lizard_core::numbers::robot::Robot::open(flash).map_err(|_| impossible())?;
         Ok(Self {
@@ -156,32 +117,32 @@ impl Robot {
         })
     }
 
-    /// Its name, which the firmware says when it begins.
+    /// The robot's name, which the firmware prints at its start.
     pub fn name(&self) -> &str {
         &self.content.name
     }
 
-    /// Its section of flash: all that it says to the firmware, with the maps of
-    /// certified cells, which take a moment to prove. At most [`SPACE`] bytes: where there
-    /// is no room for the maps, the firmware measures every pose.
+    /// Makes the robot's section of flash, at most [`SPACE`] bytes, with the maps of certified
+    /// cells, which take a moment to prove. Without room for the maps they are left out, and
+    /// the firmware measures every pose.
     pub fn section(&self) -> Vec<u8> {
         self.with_maps().unwrap_or_else(|| self.content.section())
     }
 
-    /// Whether its section has room for the maps of certified cells.
+    /// True if the section has room for the maps of certified cells.
     pub fn has_room_for_maps(&self) -> bool {
         self.with_maps().is_some()
     }
 
-    /// The cycles, at most, that the console takes for a line whose gait is the last of all;
-    /// measured on the simulated UNO, where a test compares them.
+    /// An upper bound, in CPU cycles, of the console's search for the last gait's name. A test
+    /// compares it with the simulated UNO.
     #[must_use]
     pub fn longest_search(&self) -> usize {
         let of_gait = |gait: &CheckedGait| 1_400 + 92 * gait.name().len();
         6_000 + self.gaits().iter().map(of_gait).sum::<usize>()
     }
 
-    /// Its section with the maps, if that is not too long.
+    /// Makes the section with the maps, unless that is too long.
     fn with_maps(&self) -> Option<Vec<u8>> {
         let CellMaps {
             head,
@@ -196,48 +157,47 @@ impl Robot {
         Some(content.section()).filter(|section| section.len() <= usize::from(SPACE))
     }
 
-    /// Its numbers as its section has them.
+    /// The robot's numbers as its section has them.
     pub const fn content(&self) -> &Content {
         &self.content
     }
 
-    /// Its links.
+    /// The lengths of all links.
     pub fn lizard(&self) -> &Lizard {
         &self.measures.lizard
     }
 
-    /// Its servos A1, A2, A3, A4.
+    /// The servos A1, A2, A3, A4.
     pub fn servos(&self) -> &[Servo; 4] {
         &self.measures.servos
     }
 
-    /// What its poses must keep clear of.
+    /// Limits of margins and sliders for every pose.
     pub fn limits(&self) -> &Limits {
         &self.measures.limits
     }
 
-    /// How fast its servos may turn.
+    /// Limits of the servos' speed.
     pub fn pace(&self) -> &Pace {
         &self.measures.pace
     }
 
-    /// What is measured of its supplies.
+    /// Thresholds of the board's supply and of the servos' rail.
     pub fn supplies(&self) -> &Supplies {
         &self.measures.supplies
     }
 
-    /// What it is built of.
+    /// Measures of the parts to print and to buy.
     pub fn parts(&self) -> &Parts {
         &self.measures.parts
     }
 
-    /// What drives its legs.
+    /// The drive between each servo's link and its leg.
     pub fn drive(&self) -> &Drive {
         &self.ground().drive
     }
 
-    /// Its slotted strut, which drives its legs or would: with this force (N) and rate
-    /// (N/mm) of the spring in it.
+    /// A slotted strut of this robot's size, with a spring of this force (N) and rate (N/mm).
     pub fn strut_with(&self, force: f64, rate: f64) -> Strut {
         Strut {
             force,
@@ -246,69 +206,69 @@ impl Robot {
         }
     }
 
-    /// The same with a spring from the shop mounted in it.
+    /// A slotted strut of this robot's size with this spring from a shop.
     pub fn strut_of(&self, coil: &Coil) -> Strut {
         measures::of_coil(self.legs(), self.measures.neutral(), self.parts(), coil)
     }
 
-    /// The length of a spring inside its hooks as it hangs in a strut, mm.
+    /// The length, inside its hooks, of a spring that is mounted in a strut, mm.
     pub fn hung(&self) -> f64 {
         measures::hung(self.legs(), self.parts())
     }
 
-    /// Its legs seen from above, servo order.
+    /// The legs seen from above, in servo order.
     pub fn legs(&self) -> &[LegPlan; 4] {
         &self.measures.legs
     }
 
-    /// Its chassis seen from above.
+    /// The chassis seen from above.
     pub fn plate(&self) -> Plate {
         Plate::new(self.legs(), self.parts())
     }
 
-    /// Its feet on the floor.
+    /// The contact model of this robot on its floor.
     pub fn ground(&self) -> &Ground {
         &self.measures.ground
     }
 
-    /// Its gaits in the order of the file; the first is `stand`.
+    /// The gaits in the order of the file; the first is `stand`.
     pub fn gaits(&self) -> &[CheckedGait] {
         &self.gaits
     }
 
-    /// A gait by its name; a blank in it counts as a dash.
+    /// Finds a gait by its name, with dashes or blanks between its words.
     pub fn gait(&self, name: &str) -> Option<&CheckedGait> {
         let name = name.replace(' ', "-");
         self.gaits.iter().find(|gait| gait.name() == name)
     }
 
-    /// The robot as the core reads it, on a host: without the maps of certified cells,
-    /// which change no decision.
+    /// The core's view of this robot, on a host: without the maps of certified cells, which
+    /// change no decision.
     pub fn core(&self) -> lizard_core::numbers::robot::Robot<'_> {
         // It was opened when the robot was read.
         lizard_core::numbers::robot::Robot::unchecked(Region::new(&self.section))
             .unwrap_or(lizard_core::numbers::robot::Robot::NONE)
     }
 
-    /// The same for whoever runs the core, which may take as long as the program: its section
-    /// stays in memory until the program ends. [`Robot::core`] keeps nothing.
+    /// The core's view of this robot for a simulation of the core. Its section stays in memory
+    /// until the program ends; that of [`Robot::core`] does not.
     pub fn firmware(&self) -> &CoreRobot {
         self.firmware
             .get_or_init(|| CoreRobot::unchecked(flash(&self.section)).unwrap_or(CoreRobot::NONE))
     }
 
-    /// The cells in which its guard is proved to accept every pose.
+    /// Computes the cells in which the guard is proved to accept every pose.
     pub fn cell_maps(&self) -> CellMaps {
         CellMaps::new(self.lizard(), &self.content)
     }
 
-    /// The neutral pose.
+    /// The neutral pose of the servos.
     pub fn neutral(&self) -> Pose {
         self.measures.neutral().into()
     }
 
-    /// The robot at servo angles (deg, chassis frame, servo order), if it may take this
-    /// pose: its guard accepts it, and the servos reach it.
+    /// Solves the robot at servo angles (deg, chassis frame, servo order), if the servos reach
+    /// this pose and its limits allow it.
     pub fn accepted(&self, angles: [f64; 4]) -> Option<Solution> {
         let mut servos = self.servos().iter().zip(angles);
         if !servos.all(|(servo, angle)| servo.reaches(angle)) {
@@ -318,29 +278,29 @@ impl Robot {
         self.limits().allow(&solution).then_some(solution)
     }
 
-    /// The legs' sweeps (deg, foot forward positive) at servo angles (deg,
-    /// chassis frame), both in servo order.
+    /// Converts servo angles (deg, chassis frame) to the legs' sweeps (deg, foot forward
+    /// positive), both in servo order.
     pub fn sweeps(&self, angles: [f64; 4]) -> [f64; 4] {
         let neutral = self.measures.neutral();
         std::array::from_fn(|i| FORWARD[i] * wrap(angles[i] - neutral[i]))
     }
 
-    /// Where the robot gets to when its servos take these angles (deg, chassis
-    /// frame, servo order) one after another, by the contact model with rigid legs,
-    /// whether or not that depends on ties.
+    /// Predicts the movement of the body while the servos take these angles (deg, chassis
+    /// frame, servo order) one after another, by the contact model with rigid legs; also if it
+    /// depends on ties.
     pub fn travel(&self, angles: impl IntoIterator<Item = [f64; 4]>) -> Travel {
         self.ground()
             .rigid()
             .travel(angles.into_iter().map(|angles| self.sweeps(angles)))
     }
 
-    /// Where one cycle of a gait takes the robot, as [`CheckedGait::predict`] on
-    /// its own floor.
+    /// Predicts one cycle of a gait on the robot's own floor.
     pub fn predict(&self, gait: &CheckedGait) -> Prediction {
         gait.predict(self.ground())
     }
 }
-/// The name at the top of the file.
+
+/// Reads the robot's name at the top of the file.
 fn name<'a>(root: &Section<'a>) -> Checked<&'a str> {
     if !root.has("name") {
         return Ok("robot");
@@ -348,19 +308,22 @@ fn name<'a>(root: &Section<'a>) -> Checked<&'a str> {
     let name = root.text("name")?;
     let letters = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
     if name.is_empty() || name.len() > LONGEST_NAME || !name.chars().all(letters) {
-        return Err(Problem::RobotName { most: LONGEST_NAME }.at("name"));
+        let sentence =
+            format!("must be at most {LONGEST_NAME} lower-case letters, digits and dashes");
+        return Err(Fault::new("name", sentence));
     }
     Ok(name)
 }
 
-/// What takes the room of a section that is too large.
-fn too_large(content: &Content, bytes: usize) -> Problem {
-    Problem::Large {
-        over: bytes - usize::from(SPACE),
-        most: SPACE.into(),
-        waves: content.waves.len(),
-        of_waves: std::mem::size_of_val(content.waves.as_slice()),
-        gaits: content.gaits.len(),
-        of_gaits: content.gaits.len() * size_of::<Gait>() + content.names.len(),
-    }
+/// The mistake of a robot whose section is too large, with the bytes of its waves and gaits.
+fn too_large(content: &Content, bytes: usize) -> Fault {
+    let over = bytes - usize::from(SPACE);
+    let waves = content.waves.len();
+    let of_waves = std::mem::size_of_val(content.waves.as_slice());
+    let gaits = content.gaits.len();
+    let of_gaits = gaits * size_of::<Gait>() + content.names.len();
+    let sentence = format!(
+        "the robot takes {over} bytes more than the {SPACE} that the board has for it; {waves} waveforms take {of_waves}, {gaits} gaits and their names {of_gaits}: leave out gaits, first those whose waveform no other has"
+    );
+    Fault::new("gait", sentence)
 }

@@ -1,17 +1,17 @@
-//! Robots for the unit tests, from the files in robots/.
+//! Robots of the files in robots/, for the unit tests.
 
 use crate::{Error, Robot};
 
-/// The robots whose files are complete.
+/// Names of the files in robots/.
 pub const NAMES: [&str; 4] = ["paper", "large", "unequal", "own-gaits"];
 
-/// The text of a robot's file.
+/// Reads the text of a robot's file.
 pub fn text(name: &str) -> String {
     let path = format!("{}/../../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     std::fs::read_to_string(&path).expect(&path)
 }
 
-/// A robot with some of its file replaced, each time the first that fits.
+/// Reads a robot with parts of its file replaced, each at its first occurrence.
 pub fn with(name: &str, changes: &[(&str, &str)]) -> Result<Robot, Error> {
     let mut text = text(name);
     for (from, to) in changes {
@@ -21,17 +21,17 @@ pub fn with(name: &str, changes: &[(&str, &str)]) -> Result<Robot, Error> {
     Robot::parse(&text)
 }
 
-/// A robot as its file has it.
+/// Reads a robot from its file.
 pub fn robot(name: &str) -> Robot {
     with(name, &[]).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
-/// All robots.
+/// Reads all robots.
 pub fn all() -> impl Iterator<Item = (&'static str, Robot)> {
     NAMES.into_iter().map(|name| (name, robot(name)))
 }
 
-/// The text of a robot's file up to its gaits.
+/// Reads the text of a robot's file up to its gaits.
 pub fn body(name: &str) -> String {
     let text = text(name);
     let gaits = text.find("[gait.stand]").expect("stand");

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "adc.h"
 
-#include "chip.h"
-#include "hook.h"
-
 enum { /* ADCSRA */
 	ADEN = 1 << 7, ADSC = 1 << 6, ADATE = 1 << 5, ADIF = 1 << 4, ADIE = 1 << 3, ADPS = 7,
 };
@@ -44,7 +41,6 @@ static double input_mv(const struct adc *adc)
 
 static avr_cycle_count_t sample(avr_t *avr, avr_cycle_count_t when, void *param)
 {
-	(void)avr;
 	struct adc *adc = param;
 	double reference = 0.0; /* AREF: nothing is connected */
 	if (adc->reference == REFERENCE_AVCC)
@@ -134,12 +130,6 @@ static void write_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void
 	interrupts_changed(adc->interrupts);
 }
 
-static uint8_t read_plain(avr_t *avr, avr_io_addr_t address, void *param)
-{
-	(void)param;
-	return avr->data[address];
-}
-
 static void write_channel(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
 	struct adc *adc = param;
@@ -163,10 +153,6 @@ static uint8_t read_result(avr_t *avr, avr_io_addr_t address, void *param)
 
 static void write_nothing(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
-	(void)avr;
-	(void)address;
-	(void)value;
-	(void)param;
 }
 
 void adc_attach(struct adc *adc, avr_t *avr)
@@ -187,9 +173,9 @@ void adc_correct(struct adc *adc, const struct instruction *instruction,
 	adc->interrupts = interrupts;
 	adc->supply = supply;
 	hook_write(avr, REG_ADCSRA, write_control, adc);
-	hook_read(avr, REG_ADCSRA, read_plain, adc);
+	hook_read(avr, REG_ADCSRA, NULL, NULL);
 	hook_write(avr, REG_ADMUX, write_channel, adc);
-	hook_read(avr, REG_ADMUX, read_plain, adc);
+	hook_read(avr, REG_ADMUX, NULL, NULL);
 	const uint16_t data[2] = { REG_ADCL, REG_ADCH };
 	for (int i = 0; i < 2; i++) {
 		hook_read(avr, data[i], read_result, adc);

@@ -7,14 +7,9 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef ADC_H
-#define ADC_H
-
-#include <stdbool.h>
-#include <stdint.h>
+#pragma once
 
 #include <simavr/avr_adc.h>
-#include <simavr/sim_avr.h>
 
 #include "instruction.h"
 #include "interrupts.h"
@@ -30,21 +25,19 @@ struct adc {
 	avr_adc_t *stock;              /* simavr's, for its interrupt vector */
 	uint16_t pins[ADC_PINS];       /* mV at ADC0 to ADC7 */
 	double bandgap;                /* mV */
-	uint64_t enabled, selected;    /* cycles of ADEN and of the channel's choice */
-	double before;                 /* mV of the channel chosen before */
+	uint64_t enabled, selected;    /* cycles at which ADEN and the channel were set */
+	double before;                 /* mV of the previous channel */
 	bool converting, first, locked;
-	uint8_t mux, reference;        /* of the conversion under way */
-	double settled;                /* how far the bandgap was at its start, 0 to 1 */
+	uint8_t mux, reference;        /* of the conversion in progress */
+	double settled;                /* share of the bandgap's settling at its start, 0 to 1 */
 	uint64_t sample_at, end;
 	uint16_t sampled, result;
 };
 
-/* Values at the pins and the bandgap; all in the stock fidelity. */
+/* Sets the values at the pins and the bandgap; there is no more in the stock fidelity. */
 void adc_attach(struct adc *adc, avr_t *avr);
-/* Takes its registers from simavr. */
+/* Replaces simavr's handlers of its registers. */
 void adc_correct(struct adc *adc, const struct instruction *instruction,
                  struct interrupts *interrupts, const struct supply *supply);
 void adc_set_pin(struct adc *adc, uint8_t channel, uint16_t mv);
 void adc_reset(struct adc *adc);
-
-#endif

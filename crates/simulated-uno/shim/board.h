@@ -2,8 +2,7 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef BOARD_H
-#define BOARD_H
+#pragma once
 
 #include "adc.h"
 #include "call_timer.h"
@@ -15,7 +14,6 @@
 #include "recorder.h"
 #include "reset.h"
 #include "sender.h"
-#include "serial_bytes.h"
 #include "stock_uart.h"
 #include "supply.h"
 #include "timer1.h"
@@ -56,5 +54,3 @@ struct uno {
 	struct usart usart;
 	struct watchdog watchdog;
 };
-
-#endif

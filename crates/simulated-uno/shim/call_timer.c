@@ -23,7 +23,7 @@ void call_timer_set(struct call_timer *timer, bool on, uint32_t entry)
 	timer->inside = false;
 }
 
-void call_timer_look(struct call_timer *timer)
+void call_timer_check(struct call_timer *timer)
 {
 	const avr_t *avr = timer->avr;
 	uint16_t sp = avr->data[R_SPL] | avr->data[R_SPH] << 8;

@@ -2,13 +2,7 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef CALL_TIMER_H
-#define CALL_TIMER_H
-
-#include <stdbool.h>
-#include <stdint.h>
-
-#include <simavr/sim_avr.h>
+#pragma once
 
 #include "handlers.h"
 #include "list.h"
@@ -18,7 +12,7 @@ struct call { uint64_t enter, leave, interrupted; };
 struct call_timer {
 	const avr_t *avr;
 	const struct handlers *handlers;
-	bool on;                /* simavr must then run one instruction at a time */
+	bool on;                /* then simavr must run one instruction at a time */
 	bool inside;            /* between entry and return */
 	uint32_t entry, back;   /* byte addresses in flash */
 	uint16_t stack_pointer; /* at entry */
@@ -30,8 +24,6 @@ void call_timer_attach(struct call_timer *timer, const avr_t *avr,
                        const struct handlers *handlers);
 void call_timer_reset(struct call_timer *timer);
 void call_timer_set(struct call_timer *timer, bool on, uint32_t entry);
-/* Looks at the instruction that comes next. */
-void call_timer_look(struct call_timer *timer);
+/* Checks the next instruction for an entry or a return. */
+void call_timer_check(struct call_timer *timer);
 void call_timer_free(struct call_timer *timer);
-
-#endif

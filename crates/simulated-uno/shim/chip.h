@@ -1,9 +1,12 @@
-/* What the shim needs to know of an ATmega328P at 16 MHz.
+/* An ATmega328P at 16 MHz: its registers, and a place of its own in simavr's table of them.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef CHIP_H
-#define CHIP_H
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
 
 #include <simavr/sim_avr.h>
 #include <simavr/sim_io.h>
@@ -35,7 +38,15 @@ enum {
  * libsimavr has none. */
 avr_io_t *chip_part(avr_t *avr, const char *kind);
 
-/* Cycles until then, at least one: what simavr's timers want to know. */
+/* The cycles up to then, at least one: the argument of simavr's timers. */
 uint64_t chip_cycles_until(const avr_t *avr, uint64_t cycle);
 
-#endif
+/* A callback of simavr for each read or write of an I/O register. simavr's own
+ * registration refuses to replace a callback that is there. */
+struct write_hook { avr_io_write_t call; void *param; };
+struct read_hook { avr_io_read_t call; void *param; };
+
+/* Both return the previous callback. `address` is a data address. Without a `call`, the register
+ * is plain memory. */
+struct write_hook hook_write(avr_t *avr, uint16_t address, avr_io_write_t call, void *param);
+struct read_hook hook_read(avr_t *avr, uint16_t address, avr_io_read_t call, void *param);

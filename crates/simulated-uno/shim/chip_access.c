@@ -1,9 +1,8 @@
-/* What src/ sees of EEPROM, supply, ADC and resets.
+/* EEPROM, supply, ADC, resets, boot loader and flash, as src/ uses them.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "board.h"
-#include "chip.h"
 #include "restart.h"
 
 void uno_reset(struct uno *uno)
@@ -83,3 +82,12 @@ void uno_set_analog(struct uno *uno, uint8_t channel, uint16_t mv)
 {
 	adc_set_pin(&uno->adc, channel, mv);
 }
+
+void uno_boot_at(struct uno *uno, uint32_t address)
+{
+	uno->avr->codeend = uno->avr->flashend; /* more code may come */
+	uno->avr->reset_pc = address;
+	uno->avr->pc = address;
+}
+
+uint8_t *uno_flash(struct uno *uno) { return uno->avr->flash; }

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "eeprom.h"
 
-#include "chip.h"
-#include "hook.h"
-
 enum { /* EECR */
 	EEPM = 3 << 4, EERIE = 1 << 3, EEMPE = 1 << 2, EEPE = 1 << 1, EERE = 1 << 0,
 };
@@ -12,10 +9,9 @@ enum { /* EECR */
 #define READ_HALT 4
 #define WRITE_HALT 2
 
-/* Table 8-1, by EEPM; the fourth is reserved and taken for the first. */
-static const uint64_t duration[4] = {
+/* Table 8-1, by enum eeprom_mode. */
+static const uint64_t duration[] = {
 	3400 * CHIP_CYCLES_PER_US, 1800 * CHIP_CYCLES_PER_US, 1800 * CHIP_CYCLES_PER_US,
-	3400 * CHIP_CYCLES_PER_US,
 };
 
 static struct eeprom_operation *latest(struct eeprom *eeprom)
@@ -37,7 +33,6 @@ static void set_idle(struct eeprom *eeprom)
 
 static avr_cycle_count_t finish(avr_t *avr, avr_cycle_count_t when, void *param)
 {
-	(void)when;
 	struct eeprom *eeprom = param;
 	const struct eeprom_operation *operation = latest(eeprom);
 	eeprom->stock->eeprom[operation->address] = operation->stored;
@@ -48,8 +43,6 @@ static avr_cycle_count_t finish(avr_t *avr, avr_cycle_count_t when, void *param)
 
 static avr_cycle_count_t cut_power(avr_t *avr, avr_cycle_count_t when, void *param)
 {
-	(void)avr;
-	(void)when;
 	struct eeprom *eeprom = param;
 	reset_ask_power_cut(eeprom->reset);
 	return 0;
@@ -93,6 +86,8 @@ static void begin(struct eeprom *eeprom, uint64_t cycle)
 {
 	avr_t *avr = eeprom->avr;
 	uint8_t mode = (avr->data[REG_EECR] & EEPM) >> 4;
+	if (mode > EEPROM_WRITE)
+		mode = EEPROM_ERASE_WRITE; /* reserved */
 	uint16_t address = address_of(avr);
 	uint8_t old = eeprom->stock->eeprom[address];
 	uint8_t data = avr->data[REG_EEDR];

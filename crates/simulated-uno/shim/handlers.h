@@ -1,13 +1,8 @@
-/* How often each interrupt is served and how many cycles its handler takes.
+/* The number of times that each interrupt is served, and the cycles of its handler.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef HANDLERS_H
-#define HANDLERS_H
-
-#include <stdint.h>
-
-#include <simavr/sim_avr.h>
+#pragma once
 
 #include "chip.h"
 
@@ -18,7 +13,7 @@ struct handlers {
 	struct vector_use vectors[CHIP_VECTORS];
 	uint8_t running[16];    /* nested handlers, the innermost last */
 	uint8_t depth;
-	uint64_t running_since; /* cycle at which the innermost began or went on */
+	uint64_t running_since; /* cycle at which the innermost started or resumed */
 	uint64_t finished;      /* cycles in handlers up to `running_since` */
 };
 
@@ -26,5 +21,3 @@ void handlers_attach(struct handlers *handlers, avr_t *avr);
 void handlers_reset(struct handlers *handlers);
 /* Cycles spent in all handlers up to now. */
 uint64_t handlers_cycles(const struct handlers *handlers);
-
-#endif

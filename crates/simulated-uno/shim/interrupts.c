@@ -1,12 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "interrupts.h"
 
-#include <stddef.h>
-
 #include <simavr/sim_core.h>
-
-#include "chip.h"
-#include "hook.h"
 
 #define ENTRY_CYCLES 4
 #define WAKE_CYCLES 4

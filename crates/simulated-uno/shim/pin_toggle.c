@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pin_toggle.h"
 
-#include "chip.h"
-
 static const uint16_t registers[3] = { REG_PINB, REG_PINC, REG_PIND };
 
 static void write_pin(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)

@@ -3,10 +3,8 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef PIN_TOGGLE_H
-#define PIN_TOGGLE_H
+#pragma once
 
-#include "hook.h"
 #include "instruction.h"
 
 struct pin_toggle {
@@ -15,5 +13,3 @@ struct pin_toggle {
 };
 
 void pin_toggle_attach(struct pin_toggle *toggle, const struct instruction *instruction);
-
-#endif

@@ -3,8 +3,6 @@
 
 #include <simavr/avr_ioport.h>
 
-#include "chip.h"
-
 /* Arduino's numbers: D0 to D7 are port D, D8 to D13 port B, and 14 to 19 are
  * A0 to A5, port C. */
 static const struct recorded_port board[3] = {

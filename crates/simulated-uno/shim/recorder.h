@@ -1,14 +1,9 @@
-/* What an oscilloscope on the board would show: every edge of the pins that it
- * is clipped to, and every store to GPIOR0, which firmware may use as a mark.
+/* An oscilloscope on the board: records every edge of the pins that it is connected to,
+ * and every store to GPIOR0, which firmware may use as a mark.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef RECORDER_H
-#define RECORDER_H
-
-#include <stdint.h>
-
-#include <simavr/sim_avr.h>
+#pragma once
 
 #include "instruction.h"
 #include "list.h"
@@ -37,5 +32,3 @@ void recorder_attach(struct recorder *recorder, const struct instruction *instru
 /* Every recorded pin that is high goes low: a reset makes all pins inputs. */
 void recorder_release_pins(struct recorder *recorder);
 void recorder_free(struct recorder *recorder);
-
-#endif

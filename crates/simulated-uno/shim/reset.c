@@ -4,9 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "chip.h"
-#include "hook.h"
-
 #define REGISTERS 32 /* r0 to r31 */
 #define FIRST_NOISE UINT64_C(0x2545f4914f6cdd1d)
 
@@ -59,12 +56,22 @@ void reset_stop_timers(const struct reset *reset)
 	}
 }
 
+/* The one cause that is recorded of several at once. */
+static uint8_t main_cause(uint8_t causes)
+{
+	static const uint8_t order[] = { RESET_POWER_ON, RESET_BROWN_OUT, RESET_WATCHDOG };
+	for (size_t i = 0; i < ARRAY_SIZE(order); i++)
+		if (causes & order[i])
+			return order[i];
+	return RESET_EXTERNAL;
+}
+
 void reset_note(struct reset *reset, uint8_t cause, uint64_t now)
 {
 	cause &= ~RESET_HOLD;
 	if (cause) {
 		struct reset_event *event = list_push(&reset->events);
-		*event = (struct reset_event){ now, cause };
+		*event = (struct reset_event){ now, main_cause(cause) };
 	}
 	if (cause & RESET_POWER_ON)
 		reset->flags = RESET_POWER_ON;

@@ -5,8 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "chip.h"
-
 #define FRAME_BITS 10.0   /* start, eight data, stop */
 #define SAMPLED_BITS 9.5  /* a receiver is done in the middle of the stop bit */
 
@@ -30,7 +28,6 @@ static bool next_byte(struct sender *sender, struct line_byte *byte)
 
 static avr_cycle_count_t end_byte(avr_t *avr, avr_cycle_count_t when, void *param)
 {
-	(void)when;
 	struct sender *sender = param;
 	sender->busy = false;
 	serial_bytes_push(&sender->delivered, avr->cycle, sender->byte.value);

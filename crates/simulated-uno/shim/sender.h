@@ -1,28 +1,20 @@
 /* The other end of the serial cable: a PC's UART, which sends one byte after
- * another with nothing between the stop bit and the next start bit. It does
- * not know whether the UNO keeps up.
+ * another with no pause between the stop bit and the next start bit, whether or not the
+ * UNO keeps up.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef SENDER_H
-#define SENDER_H
-
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <simavr/sim_avr.h>
+#pragma once
 
 #include "list.h"
-#include "serial_bytes.h"
 
-/* A byte as it comes through the line. */
+/* A byte on the line. */
 struct line_byte {
 	uint8_t value;
 	bool stop_low;  /* the line is low where the stop bit should be */
 };
 
-/* What the cable is plugged into. */
+/* The UART at the UNO's end of the cable. */
 struct receiver {
 	void *param;
 	/* Cycles from one start bit to the next, given the sender's own. */
@@ -38,7 +30,7 @@ struct sender {
 	double line_free;               /* cycle at which the last stop bit ends */
 	struct list queue;              /* struct line_byte */
 	size_t next;                    /* first unsent byte of the queue */
-	uint8_t *flood;                 /* sent over and over once the queue is empty */
+	uint8_t *flood;                 /* sent repeatedly once the queue is empty */
 	size_t flood_length, flood_next;
 	uint64_t sent;                  /* bytes put on the line */
 	struct line_byte byte;          /* on the line now */
@@ -54,10 +46,8 @@ void sender_set_baud(struct sender *sender, double baud);
  * the CPU sleeps. */
 void sender_send(struct sender *sender, const uint8_t *bytes, size_t length, bool stop_low,
                  uint64_t now);
-/* Repeats `bytes` for ever after what is queued; length 0 ends it. */
+/* Repeats `bytes` forever once the queue is empty; length 0 ends it. */
 void sender_flood(struct sender *sender, const uint8_t *bytes, size_t length, uint64_t now);
-/* Queued bytes that are not through the line. */
+/* The number of queued bytes that have not arrived. */
 size_t sender_unsent(const struct sender *sender);
 void sender_free(struct sender *sender);
-
-#endif

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "stock_uart.h"
 
-#include "chip.h"
-
 static void on_transmit(struct avr_irq_t *irq, uint32_t value, void *param)
 {
-	(void)irq;
 	struct stock_uart *stock = param;
 	uint64_t cycle = instruction_effect_cycle(stock->instruction);
 	serial_bytes_push(stock->transmitted, cycle, value);
@@ -22,12 +19,10 @@ static double frame_cycles(void *param, double frame)
 
 static void start_bit(void *param)
 {
-	(void)param;
 }
 
 static void receive(void *param, struct line_byte byte, double cycles_per_bit)
 {
-	(void)cycles_per_bit;
 	const struct stock_uart *stock = param;
 	uint32_t input = byte.value | (byte.stop_low ? UART_INPUT_FE : 0);
 	avr_raise_irq(stock->uart->io.irq + UART_IRQ_INPUT, input);

@@ -2,26 +2,22 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef STOCK_UART_H
-#define STOCK_UART_H
+#pragma once
 
 #include <simavr/avr_uart.h>
-#include <simavr/sim_avr.h>
 
 #include "instruction.h"
 #include "sender.h"
-#include "serial_bytes.h"
+#include "list.h"
 
 struct stock_uart {
 	avr_uart_t *uart;                       /* simavr's */
 	const struct instruction *instruction;
-	struct serial_bytes *transmitted;       /* where its bytes go */
+	struct serial_bytes *transmitted;       /* the record of its bytes */
 };
 
 /* Switches off simavr's waits and echo, and collects what it transmits. */
 void stock_uart_attach(struct stock_uart *stock, const struct instruction *instruction,
                        struct serial_bytes *transmitted);
-/* Its end of the cable. */
+/* The receiver for the sender's cable. */
 struct receiver stock_uart_receiver(struct stock_uart *stock);
-
-#endif

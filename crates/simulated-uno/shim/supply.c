@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "supply.h"
 
-#include <stddef.h>
-
-#include "chip.h"
-
 #define NOMINAL 5000.0
 #define BROWN_OUT 2700.0      /* VBOT of the UNO's fuses, BODLEVEL = 101 (29.5) */
 #define HYSTERESIS 50.0       /* VHYST */
@@ -80,7 +76,6 @@ static void judge(struct supply *supply, double mv)
 
 static avr_cycle_count_t look(avr_t *avr, avr_cycle_count_t when, void *param)
 {
-	(void)when;
 	struct supply *supply = param;
 	judge(supply, supply_mv(supply, avr->cycle));
 	schedule(supply);
@@ -89,8 +84,6 @@ static avr_cycle_count_t look(avr_t *avr, avr_cycle_count_t when, void *param)
 
 static avr_cycle_count_t cut(avr_t *avr, avr_cycle_count_t when, void *param)
 {
-	(void)avr;
-	(void)when;
 	struct supply *supply = param;
 	supply->cut_at = 0;
 	reset_ask_power_cut(supply->reset);

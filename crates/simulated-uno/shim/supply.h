@@ -1,15 +1,9 @@
-/* The supply voltage, VCC and AVCC in one as on an UNO, and what the chip does
- * when it fails: brown-out reset (data sheet 11.5) and power-on reset (11.3).
+/* The supply voltage, VCC and AVCC in one as on an UNO, and the resets by it: brown-out
+ * (data sheet 11.5) and power-on (11.3).
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef SUPPLY_H
-#define SUPPLY_H
-
-#include <stdbool.h>
-#include <stdint.h>
-
-#include <simavr/sim_avr.h>
+#pragma once
 
 #include "eeprom.h"
 #include "reset.h"
@@ -22,8 +16,8 @@ struct supply {
 	uint64_t start, end;
 	double brown_out;        /* mV, 0: the fuse is off */
 	bool data_sheet;
-	bool held;               /* the supply keeps the chip in reset */
-	bool lost;               /* and has been too low for the SRAM */
+	bool held;               /* the supply holds the chip in reset */
+	bool lost;               /* the supply has been too low for the SRAM */
 	uint64_t cut_at;         /* cycle at which the power is cut, 0: never */
 };
 
@@ -34,11 +28,9 @@ double supply_mv(const struct supply *supply, uint64_t cycle);
 void supply_ramp(struct supply *supply, double mv, uint64_t now, uint64_t cycles);
 void supply_set_brown_out(struct supply *supply, double mv, uint64_t now);
 void supply_cut_at(struct supply *supply, uint64_t cycle);
-/* Whether the supply, or a power cut, will do something yet. */
+/* True while a ramp of the supply or a power cut can still reset the chip. */
 bool supply_may_reset(const struct supply *supply);
 /* simavr's reset drops its timers. */
 void supply_reset(struct supply *supply);
-/* Power comes back after a cut: `held` is judged anew. */
+/* The power is restored after a cut: sets `held` by the present voltage. */
 void supply_power_on(struct supply *supply);
-
-#endif

@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "timer1.h"
 
-#include "chip.h"
-
 static const uint16_t low_bytes[4] = { REG_TCNT1L, REG_ICR1L, REG_OCR1AL, REG_OCR1BL };
 
 static void write_high(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
-	(void)avr;
-	(void)address;
 	((struct timer1 *)param)->temp = value;
 }
 
@@ -43,8 +39,6 @@ static uint8_t read_capture_low(avr_t *avr, avr_io_addr_t address, void *param)
 
 static uint8_t read_temp(avr_t *avr, avr_io_addr_t address, void *param)
 {
-	(void)avr;
-	(void)address;
 	return ((struct timer1 *)param)->temp;
 }
 

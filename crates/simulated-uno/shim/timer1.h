@@ -3,14 +3,9 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef TIMER1_H
-#define TIMER1_H
+#pragma once
 
-#include <stdint.h>
-
-#include <simavr/sim_avr.h>
-
-#include "hook.h"
+#include "chip.h"
 
 struct timer1 {
 	uint8_t temp;
@@ -20,5 +15,3 @@ struct timer1 {
 
 void timer1_attach(struct timer1 *timer1, avr_t *avr);
 void timer1_reset(struct timer1 *timer1);
-
-#endif

@@ -16,11 +16,9 @@
 #include <simavr/sim_core.h>
 
 #include "board.h"
-#include "chip.h"
 #include "restart.h"
 
 #define SLICE 256  /* most cycles simavr runs on its own: a run ends this exactly */
-
 
 static void on_log(avr_t *avr, const int level, const char *format, va_list args)
 {
@@ -163,7 +161,7 @@ static void run_instructions(struct uno *uno, uint64_t until)
 {
 	avr_t *avr = uno->avr;
 	if (uno->call_timer.on) {
-		call_timer_look(&uno->call_timer);
+		call_timer_check(&uno->call_timer);
 		avr->run_cycle_limit = 1;
 	} else if (disturbance_waits(&uno->disturbance)) {
 		avr->run_cycle_limit = 1;

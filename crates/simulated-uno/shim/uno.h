@@ -1,20 +1,15 @@
-/* One simulated UNO, as src/ffi.rs sees it.
+/* The interface of one simulated UNO to src/ffi.rs.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef UNO_H
-#define UNO_H
-
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
+#pragma once
 
 #include "handlers.h"
 #include "list.h"
 
 struct uno;
 
-/* What ended a run. Kept in step with `Stop` in src/ffi.rs. */
+/* The reason for the end of a run. Kept in step with `Stop` in src/ffi.rs. */
 enum stop { STOP_TIME, STOP_LINE, STOP_HALTED, STOP_CRASHED, STOP_OFF };
 
 void uno_set_logger(void);
@@ -91,5 +86,3 @@ void uno_set_analog(struct uno *uno, uint8_t channel, uint16_t mv);
 /* From now on a reset starts the program at this byte address (BOOTRST). */
 void uno_boot_at(struct uno *uno, uint32_t address);
 uint8_t *uno_flash(struct uno *uno);                 /* 32768 bytes */
-
-#endif

@@ -3,9 +3,6 @@
 
 #include <math.h>
 
-#include "chip.h"
-#include "hook.h"
-
 enum { /* UCSR0A */
 	RXC = 1 << 7, TXC = 1 << 6, UDRE = 1 << 5, FE = 1 << 4, DOR = 1 << 3,
 	U2X = 1 << 1, MPCM = 1 << 0,
@@ -91,7 +88,6 @@ static void receive(void *param, struct line_byte byte, double sender_cycles_per
 
 static uint8_t read_data(avr_t *avr, avr_io_addr_t addr, void *param)
 {
-	(void)addr;
 	struct usart *usart = param;
 	uint8_t byte = usart->fifo[0];
 	if (!usart->count)
@@ -128,7 +124,6 @@ static avr_cycle_count_t sent(avr_t *avr, avr_cycle_count_t when, void *param)
 
 static void write_data(avr_t *avr, avr_io_addr_t addr, uint8_t value, void *param)
 {
-	(void)addr;
 	struct usart *usart = param;
 	if (!(avr->data[REG_UCSR0B] & TXEN) || usart->next_full)
 		return; /* ignored by the transmitter */
@@ -146,7 +141,6 @@ static void write_data(avr_t *avr, avr_io_addr_t addr, uint8_t value, void *para
 
 static void write_status(avr_t *avr, avr_io_addr_t addr, uint8_t value, void *param)
 {
-	(void)addr;
 	struct usart *usart = param;
 	uint8_t *a = &avr->data[REG_UCSR0A];
 	if (value & TXC) {
@@ -154,12 +148,6 @@ static void write_status(avr_t *avr, avr_io_addr_t addr, uint8_t value, void *pa
 		usart->vectors->txc.pending = 0;
 	}
 	*a = (*a & ~(U2X | MPCM)) | (value & (U2X | MPCM));
-}
-
-static uint8_t read_status(avr_t *avr, avr_io_addr_t addr, void *param)
-{
-	(void)param;
-	return avr->data[addr];
 }
 
 static void write_control(avr_t *avr, avr_io_addr_t addr, uint8_t value, void *param)
@@ -174,16 +162,9 @@ static void write_control(avr_t *avr, avr_io_addr_t addr, uint8_t value, void *p
 	interrupts_changed(usart->interrupts); /* enabling an interrupt whose flag is up fires it */
 }
 
-static void write_plain(avr_t *avr, avr_io_addr_t addr, uint8_t value, void *param)
-{
-	(void)param;
-	avr->data[addr] = value;
-}
-
 /* The frame is as long as the sender makes it. */
 static double frame_cycles(void *param, double frame)
 {
-	(void)param;
 	return frame;
 }
 
@@ -218,10 +199,10 @@ void usart_attach(struct usart *usart, struct interrupts *interrupts, avr_uart_t
 	usart->transmitted = transmitted;
 	hook_read(avr, REG_UDR0, read_data, usart);
 	hook_write(avr, REG_UDR0, write_data, usart);
-	hook_read(avr, REG_UCSR0A, read_status, usart);
+	hook_read(avr, REG_UCSR0A, NULL, NULL);
 	hook_write(avr, REG_UCSR0A, write_status, usart);
-	hook_read(avr, REG_UCSR0B, NULL, usart);
+	hook_read(avr, REG_UCSR0B, NULL, NULL);
 	hook_write(avr, REG_UCSR0B, write_control, usart);
-	hook_read(avr, REG_UBRR0L, NULL, usart);
-	hook_write(avr, REG_UBRR0L, write_plain, usart);
+	hook_read(avr, REG_UBRR0L, NULL, NULL);
+	hook_write(avr, REG_UBRR0L, NULL, NULL);
 }

@@ -7,18 +7,13 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef USART_H
-#define USART_H
-
-#include <stdbool.h>
-#include <stdint.h>
+#pragma once
 
 #include <simavr/avr_uart.h>
-#include <simavr/sim_avr.h>
 
 #include "interrupts.h"
 #include "sender.h"
-#include "serial_bytes.h"
+#include "list.h"
 
 struct usart {
 	avr_t *avr;
@@ -36,18 +31,16 @@ struct usart {
 	uint64_t overruns;          /* bytes lost since power-on */
 };
 
-/* Takes USART0's registers from simavr. */
+/* Replaces simavr's handlers of USART0's registers. */
 void usart_attach(struct usart *usart, struct interrupts *interrupts, avr_uart_t *vectors,
                   struct serial_bytes *transmitted);
 void usart_reset(struct usart *usart);
-/* Its end of the cable. */
+/* The receiver for the sender's cable. */
 struct receiver usart_receiver(struct usart *usart);
 
-/* How long a bit is, by the registers of this moment. */
+/* The length of a bit by the present registers. */
 uint32_t usart_cycles_per_bit(const avr_t *avr);
-/* What a receiver reads in a byte whose sender has another rate: each data bit in its middle,
- * counted from the edge of the start bit. `ratio`: the receiver's bit by the sender's. The line
- * is high behind the frame, as between bytes that do not follow each other at once. */
+/* The byte that a receiver reads from a sender of another rate: it samples each data bit in its
+ * middle, counted from the edge of the start bit. `ratio`: length of the receiver's bit divided
+ * by the sender's. The line is high after the frame, as in a pause between bytes. */
 uint8_t usart_sampled(uint8_t byte, double ratio);
-
-#endif

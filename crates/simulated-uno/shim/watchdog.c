@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "watchdog.h"
 
-#include "chip.h"
-#include "hook.h"
-
 enum { /* WDTCSR */
 	WDIF = 1 << 7, WDIE = 1 << 6, WDP3 = 1 << 5, WDCE = 1 << 4, WDE = 1 << 3,
 	WDP = WDP3 | 7,
@@ -56,7 +53,6 @@ static void schedule(struct watchdog *watchdog)
 /* Called by simavr for everything that it asks of its parts. */
 static int on_request(avr_io_t *io, uint32_t request, void *param)
 {
-	(void)param;
 	if (request != AVR_IOCTL_WATCHDOG_RESET)
 		return -1;
 	struct watchdog *watchdog = (struct watchdog *)io;
@@ -100,7 +96,6 @@ static uint8_t read_control(avr_t *avr, avr_io_addr_t address, void *param)
  * finds WDIF cleared. */
 static void on_vector(struct avr_irq_t *irq, uint32_t running, void *param)
 {
-	(void)irq;
 	struct watchdog *watchdog = param;
 	uint8_t *control = &watchdog->avr->data[REG_WDTCSR];
 	if (running)

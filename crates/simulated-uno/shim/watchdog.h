@@ -1,19 +1,13 @@
 /* The watchdog by the ATmega328P's data sheet, 11.8 and 11.9.2.
  *
- * simavr 1.6 never resets while the interrupt is enabled, lets the counter
- * start anew when its prescaler is changed, and clears WDIE in interrupt mode.
+ * simavr 1.6 never resets while the interrupt is enabled, restarts the counter
+ * when its prescaler is changed, and clears WDIE in interrupt mode.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef WATCHDOG_H
-#define WATCHDOG_H
-
-#include <stdbool.h>
-#include <stdint.h>
+#pragma once
 
 #include <simavr/avr_watchdog.h>
-#include <simavr/sim_avr.h>
-#include <simavr/sim_io.h>
 
 #include "instruction.h"
 #include "interrupts.h"
@@ -30,12 +24,10 @@ struct watchdog {
 	uint64_t change_until; /* last cycle of the timed sequence's window */
 };
 
-/* Takes the watchdog from simavr. */
+/* Replaces simavr's watchdog. */
 void watchdog_attach(struct watchdog *watchdog, const struct instruction *instruction,
                      struct interrupts *interrupts, struct reset *reset);
-/* After a reset: on if WDRF says so. */
+/* After a reset: on if WDRF is set. */
 void watchdog_reset(struct watchdog *watchdog);
-/* Whether it will end in a reset if nothing is done. */
+/* True if it will reset the chip unless the firmware acts. */
 bool watchdog_may_reset(const struct watchdog *watchdog);
-
-#endif

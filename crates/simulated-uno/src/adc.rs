@@ -1,12 +1,12 @@
-//! What the ADC measures.
+//! The voltages that the ADC measures.
 
 use crate::ffi;
 use crate::{Pin, Uno};
 
 impl Uno {
-    /// The bandgap reference, mV: 1100 unless set. The data sheet allows 1000 to
-    /// 1200, and a chip keeps its own. [`Fidelity::Stock`](crate::Fidelity) always
-    /// has 1100.
+    /// Sets the bandgap reference, mV; 1100 unless set. The data sheet allows 1000 to
+    /// 1200, and each chip has a constant value of its own. [`Fidelity::Stock`](crate::Fidelity)
+    /// always has 1100.
     ///
     /// # Panics
     /// Beyond 1000 to 1200.
@@ -19,8 +19,8 @@ impl Uno {
         unsafe { ffi::uno_set_bandgap(self.raw, mv) }
     }
 
-    /// The voltage at A0 to A5 from now on, mV; 0 unless set. The digital side of
-    /// the pin does not see it.
+    /// Sets the voltage at one of A0 to A5 from now on, mV; 0 unless set. It does not change
+    /// the pin's digital level.
     ///
     /// # Panics
     /// If the pin is not one of A0 to A5.

@@ -18,21 +18,20 @@ use crate::Image;
 /// Compiles C (or, inside `asm`, assembly) with avr-gcc for the UNO's chip.
 ///
 /// # Panics
-/// If avr-gcc is missing or refuses the program, with its words.
+/// If avr-gcc is missing or refuses the program; the message has avr-gcc's own.
 #[must_use]
 pub fn c(source: &str) -> Image {
     build(source, "c", &["-O2", "-std=gnu11"])
 }
 
-/// Assembles a whole program; nothing else is linked, so flash address 0 is its
-/// first instruction. `.include "avr/io.h"` does not exist: use `#include`.
+/// Assembles a complete program; nothing else is linked, so flash address 0 is its
+/// first instruction. Headers of C are included by `#include`, not by `.include`.
 ///
 /// # Panics
 /// See [`c`].
 #[must_use]
 pub fn assembler(source: &str) -> Image {
-    let source = format!("#define __SFR_OFFSET 0\n#include <avr/io.h>\n{source}");
-    build(&source, "S", &["-nostartfiles", "-nostdlib"])
+    assembler_at(0, source)
 }
 
 /// [`assembler`] with its first instruction at a byte address in flash.

@@ -1,5 +1,5 @@
-//! A board as it is sold: a boot loader in the last part of flash, which the chip
-//! starts after a reset, and a program that came over the serial line.
+//! A board as it is sold: a boot loader in the last part of flash, which the chip starts after
+//! a reset, and a program that the boot loader received over the serial line.
 
 use crate::ffi;
 use crate::{FLASH_SIZE, Fidelity, Image, Uno};
@@ -18,7 +18,7 @@ impl Uno {
         uno
     }
 
-    /// All of flash, the boot loader included. What was never written is 0xff.
+    /// The contents of all of flash, the boot loader included. A byte never written is 0xff.
     #[must_use]
     pub fn flash(&self) -> &[u8] {
         // SAFETY: `raw` is valid, see `Uno`. The chip has `FLASH_SIZE` bytes of flash, which
@@ -26,8 +26,7 @@ impl Uno {
         unsafe { std::slice::from_raw_parts(ffi::uno_flash(self.raw), FLASH_SIZE as usize) }
     }
 
-    /// Changes bytes of flash behind the program's back, as a cell does that is
-    /// worn out.
+    /// Changes bytes of flash without the program's doing, as worn-out cells do.
     ///
     /// # Panics
     /// If they do not fit into flash.
@@ -40,7 +39,7 @@ impl Uno {
         flash[start..start + bytes.len()].copy_from_slice(bytes);
     }
 
-    /// Drops the record of received bytes, [`Uno::received_by_uno`], which
+    /// Clears the record of received bytes, [`Uno::received_by_uno`], which
     /// would grow for as long as the UNO runs.
     pub(crate) fn forget_received(&mut self) {
         self.clear(ffi::uno_received);

@@ -1,21 +1,20 @@
-//! Disturbances that can happen to any board: see [`Uno::hold`].
+//! Disturbances from outside: an interrupt of no source on the chip ([`Uno::hold`]), a main
+//! program that makes no progress, a register changed at any moment.
 
 use crate::Uno;
 use crate::ffi;
 
 impl Uno {
-    /// An interrupt out of nowhere that takes `cycles`: nothing is executed
-    /// meanwhile, flags go up and bytes come. It comes before all the chip's own
-    /// interrupts; now, or as soon as interrupts are on. A second call before that
-    /// replaces the first.
+    /// Interrupts the program for `cycles`, in which it executes nothing, while flags are set and
+    /// bytes arrive. This interrupt has priority over all the chip's own; it is served
+    /// now, or as soon as interrupts are on. A second call before that replaces the first.
     pub fn hold(&mut self, cycles: u64) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim counts the cycles.
         unsafe { ffi::uno_hold(self.raw, cycles) }
     }
 
-    /// Main executes nothing for this many cycles, as if the instruction that is next
-    /// took that long; interrupts are served all the time. While main keeps them
-    /// off it does go on.
+    /// Stops main for this many cycles, as if its next instruction took that long; interrupts are
+    /// served all the time. While main keeps them off, it continues.
     pub fn stall_main(&mut self, cycles: u64) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a number.
         unsafe { ffi::uno_stall_main(self.raw, self.cycle() + cycles) }

@@ -1,17 +1,19 @@
 //! The EEPROM, and power that fails while it is written.
 //!
-//! A byte takes 3.4 ms. A firmware that loses power meanwhile must find its old
-//! settings or its new ones afterwards, so a test must be able to end the power
-//! in any byte and choose what is left of it.
+//! A byte takes 3.4 ms. A firmware that loses power meanwhile must find either its old
+//! or its new settings at the next start, so a test must be able to cut the power
+//! in any byte and choose the bits that this byte is left with.
 
 use crate::Uno;
-use crate::ffi::{self, RawOperation};
+use crate::ffi;
 
-/// Bytes of EEPROM of an ATmega328P.
+/// The size of an ATmega328P's EEPROM, bytes.
 pub const EEPROM_SIZE: usize = 1024;
 
-/// What a programming operation does; EEPM1:0 of the data sheet's table 8-1.
+/// The kind of a programming operation; EEPM1:0 of the data sheet's table 8-1.
+// `enum eeprom_mode` of the shim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
 pub enum EepromMode {
     /// Erases the byte to 0xff, then writes it: 3.4 ms.
     EraseAndWrite,
@@ -21,34 +23,36 @@ pub enum EepromMode {
     WriteOnly,
 }
 
-/// One byte's programming operation.
+/// The programming operation of one byte.
+// `struct eeprom_operation` of the shim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(C)]
 pub struct EepromOperation {
-    /// Cycle at which it started.
+    /// The cycle at which it started.
     pub cycle: u64,
-    /// Address of the byte, 0 to 1023.
+    /// The byte's address, 0 to 1023.
     pub address: u16,
-    /// What it does.
+    /// Its kind.
     pub mode: EepromMode,
-    /// What the byte held.
+    /// The byte's value before it.
     pub old: u8,
-    /// What it holds afterwards; while the operation is under way, what it will
-    /// hold if the power stays.
+    /// The byte's value after it; while the operation is in progress, the value that the byte
+    /// will have if the power does not fail.
     pub new: u8,
-    /// Whether the power failed during the operation.
+    /// True if the power failed during the operation.
     pub torn: bool,
 }
 
-/// When the power fails.
+/// The moment at which the power fails.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PowerCut {
-    /// At this cycle.
+    /// At a cycle.
     AtCycle(u64),
-    /// While the byte is erased (in the middle of that time), in the operation to
-    /// come after this number of others: 0 is the next one that starts.
+    /// In the middle of the time in which a byte is erased, in the operation that starts
+    /// after this number of others: 0 is the next one.
     InErase(u64),
-    /// The same, while the byte is written. An operation that only erases or only
-    /// writes is cut in its middle by either.
+    /// In the middle of the time in which a byte is written, counted likewise. An operation that
+    /// only erases or only writes is cut in its middle by either.
     InWrite(u64),
 }
 
@@ -62,44 +66,31 @@ impl Uno {
         unsafe { *ffi::uno_eeprom(self.raw).cast() }
     }
 
-    /// Sets the contents, at any time. A new board's are all 0xff. They survive
-    /// every reset and power cycle.
+    /// Sets the contents, which may be done at any time. Those of a new board are all 0xff. They
+    /// survive every reset and power cycle.
     pub fn set_eeprom(&mut self, contents: &[u8; EEPROM_SIZE]) {
         // SAFETY: as in `eeprom`, and `self` is borrowed by nobody else.
         unsafe { *ffi::uno_eeprom(self.raw).cast() = *contents }
     }
 
-    /// The programming operations started so far. None in [`Fidelity::Stock`](crate::Fidelity).
+    /// The programming operations started so far; empty in [`Fidelity::Stock`](crate::Fidelity).
     #[must_use]
     pub fn eeprom_operations(&self) -> Vec<EepromOperation> {
-        self.list(ffi::uno_eeprom_operations, |raw: &RawOperation| {
-            EepromOperation {
-                cycle: raw.cycle,
-                address: raw.address,
-                mode: match raw.mode {
-                    1 => EepromMode::EraseOnly,
-                    2 => EepromMode::WriteOnly,
-                    _ => EepromMode::EraseAndWrite,
-                },
-                old: raw.old,
-                new: raw.stored,
-                torn: raw.torn != 0,
-            }
-        })
+        self.list(ffi::uno_eeprom_operations)
     }
 
-    /// Lets the power fail, once: the run ends with [`State::Off`](crate::State),
-    /// every pin is low. [`Uno::power_cycle`] brings the power back.
+    /// Makes the power fail, once: the run ends with [`State::Off`](crate::State), and
+    /// every pin is low. [`Uno::power_cycle`] restores the power.
     ///
-    /// `ones` chooses what an operation leaves that is under way then. While a byte
-    /// is erased, zeros of the old value become ones one after another: it holds
-    /// `old | ones`. While it is written, ones become zeros: it holds `new | ones`,
-    /// and in [`EepromMode::WriteOnly`] `old & (new | ones)`. So 0 is the phase's
-    /// last instant while writing and its first while erasing, 0xff the other way
-    /// round.
+    /// `ones` chooses the value that the byte of an operation in progress is left with. During the
+    /// erase, zeros of the old value become ones one after another: the byte is
+    /// `old | ones`. During the write, ones become zeros: it is `new | ones`,
+    /// or `old & (new | ones)` in [`EepromMode::WriteOnly`]. So 0 is the first instant of
+    /// the erase and the last of the write, and 0xff is the last instant of the erase and the
+    /// first of the write.
     ///
-    /// In [`Fidelity::Stock`](crate::Fidelity) only [`PowerCut::AtCycle`] ever
-    /// happens, and tears nothing.
+    /// In [`Fidelity::Stock`](crate::Fidelity) only [`PowerCut::AtCycle`] has an effect,
+    /// and it never tears a byte.
     pub fn cut_power(&mut self, when: PowerCut, ones: u8) {
         self.set_torn_bits(ones);
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a number until
@@ -107,25 +98,21 @@ impl Uno {
         unsafe {
             match when {
                 PowerCut::AtCycle(cycle) => ffi::uno_cut_power_at(self.raw, cycle.max(1)),
-                PowerCut::InErase(skip) => {
-                    ffi::uno_cut_power_in_operation(self.raw, skip, false);
-                }
-                PowerCut::InWrite(skip) => {
-                    ffi::uno_cut_power_in_operation(self.raw, skip, true);
-                }
+                PowerCut::InErase(skip) => ffi::uno_cut_power_in_operation(self.raw, skip, false),
+                PowerCut::InWrite(skip) => ffi::uno_cut_power_in_operation(self.raw, skip, true),
             }
         }
     }
 
-    /// Takes back a [`Uno::cut_power`] that has not happened yet.
+    /// Cancels a [`Uno::cut_power`] that has not happened yet.
     pub fn keep_power(&mut self) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim forgets what
         // `cut_power` has set.
         unsafe { ffi::uno_keep_power(self.raw) }
     }
 
-    /// `ones` of [`Uno::cut_power`] for power that fails otherwise: a supply below
-    /// 1.8 V, or [`Uno::power_cycle`].
+    /// Sets the `ones` of [`Uno::cut_power`] for power that fails in another way: by a supply below
+    /// 1.8 V or by [`Uno::power_cycle`].
     pub fn set_torn_bits(&mut self, ones: u8) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a number.
         unsafe { ffi::uno_set_torn_ones(self.raw, ones) }

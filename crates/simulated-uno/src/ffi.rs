@@ -1,5 +1,6 @@
 //! The shim's functions, as declared in `shim/`. Private: [`crate::Uno`] is the
-//! safe face of them.
+//! safe interface to them. The items of the shim's lists are public types with the layout
+//! of C: [`crate::Edge`], [`crate::SerialByte`] and others.
 
 use std::ffi::{c_char, c_void};
 
@@ -18,58 +19,12 @@ pub struct RawList {
     pub size: usize,
 }
 
-/// `struct edge`.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct RawEdge {
-    pub cycle: u64,
-    pub pin: u8,
-    pub level: u8,
-}
-
-/// `struct serial_byte`, and `struct mark`, which has the same form.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct RawByte {
-    pub cycle: u64,
-    pub byte: u8,
-}
-
-/// `struct call`.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct RawCall {
-    pub enter: u64,
-    pub leave: u64,
-    pub interrupted: u64,
-}
-
 /// `struct vector_use`.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct RawVector {
     pub entries: u64,
     pub cycles: u64,
-}
-
-/// `struct eeprom_operation`.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct RawOperation {
-    pub cycle: u64,
-    pub address: u16,
-    pub mode: u8,
-    pub old: u8,
-    pub stored: u8,
-    pub torn: u8,
-}
-
-/// `struct reset_event`.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct RawReset {
-    pub cycle: u64,
-    pub cause: u8,
 }
 
 /// `CHIP_VECTORS`.

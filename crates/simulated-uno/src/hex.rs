@@ -5,7 +5,7 @@ use ihex::Record;
 use crate::image::{FLASH_SIZE, Image, LoadError};
 
 impl Image {
-    /// Reads Intel HEX. It says nothing about SRAM and has no symbols, so
+    /// Reads Intel HEX. The format has neither symbols nor static data, so
     /// [`Image::static_ram`] is 0 and no function has a name.
     ///
     /// # Errors
@@ -30,7 +30,7 @@ impl Image {
                 Record::EndOfFile => return Ok(Self::of_segments(segments)),
                 Record::ExtendedLinearAddress(upper) => base = u64::from(upper) << 16,
                 Record::ExtendedSegmentAddress(segment) => base = u64::from(segment) << 4,
-                // The chip starts at 0, whatever they say.
+                // The chip starts at 0, whatever these records contain.
                 Record::StartLinearAddress(_) | Record::StartSegmentAddress { .. } => {}
             }
         }
@@ -38,7 +38,7 @@ impl Image {
     }
 }
 
-/// Adds the bytes of a line, to the segment before if they follow it.
+/// Adds the bytes of a line, to the previous segment where they follow it.
 fn append(
     segments: &mut Vec<(u32, Vec<u8>)>,
     address: u64,
@@ -50,7 +50,7 @@ fn append(
     }
     let address = address as u32;
     match segments.last_mut() {
-        Some((start, before)) if *start + before.len() as u32 == address => before.extend(bytes),
+        Some((start, last)) if *start + last.len() as u32 == address => last.extend(bytes),
         _ => segments.push((address, bytes)),
     }
     Ok(())

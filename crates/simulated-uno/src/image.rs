@@ -1,4 +1,4 @@
-//! A firmware image: what an ELF file, or one of Intel HEX, puts into flash and SRAM.
+//! A firmware image: the contents of flash and SRAM by an ELF file or one of Intel HEX.
 
 use std::io::Read;
 use std::ops::Range;
@@ -6,23 +6,23 @@ use std::path::{Path, PathBuf};
 
 use object::{Object, ObjectSegment, ObjectSymbol, SymbolKind};
 
-/// Flash of an ATmega328P, in bytes.
+/// The size of an ATmega328P's flash, bytes.
 pub const FLASH_SIZE: u32 = 32 * 1024;
-/// First SRAM address of an ATmega328P, after the registers.
+/// The first SRAM address of an ATmega328P, after the registers.
 pub const SRAM_START: u16 = 0x0100;
-/// Address after the last byte of SRAM.
+/// The address after the last byte of SRAM.
 pub const SRAM_END: u16 = 0x0900;
 
-/// The longest file that is read, bytes: code of 32 KiB with all its debug
-/// information stays far below.
+/// The longest file that is read, bytes; much longer than code of 32 KiB with all its debug
+/// information.
 const LONGEST_FILE: u64 = 4 << 20;
 
-/// Where avr-gcc's linker script puts SRAM in its single address space.
+/// The address of SRAM in the single address space of avr-gcc's linker script.
 const DATA_SPACE: u64 = 0x80_0000;
-/// Where it puts the EEPROM.
+/// The address of the EEPROM there.
 const EEPROM_SPACE: u64 = 0x81_0000;
 
-/// Why an image cannot be loaded.
+/// The reason for which an image cannot be loaded.
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
     /// The file cannot be read.
@@ -30,7 +30,7 @@ pub enum LoadError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: std::io::Error,
     },
     /// The bytes are not an ELF file.
@@ -45,20 +45,20 @@ pub enum LoadError {
     /// A segment does not fit.
     #[error("{size} bytes at {address:#x} do not fit an ATmega328P")]
     TooLarge {
-        /// Address of the segment.
+        /// The address of the segment.
         address: u64,
         /// Its size in bytes.
         size: u64,
     },
-    /// No code at all.
+    /// The file has no code.
     #[error("the file holds no code")]
     Empty,
     /// A line is not Intel HEX.
     #[error("line {line} is not Intel HEX: {reason}")]
     HexLine {
-        /// Counted from 1.
+        /// The line's number, counted from 1.
         line: usize,
-        /// What is wrong with it.
+        /// The line's fault.
         reason: String,
     },
     /// The HEX file ends without its end record: lines may be missing.
@@ -73,19 +73,19 @@ pub struct Symbol {
     pub name: String,
     /// Byte address in flash; SRAM addresses start at 0x80_0000.
     pub address: u64,
-    /// Size in bytes, 0 if the compiler does not say.
+    /// The size in bytes, 0 if the compiler does not give it.
     pub size: u64,
-    /// Whether it is a function.
+    /// True for a function.
     pub function: bool,
 }
 
 impl Symbol {
-    /// The name as its author wrote it, with its path.
+    /// The name as its author wrote it, with its path, such as `core::console::Console::frame`.
     #[must_use]
     pub fn path(&self) -> String {
         let name = format!("{:#}", rustc_demangle::demangle(&self.name));
         // `<core::console::Console<Lizard>>::frame` is `core::console::Console::frame`:
-        // the brackets around a type go, those after one go with what is in them.
+        // the brackets around a type are removed, those after one with their contents.
         let mut path = String::new();
         let mut brackets: Vec<bool> = Vec::new();
         for letter in name.chars() {
@@ -104,9 +104,9 @@ impl Symbol {
     }
 
     fn is(&self, path: &str) -> bool {
-        let whole = self.path();
-        let before = whole.strip_suffix(path);
-        before.is_some_and(|before| before.is_empty() || before.ends_with("::"))
+        let own = self.path();
+        let outer = own.strip_suffix(path);
+        outer.is_some_and(|outer| outer.is_empty() || outer.ends_with("::"))
     }
 }
 
@@ -116,7 +116,6 @@ pub struct Image {
     /// Flash segments, as (byte address, bytes).
     pub(crate) segments: Vec<(u32, Vec<u8>)>,
     symbols: Vec<Symbol>,
-    flash: u32,
     data_end: u16,
 }
 
@@ -188,55 +187,51 @@ impl Image {
         if segments.is_empty() {
             return Err(LoadError::Empty);
         }
-        let symbols = file
-            .symbols()
-            .filter_map(|symbol| {
-                Some(Symbol {
-                    name: symbol
-                        .name()
-                        .ok()
-                        .filter(|name| !name.is_empty())?
-                        .to_owned(),
-                    address: symbol.address(),
-                    size: symbol.size(),
-                    function: symbol.kind() == SymbolKind::Text,
-                })
-            })
-            .collect();
-        let flash = segments.iter().map(|(_, data)| data.len() as u32).sum();
+        let mut symbols = Vec::new();
+        for symbol in file.symbols() {
+            let Some(name) = symbol.name().ok().filter(|name| !name.is_empty()) else {
+                continue;
+            };
+            symbols.push(Symbol {
+                name: name.to_owned(),
+                address: symbol.address(),
+                size: symbol.size(),
+                function: symbol.kind() == SymbolKind::Text,
+            });
+        }
         Ok(Self {
             segments,
             symbols,
-            flash,
             data_end,
         })
     }
 
-    /// An image that is nothing but these bytes of flash, which are inside it.
+    /// An image of nothing but these bytes, all of them inside flash.
     #[cfg(feature = "hex")]
     pub(crate) fn of_segments(segments: Vec<(u32, Vec<u8>)>) -> Self {
-        let flash = segments.iter().map(|(_, data)| data.len() as u32).sum();
         Self {
             segments,
             symbols: Vec::new(),
-            flash,
             data_end: SRAM_START,
         }
     }
 
-    /// Bytes of flash used: code, tables and initial values.
+    /// The number of bytes of flash used: code, tables and initial values.
     #[must_use]
     pub fn flash_used(&self) -> u32 {
-        self.flash
+        self.segments
+            .iter()
+            .map(|(_, data)| data.len() as u32)
+            .sum()
     }
 
-    /// Bytes of SRAM used by static data (.data, .bss and .noinit).
+    /// The number of bytes of SRAM used by static data (.data, .bss and .noinit).
     #[must_use]
     pub fn static_ram(&self) -> u16 {
         self.data_end - SRAM_START
     }
 
-    /// First SRAM address after static data.
+    /// The first SRAM address after static data.
     #[must_use]
     pub fn data_end(&self) -> u16 {
         self.data_end
@@ -259,29 +254,30 @@ impl Image {
     /// it) or more than one.
     #[must_use]
     pub fn function(&self, path: &str) -> Option<&Symbol> {
-        let mut found = self
-            .symbols
-            .iter()
-            .filter(|symbol| symbol.function && symbol.is(path));
+        self.only(path, |symbol| symbol.function)
+    }
+
+    /// The data address of the one variable whose path ends with `path`, such as
+    /// `pulses::LATE`; `None` if there is none or more than one.
+    #[must_use]
+    pub fn variable(&self, path: &str) -> Option<u16> {
+        let in_data = |symbol: &Symbol| (DATA_SPACE..EEPROM_SPACE).contains(&symbol.address);
+        let symbol = self.only(path, in_data)?;
+        Some((symbol.address - DATA_SPACE) as u16)
+    }
+
+    /// The symbol whose path ends with `path`, among those of a kind; `None` unless all that match
+    /// have one address.
+    fn only(&self, path: &str, is_of_kind: impl Fn(&Symbol) -> bool) -> Option<&Symbol> {
+        let matches = |symbol: &&Symbol| is_of_kind(symbol) && symbol.is(path);
+        let mut found = self.symbols.iter().filter(matches);
         let first = found.next()?;
         found
             .all(|other| other.address == first.address)
             .then_some(first)
     }
 
-    /// Data address of the one variable whose path ends with `path`, such as
-    /// `pulses::LATE`; `None` if there is none or more than one.
-    #[must_use]
-    pub fn variable(&self, path: &str) -> Option<u16> {
-        let in_data = |symbol: &&Symbol| (DATA_SPACE..EEPROM_SPACE).contains(&symbol.address);
-        let mut found = self.symbols.iter().filter(in_data).filter(|s| s.is(path));
-        let first = found.next()?;
-        found
-            .all(|other| other.address == first.address)
-            .then_some((first.address - DATA_SPACE) as u16)
-    }
-
-    /// What flash holds: its bytes from address 0 to the last one used, 0xff where
+    /// The contents of flash from address 0 to the last byte used, 0xff where
     /// the image has none.
     #[must_use]
     pub fn flash(&self) -> Vec<u8> {
@@ -293,11 +289,11 @@ impl Image {
         flash
     }
 
-    /// Puts bytes into flash at the beginning of a range, in place of whatever the image
-    /// has in it: data that is exchanged without a compiler.
+    /// Puts bytes into flash at the beginning of a range, in place of all that the image
+    /// has in the range: data that is exchanged without a compiler.
     ///
     /// # Errors
-    /// [`LoadError::TooLarge`] where the range is not inside flash or too short for them.
+    /// [`LoadError::TooLarge`] if the range is not inside flash or is too short for them.
     pub fn replace(&mut self, range: Range<u32>, bytes: &[u8]) -> Result<(), LoadError> {
         let size = bytes.len() as u64;
         if range.end > FLASH_SIZE || u64::from(range.start) + size > u64::from(range.end) {
@@ -308,35 +304,27 @@ impl Image {
         }
         let mut segments = Vec::new();
         for (at, bytes) in self.segments.drain(..) {
-            let before = range.start.saturating_sub(at) as usize;
-            let behind = range.end.saturating_sub(at) as usize;
-            if let Some(kept) = bytes
-                .get(..before.min(bytes.len()))
-                .filter(|kept| !kept.is_empty())
-            {
-                segments.push((at, kept.to_vec()));
-            }
-            if let Some(kept) = bytes.get(behind..).filter(|kept| !kept.is_empty()) {
-                segments.push((at + behind as u32, kept.to_vec()));
+            let length = bytes.len();
+            let before = (range.start.saturating_sub(at) as usize).min(length);
+            let behind = (range.end.saturating_sub(at) as usize).min(length);
+            for kept in [0..before, behind..length] {
+                if !kept.is_empty() {
+                    segments.push((at + kept.start as u32, bytes[kept].to_vec()));
+                }
             }
         }
         segments.push((range.start, bytes.to_vec()));
         self.segments = segments;
-        self.flash = self
-            .segments
-            .iter()
-            .map(|(_, data)| data.len() as u32)
-            .sum();
         Ok(())
     }
 
-    /// Address of the first byte of flash used.
+    /// The address of the first byte of flash used.
     pub(crate) fn code_start(&self) -> u32 {
         let starts = self.segments.iter().map(|(at, _)| *at);
         starts.min().unwrap_or(0)
     }
 
-    /// Address after the last byte of flash used.
+    /// The address after the last byte of flash used.
     pub(crate) fn code_end(&self) -> u32 {
         let ends = self
             .segments

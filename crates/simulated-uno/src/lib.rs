@@ -2,10 +2,14 @@
 //! oscilloscope on its pins and a sender on its serial line.
 //!
 //! A firmware cannot run on the machine that compiles it, and a board on the desk has no
-//! cycle counter, does not show its stack, and needs ten minutes for ten minutes. Here
+//! cycle counter, does not show its stack, and takes ten minutes to run ten minutes. Here
 //! time is a number of CPU cycles that passes as fast as the host can compute, and the
 //! same firmware with the same input gives the same edges to the cycle. Only [`Port`]
 //! keeps real time, for programs that expect a board on USB.
+//!
+//! Do not use it for another chip than the ATmega328P, for firmware that depends on hardware PWM,
+//! SPI, TWI or the analogue comparator, or to learn about currents and noise: README.md has the
+//! reasons.
 //!
 //! ```
 //! use simulated_uno::{Fidelity, Pin, Uno, avr_gcc};
@@ -23,12 +27,12 @@
 //! ```
 //!
 //! README.md has more examples, and every correction of simavr with its section of the
-//! data sheet. [`Uno::load`] takes the file that a compiler has left.
+//! data sheet. [`Uno::load`] loads a compiled firmware from its file.
 //!
 //! Several [`Uno`]s may run at once on as many threads: libsimavr keeps no
 //! state outside an instance but the logger, which is set once.
 
-#![allow(unsafe_code)] // It calls C; what all of it rests on is said at `Uno`.
+#![allow(unsafe_code)] // It calls C; `Uno` has the argument for all of it.
 
 mod adc;
 #[cfg(feature = "avr-gcc")]
@@ -64,9 +68,9 @@ pub use uno::{Fidelity, State, Uno};
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-/// CPU cycles in a second.
+/// The number of CPU cycles in a second.
 pub const FREQUENCY: u64 = 16_000_000;
-/// CPU cycles in a millisecond.
+/// The number of CPU cycles in a millisecond.
 pub const CYCLES_PER_MS: u64 = FREQUENCY / 1000;
-/// CPU cycles in a microsecond.
+/// The number of CPU cycles in a microsecond.
 pub const CYCLES_PER_US: u64 = FREQUENCY / 1_000_000;

@@ -2,6 +2,7 @@
 
 /// A pin by its name on the board: D0 to D13, or A0 to A5.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[repr(transparent)]
 pub struct Pin(u8);
 
 /// Arduino's number of A0.
@@ -55,9 +56,11 @@ impl std::fmt::Display for Pin {
     }
 }
 
-/// A change of level. The stamp is the cycle in which the instruction that
+/// A change of level. Its cycle is the one in which the instruction that
 /// stored the port ends, the same for every kind of store and both directions.
+// `struct edge` of the shim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(C)]
 pub struct Edge {
     /// Cycle since power-on, 62.5 ns each.
     pub cycle: u64,

@@ -35,31 +35,31 @@ use std::time::{Duration, Instant};
 use crate::pty::Pty;
 use crate::{FREQUENCY, State, Uno, ffi};
 
-/// How often the port is checked: as often as the USB chip of a UNO does.
+/// The time between two checks of the port; the USB chip of a UNO has the same.
 const TICK: Duration = Duration::from_millis(1);
-/// The longest time that is caught up when this program was held up. More would
-/// let a watchdog fire before the other program had its turn.
+/// The longest time that the chip catches up after this program was held up. A longer one
+/// could make a watchdog fire before the other program has run.
 const MOST_CAUGHT_UP: Duration = Duration::from_millis(20);
-/// Bytes on their way to the chip; the rest waits in the pseudo terminal, as in
+/// The most bytes on their way to the chip; others wait in the pseudo terminal, as in
 /// the driver of a USB port.
 const MOST_UNSENT: usize = 128;
-/// Bytes kept for a program that does not read. Later ones are lost.
+/// The most bytes kept for a program that does not read. Later ones are lost.
 const MOST_UNREAD: usize = 1 << 16;
 
-/// A serial port of this machine with a simulated UNO behind it. The port is
-/// gone when this is dropped.
+/// A serial port of this machine with a simulated UNO behind it. The port exists until
+/// this is dropped.
 #[derive(Debug)]
 pub struct Port {
     pty: Pty,
-    /// The chip's bytes that did not find room yet.
+    /// The chip's bytes that wait for room in the pseudo terminal.
     unread: Vec<u8>,
     open: bool,
-    /// Wall clock and cycle at one and the same moment.
+    /// The wall clock's time and the chip's cycle at the same moment.
     anchor: Option<(Instant, u64)>,
 }
 
 impl Port {
-    /// Makes a port that nobody has open.
+    /// Makes a port that no program has open.
     ///
     /// # Errors
     /// The system has no pseudo terminals left.
@@ -78,7 +78,7 @@ impl Port {
         self.pty.path()
     }
 
-    /// Whether a program had the port open at the last check.
+    /// True if a program had the port open at the last check.
     #[must_use]
     pub fn is_open(&self) -> bool {
         self.open
@@ -88,11 +88,11 @@ impl Port {
     /// between it and the program that has the port open. A chip that halts or crashes does
     /// nothing more until the next opening resets it.
     ///
-    /// Edges ([`Uno::take_edges`]) pile up for the caller, 1600 bytes a second from
-    /// four servos. The bytes of the serial line do not: they are the port's.
+    /// The caller should take the edges ([`Uno::take_edges`]), which need 1600 bytes for a second of
+    /// four servos. The bytes of the serial line are not kept.
     ///
     /// # Errors
-    /// Those of the system at the pseudo terminal.
+    /// The system's, at the pseudo terminal.
     pub fn serve(&mut self, uno: &mut Uno, time: Duration) -> io::Result<()> {
         let end = Instant::now() + time;
         while Instant::now() < end {
@@ -102,11 +102,11 @@ impl Port {
         Ok(())
     }
 
-    /// The same on a thread of its own, until [`Background::stop`]. `watch` gets
+    /// Serves the port on a thread of its own until [`Background::stop`]. `watch` gets
     /// the UNO every millisecond and should take its edges; it must not block.
     ///
     /// # Errors
-    /// The system has no thread left.
+    /// The system cannot start a thread.
     pub fn in_background(
         mut self,
         mut uno: Uno,
@@ -114,9 +114,9 @@ impl Port {
     ) -> io::Result<Background> {
         let path = self.path().to_owned();
         let stop = Arc::new(AtomicBool::new(false));
-        let asked = Arc::clone(&stop);
+        let stopped = Arc::clone(&stop);
         let serve = move || {
-            while !asked.load(Ordering::Relaxed) {
+            while !stopped.load(Ordering::Relaxed) {
                 self.tick(&mut uno)?;
                 watch(&mut uno);
                 thread::sleep(TICK);
@@ -148,7 +148,7 @@ impl Port {
         uno.forget_received();
         let sent = uno.take_transmitted();
         let ratio = uno.chip_baud() / baud;
-        // Asked again, since this program may have been held up meanwhile.
+        // Checked again, since this program may have been held up meanwhile.
         if self.open && self.pty.is_open()? {
             self.unread
                 .extend(sent.iter().map(|sent| sampled(sent.byte, ratio)));
@@ -172,7 +172,7 @@ impl Port {
     }
 }
 
-/// What a receiver reads in a byte if its bits are `ratio` times as long as the sender's.
+/// The byte that a receiver reads if its bits are `ratio` times as long as the sender's.
 fn sampled(byte: u8, ratio: f64) -> u8 {
     // SAFETY: the shim computes with two numbers.
     unsafe { ffi::uno_sampled(byte, ratio) }
@@ -198,13 +198,13 @@ impl Background {
         &self.path
     }
 
-    /// Ends the thread, and the port with it; returns the UNO as it is.
+    /// Ends the thread and the port; returns the UNO in its present state.
     ///
     /// # Errors
-    /// What ended the thread before: see [`Port::serve`].
+    /// The error that had ended the thread: see [`Port::serve`].
     ///
     /// # Panics
-    /// If `watch` has.
+    /// If `watch` panicked.
     pub fn stop(self) -> io::Result<Uno> {
         self.stop.store(true, Ordering::Relaxed);
         match self.thread.join() {

@@ -2,11 +2,11 @@
 //! end in this program.
 //!
 //! It differs from a serial port in three things. It has no DTR line, so this module
-//! watches the file to notice that it is opened. The speed that a program sets changes
-//! nothing by itself, but can be asked for. And what a program leaves unread would wait for the next program, while the
-//! driver of a real port forgets it; so it is thrown away here.
+//! watches the file to notice that it is opened. The speed that a program sets has no
+//! effect of its own, but can be read. And bytes that a program leaves unread would wait for the
+//! next program, while the driver of a real port drops them; so they are dropped here.
 //!
-//! For that, this program opens the port itself for a moment. If another thread starts a
+//! To drop them, this program opens the port itself for a moment. If another thread starts a
 //! program at that moment, the new process has a copy of all open files until it calls
 //! exec, and the port stays open as long as there is a copy. So this module waits until
 //! the port is really closed.
@@ -30,12 +30,12 @@ const BAUD: u32 = 115_200;
 /// The longest time from the start of a program to its execution, on a busy machine.
 const MOST_BEFORE_EXECUTION: Duration = Duration::from_secs(10);
 
-/// What programs have done with the port since the last look.
+/// The port's state, and its changes since the last look.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Look {
-    /// A program has it open now.
+    /// True while a program has it open.
     pub(crate) open: bool,
-    /// It was opened, having been closed.
+    /// True if it has been opened after having been closed.
     pub(crate) opened: bool,
 }
 
@@ -45,17 +45,18 @@ pub(crate) struct Pty {
     ours: File,
     opens: OwnedFd,
     path: PathBuf,
+    /// True if it was open at the last look.
     was_open: bool,
-    /// A program has closed it, and yet it is open: if another has opened it in the
-    /// meantime, the system says so only at the next look.
+    /// True if a program has closed the port and it is open all the same. The system may report
+    /// another opening only at the next look.
     in_doubt: bool,
 }
 
 impl Pty {
-    /// A new pseudo terminal that passes bytes on as they are.
+    /// Makes a pseudo terminal that passes bytes on unchanged.
     ///
     /// # Errors
-    /// The system has none left, or no /dev/pts. Or [`ErrorKind::TimedOut`]: a program
+    /// The system has none left, or no /dev/pts; [`ErrorKind::TimedOut`] if a program
     /// that was started meanwhile keeps it open.
     pub(crate) fn new() -> io::Result<Self> {
         let ours = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
@@ -63,8 +64,8 @@ impl Pty {
         rustix::io::ioctl_fionbio(&ours, true)?;
         let name = ptsname(&ours, Vec::new())?;
         let path = PathBuf::from(name.to_string_lossy().into_owned());
-        // Opened once and closed: only from then on does the system say that
-        // nobody has it open. The settings outlive the closing.
+        // The system reports that no program has the port open only after it was opened and
+        // closed once. The settings outlive the closing.
         let theirs = other_end(&path, OFlags::RDWR)?;
         let mut settings = tcgetattr(&theirs)?;
         settings.make_raw();
@@ -72,8 +73,8 @@ impl Pty {
         tcsetattr(&theirs, OptionalActions::Now, &settings)?;
         drop(theirs);
         let ours = File::from(ours);
-        // Nobody else knows its name yet.
-        if !comes(|| Ok(!is_open(&ours)?))? {
+        // No other program knows its name yet.
+        if !wait_until(|| Ok(!is_open(&ours)?))? {
             let words = "a program that was started meanwhile keeps the new port open";
             return Err(io::Error::new(ErrorKind::TimedOut, words));
         }
@@ -94,11 +95,11 @@ impl Pty {
         &self.path
     }
 
-    /// What has happened since the last look. An opening is seen however short
-    /// it was, or the pause before it.
+    /// Looks at the port. An opening is seen however short it is, and however short the pause
+    /// before it.
     ///
     /// # Errors
-    /// Only those of a system that is out of memory.
+    /// The system is out of memory.
     pub(crate) fn look(&mut self) -> io::Result<Look> {
         let was_open = self.was_open;
         let (mut closed, mut opened) = (!was_open || self.in_doubt, false);
@@ -115,7 +116,7 @@ impl Pty {
         opened |= open && !was_open;
         // A program that closes it while another has it open changes nothing.
         if was_open && (opened || !open) {
-            self.throw_away_unread()?;
+            self.drop_unread()?;
             let now = self.is_open()?;
             opened |= now && !open;
             open = now;
@@ -125,75 +126,75 @@ impl Pty {
         Ok(Look { open, opened })
     }
 
-    /// Whether a program has it open at this moment.
+    /// True if a program has it open at this moment.
     ///
     /// # Errors
-    /// Only those of a system that is out of memory.
+    /// The system is out of memory.
     pub(crate) fn is_open(&self) -> io::Result<bool> {
         is_open(&self.ours)
     }
 
-    fn events(&self, mut tell: impl FnMut(ReadFlags)) -> io::Result<()> {
+    fn events(&self, mut on_event: impl FnMut(ReadFlags)) -> io::Result<()> {
         let mut space = [MaybeUninit::uninit(); 512];
         let mut events = inotify::Reader::new(&self.opens, &mut space);
         loop {
             match events.next() {
-                Ok(event) => tell(event.events()),
+                Ok(event) => on_event(event.events()),
                 Err(rustix::io::Errno::WOULDBLOCK) => return Ok(()),
                 Err(error) => return Err(error.into()),
             }
         }
     }
 
-    /// What the last program has not read is not for the next.
-    fn throw_away_unread(&self) -> io::Result<()> {
-        // It cannot be opened while a program has it for itself alone; then that
-        // program has thrown away what it found.
+    /// Drops the bytes that the last program has not read, so that the next does not get them.
+    fn drop_unread(&self) -> io::Result<()> {
+        // It cannot be opened while a program has exclusive use of it; then that
+        // program has dropped what it found.
         let Ok(theirs) = other_end(&self.path, OFlags::RDONLY) else {
             return self.events(|_anything| {});
         };
         tcflush(&theirs, QueueSelector::IFlush)?;
         drop(theirs);
-        // How the port is closed tells a program that opens it to write from us. If it is open
-        // in the end, another program has opened it.
+        // A port that was opened only to read is closed without CLOSE_WRITE, which distinguishes
+        // this opening from a program's. If the port is open in the end, a program has opened it.
         let mut closed = false;
-        comes(|| {
+        wait_until(|| {
             self.events(|event| closed |= event.contains(ReadFlags::CLOSE_NOWRITE))?;
             Ok(closed || !self.is_open()?)
         })?;
         self.events(|_rest| {})
     }
 
-    /// The speed that a program has set last, in baud.
+    /// The speed last set by a program, in baud.
     ///
     /// # Errors
-    /// Those of the system.
+    /// The system's.
     pub(crate) fn baud(&self) -> io::Result<f64> {
-        // Linux gives the settings of the other end. Speed 0 asks a modem to hang up.
+        // Linux returns the settings of the other end. Speed 0 makes a modem hang up.
         Ok(match tcgetattr(&self.ours)?.output_speed() {
             0 => f64::from(BAUD),
             baud => f64::from(baud),
         })
     }
 
-    /// Reads what programs have written, 0 bytes if there is nothing.
+    /// Reads bytes that programs have written; 0 if there are none.
     ///
     /// # Errors
-    /// Those of the system.
+    /// The system's.
     pub(crate) fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         match self.ours.read(into) {
-            // EIO: nobody has it open and nothing is left to read.
+            // EIO: no program has it open and nothing is left to read.
             Err(error) if error.raw_os_error() == Some(EIO) => Ok(0),
-            other => now(other),
+            other => or_nothing(other),
         }
     }
 
-    /// Writes to the program that has it open; returns how many bytes found room.
+    /// Writes to the program that has it open; returns the number of bytes accepted.
     ///
     /// # Errors
-    /// Those of the system.
+    /// The system's.
     pub(crate) fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        now(self.ours.write(bytes))
+        or_nothing(self.ours.write(bytes))
     }
 }
 
@@ -203,8 +204,8 @@ fn is_open(ours: &File) -> io::Result<bool> {
     Ok(!fds[0].revents().contains(PollFlags::HUP))
 }
 
-/// Waits as long as a program may take to be executed. False if that is not enough.
-fn comes(mut condition: impl FnMut() -> io::Result<bool>) -> io::Result<bool> {
+/// Waits for a condition for as long as the start of a program may take; false if it never holds.
+fn wait_until(mut condition: impl FnMut() -> io::Result<bool>) -> io::Result<bool> {
     let end = Instant::now() + MOST_BEFORE_EXECUTION;
     while !condition()? {
         if Instant::now() > end {
@@ -222,9 +223,9 @@ fn other_end(path: &Path, access: OFlags) -> rustix::io::Result<OwnedFd> {
 
 const EIO: i32 = rustix::io::Errno::IO.raw_os_error();
 
-/// Nothing can be done just now: 0 bytes.
-fn now(done: io::Result<usize>) -> io::Result<usize> {
-    match done {
+/// The number of bytes of a transfer; 0 if none is possible at the moment.
+fn or_nothing(transfer: io::Result<usize>) -> io::Result<usize> {
+    match transfer {
         Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => {
             Ok(0)
         }

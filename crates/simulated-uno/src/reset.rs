@@ -1,27 +1,31 @@
-//! Resets: their causes, and what survives them.
+//! Resets: their causes, and the memory that survives them.
 
-use crate::ffi::{self, RawReset};
+use crate::ffi;
 use crate::{State, Uno};
 
-/// What a reset came from; the bits of MCUSR (data sheet 11.9.1).
+/// The cause of a reset; a bit of MCUSR (data sheet 11.9.1).
+// `enum reset_cause` of the shim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
 pub enum ResetCause {
-    /// The power came.
-    PowerOn,
+    /// The power was switched on.
+    PowerOn = 1 << 0,
     /// The RESET pin, which opening the serial port pulls.
-    External,
+    External = 1 << 1,
     /// The supply was below the brown-out level.
-    BrownOut,
-    /// The watchdog ran out.
-    Watchdog,
+    BrownOut = 1 << 2,
+    /// The watchdog's time was over.
+    Watchdog = 1 << 3,
 }
 
 /// A reset that happened.
+// `struct reset_event` of the shim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(C)]
 pub struct Reset {
-    /// Cycle at which the program restarted.
+    /// The cycle at which the program restarted.
     pub cycle: u64,
-    /// What it came from.
+    /// Its cause.
     pub cause: ResetCause,
 }
 
@@ -29,31 +33,33 @@ impl Uno {
     /// Pulls the RESET pin for an instant, as opening the serial port does. SRAM,
     /// EEPROM and r0 to r31 keep their contents, an EEPROM operation continues, the
     /// I/O registers take their reset values, every pin becomes an input and is
-    /// recorded as low. A halted or crashed firmware lives again. Without power,
-    /// or with too little, nothing happens.
+    /// recorded as low. A halted or crashed firmware runs again. It has no effect without
+    /// power, or while the supply is too low.
     ///
     /// The chip's start-up delay (65 ms on an UNO) is not simulated.
     pub fn reset(&mut self) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim resets the chip at
         // any moment between two runs, and this is one.
         unsafe { ffi::uno_reset(self.raw) }
-        self.revive();
+        if self.state != State::Off {
+            self.state = State::Alive;
+        }
     }
 
-    /// Takes the power away and gives it back at once, at the supply's voltage of
-    /// the moment. Only the EEPROM survives; an operation under way in it is torn
-    /// (see [`Uno::set_torn_bits`]). SRAM and r0 to r31 hold noise.
+    /// Switches the power off and on at once, at the supply's present voltage. Only the EEPROM
+    /// survives; the byte of an operation in progress is torn
+    /// (see [`Uno::set_torn_bits`]). SRAM and r0 to r31 contain noise.
     pub fn power_cycle(&mut self) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; as in `reset`.
         unsafe { ffi::uno_power_cycle(self.raw) }
         self.state = State::Alive;
     }
 
-    /// Whether a boot loader like the UNO's has run before the firmware at each
-    /// start: it has cleared MCUSR, so that the firmware cannot see what the reset
-    /// came from, and switched the watchdog off. It takes no time here; the real
-    /// one waits a second after an external reset. If no cycle has passed yet, the
-    /// present start counts, too. Off unless set. In
+    /// Sets the effects of a boot loader like the UNO's, which runs before the firmware at each
+    /// start: it clears MCUSR, so that the firmware cannot see the cause of the reset,
+    /// and switches the watchdog off. It takes no time here; the real
+    /// one waits a second after an external reset. If no cycle has passed yet, the setting
+    /// applies to the present start, too. Off unless set. In
     /// [`Fidelity::Stock`](crate::Fidelity) the watchdog stays on.
     pub fn set_boot_loader(&mut self, on: bool) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a flag, and
@@ -68,23 +74,9 @@ impl Uno {
         unsafe { ffi::uno_set_noise(self.raw, seed) }
     }
 
-    /// Every start of the program so far, the first power-on too.
+    /// All starts of the program so far, the first power-on included.
     #[must_use]
     pub fn reset_events(&self) -> Vec<Reset> {
-        self.list(ffi::uno_reset_events, |raw: &RawReset| Reset {
-            cycle: raw.cycle,
-            cause: match raw.cause {
-                cause if cause & 1 != 0 => ResetCause::PowerOn,
-                cause if cause & 4 != 0 => ResetCause::BrownOut,
-                cause if cause & 8 != 0 => ResetCause::Watchdog,
-                _ => ResetCause::External,
-            },
-        })
-    }
-
-    fn revive(&mut self) {
-        if self.state != State::Off {
-            self.state = State::Alive;
-        }
+        self.list(ffi::uno_reset_events)
     }
 }

@@ -1,18 +1,18 @@
-//! The simulated board: load, run, send, look.
+//! The simulated board: loads a program, runs it, sends bytes to it and records what it does.
 
 use std::ffi::CStr;
 use std::path::Path;
 use std::sync::Once;
 
-use crate::ffi::{self, RawByte, RawCall, RawEdge, RawList, RawUno};
+use crate::ffi::{self, RawList, RawUno};
 use crate::image::{Image, LoadError, SRAM_END};
 use crate::traces::{Call, Mark, SerialByte, VectorUse};
 use crate::{CYCLES_PER_MS, Edge, FREQUENCY, Pin, Pulse};
 
-/// How faithful the simulation is.
+/// The fidelity of the simulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Fidelity {
-    /// simavr 1.6 as it is: interrupts are entered in no time, received bytes
+    /// Stock simavr 1.6: entering an interrupt takes no time, received bytes
     /// are never lost, 16-bit registers cannot be torn.
     Stock,
     /// Corrected by the ATmega328P's data sheet: interrupt entry in 4 cycles (8
@@ -23,7 +23,7 @@ pub enum Fidelity {
     DataSheet,
 }
 
-/// Whether the firmware still runs.
+/// The state of the firmware.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum State {
     /// Running or asleep with interrupts on.
@@ -34,7 +34,7 @@ pub enum State {
     Crashed {
         /// Byte address in flash.
         pc: u32,
-        /// simavr's words.
+        /// simavr's message.
         message: String,
     },
     /// Without power, since [`Uno::cut_power`]; see [`Uno::power_cycle`].
@@ -43,10 +43,10 @@ pub enum State {
 
 /// A simulated Arduino UNO with a firmware in its flash.
 ///
-/// On what all `unsafe` here rests: `raw` comes from the shim's constructor and is freed
-/// in `drop` alone, and nothing outside this struct keeps a copy. So it is valid wherever
-/// there is a `self`; functions of the shim that take it as `const` only read and may be
-/// called with `&self`, since no other thread can have one ([`Uno`] is not `Sync`); those
+/// The argument for all `unsafe` of this package: `raw` comes from the shim's constructor and is
+/// freed only in `drop`, and nothing outside this struct keeps a copy. So it is valid wherever
+/// there is a `self`. Functions of the shim that take it as `const` only read and may be
+/// called with `&self`, since no other thread can have one ([`Uno`] is not `Sync`); functions
 /// that change something are called with `&mut self`.
 pub struct Uno {
     pub(crate) raw: *mut RawUno,
@@ -116,15 +116,15 @@ impl Uno {
         self.cycle() as f64 / CYCLES_PER_MS as f64
     }
 
-    /// Whether the firmware still runs.
+    /// The firmware's state.
     #[must_use]
     pub fn state(&self) -> &State {
         &self.state
     }
 
-    /// Runs until cycle `until`, at most a few hundred cycles longer if an
-    /// instruction re-arms a timer just then. Where a run is cut changes
-    /// nothing in what the firmware does.
+    /// Runs until cycle `until`, or a few hundred cycles longer if an
+    /// instruction re-arms a timer at the end. A run in several parts has the same result as
+    /// one long run.
     pub fn run_until_cycle(&mut self, until: u64) -> &State {
         self.run_to(until, false);
         &self.state
@@ -140,8 +140,8 @@ impl Uno {
         self.run_cycles(ms * CYCLES_PER_MS)
     }
 
-    /// Runs until the predicate holds, asked every `step` cycles, or until
-    /// `limit` cycles have passed or the firmware is dead. True if it held.
+    /// Runs until the predicate holds, which is checked every `step` cycles; true if it does. False
+    /// if `limit` cycles have passed, or the firmware runs no more.
     pub fn run_until(
         &mut self,
         limit: u64,
@@ -160,8 +160,8 @@ impl Uno {
         }
     }
 
-    /// Runs until the UNO has sent a whole line, at most for `limit` cycles.
-    /// True if it has.
+    /// Runs until the UNO has sent a complete line, for at most `limit` cycles.
+    /// True if it has sent one.
     pub fn run_until_line(&mut self, limit: u64) -> bool {
         self.run_to(self.cycle() + limit, true)
     }
@@ -191,21 +191,21 @@ impl Uno {
         false
     }
 
-    /// Queues bytes for the serial line. They go out back to back, as fast as
-    /// the baud rate allows, whether or not the firmware keeps up.
+    /// Queues bytes for the serial line. They are sent back to back at the baud rate,
+    /// whether or not the firmware keeps up.
     pub fn send(&mut self, bytes: &[u8]) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim copies `len` bytes from
         // a slice that has them.
         unsafe { ffi::uno_send(self.raw, bytes.as_ptr(), bytes.len(), false) }
     }
 
-    /// Sends a line with its end, `\n`, and returns the next whole line that comes back,
-    /// without its end. `None` if none comes within a second of the chip's time, or if
-    /// the firmware is dead.
+    /// Sends a line with its end, `\n`, and returns the next complete line that the UNO sends,
+    /// without its end. `None` if it sends none within a second of the chip's time, or if
+    /// the firmware runs no more.
     ///
-    /// Takes what the UNO has transmitted, before and meanwhile, as
-    /// [`Uno::take_transmitted`] does. A line that the UNO has begun before counts as the
-    /// answer: a firmware that talks unasked needs [`Uno::send`] and
+    /// Takes all that the UNO has transmitted, before and meanwhile, as
+    /// [`Uno::take_transmitted`] does. A line that the UNO began earlier counts as the
+    /// answer: with a firmware that sends lines of its own accord, use [`Uno::send`] and
     /// [`Uno::run_until_line`].
     pub fn say(&mut self, line: &str) -> Option<String> {
         self.take_transmitted();
@@ -220,16 +220,16 @@ impl Uno {
         Some(text.trim_end_matches(['\r', '\n']).to_owned())
     }
 
-    /// [`Uno::send`], but the line is low where each byte's stop bit should be, as after
-    /// noise or a start bit missed: the byte arrives with a framing error, FE0 in
-    /// UCSR0A. The next byte begins where it would without.
+    /// Sends bytes as [`Uno::send`] does, but with the line low in place of each stop bit, as after
+    /// noise or a missed start bit: the byte arrives with a framing error, FE0 in
+    /// UCSR0A. The next byte begins as usual.
     pub fn send_with_framing_error(&mut self, bytes: &[u8]) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim copies `len` bytes from
         // a slice that has them.
         unsafe { ffi::uno_send(self.raw, bytes.as_ptr(), bytes.len(), true) }
     }
 
-    /// Saturates the serial line: repeats `bytes` without end once the queue is
+    /// Saturates the serial line: repeats `bytes` forever once the queue is
     /// empty. An empty slice ends the flood.
     pub fn flood(&mut self, bytes: &[u8]) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim copies `len` bytes from
@@ -251,28 +251,28 @@ impl Uno {
         unsafe { ffi::uno_set_baud(self.raw, baud) }
     }
 
-    /// The baud rate that the chip's USART has now, by its registers.
+    /// The present baud rate of the chip's USART, by its registers.
     #[must_use]
     pub fn chip_baud(&self) -> f64 {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads registers.
         FREQUENCY as f64 / f64::from(unsafe { ffi::uno_cycles_per_bit(self.raw) })
     }
 
-    /// Queued bytes that are not through the line yet.
+    /// The number of queued bytes that have not arrived yet.
     #[must_use]
     pub fn unsent(&self) -> usize {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
         unsafe { ffi::uno_unsent(self.raw) }
     }
 
-    /// Bytes the sender has put on the line so far, a flood's included.
+    /// The number of bytes sent so far, a flood's included.
     #[must_use]
     pub fn bytes_sent(&self) -> u64 {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
         unsafe { ffi::uno_sent(self.raw) }
     }
 
-    /// Bytes lost because the firmware read UDR0 too late. Always 0 in
+    /// The number of bytes lost because the firmware read UDR0 too late. Always 0 in
     /// [`Fidelity::Stock`].
     #[must_use]
     pub fn overruns(&self) -> u64 {
@@ -280,41 +280,33 @@ impl Uno {
         unsafe { ffi::uno_overruns(self.raw) }
     }
 
-    /// Every byte that the UNO has transmitted and nobody has taken.
+    /// The bytes transmitted by the UNO since the last [`Uno::take_transmitted`].
     #[must_use]
     pub fn transmitted(&self) -> Vec<SerialByte> {
-        self.list(ffi::uno_transmitted, serial_byte)
+        self.list(ffi::uno_transmitted)
     }
 
-    /// Takes what the UNO has transmitted since the last call.
+    /// Takes the bytes transmitted since the last call.
     pub fn take_transmitted(&mut self) -> Vec<SerialByte> {
-        let bytes = self.transmitted();
-        self.clear(ffi::uno_transmitted);
-        bytes
+        self.take(ffi::uno_transmitted)
     }
 
-    /// Every byte that has come through the line to the UNO, with the cycle at
-    /// which it was complete there, lost bytes included.
+    /// All bytes that have arrived at the UNO, lost bytes included, each with the cycle at
+    /// which it was complete.
     #[must_use]
     pub fn received_by_uno(&self) -> Vec<SerialByte> {
-        self.list(ffi::uno_received, serial_byte)
+        self.list(ffi::uno_received)
     }
 
     /// Edges of D2 to D13 and A0 to A5 since power-on or the last [`Uno::take_edges`].
     #[must_use]
     pub fn edges(&self) -> Vec<Edge> {
-        self.list(ffi::uno_edges, |raw: &RawEdge| Edge {
-            cycle: raw.cycle,
-            pin: Pin::arduino(raw.pin),
-            high: raw.level != 0,
-        })
+        self.list(ffi::uno_edges)
     }
 
     /// Takes the edges recorded since the last call.
     pub fn take_edges(&mut self) -> Vec<Edge> {
-        let edges = self.edges();
-        self.clear(ffi::uno_edges);
-        edges
+        self.take(ffi::uno_edges)
     }
 
     /// The finished pulses among [`Uno::edges`].
@@ -323,7 +315,7 @@ impl Uno {
         crate::pin::pulses(&self.edges(), pin)
     }
 
-    /// Whether a pin (D2 to D13, A0 to A5) is high now.
+    /// True while a pin (D2 to D13, A0 to A5) is high.
     #[must_use]
     pub fn is_high(&self, pin: Pin) -> bool {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
@@ -334,22 +326,17 @@ impl Uno {
     /// Stores to GPIOR0 since power-on or the last [`Uno::take_marks`].
     #[must_use]
     pub fn marks(&self) -> Vec<Mark> {
-        self.list(ffi::uno_marks, |raw: &RawByte| Mark {
-            cycle: raw.cycle,
-            value: raw.byte,
-        })
+        self.list(ffi::uno_marks)
     }
 
     /// Takes the marks recorded since the last call.
     pub fn take_marks(&mut self) -> Vec<Mark> {
-        let marks = self.marks();
-        self.clear(ffi::uno_marks);
-        marks
+        self.take(ffi::uno_marks)
     }
 
     /// Runs for `cycles` and times every call of the function at byte address
     /// `entry` in flash (see [`Image::symbol`]). Slower than [`Uno::run_cycles`]:
-    /// it looks at every instruction. Recursive calls count as part of the
+    /// it checks every instruction. Recursive calls count as part of the
     /// outermost.
     pub fn time_calls(&mut self, entry: u32, cycles: u64) -> Vec<Call> {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim compares `entry`
@@ -358,55 +345,49 @@ impl Uno {
         self.run_cycles(cycles);
         // SAFETY: as above.
         unsafe { ffi::uno_time_calls(self.raw, false, 0) };
-        let calls = self.list(ffi::uno_calls, |raw: &RawCall| Call {
-            enter: raw.enter,
-            leave: raw.leave,
-            interrupted: raw.interrupted,
-        });
-        self.clear(ffi::uno_calls);
-        calls
+        self.take(ffi::uno_calls)
     }
 
-    /// Cycles asleep since power-on.
+    /// The number of cycles asleep since power-on.
     #[must_use]
     pub fn asleep_cycles(&self) -> u64 {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
         unsafe { ffi::uno_asleep(self.raw) }
     }
 
-    /// Cycles awake since power-on.
+    /// The number of cycles awake since power-on.
     #[must_use]
     pub fn awake_cycles(&self) -> u64 {
         self.cycle() - self.asleep_cycles()
     }
 
-    /// Resets by the watchdog so far; [`Uno::reset_events`] has them all.
+    /// The number of resets by the watchdog so far; [`Uno::reset_events`] has all resets.
     #[must_use]
     pub fn resets(&self) -> u64 {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
         unsafe { ffi::uno_resets(self.raw) }
     }
 
-    /// The most bytes of stack in use since power-on. SRAM holds noise then; a
-    /// byte counts once it differs.
+    /// The largest size of the stack since power-on, bytes. SRAM contains noise at power-on; a
+    /// byte counts once it differs from that.
     #[must_use]
     pub fn stack_used(&self) -> u16 {
         SRAM_END - self.stack_low()
     }
 
-    /// The fewest bytes ever left between the stack and static data.
+    /// The smallest room between the stack and static data since power-on, bytes.
     #[must_use]
     pub fn stack_spare(&self) -> u16 {
         self.stack_low() - self.image.data_end()
     }
 
-    /// Lowest SRAM address that the stack has ever touched.
+    /// The lowest SRAM address that the stack has reached.
     fn stack_low(&self) -> u16 {
         // SAFETY: `raw` is valid, see `Uno`; the shim looks through the chip's own SRAM.
         unsafe { ffi::uno_stack_low(self.raw) }
     }
 
-    /// Byte address in flash of the next instruction.
+    /// The byte address in flash of the next instruction.
     #[must_use]
     pub fn pc(&self) -> u32 {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
@@ -425,7 +406,7 @@ impl Uno {
         data.get(usize::from(address)).copied().unwrap_or(0)
     }
 
-    /// The interrupts served so far, those that never came left out.
+    /// The interrupts served so far; those never served are left out.
     #[must_use]
     pub fn interrupts(&self) -> Vec<VectorUse> {
         // SAFETY: `raw` is valid, see `Uno`. It is an array of `VECTORS` items inside the
@@ -450,38 +431,37 @@ impl Uno {
         self.cycle() as f64 / FREQUENCY as f64
     }
 
-    pub(crate) fn list<Raw, Item>(
-        &self,
-        of: unsafe extern "C" fn(*mut RawUno) -> *mut RawList,
-        make: impl Fn(&Raw) -> Item,
-    ) -> Vec<Item> {
+    /// The items of one of the shim's lists.
+    pub(crate) fn list<Item: Copy>(&self, of: ListOf) -> Vec<Item> {
         // SAFETY: `raw` is valid, see `Uno`. The callers pair each list with the type that
         // the shim keeps in it, whose size is compared; `count` items of it are filled in,
-        // and nothing runs while they are borrowed.
+        // and nothing runs while they are copied.
         unsafe {
             let list = &*of(self.raw);
-            assert_eq!(list.size, size_of::<Raw>());
-            if list.count == 0 {
-                return Vec::new();
+            assert_eq!(list.size, size_of::<Item>());
+            match list.count {
+                0 => Vec::new(),
+                count => std::slice::from_raw_parts(list.items.cast(), count).to_vec(),
             }
-            let items = std::slice::from_raw_parts(list.items.cast::<Raw>(), list.count);
-            items.iter().map(make).collect()
         }
     }
 
-    pub(crate) fn clear(&mut self, of: unsafe extern "C" fn(*mut RawUno) -> *mut RawList) {
+    /// The items of one of the shim's lists, which is empty afterwards.
+    fn take<Item: Copy>(&mut self, of: ListOf) -> Vec<Item> {
+        let items = self.list(of);
+        self.clear(of);
+        items
+    }
+
+    pub(crate) fn clear(&mut self, of: ListOf) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; a list is inside the instance, and
         // the shim writes after its `count`, so that 0 empties it.
         unsafe { (*of(self.raw)).count = 0 }
     }
 }
 
-fn serial_byte(raw: &RawByte) -> SerialByte {
-    SerialByte {
-        cycle: raw.cycle,
-        byte: raw.byte,
-    }
-}
+/// One of the shim's functions that return a list.
+type ListOf = unsafe extern "C" fn(*mut RawUno) -> *mut RawList;
 
 impl Drop for Uno {
     fn drop(&mut self) {

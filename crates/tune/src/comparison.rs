@@ -1,4 +1,4 @@
-//! What was found beside the gait that was to be surpassed.
+//! The comparison of the gait that was found with the given one.
 
 use lizard_kinematics::Check;
 use lizard_robot::CheckedGait;
@@ -10,45 +10,45 @@ use crate::variation::quantiles;
 /// Two gaits on the same random robots.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparison {
-    /// mm/s, or deg/s for a turn.
+    /// Unit of the speeds: mm/s, or deg/s for a turn.
     pub unit: &'static str,
-    /// How fast a servo may turn, deg/s.
+    /// Largest speed of a servo, deg/s.
     pub rate: f64,
-    /// The gait that was to be surpassed, at a pace with that rate.
+    /// The given gait, at the pace at which its servos have that speed.
     pub gait: Figures,
-    /// The one that was found.
+    /// The gait that was found.
     pub tuned: Figures,
-    /// Random robots that both were walked on.
+    /// Number of random robots on which both were walked.
     pub robots: usize,
-    /// On how many of them the one that was found is faster.
+    /// Number of robots on which the gait that was found is faster.
     pub faster: usize,
-    /// Its table for robot.toml.
+    /// Table of the gait that was found, for robot.toml.
     pub fragment: String,
 }
 
-/// What a gait comes to.
+/// Speeds and margins of a gait.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Figures {
-    /// Its name.
+    /// Name of the gait.
     pub name: String,
-    /// s
+    /// Time of a cycle, s.
     pub period: f64,
-    /// Its fastest servo, deg/s.
+    /// Speed of its fastest servo, deg/s.
     pub rate: f64,
-    /// Its smallest margin, a sine, and which one.
+    /// Name of its smallest margin, and its value, a sine.
     pub margin: (&'static str, f64),
-    /// By the contact model, with servos that are where their pulses say.
+    /// Speed by the contact model, with ideal servos.
     pub predicted: f64,
-    /// The same frame by frame as the firmware sends it, to SG-90 with their dead band.
+    /// Speed frame by frame as the firmware sends it, with SG-90 and their dead band.
     pub sg90: f64,
-    /// The same on random robots: 5 %, half and 95 % are slower.
+    /// Speeds on random robots: 5 %, half and 95 % of them are slower.
     pub speeds: [f64; 3],
 }
 
 impl Comparison {
     /// Walks both gaits on the judge's robots.
     pub(crate) fn of(judge: &Judge, rate: f64, gait: &CheckedGait, found: &Built) -> Self {
-        // At another pace it goes the same way in another time.
+        // At another pace it goes the same distance in another time.
         let paced = gait.audit().peak.speed / rate;
         let (before, all_before) = Figures::of(judge, gait, paced);
         let (tuned, all_tuned) = Figures::of(judge, found.gait(), 1.0);
@@ -64,23 +64,23 @@ impl Comparison {
             tuned,
             robots: all_tuned.len(),
             faster,
-            fragment: found.fragment().to_owned(),
+            fragment: found.table().to_owned(),
         }
     }
 
-    /// Whether the gait was surpassed where it counts: on the slow robots.
+    /// True if the gait that was found is faster on the slow robots and on most of all.
     pub fn is_better(&self) -> bool {
         self.tuned.speeds[0] > self.gait.speeds[0] && 2 * self.faster > self.robots
     }
 
-    /// By what share the one that was found is faster where 5 % of the robots are slower.
+    /// Gain in the speed that 95 % of the robots exceed, as a share.
     pub fn gain(&self) -> f64 {
         self.tuned.speeds[0] / self.gait.speeds[0] - 1.0
     }
 }
 
 impl Figures {
-    /// Of a gait whose cycle is `paced` times as long, and its speed on each robot.
+    /// Walks a gait whose cycle is made `paced` times as long; also returns its speed on each robot.
     fn of(judge: &Judge, gait: &CheckedGait, paced: f64) -> (Self, Vec<f64>) {
         let period = gait.period() * paced;
         let audit = gait.audit();

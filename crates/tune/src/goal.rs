@@ -1,10 +1,10 @@
-//! What a gait is for: to go ahead, or to turn on the spot.
+//! The goal of a gait: to go straight, or to turn on the spot.
 
 use lizard_robot::servo::LEGS;
 use lizard_robot::{CheckedGait, Ground, Travel};
 use thiserror::Error;
 
-/// Less than this in a cycle is no way: mm, deg.
+/// Smallest movement of a cycle that counts: mm, deg.
 const NOWHERE: (f64, f64) = (1.0, 0.5);
 
 fn is_left(servo: usize) -> bool {
@@ -15,13 +15,13 @@ fn is_front(servo: usize) -> bool {
     LEGS[servo].ends_with('F')
 }
 
-/// Why a gait of this name has no goal.
+/// The error for a gait without a goal, by its name.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum NoGoal {
-    /// Its way depends on which of two feet holds.
+    /// Its movement depends on a tie between two pairs of feet.
     #[error("where the gait `{0}` leads is undecided: two feet pull against two; tune another one")]
     Undecided(String),
-    /// It stands, or comes back to where it began.
+    /// It stands, or returns to its start.
     #[error("the gait `{0}` goes nowhere")]
     Nowhere(String),
     /// It walks along a curve.
@@ -32,20 +32,20 @@ pub enum NoGoal {
     Bow(String),
 }
 
-/// The way that a gait makes, and its sign: ahead and to the left positive.
+/// The direction of a gait's movement, and its sign: ahead and to the left positive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Goal {
-    /// Straight on.
+    /// Straight ahead or back.
     Ahead(f64),
-    /// On the spot.
+    /// A turn on the spot.
     Turn(f64),
 }
 
 impl Goal {
-    /// The goal of a gait: what it does on rigid legs.
+    /// Finds the goal of a gait by its movement on rigid legs.
     ///
     /// # Errors
-    /// One that stands, goes nowhere for sure, or goes in a bow.
+    /// For a gait that stands, goes along a curve, or depends on ties.
     pub fn of(gait: &CheckedGait, ground: &Ground) -> Result<Self, NoGoal> {
         let name = || gait.name().to_owned();
         let way = gait.predict(&ground.rigid());
@@ -61,7 +61,7 @@ impl Goal {
         }
     }
 
-    /// How far a way leads to this goal, mm or deg.
+    /// The part of a movement towards this goal, mm or deg.
     pub fn reached(self, way: &Travel) -> f64 {
         match self {
             Self::Ahead(sign) => sign * way.forward,
@@ -69,7 +69,7 @@ impl Goal {
         }
     }
 
-    /// Whether a way leads nowhere else, as far as a gait can be said to.
+    /// True if a movement has no part in other directions.
     pub fn is_true_to(self, way: &Travel) -> bool {
         match self {
             Self::Ahead(_) => way.turn.abs() < NOWHERE.1 && way.left.abs() < NOWHERE.0,
@@ -92,7 +92,7 @@ impl Goal {
         }
     }
 
-    /// Which of two pairs of partners a leg belongs to: the one of LH, or the other.
+    /// Index of the pair of partners that a leg belongs to: 0 for the pair of LH.
     pub fn pair(self, servo: usize) -> usize {
         match self {
             Self::Ahead(_) => usize::from(is_front(servo)),
@@ -100,7 +100,7 @@ impl Goal {
         }
     }
 
-    /// The unit of what is reached in a second.
+    /// Unit of the speed towards this goal.
     pub const fn unit(self) -> &'static str {
         match self {
             Self::Ahead(_) => "mm/s",

@@ -1,46 +1,46 @@
-//! How good a plan is: its gait is computed and checked like any gait of robot.toml, at
-//! the pace at which its fastest servo turns as fast as it may, and walked on random
-//! robots.
+//! The score of a gait: it is computed and checked like any gait of robot.toml, at the pace at
+//! which its fastest servo turns as fast as allowed, and walked on random robots.
 
-use lizard_robot::{CheckedGait, Ground, Robot, Travel};
+use lizard_robot::{Bars, CheckedGait, Ground, Robot, Travel};
 use lizard_twin::ServoModel;
 
 use crate::goal::Goal;
-use crate::plan::{Kind, LONGEST, Plan, Space};
+use crate::plan::{Kind, LONGEST, Space, planned};
 use crate::variation::{Variation, quantiles};
 
-/// The largest amplitude of a robot's legs is between these, deg.
+/// Bounds of the search for a robot's largest amplitude, deg.
 const WIDTHS: (f64, f64) = (5.0, 80.0);
-/// What its servos can do: small strides lose a larger share to their dead band.
+/// The servos of the random robots: small strides lose a larger share to their dead band.
 const SERVOS: ServoModel = ServoModel::SG90;
-/// A pace at which no servo is too fast, to learn how fast they are, s.
+/// A period at which no servo is too fast, for measuring their speed, s.
 const SLOW: f64 = 3.0;
-/// Rounds in which the period is fitted to the rate.
+/// Rounds of fitting the period to the rate.
 const FITS: usize = 3;
-/// What every robot.toml begins with.
-const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
-/// What every one but this share of the robots surpasses.
+/// The share of the robots that may be slower than the score.
 const SLOWEST: f64 = 0.05;
 
-/// A gait with its period and the table of robot.toml that it was read from.
+/// A gait with its period and its table for robot.toml.
 #[derive(Debug, Clone)]
 pub struct Built {
-    /// The robot that has this gait and `stand`.
+    /// The robot with this gait and `stand` alone.
     robot: Robot,
-    /// Its table.
-    fragment: String,
+    table: String,
 }
 
 impl Built {
-    /// The gait of a plan, its period the shortest with servos not faster than `rate`
-    /// (deg/s); none where a limit of the robot forbids it.
-    pub(crate) fn of(robot: &Robot, plan: &Plan, name: &str, rate: f64) -> Option<Self> {
+    /// Builds a gait with the shortest period at which no servo is faster than `rate` (deg/s);
+    /// none if a limit of the robot forbids it.
+    pub(crate) fn of(robot: &Robot, bars: &Bars, rate: f64) -> Option<Self> {
         let build = |period: f64| {
-            let fragment = plan.fragment(name, period);
-            let robot = robot.with_gaits(&format!("{STAND}{fragment}")).ok()?;
-            Some(Self { robot, fragment })
+            let bars = Bars {
+                period,
+                ..bars.clone()
+            };
+            let table = bars.table();
+            let robot = robot.with_gait(&table).ok()?;
+            Some(Self { robot, table })
         };
-        let mut fits = None;
+        let mut fits: Option<Self> = None;
         let mut built = build(SLOW)?;
         for _ in 0..FITS {
             let period = fitted(built.gait().period() * built.peak() / rate);
@@ -48,26 +48,22 @@ impl Built {
                 return None;
             }
             built = build(period)?;
-            if built.peak() > rate {
-                continue;
-            }
-            if fits
-                .as_ref()
-                .is_none_or(|fits: &Self| period < fits.gait().period())
-            {
+            let shorter = |fits: &Self| period < fits.gait().period();
+            if built.peak() <= rate && fits.as_ref().is_none_or(shorter) {
                 fits = Some(built.clone());
             }
         }
-        // A shorter period is a longer mean of the servo's turn in a frame.
+        // The speed of a frame depends on its phase, so a shorter period may do as well.
         let shorter = build(fits.as_ref()?.gait().period() - 0.01);
         shorter.filter(|shorter| shorter.peak() <= rate).or(fits)
     }
 
-    /// The largest amplitude with which a plain walk is within the robot's limits, deg.
+    /// Finds the largest amplitude at which a plain walk is within the robot's limits, deg.
     pub(crate) fn widest(robot: &Robot, goal: Goal, rate: f64) -> f64 {
         let walks = |widest: f64| {
-            let plan = Plan::of(Kind::Wave, Space { goal, widest }, &Kind::Wave.begin()[0]);
-            Self::of(robot, &plan, "x", rate).is_some()
+            let begin = &Kind::Wave.begin()[0];
+            let bars = planned(Kind::Wave, Space { goal, widest }, "x", begin);
+            Self::of(robot, &bars, rate).is_some()
         };
         let (mut low, mut high) = WIDTHS;
         while high - low > 0.2 {
@@ -81,30 +77,30 @@ impl Built {
         low
     }
 
-    /// The gait.
+    /// The checked gait.
     pub fn gait(&self) -> &CheckedGait {
-        // `stand` is the other one.
+        // The first gait is `stand`.
         self.robot.gaits().last().unwrap_or(&self.robot.gaits()[0])
     }
 
-    /// Its table for robot.toml.
-    pub fn fragment(&self) -> &str {
-        &self.fragment
+    /// The gait's table for robot.toml.
+    pub fn table(&self) -> &str {
+        &self.table
     }
 
-    /// How fast its fastest servo turns, deg/s.
+    /// Speed of the fastest servo, deg/s.
     fn peak(&self) -> f64 {
         self.gait().audit().peak.speed
     }
 }
 
-/// A period as it is written: hundredths of a second, not shorter than 0.2.
+/// Rounds a period up to hundredths of a second, at least 0.2.
 fn fitted(period: f64) -> f64 {
-    // What is a hundredth but for rounding is not the next one.
+    // A rounding error must not lead to the next hundredth.
     ((period * 100.0 - 1e-6).ceil() / 100.0).max(0.2)
 }
 
-/// Random robots that a gait is judged by.
+/// Random robots on which gaits are scored.
 #[derive(Debug, Clone)]
 pub struct Judge {
     robot: Robot,
@@ -114,7 +110,7 @@ pub struct Judge {
 }
 
 impl Judge {
-    /// So many robots around this one on this ground, from this seed on.
+    /// Makes `robots` random robots around this one on this ground, from consecutive seeds.
     pub fn new(robot: &Robot, ground: &Ground, goal: Goal, robots: usize, seed: u64) -> Self {
         let of = |n: u64| Variation::of(ground, seed.wrapping_add(n));
         Self {
@@ -125,38 +121,37 @@ impl Judge {
         }
     }
 
-    /// What a gait reaches in a second on each robot: mm or deg.
+    /// Computes the speed of a gait on each random robot, mm/s or deg/s.
     pub fn speeds(&self, gait: &CheckedGait, period: f64) -> Vec<f64> {
         let way = |varied: &Variation| varied.walked(&self.robot, gait, SERVOS);
         let speed = |varied: &Variation| self.goal.reached(&way(varied)) / period;
         self.robots.iter().map(speed).collect()
     }
 
-    /// What it reaches in a second on the robot itself.
+    /// Computes the speed of a gait on the robot itself, mm/s or deg/s.
     pub fn exact(&self, gait: &CheckedGait, period: f64) -> f64 {
         self.goal.reached(&self.way(gait)) / period
     }
 
-    /// What the gaits are for.
+    /// The goal of the gaits.
     pub const fn goal(&self) -> Goal {
         self.goal
     }
 
-    /// Where a cycle in fine steps leads the robot itself, with servos that are where their
-    /// pulses say.
+    /// Follows a cycle in fine steps on the robot itself, with ideal servos.
     pub fn cycle(&self, gait: &CheckedGait) -> Travel {
         gait.walked(&self.ground).travel
     }
 
-    /// Where a cycle leads the robot itself.
+    /// Follows a cycle frame by frame on the robot itself.
     fn way(&self, gait: &CheckedGait) -> Travel {
         Variation::none(&self.ground).walked(&self.robot, gait, SERVOS)
     }
 
-    /// The speed that 95 % of the robots exceed; none for a gait that does not lead
+    /// Computes the speed that 95 % of the robots exceed; none for a gait that does not lead
     /// straight to its goal on the robot itself.
     pub fn score(&self, gait: &CheckedGait) -> Option<f64> {
-        // Asked of a cycle in fine steps: frames of 20 ms leave a period a remainder.
+        // In fine steps, because a period may not be a whole number of frames.
         if !self.goal.is_true_to(&self.cycle(gait)) {
             return None;
         }
@@ -173,12 +168,12 @@ mod tests {
         Robot::parse(include_str!("../../../robots/paper.toml")).expect("right")
     }
 
-    fn plan(widest: f64, share: f64) -> Plan {
+    fn plan(widest: f64, share: f64) -> Bars {
         let space = Space {
             goal: Goal::Ahead(1.0),
             widest,
         };
-        Plan::of(Kind::Wave, space, &[0.5, 0.25, share, 0.5])
+        planned(Kind::Wave, space, "x", &[0.5, 0.25, share, 0.5])
     }
 
     #[test]
@@ -196,7 +191,7 @@ mod tests {
         let robot = paper();
         let plan = plan(45.0, 0.375);
         for rate in [150.0, 262.2, 300.0] {
-            let built = Built::of(&robot, &plan, "x", rate).expect("it walks");
+            let built = Built::of(&robot, &plan, rate).expect("it walks");
             assert!(
                 built.peak() <= rate && built.peak() > 0.97 * rate,
                 "{rate} {}",
@@ -206,14 +201,14 @@ mod tests {
     }
 
     #[test]
-    fn what_a_limit_forbids_is_no_gait() {
+    fn a_gait_beyond_a_limit_is_not_built() {
         // 45 deg to either side take the legs beyond their margin.
         let wide = plan(45.0, 1.0);
-        assert!(Built::of(&paper(), &wide, "x", 250.0).is_none());
+        assert!(Built::of(&paper(), &wide, 250.0).is_none());
     }
 
     #[test]
-    fn todays_walk_and_left_score_as_they_are_predicted() {
+    fn walk_and_left_score_as_they_are_predicted() {
         let robot = paper();
         for (name, goal, least) in [
             ("walk", Goal::Ahead(1.0), 28.0),

@@ -1,39 +1,40 @@
 //! The search: differential evolution (R. Storn, K. Price, *Journal of Global Optimization*
 //! 11, 1997; towards one of the best, as J. Zhang and A. Sanderson do, *IEEE Transactions on
-//! Evolutionary Computation* 13, 2009), which needs no slope, takes refusals for granted and is
-//! a page long.
+//! Evolutionary Computation* 13, 2009). It needs no slope, copes with refused trials and is a
+//! page long.
 //!
-//! The search does not judge: whoever runs it takes the trials of a round, scores them in any
-//! order, and gives the scores back. Random numbers come from one seed and in one order, so the
+//! The search does not score: its caller takes the trials of a round, scores them in any order,
+//! and gives the scores back. Random numbers come from one seed and in one order, so the
 //! same seed finds the same gait on every machine.
 
 use fastrand::Rng;
 
 /// Members of the population.
 const MEMBERS: usize = 20;
-/// A trial goes towards one of this many of the best, so the search does not get stuck on one hill.
+/// Number of leaders: a trial goes towards one of them, so the search does not get stuck on one
+/// hill.
 const LEADERS: usize = 5;
-/// How many of a member's parameters a trial changes on average.
+/// Share of a member's parameters that a trial changes on average.
 const CHANGED: f64 = 0.9;
-/// How far a difference of two members is taken: uniform within these, anew for each trial.
+/// Factor of the difference of two members: uniform within these, drawn for each trial.
 const STEPS: (f64, f64) = (0.4, 0.9);
 
-/// How many trials a [`Search`] of so many rounds has; the first population is judged before
-/// the first round.
+/// The number of trials of a [`Search`] with this number of rounds; the first population is
+/// scored before the first round.
 pub const fn trials(rounds: usize) -> usize {
     MEMBERS * (rounds + 1)
 }
 
-/// One of the population.
+/// A member of the population.
 #[derive(Debug, Clone)]
 struct Member {
-    /// Its parameters, 0 to 1.
+    /// Parameters, each 0 to 1.
     parameters: Vec<f64>,
-    /// How good it is; none where it is refused.
+    /// Score; none if the member is refused.
     score: Option<f64>,
 }
 
-/// Looks for parameters (each 0 to 1) of the greatest score.
+/// A search for the parameters (each 0 to 1) with the greatest score.
 #[derive(Debug, Clone)]
 pub struct Search {
     rng: Rng,
@@ -42,7 +43,7 @@ pub struct Search {
 }
 
 impl Search {
-    /// Begins with these parameters and with random ones.
+    /// Starts with these parameters and with random ones.
     pub fn new(begin: &[Vec<f64>], seed: u64) -> Self {
         let mut rng = Rng::with_seed(seed);
         let parameters = begin.first().map_or(0, Vec::len);
@@ -55,14 +56,14 @@ impl Search {
         }
     }
 
-    /// The parameters that are to be scored now.
+    /// The parameters of this round, to be scored.
     pub fn trials(&self) -> &[Vec<f64>] {
         &self.trials
     }
 
-    /// Takes the scores of the trials, in their order; none for one that is refused. What is
-    /// left out counts as refused. The next round's trials follow.
-    pub fn judged(&mut self, scores: impl IntoIterator<Item = Option<f64>>) {
+    /// Takes the scores of this round's trials, in their order, and makes the trials of the next
+    /// round. A trial is refused if its score is none or left out.
+    pub fn score(&mut self, scores: impl IntoIterator<Item = Option<f64>>) {
         let scores = scores.into_iter().chain(std::iter::repeat(None));
         let trials = std::mem::take(&mut self.trials).into_iter().zip(scores);
         let judged = trials.map(|(parameters, score)| Member { parameters, score });
@@ -70,7 +71,7 @@ impl Search {
             self.members = judged.collect();
         } else {
             for (member, trial) in self.members.iter_mut().zip(judged) {
-                if score(&trial) >= score(member) {
+                if score_of(&trial) >= score_of(member) {
                     *member = trial;
                 }
             }
@@ -80,7 +81,7 @@ impl Search {
         self.trials = (0..self.members.len()).map(trial).collect();
     }
 
-    /// What has been found so far, the best first: score and parameters.
+    /// The scores and parameters found so far, the best first.
     pub fn found(&self) -> Vec<(f64, Vec<f64>)> {
         let each = self.members.iter();
         let found = each.filter_map(|member| Some((member.score?, member.parameters.clone())));
@@ -90,16 +91,17 @@ impl Search {
     }
 }
 
-fn score(member: &Member) -> f64 {
+fn score_of(member: &Member) -> f64 {
     member.score.unwrap_or(f64::NEG_INFINITY)
 }
 
-/// Some way to one of the best members and along the difference of two others, crossed with the member
-/// itself. What leaves 0 to 1 is thrown back halfway.
+/// Makes a trial from a member: a step towards one of the best and along the difference of two
+/// others, crossed with the member itself. A parameter that would leave 0 to 1 goes halfway to
+/// the bound.
 fn trial(members: &[Member], of: usize, rng: &mut Rng) -> Vec<f64> {
     let own = &members[of].parameters;
     let mut ranks: Vec<&Member> = members.iter().collect();
-    ranks.sort_by(|a, b| score(b).total_cmp(&score(a)));
+    ranks.sort_by(|a, b| score_of(b).total_cmp(&score_of(a)));
     let best = ranks[rng.usize(..LEADERS)];
     let mut others: Vec<usize> = (0..members.len()).filter(|i| *i != of).collect();
     rng.shuffle(&mut others);
@@ -140,7 +142,7 @@ mod tests {
         let mut search = Search::new(begin, seed);
         for _ in 0..=rounds {
             let trials = search.trials().to_vec();
-            search.judged(trials.iter().map(|at| judge(at)));
+            search.score(trials.iter().map(|at| judge(at)));
         }
         search.found()
     }
@@ -162,10 +164,10 @@ mod tests {
     }
 
     #[test]
-    fn where_all_is_refused_nothing_is_found() {
+    fn if_all_trials_are_refused_nothing_is_found() {
         assert_eq!(searched(&[vec![0.5; 3]], 2, 1, |_| None), []);
         let mut search = Search::new(&[vec![0.5; 3]], 1);
-        search.judged([Some(1.0)]);
+        search.score([Some(1.0)]);
         assert_eq!(
             search.found(),
             [(1.0, vec![0.5; 3])],
@@ -174,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn it_has_as_many_trials_as_it_says() {
+    fn a_search_has_the_predicted_number_of_trials() {
         let calls = std::cell::Cell::new(0);
         searched(&[vec![0.5; 2]], 3, 1, |_| {
             calls.set(calls.get() + 1);

@@ -1,4 +1,4 @@
-//! The task: a gait of a robot on a floor that is to be surpassed.
+//! The task of the search: to find a faster gait than a given one, for a robot on a floor.
 
 use lizard_robot::{CheckedGait, Ground, Robot};
 use thiserror::Error;
@@ -6,53 +6,53 @@ use thiserror::Error;
 use crate::comparison::Comparison;
 use crate::goal::{Goal, NoGoal};
 use crate::judge::{Built, Judge};
-use crate::plan::{Kind, Plan, Space};
+use crate::plan::{Kind, Space, planned};
 use crate::search::Search;
 
 /// Random robots that a gait is judged by while it is searched.
 const JUDGES: usize = 16;
-/// Those of the comparison come from seeds that the search has not seen.
+/// First seed of the robots of the comparison, which the search has not used.
 const FRESH: u64 = 1 << 40;
-/// Servos slower than this do not walk, deg/s.
+/// Slowest servos that walk, deg/s.
 const SLOWEST: f64 = 10.0;
 
-/// Why a gait cannot be tuned.
+/// The error for a gait that cannot be tuned.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum NoTuning {
-    /// It has no goal.
+    /// The gait has no goal.
     #[error(transparent)]
     Goal(#[from] NoGoal),
-    /// A wish for servos that do not walk, or that the robot's limits do not allow.
+    /// Servos so slow that the robot does not walk, or faster than its limits allow.
     #[error(
         "{rate}: from {least} to {most} deg/s, which is limits.gait_slew in robot.toml",
         least = SLOWEST
     )]
     Rate {
-        /// How fast servos were to turn, deg/s.
+        /// The speed of the servos that was asked for, deg/s.
         rate: f64,
-        /// How fast they may, deg/s.
+        /// The largest speed allowed, deg/s.
         most: f64,
     },
 }
 
-/// Parameters of a kind of gait (each 0 to 1), and the score of their gait.
+/// Parameters of a gait and their score.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scored {
-    /// The kind.
+    /// Kind of the gait.
     pub kind: Kind,
-    /// As [`Tuning::score`] has it, mm/s or deg/s.
+    /// Score of the gait by [`Tuning::score`], mm/s or deg/s.
     pub score: f64,
-    /// The parameters.
+    /// Parameters of the gait, each 0 to 1.
     pub parameters: Vec<f64>,
 }
 
-/// A gait that is to be surpassed.
+/// The task of finding a gait that is faster than a given one.
 #[derive(Debug, Clone)]
 pub struct Tuning {
     robot: Robot,
     ground: Ground,
     gait: CheckedGait,
-    /// What gaits that are found are called.
+    /// Name of the gaits that are found.
     name: String,
     rate: f64,
     space: Space,
@@ -61,14 +61,13 @@ pub struct Tuning {
 }
 
 impl Tuning {
-    /// A gait of a robot on this ground, to be surpassed by servos that turn at `rate` (deg/s),
-    /// or as fast as in that gait; what is found will have this name, which a robot.toml must
-    /// take. Takes as long as a few trials, because it looks for the widest stride that the
-    /// robot's limits allow.
+    /// Prepares the search of a faster gait on this ground, with servos that turn at `rate`
+    /// (deg/s) or as fast as in the given gait. The gaits found get this name, which must be
+    /// valid in a robot.toml. Takes as long as a few trials, because it finds the widest stride
+    /// that the robot's limits allow.
     ///
     /// # Errors
-    /// A gait that neither goes straight ahead nor turns on the spot, or a rate that will not
-    /// do.
+    /// For a gait that neither goes straight nor turns on the spot, or a rate out of range.
     pub fn new(
         robot: &Robot,
         ground: &Ground,
@@ -92,29 +91,29 @@ impl Tuning {
         })
     }
 
-    /// What the gait is for.
+    /// The goal of the gait.
     pub const fn goal(&self) -> Goal {
         self.space.goal
     }
 
-    /// How fast a servo may turn, deg/s.
+    /// Largest speed of a servo, deg/s.
     pub const fn rate(&self) -> f64 {
         self.rate
     }
 
-    /// The search of a kind of gait. Kinds do not depend on each other.
+    /// Starts the search of a kind of gait. Kinds do not depend on each other.
     pub fn search(&self, kind: Kind) -> Search {
         Search::new(&kind.begin(), self.seed.wrapping_add(kind as u64))
     }
 
-    /// The speed that 95 % of the random robots exceed with the gait of such parameters, mm/s or
-    /// deg/s; none of one that the robot's limits forbid, or that leads elsewhere. Takes some
-    /// hundredths of a second to some tenths.
+    /// Scores a gait by the speed that 95 % of the random robots exceed, mm/s or deg/s; none if
+    /// the robot's limits forbid it, or it leads elsewhere. Takes some hundredths of a second to
+    /// some tenths.
     pub fn score(&self, kind: Kind, parameters: &[f64]) -> Option<f64> {
         self.judge.score(self.build(kind, parameters)?.gait())
     }
 
-    /// The gait of the best of these whose way does not depend on ties.
+    /// Builds the gait with the best score whose movement does not depend on ties.
     pub fn best(&self, mut scored: Vec<Scored>) -> Option<Built> {
         scored.sort_by(|a, b| b.score.total_cmp(&a.score));
         scored
@@ -123,8 +122,8 @@ impl Tuning {
             .find(|built| built.gait().predict(&self.ground).is_decided())
     }
 
-    /// The gait that was found beside the one that was to be surpassed, on so many random
-    /// robots that the search has not seen.
+    /// Compares the gait that was found with the given one, on this number of random robots that
+    /// the search has not used.
     pub fn compare(&self, found: &Built, robots: usize) -> Comparison {
         let seed = self.seed.wrapping_add(FRESH);
         let judge = Judge::new(&self.robot, &self.ground, self.goal(), robots, seed);
@@ -132,12 +131,12 @@ impl Tuning {
     }
 
     fn build(&self, kind: Kind, parameters: &[f64]) -> Option<Built> {
-        let plan = Plan::of(kind, self.space, parameters);
-        Built::of(&self.robot, &plan, &self.name, self.rate)
+        let bars = planned(kind, self.space, &self.name, parameters);
+        Built::of(&self.robot, &bars, self.rate)
     }
 }
 
-/// How fast servos may turn: as asked, or as fast as in the gait.
+/// The largest speed of servos: the one asked for, or that of the gait.
 fn allowed(robot: &Robot, gait: &CheckedGait, asked: Option<f64>) -> Result<f64, NoTuning> {
     let Some(rate) = asked else {
         return Ok(gait.audit().peak.speed);

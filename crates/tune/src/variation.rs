@@ -1,17 +1,17 @@
-//! Robots and floors that differ a little, by what a print, a floor and a kitchen scale
-//! leave uncertain.
+//! Random robots and floors, which differ by the uncertainty of a print, a floor and a kitchen
+//! scale.
 
 use fastrand::Rng;
 use lizard_robot::{
-    Body, CheckedGait, Drive, Feet, Ground, Kind, Robot, Spring, Stance, Strut, Travel, Walker,
+    Body, CheckedGait, Drive, Feet, Ground, Kind, Robot, Stance, Strut, Travel, Walker,
 };
 use lizard_twin::ServoModel;
 
 /// Phases of a cycle.
 const PHASES: f64 = 65536.0;
 
-/// How far robots and floors differ: each value is uniform within these bounds around
-/// robot.toml's.
+/// Spread of friction: a factor on robot.toml's value, uniform within these bounds. The other
+/// constants are likewise factors, or mm and deg to either side.
 const FRICTION: (f64, f64) = (0.5, 1.5);
 const PADS: (f64, f64) = (0.9, 1.1);
 const CENTRE: f64 = 8.0;
@@ -20,29 +20,29 @@ const HIPS: f64 = 2.0;
 const SPRING: (f64, f64) = (0.8, 1.2);
 /// Leaves of feet: a print has their thickness to a fifteenth, and it counts three times.
 const LEAF: (f64, f64) = (0.8, 1.25);
-/// A leg's play, deg: more than robot.toml's by up to this.
+/// Largest play that is added to a leg's, deg.
 const PLAY: f64 = 1.0;
 
-/// The same in words.
+/// The spread of random robots in words.
 pub const SPREAD: &str = "friction x 0.5 to 1.5, each pad's x 0.9 to 1.1, backward over forward x 0.9 to 1.1, mass centre +-8 mm,\n\
 mounting +-4 deg, hips +-2 mm, springs x 0.8 to 1.2, leaves of feet x 0.8 to 1.25, a foot longer by\n\
 -1 to 1 times what [feet] level says";
 
-/// What [`Variation::with_play`] adds, in words.
+/// The addition of [`Variation::with_play`] in words.
 pub const PLAYED: &str = "play of the legs 0 to 1 deg more";
 
 /// A robot and a floor that differ at random from those of robot.toml.
 #[derive(Debug, Clone, Copy)]
 pub struct Variation {
     ground: Ground,
-    /// How much harder each pad presses.
+    /// Factor on the load of each pad.
     pads: [f64; 4],
     /// Factor on the ground's friction backward over forward.
     ratio: f64,
 }
 
 impl Variation {
-    /// The one of a seed, around this ground.
+    /// Draws a robot and a floor around this ground from a seed.
     #[must_use]
     pub fn of(ground: &Ground, seed: u64) -> Self {
         let mut rng = Rng::with_seed(seed);
@@ -71,10 +71,6 @@ impl Variation {
                         rate: strut.rate * within(SPRING),
                         ..strut
                     }),
-                    Kind::Spring(spring) => Kind::Spring(Spring {
-                        rate: spring.rate * within(SPRING),
-                        preload: spring.preload * within(SPRING),
-                    }),
                 },
                 ..ground.drive
             },
@@ -93,16 +89,16 @@ impl Variation {
         }
     }
 
-    /// The same with legs that have some play as well, which takes longer to walk.
+    /// Adds random play to the legs, which takes longer to walk.
     #[must_use]
     pub fn with_play(mut self, seed: u64) -> Self {
-        // Numbers of their own: with and without it is otherwise the same robot.
+        // Drawn separately, so that all other values stay the same.
         let mut rng = Rng::with_seed(seed ^ 0x9E37_79B9_7F4A_7C15);
         self.ground.drive.play += PLAY * rng.f64();
         self
     }
 
-    /// No variation: the ground as it is.
+    /// The ground without variation.
     #[must_use]
     pub fn none(ground: &Ground) -> Self {
         Self {
@@ -112,8 +108,8 @@ impl Variation {
         }
     }
 
-    /// Where the second cycle of a gait leads it, which all later ones repeat: frame by frame,
-    /// with such servos.
+    /// Follows the second cycle of a gait, which all later ones repeat, frame by frame with
+    /// these servos.
     #[must_use]
     pub fn walked(&self, robot: &Robot, gait: &CheckedGait, model: ServoModel) -> Travel {
         let mut sweeps = gait.sweeps(gait.phase(0.0));
@@ -126,7 +122,7 @@ impl Variation {
         };
         let first: Vec<[f64; 4]> = gait.frames().map(|(_, phase)| next(phase)).collect();
         let [begin, end] = [first.first(), first.last()].map(|at| at.copied().unwrap_or_default());
-        // Of rigid legs the first cycle leaves nothing but where the servos are.
+        // With rigid legs the first cycle changes only the servos.
         let sprung = self.ground.drive.lags();
         let from = if sprung { begin } else { end };
         let mut walker = Walker::uneven(self.ground, from, self.pads, self.ratio);
@@ -143,7 +139,7 @@ impl Variation {
     }
 }
 
-/// The values below which so large a share of all lies: nearest rank.
+/// The values below which these shares of all values lie, by nearest rank.
 #[must_use]
 pub fn quantiles<const N: usize>(mut values: Vec<f64>, shares: [f64; N]) -> [f64; N] {
     values.sort_by(f64::total_cmp);
@@ -211,7 +207,7 @@ mod tests {
         let text = include_str!("../../../robots/paper.toml");
         let springs = text.replace(
             "[leg]",
-            "[leg]\ndrive = { kind = \"spring\", stiffness = 5.0 }",
+            "[leg]\ndrive = { kind = \"strut\", force = 0.5, rate = 0.4 }",
         );
         for text in [text, &springs] {
             let robot = Robot::parse(text).expect("right");

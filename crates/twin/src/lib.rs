@@ -1,11 +1,15 @@
-//! The robot behind its pulses: how body, legs and feet move when the board sends its
-//! pulses.
+//! The robot behind its pulses: the movement of body, legs and feet that a board's pulses cause.
 //!
-//! A frame's four pulses go to the servos ([`ServoModel`]: how fast they turn, and the
-//! error that they leave), the servos turn the linkage, springs pull the legs along, and
-//! the contact model (`lizard_contact`) computes how the body moves over the floor.
-//! [`Twin::push`] takes one frame and returns the result as a [`State`]. The crate reads,
-//! stores and prints nothing, so a program, a test and a web page can use it.
+//! A frame's four pulses go to the servos ([`ServoModel`]: their speed and their dead band), the
+//! servos turn the linkage, struts or springs pull the legs along, and the contact model
+//! (`lizard_contact`) computes the movement of the body over the floor. [`Twin::push`] takes one
+//! frame and returns the result as a [`State`]. The crate reads, stores and prints nothing, so a
+//! program, a test and a web page can use it.
+//!
+//! # When not to use it
+//! The model is planar and quasi-static: feet do not lift, and nothing has inertia. Where these
+//! matter, `lizard mjcf` writes the robot for a physics engine. For the movement of a gait
+//! without pulses and servos, `lizard_robot::CheckedGait::predict` is enough.
 //!
 //! # Units
 //! mm, degrees, seconds and microseconds, as their names say; a heading is in radians.
@@ -25,5 +29,5 @@ pub use state::State;
 pub use tally::Tally;
 pub use twin::Twin;
 
-/// Seconds from one frame to the next.
+/// Time from one frame to the next, s.
 pub const FRAME: f64 = 1.0 / lizard_robot::FRAMES_PER_SECOND;

@@ -3,13 +3,12 @@
 
 use crate::FRAME;
 
-/// What a servo can do.
+/// The speed and the dead band of a servo.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ServoModel {
     /// Fastest turn, deg/s.
     pub rate: f64,
-    /// Width of the dead band, us: half of it to either side of the pulse is as good
-    /// as none.
+    /// Width of the dead band, us: a servo ignores an error of up to half of it.
     pub dead_band: f64,
 }
 
@@ -20,13 +19,13 @@ impl ServoModel {
         dead_band: 10.0,
     };
 
-    /// A servo that is where its pulse says, at once.
+    /// A servo that follows its pulse at once and exactly.
     pub const IDEAL: Self = Self {
         rate: f64::INFINITY,
         dead_band: 0.0,
     };
 
-    /// The sweep (deg) a frame after it was `from` when its pulse asks for `target`;
+    /// Computes the sweep (deg) one frame after `from`, with a pulse for `target`;
     /// `us_per_degree` is the servo's gain.
     #[must_use]
     pub fn turned(&self, from: f64, target: f64, us_per_degree: f64) -> f64 {
@@ -53,7 +52,7 @@ mod tests {
     }
 
     #[test]
-    fn inside_its_dead_band_it_stays() {
+    fn inside_its_dead_band_it_does_not_turn() {
         let turned = |from, target| ServoModel::SG90.turned(from, target, -10.0);
         assert_eq!(turned(3.0, 3.5), 3.0);
         assert_eq!(turned(3.0, 4.0), 3.5, "it stops at the edge");
@@ -62,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn an_ideal_one_is_where_its_pulse_says() {
+    fn an_ideal_servo_follows_its_pulse_at_once() {
         assert_eq!(ServoModel::IDEAL.turned(-80.0, 80.0, 10.0), 80.0);
     }
 }

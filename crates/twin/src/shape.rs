@@ -1,4 +1,4 @@
-//! Where every joint is: what a picture of the robot needs.
+//! The places of all joints, for pictures of the robot.
 
 use lizard_contact::FORWARD;
 use lizard_kinematics::{End, Side, Solution, Vector};
@@ -7,29 +7,28 @@ use lizard_robot::{LegPlace, Robot};
 /// The joints of a robot, mm, chassis frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shape {
-    /// The servos' shafts.
+    /// Shafts of the servos.
     pub shafts: [Vector; 4],
     /// Tips of the cranks that carry head and tail.
     pub tips: [Vector; 4],
     /// Tips of the arms that carry the sliders.
     pub arms: [Vector; 4],
-    /// The head and the tail.
+    /// Points of head and tail.
     pub ends: [Vector; 2],
-    /// The legs, which may lag behind their servos.
+    /// Legs, which may lag behind their servos.
     pub legs: [LegPlace; 4],
 }
 
 impl Shape {
-    /// The joints at servo angles (deg, chassis frame), with legs at these sweeps from
-    /// neutral (deg, foot forward positive), all in servo order; none where a loop does
-    /// not close.
+    /// Computes the joints at servo angles (deg, chassis frame), with legs at these sweeps from
+    /// neutral (deg, foot forward positive), all in servo order; none if a loop does not close.
     #[must_use]
     pub fn of(robot: &Robot, angles: [f64; 4], legs: [f64; 4]) -> Option<Self> {
         let solved = robot.lizard().solve(&angles.into()).ok()?;
         Some(Self::of_solved(robot, &solved, legs))
     }
 
-    /// The same of a pose that is solved.
+    /// Computes the joints of a pose that is solved already.
     #[must_use]
     pub fn of_solved(robot: &Robot, solved: &Solution, legs: [f64; 4]) -> Self {
         let shafts = robot.lizard().shafts();

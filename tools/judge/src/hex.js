@@ -1,4 +1,4 @@
-// Flash as an Intel HEX file has it.
+// Loads Intel HEX files.
 
 /** Reads an Intel HEX file's text into `flash`, a Uint8Array. Throws a sentence that names the line. */
 export function load(text, flash) {

@@ -1,10 +1,10 @@
-// The receiver holds two bytes, and a third waits in its shift register (data sheet, 19.7.1); what comes
-// then is lost. avr8js holds one. A boot loader that blinks before it listens needs the others.
+// The receiver holds two bytes, and a third waits in its shift register (data sheet, 19.7.1); further bytes
+// are lost. avr8js holds one. A boot loader that blinks before it reads needs the others.
 const RXEN = 0x10;
 const RXC = 0x80;
 const HOLDS = 3;
 
-/** Gives an Uno `receive(byte)`, which takes a byte as the serial line brings it; false if it is lost. */
+/** Adds `receive(byte)` to an Uno, for a byte that arrives on the serial line; it returns false if the byte is lost. */
 export function receiveBuffer(uno) {
   const { cpu, usart } = uno;
   const { UCSRA, UCSRB, UDR } = usart.config;

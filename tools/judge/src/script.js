@@ -1,7 +1,7 @@
-// What a run is given: bytes for the serial line, each with its cycle.
+// The input of a run: bytes for the serial line, each with its cycle.
 
 /**
- * Reads a script: lines `analogue <pin, 14 to 19> <mV>`, what A0 to A5 measure from the beginning; lines
+ * Reads a script: lines `analogue <pin, 14 to 19> <mV>`, the voltages at A0 to A5; lines
  * `<cycle> <two hex digits>`, a byte that is complete at the UNO at that cycle, in the order of time;
  * and last `end <cycle>`. Throws a sentence that names the line.
  */

@@ -1,5 +1,5 @@
-// A boot loader writes the flash that it does not run from, page by page (data sheet, chapter 26). avr8js
-// takes SPM for a NOP. Here an erase and a write take no time, so a loader's wait for their end is short.
+// A boot loader writes the part of flash that it does not run from, page by page (data sheet, chapter 26). avr8js
+// treats SPM as a NOP. Here an erase and a write take no time, so a loader's wait for their end is short.
 const SPM = 0x95e8;
 const SPMCSR = 0x57;
 const COMMAND = 0x1f;

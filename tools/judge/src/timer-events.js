@@ -1,8 +1,8 @@
 // avr8js counts a timer on every cycle that it steps, which is nearly all of its work. Here a timer
-// is woken only when its next flag is due, and brought up to date before anyone looks at it or changes
-// it. That changes nothing but the speed; a test holds one against the other.
+// is updated only when its next flag is due, and before it is read or changed.
+// That changes nothing but the speed; a test compares the two.
 
-/** The cycle at which a running timer next sets a flag or wraps. */
+/** Returns the cycle at which a running timer next sets a flag or wraps. */
 function nextFlag(timer) {
   const { tcnt, TOP, lastCycle, divider } = timer;
   let ticks = TOP + 1 - tcnt;
@@ -13,7 +13,7 @@ function nextFlag(timer) {
   return lastCycle + Math.max(ticks, 1) * divider;
 }
 
-/** Wakes the timers of an Uno only when they have something to do. */
+/** Updates the timers of an Uno only when a flag is due. */
 export function wakeTimersAtTheirFlags({ cpu, timers }) {
   const timerOf = new Map(timers.map((timer) => [timer.count, timer]));
   const addClockEvent = cpu.addClockEvent.bind(cpu);

@@ -35,7 +35,7 @@ const PORF = 0x01;
 const RXC = 0x80;
 
 export class Uno {
-  /** A board at power-on, with these corrections of avr8js. Its flash, bytes, is to be filled. */
+  /** Makes a board at power-on, with these corrections of avr8js and an empty flash. */
   constructor(corrections) {
     const words = new Uint16Array(FLASH_WORDS).fill(0xffff);
     this.flash = new Uint8Array(words.buffer);
@@ -53,7 +53,7 @@ export class Uno {
     const cycles = { eraseCycles: EEPROM_CYCLES, writeCycles: EEPROM_CYCLES };
     const memory = new EEPROMMemoryBackend(EEPROM);
     this.eeprom = new AVREEPROM(cpu, memory, { ...eepromConfig, ...cycles });
-    /** What the EEPROM holds, bytes. */
+    /** The contents of the EEPROM, bytes. */
     this.memory = memory.memory;
     new AVRWatchdog(cpu, watchdogConfig, new AVRClock(cpu, FREQUENCY));
     cpu.data[MCUSR] = PORF;
@@ -64,15 +64,15 @@ export class Uno {
 
     /** The cycle at which the run ends. */
     this.until = 0;
-    /** One instruction; corrections wrap it. */
+    /** Executes an instruction; corrections wrap it. */
     this.instruction = () => avrInstruction(cpu);
-    /** Called between an instruction and what follows from its time. */
+    /** Called after an instruction, before the events that are due by then. */
     this.afterInstruction = () => {};
 
     for (const correct of corrections) correct(this);
   }
 
-  /** Runs to a cycle, at most an instruction farther. */
+  /** Runs to a cycle, or an instruction farther. */
   run(until) {
     const { cpu } = this;
     this.until = until;
@@ -84,14 +84,14 @@ export class Uno {
     }
   }
 
-  /** Hands over bytes, each `{ cycle, byte }`, as the serial line brings them. */
+  /** Delivers bytes, each `{ cycle, byte }`, by the serial line. */
   deliver(bytes) {
     const { cpu, usart } = this;
     const queue = bytes.values();
     const next = () => {
       const { value } = queue.next();
       if (value === undefined) return;
-      const come = () => {
+      const arrive = () => {
         // The receiver of an ATmega holds two bytes and a third, that of avr8js one.
         if (cpu.data[usart.config.UCSRA] & RXC) {
           throw new Error(`at cycle ${cpu.cycles} a byte comes before the last was read, which avr8js does not simulate`);
@@ -99,7 +99,7 @@ export class Uno {
         usart.writeByte(value.byte, true);
         next();
       };
-      cpu.addClockEvent(come, value.cycle - cpu.cycles);
+      cpu.addClockEvent(arrive, value.cycle - cpu.cycles);
     };
     next();
   }

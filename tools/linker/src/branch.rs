@@ -12,11 +12,12 @@ use crate::code::Code;
 use crate::edit::{Edit, Reference};
 use crate::instruction::{is_branch, is_near_jump, skips};
 
-/// How far a branch reaches, bytes. Nothing gets farther apart afterwards.
+/// The reach of a branch, bytes. Later edits bring code no farther apart.
 const REACH: u64 = 2 * 60;
 
-/// The first of them whose jump no other jump leads to. `place` tells where a reference
-/// leads in this code, if it does; `targets` are the offsets that something leads to.
+/// The edit of the first branch over a jump, where no other jump leads to that jump. `place` gives
+/// the offset of a reference's target if it is in this code; `targets` are the offsets that
+/// something refers to.
 pub fn edit(
     code: &Code,
     targets: &[u64],
@@ -31,11 +32,11 @@ pub fn edit(
             if skipped || !is_branch(branch.code) || !is_near_jump(jump.code) {
                 return None;
             }
-            let behind = jump.offset + 2;
+            let next = jump.offset + 2;
             let over = place(code.reference(branch.offset)?)?;
             let there = code.reference(jump.offset)?;
             let target = place(there)?;
-            if over != behind
+            if over != next
                 || target.abs_diff(branch.offset) > REACH
                 || targets.contains(&jump.offset)
             {

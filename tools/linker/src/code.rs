@@ -1,12 +1,12 @@
-//! The code of one function: its instructions, and what they refer to.
+//! The code of one function: its instructions and their references.
 
 use crate::edit::Reference;
 use crate::instruction::{is_long, is_relative};
 
-/// An instruction and where it is.
+/// An instruction and its offset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct At {
-    /// Bytes from the beginning.
+    /// Bytes from the beginning of the code.
     pub offset: u64,
     /// Its first word.
     pub code: u16,
@@ -15,17 +15,17 @@ pub struct At {
 /// A function's code.
 #[derive(Debug, Clone)]
 pub struct Code {
-    /// One after the other, as they lie there.
+    /// The instructions in the order of their offsets.
     pub instructions: Vec<At>,
-    /// In the order of their offsets.
+    /// The references in the order of their offsets.
     pub references: Vec<Reference>,
-    /// Bytes.
+    /// The size in bytes.
     pub size: u64,
 }
 
 impl Code {
-    /// Reads the code; none if a jump in it does not say where it goes, so that nothing
-    /// may be moved.
+    /// Decodes the code; `None` if a jump in it has no relocation, because then its target is
+    /// unknown and nothing may be moved.
     pub fn read(bytes: &[u8], references: Vec<Reference>) -> Option<Self> {
         let word = |at: usize| Some(u16::from_le_bytes([*bytes.get(at)?, *bytes.get(at + 1)?]));
         let mut instructions = Vec::new();
@@ -44,23 +44,23 @@ impl Code {
             size: bytes.len() as u64,
         };
         let known = |at: &At| !is_relative(at.code) || code.reference(at.offset).is_some();
-        let whole = at == bytes.len() && code.instructions.iter().all(known);
-        whole.then_some(code)
+        let is_valid = at == bytes.len() && code.instructions.iter().all(known);
+        is_valid.then_some(code)
     }
 
-    /// What the instruction at an offset refers to.
+    /// The reference of the instruction at an offset.
     pub fn reference(&self, offset: u64) -> Option<&Reference> {
         self.references
             .iter()
             .find(|reference| reference.offset == offset)
     }
 
-    /// The first words from the instruction of an index on.
+    /// The first word of each instruction from an index on.
     pub fn words(&self, index: usize) -> impl Iterator<Item = u16> {
         self.instructions[index..].iter().map(|at| at.code)
     }
 
-    /// Where the instruction of an index begins, or the code ends.
+    /// The offset of the instruction of an index, or of the end of the code.
     pub fn offset(&self, index: usize) -> u64 {
         self.instructions
             .get(index)

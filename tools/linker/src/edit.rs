@@ -1,31 +1,31 @@
-//! A piece of code that is replaced by a shorter one, and where everything is then.
+//! The replacement of a piece of code by a shorter one, and the new offset of everything else.
 
 use object::build::elf::SymbolId;
 use object::elf::RelocationType;
 
-/// What a relocation is about: `symbol + addend`.
+/// The content of a relocation: the address `symbol + addend`, to be filled in at an offset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Reference {
     /// Bytes from the beginning of the code.
     pub offset: u64,
-    /// What the linker fills in there.
+    /// The form in which the linker fills it in.
     pub kind: RelocationType,
-    /// The symbol.
+    /// The symbol that it is counted from.
     pub symbol: SymbolId,
-    /// And how many bytes behind it.
+    /// Bytes after the symbol.
     pub addend: i64,
 }
 
-/// The bytes from `at` on that are replaced.
+/// A replacement of the bytes from `at` on.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Edit {
     /// Bytes from the beginning of the code.
     pub at: u64,
-    /// How many are replaced, with all that refers to something from there.
+    /// The number of bytes that are replaced, together with their references.
     pub remove: u64,
-    /// By what.
+    /// The new code, in words.
     pub insert: Vec<u16>,
-    /// What that refers to; offsets from its own beginning.
+    /// The references of the new code; offsets from its own beginning.
     pub references: Vec<Reference>,
 }
 
@@ -38,38 +38,38 @@ impl Edit {
         self.insert.len() as u64 * 2
     }
 
-    /// Bytes that the code gets shorter by it.
+    /// The number of bytes that it saves.
     pub fn gain(&self) -> i64 {
         self.remove as i64 - self.length() as i64
     }
 
-    /// Whether an offset is inside: neither its beginning nor behind it.
+    /// True if an offset is inside: after its first byte and before its end.
     pub fn covers(&self, offset: u64) -> bool {
         self.at < offset && offset < self.end()
     }
 }
 
-/// Edits of one piece of code in the order of their places, none in another.
+/// Edits of one function in the order of their offsets; they do not overlap.
 #[derive(Debug, Clone, Default)]
 pub struct Edits(Vec<Edit>);
 
 impl Edits {
-    /// Takes those that leave everything that is jumped to in place.
+    /// Orders the edits; `None` if two overlap or one covers an offset that something refers to.
     pub fn new(mut edits: Vec<Edit>, targets: &[u64]) -> Option<Self> {
         edits.sort_by_key(|edit| edit.at);
         let apart = edits.windows(2).all(|pair| pair[0].end() <= pair[1].at);
-        let whole = !targets
+        let keep_targets = !targets
             .iter()
             .any(|target| edits.iter().any(|edit| edit.covers(*target)));
-        (apart && whole).then_some(Self(edits))
+        (apart && keep_targets).then_some(Self(edits))
     }
 
-    /// Bytes that the code gets shorter.
+    /// The number of bytes that they save.
     pub fn gain(&self) -> i64 {
         self.0.iter().map(Edit::gain).sum()
     }
 
-    /// Where an offset is afterwards.
+    /// The new offset of what was at an offset.
     pub fn moved(&self, offset: u64) -> u64 {
         let before = self
             .0
@@ -78,7 +78,7 @@ impl Edits {
         offset.wrapping_add_signed(-before.map(Edit::gain).sum::<i64>())
     }
 
-    /// The code afterwards.
+    /// The edited code.
     pub fn bytes(&self, old: &[u8]) -> Vec<u8> {
         let mut new = Vec::with_capacity(old.len());
         let mut done = 0;
@@ -91,7 +91,7 @@ impl Edits {
         new
     }
 
-    /// What the code refers to afterwards; where in it, not yet what.
+    /// The references of the edited code, at their new offsets; the addends are still the old ones.
     pub fn references(&self, old: &[Reference]) -> Vec<Reference> {
         let inside = |offset: u64| {
             let holds = |edit: &Edit| edit.at <= offset && offset < edit.end();

@@ -1,6 +1,6 @@
-//! Beginnings and ends of functions, and what they become.
+//! Prologues and epilogues of functions, and the calls of shared routines that replace them.
 //!
-//! A beginning pushes registers, from the lowest to r29, and may make room below them:
+//! A prologue pushes registers, from the lowest to r29, and may make room below them:
 //!
 //! ```text
 //! push r14 .. push r29          ldi r26, 5
@@ -14,26 +14,26 @@
 //! out SPL, r28
 //! ```
 //!
-//! An end is the same in reverse, then `ret`.
+//! An epilogue is the same in reverse, then `ret`.
 //!
 //! The routines also change r26, r0 and the flags. By the calling convention of avr-gcc and LLVM a
-//! caller expects nothing of these after a call and hands over nothing in them: arguments are in
-//! r8 to r25 and on the stack, results in r18 to r25. LLVM's `-enable-ipra` lets a caller rely on
-//! what its callee happens to leave alone, so it must never be combined with this program, which
-//! cannot see it. A test reads the flags in .cargo/config.toml.
+//! caller relies on none of these after a call and passes nothing in them: arguments are in
+//! r8 to r25 and on the stack, results in r18 to r25. With LLVM's `-enable-ipra` a caller may rely on
+//! any register that its callee happens not to change, so it must never be combined with this
+//! program. A test reads the flags in .cargo/config.toml.
 //!
-//! There are routines for a few lists of registers only. Where a function pushes just one of
-//! these lists, the stack is laid out as before at each point of its body. Else the routine
-//! pushes more registers, so that what the caller put on the stack, the arguments that fit
-//! into no register, is farther above the variables than the body supposes. That is
-//! done only where the body cannot tell: where it
+//! There are routines for a few lists of registers only. Where a function pushes exactly one of
+//! these lists, the layout of the stack is unchanged at each point of its body. Otherwise the routine
+//! pushes more registers, so that arguments on the stack, those that fit
+//! into no register, are farther above the variables than the body assumes. That is
+//! done only where the body cannot notice: where it
 //!
-//! - never learns an address on the stack, as it has no variables there and does not mention the
+//! - never has an address on the stack, because it has no variables there and does not use the
 //!   stack pointer; or
-//! - learns addresses of variables only. Their distances from r28 are as before. It reads
-//!   and writes by Y+q within the room for them, or copies r28 and adds at once what leads into
+//! - has addresses of variables only. Their distances from r28 are unchanged. It reads
+//!   and writes by Y+q within the room for them, or copies r28 and at once adds a distance within
 //!   that room; and it uses r28 and r29 for nothing else. LLVM computes every address on the
-//!   stack anew from r28, so each access to an argument shows a distance beyond the room.
+//!   stack from r28, so each access to an argument has a distance beyond the room.
 
 use object::build::elf::SymbolId;
 use object::elf;
@@ -45,12 +45,12 @@ use crate::instruction::{
     has_stack_pointer, load_r26, popped, pushed,
 };
 
-/// Registers that a function leaves as it found them, in the order in which they are pushed.
+/// The call-saved registers, in the order in which they are pushed.
 const SAVED: [u8; 18] = [
     2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 28, 29,
 ];
 
-/// The registers from which on there are routines.
+/// The lowest register of each routine.
 pub const FIRST: [u8; 9] = [2, 4, 6, 8, 10, 12, 14, 16, 18];
 
 /// The routines of one of [`FIRST`].
@@ -62,21 +62,21 @@ pub struct Routines {
     pub restore: SymbolId,
 }
 
-/// What a function does with the stack, where it is one of the known ways.
+/// The stack frame of a function that has one of the known forms.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Frame {
-    /// Which of [`FIRST`] has all its registers.
+    /// The index in [`FIRST`] of the routine that saves all its registers.
     pub first: usize,
-    /// Bytes for variables.
+    /// The size of the variables, bytes.
     pub room: u8,
-    /// Bytes of the beginning.
+    /// The size of the prologue, bytes.
     pub beginning: u64,
-    /// Of each end: its offset, its bytes.
+    /// The offset and the size of each epilogue.
     pub ends: Vec<(u64, u64)>,
 }
 
 impl Frame {
-    /// The frame of a function.
+    /// Recognizes the frame of a function; `None` if it has another form.
     pub fn of(code: &Code) -> Option<Self> {
         let registers: Vec<u8> = code.words(0).map_while(pushed).collect();
         let ascending = registers.windows(2).all(|pair| pair[0] < pair[1]);
@@ -101,7 +101,7 @@ impl Frame {
         let body = registers.len() + words;
         let mut ends = Vec::new();
         let mut index = body;
-        // Every mention of the stack pointer and every pop has to belong to an end.
+        // Every use of the stack pointer and every pop has to belong to an epilogue.
         while let Some(at) = code.instructions.get(index) {
             if let Some(words) = end(code, index, &registers, room, has_room) {
                 let begin = code.offset(index);
@@ -127,7 +127,7 @@ impl Frame {
         })
     }
 
-    /// What is done to the function with the routines that fit.
+    /// The edits that make the function use the shared routines.
     pub fn edits(&self, routines: Routines) -> Vec<Edit> {
         let goes = |at, remove, code, symbol| Edit {
             at,
@@ -150,7 +150,7 @@ impl Frame {
     }
 }
 
-/// The room that is made below the registers, and the number of instructions for it.
+/// The room that a prologue makes below the registers, and the number of instructions for it.
 fn room(code: &Code, index: usize) -> Option<(u8, usize)> {
     let words: Vec<u16> = code.words(index).take(9).collect();
     let (down, rest) = words.strip_prefix(&POINTER_FROM_STACK)?.split_first()?;
@@ -167,8 +167,8 @@ fn room(code: &Code, index: usize) -> Option<(u8, usize)> {
         .then_some((room as u8, count))
 }
 
-/// Whether the instruction of an index does nothing with the frame pointer but use the room
-/// for variables, from Y+1 to Y+room.
+/// True if the instruction of an index uses the frame pointer only for the variables, from Y+1 to
+/// Y+room, or not at all.
 fn is_local(code: &Code, index: usize, room: u8) -> bool {
     let words: Vec<u16> = code.words(index).take(3).collect();
     let distance = match *words.as_slice() {
@@ -200,8 +200,8 @@ fn is_local(code: &Code, index: usize, room: u8) -> bool {
     (1..=u16::from(room)).contains(&distance)
 }
 
-/// The number of instructions of the end that begins at an index, if it is the one that
-/// belongs to the beginning.
+/// The number of instructions of the epilogue at an index, if it is there and matches the
+/// prologue.
 fn end(code: &Code, index: usize, registers: &[u8], room: u8, has_room: bool) -> Option<usize> {
     let mut words = code.words(index).peekable();
     let mut count = 0;

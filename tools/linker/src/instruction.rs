@@ -5,20 +5,21 @@
 pub const RET: u16 = 0x9508;
 /// `reti`.
 pub const RETI: u16 = 0x9518;
-/// `call` and `jmp`, whose targets are in the word behind them.
+/// `call`, whose target is in the next word.
 pub const CALL: u16 = 0x940e;
+/// `jmp`, likewise.
 pub const JMP: u16 = 0x940c;
 /// `in r28, SPL` and `in r29, SPH`.
 pub const POINTER_FROM_STACK: [u16; 2] = [0xb7cd, 0xb7de];
 /// `in r0, SREG`, `cli`, `out SPH, r29`, `out SREG, r0`, `out SPL, r28`.
 pub const STACK_FROM_POINTER: [u16; 5] = [0xb60f, 0x94f8, 0xbfde, 0xbe0f, 0xbfcd];
 
-/// Whether an instruction has a second word: `lds`, `sts`, `jmp`, `call`.
+/// True for an instruction of two words: `lds`, `sts`, `jmp`, `call`.
 pub const fn is_long(code: u16) -> bool {
     code & 0xfe0f == 0x9000 || code & 0xfe0f == 0x9200 || code & 0xfe0c == 0x940c
 }
 
-/// The register that it pushes.
+/// The register that an instruction pushes, if it is a `push`.
 pub const fn pushed(code: u16) -> Option<u8> {
     if code & 0xfe0f == 0x920f {
         Some((code >> 4 & 0x1f) as u8)
@@ -27,7 +28,7 @@ pub const fn pushed(code: u16) -> Option<u8> {
     }
 }
 
-/// The register that it pops.
+/// The register that an instruction pops, if it is a `pop`.
 pub const fn popped(code: u16) -> Option<u8> {
     if code & 0xfe0f == 0x900f {
         Some((code >> 4 & 0x1f) as u8)
@@ -36,46 +37,45 @@ pub const fn popped(code: u16) -> Option<u8> {
     }
 }
 
-/// `ldi r26, value`.
+/// The instruction `ldi r26, value`.
 pub const fn load_r26(value: u8) -> u16 {
     let value = value as u16;
     0xe0a0 | value << 4 & 0x0f00 | value & 0x0f
 }
 
-/// Whether it goes somewhere relative to itself: a branch, `rjmp` or `rcall`.
+/// True if the target is relative to the instruction: a branch, `rjmp` or `rcall`.
 pub const fn is_relative(code: u16) -> bool {
     is_branch(code) || code & 0xe000 == 0xc000
 }
 
-/// Whether it is a branch on a flag.
+/// True for a branch on a flag.
 pub const fn is_branch(code: u16) -> bool {
     code & 0xf800 == 0xf000
 }
 
-/// Whether it is `rjmp`.
+/// True for `rjmp`.
 pub const fn is_near_jump(code: u16) -> bool {
     code & 0xf000 == 0xc000
 }
 
-/// Whether it is a `call` or an `rcall`.
+/// True for `call` and `rcall`.
 pub const fn is_call(code: u16) -> bool {
     code & 0xfe0e == CALL || code & 0xf000 == 0xd000
 }
 
-/// Whether the next instruction is skipped now and then: `cpse`, `sbrc`, `sbrs`, `sbic`,
-/// `sbis`.
+/// True for instructions that may skip the next one: `cpse`, `sbrc`, `sbrs`, `sbic`, `sbis`.
 pub const fn skips(code: u16) -> bool {
     code & 0xfc00 == 0x1000 || code & 0xfc08 == 0xfc00 || code & 0xfd00 == 0x9900
 }
 
-/// Whether it reads or writes the stack pointer by `in` or `out`.
+/// True if an instruction reads or writes the stack pointer by `in` or `out`.
 pub const fn has_stack_pointer(code: u16) -> bool {
     let port = code >> 5 & 0x30 | code & 0x0f;
     code & 0xf000 == 0xb000 && (port == 0x3d || port == 0x3e)
 }
 
-/// Whether it mentions r28 or r29, as an operand or as Y. Of instructions without operands,
-/// `lpm` is taken for one that does.
+/// True if an instruction has r28 or r29 as an operand, or uses Y. `lpm`, which has no operand,
+/// is also counted as one that does.
 pub fn has_frame_pointer(code: u16) -> bool {
     let is = |register: u16| register == 28 || register == 29;
     let first = code >> 4 & 0x1f;
@@ -102,9 +102,9 @@ pub fn has_frame_pointer(code: u16) -> bool {
     }
 }
 
-/// Whether what lies behind it may be executed after it, where it is the last instruction of
-/// a function. A call is not: a compiler ends a function with one that never returns.
-pub const fn runs_on(code: u16) -> bool {
+/// True if execution may continue behind the last instruction of a function. It does not after a
+/// call: a compiler ends a function only with a call that never returns.
+pub const fn falls_through(code: u16) -> bool {
     let is_return = code == RET || code == RETI;
     let is_jump = is_near_jump(code) || code & 0xfe0e == JMP || code & 0xffef == 0x9409;
     !(is_return || is_jump || is_call(code))

@@ -32,7 +32,7 @@ fn run() -> Result<ExitCode, String> {
     }
     let status = Command::new("avr-gcc").args(arguments).status();
     for path in written {
-        // One that stays is in nobody's way.
+        // A file that stays does no harm.
         let _ = fs::remove_file(path);
     }
     let status = status.map_err(|error| format!("avr-gcc, which links the firmware: {error}"))?;
@@ -43,8 +43,8 @@ fn run() -> Result<ExitCode, String> {
     })
 }
 
-/// Writes the shorter form of an object next to it, and the routines it calls; returns
-/// their names. None for what is no object.
+/// Writes the shorter form of an object next to it, and the routines that it calls; returns the
+/// names of both. `None` for an argument that is not an object.
 fn shortened(path: &Path) -> Result<Option<[PathBuf; 2]>, String> {
     // If a file cannot be read, avr-gcc reports that.
     let (true, Ok(file)) = (path.extension() == Some(OsStr::new("o")), fs::read(path)) else {
@@ -60,7 +60,7 @@ fn shortened(path: &Path) -> Result<Option<[PathBuf; 2]>, String> {
         Ok::<PathBuf, String>(path)
     };
     Ok(Some([
-        // First, so that it lies behind `.lowtext` and before the rest.
+        // First, so that they are placed after `.lowtext` and before the rest.
         write("frames.S", ROUTINES.as_bytes())?,
         write("short.o", &new)?,
     ]))

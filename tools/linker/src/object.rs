@@ -1,4 +1,4 @@
-//! An object file: which of its sections are functions, and the same file with shorter ones.
+//! An object file: finds its functions and writes the same file with shorter ones.
 
 use std::fmt;
 
@@ -12,7 +12,7 @@ use crate::frame::{FIRST, Frame, Routines};
 
 mod layout;
 
-/// Why an object cannot be read or written.
+/// The reason for which an object cannot be read or written.
 #[derive(Debug)]
 pub struct ShrinkError(object::build::Error);
 
@@ -30,19 +30,19 @@ impl From<object::build::Error> for ShrinkError {
     }
 }
 
-/// What was saved, bytes.
+/// The number of bytes saved by each kind of edit.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Savings {
-    /// By shared beginnings and ends; the linker shortens most calls further.
+    /// By shared prologues and epilogues; the linker shortens most calls further.
     pub frames: i64,
     /// By opposite branches.
     pub branches: i64,
-    /// By functions near those that call them, as far as it can be told before linking.
+    /// By functions near those that call them, as far as that is known before linking.
     pub calls: i64,
 }
 
-/// The object file with shorter functions, and how much was saved; none for what is no ELF file. The
-/// shared beginnings and ends that it refers to then are [`ROUTINES`](crate::ROUTINES).
+/// Makes the functions of an object file shorter; returns the new file and the savings, or `None` if
+/// it is not an ELF file. The new file refers to the routines of [`ROUTINES`](crate::ROUTINES).
 ///
 /// # Errors
 /// See [`ShrinkError`].
@@ -73,10 +73,11 @@ pub fn shrink(file: &[u8]) -> Result<Option<(Vec<u8>, Savings)>, ShrinkError> {
 struct Object<'a>(Builder<'a>);
 
 impl Object<'_> {
-    /// LLVM keeps names of sections and of symbols in one table; what is written has two.
+    /// Adds a table for the names of sections: LLVM keeps them in one with the names of symbols, and
+    /// the writer needs two.
     fn name_sections(&mut self) {
-        let is_there = |section: &Section| matches!(section.data, SectionData::SectionString);
-        if !self.0.sections.iter().any(is_there) {
+        let is_table = |section: &Section| matches!(section.data, SectionData::SectionString);
+        if !self.0.sections.iter().any(is_table) {
             let table = self.0.sections.add();
             table.name = ".shstrtab".into();
             table.sh_type = elf::SHT_STRTAB;
@@ -85,38 +86,38 @@ impl Object<'_> {
         }
     }
 
-    /// The routines of [`FIRST`], which another object has.
+    /// Adds symbols for the routines of [`FIRST`], which are in another object.
     fn routines(&mut self) -> Vec<Routines> {
-        let mut elsewhere = |name: String| {
+        let mut undefined = |name: String| {
             let symbol = self.0.symbols.add();
             symbol.name = name.into_bytes().into();
             symbol.set_st_info(elf::STB_GLOBAL, elf::STT_NOTYPE);
             symbol.id()
         };
         let mut of = |first: &u8| Routines {
-            save: elsewhere(format!("__frame_save_{first}")),
-            restore: elsewhere(format!("__frame_restore_{first}")),
+            save: undefined(format!("__frame_save_{first}")),
+            restore: undefined(format!("__frame_restore_{first}")),
         };
         FIRST.iter().map(&mut of).collect()
     }
 
-    /// The sections that are one function each, in their order. Interrupts and what is
-    /// written in assembly are not among them.
+    /// The sections that are one function each, in their order. Interrupt handlers and assembly
+    /// are not among them.
     fn functions(&self) -> Vec<SectionId> {
         let is_function = |section: &&Section| {
-            let mut whole = 0;
+            let mut functions = 0;
             for symbol in &self.0.symbols {
                 if symbol.section != Some(section.id()) || symbol.st_type() == elf::STT_SECTION {
                     continue;
                 }
-                let is_whole = symbol.st_value == 0 && symbol.st_size == section.sh_size;
+                let is_all = symbol.st_value == 0 && symbol.st_size == section.sh_size;
                 let is_interrupt = symbol.name.starts_with(b"__vector");
-                if symbol.st_type() != elf::STT_FUNC || !is_whole || is_interrupt {
+                if symbol.st_type() != elf::STT_FUNC || !is_all || is_interrupt {
                     return false;
                 }
-                whole += 1;
+                functions += 1;
             }
-            whole == 1 && section.name.starts_with(b".text.")
+            functions == 1 && section.name.starts_with(b".text.")
         };
         self.0
             .sections
@@ -126,7 +127,7 @@ impl Object<'_> {
             .collect()
     }
 
-    /// What a section's bytes refer to.
+    /// The references of a section's bytes.
     fn references(&self, section: SectionId) -> Vec<Reference> {
         let mut references = Vec::new();
         for table in &self.0.sections {
@@ -157,18 +158,18 @@ impl Object<'_> {
         Code::read(&self.bytes(section), self.references(section))
     }
 
-    /// Where in a section a symbol and an addend lead.
+    /// The offset in a section of a symbol and an addend; `None` for another section.
     fn place(&self, section: SectionId, symbol: SymbolId, addend: i64) -> Option<u64> {
         let symbol = self.0.symbols.get(symbol);
         (symbol.section == Some(section)).then(|| symbol.st_value.wrapping_add_signed(addend))
     }
 
-    /// All offsets of a section that anything leads to.
+    /// All offsets of a section that something refers to.
     fn targets(&self, section: SectionId) -> Vec<u64> {
         self.targets_without(section, None)
     }
 
-    /// All offsets of a section that anything leads to but what an edit replaces.
+    /// All offsets of a section that something refers to, other than the code that an edit replaces.
     fn targets_without(&self, section: SectionId, edit: Option<&Edit>) -> Vec<u64> {
         let mut targets = Vec::new();
         for table in &self.0.sections {
@@ -186,7 +187,7 @@ impl Object<'_> {
         targets
     }
 
-    /// What shared beginnings and ends do to each function that gets shorter by them.
+    /// The edits of each function that gets shorter by shared prologues and epilogues.
     fn frames(&self, routines: &[Routines]) -> Vec<(SectionId, Edits)> {
         let edits = |section| {
             let frame = Frame::of(&self.code(section)?)?;
@@ -197,7 +198,7 @@ impl Object<'_> {
         self.functions().into_iter().filter_map(edits).collect()
     }
 
-    /// The next of some edits of a section.
+    /// The next edit of a kind in a section.
     fn next<F>(&self, section: SectionId, edit: F) -> Option<Edits>
     where
         F: Fn(&Code, &[u64], &dyn Fn(&Reference) -> Option<u64>) -> Option<Edit>,
@@ -210,7 +211,7 @@ impl Object<'_> {
         Edits::new(vec![edit], &targets)
     }
 
-    /// Changes a section, and everything that says something of its offsets.
+    /// Edits a section, and everything that refers to its offsets.
     fn apply(&mut self, section: SectionId, edits: &Edits) {
         let bytes = edits.bytes(&self.bytes(section));
         let mut references = edits.references(&self.references(section));
@@ -221,7 +222,7 @@ impl Object<'_> {
             .filter(|symbol| symbol.section == Some(section))
             .map(|symbol| (symbol.id(), symbol.st_value))
             .collect();
-        // An addend is moved by what its target moves beyond its symbol.
+        // An addend changes by the difference between the moves of its target and of its symbol.
         let addend = |symbol: SymbolId, addend: i64| {
             let value = values.iter().find(|(id, _)| *id == symbol);
             value.map_or(addend, |(_, value)| {
@@ -260,7 +261,7 @@ impl Object<'_> {
     }
 }
 
-/// As the file has it.
+/// The relocation of a reference.
 fn relocation(reference: &Reference) -> Relocation {
     Relocation {
         r_offset: reference.offset,

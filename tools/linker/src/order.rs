@@ -1,34 +1,35 @@
-//! Functions that call one another lie near one another.
+//! The order of functions in which those that call one another are near one another.
 //!
 //! A `call` has two words. If the target is less than 4 KB away, the linker turns it into
 //! an `rcall` of one word, and a `jmp` into an `rjmp` (`--relax`). A compiler writes
-//! functions in the order in which it meets them, and the routines of `frames.S`, which
-//! nearly all functions call, came last. So this module searches the order in which the
-//! fewest calls are out of reach; each of them also saves a cycle. The order cannot
-//! change what a program does: every reference from one function to another is a
-//! relocation, and no function runs on into the next.
+//! functions in the order of its own work, and the routines of `frames.S`, which
+//! nearly all functions call, came last. So this module searches for the order in which the
+//! fewest calls are out of reach; each near call also saves a cycle. The order cannot
+//! change a program's behaviour: every reference from one function to another is a
+//! relocation, and no function falls through into the next.
 
-/// How far a relative call reaches, bytes, less what the estimate of the sizes may be wrong by.
+/// The reach of a relative call, bytes, less the error of the estimated sizes.
 const REACH: u32 = 4096 - 96;
 
-/// What a call out of reach costs, where a byte of the way that it is too long costs 1: the
-/// way tells only in which direction things get better.
+/// The cost of a call out of reach, in bytes beyond the reach, which cost 1 each: they only show
+/// the search in which direction an order improves.
 const FAR: u32 = 16_384;
 
-/// How many orders are tried, and by how much one may be worse than the one before at
-/// first; in the end not at all.
+/// The number of orders tried.
 const TRIES: u32 = 600_000;
+
+/// The additional cost with which an order is accepted at first; at the end it is 0.
 const WORSE: u32 = 4 * FAR;
 
-/// Any number does.
+/// The seed of the search; any number would do.
 const SEED: u64 = 1;
 
 /// A call or a jump from one piece of code to another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Call {
-    /// The piece that it is in.
+    /// The piece that contains it.
     pub from: usize,
-    /// Bytes from that piece's beginning.
+    /// Its offset in that piece, bytes.
     pub at: u32,
     /// The piece that it leads to.
     pub to: usize,
@@ -37,17 +38,17 @@ pub struct Call {
 /// Pieces of code, all of which but the last may be put into any order.
 #[derive(Debug, Clone, Default)]
 pub struct Pieces {
-    /// Bytes of each.
+    /// The size of each piece, bytes.
     pub sizes: Vec<u32>,
-    /// What leads from one to another.
+    /// The calls and jumps from one piece to another.
     pub calls: Vec<Call>,
 }
 
 impl Pieces {
-    /// The order in which the fewest calls are out of reach, as far as a search finds it: pieces
-    /// are put elsewhere at random, and what makes things much worse is undone, less and less
-    /// being much (threshold accepting, Dueck and Scheuer 1990). In whole numbers, so that it
-    /// is the same on every machine. The last piece stays the last.
+    /// Searches for the order in which the fewest calls are out of reach. It moves pieces at
+    /// random and undoes a move that raises the cost by more than a threshold, which falls to
+    /// zero (threshold accepting, Dueck and Scheuer 1990). It computes in integers, so that the
+    /// result is the same on every machine. The last piece stays the last.
     pub fn order(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.sizes.len()).collect();
         let movable = self.sizes.len().saturating_sub(1);
@@ -60,10 +61,10 @@ impl Pieces {
             }
             let worse = u64::from(WORSE) * u64::from(left) / u64::from(TRIES);
             let [from, to] = [0; 2].map(|_| random.usize(..movable));
-            turn(&mut order, from, to);
+            move_piece(&mut order, from, to);
             let cost = self.cost(&order);
             if cost > now + worse {
-                turn(&mut order, to, from);
+                move_piece(&mut order, to, from);
                 continue;
             }
             now = cost;
@@ -74,18 +75,18 @@ impl Pieces {
         best
     }
 
-    /// How many calls are out of reach in an order.
+    /// The number of calls out of reach in an order.
     pub fn far(&self, order: &[usize]) -> usize {
         self.beyond(order).filter(|beyond| *beyond > 0).count()
     }
 
-    /// What an order costs.
+    /// The cost of an order.
     fn cost(&self, order: &[usize]) -> u64 {
         let far = self.beyond(order).filter(|beyond| *beyond > 0);
         far.map(|beyond| u64::from(FAR + beyond)).sum()
     }
 
-    /// By how many bytes each call is out of reach.
+    /// The number of bytes by which each call is out of reach; 0 within reach.
     fn beyond(&self, order: &[usize]) -> impl Iterator<Item = u32> {
         let mut places = vec![0; self.sizes.len()];
         let mut place = 0;
@@ -100,8 +101,8 @@ impl Pieces {
     }
 }
 
-/// Takes what is at one place to another.
-fn turn(order: &mut [usize], from: usize, to: usize) {
+/// Moves a piece from one place to another.
+fn move_piece(order: &mut [usize], from: usize, to: usize) {
     if from < to {
         order[from..=to].rotate_left(1);
     } else {
@@ -113,8 +114,8 @@ fn turn(order: &mut [usize], from: usize, to: usize) {
 mod tests {
     use super::*;
 
-    /// Ten pairs that call each other and lie ten pieces apart, and one at the end that the
-    /// first calls.
+    /// Ten pairs of pieces that call each other and are ten pieces apart, and one piece at the end
+    /// that the first calls.
     fn pairs() -> Pieces {
         let mut pieces = Pieces {
             sizes: vec![700; 20],
@@ -135,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn all_that_can_be_near_one_another_are() {
+    fn all_pieces_that_can_be_near_one_another_are() {
         let pieces = pairs();
         let compiled: Vec<usize> = (0..21).collect();
         assert_eq!(pieces.far(&compiled), 11);
@@ -143,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn every_piece_has_one_place_the_last_the_last_and_always_the_same() {
+    fn every_run_finds_the_same_order_of_all_pieces_with_the_last_in_its_place() {
         let order = pairs().order();
         assert_eq!(order, pairs().order());
         assert_eq!(order.last(), Some(&20));
@@ -153,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_and_little_have_an_order() {
+    fn no_piece_and_one_piece_have_an_order() {
         assert!(Pieces::default().order().is_empty());
         let one = Pieces {
             sizes: vec![9000, 0],

@@ -1,10 +1,10 @@
-//! What is tried with each gait: how the legs are driven, and how the feet stand.
+//! The cases in which each gait is walked: the drive of the legs, and the length of the feet.
 
 use std::fmt;
 
 use lizard_robot::{Drive, Ground, Kind, Robot, Stance};
 
-/// How the legs are driven.
+/// The drive of the legs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Legs {
     /// By bars with two holes.
@@ -13,22 +13,22 @@ pub enum Legs {
     Strut,
 }
 
-/// How the feet stand.
+/// The length of the feet, and the stiffness of their leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Feet {
-    /// All of one length, on leaves as robot.toml has them.
+    /// All of one length, on leaves as in robot.toml.
     Level,
     /// The front left one 0.6 mm too long, on stiff leaves of 2 N/mm.
     Stiff,
-    /// The same 1.0 mm too long, on leaves as robot.toml has them.
+    /// The front left one 1.0 mm too long, on leaves as in robot.toml.
     Soft,
 }
 
 impl Feet {
-    /// In the order of the tables.
+    /// All of them, in the order of the tables.
     pub const ALL: [Self; 3] = [Self::Level, Self::Stiff, Self::Soft];
 
-    /// By how much the front left foot is too long, mm.
+    /// The excess length of the front left foot, mm.
     #[must_use]
     pub fn long(self) -> f64 {
         match self {
@@ -38,7 +38,7 @@ impl Feet {
         }
     }
 
-    /// What a foot gives, N/mm, on this robot.
+    /// The stiffness of a foot on this robot, N/mm.
     #[must_use]
     pub fn stiffness(self, robot: &Robot) -> f64 {
         match self {
@@ -48,46 +48,32 @@ impl Feet {
     }
 }
 
-/// Legs and feet.
+/// A combination of legs and feet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Case {
-    /// How the legs are driven.
+    /// The drive of the legs.
     pub legs: Legs,
-    /// How the feet stand.
+    /// The length of the feet.
     pub feet: Feet,
 }
 
 impl Case {
-    /// In the order of the tables. Struts with springs go as rigid ones, so one long foot
-    /// will do there.
+    /// All cases in the order of the tables. Struts with springs walk as rigid ones do, so one case
+    /// of a long foot is enough there.
     pub const ALL: [Self; 5] = {
-        let [level, stiff, soft] = Feet::ALL;
-        let (rigid, strut) = (Legs::Rigid, Legs::Strut);
+        const fn case(legs: Legs, feet: Feet) -> Case {
+            Case { legs, feet }
+        }
         [
-            Self {
-                legs: rigid,
-                feet: level,
-            },
-            Self {
-                legs: rigid,
-                feet: stiff,
-            },
-            Self {
-                legs: rigid,
-                feet: soft,
-            },
-            Self {
-                legs: strut,
-                feet: level,
-            },
-            Self {
-                legs: strut,
-                feet: stiff,
-            },
+            case(Legs::Rigid, Feet::Level),
+            case(Legs::Rigid, Feet::Stiff),
+            case(Legs::Rigid, Feet::Soft),
+            case(Legs::Strut, Feet::Level),
+            case(Legs::Strut, Feet::Stiff),
         ]
     };
 
-    /// The robot as the contact model gets it: the friction of the pads is equal in all
+    /// The input of the contact model: the robot on pads whose friction is equal in all
     /// directions, as in the engine.
     #[must_use]
     pub fn ground(self, robot: &Robot) -> Ground {

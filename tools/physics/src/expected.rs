@@ -1,5 +1,5 @@
-//! The expected results of trials with a real robot, and the key of robot.toml for the
-//! real result.
+//! The expected results of trials with a real robot, each with the key of robot.toml for the
+//! measured result.
 
 use std::fmt::Write as _;
 

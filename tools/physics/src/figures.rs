@@ -7,55 +7,55 @@ use serde::{Deserialize, Serialize};
 
 use crate::case::{Case, Feet};
 
-/// Where a cycle leads: mm forward, mm to the left, deg counter-clockwise; in hundredths.
+/// The displacement by a cycle: mm forward, mm to the left, deg counter-clockwise; in hundredths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Way(pub [f64; 3]);
+pub struct Displacement(pub [f64; 3]);
 
-impl Way {
-    /// How far two of them are apart: mm and deg.
+impl Displacement {
+    /// The difference from another displacement: mm and deg.
     #[must_use]
-    pub fn off(&self, other: &Self) -> (f64, f64) {
+    pub fn distance_to(&self, other: &Self) -> (f64, f64) {
         let [a, b] = [self.0, other.0];
         ((a[0] - b[0]).hypot(a[1] - b[1]), (a[2] - b[2]).abs())
     }
 }
 
-impl From<[f64; 3]> for Way {
+impl From<[f64; 3]> for Displacement {
     fn from(way: [f64; 3]) -> Self {
-        // And without a minus before 0.
+        // The sum with 0 has no negative zero.
         Self(way.map(|part| (100.0 * part).round() / 100.0 + 0.0))
     }
 }
 
-impl From<Travel> for Way {
+impl From<Travel> for Displacement {
     fn from(way: Travel) -> Self {
         Self::from([way.forward, way.left, way.turn])
     }
 }
 
-/// The figures of a cycle.
+/// The answers of the model and of MuJoCo for a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Said {
-    /// By the contact model; none where two feet pull against two, so that the smallest
+pub struct Answers {
+    /// The contact model's; none where two feet pull against two, so that the smallest
     /// difference between the pads decides.
-    pub model: Option<Way>,
-    /// By MuJoCo: the robot as `lizard mjcf` writes it.
-    pub mujoco: Way,
+    pub model: Option<Displacement>,
+    /// MuJoCo's, for the robot as `lizard mjcf` writes it.
+    pub mujoco: Displacement,
 }
 
-/// MuJoCo may differ from the model by this many mm, or by this share of the way, or by so
-/// many deg: with level feet; with one that is too long on leaves that give; and on stiff
-/// ones, where a few hundredths of a mm decide which feet hold.
+/// The allowed difference between MuJoCo and the model, in mm, as a share of the distance, and in
+/// deg: with level feet; with one foot too long on soft leaves; and on stiff
+/// leaves, where a few hundredths of a mm decide which feet hold.
 const LEVEL: (f64, f64, f64) = (1.5, 0.08, 1.0);
 const SOFT: (f64, f64, f64) = (2.5, 0.08, 1.5);
 const STIFF: (f64, f64, f64) = (5.0, 0.35, 4.0);
-/// A gait that leads nowhere by the model, mm and deg, may creep so far, mm: what it does to
-/// and fro is nearly as fast both ways, and inertia decides.
+/// A gait that moves less than this by the model, mm and deg, may creep by `CREEPS`, mm: its
+/// movements in both directions are nearly equally fast, and inertia decides.
 const NOWHERE: (f64, f64) = (1.0, 0.5);
 const CREEPS: f64 = 3.5;
 
-impl Said {
-    /// How far MuJoCo may be from the model, mm and deg.
+impl Answers {
+    /// The allowed difference between MuJoCo and the model, mm and deg.
     #[must_use]
     pub fn bound(&self, case: Case) -> (f64, f64) {
         let (mm, share, deg) = match case.feet {
@@ -71,10 +71,10 @@ impl Said {
         }
     }
 
-    /// The words for MuJoCo if it is further off.
+    /// The sentence for a difference beyond the allowed one.
     #[must_use]
-    pub fn parted(&self, case: Case) -> Option<String> {
-        let (off, turned) = self.mujoco.off(&self.model?);
+    pub fn disagreement(&self, case: Case) -> Option<String> {
+        let (off, turned) = self.mujoco.distance_to(&self.model?);
         let (mm, deg) = self.bound(case);
         (off > mm || turned > deg).then(|| {
             format!(
@@ -84,22 +84,22 @@ impl Said {
     }
 }
 
-/// Of each robot and gait, by the case's name.
+/// The answers for each robot and gait, by the case's name.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
-pub struct Figures(BTreeMap<String, BTreeMap<String, BTreeMap<String, Said>>>);
+pub struct Figures(BTreeMap<String, BTreeMap<String, BTreeMap<String, Answers>>>);
 
 impl Figures {
-    /// Those that are kept.
+    /// The figures stored in `figures.json`.
     ///
     /// # Panics
-    /// Where `figures.json` is not as [`Figures::text`] makes it.
+    /// If `figures.json` is not as [`Figures::text`] makes it.
     #[must_use]
     pub fn kept() -> Self {
         serde_json::from_str(include_str!("../figures.json")).expect("figures.json")
     }
 
-    /// As `figures.json` has them: a line for each walk.
+    /// The text of `figures.json`: a line for each walk.
     ///
     /// # Panics
     /// Never: they are names and numbers.
@@ -108,9 +108,9 @@ impl Figures {
         let block = |lines: Vec<String>| format!("{{\n{}\n}}", lines.join(",\n"));
         let robots = self.0.iter().map(|(robot, gaits)| {
             let gaits = gaits.iter().map(|(gait, cases)| {
-                let cases = cases.iter().map(|(case, said)| {
-                    let said = serde_json::to_string(said).expect("numbers");
-                    format!("{case:?}: {said}")
+                let cases = cases.iter().map(|(case, answers)| {
+                    let answers = serde_json::to_string(answers).expect("numbers");
+                    format!("{case:?}: {answers}")
                 });
                 format!("{gait:?}: {}", block(cases.collect()))
             });
@@ -119,20 +119,20 @@ impl Figures {
         block(robots.collect()) + "\n"
     }
 
-    /// Of a robot's gait in a case.
+    /// The answers for a robot's gait in a case.
     #[must_use]
-    pub fn get(&self, robot: &str, gait: &str, case: Case) -> Option<&Said> {
+    pub fn get(&self, robot: &str, gait: &str, case: Case) -> Option<&Answers> {
         self.0.get(robot)?.get(gait)?.get(&case.to_string())
     }
 
-    /// Keeps them.
-    pub fn put(&mut self, robot: &str, gait: &str, case: Case, said: Said) {
+    /// Stores the answers for a robot's gait in a case.
+    pub fn put(&mut self, robot: &str, gait: &str, case: Case, answers: Answers) {
         let gaits = self.0.entry(robot.to_owned()).or_default();
         let cases = gaits.entry(gait.to_owned()).or_default();
-        cases.insert(case.to_string(), said);
+        cases.insert(case.to_string(), answers);
     }
 
-    /// How many there are.
+    /// The number of walks.
     #[must_use]
     pub fn count(&self) -> usize {
         let gaits = self.0.values().flat_map(BTreeMap::values);

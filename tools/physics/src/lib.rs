@@ -1,9 +1,9 @@
-//! Compares the contact model with MuJoCo, an engine that others wrote.
+//! Compares the contact model with MuJoCo, a physics engine of other authors.
 //!
 //! Every prediction of a path over the floor comes from this project's own contact model.
 //! A fault of that model would affect every table, the page and the choice of gaits. So
-//! MuJoCo walks the same gaits, with the robot as `lizard mjcf` writes it. It does not use the
-//! model.
+//! MuJoCo, which does not use the model, walks the same gaits with the robot as `lizard mjcf`
+//! writes it.
 //!
 //! `make physics` runs it (`mujoco`), compares it with the model and with the figures in
 //! `figures.json`, and prints all of it. The tables of the documentation are made from the
@@ -19,7 +19,7 @@ mod table;
 
 pub use case::{Case, Feet, Legs};
 pub use expected::expected;
-pub use figures::{Figures, Said, Way};
+pub use figures::{Answers, Displacement, Figures};
 pub use row::{Row, rows};
 pub use table::{spread, table};
 
@@ -30,10 +30,10 @@ use lizard_robot::Robot;
 /// The files of robots/ by their names without an ending.
 pub const ROBOTS: [&str; 4] = ["paper", "own-gaits", "large", "unequal"];
 
-/// One of them.
+/// Loads one of [`ROBOTS`].
 ///
 /// # Panics
-/// Where it is wrong; tests of the robot crate hold that none is.
+/// If its file is refused; tests of the robot crate show that none is.
 #[must_use]
 pub fn robot(name: &str) -> Robot {
     let file = here().join(format!("../../robots/{name}.toml"));

@@ -1,14 +1,15 @@
-//! `make physics`: every gait of every file of robots/ by the contact model and by MuJoCo. With `--write` the new results replace the stored ones; with `--one-in N`
-//! only every N-th gait walks.
+//! `make physics`: walks every gait of every file of robots/ by the contact model and by MuJoCo.
+//! With `--write` the new results replace the stored ones; with `--one-in N` only every N-th gait
+//! is walked.
 
 use std::process::ExitCode;
 
 use lizard_physics::mujoco::{Jobs, MujocoError};
-use lizard_physics::{Figures, ROBOTS, Row, Said, here, robot, rows, table};
+use lizard_physics::{Answers, Figures, ROBOTS, Row, here, robot, rows, table};
 use lizard_robot::Robot;
 
-/// An engine that answers otherwise than it did by more than this, mm and deg, is another
-/// engine, or the robot is another one.
+/// A difference from the stored answer, mm and deg, beyond which the model, the engine or the robot
+/// must have changed.
 const SAME: (f64, f64) = (0.6, 0.4);
 
 fn main() -> ExitCode {
@@ -41,12 +42,12 @@ fn main() -> ExitCode {
     }
 }
 
-/// A name for a file.
+/// The file's name for a row of a robot.
 fn name(robot: &str, place: usize) -> String {
     format!("{robot}-{place}")
 }
 
-/// The faults that are found: in one of so many gaits, or None to keep what all do.
+/// Walks one of so many gaits, or all, whose answers are stored, for `None`. Returns the faults.
 fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     let (write, one_in) = (one_in.is_none(), one_in.unwrap_or(1));
     let robots: Vec<(&str, Robot)> = ROBOTS.map(|name| (name, robot(name))).into();
@@ -74,17 +75,17 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     let (kept, mut found, mut faults) = (Figures::kept(), Figures::default(), Vec::new());
     for ((of, robot), rows) in robots.iter().zip(&all) {
         for (place, row) in rows.iter().enumerate() {
-            let said = Said {
+            let answers = Answers {
                 model: row.model(robot),
                 mujoco: by_mujoco[&name(of, place)],
             };
-            let mut words: Vec<String> = said.parted(row.case).into_iter().collect();
+            let mut words: Vec<String> = answers.disagreement(row.case).into_iter().collect();
             if !write {
-                words.extend(changed(kept.get(of, &row.gait, row.case), &said));
+                words.extend(changed(kept.get(of, &row.gait, row.case), &answers));
             }
             let what = |words| format!("{of}: {} ({}): {words}", row.gait, row.case);
             faults.extend(words.into_iter().map(what));
-            found.put(of, &row.gait, row.case, said);
+            found.put(of, &row.gait, row.case, answers);
         }
         println!("\n{}", table(of, robot, &found));
     }
@@ -103,12 +104,12 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     Ok(faults)
 }
 
-/// The words for whatever answers otherwise than it did.
-fn changed(kept: Option<&Said>, now: &Said) -> Vec<String> {
+/// The sentences for answers that differ from the stored ones.
+fn changed(kept: Option<&Answers>, now: &Answers) -> Vec<String> {
     let Some(before) = kept else {
         return vec!["no figures are kept; `make physics WRITE=1` keeps these".to_owned()];
     };
-    // What depends on ties is nowhere the same.
+    // Results that depend on ties differ between machines.
     let (Some(was), Some(is)) = (before.model, now.model) else {
         return Vec::new();
     };
@@ -117,7 +118,7 @@ fn changed(kept: Option<&Said>, now: &Said) -> Vec<String> {
         ("MuJoCo", before.mujoco, now.mujoco),
     ];
     let changed = all.into_iter().filter_map(|(who, before, now)| {
-        let (mm, deg) = before.off(&now);
+        let (mm, deg) = before.distance_to(&now);
         (mm > SAME.0 || deg > SAME.1).then(|| {
             format!("{who} differs by {mm:.1} mm and {deg:.1} deg from what is kept; if that is meant, `make physics WRITE=1`")
         })

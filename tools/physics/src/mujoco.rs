@@ -12,31 +12,31 @@ use serde::Deserialize;
 use tempfile::TempDir;
 
 use crate::case::Legs;
-use crate::figures::Way;
+use crate::figures::Displacement;
 use crate::here;
 use crate::row::Row;
 
-/// Why MuJoCo gives no answer.
+/// The reason for which MuJoCo gives no answer.
 #[derive(Debug, thiserror::Error)]
 pub enum MujocoError {
-    /// It does not start.
+    /// Python does not start.
     #[error("target/physics/bin/python does not start: {0}; `make physics` sets it up")]
     Start(io::Error),
-    /// A file cannot be written, or the answer not be read.
+    /// A file cannot be written, or the answer cannot be read.
     #[error("MuJoCo's files: {0}")]
     Files(#[from] io::Error),
-    /// It ended early.
+    /// The judge ended early.
     #[error("tools/physics/judge.py ended with {0}")]
     Ended(std::process::ExitStatus),
-    /// It says something else.
+    /// The judge printed something else than an answer.
     #[error("tools/physics/judge.py says {0}")]
     Words(String),
-    /// A walk that it does not trust itself.
+    /// MuJoCo warned of a walk.
     #[error("{file}: {trouble}")]
     Trouble {
         /// Robot, gait and case.
         file: String,
-        /// What is wrong.
+        /// The judge's sentence.
         trouble: String,
     },
     /// A part without a surface.
@@ -44,7 +44,7 @@ pub enum MujocoError {
     Unfit(#[from] lizard_parts::Unfit),
 }
 
-/// A line of the judge.
+/// A line of the judge's answer.
 #[derive(Deserialize)]
 struct Line {
     file: String,
@@ -52,23 +52,23 @@ struct Line {
     trouble: Option<String>,
 }
 
-/// Files that wait to be walked.
+/// Files with walks for the judge.
 pub struct Jobs {
     folder: TempDir,
     count: usize,
 }
 
-/// A judge at work.
+/// A running judge.
 pub struct Walking {
     judge: Child,
     _folder: TempDir,
 }
 
 impl Jobs {
-    /// None yet.
+    /// Starts without a walk.
     ///
     /// # Errors
-    /// There is no room for a folder.
+    /// The folder for the files cannot be made.
     pub fn new() -> Result<Self, MujocoError> {
         Ok(Self {
             folder: tempfile::tempdir()?,
@@ -76,7 +76,7 @@ impl Jobs {
         })
     }
 
-    /// How many there are.
+    /// The number of walks.
     #[must_use]
     pub fn count(&self) -> usize {
         self.count
@@ -113,7 +113,7 @@ impl Jobs {
     /// Starts the judge.
     ///
     /// # Errors
-    /// There is none.
+    /// Python does not start.
     pub fn start(self) -> Result<Walking, MujocoError> {
         let judge = Command::new(here().join("../../target/physics/bin/python"))
             .arg(here().join("judge.py"))
@@ -145,33 +145,33 @@ fn scene(name: &str, assembly: &Assembly, row: &Row) -> Scene {
             rate: strut.rate,
         }),
         course: Some(Course::of(robot, gait, 2)),
-        // Nobody looks at it, and MuJoCo reads it ten times as fast.
+        // They are only for pictures, and MuJoCo reads the file ten times as fast without them.
         shapes: false,
         ..Scene::of(assembly, motor)
     }
 }
 
 impl Walking {
-    /// Waits for all of them: where each leads, by its name.
+    /// Waits for all walks; returns their displacements by name.
     ///
     /// # Errors
-    /// The judge ended early, or does not trust a walk.
-    pub fn done(self) -> Result<BTreeMap<String, Way>, MujocoError> {
+    /// The judge ended early, or MuJoCo warned of a walk.
+    pub fn done(self) -> Result<BTreeMap<String, Displacement>, MujocoError> {
         let output = self.judge.wait_with_output()?;
         if !output.status.success() {
             return Err(MujocoError::Ended(output.status));
         }
         let mut ways = BTreeMap::new();
         for line in String::from_utf8_lossy(&output.stdout).lines() {
-            let said: Line =
+            let answer: Line =
                 serde_json::from_str(line).map_err(|_| MujocoError::Words(line.to_owned()))?;
-            let Some(way) = said.way else {
+            let Some(way) = answer.way else {
                 return Err(MujocoError::Trouble {
-                    file: said.file,
-                    trouble: said.trouble.unwrap_or_default(),
+                    file: answer.file,
+                    trouble: answer.trouble.unwrap_or_default(),
                 });
             };
-            ways.insert(said.file, way.into());
+            ways.insert(answer.file, way.into());
         }
         Ok(ways)
     }

@@ -3,33 +3,34 @@
 use lizard_robot::{CheckedGait, Robot};
 
 use crate::case::Case;
-use crate::figures::Way;
+use crate::figures::Displacement;
 
-/// A gait that is to be walked.
+/// A gait to be walked in a case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// Its name.
+    /// The gait's name.
     pub gait: String,
-    /// Legs and feet.
+    /// The legs and feet.
     pub case: Case,
-    /// Whether it depends on no ties, so that the contact model has an answer.
+    /// True if it does not depend on ties, so that the contact model has an answer.
     pub decided: bool,
 }
 
 impl Row {
-    /// What the contact model says.
+    /// The contact model's answer.
     ///
     /// # Panics
-    /// Where the gait is none of the robot's.
+    /// If the robot has no such gait.
     #[must_use]
-    pub fn model(&self, robot: &Robot) -> Option<Way> {
+    pub fn model(&self, robot: &Robot) -> Option<Displacement> {
         let gait = robot.gait(&self.gait).expect("it is the robot's");
         let walked = || gait.walked(&self.case.ground(robot)).travel;
         self.decided.then(|| walked().into())
     }
 }
 
-/// Every gait of a robot that moves, in every case; what depends on ties in the first alone.
+/// Every gait of a robot that moves, in every case; a gait that depends on ties in the first case
+/// only.
 #[must_use]
 pub fn rows(robot: &Robot) -> Vec<Row> {
     let gaits = robot.gaits().iter().filter(|gait| gait.moves());

@@ -5,12 +5,12 @@ use std::fmt::Write as _;
 use lizard_robot::Robot;
 
 use crate::case::{Case, Feet, Legs};
-use crate::figures::{Figures, Way};
+use crate::figures::{Displacement, Figures};
 
-/// Less of a way than this is none: mm and deg.
+/// A displacement below this counts as none: mm and deg.
 const NONE: (f64, f64) = (1.0, 0.5);
 
-/// Which parts of a way a gait is about.
+/// The part of a displacement that a gait is for.
 #[derive(Clone, Copy)]
 enum Part {
     Ahead,
@@ -18,8 +18,8 @@ enum Part {
 }
 
 impl Part {
-    /// Those in which a way is more than none.
-    fn of(way: Way) -> Vec<Self> {
+    /// The parts of a displacement that are not negligible.
+    fn of(way: Displacement) -> Vec<Self> {
         let [ahead, _, turn] = way.0.map(f64::abs);
         let mut parts = Vec::new();
         if ahead > NONE.0 || turn <= NONE.1 {
@@ -38,7 +38,7 @@ impl Part {
         }
     }
 
-    fn value(self, way: Way) -> f64 {
+    fn value(self, way: Displacement) -> f64 {
         match self {
             Self::Ahead => way.0[0],
             Self::Turn => way.0[2],
@@ -46,7 +46,7 @@ impl Part {
     }
 }
 
-/// All figures of a robot: model and MuJoCo side by side, one block for each kind of
+/// The table of all figures of a robot: model and MuJoCo side by side, a block for each kind of
 /// legs.
 #[must_use]
 pub fn table(name: &str, robot: &Robot, figures: &Figures) -> String {
@@ -84,11 +84,11 @@ pub fn table(name: &str, robot: &Robot, figures: &Figures) -> String {
             };
             for part in Part::of(first.model.unwrap_or(first.mujoco)) {
                 _ = write!(text, "{gait:<widest$} {:>3}", part.unit());
-                for said in cases
+                for answers in cases
                     .iter()
                     .filter_map(|case| figures.get(name, gait, *case))
                 {
-                    for way in [said.model, Some(said.mujoco)] {
+                    for way in [answers.model, Some(answers.mujoco)] {
                         _ = match way {
                             Some(way) => write!(text, "  {:>+6.1}", part.value(way)),
                             None => write!(text, "  {:>6}", "-"),
@@ -110,8 +110,8 @@ fn gaits(robot: &Robot) -> impl Iterator<Item = &str> {
     moving.map(|gait| gait.name())
 }
 
-/// What a cycle of each gait comes to, as Markdown: what the model predicts for level feet,
-/// MuJoCo's answer, and the range of both where a foot is 1.0 mm too long.
+/// The displacement by a cycle of each gait, as Markdown: the model's prediction for level feet,
+/// MuJoCo's answer, and the range of both with a foot 1.0 mm too long.
 #[must_use]
 pub fn spread(name: &str, robot: &Robot, figures: &Figures) -> String {
     let mut text = "| gait | cycle, s | predicted | MuJoCo | both, a foot 1.0 mm too long |\n|---|---|---|---|---|\n".to_owned();
@@ -126,7 +126,7 @@ pub fn spread(name: &str, robot: &Robot, figures: &Figures) -> String {
         let (Some(model), Some(rocks)) = (level.model, long.model) else {
             continue;
         };
-        let cell = |ways: &[Way]| {
+        let cell = |ways: &[Displacement]| {
             let parts = Part::of(model).into_iter().map(|part| range(part, ways));
             parts.collect::<Vec<_>>().join(", ")
         };
@@ -143,7 +143,7 @@ pub fn spread(name: &str, robot: &Robot, figures: &Figures) -> String {
     text
 }
 
-fn range(part: Part, ways: &[Way]) -> String {
+fn range(part: Part, ways: &[Displacement]) -> String {
     let values = ways.iter().map(|way| part.value(*way));
     let least = values.clone().fold(f64::INFINITY, f64::min);
     let most = values.fold(f64::NEG_INFINITY, f64::max);

@@ -1,14 +1,14 @@
-//! The pages show what MuJoCo said, and that is as near to the model as it must be.
+//! Tests of the figures on the pages: they are MuJoCo's, and close enough to the model's.
 //!
 //! `BLESS_PHYSICS=1` writes the tables again; `make docs` does it.
 
 use lizard_robot::Robot;
 
 use lizard_physics::{
-    Case, Feet, Figures, Legs, ROBOTS, Way, expected, here, robot, rows, spread, table,
+    Case, Displacement, Feet, Figures, Legs, ROBOTS, expected, here, robot, rows, spread, table,
 };
 
-/// Replaces or compares what stands between a marker and the next end.
+/// Replaces or compares the text between a marker and the next end.
 fn block(page: &str, marker: &str, wanted: &str) {
     let file = here().join("../..").join(page);
     let text = std::fs::read_to_string(&file).expect(page);
@@ -24,7 +24,7 @@ fn block(page: &str, marker: &str, wanted: &str) {
 }
 
 #[test]
-fn the_pages_have_the_ways_that_model_and_engine_say() {
+fn the_pages_have_the_displacements_of_model_and_engine() {
     let kept = Figures::kept();
     for name in ROBOTS {
         let robot = robot(name);
@@ -50,7 +50,7 @@ fn the_pages_have_the_ways_that_model_and_engine_say() {
 }
 
 #[test]
-fn the_kept_figures_are_written_as_they_are_read() {
+fn the_stored_figures_are_written_as_they_are_read() {
     let file = here().join("figures.json");
     let text = std::fs::read_to_string(&file).expect("figures.json");
     let now = Figures::kept().text();
@@ -62,21 +62,21 @@ fn the_kept_figures_are_written_as_they_are_read() {
 }
 
 #[test]
-fn every_walk_is_kept_and_near_to_the_model() {
+fn every_walk_is_stored_and_close_to_the_model() {
     let kept = Figures::kept();
     let mut count = 0;
     for name in ROBOTS {
         let robot = robot(name);
         for gait in robot.gaits().iter().filter(|gait| gait.moves()) {
             let of = |case| kept.get(name, gait.name(), case);
-            let decided = of(Case::ALL[0]).is_some_and(|said| said.model.is_some());
+            let decided = of(Case::ALL[0]).is_some_and(|answers| answers.model.is_some());
             for case in Case::ALL {
-                let Some(said) = of(case) else {
+                let Some(answers) = of(case) else {
                     assert!(!decided && case != Case::ALL[0], "{name}: {}", gait.name());
                     continue;
                 };
-                assert_eq!(said.parted(case), None, "{name}: {}", gait.name());
-                assert_eq!(said.model.is_some(), decided, "{name}: {}", gait.name());
+                assert_eq!(answers.disagreement(case), None, "{name}: {}", gait.name());
+                assert_eq!(answers.model.is_some(), decided, "{name}: {}", gait.name());
                 count += 1;
             }
         }
@@ -85,16 +85,16 @@ fn every_walk_is_kept_and_near_to_the_model() {
 }
 
 #[test]
-fn the_kept_ways_of_the_model_are_those_that_it_has_now() {
+fn the_stored_answers_of_the_model_are_its_present_ones() {
     let (kept, robot) = (Figures::kept(), robot("paper"));
     let mut count = 0;
     for row in rows(&robot) {
-        let said = kept.get("paper", &row.gait, row.case).expect("it is kept");
-        assert_eq!(said.model.is_some(), row.decided, "{}", row.gait);
-        let (Some(was), Some(is)) = (said.model, row.model(&robot)) else {
+        let answers = kept.get("paper", &row.gait, row.case).expect("it is kept");
+        assert_eq!(answers.model.is_some(), row.decided, "{}", row.gait);
+        let (Some(was), Some(is)) = (answers.model, row.model(&robot)) else {
             continue;
         };
-        let (mm, deg) = was.off(&is);
+        let (mm, deg) = was.distance_to(&is);
         assert!(mm < 0.05 && deg < 0.05, "{}: {was:?} {is:?}", row.gait);
         count += 1;
     }
@@ -102,7 +102,7 @@ fn the_kept_ways_of_the_model_are_those_that_it_has_now() {
 }
 
 #[test]
-fn a_foot_that_is_a_millimetre_too_long_costs_no_gait_a_tenth_of_its_way() {
+fn a_foot_that_is_a_millimetre_too_long_costs_no_gait_a_tenth_of_its_distance() {
     let kept = Figures::kept();
     let case = |feet| Case {
         legs: Legs::Rigid,
@@ -117,9 +117,9 @@ fn a_foot_that_is_a_millimetre_too_long_costs_no_gait_a_tenth_of_its_way() {
             };
             let model = level.model.zip(long.model);
             for (before, after) in model.into_iter().chain([(level.mujoco, long.mujoco)]) {
-                let ahead = |way: Way| way.0[0].hypot(way.0[1]);
-                let turn = |way: Way| way.0[2].abs();
-                // What the gait is about: its way, its turn, or neither.
+                let ahead = |way: Displacement| way.0[0].hypot(way.0[1]);
+                let turn = |way: Displacement| way.0[2].abs();
+                // The gait is for a distance, for a turn, or for neither.
                 let (was, is) = match (ahead(before) > 4.0, turn(before) > 1.0) {
                     (true, _) => (ahead(before), ahead(after)),
                     (false, true) => (turn(before), turn(after)),

@@ -1,9 +1,10 @@
 //! Waits with a time limit. A test that waits for another program, a port or a thread
-//! would wait for ever if that never comes, and the whole run with it. Here every wait
-//! has a limit, after which the test fails and says what it has waited for.
+//! hangs if that never answers, and so does the whole run. Here every wait
+//! has a limit, after which the test fails with a sentence that names the missing event.
 //!
 //! The limit does not measure speed: a machine may be busy, and only a test that hangs
-//! should fail. All waits use one limit, [`LIMIT`].
+//! should fail. All waits use one limit, [`LIMIT`]. Do not use it outside of tests, or to
+//! assert that something is fast.
 //!
 //! ```
 //! use lizard_time_limit::LIMIT;
@@ -20,7 +21,7 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// How often a condition is checked.
+/// The time between two checks of a condition.
 const LOOK: Duration = Duration::from_millis(1);
 
 /// The limit of all tests: much longer than anything takes on a busy machine.
@@ -37,14 +38,14 @@ impl fmt::Display for TimeLimit {
 }
 
 impl TimeLimit {
-    /// A limit of its own, for a test of waits.
+    /// Makes another limit, for a test of waits.
     #[must_use]
     pub const fn new(time: Duration) -> Self {
         Self(time)
     }
 
-    /// Asks until the answer is yes, or until the limit: then false. For a test that
-    /// has more to say than [`TimeLimit::until`].
+    /// Waits until the condition holds: true; or until the limit: false. For a test with a longer
+    /// message than that of [`TimeLimit::until`].
     pub fn comes(self, mut condition: impl FnMut() -> bool) -> bool {
         let end = Instant::now() + self.0;
         loop {
@@ -61,14 +62,14 @@ impl TimeLimit {
     /// Waits until the condition holds.
     ///
     /// # Panics
-    /// It does not within the limit; `what` completes `waited 300s for`.
+    /// It does not hold within the limit; `what` completes the message `waited 300s for`.
     #[track_caller]
     pub fn until(self, what: &str, condition: impl FnMut() -> bool) {
         assert!(self.comes(condition), "waited {self} for {what}");
     }
 
-    /// What `work` returns, which may block: a read, a join. It runs on a thread of its
-    /// own, which continues until the test program ends if the limit comes first.
+    /// Runs `work`, which may block as a read or a join does, and returns its result. It runs on a
+    /// thread of its own, which continues until the test program ends if the limit is reached first.
     ///
     /// # Panics
     /// It does not return within the limit, see [`TimeLimit::until`]; or it panics.
@@ -80,7 +81,7 @@ impl TimeLimit {
     ) -> T {
         let (done, result) = mpsc::channel();
         let worker = thread::spawn(move || {
-            // Nobody listens any more if the limit has come first.
+            // The receiver is gone if the limit was reached first.
             let _ = done.send(work());
         });
         match result.recv_timeout(self.0) {
@@ -93,11 +94,12 @@ impl TimeLimit {
         }
     }
 
-    /// How a program ends. Its output, if it is piped, must be read elsewhere.
+    /// Waits for the end of a program and returns its status. Its output, if it is piped, must be
+    /// read elsewhere.
     ///
     /// # Errors
-    /// Those of the system; [`ErrorKind::TimedOut`] with a sentence if it does not end
-    /// within the limit. Then it has been killed.
+    /// The system's; [`ErrorKind::TimedOut`] with a sentence if it does not end
+    /// within the limit, when it is killed.
     pub fn end_of(self, child: &mut Child) -> io::Result<ExitStatus> {
         let mut ended = Ok(None);
         self.comes(|| {
@@ -113,11 +115,11 @@ impl TimeLimit {
         Err(io::Error::new(ErrorKind::TimedOut, sentence))
     }
 
-    /// Runs a program with this on its standard input, and returns what it prints.
+    /// Runs a program with `input` on its standard input, and returns its output.
     ///
     /// # Errors
-    /// It cannot be started; [`ErrorKind::TimedOut`] with a sentence if it, or one that
-    /// it has started and that may print, runs beyond the limit.
+    /// It cannot be started; [`ErrorKind::TimedOut`] with a sentence if it, or a program that
+    /// it has started and that has its output, runs beyond the limit.
     pub fn output(self, command: &mut Command, input: &[u8]) -> io::Result<Output> {
         let name = command.get_program().to_string_lossy().into_owned();
         let too_long = |what: &str| {
@@ -159,7 +161,7 @@ impl TimeLimit {
     }
 }
 
-/// Reads a pipe to its end, on a thread of its own: a full pipe would hold its program.
+/// Reads a pipe to its end on a thread of its own, since a full pipe would block its program.
 fn all_of(mut pipe: impl Read + Send + 'static) -> mpsc::Receiver<io::Result<Vec<u8>>> {
     let (done, bytes) = mpsc::channel();
     thread::spawn(move || {

@@ -1,17 +1,17 @@
-// The other end of FasterSearch: the robot in WebAssembly once more, which searches gait by gait.
+// The worker of FasterSearch: its own instance of the robot in WebAssembly, which tries one gait after another.
 import { isRefused, Robot, type Trial } from '../robot';
 import { sentence } from '../trouble';
 import type { Answer, Best, Question } from './faster';
 
-/** Gaits after which the best so far is looked at: a population of the search. */
+/** Gaits between two reports of the best so far: one population of the search. */
 const LOOK = 20;
-/** Random robots for a look, and for the end; the end has as many as `lizard tune`. */
+/** Random robots for a report and for the final comparison, which has as many as `lizard tune`. */
 const ROBOTS = { look: 20, end: 200 };
 
 let isStopped = false;
 
 const say = (answer: Answer) => postMessage(answer);
-/** What has come meanwhile is heard. */
+/** Lets messages that have arrived be handled. */
 const turn = () => new Promise((next) => setTimeout(next));
 
 addEventListener('message', ({ data }: MessageEvent<Question | 'stop'>) => {
@@ -24,13 +24,13 @@ async function search({ module, toml, floor, servos, wish }: Question): Promise<
   page.read(toml);
   page.setFloor(floor);
   page.setServos(servos);
-  const begun = page.makeFaster(toml, wish);
+  const begun = page.makeFaster(wish);
   if (isRefused(begun)) return say({ of: 'end', refused: begun.refused });
-  say({ of: 'begun', ...begun, before: page.trial(toml, wish.bars) as Trial });
+  say({ of: 'begun', ...begun, before: page.trial(wish.bars) as Trial });
   const best = (robots: number): Best | null => {
     const found = page.fasterFound(robots);
-    // What the search has found is within the robot's limits.
-    return found && { ...found, trial: page.trial(toml, found.bars) as Trial };
+    // The search only returns gaits within the robot's limits.
+    return found && { ...found, trial: page.trial(found.bars) as Trial };
   };
   let shown = -Infinity;
   let done = 0;

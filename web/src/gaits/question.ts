@@ -1,4 +1,4 @@
-// What a worker is asked while a gait is made: where it would lead.
+// The question to the worker that predicts an edited gait, and its answer.
 import type { Floor, Made, NoTrial, Trial } from '../robot';
 
 export interface Question {
@@ -10,6 +10,6 @@ export interface Question {
 
 export interface Answer {
   made: Made;
-  /** Null of a line without length. */
+  /** Null if the drawn line has no length. */
   trial: Trial | NoTrial | null;
 }

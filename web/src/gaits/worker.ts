@@ -1,9 +1,9 @@
-// The worker behind a gait that is being made: the robot in WebAssembly once more, which tries gaits.
+// The worker that predicts an edited gait, with its own instance of the robot in WebAssembly.
 import { Robot } from '../robot';
 import type { Answer, Question } from './question';
 
 let robot: Promise<Robot>;
-/** The robot.toml that was read last. */
+/** The robot.toml that this worker read last. */
 let known = '';
 
 addEventListener('message', ({ data }: MessageEvent<WebAssembly.Module | Question>) => {
@@ -17,6 +17,6 @@ async function answer({ toml, floor, servos, made }: Question): Promise<void> {
   known = toml;
   page.setFloor(floor);
   page.setServos(servos);
-  const said: Answer = { made, trial: page.trial(toml, made) };
+  const said: Answer = { made, trial: page.trial(made) };
   postMessage(said);
 }

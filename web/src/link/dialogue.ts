@@ -2,29 +2,31 @@
 // with # come before it, or unasked. One line is sent at a time.
 import type { Link } from './link';
 
-/** The console takes lines of at most so many characters. */
+/** The beginning of the firmware's first line. */
+export const GREETING = '# lizard ';
+/** Most characters of a line that the console accepts. */
 export const LONGEST_LINE = 63;
-/** The robot's own lines are shorter than this: what is longer is noise, and is cut. */
+/** The robot's lines are shorter than this; longer ones are noise and are cut. */
 const LONGEST = 500;
-/** No answer within this time, ms, is none. */
+/** Time within which an answer must come, ms. */
 const PATIENCE = 3000;
 
 export interface Answer {
   ok: boolean;
-  /** The line itself. */
+  /** The answer's line. */
   text: string;
-  /** The # lines that came before it. */
+  /** The # lines before it. */
   notes: string[];
 }
 
-export interface Heard {
-  /** A line that was sent. */
+export interface DialogueListener {
+  /** Called with each line that is sent. */
   sent(line: string): void;
-  /** A line that came. */
-  came(line: string): void;
+  /** Called with each line that is received. */
+  received(line: string): void;
 }
 
-/** What was asked is of no interest any more. */
+/** Thrown for a question that was dropped before its answer. */
 export class Forgotten extends Error {}
 
 interface Question {
@@ -42,16 +44,17 @@ export class Dialogue {
   private readonly waiting: Question[] = [];
   private asked: Question | null = null;
   private notes: string[] = [];
-  private over = false;
+  /** Whether the line serves another purpose. */
+  over = false;
 
   constructor(
     readonly link: Link,
-    private readonly heard: Heard,
+    private readonly listener: DialogueListener,
   ) {
     link.onBytes = (bytes) => this.bytes(bytes);
   }
 
-  /** Sends a line and waits for its answer, `patience` ms. A quiet one is not shown. */
+  /** Sends a line and waits at most `patience` ms for its answer. A quiet line is not shown in the console. */
   ask(line: string, quiet = false, patience = PATIENCE): Promise<Answer> {
     return new Promise((answered, failed) => {
       if (this.over) throw new Error(`"${line}" was not sent: the boot loader has the line`);
@@ -60,7 +63,7 @@ export class Dialogue {
     });
   }
 
-  /** Forgets what was asked: the board begins anew, or the line serves another purpose. */
+  /** Drops all questions: the board restarts, or the line is used by something else. */
   forget(): void {
     const questions = [...(this.asked ? [this.asked] : []), ...this.waiting];
     this.asked = null;
@@ -70,7 +73,7 @@ export class Dialogue {
     for (const { failed } of questions) failed(new Forgotten());
   }
 
-  /** Ends it; the link may then have another listener. */
+  /** Ends the dialogue; the link may then have another listener. */
   end(): void {
     this.over = true;
     this.forget();
@@ -82,7 +85,7 @@ export class Dialogue {
     if (!question) return;
     this.asked = question;
     this.notes = [];
-    if (!question.quiet) this.heard.sent(question.line);
+    if (!question.quiet) this.listener.sent(question.line);
     try {
       await this.link.write(this.encoder.encode(`${question.line}\n`));
       await this.link.wait(question.patience);
@@ -103,10 +106,12 @@ export class Dialogue {
     for (const line of lines) if (line !== '') this.line(line.slice(-LONGEST));
   }
 
-  private line(line: string): void {
+  private line(received: string): void {
+    // A reset cuts off the board's line, perhaps an answer, and the banner follows on the same line.
+    const line = received.slice(Math.max(0, received.indexOf(GREETING)));
     const question = this.asked;
     const answers = /^(ok|err)\b/.test(line);
-    if (!(question?.quiet && answers)) this.heard.came(line);
+    if (!(question?.quiet && answers)) this.listener.received(line);
     if (!answers) {
       this.notes.push(line);
     } else if (question) {

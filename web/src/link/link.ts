@@ -1,32 +1,32 @@
-// The serial link: one interface, and at its other end a simulated UNO or a board on USB.
+// The serial link to a simulated UNO or to a board on USB.
 
 export interface Link {
-  /** What is at the other end, for people. */
+  /** The board's name in messages. */
   readonly name: string;
-  /** Whether its USB chip is one that an Arduino Nano may have, too. */
+  /** True if the board's USB chip is also used on the Arduino Nano. */
   readonly mayBeNano?: boolean;
-  /** Called with the bytes that come. */
+  /** Called with the bytes that are received. */
   onBytes: (bytes: Uint8Array) => void;
-  /** Called when the other end is gone. */
+  /** Called when the board is gone. */
   onGone: (why: string) => void;
   /** Sends bytes. */
   write(bytes: Uint8Array): Promise<void>;
   /** Resets the board, as opening a port does. */
   reset(): Promise<void>;
-  /** Waits, in the time of the other end. */
+  /** Waits, in the time of the board. */
   wait(ms: number): Promise<void>;
   close(): Promise<void>;
 }
 
-/** A link whose other end has to be run. */
+/** A link to a simulated board, which has to be run. */
 export interface Simulated extends Link {
-  /** Lets time pass. */
+  /** Runs the board for some time. */
   advance(ms: number): void;
-  /** The voltage of the board's supply. */
+  /** Sets the voltage of the board's supply. */
   supply(volts: number): void;
 }
 
-/** Waits of a simulated end: they end when its own time has come. */
+/** Waits in simulated time. */
 export class Waits {
   private waiting: { due: number; done: () => void }[] = [];
 

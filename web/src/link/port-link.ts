@@ -1,8 +1,8 @@
-// The link to a board on USB, by Web Serial. Chromium and its kin and newer Firefox have it, over https or on localhost.
+// The link to a board on USB by Web Serial, which Chromium browsers and newer Firefox have, over https or on localhost.
 import { sentence } from '../trouble';
 import type { Link } from './link';
 
-/** The parts of Web Serial that are used; TypeScript's own library does not have them. */
+/** The parts of Web Serial that the page uses; TypeScript's library does not declare them. */
 interface SerialPort {
   readonly readable: ReadableStream<Uint8Array> | null;
   readonly writable: WritableStream<Uint8Array> | null;
@@ -17,18 +17,18 @@ interface Serial {
 }
 
 const BAUD = 115_200;
-/** The USB vendors arduino.cc and arduino.org: their chips are on UNOs, and on no Nano. */
+/** The USB vendors arduino.cc and arduino.org, whose chips are on UNOs and on no Nano. */
 const ARDUINO = [0x2341, 0x2a03];
-/** Why no board can be connected. */
+/** The message of a browser that cannot connect a board. */
 export const NO_SERIAL = 'This browser cannot reach a board on USB: it has no Web Serial. Chrome, Chromium, Edge and newer Firefox have it, on localhost and over https.';
-/** How long the reset line is pulled, ms. */
+/** Length of the pulse on the reset line, ms. */
 const RESET = 50;
 
 function serial(): Serial | undefined {
   return (navigator as Navigator & { serial?: Serial }).serial;
 }
 
-/** Whether this browser can open a port. */
+/** Returns true if this browser can open a port. */
 export function hasSerial(): boolean {
   return serial() !== undefined;
 }
@@ -50,7 +50,7 @@ export class PortLink implements Link {
     return usbVendorId !== undefined && !ARDUINO.includes(usbVendorId);
   }
 
-  /** Lets the user pick a port and opens it, which resets an UNO; null if the user picks none. Throws a sentence. */
+  /** Lets the user pick a port and opens it, which resets a UNO; null if the user picks none. Throws a sentence. */
   static async open(): Promise<PortLink | null> {
     const ports = serial();
     if (!ports) throw new Error(NO_SERIAL);
@@ -58,7 +58,7 @@ export class PortLink implements Link {
     try {
       port = await ports.requestPort();
     } catch (error) {
-      // So a browser names a choice of nothing.
+      // The error of a chooser that was closed without a choice.
       if (error instanceof DOMException && error.name === 'NotFoundError') return null;
       throw error;
     }
@@ -98,8 +98,8 @@ export class PortLink implements Link {
 
   private async listen(): Promise<void> {
     let why = 'its port is closed.';
-    // A line error (a break, a framing error) ends a stream, and the port has another; a board that
-    // is unplugged leaves none.
+    // A line error (break, framing error) ends a stream, and the port then has a new one; an
+    // unplugged board has none.
     let ended: ReadableStream<Uint8Array> | null = null;
     while (this.port.readable && this.port.readable !== ended && !this.closing) {
       ended = this.port.readable;

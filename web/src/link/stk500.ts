@@ -1,5 +1,5 @@
-// Writing an image by the boot loader of an UNO, optiboot: STK500 version 1, as avrdude's
-// `-c arduino` speaks it.
+// Writes an image through optiboot, the boot loader of a UNO: STK500 version 1, as in avrdude's
+// `-c arduino`.
 import { load } from '../../../tools/judge/src/hex.js';
 import { BOOT } from '../uno/board';
 import { WORDS } from '../words';
@@ -22,19 +22,19 @@ const IDLE = Uint8Array.from({ length: PAGE }, (_, n) => (n % 2 === 0 ? 0xff : 0
 const SIGNATURE = [0x1e, 0x95, 0x0f];
 const FLASH_SIZE = 32 * 1024;
 
-/** An answer comes within this time, ms. */
+/** Time within which an answer must come, ms. */
 const PATIENCE = 500;
-/** The loader blinks so long after a reset and does not listen, ms. */
+/** Time after a reset in which the boot loader blinks and does not listen, ms. */
 const BLINKS = 400;
-/** Then it listens for what is left of a second: how often it is called, ms apart. */
+/** Calls in the rest of its second, in which it listens, and the time between two of them, ms. */
 const CALLS = 5;
 const CALL = 110;
-/** An answer that is late has come within this, ms. */
+/** Time within which a late answer has arrived, ms. */
 const QUIET = 40;
 
 export type Progress = (done: number, of: number, what: 'comparing' | 'writing' | 'verifying') => void;
 
-/** The board has not what it was to have, and nothing was written. */
+/** Thrown if the board's firmware does not match; nothing was written. */
 export class Unfit extends Error {}
 
 /** The bytes of a HEX file up to its end, in whole pages. Throws a sentence. */
@@ -48,10 +48,10 @@ export function imageOf(hex: string): Uint8Array {
   return flash.subarray(0, Math.ceil(end / PAGE) * PAGE);
 }
 
-/** A piece of the list of the console's words, which every image of this firmware has in its flash. */
+/** Part of the console's list of words, which every image of this firmware contains. */
 const CONSOLE = [WORDS.stop, WORDS.rest, WORDS.status, WORDS.pose].join('|');
 
-/** Whether an image has the console of this firmware in it. */
+/** Returns true if an image contains the console of this firmware. */
 export function hasConsole(image: Uint8Array): boolean {
   return new TextDecoder('latin1').decode(image).includes(CONSOLE);
 }
@@ -71,7 +71,7 @@ class Loader {
     this.received = [];
   }
 
-  /** So many bytes, or a sentence why not. */
+  /** Receives `count` bytes. Throws a sentence. */
   async take(count: number, patience: number): Promise<number[]> {
     let late = false;
     void this.link.wait(patience).then(() => {
@@ -85,7 +85,7 @@ class Loader {
     return this.received.splice(0, count);
   }
 
-  /** A command and its answer of so many bytes. */
+  /** Sends a command and returns its answer of `answer` bytes. */
   async command(bytes: number[], answer = 0, patience = PATIENCE): Promise<number[]> {
     await this.link.write(Uint8Array.from([...bytes, END]));
     const got = await this.take(answer + 2, patience);
@@ -109,7 +109,7 @@ async function call(link: Link, loader: Loader): Promise<void> {
   }
 }
 
-/** Resets the board and has its boot loader listen. Throws a sentence if it is none of an ATmega328P. */
+/** Resets the board and calls its boot loader. Throws a sentence unless the chip is an ATmega328P. */
 async function begin(link: Link): Promise<Loader> {
   const loader = new Loader(link);
   await link.reset();
@@ -123,21 +123,21 @@ async function begin(link: Link): Promise<Loader> {
 }
 
 /**
- * Resets the board, asks its boot loader whether it is an UNO's, and starts what is written there. The
- * link's bytes belong to this until it is done. Throws a sentence if it is none.
+ * Resets the board, asks its boot loader for the chip, and starts the program on the board. No other code may use the
+ * link meanwhile. Throws a sentence if the board is not a UNO.
  */
 export async function identify(link: Link): Promise<void> {
   const loader = await begin(link);
   await loader.command([LEAVE]);
 }
 
-/** Bytes of flash and where they are, from the beginning of a page on. */
+/** Bytes of flash and their address, which is that of a page. */
 export interface Piece {
   at: number;
   bytes: Uint8Array;
 }
 
-/** Up to the end of its last page, as an erased flash has it. */
+/** Fills the last page with the bytes of erased flash. */
 function inPages({ bytes }: Piece): Uint8Array {
   const pages = new Uint8Array(Math.ceil(bytes.length / PAGE) * PAGE).fill(0xff);
   pages.set(bytes);
@@ -145,20 +145,19 @@ function inPages({ bytes }: Piece): Uint8Array {
 }
 
 /**
- * Resets the board, writes a piece of its flash, reads it back and starts the board. Where `under` is given, it is
- * looked whether the board has that, and nothing is written where it has not. The link's bytes belong to this until it is
- * done. Throws a sentence.
+ * Resets the board, writes a piece of its flash, reads it back and starts the board. If `under` is given and the board
+ * does not have it, nothing is written. No other code may use the link meanwhile. Throws a sentence.
  */
 export async function flash(link: Link, piece: Piece, progress: Progress, under: Piece | null = null): Promise<void> {
   const loader = await begin(link);
   const goTo = (address: number) => loader.command([LOAD_ADDRESS, (address >> 1) & 0xff, address >> 9]);
-  /** The first byte that is another one; -1 where the board has all of it. */
+  /** The address of the first byte that differs; -1 if none does. */
   const differs = async (wanted: Piece, what: 'comparing' | 'verifying') => {
     const bytes = inPages(wanted);
     for (let at = 0; at < bytes.length; at += PAGE) {
       await goTo(wanted.at + at);
       const read = await loader.command([READ_PAGE, 0, PAGE, FLASH], PAGE);
-      // What is behind the end may be anything.
+      // Bytes behind the end do not count.
       const wrong = read.findIndex((byte, i) => at + i < wanted.bytes.length && byte !== bytes[at + i]);
       if (wrong >= 0) return wanted.at + at + wrong;
       progress(at + PAGE, bytes.length, what);
@@ -178,8 +177,8 @@ export async function flash(link: Link, piece: Piece, progress: Progress, under:
     const wrong = await differs(part, 'verifying');
     if (wrong >= 0) throw new Error(`the flash does not keep byte ${wrong}: try another board`);
   };
-  // Half a program may drive servos anywhere. So meanwhile the page where the chip starts is a loop that does nothing,
-  // and it comes last.
+  // A half-written program might move the servos. So the page where the chip starts is an empty loop meanwhile, and
+  // its real content is written last.
   const startsHere = piece.at === 0;
   progress(0, image.length, 'writing');
   if (startsHere) await write(0, IDLE);

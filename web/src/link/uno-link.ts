@@ -1,11 +1,11 @@
-// The link to a simulated UNO: firmware and robot as they would be flashed, cycle by cycle.
+// The link to a simulated UNO, which runs the image cycle by cycle.
 import type { Four } from '../robot';
 import { SimulatedBoard, FREQUENCY } from '../uno/board';
 import { Frames } from '../uno/frames';
 import { type Simulated, Waits } from './link';
 
 const CYCLES_PER_MS = FREQUENCY / 1000;
-/** The chip runs so far between two looks at what it says, ms. */
+/** Time that the chip runs between two reads of its output, ms. */
 const SLICE = 2;
 
 export interface UnoEvents {
@@ -20,7 +20,7 @@ export class UnoLink implements Simulated {
   private readonly waits = new Waits();
   private readonly frames: Frames;
   private sent: number[] = [];
-  /** Time that is owed to the chip, cycles. */
+  /** Time that the chip still has to run, cycles. */
   private owed = 0;
 
   constructor(
@@ -37,13 +37,13 @@ export class UnoLink implements Simulated {
   }
 
   advance(ms: number): void {
-    // Whole cycles: a part of one could not be run.
+    // Whole cycles only.
     this.owed += Math.round(ms * CYCLES_PER_MS);
     while (this.owed > 0) {
       const slice = Math.min(this.owed, SLICE * CYCLES_PER_MS);
       const before = this.board.cycle;
       this.board.run(slice);
-      // The last instruction may end a few cycles later.
+      // The last instruction may end some cycles late.
       this.owed -= this.board.cycle - before;
       this.frames.at(this.board.cycle);
       if (this.sent.length > 0) {

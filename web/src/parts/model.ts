@@ -1,29 +1,29 @@
-// The robot's parts in WebAssembly: what wasm-parts/src/abi.rs exports, with types. It is run in a
-// worker, since triangles and proofs take seconds.
+// Types and calls of the robot's parts in WebAssembly (wasm-parts/src/abi.rs). Runs in a worker, since
+// triangles and proofs take seconds.
 import type { Refused } from '../robot';
 
 export interface Body {
   name: string;
   kind: string;
-  /** What it moves with, an index of the places of a pose. */
+  /** The body that it moves with, an index of the places of a pose. */
   mount: number;
-  /** 0 to 3; null for what belongs to the chassis or to a side. */
+  /** Its servo, 0 to 3; null for a body of the chassis or of a side. */
   servo: number | null;
   /** The step of the guide that adds it, from 1. */
   step: number;
-  /** How far the guide's exploded picture lifts it, as a share. */
+  /** Lift in the guide's exploded picture, as a share. */
   lift: number;
-  /** Which of the printed parts it is; null for what is bought. */
+  /** Index of the printed part; null for a bought one. */
   part: number | null;
   /** Its place in its mount's frame: the columns of a 4 x 4 matrix. */
   place: number[];
-  /** Which of the solids it is. */
+  /** Index of its solid. */
   solid: number;
 }
 
 export interface Part {
   name: string;
-  /** The name of its files, without folder and ending. */
+  /** The name of its files, without folder and extension. */
   file: string;
   count: number;
 }
@@ -31,12 +31,12 @@ export interface Part {
 export interface Model {
   bodies: Body[];
   parts: Part[];
-  /** Of the guide; the words as Markdown. */
+  /** The steps of the guide; the words are Markdown. */
   steps: { title: string; words: string }[];
   mounts: number;
-  /** How far the soles are below the plate's top, mm. */
+  /** Height of the plate's top above the soles, mm. */
   floor: number;
-  /** How many calls make all files. */
+  /** Number of calls that make all files. */
   files: number;
 }
 
@@ -63,7 +63,7 @@ interface Exports {
   parts_files(number: number): number;
 }
 
-/** Thrown for a robot of which no parts can be made; its message is the sentence. */
+/** Thrown for a robot whose parts cannot be made; its message is the sentence. */
 export class Unfit extends Error {}
 
 export class PartsModel {
@@ -72,7 +72,7 @@ export class PartsModel {
     readonly model: Model,
   ) {}
 
-  /** Of a robot.toml. `progress` hears what of the proof is done. Throws {@link Unfit}. */
+  /** Makes the parts of a robot.toml. `progress` gets the share of the proof that is done. Throws {@link Unfit}. */
   static async read(
     module: WebAssembly.Module,
     toml: string,
@@ -87,7 +87,7 @@ export class PartsModel {
     return new PartsModel(wasm, json<Model>(wasm));
   }
 
-  /** In the order of {@link Body.solid}. Throws {@link Unfit}. */
+  /** The solids in the order of {@link Body.solid}. Throws {@link Unfit}. */
   solids(): Solid[] {
     if (!this.wasm.parts_solids()) json(this.wasm);
     const bytes = output(this.wasm).slice().buffer;
@@ -117,7 +117,7 @@ export class PartsModel {
     return json<{ least: number | null }>(this.wasm).least;
   }
 
-  /** Some of the files, of as many calls as the model says. Throws {@link Unfit}. */
+  /** Makes some of the files; `number` counts the calls that the model asks for. Throws {@link Unfit}. */
   files(number: number): File[] {
     if (!this.wasm.parts_files(number)) json(this.wasm);
     const bytes = output(this.wasm).slice();

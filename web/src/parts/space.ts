@@ -24,27 +24,27 @@ import { palette, servoColour } from '../view/palette';
 import type { Body, Model, Solid } from './model';
 import { Thrift } from './thrift';
 
-/** How far a body of lift 1 goes when all is apart, mm; as in the guide's pictures. */
+/** Lift of a body of lift 1 in the exploded view, mm, as in the guide's pictures. */
 const LIFT = 45;
-/** A cell of the floor's grid, mm, and how many there are. */
+/** Size of a cell of the floor's grid, mm, and their number. */
 const CELL = 50;
 const CELLS = 16;
-/** A finger or mouse that has moved less has clicked, CSS pixels. */
+/** Movement below which a press is a click, CSS pixels. */
 const CLICK = 5;
-/** A key turns the view by so much, rad. */
+/** Turn of the view by a key, rad. */
 const TURN = Math.PI / 24;
-/** What has not changed for so long stands still, ms. */
+/** Time without a change after which the view stands still, ms. */
 const STILL = 400;
-/** Steps of the guide before the current one, and all but a part that is picked out, are mixed so far with the floor. */
+/** Share of the floor's colour in bodies of earlier steps, and in all others when one is selected. */
 const PALE = 0.65;
 
-/** What is to be seen. */
+/** The view's settings. */
 export interface Look {
-  /** 0 to 1. */
+  /** Spread of the exploded view, 0 to 1. */
   apart: number;
   /** The step of the guide, from 1; null for the whole robot. */
   step: number | null;
-  /** The number of the body that is picked out. */
+  /** Index of the selected body. */
   picked: number | null;
 }
 
@@ -61,10 +61,10 @@ export class Space {
   private meshes: Mesh<BufferGeometry, MeshLambertMaterial>[] = [];
   private look: Look = { apart: 0, step: null, picked: null };
   private dirty = true;
-  /** When there was something new last, ms. */
+  /** Time of the last change, ms. */
   private changed = 0;
 
-  /** Throws where the browser has no WebGL. `onPick` hears of the body that was clicked. */
+  /** Throws if the browser has no WebGL. `onPick` gets the body that was clicked. */
   constructor(
     private readonly canvas: HTMLCanvasElement,
     onPick: (body: number | null) => void,
@@ -72,7 +72,7 @@ export class Space {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: 'low-power' });
     this.thrift = new Thrift(this.renderer.getContext() as WebGL2RenderingContext);
     this.camera.up.set(0, 0, 1);
-    // The sun is behind whoever looks, a little to the side.
+    // The sun is behind the viewer, a little to the side.
     this.sun.position.set(-0.6, 0.9, 1.2);
     this.camera.add(this.sun);
     this.scene.add(this.camera, new AmbientLight(0xffffff, 1.1));
@@ -88,7 +88,7 @@ export class Space {
 
   private listen(onPick: (body: number | null) => void): void {
     const { canvas } = this;
-    // Without Ctrl the wheel scrolls the page: the controls are not to hear of it.
+    // Without Ctrl the wheel scrolls the page, so the controls must not get it.
     canvas.parentElement?.addEventListener('wheel', (event) => event.ctrlKey || event.stopPropagation(), { capture: true });
     let down: { x: number; y: number } | null = null;
     canvas.addEventListener('pointerdown', ({ offsetX: x, offsetY: y }) => (down = { x, y }));
@@ -134,10 +134,10 @@ export class Space {
     return true;
   }
 
-  /** The view from which the guide is drawn: from behind, from the left and from above. */
+  /** Resets to the view of the guide: from behind, from the left and from above. */
   home(): void {
     this.controls.target.set(0, -30, 5);
-    // A narrow canvas is to show all of it, too.
+    // A narrow canvas must show the whole robot, too.
     const { clientWidth, clientHeight } = this.canvas;
     const far = 500 * Math.max(1, (1.3 * clientHeight) / Math.max(1, clientWidth));
     this.camera.position.copy(new Vector3(-0.62, -0.62, 0.52).normalize().multiplyScalar(far)).add(this.controls.target);
@@ -173,7 +173,7 @@ export class Space {
     this.show(this.look);
   }
 
-  /** Shows it so; also after light has become dark. */
+  /** Applies the view's settings, and the colours of light or dark mode. */
   show(look: Look): void {
     this.look = look;
     const { step, apart, picked } = look;
@@ -200,7 +200,7 @@ export class Space {
     this.dirty = true;
   }
 
-  /** Puts every mount where it is: x, y, cosine and sine each. */
+  /** Places every mount: x, y, cosine and sine each. */
   pose(places: Float64Array): void {
     this.mounts.forEach((mount, number) => {
       const [x = 0, y = 0, cos = 1, sin = 0] = places.subarray(4 * number, 4 * number + 4);
@@ -210,18 +210,18 @@ export class Space {
     this.dirty = true;
   }
 
-  /** Whether the picture before is paid for; to be asked in every picture of the page, seen or not. */
+  /** Returns true if a picture may be painted now; must be called in every frame of the page. */
   mayDraw(): boolean {
     return this.thrift.may();
   }
 
-  /** Draws a picture if there is something new and the picture before is paid for. `place` is the body's on the floor. */
+  /** Draws a picture if something has changed and `mayDraw`. `place` is that of the body on the floor. */
   draw(place: Place): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (!this.mayDraw() || width === 0 || height === 0) return;
     const now = performance.now();
     if (this.dirty) this.changed = now;
-    // What stands still is painted once more with all its points.
+    // A still view is painted once more at full resolution.
     const still = now - this.changed > STILL;
     const ratio = Math.min(2, devicePixelRatio) * (still ? 1 : this.thrift.sharpness);
     const size = this.renderer.getSize(new Vector2());
@@ -239,7 +239,7 @@ export class Space {
     this.thrift.drawn(still);
   }
 
-  /** The robot stays in the middle, and the floor moves below it. */
+  /** Moves the floor below the robot, which stays in the middle. */
   private ground({ x, y, heading }: Place): void {
     if (!this.grid) return;
     const turn = new Matrix4().makeRotationZ((-heading * Math.PI) / 180);
@@ -250,7 +250,7 @@ export class Space {
     this.grid.matrixWorldNeedsUpdate = true;
   }
 
-  /** The body that is seen there, CSS pixels of the canvas. */
+  /** The body at a point of the canvas, CSS pixels. */
   private at(x: number, y: number): number | null {
     const { clientWidth, clientHeight } = this.canvas;
     const ray = new Raycaster();
@@ -261,7 +261,7 @@ export class Space {
   }
 }
 
-/** Printed parts have the colour of their servo, as in the drawing; what is bought that of its material. */
+/** The colour of a printed part's servo, as in the drawing, or of a bought part's material. */
 function colour({ kind, servo }: Body): string {
   const { 'skin-edge': plate, tube, steel } = palette();
   switch (kind) {

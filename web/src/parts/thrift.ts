@@ -1,21 +1,20 @@
-// Pictures in space without a graphics chip: the processor paints them, beside the page, so that
-// the page does not notice how much of the machine it takes. Here is noticed how long a picture takes; the
-// next one waits until the processor had several times as long for other things, and has fewer points.
+// Limits the cost of 3D pictures on a machine without a graphics chip. There the processor paints them beside the
+// page. The time of a picture is measured; the next one waits for a multiple of that time and has fewer points.
 
-/** A picture that is done within this is a graphics chip's, or as good, ms: it is looked at once a picture. */
+/** Time within which a graphics chip finishes a picture, ms. */
 const QUICK = 34;
-/** So many times as long as a slow picture took, nothing is painted. */
+/** Pause after a slow picture, as a multiple of its time. */
 const PAUSE = 2;
-/** But no longer than this, ms: a page that was hidden has not looked. */
+/** Longest pause, ms: a hidden page measures too long times. */
 const LONGEST = 1500;
-/** Of the screen's points to a side, at the least. */
+/** Least resolution, as a share of the screen's points to a side. */
 const COARSEST = 0.5;
 const COARSER = 0.8;
-/** After so many quick pictures in a row they may be finer again. */
+/** Quick pictures in a row after which the resolution rises again. */
 const STEADY = 90;
 
 export class Thrift {
-  /** The share of the screen's points to a side that the next picture has. */
+  /** Resolution of the next picture, as a share of the screen's points to a side. */
   sharpness = 1;
   private fence: WebGLSync | null = null;
   private begun = 0;
@@ -24,7 +23,7 @@ export class Thrift {
 
   constructor(private readonly gl: WebGL2RenderingContext) {}
 
-  /** Whether another picture may be painted now; to be asked in every picture of the page. */
+  /** Returns true if a picture may be painted now; must be called in every frame of the page. */
   may(now = performance.now()): boolean {
     const { gl } = this;
     if (this.fence) {
@@ -41,7 +40,7 @@ export class Thrift {
     return now >= this.next;
   }
 
-  /** A picture was handed over to be painted; one that is painted once may take long. */
+  /** Notes that a picture was handed over; a picture painted `once` may take long. */
   drawn(once: boolean, now = performance.now()): void {
     this.begun = once ? Infinity : now;
     this.fence = this.gl.fenceSync(this.gl.SYNC_GPU_COMMANDS_COMPLETE, 0);

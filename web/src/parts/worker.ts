@@ -1,4 +1,4 @@
-// The other end of Workshop: parts in WebAssembly, in a thread of their own.
+// The worker of Workshop: the parts in WebAssembly.
 import { zipSync } from 'fflate';
 
 import { sentence } from '../trouble';
@@ -37,7 +37,7 @@ async function answer(question: Question): Promise<void> {
         say({ of: 'progress', doing: 'make', done: number, all });
         for (const { path, bytes } of parts.files(number)) files[path] = bytes;
       }
-      // The same files make the same archive: a date of its own for all of them.
+      // A fixed date, so that the same files make the same archive.
       const zip = zipSync(files, { mtime: '1980-01-02T00:00:00' });
       say({ of: 'files', zip, count: Object.keys(files).length, least }, [zip.buffer]);
     }

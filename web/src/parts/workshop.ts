@@ -1,4 +1,4 @@
-// The worker that knows the robot's parts: solids, places at a pose, and all files as one archive.
+// Asks a worker for the robot's parts: solids, places at a pose, and all files as one archive.
 import { files } from '../files';
 import type { Model, Solid } from './model';
 
@@ -14,7 +14,7 @@ export type Answer =
   | { of: 'files'; zip: Uint8Array<ArrayBuffer>; count: number; least: number | null }
   | { of: Question['ask']; refused: string };
 
-/** What of a robot's files is done. */
+/** Progress of the making of a robot's files. */
 export interface Progress {
   doing: 'prove' | 'make';
   done: number;
@@ -32,11 +32,11 @@ function worker(): Worker {
   return new Worker(new URL('./worker.ts', import.meta.url), { type: 'module' });
 }
 
-/** Asks a worker, hears it until it has answered or refused; a refusal is thrown as its sentence. */
-function asked<T extends Answer>(of: Worker, question: Question, hear: (answer: Answer) => void = () => {}): Promise<T> {
+/** Asks a worker and calls `onAnswer` with each answer, up to the last. Throws the sentence of a refusal. */
+function asked<T extends Answer>(of: Worker, question: Question, onAnswer: (answer: Answer) => void = () => {}): Promise<T> {
   return new Promise((resolve, reject) => {
     const listen = ({ data }: MessageEvent<Answer>) => {
-      hear(data);
+      onAnswer(data);
       if (data.of !== question.ask) return;
       of.removeEventListener('message', listen);
       if ('refused' in data) reject(new Error(data.refused));
@@ -48,14 +48,14 @@ function asked<T extends Answer>(of: Worker, question: Question, hear: (answer: 
   });
 }
 
-/** A robot's solids, and where they are at a pose. */
+/** A robot's solids and their places at a pose. */
 export class Solids {
   private readonly worker = worker();
   private asking = false;
 
   private constructor() {}
 
-  /** Of a robot.toml. Throws the sentence of a robot that cannot be built. */
+  /** Makes the solids of a robot.toml. Throws the sentence of a robot that cannot be built. */
   static async of(toml: string): Promise<{ solids: Solids; model: Model; meshes: Solid[] }> {
     const solids = new Solids();
     try {
@@ -68,7 +68,7 @@ export class Solids {
     }
   }
 
-  /** Where every mount is; null where a loop does not close, or while another pose is asked for. */
+  /** The places of all mounts; null if a loop does not close, or if another pose was requested meanwhile. */
   async pose(angles: number[], lags: number[]): Promise<Float64Array | null> {
     if (this.asking) return null;
     this.asking = true;
@@ -85,7 +85,7 @@ export class Solids {
   }
 }
 
-/** Proves that the parts fit, makes all files and packs them. `stop` ends it, and then nothing is answered. */
+/** Proves that the parts fit, makes all files and packs them. `stop` ends it without an answer. */
 export function make(toml: string, progress: (progress: Progress) => void): { made: Promise<Made>; stop: () => void } {
   const maker = worker();
   const made = files.parts().then((module) =>

@@ -3,18 +3,18 @@ import type { Four } from '../robot';
 import type { ServoSettings } from '../status';
 import type { Calibration } from './calibration';
 
-/** What the key `format` says, as in crates/host/src/console/file.rs. */
+/** The value of the key `format`, as `lizard backup` writes it. */
 const FORMAT = 'lizard calibration 1';
 const HEAD = `# A lizard's calibration. \`lizard restore\` gives it back to the robot.
 # Angles in degrees; trim and limit as the console has them, scale in us per degree.
 `;
 const NAMES = ['A1', 'A2', 'A3', 'A4'];
-/** A gait's name is sent to the robot as it is: letters alone, so that no second line is in it. */
+/** Allowed gait names: the name is sent to the robot, so it must not contain a second line. */
 const NAME = /^[A-Za-z0-9 _-]{1,48}$/;
 
-/** The text of the file. */
+/** Writes the text of the file. */
 export function fileOf({ boot, deadman, servos }: Calibration): string {
-  // A whole number would be no float to `lizard restore`.
+  // `lizard restore` expects a float.
   const float = (value: number) => (Number.isInteger(value) ? value.toFixed(1) : String(value));
   const tables = servos.map(({ trim, limit, dir, scale }, place) =>
     [
@@ -29,7 +29,7 @@ export function fileOf({ boot, deadman, servos }: Calibration): string {
   return [HEAD, `format = "${FORMAT}"`, `boot = "${boot}"`, `deadman = ${deadman}`, '', ...tables].join('\n');
 }
 
-/** Reads such a text. Throws a sentence that names the line or the key. */
+/** Reads the text of such a file. Throws a sentence that names the line or the key. */
 export async function calibrationIn(text: string): Promise<Calibration> {
   // Loaded when a file is opened, which is rare.
   const { parse, TomlError } = await import('smol-toml');
@@ -54,7 +54,7 @@ function servoIn(name: string, value: unknown): ServoSettings {
   if (typeof value !== 'object' || value === null) throw new Error(`the table servo.${name} is missing`);
   const servo = value as Record<string, unknown>;
   const number = (key: string, given: unknown): number => {
-    // The console takes hundredths, and no larger numbers than a turn has.
+    // The console accepts hundredths, up to a turn.
     const hundredths = Number(given) * 100;
     const isGood = typeof given === 'number' && Math.abs(given) <= 360 && Math.abs(hundredths - Math.round(hundredths)) < 1e-6;
     if (!isGood) throw new Error(`servo.${name}.${key}: ${JSON.stringify(given)} is no number of at most two decimals, -360..360`);

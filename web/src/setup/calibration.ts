@@ -1,17 +1,17 @@
-// All that `save` keeps: what the console prints for `cal`, and the lines that set it again.
+// The settings that `save` stores: read from the lines of `cal`, and written as the lines that set them.
 import { calibration as servosOf, type ServoSettings } from '../status';
 import { WORDS } from '../words';
 import type { Four } from '../robot';
 
 export interface Calibration {
-  /** What is done after power-on: a gait, or rest. */
+  /** The action after power-on: a gait, or rest. */
   boot: string;
-  /** Milliseconds without a line after which a gait ends; 0 for never. */
+  /** Time without a line after which a gait ends, ms; 0 for never. */
   deadman: number;
   servos: Four<ServoSettings>;
 }
 
-/** Reads the lines of `cal`; null if one is missing. Other lines among them are skipped. */
+/** Reads the lines of `cal`, skipping others; null if one is missing. */
 export function calibrationOf(lines: string[]): Calibration | null {
   const after = (word: string) => lines.find((line) => line.startsWith(`# ${word} `))?.slice(word.length + 3);
   const [boot, deadman, servos] = [after(WORDS.boot), Number(after(WORDS.deadman)), servosOf(lines)];
@@ -19,7 +19,7 @@ export function calibrationOf(lines: string[]): Calibration | null {
   return { boot, deadman, servos: servos as Four<ServoSettings> };
 }
 
-/** The lines that set all of it. */
+/** The console lines that set a calibration. */
 export function linesOf({ boot, deadman, servos }: Calibration): string[] {
   const each = servos.flatMap(({ trim, limit: [from, to], dir, scale }, place) => [
     `${WORDS.dir} ${place + 1} ${dir}`,
@@ -30,12 +30,12 @@ export function linesOf({ boot, deadman, servos }: Calibration): string[] {
   return [...each, `${WORDS.boot} ${boot}`, `${WORDS.deadman} ${deadman}`];
 }
 
-/** An angle from 0 up to a turn, in the hundredths that the console has, deg. */
+/** Wraps an angle to 0 up to a turn, rounded to the console's hundredths, deg. */
 export function angle(degrees: number): number {
   return (((Math.round(degrees * 100) % 36_000) + 36_000) % 36_000) / 100;
 }
 
-/** Whether a robot would print the same for both: angles are the same after a whole turn. */
+/** Returns true if a robot would print the same for both; angles may differ by a turn. */
 export function isSame(a: Calibration, b: Calibration): boolean {
   const text = ({ boot, deadman, servos }: Calibration) =>
     linesOf({ boot, deadman, servos: servos.map((servo) => ({ ...servo, limit: servo.limit.map(angle) })) as Four<ServoSettings> });

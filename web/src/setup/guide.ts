@@ -1,5 +1,5 @@
-// What the steps of a first connection do at the robot. The signs come before the trims: a servo whose sign is wrong
-// would turn away from where it is told to. Nothing is kept before `save`; `takeBack` gives the robot what it had.
+// The robot's side of the first connection. Signs come before trims, because a servo with a wrong sign would turn
+// the wrong way. Nothing is stored before `save`; `takeBack` restores the old calibration.
 import type { Answer } from '../link/dialogue';
 import type { Link } from '../link/link';
 import type { Four } from '../robot';
@@ -8,26 +8,26 @@ import { status } from '../status';
 import { GAITS, WORDS } from '../words';
 import { angle, type Calibration, calibrationOf, copyOf, isSame, linesOf } from './calibration';
 
-/** How far a servo is turned to prove its sign, deg; the first that the robot does not refuse. */
+/** Turns to try for proving a servo's sign, deg, until the robot accepts one. */
 const PROOFS = [10, 5, -10, -5];
-/** The same to measure its scale. */
+/** Turns to try for measuring a servo's scale, deg. */
 const SPANS = [20, -20, 15, -15, 10, -10];
-/** The longest wait for a motion to end, ms, and the time between two looks. */
+/** Longest wait for the end of a motion, ms, and the time between two questions. */
 const MOTION = 5000;
 const LOOK = 60;
-/** A pose is reached as near as this, deg. */
+/** Tolerance of a reached pose, deg. */
 const NEAR = 0.02;
 
-/** The robot has not done it, and says why. */
+/** Thrown with the robot's reason for a refusal. */
 export class Refusal extends Error {}
 
-/** The other end is not the one any more that this guide began with. */
+/** Thrown if the board is not the one that this guide began with. */
 export class Gone extends Error {}
 
 export class Guide {
-  /** What the robot had, or has saved since. */
+  /** The calibration at the beginning, or the one saved since. */
   private before: Calibration;
-  /** What it has. */
+  /** The current calibration. */
   private now: Calibration;
   private readonly link: Link;
   private readonly beginnings: number;
@@ -44,52 +44,52 @@ export class Guide {
     this.beginnings = session.beginnings;
   }
 
-  /** Asks the robot what it has; nothing moves. Throws a sentence. */
+  /** Reads the robot's calibration; nothing moves. Throws a sentence. */
   static async begin(session: Session): Promise<Guide> {
     const has = calibrationOf((await tell(session, WORDS.cal)).notes);
     if (!has) throw new Error('The robot does not say its calibration as this page knows it: write this firmware first.');
     return new Guide(session, has);
   }
 
-  /** Whether the robot is still the one that it began with, and was not begun anew. */
+  /** True if the board is still the same and has not restarted. */
   get isCurrent(): boolean {
     return this.session.link === this.link && this.session.beginnings === this.beginnings;
   }
 
-  /** What the robot has, saved or not. */
+  /** The robot's calibration, saved or not. */
   get has(): Readonly<Calibration> {
     return this.now;
   }
 
-  /** Whether something is not saved. */
+  /** True if something is not saved. */
   get isChanged(): boolean {
     return !isSame(this.before, this.now);
   }
 
-  /** Lets it stand; its neutral angles, deg. */
+  /** Makes the robot stand; returns its neutral angles, deg. */
   async stand(): Promise<Four<number>> {
     await this.tell(GAITS.stand);
     return (this.neutral = await settle(this.session));
   }
 
-  /** Ends the pulses: servos that get power then do not start all at once. */
+  /** Ends the pulses, so that servos do not start all at once when they get power. */
   async rest(): Promise<void> {
     await this.tell(WORDS.rest);
   }
 
-  /** Every servo in its middle, without its trim: so the horns are fitted. */
+  /** Moves every servo to its middle without trim, for fitting the horns. */
   async center(): Promise<void> {
     await this.stand();
     await this.tell(WORDS.center);
     await settle(this.session);
   }
 
-  /** Turns one servo alone from its neutral angle, and says by how much: deg, counter-clockwise. */
+  /** Turns one servo from its neutral angle; returns the turn, deg counter-clockwise. */
   async prove(servo: number): Promise<number> {
     return this.turned(servo, PROOFS);
   }
 
-  /** The same as far as its scale is measured with. */
+  /** Turns one servo as far as measuring its scale needs; returns the turn, deg counter-clockwise. */
   async span(servo: number): Promise<number> {
     return this.turned(servo, SPANS);
   }
@@ -117,7 +117,7 @@ export class Guide {
     await settle(this.session, pose as Four<number>);
   }
 
-  /** The servo turns the other way than it was thought to. */
+  /** Reverses the sign of a servo. */
   async reverse(servo: number): Promise<void> {
     await this.stand();
     const next = copyOf(this.now);
@@ -131,7 +131,7 @@ export class Guide {
     await settle(this.session);
   }
 
-  /** Turns a servo's neutral place, deg counter-clockwise. */
+  /** Changes a servo's trim, deg counter-clockwise. */
   async trim(servo: number, by: number): Promise<void> {
     const next = copyOf(this.now);
     const trim = Math.round((next.servos[servo].trim + by) * 100) / 100 + 0;
@@ -140,7 +140,7 @@ export class Guide {
     this.now = next;
   }
 
-  /** A servo has turned by `measured` where `asked` was told, deg. Its new scale, us per deg. */
+  /** Sets a servo's scale from its `measured` turn for a commanded one, deg; returns it, us per deg. */
   async scale(servo: number, asked: number, measured: number): Promise<number> {
     await this.stand();
     const next = copyOf(this.now);
@@ -151,7 +151,7 @@ export class Guide {
     return scale;
   }
 
-  /** The travel of a servo, counter-clockwise from the first angle to the second, deg. */
+  /** Sets a servo's travel, counter-clockwise from the first angle to the second, deg. */
   async limit(servo: number, from: number, to: number): Promise<void> {
     const next = copyOf(this.now);
     const limit: [number, number] = [angle(from), angle(to)];
@@ -160,7 +160,7 @@ export class Guide {
     this.now = next;
   }
 
-  /** Begins `walk`, or the first gait that moves, and says which. */
+  /** Starts `walk`, or the first gait that moves; returns its command. */
   async walk(): Promise<string> {
     const { notes } = await this.tell(WORDS.help);
     const list = notes.find((line) => line.startsWith('# gaits: '))?.slice('# gaits: '.length) ?? '';
@@ -176,12 +176,12 @@ export class Guide {
     this.before = copyOf(this.now);
   }
 
-  /** Gives the robot what it had before, and lets it stand; whether anything had been changed. */
+  /** Restores the old calibration and makes the robot stand; returns true if anything had changed. */
   async takeBack(): Promise<boolean> {
     try {
       await this.stand();
     } catch (error) {
-      // The supply may be too low for it, which is no reason to stay.
+      // A refusal, for example by a low supply, must not keep the user here.
       if (!(error instanceof Refusal)) throw error;
     }
     if (!this.isChanged) return false;
@@ -189,7 +189,7 @@ export class Guide {
     return true;
   }
 
-  /** Gives it another calibration, unsaved; one that is refused changes nothing. Throws the robot's reason. */
+  /** Sets another calibration, unsaved; a refused one changes nothing. Throws the robot's reason. */
   async give(set: Calibration): Promise<void> {
     const had = copyOf(this.now);
     try {
@@ -204,9 +204,9 @@ export class Guide {
   }
 
   /**
-   * Each line has to leave the gaits within the servos' travel, and on the way from one calibration to another one
-   * may not, though the end would: what is refused is tried again after the others, and once more from the
-   * values of robot.toml.
+   * Each line must leave the gaits within the servos' travel. On the way from one calibration to another a line may
+   * break that although the result would not. So a refused line is tried again after the others, and once more from
+   * the values of robot.toml.
    */
   private async apply(set: Calibration): Promise<void> {
     let lines = linesOf(set);
@@ -240,7 +240,7 @@ export class Guide {
   }
 }
 
-/** Says a line; the answer is good, or its reason is thrown. */
+/** Sends a line. Throws the reason of a refusal. */
 async function tell(session: Session, line: string): Promise<Answer> {
   const { link } = session;
   const answer = await session.ask(line);
@@ -249,7 +249,7 @@ async function tell(session: Session, line: string): Promise<Answer> {
   return answer;
 }
 
-/** Waits until the robot stands still, in a pose if one is named; its pose, deg. */
+/** Waits until the robot stands still, in a given pose if there is one; returns its pose, deg. */
 async function settle(session: Session, wanted: Four<number> | null = null): Promise<Four<number>> {
   const isThere = (pose: Four<number>) => wanted?.every((each, n) => Math.abs(((each - pose[n] + 540) % 360) - 180) < NEAR) ?? true;
   const { link } = session;

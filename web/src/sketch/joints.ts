@@ -1,5 +1,5 @@
-// The bars and joints of a robot in its neutral pose, and what becomes of the lengths when a joint is dragged. Servos
-// keep their neutral angles: so the end of a crank goes along its crank, and what hangs on it follows.
+// The bars and joints of a robot in its neutral pose, and the lengths that follow when a joint is dragged. Servos
+// keep their neutral angles, so the end of a crank moves along its crank.
 import type { Scene, Spot } from '../robot';
 import type { Edits } from './question';
 
@@ -23,19 +23,19 @@ const links = (n: number) => `links.l${n}`;
 const round = (mm: number) => Math.round(mm * 2) / 2;
 const far = ([x, y]: Spot, [u, v]: Spot) => Math.hypot(x - u, y - v);
 
-/** How far a point is from another along the direction to a third. */
+/** Distance of a point from another along the direction to a third. */
 function along(from: Spot, towards: Spot, to: Spot): number {
   const long = far(from, towards) || 1;
   return ((towards[0] - from[0]) * (to[0] - from[0]) + (towards[1] - from[1]) * (to[1] - from[1])) / long;
 }
 
-/** Of a side: its servos in front and behind, and its lengths. */
+/** Each side's front and rear servo and the numbers of its lengths. */
 const SIDES = [
   { name: 'left', front: 0, rear: 3, chassis: 10, rearArm: 11, rearHalf: 12, frontHalf: 13, frontArm: 14 },
   { name: 'right', front: 1, rear: 2, chassis: 15, rearArm: 16, rearHalf: 17, frontHalf: 18, frontArm: 19 },
 ] as const;
 
-/** Of an end: its left and right servo, and its lengths. */
+/** Each end's left and right servo and the numbers of its lengths. */
 const ENDS = [
   { name: 'head', left: 0, right: 1, base: 0, leftCrank: 1, leftCoupler: 2, rightCoupler: 3, rightCrank: 4 },
   { name: 'tail', left: 3, right: 2, base: 5, leftCrank: 6, leftCoupler: 7, rightCoupler: 8, rightCrank: 9 },
@@ -71,7 +71,7 @@ export function bars({ shafts, tips, points, sliders, legs }: Scene): Bar[] {
 }
 
 export function joints({ shafts, tips, points, sliders, legs }: Scene, value: (key: string) => number): Joint[] {
-  /** The halves of a slider follow what is between their ends, so that its travel stays. */
+  /** Changes both halves of a slider with the distance of their ends, so that its travel stays. */
   const halves = (side: (typeof SIDES)[number], longer: number): Edits => [
     [links(side.rearHalf), round(value(links(side.rearHalf)) + longer / 2)],
     [links(side.frontHalf), round(value(links(side.frontHalf)) + longer / 2)],
@@ -121,7 +121,7 @@ export function joints({ shafts, tips, points, sliders, legs }: Scene, value: (k
         const [own, other] = [shafts[end[hand]], shafts[end[hand === 'left' ? 'right' : 'left']]];
         const middle = (own[0] + other[0]) / 2;
         const longer = round((n === 0 ? 1 : -1) * (to[1] - own[1]));
-        // Both sides: the chassis stays a rectangle or a trapezium.
+        // Both sides, so that the chassis stays a rectangle or a trapezium.
         const chassis = SIDES.flatMap((side): Edits => (longer === 0 ? [] : [[links(side.chassis), value(links(side.chassis)) + longer], ...halves(side, longer)]));
         return [[links(end.base), round(2 * Math.abs(to[0] - middle))], ...chassis];
       },

@@ -1,4 +1,4 @@
-// What a worker is asked while a joint is dragged: what the robot becomes with other lengths.
+// The question to the worker that checks other lengths while a joint is dragged, and its answer.
 import type { Refused, Scene } from '../robot';
 
 /** Lengths by their keys in robot.toml. */
@@ -7,19 +7,19 @@ export type Edits = [key: string, value: number][];
 export interface Question {
   toml: string;
   edits: Edits;
-  /** Whether the nearest that would do is looked for, where this will not. */
+  /** True for the last question of a drag: if refused, the nearest valid lengths are searched. */
   isLast: boolean;
 }
 
 export interface Answer {
   edits: Edits;
-  /** The robot.toml with them. */
+  /** The robot.toml with these lengths. */
   toml: string;
-  /** Why it will not do. */
+  /** The refusal, if any. */
   refused: Refused | null;
-  /** Its neutral pose, if it will. */
+  /** The neutral pose, if accepted. */
   scene: Scene | null;
-  /** The nearest on the way to it that will do, where that was asked for and is any. */
+  /** The nearest valid lengths, if they were asked for and exist. */
   nearest: { edits: Edits; toml: string } | null;
   isLast: boolean;
 }

@@ -1,4 +1,4 @@
-// The worker behind the drawing of the robot: the robot in WebAssembly once more, which takes other lengths.
+// The worker that checks other lengths, with its own instance of the robot in WebAssembly.
 import { type Four, isRefused, type Refused, Robot } from '../robot';
 import type { Answer, Edits, Question } from './question';
 
@@ -26,7 +26,7 @@ async function answer({ toml, edits, isLast }: Question): Promise<void> {
   postMessage(said);
 }
 
-/** A robot.toml with these lengths, or why not. */
+/** Returns the robot.toml with these lengths, and the refusal, if any. */
 function edited(page: Robot, toml: string, edits: Edits): [string, Refused | null] {
   let text = toml;
   for (const [key, value] of edits) {
@@ -37,7 +37,7 @@ function edited(page: Robot, toml: string, edits: Edits): [string, Refused | nul
   return [text, null];
 }
 
-/** What will do between the robot as it is and one that will not, half by half towards that. */
+/** Searches, by halving, the valid lengths nearest to refused ones on the straight line from the current ones. */
 function nearest(page: Robot, toml: string, edits: Edits): Answer['nearest'] {
   const read = page.read(toml);
   if (isRefused(read)) return null;

@@ -1,5 +1,5 @@
-// An Arduino UNO that can be reset, flashed and left without bytes: the judge's chip, which
-// avr8js simulates, in a board that outlives it.
+// A simulated Arduino UNO that can be reset and flashed. The chip is the judge's, on avr8js; a reset makes a new
+// chip with the old memories.
 import { corrections } from '../../../tools/judge/src/corrections/index.js';
 import { load } from '../../../tools/judge/src/hex.js';
 import { receiveBuffer } from '../../../tools/judge/src/receive-buffer.js';
@@ -9,15 +9,15 @@ import { Uno } from '../../../tools/judge/src/uno.js';
 
 export const FREQUENCY = 16_000_000;
 
-/** A byte at 115200 baud: ten bits. */
+/** Duration of a byte at 115200 baud, ten bits, cycles. */
 const BYTE_CYCLES = Math.round((10 * FREQUENCY) / 115_200);
 const MCUSR = 0x54;
-/** RAM of the chip, after its registers. */
+/** Address of the RAM, after the registers. */
 const RAM = 0x100;
-/** Where a boot loader of 512 bytes begins: byte and word. */
+/** Byte address of a boot loader of 512 bytes. */
 export const BOOT = 0x7e00;
 
-/** Why a chip begins anew, as MCUSR has it. */
+/** Causes of a reset as bits of MCUSR. */
 const CAUSES = { power: 0x01, external: 0x02, watchdog: 0x08 };
 export type Cause = keyof typeof CAUSES;
 
@@ -28,21 +28,21 @@ export class SimulatedBoard {
   onByte: (byte: number) => void = () => {};
   /** Called when a pulse has ended: pin, cycle of its rise, width in cycles. */
   onPulse: (pin: number, rise: number, width: number) => void = () => {};
-  /** Called with each byte when the UNO has got it. */
+  /** Called with each byte when the UNO has received it. */
   onReceived: (byte: number, cycle: number) => void = () => {};
-  /** Bytes that the UNO had no room for. */
+  /** Number of bytes that the UNO's receiver lost. */
   lost = 0;
 
   private uno!: Uno & { receive?(byte: number): boolean };
-  /** Cycles of the chips before this one. */
+  /** Cycles of the chips before the last reset. */
   private before = 0;
   private readonly line: number[] = [];
   private lineIsBusy = false;
   private volts = 5;
 
   /**
-   * At power-on. `image` is what flash begins with, `bootLoader` a HEX file; `rail` a channel of the converter and
-   * the volts that it measures; `eeprom` what another board has saved.
+   * Starts a UNO at power-on. `image` is the beginning of flash, `bootLoader` a HEX file, `rail` a channel of the
+   * converter and its volts, `eeprom` the content of another board's EEPROM.
    */
   constructor(
     image: Uint8Array | null,
@@ -61,17 +61,17 @@ export class SimulatedBoard {
     return this.before + this.uno.cpu.cycles;
   }
 
-  /** All of flash. */
+  /** The whole flash. */
   get flash(): Uint8Array {
     return this.uno.flash;
   }
 
-  /** All of the EEPROM. */
+  /** The whole EEPROM. */
   get eeprom(): Uint8Array {
     return this.uno.memory;
   }
 
-  /** Runs so many cycles. */
+  /** Runs for a number of cycles. */
   run(cycles: number): void {
     const end = this.cycle + cycles;
     while (this.cycle < end) {
@@ -84,19 +84,19 @@ export class SimulatedBoard {
     }
   }
 
-  /** Puts bytes on the line to the UNO; they arrive one after the other. */
+  /** Sends bytes to the UNO; they arrive one after the other. */
   send(bytes: Iterable<number>): void {
     this.line.push(...bytes);
     this.carry();
   }
 
-  /** The voltage of the board. */
+  /** Sets the voltage of the board. */
   supply(volts: number): void {
     this.volts = volts;
     this.uno.adc.avcc = volts;
   }
 
-  /** Begins anew, with the flash, the EEPROM and the RAM as they are. */
+  /** Resets the chip; flash, EEPROM and RAM keep their content. */
   reset(cause: Cause): void {
     const { cpu, flash, memory } = this.uno;
     this.before += cpu.cycles;

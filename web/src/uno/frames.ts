@@ -1,8 +1,8 @@
-// From single pulses to frames: what the four servos are told within 20 ms.
+// Collects single pulses into frames: the four widths within 20 ms.
 import type { Four } from '../robot';
 import { FREQUENCY } from './board';
 
-/** Servos get their pulses one after the other, 4 ms each. A frame is over after four of these. */
+/** Cycles after which a frame is over: four servos get their pulses one after the other, 4 ms each. */
 const FOUR_SLOTS = 0.0165 * FREQUENCY;
 
 export class Frames {
@@ -10,7 +10,7 @@ export class Frames {
   private begun: number | null = null;
   private last = -1;
 
-  /** `pins` are the servos' Arduino numbers, A1 to A4. */
+  /** Takes the servos' Arduino pin numbers, A1 to A4. */
   constructor(
     private readonly pins: number[],
     private readonly onFrame: (widths: Four<number>, cycle: number) => void,
@@ -19,7 +19,7 @@ export class Frames {
   pulse(pin: number, rise: number, width: number): void {
     const servo = this.pins.indexOf(pin);
     if (servo < 0) return;
-    // The same servo again, or one before it: the frame before is complete.
+    // The same servo again, or an earlier one, starts a new frame.
     if (servo <= this.last) this.close();
     this.begun ??= rise;
     this.last = servo;

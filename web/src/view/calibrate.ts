@@ -1,4 +1,4 @@
-// The servos' calibration: read by `cal`, set as it is moved, kept by `save`.
+// The panel of the servos' calibration: read by `cal`, set while a slider moves, stored by `save`.
 import type { Session } from '../session';
 import { WORDS } from '../words';
 import { calibration, type ServoSettings } from '../status';
@@ -28,7 +28,7 @@ export class Calibrate {
     });
   }
 
-  /** Asks the robot for its settings, and shows them. */
+  /** Reads the robot's settings and shows them. */
   async read(): Promise<void> {
     const answer = await this.session().ask(WORDS.cal, true);
     const settings = answer && calibration(answer.notes);

@@ -1,13 +1,13 @@
-// A canvas as sharp as the screen, that follows the size of its element.
+// A canvas with the screen's resolution that follows the size of its element.
 
 export interface Surface {
   pen: CanvasRenderingContext2D;
-  /** CSS pixels. */
+  /** Width, CSS pixels. */
   width: number;
   height: number;
 }
 
-/** Canvases that are scrolled out of sight, which nobody sees painted. */
+/** Canvases that are scrolled out of sight and need no painting. */
 const away = new WeakSet<Element>();
 const watched = new WeakSet<Element>();
 const watcher = new IntersectionObserver((entries) => {
@@ -18,8 +18,8 @@ const watcher = new IntersectionObserver((entries) => {
 });
 
 /**
- * The canvas, cleared, in CSS pixels; null while it is not to be seen. An opaque one is for the caller to
- * fill, which saves blending it with what is below. One that is filmed is painted out of sight, too.
+ * Returns the cleared canvas in CSS pixels; null while it is out of sight, unless it is being filmed (`unseen`). An
+ * opaque canvas must be filled by the caller, which saves blending.
  */
 export function surface(canvas: HTMLCanvasElement, opaque = false, unseen = false): Surface | null {
   if (!watched.has(canvas)) {
@@ -43,8 +43,8 @@ export function surface(canvas: HTMLCanvasElement, opaque = false, unseen = fals
 }
 
 /**
- * Adds a circle to the path. In two halves: a pen that writes SVG while up is up turns an arc the wrong way round, of
- * which halves know nothing.
+ * Adds a circle to the path, as two halves: the SVG context draws an arc in the wrong direction while y points up,
+ * which does not matter for a half.
  */
 export function circle(pen: CanvasRenderingContext2D, x: number, y: number, radius: number): void {
   pen.moveTo(x + radius, y);
@@ -52,7 +52,7 @@ export function circle(pen: CanvasRenderingContext2D, x: number, y: number, radi
   pen.arc(x, y, radius, Math.PI, 2 * Math.PI);
 }
 
-/** An element of the page, which index.html has. */
+/** Finds an element of index.html. */
 export function element<T extends HTMLElement>(id: string): T {
   const found = document.getElementById(id);
   if (!found) throw new Error(`the page has no #${id}`);

@@ -1,4 +1,4 @@
-// The robots that can be chosen: those that say that they are for the tests come last, under that name.
+// The list of robots; those that are meant for tests come last, under a heading.
 import { files, isForTests } from '../files';
 import { element } from './canvas';
 
@@ -19,32 +19,32 @@ export class Choice {
     if (tests.childElementCount > 0) this.list.append(tests);
   }
 
-  /** Lists what `make web` has put beside the page. Throws a sentence if that is not there. */
+  /** Lists the robots beside the page. Throws a sentence if they are missing. */
   static async load(): Promise<Choice> {
     const robots = await files.robots();
-    // One that cannot be read says so when it is chosen.
+    // A file that cannot be read is reported when it is chosen.
     const tomls = await Promise.all(robots.map((name) => files.toml(name).catch(() => '')));
     return new Choice(robots, tomls.map(isForTests));
   }
 
-  /** Calls back when a person has chosen. */
+  /** Calls back when the user has chosen. */
   onChange(chosen: () => void): void {
     this.list.addEventListener('change', chosen);
   }
 
-  /** What is chosen. */
+  /** The chosen robot's file name. */
   get robot(): string {
     return this.robots.find((name) => name === this.list.value) ?? this.robots[0];
   }
 
-  /** Shows another one, by the name of its file; whether it is there. */
+  /** Shows another robot by its file name; returns true if it is in the list. */
   show(name: string): boolean {
     const isThere = this.robots.includes(name);
     if (isThere) this.list.value = name;
     return isThere;
   }
 
-  /** Whether a person may choose. */
+  /** True if the user may choose. */
   set enabled(may: boolean) {
     this.list.disabled = !may;
   }

@@ -1,9 +1,9 @@
-// What the browser saves for a person: files, and a robot.toml with what the page's sliders set.
+// Saves files, and a robot.toml with the values of the page's sliders.
 import { type Floor, isRefused, type Refused, type Robot } from '../robot';
 
 /**
- * Has the browser save a robot.toml with this floor, weight and these springs; null leaves those of the text.
- * Where they have no place in it, the text is saved as it is, and why is returned.
+ * Saves a robot.toml with this floor, mass and leg drive; null leaves those of the text. If they cannot be
+ * written into it, the text is saved unchanged and the reason is returned.
  */
 export function download(robot: Robot, toml: string, floor: Floor | null): Refused | null {
   const whole = floor && robot.editFloor(toml, floor);
@@ -13,7 +13,7 @@ export function download(robot: Robot, toml: string, floor: Floor | null): Refus
   return refused;
 }
 
-/** Has the browser save a file. */
+/** Saves a file. */
 export function save(name: string, pieces: BlobPart[], type: string): void {
   const link = document.createElement('a');
   link.href = URL.createObjectURL(new Blob(pieces, { type }));

@@ -1,15 +1,15 @@
-// A button for each gait, with the way that it makes in a cycle.
+// A button for each gait, with its predicted displacement per cycle.
 import type { Description, Outlook, Way } from '../robot';
 import type { Answer } from '../link/dialogue';
 import { WORDS } from '../words';
 import { element } from './canvas';
 
-/** Letters of a command that a button of the usual width has room for. */
+/** Letters that fit on a button of the usual width. */
 const LONG = 13;
-/** The longest text of a prediction: a button has room for it before the prediction comes. */
+/** The longest text of a prediction; a button reserves room for it. */
 const LONGEST = '-999.9 mm, -99.9°';
 
-/** A way in few letters: mm ahead, or deg where it turns. */
+/** A displacement in few letters: mm forward, and deg if it turns. */
 export function short(way: Way | null): string {
   if (!way) return '';
   const parts = [
@@ -25,10 +25,10 @@ export class Drive {
   private readonly outlooks = new Map<string, Outlook>();
 
   private readonly said = element('drive-said');
-  /** What the buttons of index.html send, which every robot has. */
+  /** The commands of the buttons in index.html, which every robot has. */
   readonly words: string[] = [...document.querySelectorAll<HTMLElement>('[data-command]')].map(({ dataset }) => dataset.command ?? '');
 
-  /** `send` sends a line and ends with its answer, null without one. */
+  /** Takes a function that sends a line and returns its answer, or null without one. */
   constructor(private readonly send: (line: string) => Promise<Answer | null>) {
     document.addEventListener('click', (event) => {
       const button = event.target instanceof Element ? event.target.closest<HTMLElement>('[data-command]') : null;
@@ -39,7 +39,7 @@ export class Drive {
     });
   }
 
-  /** Sends a line of a button; why it is refused is shown beside the buttons, until one is taken. */
+  /** Sends a button's line; a refusal is shown beside the buttons until a line is accepted. */
   async ask(line: string): Promise<void> {
     const answer = await this.send(line);
     if (!answer) return;
@@ -56,7 +56,7 @@ export class Drive {
       button.type = 'button';
       button.dataset.command = command;
       button.append(command);
-      // A long name has room for two buttons.
+      // A long name gets the room of two buttons.
       button.classList.toggle('long', command.length > LONG);
       const room = button.appendChild(document.createElement('small'));
       if (moves) room.dataset.room = LONGEST;
@@ -68,7 +68,7 @@ export class Drive {
     this.said.hidden = true;
   }
 
-  /** Takes the prediction of a gait; until the next one comes, the one of before is shown. */
+  /** Shows the prediction of a gait; the old one stays until then. */
   predicted(gait: number, outlook: Outlook): void {
     const entry = this.buttons[gait];
     if (!entry) return;
@@ -76,12 +76,12 @@ export class Drive {
     entry.note.textContent = short(outlook);
   }
 
-  /** The prediction for a command, once it is there. */
+  /** The prediction for a command; null until it is known. */
   outlook(command: string): Outlook | null {
     return this.outlooks.get(command) ?? null;
   }
 
-  /** The gaits whose ways are predicted. */
+  /** The gaits with a known prediction. */
   ways(): { command: string; way: Outlook }[] {
     return this.buttons.flatMap(({ command }) => {
       const way = this.outlooks.get(command);

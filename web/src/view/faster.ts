@@ -1,4 +1,4 @@
-// "Make it faster": searches a gait that walks faster than the one that is being made, which a person can then take.
+// "Make it faster": searches a gait that walks faster than the edited one and offers it.
 import { files } from '../files';
 import { type Answer, type Best, FasterSearch } from '../gaits/faster';
 import type { Bars, Trial } from '../robot';
@@ -7,7 +7,7 @@ import { element } from './canvas';
 import { numberInput } from './number';
 import { figures } from './trial';
 
-/** The gait on the screen. */
+/** Access to the edited gait. */
 export interface Edited {
   gait(): Bars | null;
   take(gait: Bars): void;
@@ -27,11 +27,11 @@ export class FasterView {
   private search: FasterSearch | null = null;
   private before: Trial | null = null;
   private best: Best | null = null;
-  /** The gait that the found one has taken the place of. */
+  /** The gait that the found one replaced. */
   private replaced: Bars | null = null;
   private toml = '';
   private all = 0;
-  /** What searches, as soon as somebody has wanted to. */
+  /** The WebAssembly module with the search, loaded on demand. */
   private module: Promise<WebAssembly.Module> | null = null;
 
   constructor(
@@ -46,7 +46,7 @@ export class FasterView {
     this.takeIt.addEventListener('click', () => this.take());
   }
 
-  /** Looks whether the robot is another one: then what was searched for the one of before is of no use. */
+  /** Ends the search if the robot has changed, since its result would not fit. */
   follow(): void {
     if (this.toml === '' || this.session().toml === this.toml) return;
     this.toml = '';
@@ -69,12 +69,12 @@ export class FasterView {
     this.bar.hidden = false;
     this.say('Looking for the widest stride that the limits allow…');
     this.module ??= files.tune();
-    // What did not come may come the next time.
+    // A failed download is tried again next time.
     this.module.catch(() => (this.module = null));
-    this.search = new FasterSearch(this.module, { toml, floor, servos, wish: { bars, ...this.numbers } }, (answer) => this.heard(answer));
+    this.search = new FasterSearch(this.module, { toml, floor, servos, wish: { bars, ...this.numbers } }, (answer) => this.handle(answer));
   }
 
-  private heard(answer: Answer): void {
+  private handle(answer: Answer): void {
     switch (answer.of) {
       case 'begun':
         this.before = answer.before;
@@ -107,7 +107,7 @@ export class FasterView {
     this.say(`${tried}No gait was found that is faster than this one on the slow ones of the random robots and floors. More rounds or another seed may find one.`);
   }
 
-  /** The search is over: the button begins another one. */
+  /** Ends the search; the button starts a new one. */
   private over(): void {
     this.search = null;
     this.bar.hidden = true;
@@ -134,7 +134,7 @@ export class FasterView {
     this.result.hidden = false;
   }
 
-  /** Puts the gait that was found on the screen, or the one of before back. */
+  /** Takes the found gait into the editor, or restores the previous one. */
   private take(): void {
     const now = this.edited.gait();
     if (!now || !this.best) return;

@@ -1,4 +1,4 @@
-// Writing firmware and robot by the board's boot loader.
+// The panel that writes firmware and robot through the board's boot loader.
 import { hasConsole, imageOf } from '../link/stk500';
 import type { Session } from '../session';
 import { sentence } from '../trouble';
@@ -13,7 +13,7 @@ export class FlashView {
   private readonly question = element('flash-question');
   readonly progress = element<HTMLProgressElement>('flash-progress');
   readonly said = element('flash-said');
-  /** The image in the file that was chosen, until a person has decided about it. */
+  /** The image of the chosen file, until the user decides about it. */
   private chosen: Uint8Array | null = null;
 
   constructor(
@@ -34,7 +34,7 @@ export class FlashView {
     element('flash-no').addEventListener('click', () => this.forget());
   }
 
-  /** Shows what can be written here. */
+  /** Shows the choices for this board. */
   update(): void {
     const { link, section, description } = this.session();
     this.forget();
@@ -44,7 +44,7 @@ export class FlashView {
       `The robot alone is ${section.length} bytes for firmware ${description.version} that is there already, and takes about a second.`;
   }
 
-  /** Writes the page's robot, in sight. */
+  /** Scrolls to the panel and writes the page's robot. */
   write(what: What): void {
     const panel = this.note.closest('details');
     if (panel) panel.open = true;
@@ -53,7 +53,7 @@ export class FlashView {
     void this.writer.write(what, this);
   }
 
-  /** Asks about a file, which is written only then. */
+  /** Asks the user to confirm a file before it is written. */
   private async choose(file: File): Promise<void> {
     this.forget();
     this.said.textContent = '';

@@ -1,26 +1,26 @@
-// The floor that the lizard walks on: to pan and zoom, by pointer, wheel, fingers or keys.
+// The floor that the lizard walks on, with pan and zoom by pointer, wheel, fingers or keys.
 import type { Frame, Place, Plate } from '../robot';
 import { circle, element, surface } from './canvas';
 import { drawLizard } from './lizard';
 import { palette } from './palette';
 
 const GRID = 50;
-/** CSS pixels in a mm: the robot, some 250 mm long, stays larger than 60 pixels. */
+/** Least zoom, CSS pixels per mm: the robot, some 250 mm long, stays larger than 60 pixels. */
 const LEAST_ZOOM = 0.25;
 const MOST_ZOOM = 8;
-/** What is to be seen at first, mm. */
+/** Width of the first view, mm. */
 const VIEW = 420;
-/** Points of the track that are kept, and how far apart they are at least, mm. */
+/** Longest track, points, and their least distance, mm. */
 const LONGEST_TRACK = 6000;
 const TRACK_STEP = 0.5;
 
-/** So far to the right of the robot's start a second one starts, mm. */
+/** Distance of a second robot's start to the right, mm. */
 const BESIDE = 280;
 
-/** A finger that has moved so far aside drags the floor, CSS pixels. */
+/** Sideways movement after which a finger drags the floor, CSS pixels. */
 const SLOP = 12;
 
-/** The label of the scale, and where it is, CSS pixels. */
+/** The label of the scale and its place, CSS pixels. */
 interface Label {
   text: string;
   x: number;
@@ -36,19 +36,19 @@ export class Floor {
   private readonly canvas = element<HTMLCanvasElement>('floor');
   private readonly followButton = element<HTMLButtonElement>('follow');
   private centre = { x: 0, y: 0 };
-  /** CSS pixels in a mm; 0 until the canvas has a size. */
+  /** Zoom, CSS pixels per mm; 0 until the canvas has a size. */
   private zoom = 0;
   /** True while the zoom follows the size of the canvas; false once the user has chosen one. */
   private fits = true;
   private following = true;
-  /** The ways that were walked: the robot's, and that of the one beside it. */
+  /** The tracks of the robot and of the second robot. */
   private tracks: { x: number; y: number }[][] = [[], []];
-  /** Whether it is drawn out of sight, too: it is filmed, or its picture is taken. */
+  /** True if it is drawn even out of sight, for a film or a picture. */
   unseen = false;
-  /** What was drawn last: the picture is it, as points or as lines. */
+  /** The last drawn frame, for a picture as PNG or SVG. */
   private shown: [Plate, Frame | null, Frame | null] | null = null;
   private readonly touches = new Map<number, Touch>();
-  /** Whether the one pointer that is down drags the floor. */
+  /** True while the pointer drags the floor. */
   private dragging = false;
 
   constructor(onHome: () => void) {
@@ -74,7 +74,7 @@ export class Floor {
     this.canvas.addEventListener(
       'wheel',
       (event) => {
-        // Without Ctrl it scrolls the page, which the floor is in the way of.
+        // Without Ctrl the wheel scrolls the page.
         if (!event.ctrlKey && !event.metaKey) return;
         event.preventDefault();
         this.zoomBy(Math.exp(-event.deltaY / 500), event.offsetX, event.offsetY);
@@ -84,13 +84,13 @@ export class Floor {
     this.canvas.addEventListener('keydown', (event) => this.key(event));
   }
 
-  /** Forgets the way that was walked. */
+  /** Clears the tracks. */
   clear(): void {
     this.tracks = [[], []];
     this.centre = { x: 0, y: 0 };
   }
 
-  /** Notes where the body is, or that of the robot beside it. */
+  /** Adds a point to the track of the robot, or of the second one. */
   walked({ x, y }: Place, beside = false): void {
     const track = this.tracks[beside ? 1 : 0] ?? [];
     const last = track[track.length - 1];
@@ -106,12 +106,12 @@ export class Floor {
     this.shown = [plate, frame, beside];
     if (this.fits) this.zoom = Math.min(width / (VIEW + (beside ? BESIDE : 0)), height / VIEW);
     if (this.following && frame) {
-      // Gently, so that a step does not shake the floor.
+      // Smoothed, so that a step does not shake the view.
       const middle = beside ? [(frame.place.x + beside.place.x + BESIDE) / 2, (frame.place.y + beside.place.y) / 2] : [frame.place.x, frame.place.y];
       this.centre.x += ((middle[0] ?? 0) - this.centre.x) * 0.08;
       this.centre.y += ((middle[1] ?? 0) - this.centre.y) * 0.08;
     }
-    // The picture's scale, for whoever cannot measure it.
+    // The scale of the picture, for tests.
     const zoom = this.zoom.toFixed(4);
     if (this.canvas.dataset.zoom !== zoom) this.canvas.dataset.zoom = zoom;
     const label = this.paint(pen, width, height);
@@ -120,18 +120,18 @@ export class Floor {
     pen.fillText(label.text, label.x, label.y);
   }
 
-  /** Has room for two robots. */
+  /** Widens the view to two robots. */
   widen(): void {
     this.fits = true;
     this.follow(true);
   }
 
-  /** Brings it on the screen. */
+  /** Draws the floor and the robots. */
   show(): void {
     this.canvas.scrollIntoView({ block: 'nearest' });
   }
 
-  /** The last picture, drawn with another pen in CSS pixels, such as one that writes SVG; the label of the scale is left to the caller. */
+  /** Draws the last picture with another context in CSS pixels, for SVG; the caller adds the label of the scale. */
   again(pen: CanvasRenderingContext2D): Label {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     return this.paint(pen, width, height);
@@ -160,7 +160,7 @@ export class Floor {
       pen.restore();
     });
     pen.restore();
-    // Above the buttons, where the floor is narrow.
+    // On a narrow screen above the buttons.
     return this.ruler(pen, width < 520 ? height - 46 : height);
   }
 
@@ -218,7 +218,7 @@ export class Floor {
     this.followButton.setAttribute('aria-pressed', String(on));
   }
 
-  /** Zooms about a place of the canvas, its middle by default. */
+  /** Zooms about a point of the canvas, by default its middle. */
   private zoomBy(factor: number, x = this.canvas.clientWidth / 2, y = this.canvas.clientHeight / 2): void {
     const zoom = Math.min(MOST_ZOOM, Math.max(LEAST_ZOOM, this.zoom * factor));
     const [dx, dy] = [x - this.canvas.clientWidth / 2, this.canvas.clientHeight / 2 - y];
@@ -244,7 +244,7 @@ export class Floor {
       const apart = (a: Touch) => Math.hypot(a.x - other.x, a.y - other.y);
       this.zoomBy(apart(now) / Math.max(1, apart(before)), (now.x + other.x) / 2, (now.y + other.y) / 2);
     } else {
-      // A finger that means to scroll the page moves a little before the browser takes it away.
+      // A finger that scrolls the page moves a little before the browser takes over.
       this.dragging ||= event.pointerType !== 'touch' || Math.abs(now.x - before.x) > SLOP;
       if (!this.dragging) return;
       this.pan(now.x - before.x, now.y - before.y);

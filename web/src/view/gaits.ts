@@ -1,4 +1,4 @@
-// The panel in which gaits are made: each leg is a bar on a circle, which is the cycle.
+// The gait editor: the circle is the cycle, and each leg is a bar on it.
 import type { Bars, Description, Four } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
@@ -8,24 +8,24 @@ import { TrialView } from './trial';
 import type { Writer } from './writer';
 
 const LEGS = ['LF', 'RF', 'RH', 'LH'] as const;
-/** The leg across. */
+/** The mirrored leg of each leg. */
 const OPPOSITE = [1, 0, 3, 2] as const;
-/** Radii of the four rings, and width of a bar, in the picture's units. */
+/** Radii of the four rings and width of a bar, in units of the picture. */
 const RINGS = [104, 82, 60, 38] as const;
 const WIDE = 16;
-/** What a held leg's bar is long, a share of the cycle. */
+/** Length of the bar of a leg that holds, as a share of the cycle. */
 const HELD = 0.25;
 const SVG = 'http://www.w3.org/2000/svg';
 
 type Plain = 'period' | 'duty' | 'amplitude';
 
-/** Ranges of the numbers as robot.toml has them. */
+/** Ranges of the numbers, as in robot.toml. */
 const NUMBERS: Record<Plain, Range> = {
   period: { min: 0.1, max: 10, step: 0.01 },
   duty: { min: 0.05, max: 0.95, step: 0.005 },
   amplitude: { min: 0.5, max: 60, step: 0.1 },
 };
-/** The same of each leg's numbers. */
+/** Ranges of the numbers of each leg. */
 const OF_LEGS = { start: { min: 0, max: 1, step: 0.005 }, gain: { min: -2, max: 2, step: 0.05 } };
 
 const round = (value: number, step: number) => Number((Math.round(value / step) * step).toFixed(4));
@@ -66,7 +66,7 @@ export class GaitsView {
     element('gait-turn-round').addEventListener('click', () => this.gait && this.change(this.session().robot.turnedRound(this.gait)));
   }
 
-  /** Takes the session's robot, if the panel is open; a gait that is being made stays. */
+  /** Shows the session's robot if the panel is open; an edited gait stays. */
   take(): void {
     this.faster.follow();
     if (!this.panel.open) return;
@@ -93,7 +93,7 @@ export class GaitsView {
     if (some.some(({ number }) => String(number) === chosen)) this.from.value = chosen;
   }
 
-  /** Begins with a gait of the robot. */
+  /** Starts to edit the chosen gait of the robot. */
   private choose(): void {
     const bars = this.from.value === '' ? null : this.session().robot.bars(Number(this.from.value));
     if (!bars) return this.trial.say('This robot has no gait of four bars to begin with.');
@@ -123,7 +123,7 @@ export class GaitsView {
     this.change({ start: other(start), gain: other(gain) });
   }
 
-  /** The bar, its end and the two numbers of a leg. */
+  /** Makes the bar, its handle and the two numbers of a leg. */
   private leg(leg: number): void {
     const bar = this.circle.appendChild(document.createElementNS(SVG, 'path'));
     const end = this.circle.appendChild(document.createElementNS(SVG, 'circle'));
@@ -146,7 +146,7 @@ export class GaitsView {
     }
   }
 
-  /** Calls back with how far a pointer has gone round since it went down, in cycles. */
+  /** Calls back with the angle that a pointer has moved since it went down, in cycles. */
   private drag(mark: SVGElement, move: (by: number, begun: Bars) => void): void {
     let last = 0;
     let by = 0;
@@ -162,7 +162,7 @@ export class GaitsView {
     mark.addEventListener('pointermove', (event) => {
       if (!begun || !mark.hasPointerCapture(event.pointerId)) return;
       const now = phase(event);
-      // The short way round.
+      // The shorter direction.
       by += wrapped(now - last + 0.5) - 0.5;
       last = now;
       move(by, begun);
@@ -187,7 +187,7 @@ export class GaitsView {
         put(end, gait.gain[leg] ?? 1);
       }
       this.bars[leg]?.setAttribute('d', arc(radius, start, long));
-      // Against the others: the foot goes forward slowly, and pushes the robot back.
+      // A negative gain: the foot pushes the robot backward.
       this.bars[leg]?.classList.toggle('against', (gait.gain[leg] ?? 1) < 0);
       const [x, y] = at(radius, start + long);
       this.ends[leg]?.setAttribute('cx', String(x));
@@ -198,7 +198,7 @@ export class GaitsView {
   }
 }
 
-/** A point of a ring at a phase: 0 is at the top, and time runs clockwise. */
+/** The point of a ring at a phase: 0 is at the top, clockwise. */
 function at(radius: number, phase: number): [number, number] {
   const angle = 2 * Math.PI * phase;
   return [radius * Math.sin(angle), -radius * Math.cos(angle)];

@@ -1,4 +1,4 @@
-// What the robot says of itself, asked twice a second while it is to be seen.
+// The robot's status, requested twice a second while the page is visible.
 import type { Session } from '../session';
 import type { Status } from '../status';
 import { element } from './canvas';
@@ -21,7 +21,7 @@ export class Health {
     setInterval(() => void this.ask(), PERIOD);
   }
 
-  /** Held while the line serves another purpose. */
+  /** True while something else uses the line. */
   held = false;
 
   private async ask(): Promise<void> {

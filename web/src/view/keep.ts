@@ -1,4 +1,4 @@
-// The panel that keeps runs and pictures, and lets a second robot walk beside the first.
+// The panel that records runs, saves pictures, and lets a second robot walk beside the first.
 import { Companion } from '../companion';
 import { LONGEST, Recording } from '../recording';
 import type { Description, Four, Frame } from '../robot';
@@ -11,7 +11,7 @@ import { short } from './drive';
 import type { Floor } from './floor';
 import { palette } from './palette';
 
-/** Films that browsers can write, the smallest first. */
+/** Film formats, the smallest first. */
 const FILMS = [
   ['video/webm;codecs=vp9', 'webm'],
   ['video/webm;codecs=vp8', 'webm'],
@@ -19,7 +19,7 @@ const FILMS = [
   ['video/mp4', 'mp4'],
 ] as const;
 
-/** A frame of the core, s. */
+/** Duration of a frame of the core, s. */
 const FRAME = 0.02;
 
 export class Keep {
@@ -28,17 +28,17 @@ export class Keep {
   private readonly other = element<HTMLSelectElement>('other');
   private recording: Recording | null = null;
   private isRecording = false;
-  /** Since when it is seen again, ms of the wall, and from which moment, s; null where it stands or is not seen. */
+  /** Start of the replay, ms of real time, and the moment it started from, s; null while it is paused or off. */
   private playing: { since: number; from: number } | null = null;
   private isSeen = false;
   private film: MediaRecorder | null = null;
   private companion: Companion | null = null;
-  /** The gait that the companion begins with when the robot begins with its own. */
+  /** The companion's gait, which starts together with the robot's. */
   private waiting: { mine: string; other: string } | null = null;
   private owed = 0;
   private onDrawn: (() => void) | null = null;
 
-  /** `ask` sends a line, `pace` is what the robot is to have, percent. */
+  /** Takes functions that send a line and that return the pace, percent. */
   constructor(
     private readonly module: WebAssembly.Module,
     private readonly session: () => Session,
@@ -64,7 +64,7 @@ export class Keep {
     this.buttons();
   }
 
-  /** Another robot: what was kept of the one before is let go. */
+  /** Shows another robot; the recording of the previous one is dropped. */
   take({ gaits }: Description): void {
     this.record(false);
     this.recording = null;
@@ -88,7 +88,7 @@ export class Keep {
     this.buttons();
   }
 
-  /** The robot has moved on. */
+  /** Adds a frame to the recording and advances the companion. */
   frame(frame: Frame, widths: Four<number> | null, seconds: number): void {
     if (this.isRecording && this.recording && !this.recording.note(frame, widths, this.session().gait, seconds)) {
       this.record(false);
@@ -100,7 +100,7 @@ export class Keep {
     if (place) this.floor.walked(place, true);
   }
 
-  /** What the robot does now: when it begins, so does the one beside it. */
+  /** Starts the companion when the robot starts its gait. */
   doing(gait: string): void {
     const { companion, waiting } = this;
     if (!companion) return;
@@ -110,7 +110,7 @@ export class Keep {
     } else if (!waiting && gait === WORDS.stop) companion.send(WORDS.stop);
   }
 
-  /** What the floor is to show of the robot. */
+  /** The frame that the floor shows: the current one, or one of the replay. */
   shown(now: Frame | null): Frame | null {
     const { recording } = this;
     if (!this.isSeen || !recording) return now;
@@ -122,19 +122,19 @@ export class Keep {
     return recording.at(this.moment.valueAsNumber)?.frame ?? now;
   }
 
-  /** The second robot. */
+  /** The current frame of the second robot. */
   get beside(): Frame | null {
     return this.companion?.frame ?? null;
   }
 
-  /** A picture was drawn on the floor. */
+  /** Called after a picture was drawn on the floor. */
   drawn(): void {
     this.onDrawn?.();
     this.onDrawn = null;
     this.floor.unseen = this.film !== null;
   }
 
-  /** Writes the numbers; some times a second. */
+  /** Updates the numbers, some times a second. */
   write(): void {
     const { recording, companion } = this;
     if (recording) {
@@ -174,7 +174,7 @@ export class Keep {
     this.buttons();
   }
 
-  /** Takes a picture of what is drawn next, in sight or not. */
+  /** Takes a picture of the next drawing, even out of sight. */
   private picture(take: () => void): void {
     this.onDrawn = take;
     this.floor.unseen = true;
@@ -218,7 +218,7 @@ export class Keep {
       const { clientWidth, clientHeight } = element('floor');
       const pen = new Context(clientWidth, clientHeight);
       const label = this.floor.again(pen as unknown as CanvasRenderingContext2D);
-      // The package would measure text with a style that the page's policy does not have.
+      // The package would measure text with an inline style, which the page's policy forbids.
       const text = pen.getSvg().appendChild(document.createElementNS('http://www.w3.org/2000/svg', 'text'));
       const { ink } = palette();
       const attributes = { x: label.x, y: label.y, fill: ink, 'font-size': 12, 'font-family': 'sans-serif' };
@@ -230,7 +230,7 @@ export class Keep {
     }
   }
 
-  /** Both start at the same place of their own, and with the same frame. */
+  /** Starts both robots in the same frame, each from its own start. */
   private async both(): Promise<void> {
     const session = this.session();
     const { toml, floor, servos, volts } = session;

@@ -1,4 +1,4 @@
-// The robot's lengths as numbers: a change makes the robot anew, or is refused.
+// The robot's lengths as numbers: a change makes a new robot or is refused.
 import { isRefused, type Length, type Refused } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
@@ -60,7 +60,7 @@ export class Lengths {
     if (refused) this.refuse(keys, value, refused);
   }
 
-  /** A box has the number that the robot has: a refused one is in the sentence alone. */
+  /** Shows a refusal and restores the robot's number in the box. */
   private refuse(keys: string[], value: number, { refused }: Refused): void {
     const { lengths } = this.session().description;
     const kept = lengths.filter(({ key }) => keys.includes(key));

@@ -1,12 +1,12 @@
-// The lizard from above, drawn in mm of its own frame: x to the right, y ahead.
+// Draws the lizard from above in mm of its own frame: x to the right, y forward.
 import type { Plate, Scene, Spot } from '../robot';
 import { circle } from './canvas';
 import { palette, servoColour } from './palette';
 
-/** Radius of a foot, and width of the plate's edge, mm. */
+/** Radius of a foot and width of the plate's edge, mm. */
 const FOOT = 6;
 const RIM = 0.6;
-/** A foot that moves farther than this over the floor in a frame slips, mm. */
+/** Movement per frame beyond which a foot slips, mm. */
 const SLIPS = 0.3;
 
 type Pen = CanvasRenderingContext2D;
@@ -32,11 +32,11 @@ function disc(pen: Pen, [x, y]: Spot, mm: number, fill: string, edge?: string): 
   pen.stroke();
 }
 
-/** Turns of a spring, and how far they are to either side, mm. */
+/** Turns of a spring and its half width, mm. */
 const TURNS = 5;
 const COIL = 2.4;
 
-/** A spring between two hooks. */
+/** Draws a spring between two hooks. */
 function coil(pen: Pen, [x1, y1]: Spot, [x2, y2]: Spot): void {
   const length = Math.hypot(x2 - x1, y2 - y1);
   if (length < 1) return;
@@ -57,7 +57,7 @@ function coil(pen: Pen, [x1, y1]: Spot, [x2, y2]: Spot): void {
   pen.stroke();
 }
 
-/** An outline in the shape of an animal, between the head's point and the tail's. */
+/** Draws the outline of an animal from the head's point to the tail's. */
 function skin(pen: Pen, scene: Scene): void {
   const [[hx, hy], [tx, ty]] = scene.points;
   const back = Math.max(...scene.shafts.map(([, y]) => y));
@@ -82,12 +82,12 @@ function skin(pen: Pen, scene: Scene): void {
 
 const SERVOS = [0, 1, 2, 3];
 
-/** What lies beside the plate and under it: feet, the leaves that carry them, couplers. */
+/** Draws the bodies beside and below the plate: feet, their leaves, couplers. */
 function foot(pen: Pen, scene: Scene, servo: number, slide: number): void {
   const colours = palette();
   const { joints, foot } = scene.legs[servo];
   bar(pen, joints[1], foot, colours.steel, 2.2);
-  // A foot that holds is filled, one that slips is a ring.
+  // A foot that holds is filled; one that slips is a ring.
   disc(pen, foot, FOOT, slide > SLIPS ? colours.card : colours.ink);
   pen.strokeStyle = colours.ink;
   pen.lineWidth = 2;
@@ -95,7 +95,7 @@ function foot(pen: Pen, scene: Scene, servo: number, slide: number): void {
   bar(pen, joints[0], joints[1], servoColour(servo), 4.2);
 }
 
-/** The plate with the arms that the legs are pivoted on, and the servos in it. */
+/** Draws the plate with the arms of the legs' pivots, and its servos. */
 function chassis(pen: Pen, plate: Plate): void {
   const colours = palette();
   const [wide, long] = plate.half;
@@ -117,7 +117,7 @@ function chassis(pen: Pen, plate: Plate): void {
   });
 }
 
-/** What lies above the plate: crank, follower and strut. */
+/** Draws the bodies above the plate: crank, follower and strut. */
 function leg(pen: Pen, scene: Scene, servo: number): void {
   const colours = palette();
   const { pivots, joints, strut, sprung } = scene.legs[servo];
@@ -159,7 +159,7 @@ function fiveBar(pen: Pen, scene: Scene, end: 0 | 1): void {
   disc(pen, point, 3.2, '#f0e442', '#222222');
 }
 
-/** Draws a pose, from below; `slides` is how far each foot slid in this frame, mm. */
+/** Draws a pose, the lowest bodies first; `slides` is the distance that each foot slid in this frame, mm. */
 export function drawLizard(pen: Pen, plate: Plate, scene: Scene, slides: readonly number[]): void {
   skin(pen, scene);
   for (const servo of SERVOS) foot(pen, scene, servo, slides[servo] ?? 0);

@@ -1,7 +1,7 @@
-// What is said on the serial line, and a line to type.
+// The console: the lines of the serial line, and an input.
 import { element } from './canvas';
 
-/** Lines that are kept. */
+/** Most lines that are kept. */
 const MOST = 400;
 
 export class Log {
@@ -33,13 +33,13 @@ export class Log {
     this.add(`> ${line}`, 'sent');
   }
 
-  came(line: string): void {
+  received(line: string): void {
     this.add(line, line.startsWith('err') ? 'err' : line.startsWith('#') ? 'note' : 'ok');
   }
 
   private add(text: string, kind: string): void {
     const { box } = this;
-    // Whoever has scrolled up wants to read.
+    // A reader who scrolled up is not disturbed.
     const atEnd = box.scrollHeight - box.scrollTop - box.clientHeight < 24;
     const line = box.appendChild(document.createElement('div'));
     line.className = kind;

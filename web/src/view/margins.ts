@@ -1,4 +1,4 @@
-// How far the pose is from each singularity.
+// The panel of margins: the distance of the pose from each singularity.
 import type { Description, Scene } from '../robot';
 import { element } from './canvas';
 

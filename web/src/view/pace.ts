@@ -5,7 +5,7 @@ import { element } from './canvas';
 export class Pace {
   private readonly slider = element<HTMLInputElement>('speed');
   private readonly out = element('speed-out');
-  /** Whether a person holds the slider, or its line has no answer yet. */
+  /** True while the user holds the slider, or its line has no answer. */
   private held = false;
 
   /** `ask` sends a line and ends with its answer. */
@@ -28,7 +28,7 @@ export class Pace {
     this.write(percent);
   }
 
-  /** What is asked for, percent. */
+  /** The pace of the slider, percent. */
   get percent(): number {
     return this.slider.valueAsNumber;
   }

@@ -28,15 +28,15 @@ export class PartsView {
   private toml = '';
   private step: number | null = null;
   private picked: number | null = null;
-  /** What the last pose was asked for. */
+  /** The request of the last pose. */
   private asked = '';
   private stop: (() => void) | null = null;
-  /** Whether somebody can see it. */
-  private seen = false;
+  /** True while the panel is visible. */
+  private isVisible = false;
 
   constructor(private readonly session: () => Session) {
     this.panel.addEventListener('toggle', () => this.take());
-    new IntersectionObserver(([entry]) => (this.seen = entry?.isIntersecting ?? false)).observe(this.canvas);
+    new IntersectionObserver(([entry]) => (this.isVisible = entry?.isIntersecting ?? false)).observe(this.canvas);
     this.apart.addEventListener('input', () => this.show());
     this.list.addEventListener('change', () => this.pick(this.list.value === '' ? null : Number(this.list.value)));
     element('step-back').addEventListener('click', () => this.go(-1));
@@ -75,7 +75,7 @@ export class PartsView {
       this.pick(null);
     } catch (error) {
       if (toml !== this.toml) return;
-      // What could not be loaded is tried again when the panel is opened again.
+      // A failed download is tried again when the panel is opened again.
       this.toml = '';
       this.say('parts-said', `There are no parts of this robot: ${sentence(error)}`);
     }
@@ -147,9 +147,9 @@ export class PartsView {
   /** In every picture of the page. */
   draw(frame: Frame | null): void {
     const { space, solids } = this;
-    if (!space || !solids || !space.mayDraw() || !this.panel.open || !this.seen) return;
+    if (!space || !solids || !space.mayDraw() || !this.panel.open || !this.isVisible) return;
     const neutral = this.session().description.servos.map((servo) => servo.neutral);
-    // What is being built stands still.
+    // The robot stands still while a step of the guide is shown.
     const moving = this.step === null && frame?.scene != null;
     const [angles, lags] = moving ? [frame.scene?.angles ?? neutral, frame.lag] : [neutral, [0, 0, 0, 0]];
     const asked = [...angles, ...lags].map((angle) => angle.toFixed(2)).join(' ');

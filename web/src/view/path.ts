@@ -126,7 +126,7 @@ export class PathView {
     return points.length === 0 ? '' : `M ${points.map((point) => this.at(point).map((value) => value.toFixed(2)).join(' ')).join(' L ')} ${end}`;
   }
 
-  /** What does not change while one draws: the room, the base, the neutral point. */
+  /** Draws the background: the reachable area, the base, the neutral point. */
   private ground({ from, step, columns, allowed, neutral, shafts }: Room): void {
     const rows = allowed.length / columns;
     const corner = (column: number, row: number): Spot => [from[0] + (column - 0.5) * step, from[1] + (row - 0.5) * step];

@@ -63,9 +63,9 @@ export class RobotText {
   }
 
   /** Takes the robot that the page's address has, if any; whether nothing was wrong with that. */
-  async fromAddress(): Promise<boolean> {
+  async fromAddress(hash = location.hash): Promise<boolean> {
     try {
-      const toml = await linked(location.hash);
+      const toml = await linked(hash);
       return toml === null || toml === this.session().toml || (await this.give(toml));
     } catch (error) {
       this.panel.open = true;
@@ -76,13 +76,13 @@ export class RobotText {
 
   private async open(file: File): Promise<void> {
     this.panel.open = true;
-    // What is no text has no business in the box.
+    // A file that is not text does not belong into the box.
     const toml = file.size > 1_000_000 ? '' : await file.text();
     if (toml === '' || toml.includes('\0')) return this.say({ refused: `${file.name} is no robot.toml.`, line: null, key: '' });
     await this.give(toml);
   }
 
-  /** The text becomes the robot, or stays in the box with what is wrong; whether it became that. */
+  /** Makes the text the robot, or shows its mistakes; returns true if it became the robot. */
   private async give(toml: string): Promise<boolean> {
     const refused = await this.session().change(toml);
     if (!refused) return true;
@@ -92,7 +92,7 @@ export class RobotText {
     return false;
   }
 
-  /** The text becomes the robot, also that of the board on USB. */
+  /** Makes the text the robot and writes it to the board on USB. */
   private async write(): Promise<void> {
     const session = this.session();
     if (this.box.value !== session.toml) await this.give(this.box.value);
@@ -108,7 +108,7 @@ export class RobotText {
     const kept = this.before.slice(0, -1);
     const refused = await this.session().change(last);
     if (refused) return this.say(refused);
-    // To go back is no step to go back from.
+    // An undo adds no step of its own.
     this.before = kept;
     this.undo.disabled = kept.length === 0;
   }

@@ -4,7 +4,7 @@ import { FREQUENCY } from '../uno/board';
 import { element, surface } from './canvas';
 import { palette, servoColour } from './palette';
 
-/** What the scope shows, in cycles: three frames. */
+/** Time span of the scope, cycles: three frames. */
 const SPAN = 0.06 * FREQUENCY;
 const CYCLES_PER_US = FREQUENCY / 1e6;
 
@@ -25,10 +25,10 @@ export class ScopeView {
   private pulses: Pulse[] = [];
   private readonly note = element('scope-note');
   private widths = [0, 0, 0, 0];
-  /** Whether pulses are seen: a board on USB says its pose alone. */
-  private seen = true;
+  /** True if pulses are known: a board on USB sends only its pose. */
+  private hasPulses = true;
 
-  /** Takes another robot. */
+  /** Shows another robot. */
   robot({ servos }: Description): void {
     this.pins = servos.map(({ pin }) => pin);
     this.pulses = [];
@@ -51,15 +51,15 @@ export class ScopeView {
     });
   }
 
-  /** Takes another end of the line, a simulation or a real board. */
+  /** Switches to a simulated or a real board. */
   link(real: boolean): void {
-    this.seen = !real;
+    this.hasPulses = !real;
     this.note.hidden = !real;
     this.pulses = [];
     this.widths = [0, 0, 0, 0];
   }
 
-  /** A pulse of a pin, in cycles. */
+  /** Adds a pulse of a pin, cycles. */
   pulse(pin: number, rise: number, width: number): void {
     const servo = this.pins.indexOf(pin);
     if (servo < 0) return;
@@ -67,16 +67,16 @@ export class ScopeView {
     if (this.pulses.length > 64) this.pulses.splice(0, 32);
   }
 
-  /** The widths of a frame, in cycles. */
+  /** Adds the widths of a frame, cycles. */
   frame(widths: readonly number[]): void {
     this.widths = [...widths];
   }
 
-  /** Writes the numbers, which costs a layout. */
+  /** Updates the numbers, which costs a layout. */
   write(scene: Scene | null): void {
     this.rows.forEach(({ width, angle }, servo) => {
       const cycles = this.widths[servo];
-      const text = !this.seen ? '–' : cycles ? (cycles / CYCLES_PER_US).toFixed(2) : 'none';
+      const text = !this.hasPulses ? '–' : cycles ? (cycles / CYCLES_PER_US).toFixed(2) : 'none';
       if (width.textContent !== text) width.textContent = text;
       const degrees = scene ? `${scene.angles[servo].toFixed(1)}°` : '–';
       if (angle.textContent !== degrees) angle.textContent = degrees;
@@ -95,7 +95,7 @@ export class ScopeView {
       pen.strokeStyle = palette().grid;
       pen.lineWidth = 1;
       pen.strokeRect(-1, servo * row, width + 2, row);
-      if (!this.seen) continue;
+      if (!this.hasPulses) continue;
       pen.strokeStyle = servoColour(servo);
       pen.lineWidth = 2;
       pen.beginPath();

@@ -1,4 +1,4 @@
-// First connection, as one path: which step it is, and what a person sees of it. It can be left and entered at any step.
+// The dialog of the first connection: the current step and its view. Every step can be left and entered again.
 import type { Link } from '../link/link';
 import type { Session } from '../session';
 import { calibrationIn } from '../setup/calibration-file';
@@ -23,7 +23,7 @@ import type { What, Writer } from './writer';
 const STEPS: readonly Step[] = [board, firmware, horns, new Signs(), trims, new Scale(), new Limits(), walk, keep];
 const NO_ROBOT = 'No robot with this firmware answers: connect the board and write the firmware first.';
 
-/** Steps take its methods apart, so these are bound. */
+/** The dialog. Steps call its methods detached, so these are bound. */
 export class Setup implements Tools {
   guide: Guide | null = null;
   servo = 0;
@@ -37,16 +37,16 @@ export class Setup implements Tools {
   private readonly picture = element('setup-drawing');
   private readonly said = element('setup-said');
   private readonly progress = element<HTMLProgressElement>('setup-progress');
-  /** Counts what was begun: of something that was overtaken nothing is shown. */
+  /** Number of actions so far: the result of an outdated one is not shown. */
   private work = 0;
   private isBusy = false;
-  /** Whether what is done was not asked for by a button: one that is pressed meanwhile has its turn after it. */
+  /** True while an action runs that no button started; a button pressed meanwhile waits for it. */
   private isOwn = false;
   private next: (() => Promise<string>) | null = null;
   private under: Promise<void> = Promise.resolve();
   private lastLink: Link | null = null;
   private wasReal = false;
-  /** Whether the board said after its reset that nothing was ever saved. */
+  /** True if the board said that it has never saved a calibration. */
   private isNew = false;
 
   constructor(
@@ -77,7 +77,7 @@ export class Setup implements Tools {
     return this.sessionOf();
   }
 
-  /** Opens it where it was left, or at the first step. */
+  /** Opens the dialog at the last step, or at the first. */
   private begin(): void {
     this.reveal();
     this.enter(this.step);
@@ -90,7 +90,7 @@ export class Setup implements Tools {
     element('setup-left').hidden = true;
   }
 
-  /** A board was connected: what is missing on it comes first. */
+  /** Opens the step that a newly connected board needs first. */
   met(): void {
     const { has, hasThis } = this.session;
     const step = has === null || (has !== 'unknown' && !hasThis) ? firmware : this.isNew ? horns : null;
@@ -103,12 +103,12 @@ export class Setup implements Tools {
     else this.enter(this.step);
   }
 
-  /** A line of the robot's. */
-  came(line: string): void {
+  /** Reads a line of the robot. */
+  received(line: string): void {
     if (line.startsWith(NOTHING_SAVED)) this.isNew = true;
   }
 
-  /** Another end of the line: what was under way is over. */
+  /** Ends the current action: another board is connected. */
   link(): void {
     const { link, isReal } = this.session;
     if (link === this.lastLink) return this.update();
@@ -121,7 +121,7 @@ export class Setup implements Tools {
     this.update();
   }
 
-  /** What the other end has, or which robot the page has, may be another now. */
+  /** Updates the view: board or robot may have changed. */
   update(): void {
     if (this.guide && !this.guide.isCurrent) {
       const { isChanged } = this.guide;
@@ -131,7 +131,7 @@ export class Setup implements Tools {
     if (!this.box.hidden && !this.isBusy) this.show();
   }
 
-  /** Nothing is under way any more. What was proven counts on, unless the robot has lost it. */
+  /** Ends the current action. Proven steps stay proven, unless the robot has lost them. */
   private drop(isLost = true): void {
     this.work += 1;
     this.hold(false);
@@ -141,7 +141,7 @@ export class Setup implements Tools {
     for (const step of STEPS) step.forget?.();
   }
 
-  /** Leaves; what was not saved is taken back, once the robot is done with what it does. */
+  /** Closes the dialog and restores unsaved settings, after the current action. */
   private async leave(): Promise<void> {
     if (this.guide?.isCurrent) await this.under;
     let said = '';
@@ -199,14 +199,14 @@ export class Setup implements Tools {
     this.act(async () => work(await this.asked()));
   };
 
-  /** The guide of the robot at the other end. */
+  /** The guide of the connected robot. */
   private async asked(): Promise<Guide> {
     if (!this.session.answers) throw new Error(NO_ROBOT);
     this.guide ??= await Guide.begin(this.session);
     return this.guide;
   }
 
-  /** Does one thing at a time. */
+  /** Runs one action at a time. */
   private act(work: () => Promise<string>, isOwn = false): void {
     if (this.isBusy) {
       if (this.isOwn && !isOwn) this.next = work;
@@ -258,7 +258,7 @@ export class Setup implements Tools {
     this.show();
     this.title.focus({ preventScroll: true });
     if (!step.needsRobot || !this.session.answers) return;
-    // What a step has turned goes back before the next one.
+    // Servos that a step has turned go back before the next step.
     const { guide } = this;
     if (!guide) this.act(async () => this.asked().then(() => ''), true);
     else if (this.session.gait !== GAITS.stand) this.act(async () => guide.stand().then(() => ''), true);
@@ -284,7 +284,7 @@ export class Setup implements Tools {
     this.picture.replaceChildren(...(shown ? [shown] : []));
     this.picture.hidden = !shown;
     const parts = can ? step.parts(this) : [Object.assign(document.createElement('p'), { textContent: NO_ROBOT }), button('To the board', () => this.go(board.name), true)];
-    // Whoever uses the keyboard stays where they were, or comes to what is next.
+    // The keyboard's focus stays on the same button, or goes to the next one.
     const focused = this.what.contains(document.activeElement) ? document.activeElement?.textContent : null;
     this.what.replaceChildren(...parts);
     if (focused === null) return;

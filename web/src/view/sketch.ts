@@ -1,4 +1,4 @@
-// The drawing of the robot on which joints are dragged: lengths follow, and what cannot walk is refused while one drags.
+// The drawing whose joints can be dragged: lengths follow, and invalid ones are refused during the drag.
 import { Latest } from '../latest';
 import type { Length, Scene, Spot } from '../robot';
 import type { Session } from '../session';
@@ -7,9 +7,9 @@ import type { Answer, Edits, Question } from '../sketch/question';
 import { element } from './canvas';
 
 const SVG = 'http://www.w3.org/2000/svg';
-/** A press that goes no farther than this is no drag, points of the screen. */
+/** Movement below which a press is not a drag, screen points. */
 const STILL = 3;
-/** mm around the robot. */
+/** Margin around the robot, mm. */
 const RIM = 14;
 
 export class Sketch {
@@ -21,9 +21,9 @@ export class Sketch {
   private readonly drawnJoints = this.picture.appendChild(document.createElementNS(SVG, 'g'));
   private sketches: Latest<Question, Answer> | null = null;
   private toml = '';
-  /** What is dragged: the joint as it was when it was taken. */
+  /** The dragged joint, as it was at the start of the drag. */
   private held: Joint | null = null;
-  /** A joint was let go, and its last place is not answered yet. */
+  /** True from the end of a drag until its last place is answered. */
   private isEnding = false;
 
   constructor(
@@ -57,7 +57,7 @@ export class Sketch {
     if (isLast && this.isEnding) void this.end(refused ? (nearest?.toml ?? null) : toml);
   }
 
-  /** The joint was let go: this is the robot; null where it stays as it was. */
+  /** Ends a drag with a new robot.toml; null if the robot stays. */
   private async end(toml: string | null): Promise<void> {
     const session = this.session();
     this.isEnding = false;
@@ -66,7 +66,7 @@ export class Sketch {
     else this.sketches?.ask({ toml: session.toml, edits: [], isLast: false });
   }
 
-  /** `isWhole`: the joints, too, which stay while one of them is held. */
+  /** Draws the robot; with `isWhole` also the joints, which stay during a drag. */
   private draw(scene: Scene, isWhole: boolean): void {
     const at = ([x, y]: Spot): Spot => [x, -y];
     const lengths = this.lengths();
@@ -90,7 +90,7 @@ export class Sketch {
       this.picture.setAttribute('viewBox', `${left} ${top} ${Math.max(...xs) + RIM - left} ${Math.max(...ys) + RIM - top}`);
     }
     if (this.held) {
-      // The one that is held is where it came to, as far as its lengths let it.
+      // The dragged joint is drawn at its real place, as far as the lengths allow.
       joints(scene, () => 0).forEach(({ at: spot }, n) => this.place(this.drawnJoints.children[n], at(spot)));
       return;
     }
@@ -143,7 +143,7 @@ export class Sketch {
     this.sketches?.ask({ toml: this.toml, edits, isLast });
   }
 
-  /** A bar was pointed at: its number is beside. */
+  /** Highlights the number of a clicked bar. */
   private point(key: string): void {
     const input = document.querySelector<HTMLInputElement>(`#lengths input[name="${key}"]`);
     input?.focus();
@@ -151,7 +151,7 @@ export class Sketch {
   }
 }
 
-/** Lengths in words, those that are the same on both sides once. */
+/** Lists lengths in words; a length that is equal on both sides once. */
 function words(edits: Edits): string {
   const by = new Map<number, string[]>();
   for (const [key, value] of edits) by.set(value, [...(by.get(value) ?? []), key.replace('links.', '')]);

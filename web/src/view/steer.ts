@@ -1,31 +1,31 @@
-// Driving by hand: keys, a stick on the screen or a gamepad say where to, and the gait that leads there walks for as long
-// as they are held.
+// Drives by hand: keys, a stick on the screen or a gamepad give a direction, and the gait for it walks as long as
+// they are held.
 import type { Way } from '../robot';
 import { WORDS } from '../words';
 import { element } from './canvas';
 
-/** Where to: ahead and to the left, each from -1 to 1. */
+/** A direction: forward and left, each from -1 to 1. */
 export interface Wish {
   ahead: number;
   left: number;
 }
 
-/** A gait and the way of its cycle. */
+/** A gait and its displacement per cycle. */
 export interface Choice {
   command: string;
   way: Way;
 }
 
-/** A stick that is nearer to its middle than this wishes nothing. */
+/** Dead zone of a stick. */
 const DEAD = 0.35;
 
-/** The way of a gait may be so far beside the wish: the cosine of the angle between them. */
+/** Least cosine of the angle between a gait's displacement and the direction. */
 const NEAR = 0.8;
 
-/** mm and deg in a cycle below which a gait leads nowhere. */
+/** Least displacement of a gait that counts, mm and deg per cycle. */
 const LEAST = { ahead: 2, turn: 1 };
 
-/** What keys wish; letters for hands that rest on them. */
+/** The direction of each key. */
 const KEYS: Record<string, Wish> = {
   ArrowUp: { ahead: 1, left: 0 },
   ArrowDown: { ahead: -1, left: 0 },
@@ -38,9 +38,8 @@ const KEYS: Record<string, Wish> = {
 };
 
 /**
- * The gait that leads where somebody wishes, of those whose ways are known; null where none does. Ways ahead and turns
- * are compared with the greatest of the robot's own, and of gaits that lead the same way the one that leads the farthest
- * is taken.
+ * Returns the gait for a direction, of those with a known prediction; null if there is none. Displacement and turn
+ * are scaled by the robot's largest, and of gaits with the same direction the farthest is taken.
  */
 export function gaitFor({ ahead, left }: Wish, choices: Choice[]): string | null {
   const size = Math.hypot(ahead, left);
@@ -56,7 +55,7 @@ export function gaitFor({ ahead, left }: Wish, choices: Choice[]): string | null
     const long = Math.hypot(x, y);
     const cosine = (x * ahead + y * left) / (long * size);
     if (cosine < NEAR) continue;
-    // The direction counts more than the length: a bow is no way straight on.
+    // Direction counts more than distance: an arc does not go straight.
     const value = cosine ** 4 * Math.min(1, long) ** 0.25;
     if (!best || value > best.value) best = { command, value };
   }
@@ -69,17 +68,17 @@ export class Steer {
   private readonly knob = element('knob');
   private atStick: Wish = { ahead: 0, left: 0 };
   private atPad: Wish = { ahead: 0, left: 0 };
-  /** What was sent last: a gait while something is held. */
+  /** The gait that was sent last; null while nothing is held. */
   private walking: string | null = null;
 
-  /** `choices` are the robot's gaits, `send` sends a line. */
+  /** Takes functions that list the robot's gaits and that send a line. */
   constructor(
     private readonly choices: () => Choice[],
     private readonly send: (line: string) => void,
   ) {
     document.addEventListener('keydown', (event) => this.key(event, true));
     document.addEventListener('keyup', (event) => this.key(event, false));
-    // Whoever looks elsewhere does not see where it walks.
+    // A user in another window does not see the robot.
     addEventListener('blur', () => this.release());
     document.addEventListener('visibilitychange', () => document.hidden && this.release());
     this.stick.addEventListener('pointerdown', (event) => {
@@ -90,7 +89,7 @@ export class Steer {
     for (const end of ['pointerup', 'pointercancel'] as const) this.stick.addEventListener(end, () => this.drag(null));
   }
 
-  /** Looks at gamepads; in every picture. */
+  /** Reads the gamepads; called in every picture. */
   look(): void {
     const pads = (navigator.getGamepads?.() ?? []).filter((pad) => pad !== null);
     const pad = pads[0];
@@ -102,7 +101,7 @@ export class Steer {
     this.follow();
   }
 
-  /** Lets go of everything. */
+  /** Releases everything that is held. */
   release(): void {
     this.held.clear();
     this.atPad = { ahead: 0, left: 0 };
@@ -116,7 +115,7 @@ export class Steer {
       return;
     }
     const { target } = event;
-    // Somebody types, chooses, moves a slider or the view, or sets the robot up.
+    // The keys belong to an input, a list, a slider, a view or the setup.
     const taken = target instanceof Element && target.closest('input, select, textarea, canvas, [role="log"], #setup') !== null;
     if (taken || event.ctrlKey || event.altKey || event.metaKey) return;
     event.preventDefault();
@@ -144,7 +143,7 @@ export class Steer {
     }
     const nothing = Math.hypot(wish.ahead, wish.left) < DEAD;
     const gait = nothing ? null : gaitFor(wish, this.choices());
-    // Between two directions that no gait leads to, it goes on.
+    // No gait for this direction: the current one goes on.
     if (gait === this.walking || (!nothing && gait === null)) return;
     if (gait === null && this.walking === null) return;
     this.walking = gait;

@@ -1,4 +1,4 @@
-// What becomes of a gait that is being made: its numbers, what would do in its place, and the buttons that use it.
+// The trial of an edited gait: its figures, the nearest valid values, and the buttons that use it.
 import type { Answer, Question } from '../gaits/question';
 import { takeGait, tryGait } from '../gaits/try';
 import { Latest } from '../latest';
@@ -7,19 +7,19 @@ import type { Session } from '../session';
 import { element } from './canvas';
 import { NO_BOARD, type Writer } from './writer';
 
-/** What a panel in which a gait is made gives to its lower half. */
+/** An editor of gaits, as its trial sees it. */
 export interface Maker {
-  /** What its elements' names begin with. */
+  /** The prefix of its elements' ids. */
   prefix: 'gait' | 'path';
-  /** What is being made; null where there is nothing yet. */
+  /** The edited gait; null if there is none. */
   made(): Made | null;
-  /** Takes another value, which would do. */
+  /** Sets a value that would be accepted. */
   change(what: Instead, value: number): void;
 }
 
 const number = (value: number | null, unit: string) => (value === null ? 'undecided' : `${(Number(value.toFixed(1)) + 0).toFixed(1)}${unit}`);
 
-/** What a gait comes to, as it is written; the speed as its unit has it, deg/s for a turn on the spot. */
+/** Formats the figures of a trial; the speed is in deg/s for a turn on the spot. */
 export function figures({ forward, turn, period, least, limit, margin, servo, speed }: Trial, unit = 'mm/s') {
   const [way, sign] = unit === 'mm/s' ? [forward, ' mm/s'] : [turn, ' °/s'];
   return {
@@ -54,7 +54,7 @@ export class TrialView {
     this.element('copy').addEventListener('click', () => void this.copy());
   }
 
-  /** Asks what becomes of what is being made, as it is now. */
+  /** Requests a trial of the edited gait. */
   predict(): void {
     const { toml, floor, servos } = this.session();
     const made = this.maker.made();

@@ -1,8 +1,8 @@
-// What is wrong, a line for each cause. It stays until the cause is gone or a person puts it away.
+// The list of problems, one line for each cause. A line stays until its cause is gone or the user dismisses it.
 import type { Cause } from '../trouble';
 import { element } from './canvas';
 
-/** What a person may do about it. */
+/** A button that solves a problem. */
 export interface Remedy {
   label: string;
   act: () => void;
@@ -12,7 +12,7 @@ export class Troubles {
   private readonly box = element('trouble');
   private readonly lines = new Map<Cause, HTMLElement>();
 
-  /** Shows a sentence in place of the one before about this cause; null where the cause is gone. */
+  /** Shows the sentence for a cause, replacing the last one; null removes it. */
   say(cause: Cause, sentence: string | null, remedy: Remedy | null = null): void {
     const before = this.lines.get(cause);
     if (sentence !== null && before?.firstChild?.textContent === sentence) return;

@@ -1,16 +1,12 @@
-// The sliders of what is around the robot: drive, feet, floor, weight, servos, supply.
+// The sliders of leg drive, feet, floor, mass, servos and supply.
 import { type Floor, type Kind, lags, type ServoModel } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
 
-/** Stiffnesses that the slider of an ideal spring has, N mm/deg. */
-const STIFFNESS = [0.5, 1, 1.5, 2, 2.5, 3, 4, 5, 7, 10, 15, 20, 30, 50];
-
 const round = (value: number, digits: number) => Number(value.toFixed(digits)).toString();
 
-/** How a slider's number is written; its unit is in its label. */
+/** The number format of each slider; the unit is in its label. */
 const SHOWN = {
-  preload: (value: number) => round(value, 1),
   force: (value: number) => value.toFixed(1),
   play: (value: number) => value.toFixed(1),
   leaf: (value: number) => value.toFixed(1),
@@ -21,28 +17,18 @@ const SHOWN = {
 };
 type Plain = keyof typeof SHOWN;
 const PLAIN = Object.keys(SHOWN) as Plain[];
-/** The sliders that only one kind of drive has; `springs` is that of the stiffness. */
-const OF_KIND: [string, Kind][] = [
-  ['springs', 'spring'],
-  ['preload', 'spring'],
-  ['force', 'strut'],
-];
 
 export class World {
   private readonly drive = element<HTMLSelectElement>('drive');
-  private readonly springs = element<HTMLInputElement>('springs');
   private readonly servos = element<HTMLSelectElement>('servos');
   private readonly supply = element<HTMLInputElement>('supply');
-  private stiffness: number[] = STIFFNESS;
 
-  /** `onFloor` is called when the ways of gaits have changed. */
+  /** Calls `onFloor` when the predictions have changed. */
   constructor(
     private readonly session: () => Session,
     private readonly onFloor: () => void,
   ) {
     this.drive.addEventListener('change', () => this.use());
-    this.springs.addEventListener('input', () => this.show(this.springs, round(this.rate, 2)));
-    this.springs.addEventListener('change', () => this.use());
     for (const name of PLAIN) {
       const input = this.input(name);
       input.addEventListener('input', () => this.show(input, SHOWN[name](input.valueAsNumber)));
@@ -66,13 +52,9 @@ export class World {
   take(): void {
     const { floor, description } = this.session();
     this.drive.value = floor.kind;
-    this.stiffness = [...new Set([...STIFFNESS, description.floor.stiffness, floor.stiffness])].sort((a, b) => a - b);
-    this.springs.max = String(this.stiffness.length - 1);
-    this.springs.value = String(this.stiffness.indexOf(floor.stiffness));
-    this.show(this.springs, round(this.rate, 2));
     for (const name of PLAIN) {
       const input = this.input(name);
-      // A robot may be heavier than most.
+      // The slider widens for a value beyond its range.
       if (floor[name] > Number(input.max)) input.max = String(floor[name]);
       if (floor[name] < Number(input.min)) input.min = String(floor[name]);
       input.value = String(floor[name]);
@@ -94,16 +76,11 @@ export class World {
     return element<HTMLInputElement>(name);
   }
 
-  /** The stiffness that the slider is at. */
-  private get rate(): number {
-    return this.stiffness[this.springs.valueAsNumber];
-  }
-
-  /** What would move nothing is not to be set. */
+  /** Disables the sliders that have no effect. */
   private enable(floor: Floor): void {
-    for (const [name, kind] of OF_KIND) element<HTMLInputElement>(name).disabled = floor.kind !== kind;
     const springs = floor.kind !== 'rigid';
-    // Without springs friction cancels out, and without a foot that is too long weight as well.
+    this.input('force').disabled = !springs;
+    // Friction cancels out without springs, and so does mass without a long foot.
     this.input('friction').disabled = !springs;
     this.input('mass').disabled = !springs && floor.twist === 0;
     this.input('leaf').disabled = floor.twist === 0;
@@ -116,7 +93,7 @@ export class World {
   }
 
   private use(): void {
-    // What a slider was not moved from stays as exactly as it was.
+    // A slider that was not moved keeps its exact value.
     const own = this.session().floor;
     const number = (name: Plain) => {
       const input = this.input(name);
@@ -127,8 +104,6 @@ export class World {
       ratio: number('ratio'),
       mass: number('mass'),
       kind: this.drive.value as Kind,
-      stiffness: this.rate,
-      preload: number('preload'),
       force: number('force'),
       rate: own.rate,
       play: number('play'),

@@ -3,7 +3,7 @@ import { Unfit } from '../link/stk500';
 import type { Session } from '../session';
 import { sentence } from '../trouble';
 
-/** Where it is shown. */
+/** The elements that show it. */
 export interface Display {
   progress: HTMLProgressElement;
   said: HTMLElement;
@@ -12,7 +12,7 @@ export interface Display {
 /** The page's robot alone, the firmware with it, or an image of somebody's own. */
 export type What = 'robot' | 'all' | Uint8Array;
 
-/** Why there is nothing to write to. */
+/** The message when no board is connected. */
 export const NO_BOARD = 'No board is connected: Connect a board… is at the top of the page. The simulated board has this robot already.';
 
 const DOES = { comparing: 'looking at the firmware that is there…', writing: 'writing…', verifying: 'verifying…' };
@@ -26,7 +26,7 @@ export class Writer {
     private readonly busy: (busy: boolean) => void,
   ) {}
 
-  /** Whether the line belongs to the boot loader. */
+  /** True while the boot loader uses the line. */
   get isBusy(): boolean {
     return this.isWriting;
   }
@@ -67,7 +67,7 @@ export class Writer {
   }
 }
 
-/** What half of it means. */
+/** The consequence of an interrupted write. */
 const TORN = {
   robot: '. Only a part of the robot is on the board, which moves nothing until it is written again: try again',
   all: '. Only a part of it is on the board, which does nothing until it is written again: try again',

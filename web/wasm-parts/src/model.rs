@@ -63,7 +63,7 @@ pub struct StepEntry {
     /// Its headline.
     pub title: &'static str,
     /// What to do, as Markdown.
-    pub words: String,
+    pub words: &'static str,
 }
 
 /// All of it but the triangles.
@@ -157,7 +157,7 @@ impl Model {
                 .iter()
                 .map(|step| StepEntry {
                     title: step.title,
-                    words: step.words.clone(),
+                    words: step.words,
                 })
                 .collect(),
             mounts: self.mounts.len(),

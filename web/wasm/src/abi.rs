@@ -1,26 +1,27 @@
-//! The door to JavaScript: one question at a time, as JSON.
+//! The interface to JavaScript: one question at a time, as JSON.
 //!
-//! The page asks for room (`lizard_input`), writes a [`Question`] there, calls `lizard_ask`, and reads as many bytes of
-//! JSON as that returns, at `lizard_output`; `null` where there is nothing to say, or no question. One page has one robot, so
-//! there is one state. wasm-bindgen would need a program of its own, whose version must be the crate's. The names have a
+//! The page asks for memory (`lizard_input`), writes a [`Question`] there, calls `lizard_ask`, and reads as many bytes of
+//! JSON as that returns, at `lizard_output`: `null` if there is no answer, or the question is unknown. A page has one robot,
+//! so there is one state. wasm-bindgen would need a program of its own, whose version must be the crate's. The names have a
 //! prefix because on a host they would replace the C library's.
 #![allow(unsafe_code)] // `no_mangle` needs it; there is no unsafe block here.
 
 use std::cell::RefCell;
 
+use lizard_robot::Bars;
 use serde::{Deserialize, Serialize};
 use serde_json::Result;
 
-use crate::description::Way;
+use crate::description::Movement;
 use crate::drawn::Drawn;
 #[cfg(feature = "tune")]
 use crate::faster::Wish;
 use crate::floor::Floor;
 use crate::page::Page;
 use crate::place::Place;
-use crate::trial::Bars;
+use crate::trial::Made;
 
-/// A question of the page: its name, and what it needs.
+/// A question of the page, with its arguments.
 #[derive(Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum Question {
@@ -38,7 +39,7 @@ enum Question {
     Section,
     /// [`Page::restart`].
     Restart,
-    /// [`Place::way_to`].
+    /// [`Place::movement_to`].
     Way(Place, Place),
     /// [`Page::set_floor`].
     SetFloor(Floor),
@@ -48,23 +49,19 @@ enum Question {
     Predict(usize),
     /// [`Page::bars`].
     Bars(usize),
-    /// [`Bars::turned_round`].
-    TurnedRound(Bars),
-    /// [`Bars::put_into`].
-    PutGait(String, Bars),
+    /// [`Bars::reversed`].
+    Reversed(Bars),
+    /// [`Page::put_gait`].
+    PutGait(String, Made),
     /// [`Page::trial`].
-    Trial(String, Bars),
-    /// [`Page::trial_drawn`].
-    TrialDrawn(String, Drawn),
-    /// [`Page::put_drawn`].
-    PutDrawn(String, Drawn),
+    Trial(Made),
     /// [`Page::make_faster`].
     #[cfg(feature = "tune")]
-    Faster(String, Wish),
-    /// [`Faster::step`](crate::Faster::step) of the search that was begun.
+    Faster(Wish),
+    /// [`Faster::step`](crate::Faster::step) of the search that was started.
     #[cfg(feature = "tune")]
     FasterStep,
-    /// [`Faster::found`](crate::Faster::found) of the search that was begun.
+    /// [`Faster::found`](crate::Faster::found) of the search that was started.
     #[cfg(feature = "tune")]
     FasterFound(usize),
     /// [`Page::path`].
@@ -75,7 +72,7 @@ enum Question {
     Map(usize),
     /// [`Page::run_core`].
     RunCore,
-    /// [`Page::core_frame`], after what came over the serial line, at a supply in V.
+    /// [`Page::core_frame`], with the bytes of the serial line and the supply in V.
     CoreFrame(String, f64),
 }
 
@@ -92,7 +89,7 @@ impl Question {
                 page.restart();
                 json(())
             }
-            Self::Way(from, to) => json(Way::from(from.way_to(to))),
+            Self::Way(from, to) => json(Movement::from(from.movement_to(to))),
             Self::SetFloor(floor) => {
                 page.set_floor(floor);
                 json(())
@@ -103,13 +100,11 @@ impl Question {
             }
             Self::Predict(gait) => json(page.predict(gait)),
             Self::Bars(gait) => json(page.bars(gait)),
-            Self::TurnedRound(bars) => json(bars.turned_round()),
-            Self::PutGait(toml, bars) => json(bars.put_into(&toml)),
-            Self::Trial(toml, bars) => json(page.trial(&toml, &bars).map(either)),
-            Self::TrialDrawn(toml, drawn) => json(page.trial_drawn(&toml, &drawn).map(either)),
-            Self::PutDrawn(toml, drawn) => json(page.put_drawn(&toml, &drawn)),
+            Self::Reversed(bars) => json(bars.reversed()),
+            Self::PutGait(toml, made) => json(page.put_gait(&toml, &made)),
+            Self::Trial(made) => json(page.trial(&made).map(either)),
             #[cfg(feature = "tune")]
-            Self::Faster(toml, wish) => json(page.make_faster(&toml, &wish).map(either)),
+            Self::Faster(wish) => json(page.make_faster(&wish).map(either)),
             #[cfg(feature = "tune")]
             Self::FasterStep => json(page.faster().map(|search| search.step())),
             #[cfg(feature = "tune")]
@@ -128,66 +123,66 @@ impl Question {
     }
 }
 
-/// The answer to a question as JSON.
+/// Answers a question as JSON.
 fn answer(page: &mut Page, question: &[u8]) -> Vec<u8> {
     serde_json::from_slice(question)
         .and_then(|question: Question| question.answer(page))
         .unwrap_or_else(|_| b"null".to_vec())
 }
 
-fn json(said: impl Serialize) -> Result<Vec<u8>> {
-    serde_json::to_vec(&said)
+fn json(answer: impl Serialize) -> Result<Vec<u8>> {
+    serde_json::to_vec(&answer)
 }
 
-/// Either of two answers, without a word for which it is.
+/// One of two answers, whose keys tell them apart.
 #[derive(Serialize)]
 #[serde(untagged)]
 enum Either<A, B> {
-    Well(A),
+    Accepted(A),
     Refused(B),
 }
 
 fn either<A, B>(result: std::result::Result<A, B>) -> Either<A, B> {
     match result {
-        Ok(well) => Either::Well(well),
+        Ok(accepted) => Either::Accepted(accepted),
         Err(refused) => Either::Refused(refused),
     }
 }
 
 #[derive(Default)]
-struct Door {
+struct Interface {
     page: Page,
     input: Vec<u8>,
     output: Vec<u8>,
 }
 
 thread_local! {
-    static DOOR: RefCell<Door> = RefCell::default();
+    static INTERFACE: RefCell<Interface> = RefCell::default();
 }
 
-/// Room for a question of so many bytes.
+/// Reserves memory for a question of this length and returns its address.
 #[unsafe(no_mangle)]
 pub extern "C" fn lizard_input(length: usize) -> *mut u8 {
-    DOOR.with_borrow_mut(|door| {
-        door.input = vec![0; length];
-        door.input.as_mut_ptr()
+    INTERFACE.with_borrow_mut(|state| {
+        state.input = vec![0; length];
+        state.input.as_mut_ptr()
     })
 }
 
-/// Answers the question; the length of the answer.
+/// Answers the question and returns the length of the answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn lizard_ask() -> usize {
-    DOOR.with_borrow_mut(|door| {
-        let input = std::mem::take(&mut door.input);
-        door.output = answer(&mut door.page, &input);
-        door.output.len()
+    INTERFACE.with_borrow_mut(|state| {
+        let input = std::mem::take(&mut state.input);
+        state.output = answer(&mut state.page, &input);
+        state.output.len()
     })
 }
 
-/// Where the last answer is.
+/// The address of the last answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn lizard_output() -> *const u8 {
-    DOOR.with_borrow(|door| door.output.as_ptr())
+    INTERFACE.with_borrow(|state| state.output.as_ptr())
 }
 
 #[cfg(test)]
@@ -199,11 +194,11 @@ mod tests {
     const PAPER: &str = include_str!("../../../robots/paper.toml");
 
     #[test]
-    fn what_is_no_question_is_answered_by_null_and_changes_nothing() {
+    fn an_unknown_question_is_answered_by_null_and_changes_nothing() {
         let mut page = Page::default();
         let mut ask = |question: &str| {
-            let said = answer(&mut page, question.as_bytes());
-            String::from_utf8(said).expect("JSON")
+            let answer = answer(&mut page, question.as_bytes());
+            String::from_utf8(answer).expect("JSON")
         };
         let read = serde_json::json!({ "read": PAPER }).to_string();
         assert!(ask(&read).contains("\"name\":\"paper\""));

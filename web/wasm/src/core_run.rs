@@ -1,8 +1,7 @@
-//! The firmware's core run in the page, for a second robot beside the first one.
+//! The firmware's core running in the page without a chip, for a second robot.
 //!
-//! To simulate another chip would cost as much time again. The core is plain integer Rust, so
-//! it says and asks for what an UNO would, to the bit; only the cycles of the chip are
-//! missing.
+//! Simulating another chip would double the time. The core is plain integer Rust, so its answers
+//! and pulses are those of an UNO to the bit; only the cycles of the chip are missing.
 
 use lizard_core::control::supply::Reading;
 use lizard_core::memory::restart::Restart;
@@ -14,24 +13,24 @@ use serde::Serialize;
 const FULL_SCALE: f64 = 1024.0;
 const REFERENCE: f64 = 1.1;
 
-/// What a frame brought.
+/// The output of a frame.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Said {
+pub struct CoreFrame {
     /// Pulse widths, CPU cycles of 62.5 ns, A1 to A4; 0 for none.
     pub widths: [u16; 4],
-    /// What was written to the serial line.
+    /// Text that was written to the serial line.
     pub text: String,
 }
 
 /// The core of a robot, running.
 pub struct CoreRun {
     running: Running,
-    /// What a healthy rail of the servos leaves at its pin.
+    /// Voltage of a healthy servos' rail at its pin, mV.
     rail_mv: f64,
 }
 
 impl CoreRun {
-    /// At power-on, with what an EEPROM holds.
+    /// Starts the core at power-on, with this EEPROM.
     #[must_use]
     pub fn begin(robot: CoreRobot, memory: Eeprom) -> Self {
         Self {
@@ -40,26 +39,26 @@ impl CoreRun {
         }
     }
 
-    /// What the EEPROM holds.
+    /// The EEPROM after the run.
     #[must_use]
     pub fn into_memory(self) -> Eeprom {
         self.running.board.memory
     }
 
-    /// One frame of 20 ms, after these bytes have come, at a supply in V.
-    pub fn frame(&mut self, bytes: &[u8], volts: f64) -> Said {
+    /// Runs one frame of 20 ms, after these bytes of the serial line, at a supply in V.
+    pub fn frame(&mut self, bytes: &[u8], volts: f64) -> CoreFrame {
         let parts = |volts: f64, of: f64| (FULL_SCALE * volts / of).clamp(0.0, FULL_SCALE - 1.0);
         self.running.board.converter.set(Reading {
             reference: parts(REFERENCE, volts).round() as u16,
             rail: parts(self.rail_mv / 1000.0, volts) as u16,
         });
-        // One by one, as they come over a line.
+        // One by one, as on a serial line.
         for byte in bytes {
             self.running.board.send(&[*byte]);
             self.running.settle();
         }
         self.running.frame();
-        Said {
+        CoreFrame {
             widths: self.running.board.submitted().0.map(|width| width.0),
             text: std::mem::take(&mut self.running.board.transmitter.text),
         }

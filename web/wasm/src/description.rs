@@ -1,9 +1,10 @@
-//! What the page has to know of a robot before anything moves.
+//! The description of a robot that the page reads before anything moves.
 
 use lizard_core::console::text::Text;
 use lizard_core::console::word::Word;
 use lizard_core::numbers::section::START;
 use lizard_kinematics::Check;
+use lizard_robot::edit::HIPS;
 use lizard_robot::servo::{LEGS, NAMES};
 use lizard_robot::{
     CheckedGait, Ground, Plate, Prediction, Robot, STILL_FRAMES, Sprung, Travel, healthy_rail_mv,
@@ -11,74 +12,73 @@ use lizard_robot::{
 use lizard_twin::{ServoModel, Twin};
 use serde::Serialize;
 
-use crate::edit::HIPS;
 use crate::floor::Floor;
 use crate::scene::Spot;
 
-/// A gait.
+/// A gait of the robot.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GaitEntry {
-    /// Its name in robot.toml.
+    /// Name of the gait in robot.toml.
     pub name: String,
-    /// Its command of the console.
+    /// Command of the console that begins the gait.
     pub command: String,
     /// Time of a cycle at full speed, s.
     pub period: f64,
-    /// Whether a servo moves in it.
+    /// True if a servo moves in the course of a cycle.
     pub moves: bool,
 }
 
-/// A length of the body.
+/// A length of the robot that may be changed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LinkEntry {
-    /// Its key in robot.toml, such as `links.l1`.
+    /// Key in robot.toml, such as `links.l1`.
     pub key: String,
-    /// What it is.
+    /// Name for people.
     pub label: &'static str,
-    /// The key of the length that mirrors it, or must equal it; it may be its own.
+    /// Key of the length that mirrors it, or must equal it; it may be its own.
     pub twin: String,
-    /// mm, or deg for an angle.
+    /// Unit: mm, or deg for an angle.
     pub unit: &'static str,
-    /// mm.
+    /// Value in this unit.
     pub value: f64,
 }
 
-/// A margin's limit.
+/// The limit of a margin.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MarginEntry {
-    /// Its name.
+    /// Name of the margin.
     pub name: &'static str,
-    /// The least that is safe, a sine.
+    /// Smallest safe value, a sine.
     pub limit: f64,
 }
 
-/// A servo.
+/// A servo of the robot.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ServoEntry {
-    /// A1 to A4.
+    /// Name, A1 to A4.
     pub name: &'static str,
-    /// Its leg, LF to LH.
+    /// Name of its leg, LF to LH.
     pub leg: &'static str,
     /// Arduino number of its pin; 14 to 19 are A0 to A5.
     pub pin: u8,
-    /// deg, chassis frame.
+    /// Neutral angle, deg, chassis frame.
     pub neutral: f64,
-    /// Its travel, deg from neutral.
+    /// Travel, deg from neutral.
     pub travel: (f64, f64),
 }
 
-/// What servos may be taken for, by name; the first unless the page asks for another.
+/// The models of a servo by name; the first is the default.
 pub(crate) const SERVO_MODELS: [(&str, ServoModel); 2] =
     [("sg90", ServoModel::SG90), ("ideal", ServoModel::IDEAL)];
 
-/// What a servo can do.
+/// The model of a servo.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ModelEntry {
-    /// Its name.
+    /// Name of the model.
     pub name: &'static str,
-    /// Its fastest turn, deg/s; infinite is `null` in JSON.
+    /// Fastest turn, deg/s; infinite is `null` in JSON.
     pub rate: f64,
-    /// Width of its dead band, us.
+    /// Width of the dead band, us.
     pub dead_band: f64,
 }
 
@@ -92,14 +92,14 @@ impl From<(&'static str, ServoModel)> for ModelEntry {
     }
 }
 
-/// The chassis from above, as [`Plate`]: mm, chassis frame.
+/// The chassis seen from above, as [`Plate`]: mm, chassis frame.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlateEntry {
-    /// Half its width and half its length, without the arms.
+    /// Half the width and half the length, without the arms.
     pub half: Spot,
-    /// Radius of its corners.
+    /// Radius of the corners.
     pub corner: f64,
-    /// The arms that the legs are pivoted on, from and to.
+    /// Ends of the arms that carry the legs' pivots.
     pub arms: Vec<[Spot; 2]>,
     /// Half the width of an arm.
     pub arm: f64,
@@ -123,45 +123,46 @@ impl From<Plate> for PlateEntry {
     }
 }
 
-/// A robot.
+/// The description of a robot.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Description {
-    /// By which it is told from other robots, as a banner says it.
+    /// Hash of the section, as the banner has it.
     pub hash: String,
-    /// Its name, as a banner says it.
+    /// Name of the robot, as the banner has it.
     pub name: String,
-    /// The version of the firmware that it is for.
+    /// Version of the firmware that it is for.
     pub version: String,
-    /// Where in flash its section begins, bytes.
+    /// Address of its section in flash, bytes.
     pub start: u16,
-    /// Its servos, A1 to A4.
+    /// The servos A1 to A4.
     pub servos: Vec<ServoEntry>,
-    /// Its gaits in the order of the file.
+    /// The gaits in the order of the file.
     pub gaits: Vec<GaitEntry>,
-    /// Every length that may be changed.
+    /// The lengths that may be changed.
     pub lengths: Vec<LinkEntry>,
-    /// Its chassis.
+    /// The chassis seen from above.
     pub plate: PlateEntry,
-    /// Every margin's limit, in the order of [`crate::Scene::margins`].
+    /// Limits of the margins, in the order of [`crate::Scene::margins`].
     pub margins: Vec<MarginEntry>,
-    /// Travel that the sliders have, mm from nominal.
+    /// Least and greatest travel of the sliders, mm from nominal.
     pub stroke: (f64, f64),
-    /// Below these V the board slows down, stops and rests.
+    /// Voltages below which the board slows down, stops and rests.
     pub supply: [f64; 3],
-    /// The channel of the converter that measures the servos' rail, and the volts there.
+    /// Channel of the converter that measures the servos' rail, and the volts there; none if it is
+    /// not measured.
     pub rail: Option<(u8, f64)>,
-    /// Its floor, weight, feet, and what drives its legs.
+    /// Floor, mass, feet, and the drive of the legs.
     pub floor: Floor,
-    /// What its servos may be taken for.
+    /// The models of a servo.
     pub models: Vec<ModelEntry>,
-    /// Frames without motion after which it stands still.
+    /// Frames without motion after which the robot counts as standing.
     pub still: u64,
-    /// The words that the page may send: they mean the same to every robot.
+    /// Words of the console that mean the same to every robot.
     pub words: Vec<&'static str>,
 }
 
 impl Description {
-    /// Of a robot.
+    /// Describes a robot.
     #[must_use]
     pub fn of(robot: &Robot) -> Self {
         let servos = robot
@@ -219,20 +220,20 @@ impl Description {
     }
 }
 
-/// The core's own.
+/// The version of the core.
 fn version() -> String {
     let mut version = String::new();
     Text::Version.print(&mut version);
     version
 }
 
-/// The words that are reserved. A gait can have the name of any other.
+/// The reserved words of the console, which no gait may have as its name.
 fn words() -> Vec<&'static str> {
     let reserved = Word::ALL.iter().filter(|word| word.is_reserved());
     reserved.map(|word| word.text()).collect()
 }
 
-/// What each link is, and the number of its mirror image.
+/// The name of each link, and the number of its mirror image.
 const LINKS: [(&str, usize); 20] = [
     ("head base", 0),
     ("head crank, left", 4),
@@ -294,18 +295,18 @@ fn lengths(robot: &Robot) -> Vec<LinkEntry> {
     links.chain(legs).chain(aside).chain([mount]).collect()
 }
 
-/// A prediction as the page reads it.
+/// The movement of a cycle as the page reads it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Way {
-    /// mm in a cycle; none where that is undecided.
+pub struct Movement {
+    /// Ahead, mm; none if it is undecided.
     forward: Option<f64>,
-    /// mm in a cycle.
+    /// To the left, mm; none if it is undecided.
     left: Option<f64>,
-    /// deg in a cycle.
+    /// Counter-clockwise, deg; none if it is undecided.
     turn: Option<f64>,
 }
 
-impl From<Travel> for Way {
+impl From<Travel> for Movement {
     fn from(way: Travel) -> Self {
         Self {
             forward: Some(way.forward),
@@ -315,7 +316,7 @@ impl From<Travel> for Way {
     }
 }
 
-impl From<Prediction> for Way {
+impl From<Prediction> for Movement {
     fn from(way: Prediction) -> Self {
         let Prediction {
             forward,
@@ -330,29 +331,28 @@ impl From<Prediction> for Way {
     }
 }
 
-impl Way {
-    /// mm ahead in a cycle, where that is decided.
+impl Movement {
+    /// The movement ahead, mm; none if it is undecided.
     #[must_use]
     pub fn forward(&self) -> Option<f64> {
         self.forward
     }
 }
 
-/// What a cycle of a gait comes to.
+/// The prediction of a cycle of a gait.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Outlook {
-    /// Where it leads.
+    /// Movement of the body.
     #[serde(flatten)]
-    pub way: Way,
-    /// How far its legs lag at most, deg; none where they are rigid.
+    pub way: Movement,
+    /// Largest lag of a leg, deg; none if legs are rigid.
     pub lag: Option<f64>,
-    /// Its way over that of rigid legs; none where they are rigid, or it gets nowhere with
-    /// them.
+    /// Its movement over that of rigid legs; none if legs are rigid, or rigid legs go nowhere.
     pub share: Option<f64>,
 }
 
 impl Outlook {
-    /// Of a gait on a robot's ground of now, with its servos of now.
+    /// Predicts a gait with the present floor and servos of a twin.
     #[must_use]
     pub fn of(twin: &Twin, gait: &CheckedGait) -> Self {
         let outlook = Self::ideal(gait, twin.ground());
@@ -362,7 +362,7 @@ impl Outlook {
         let way = outlook.way;
         let went = twin.cycle(gait).travel();
         Self {
-            way: Way {
+            way: Movement {
                 forward: way.forward.and(Some(went.forward)),
                 left: way.left.and(Some(went.left)),
                 turn: way.turn.and(Some(went.turn)),
@@ -371,7 +371,7 @@ impl Outlook {
         }
     }
 
-    /// With servos that are where their pulses say.
+    /// Predicts a gait with ideal servos.
     fn ideal(gait: &CheckedGait, ground: &Ground) -> Self {
         match Sprung::of(gait, ground) {
             Some(Sprung { way, lag, share }) => Self {

@@ -1,103 +1,41 @@
-//! A gait that is being drawn: the point of head or tail goes round a closed line.
+//! A gait that is drawn: the point of head or tail follows a closed line.
 //!
-//! A hand's line has corners, which no servo follows. So what is kept of it is its first few
-//! harmonics, gone through at an even speed. Two servos then follow by the robot's inverse
-//! kinematics, and every sample is checked as that of any gait of a robot.toml. What
-//! is refused comes with the nearest smaller size, about the neutral point, and the nearest
-//! longer time that would do.
+//! A line drawn by hand has corners, which no servo follows. So only its first few harmonics are
+//! kept, passed at an even speed. Two servos then follow by the robot's inverse kinematics, and
+//! every sample is checked as for any gait of a robot.toml.
 
 use std::f64::consts::TAU;
-use std::fmt::Write;
 
-use lizard_kinematics::End;
-use lizard_robot::Robot;
-use lizard_twin::Twin;
+use lizard_kinematics::{End, Vector};
+use lizard_robot::{Harmonic, Path, Robot};
 use serde::{Deserialize, Serialize};
 
 use crate::room::neutral;
-use crate::trial::{
-    Instead, LONGEST, NoTrial, Trial, nearest, put_into, tried, with, without_gaits,
-};
 
 /// Points at which a line is sampled.
 const SAMPLES: usize = 256;
 /// Points of the line that is shown.
 const SHOWN: usize = 128;
-/// The smallest size that is offered, in hundredths.
-const LEAST_SIZE: i64 = 5;
-/// Harmonics smaller than this are left out, mm.
+/// The smallest amplitude of a harmonic that is written, mm.
 const LEAST: f64 = 0.05;
 /// Most harmonics that a robot.toml takes.
 const MOST_TERMS: usize = 16;
 
-/// A gait as a line that was drawn.
+/// A gait along a line that was drawn.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Drawn {
-    /// Its name in robot.toml.
+    /// Name of the gait in robot.toml.
     pub name: String,
-    /// `head` or `tail`.
+    /// End whose point follows the line: `head` or `tail`.
     pub end: String,
-    /// Time of a round, s.
+    /// Time of a cycle, s.
     pub period: f64,
-    /// The line's size over that which was drawn, about the neutral point.
+    /// Scale of the line about the neutral point.
     pub size: f64,
-    /// How many harmonics are kept of it, 1 to 16.
+    /// Number of harmonics that are kept, 1 to 16.
     pub terms: usize,
-    /// The line, mm in the end's own frame; its end is joined to its beginning.
+    /// Points of the line, mm in the end's own frame; the last is joined to the first.
     pub points: Vec<[f64; 2]>,
-}
-
-/// A coordinate of the line.
-struct Series {
-    centre: f64,
-    /// Amplitude, mm, and shift, in periods of the term; from the first harmonic on.
-    terms: Vec<(f64, f64)>,
-}
-
-impl Series {
-    fn of(values: &[f64], terms: usize) -> Self {
-        let mean = |of: &dyn Fn(f64, f64) -> f64| {
-            let each = values.iter().enumerate();
-            let sum: f64 = each
-                .map(|(i, value)| of(*value, i as f64 / values.len() as f64))
-                .sum();
-            sum / values.len() as f64
-        };
-        let term = |k: usize| {
-            let cosine = 2.0 * mean(&|value, phase| value * (TAU * k as f64 * phase).cos());
-            let sine = 2.0 * mean(&|value, phase| value * (TAU * k as f64 * phase).sin());
-            // To the digits of the text, without the sign of a zero.
-            let shift = (cosine.atan2(sine) / TAU * 1e4).round() / 1e4 + 0.0;
-            (cosine.hypot(sine), shift)
-        };
-        Self {
-            centre: mean(&|value, _| value),
-            terms: (1..=terms.clamp(1, MOST_TERMS)).map(term).collect(),
-        }
-    }
-
-    fn at(&self, phase: f64) -> f64 {
-        let each = self.terms.iter().enumerate();
-        let sum: f64 = each
-            .map(|(i, (amplitude, shift))| {
-                amplitude * (TAU * ((i + 1) as f64 * phase + shift)).sin()
-            })
-            .sum();
-        self.centre + sum
-    }
-
-    /// As robot.toml has it.
-    fn text(&self) -> String {
-        let each = self.terms.iter().enumerate();
-        let each = each.filter(|(_, (amplitude, _))| *amplitude >= LEAST);
-        let terms: Vec<_> = each
-            .map(|(i, (amplitude, shift))| {
-                let k = i + 1;
-                format!("{{ k = {k}, amplitude = {amplitude:.2}, shift = {shift:.4} }}")
-            })
-            .collect();
-        format!("[{}]", terms.join(", "))
-    }
 }
 
 impl Drawn {
@@ -105,93 +43,85 @@ impl Drawn {
         End::ALL.into_iter().find(|end| end.name() == self.end)
     }
 
-    /// Its two coordinates, at an even speed; none of a line without length.
-    fn series(&self, neutral: [f64; 2]) -> Option<[Series; 2]> {
-        let scaled = |of: usize, value: f64| neutral[of] + self.size * (value - neutral[of]);
-        let points: Vec<[f64; 2]> = self
-            .points
-            .iter()
-            .map(|[x, y]| [scaled(0, *x), scaled(1, *y)])
-            .collect();
+    /// The path that the point follows; none of a line without length.
+    fn smoothed(&self, robot: &Robot) -> Option<Path> {
+        let neutral = neutral(robot, self.end()?);
+        let scaled = |[x, y]: &[f64; 2]| {
+            let about = |of: usize, value: f64| neutral[of] + self.size * (value - neutral[of]);
+            [about(0, *x), about(1, *y)]
+        };
+        let points: Vec<[f64; 2]> = self.points.iter().map(scaled).collect();
         let even = evenly(&points)?;
-        Some([0, 1].map(|of| {
+        let terms = self.terms.clamp(1, MOST_TERMS);
+        let [(cx, x), (cy, y)] = [0, 1].map(|of| {
             let values: Vec<f64> = even.iter().map(|point| point[of]).collect();
-            Series::of(&values, self.terms)
-        }))
+            harmonics(&values, terms)
+        });
+        let centre = [cx, cy];
+        Some(Path { centre, x, y })
     }
 
-    /// Its tables for robot.toml.
-    fn table(&self, neutral: [f64; 2]) -> Option<String> {
-        let [x, y] = self.series(neutral)?;
-        let mut text = format!(
-            "[gait.{name}]\nperiod = {period:?}\n[gait.{name}.{end}]\n",
-            name = self.name,
-            end = self.end,
-            period = (self.period * 1000.0).round() / 1000.0,
-        );
-        let _ = writeln!(text, "centre = [{:.2}, {:.2}]", x.centre, y.centre);
-        let _ = writeln!(text, "x = {}\ny = {}", x.text(), y.text());
-        Some(text)
+    /// Writes the gait as tables of robot.toml; none of a line without length.
+    #[must_use]
+    pub fn table(&self, robot: &Robot) -> Option<String> {
+        let path = self.smoothed(robot)?;
+        let series = |terms: &[Harmonic]| {
+            let kept = terms.iter().filter(|term| term.amplitude >= LEAST);
+            let text = |Harmonic {
+                            k,
+                            amplitude,
+                            shift,
+                        }: &Harmonic| {
+                format!("{{ k = {k}, amplitude = {amplitude:.2}, shift = {shift:.4} }}")
+            };
+            kept.map(text).collect::<Vec<_>>().join(", ")
+        };
+        let ([across, outward], x, y) = (path.centre, series(&path.x), series(&path.y));
+        let (name, end) = (&self.name, &self.end);
+        let period = (self.period * 1000.0).round() / 1000.0;
+        Some(format!(
+            "[gait.{name}]\nperiod = {period:?}\n[gait.{name}.{end}]\n\
+             centre = [{across:.2}, {outward:.2}]\nx = [{x}]\ny = [{y}]\n"
+        ))
     }
 
-    /// The line that the point really goes along, mm in the end's own frame; none without a
-    /// line.
+    /// Points of the line that the point follows, mm in the end's own frame; none of a line
+    /// without length.
     #[must_use]
     pub fn path(&self, robot: &Robot) -> Option<Vec<[f64; 2]>> {
-        let [x, y] = self.series(neutral(robot, self.end()?))?;
-        let phases = (0..SHOWN).map(|i| i as f64 / SHOWN as f64);
-        Some(phases.map(|phase| [x.at(phase), y.at(phase)]).collect())
-    }
-
-    /// The text of a robot with this gait: in place of the one of its name, or below all; none
-    /// without a line.
-    #[must_use]
-    pub fn put_into(&self, text: &str, robot: &Robot) -> Option<String> {
-        let table = self.table(neutral(robot, self.end()?))?;
-        Some(put_into(text, &self.name, &table))
-    }
-
-    /// Tries it on the robot of a text, which stands on this twin's floor with its servos; none
-    /// without a line.
-    #[must_use]
-    pub fn trial(&self, text: &str, twin: &Twin) -> Option<Result<Trial, NoTrial>> {
-        let neutral = neutral(twin.robot(), self.end()?);
-        let rest = without_gaits(text);
-        let table = self.table(neutral)?;
-        Some(tried(&rest, &table, twin).map_err(|refused| NoTrial {
-            refused,
-            instead: self.instead(&rest, neutral),
-        }))
-    }
-
-    fn instead(&self, rest: &str, neutral: [f64; 2]) -> Vec<Instead> {
-        let does = |drawn: &Self| {
-            let table = drawn.table(neutral);
-            table.is_some_and(|table| with(rest, &table).is_ok())
+        let path = self.smoothed(robot)?;
+        let point = |i: usize| {
+            let Vector { x, y } = path.at(i as f64 / SHOWN as f64);
+            [x, y]
         };
-        let size = |hundredths: i64| Self {
-            size: hundredths as f64 / 100.0,
-            ..self.clone()
-        };
-        let period = |hundredths: i64| Self {
-            period: hundredths as f64 / 100.0,
-            ..self.clone()
-        };
-        let wanted = (self.size * 100.0).ceil() as i64 - 1;
-        let smaller = nearest(wanted, LEAST_SIZE, |hundredths| does(&size(hundredths)));
-        let wanted = (self.period * 100.0).floor() as i64 + 1;
-        let longer = nearest(wanted, LONGEST, |hundredths| does(&period(hundredths)));
-        let instead = |what, hundredths: i64| Instead {
-            what,
-            value: hundredths as f64 / 100.0,
-        };
-        let smaller = smaller.map(|size| instead("size", size));
-        let longer = longer.map(|period| instead("period", period));
-        smaller.into_iter().chain(longer).collect()
+        Some((0..SHOWN).map(point).collect())
     }
 }
 
-/// Points of a closed line at even distances along it; none of one without length.
+/// The mean of evenly spaced values over a cycle, and their first harmonics.
+fn harmonics(values: &[f64], terms: usize) -> (f64, Vec<Harmonic>) {
+    let mean = |of: &dyn Fn(f64, f64) -> f64| {
+        let each = values.iter().enumerate();
+        let sum: f64 = each
+            .map(|(i, value)| of(*value, i as f64 / values.len() as f64))
+            .sum();
+        sum / values.len() as f64
+    };
+    let term = |k: usize| {
+        let k = k as f64;
+        let cosine = 2.0 * mean(&|value, phase| value * (TAU * k * phase).cos());
+        let sine = 2.0 * mean(&|value, phase| value * (TAU * k * phase).sin());
+        Harmonic {
+            k,
+            amplitude: cosine.hypot(sine),
+            // To the digits of the text, without the sign of a zero.
+            shift: (cosine.atan2(sine) / TAU * 1e4).round() / 1e4 + 0.0,
+        }
+    };
+    (mean(&|value, _| value), (1..=terms).map(term).collect())
+}
+
+/// Samples a closed line at even distances along it; none of a line without length.
 fn evenly(points: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
     let next = |i: usize| points[(i + 1) % points.len()];
     let long = |i: usize| (next(i)[0] - points[i][0]).hypot(next(i)[1] - points[i][1]);
@@ -223,6 +153,7 @@ fn evenly(points: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
 mod tests {
     use super::*;
     use crate::paper::{TEXT, paper, with_twin};
+    use crate::trial::Made;
 
     /// A circle about the neutral point of an end.
     fn circle(robot: &Robot, end: End, radius: f64) -> Drawn {
@@ -246,13 +177,14 @@ mod tests {
         let (robot, twin) = with_twin();
         for end in End::ALL {
             let drawn = circle(&robot, end, 6.0);
-            let known = drawn.trial(TEXT, &twin).expect("a line").expect("it goes");
+            let made = Made::Drawn(drawn);
+            let known = made.trial(&twin).expect("a line").expect("it goes");
             assert!(
                 known.table.contains(&format!("[gait.mine.{end}]")),
                 "{}",
                 known.table
             );
-            let text = drawn.put_into(TEXT, &robot).expect("a line");
+            let text = made.put_into(TEXT, &robot).expect("a line");
             let robot = Robot::parse(&text).expect("right");
             let gait = robot.gait("mine").expect("there");
             let [x, y] = neutral(&robot, end);
@@ -274,7 +206,7 @@ mod tests {
     fn a_circle_is_one_harmonic_and_its_line_is_the_circle() {
         let robot = paper();
         let drawn = circle(&robot, End::Head, 6.0);
-        let table = drawn.table(neutral(&robot, End::Head)).expect("a line");
+        let table = drawn.table(&robot).expect("a line");
         assert!(
             table.contains("k = 1") && !table.contains("k = 2"),
             "{table}"
@@ -286,13 +218,11 @@ mod tests {
     }
 
     #[test]
-    fn what_is_refused_comes_with_a_size_and_a_time_that_do_and_are_the_nearest() {
+    fn a_refusal_offers_the_nearest_size_and_the_nearest_time_that_are_possible() {
         let (robot, twin) = with_twin();
         let drawn = circle(&robot, End::Head, 40.0);
-        let no = drawn
-            .trial(TEXT, &twin)
-            .expect("a line")
-            .expect_err("it is too large");
+        let trial = |drawn: &Drawn| Made::Drawn(drawn.clone()).trial(&twin).expect("a line");
+        let no = trial(&drawn).expect_err("it is too large");
         let [size] = no.instead.as_slice() else {
             panic!("no time would do: {:?}", no.instead);
         };
@@ -301,7 +231,7 @@ mod tests {
             size,
             ..drawn.clone()
         };
-        let does = |drawn: Drawn| drawn.trial(TEXT, &twin).expect("a line").is_ok();
+        let does = |drawn: Drawn| trial(&drawn).is_ok();
         assert!(
             does(with(size.value)) && !does(with(size.value + 0.01)),
             "{}",
@@ -311,10 +241,7 @@ mod tests {
             period: 0.2,
             ..circle(&robot, End::Head, 8.0)
         };
-        let no = fast
-            .trial(TEXT, &twin)
-            .expect("a line")
-            .expect_err("it is too fast");
+        let no = trial(&fast).expect_err("it is too fast");
         let slow = no.instead.iter().find(|instead| instead.what == "period");
         let slow = slow.expect("a longer time does").value;
         let with = |period: f64| Drawn {
@@ -328,8 +255,8 @@ mod tests {
     fn a_point_is_no_line() {
         let (robot, twin) = with_twin();
         let mut drawn = circle(&robot, End::Tail, 0.0);
-        assert!(drawn.trial(TEXT, &twin).is_none());
+        assert!(Made::Drawn(drawn.clone()).trial(&twin).is_none());
         drawn.points.clear();
-        assert!(drawn.path(&robot).is_none() && drawn.put_into(TEXT, &robot).is_none());
+        assert!(drawn.path(&robot).is_none() && drawn.table(&robot).is_none());
     }
 }

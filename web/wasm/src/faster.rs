@@ -1,23 +1,23 @@
-//! A gait that walks faster than the one that is being made.
+//! The search of a gait that walks faster than the one that is being made.
 //!
-//! The search of `lizard tune` takes minutes, and here there is one thread. So it goes on one
-//! gait at a time: whoever asks can say how far it is, show the best so far, and stop at
-//! any time. The kinds of gait take turns, round by round; they do not depend on each other, so
-//! the gait that is found in the end is that of `lizard tune` with the same numbers.
+//! The search of `lizard tune` takes minutes, and the page has one thread for it. So it tries one
+//! gait at a time: its caller can show the progress and the best gait so far, and stop at any
+//! time. The kinds of gait take turns, round by round; they do not depend on each other, so the
+//! final gait is that of `lizard tune` with the same numbers.
 
-use lizard_robot::{Ground, Robot};
+use lizard_robot::Bars;
 use lizard_tune::{Comparison, Kind, NoTuning, Scored, Search, Tuning, trials};
+use lizard_twin::Twin;
 use serde::{Deserialize, Serialize};
 
 use crate::refused::Refused;
-use crate::trial::{Bars, with, without_gaits};
 
-/// What is wanted: the gait that is to be surpassed, and how long to search.
+/// The task of a search: the given gait and the number of rounds.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct Wish {
-    /// The gait.
+    /// The given gait.
     pub bars: Bars,
-    /// How fast a servo may turn, deg/s; as in that gait where nothing is said.
+    /// Largest speed of a servo, deg/s; none for that of the given gait.
     pub rate: Option<f64>,
     /// Rounds of the search, as `lizard tune --rounds` has them.
     pub rounds: usize,
@@ -25,68 +25,68 @@ pub struct Wish {
     pub seed: u64,
 }
 
-/// What a search that has begun is going to do.
+/// The extent of a search.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Begun {
-    /// How many gaits it tries.
+    /// Number of gaits that it tries.
     pub all: usize,
-    /// How fast a servo may turn, deg/s.
+    /// Largest speed of a servo, deg/s.
     pub rate: f64,
 }
 
-/// How far a search is.
+/// The progress of a search.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Progress {
-    /// How many gaits it has tried.
+    /// Number of gaits that it has tried.
     pub done: usize,
-    /// The speed of the best so far, which 95 % of the random robots exceed, mm/s or deg/s.
+    /// Score of the best gait so far: the speed that 95 % of the random robots exceed, mm/s or deg/s.
     pub best: Option<f64>,
 }
 
-/// What was found.
+/// The result of a search.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Found {
-    /// The gait, which has the name of the one of before.
+    /// The gait that was found, with the name of the given one.
     pub bars: Bars,
-    /// Both gaits on random robots that the search has not seen.
+    /// Both gaits on random robots that the search has not used.
     pub comparison: Comparison,
-    /// Whether it surpasses the one of before.
+    /// True if it is faster than the given gait.
     pub better: bool,
-    /// By what share, where 5 % of the robots are slower.
+    /// Gain in the speed that 95 % of the robots exceed, as a share.
     pub gain: f64,
 }
 
-/// A search under way.
+/// A search in progress.
 #[derive(Debug, Clone)]
 pub struct Faster {
     tuning: Tuning,
     searches: [Search; Kind::ALL.len()],
-    /// The kind whose round it is.
+    /// Index of the kind that is being tried.
     turn: usize,
-    /// The scores of the round so far.
+    /// Scores of this round so far.
     scores: Vec<Option<f64>>,
     progress: Progress,
     all: usize,
 }
 
 impl Faster {
-    /// Begins a search for the robot of a text on this ground. Takes as long as a few trials.
+    /// Prepares a search with the robot and the floor of a twin. Takes as long as a few trials.
     ///
     /// # Errors
-    /// What the gait of the wish breaks, or why it cannot be made faster.
-    pub fn begin(text: &str, ground: &Ground, wish: &Wish) -> Result<Self, Refused> {
-        let said = |key: &str, refused: String| Refused {
+    /// The limit that the given gait breaks, or the reason why it cannot be made faster.
+    pub fn begin(twin: &Twin, wish: &Wish) -> Result<Self, Refused> {
+        let refusal = |key: &str, refused: String| Refused {
             refused,
             line: None,
             key: key.to_string(),
         };
-        let robot: Robot = with(&without_gaits(text), &wish.bars.table())
-            .map_err(|error| said(&error.key, format!("{}: {}", error.key, error.problem)))?;
-        let gait = &robot.gaits()[1];
+        let robot = twin.robot().with_gait(&wish.bars.table());
+        let robot = robot.map_err(Refused::of_gait)?;
+        let (gait, ground) = (&robot.gaits()[1], twin.ground());
         let tuning = Tuning::new(&robot, ground, gait, wish.rate, &wish.bars.name, wish.seed);
         let tuning = tuning.map_err(|no| match no {
-            NoTuning::Goal(_) => said("", no.to_string()),
-            NoTuning::Rate { .. } => said("rate", format!("servos of at most {no}")),
+            NoTuning::Goal(_) => refusal("", no.to_string()),
+            NoTuning::Rate { .. } => refusal("rate", format!("servos of at most {no}")),
         })?;
         Ok(Self {
             searches: Kind::ALL.map(|kind| tuning.search(kind)),
@@ -101,7 +101,7 @@ impl Faster {
         })
     }
 
-    /// What it is going to do.
+    /// The extent of this search.
     pub fn begun(&self) -> Begun {
         Begun {
             all: self.all,
@@ -109,7 +109,7 @@ impl Faster {
         }
     }
 
-    /// Tries one more gait, unless all are tried.
+    /// Tries the next gait, unless all are tried.
     pub fn step(&mut self) -> Progress {
         if self.progress.done < self.all {
             let search = &mut self.searches[self.turn];
@@ -121,19 +121,19 @@ impl Faster {
                 self.progress.best = score;
             }
             if self.scores.len() == search.trials().len() {
-                search.judged(self.scores.drain(..));
+                search.score(self.scores.drain(..));
                 self.turn = (self.turn + 1) % Kind::ALL.len();
             }
         }
         self.progress.clone()
     }
 
-    /// The best so far, beside the gait of before on so many random robots; none as long as no
-    /// gait is one that the robot's limits allow.
+    /// Compares the best gait so far with the given one, on this number of random robots; none
+    /// until a gait is within the robot's limits.
     pub fn found(&self, robots: usize) -> Option<Found> {
         let mut searches = self.searches.clone();
         if !self.scores.is_empty() {
-            searches[self.turn].judged(self.scores.iter().copied());
+            searches[self.turn].score(self.scores.iter().copied());
         }
         let kinds = Kind::ALL.into_iter().zip(&searches);
         let scored = kinds.flat_map(|(kind, search)| {
@@ -147,7 +147,7 @@ impl Faster {
         let built = self.tuning.best(scored.collect())?;
         let comparison = self.tuning.compare(&built, robots);
         Some(Found {
-            bars: Bars::of(built.gait())?,
+            bars: built.gait().bars()?,
             better: comparison.is_better(),
             gain: comparison.gain(),
             comparison,
@@ -157,16 +157,14 @@ impl Faster {
 
 #[cfg(test)]
 mod tests {
-    use lizard_twin::{ServoModel, Twin};
-
     use super::*;
-    use crate::paper::{TEXT, paper};
-    use crate::trial::trial;
+    use crate::paper::{paper, with_twin};
+    use crate::trial::Made;
 
     fn wish(name: &str) -> Wish {
         let gait = paper().gait(name).cloned().expect(name);
         Wish {
-            bars: Bars::of(&gait).expect("bars"),
+            bars: gait.bars().expect("bars"),
             rate: None,
             rounds: 0,
             seed: 3,
@@ -174,15 +172,15 @@ mod tests {
     }
 
     fn refused(wish: &Wish) -> String {
-        Faster::begin(TEXT, paper().ground(), wish)
+        Faster::begin(&with_twin().1, wish)
             .expect_err("refused")
             .refused
     }
 
     #[test]
     fn a_search_that_is_stopped_has_the_best_of_what_it_tried() {
-        let robot = paper();
-        let mut faster = Faster::begin(TEXT, robot.ground(), &wish("walk")).expect("it begins");
+        let (robot, twin) = with_twin();
+        let mut faster = Faster::begin(&twin, &wish("walk")).expect("it begins");
         assert_eq!(faster.begun().all, 40);
         assert_eq!(faster.found(20), None, "nothing is tried yet");
         let best = (0..3).map(|_| faster.step()).last().expect("three").best;
@@ -206,15 +204,15 @@ mod tests {
         let alone = tuning.best(scored).expect("it walks");
         assert_eq!(found.comparison, tuning.compare(&alone, 20));
         // What the page takes over is the gait that was found.
-        assert_eq!(found.bars.table(), alone.fragment());
-        let twin = Twin::new(&robot, ServoModel::SG90);
-        let tried = trial(TEXT, &found.bars, &twin).expect("it walks");
+        assert_eq!(found.bars.table(), alone.table());
+        let tried = Made::Bars(found.bars).trial(&twin).expect("bars");
+        let tried = tried.expect("it walks");
         assert_eq!(tried.speed, found.comparison.tuned.rate);
         assert_eq!(faster.step().done, 4, "it can go on");
     }
 
     #[test]
-    fn what_cannot_be_made_faster_says_why() {
+    fn a_gait_that_cannot_be_made_faster_is_refused_with_the_reason() {
         assert!(refused(&wish("arc-left")).contains("goes ahead and turns"));
         let rate = Some(900.0);
         assert_eq!(

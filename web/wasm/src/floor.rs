@@ -1,28 +1,25 @@
-//! What the page's sliders set: floor, weight, feet, and what drives the legs.
+//! The values of the page's sliders: floor, mass, feet, and the drive of the legs.
 
-use lizard_robot::{Body, Drive, Ground, Kind, Robot, Spring, Stance};
+use lizard_robot::{Body, Drive, Ground, Kind, Robot, Stance};
 use serde::{Deserialize, Serialize};
 
-/// What drives the legs, under the word that robot.toml has for it.
+/// The kind of drive of the legs, by its name in robot.toml.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Legs {
-    /// A bar.
+    /// A rigid strut.
     Rigid,
-    /// A slotted strut, which yields one way.
+    /// A slotted strut with a spring, which yields one way.
     Strut,
-    /// A spring both ways.
-    Spring,
 }
 
 impl Legs {
-    /// The word in robot.toml.
+    /// The name of the kind in robot.toml.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
             Self::Rigid => "rigid",
             Self::Strut => "strut",
-            Self::Spring => "spring",
         }
     }
 
@@ -30,13 +27,11 @@ impl Legs {
         match kind {
             Kind::Rigid => Self::Rigid,
             Kind::Strut(_) => Self::Strut,
-            Kind::Spring(_) => Self::Spring,
         }
     }
 }
 
-/// What a robot stands on, what it weighs and what drives its legs. The rest of the ground is
-/// the robot's own.
+/// The floor, the mass and the drive of the legs. The rest of the ground is the robot's own.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Floor {
     /// Friction of a pad that slides forward, above 0.
@@ -45,39 +40,25 @@ pub struct Floor {
     pub ratio: f64,
     /// Mass of the robot, g, above 0.
     pub mass: f64,
-    /// What drives the legs.
+    /// Kind of drive of the legs.
     pub kind: Legs,
-    /// Of an ideal spring, N mm/deg, above 0.
-    pub stiffness: f64,
-    /// Torque up to which a leg on it does not lag at all, N mm.
-    pub preload: f64,
-    /// What the spring in a strut pulls, N, above 0.
+    /// Pull of the spring in a strut, N, above 0.
     pub force: f64,
-    /// What it pulls more for each mm, N/mm.
+    /// Rate of the spring in a strut, N/mm.
     pub rate: f64,
-    /// A leg's play to either side, deg.
+    /// Play of a leg to either side, deg.
     pub play: f64,
-    /// What lifts a foot by a mm, N, above 0.
+    /// Stiffness of a foot, N/mm, above 0.
     pub leaf: f64,
-    /// By how much the front left foot is too long, mm.
+    /// Excess length of the front left foot, mm.
     pub twist: f64,
 }
 
-/// What an ideal spring has where the robot has none, N mm/deg.
-const STIFFNESS: f64 = 10.0;
-
 impl Floor {
-    /// As a robot has it.
+    /// The values of a robot.
     #[must_use]
     pub fn of(robot: &Robot) -> Self {
         let ground = robot.ground();
-        let spring = match ground.drive.kind {
-            Kind::Spring(spring) => spring,
-            _ => Spring {
-                rate: STIFFNESS,
-                preload: 0.0,
-            },
-        };
         let own = robot.strut_of(&robot.parts().spring);
         let strut = ground.drive.strut().unwrap_or(&own);
         Self {
@@ -85,8 +66,6 @@ impl Floor {
             ratio: ground.ratio,
             mass: ground.body.mass,
             kind: Legs::of(&ground.drive.kind),
-            stiffness: spring.rate,
-            preload: spring.preload,
             force: strut.force,
             rate: strut.rate,
             play: ground.drive.play,
@@ -95,7 +74,7 @@ impl Floor {
         }
     }
 
-    /// The same where no value is out of its range: such a one is the robot's own.
+    /// Replaces every value that is out of range by the robot's own.
     #[must_use]
     pub fn within(self, robot: &Robot) -> Self {
         let own = Self::of(robot);
@@ -112,8 +91,6 @@ impl Floor {
             ratio: pick(self.ratio, own.ratio),
             mass: pick(self.mass, own.mass),
             kind: self.kind,
-            stiffness: pick(self.stiffness, own.stiffness),
-            preload: least(self.preload, own.preload),
             force: pick(self.force, own.force),
             rate: least(self.rate, own.rate),
             play: least(self.play, own.play),
@@ -125,7 +102,7 @@ impl Floor {
         }
     }
 
-    /// A robot's ground with these values.
+    /// The robot's ground with these values.
     #[must_use]
     pub fn over(self, robot: &Robot) -> Ground {
         let (floor, ground) = (self.within(robot), robot.ground());
@@ -144,10 +121,6 @@ impl Floor {
             drive: Drive {
                 kind: match floor.kind {
                     Legs::Strut => Kind::Strut(robot.strut_with(floor.force, floor.rate)),
-                    Legs::Spring => Kind::Spring(Spring {
-                        rate: floor.stiffness,
-                        preload: floor.preload,
-                    }),
                     Legs::Rigid => Kind::Rigid,
                 },
                 play: floor.play,
@@ -168,15 +141,13 @@ mod tests {
     }
 
     #[test]
-    fn what_is_out_of_range_stays_as_it_was() {
+    fn a_value_out_of_range_is_the_robots_own() {
         for more in ["", "[leg.drive]\nkind = \"strut\"\nforce = 3.0\nplay = 0.5"] {
             let robot = robot(more);
             let nonsense = Floor {
                 friction: 0.0,
                 ratio: -1.0,
                 mass: f64::NAN,
-                stiffness: f64::NAN,
-                preload: f64::NAN,
                 force: 0.0,
                 rate: -1.0,
                 play: -0.1,
@@ -189,10 +160,9 @@ mod tests {
     }
 
     #[test]
-    fn a_floor_of_a_robot_is_its_ground() {
+    fn the_floor_of_a_robot_is_its_ground() {
         for more in [
             "",
-            "[leg.drive]\nkind = \"spring\"\nstiffness = 5.0\npreload = 12.0",
             "[leg.drive]\nkind = \"strut\"\nforce = 2.5\nplay = 0.4",
             "[feet]\nstiffness = 2.0\ntwist = -0.6",
         ] {

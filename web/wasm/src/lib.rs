@@ -1,17 +1,20 @@
-//! The robot for the page: all that the browser has to know of a lizard, and no formula
+//! The robot for the page: everything that the browser computes of a lizard, without a formula
 //! of its own.
 //!
-//! The page gives the text of a robot.toml and then, fifty times a second, four pulse
-//! widths, as the pins of an UNO have them. It gets back where every joint is, how far
-//! each singularity, whether the guard would have sent this pose, and where the body is on
-//! the floor. [`Page`] holds all of that; `abi` is the door to JavaScript, and the
-//! one place with `unsafe` attributes.
+//! The page gives the text of a robot.toml and then, fifty times a second, four pulse widths, as
+//! the pins of an UNO have them. It gets back the place of every joint, the margin to every
+//! singularity, the guard's refusal of this pose, and the place of the body on the floor. [`Page`]
+//! holds all of that; `abi` is the interface to JavaScript, and the one place with `unsafe`
+//! attributes.
+//!
+//! # When not to use it
+//! The interface is made for this page and changes with it. A program in Rust uses `lizard-robot`
+//! and `lizard-twin` directly; another page can take the JSON of `abi` as an example.
 
 mod abi;
 mod core_run;
 mod description;
 mod drawn;
-mod edit;
 #[cfg(feature = "tune")]
 mod faster;
 mod floor;
@@ -25,12 +28,11 @@ mod room;
 mod scene;
 mod trial;
 
-pub use core_run::{CoreRun, Said};
+pub use core_run::{CoreFrame, CoreRun};
 pub use description::{
-    Description, GaitEntry, LinkEntry, MarginEntry, ModelEntry, Outlook, ServoEntry, Way,
+    Description, GaitEntry, LinkEntry, MarginEntry, ModelEntry, Movement, Outlook, ServoEntry,
 };
 pub use drawn::Drawn;
-pub use edit::{NoSuchLength, with_number};
 #[cfg(feature = "tune")]
 pub use faster::{Begun, Faster, Found, Progress, Wish};
 pub use floor::{Floor, Legs};
@@ -40,4 +42,4 @@ pub use place::Place;
 pub use refused::Refused;
 pub use room::Room;
 pub use scene::{LegScene, Margin, Scene, SliderScene, Spot};
-pub use trial::{Bars, Instead, NoTrial, Trial};
+pub use trial::{Instead, Made, NoTrial, Trial};

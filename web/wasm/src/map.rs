@@ -1,5 +1,5 @@
-//! The map of singularities of an end: the plane of its two crank angles, how far every
-//! point of it is from a singularity, and the curves where there is none left.
+//! The map of singularities of an end: the plane of its two crank angles, the margin at every
+//! point of it, and the curves on which the margin is zero.
 
 use lizard_kinematics::{Check, End, Limits, Lizard, Pose, SingularPose, Singularity};
 use lizard_robot::Robot;
@@ -10,49 +10,49 @@ const STEP: f64 = 1.5;
 /// The map's edges, deg: between the change points of the legs.
 const FROM: f64 = 0.0;
 const TO: f64 = 180.0;
-/// The curves are drawn so finely, deg.
+/// Step of the curves, deg.
 const FINE: f64 = 0.5;
 
-/// A point of a curve: left and right crank, deg, in the end's own frame.
+/// A point of the map: left and right crank, deg, in the end's own frame.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MapPoint(
-    /// Left crank.
+    /// Angle of the left crank, deg.
     pub f64,
-    /// Right crank.
+    /// Angle of the right crank, deg.
     pub f64,
 );
 
-/// Singular positions of one kind.
+/// The singular positions of one kind.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Curve {
-    /// What is in line there.
+    /// Name of the links that are in line.
     pub kind: &'static str,
-    /// The positions, in no order.
+    /// The positions, in no particular order.
     pub points: Vec<MapPoint>,
 }
 
-/// The map of an end.
+/// The map of singularities of an end.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Map {
-    /// Head or tail.
+    /// Name of the end: head or tail.
     pub end: String,
     /// Smallest angle of either crank, deg.
     pub from: f64,
-    /// Greatest.
+    /// Greatest angle of either crank, deg.
     pub to: f64,
-    /// Columns, and rows; the first of either is at `from`.
+    /// Number of columns, and of rows; the first of either is at `from`.
     pub size: usize,
-    /// The smallest margin in hundredths, column by column: for each left crank all right
-    /// ones. None where the loop does not close.
+    /// Smallest margins in hundredths, column by column: for each left crank all right ones. None
+    /// if the loop does not close.
     pub margins: Vec<Option<i8>>,
-    /// Whether the end may be there, as `margins`.
+    /// True at points within the limits, in the order of `margins`.
     pub safe: Vec<bool>,
-    /// Where it is singular.
+    /// The singular positions.
     pub curves: Vec<Curve>,
 }
 
 impl Map {
-    /// Of an end of a robot.
+    /// Computes the map of an end.
     #[must_use]
     pub fn of(robot: &Robot, end: End) -> Self {
         let size = ((TO - FROM) / STEP) as usize + 1;
@@ -81,7 +81,7 @@ impl Map {
     }
 }
 
-/// The smallest margin of an end at its crank angles, and whether it is safe.
+/// Computes the smallest margin of an end at its crank angles; true if the limits allow them.
 fn at(lizard: &Lizard, limits: &Limits, end: End, left: f64, right: f64) -> (Option<i8>, bool) {
     let Ok(bars) = lizard.end(end).forward(left, right) else {
         return (None, false);
@@ -122,7 +122,7 @@ fn curves(robot: &Robot, end: End) -> Vec<Curve> {
     .collect()
 }
 
-/// Where a pose is on the map of an end: left and right crank, deg, 0 to 360.
+/// The point of a pose on the map of an end: left and right crank, deg, 0 to 360.
 #[must_use]
 pub fn place(end: End, pose: &Pose) -> MapPoint {
     let angles: [f64; 4] = (*pose).into();

@@ -3,15 +3,15 @@
 use lizard_robot::Robot;
 use lizard_twin::{ServoModel, Twin};
 
-/// Its robot.toml.
+/// The text of robots/paper.toml.
 pub const TEXT: &str = include_str!("../../../robots/paper.toml");
 
-/// The robot.
+/// Reads the paper's robot.
 pub fn paper() -> Robot {
     Robot::parse(TEXT).expect("right")
 }
 
-/// The same, and where its pulses take it with servos that follow them at once.
+/// Reads the paper's robot and makes its twin with ideal servos.
 pub fn with_twin() -> (Robot, Twin) {
     let robot = paper();
     let twin = Twin::new(&robot, ServoModel::IDEAL);

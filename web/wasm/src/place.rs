@@ -1,4 +1,4 @@
-//! Where the body is, as the page draws it.
+//! The place of the body on the floor, in the page's coordinates.
 
 use lizard_robot::{Place as Walked, Travel};
 use serde::{Deserialize, Serialize};
@@ -6,18 +6,18 @@ use serde::{Deserialize, Serialize};
 /// Position and heading of the chassis on the floor.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Place {
-    /// To the right of the start, mm.
+    /// Distance to the right of the start, mm.
     pub x: f64,
-    /// Ahead of the start, mm.
+    /// Distance ahead of the start, mm.
     pub y: f64,
     /// Heading, deg, counter-clockwise from the start's; not wrapped.
     pub heading: f64,
 }
 
 impl Place {
-    /// The way from here to another place, seen from here.
+    /// The movement from this place to another, seen from this one.
     #[must_use]
-    pub fn way_to(self, other: Self) -> Travel {
+    pub fn movement_to(self, other: Self) -> Travel {
         Walked::from(other).seen_from(self.into())
     }
 }
@@ -47,9 +47,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_body_that_looks_to_the_left_and_goes_ahead_goes_to_the_left() {
+    fn a_body_that_faces_left_and_goes_ahead_moves_to_the_left() {
         let place = |x, y, heading| Place { x, y, heading };
-        let way = place(0.0, 0.0, 90.0).way_to(place(-10.0, -2.0, 95.0));
+        let way = place(0.0, 0.0, 90.0).movement_to(place(-10.0, -2.0, 95.0));
         let off = (way.forward - 10.0)
             .hypot(way.left - 2.0)
             .hypot(way.turn - 5.0);

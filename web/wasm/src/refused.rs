@@ -1,33 +1,43 @@
-//! Why a robot.toml or a length will not do.
+//! The refusal of a robot.toml, a length or a gait.
 
+use lizard_robot::Error;
+use lizard_robot::edit::NoSuchKey;
 use serde::Serialize;
 
-use crate::edit::NoSuchLength;
-
-/// A refusal: the sentence that the user sees, and what is to blame.
+/// A refusal: the sentence that the user sees, and its key.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Refused {
-    /// The sentence.
+    /// The sentence for the user.
     pub refused: String,
-    /// Line of the file, from 1, where one is to blame.
+    /// Line of the file, counted from 1; none if the refusal belongs to no line.
     pub line: Option<usize>,
-    /// The key to blame, such as `links.l2`; may be empty.
+    /// Full name of the key, such as `links.l2`; may be empty.
     pub key: String,
 }
 
 impl Refused {
-    /// Of what is wrong with a robot.toml.
-    pub(crate) fn of(error: &lizard_robot::Error) -> Self {
+    /// Refuses a gait whose text the user does not see, so without its line.
+    pub(crate) fn of_gait(error: Error) -> Self {
         Self {
-            refused: error.to_string(),
-            line: error.line,
-            key: error.key.clone(),
+            refused: format!("{}: {}", error.key, error.problem),
+            line: None,
+            key: error.key,
         }
     }
 }
 
-impl From<NoSuchLength> for Refused {
-    fn from(error: NoSuchLength) -> Self {
+impl From<Error> for Refused {
+    fn from(error: Error) -> Self {
+        Self {
+            refused: error.to_string(),
+            line: error.line,
+            key: error.key,
+        }
+    }
+}
+
+impl From<NoSuchKey> for Refused {
+    fn from(error: NoSuchKey) -> Self {
         Self {
             refused: error.to_string(),
             line: None,

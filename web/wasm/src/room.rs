@@ -1,39 +1,39 @@
-//! Where the point of an end may be: the part of its plane that a path can be drawn in.
+//! The room of an end's point: the part of its plane in which a path can be drawn.
 //!
-//! With the other end at neutral a point is allowed where the inverse kinematics has crank
-//! angles for it and the guard accepts the pose with these.
+//! With the other end at neutral, a point is allowed if the inverse kinematics has crank angles
+//! for it and the limits allow the pose with these angles.
 
 use lizard_kinematics::{End, Vector, wrap};
 use lizard_robot::Robot;
 use serde::Serialize;
 
-/// Points of the plane across the whole reach.
+/// Number of points across the reach.
 const POINTS: i32 = 160;
-/// Points around what is allowed.
+/// Number of points that are kept around the allowed ones.
 const RIM: i32 = 2;
-/// Two points are the same within so many mm.
+/// Largest distance of two points that count as the same, mm.
 const NEAR: f64 = 1e-6;
 
-/// The plane of an end's point: mm in the end's own frame, from the middle of its base, outward
+/// The room of an end's point: mm in the end's own frame, from the middle of its base, outward
 /// positive in y.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Room {
     /// The first point of the first row.
     pub from: [f64; 2],
-    /// mm between two points.
+    /// Distance of two points, mm.
     pub step: f64,
-    /// Points in a row.
+    /// Number of points in a row.
     pub columns: usize,
-    /// Whether the end may be there, row by row.
+    /// True at allowed points, row by row.
     pub allowed: Vec<bool>,
-    /// Where the point is in the neutral pose.
+    /// The point in the neutral pose.
     pub neutral: [f64; 2],
-    /// The shafts of its two cranks.
+    /// The shafts of the two cranks.
     pub shafts: [[f64; 2]; 2],
 }
 
 impl Room {
-    /// Of an end of a robot.
+    /// Computes the room of an end.
     #[must_use]
     pub fn of(robot: &Robot, end: End) -> Self {
         let bars = robot.lizard().end(end);
@@ -57,7 +57,7 @@ impl Room {
             let column = usize::try_from(column + half).ok();
             row.zip(column).and_then(|(row, column)| row.get(column)) == Some(&true)
         };
-        // As much as is allowed, and a little around it.
+        // The allowed points, and a rim around them.
         let span = |has: &dyn Fn(i32) -> bool| {
             let least = (-half..=half).find(|at| has(*at)).unwrap_or(0);
             let most = (-half..=half).rev().find(|at| has(*at)).unwrap_or(0);
@@ -82,7 +82,7 @@ impl Room {
     }
 }
 
-/// Where the point of an end is in the neutral pose, mm.
+/// The point of an end in the neutral pose, mm.
 pub fn neutral(robot: &Robot, end: End) -> [f64; 2] {
     let solution = robot.lizard().solve(&robot.neutral());
     let point = solution.map(|solution| solution.end(end).end_point);
@@ -97,8 +97,7 @@ fn allows(robot: &Robot, end: End, [x, y]: [f64; 2]) -> bool {
     for servo in end.servos() {
         angles[servo] += wrap(pair[servo % 2] - angles[servo]);
     }
-    // Cranks may put the point elsewhere than the inverse had it, where it would be on the
-    // other side of them.
+    // The cranks may put the point on their other side instead.
     robot.accepted(angles).is_some_and(|solution| {
         let there = solution.end(end).end_point;
         (there.x - x).hypot(there.y - y) < NEAR
@@ -110,7 +109,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_neutral_point_is_allowed_and_what_no_crank_reaches_is_not() {
+    fn the_neutral_point_is_allowed_and_points_out_of_reach_are_not() {
         let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
         for end in End::ALL {
             let room = Room::of(&robot, end);

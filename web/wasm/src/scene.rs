@@ -1,4 +1,4 @@
-//! All that the page shows of one pose.
+//! The points and margins of one pose, as the page draws them.
 
 use lizard_kinematics::{Check, End, Limits, Pose, Side, Solution, Vector};
 use lizard_robot::{LegPlace, Robot};
@@ -10,9 +10,9 @@ use crate::map::{self, MapPoint};
 /// A point, mm, chassis frame: x to the right, y forward.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spot(
-    /// To the right.
+    /// Distance to the right, mm.
     pub f64,
-    /// Forward.
+    /// Distance forward, mm.
     pub f64,
 );
 
@@ -22,44 +22,44 @@ impl From<Vector> for Spot {
     }
 }
 
-/// A leg.
+/// A leg at a pose.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LegScene {
-    /// Its pivots on the chassis, that of the driven crank first.
+    /// Pivots on the chassis, that of the driven crank first.
     pub pivots: [Spot; 2],
-    /// The joints of the link that carries the foot.
+    /// Joints of the link that carries the foot.
     pub joints: [Spot; 2],
-    /// The foot.
+    /// Place of the foot.
     pub foot: Spot,
-    /// The anchors of the strut that pulls it: on the servo's link and on its crank.
+    /// Anchors of the strut: on the servo's link and on the leg's crank.
     pub strut: [Spot; 2],
-    /// Whether there is a spring in the strut; else it is rigid.
+    /// True if the strut has a spring; false if it is rigid.
     pub sprung: bool,
 }
 
 /// A slider between two arms.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SliderScene {
-    /// Front and rear shaft.
+    /// Shafts of the front and the rear servo.
     pub shafts: [Spot; 2],
     /// Tips of the front and the rear arm.
     pub tips: [Spot; 2],
-    /// Where the rear half ends, that the front half slides in.
+    /// End of the rear half, in which the front half slides.
     pub tube: Spot,
     /// Travel from nominal, mm.
     pub travel: f64,
 }
 
-/// A margin and what it must not sink below.
+/// A margin at a pose.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Margin {
-    /// Its name, such as `type2_head`.
+    /// Name, such as `type2_head`.
     pub name: &'static str,
-    /// A sine.
+    /// Value, a sine.
     pub value: f64,
 }
 
-/// A pose.
+/// The robot at a pose.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Scene {
     /// Servo angles, deg, chassis frame, servo order.
@@ -68,27 +68,27 @@ pub struct Scene {
     pub shafts: [Spot; 4],
     /// Tips of the cranks in servo order.
     pub tips: [Spot; 4],
-    /// Head and tail point.
+    /// Points of head and tail.
     pub points: [Spot; 2],
-    /// Left and right.
+    /// The sliders, left and right.
     pub sliders: Vec<SliderScene>,
-    /// In servo order.
+    /// The legs in servo order.
     pub legs: Vec<LegScene>,
-    /// Every margin.
+    /// All margins.
     pub margins: Vec<Margin>,
-    /// Which of them is smallest.
+    /// The smallest margin.
     pub smallest: Margin,
-    /// Why the guard would not send this pose, in a sentence.
+    /// The sentence for the limit that this pose breaks; none if it is allowed.
     pub refusal: Option<String>,
-    /// Where it is on the map of singularities of head and tail.
+    /// The points on the maps of singularities of head and tail.
     pub map: [MapPoint; 2],
 }
 
 impl Scene {
-    /// Of a robot as it is now.
+    /// Computes the scene of a twin's present pose.
     ///
     /// # Errors
-    /// The sentence of the loop that does not close.
+    /// The sentence for the loop that does not close.
     pub fn of(twin: &Twin) -> Result<Self, String> {
         let (robot, angles) = (twin.robot(), twin.angles());
         let pose = Pose::from(angles);
@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn a_loop_that_does_not_close_is_said() {
+    fn a_loop_that_does_not_close_is_named() {
         // Couplers that just reach at neutral.
         let short = ["l2", "l3"].iter().fold(TEXT.to_string(), |text, link| {
             text.replace(&format!("{link} = 50.0"), &format!("{link} = 34.0"))

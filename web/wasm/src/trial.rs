@@ -1,272 +1,147 @@
-//! A gait that is being made: four bars on a circle, tried on a robot before it is in any file.
+//! A gait that is being made, tried on a robot before it is in any file.
 //!
-//! Of a robot's gaits only the one that is tried is checked, so that an answer comes while a
-//! person drags. What is refused comes with the nearest amplitude and the nearest period that
-//! would do.
+//! Only the gait that is tried is checked, so that an answer comes while a person drags. A
+//! refusal offers the nearest smaller gait and the nearest longer period that are possible.
 
-use std::fmt::Write;
-
-use lizard_robot::servo::{LEGS, NAMES};
-use lizard_robot::{CheckedGait, Robot, Waveform};
+use lizard_robot::servo::NAMES;
+use lizard_robot::{Bars, Robot, edit};
 use lizard_twin::Twin;
 use serde::{Deserialize, Serialize};
 
 use crate::description::Outlook;
+use crate::drawn::Drawn;
 use crate::refused::Refused;
 
-/// Amplitudes that are offered, in tenths of a deg.
-const LEAST_AMPLITUDE: i64 = 5;
+/// The smallest gait that is offered: tenths of a deg, or hundredths of the drawn size.
+const LEAST: i64 = 5;
 /// The longest period that is offered, in hundredths of a second.
-pub(crate) const LONGEST: i64 = 1000;
+const LONGEST: i64 = 1000;
 
-/// What every robot.toml begins its gaits with.
-const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
-
-/// A gait as four bars.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Bars {
-    /// Its name in robot.toml.
-    pub name: String,
-    /// Whether legs move one after the other and hold in between; else all the time.
-    pub held: bool,
-    /// Time of a cycle at full speed, s.
-    pub period: f64,
-    /// The stance's share of the cycle; of no meaning where legs hold.
-    pub duty: f64,
-    /// Sweep of a leg, deg.
-    pub amplitude: f64,
-    /// Where in the cycle each stance begins, 0 to 1, servo order: LF, RF, RH, LH. Of legs that
-    /// hold only their order counts.
-    pub start: [f64; 4],
-    /// Each leg's share of the amplitude; negative against the others.
-    pub gain: [f64; 4],
+/// A gait that is being made.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(untagged)]
+pub enum Made {
+    /// A gait along a line that was drawn.
+    Drawn(Drawn),
+    /// A gait of four bars.
+    Bars(Bars),
 }
 
-impl Bars {
-    /// Of a gait; none of one along a path and of one that stands. One that is turned round
-    /// comes as the bars that walk so.
-    #[must_use]
-    pub fn of(gait: &CheckedGait) -> Option<Self> {
-        let strides = gait.strides();
-        if !gait.moves() {
-            return None;
-        }
-        let amplitude = strides
-            .iter()
-            .map(|leg| leg.amplitude.abs())
-            .fold(0.0, f64::max);
-        let mut bars = Self {
-            name: gait.name().to_string(),
-            held: false,
-            period: gait.period(),
-            duty: 0.75,
-            amplitude,
-            start: [0.0; 4],
-            gain: [0.0; 4],
-        };
-        for (leg, stride) in strides.iter().enumerate() {
-            bars.gain[leg] = stride.amplitude / amplitude;
-            match stride.waveform {
-                Waveform::Wave { duty } => {
-                    bars.duty = duty;
-                    bars.start[leg] = stride.start;
-                }
-                Waveform::Held { turn } => {
-                    bars.held = true;
-                    bars.start[leg] = turn as f64 / 4.0;
-                }
-                _ => return None,
-            }
-        }
-        Some(match gait.is_reversed() {
-            true => bars.turned_round(),
-            false => bars,
-        })
-    }
-
-    /// The gait whose time runs backwards, so that it walks back where this walks ahead.
-    ///
-    /// A wave's slow and fast part are each odd about their middle. So in reverse it is its own
-    /// negative, which begins where this one's stance ends. A held wave in reverse is the
-    /// negative of that in the opposite order; that all four begin at another time does
-    /// not matter.
-    #[must_use]
-    pub fn turned_round(&self) -> Self {
-        let start = |leg: usize| match self.held {
-            true => 1.0 - self.start[leg],
-            false => (-self.start[leg] - self.duty).rem_euclid(1.0),
-        };
-        let mut turned = Self {
-            start: std::array::from_fn(start),
-            gain: self.gain.map(|gain| -gain),
-            ..self.clone()
-        };
-        if self.held {
-            // As places in the order, which are quarters from 0.
-            let first = turned.start.into_iter().fold(f64::MAX, f64::min);
-            turned.start = turned.start.map(|start| start - first);
-        }
-        turned
-    }
-
-    /// The text with this gait: in place of the one of its name, or below all.
-    #[must_use]
-    pub fn put_into(&self, text: &str) -> String {
-        put_into(text, &self.name, &self.table())
-    }
-
-    /// Its table for robot.toml.
-    #[must_use]
-    pub fn table(&self) -> String {
-        let number = |value: f64| format!("{:?}", (value * 1000.0).round() / 1000.0);
-        let legs = |values: [f64; 4]| {
-            let each = LEGS.iter().zip(values);
-            let each: Vec<_> = each
-                .map(|(leg, value)| format!("{leg} = {}", number(value)))
-                .collect();
-            format!("{{ {} }}", each.join(", "))
-        };
-        let mut text = format!("[gait.{}]\nperiod = {}\n", self.name, number(self.period));
-        if self.held {
-            let mut order = [0, 1, 2, 3];
-            order.sort_by(|a, b| self.start[*a].total_cmp(&self.start[*b]));
-            let order = order.map(|leg| format!("\"{}\"", LEGS[leg])).join(", ");
-            let _ = writeln!(
-                text,
-                "waveform = \"held\"\namplitude = {}\norder = [{order}]",
-                number(self.amplitude)
-            );
-        } else {
-            let _ = writeln!(
-                text,
-                "waveform = \"wave\"\nduty = {}\namplitude = {}\nstart = {}",
-                number(self.duty),
-                number(self.amplitude),
-                legs(
-                    self.start
-                        .map(|start| (start * 1000.0).round() / 1000.0 % 1.0)
-                )
-            );
-        }
-        if self.gain.iter().any(|gain| (gain - 1.0).abs() > 1e-9) {
-            let _ = writeln!(text, "gain = {}", legs(self.gain));
-        }
-        text
-    }
-}
-
-/// What becomes of a gait.
+/// The figures of a gait that is possible.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Trial {
-    /// Where it leads.
+    /// Movement of a cycle.
     #[serde(flatten)]
     pub outlook: Outlook,
-    /// Its table for robot.toml.
+    /// The gait's table for robot.toml.
     pub table: String,
-    /// The margin that is nearest to its limit, in words.
+    /// Name of the margin that is nearest to its limit.
     pub margin: &'static str,
-    /// Its least value, a sine.
+    /// Least value of that margin, a sine.
     pub least: f64,
-    /// The least that is safe.
+    /// Limit of that margin, a sine.
     pub limit: f64,
-    /// The servo that turns fastest.
+    /// Name of the servo that turns fastest.
     pub servo: &'static str,
-    /// How fast, deg/s.
+    /// Speed of that servo, deg/s.
     pub speed: f64,
-    /// Its cycle, s.
+    /// Time of a cycle, s.
     pub period: f64,
 }
 
-/// A value that would do in place of the one that was wanted.
+/// A value that is possible in place of the one that was wanted.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Instead {
-    /// `amplitude`, `size` or `period`.
+    /// Name of the value: `amplitude`, `size` or `period`.
     pub what: &'static str,
-    /// deg, a share or s.
+    /// The value in deg, as a share, or in s.
     pub value: f64,
 }
 
-/// Why a gait will not do, and what would.
+/// The refusal of a gait, with possible values.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NoTrial {
     /// The refusal.
     #[serde(flatten)]
     pub refused: Refused,
-    /// The nearest values that would do, each alone.
+    /// The nearest possible values, each of them alone.
     pub instead: Vec<Instead>,
 }
 
-/// A robot.toml with the table of a gait: in place of the one of its name, or below all.
-pub(crate) fn put_into(text: &str, name: &str, table: &str) -> String {
-    let (own, below) = (format!("[gait.{name}]"), format!("[gait.{name}."));
-    let (mut kept, mut is_own, mut done) = (String::new(), false, false);
-    for line in text.lines() {
-        let head = line.trim_start();
-        if head.starts_with('[') {
-            is_own = head.starts_with(&own) || head.starts_with(&below);
-            if is_own && !done {
-                done = true;
-                kept += table;
-                kept.push('\n');
-            }
-        }
-        // What is said of a table stands above its head, or of the next one below this.
-        if !is_own || head.starts_with('#') {
-            kept += line;
-            kept.push('\n');
+impl Made {
+    fn table(&self, robot: &Robot) -> Option<String> {
+        match self {
+            Self::Drawn(drawn) => drawn.table(robot),
+            Self::Bars(bars) => Some(bars.table()),
         }
     }
-    if !done {
-        kept.push('\n');
-        kept += table;
+
+    /// The text of a robot.toml with this gait, in place of the gait of the same name or at the
+    /// end; none of a line without length.
+    #[must_use]
+    pub fn put_into(&self, text: &str, robot: &Robot) -> Option<String> {
+        let (Self::Drawn(Drawn { name, .. }) | Self::Bars(Bars { name, .. })) = self;
+        Some(edit::with_gait(text, name, &self.table(robot)?))
     }
-    kept
-}
 
-/// A robot.toml without its gaits.
-pub(crate) fn without_gaits(text: &str) -> String {
-    let mut is_gait = false;
-    let mut kept = String::new();
-    for line in text.lines() {
-        let head = line.trim_start();
-        if head.starts_with('[') {
-            is_gait = head.starts_with("[gait.") || head.starts_with("[gait]");
-        }
-        if !is_gait {
-            kept += line;
-            kept.push('\n');
-        }
+    /// Tries the gait with the robot, the floor and the servos of a twin; none of a line without
+    /// length.
+    ///
+    /// # Errors
+    /// The first limit that the gait breaks, with possible values.
+    #[must_use]
+    pub fn trial(&self, twin: &Twin) -> Option<Result<Trial, NoTrial>> {
+        let table = self.table(twin.robot())?;
+        Some(tried(table, twin).map_err(|refused| NoTrial {
+            refused,
+            instead: self.instead(twin.robot()),
+        }))
     }
-    kept
+
+    /// Finds the nearest smaller gait and the nearest longer period that are possible.
+    fn instead(&self, robot: &Robot) -> Vec<Instead> {
+        let is_possible = |change: &dyn Fn(&mut Self)| {
+            let mut other = self.clone();
+            change(&mut other);
+            let table = other.table(robot);
+            table.is_some_and(|table| robot.with_gait(&table).is_ok())
+        };
+        let (what, size, steps, period) = match self {
+            Self::Drawn(drawn) => ("size", drawn.size, 100.0, drawn.period),
+            Self::Bars(bars) => ("amplitude", bars.amplitude, 10.0, bars.period),
+        };
+        let resized = |step: i64| {
+            is_possible(&|made| match made {
+                Self::Drawn(drawn) => drawn.size = step as f64 / steps,
+                Self::Bars(bars) => bars.amplitude = step as f64 / steps,
+            })
+        };
+        let slower = |hundredths: i64| {
+            is_possible(&|made| match made {
+                Self::Drawn(Drawn { period, .. }) | Self::Bars(Bars { period, .. }) => {
+                    *period = hundredths as f64 / 100.0;
+                }
+            })
+        };
+        let size = nearest((size * steps).ceil() as i64 - 1, LEAST, resized);
+        let period = nearest((period * 100.0).floor() as i64 + 1, LONGEST, slower);
+        let instead = |what, value: Option<i64>, steps: f64| {
+            value.map(|value| Instead {
+                what,
+                value: value as f64 / steps,
+            })
+        };
+        let size = instead(what, size, steps);
+        let period = instead("period", period, 100.0);
+        size.into_iter().chain(period).collect()
+    }
 }
 
-/// The robot of a text without gaits, with the gait of this table alone.
-pub(crate) fn with(rest: &str, table: &str) -> Result<Robot, lizard_robot::Error> {
-    Robot::parse(&format!("{rest}\n{STAND}\n{table}"))
-}
-
-/// Tries a gait on the robot of a text, which stands on this twin's floor with its servos.
-///
-/// # Errors
-/// What the gait would break, with the nearest values that would not.
-pub fn trial(text: &str, bars: &Bars, twin: &Twin) -> Result<Trial, NoTrial> {
-    let rest = without_gaits(text);
-    tried(&rest, &bars.table(), twin).map_err(|refused| NoTrial {
-        refused,
-        instead: instead(&rest, bars),
-    })
-}
-
-/// Tries the gait of a table on the robot of a text without gaits.
-pub(crate) fn tried(rest: &str, table: &str, twin: &Twin) -> Result<Trial, Refused> {
-    // Its line is that of a text which nobody sees.
-    let robot = with(rest, table).map_err(|error| Refused {
-        refused: format!("{}: {}", error.key, error.problem),
-        line: None,
-        key: error.key.clone(),
-    })?;
-    let mut there = Twin::new(&robot, twin.servos());
-    there.set_ground(*twin.ground());
+/// Tries the gait of a table.
+fn tried(table: String, twin: &Twin) -> Result<Trial, Refused> {
+    let robot = twin.robot().with_gait(&table).map_err(Refused::of_gait)?;
+    let mut other = Twin::new(&robot, twin.servos());
+    other.set_ground(*twin.ground());
     let gait = &robot.gaits()[1];
     let (audit, limits) = (gait.audit(), robot.limits());
     let margins = [
@@ -279,8 +154,8 @@ pub(crate) fn tried(rest: &str, table: &str, twin: &Twin) -> Result<Trial, Refus
         .min_by(|a, b| (a.0.value - a.1).total_cmp(&(b.0.value - b.1)))
         .expect("three margins");
     Ok(Trial {
-        outlook: Outlook::of(&there, gait),
-        table: table.to_string(),
+        outlook: Outlook::of(&other, gait),
+        table,
         margin: least.what.name(),
         least: least.value,
         limit,
@@ -290,42 +165,17 @@ pub(crate) fn tried(rest: &str, table: &str, twin: &Twin) -> Result<Trial, Refus
     })
 }
 
-/// The nearest smaller amplitude and the nearest longer period that would do.
-fn instead(rest: &str, bars: &Bars) -> Vec<Instead> {
-    let amplitude = |tenths: i64| Bars {
-        amplitude: tenths as f64 / 10.0,
-        ..bars.clone()
-    };
-    let period = |hundredths: i64| Bars {
-        period: hundredths as f64 / 100.0,
-        ..bars.clone()
-    };
-    let does = |bars: &Bars| with(rest, &bars.table()).is_ok();
-    let wanted = (bars.amplitude * 10.0).ceil() as i64 - 1;
-    let smaller = nearest(wanted, LEAST_AMPLITUDE, |tenths| does(&amplitude(tenths)));
-    let wanted = (bars.period * 100.0).floor() as i64 + 1;
-    let longer = nearest(wanted, LONGEST, |hundredths| does(&period(hundredths)));
-    let smaller = smaller.map(|tenths| Instead {
-        what: "amplitude",
-        value: tenths as f64 / 10.0,
-    });
-    let longer = longer.map(|hundredths| Instead {
-        what: "period",
-        value: hundredths as f64 / 100.0,
-    });
-    smaller.into_iter().chain(longer).collect()
-}
-
-/// The first of the numbers from one to another that does, where what is farther does as well.
-pub(crate) fn nearest(from: i64, to: i64, does: impl Fn(i64) -> bool) -> Option<i64> {
+/// Finds the possible number nearest to `from`, by bisection: if a number is possible, so are
+/// those nearer to `to`.
+fn nearest(from: i64, to: i64, is_possible: impl Fn(i64) -> bool) -> Option<i64> {
     let way = (to - from).signum();
-    if from == to || way == 0 || !does(to) {
+    if way == 0 || !is_possible(to) {
         return None;
     }
     let (mut not, mut done) = (from - way, to);
     while (done - not).abs() > 1 {
         let middle = i64::midpoint(not, done);
-        if does(middle) {
+        if is_possible(middle) {
             done = middle
         } else {
             not = middle

@@ -2,11 +2,11 @@
 
 use std::ffi::OsString;
 
-use super::KNOWN;
+use super::known::Known;
 use crate::Failure;
-use crate::suggestion::did_you_mean;
+use crate::shared::suggestion::did_you_mean;
 
-/// What a build without a feature is without.
+/// The commands that a build without this feature lacks, in words.
 pub(super) fn words(feature: &str) -> &'static str {
     match feature {
         "simulator" => "the simulator",
@@ -17,7 +17,7 @@ pub(super) fn words(feature: &str) -> &'static str {
     }
 }
 
-/// Whether this build has a feature.
+/// True if this build has the feature.
 fn built(feature: &str) -> bool {
     let features = [
         ("simulator", cfg!(feature = "simulator")),
@@ -28,7 +28,7 @@ fn built(feature: &str) -> bool {
     features.contains(&(feature, true))
 }
 
-/// Why there is no command of the first of these words in this build.
+/// Explains why this build has no command of this name.
 #[cfg_attr(
     all(
         feature = "simulator",
@@ -38,18 +38,16 @@ fn built(feature: &str) -> bool {
     ),
     allow(dead_code, reason = "a whole build lacks nothing")
 )]
-pub(super) fn explain(typed: &[OsString]) -> Failure {
-    in_a_build(typed, built)
+pub(super) fn explain(typed: &[OsString], known: &[Known]) -> Failure {
+    in_a_build(typed, known, built)
 }
 
-fn in_a_build(typed: &[OsString], has: impl Fn(&str) -> bool) -> Failure {
+fn in_a_build(typed: &[OsString], known: &[Known], has: impl Fn(&str) -> bool) -> Failure {
     let word = typed.first().map(|word| word.to_string_lossy());
     let word = word.as_deref().unwrap_or_default();
-    let known = KNOWN
-        .iter()
-        .find(|known| known.name() == word || known.also.contains(&word));
-    let Some(known) = known else {
-        let names: Vec<String> = KNOWN.iter().map(super::Known::name).collect();
+    let names: Vec<String> = known.iter().map(Known::name).collect();
+    let called = |known: &&Known| known.name() == word || known.also.contains(&word);
+    let Some(known) = known.iter().find(called) else {
         let like = did_you_mean(word, names.iter().map(String::as_str));
         return Failure::Input(format!(
             "there is no command `{word}`{like}; lizard --help lists them"
@@ -70,10 +68,11 @@ fn in_a_build(typed: &[OsString], has: impl Fn(&str) -> bool) -> Failure {
 
 #[cfg(test)]
 mod tests {
+    use super::super::KNOWN;
     use super::*;
 
     fn said(word: &str, features: &[&str]) -> String {
-        in_a_build(&[word.into(), "--json".into()], |feature| {
+        in_a_build(&[word.into(), "--json".into()], KNOWN, |feature| {
             features.contains(&feature)
         })
         .to_string()

@@ -6,7 +6,8 @@ use std::path::PathBuf;
 use clap::Command;
 use clap_complete::Shell;
 
-use crate::{Failure, files};
+use crate::Failure;
+use crate::shared::files;
 
 /// Print what a shell needs to complete commands and options
 #[derive(clap::Args, Debug)]
@@ -15,7 +16,7 @@ use crate::{Failure, files};
   lizard completions zsh > ~/.zfunc/_lizard
   lizard completions fish > ~/.config/fish/completions/lizard.fish")]
 pub struct CompletionsArgs {
-    /// The shell
+    /// The shell to print the completions for
     shell: Shell,
 }
 
@@ -33,8 +34,7 @@ pub struct ManArgs {
 ///
 /// # Errors
 /// Standard output cannot be written.
-pub fn completions(args: CompletionsArgs) -> Result<(), Failure> {
-    let mut command = super::program();
+pub fn completions(args: CompletionsArgs, mut command: Command) -> Result<(), Failure> {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut command, "lizard", &mut script);
     let mut out = io::stdout().lock();
@@ -46,8 +46,8 @@ pub fn completions(args: CompletionsArgs) -> Result<(), Failure> {
 ///
 /// # Errors
 /// A file cannot be written.
-pub fn man(args: ManArgs) -> Result<(), Failure> {
-    let mut command = super::program().disable_help_subcommand(true);
+pub fn man(args: ManArgs, command: Command) -> Result<(), Failure> {
+    let mut command = command.disable_help_subcommand(true);
     command.build();
     let mut count = 1;
     page(&args, "lizard", command.clone())?;

@@ -7,51 +7,11 @@ use std::fmt::Write as _;
 
 use clap::Command;
 
-use super::KNOWN;
-
-/// What a command is for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Group {
-    /// A robot that is there.
-    Drive,
-    /// The firmware on a simulated board.
-    Simulate,
-    /// Parts and pictures.
-    Build,
-    /// What robot.toml says.
-    Change,
-    /// What the paper has.
-    Paper,
-    /// Scripts and development.
-    Itself,
-}
-
-/// All groups in the order of the help, the owner's first.
-const GROUPS: [Group; 6] = [
-    Group::Drive,
-    Group::Simulate,
-    Group::Build,
-    Group::Change,
-    Group::Paper,
-    Group::Itself,
-];
-
-impl Group {
-    fn title(self) -> &'static str {
-        match self {
-            Self::Drive => "Drive the robot",
-            Self::Simulate => "Simulate it",
-            Self::Build => "Build it",
-            Self::Change => "Change its gaits and measures",
-            Self::Paper => "The paper, computed",
-            Self::Itself => "For scripts and development",
-        }
-    }
-}
+use super::known::{Group, Known};
 
 /// The command with its subcommands in groups in its help.
-pub(super) fn grouped(command: Command) -> Command {
-    let list = list(&command);
+pub(super) fn grouped(command: Command, known: &[Known]) -> Command {
+    let list = list(&command, known);
     command.help_template(format!(
         "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{list}`lizard help COMMAND` says all about one of them.\n\n{}\n{{options}}{{after-help}}",
         heading("Options")
@@ -64,7 +24,7 @@ fn heading(words: &str) -> String {
 }
 
 /// Every subcommand once, under its heading.
-fn list(command: &Command) -> String {
+fn list(command: &Command, known: &[Known]) -> String {
     let present: Vec<&Command> = command.get_subcommands().collect();
     let widest = present.iter().map(|sub| sub.get_name().len()).max();
     let width = widest.unwrap_or(0);
@@ -87,8 +47,8 @@ fn list(command: &Command) -> String {
         }
         text.push('\n');
     };
-    for group in GROUPS {
-        let names = KNOWN.iter().filter(|known| known.group == group);
+    for group in Group::ALL {
+        let names = known.iter().filter(|known| known.group == group);
         let subs: Vec<&Command> = names
             .filter_map(|known| {
                 let name = known.name();
@@ -117,8 +77,19 @@ mod tests {
             sub("completions"),
             sub("console"),
         ]);
+        let row = |group, variant| Known {
+            group,
+            variant,
+            also: &[],
+            needs: &[],
+        };
+        let known = [
+            row(Group::Drive, "Console"),
+            row(Group::Paper, "Pose"),
+            row(Group::Itself, "Completions"),
+        ];
         assert_eq!(
-            without_colours(&list(&command)),
+            without_colours(&list(&command, &known)),
             "Drive the robot:\n  console      does console\n\n\
              The paper, computed:\n  pose         does pose [also: fk]\n\n\
              For scripts and development:\n  completions\n\n"

@@ -8,15 +8,16 @@
 mod absent;
 pub mod completions;
 mod groups;
-mod menu;
+mod known;
+pub mod merge;
 
 use std::ffi::OsString;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::Failure;
-use crate::plain::readable_lines;
-use groups::Group;
+use crate::shared::plain::readable_lines;
+use known::{Group, Known};
 
 /// The table below, as [`Command`] and as [`KNOWN`].
 macro_rules! commands {
@@ -62,7 +63,7 @@ macro_rules! commands {
                         feature = "console",
                         feature = "parts"
                     )))]
-                    Self::Other(words) => Err(absent::explain(&words)),
+                    Self::Other(words) => Err(absent::explain(&words, KNOWN)),
                 }
             }
         }
@@ -81,28 +82,28 @@ macro_rules! commands {
 
 commands! {
     Drive {
-        Flash(crate::flash::Args) => crate::flash::run, needs "console";
-        Image(crate::image::Args) => crate::image::run, needs "console";
-        Console(crate::console::interactive::ConsoleArgs) => crate::console::interactive::console, needs "console", also "monitor";
-        Calibrate(crate::console::calibrate::Args) => crate::console::calibrate::run, needs "console";
-        Backup(crate::console::backup::BackupArgs) => crate::console::backup::backup, needs "console";
-        Restore(crate::console::backup::RestoreArgs) => crate::console::backup::restore, needs "console";
-        Replay(crate::console::replay::Args) => crate::console::replay::run, needs "console" and "simulator";
+        Flash(crate::drive::flash::Args) => crate::drive::flash::run, needs "console";
+        Image(crate::drive::image::Args) => crate::drive::image::run, needs "console";
+        Console(crate::drive::console::interactive::ConsoleArgs) => crate::drive::console::interactive::console, needs "console", also "monitor";
+        Calibrate(crate::drive::console::calibrate::Args) => crate::drive::console::calibrate::run, needs "console";
+        Backup(crate::drive::console::backup::BackupArgs) => crate::drive::console::backup::backup, needs "console";
+        Restore(crate::drive::console::backup::RestoreArgs) => crate::drive::console::backup::restore, needs "console";
+        Replay(crate::drive::console::replay::Args) => crate::drive::console::replay::run, needs "console" and "simulator";
     }
     Simulate {
-        Sim(crate::sim::Args) => crate::sim::run, needs "simulator";
-        Twin(crate::twin::Args) => crate::twin::run, needs "simulator";
-        Mjcf(crate::mjcf::Args) => crate::mjcf::run, needs "simulator" and "parts";
+        Sim(crate::simulate::sim::Args) => crate::simulate::sim::run, needs "simulator";
+        Twin(crate::simulate::twin::Args) => crate::simulate::twin::run, needs "simulator";
+        Mjcf(crate::simulate::mjcf::Args) => crate::simulate::mjcf::run, needs "simulator" and "parts";
     }
     Build {
-        Draw(crate::draw::Args) => crate::draw::run;
-        Parts(crate::parts::Args) => crate::parts::run, needs "parts";
-        Fit(crate::parts::fit::Args) => crate::parts::fit::run, needs "parts";
+        Draw(crate::make::draw::Args) => crate::make::draw::run;
+        Parts(crate::make::parts::Args) => crate::make::parts::run, needs "parts";
+        Fit(crate::make::parts::fit::Args) => crate::make::parts::fit::run, needs "parts";
     }
     Change {
-        Gaits(crate::gaits::Args) => crate::gaits::run;
-        Tune(crate::tune::Args) => crate::tune::run, needs "simulator" and "paper";
-        Prove(crate::prove::Args) => crate::prove::run, needs "paper";
+        Gaits(crate::change::gaits::Args) => crate::change::gaits::run;
+        Tune(crate::change::tune::Args) => crate::change::tune::run, needs "simulator" and "paper";
+        Prove(crate::change::prove::Args) => crate::change::prove::run, needs "paper";
     }
     Paper {
         Pose(crate::paper::pose::Args) => crate::paper::pose::run, needs "paper";
@@ -111,10 +112,10 @@ commands! {
         Errata(crate::paper::errata::Args) => crate::paper::errata::run, needs "paper";
     }
     Itself {
-        Merge(crate::merge::MergeArgs) => crate::merge::merge;
-        Completions(completions::CompletionsArgs) => completions::completions;
-        Man(completions::ManArgs) => completions::man;
-        Bench(crate::bench::Args) => crate::bench::run, needs "simulator";
+        Merge(merge::MergeArgs) => merge::merge;
+        Completions(completions::CompletionsArgs) => print_completions;
+        Man(completions::ManArgs) => write_manual;
+        Bench(crate::simulate::bench::Args) => crate::simulate::bench::run, needs "simulator";
     }
 }
 
@@ -164,23 +165,12 @@ fn in_new_words(mut words: Vec<OsString>) -> Result<Vec<OsString>, Failure> {
     Ok(words)
 }
 
-/// A command that there is, in this build or in another one.
-#[derive(Debug, Clone, Copy)]
-struct Known {
-    group: Group,
-    /// The enum's name of it.
-    variant: &'static str,
-    /// Words that mean the same.
-    also: &'static [&'static str],
-    /// The cargo features without which it is not built.
-    needs: &'static [&'static str],
+fn print_completions(args: completions::CompletionsArgs) -> Result<(), Failure> {
+    completions::completions(args, program())
 }
 
-impl Known {
-    /// As it is typed.
-    fn name(&self) -> String {
-        self.variant.to_lowercase()
-    }
+fn write_manual(args: completions::ManArgs) -> Result<(), Failure> {
+    completions::man(args, program())
 }
 
 /// Compute, check, draw and simulate the four-servo robotic lizard.
@@ -201,20 +191,14 @@ struct Cli {
 /// All commands and options, the commands in groups.
 #[must_use]
 pub fn program() -> clap::Command {
-    groups::grouped(Cli::command())
+    groups::grouped(Cli::command(), KNOWN)
 }
 
-/// Does what the command line asks for; without a command, what is chosen from a menu where
-/// standard input is a terminal.
+/// Runs a command line.
 ///
 /// # Errors
 /// Those of the command.
 pub fn run(words: Vec<OsString>) -> Result<(), Failure> {
-    let words = match menu::chosen(&words)? {
-        menu::Choice::Typed => words,
-        menu::Choice::Chosen(words) => words,
-        menu::Choice::Nothing => return Ok(()),
-    };
     let parsed = program().try_get_matches_from(in_new_words(words)?);
     match parsed.and_then(|mut matches| Cli::from_arg_matches_mut(&mut matches)) {
         Ok(cli) => cli.command.run(),

@@ -5,11 +5,11 @@ use lizard_robot::Robot;
 use serde::Serialize;
 
 use crate::Failure;
-use crate::json;
-use crate::paper::tidy::tidy;
 use crate::paper::verdict;
+use crate::shared::json;
+use crate::shared::number::tidy;
 
-/// What is printed.
+/// The answer to a question for head or tail points.
 #[derive(Serialize)]
 struct Report {
     head: Option<Loop>,
@@ -28,7 +28,7 @@ struct Angles {
     theta5: f64,
 }
 
-/// One five-bar.
+/// The solutions of one five-bar.
 #[derive(Serialize)]
 struct Loop {
     point: [f64; 2],
@@ -41,7 +41,7 @@ struct Loop {
 struct Way {
     left: &'static str,
     right: &'static str,
-    /// Where the end point is, seen from the line between the crank tips.
+    /// The place of the end point, seen from the line between the crank tips.
     assembly_mode: &'static str,
     /// Left servo (A1 or A4), degrees, chassis frame.
     theta_left: f64,

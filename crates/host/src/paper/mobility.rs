@@ -1,21 +1,21 @@
 //! `lizard pose --show freedoms`: degrees of freedom, counted and measured.
 //!
-//! Counting (Gruebler) assumes that no two joints impose the same constraint; the rank of
-//! the constraints at a pose does not assume it. Here every moving link has three
-//! velocities (vx, vy of its point at the origin, and omega), every joint gives two rows,
-//! and the degrees of freedom are what the rank leaves.
+//! Counting (Gruebler) assumes that no two joints impose the same constraint; the rank of the
+//! constraints at a pose does not assume it. Here every moving link has three velocities (vx,
+//! vy of its point at the origin, and omega), every joint gives two rows, and the degrees of
+//! freedom are the columns less the rank.
 //!
-//! Whether the servos control these freedoms is a second question: at a type-2
-//! singularity their number is the same, but the servos do not control one of them. So
-//! the rank is computed again with the driven cranks locked, which adds a row for each.
-//! Whatever can still move then is loose.
+//! A second question is if the servos control these freedoms: at a type-2 singularity their
+//! number is the same, but the servos do not control one of them. So the rank is computed again
+//! with the driven cranks locked, which adds a row for each. All that can still move then is
+//! loose.
 
 use lizard_kinematics::{Lizard, Side, Solution, Vector};
 use nalgebra::{DMatrix, DVector, SVD};
 use serde::Serialize;
 
 use crate::Failure;
-use crate::json;
+use crate::shared::json;
 
 /// Singular values below this share of the largest are zero: a pose typed with
 /// seven digits is met.
@@ -34,7 +34,7 @@ struct Mechanism {
     joints: Vec<Joint>,
     /// The driven links.
     driven: Vec<usize>,
-    /// What it means if a link moves although the driven ones are locked.
+    /// The sentence for each group of links that moves although the driven ones are locked.
     parts: &'static [(&'static [usize], &'static str)],
 }
 
@@ -65,7 +65,7 @@ struct Report {
     freedoms: usize,
     /// The same with the driven cranks locked; 0 where they hold everything.
     locked_freedoms: usize,
-    /// What moves then.
+    /// The parts that move with locked cranks.
     loose: Vec<&'static str>,
     /// Smallest singular value over the largest, cranks locked: near 0, near a
     /// singularity.
@@ -257,7 +257,7 @@ fn measure(mechanism: &Mechanism) -> Report {
     }
 }
 
-/// How many singular values are not zero.
+/// The number of singular values that are not zero.
 fn rank(values: &DVector<f64>) -> usize {
     let zero = RANK_TOLERANCE * values.max();
     values.iter().filter(|value| **value > zero).count()

@@ -3,7 +3,7 @@
 use lizard_kinematics::Vector;
 
 use crate::paper::{inverse, mobility, singularity, solve, velocity};
-use crate::pose_args::length;
+use crate::shared::pose_args::length;
 use crate::{Failure, PoseArgs, RobotFile};
 
 /// Compute the robot at a pose: its joints, singularities, freedoms or rates
@@ -40,8 +40,8 @@ pub struct Args {
     #[arg(long, num_args = 2, value_names = ["X", "Y"], value_parser = length,
           help_heading = "Pose", conflicts_with = "theta1")]
     tail: Option<Vec<f64>>,
-    /// What to print of the pose; all but the joints are also printed of the neutral pose, if
-    /// none is given
+    /// The subject to print; all but the joints are also printed of the neutral pose, if none
+    /// is given
     #[arg(long, value_enum, default_value_t, conflicts_with_all = ["head", "tail"])]
     show: Show,
     /// Print JSON, of a stream one object a line
@@ -82,10 +82,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
     let pose = args.pose.get();
     let lizard = robot.lizard();
-    let solved = || {
-        let solution = lizard.solve(&pose.unwrap_or_else(|| robot.neutral()));
-        solution.map_err(|infeasible| Failure::Impossible(infeasible.to_string()))
-    };
+    let solved = || lizard.solve(&pose.unwrap_or_else(|| robot.neutral()));
     match args.show {
         Show::Joints => solve::print(&robot, pose.as_ref(), args.json),
         Show::Singularities => singularity::print(&robot, &solved()?, args.json),

@@ -7,8 +7,8 @@ use lizard_robot::Robot;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use crate::paper::poses::Timed;
-use crate::paper::tidy::tidy;
 use crate::paper::verdict;
+use crate::shared::number::tidy;
 
 /// One object of `lizard pose --json`. Everything that a pose without a
 /// solution lacks is null; seconds are there only where the stream has them.

@@ -6,12 +6,12 @@ use std::io::{BufRead, Read};
 use lizard_kinematics::Pose;
 
 use crate::Failure;
-use crate::pose_args::{ANGLES, NumberFault, Quantity};
+use crate::shared::pose_args::{ANGLES, NumberFault, Quantity};
 
 /// A column that may accompany the angles, as in `lizard gaits --trace`.
 const SECONDS: &str = "seconds";
 
-/// What a field of a line is: one of the four angles, or a time.
+/// The meaning of a field: one of the four angles, or a time.
 #[derive(Clone, Copy, PartialEq)]
 enum Column {
     Angle(usize),
@@ -63,7 +63,7 @@ pub struct Poses<R> {
     input: R,
     line: Vec<u8>,
     number: usize,
-    /// What each field of a line is.
+    /// The meaning of each field of a line.
     columns: Vec<Column>,
     /// True while the line that was read first is still to be answered.
     waiting: bool,

@@ -7,9 +7,9 @@ use nalgebra::SMatrix;
 use serde::Serialize;
 
 use crate::Failure;
-use crate::json;
-use crate::paper::tidy::tidy;
-use crate::pose_args::ANGLES;
+use crate::shared::json;
+use crate::shared::number::tidy;
+use crate::shared::pose_args::ANGLES;
 
 /// The unknown rates, in the order of the columns of K*.
 const PASSIVE: [&str; 8] = [
@@ -94,7 +94,7 @@ struct Nearest {
     what: String,
     /// Distance in the servos' angles, degrees.
     distance: f64,
-    /// How each servo would have to turn, servo order, degrees.
+    /// The turn of each servo to that pose, servo order, degrees.
     turn: [f64; 4],
 }
 

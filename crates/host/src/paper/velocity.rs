@@ -4,9 +4,9 @@ use lizard_kinematics::{Derivatives, Drive, Lizard, Pose, Solution, wrap};
 use serde::Serialize;
 
 use crate::Failure;
-use crate::json;
-use crate::paper::tidy::tidy;
-use crate::pose_args::{acceleration, rate};
+use crate::shared::json;
+use crate::shared::number::tidy;
+use crate::shared::pose_args::{acceleration, rate};
 
 /// Longest step of the finite differences for the comparison, s.
 const STEP: f64 = 2e-4;

@@ -1,5 +1,4 @@
-//! Whether this robot may take a pose, and every reason why not: its limits,
-//! and its servos' travel.
+//! The reasons why this robot may not take a pose: its limits, and its servos' travel.
 
 use lizard_kinematics::{Pose, Solution, wrap};
 use lizard_robot::{Robot, servo};

@@ -8,7 +8,7 @@ use super::{AssemblyMode, FiveBar, FiveBarPose, double_area};
 use crate::fault::Fault;
 use crate::vector::Vector;
 
-/// Which way a crank and its coupler bend.
+/// The direction in which a crank and its coupler bend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Elbow {
     /// Away from the other crank, as the robot is built; positive type-1 margin.
@@ -17,7 +17,7 @@ pub enum Elbow {
     Inward,
 }
 
-/// How both arms bend. A mechanism cannot change it without passing a type-1
+/// The bends of both arms. A mechanism cannot change them without passing a type-1
 /// singularity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WorkingMode {
@@ -29,34 +29,26 @@ pub struct WorkingMode {
 
 impl WorkingMode {
     /// Both elbows outward, as the robot is built.
-    pub const OUTWARD: Self = Self {
-        left: Elbow::Outward,
-        right: Elbow::Outward,
-    };
+    pub const OUTWARD: Self = Self::new(Elbow::Outward, Elbow::Outward);
 
     /// All four: outward-outward, outward-inward, inward-outward, inward-inward,
     /// the left elbow first.
     pub const ALL: [Self; 4] = [
         Self::OUTWARD,
-        Self {
-            left: Elbow::Outward,
-            right: Elbow::Inward,
-        },
-        Self {
-            left: Elbow::Inward,
-            right: Elbow::Outward,
-        },
-        Self {
-            left: Elbow::Inward,
-            right: Elbow::Inward,
-        },
+        Self::new(Elbow::Outward, Elbow::Inward),
+        Self::new(Elbow::Inward, Elbow::Outward),
+        Self::new(Elbow::Inward, Elbow::Inward),
     ];
+
+    const fn new(left: Elbow, right: Elbow) -> Self {
+        Self { left, right }
+    }
 }
 
 /// One of the four ways to put the end point somewhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InverseSolution {
-    /// How the arms bend.
+    /// The bends of both arms.
     pub working_mode: WorkingMode,
     /// The assembly mode in which the forward solution finds the point again.
     pub assembly_mode: AssemblyMode,

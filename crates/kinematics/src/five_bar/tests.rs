@@ -6,20 +6,7 @@ use proptest::prelude::*;
 
 /// Any five-bar, symmetrical or not, from 5 to 200 mm a link.
 fn any_five_bar() -> impl Strategy<Value = FiveBar> {
-    [
-        5.0..200.0,
-        5.0..200.0,
-        5.0..200.0,
-        5.0..200.0,
-        5.0..200.0f64,
-    ]
-    .prop_map(|l| FiveBar {
-        base: l[0],
-        crank_left: l[1],
-        coupler_left: l[2],
-        coupler_right: l[3],
-        crank_right: l[4],
-    })
+    proptest::array::uniform5(5.0..200.0f64).prop_map(FiveBar::new)
 }
 
 proptest! {
@@ -132,14 +119,9 @@ fn the_robot_returns_from_point_to_pose_to_point_over_its_whole_workspace() {
             let Ok([outward, ..]) = HEAD.inverse(point) else {
                 continue;
             };
-            let there = HEAD
-                .forward_in(
-                    outward.assembly_mode,
-                    outward.theta_left,
-                    outward.theta_right,
-                )
-                .unwrap();
-            worst = worst.max((there.end_point - point).length());
+            let (left, right) = (outward.theta_left, outward.theta_right);
+            let there = HEAD.forward_in(outward.assembly_mode, left, right);
+            worst = worst.max((there.unwrap().end_point - point).length());
             reached += 1;
         }
     }
@@ -172,15 +154,8 @@ fn where_the_papers_a_vanishes_nothing_happens() {
                 continue;
             };
             least = least.min((pose.gap.square() - 100.0 * pose.gap.x).abs());
-            let gap = loop_gap(
-                &HEAD,
-                [
-                    theta1,
-                    pose.theta_left_coupler(),
-                    pose.theta_right_coupler(),
-                    theta4,
-                ],
-            );
+            let (theta2, theta3) = (pose.theta_left_coupler(), pose.theta_right_coupler());
+            let gap = loop_gap(&HEAD, [theta1, theta2, theta3, theta4]);
             assert!(gap[0].hypot(gap[1]) < 1e-12);
         }
     }
@@ -189,32 +164,28 @@ fn where_the_papers_a_vanishes_nothing_happens() {
 
 #[test]
 fn unreachable_points_and_bad_numbers_say_why() {
-    let says = |result: Result<_, Fault>| result.map(|_: [_; 4]| ()).unwrap_err().to_string();
-    assert_eq!(
-        says(HEAD.inverse(Vector::new(0.0, 90.0))),
-        "the point is 90.554 mm from the left shaft, which reaches 20.000 to 80.000 mm"
-    );
-    assert_eq!(
-        says(HEAD.inverse(Vector::new(10.0, 5.0))),
-        "the point is 5.000 mm from the right shaft, which reaches 20.000 to 80.000 mm"
-    );
-    assert_eq!(
-        says(HEAD.inverse(Vector::new(f64::NAN, 5.0))),
-        "a value is not a finite number"
-    );
-    let short = FiveBar {
-        coupler_left: 10.0,
-        coupler_right: 15.0,
-        ..HEAD
-    };
+    for (x, y, sentence) in [
+        (
+            0.0,
+            90.0,
+            "the point is 90.554 mm from the left shaft, which reaches 20.000 to 80.000 mm",
+        ),
+        (
+            10.0,
+            5.0,
+            "the point is 5.000 mm from the right shaft, which reaches 20.000 to 80.000 mm",
+        ),
+        (f64::NAN, 5.0, "a value is not a finite number"),
+    ] {
+        let refused = HEAD.inverse(Vector::new(x, y)).unwrap_err();
+        assert_eq!(refused.to_string(), sentence);
+    }
+    let short = FiveBar::new([20.0, 30.0, 10.0, 15.0, 30.0]);
     assert_eq!(
         short.forward(180.0, 0.0).unwrap_err().to_string(),
         "the crank tips are 80.000 mm apart, the couplers reach 25.000 mm"
     );
-    let unequal = FiveBar {
-        coupler_left: 80.0,
-        ..HEAD
-    };
+    let unequal = FiveBar::new([20.0, 30.0, 80.0, 50.0, 30.0]);
     assert_eq!(
         unequal.forward(90.0, 90.0).unwrap_err().to_string(),
         "the crank tips are 20.000 mm apart, the couplers need 30.000 mm"
@@ -230,10 +201,7 @@ fn a_distance_that_overflows_is_no_number_and_not_out_of_reach() {
     let far = Vector::new(1e200, 0.0);
     assert_eq!(HEAD.inverse(far).unwrap_err(), Fault::NotFinite);
     assert_eq!(HEAD.reach(far).unwrap_err(), Fault::NotFinite);
-    let endless = FiveBar {
-        crank_right: f64::INFINITY,
-        ..HEAD
-    };
+    let endless = FiveBar::new([20.0, 30.0, 50.0, 50.0, f64::INFINITY]);
     let near = Vector::new(0.0, 50.0);
     assert_eq!(endless.inverse(near).unwrap_err(), Fault::NotFinite);
 }

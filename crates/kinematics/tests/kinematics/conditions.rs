@@ -1,12 +1,12 @@
 //! Every condition of a safe pose, for robots without any symmetry, against a
 //! truth that writes each link and each angle out by its number in the paper.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use lizard_kinematics::{Check, End, Limits, Lizard, Pose, Side, Solution, Vector};
+use lizard_kinematics::{Check, End, Limits, Lizard, Side, Vector};
 use proptest::prelude::*;
 
-use crate::reference::{any_lizard, any_pose, cis, meeting};
+use crate::reference::{any_lizard, any_pose, any_solved, cases, cis, meeting};
 
 fn between(a: Vector, b: Vector) -> f64 {
     (a.x * b.y - a.y * b.x) / (a.x.hypot(a.y) * b.x.hypot(b.y))
@@ -50,15 +50,14 @@ fn truth(robot: &Lizard, [t1, t4, t8, t5]: [f64; 4]) -> Option<BTreeMap<&'static
 
 /// Limits that differ for every kind.
 fn any_limits() -> impl Strategy<Value = Limits> {
-    [0.05..0.9, 0.05..0.9, 0.05..0.9, -40.0..0.0, 0.0..60.0f64].prop_map(
-        |[type2, type1, leg, stroke_min, stroke_max]| Limits {
-            type2,
-            type1,
-            leg,
-            stroke_min,
-            stroke_max,
-        },
-    )
+    let any = [0.05..0.9, 0.05..0.9, 0.05..0.9, -40.0..0.0, 0.0..60.0f64];
+    any.prop_map(|values| Limits {
+        type2: values[0],
+        type1: values[1],
+        leg: values[2],
+        stroke_min: values[3],
+        stroke_max: values[4],
+    })
 }
 
 /// The two values between which a condition is safe, by the beginning of its
@@ -73,22 +72,15 @@ fn range(limits: &Limits, name: &str) -> (f64, f64) {
     }
 }
 
-fn solved(robot: &Lizard, pose: [f64; 4]) -> Option<Solution> {
-    robot.solve(&Pose::from(pose)).ok()
-}
-
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 4096, max_global_rejects: 100_000,
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(cases(4096))]
 
     #[test]
     fn every_condition_is_measured_on_its_own_links_and_servos(
         robot in any_lizard(), pose in any_pose(), turns in -2..=2i32,
     ) {
         let pose = pose.map(|angle| angle + 360.0 * f64::from(turns));
-        let solution = solved(&robot, pose);
+        let solution = robot.solve(&pose.into()).ok();
         let Some(truth) = truth(&robot, pose) else {
             prop_assert!(solution.is_none_or(|s| s.head.type2.min(s.tail.type2) < 1e-6));
             return Ok(());
@@ -120,11 +112,8 @@ proptest! {
 
     #[test]
     fn a_limit_is_broken_exactly_by_the_conditions_of_its_kind(
-        robot in any_lizard(), pose in any_pose(), limits in any_limits(),
+        (_, _, s) in any_solved(), limits in any_limits(),
     ) {
-        let s = solved(&robot, pose);
-        prop_assume!(s.is_some());
-        let s = s.expect("assumed");
         let mut expected = Vec::new();
         for (what, value) in s.conditions() {
             let (least, most) = range(&limits, what.name());
@@ -139,19 +128,11 @@ proptest! {
         prop_assert_eq!(limits.allow(&s), found.is_empty());
         prop_assert_eq!(&found, &expected);
         // An end by itself finds its own.
-        let mut of_ends: Vec<_> = End::ALL
-            .into_iter()
-            .flat_map(|end| limits.end_violations(end, s.end(end)))
-            .map(|v| v.what.name())
-            .collect();
-        let mut of_all: Vec<_> = expected
-            .iter()
-            .filter(|(what, ..)| !Check::STROKE.contains(what))
-            .map(|(what, ..)| what.name())
-            .collect();
-        of_ends.sort_unstable();
-        of_all.sort_unstable();
-        prop_assert_eq!(of_ends, of_all);
+        let of_end = |end: End| limits.end_violations(end, s.end(end));
+        let of_ends = End::ALL.into_iter().flat_map(of_end).map(|v| v.what.name());
+        let of_all = expected.iter().map(|(what, ..)| what);
+        let of_all = of_all.filter(|what| !Check::STROKE.contains(what)).map(|what| what.name());
+        prop_assert_eq!(BTreeSet::from_iter(of_ends), BTreeSet::from_iter(of_all));
     }
 
     #[test]
@@ -182,11 +163,8 @@ proptest! {
 
     #[test]
     fn points_of_the_robot_lie_at_the_ends_of_their_links(
-        robot in any_lizard(), pose in any_pose(),
+        (robot, pose, s) in any_solved(),
     ) {
-        let s = solved(&robot, pose);
-        prop_assume!(s.is_some());
-        let s = s.expect("assumed");
         prop_assume!(s.head.type2.min(s.tail.type2) > 1e-3);
         let l = &robot.links;
         let far = |a: Vector, b: Vector| (a - b).length();
@@ -216,11 +194,8 @@ proptest! {
 
     #[test]
     fn the_angles_for_a_point_put_the_end_point_there_in_servo_order(
-        robot in any_lizard(), pose in any_pose(),
+        (robot, pose, s) in any_solved(),
     ) {
-        let s = solved(&robot, pose);
-        prop_assume!(s.is_some());
-        let s = s.expect("assumed");
         // Only outward elbows are found again, and not at a singularity.
         prop_assume!(s.margins.type1.iter().chain(&s.margins.type2).all(|m| *m > 1e-2));
         let mut found = Vec::new();

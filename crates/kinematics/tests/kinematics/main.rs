@@ -1,4 +1,4 @@
-//! What crosses the modules: the whole robot against solvers that share nothing
+//! Tests across modules: the whole robot against solvers that share nothing
 //! with it but lengths.
 
 mod conditions;

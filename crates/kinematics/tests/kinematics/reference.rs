@@ -6,17 +6,11 @@
 
 use std::f64::consts::PI;
 
-use lizard_kinematics::{FiveBar, Leg, Lizard, Vector};
+use lizard_kinematics::{FiveBar, Leg, Lizard, Solution, Vector};
 use proptest::prelude::*;
 
-/// The robot of the paper.
-pub const HEAD: FiveBar = FiveBar {
-    base: 20.0,
-    crank_left: 30.0,
-    coupler_left: 50.0,
-    coupler_right: 50.0,
-    crank_right: 30.0,
-};
+/// The head of the paper's robot.
+pub const HEAD: FiveBar = FiveBar::new([20.0, 30.0, 50.0, 50.0, 30.0]);
 
 pub fn lizard() -> Lizard {
     let mut l = [30.0; 20];
@@ -76,21 +70,11 @@ pub fn newton(bars: &FiveBar, cranks: [f64; 2], start: [f64; 2]) -> Option<[f64;
 /// between the tips; None if the circles miss each other.
 pub fn end_point(bars: &FiveBar, theta_left: f64, theta_right: f64) -> Option<[f64; 2]> {
     let (a, b) = (theta_left * PI / 180.0, theta_right * PI / 180.0);
-    let (bx, by) = (
-        bars.crank_left * a.cos() - bars.base / 2.0,
-        bars.crank_left * a.sin(),
-    );
-    let (cx, cy) = (
-        bars.crank_right * b.cos() + bars.base / 2.0,
-        bars.crank_right * b.sin(),
-    );
-    meeting(
-        Vector::new(bx, by),
-        bars.coupler_left,
-        Vector::new(cx, cy),
-        bars.coupler_right,
-    )
-    .map(|point| [point.x, point.y])
+    let (half, l1, l4) = (bars.base / 2.0, bars.crank_left, bars.crank_right);
+    let left = Vector::new(l1 * a.cos() - half, l1 * a.sin());
+    let right = Vector::new(l4 * b.cos() + half, l4 * b.sin());
+    let point = meeting(left, bars.coupler_left, right, bars.coupler_right)?;
+    Some([point.x, point.y])
 }
 
 /// Robots of any proportions that come together: random links, l10 = l15.
@@ -109,7 +93,25 @@ pub fn any_lizard() -> impl Strategy<Value = Lizard> {
     })
 }
 
-/// Servo angles that most robots close at, in servo order, degrees.
+/// Any robot and any pose at which it closes.
+pub fn any_solved() -> impl Strategy<Value = (Lizard, [f64; 4], Solution)> {
+    (any_lizard(), any_pose()).prop_filter_map("a loop does not close", |(robot, pose)| {
+        let solved = robot.solve(&pose.into()).ok()?;
+        Some((robot, pose, solved))
+    })
+}
+
+/// As many cases as given, of which many may be rejected.
+pub fn cases(cases: u32) -> ProptestConfig {
+    ProptestConfig {
+        cases,
+        max_global_rejects: 100_000,
+        max_local_rejects: 1_000_000,
+        ..ProptestConfig::default()
+    }
+}
+
+/// Servo angles at which most robots close, in servo order, degrees.
 pub fn any_pose() -> impl Strategy<Value = [f64; 4]> {
     [0.0..180.0, 0.0..180.0, 180.0..360.0, 180.0..360.0f64]
 }
@@ -120,9 +122,9 @@ pub fn cis(degrees: f64) -> Vector {
     Vector::new(cos, sin)
 }
 
-/// Where a link of length `r` on `a` meets a link of length `s` on `b`, to the
-/// left of the line from `a` to `b`, by the law of cosines; None if they miss
-/// each other.
+/// The point in which a link of length `r` on `a` meets a link of length `s` on `b`, to
+/// the left of the line from `a` to `b`, by the law of cosines; None if they miss each
+/// other.
 pub fn meeting(a: Vector, r: f64, b: Vector, s: f64) -> Option<Vector> {
     let d = (b.x - a.x).hypot(b.y - a.y);
     let cosine = (r * r + d * d - s * s) / (2.0 * r * d);

@@ -1,18 +1,13 @@
 //! Workspace, inscribed circle and conditioning.
 
-use lizard_kinematics::{Elbow, FiveBar, Vector, Workspace};
+use lizard_kinematics::{FiveBar, Vector, WorkingMode, Workspace};
 use proptest::prelude::*;
 
 use crate::reference::HEAD;
 
 fn symmetrical() -> impl Strategy<Value = FiveBar> {
-    (5.0..100.0, 5.0..100.0, 0.0..150.0f64).prop_map(|(crank, coupler, base)| FiveBar {
-        base,
-        crank_left: crank,
-        coupler_left: coupler,
-        coupler_right: coupler,
-        crank_right: crank,
-    })
+    (5.0..100.0, 5.0..100.0, 0.0..150.0f64)
+        .prop_map(|(crank, coupler, base)| FiveBar::new([base, crank, coupler, coupler, crank]))
 }
 
 #[test]
@@ -86,13 +81,9 @@ proptest! {
     fn the_conditioning_index_lies_between_0_and_1_and_knows_no_scale(
         bars in symmetrical(), x in -100.0..100.0, y in 0.0..100.0f64, scale in 0.01..100.0f64,
     ) {
-        let large = FiveBar {
-            base: bars.base * scale,
-            crank_left: bars.crank_left * scale,
-            coupler_left: bars.coupler_left * scale,
-            coupler_right: bars.coupler_right * scale,
-            crank_right: bars.crank_right * scale,
-        };
+        let (crank, coupler) = (bars.crank_left, bars.coupler_left);
+        let large = [bars.base, crank, coupler, coupler, crank].map(|length| length * scale);
+        let large = FiveBar::new(large);
         if let Ok(all) = bars.inverse(Vector::new(x, y)) {
             for a in all {
                 let (Ok(one), Ok(two)) = (
@@ -116,13 +107,12 @@ fn largest_by_distance_field(bars: &FiveBar) -> (f64, f64) {
     let cell = 2.2 * reach / CELLS as f64;
     let at = |k: usize| (k as f64 + 0.5) * cell - 1.1 * reach;
     let point = |i: usize, j: usize| Vector::new(at(i), at(j));
-    let inside: Vec<Vec<bool>> = (0..CELLS)
-        .map(|i| {
-            (0..CELLS)
-                .map(|j| bars.inverse(point(i, j)).is_ok())
-                .collect()
-        })
-        .collect();
+    let reached = |i| {
+        (0..CELLS)
+            .map(|j| bars.inverse(point(i, j)).is_ok())
+            .collect()
+    };
+    let inside: Vec<Vec<bool>> = (0..CELLS).map(reached).collect();
     let mut rim = vec![bars.left_shaft(), bars.right_shaft()];
     for i in 1..CELLS - 1 {
         for j in 1..CELLS - 1 {
@@ -135,11 +125,8 @@ fn largest_by_distance_field(bars: &FiveBar) -> (f64, f64) {
     let mut largest = 0.0_f64;
     for (i, column) in inside.iter().enumerate() {
         for j in (0..CELLS).filter(|&j| column[j]) {
-            let nearest = rim
-                .iter()
-                .map(|&outside| (point(i, j) - outside).square())
-                .fold(f64::INFINITY, f64::min);
-            largest = largest.max(nearest);
+            let squares = rim.iter().map(|&outside| (point(i, j) - outside).square());
+            largest = largest.max(squares.fold(f64::INFINITY, f64::min));
         }
     }
     (largest.sqrt(), cell)
@@ -148,13 +135,7 @@ fn largest_by_distance_field(bars: &FiveBar) -> (f64, f64) {
 #[test]
 fn a_wide_base_leaves_a_circle_between_the_shafts() {
     // r1 .2, r2 .3, r3 .4 at a base of 20 mm.
-    let bars = FiveBar {
-        base: 20.0,
-        crank_left: 5.0,
-        coupler_left: 7.5,
-        coupler_right: 7.5,
-        crank_right: 5.0,
-    };
+    let bars = FiveBar::new([20.0, 5.0, 7.5, 7.5, 5.0]);
     let circle = Workspace::of(&bars).inscribed_circle().unwrap();
     assert_eq!((circle.centre, circle.radius), (Vector::new(0.0, 0.0), 2.5));
 }
@@ -167,14 +148,10 @@ fn conditioning_vanishes_where_the_inscribed_circle_touches_the_rim() {
         for side in [1.0, -1.0] {
             let rim = circle.centre + away * (side * circle.radius / away.length());
             let a = HEAD.inverse(rim).unwrap()[0];
-            assert_eq!(
-                (a.working_mode.left, a.working_mode.right),
-                (Elbow::Outward, Elbow::Outward)
-            );
-            let pose = HEAD
-                .forward_in(a.assembly_mode, a.theta_left, a.theta_right)
-                .unwrap();
-            assert!(pose.lci() < 1e-6, "{}", pose.lci());
+            assert_eq!(a.working_mode, WorkingMode::OUTWARD);
+            let pose = HEAD.forward_in(a.assembly_mode, a.theta_left, a.theta_right);
+            let index = pose.unwrap().lci();
+            assert!(index < 1e-6, "{index}");
         }
     }
 }

@@ -1,17 +1,12 @@
-//! The whole robot: every body, and where each is at a pose.
+//! The complete robot: its bodies, and the place of each at a pose.
 
 use lizard_kinematics::{Real, Solution, Vector};
 use lizard_robot::Robot;
 
 use crate::bodies::builder::Builder;
-use crate::bodies::chassis;
-use crate::bodies::ends;
 use crate::bodies::joints::Joints;
 use crate::bodies::layout::Layout;
-use crate::bodies::legs;
-use crate::bodies::links;
-use crate::bodies::sliders;
-use crate::bodies::struts;
+use crate::bodies::{chassis, ends, legs, links, sliders, struts};
 use crate::layers::body::{Body, Mount, at_end};
 use crate::layers::placement::Placement;
 use crate::layers::stack::Stack;
@@ -27,7 +22,7 @@ pub struct Assembly {
 }
 
 impl Assembly {
-    /// The bodies of a robot. Whether they fit is not asked here.
+    /// Builds the bodies of a robot, without checking that they fit.
     #[must_use]
     pub fn new(robot: &Robot) -> Self {
         let mut builder = Builder::new(robot);
@@ -58,50 +53,50 @@ impl Assembly {
         &self.stack
     }
 
-    /// Where pivots and anchors are.
+    /// The plan of its pivots and anchors.
     #[must_use]
     pub fn layout(&self) -> &Layout {
         &self.layout
     }
 
-    /// Every body.
+    /// Every body that the robot has.
     #[must_use]
     pub fn bodies(&self) -> &[Body] {
         &self.bodies
     }
 
-    /// Bodies that may be put in instead of some of them: the other kind of strut.
+    /// Bodies that may replace others: the struts of the other kind.
     #[must_use]
     pub fn instead(&self) -> &[Body] {
         &self.instead
     }
 
-    /// A body by its name.
+    /// The body with a name.
     #[must_use]
     pub fn body(&self, name: &str) -> Option<&Body> {
         self.bodies.iter().find(|body| body.name == name)
     }
 
-    /// The same robot with bodies changed: a part of one's own, or a mistake on purpose.
+    /// The same robot with changed bodies, for tests and for parts of one's own.
     #[must_use]
     pub fn altered(mut self, change: impl FnOnce(&mut Vec<Body>)) -> Self {
         change(&mut self.bodies);
         self
     }
 
-    /// Whether two bodies may touch: they move together, or are made to meet.
+    /// True if two bodies may touch: they move together, or are made to meet.
     #[must_use]
     pub fn meet(&self, a: &Body, b: &Body) -> bool {
         a.mount == b.mount || a.meets.contains(&b.name) || b.meets.contains(&a.name)
     }
 
-    /// Where a mount's frame is at a pose, legs without lag.
+    /// The place of a mount's frame at a pose, with legs that do not lag.
     #[must_use]
     pub fn place(&self, mount: Mount, pose: &Solution) -> Placement {
         self.place_on(mount, pose)
     }
 
-    /// The same for joints in any kind of number.
+    /// The place of a mount's frame, for joints in any kind of number.
     pub(crate) fn place_on<T: Real>(&self, mount: Mount, joints: &impl Joints<T>) -> Placement<T> {
         let vector = |v: Vector| Vector::new(T::of(v.x), T::of(v.y));
         let turned = |servo: usize, at: Vector| Placement {
@@ -109,28 +104,23 @@ impl Assembly {
             turn: joints.crank(servo),
         };
         let link = |servo: usize| turned(servo, self.layout.shafts[servo]);
+        let legs = &self.layout.legs;
         match mount {
             Mount::Chassis => Placement {
                 at: vector(Placement::CHASSIS.at),
                 turn: vector(Placement::CHASSIS.turn),
             },
             Mount::Link(servo) => link(servo),
-            Mount::Crank(servo) => turned(servo, self.layout.legs[servo].driven),
-            Mount::Follower(servo) => turned(servo, self.layout.legs[servo].idle),
-            Mount::Foot(servo) => {
-                let leg = &self.layout.legs[servo];
-                Placement {
-                    at: turned(servo, leg.driven).map(leg.joint),
-                    turn: vector(leg.along),
-                }
-            }
-            Mount::Strut(servo) => {
-                let leg = &self.layout.legs[servo];
-                Placement {
-                    at: link(servo).map(leg.anchor),
-                    turn: vector(leg.strut),
-                }
-            }
+            Mount::Crank(servo) => turned(servo, legs[servo].driven),
+            Mount::Follower(servo) => turned(servo, legs[servo].idle),
+            Mount::Foot(servo) => Placement {
+                at: turned(servo, legs[servo].driven).map(legs[servo].joint),
+                turn: vector(legs[servo].along),
+            },
+            Mount::Strut(servo) => Placement {
+                at: link(servo).map(legs[servo].anchor),
+                turn: vector(legs[servo].strut),
+            },
             Mount::Coupler(servo) => {
                 let (end, hand) = at_end(servo);
                 let bars = joints.end(end);

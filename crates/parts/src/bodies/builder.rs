@@ -1,4 +1,4 @@
-//! Bodies are added one by one; screws bring their nuts.
+//! A robot's bodies, added one by one; each screw comes with its nut.
 
 use lizard_kinematics::Vector;
 use lizard_robot::{Parts, Robot};
@@ -9,14 +9,23 @@ use crate::layers::body::{Body, Kind, Mount, Prism};
 use crate::layers::shape::Shape;
 use crate::layers::stack::{HEX, PLAY, Span, Stack, screw_length};
 
-/// Which way a screw points.
+/// The way from a screw's head to its tip.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Points {
     Up,
     Down,
 }
 
-/// What the assembly is built with.
+impl Points {
+    fn sign(self) -> f64 {
+        match self {
+            Self::Up => 1.0,
+            Self::Down => -1.0,
+        }
+    }
+}
+
+/// A robot's dimensions and the bodies added so far.
 pub struct Builder<'a> {
     pub robot: &'a Robot,
     pub parts: &'a Parts,
@@ -25,23 +34,40 @@ pub struct Builder<'a> {
     pub bodies: Vec<Body>,
 }
 
-/// A screw with a nut.
+/// A screw and the place of its nut.
 pub struct Bolt<'a> {
     pub name: &'a str,
-    /// What it turns with.
+    /// The mount that it moves with.
     pub mount: Mount,
     pub at: Vector,
-    /// Where the head bears.
+    /// Height of the face under its head, mm.
     pub head: f64,
     pub points: Points,
-    /// What the nut bears on.
+    /// Height of the face that the nut bears on, mm.
     pub nut: f64,
-    /// Length below the head; else as long as the nut needs.
+    /// Length below the head, mm; by default as long as the nut needs.
     pub length: Option<f64>,
-    /// What it passes through.
+    /// Bodies that it passes through.
     pub meets: &'a [&'a str],
-    /// Whether its head is a hexagon, sunk into what it is put into.
+    /// True for a hexagonal head, sunk into the part that it goes into.
     pub hex: bool,
+}
+
+impl<'a> Bolt<'a> {
+    /// A button-head screw that meets nothing. Its nut, if it gets one, is at height 0.
+    pub fn new(name: &'a str, mount: Mount, at: Vector, head: f64, points: Points) -> Self {
+        Self {
+            name,
+            mount,
+            at,
+            head,
+            points,
+            nut: 0.0,
+            length: None,
+            meets: &[],
+            hex: false,
+        }
+    }
 }
 
 impl<'a> Builder<'a> {
@@ -61,19 +87,19 @@ impl<'a> Builder<'a> {
         self.parts.bar / 2.0
     }
 
-    /// Radius of what is around a pocket for a nut, so that its corners have a wall, mm.
+    /// Outer radius around a pocket for a nut that leaves a wall at its corners, mm.
     pub fn eye(&self) -> f64 {
         let corner = (self.parts.screw.nut + self.parts.fit) / f64::sqrt(3.0);
         self.half().max(corner + self.parts.wall)
     }
 
-    /// The same around a head that is sunk, mm.
+    /// Outer radius around a sunk head that leaves a wall, mm.
     pub fn around_head(&self) -> f64 {
         let head = self.parts.screw.head / 2.0 + self.parts.fit;
         self.half().max(head + self.parts.wall)
     }
 
-    /// Whether the struts have a slot and a spring.
+    /// True if the struts have a slot and a spring, false if they are rigid.
     pub fn slotted(&self) -> bool {
         self.robot.drive().strut().is_some()
     }
@@ -93,85 +119,80 @@ impl<'a> Builder<'a> {
         Shape::disc(at, 0.43 * self.parts.screw.diameter)
     }
 
-    /// What a screw's head is sunk into.
+    /// The recess for a sunk screw head.
     pub fn sink(&self, at: Vector) -> Shape {
         Shape::disc(at, self.parts.screw.head / 2.0 + self.parts.fit)
     }
 
-    /// What a nut is sunk into.
+    /// The pocket for a nut.
     pub fn pocket(&self, at: Vector) -> Shape {
         Shape::hexagon(at, self.parts.screw.nut + self.parts.fit)
     }
 
-    pub fn body(&mut self, name: String, kind: Kind, mount: Mount, prisms: Vec<Prism>) {
+    /// Adds a body.
+    pub fn body(
+        &mut self,
+        name: impl Into<String>,
+        kind: Kind,
+        mount: Mount,
+        prisms: impl Into<Vec<Prism>>,
+    ) {
         self.bodies.push(Body {
-            name,
+            name: name.into(),
             kind,
             mount,
-            prisms,
+            prisms: prisms.into(),
             meets: Vec::new(),
         });
     }
 
-    /// That the last body touches another by design.
-    pub fn meeting(&mut self, name: &str) {
+    /// Adds a printed body.
+    pub fn printed(
+        &mut self,
+        name: impl Into<String>,
+        mount: Mount,
+        prisms: impl Into<Vec<Prism>>,
+    ) {
+        self.body(name, Kind::Printed, mount, prisms);
+    }
+
+    /// Records the bodies that the last one touches by design.
+    pub fn meeting<S: AsRef<str>>(&mut self, names: &[S]) {
         if let Some(body) = self.bodies.last_mut() {
-            body.meets.push(name.to_owned());
+            let names = names.iter().map(|name| name.as_ref().to_owned());
+            body.meets.extend(names);
         }
     }
 
-    /// A printed ring around a screw.
+    /// Adds a printed ring around a screw.
     pub fn spacer(&mut self, name: String, mount: Mount, at: Vector, z: Span, meets: &[&str]) {
         let hole = self.hole(at);
-        let ring = Prism {
-            add: vec![Shape::disc(at, hole.radius + self.parts.wall)],
-            cut: vec![hole],
-            z,
-        };
-        self.body(name, Kind::Printed, mount, vec![ring]);
-        for other in meets {
-            self.meeting(other);
-        }
+        let ring = Prism::new([Shape::disc(at, hole.radius + self.parts.wall)], [hole], z);
+        self.printed(name, mount, [ring]);
+        self.meeting(meets);
     }
 
-    /// A screw and its nut.
+    /// Adds a screw and its nut.
     pub fn bolt(&mut self, bolt: &Bolt) {
         let screw = self.parts.screw;
-        let way = match bolt.points {
-            Points::Up => 1.0,
-            Points::Down => -1.0,
-        };
+        let way = bolt.points.sign();
         let behind = bolt.nut + way * screw.nut_height;
         let length = bolt
             .length
             .unwrap_or_else(|| screw_length((behind - bolt.head).abs()));
         self.screw(bolt, length);
-        let nut = Prism {
-            add: vec![Shape::hexagon(bolt.at, screw.nut)],
-            cut: vec![Shape::disc(bolt.at, screw.diameter / 2.0)],
-            z: ordered(bolt.nut, behind),
-        };
-        self.body(
-            format!("nut {}", bolt.name),
-            Kind::Nut,
-            bolt.mount,
-            vec![nut],
-        );
-        self.meet(bolt.meets);
+        let flats = Shape::hexagon(bolt.at, screw.nut);
+        let thread = Shape::disc(bolt.at, screw.diameter / 2.0);
+        let nut = Prism::new([flats], [thread], ordered(bolt.nut, behind));
+        self.body(format!("nut {}", bolt.name), Kind::Nut, bolt.mount, [nut]);
+        self.meeting(bolt.meets);
     }
 
-    /// A screw without a nut.
+    /// Adds a screw without a nut.
     pub fn screw(&mut self, bolt: &Bolt, length: f64) {
         let screw = self.parts.screw;
-        let way = match bolt.points {
-            Points::Up => 1.0,
-            Points::Down => -1.0,
-        };
-        let prism = |shape: Shape, from: f64, to: f64| Prism {
-            add: vec![shape],
-            cut: Vec::new(),
-            z: ordered(from, to),
-        };
+        let way = bolt.points.sign();
+        let prism = |shape: Shape, from: f64, to: f64| Prism::solid([shape], ordered(from, to));
         let shank = Shape::disc(bolt.at, screw.diameter / 2.0);
         let (head, high, kind) = if bolt.hex {
             let hexagon = Shape::hexagon(bolt.at, screw.nut);
@@ -186,43 +207,26 @@ impl<'a> Builder<'a> {
         ];
         prisms.sort_by(|a, b| a.z[0].total_cmp(&b.z[0]));
         self.body(format!("screw {}", bolt.name), kind, bolt.mount, prisms);
-        self.meet(bolt.meets);
+        self.meeting(bolt.meets);
     }
 
-    fn meet(&mut self, names: &[&str]) {
-        for name in names {
-            self.meeting(name);
-        }
-    }
-
-    /// A joint of two or more parts, held from below; the nut is above all.
+    /// Adds the screw of a joint through layers `z`: head below, nut above.
     pub fn joint(&mut self, name: &str, mount: Mount, at: Vector, z: Span, meets: &[&str]) {
         self.bolt(&Bolt {
-            name,
-            mount,
-            at,
-            head: z[0],
-            points: Points::Up,
             nut: z[1] + PLAY,
-            length: None,
             meets,
-            hex: false,
+            ..Bolt::new(name, mount, at, z[0], Points::Up)
         });
     }
 
-    /// A joint on a servo's link, whose underside holds the screw's head: no key gets
-    /// there once the link is on its servo.
+    /// Adds the screw of a joint on a servo's link. The link's underside holds its head,
+    /// which no key can reach once the link is on its servo.
     pub fn held_joint(&mut self, name: &str, mount: Mount, at: Vector, top: f64, meets: &[&str]) {
         self.bolt(&Bolt {
-            name,
-            mount,
-            at,
-            head: self.stack.held,
-            points: Points::Up,
             nut: top + PLAY,
-            length: None,
             meets,
             hex: true,
+            ..Bolt::new(name, mount, at, self.stack.held, Points::Up)
         });
     }
 }

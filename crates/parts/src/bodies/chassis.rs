@@ -1,4 +1,4 @@
-//! What does not move: plate, servos, battery, deck and board.
+//! The bodies that do not move: plate, servos, battery, deck and board.
 
 use lizard_kinematics::{End, Vector};
 
@@ -53,14 +53,11 @@ pub fn add(builder: &mut Builder) {
     board(builder);
 }
 
-/// The middle of a servo's case, and its size grown by `air` on each side.
+/// A servo's case from above, grown by `air` on each side.
 fn opening(builder: &Builder, servo: usize, air: f64) -> Shape {
     let body = &builder.parts.servo;
-    Shape::rectangle(
-        middle(builder, servo),
-        at(body.width + 2.0 * air, body.length + 2.0 * air),
-        0.0,
-    )
+    let size = at(body.width + 2.0 * air, body.length + 2.0 * air);
+    Shape::rectangle(middle(builder, servo), size, 0.0)
 }
 
 fn middle(builder: &Builder, servo: usize) -> Vector {
@@ -71,23 +68,29 @@ fn inward(servo: usize) -> Vector {
     at(0.0, -End::of_servo(servo).sign())
 }
 
-/// Where the two screws of a flange are.
+/// The places of the two screws of a flange.
 fn flange_holes(builder: &Builder, servo: usize) -> [Vector; 2] {
     let half = inward(servo) * (builder.parts.servo.holes / 2.0);
     let middle = middle(builder, servo);
     [middle - half, middle + half]
 }
 
-fn seat(builder: &Builder, servo: usize) -> Shape {
+/// The seat of a servo, grown by `more` on each side.
+fn seat(builder: &Builder, servo: usize, more: f64) -> Shape {
     let body = &builder.parts.servo;
-    Shape::rectangle(
-        middle(builder, servo),
-        at(
-            body.width + 2.0 * (builder.parts.fit + builder.parts.wall),
-            body.flange + 2.0,
-        ),
-        1.0,
-    )
+    let around = builder.parts.fit + builder.parts.wall + more;
+    let size = at(body.width + 2.0 * around, body.flange + 2.0 + 2.0 * more);
+    Shape::rectangle(middle(builder, servo), size, 1.0)
+}
+
+/// The cut-outs that a servo needs in the plate and in its seat: its case, the notch for
+/// its lead, and the holes of its screws.
+fn cutouts(builder: &Builder, servo: usize) -> Vec<Shape> {
+    let (parts, outward) = (builder.parts, End::of_servo(servo).sign());
+    let notch = leads::notch(&parts.servo, middle(builder, servo), parts.fit, outward);
+    let mut cut = vec![opening(builder, servo, parts.fit), notch];
+    cut.extend(flange_holes(builder, servo).map(|at| Shape::disc(at, PILOT)));
+    cut
 }
 
 fn standoffs() -> [Vector; 4] {
@@ -96,22 +99,19 @@ fn standoffs() -> [Vector; 4] {
 }
 
 fn plate(builder: &mut Builder) {
-    let (parts, stack, layout) = (builder.parts, builder.stack, builder.layout);
+    let (stack, layout) = (builder.stack, builder.layout);
     let plate = layout.plate;
-    let mut seats = Vec::new();
-    let mut openings = Vec::new();
-    let mut holes = Vec::new();
-    for servo in 0..4 {
-        seats.push(seat(builder, servo));
-        openings.push(opening(builder, servo, parts.fit));
-        let outward = End::of_servo(servo).sign();
-        let middle = middle(builder, servo);
-        openings.push(leads::notch(&parts.servo, middle, parts.fit, outward));
-        holes.extend(flange_holes(builder, servo).map(|at| Shape::disc(at, PILOT)));
-    }
+    let seats: Vec<_> = (0..4).map(|servo| seat(builder, servo, 0.0)).collect();
+    // The openings come before the holes of all servos: the order decides that of the files.
+    let all: Vec<_> = (0..4).map(|servo| cutouts(builder, servo)).collect();
+    let openings = all.iter().flat_map(|cut| &cut[..2]);
+    let cut: Vec<_> = openings
+        .chain(all.iter().flat_map(|cut| &cut[2..]))
+        .cloned()
+        .collect();
     let body = Shape::rectangle(Vector::default(), plate.half * 2.0, plate.corner);
     let mut add = vec![body];
-    let mut through = Vec::new();
+    let mut through = cut.clone();
     for (leg, [between, driven, idle]) in layout.legs.iter().zip(plate.arms) {
         let bar = |[from, to]: [Vector; 2], half: f64| Shape::bar(from, to, half);
         add.push(bar(between, plate.arm));
@@ -123,69 +123,40 @@ fn plate(builder: &mut Builder) {
     through.extend(standoffs().map(|at| builder.hole(at)));
     through.extend(leads::holes());
     through.extend(fittings::slots(builder));
-    let cut = [&openings[..], &holes].concat();
     let [low, high] = stack.plate;
-    let through = [&cut[..], &through].concat();
-    let prisms = vec![
-        Prism {
-            add: add.clone(),
-            cut: through.clone(),
-            z: [low, high - mark::DEEP],
-        },
-        Prism {
-            add,
-            cut: [through, numbers(builder)].concat(),
-            z: [high - mark::DEEP, high],
-        },
-        Prism {
-            add: seats,
-            cut,
-            z: stack.seat,
-        },
+    let engraved = [&through[..], &numbers(builder)].concat();
+    let prisms = [
+        Prism::new(add.clone(), through, [low, high - mark::DEEP]),
+        Prism::new(add, engraved, [high - mark::DEEP, high]),
+        Prism::new(seats, cut, stack.seat),
     ];
-    builder.body("plate".to_owned(), Kind::Printed, Mount::Chassis, prisms);
+    builder.printed("plate", Mount::Chassis, prisms);
 }
 
-/// A piece of the plate for one servo and its leg: what is printed first.
+/// The piece of the plate around one servo and the pivots of its leg, to be printed first.
 pub fn corner(builder: &Builder, servo: usize) -> Vec<Prism> {
-    /// What is around the seat, mm.
+    /// Width of the plate around the seat, mm.
     const AROUND: f64 = 2.0;
     let (parts, stack, plate) = (builder.parts, builder.stack, builder.layout.plate);
     let leg = &builder.layout.legs[servo];
     let middle = middle(builder, servo);
-    let size = at(
-        parts.servo.width + 2.0 * (parts.fit + parts.wall + AROUND),
-        parts.servo.flange + 2.0 + 2.0 * AROUND,
-    );
-    let mut add = vec![Shape::rectangle(middle, size, 1.0)];
+    let mut add = vec![seat(builder, servo, AROUND)];
     let [between, driven, idle] = plate.arms[servo];
     add.push(Shape::bar(between[0], between[1], plate.arm));
     for [from, to] in [driven, idle] {
         add.push(Shape::bar(from, to, plate.arm - 0.01));
         add.push(Shape::bar(to, middle, plate.arm - 0.02));
     }
-    let outward = End::of_servo(servo).sign();
-    let mut cut = vec![
-        opening(builder, servo, parts.fit),
-        leads::notch(&parts.servo, middle, parts.fit, outward),
-    ];
-    cut.extend(flange_holes(builder, servo).map(|at| Shape::disc(at, PILOT)));
+    let cut = cutouts(builder, servo);
     let pivots = [leg.driven, leg.idle].map(|at| builder.hole(at));
+    let raised = stack.seat.map(|z| z + parts.plate);
     vec![
-        Prism {
-            add,
-            cut: [&cut[..], &pivots].concat(),
-            z: [0.0, parts.plate],
-        },
-        Prism {
-            add: vec![seat(builder, servo)],
-            cut,
-            z: stack.seat.map(|z| z + parts.plate),
-        },
+        Prism::new(add, [&cut[..], &pivots].concat(), [0.0, parts.plate]),
+        Prism::new([seat(builder, servo, 0.0)], cut, raised),
     ]
 }
 
-/// The servos' numbers, engraved beside the seats: so the plate says which end is which.
+/// The servos' numbers, engraved beside the seats, so that head and tail can be told apart.
 fn numbers(builder: &Builder) -> Vec<Shape> {
     let body = &builder.parts.servo;
     let strokes = (0..4).flat_map(|servo| {
@@ -205,11 +176,8 @@ fn case(builder: &mut Builder, servo: usize) {
     let body = builder.parts.servo;
     let bottom = builder.stack.servo;
     let shaft = builder.layout.shafts[servo];
-    let layer = |add: Vec<Shape>, low: f64, high: f64| Prism {
-        add,
-        cut: Vec::new(),
-        z: [bottom + low, bottom + high],
-    };
+    let layer =
+        |add: Vec<Shape>, low: f64, high: f64| Prism::solid(add, [bottom + low, bottom + high]);
     let case = opening(builder, servo, 0.0);
     let flange = Shape::rectangle(middle(builder, servo), at(body.width, body.flange), 0.0);
     let gears = vec![
@@ -225,35 +193,19 @@ fn case(builder: &mut Builder, servo: usize) {
         layer(vec![Shape::disc(shaft, SPLINE)], body.boss, body.boss + 3.0),
     ];
     builder.body(format!("servo {name}"), Kind::Servo, Mount::Chassis, prisms);
-    builder.meeting(&format!("horn {name}"));
+    builder.meeting(&[format!("horn {name}")]);
     for (number, at) in flange_holes(builder, servo).into_iter().enumerate() {
-        let head = Prism {
-            add: vec![Shape::disc(at, 2.2)],
-            cut: Vec::new(),
-            z: [bottom + over, bottom + over + 1.6],
-        };
-        builder.body(
-            format!("servo screw {name} {}", number + 1),
-            Kind::ServoScrew,
-            Mount::Chassis,
-            vec![head],
-        );
+        let head = Prism::solid([Shape::disc(at, 2.2)], [bottom + over, bottom + over + 1.6]);
+        let screw = format!("servo screw {name} {}", number + 1);
+        builder.body(screw, Kind::ServoScrew, Mount::Chassis, [head]);
     }
 }
 
 fn battery(builder: &mut Builder) {
     let [x, y, z] = builder.parts.battery;
-    let block = Prism {
-        add: vec![Shape::rectangle(Vector::default(), at(x, y), 0.0)],
-        cut: Vec::new(),
-        z: [0.0, z],
-    };
-    builder.body(
-        "battery".to_owned(),
-        Kind::Battery,
-        Mount::Chassis,
-        vec![block],
-    );
+    let block = Shape::rectangle(Vector::default(), at(x, y), 0.0);
+    let block = Prism::solid([block], [0.0, z]);
+    builder.body("battery", Kind::Battery, Mount::Chassis, [block]);
 }
 
 fn deck(builder: &mut Builder) {
@@ -267,52 +219,28 @@ fn deck(builder: &mut Builder) {
     ];
     let screws = standoffs().map(|at| builder.hole(at));
     let threads = UNO_HOLES.map(|(x, y)| builder.thread(at(x, y)));
-    // Lighter, and a way for the straps of what hangs under it.
+    // It saves weight, and cable ties for the parts below the deck pass through it.
     let window = Shape::rectangle(at(0.0, 4.0), at(12.0, 36.0), 3.0);
-    let prisms = vec![
-        Prism {
-            add,
-            cut: [&screws[..], &threads, &leads::holes(), &[window]].concat(),
-            z: stack.deck,
-        },
-        Prism {
-            add: UNO_HOLES.map(|(x, y)| Shape::disc(at(x, y), 4.0)).to_vec(),
-            cut: threads.to_vec(),
-            z: stack.boss,
-        },
+    let holes = [&screws[..], &threads, &leads::holes(), &[window]].concat();
+    let bosses = UNO_HOLES.map(|(x, y)| Shape::disc(at(x, y), 4.0));
+    let prisms = [
+        Prism::new(add, holes, stack.deck),
+        Prism::new(bosses, threads, stack.boss),
     ];
-    builder.body("deck".to_owned(), Kind::Printed, Mount::Chassis, prisms);
-    for (number, place) in standoffs().into_iter().enumerate() {
+    builder.printed("deck", Mount::Chassis, prisms);
+    for (number, place) in (1..).zip(standoffs()) {
         let length = stack.deck[0];
-        let post = Prism {
-            add: vec![Shape::disc(place, STANDOFF)],
-            cut: vec![builder.thread(place)],
-            z: [0.0, length],
-        };
-        builder.body(
-            format!("standoff {}", number + 1),
-            Kind::Standoff(length),
-            Mount::Chassis,
-            vec![post],
-        );
-        for (name, head, points) in [
+        let (post, thread) = (Shape::disc(place, STANDOFF), builder.thread(place));
+        let post = Prism::new([post], [thread], [0.0, length]);
+        let name = format!("standoff {number}");
+        builder.body(&name, Kind::Standoff(length), Mount::Chassis, [post]);
+        for (end, head, points) in [
             ("below", stack.plate[0], Points::Up),
             ("above", stack.deck[1], Points::Down),
         ] {
-            builder.screw(
-                &Bolt {
-                    name: &format!("standoff {} {name}", number + 1),
-                    mount: Mount::Chassis,
-                    at: place,
-                    head,
-                    points,
-                    nut: 0.0,
-                    length: None,
-                    meets: &[],
-                    hex: false,
-                },
-                parts.plate + 4.0,
-            );
+            let name = format!("{name} {end}");
+            let bolt = Bolt::new(&name, Mount::Chassis, place, head, points);
+            builder.screw(&bolt, parts.plate + 4.0);
         }
     }
 }
@@ -320,44 +248,18 @@ fn deck(builder: &mut Builder) {
 fn board(builder: &mut Builder) {
     let low = builder.stack.boss[1];
     let [x, y, z] = UNO;
-    let layer = |low: f64, high: f64| Prism {
-        add: vec![Shape::rectangle(Vector::default(), at(x, y), 0.0)],
-        cut: UNO_HOLES.map(|(x, y)| Shape::disc(at(x, y), 1.6)).to_vec(),
-        z: [low, high],
-    };
-    let board = layer(low, low + UNO_BOARD);
-    let parts = Prism {
-        add: vec![Shape::rectangle(
-            Vector::default(),
-            at(x - 4.0, y - 4.0),
-            0.0,
-        )],
-        cut: UNO_HOLES.map(|(x, y)| builder.sink(at(x, y))).to_vec(),
-        z: [low + UNO_BOARD, low + z],
-    };
-    builder.body(
-        "board".to_owned(),
-        Kind::Board,
-        Mount::Chassis,
-        vec![board, parts],
-    );
+    let top = low + UNO_BOARD;
+    let block = |x: f64, y: f64| [Shape::rectangle(Vector::default(), at(x, y), 0.0)];
+    let holes = UNO_HOLES.map(|(x, y)| Shape::disc(at(x, y), 1.6));
+    let heads = UNO_HOLES.map(|(x, y)| builder.sink(at(x, y)));
+    let board = Prism::new(block(x, y), holes, [low, top]);
+    let parts = Prism::new(block(x - 4.0, y - 4.0), heads, [top, low + z]);
+    builder.body("board", Kind::Board, Mount::Chassis, [board, parts]);
     for (number, (x, y)) in UNO_HOLES.into_iter().enumerate() {
-        if number == UNO_TIGHT {
-            continue;
+        if number != UNO_TIGHT {
+            let name = format!("board {}", number + 1);
+            let bolt = Bolt::new(&name, Mount::Chassis, at(x, y), top, Points::Down);
+            builder.screw(&bolt, 10.0);
         }
-        builder.screw(
-            &Bolt {
-                name: &format!("board {}", number + 1),
-                mount: Mount::Chassis,
-                at: at(x, y),
-                head: low + UNO_BOARD,
-                points: Points::Down,
-                nut: 0.0,
-                length: None,
-                meets: &[],
-                hex: false,
-            },
-            10.0,
-        );
     }
 }

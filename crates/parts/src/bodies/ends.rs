@@ -5,51 +5,35 @@ use lizard_kinematics::{End, Vector};
 use crate::bodies::builder::Builder;
 use crate::bodies::looks;
 use crate::bodies::names::{coupler, names};
-use crate::layers::body::{Kind, Mount, Prism, coupler_length};
+use crate::layers::body::{Mount, Prism, coupler_length};
 use crate::layers::shape::Shape;
-use crate::layers::stack::{PLAY, Span};
+use crate::layers::stack::{PLAY, Span, Stack};
 
 pub fn add(builder: &mut Builder) {
     for end in End::ALL {
         let [left, right] = end.servos();
-        let (stack, lower, upper) = (builder.stack, builder.stack.lower, builder.stack.upper);
+        let Stack {
+            link, lower, upper, ..
+        } = builder.stack;
         bar(builder, left, lower);
         bar(builder, right, upper);
-        let tip = |servo: usize| Vector::new(builder.layout.crank[servo], 0.0);
-        let tips = [tip(left), tip(right)];
-        builder.held_joint(
-            &format!("tip {}", names(left).0),
-            Mount::Link(left),
-            tips[0],
-            lower[1],
-            &[&coupler(left)],
-        );
-        builder.spacer(
-            format!("tip spacer {}", names(right).0),
-            Mount::Link(right),
-            tips[1],
-            [stack.link[1], upper[0]],
-            &[&coupler(right)],
-        );
-        builder.held_joint(
-            &format!("tip {}", names(right).0),
-            Mount::Link(right),
-            tips[1],
-            upper[1],
-            &[&coupler(right)],
-        );
+        for (servo, top, ring) in [(left, lower[1], None), (right, upper[1], Some(upper[0]))] {
+            let tip = Vector::new(builder.layout.crank[servo], 0.0);
+            let (mount, meets) = (Mount::Link(servo), [&*coupler(servo)]);
+            let (name, _) = names(servo);
+            if let Some(high) = ring {
+                let name = format!("tip spacer {name}");
+                builder.spacer(name, mount, tip, [link[1], high], &meets);
+            }
+            builder.held_joint(&format!("tip {name}"), mount, tip, top, &meets);
+        }
         let apex = Vector::new(coupler_length(builder.robot, left), 0.0);
         let looks = looks::add(builder, end);
         let mut meets: Vec<&str> = looks.on_right.iter().map(String::as_str).collect();
         let right = coupler(right);
         meets.push(&right);
-        builder.joint(
-            end.name(),
-            Mount::Coupler(left),
-            apex,
-            [lower[0] - looks.below, upper[1] + looks.above],
-            &meets,
-        );
+        let z = [lower[0] - looks.below, upper[1] + looks.above];
+        builder.joint(end.name(), Mount::Coupler(left), apex, z, &meets);
     }
 }
 
@@ -62,17 +46,15 @@ fn bar(builder: &mut Builder, servo: usize, z: Span) {
         let around = |hole: &Shape| Shape::disc(hole.middle(), builder.around_head());
         add.extend(hole.iter().map(around));
         cut.extend(hole);
-        Prism { add, cut, z }
+        Prism::new(add, cut, z)
     };
     let prisms = match looks::fixed(builder, servo, to) {
         Some([below, above]) => {
             let seat = z[1] - builder.parts.screw.head_height - PLAY;
-            vec![
-                layer(Some(below), [z[0], seat]),
-                layer(Some(above), [seat, z[1]]),
-            ]
+            let lower = layer(Some(below), [z[0], seat]);
+            vec![lower, layer(Some(above), [seat, z[1]])]
         }
         None => vec![layer(None, z)],
     };
-    builder.body(coupler(servo), Kind::Printed, Mount::Coupler(servo), prisms);
+    builder.printed(coupler(servo), Mount::Coupler(servo), prisms);
 }

@@ -1,4 +1,4 @@
-//! The joints that places follow from, in any kind of number.
+//! The joints from which the places of bodies follow, in any kind of number.
 
 use lizard_kinematics::{End, FiveBarPose, Lizard, Real, Side, SliderPose, Solution, Vector};
 
@@ -26,8 +26,8 @@ impl Joints<f64> for Solution {
     }
 }
 
-/// Joints that are computed on demand: those of servos whose crank is
-/// not known have no meaning.
+/// Joints computed from the directions of some cranks. Those that depend on an unknown
+/// crank are meaningless.
 pub struct Cranks<'a, T> {
     /// The robot's dimensions.
     pub lizard: &'a Lizard,

@@ -1,14 +1,14 @@
-//! Where pivots and anchors are, seen from above, and the lengths of the links:
-//! everything that does not depend on the pose.
+//! The robot's plan from above: pivots, anchors and lengths of links, all of it
+//! independent of the pose.
 
 use lizard_kinematics::{End, Side, Vector};
 use lizard_robot::servo::HAND;
 use lizard_robot::{LegPlan, Plate, Robot};
 
-/// Where the standoffs under the board are, mm: to the right, forward.
+/// Distance of the standoffs from the plate's middle, mm: to the right, forward.
 pub const STANDOFFS: [f64; 2] = [8.0, 39.0];
 
-/// All that a pose does not move, and how it moves the rest.
+/// The pivots of all moving bodies, and their distances on each body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layout {
     /// The servos' shafts, mm, chassis frame, servo order.
@@ -19,9 +19,9 @@ pub struct Layout {
     pub crank: [f64; 4],
     /// Length of the arms of the sliders, mm.
     pub arm: [f64; 4],
-    /// The legs.
+    /// Pivots and anchors of the legs, servo order.
     pub legs: [LegPlan; 4],
-    /// The chassis.
+    /// The outline of the chassis plate.
     pub plate: Plate,
 }
 

@@ -16,41 +16,34 @@ use crate::layers::shape::Shape;
 
 /// Width and thickness of a lead, mm.
 pub const LEAD: [f64; 2] = [4.0, 1.2];
-/// What a notch is wider than a lead, mm.
+/// Width of a notch beyond that of a lead, mm.
 const WIDER: f64 = 1.0;
-/// From the bottom of the case to the lead's lower edge, and what it takes of height, mm.
+/// From the bottom of the case to the lead's lower edge, and the height that it takes, mm.
 const LEAVES: [f64; 2] = [3.0, 4.0];
-/// How far it stands out before it is folded, mm.
+/// Length that stands out of the case before the fold, mm.
 const BEND: f64 = 4.0;
 /// A hole for the leads and the wires, mm: across and along the plate.
 const WIRES: [f64; 2] = [8.4, 6.0];
 /// From the middle of the plate to such a hole: a little beyond the standoffs, mm.
 const BEYOND: f64 = 2.0;
 
-/// The notch in a servo's opening, by the middle of its case, its air on each side, and
-/// the way to the shaft's end: 1 forward, -1 back.
+/// The notch in a servo's opening. `fit` is the air on each side, `outward` the direction
+/// of the shaft's end: 1 forward, -1 back.
 pub fn notch(body: &ServoBody, middle: Vector, fit: f64, outward: f64) -> Shape {
     let reach = body.length / 2.0 + LEAD[1] + fit;
     // It begins within the case's own opening.
     let from = body.length / 2.0 - 2.0;
     let half = (LEAD[0] + WIDER) / 2.0;
     let corner = |x: f64, y: f64| middle + Vector::new(x, outward * y);
-    Shape::hull(
-        &[
-            corner(-half, from),
-            corner(half, from),
-            corner(half, reach),
-            corner(-half, reach),
-        ],
-        0.0,
-    )
+    let [left, right] = [-half, half].map(|x| [from, reach].map(|y| corner(x, y)));
+    Shape::hull(&[left, right].concat(), 0.0)
 }
 
 fn wires(sign: f64) -> Vector {
     Vector::new(0.0, sign * (STANDOFFS[1] + BEYOND))
 }
 
-/// The holes through which leads and wires go up, both in plate and deck.
+/// The holes in plate and deck through which leads and wires go up.
 pub fn holes() -> [Shape; 2] {
     let [across, along] = WIRES;
     [1.0, -1.0].map(|sign| Shape::rectangle(wires(sign), Vector::new(across, along), 1.0))
@@ -81,16 +74,8 @@ pub fn add(builder: &mut Builder) {
         ];
         let lies = [low, low + LEAVES[1]];
         let prisms = vec![
-            Prism {
-                add: way,
-                cut: Vec::new(),
-                z: lies,
-            },
-            Prism {
-                add: vec![Shape::disc(up, radius)],
-                cut: Vec::new(),
-                z: [lies[1], builder.stack.deck[1]],
-            },
+            Prism::solid(way, lies),
+            Prism::solid([Shape::disc(up, radius)], [lies[1], builder.stack.deck[1]]),
         ];
         builder.body(format!("lead {name}"), Kind::Lead, Mount::Chassis, prisms);
     }

@@ -6,6 +6,7 @@
 //! column leads down, and the leaf is low.
 
 use lizard_kinematics::Vector;
+use lizard_robot::LegPlan;
 
 use crate::bodies::builder::{Bolt, Builder, Points};
 use crate::bodies::names::names;
@@ -13,14 +14,14 @@ use crate::layers::body::{Kind, Mount, Prism};
 use crate::layers::shape::Shape;
 use crate::layers::stack::{LEAF, PLAY};
 
-/// Radius of what is around a foot's nut, and of a pad, mm.
+/// Radius of the boss around a foot's nut, and of a pad, mm.
 const TIP: f64 = 5.0;
 const PAD: f64 = 4.0;
 /// From the follower's joint to the two screws of the foot's column, mm.
 const CLAMPS: [f64; 2] = [21.0, 9.0];
 /// Length of these screws, which cut their thread into the column, mm.
 const CLAMP_SCREW: f64 = 10.0;
-/// How deep its holes are, mm.
+/// Depth of the holes for these screws, mm.
 const CLAMP_HOLE: f64 = 10.0;
 /// Half the width of the column, mm.
 const COLUMN: f64 = 3.2;
@@ -28,12 +29,12 @@ const COLUMN: f64 = 3.2;
 const FOOT_SCREW: f64 = 10.0;
 /// Young's modulus of PLA, N/mm^2.
 const PLA: f64 = 3000.0;
-/// What a leaf gives, N/mm: with 0.4 to 0.6 a foot that is 1 mm too long costs no gait
-/// more than a twentieth.
+/// Stiffness of a leaf, N/mm. With 0.4 to 0.6 a foot that is 1 mm too long costs no gait
+/// more than 5 % of its distance.
 const YIELD: f64 = 0.5;
 
-/// The free length of a leaf: of a beam that is held at one end, the force at the other
-/// is E b t^3 / (4 L^3) for each mm.
+/// The free length of a leaf, mm. The stiffness of a beam clamped at one end is
+/// E b t^3 / (4 L^3).
 fn leaf_length(width: f64) -> f64 {
     libm::cbrt(PLA * width * (LEAF * LEAF * LEAF) / (4.0 * YIELD))
 }
@@ -48,92 +49,56 @@ pub fn add(builder: &mut Builder) {
     }
 }
 
-/// The leg's crank from its pivot to its joint, in its own frame.
-fn to_joint(builder: &Builder, servo: usize) -> Vector {
-    builder.layout.legs[servo].joint
-}
-
 fn crank(builder: &mut Builder, servo: usize) {
     let (_, leg) = names(servo);
     let (stack, parts) = (builder.stack, builder.parts);
-    let anchor = builder.layout.legs[servo].anchor;
-    let (pivot, joint) = (Vector::default(), to_joint(builder, servo));
-    let half = builder.half();
-    let add = vec![
+    let LegPlan { anchor, joint, .. } = builder.layout.legs[servo];
+    let (pivot, half) = (Vector::default(), builder.half());
+    let add = [
         Shape::disc(pivot, half + 1.0),
         Shape::bar(pivot, joint, half),
         Shape::bar(pivot, anchor, half - 0.01),
         Shape::disc(anchor, builder.eye()),
     ];
     let holes = [builder.hole(pivot), builder.hole(joint)];
-    let layer = |add: Vec<Shape>, more: Vec<Shape>, z: [f64; 2]| Prism {
-        add,
-        cut: [&holes[..], &more].concat(),
-        z,
-    };
+    let and = |hole: Shape| [&holes[..], &[hole]].concat();
+    let (pocket, through) = (and(builder.pocket(anchor)), and(builder.hole(anchor)));
     let (nut, _) = stack.anchor_nut(parts);
     let nut = nut.clamp(stack.crank[0], stack.crank[1]);
-    let bosses = vec![
-        Shape::disc(pivot, half - 0.2),
-        Shape::disc(anchor, half - 0.4),
+    let bearing = Shape::disc(pivot, half - 0.2);
+    let bosses = [bearing.clone(), Shape::disc(anchor, half - 0.4)];
+    let mut prisms = vec![
+        Prism::new(add.clone(), pocket, [stack.crank[0], nut]),
+        Prism::new(add, through.clone(), [nut, stack.crank[1]]),
+        Prism::new(bosses, through, stack.anchor),
+        Prism::new([bearing], holes, [stack.anchor[1], stack.bearing[1]]),
     ];
-    let bearing = vec![Shape::disc(pivot, half - 0.2)];
-    let prisms = vec![
-        layer(
-            add.clone(),
-            vec![builder.pocket(anchor)],
-            [stack.crank[0], nut],
-        ),
-        layer(add, vec![builder.hole(anchor)], [nut, stack.crank[1]]),
-        layer(bosses, vec![builder.hole(anchor)], stack.anchor),
-        layer(bearing, Vec::new(), [stack.anchor[1], stack.bearing[1]]),
-    ];
-    let prisms = prisms
-        .into_iter()
-        .filter(|prism| prism.z[1] > prism.z[0] + 1e-9)
-        .collect();
-    builder.body(
-        format!("crank {leg}"),
-        Kind::Printed,
-        Mount::Crank(servo),
-        prisms,
-    );
+    prisms.retain(Prism::has_height);
+    builder.printed(format!("crank {leg}"), Mount::Crank(servo), prisms);
 }
 
 fn follower(builder: &mut Builder, servo: usize) {
     let (_, leg) = names(servo);
-    let stack = builder.stack;
-    let (pivot, joint) = (Vector::default(), to_joint(builder, servo));
-    let half = builder.half();
+    let (pivot, joint) = (Vector::default(), builder.layout.legs[servo].joint);
+    let (stack, half) = (builder.stack, builder.half());
     let holes = [builder.hole(pivot), builder.hole(joint)];
-    let bar = Prism {
-        add: vec![
-            Shape::disc(pivot, half + 1.0),
-            Shape::bar(pivot, joint, half),
-        ],
-        cut: holes.to_vec(),
-        z: stack.crank,
-    };
-    let bearing = Prism {
-        add: vec![Shape::disc(pivot, half - 0.2)],
-        cut: holes[..1].to_vec(),
-        z: stack.bearing,
-    };
-    builder.body(
-        format!("follower {leg}"),
-        Kind::Printed,
-        Mount::Follower(servo),
-        vec![bar, bearing],
-    );
+    let bearing = Shape::disc(pivot, half - 0.2);
+    let bearing = Prism::new([bearing], [holes[0].clone()], stack.bearing);
+    let bar = [
+        Shape::disc(pivot, half + 1.0),
+        Shape::bar(pivot, joint, half),
+    ];
+    let prisms = [Prism::new(bar, holes, stack.crank), bearing];
+    builder.printed(format!("follower {leg}"), Mount::Follower(servo), prisms);
 }
 
-/// Where the foot's column is screwed to the coupler.
+/// The places of the two screws between coupler and foot, in the coupler's frame.
 fn clamps(builder: &Builder) -> [Vector; 2] {
     let ground = builder.robot.lizard().leg.ground;
     CLAMPS.map(|before| Vector::new(ground - before, 0.0))
 }
 
-/// Where the heads of these screws bear, sunk into the coupler.
+/// Height of the faces under the heads of these screws, sunk into the coupler, mm.
 fn clamp_seat(builder: &Builder) -> f64 {
     builder.stack.leg_coupler[1] - builder.parts.screw.head_height - PLAY
 }
@@ -141,35 +106,21 @@ fn clamp_seat(builder: &Builder) -> f64 {
 fn coupler(builder: &mut Builder, servo: usize) {
     let (_, leg) = names(servo);
     let stack = builder.stack;
-    let (from, to) = (
-        Vector::default(),
-        Vector::new(builder.robot.lizard().leg.ground, 0.0),
-    );
+    let ground = builder.robot.lizard().leg.ground;
+    let (from, to) = (Vector::default(), Vector::new(ground, 0.0));
     let clamps = clamps(builder);
     let through = clamps.map(|at| builder.hole(at));
     let sunk = clamps.map(|at| builder.sink(at));
     let joints = [builder.hole(from), builder.hole(to)];
     let mut bar = vec![Shape::bar(from, to, builder.half())];
     bar.extend(clamps.map(|at| Shape::disc(at, builder.around_head())));
-    let seat = clamp_seat(builder);
-    let prisms = vec![
-        Prism {
-            add: bar.clone(),
-            cut: [joints.clone(), through].concat(),
-            z: [stack.leg_coupler[0], seat],
-        },
-        Prism {
-            add: bar,
-            cut: [joints, sunk].concat(),
-            z: [seat, stack.leg_coupler[1]],
-        },
+    let (seat, [low, high]) = (clamp_seat(builder), stack.leg_coupler);
+    let through = [joints.clone(), through].concat();
+    let prisms = [
+        Prism::new(bar.clone(), through, [low, seat]),
+        Prism::new(bar, [joints, sunk].concat(), [seat, high]),
     ];
-    builder.body(
-        format!("leg coupler {leg}"),
-        Kind::Printed,
-        Mount::Foot(servo),
-        prisms,
-    );
+    builder.printed(format!("leg coupler {leg}"), Mount::Foot(servo), prisms);
 }
 
 fn foot(builder: &mut Builder, servo: usize) {
@@ -178,7 +129,7 @@ fn foot(builder: &mut Builder, servo: usize) {
     let at = builder.layout.legs[servo].foot;
     let clamps = clamps(builder);
     let half = builder.half();
-    // The column begins where the leaf's free length ends.
+    // The column begins at the end of the leaf's free length.
     let away = clamps[0] - at;
     let toward = away * (1.0 / away.length());
     let root = at + toward * (leaf_length(builder.parts.bar) + COLUMN);
@@ -198,114 +149,61 @@ fn foot(builder: &mut Builder, servo: usize) {
     let [_, boss] = stack.boss_of_foot;
     let nut = stack.leaf[0] + builder.parts.screw.nut_height;
     let holes = stack.leg_coupler[0] - CLAMP_HOLE;
-    let with_tip = |cut: &Shape, z: [f64; 2]| Prism {
-        add: [&column[..], std::slice::from_ref(&tip)].concat(),
-        cut: vec![cut.clone()],
-        z,
-    };
-    let prisms = vec![
-        Prism {
-            add: leaf,
-            cut: vec![pocket.clone()],
-            z: stack.leaf,
-        },
-        with_tip(&pocket, [stack.leaf[1], nut]),
-        with_tip(&hole, [nut, boss]),
-        Prism {
-            add: column.clone(),
-            cut: Vec::new(),
-            z: [boss, holes],
-        },
-        Prism {
-            add: column.clone(),
-            cut: threads.to_vec(),
-            z: [holes, stack.leg_coupler[0]],
-        },
+    let with_tip = [&column[..], &[tip]].concat();
+    let prisms = [
+        Prism::new(leaf, [pocket.clone()], stack.leaf),
+        Prism::new(with_tip.clone(), [pocket], [stack.leaf[1], nut]),
+        Prism::new(with_tip, [hole], [nut, boss]),
+        Prism::solid(column.clone(), [boss, holes]),
+        Prism::new(column, threads, [holes, stack.leg_coupler[0]]),
     ];
     let mount = Mount::Foot(servo);
-    builder.body(format!("foot {leg}"), Kind::Printed, mount, prisms);
-    for (number, at) in clamps.into_iter().enumerate() {
-        let bolt = Bolt {
-            name: &format!("foot {leg} {}", number + 1),
-            mount,
-            at,
-            head: clamp_seat(builder),
-            points: Points::Down,
-            nut: 0.0,
-            length: None,
-            meets: &[],
-            hex: false,
-        };
+    builder.printed(format!("foot {leg}"), mount, prisms);
+    for (number, at) in (1..).zip(clamps) {
+        let name = format!("foot {leg} {number}");
+        let bolt = Bolt::new(&name, mount, at, clamp_seat(builder), Points::Down);
         builder.screw(&bolt, CLAMP_SCREW);
     }
     let head = stack.pad[1] + builder.parts.screw.head_height;
-    let bolt = Bolt {
-        name: &format!("height {leg}"),
-        mount,
-        at,
-        head,
-        points: Points::Up,
-        nut: 0.0,
-        length: None,
-        meets: &[],
-        hex: false,
-    };
-    builder.screw(&bolt, FOOT_SCREW);
-    let layer = |shape: Shape, cut: Vec<Shape>, z: [f64; 2]| Prism {
-        add: vec![shape],
-        cut,
-        z,
-    };
+    let name = format!("height {leg}");
+    builder.screw(&Bolt::new(&name, mount, at, head, Points::Up), FOOT_SCREW);
     let screw = builder.parts.screw;
-    let thread = vec![Shape::disc(at, screw.diameter / 2.0)];
-    let sunk = layer(Shape::hexagon(at, screw.nut), thread, [stack.leaf[0], nut]);
-    builder.body(format!("height nut {leg}"), Kind::Nut, mount, vec![sunk]);
-    let pad = layer(Shape::disc(at, PAD), Vec::new(), stack.pad);
-    builder.body(format!("pad {leg}"), Kind::Pad, mount, vec![pad]);
+    let (flats, thread) = (
+        Shape::hexagon(at, screw.nut),
+        Shape::disc(at, screw.diameter / 2.0),
+    );
+    let sunk = Prism::new([flats], [thread], [stack.leaf[0], nut]);
+    builder.body(format!("height nut {leg}"), Kind::Nut, mount, [sunk]);
+    let pad = Prism::solid([Shape::disc(at, PAD)], stack.pad);
+    builder.body(format!("pad {leg}"), Kind::Pad, mount, [pad]);
 }
 
 fn screws(builder: &mut Builder, servo: usize) {
     let (_, leg) = names(servo);
     let (stack, parts) = (builder.stack, builder.parts);
-    let (pivot, joint) = (Vector::default(), to_joint(builder, servo));
-    let (plate, carries) = ("plate".to_owned(), format!("leg coupler {leg}"));
-    for (mount, name) in [
-        (Mount::Crank(servo), "crank"),
-        (Mount::Follower(servo), "follower"),
-    ] {
+    let LegPlan { anchor, joint, .. } = builder.layout.legs[servo];
+    let (pivot, coupler) = (Vector::default(), format!("leg coupler {leg}"));
+    let crank = Mount::Crank(servo);
+    for (mount, name) in [(crank, "crank"), (Mount::Follower(servo), "follower")] {
+        let (head, screw) = (stack.bearing[1] + PLAY, format!("{name} pivot {leg}"));
         builder.bolt(&Bolt {
-            name: &format!("{name} pivot {leg}"),
-            mount,
-            at: pivot,
-            head: stack.bearing[1] + PLAY,
-            points: Points::Down,
             nut: stack.plate[0] - PLAY,
-            length: None,
-            meets: &[&plate],
-            hex: false,
+            meets: &["plate"],
+            ..Bolt::new(&screw, mount, pivot, head, Points::Down)
         });
+        let (head, screw) = (stack.leg_coupler[0], format!("{name} joint {leg}"));
         builder.bolt(&Bolt {
-            name: &format!("{name} joint {leg}"),
-            mount,
-            at: joint,
-            head: stack.leg_coupler[0],
-            points: Points::Up,
             nut: stack.crank[1] + PLAY,
-            length: None,
-            meets: &[&carries],
-            hex: false,
+            meets: &[&coupler],
+            ..Bolt::new(&screw, mount, joint, head, Points::Up)
         });
     }
     let (nut, length) = stack.anchor_nut(parts);
+    let name = format!("leg anchor {leg}");
     builder.bolt(&Bolt {
-        name: &format!("leg anchor {leg}"),
-        mount: Mount::Crank(servo),
-        at: builder.layout.legs[servo].anchor,
-        head: stack.on_hook,
-        points: Points::Down,
         nut,
         length: Some(length),
         meets: &[&builder.strut(leg)],
-        hex: false,
+        ..Bolt::new(&name, crank, anchor, stack.on_hook, Points::Down)
     });
 }

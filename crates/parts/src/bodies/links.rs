@@ -1,4 +1,4 @@
-//! What a servo turns: its horn and the link that is pushed over it.
+//! The bodies that a servo turns: its horn and the link that is pushed over it.
 //!
 //! One part is the crank of head or tail, the arm of a slider and the anchor of the
 //! leg's strut; so one servo moves all three.
@@ -13,17 +13,16 @@ use crate::layers::body::{Kind, Mount, Prism};
 use crate::layers::shape::Shape;
 use crate::layers::stack::{PLAY, Span};
 
-/// Where the horn's small screws are, as shares of its arm.
+/// Places of the horn's small screws along its arm, as shares of its length.
 const HORN_SCREWS: [f64; 2] = [0.52, 0.83];
 /// Radius of the hole that such a screw cuts its thread into, mm.
 const PILOT: f64 = 0.7;
-/// Length of such a screw: 5 mm would reach the servo's boss under the link. And radius
-/// and height of its head, mm.
+/// Length of such a screw, mm: one of 5 mm would reach the servo's boss under the link.
+/// And radius and height of its head, mm.
 pub const HORN_SCREW: f64 = 4.0;
 const HORN_SCREW_HEAD: [f64; 2] = [1.5, 1.0];
 
-/// Wall of the ring between strut and link, which a spring's coil leaves no more room
-/// for, mm.
+/// Wall of the ring between strut and link, mm: the spring's coil leaves room for no more.
 const RING: f64 = 1.1;
 
 /// Air on each side of a horn's arm in its pocket, in fits: horns spread.
@@ -44,15 +43,8 @@ pub fn arm(horn: &Horn, grown: f64) -> Vec<Shape> {
     let end = Vector::new(horn.arm - horn.tip / 2.0, 0.0);
     // From hub to tip the arm gets narrower.
     let width = 0.8 * hub;
-    let taper = Shape::hull(
-        &[
-            Vector::new(0.0, -width),
-            Vector::new(end.x, -tip),
-            Vector::new(end.x, tip),
-            Vector::new(0.0, width),
-        ],
-        0.0,
-    );
+    let corners = [(0.0, -width), (end.x, -tip), (end.x, tip), (0.0, width)];
+    let taper = Shape::hull(&corners.map(|(x, y)| Vector::new(x, y)), 0.0);
     vec![
         Shape::disc(Vector::default(), hub),
         taper,
@@ -67,23 +59,18 @@ fn horn(builder: &mut Builder, servo: usize) {
     let spline = Shape::disc(Vector::default(), SPLINE);
     let mut through = vec![spline.clone()];
     through.extend(horn_holes(&horn).map(|at| Shape::disc(at, PILOT)));
-    let hub = Prism {
-        add: vec![Shape::disc(Vector::default(), horn.hub / 2.0)],
-        cut: vec![spline.clone()],
-        z: [low + horn.thickness - horn.height, low],
-    };
-    let arm = Prism {
-        add: arm(&horn, 0.0),
-        cut: through,
-        z: [low, low + horn.thickness],
-    };
+    let hub = Shape::disc(Vector::default(), horn.hub / 2.0);
+    let prisms = [
+        Prism::new([hub], [spline], [low + horn.thickness - horn.height, low]),
+        Prism::new(arm(&horn, 0.0), through, [low, low + horn.thickness]),
+    ];
     builder.body(
         format!("horn {name}"),
         Kind::Horn,
         Mount::Link(servo),
-        vec![hub, arm],
+        prisms,
     );
-    builder.meeting(&format!("servo {name}"));
+    builder.meeting(&[format!("servo {name}")]);
 }
 
 fn link(builder: &mut Builder, servo: usize) {
@@ -95,7 +82,7 @@ fn link(builder: &mut Builder, servo: usize) {
     let anchor = layout.legs[servo].anchor;
     let half = builder.half();
     let round = parts.horn.hub / 2.0 + 2.0 * parts.fit + 1.5 * parts.wall;
-    // The corner between crank and arm is where it would break.
+    // Without it the link would break in the corner between crank and arm.
     let brace = Shape::hull(&[hub, tip * 0.45, side * 0.45], 0.6 * half);
     let add = vec![
         Shape::disc(hub, round),
@@ -112,7 +99,7 @@ fn link(builder: &mut Builder, servo: usize) {
     let pocket = arm(&parts.horn, POCKET * parts.fit);
     let anchor_hole = builder.hole(anchor);
     let [low, high] = stack.link;
-    // What is cut away, and at which heights.
+    // The holes and pockets, each with its heights.
     let cuts = [
         (&holes[..], [low, high]),
         (&[tip, side].map(|at| builder.pocket(at)), [low, stack.held]),
@@ -128,23 +115,15 @@ fn link(builder: &mut Builder, servo: usize) {
     let layer = |z: &[f64]| {
         let through = |of: Span| of[0] < z[1] - 1e-9 && z[0] < of[1] - 1e-9;
         let cut = cuts.iter().filter(|(_, of)| through(*of));
-        Prism {
-            add: add.clone(),
-            cut: cut.flat_map(|(shapes, _)| shapes.to_vec()).collect(),
-            z: [z[0], z[1]],
-        }
+        let cut: Vec<_> = cut.flat_map(|(shapes, _)| shapes.to_vec()).collect();
+        Prism::new(add.clone(), cut, [z[0], z[1]])
     };
-    let prisms = heights.windows(2).map(layer).collect();
-    builder.body(
-        format!("link {name}"),
-        Kind::Printed,
-        Mount::Link(servo),
-        prisms,
-    );
-    builder.meeting(&format!("servo {name}"));
+    let prisms: Vec<_> = heights.windows(2).map(layer).collect();
+    builder.printed(format!("link {name}"), Mount::Link(servo), prisms);
+    builder.meeting(&[format!("servo {name}")]);
 }
 
-/// Where the small screws are that hold the horn.
+/// The places of the small screws that hold the horn.
 fn horn_holes(horn: &Horn) -> [Vector; 2] {
     HORN_SCREWS.map(|share| Vector::new(share * horn.arm, 0.0))
 }
@@ -154,12 +133,8 @@ fn horn_screws(builder: &mut Builder, servo: usize) {
     let top = builder.stack.horn[0] + builder.parts.horn.thickness;
     let [radius, high] = HORN_SCREW_HEAD;
     for (number, at) in horn_holes(&builder.parts.horn).into_iter().enumerate() {
-        let prism = |radius: f64, z: Span| Prism {
-            add: vec![Shape::disc(at, radius)],
-            cut: Vec::new(),
-            z,
-        };
-        let prisms = vec![
+        let prism = |radius: f64, z: Span| Prism::solid([Shape::disc(at, radius)], z);
+        let prisms = [
             prism(PILOT, [top - HORN_SCREW, top]),
             prism(radius, [top, top + high]),
         ];
@@ -169,7 +144,7 @@ fn horn_screws(builder: &mut Builder, servo: usize) {
     }
 }
 
-/// The screw that holds the strut, and the ring that fills what is between.
+/// The screw that holds the strut, and the ring that fills the gap below the link.
 fn anchor(builder: &mut Builder, servo: usize) {
     let (name, leg) = names(servo);
     let (stack, parts) = (builder.stack, builder.parts);
@@ -178,27 +153,13 @@ fn anchor(builder: &mut Builder, servo: usize) {
     let ring = [stack.on_hook, stack.link[0] - PLAY];
     // Beside the spring's coil.
     let thin = Shape::disc(at, parts.screw.diameter / 2.0 + RING);
-    let prism = Prism {
-        add: vec![thin],
-        cut: vec![builder.hole(at)],
-        z: ring,
-    };
-    builder.body(
-        format!("strut ring {name}"),
-        Kind::Printed,
-        Mount::Link(servo),
-        vec![prism],
-    );
-    builder.meeting(&strut);
+    let prism = Prism::new([thin], [builder.hole(at)], ring);
+    builder.printed(format!("strut ring {name}"), Mount::Link(servo), [prism]);
+    builder.meeting(&[&strut]);
+    let (mount, screw) = (Mount::Link(servo), format!("anchor {name}"));
     builder.bolt(&Bolt {
-        name: &format!("anchor {name}"),
-        mount: Mount::Link(servo),
-        at,
-        head: stack.sunk[0],
-        points: Points::Down,
         nut: stack.strut[0] - PLAY,
-        length: None,
         meets: &[&strut],
-        hex: false,
+        ..Bolt::new(&screw, mount, at, stack.sunk[0], Points::Down)
     });
 }

@@ -1,5 +1,5 @@
-//! What makes the robot look like a lizard: two long links behind the tail's point, as
-//! the paper's robot has them, and a head ahead of the head's point.
+//! The parts that make the robot look like a lizard: two long links behind the tail's
+//! point, as the paper's robot has them, and a head ahead of the head's point.
 //!
 //! They drive nothing. The screw of the point and one more hold each of them on the
 //! coupler on which it lies, so it turns with that coupler: the left tail link under the
@@ -10,31 +10,31 @@ use lizard_kinematics::{End, Solution, Vector};
 
 use crate::bodies::builder::{Bolt, Builder, Points};
 use crate::bodies::names::names;
-use crate::layers::body::{Kind, Mount, Prism, at_end, coupler_length};
+use crate::layers::body::{Mount, Prism, at_end, coupler_length};
 use crate::layers::shape::Shape;
 use crate::layers::stack::PLAY;
 
-/// Their thickness, mm.
+/// Thickness of these parts, mm.
 const THICK: f64 = 3.0;
 /// From the point to the second screw, mm.
 const BACK: f64 = 14.0;
 /// Length of that screw, which cuts its thread, mm.
 const SCREW: f64 = 6.0;
-/// How far the two links of the tail point apart, deg to each side.
+/// Angle of each tail link from straight back, deg.
 const APART: f64 = 3.5;
 
-/// What an end has of it.
+/// The parts that an end carries beyond its couplers.
 #[derive(Default)]
 pub struct Looks {
-    /// What lies under the lower coupler at the point, mm.
+    /// Thickness under the lower coupler at the point, mm.
     pub below: f64,
-    /// What lies on the upper one, mm.
+    /// Thickness on the upper coupler, mm.
     pub above: f64,
-    /// Names of what lies on the upper one.
+    /// Names of the bodies on the upper coupler.
     pub on_right: Vec<String>,
 }
 
-/// How far an end's own part reaches beyond its point, mm; 0 where it has none.
+/// Length of an end's own part beyond its point, mm; 0 without one.
 fn length(builder: &Builder, end: End) -> f64 {
     match end {
         End::Head => builder.parts.head,
@@ -61,32 +61,27 @@ pub fn add(builder: &mut Builder, end: End) -> Looks {
         return Looks::default();
     };
     let [left, right] = end.servos();
-    match end {
+    let (below, name, upper) = match end {
         End::Head => {
             let shape = head(builder, right, &neutral, length);
-            on_upper(builder, right, "head plate".to_owned(), shape);
-            Looks {
-                below: 0.0,
-                above: THICK,
-                on_right: vec!["head plate".to_owned()],
-            }
+            (0.0, "head plate".to_owned(), shape)
         }
         End::Tail => {
             let shape = tail(builder, left, &neutral, length);
             under_lower(builder, left, shape);
             let shape = tail(builder, right, &neutral, length);
-            let name = format!("tail {}", names(right).0);
-            on_upper(builder, right, name.clone(), shape);
-            Looks {
-                below: THICK,
-                above: THICK,
-                on_right: vec![name],
-            }
+            (THICK, format!("tail {}", names(right).0), shape)
         }
+    };
+    on_upper(builder, right, &name, upper);
+    Looks {
+        below,
+        above: THICK,
+        on_right: vec![name],
     }
 }
 
-/// What is added and what is cut away.
+/// A flat part: filled shapes and holes.
 type Flat = (Vec<Shape>, Vec<Shape>);
 
 /// The point of an end, and the way out from there at neutral, in a coupler's frame.
@@ -112,13 +107,8 @@ fn tail(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> Fla
     let half = builder.half();
     let wide = way.left() * (half - 1.5);
     let second = point - Vector::new(BACK, 0.0);
-    let add = vec![
-        Shape::bar(second, point, half),
-        Shape::hull(
-            &[point + wide, point - wide, point + way * (length - 1.5)],
-            1.5,
-        ),
-    ];
+    let corners = [point + wide, point - wide, point + way * (length - 1.5)];
+    let add = vec![Shape::bar(second, point, half), Shape::hull(&corners, 1.5)];
     (add, vec![builder.hole(point)])
 }
 
@@ -152,34 +142,20 @@ fn second(builder: &Builder, servo: usize) -> Vector {
     Vector::new(coupler_length(builder.robot, servo) - BACK, 0.0)
 }
 
-fn on_upper(builder: &mut Builder, servo: usize, name: String, (add, mut cut): Flat) {
+fn on_upper(builder: &mut Builder, servo: usize, name: &str, (add, mut cut): Flat) {
     let low = builder.stack.upper[1];
-    let at = second(builder, servo);
-    cut.push(builder.hole(at));
+    cut.push(builder.hole(second(builder, servo)));
     let z = [low, low + THICK];
-    let mount = Mount::Coupler(servo);
-    builder.body(
-        name.clone(),
-        Kind::Printed,
-        mount,
-        vec![Prism { add, cut, z }],
-    );
-    screw(builder, &name, servo, z[1]);
+    builder.printed(name, Mount::Coupler(servo), [Prism::new(add, cut, z)]);
+    screw(builder, name, servo, z[1]);
 }
 
 fn under_lower(builder: &mut Builder, servo: usize, (add, mut cut): Flat) {
     let high = builder.stack.lower[0];
-    let at = second(builder, servo);
-    cut.push(builder.thread(at));
+    cut.push(builder.thread(second(builder, servo)));
     let z = [high - THICK, high];
     let name = format!("tail {}", names(servo).0);
-    let mount = Mount::Coupler(servo);
-    builder.body(
-        name.clone(),
-        Kind::Printed,
-        mount,
-        vec![Prism { add, cut, z }],
-    );
+    builder.printed(&name, Mount::Coupler(servo), [Prism::new(add, cut, z)]);
     // The upper coupler turns over this head.
     let seat = builder.stack.lower[1] - builder.parts.screw.head_height - PLAY;
     screw(builder, &name, servo, seat);
@@ -187,16 +163,6 @@ fn under_lower(builder: &mut Builder, servo: usize, (add, mut cut): Flat) {
 
 fn screw(builder: &mut Builder, of: &str, servo: usize, head: f64) {
     let at = second(builder, servo);
-    let bolt = Bolt {
-        name: of,
-        mount: Mount::Coupler(servo),
-        at,
-        head,
-        points: Points::Down,
-        nut: 0.0,
-        length: None,
-        meets: &[],
-        hex: false,
-    };
+    let bolt = Bolt::new(of, Mount::Coupler(servo), at, head, Points::Down);
     builder.screw(&bolt, SCREW);
 }

@@ -1,8 +1,8 @@
-//! What parts are called.
+//! The names of bodies.
 
 use lizard_robot::servo::{LEGS, NAMES};
 
-/// What a servo and its leg are called.
+/// The names of a servo and of its leg, such as A1 and LF.
 pub fn names(servo: usize) -> (&'static str, &'static str) {
     (NAMES[servo], LEGS[servo])
 }

@@ -8,11 +8,10 @@ use lizard_robot::Robot;
 
 use crate::bodies::builder::Builder;
 use crate::bodies::names::names;
-use crate::layers::body::{Kind, Mount, Prism};
+use crate::layers::body::{Mount, Prism};
 use crate::layers::shape::Shape;
-use crate::layers::stack::Span;
 
-/// How far sleeve and rod lie beside the pins, outward, mm.
+/// Offset of sleeve and rod from the pins, outward, mm.
 pub const BESIDE: f64 = 9.0;
 /// Width of a rod, mm.
 pub(crate) const ROD: f64 = 6.0;
@@ -24,7 +23,7 @@ const SHORT: f64 = 8.0;
 /// Lengths of one slider, mm, along its line from the rear pin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SliderLengths {
-    /// The sleeve's end; it begins at the rear pin.
+    /// From the rear pin, where the sleeve begins, to its other end.
     pub sleeve: f64,
     /// The rod, from the front pin to its rear end.
     pub rod: f64,
@@ -33,7 +32,7 @@ pub struct SliderLengths {
 }
 
 impl SliderLengths {
-    /// Of a side whose pins may be from `shortest` to `longest` mm apart.
+    /// The lengths for a side whose pins may be from `shortest` to `longest` mm apart.
     #[must_use]
     pub fn new(side: Side, [shortest, longest]: [f64; 2]) -> Self {
         let sleeve = shortest - SHORT;
@@ -65,40 +64,21 @@ fn sleeve(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
     // The sleeve's corners must not stand out beyond the eye's arm.
     let arm = Shape::bar(pin, Vector::new(half, lengths.beside), half - 0.02);
     // The bore is open at both ends, for as far as the rod reaches.
-    let open = Shape::rectangle(
-        middle,
-        Vector::new(lengths.sleeve + 2.0 * lengths.rod, bore),
-        0.0,
-    );
-    let eye = vec![Shape::disc(pin, half), arm, case.clone()];
+    let size = Vector::new(lengths.sleeve + 2.0 * lengths.rod, bore);
+    let open = Shape::rectangle(middle, size, 0.0);
+    let eye = [Shape::disc(pin, half), arm, case.clone()];
     let hole = builder.hole(pin);
-    let top = stack.lower[1];
-    let layer = |add: &[Shape], cut: Vec<Shape>, z: Span| Prism {
-        add: add.to_vec(),
-        cut,
-        z,
-    };
-    let prisms = vec![
-        layer(&eye, vec![hole.clone()], [stack.sleeve[0], stack.bore[0]]),
-        layer(&eye, vec![hole, open.clone()], [stack.bore[0], top]),
-        layer(
-            std::slice::from_ref(&case),
-            vec![open],
-            [top, stack.bore[1]],
-        ),
-        layer(&[case], Vec::new(), [stack.bore[1], stack.sleeve[1]]),
+    let (low, top) = (stack.sleeve[0], stack.lower[1]);
+    let [begin, end] = stack.bore;
+    let mut prisms = vec![
+        Prism::new(eye.clone(), [hole.clone()], [low, begin]),
+        Prism::new(eye, [hole, open.clone()], [begin, top]),
+        Prism::new([case.clone()], [open], [top, end]),
+        Prism::solid([case], [end, stack.sleeve[1]]),
     ];
-    let prisms = prisms
-        .into_iter()
-        .filter(|prism| prism.z[1] > prism.z[0] + 1e-9)
-        .collect();
-    builder.body(
-        format!("sleeve {side}"),
-        Kind::Printed,
-        Mount::Sleeve(side),
-        prisms,
-    );
-    builder.meeting(&format!("rod {side}"));
+    prisms.retain(Prism::has_height);
+    builder.printed(format!("sleeve {side}"), Mount::Sleeve(side), prisms);
+    builder.meeting(&[format!("rod {side}")]);
 }
 
 fn rod(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
@@ -107,55 +87,29 @@ fn rod(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
     let middle = Vector::new(-lengths.rod / 2.0, lengths.beside);
     let bar = Shape::rectangle(middle, Vector::new(lengths.rod, ROD), 1.0);
     // Ahead of the pin, so that the sleeve may come near.
-    let bend = Vector::new(1.0, lengths.beside);
-    let prism = Prism {
-        add: vec![
-            Shape::disc(pin, half),
-            Shape::bar(pin, bend, half - 0.02),
-            bar,
-        ],
-        cut: vec![builder.hole(pin)],
-        z: builder.stack.rod,
-    };
-    builder.body(
-        format!("rod {side}"),
-        Kind::Printed,
-        Mount::Rod(side),
-        vec![prism],
-    );
+    let bend = Shape::bar(pin, Vector::new(1.0, lengths.beside), half - 0.02);
+    let add = [Shape::disc(pin, half), bend, bar];
+    let prism = Prism::new(add, [builder.hole(pin)], builder.stack.rod);
+    builder.printed(format!("rod {side}"), Mount::Rod(side), [prism]);
 }
 
 fn pins(builder: &mut Builder, side: Side) {
     let [front, rear] = side.servos();
     let stack = builder.stack;
-    let arm =
-        |servo: usize| Vector::new(0.0, builder.layout.hand[servo] * builder.layout.arm[servo]);
-    let (front_arm, rear_arm) = (arm(front), arm(rear));
-    let (rod, sleeve) = (format!("rod {side}"), format!("sleeve {side}"));
-    builder.held_joint(
-        &format!("arm {}", names(rear).0),
-        Mount::Link(rear),
-        rear_arm,
-        stack.lower[1],
-        &[&sleeve],
-    );
-    builder.spacer(
-        format!("arm spacer {}", names(front).0),
-        Mount::Link(front),
-        front_arm,
-        [stack.link[1], stack.rod[0]],
-        &[&rod],
-    );
-    builder.held_joint(
-        &format!("arm {}", names(front).0),
-        Mount::Link(front),
-        front_arm,
-        stack.rod[1],
-        &[&rod],
-    );
+    let layout = builder.layout;
+    let arm = |servo: usize| Vector::new(0.0, layout.hand[servo] * layout.arm[servo]);
+    let [sleeve, rod] = ["sleeve", "rod"].map(|part| format!("{part} {side}"));
+    let name = format!("arm {}", names(rear).0);
+    let mount = Mount::Link(rear);
+    builder.held_joint(&name, mount, arm(rear), stack.lower[1], &[&sleeve]);
+    let (name, _) = names(front);
+    let (at, mount) = (arm(front), Mount::Link(front));
+    let under = [stack.link[1], stack.rod[0]];
+    builder.spacer(format!("arm spacer {name}"), mount, at, under, &[&rod]);
+    builder.held_joint(&format!("arm {name}"), mount, at, stack.rod[1], &[&rod]);
 }
 
-/// The shortest and the longest that a slider may be from pin to pin, mm.
+/// The shortest and the longest distance of a slider's pins, mm.
 pub fn slider_range(robot: &Robot, side: Side) -> [f64; 2] {
     let (slider, limits) = (robot.lizard().side(side), robot.limits());
     [

@@ -31,7 +31,7 @@ pub fn add(builder: &mut Builder) {
     }
 }
 
-/// The struts that the robot has not, but could have.
+/// The struts of the other kind, which could replace the robot's own.
 pub fn instead(builder: &Builder) -> Vec<Body> {
     (0..4)
         .map(|servo| body(builder, servo, !builder.slotted()))
@@ -71,49 +71,33 @@ fn with_slot(builder: &Builder, servo: usize) -> Vec<Prism> {
     let hole = builder.hole(at(0.0));
     let slot = Shape::bar(at(length), at(length + SLOT), hole.radius);
     vec![
-        Prism {
-            add: outer.clone(),
-            cut: vec![hole, slot],
-            z: stack.strut,
-        },
-        Prism {
-            add: outer,
-            cut: vec![whole(channel)],
-            z: stack.recess,
-        },
+        Prism::new(outer.clone(), [hole, slot], stack.strut),
+        Prism::new(outer, [whole(channel)], stack.recess),
     ]
 }
 
 fn rigid(builder: &Builder, servo: usize) -> Prism {
     let [from, to] = [at(0.0), at(builder.layout.legs[servo].strut_length)];
-    Prism {
-        add: vec![Shape::bar(from, to, channel(builder) + builder.parts.wall)],
-        cut: [from, to].map(|at| builder.hole(at)).to_vec(),
-        z: builder.stack.rigid,
-    }
+    let bar = Shape::bar(from, to, channel(builder) + builder.parts.wall);
+    let holes = [from, to].map(|at| builder.hole(at));
+    Prism::new([bar], holes, builder.stack.rigid)
 }
 
 fn spring(builder: &mut Builder, servo: usize) {
-    let (_, leg) = names(servo);
+    let (name, leg) = names(servo);
     let (stack, parts) = (builder.stack, builder.parts);
     let length = builder.layout.legs[servo].strut_length;
     let radius = parts.spring.outer / 2.0;
     // Each hook lies around the far side of its screw; between both is the coil.
     let hook = parts.spring.outer - 2.0 * parts.spring.wire;
     let size = Vector::new(builder.robot.hung() - 2.0 * hook, parts.spring.outer);
-    let coil = Prism {
-        add: vec![Shape::rectangle(at(length / 2.0), size, 0.0)],
-        cut: Vec::new(),
-        z: [stack.coil - radius, stack.coil + radius],
-    };
-    builder.body(
-        format!("spring {leg}"),
-        Kind::Spring,
-        Mount::Strut(servo),
-        vec![coil],
-    );
+    let coil = Shape::rectangle(at(length / 2.0), size, 0.0);
+    let coil = Prism::solid([coil], [stack.coil - radius, stack.coil + radius]);
+    let (spring, mount) = (format!("spring {leg}"), Mount::Strut(servo));
+    builder.body(spring, Kind::Spring, mount, [coil]);
     // Heads lie over the hooks, so they reach to the coil's ends.
-    let (name, _) = names(servo);
-    builder.meeting(&format!("screw leg anchor {leg}"));
-    builder.meeting(&format!("screw anchor {name}"));
+    builder.meeting(&[
+        format!("screw leg anchor {leg}"),
+        format!("screw anchor {name}"),
+    ]);
 }

@@ -18,10 +18,10 @@ use crate::part::Part;
 /// Columns, and the step of the fit, mm.
 const COLUMNS: u32 = 5;
 const STEP: f64 = 0.1;
-/// Thickness of the coupon and of the floor of its pockets, mm.
+/// Thickness of the coupon, and of the floor of its pockets, mm.
 const THICK: f64 = 4.0;
 const FLOOR: f64 = 1.8;
-/// Length of a piece of a sleeve, and of the rod that is tried in it, mm.
+/// Length of a piece of a sleeve, and of the rod to try in it, mm.
 const SLEEVE: f64 = 10.0;
 const GAUGE: f64 = 30.0;
 
@@ -45,13 +45,10 @@ pub fn coupon(parts: &Parts) -> [Part; 2] {
     for column in 0..COLUMNS {
         let fit = STEP * f64::from(column);
         let x = pitch * (f64::from(column) + 0.5);
+        let case = at(servo.width + 2.0 * fit, servo.length + 2.0 * fit);
         let through = [
             Shape::disc(at(x - 3.0, hole), (parts.screw.diameter + fit) / 2.0),
-            Shape::rectangle(
-                at(x, opening),
-                at(servo.width + 2.0 * fit, servo.length + 2.0 * fit),
-                0.0,
-            ),
+            Shape::rectangle(at(x, opening), case, 0.0),
             notch(servo, at(x, opening), fit, -1.0),
         ];
         floor.extend(through.iter().cloned());
@@ -61,54 +58,34 @@ pub fn coupon(parts: &Parts) -> [Part; 2] {
             at: at(x, pocket),
             turn: at(0.0, 1.0),
         };
-        below.extend(
-            arm(horn, POCKET * fit)
-                .iter()
-                .map(|shape| shape.placed(&upright)),
-        );
+        let arm = arm(horn, POCKET * fit).into_iter();
+        below.extend(arm.map(|shape| shape.placed(&upright)));
         for dot in 0..=column {
-            let place = at(
-                x + 1.6 + 1.6 * f64::from(dot % 3),
-                hole + 1.6 - 3.2 * f64::from(dot / 3),
-            );
+            let right = x + 1.6 + 1.6 * f64::from(dot % 3);
+            let place = at(right, hole + 1.6 - 3.2 * f64::from(dot / 3));
             below.push(Shape::disc(place, 0.5));
         }
         let bore = ROD + 2.0 * fit;
         let outer = bore + 2.0 * parts.wall;
         walls.push(Shape::rectangle(at(x, sleeve), at(outer, SLEEVE), 0.5));
         bores.push(Shape::rectangle(at(x, sleeve), at(bore, 2.0 * SLEEVE), 0.0));
-        roofs.push((THICK + parts.thickness + 2.0 * fit, outer));
+        roofs.push(THICK + parts.thickness + 2.0 * fit);
     }
-    let prism = |add: &[Shape], cut: &[Shape], z: [f64; 2]| Prism {
-        add: add.to_vec(),
-        cut: cut.to_vec(),
-        z,
-    };
     let mut prisms = vec![
-        prism(std::slice::from_ref(&plate), &floor, [0.0, FLOOR]),
-        prism(&[plate], &below, [FLOOR, THICK]),
+        Prism::new([plate.clone()], floor, [0.0, FLOOR]),
+        Prism::new([plate], below, [FLOOR, THICK]),
     ];
-    // Each sleeve is higher by two fits than the one before, so the roofs begin one after another.
+    // Each sleeve is two fits higher than the one before, so the roofs begin one after another.
     let mut low = THICK;
-    for (column, &(roof, _)) in roofs.iter().enumerate() {
-        let mut open = bores.clone();
-        open.drain(..column);
-        prisms.push(prism(&walls, &open, [low, roof]));
+    for (column, roof) in roofs.into_iter().enumerate() {
+        prisms.push(Prism::new(&*walls, &bores[column..], [low, roof]));
         low = roof;
     }
-    prisms.push(prism(&walls, &[], [low, low + 1.3]));
-    let gauge = Prism {
-        add: vec![Shape::rectangle(at(0.0, 0.0), at(GAUGE, ROD), 1.0)],
-        cut: Vec::new(),
-        z: [0.0, parts.thickness],
-    };
-    let part = |name: &str, prisms: Vec<Prism>| Part {
-        name: name.to_owned(),
-        bodies: vec![name.to_owned()],
-        prisms,
-        turned: false,
-        instead_of: None,
-        mark: String::new(),
-    };
-    [part("coupon", prisms), part("coupon rod", vec![gauge])]
+    prisms.push(Prism::solid(walls, [low, low + 1.3]));
+    let gauge = Shape::rectangle(at(0.0, 0.0), at(GAUGE, ROD), 1.0);
+    let gauge = Prism::solid([gauge], [0.0, parts.thickness]);
+    [
+        Part::single("coupon", prisms),
+        Part::single("coupon rod", vec![gauge]),
+    ]
 }

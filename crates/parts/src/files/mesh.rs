@@ -10,17 +10,17 @@ use lizard_kinematics::Vector;
 use crate::files::solid::{Face, Solid, Surface, progress};
 use crate::layers::outline::Side;
 
-/// How far a chord may stay within its arc, mm.
+/// Largest distance of a chord from its arc, mm.
 const CHORD: f64 = 0.01;
 /// The largest angle of a chord, rad: 36 to a circle.
 const ANGLE: f64 = std::f64::consts::TAU / 36.0;
 
-/// Triangles, counter-clockwise seen from outside.
+/// A surface of triangles, counter-clockwise seen from outside.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
-    /// Corners, mm.
+    /// The corners of all triangles, mm.
     pub corners: Vec<[f64; 3]>,
-    /// Three corners each.
+    /// The triangles, each by the indices of three corners.
     pub triangles: Vec<[usize; 3]>,
 }
 
@@ -66,7 +66,7 @@ impl Mesh {
         six / 6.0
     }
 
-    /// Whether every side of a triangle has exactly one neighbour.
+    /// True if every side of a triangle has exactly one neighbour.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         let mut sides = BTreeMap::new();
@@ -108,24 +108,20 @@ impl Maker<'_> {
             bulge: edge.bulge,
         };
         let mut line = vec![first];
-        if let Some((centre, radius)) = side.arc(self.solid.points[to.0]) {
-            let whole = 4.0 * libm::atan(edge.bulge);
-            let step = (2.0 * libm::acos((1.0 - CHORD / radius).clamp(-1.0, 1.0))).min(ANGLE);
-            let count = (whole.abs() / step).ceil() as usize;
-            for i in 1..count {
-                let angle = whole * i as f64 / count as f64;
-                let arm = side.from - centre;
-                let at = centre + arm * libm::cos(angle) + arm.left() * libm::sin(angle);
-                let z = self.solid.heights[from.1];
-                self.mesh.corners.push([at.x, at.y, z]);
-                line.push(self.mesh.corners.len() - 1);
-            }
+        let count = |radius: f64, angle: f64| {
+            let chord = 2.0 * libm::acos((1.0 - CHORD / radius).clamp(-1.0, 1.0));
+            (angle / chord.min(ANGLE)).ceil() as u32
+        };
+        let z = self.solid.heights[from.1];
+        for at in side.along(self.solid.points[to.0], count) {
+            line.push(self.mesh.corners.len());
+            self.mesh.corners.push([at.x, at.y, z]);
         }
         line.push(last);
         line
     }
 
-    /// The corners of a trail of edges, without its last.
+    /// The corners of a trail of edges, without the last.
     fn trail(&self, edges: &[(usize, bool)]) -> Vec<usize> {
         let mut trail = Vec::new();
         for &(edge, forward) in edges {

@@ -22,12 +22,12 @@ use crate::files::svg::sheet_svg;
 use crate::part::Part;
 use crate::unfit::Unfit;
 
-/// A file to be written.
+/// A file to write.
 #[derive(Clone, Debug, PartialEq)]
 pub struct File {
-    /// Its path in the folder of all: `stl/link-A1-A3.stl`.
+    /// Its path within the output folder, such as `stl/link-A1-A3.stl`.
     pub path: String,
-    /// What it holds.
+    /// Its content.
     pub bytes: Vec<u8>,
 }
 
@@ -42,7 +42,7 @@ impl File {
     }
 }
 
-/// The files of a part: STEP, STL, and where it can be cut DXF and SVG.
+/// The files of a part: STEP and STL, and DXF and SVG if it can be cut from a sheet.
 ///
 /// # Errors
 /// [`Unfit::Surface`] for a part whose layers do not make a body.

@@ -1,4 +1,4 @@
-//! What is cut from a sheet: outlines to be cut through, and pockets to be milled.
+//! Drawings of parts to cut from a sheet: outlines to cut through, pockets to mill.
 //!
 //! A part can be cut where all of its layers have the same outer outline. Plate and
 //! deck cannot, but are each two sheets that are glued together.
@@ -6,30 +6,37 @@
 use lizard_kinematics::Vector;
 
 use crate::layers::body::Prism;
-use crate::layers::outline::{Loop, Outline};
+use crate::layers::outline::{Loop, Outline, bounds};
 use crate::part::Part;
 
 /// A drawing of one sheet, mm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sheet {
-    /// What is drawn.
+    /// The name of the part, with the number of the sheet if it has several.
     pub name: String,
-    /// As thick is the sheet, mm.
+    /// Thickness of the sheet, mm.
     pub thickness: f64,
-    /// Lines by layers of the drawing.
+    /// The layers of the drawing.
     pub layers: Vec<Layer>,
 }
 
-/// Lines of one kind.
+/// A layer of a drawing: lines of one kind.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {
-    /// `CUT`, or `POCKET_1.90_TOP` for a pocket of a depth from above.
+    /// `CUT`, or for example `POCKET_1.90_TOP` for pockets 1.9 mm deep from above.
     pub name: String,
     /// Its closed lines.
     pub loops: Vec<Loop>,
 }
 
-/// The sheets of a part; none where it cannot be cut.
+impl Layer {
+    fn cut(loops: Vec<Loop>) -> Self {
+        let name = "CUT".to_owned();
+        Self { name, loops }
+    }
+}
+
+/// The sheets of a part; none if it cannot be cut.
 #[must_use]
 pub fn sheets(part: &Part) -> Vec<Sheet> {
     let outlines: Vec<_> = part.prisms.iter().map(Outline::of).collect();
@@ -57,64 +64,45 @@ pub fn sheets(part: &Part) -> Vec<Sheet> {
         .map(|(number, (prism, outline))| Sheet {
             name: format!("{} sheet {}", part.name, number + 1),
             thickness: prism.z[1] - prism.z[0],
-            layers: vec![Layer {
-                name: "CUT".to_owned(),
-                loops: outline.loops().cloned().collect(),
-            }],
+            layers: vec![Layer::cut(outline.loops().cloned().collect())],
         })
         .collect()
 }
 
-/// The lines of a part whose layers have one outline.
+/// The lines of a part whose layers have one outer outline.
 fn pockets(prisms: &[Prism], outlines: &[Outline], [low, high]: [f64; 2]) -> Vec<Layer> {
-    let mut layers = vec![Layer {
-        name: "CUT".to_owned(),
-        loops: Vec::new(),
-    }];
-    let holes = |outline: &Outline| -> Vec<Loop> {
-        let pieces = outline.pieces.iter();
-        pieces
-            .flat_map(|piece| piece.iter().skip(1).cloned())
-            .collect()
-    };
-    let mut add = |name: String, line: Loop| {
-        // From below to above, a pocket that is known already is deeper there.
-        if layers.iter().any(|layer| layer.loops.contains(&line)) {
-            return;
-        }
-        if let Some(layer) = layers.iter_mut().find(|layer| layer.name == name) {
-            layer.loops.push(line);
-        } else {
-            layers.push(Layer {
-                name,
-                loops: vec![line],
-            });
-        }
-    };
-    for piece in &outlines[0].pieces {
-        if let Some(outer) = piece.first() {
-            add("CUT".to_owned(), outer.clone());
-        }
-    }
+    let outer = outlines[0].pieces.iter().filter_map(|piece| piece.first());
+    let mut layers = vec![Layer::cut(outer.cloned().collect())];
     for (index, outline) in outlines.iter().enumerate() {
-        for hole in holes(outline) {
-            let open = |other: &Outline| is_open(other, &hole);
-            if outlines.iter().all(open) {
-                add("CUT".to_owned(), hole);
+        let holes = outline.pieces.iter().flat_map(|piece| piece.iter().skip(1));
+        for hole in holes {
+            // The layers go up, so a pocket that is known already is deeper.
+            if layers.iter().any(|layer| layer.loops.contains(hole)) {
+                continue;
+            }
+            let open = |other: &Outline| is_open(other, hole);
+            let name = if outlines.iter().all(open) {
+                "CUT".to_owned()
             } else if outlines[index..].iter().all(open) {
-                let depth = high - prisms[index].z[0];
-                add(format!("POCKET_{depth:.2}_TOP"), hole);
+                format!("POCKET_{:.2}_TOP", high - prisms[index].z[0])
             } else {
                 let from_below = outlines.iter().take_while(|other| open(other)).count();
                 let depth = prisms[from_below.max(index + 1) - 1].z[1] - low;
-                add(format!("POCKET_{depth:.2}_BOTTOM"), hole);
+                format!("POCKET_{depth:.2}_BOTTOM")
+            };
+            match layers.iter_mut().find(|layer| layer.name == name) {
+                Some(layer) => layer.loops.push(hole.clone()),
+                None => layers.push(Layer {
+                    name,
+                    loops: vec![hole.clone()],
+                }),
             }
         }
     }
     layers
 }
 
-/// Whether there is nothing of a layer within a hole.
+/// True if a layer has no material within a hole.
 fn is_open(outline: &Outline, hole: &Loop) -> bool {
     let n = hole.sides.len() as f64;
     let sum = hole
@@ -132,26 +120,9 @@ fn is_open(outline: &Outline, hole: &Loop) -> bool {
 /// The smallest and the largest x and y of a sheet, arcs at their full size, mm.
 #[must_use]
 pub fn extent(sheet: &Sheet) -> [Vector; 2] {
-    let mut low = Vector::new(f64::INFINITY, f64::INFINITY);
-    let mut high = Vector::new(f64::NEG_INFINITY, f64::NEG_INFINITY);
-    let mut grow = |x: f64, y: f64| {
-        low = Vector::new(low.x.min(x), low.y.min(y));
-        high = Vector::new(high.x.max(x), high.y.max(y));
-    };
-    for line in sheet.layers.iter().flat_map(|layer| &layer.loops) {
-        for (side, to) in line.ends() {
-            let points = 16;
-            grow(side.from.x, side.from.y);
-            if let Some((centre, _)) = side.arc(to) {
-                let arm = side.from - centre;
-                let whole = 4.0 * libm::atan(side.bulge);
-                for i in 1..points {
-                    let angle = whole * f64::from(i) / f64::from(points);
-                    let at = centre + arm * libm::cos(angle) + arm.left() * libm::sin(angle);
-                    grow(at.x, at.y);
-                }
-            }
-        }
-    }
-    [low, high]
+    let lines = sheet.layers.iter().flat_map(|layer| &layer.loops);
+    bounds(lines.flat_map(Loop::ends).flat_map(|(side, to)| {
+        let arc = side.along(to, |_, _| 16);
+        std::iter::once(side.from).chain(arc)
+    }))
 }

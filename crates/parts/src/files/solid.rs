@@ -14,7 +14,7 @@ use lizard_kinematics::Vector;
 use crate::layers::body::Prism;
 use crate::layers::outline::{Loop, Outline, SAME, Side};
 
-/// The surface of a part.
+/// The surface of a part, as edges and faces.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Solid {
     /// Points from above, mm.
@@ -25,36 +25,36 @@ pub struct Solid {
     pub edges: Vec<Edge>,
     /// Flat faces and walls.
     pub faces: Vec<Face>,
-    /// mm^3.
+    /// The enclosed volume, mm^3.
     pub volume: f64,
 }
 
-/// Between two corners; upright where both have one point.
+/// An edge between two corners; upright if both are at one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge {
     /// Two corners, each as a point and a height.
     pub ends: [(usize, usize); 2],
-    /// As a side: 0 where it is straight.
+    /// The bulge, as in [`Side`]: 0 if straight.
     pub bulge: f64,
 }
 
-/// A face by its edges, each with whether it is gone along forward.
+/// A face by its edges, each with its direction: true for forward.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Face {
-    /// What it lies on.
+    /// The surface that it lies on.
     pub surface: Surface,
     /// The outer loop, counter-clockwise seen from outside the part, then its holes.
     pub loops: Vec<Vec<(usize, bool)>>,
 }
 
-/// What a face lies on.
+/// The plane or cylinder under a face.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Surface {
-    /// A height, seen from above.
+    /// A plane at a height, seen from above.
     Top(usize),
-    /// A height, seen from below.
+    /// A plane at a height, seen from below.
     Bottom(usize),
-    /// A wall above a side of an outline, and the side's end.
+    /// A wall along a side of an outline, which ends at a point.
     Wall(Side, Vector),
 }
 
@@ -103,7 +103,7 @@ impl Solid {
         maker.solid
     }
 
-    /// Whether every edge has exactly two faces, which go along it in opposite ways.
+    /// True if every edge has exactly two faces, which run along it in opposite directions.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         let mut uses = vec![[0, 0]; self.edges.len()];
@@ -125,7 +125,7 @@ struct Meeting<'a> {
 struct Maker {
     solid: Solid,
     known: BTreeMap<(usize, usize, usize, usize), usize>,
-    /// Middles of pieces, which distinguish two arcs between the same points.
+    /// Middles of pieces, which tell two arcs between the same points apart.
     middles: Vec<Vector>,
     uprights: BTreeMap<(usize, usize), usize>,
 }
@@ -200,7 +200,7 @@ impl Maker {
         }
     }
 
-    /// The flat faces at a height: what one layer has and the other has not.
+    /// Adds the flat faces at a height, which one layer covers and the other does not.
     fn flats(&mut self, meeting: &Meeting) {
         let (lower, upper) = (meeting.lower, meeting.upper);
         let tops = self.difference(lower, upper);
@@ -209,7 +209,7 @@ impl Maker {
         self.faces(bottoms, Surface::Bottom(meeting.level), true);
     }
 
-    /// The outline of what `a` has and `b` has not, as pieces with it on their left.
+    /// The outline of `a` less `b`, as pieces with the material on their left.
     fn difference(&self, a: (&Outline, &[Vec<Piece>]), b: (&Outline, &[Vec<Piece>])) -> Vec<Piece> {
         let find = |edge: usize| b.1.iter().flatten().find(|piece| piece.edge == edge);
         let mut outline = Vec::new();
@@ -236,7 +236,7 @@ impl Maker {
         outline
     }
 
-    /// Pieces as faces; seen from below, each loop is gone along the other way.
+    /// Adds pieces as faces. Seen from below, each loop runs in the opposite direction.
     fn faces(&mut self, mut pieces: Vec<Piece>, surface: Surface, below: bool) {
         let mut outer: Vec<(f64, Outline, Vec<Vec<Piece>>)> = Vec::new();
         let mut holes = Vec::new();
@@ -297,7 +297,7 @@ impl Maker {
         }
     }
 
-    /// The walls of the layer below a height.
+    /// Adds the walls of the layer below a height.
     fn walls(&mut self, level: usize, of: &Outline, low: &[Vec<Piece>], high: &[Vec<Piece>]) {
         let sides = of.loops().flat_map(Loop::ends);
         for ((low, high), (side, end)) in low.iter().zip(high).zip(sides) {
@@ -332,14 +332,14 @@ impl Maker {
     }
 }
 
-/// How far along a side a point of it is: mm, or rad of an arc.
+/// The distance of a point from a side's start along the side: mm, or rad on an arc.
 pub(crate) fn progress(side: Side, to: Vector, point: Vector) -> f64 {
     let Some((centre, _)) = side.arc(to) else {
         return (point - side.from).length();
     };
     let (a, b) = (side.from - centre, point - centre);
     let angle = libm::atan2(a.cross(b), a.dot(b)) * side.bulge.signum();
-    // What is a little before the beginning is at it.
+    // Rounding may put the start itself a little before the start.
     if angle < -1e-6 {
         angle + std::f64::consts::TAU
     } else {
@@ -362,7 +362,7 @@ impl Quarter for f64 {
     }
 }
 
-/// Where two sides meet.
+/// Adds the points in which two sides meet.
 fn meetings(a: Side, a_end: Vector, b: Side, b_end: Vector, found: &mut Vec<Vector>) {
     let end = |at: Vector| PlineVertex::new(at.x, at.y, 0.0);
     let met = pline_seg_intr(a.vertex(), end(a_end), b.vertex(), end(b_end), SAME);
@@ -391,7 +391,7 @@ mod tests {
     }
 
     fn prism(add: Vec<Shape>, cut: Vec<Shape>, z: [f64; 2]) -> Prism {
-        Prism { add, cut, z }
+        Prism::new(add, cut, z)
     }
 
     #[test]

@@ -31,8 +31,8 @@ struct File {
     last: usize,
 }
 
-/// A number as the format has it: with a point and without an exponent, which readers
-/// take for another number.
+/// A number in the format's notation: with a point, and without an exponent, which some
+/// readers misread.
 fn real(value: f64) -> String {
     let text = format!("{value:.9}");
     let text = text.trim_end_matches('0');
@@ -138,7 +138,7 @@ impl File {
         self.add(&format!("LINE('',#{origin},#{vector})"))
     }
 
-    /// A face's surface, and whether it is seen from where its normal points.
+    /// A face's surface, and true if the face's outside is where the surface's normal points.
     fn surface(&mut self, solid: &Solid, surface: Surface) -> (usize, bool) {
         match surface {
             Surface::Top(level) | Surface::Bottom(level) => {
@@ -171,7 +171,7 @@ impl File {
         }
     }
 
-    /// What else a reader wants to know: that it is a product, and in mm.
+    /// The product's header, which readers require, and its units.
     fn product(&mut self, name: &str, solid: usize) {
         let context = self.add("APPLICATION_CONTEXT('automotive design')");
         self.add(&format!(

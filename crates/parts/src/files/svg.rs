@@ -7,9 +7,9 @@ use lizard_kinematics::Vector;
 use crate::files::sheet::{Sheet, extent};
 use crate::layers::outline::Loop;
 
-/// Around the part, mm.
+/// Margin around the part, mm.
 const MARGIN: f64 = 5.0;
-/// Cut through; then pockets.
+/// Colours of the lines: first to cut through, then pockets.
 const COLOURS: [&str; 4] = ["#d00000", "#0050c0", "#a000a0", "#008040"];
 
 /// The text of a file.

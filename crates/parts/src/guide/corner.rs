@@ -18,14 +18,8 @@ impl Assembly {
     #[must_use]
     pub fn corner(&self) -> Vec<Part> {
         let (name, leg) = names(CORNER);
-        let seat = Part {
-            name: format!("seat {name}"),
-            bodies: vec![format!("seat {name}")],
-            prisms: chassis::corner(&Builder::new(self.robot()), CORNER),
-            turned: false,
-            instead_of: None,
-            mark: String::new(),
-        };
+        let prisms = chassis::corner(&Builder::new(self.robot()), CORNER);
+        let mut corner = vec![Part::single(&format!("seat {name}"), prisms)];
         let own = |body: &str| {
             let body = self.body(body);
             body.is_some_and(|body| {
@@ -34,17 +28,10 @@ impl Assembly {
                 moves && of && body.kind == Kind::Printed
             })
         };
-        let mut corner = vec![seat];
-        for part in self.parts() {
-            let bodies: Vec<_> = part
-                .bodies
-                .iter()
-                .filter(|body| own(body))
-                .cloned()
-                .collect();
-            let spacer = part.name.starts_with("spacer");
-            if !bodies.is_empty() && !spacer {
-                corner.push(Part { bodies, ..part });
+        for mut part in self.parts() {
+            part.bodies.retain(|body| own(body));
+            if !part.bodies.is_empty() && !part.name.starts_with("spacer") {
+                corner.push(part);
             }
         }
         corner

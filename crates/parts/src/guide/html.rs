@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-/// The guide's Markdown as a page. It has headings, pictures, tables, code and paragraphs
-/// and nothing else.
+/// The guide's Markdown as a page. Only headings, pictures, tables, code and paragraphs
+/// are known.
 pub fn html(markdown: &str) -> String {
     let escape = |text: &str| {
         let text = text.replace('&', "&amp;").replace('<', "&lt;");

@@ -4,9 +4,9 @@ use std::fmt::Write;
 
 use lizard_kinematics::Vector;
 
-/// Around the robot, pixels.
+/// Margin around the robot, pixels.
 const MARGIN: f64 = 12.0;
-/// Room for names on each side of a picture, pixels, and from one to the next.
+/// Room for names on each side of a picture, and the height of a name, pixels.
 const BESIDE: f64 = 165.0;
 const LINE: f64 = 16.0;
 const FONT: &str = "font-family=\"sans-serif\" font-size=\"12\" fill=\"#111\"";
@@ -17,27 +17,27 @@ pub(super) type Trail = Vec<(f64, f64)>;
 /// A name in a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Label {
-    /// What it names, chassis frame, mm.
+    /// The place that it names, chassis frame, mm.
     pub at: Vector,
-    /// Its height, mm.
+    /// Height of that place, mm.
     pub z: f64,
-    /// The name.
+    /// The name to write.
     pub text: String,
-    /// Whether it is written beside the picture with a line to its place, as the names of
-    /// parts are, or on the place itself.
+    /// True to write it beside the picture with a line to its place, as names of parts are;
+    /// false to write it on the place.
     pub beside: bool,
 }
 
-/// What of the page is shown, mm before the page's scale.
+/// The part of the page that is shown, mm before the page's scale.
 pub(super) struct Frame {
     low: (f64, f64),
     high: (f64, f64),
 }
 
 impl Frame {
-    /// What holds all of some points, and a little more if it is seen from nearby.
+    /// The frame around some points, with a margin in a close view.
     pub(super) fn around(points: impl Iterator<Item = (f64, f64)>, near: bool) -> Self {
-        /// Around what is seen from nearby, mm.
+        /// Margin of a close view, mm.
         const AROUND: f64 = 12.0;
         let (mut low, mut high) = ((f64::MAX, f64::MAX), (f64::MIN, f64::MIN));
         for (x, y) in points {
@@ -56,7 +56,7 @@ impl Frame {
     }
 }
 
-/// Shapes in the order in which they are drawn.
+/// Shapes in drawing order.
 #[derive(Default)]
 pub(super) struct Ink {
     /// Colour, loops, and whether its edge is drawn.
@@ -64,7 +64,7 @@ pub(super) struct Ink {
 }
 
 impl Ink {
-    /// Draws loops over all that is there; loops in loops are holes.
+    /// Draws loops over everything drawn so far; loops within loops are holes.
     pub(super) fn polygon(&mut self, loops: &[Vec<(f64, f64)>], colour: [f64; 3], edge: bool) {
         let [r, g, b] = colour.map(|part| part.clamp(0.0, 255.0).round() as u8);
         self.shapes
@@ -89,8 +89,8 @@ impl Ink {
         let scale = room / (high.0 - low.0);
         let height = ((high.1 - low.1) * scale + 2.0 * MARGIN).ceil();
         let x0 = MARGIN + side;
-        // Each colour is named once, and a point is whole tenths of a pixel from the one
-        // before: a quarter of the text.
+        // Each colour is named once, and points are given in whole tenths of a pixel from the
+        // previous one. That makes the text four times shorter.
         let mut styles: Vec<(&str, bool)> = Vec::new();
         let mut paths = String::new();
         let tenths = |x: f64, from: f64| (10.0 * (x * scale + from)).round() as i64;

@@ -1,5 +1,5 @@
-//! The names in the pictures of the guide: what is new in a step, how often, and which
-//! end of the robot is which.
+//! The names in the pictures of the guide: the new bodies of a step with their number, the
+//! servos, and the two ends of the robot.
 
 use std::collections::BTreeMap;
 
@@ -12,33 +12,26 @@ use crate::guide::picture::Drawn;
 use crate::layers::body::{Body, Kind, Mount};
 use crate::part::Part;
 
-/// What a body is called in the guide: screws by their length, printed parts by the name
-/// of their file and their mark.
+/// A body's name in the guide: of a screw its length, of a printed part its file's name and
+/// its mark.
 pub fn called(body: &Body, parts: &[Part]) -> Option<String> {
     Some(match body.kind {
         Kind::Screw(length) => format!("M3 x {length}"),
         Kind::HexScrew(length) => format!("M3 x {length}, hexagon head"),
         Kind::HornScrew(length) => format!("horn screw, {length} mm"),
-        Kind::ServoScrew => "servo screw".to_owned(),
         Kind::Nut => "lock nut".to_owned(),
         Kind::Standoff(length) => format!("standoff, {length} mm"),
-        Kind::Servo => "servo".to_owned(),
-        Kind::Horn => "horn".to_owned(),
-        Kind::Spring => "spring".to_owned(),
         Kind::Pad => "rubber pad".to_owned(),
         Kind::Board => "Arduino UNO".to_owned(),
-        Kind::Battery => "battery".to_owned(),
         Kind::Lead => return None,
+        Kind::ServoScrew | Kind::Servo | Kind::Horn | Kind::Spring | Kind::Battery => {
+            body.kind.word().to_owned()
+        }
         Kind::Fitting(fitting) => fitting.name().to_owned(),
         Kind::Printed => {
             let part = parts.iter().find(|part| part.bodies.contains(&body.name))?;
-            let what = part
-                .name
-                .split_once(" A")
-                .map_or(&*part.name, |(what, _)| what);
-            let what = what
-                .split_once(['L', 'R'])
-                .map_or(what, |(what, _)| what.trim());
+            let name = part.name.split(" A").next()?;
+            let what = name.split(['L', 'R']).next()?.trim();
             match part.mark.is_empty() {
                 true => what.to_owned(),
                 false => format!("{what}, marked {}", part.mark),
@@ -47,7 +40,7 @@ pub fn called(body: &Body, parts: &[Part]) -> Option<String> {
     })
 }
 
-/// How many of each are among some bodies: `4 x M3 x 12`, the printed parts first.
+/// Names of some bodies with their numbers, such as `4 x M3 x 12`; printed parts first.
 pub fn counted(bodies: &[&Body], parts: &[Part]) -> Vec<String> {
     let mut counts: BTreeMap<(bool, usize, String), usize> = BTreeMap::new();
     for body in bodies {
@@ -57,21 +50,17 @@ pub fn counted(bodies: &[&Body], parts: &[Part]) -> Vec<String> {
             *counts.entry((screw, name.len(), name)).or_default() += 1;
         }
     }
-    let words = counts.into_iter();
-    words
-        .map(|((_, _, name), count)| format!("{count} x {name}"))
-        .collect()
+    let counts = counts.into_iter();
+    let words = counts.map(|((_, _, name), count)| format!("{count} x {name}"));
+    words.collect()
 }
 
-/// Names of what is new in a picture: each once, at the one that is nearest to the front
+/// Labels for the new bodies in a picture: each name once, at the body nearest to the front
 /// left corner.
 pub fn names(assembly: &Assembly, parts: &[Part], drawn: &[Drawn], pose: &Solution) -> Vec<Label> {
     let mut found: BTreeMap<String, (f64, usize, Label)> = BTreeMap::new();
-    for Drawn { body, lift, pale } in drawn {
-        let Some(name) = called(body, parts).filter(|_| !pale) else {
-            continue;
-        };
-        let Some(prism) = body.prisms.last() else {
+    for Drawn { body, lift, .. } in drawn.iter().filter(|drawn| !drawn.pale) {
+        let (Some(name), Some(prism)) = (called(body, parts), body.prisms.last()) else {
             continue;
         };
         let at = assembly.place(body.mount, pose).map(prism.add[0].middle());
@@ -95,9 +84,9 @@ pub fn names(assembly: &Assembly, parts: &[Part], drawn: &[Drawn], pose: &Soluti
     labels.collect()
 }
 
-/// The servos' names at their places, and which end is which.
+/// The servos' names at their places, and the names of both ends.
 pub fn places(assembly: &Assembly, pose: &Solution) -> Vec<Label> {
-    /// As high as the links, mm.
+    /// Height of the links, mm.
     const HIGH: f64 = 18.0;
     let label = |at: Vector, text: &str| Label {
         at,
@@ -107,16 +96,12 @@ pub fn places(assembly: &Assembly, pose: &Solution) -> Vec<Label> {
     };
     // On its link, beside the shaft, which the board may hide.
     let on_link = |servo: usize| {
-        let out = 0.7 * assembly.layout().crank[servo];
-        assembly
-            .place(Mount::Link(servo), pose)
-            .map(Vector::new(out, 0.0))
+        let out = Vector::new(0.7 * assembly.layout().crank[servo], 0.0);
+        assembly.place(Mount::Link(servo), pose).map(out)
     };
-    let mut labels: Vec<_> = (0..4)
-        .map(|servo| label(on_link(servo), NAMES[servo]))
-        .collect();
-    let ends = assembly.layout().plate.half.y + 16.0;
-    labels.push(label(Vector::new(0.0, ends), "HEAD"));
-    labels.push(label(Vector::new(0.0, -ends), "TAIL"));
-    labels
+    let servos = (0..4).map(|servo| label(on_link(servo), NAMES[servo]));
+    let end = assembly.layout().plate.half.y + 16.0;
+    let ends = [(end, "HEAD"), (-end, "TAIL")];
+    let ends = ends.map(|(y, name)| label(Vector::new(0.0, y), name));
+    servos.chain(ends).collect()
 }

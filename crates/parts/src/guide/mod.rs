@@ -1,4 +1,4 @@
-//! How the parts are put together, step by step, with pictures of the model.
+//! The guide to building the robot, step by step, with pictures of the model.
 //!
 //! In this order a screwdriver can reach every screw, and the electronics are tried
 //! before anything could jam.
@@ -21,7 +21,7 @@ use crate::bodies::names::names;
 use crate::files::File;
 use crate::guide::html::html;
 use crate::guide::ink::Label;
-use crate::guide::picture::{Drawn, View, labelled, whole};
+use crate::guide::picture::{Drawn, View, picture};
 use crate::layers::body::{Body, Mount};
 use crate::layers::roof::LAYER;
 use crate::order::reach::Aside;
@@ -29,14 +29,14 @@ use crate::order::steps::{Near, Step, Where, steps};
 use crate::part::Part;
 use crate::unfit::Unfit;
 
-/// How far new parts are lifted in the exploded pictures, mm.
+/// Lift of new parts in the exploded pictures, mm.
 const LIFT: f64 = 45.0;
 /// Width of a picture without the names next to it, pixels.
 const WIDE: f64 = 950.0;
-/// The corner that is printed first, and seen from nearby: that of A1.
+/// The servo of the corner that is printed first and shown in close views: A1.
 pub const CORNER: usize = 0;
 
-/// What the guide says first.
+/// The guide's introduction.
 const BEFORE: &str = "No printed robot has walked yet. So print in this order, and stop where something is not as it should be:\n\n\
 1. the **coupon** (`lizard parts DIR --coupon`): the first column into which everything goes by hand is your printer's `fit`;\n\
 2. one **corner** (`lizard parts DIR --corner`): a seat, a link, a leg, a strut and a foot, three hours. Put it together as in steps 1, 5 and 7 to 9;\n\
@@ -44,7 +44,7 @@ const BEFORE: &str = "No printed robot has walked yet. So print in this order, a
 Print all parts as they lie, in layers of 0.2 mm, **without supports**. A slicer may offer some under the two ends of a sleeve's \
 roof: that is a bridge of 6.4 mm, which needs none.";
 
-/// The guide as Markdown and HTML, with its pictures at a pose, as a rule neutral.
+/// The guide as Markdown and HTML, with its pictures at a pose, usually neutral.
 ///
 /// # Errors
 /// [`Unfit::Blocked`] for a screw that cannot be reached.
@@ -53,13 +53,10 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
     let asides = assembly.asides(&steps)?;
     let parts = assembly.parts();
     let mut files = Vec::new();
-    let robot = labelled(
-        assembly,
-        &whole(assembly),
-        pose,
-        &View::default(),
-        &legend::places(assembly, pose),
-    );
+    let bodies = assembly.bodies().iter();
+    let all: Vec<_> = bodies.map(|body| Drawn::at_place(body, false)).collect();
+    let names = legend::places(assembly, pose);
+    let robot = picture(assembly, &all, pose, &View::default(), &names);
     files.push(File::text("guide/robot.svg".to_owned(), robot));
     let mut text = format!(
         "# Building the robot\n\n![The robot](robot.svg)\n\n{BEFORE}\n\n{}\n",
@@ -80,9 +77,8 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
         let _ = writeln!(text, "Take {}.\n", legend::counted(&new, &parts).join("; "));
         let here = asides.iter().filter(|aside| aside.step == number);
         let at_bench = step.stages.iter().any(|stage| stage.at == Where::Bench);
-        let turns: Vec<_> = here
-            .map(|aside| turned(assembly, aside, at_bench))
-            .collect();
+        let turns = here.map(|aside| turned(assembly, aside, at_bench));
+        let turns: Vec<_> = turns.collect();
         if !turns.is_empty() {
             let _ = writeln!(
                 text,
@@ -111,19 +107,14 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
     Ok(files)
 }
 
-/// What has to be drilled.
+/// The guide's words about holes to drill.
 fn drilled(parts: &[Part]) -> String {
-    let some = parts.iter().filter(|part| part.printed().1 > 0);
-    let list: Vec<_> = some
-        .map(|part| {
-            let (_, count) = part.printed();
-            let holes = if count == 1 { "a hole" } else { "holes" };
-            match count {
-                1 => format!("{holes} in each {}", part.name),
-                _ => format!("{count} {holes} in each {}", part.name),
-            }
-        })
-        .collect();
+    let holes = |part: &Part| match part.printed().1 {
+        0 => None,
+        1 => Some(format!("a hole in each {}", part.name)),
+        count => Some(format!("{count} holes in each {}", part.name)),
+    };
+    let list: Vec<_> = parts.iter().filter_map(holes).collect();
     format!(
         "Where a sunk pocket lies below in printing, the hole in its roof is closed by one layer of {LAYER} mm; open it with a drill of 3 mm, \
          or a screw: {}. Parts that are alike but for left and right have the numbers of their servos engraved: 13 is for A1 and A3.",
@@ -131,7 +122,7 @@ fn drilled(parts: &[Part]) -> String {
     )
 }
 
-/// A step and what was there before.
+/// A step of the guide and the bodies that were added before it.
 struct Scene<'a> {
     assembly: &'a Assembly,
     parts: &'a [Part],
@@ -142,7 +133,7 @@ struct Scene<'a> {
 }
 
 impl Scene<'_> {
-    /// Its pictures: what they are, in a word and in words.
+    /// The pictures of the step: the word in the file's name, the caption, and the drawing.
     fn pictures(&self) -> Vec<(&'static str, &'static str, String)> {
         let view = View {
             width: WIDE,
@@ -164,33 +155,27 @@ impl Scene<'_> {
             azimuth: 30.0,
             ..corner
         };
-        let all = |_: &Body| true;
-        let mut pictures = vec![("exploded", "apart", self.picture(&view, LIFT, true, all))];
-        match self.step.near {
-            Near::None => {}
-            Near::Corner => {
-                let drawing = self.picture(&corner, 0.6 * LIFT, true, at_corner);
-                pictures.push(("near", "the front left corner", drawing));
-            }
+        type Which = fn(&Body) -> bool;
+        let (all, at_corner): (Which, Which) = (|_| true, at_corner);
+        let extra = match self.step.near {
+            Near::None => None,
+            Near::Corner => Some(("near", "the front left corner", corner, 0.6, at_corner)),
             Near::CornerBelow => {
-                let drawing = self.picture(&corner_below, 0.5 * LIFT, true, at_corner);
-                pictures.push(("below", "the front left corner from below", drawing));
+                let words = "the front left corner from below";
+                Some(("below", words, corner_below, 0.5, at_corner))
             }
-            Near::Below => {
-                let drawing = self.picture(&below, 0.0, true, all);
-                pictures.push(("below", "from below", drawing));
-            }
-        }
+            Near::Below => Some(("below", "from below", below, 0.0, all)),
+        };
+        let mut pictures = vec![("exploded", "apart", self.picture(&view, LIFT, true, all))];
+        pictures.extend(extra.map(|(kind, words, view, lift, which)| {
+            (kind, words, self.picture(&view, lift * LIFT, true, which))
+        }));
         pictures.push(("done", "done", self.picture(&view, 0.0, false, all)));
         pictures
     }
 
     fn picture(&self, view: &View, lift: f64, named: bool, which: fn(&Body) -> bool) -> String {
-        let old = self.before.iter().map(|&body| Drawn {
-            body,
-            lift: 0.0,
-            pale: true,
-        });
+        let old = self.before.iter().map(|body| Drawn::at_place(body, true));
         let new = self.new.iter().map(|&body| Drawn {
             body,
             lift: lift * (self.step.lift)(body),
@@ -201,11 +186,11 @@ impl Scene<'_> {
         if named {
             labels.extend(legend::names(self.assembly, self.parts, &drawn, self.pose));
         }
-        labelled(self.assembly, &drawn, self.pose, view, &labels)
+        picture(self.assembly, &drawn, self.pose, view, &labels)
     }
 }
 
-/// Whether a body belongs to the corner that is seen from nearby.
+/// True if a body belongs to the corner that close views show.
 fn at_corner(body: &Body) -> bool {
     let (name, leg) = names(CORNER);
     match body.mount {
@@ -216,26 +201,24 @@ fn at_corner(body: &Body) -> bool {
     }
 }
 
-/// What has to be turned out of the way.
+/// The guide's words about links to turn out of the way.
 fn turned(assembly: &Assembly, aside: &Aside, at_bench: bool) -> String {
     let neutral: [f64; 4] = assembly.robot().neutral().into();
     let turns = (0..4).map(|servo| (servo, aside.pose[servo] - neutral[servo]));
-    let turns: Vec<_> = turns
-        .filter(|(_, by)| by.abs() > 0.5)
-        .map(|(servo, by)| {
-            let way = if by > 0.0 {
-                "counter-clockwise"
-            } else {
-                "clockwise"
-            };
-            let (name, leg) = names(servo);
-            let what = match at_bench {
-                true => format!("crank and follower {leg}"),
-                false => format!("link {name} with its leg"),
-            };
-            format!("{what} by {:.0} deg {way}", by.abs())
-        })
-        .collect();
+    let turns = turns.filter(|(_, by)| by.abs() > 0.5).map(|(servo, by)| {
+        let way = if by > 0.0 {
+            "counter-clockwise"
+        } else {
+            "clockwise"
+        };
+        let (name, leg) = names(servo);
+        let what = match at_bench {
+            true => format!("crank and follower {leg}"),
+            false => format!("link {name} with its leg"),
+        };
+        format!("{what} by {:.0} deg {way}", by.abs())
+    });
+    let turns: Vec<_> = turns.collect();
     format!("{} for {}", turns.join(" and "), aside.screws.join(", "))
 }
 

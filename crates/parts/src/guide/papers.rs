@@ -1,4 +1,4 @@
-//! What `lizard parts` writes besides the files of the parts: the list to buy and the guide.
+//! The papers of `lizard parts` besides the files of the parts: bill and guide.
 
 use lizard_kinematics::Solution;
 
@@ -9,13 +9,13 @@ use crate::guide::guide;
 use crate::guide::placements::placements;
 use crate::unfit::Unfit;
 
-/// bill.json and the folder guide/, with pictures at a pose, as a rule neutral.
+/// Makes bill.json and the folder guide/, with pictures at a pose, usually neutral.
 ///
 /// # Errors
 /// [`Unfit::Blocked`] for a screw that cannot be reached.
 ///
 /// # Panics
-/// Never: what is written as JSON is plain.
+/// Never: texts and numbers can always be written as JSON.
 pub fn papers(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<File>, Unfit> {
     let list = serde_json::to_string_pretty(bill).expect("texts and numbers");
     let mut files = vec![File::text("bill.json".to_owned(), list + "\n")];

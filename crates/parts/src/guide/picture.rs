@@ -13,29 +13,40 @@ use crate::layers::outline::{Loop, Outline};
 
 use super::ink::{Frame, Ink, Label, Trail};
 
-/// A body to be drawn.
+/// A body in a picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Drawn<'a> {
-    /// Which.
+    /// The body.
     pub body: &'a Body,
-    /// How far it is lifted off its place, mm.
+    /// Lift above its place, mm.
     pub lift: f64,
-    /// Whether it is drawn in grey, because the picture is about others.
+    /// True to draw it in grey, because the picture is about others.
     pub pale: bool,
 }
 
-/// Where it is seen from.
+impl<'a> Drawn<'a> {
+    /// A body in its place, grey or in colour.
+    pub fn at_place(body: &'a Body, pale: bool) -> Self {
+        Self {
+            body,
+            lift: 0.0,
+            pale,
+        }
+    }
+}
+
+/// A view of the robot.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
-    /// Where the eye is, seen from above: deg counter-clockwise from the robot's right.
+    /// Direction of the eye from above: deg counter-clockwise from the robot's right.
     pub azimuth: f64,
-    /// How high it is, deg above the floor.
+    /// Direction of the eye above the floor, deg.
     pub elevation: f64,
     /// Width of the picture, pixels.
     pub width: f64,
-    /// Whether the robot is turned over about its long axis, and so seen from below.
+    /// True to turn the robot over about its long axis and show it from below.
     pub below: bool,
-    /// Whether only what is not grey, and a little around it, is in the picture.
+    /// True to show only the bodies that are not grey, and a little around them.
     pub near: bool,
 }
 
@@ -51,13 +62,13 @@ impl Default for View {
     }
 }
 
-/// From the middle to the eye, mm.
+/// Distance of the eye from the robot's middle, mm.
 const AWAY: f64 = 900.0;
 /// Largest angle of a chord, rad.
 const CHORD: f64 = 0.55;
 /// The thinnest slice, mm.
 const SLICE: f64 = 0.45;
-/// Holes that are smaller have a screw in them, mm.
+/// Radius below which a hole has a screw in it, mm.
 const HOLE: f64 = 1.75;
 
 /// Servos A1 to A4 and what they move: Okabe and Ito's colours and a purple of Tol's.
@@ -96,36 +107,28 @@ impl Eye {
         (x * scale, -up * scale)
     }
 
-    /// Where the eye is, from above.
+    /// The place of the eye, from above.
     fn at(&self) -> Vector {
         self.away * (AWAY * self.cos)
     }
 }
 
-/// How far a wall is, its outline and its colour.
+/// A wall: its distance from the eye, its outline and its colour.
 type Wall = (f64, Trail, [f64; 3]);
 
-/// What is drawn in a slice.
+/// A layer of a body in the picture.
 struct Layer {
     colour: [f64; 3],
-    /// Whether it is grey.
+    /// True if it is grey.
     pale: bool,
     /// Outer loops and holes as points.
     loops: Vec<Vec<Vector>>,
     z: [f64; 2],
-    /// Whether nothing of the same body lies on it.
-    tops: Vec<Vec<Vector>>,
 }
 
-/// Some bodies at a pose, as SVG.
+/// Some bodies at a pose, with names, as SVG.
 #[must_use]
-pub fn picture(assembly: &Assembly, drawn: &[Drawn], pose: &Solution, view: &View) -> String {
-    labelled(assembly, drawn, pose, view, &[])
-}
-
-/// The same with names.
-#[must_use]
-pub fn labelled(
+pub fn picture(
     assembly: &Assembly,
     drawn: &[Drawn],
     pose: &Solution,
@@ -159,30 +162,24 @@ pub fn labelled(
             ink.polygon(&[points], colour, false);
         }
         for layer in present() {
-            if layer.z[1] < high + 1e-6 && !layer.tops.is_empty() {
-                let loops: Vec<Vec<_>> = layer
-                    .tops
-                    .iter()
-                    .map(|line| line.iter().map(|at| eye.page(*at, high)).collect())
-                    .collect();
+            if layer.z[1] < high + 1e-6 && !layer.loops.is_empty() {
+                let page = |line: &Vec<Vector>| line.iter().map(|at| eye.page(*at, high)).collect();
+                let loops: Vec<Trail> = layer.loops.iter().map(page).collect();
                 ink.polygon(&loops, layer.colour, true);
             }
         }
     }
-    let place = |at: Vector, z: f64| match view.below {
-        true => eye.page(turned_over(at), -z),
-        false => eye.page(at, z),
-    };
-    // What is meant: all, or what is not grey.
-    let meant = layers.iter().filter(|layer| !view.near || !layer.pale);
-    let points = meant.flat_map(|layer| {
+    // The frame is around all bodies, or in a close view around those that are not grey.
+    let framed = layers.iter().filter(|layer| !view.near || !layer.pale);
+    let points = framed.flat_map(|layer| {
         let all = layer.loops.iter().flatten();
         all.flat_map(|at| layer.z.map(|z| eye.page(*at, z)))
     });
-    let mut names = Vec::new();
-    for label in labels {
-        names.push((place(label.at, label.z), label));
-    }
+    let place = |label: &Label| match view.below {
+        true => eye.page(turned_over(label.at), -label.z),
+        false => eye.page(label.at, label.z),
+    };
+    let names: Vec<_> = labels.iter().map(|label| (place(label), label)).collect();
     ink.finish(view.width, &Frame::around(points, view.near), &names)
 }
 
@@ -191,8 +188,8 @@ fn turned_over(at: Vector) -> Vector {
     Vector::new(-at.x, at.y)
 }
 
-/// The heights at which layers begin or end. What is nearer than `SLICE` is one, to
-/// which the layers are moved.
+/// The heights at which layers begin or end. Heights nearer to each other than `SLICE`
+/// become one, and the layers are moved to it.
 fn slices(layers: &mut [Layer]) -> Vec<f64> {
     let mut heights: Vec<f64> = layers.iter().flat_map(|layer| layer.z).collect();
     heights.sort_by(f64::total_cmp);
@@ -217,16 +214,11 @@ fn layers(assembly: &Assembly, drawn: &[Drawn], pose: &Solution) -> Vec<Layer> {
                 let hole = line.circle().filter(|_| *pale || *lift == 0.0);
                 !hole.is_some_and(|(_, radius)| radius < HOLE && line.area() < 0.0)
             };
-            let loops: Vec<Vec<Vector>> = outline
-                .loops()
-                .filter(filled)
-                .map(|line| points(line).into_iter().map(|at| place.map(at)).collect())
-                .collect();
+            let placed = |line: &Loop| points(line).into_iter().map(|at| place.map(at)).collect();
             layers.push(Layer {
                 colour,
                 pale: *pale,
-                tops: loops.clone(),
-                loops,
+                loops: outline.loops().filter(filled).map(placed).collect(),
                 z: prism.z.map(|z| z + lift),
             });
         }
@@ -239,23 +231,15 @@ fn points(line: &Loop) -> Vec<Vector> {
     let mut points = Vec::new();
     for (side, to) in line.ends() {
         points.push(side.from);
-        if let Some((centre, _)) = side.arc(to) {
-            let whole = 4.0 * libm::atan(side.bulge);
-            let count = (whole.abs() / CHORD).ceil() as u32;
-            let arm = side.from - centre;
-            for i in 1..count {
-                let (sin, cos) = sin_cos((whole * f64::from(i) / f64::from(count)).to_degrees());
-                points.push(centre + arm * cos + arm.left() * sin);
-            }
-        }
+        points.extend(side.along(to, |_, angle| (angle / CHORD).ceil() as u32));
     }
     points
 }
 
 impl Layer {
-    /// Turned over about the robot's long axis; its lines keep the material on their left.
+    /// Turns it over about the robot's long axis; its lines keep the material on their left.
     fn turn_over(&mut self) {
-        for line in self.loops.iter_mut().chain(&mut self.tops) {
+        for line in &mut self.loops {
             for at in line.iter_mut() {
                 *at = turned_over(*at);
             }
@@ -265,7 +249,7 @@ impl Layer {
         self.z = [-high, -low];
     }
 
-    /// The walls of a loop that the eye sees; neighbours of one shade are one.
+    /// Adds the walls of a loop that the eye sees; neighbours of equal shade become one.
     fn walls(&self, line: &[Vector], eye: &Eye, [low, high]: [f64; 2], walls: &mut Vec<Wall>) {
         let n = line.len();
         let shade = |i: usize| {
@@ -288,11 +272,8 @@ impl Layer {
                 chain.push(line[(i + 1) % n]);
                 i += 1;
             }
-            let far = chain
-                .iter()
-                .map(|at| (eye.at() - *at).length())
-                .sum::<f64>()
-                / chain.len() as f64;
+            let distances = chain.iter().map(|at| (eye.at() - *at).length());
+            let far = distances.sum::<f64>() / chain.len() as f64;
             let mut points: Vec<_> = chain.iter().map(|at| eye.page(*at, low)).collect();
             points.extend(chain.iter().rev().map(|at| eye.page(*at, high)));
             let dark = 0.5 + 0.09 * f64::from(light);
@@ -306,16 +287,7 @@ fn colour(body: &Body, pale: bool) -> [f64; 3] {
     if pale {
         return [222.0, 222.0, 218.0];
     }
-    let servo = match body.mount {
-        Mount::Chassis | Mount::Sleeve(_) | Mount::Rod(_) => None,
-        Mount::Link(i)
-        | Mount::Crank(i)
-        | Mount::Follower(i)
-        | Mount::Foot(i)
-        | Mount::Strut(i)
-        | Mount::Coupler(i) => Some(i),
-    };
-    match (body.kind, servo) {
+    match (body.kind, body.mount.servo()) {
         (Kind::Printed, Some(servo)) => SERVO[servo].map(|part| 0.72 * part + 70.0),
         (Kind::Printed, None) if body.mount == Mount::Chassis => [236.0, 224.0, 190.0],
         (Kind::Printed, None) => [240.0, 228.0, 66.0],
@@ -325,15 +297,4 @@ fn colour(body: &Body, pale: bool) -> [f64; 3] {
         (Kind::Battery, _) => [120.0, 120.0, 130.0],
         _ => [170.0, 170.0, 176.0],
     }
-}
-
-/// All bodies in their places.
-#[must_use]
-pub fn whole(assembly: &Assembly) -> Vec<Drawn<'_>> {
-    let draw = |body| Drawn {
-        body,
-        lift: 0.0,
-        pale: false,
-    };
-    assembly.bodies().iter().map(draw).collect()
 }

@@ -1,9 +1,9 @@
-//! Where everything is, for programs: the guide's table of placements as JSON.
+//! The placements of all bodies as JSON, for programs.
 //!
 //! Lengths in mm; the chassis frame, z up from the top of the plate; servos at neutral. A
-//! printed part's file lies as it is printed: it is turned over if `flipped` says so
+//! printed part's file lies as it is printed: it is turned over if `flipped` is true
 //! (x, y, z to x, -y, -z), lifted by `lift`, turned about the upright axis by `turn` (deg,
-//! counter-clockwise) and shifted by `at`. What is bought has `solids`: upright prisms over
+//! counter-clockwise) and shifted by `at`. Bought bodies have `solids`: upright prisms over
 //! convex outlines, already in place. `drill` are the holes to be drilled in a printed part.
 
 use lizard_kinematics::{Solution, Vector};
@@ -11,10 +11,12 @@ use serde::Serialize;
 
 use crate::bodies::assembly::Assembly;
 use crate::layers::body::{Body, Kind};
+use crate::layers::placement::Placement;
+use crate::layers::shape::Shape;
 use crate::order::steps::{place_in, steps};
 use crate::part::Part;
 
-/// One body.
+/// The placement of a body.
 #[derive(Serialize)]
 struct Placed<'a> {
     name: &'a str,
@@ -30,7 +32,7 @@ struct Placed<'a> {
     solids: Vec<Prism>,
 }
 
-/// Where a printed file goes.
+/// The placement of a printed part's file.
 #[derive(Serialize)]
 struct Print {
     file: String,
@@ -53,18 +55,17 @@ struct Screw {
     head_above: bool,
 }
 
-/// A convex prism.
+/// A convex prism, and the holes in its layer.
 #[derive(Serialize)]
 struct Prism {
     z: [f64; 2],
-    radius: f64,
-    outline: Vec<[f64; 2]>,
-    /// Holes in the layer that it is of.
-    holes: Vec<Hole>,
+    #[serde(flatten)]
+    shape: Flat,
+    holes: Vec<Flat>,
 }
 
 #[derive(Serialize)]
-struct Hole {
+struct Flat {
     radius: f64,
     outline: Vec<[f64; 2]>,
 }
@@ -77,26 +78,24 @@ struct Hole {
 pub fn placements(assembly: &Assembly, pose: &Solution) -> String {
     let parts = assembly.parts();
     let steps = steps(assembly.robot().drive().strut().is_some());
-    let list: Vec<Placed> = assembly
-        .bodies()
-        .iter()
-        .map(|body| {
-            let (step, stage) = place_in(&steps, body);
-            let part = parts.iter().find(|part| part.bodies.contains(&body.name));
-            Placed {
-                name: &body.name,
-                kind: body.kind.word(),
-                step,
-                stage,
-                printed: part.map(|part| print(assembly, pose, body, part)),
-                screw: screw(assembly, pose, body),
-                solids: match part {
-                    Some(_) => Vec::new(),
-                    None => solids(assembly, pose, body),
-                },
-            }
-        })
-        .collect();
+    let placed = |body| {
+        let (step, stage) = place_in(&steps, body);
+        let part = parts.iter().find(|part| part.bodies.contains(&body.name));
+        let place = assembly.place(body.mount, pose);
+        Placed {
+            name: &body.name,
+            kind: body.kind.word(),
+            step,
+            stage,
+            printed: part.map(|part| print(&place, body, part)),
+            screw: screw(assembly, &place, body),
+            solids: match part {
+                Some(_) => Vec::new(),
+                None => solids(&place, body),
+            },
+        }
+    };
+    let list: Vec<Placed> = assembly.bodies().iter().map(placed).collect();
     serde_json::to_string_pretty(&list).expect("texts and numbers") + "\n"
 }
 
@@ -104,8 +103,7 @@ fn pair(at: Vector) -> [f64; 2] {
     [at.x, at.y]
 }
 
-fn print(assembly: &Assembly, pose: &Solution, body: &Body, part: &Part) -> Print {
-    let place = assembly.place(body.mount, pose);
+fn print(place: &Placement, body: &Body, part: &Part) -> Print {
     let lies = part.lies(body);
     let home = lies.home;
     let origin = place.map(home.at);
@@ -129,40 +127,32 @@ fn print(assembly: &Assembly, pose: &Solution, body: &Body, part: &Part) -> Prin
     }
 }
 
-fn screw(assembly: &Assembly, pose: &Solution, body: &Body) -> Option<Screw> {
+fn screw(assembly: &Assembly, place: &Placement, body: &Body) -> Option<Screw> {
     let (Kind::Screw(length) | Kind::HexScrew(length)) = body.kind else {
         return None;
     };
     let [low, high] = &body.prisms[..] else {
         return None;
     };
-    let head_above = high.add[0].width() > low.add[0].width();
-    let place = assembly.place(body.mount, pose);
     Some(Screw {
         at: pair(place.map(low.add[0].middle())),
         head: low.z[1],
         length,
         diameter: assembly.robot().parts().screw.diameter,
-        head_above,
+        head_above: high.add[0].width() > low.add[0].width(),
     })
 }
 
-fn solids(assembly: &Assembly, pose: &Solution, body: &Body) -> Vec<Prism> {
-    let place = assembly.place(body.mount, pose);
-    let points = |points: &[Vector]| points.iter().map(|at| pair(place.map(*at))).collect();
+fn solids(place: &Placement, body: &Body) -> Vec<Prism> {
+    let flat = |shape: &Shape| Flat {
+        radius: shape.radius,
+        outline: shape.points.iter().map(|at| pair(place.map(*at))).collect(),
+    };
     let layers = body.prisms.iter().flat_map(|prism| {
         prism.add.iter().map(move |shape| Prism {
             z: prism.z,
-            radius: shape.radius,
-            outline: points(&shape.points),
-            holes: prism
-                .cut
-                .iter()
-                .map(|hole| Hole {
-                    radius: hole.radius,
-                    outline: points(&hole.points),
-                })
-                .collect(),
+            shape: flat(shape),
+            holes: prism.cut.iter().map(flat).collect(),
         })
     });
     layers.collect()

@@ -8,22 +8,47 @@ use crate::layers::fitting::Fitting;
 use crate::layers::shape::Shape;
 use crate::layers::stack::Span;
 
-/// A layer of a body: what some shapes cover and no hole takes away, between two
-/// heights.
+/// A layer of a body: a union of shapes less some holes, between two heights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prism {
-    /// The layer is the union of these, in the body's frame, mm.
+    /// Shapes whose union is filled, in the body's frame, mm.
     pub add: Vec<Shape>,
-    /// Less these.
+    /// Holes cut out of that union.
     pub cut: Vec<Shape>,
-    /// From and to, mm above the chassis plate's top.
+    /// Bottom and top, mm above the chassis plate's top.
     pub z: Span,
 }
 
-/// What a body is.
+impl Prism {
+    /// A layer with holes.
+    #[must_use]
+    pub fn new(add: impl Into<Vec<Shape>>, cut: impl Into<Vec<Shape>>, z: Span) -> Self {
+        let (add, cut) = (add.into(), cut.into());
+        Self { add, cut, z }
+    }
+
+    /// A layer without holes.
+    #[must_use]
+    pub fn solid(add: impl Into<Vec<Shape>>, z: Span) -> Self {
+        Self::new(add, [], z)
+    }
+
+    /// True if it is more than a rounding error thick.
+    pub(crate) fn has_height(&self) -> bool {
+        self.z[1] > self.z[0] + 1e-9
+    }
+
+    /// The same layer between two other heights.
+    #[must_use]
+    pub fn at(&self, z: Span) -> Self {
+        Self { z, ..self.clone() }
+    }
+}
+
+/// The kind of thing that a body is, which decides how it is bought or made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
-    /// To be printed, or cut where all its layers have one outline.
+    /// A part to print, or to cut where all its layers have one outline.
     Printed,
     /// A servo without its horn.
     Servo,
@@ -39,7 +64,7 @@ pub enum Kind {
     HornScrew(f64),
     /// The wires of a servo, as far as they lie in the robot.
     Lead,
-    /// What is bought and has a place, but is not a part of the mechanism.
+    /// A bought thing that has a place on the robot but no role in the mechanism.
     Fitting(Fitting),
     /// A lock nut.
     Nut,
@@ -56,7 +81,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// The word for it, as placements.json and the page have it.
+    /// The word used for it in placements.json and on the page.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
@@ -79,10 +104,10 @@ impl Kind {
     }
 }
 
-/// What a body moves with. Servos are numbered in servo order, 0 to 3.
+/// The moving frame that a body is fixed to. Servos are numbered in servo order, 0 to 3.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mount {
-    /// The chassis: does not move.
+    /// The chassis, which does not move.
     Chassis,
     /// A servo's horn. Origin at the shaft, x along the crank of head or tail.
     Link(usize),
@@ -101,23 +126,32 @@ pub enum Mount {
     Coupler(usize),
     /// The rear half of a slider. Origin at the rear arm's tip, x along the slider.
     Sleeve(Side),
-    /// Its front half. Origin at the front arm's tip, x as the rear half's.
+    /// The front half of a slider. Origin at the front arm's tip, x as the rear half's.
     Rod(Side),
 }
 
 impl Mount {
-    /// The servos that decide where it is, in servo order.
+    /// The servos that its position depends on, in servo order.
     #[must_use]
     pub fn servos(self) -> Vec<usize> {
         match self {
-            Self::Chassis => Vec::new(),
+            Self::Coupler(servo) => sorted(End::of_servo(servo).servos()),
+            Self::Sleeve(side) | Self::Rod(side) => sorted(side.servos()),
+            _ => self.servo().into_iter().collect(),
+        }
+    }
+
+    /// The servo whose link or leg it belongs to; `None` for the chassis and the sliders.
+    #[must_use]
+    pub fn servo(self) -> Option<usize> {
+        match self {
             Self::Link(servo)
             | Self::Crank(servo)
             | Self::Follower(servo)
             | Self::Foot(servo)
-            | Self::Strut(servo) => vec![servo],
-            Self::Coupler(servo) => sorted(End::of_servo(servo).servos()),
-            Self::Sleeve(side) | Self::Rod(side) => sorted(side.servos()),
+            | Self::Strut(servo)
+            | Self::Coupler(servo) => Some(servo),
+            Self::Chassis | Self::Sleeve(_) | Self::Rod(_) => None,
         }
     }
 }
@@ -129,16 +163,16 @@ fn sorted([a, b]: [usize; 2]) -> Vec<usize> {
 /// A rigid body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
-    /// Its unique name: `link A1`, `strut LF`.
+    /// The unique name, such as `link A1` or `strut LF`.
     pub name: String,
-    /// What it is.
+    /// The kind of thing that it is.
     pub kind: Kind,
-    /// What it moves with.
+    /// The mount that it moves with.
     pub mount: Mount,
-    /// Its layers from below to above, in its own frame.
+    /// The layers from bottom to top, in the mount's frame.
     pub prisms: Vec<Prism>,
-    /// Names of bodies of other mounts that it touches or passes through by design: a
-    /// screw, and what it holds. A test of its own looks at each such pair.
+    /// Names of bodies on other mounts that it touches or passes through by design, such
+    /// as the parts that a screw holds. A separate test checks each such pair.
     pub meets: Vec<String>,
 }
 

@@ -1,4 +1,4 @@
-//! What the robot carries besides its mechanism: supply, terminal strips, straps.
+//! The things that the robot carries besides its mechanism: supply, terminal strips, straps.
 //!
 //! Shops have them in many sizes; the sizes here are the largest that fit on the robot.
 
@@ -8,35 +8,41 @@ pub const STRAP: [f64; 2] = [16.0, 1.5];
 /// A thing that is bought and put on the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fitting {
-    /// Makes 5 V for the servos from the battery's voltage.
+    /// A converter that makes 5 V for the servos from the battery's voltage.
     Converter,
-    /// Holds the servos' supply up when they start.
+    /// A capacitor that keeps the servos' supply up when they start.
     Capacitor,
-    /// Beeps before the battery is damaged.
+    /// An alarm that beeps before the battery is damaged.
     Alarm,
-    /// Joins everything that belongs to ground.
+    /// A terminal strip that joins all grounds.
     Ground,
-    /// Joins the servos' supply.
+    /// A terminal strip that joins the servos' supply.
     Supply,
-    /// Holds the battery.
+    /// A strap that holds the battery.
     Strap,
 }
 
 impl Fitting {
-    /// Its name as a body.
-    #[must_use]
-    pub fn name(self) -> &'static str {
+    /// Its name as a body; its mass, g, as shops give it; its size to the right, forward
+    /// and up, mm.
+    fn data(self) -> (&'static str, f64, [f64; 3]) {
         match self {
-            Self::Converter => "converter",
-            Self::Capacitor => "capacitor",
-            Self::Alarm => "alarm",
-            Self::Ground => "ground strip",
-            Self::Supply => "supply strip",
-            Self::Strap => "battery strap",
+            Self::Converter => ("converter", 8.0, [18.0, 28.0, 8.0]),
+            Self::Capacitor => ("capacitor", 2.0, [10.0, 20.0, 10.0]),
+            Self::Alarm => ("alarm", 9.0, [25.0, 40.0, 9.0]),
+            Self::Ground => ("ground strip", 12.0, [16.0, 84.0, 13.0]),
+            Self::Supply => ("supply strip", 8.0, [16.0, 60.0, 13.0]),
+            Self::Strap => ("battery strap", 3.0, [STRAP[0], 0.0, STRAP[1]]),
         }
     }
 
-    /// What to buy.
+    /// Its name as a body.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        self.data().0
+    }
+
+    /// Its line in the list to buy.
     #[must_use]
     pub fn what(self) -> String {
         let [x, y, z] = self.size();
@@ -56,25 +62,11 @@ impl Fitting {
     /// Its mass, g, as shops give it.
     #[must_use]
     pub fn grams(self) -> f64 {
-        match self {
-            Self::Converter => 8.0,
-            Self::Capacitor => 2.0,
-            Self::Alarm => 9.0,
-            Self::Ground => 12.0,
-            Self::Supply => 8.0,
-            Self::Strap => 3.0,
-        }
+        self.data().1
     }
 
     /// To the right, forward, up, mm.
     pub(crate) fn size(self) -> [f64; 3] {
-        match self {
-            Self::Converter => [18.0, 28.0, 8.0],
-            Self::Capacitor => [10.0, 20.0, 10.0],
-            Self::Alarm => [25.0, 40.0, 9.0],
-            Self::Ground => [16.0, 84.0, 13.0],
-            Self::Supply => [16.0, 60.0, 13.0],
-            Self::Strap => [STRAP[0], 0.0, STRAP[1]],
-        }
+        self.data().2
     }
 }

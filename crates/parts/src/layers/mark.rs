@@ -7,19 +7,19 @@
 use lizard_kinematics::Vector;
 
 use crate::layers::body::Prism;
-use crate::layers::outline::{Loop, Outline};
+use crate::layers::outline::{Loop, Outline, bounds};
 use crate::layers::shape::Shape;
 
-/// Width and height of a digit between the middles of its lines, and from one digit to
-/// the next, mm.
+/// Width and height of a digit between the middles of its lines, and the distance from
+/// one digit to the next, mm.
 const DIGIT: [f64; 2] = [1.9, 3.4];
 const NEXT: f64 = 3.5;
 /// Half the width of a line, and its depth: two layers, mm.
 const LINE: f64 = 0.35;
 pub const DEEP: f64 = 0.4;
-/// What remains beside it, mm.
+/// Least width of the face beside a mark, mm.
 const BESIDE: f64 = 0.7;
-/// How far apart places are that are tried, mm.
+/// Distance between the places that are tried, mm.
 const STEP: f64 = 0.8;
 
 /// The lines of a digit, from and to, in a field of one by one.
@@ -59,8 +59,7 @@ pub fn size(text: &str) -> [f64; 2] {
     [NEXT * (count - 1.0) + DIGIT[0], DIGIT[1]]
 }
 
-/// Layers with a mark engraved where there is room for it on a face that looks up;
-/// `None` where there is none.
+/// Layers with a mark engraved on an upper face; `None` if no face has room for it.
 #[must_use]
 pub fn engraved(prisms: &[Prism], text: &str) -> Option<Vec<Prism>> {
     let outlines: Vec<_> = prisms.iter().map(Outline::of).collect();
@@ -79,14 +78,8 @@ pub fn engraved(prisms: &[Prism], text: &str) -> Option<Vec<Prism>> {
             continue;
         };
         let mut layers = prisms.to_vec();
-        let lower = Prism {
-            z: [low, high - DEEP],
-            ..prism.clone()
-        };
-        let mut upper = Prism {
-            z: [high - DEEP, high],
-            ..prism.clone()
-        };
+        let lower = prism.at([low, high - DEEP]);
+        let mut upper = prism.at([high - DEEP, high]);
         upper.cut.extend(strokes(text, at));
         layers.splice(layer..=layer, [lower, upper]);
         return Some(layers);
@@ -94,17 +87,10 @@ pub fn engraved(prisms: &[Prism], text: &str) -> Option<Vec<Prism>> {
     None
 }
 
-/// Where a mark has room in an outline.
+/// The lower left corner of a mark that has room in an outline.
 fn place(outline: &Outline, text: &str, free: impl Fn(Vector) -> bool) -> Option<Vector> {
     let ends = outline.loops().flat_map(Loop::ends);
-    let mut low = Vector::new(f64::INFINITY, f64::INFINITY);
-    let mut high = Vector::new(f64::NEG_INFINITY, f64::NEG_INFINITY);
-    for (side, to) in ends {
-        for point in [side.from, side.middle(to)] {
-            low = Vector::new(low.x.min(point.x), low.y.min(point.y));
-            high = Vector::new(high.x.max(point.x), high.y.max(point.y));
-        }
-    }
+    let [low, high] = bounds(ends.flat_map(|(side, to)| [side.from, side.middle(to)]));
     let [wide, tall] = size(text);
     let margin = LINE + BESIDE;
     let steps = |from: f64, to: f64, by: f64| {

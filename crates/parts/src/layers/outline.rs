@@ -13,31 +13,42 @@ use lizard_kinematics::Vector;
 use crate::layers::body::Prism;
 use crate::layers::shape::Shape;
 
-/// Points nearer than this are one, mm.
+/// The smallest and the largest x and y of some points.
+pub(crate) fn bounds(points: impl Iterator<Item = Vector>) -> [Vector; 2] {
+    let [low, high] = [f64::INFINITY, f64::NEG_INFINITY].map(|end| Vector::new(end, end));
+    points.fold([low, high], |[low, high], at| {
+        [
+            Vector::new(low.x.min(at.x), low.y.min(at.y)),
+            Vector::new(high.x.max(at.x), high.y.max(at.y)),
+        ]
+    })
+}
+
+/// Points nearer to each other than this count as one, mm.
 pub(crate) const SAME: f64 = 1e-5;
 
-/// A closed line of straight sides and arcs, with the material on its left: around a
-/// part counter-clockwise, around a hole clockwise.
+/// A closed line of straight sides and arcs, with the material on its left:
+/// counter-clockwise around a part, clockwise around a hole.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loop {
-    /// Its sides, each from its own point to the next one's.
+    /// The sides, each from its own point to the next one's.
     pub sides: Vec<Side>,
 }
 
 /// One side of a loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Side {
-    /// Where it begins, mm.
+    /// The start point, mm.
     pub from: Vector,
-    /// The tangent of a quarter of its arc's angle: 0 of a line, 1 of half a circle;
-    /// positive where it turns left.
+    /// The tangent of a quarter of its arc's angle: 0 for a line, 1 for a semicircle,
+    /// positive for a left turn.
     pub bulge: f64,
 }
 
 /// A layer's outline.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outline {
-    /// Each piece: its outer loop, then those of its holes.
+    /// The pieces, each as its outer loop and then the loops of its holes.
     pub pieces: Vec<Vec<Loop>>,
 }
 
@@ -80,7 +91,7 @@ impl Outline {
         }
     }
 
-    /// All loops.
+    /// All loops of all pieces.
     pub fn loops(&self) -> impl Iterator<Item = &Loop> {
         self.pieces.iter().flatten()
     }
@@ -91,14 +102,14 @@ impl Outline {
         self.loops().map(Loop::area).sum()
     }
 
-    /// The area times the place of its middle, mm^3.
+    /// The area times its centroid, mm^3.
     #[must_use]
     pub fn moment(&self) -> Vector {
         self.loops()
             .fold(Vector::default(), |sum, of| sum + of.moment())
     }
 
-    /// Whether a point is in the material.
+    /// True if a point is in the material.
     #[must_use]
     pub fn holds(&self, point: Vector) -> bool {
         let turns: i32 = self.loops().map(|of| of.turns_around(point)).sum();
@@ -112,19 +123,15 @@ impl Loop {
         if (line.area() > 0.0) != outer {
             line.invert_direction_mut();
         }
-        Self {
-            sides: line
-                .iter_vertexes()
-                .map(|vertex| Side {
-                    from: Vector::new(vertex.x, vertex.y),
-                    bulge: if vertex.bulge.abs() < 1e-9 {
-                        0.0
-                    } else {
-                        vertex.bulge
-                    },
-                })
-                .collect(),
-        }
+        let side = |vertex: PlineVertex<f64>| {
+            let straight = vertex.bulge.abs() < 1e-9;
+            Side {
+                from: Vector::new(vertex.x, vertex.y),
+                bulge: if straight { 0.0 } else { vertex.bulge },
+            }
+        };
+        let sides = line.iter_vertexes().map(side).collect();
+        Self { sides }
     }
 
     /// Its sides with their ends.
@@ -133,7 +140,7 @@ impl Loop {
         (0..n).map(move |i| (self.sides[i], self.sides[(i + 1) % n].from))
     }
 
-    /// Middle and radius, if it is a whole circle.
+    /// Centre and radius, if it is a circle.
     #[must_use]
     pub fn circle(&self) -> Option<(Vector, f64)> {
         let arcs: Vec<_> = self
@@ -152,7 +159,7 @@ impl Loop {
         self.polyline().area()
     }
 
-    /// The area within times the place of its middle, mm^3.
+    /// The area within times its centroid, mm^3.
     fn moment(&self) -> Vector {
         let mut sum = Vector::default();
         for (side, to) in self.ends() {
@@ -189,12 +196,12 @@ impl Loop {
 }
 
 impl Side {
-    /// As the library has it.
+    /// The side as a vertex of the library's polylines.
     pub(crate) fn vertex(&self) -> PlineVertex<f64> {
         PlineVertex::new(self.from.x, self.from.y, self.bulge)
     }
 
-    /// Middle and radius of its arc to an end; none of a line.
+    /// Centre and radius of its arc to an end; `None` for a line.
     #[must_use]
     pub fn arc(&self, to: Vector) -> Option<(Vector, f64)> {
         (self.bulge != 0.0).then(|| {
@@ -210,9 +217,25 @@ impl Side {
         let middle = seg_midpoint(self.vertex(), PlineVertex::new(to.x, to.y, 0.0));
         Vector::new(middle.x, middle.y)
     }
+
+    /// Points on the arc to an end, its ends left out: as many parts as `count` returns
+    /// for the radius and the angle, rad. A line has none.
+    pub(crate) fn along(&self, to: Vector, count: impl Fn(f64, f64) -> u32) -> Vec<Vector> {
+        let Some((centre, radius)) = self.arc(to) else {
+            return Vec::new();
+        };
+        let whole = 4.0 * libm::atan(self.bulge);
+        let count = count(radius, whole.abs());
+        let arm = self.from - centre;
+        let point = |i: u32| {
+            let angle = whole * f64::from(i) / f64::from(count);
+            centre + arm * libm::cos(angle) + arm.left() * libm::sin(angle)
+        };
+        (1..count).map(point).collect()
+    }
 }
 
-/// The union of some outlines: what is outside, and the gaps that it encloses.
+/// The union of some outlines: the outer lines, and the gaps that they enclose.
 fn unite(
     outlines: impl Iterator<Item = Polyline<f64>>,
 ) -> (Vec<Polyline<f64>>, Vec<Polyline<f64>>) {
@@ -264,10 +287,7 @@ fn polyline(shape: &Shape) -> Polyline<f64> {
             line.add(at.x, at.y, 0.0);
             continue;
         }
-        let (begin, end) = (
-            at + incoming.right() * *radius,
-            at + outgoing.right() * *radius,
-        );
+        let [begin, end] = [incoming, outgoing].map(|way| at + way.right() * *radius);
         // tan of a quarter of the turn: half of the half.
         let (sin, cos) = (incoming.cross(outgoing), incoming.dot(outgoing));
         let bulge = if n == 2 {
@@ -294,7 +314,7 @@ mod tests {
 
     fn outline(add: Vec<Shape>, cut: Vec<Shape>) -> Outline {
         let z = [0.0, 1.0];
-        Outline::of(&Prism { add, cut, z })
+        Outline::of(&Prism::new(add, cut, z))
     }
 
     #[test]

@@ -1,8 +1,8 @@
-//! Where a body is: its origin, and how far it is turned about an upright axis.
+//! The place of a body: its origin and its rotation about an upright axis.
 
 use lizard_kinematics::{Real, Vector};
 
-/// Where a body's own frame is in the chassis frame, or in another body's.
+/// The place of a body's frame in the chassis frame, or in another body's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement<T = f64> {
     /// The frame's origin, mm.
@@ -33,7 +33,7 @@ impl<T: Real> Placement<T> {
         self.at + self.turn * point.x + self.turn.left() * point.y
     }
 
-    /// The same as it is in another body's frame.
+    /// The same place as seen from another body's frame.
     #[must_use]
     pub fn seen_from(&self, frame: &Self) -> Self {
         let of = |v: Vector<T>| Vector::new(v.dot(frame.turn), frame.turn.cross(v));

@@ -11,14 +11,14 @@ use crate::layers::body::Prism;
 use crate::layers::outline::{Loop, Outline};
 use crate::layers::shape::Shape;
 
-/// What a printer lays at once, mm: a hole is closed by one of its layers.
+/// Height of a printer's layer, mm. A hole is closed by one layer.
 pub const LAYER: f64 = 0.2;
-/// How far around a hole to search for its support, mm.
+/// Distance around a hole at which its support is searched, mm.
 const BESIDE: f64 = 0.3;
 /// Heights that differ by less are the same, mm.
 const SAME: f64 = 1e-6;
 
-/// Layers with the holes closed that would begin in the air, and how many holes are.
+/// Layers in which the holes that would begin in the air are closed, and their number.
 #[must_use]
 pub fn closed(prisms: &[Prism]) -> (Vec<Prism>, usize) {
     let mut layers = prisms.to_vec();
@@ -47,14 +47,14 @@ pub fn closed(prisms: &[Prism]) -> (Vec<Prism>, usize) {
     (layers, count)
 }
 
-/// Where the first of a printer's layers ends that lies above a height: a slicer looks at
-/// the middle of each.
+/// Top of the first printed layer above a height. A slicer samples each layer in its
+/// middle.
 fn skin(low: f64) -> f64 {
     let first = ((low - LAYER / 2.0 + SAME) / LAYER).floor() + 1.0;
     LAYER * (first + 1.0)
 }
 
-/// A layer in two at a height, if it has that height within.
+/// A layer cut in two at a height, if that height is within it.
 fn split(layer: Prism, at: f64) -> Vec<Prism> {
     let [low, high] = layer.z;
     if at < low + SAME || at > high - SAME {
@@ -71,7 +71,7 @@ fn split(layer: Prism, at: f64) -> Vec<Prism> {
     vec![lower, upper]
 }
 
-/// The middles of those holes.
+/// Centres of the holes that begin in the air.
 pub fn in_air(prisms: &[Prism]) -> Vec<Vector> {
     let mut middles = Vec::new();
     for pair in prisms.windows(2) {
@@ -83,18 +83,14 @@ pub fn in_air(prisms: &[Prism]) -> Vec<Vector> {
     middles
 }
 
-/// Whether nothing is below the edge of a hole, though it is in the material.
+/// True if a hole's edge, which lies in the material, has nothing below it.
 fn begins_in_air(hole: &Shape, prism: &Prism, below: &Outline) -> bool {
     let own = Outline::of(prism);
     let edge = Shape {
         points: hole.points.clone(),
         radius: hole.radius + BESIDE,
     };
-    let alone = Outline::of(&Prism {
-        add: vec![edge],
-        cut: Vec::new(),
-        z: prism.z,
-    });
+    let alone = Outline::of(&Prism::solid([edge], prism.z));
     let mut points = alone.loops().flat_map(Loop::ends);
     points.all(|(side, to)| {
         [side.from, side.middle(to)]

@@ -15,12 +15,12 @@ use crate::layers::placement::Placement;
 pub struct Shape {
     /// Corners of a convex polygon, counter-clockwise; one of a disc, two of a bar.
     pub points: Vec<Vector>,
-    /// What the hull is grown by: 0 for sharp corners.
+    /// Distance by which the hull is grown: 0 for sharp corners.
     pub radius: f64,
 }
 
 impl Shape {
-    /// A disc.
+    /// A disc about a centre.
     #[must_use]
     pub fn disc(centre: Vector, radius: f64) -> Self {
         Self {
@@ -41,7 +41,7 @@ impl Shape {
         }
     }
 
-    /// A rectangle by its middle and its size, whose corners have a radius.
+    /// A rectangle by its middle and its size, with rounded corners.
     #[must_use]
     pub fn rectangle(middle: Vector, size: Vector, radius: f64) -> Self {
         let (x, y) = (size.x / 2.0 - radius, size.y / 2.0 - radius);
@@ -62,7 +62,7 @@ impl Shape {
         )
     }
 
-    /// The hull of any points.
+    /// The convex hull of any points.
     #[must_use]
     pub fn hull(points: &[Vector], radius: f64) -> Self {
         let mut sorted = points.to_vec();
@@ -114,7 +114,7 @@ impl Shape {
         most.fold(0.0, f64::max) + self.radius
     }
 
-    /// The same shape elsewhere.
+    /// The same shape at a place.
     #[must_use]
     pub fn placed(&self, place: &Placement) -> Self {
         Self {
@@ -150,7 +150,7 @@ impl Shape {
         };
         let between = if between == 0.0 {
             let deep = self.beyond(other).max(other.beyond(self));
-            // Two points have no sides.
+            // Two discs have no sides.
             if deep.is_finite() { deep.min(0.0) } else { 0.0 }
         } else {
             between
@@ -158,8 +158,8 @@ impl Shape {
         between - self.radius - other.radius
     }
 
-    /// How far this shape is within another, mm: below 0 where it stands out. If each
-    /// point may have `strayed` by so much along x and y, how far at the least.
+    /// Depth of this shape within another, mm; below 0 if it sticks out. Each point may have
+    /// `strayed` along x and y; then the least depth.
     #[must_use]
     pub fn within(&self, hole: &Self, strayed: Vector) -> f64 {
         let sharp = Self {
@@ -174,7 +174,7 @@ impl Shape {
             .map(out)
             .fold(f64::NEG_INFINITY, f64::max);
         let anyhow = air - outermost - strayed.length();
-        // Nearer to the truth where a long hole holds what runs along it.
+        // A sharper bound for a long hole with a shape that slides along it.
         let lines = hole.lines().flat_map(|(from, out)| {
             let more = out.x.abs() * strayed.x + out.y.abs() * strayed.y;
             self.points
@@ -199,8 +199,8 @@ impl Shape {
         })
     }
 
-    /// Of the lines along the polygon's sides: how far the other polygon is beyond the
-    /// one that it is farthest beyond; of a disc, nothing.
+    /// The largest distance of the other polygon beyond a line along one of this polygon's
+    /// sides; minus infinity for a disc, which has no sides.
     fn beyond(&self, other: &Self) -> f64 {
         let beyond = self.lines().map(|(from, out)| {
             let depths = other.points.iter().map(|&point| out.dot(point - from));
@@ -209,12 +209,12 @@ impl Shape {
         beyond.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Whether the polygon holds a point.
+    /// True if a point is in the polygon.
     fn holds(&self, point: Vector) -> bool {
         self.points.len() > 2 && self.edges().all(|(a, b)| (b - a).cross(point - a) >= 0.0)
     }
 
-    /// The sides of the polygon; of a disc one of length 0.
+    /// The sides of the polygon; a disc has one of length 0.
     fn edges(&self) -> impl Iterator<Item = (Vector, Vector)> {
         let n = self.points.len();
         let sides = if n == 2 { 1 } else { n };
@@ -222,7 +222,7 @@ impl Shape {
     }
 }
 
-/// The distance of two lines of a length, mm.
+/// The distance of two line segments, mm.
 fn segments(a: Vector, b: Vector, c: Vector, d: Vector) -> f64 {
     let side = |p: Vector, q: Vector, r: Vector| (q - p).cross(r - p);
     let crosses = side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0;
@@ -235,7 +235,7 @@ fn segments(a: Vector, b: Vector, c: Vector, d: Vector) -> f64 {
         .min(to_line(d, a, b))
 }
 
-/// The distance of a point from a line of a length, mm.
+/// The distance of a point from a line segment, mm.
 fn to_line(point: Vector, from: Vector, to: Vector) -> f64 {
     let along = to - from;
     let square = along.square();

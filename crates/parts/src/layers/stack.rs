@@ -8,90 +8,90 @@
 
 use lizard_robot::Parts;
 
-/// From and to, mm above the chassis plate's top.
+/// Bottom and top, mm above the chassis plate's top.
 pub type Span = [f64; 2];
 
-/// Lengths of screws that every shop has, mm: ISO 7380 and ISO 4017 have others, but
-/// few shops have those.
+/// Lengths of screws that every shop has, mm. ISO 7380 and ISO 4017 define more, but few
+/// shops stock those.
 pub const SCREWS: [f64; 6] = [6.0, 8.0, 10.0, 12.0, 16.0, 20.0];
 
 /// Lengths of standoffs in the shops, mm.
 const STANDOFFS: [f64; 9] = [10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0];
 
-/// What a head or a nut keeps from a part that turns under it, mm.
+/// Gap between a head or a nut and the part that turns under it, mm.
 pub const PLAY: f64 = 0.2;
 /// Height of a hexagonal head, mm (ISO 4017).
 pub const HEX: f64 = 2.0;
-/// What lies under a servo's flange, mm: it lifts the horn above the strut.
+/// Height of the seat under a servo's flange, mm. It lifts the horn above the strut.
 const SEAT: f64 = 2.6;
 /// Height of a leg's bearing on the plate, mm. 0.2 mm of play in it lets the foot, six
 /// times as far out, give 1.2 mm.
 const BEARING: f64 = 8.5;
 /// From the underside of a leg's crank to the tip of its anchor's screw, mm.
 const TIP: f64 = 0.1;
-/// What remains above a nut that is sunk into a part, mm.
+/// Least thickness above a nut that is sunk into a part, mm.
 const OVER_NUT: f64 = 1.2;
-/// Floor of the strut under its spring, and the air between the two, mm.
+/// Thickness of the strut's floor under its spring, and the gap between them, mm.
 const STRUT: f64 = 1.6;
 const OVER_FLOOR: f64 = 0.15;
-/// Air above a spring's hook, and under the head that holds a strut down, mm.
+/// Gap above a spring's hook, and under the head that holds a strut down, mm.
 const OVER_HOOK: f64 = 0.5;
 const OVER_STRUT: f64 = 0.3;
-/// What remains of a link under the horn's arm, mm.
+/// Thickness of a link under the horn's arm, mm.
 const UNDER_HORN: f64 = 1.8;
-/// Floor and roof of a sleeve, mm.
+/// Thickness of a sleeve's floor and roof, mm.
 const SLEEVE: f64 = 1.3;
 /// The leaf that carries a foot: five layers of a printer, mm.
 pub const LEAF: f64 = 1.0;
 /// A rubber pad under a foot's screw, mm.
 const PAD: f64 = 1.5;
-/// How far a foot can be raised by its screw, mm. It can be lowered as far and more.
+/// Height by which a foot's screw can raise it, mm. It can lower it by more.
 const RAISE: f64 = 2.0;
-/// What remains above the nut of a foot's screw, mm.
+/// Thickness above the nut of a foot's screw, mm.
 const OVER_FOOT_NUT: f64 = 1.6;
 
-/// The heights of everything, mm.
+/// The heights of all layers of the robot, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stack {
     /// The pads' underside.
     pub floor: f64,
-    /// The pads.
+    /// The pads under the feet.
     pub pad: Span,
-    /// The leaf on which a foot yields, and which the foot's nut is sunk into.
+    /// The leaf on which a foot yields; the foot's nut is sunk into it.
     pub leaf: Span,
-    /// What is around that nut and above it.
+    /// The boss around that nut and above it.
     pub boss_of_foot: Span,
-    /// Couplers of the legs.
+    /// The couplers of the legs.
     pub leg_coupler: Span,
     /// The chassis plate.
     pub plate: Span,
     /// The raised seats of the servos.
     pub seat: Span,
-    /// Bottom of a servo's case.
+    /// The bottom of a servo's case.
     pub servo: f64,
     /// Cranks and followers of the legs.
     pub crank: Span,
-    /// Their bearings on the plate, which reach higher.
+    /// The bearings of cranks and followers on the plate, which reach higher.
     pub bearing: Span,
-    /// Their anchors, which carry the strut.
+    /// The anchors on the cranks, which carry the struts.
     pub anchor: Span,
     /// The floor of the strut, along which its spring lies.
     pub strut: Span,
-    /// Its walls, next to spring, hooks and heads.
+    /// The walls of the strut, beside spring, hooks and heads.
     pub recess: Span,
     /// The middle of the spring's coil, and of its hooks.
     pub coil: f64,
-    /// Where the head of a leg anchor's screw bears: above the hook.
+    /// The face under the head of a leg anchor's screw, above the hook.
     pub on_hook: f64,
-    /// A rigid strut: as high as the other one.
+    /// A rigid strut, as high as a slotted one.
     pub rigid: Span,
     /// The servos' links.
     pub link: Span,
-    /// Where the heads bear that their undersides hold.
+    /// The face under the hexagonal heads that the links hold.
     pub held: f64,
-    /// The pocket in their tops for the horns.
+    /// The pocket in the links' tops for the horns.
     pub horn: Span,
-    /// The recess in their tops for the heads of the anchors' screws.
+    /// The recess in the links' tops for the heads of the anchors' screws.
     pub sunk: Span,
     /// The lower couplers of head and tail.
     pub lower: Span,
@@ -99,18 +99,18 @@ pub struct Stack {
     pub upper: Span,
     /// The sleeves of the sliders.
     pub sleeve: Span,
-    /// Their bores.
+    /// The bores of the sleeves.
     pub bore: Span,
-    /// The rods.
+    /// The rods of the sliders.
     pub rod: Span,
-    /// Under the deck: the length of the standoffs.
+    /// The deck. Its bottom is at the length of the standoffs.
     pub deck: Span,
     /// The bosses that carry the board.
     pub boss: Span,
 }
 
 impl Stack {
-    /// The heights of a robot of these parts.
+    /// Computes the heights of a robot from its parts.
     #[must_use]
     pub fn new(parts: &Parts) -> Self {
         let (t, gap, screw) = (parts.thickness, parts.gap, &parts.screw);
@@ -126,7 +126,7 @@ impl Stack {
         let tip = crank[0] + TIP;
         let on_hook = tip + screw_length(coil + parts.spring.wire / 2.0 + OVER_HOOK - tip);
         let walls = on_hook - OVER_STRUT;
-        // Where the horn's arm lies on the shaft.
+        // The underside of the horn's arm on the shaft.
         let hub = seat[1] + parts.servo.boss - parts.servo.flange_height + gap;
         let arm = hub + parts.horn.height - parts.horn.thickness;
         let link = [arm - UNDER_HORN, arm - UNDER_HORN + t];
@@ -174,22 +174,22 @@ impl Stack {
         }
     }
 
-    /// How far the pocket of a leg anchor's nut reaches up into the crank, and the
-    /// length of its screw, which must not touch the plate.
+    /// Top of the pocket for a leg anchor's nut, and the length of its screw, which must not
+    /// touch the plate.
     #[must_use]
     pub fn anchor_nut(&self, parts: &Parts) -> (f64, f64) {
         let tip = self.crank[0] + TIP;
         (tip + parts.screw.nut_height, self.on_hook - tip)
     }
 
-    /// Whether a leg's crank is thick enough above the nut that is sunk into it.
+    /// True if a leg's crank is thick enough above the nut that is sunk into it.
     #[must_use]
     pub fn holds_nut(&self, parts: &Parts) -> bool {
         self.anchor[1] - self.anchor_nut(parts).0 >= OVER_NUT
     }
 }
 
-/// The shortest screw that is as long as this, mm; of none that is so long, this.
+/// The shortest screw on sale of at least a length, mm; that length itself if none is.
 #[must_use]
 pub fn screw_length(least: f64) -> f64 {
     SCREWS
@@ -198,7 +198,7 @@ pub fn screw_length(least: f64) -> f64 {
         .unwrap_or(least)
 }
 
-/// Whether the shops have a screw of this length, mm.
+/// True if shops have a screw of this length, mm.
 #[must_use]
 pub fn is_sold(length: f64) -> bool {
     SCREWS.iter().any(|sold| (sold - length).abs() < 1e-9)

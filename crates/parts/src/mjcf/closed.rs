@@ -1,4 +1,4 @@
-//! The joints at which the robot's loops are cut, to be closed again by constraints.
+//! The joints at which the robot's loops are cut; constraints close them again.
 
 use lizard_kinematics::{End, Side, Vector};
 
@@ -6,18 +6,18 @@ use crate::bodies::assembly::Assembly;
 use crate::layers::body::Mount;
 use crate::mjcf::node::Node;
 
-/// A point that two bodies share.
+/// A joint that a constraint closes: a point that two bodies share.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Closed {
-    /// Its name: what is closed there.
+    /// Its name, such as `end head`.
     pub name: String,
-    /// Both bodies.
+    /// The two bodies.
     pub bodies: [Node; 2],
-    /// Where, in the first one's frame, mm.
+    /// The point in the first body's frame, mm.
     pub at: Vector,
 }
 
-/// Every one of them: head and tail, the sliders, the legs' parallelograms, the struts.
+/// All such joints: of head and tail, sliders, the legs' parallelograms, struts.
 pub(crate) fn all(assembly: &Assembly, slotted: bool) -> Vec<Closed> {
     let (robot, layout) = (assembly.robot(), assembly.layout());
     let mut all = Vec::new();

@@ -1,4 +1,4 @@
-//! What closes the loops, and the motors that follow pulses.
+//! The constraints that close the loops, and the motors that follow pulses.
 
 use lizard_robot::FRAMES_PER_SECOND;
 use lizard_robot::servo::NAMES;
@@ -6,72 +6,58 @@ use lizard_robot::servo::NAMES;
 use super::closed;
 use super::node::Node;
 use super::text::{MILLI, metres, round};
-use super::writer::Writer;
+use super::writer::{Writer, joined};
 use crate::layers::body::Mount;
 
-/// At this error a servo turns with all that it has, deg.
+/// Error at which a servo applies its full torque, deg.
 const FULL: f64 = 3.0;
 
 impl Writer<'_> {
     pub(super) fn loops(&mut self) {
-        self.open("equality", &[]);
+        self.xml.open("equality");
         for closed in closed::all(self.assembly, self.scene.pull.is_some()) {
             let [first, second] = closed.bodies.map(Node::name);
-            self.element(
-                "connect",
-                &[
-                    ("name", closed.name),
-                    ("body1", first),
-                    ("body2", second),
-                    ("anchor", metres([closed.at.x, closed.at.y, 0.0])),
-                ],
-            );
+            let (name, anchor) = (closed.name, metres([closed.at.x, closed.at.y, 0.0]));
+            self.xml.leaf(format!(
+                r#"connect name="{name}" body1="{first}" body2="{second}" anchor="{anchor}""#
+            ));
         }
-        self.xml.end_element();
+        self.xml.close();
     }
 
     pub(super) fn actuators(&mut self) {
-        self.open("actuator", &[]);
+        self.xml.open("actuator");
         let stall = self.scene.motor.stall * MILLI;
+        let (gain, stall) = (round(stall / FULL.to_radians()), round(stall));
         for (servo, name) in NAMES.iter().enumerate() {
             let joint = match self.plays() {
                 true => Node::Horn(servo),
                 false => Node::Of(Mount::Link(servo)),
             };
-            let (least, most) = self.assembly.robot().servos()[servo].travel();
-            let [least, most] = [least, most].map(|angle| round(angle.to_radians()));
-            self.element(
-                "position",
-                &[
-                    ("name", (*name).to_owned()),
-                    ("joint", joint.name()),
-                    ("kp", round(stall / FULL.to_radians()).to_string()),
-                    ("forcerange", format!("{} {}", round(-stall), round(stall))),
-                    ("ctrlrange", format!("{least} {most}")),
-                ],
-            );
+            let (joint, (least, most)) =
+                (joint.name(), self.assembly.robot().servos()[servo].travel());
+            let range = joined([least, most].map(|angle| round(angle.to_radians())));
+            self.xml.leaf(format!(
+                r#"position name="{name}" joint="{joint}" kp="{gain}" forcerange="{} {stall}" ctrlrange="{range}""#,
+                -stall
+            ));
         }
-        self.xml.end_element();
+        self.xml.close();
     }
 
-    /// A keyframe for each frame of 20 ms: its time, and the angles for the servos.
+    /// Writes a keyframe for each frame of 20 ms: its time and the servos' angles.
     pub(super) fn course(&mut self) {
         let Some(course) = &self.scene.course else {
             return;
         };
-        self.open("keyframe", &[]);
+        self.xml.open("keyframe");
         for (frame, targets) in course.frames.iter().enumerate() {
-            let time = round(frame as f64 / FRAMES_PER_SECOND);
-            let targets = targets.map(|angle| round(angle.to_radians()).to_string());
-            self.element(
-                "key",
-                &[
-                    ("name", format!("{} {time:.2}", course.gait)),
-                    ("time", time.to_string()),
-                    ("ctrl", targets.join(" ")),
-                ],
-            );
+            let (gait, time) = (&course.gait, round(frame as f64 / FRAMES_PER_SECOND));
+            let targets = joined(targets.map(|angle| round(angle.to_radians())));
+            self.xml.leaf(format!(
+                r#"key name="{gait} {time:.2}" time="{time}" ctrl="{targets}""#
+            ));
         }
-        self.xml.end_element();
+        self.xml.close();
     }
 }

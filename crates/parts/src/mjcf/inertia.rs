@@ -5,19 +5,19 @@
 
 use crate::files::mesh::Mesh;
 
-/// Moments of a mass: its sum, that times the place, that times the place's products.
+/// Moments of a mass distribution of order 0, 1 and 2 about the origin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Inertia {
-    /// g
+    /// Mass, g.
     pub mass: f64,
-    /// g mm
+    /// Mass times place, g mm.
     first: [f64; 3],
-    /// g mm^2
+    /// Mass times the products of the place's components, g mm^2.
     second: [[f64; 3]; 3],
 }
 
 impl Inertia {
-    /// What a surface encloses, with a mass of 1 g for each mm^3.
+    /// The moments of the volume that a surface encloses, at 1 g/mm^3.
     pub fn of(mesh: &Mesh) -> Self {
         let mut sum = Self::default();
         for triangle in &mesh.triangles {
@@ -39,7 +39,7 @@ impl Inertia {
         sum
     }
 
-    /// A mass in the origin, g.
+    /// A point mass at the origin, g.
     pub fn point(mass: f64) -> Self {
         Self {
             mass,
@@ -47,7 +47,7 @@ impl Inertia {
         }
     }
 
-    /// The same shape with another density: g/mm^3 over what it has.
+    /// The same body with its density multiplied by a factor.
     pub fn scaled(mut self, factor: f64) -> Self {
         self.mass *= factor;
         self.first = self.first.map(|part| part * factor);
@@ -55,7 +55,7 @@ impl Inertia {
         self
     }
 
-    /// Both together.
+    /// The moments of two bodies together.
     pub fn and(mut self, other: &Self) -> Self {
         self.mass += other.mass;
         for i in 0..3 {
@@ -100,7 +100,7 @@ mod tests {
 
     fn prism(add: Shape, z: [f64; 2]) -> Inertia {
         let (add, cut) = (vec![add], Vec::new());
-        Inertia::of(&Mesh::of(&Solid::of(&[Prism { add, cut, z }])))
+        Inertia::of(&Mesh::of(&Solid::of(&[Prism::new(add, cut, z)])))
     }
 
     #[test]

@@ -25,15 +25,15 @@ mod tree;
 mod writer;
 
 use lizard_kinematics::Solution;
-use xmlwriter::{Indent, Options, XmlWriter};
 
 use crate::bodies::assembly::Assembly;
 use crate::unfit::Unfit;
 use pieces::{Piece, pieces};
 pub use scene::{Course, Motor, Pull, Scene};
+use text::Xml;
 use writer::Writer;
 
-/// The file.
+/// The file of a scene.
 ///
 /// # Errors
 /// [`Unfit::Surface`] for a part whose layers do not make a body.
@@ -41,15 +41,15 @@ pub fn mjcf(assembly: &Assembly, neutral: &Solution, scene: &Scene) -> Result<St
     Ok(Pieces::of(assembly, scene)?.mjcf(neutral, scene))
 }
 
-/// The shapes and masses of a robot, for more than one file: they take far longer to make
-/// than the rest.
+/// The shapes and masses of a robot, shared by several files because they take far longer
+/// to make than the rest.
 pub struct Pieces<'a> {
     assembly: &'a Assembly,
     pieces: Vec<Piece>,
 }
 
 impl<'a> Pieces<'a> {
-    /// Those of a scene.
+    /// Makes the shapes and masses for a scene.
     ///
     /// # Errors
     /// As [`mjcf`].
@@ -58,21 +58,18 @@ impl<'a> Pieces<'a> {
         Ok(Self { assembly, pieces })
     }
 
-    /// The file of a scene that has struts and play as the one that these were made for.
+    /// The file of a scene whose struts and play equal those of the scene that was given
+    /// to [`Pieces::of`].
     #[must_use]
     pub fn mjcf(&self, neutral: &Solution, scene: &Scene) -> String {
-        let options = Options {
-            indent: Indent::Spaces(1),
-            ..Options::default()
-        };
         let mut writer = Writer {
             assembly: self.assembly,
             neutral,
             scene,
             pieces: &self.pieces,
-            xml: XmlWriter::new(options),
+            xml: Xml::default(),
         };
         writer.document();
-        writer.xml.end_document()
+        writer.xml.finish()
     }
 }

@@ -1,4 +1,4 @@
-//! The bodies of the file, what carries each of them, and how it moves on that.
+//! The bodies of the file: the parent of each, and its motion on the parent.
 //!
 //! MuJoCo wants a tree. So each closed loop of the robot is cut at one of its joints,
 //! which a constraint closes again (`closed.rs`).
@@ -8,34 +8,34 @@ use lizard_robot::servo::{LEGS, NAMES};
 
 use crate::layers::body::Mount;
 
-/// A body of the file: what moves as one.
+/// A rigid body of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Node {
-    /// What is mounted on one of the robot's moving frames.
+    /// All bodies on one of the robot's mounts.
     Of(Mount),
-    /// The horn of a servo, where there is play between it and the link.
+    /// The horn of a servo that has play between horn and link.
     Horn(usize),
-    /// The post of a foot with its pad, which the leaf lets move up and down.
+    /// The post of a foot with its pad, which moves up and down on the leaf.
     Pad(usize),
-    /// What runs in the slot of a strut that has one, and the spring that pulls at it.
+    /// The pin in the slot of a strut, and the spring that pulls at it.
     Slot(usize),
 }
 
-/// How a body moves on the one that carries it.
+/// The motion of a body on its parent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Moves {
-    /// Freely.
+    /// Free in space.
     Free,
-    /// About an upright axis through its origin.
+    /// Turning about an upright axis through its origin.
     Turns,
-    /// Along its own x axis.
+    /// Sliding along its own x axis.
     Along,
-    /// Up and down.
+    /// Sliding up and down.
     Upright,
 }
 
 impl Node {
-    /// Every body of the robot, each after what carries it.
+    /// Every body of the robot, each after its parent.
     pub fn all(slotted: bool, play: bool) -> Vec<Self> {
         let mut all = vec![Self::Of(Mount::Chassis)];
         for servo in 0..4 {
@@ -64,8 +64,8 @@ impl Node {
         all
     }
 
-    /// What carries it; none of the chassis.
-    pub fn carrier(self, play: bool) -> Option<Self> {
+    /// Its parent; `None` for the chassis.
+    pub fn parent(self, play: bool) -> Option<Self> {
         let chassis = Self::Of(Mount::Chassis);
         Some(match self {
             Self::Of(Mount::Chassis) => return None,
@@ -82,7 +82,7 @@ impl Node {
         })
     }
 
-    /// How it moves on what carries it.
+    /// Its motion on its parent.
     pub fn moves(self) -> Moves {
         match self {
             Self::Of(Mount::Chassis) => Moves::Free,
@@ -92,7 +92,7 @@ impl Node {
         }
     }
 
-    /// The frame that is its own.
+    /// The mount whose frame it uses.
     pub fn frame(self) -> Mount {
         match self {
             Self::Of(mount) => mount,
@@ -102,7 +102,7 @@ impl Node {
         }
     }
 
-    /// Its name, which its joint bears as well.
+    /// Its name, which is also that of its joint.
     pub fn name(self) -> String {
         let of = |what: &str, name: &str| format!("{what} {name}");
         match self {
@@ -127,13 +127,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_body_comes_once_and_after_what_carries_it() {
+    fn each_body_comes_once_and_after_its_parent() {
         for (slotted, play) in [(false, false), (true, false), (false, true), (true, true)] {
             let all = Node::all(slotted, play);
             for (place, node) in all.iter().enumerate() {
                 assert!(!all[..place].contains(node), "{node:?}");
-                match node.carrier(play) {
-                    Some(carrier) => assert!(all[..place].contains(&carrier), "{node:?}"),
+                match node.parent(play) {
+                    Some(parent) => assert!(all[..place].contains(&parent), "{node:?}"),
                     None => assert_eq!(*node, Node::Of(Mount::Chassis)),
                 }
             }

@@ -1,4 +1,4 @@
-//! The layers of the parts, on the bodies of the file that they move with.
+//! Shapes and masses of the parts, sorted by the bodies of the file.
 
 use lizard_kinematics::Vector;
 use lizard_robot::servo::LEGS;
@@ -16,11 +16,10 @@ use crate::layers::shape::Shape;
 use crate::part::volume;
 use crate::unfit::Unfit;
 
-/// What of a foot is nearer to its middle than this is its post, mm; the rest is the leaf
-/// and what holds it.
+/// Radius of a foot's post about its middle, mm. Layers farther away are leaf and column.
 const POST: f64 = 8.0;
 
-/// Some layers of a part, on the body of the file that they move with.
+/// Layers of one part that move with one body of the file.
 pub(super) struct Piece {
     pub name: String,
     pub node: Node,
@@ -35,18 +34,11 @@ pub(super) fn pieces(assembly: &Assembly, scene: &Scene) -> Result<Vec<Piece>, U
     let has = |bodies: &[Body]| bodies.iter().any(|body| body.kind == Kind::Spring);
     // The other kind of strut lies in the drawer.
     let swap = has(assembly.bodies()) != slotted;
-    let own = assembly
-        .bodies()
-        .iter()
-        .filter(|body| !(swap && is_strut(body)));
-    let other = assembly
-        .instead()
-        .iter()
-        .filter(|body| swap && is_strut(body));
-    let springs = (0..4)
-        .filter(|_| swap && slotted)
-        .map(|servo| spring(assembly, servo));
-    let mut pieces: Vec<Piece> = springs.collect();
+    let own = assembly.bodies().iter();
+    let own = own.filter(|body| !(swap && is_strut(body)));
+    let other = assembly.instead().iter().filter(|_| swap);
+    let springs = (0..4).filter(|_| swap && slotted);
+    let mut pieces: Vec<Piece> = springs.map(|servo| spring(assembly, servo)).collect();
     for body in own.chain(other) {
         let grams = bill::grams(body, assembly);
         let volume = volume(&body.prisms);
@@ -61,36 +53,27 @@ pub(super) fn pieces(assembly: &Assembly, scene: &Scene) -> Result<Vec<Piece>, U
             if !solid.is_closed() || !mesh.is_closed() {
                 return Err(Unfit::Surface(name));
             }
-            let inertia = Inertia::of(&mesh).scaled(grams / volume);
-            let kind = body.kind;
             pieces.push(Piece {
                 name,
                 node,
-                kind,
+                kind: body.kind,
+                inertia: Inertia::of(&mesh).scaled(grams / volume),
                 mesh,
-                inertia,
             });
         }
     }
     Ok(pieces)
 }
 
-/// The spring of a strut that the robot has not, but could have: it is in no drawer, so it is
-/// taken for a bar of its coil's width from screw to screw.
+/// The spring of a strut of the other kind, as a bar of its coil's width from screw to screw.
 fn spring(assembly: &Assembly, servo: usize) -> Piece {
     let coil = assembly.robot().parts().spring;
     let length = assembly.layout().legs[servo].strut_length;
     let radius = coil.outer / 2.0;
     let middle = assembly.stack().strut[1];
-    let bar = Prism {
-        add: vec![Shape::rectangle(
-            Vector::new(length / 2.0, 0.0),
-            Vector::new(length - 2.0 * coil.outer, coil.outer),
-            0.0,
-        )],
-        cut: Vec::new(),
-        z: [middle - radius, middle + radius],
-    };
+    let size = Vector::new(length - 2.0 * coil.outer, coil.outer);
+    let bar = Shape::rectangle(Vector::new(length / 2.0, 0.0), size, 0.0);
+    let bar = Prism::solid([bar], [middle - radius, middle + radius]);
     let mesh = Mesh::of(&Solid::of(&[bar]));
     let shape = Inertia::of(&mesh);
     Piece {
@@ -102,7 +85,7 @@ fn spring(assembly: &Assembly, servo: usize) -> Piece {
     }
 }
 
-/// Which of its layers move with which body of the file: mostly all with one.
+/// The layers of a body, sorted by the body of the file that they move with; mostly one.
 fn shares(assembly: &Assembly, scene: &Scene, body: &Body) -> Vec<(Node, Vec<Prism>)> {
     let of = |node: Node| vec![(node, body.prisms.clone())];
     match body.mount {

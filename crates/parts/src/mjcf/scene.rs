@@ -1,33 +1,32 @@
-//! What the file has besides the robot's parts: feet, legs, servos, and the angles for
-//! the servos.
+//! The conditions of a simulation: feet, springs and servos, and the servos' angles.
 
 use lizard_robot::{CheckedGait, FRAMES_PER_SECOND, Robot};
 
 use crate::bodies::assembly::Assembly;
 
-/// What a robot.toml leaves open, or what is to be tried.
+/// Values that robot.toml leaves open or that an experiment changes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// The model's name.
     pub name: String,
-    /// By how much each foot is longer than it should be, mm, servo order.
+    /// Excess length of each foot, mm, servo order.
     pub long: [f64; 4],
-    /// How much a foot gives under its leaf, N/mm.
+    /// Stiffness of a foot's leaf, N/mm.
     pub stiffness: f64,
-    /// The spring in the slotted struts; none where struts are rigid.
+    /// The spring in the slotted struts; `None` for rigid struts.
     pub pull: Option<Pull>,
-    /// How far a servo's link turns freely to either side of its horn, deg.
+    /// Free play between a servo's horn and its link to either side, deg.
     pub play: f64,
-    /// What the servos can do.
+    /// Speed and torque of the servos.
     pub motor: Motor,
-    /// Their angles; none to let the robot stand.
+    /// The servos' angles; `None` to let the robot stand.
     pub course: Option<Course>,
-    /// Whether the parts can be seen; without them the file is a fiftieth as long.
+    /// True to include the parts' shapes; without them the file is a fiftieth as long.
     pub shapes: bool,
 }
 
 impl Scene {
-    /// A robot as its robot.toml says, which stands.
+    /// The standing robot of a robot.toml.
     #[must_use]
     pub fn of(assembly: &Assembly, motor: Motor) -> Self {
         let (drive, stance) = (assembly.robot().drive(), assembly.robot().ground().stance);
@@ -50,43 +49,43 @@ impl Scene {
 /// A tension spring in a slotted strut.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pull {
-    /// While the leg does not lag, N.
+    /// Force while the leg does not lag, N.
     pub force: f64,
-    /// More of it for each mm that the strut grows longer, N/mm.
+    /// Rate, N/mm.
     pub rate: f64,
 }
 
 /// A servo's motor: the faster it turns, the less torque it has left.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motor {
-    /// Without load, deg/s.
+    /// Speed without load, deg/s.
     pub rate: f64,
-    /// Stalled, N mm.
+    /// Torque at a stall, N mm.
     pub stall: f64,
 }
 
-/// The angles for the servos, frame by frame.
+/// The servos' target angles, frame by frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Course {
-    /// The gait that it is of.
+    /// Name of the gait.
     pub gait: String,
     /// The servos' targets in each frame of 20 ms: sweeps from neutral, deg,
     /// counter-clockwise positive, servo order.
     pub frames: Vec<[f64; 4]>,
-    /// When a whole cycle of it begins, s from the first frame.
+    /// Start of the cycle to measure, s from the first frame.
     pub begin: f64,
-    /// How long a cycle takes, s.
+    /// Period of a cycle, s.
     pub period: f64,
 }
 
-/// How long a course takes from neutral to where its gait begins, and how long it waits
-/// there for the body to come to rest, s.
+/// Time from neutral to the gait's first pose, and time to wait there for the body to come
+/// to rest, s.
 const APPROACH: f64 = 0.4;
 const REST: f64 = 0.3;
 
 impl Course {
     /// Some cycles of a gait at its own pace, after a slow approach from neutral, with the
-    /// angles of the firmware's tables. The last cycle is the one that is to be measured.
+    /// angles of the firmware's tables. The last cycle is the one to measure.
     #[must_use]
     pub fn of(robot: &Robot, gait: &CheckedGait, cycles: u32) -> Self {
         let angles = |seconds: f64| {

@@ -1,19 +1,64 @@
-//! Numbers and names as the file has them.
+//! Elements, numbers and names in the notation of the file.
 
-/// Metres in a mm, kg in a g.
+use std::fmt::{Display, Write};
+
+/// Metres per mm, kg per g.
 pub(super) const MILLI: f64 = 1e-3;
 
-/// mm as the file has them.
+/// A place in mm as metres.
 pub(super) fn metres(at: [f64; 3]) -> String {
     at.map(|part| round(part * MILLI).to_string()).join(" ")
 }
 
-/// To a billionth, without a minus before 0.
+/// A number rounded to a billionth, without a minus before 0.
 pub(super) fn round(value: f64) -> f64 {
     (value * 1e9).round() / 1e9 + 0.0
 }
 
-/// The writer of XML escapes quotes alone.
+/// A name as the value of an attribute.
 pub(super) fn escaped(value: &str) -> String {
-    value.replace('&', "&amp;").replace('<', "&lt;")
+    let value = value.replace('&', "&amp;").replace('<', "&lt;");
+    value.replace('"', "&quot;")
+}
+
+/// XML text, one element a line. An element is given as its name and attributes.
+#[derive(Default)]
+pub(super) struct Xml {
+    text: String,
+    open: Vec<String>,
+}
+
+impl Xml {
+    fn line(&mut self, text: impl Display) {
+        let indent = self.open.len();
+        let _ = writeln!(self.text, "{:indent$}{text}", "");
+    }
+
+    /// Writes an element without children.
+    pub fn leaf(&mut self, element: impl Display) {
+        self.line(format_args!("<{element}/>"));
+    }
+
+    /// Begins an element with children.
+    pub fn open(&mut self, element: impl Display) {
+        let element = element.to_string();
+        self.line(format_args!("<{element}>"));
+        let name = element.split(' ').next().unwrap_or_default();
+        self.open.push(name.to_owned());
+    }
+
+    /// Ends the element that was begun last.
+    pub fn close(&mut self) {
+        if let Some(name) = self.open.pop() {
+            self.line(format_args!("</{name}>"));
+        }
+    }
+
+    /// The text, with all elements ended.
+    pub fn finish(mut self) -> String {
+        while !self.open.is_empty() {
+            self.close();
+        }
+        self.text
+    }
 }

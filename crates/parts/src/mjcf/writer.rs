@@ -1,94 +1,45 @@
 //! The file from the top: options, defaults, meshes, floor, and then the robot.
 
-use std::fmt::Write as _;
-
 use lizard_kinematics::Solution;
 use lizard_robot::GRAVITY;
-use xmlwriter::XmlWriter;
 
 use super::node::Node;
 use super::pieces::Piece;
 use super::scene::Scene;
-use super::text::{escaped, round};
+use super::text::{Xml, escaped, round};
 use crate::bodies::assembly::Assembly;
 use crate::layers::body::{Kind, Mount};
 use crate::layers::placement::Placement;
 
 /// Time of a step, s.
 const STEP: f64 = 0.0002;
-pub(super) const FIRM: &str = "0.95 0.99 0.0005";
-/// How hard constraints and contacts are, s and damping ratio. A floor that gives would take
-/// a part of what a foot is too long.
+/// Stiffness of constraints and contacts: time constant, s, and damping ratio. A soft floor
+/// would hide part of a foot's excess length.
 const HARD: &str = "0.002 1";
-pub(super) const CONTACT: &str = "0.001 1";
+const CONTACT: &str = "0.001 1";
+/// Impedance of constraints and limits.
+const STIFF: &str = "0.99 0.999 0.0001";
 
-/// What writes a robot and its scene.
+/// A writer of a robot and its scene.
 pub(super) struct Writer<'a> {
     pub assembly: &'a Assembly,
     pub neutral: &'a Solution,
     pub scene: &'a Scene,
     pub pieces: &'a [Piece],
-    pub xml: XmlWriter,
+    pub xml: Xml,
 }
 
 impl<'a> Writer<'a> {
-    /// An element without children.
-    pub(super) fn element(&mut self, name: &str, attributes: &[(&str, String)]) {
-        self.open(name, attributes);
-        self.xml.end_element();
-    }
-
-    pub(super) fn open(&mut self, name: &str, attributes: &[(&str, String)]) {
-        self.xml.start_element(name);
-        for (name, value) in attributes {
-            self.xml.write_attribute(name, &escaped(value));
-        }
-    }
-
     pub(super) fn document(&mut self) {
-        self.open("mujoco", &[("model", self.scene.name.clone())]);
-        self.element(
-            "compiler",
-            &[
-                ("angle", "radian".to_owned()),
-                ("autolimits", "true".to_owned()),
-            ],
-        );
-        self.element(
-            "option",
-            &[
-                ("timestep", STEP.to_string()),
-                ("gravity", format!("0 0 {}", -GRAVITY)),
-                ("integrator", "implicitfast".to_owned()),
-                // Feet of a few g chatter on the default contacts.
-                ("cone", "elliptic".to_owned()),
-                ("impratio", "100".to_owned()),
-                ("noslip_iterations", "20".to_owned()),
-            ],
-        );
-        self.open("visual", &[]);
-        self.element("map", &[("znear", "0.01".to_owned())]);
-        self.element(
-            "global",
-            &[
-                ("offwidth", "1280".to_owned()),
-                ("offheight", "960".to_owned()),
-            ],
-        );
-        self.xml.end_element();
-        self.element(
-            "statistic",
-            &[
-                ("extent", "0.3".to_owned()),
-                ("center", "0 0 0.03".to_owned()),
-            ],
-        );
-        self.defaults();
+        let name = escaped(&self.scene.name);
+        self.xml.open(format!(r#"mujoco model="{name}""#));
+        self.options();
         if let Some(course) = &self.scene.course {
-            self.open("custom", &[]);
-            let data = format!("{} {}", round(course.begin), round(course.period));
-            self.element("numeric", &[("name", "cycle".to_owned()), ("data", data)]);
-            self.xml.end_element();
+            let (begin, period) = (round(course.begin), round(course.period));
+            self.xml.open("custom");
+            let data = format!(r#"numeric name="cycle" data="{begin} {period}""#);
+            self.xml.leaf(data);
+            self.xml.close();
         }
         self.assets();
         self.world();
@@ -97,108 +48,64 @@ impl<'a> Writer<'a> {
         self.course();
     }
 
-    pub(super) fn defaults(&mut self) {
-        self.open("default", &[]);
-        self.element(
-            "geom",
-            &[("contype", "0".to_owned()), ("conaffinity", "0".to_owned())],
-        );
-        self.element("mesh", &[("scale", "0.001 0.001 0.001".to_owned())]);
-        self.element(
-            "equality",
-            &[
-                ("solref", HARD.to_owned()),
-                ("solimp", "0.99 0.999 0.0001".to_owned()),
-            ],
-        );
-        self.xml.end_element();
+    fn options(&mut self) {
+        let xml = &mut self.xml;
+        xml.leaf(r#"compiler angle="radian" autolimits="true""#);
+        // Feet of a few g chatter on the default contacts.
+        xml.leaf(format!(
+            r#"option timestep="{STEP}" gravity="0 0 {}" integrator="implicitfast" cone="elliptic" impratio="100" noslip_iterations="20""#,
+            -GRAVITY
+        ));
+        xml.open("visual");
+        xml.leaf(r#"map znear="0.01""#);
+        xml.leaf(r#"global offwidth="1280" offheight="960""#);
+        xml.close();
+        xml.leaf(r#"statistic extent="0.3" center="0 0 0.03""#);
+        xml.open("default");
+        xml.leaf(r#"geom contype="0" conaffinity="0""#);
+        xml.leaf(r#"mesh scale="0.001 0.001 0.001""#);
+        xml.leaf(format!(r#"equality solref="{HARD}" solimp="{STIFF}""#));
+        xml.close();
     }
 
-    pub(super) fn assets(&mut self) {
-        self.open("asset", &[]);
-        let texture = |name: &str, kind: &str, from: &str, to: &str| {
-            vec![
-                ("name", name.to_owned()),
-                ("type", kind.to_owned()),
-                (
-                    "builtin",
-                    if kind == "2d" { "checker" } else { "gradient" }.to_owned(),
-                ),
-                ("rgb1", from.to_owned()),
-                ("rgb2", to.to_owned()),
-                ("width", "256".to_owned()),
-                ("height", "256".to_owned()),
-            ]
-        };
-        self.element(
-            "texture",
-            &texture("sky", "skybox", "0.9 0.95 1", "0.6 0.7 0.8"),
-        );
-        self.element(
-            "texture",
-            &texture("floor", "2d", "0.75 0.75 0.72", "0.82 0.82 0.8"),
-        );
-        self.element(
-            "material",
-            &[
-                ("name", "floor".to_owned()),
-                ("texture", "floor".to_owned()),
-                // A square is 5 cm wide.
-                ("texrepeat", "10 10".to_owned()),
-                ("texuniform", "true".to_owned()),
-            ],
-        );
-        for piece in self.shown() {
-            let mut vertex = String::new();
-            for corner in &piece.mesh.corners {
-                let [x, y, z] = corner.map(|part| (part * 1e5).round() / 1e5 + 0.0);
-                _ = write!(vertex, "{x} {y} {z} ");
-            }
-            let mut face = String::new();
-            for [a, b, c] in &piece.mesh.triangles {
-                _ = write!(face, "{a} {b} {c} ");
-            }
-            self.element(
-                "mesh",
-                &[
-                    ("name", piece.name.clone()),
-                    ("vertex", vertex.trim_end().to_owned()),
-                    ("face", face.trim_end().to_owned()),
-                ],
-            );
+    fn assets(&mut self) {
+        const SIZE: &str = r#"width="256" height="256""#;
+        let shown = self.shown();
+        let xml = &mut self.xml;
+        xml.open("asset");
+        xml.leaf(format!(
+            r#"texture name="sky" type="skybox" builtin="gradient" rgb1="0.9 0.95 1" rgb2="0.6 0.7 0.8" {SIZE}"#
+        ));
+        xml.leaf(format!(
+            r#"texture name="floor" type="2d" builtin="checker" rgb1="0.75 0.75 0.72" rgb2="0.82 0.82 0.8" {SIZE}"#
+        ));
+        // A square is 5 cm wide.
+        xml.leaf(r#"material name="floor" texture="floor" texrepeat="10 10" texuniform="true""#);
+        for Piece { name, mesh, .. } in shown {
+            let corners = mesh.corners.as_flattened().iter();
+            let vertex = corners.map(|part| (part * 1e5).round() / 1e5 + 0.0);
+            let face = mesh.triangles.as_flattened().iter();
+            let (vertex, face) = (joined(vertex), joined(face));
+            xml.leaf(format!(
+                r#"mesh name="{name}" vertex="{vertex}" face="{face}""#
+            ));
         }
-        self.xml.end_element();
+        xml.close();
     }
 
-    pub(super) fn world(&mut self) {
-        self.open("worldbody", &[]);
-        self.element(
-            "light",
-            &[
-                ("pos", "0.3 -0.3 1".to_owned()),
-                ("dir", "-0.3 0.3 -1".to_owned()),
-                ("type", "directional".to_owned()),
-            ],
-        );
-        self.element(
-            "geom",
-            &[
-                ("name", "floor".to_owned()),
-                ("type", "plane".to_owned()),
-                ("size", "0 0 0.05".to_owned()),
-                ("material", "floor".to_owned()),
-                ("conaffinity", "1".to_owned()),
-                ("condim", "3".to_owned()),
-                ("friction", self.friction()),
-                ("solref", CONTACT.to_owned()),
-                ("solimp", FIRM.to_owned()),
-            ],
-        );
+    fn world(&mut self) {
+        self.xml.open("worldbody");
+        self.xml
+            .leaf(r#"light pos="0.3 -0.3 1" dir="-0.3 0.3 -1" type="directional""#);
+        let contact = self.contact();
+        self.xml.leaf(format!(
+            r#"geom name="floor" type="plane" size="0 0 0.05" material="floor" conaffinity="1" {contact}"#
+        ));
         self.body(Node::Of(Mount::Chassis));
-        self.xml.end_element();
+        self.xml.close();
     }
 
-    /// The parts that can be seen.
+    /// The parts whose shapes go into the file.
     pub(super) fn shown(&self) -> &'a [Piece] {
         match self.scene.shapes {
             true => self.pieces,
@@ -206,11 +113,16 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// A pad's: it slides, and neither turns nor rolls against a friction of its own.
-    pub(super) fn friction(&self) -> String {
-        format!("{} 0 0", self.assembly.robot().ground().friction)
+    /// The contact of pad and floor: friction against sliding only, not against turning or
+    /// rolling.
+    pub(super) fn contact(&self) -> String {
+        let friction = self.assembly.robot().ground().friction;
+        format!(
+            r#"condim="3" friction="{friction} 0 0" solref="{CONTACT}" solimp="0.95 0.99 0.0005""#
+        )
     }
 
+    /// True if the links have play on their horns.
     pub(super) fn plays(&self) -> bool {
         self.scene.play > 0.0
     }
@@ -220,11 +132,18 @@ impl<'a> Writer<'a> {
     }
 }
 
-pub(super) fn limits() -> [(&'static str, String); 2] {
-    [
-        ("solreflimit", HARD.to_owned()),
-        ("solimplimit", "0.99 0.999 0.0001".to_owned()),
-    ]
+/// The attributes that make the ends of a joint's range hard.
+pub(super) fn limits() -> String {
+    format!(r#"solreflimit="{HARD}" solimplimit="{STIFF}""#)
+}
+
+/// Numbers with blanks between them.
+pub(super) fn joined(numbers: impl IntoIterator<Item = impl ToString>) -> String {
+    let numbers: Vec<_> = numbers
+        .into_iter()
+        .map(|number| number.to_string())
+        .collect();
+    numbers.join(" ")
 }
 
 pub(super) fn colour(kind: Kind) -> &'static str {

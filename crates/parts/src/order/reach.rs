@@ -1,4 +1,4 @@
-//! Whether every screw can be put in and turned in the order of the guide.
+//! A check that every screw can be put in and turned in the order of the guide.
 //!
 //! A screw is pushed in along its axis from the side of its head, so the space above its
 //! head must be free, as long as the screw and as wide as its head. A hex key holds the
@@ -6,10 +6,10 @@
 //! A socket goes over the nut and needs the room of a [`SOCKET`]. A nut that is sunk into
 //! a part is pushed in with a finger, and holds itself, as a hexagonal head does.
 //!
-//! What is in place when a screw is turned: everything of the stages before, and all
-//! of its own stage but the screw and its nut, so within a stage hands may go in any
-//! order. On the bench it is only what the step has added to the same servo's link or
-//! leg. A screw whose nut comes in a later step is pushed in at its own stage, and
+//! When a screw is turned, all bodies of the earlier stages are in place, and all of its
+//! own stage but the screw and its nut, so that the order within a stage does not matter.
+//! On the bench only those bodies count that the step has added to the same servo's link
+//! or leg. A screw whose nut comes in a later step is pushed in at its own stage, and
 //! turned when the nut comes.
 //!
 //! The servos stand at neutral. If a screw cannot be reached then, the nearest other pose
@@ -28,36 +28,35 @@ use crate::order::steps::{Step, Where};
 pub const KEY: [f64; 2] = [2.0, 30.0];
 /// Wall of a socket around the nut, and its length beyond it, mm.
 pub const SOCKET: [f64; 2] = [1.0, 10.0];
-/// How far servos are turned to look for a pose, deg.
+/// Angles by which one servo is turned in the search for a pose, deg.
 const TURNS: [f64; 12] = [
     5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 55.0, 60.0,
 ];
-/// Angles of each servo at which poses are looked for, where it is not enough to turn
-/// one.
+/// Grid of angles per servo for the search, if turning one servo is not enough.
 const STEPS: u32 = 9;
 
-/// What is done with a screw.
+/// An operation on a screw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Act {
-    /// It is pushed in along its axis.
+    /// Pushing the screw in along its axis.
     Push,
-    /// It is turned, or held, at its head.
+    /// Turning or holding the screw at its head.
     Turn,
-    /// Its nut is pushed in or turned.
+    /// Pushing in or turning its nut.
     Nut,
 }
 
-/// A screw that something is in the way of.
+/// A screw that another body blocks.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{screw} {act} at step {step} of the guide: {by} is in the way")]
 pub struct Blocked {
     /// The step of the guide, from 1.
     pub step: usize,
-    /// Which screw.
+    /// The name of the screw.
     pub screw: String,
-    /// What cannot be done with it.
+    /// The operation that is impossible.
     pub act: Act,
-    /// What is in the way.
+    /// The name of the body in the way.
     pub by: String,
 }
 
@@ -71,7 +70,7 @@ impl fmt::Display for Act {
     }
 }
 
-/// A pose that servos are turned to, so that some screws can be reached.
+/// A pose to turn the servos to so that some screws can be reached.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Aside {
     /// The step of the guide, from 1.
@@ -82,21 +81,21 @@ pub struct Aside {
     pub pose: [f64; 4],
 }
 
-/// Room that has to be free: upright walls around a shape, chassis frame.
+/// A space that has to be free: an upright prism over a shape, chassis frame.
 struct Room {
     shape: Shape,
     z: [f64; 2],
 }
 
-/// A screw as it stands in the robot.
+/// The axis of a screw in the robot.
 struct Axis {
     at: Vector,
     /// Radius of its head.
     radius: f64,
     length: f64,
-    /// Where the head ends.
+    /// Height of the head's outer face, mm.
     end: f64,
-    /// 1 where the head is above, else -1.
+    /// 1 if the head is at the top, else -1.
     up: f64,
 }
 
@@ -117,9 +116,9 @@ struct Bench<'a> {
 }
 
 impl Bench<'_> {
-    /// A screw's axis; of other bodies `None`.
+    /// A screw's axis; `None` for other bodies.
     fn axis(&self, body: &Body) -> Option<Axis> {
-        /// Of a servo's own screws, mm.
+        /// Length of a servo's own screws, mm.
         const SERVO_SCREW: f64 = 8.0;
         let length = match body.kind {
             Kind::Screw(length) | Kind::HexScrew(length) => length,
@@ -143,41 +142,37 @@ impl Bench<'_> {
         })
     }
 
-    /// Whether a body lies in a room.
+    /// True if a body reaches into a space.
     fn fills(&self, body: &Body, room: &Room) -> bool {
-        /// What touches is not in the way, mm.
+        /// Overlap that still counts as touching, mm.
         const TOUCH: f64 = 1e-6;
         let place = self.assembly.place(body.mount, self.pose);
         let [low, high] = room.z;
         let beside = |z: [f64; 2]| z[0] > high - TOUCH || z[1] < low + TOUCH;
+        let still = Vector::default();
+        let meets = |shape: &Shape| room.shape.distance(&shape.placed(&place)) < -TOUCH;
+        let holds = |hole: &Shape| room.shape.within(&hole.placed(&place), still) > -TOUCH;
         let mut prisms = body.prisms.iter().filter(|prism| !beside(prism.z));
-        prisms.any(|prism| {
-            let meets = |shape: &Shape| room.shape.distance(&shape.placed(&place)) < -TOUCH;
-            let holds = |hole: &Shape| {
-                let air = room.shape.within(&hole.placed(&place), Vector::default());
-                air > -TOUCH
-            };
-            prism.add.iter().any(meets) && !prism.cut.iter().any(holds)
-        })
+        prisms.any(|prism| prism.add.iter().any(meets) && !prism.cut.iter().any(holds))
     }
 
-    /// The room that a nut needs on its screw.
+    /// The space that a nut needs on its screw.
     fn nut(&self, nut: &Body, axis: &Axis, around: &[&Body]) -> Room {
         let place = self.assembly.place(nut.mount, self.pose);
         let flats = nut.prisms[0].add[0].placed(&place);
         let corner = (flats.points[0] - axis.at).length();
-        // The face that bears, and the other one.
+        // The face that bears on the part, and the outer one.
         let [low, high] = nut.z();
         let (bears, end) = match axis.up > 0.0 {
             true => (high, low),
             false => (low, high),
         };
-        let sunk = around.iter().any(|body| {
-            let pockets = body.prisms.iter().flat_map(|prism| &prism.cut);
-            let mut pockets =
-                pockets.filter(|hole| body.mount == nut.mount && hole.points.len() == 6);
-            pockets.any(|hole| flats.within(&hole.placed(&place), Vector::default()) > 0.0)
-        });
+        let holds = |hole: &Shape| {
+            let depth = flats.within(&hole.placed(&place), Vector::default());
+            hole.points.len() == 6 && depth > 0.0
+        };
+        let mut fixed = around.iter().filter(|body| body.mount == nut.mount);
+        let sunk = fixed.any(|body| body.prisms.iter().any(|prism| prism.cut.iter().any(holds)));
         let away = -axis.up * SOCKET[1];
         match sunk {
             true => Room {
@@ -188,26 +183,21 @@ impl Bench<'_> {
         }
     }
 
-    /// What cannot be done with a screw when some bodies are `new`.
-    fn ask(&self, screw: &Body, new: &[&Body], around: &[&Body]) -> Vec<(Act, String)> {
+    /// The operations on a screw that are impossible when `new` bodies are added, each with
+    /// the body in the way.
+    fn obstacles(&self, screw: &Body, new: &[&Body], around: &[&Body]) -> Vec<(Act, String)> {
         let Some(axis) = self.axis(screw) else {
             return Vec::new();
         };
-        let nut_name = screw.name.replacen("screw", "nut", 1);
-        let nut = self
-            .assembly
-            .body(&nut_name)
-            .filter(|nut| nut.kind == Kind::Nut);
+        let nut = self.assembly.body(&screw.name.replacen("screw", "nut", 1));
+        let nut = nut.filter(|nut| nut.kind == Kind::Nut);
         let own = |name: &str| name == screw.name || nut.is_some_and(|nut| nut.name == name);
         let is_in = |list: &[&Body], body: &Body| list.iter().any(|other| other.name == body.name);
         let new_nut = nut.filter(|nut| is_in(new, nut));
         let complete = is_in(around, screw) && nut.is_none_or(|nut| is_in(around, nut));
         let is_new = is_in(new, screw);
-        let others: Vec<&Body> = around
-            .iter()
-            .filter(|body| !own(&body.name))
-            .copied()
-            .collect();
+        let others = around.iter().filter(|body| !own(&body.name));
+        let others: Vec<&Body> = others.copied().collect();
         let mut rooms = Vec::new();
         if is_new {
             let way = axis.room(axis.radius, axis.end, axis.up * axis.length);
@@ -250,17 +240,13 @@ impl Assembly {
                     .collect();
                 before.extend(&new);
                 for screw in self.bodies() {
-                    let near = |body: &&&Body| match stage.at {
-                        Where::Robot => true,
-                        Where::Bench => body.mount.servos() == screw.mount.servos(),
+                    let same = |body: &&&Body| body.mount.servos() == screw.mount.servos();
+                    let around: Vec<_> = match stage.at {
+                        Where::Robot => before.clone(),
+                        Where::Bench => before[begin..].iter().filter(same).copied().collect(),
                     };
-                    let from = match stage.at {
-                        Where::Robot => 0,
-                        Where::Bench => begin,
-                    };
-                    let around: Vec<_> = before[from..].iter().filter(near).copied().collect();
-                    let blocked = bench.ask(screw, &new, &around);
-                    found.extend(blocked.into_iter().map(|(act, by)| Blocked {
+                    let blocked = bench.obstacles(screw, &new, &around).into_iter();
+                    found.extend(blocked.map(|(act, by)| Blocked {
                         step: number,
                         screw: screw.name.clone(),
                         act,
@@ -272,11 +258,11 @@ impl Assembly {
         found
     }
 
-    /// The poses that servos have to be turned to in some steps, so that every screw
-    /// can be reached; none where all can be at neutral.
+    /// The poses that servos have to be turned to in some steps so that every screw can be
+    /// reached; none if all can be at neutral.
     ///
     /// # Errors
-    /// A screw that cannot be reached at any pose that was tried.
+    /// A screw that cannot be reached at any of the poses tried.
     pub fn asides(&self, steps: &[Step]) -> Result<Vec<Aside>, Blocked> {
         let mut asides: Vec<Aside> = Vec::new();
         let neutral = self.robot().neutral();
@@ -289,16 +275,15 @@ impl Assembly {
         }
         for pose in self.poses_near(neutral) {
             let still = self.blocked(steps, &pose);
-            let reached = |of: &Blocked| {
-                let same = |other: &Blocked| (other.step, &other.screw) == (of.step, &of.screw);
+            let reached = |of: &mut Blocked| {
+                let same = |other: &Blocked| other.step == of.step && other.screw == of.screw;
                 !still.iter().any(same)
             };
-            for blocked in left.extract_if(.., |of| reached(of)) {
-                let angles: [f64; 4] = pose.pose.into();
-                let known = asides
-                    .iter_mut()
-                    .find(|aside| aside.step == blocked.step && aside.pose == angles);
-                match known {
+            let angles: [f64; 4] = pose.pose.into();
+            for blocked in left.extract_if(.., reached) {
+                let of_step =
+                    |aside: &&mut Aside| aside.step == blocked.step && aside.pose == angles;
+                match asides.iter_mut().find(of_step) {
                     Some(aside) if aside.screws.contains(&blocked.screw) => {}
                     Some(aside) => aside.screws.push(blocked.screw),
                     None => asides.push(Aside {
@@ -316,21 +301,18 @@ impl Assembly {
         Err(left.swap_remove(0))
     }
 
-    /// Poses that the guard accepts, with one servo turned from neutral, by less first;
-    /// then others, the nearer first.
+    /// Poses that the guard accepts: first with one servo turned from neutral, by small
+    /// angles first; then others, the nearest first.
     fn poses_near(&self, neutral: Pose) -> Vec<Solution> {
         let from: [f64; 4] = neutral.into();
-        let turned =
-            |turn: f64| (0..4).flat_map(move |servo| [turn, -turn].map(|turn| (servo, turn)));
-        let mut poses: Vec<_> = TURNS
-            .into_iter()
-            .flat_map(turned)
-            .filter_map(|(servo, turn)| {
+        let mut poses = Vec::new();
+        for turn in TURNS {
+            for (servo, turn) in (0..4).flat_map(|servo| [(servo, turn), (servo, -turn)]) {
                 let mut angles = from;
                 angles[servo] += turn;
-                self.robot().accepted(angles)
-            })
-            .collect();
+                poses.extend(self.robot().accepted(angles));
+            }
+        }
         let away = |solution: &Solution| {
             let angles: [f64; 4] = solution.pose.into();
             let turns = angles.iter().zip(from).map(|(a, b)| (a - b).abs());

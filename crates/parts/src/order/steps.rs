@@ -12,51 +12,50 @@ use crate::layers::body::{Body, Kind, Mount};
 
 /// One step of the guide.
 pub struct Step {
-    /// Its headline.
+    /// The headline.
     pub title: &'static str,
-    /// What to do.
-    pub words: String,
-    /// What is added, in this order; nothing where the step is done at the console.
+    /// The instructions, as Markdown.
+    pub words: &'static str,
+    /// The bodies to add, in stages; none for a step at the console.
     pub stages: Vec<Stage>,
-    /// How far a body is lifted in the exploded picture, as a share.
+    /// Lift of a body in the exploded picture, as a share.
     pub lift: fn(&Body) -> f64,
-    /// What a picture from nearby or from below shows, too.
+    /// An extra picture, if any.
     pub near: Near,
 }
 
-/// A picture besides the two of the whole robot.
+/// A picture besides the two of the complete robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Near {
-    /// None.
+    /// No extra picture.
     None,
-    /// Of the front left corner alone.
+    /// The front left corner alone.
     Corner,
-    /// Of the front left corner, from below.
+    /// The front left corner, from below.
     CornerBelow,
-    /// Of the whole robot, from below.
+    /// The complete robot, from below.
     Below,
 }
 
-/// What is added at once.
+/// Bodies that are added together.
 pub struct Stage {
-    /// Where its screws are turned.
+    /// The place where its screws are turned.
     pub at: Where,
-    /// Whether a body is added in it, if no stage before added it.
+    /// True for a body that the stage adds, unless an earlier stage has added it.
     pub adds: fn(&Body) -> bool,
 }
 
-/// Where the screws of a stage are turned.
+/// The place where the screws of a stage are turned.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Where {
-    /// On the robot: everything that was added before is around.
+    /// On the robot, among all bodies added before.
     Robot,
-    /// On the bench: around is only what this step added before and what belongs to
-    /// the same servo.
+    /// On the bench, among the bodies of the same servo that this step has added.
     Bench,
 }
 
 impl Step {
-    /// Whether a body is added in it.
+    /// True if a body is added in this step.
     pub fn adds(&self, body: &Body) -> bool {
         self.stages.iter().any(|stage| (stage.adds)(body))
     }
@@ -65,15 +64,12 @@ impl Step {
 /// The step in which a body is added and the stage of that step, each from 1; zeros for a body
 /// that none adds.
 pub(crate) fn place_in(steps: &[Step], body: &Body) -> (usize, usize) {
-    let stages = (1..).zip(steps).flat_map(|(step, of)| {
-        (1..)
-            .zip(&of.stages)
-            .map(move |(stage, of)| (step, stage, of))
-    });
-    let mut stages = stages.filter(|(_, _, stage)| (stage.adds)(body));
-    stages
-        .next()
-        .map_or((0, 0), |(step, stage, _)| (step, stage))
+    for (step, of) in (1..).zip(steps) {
+        if let Some(stage) = of.stages.iter().position(|stage| (stage.adds)(body)) {
+            return (step, stage + 1);
+        }
+    }
+    (0, 0)
 }
 
 fn named(body: &Body, starts: &[&str]) -> bool {
@@ -90,18 +86,18 @@ fn bench(adds: fn(&Body) -> bool) -> Stage {
     Stage { at, adds }
 }
 
-/// What is done at the console.
-fn console(title: &'static str, words: &str) -> Step {
+/// A step at the console, which adds no bodies.
+fn console(title: &'static str, words: &'static str) -> Step {
     Step {
         title,
-        words: words.to_owned(),
+        words,
         stages: Vec::new(),
         lift: |_| 0.0,
         near: Near::None,
     }
 }
 
-/// The steps of a robot whose struts are slotted, or rigid.
+/// The steps of a robot with slotted or with rigid struts.
 pub fn steps(slotted: bool) -> Vec<Step> {
     vec![
         chassis(),
@@ -127,18 +123,15 @@ fn chassis() -> Step {
                 servos A1 to A4. Leave the horns off. Push each servo from above into its opening, plug and lead first, the shaft towards \
                 the near end of the plate: the lead passes through the notch there. Fix it with the two self-tapping screws of its bag. \
                 Fold the lead below the plate around the case, between the servos, and up through the hole between the standoffs. Screw the \
-                four standoffs on from below."
-            .to_owned(),
-        stages: vec![
-            robot(|body| {
-                body.name == "plate"
-                    || matches!(
-                        body.kind,
-                        Kind::Servo | Kind::ServoScrew | Kind::Standoff(_) | Kind::Lead
-                    )
-                    || (body.name.starts_with("screw standoff") && body.name.ends_with("below"))
-            })
-        ],
+                four standoffs on from below.",
+        stages: vec![robot(|body| {
+            body.name == "plate"
+                || matches!(
+                    body.kind,
+                    Kind::Servo | Kind::ServoScrew | Kind::Standoff(_) | Kind::Lead
+                )
+                || (body.name.starts_with("screw standoff") && body.name.ends_with("below"))
+        })],
         lift: |body| match body.kind {
             Kind::Printed | Kind::Screw(_) | Kind::Lead => 0.0,
             Kind::ServoScrew => 1.6,
@@ -153,8 +146,7 @@ fn supply() -> Step {
         title: "Strips, battery and capacitor",
         words: "Tie the two terminal strips under the plate with cable ties through the slots: the one for ground on the left, the one for \
                 +5 V on the right, with the capacitor behind it in the same tie. Put the battery on the plate and the strap through the slots \
-                beside it, around the plate. The battery's plug stays open until all of step 3 is wired."
-            .to_owned(),
+                beside it, around the plate. The battery's plug stays open until all of step 3 is wired.",
         stages: vec![robot(|body| {
             named(
                 body,
@@ -177,8 +169,7 @@ fn board() -> Step {
                 the head. The deck goes on the standoffs, screws from above; the UNO on its bosses, its USB socket towards the tail, with \
                 three screws that cut their own thread: in the hole beside the pin AREF a head has no room. Now wire everything as \
                 `lizard draw --wiring` shows: leads and wires go up through the holes of plate and deck at both ends, below the deck and \
-                away from the shafts. Set the converter to 5.0 V before the servos are on it."
-            .to_owned(),
+                away from the shafts. Set the converter to 5.0 V before the servos are on it.",
         stages: vec![
             robot(|body| {
                 named(body, &["deck", "converter", "alarm"])
@@ -212,8 +203,7 @@ fn links() -> Step {
                 longer: longer ones would rub on the servo. Put the two screws with hexagon heads into the link from below, heads into \
                 their pockets: nothing has to hold them later, and once the struts are on there is no way to them. The links marked 13 are for \
                 A1 and A3, those marked 24 for A2 and A4. While the servos hold `center`, press each link on, its long arm outward as \
-                `lizard draw --horns` shows it, at the tooth that is nearest to the neutral angle, and fix it with the horn's own screw."
-            .to_owned(),
+                `lizard draw --horns` shows it, at the tooth that is nearest to the neutral angle, and fix it with the horn's own screw.",
         stages: vec![bench(|body| {
             matches!(body.kind, Kind::Horn | Kind::HornScrew(_))
                 || named(body, &["link", "screw tip", "screw arm"])
@@ -245,8 +235,7 @@ fn legs() -> Step {
                 until they have no play and still turn by their own weight. Press a lock nut from below into the foot's tip, turn the screw \
                 into it from below until 2 mm are left between head and leaf, and stick a pad on the head. Then swing crank and follower \
                 aside and screw the foot's column under the coupler from above. Cranks and feet marked 13 are for the legs of A1 (front \
-                left) and A3 (back right), those marked 24 for A2 (front right) and A4 (back left)."
-            .to_owned(),
+                left) and A3 (back right), those marked 24 for A2 (front right) and A4 (back left).",
         stages: vec![
             bench(|body| {
                 named(
@@ -281,8 +270,7 @@ fn legs_on_plate() -> Step {
     Step {
         title: "Legs on the plate",
         words: "Set both bearings of each leg on the plate and put the long screws through from above, nuts below. The crank is on the \
-                pivot next to its servo."
-            .to_owned(),
+                pivot next to its servo.",
         stages: vec![robot(|body| body.name.contains("pivot"))],
         lift: |body| {
             if body.name.starts_with("nut") {
@@ -313,7 +301,7 @@ fn struts(slotted: bool) -> Step {
     };
     Step {
         title,
-        words: words.to_owned(),
+        words,
         stages: vec![
             robot(|body| {
                 matches!(body.mount, Mount::Strut(_)) || body.name.starts_with("screw leg anchor")
@@ -334,8 +322,7 @@ fn sliders() -> Step {
     Step {
         title: "Sliders",
         words: "Push each rod into its sleeve: 14 is for the left side, 23 for the right. The sleeve goes on the rear arm, the rod with a \
-                ring under it on the front arm; nuts on top. The rods are outside."
-            .to_owned(),
+                ring under it on the front arm; nuts on top. The rods are outside.",
         stages: vec![robot(|body| {
             matches!(body.mount, Mount::Sleeve(_) | Mount::Rod(_))
                 || named(body, &["arm spacer", "nut arm"])
@@ -354,8 +341,7 @@ fn ends() -> Step {
         title: "Head and tail",
         words: "Screw the head's plate on the coupler for A2, a long tail link on the coupler for A3, and the other one under the coupler \
                 for A4. At each end the left coupler goes directly on its link, the right one on a ring. Nuts on top; a screw from below \
-                joins both at the point."
-            .to_owned(),
+                joins both at the point.",
         stages: vec![
             bench(|body| {
                 named(body, &["coupler", "head plate", "tail "])

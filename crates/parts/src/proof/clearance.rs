@@ -1,7 +1,7 @@
-//! Which parts come closest to each other, at some poses.
+//! The least distances between parts at given poses.
 //!
-//! Two parts meet only where they share a height, so pairs of layers are chosen once by
-//! height, and at each pose their shapes are measured from above. Holes are left out, so
+//! Two parts can meet only at a height that they share, so pairs of layers are chosen once
+//! by height, and at each pose their shapes are measured from above. Holes are ignored, so
 //! the true distance is never smaller than the one found here.
 
 use std::fmt;
@@ -12,46 +12,43 @@ use serde::{Deserialize, Serialize};
 use crate::bodies::assembly::Assembly;
 use crate::layers::shape::Shape;
 
-/// The least distance found.
+/// The least distance found between two bodies.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Clearance {
-    /// One body.
+    /// The name of one body.
     pub first: String,
-    /// The other.
+    /// The name of the other body.
     pub second: String,
-    /// Servo angles where it is least, deg, servo order.
+    /// Servo angles at the least distance, deg, servo order.
     pub pose: [f64; 4],
-    /// mm; below 0 they overlap.
+    /// The distance, mm; below 0 they overlap.
     pub mm: f64,
 }
 
 impl fmt::Display for Clearance {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self {
-            first,
-            second,
-            pose: [a, b, c, d],
-            mm,
-        } = self;
-        write!(f, "{first} and {second} ")?;
-        if *mm < 0.0 {
-            write!(f, "overlap by {:.2} mm", -mm)?;
-        } else {
-            write!(f, "are {mm:.2} mm apart")?;
-        }
-        write!(f, " at pose {a:.2} {b:.2} {c:.2} {d:.2}")
+        let [a, b, c, d] = self.pose;
+        let distance = match self.mm < 0.0 {
+            true => format!("overlap by {:.2} mm", -self.mm),
+            false => format!("are {:.2} mm apart", self.mm),
+        };
+        let (first, second) = (&self.first, &self.second);
+        write!(
+            f,
+            "{first} and {second} {distance} at pose {a:.2} {b:.2} {c:.2} {d:.2}"
+        )
     }
 }
 
-/// One layer's shapes and another's.
+/// The shapes of two layers.
 struct Pair<'a> {
     bodies: [usize; 2],
     shapes: [&'a [Shape]; 2],
 }
 
 impl Assembly {
-    /// The nearest pairs at some poses, the nearest first, each pair of bodies once;
-    /// those that are `within` mm.
+    /// Pairs of bodies that come nearer than `within` mm at some poses, the nearest first,
+    /// each pair once.
     #[must_use]
     pub fn nearest(
         &self,
@@ -118,8 +115,7 @@ impl Assembly {
         found
     }
 
-    /// Poses that the guard accepts and the servos reach, on a grid of `steps` angles
-    /// of each servo's travel.
+    /// Poses that the guard accepts, on a grid of `steps` angles over each servo's travel.
     pub fn poses(&self, steps: u32) -> impl Iterator<Item = Solution> + '_ {
         let robot = self.robot();
         let angle = move |servo: usize, step: u32| {

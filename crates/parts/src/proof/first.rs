@@ -1,10 +1,10 @@
-//! What a few poses show before anything is proved.
+//! A quick check at a few poses before the proof.
 //!
 //! A robot that does not fit at all has hundreds of parts that meet, and bounding each of
-//! them takes minutes. But one pose at which two parts meet is enough to refuse it. So
-//! the parts are checked first where they are likely to meet: at neutral, on a coarse
-//! grid, and at the edge of what the guard accepts, in every direction from neutral. If
-//! some meet, only the worst are bounded.
+//! them takes minutes. But one pose at which two parts meet is enough to refuse it. So the
+//! parts are checked first at poses where they are likely to meet: at neutral, on a coarse
+//! grid, and at the limits of the guard in every direction from neutral. If some parts
+//! meet, only the worst are bounded.
 
 use lizard_kinematics::Solution;
 use lizard_robot::Robot;
@@ -14,42 +14,37 @@ use crate::bodies::assembly::Assembly;
 
 /// Angles of each servo on the grid.
 const STEPS: u32 = 6;
-/// Halvings on the way from neutral to the edge.
+/// Halvings in the search for a limit of the guard.
 const HALVINGS: usize = 12;
-/// So many of those that meet are bounded.
+/// The number of meeting pairs that are bounded.
 const WORST: usize = 3;
 
-/// Of some tasks those whose parts meet most, if any are seen to meet.
+/// The tasks whose parts overlap most; `None` if no parts meet at any of the poses.
 pub fn worst(assembly: &Assembly, tasks: &[Task]) -> Option<Vec<Task>> {
     let robot = assembly.robot();
     let mut poses: Vec<Solution> = robot.accepted(robot.neutral().into()).into_iter().collect();
     poses.extend((0..81).filter_map(|direction| edge(robot, direction)));
     poses.extend(assembly.poses(STEPS));
     let least = |task: &Task| {
-        let at = poses.iter().map(|pose| seen(assembly, task, pose));
+        let at = poses.iter().map(|pose| distance(assembly, task, pose));
         at.fold(f64::INFINITY, f64::min)
     };
     let all = tasks.iter().map(|task| (least(task), task));
     let mut found: Vec<_> = all.filter(|(mm, task)| *mm < task.least()).collect();
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let found: Vec<_> = found
-        .into_iter()
-        .take(WORST)
-        .map(|(_, task)| task.clone())
-        .collect();
+    let found = found.into_iter().take(WORST);
+    let found: Vec<_> = found.map(|(_, task)| task.clone()).collect();
     (!found.is_empty()).then_some(found)
 }
 
-/// How near a task's parts are at a pose, mm, if nearer than they may be.
-fn seen(assembly: &Assembly, task: &Task, pose: &Solution) -> f64 {
+/// The least distance of a task's parts at a pose, mm; infinite if they are far enough apart.
+fn distance(assembly: &Assembly, task: &Task, pose: &Solution) -> f64 {
     let [a, b] = task.mounts.map(|mount| assembly.place(mount, pose));
     let place = b.seen_from(&a);
-    let near = task
-        .solids
-        .iter()
-        .filter(|solid| !solid.far(&place, [0.0; 2], task.least()));
-    near.map(|solid| solid.apart(&place))
-        .fold(f64::INFINITY, f64::min)
+    let solids = task.solids.iter();
+    let near = solids.filter(|solid| !solid.far(&place, [0.0; 2], task.least()));
+    let distances = near.map(|solid| solid.apart(&place));
+    distances.fold(f64::INFINITY, f64::min)
 }
 
 /// The last pose that the guard accepts on the way from neutral in one of 81
@@ -64,11 +59,10 @@ fn edge(robot: &Robot, direction: u32) -> Option<Solution> {
     let (mut within, mut beyond) = (0.0, 1.0);
     for _ in 0..HALVINGS {
         let share = (within + beyond) / 2.0;
-        *(if at(share).is_some() {
-            &mut within
-        } else {
-            &mut beyond
-        }) = share;
+        match at(share) {
+            Some(_) => within = share,
+            None => beyond = share,
+        }
     }
     at(within)
 }

@@ -14,21 +14,21 @@ use super::interval::Interval;
 use super::slope::Slope;
 use crate::bodies::joints::{Cranks, Joints};
 
-/// How far below the limit of a margin a pose is still checked.
+/// Relaxation of the margins' limits, a sine.
 const SINE: f64 = 0.005;
-/// If the limit of the type-2 margin is below this, as many times farther: a rounded
-/// length turns couplers by the more the nearer they are in line.
+/// Type-2 limit below which the relaxation grows in proportion: the nearer couplers are
+/// to one line, the more a rounded length turns them.
 const TYPE2: f64 = 0.3;
-/// How far beyond the ends of a slider's stroke, and crank tips crossed, mm.
+/// Relaxation of a slider's stroke and of crossed crank tips, mm.
 const LENGTH: f64 = 0.1;
-/// How exactly the ends of the servos' ranges are found, deg.
+/// Resolution of the ends of a servo's range, deg.
 const FINE: f64 = 0.01;
-/// In this many regions a pose is looked for that has some angles.
-const ATTEMPTS: u32 = 300;
-/// The same for what the other servo does there, deg.
+/// Resolution of the other servo's angle there, deg.
 const COARSE: f64 = 0.2;
+/// Number of regions searched for a pose with some angles given.
+const ATTEMPTS: u32 = 300;
 
-/// Bounds of the angles of `N` servos: middles and half widths, deg.
+/// A box of angles of `N` servos: middles and half widths, deg.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region<const N: usize> {
     pub middle: [f64; N],
@@ -43,7 +43,7 @@ impl<const N: usize> Region<N> {
         }
     }
 
-    /// Cut into two across one servo's angle.
+    /// Its two halves, cut across one servo's angle.
     pub fn halves(&self, servo: usize) -> [Self; 2] {
         [-0.5, 0.5].map(|share| {
             let mut part = *self;
@@ -53,27 +53,24 @@ impl<const N: usize> Region<N> {
         })
     }
 
-    /// From and to, of one servo. A hair wider, so that halves overlap.
+    /// The bounds of one servo's angle, slightly widened so that halves overlap.
     pub fn bounds(&self, servo: usize) -> Interval {
         let half = self.half[servo] + 1e-10;
         Interval::new(self.middle[servo] - half, self.middle[servo] + half)
     }
 }
 
-/// Cranks of which some turn within bounds; the others have no meaning.
+/// Cranks at all angles of a region; those of other servos are meaningless.
 pub fn within<'a, const N: usize>(
     robot: &'a Robot,
     servos: &[usize; N],
     region: &Region<N>,
 ) -> Cranks<'a, Slope<N>> {
-    let mut angles = [Slope::of(0.0); N];
-    for (i, angle) in angles.iter_mut().enumerate() {
-        *angle = Slope::angle(i, region.bounds(i));
-    }
+    let angles = std::array::from_fn(|i| Slope::angle(i, region.bounds(i)));
     turned(robot, servos, angles)
 }
 
-/// The same in the middle of the bounds.
+/// Cranks in the middle of a region.
 pub fn middle<'a, const N: usize>(
     robot: &'a Robot,
     servos: &[usize; N],
@@ -98,12 +95,12 @@ fn turned<'a, const N: usize, T: Real>(
     }
 }
 
-/// What the guard of a robot accepts.
+/// The guard of a robot.
 pub struct Guard<'a> {
     robot: &'a Robot,
     /// The robot's limits, relaxed.
     limits: Limits,
-    /// No servo is ever beyond this in a pose that is accepted, deg, servo order.
+    /// Bounds of each servo's angle over all accepted poses, deg, servo order.
     pub ranges: [Interval; 4],
 }
 
@@ -126,7 +123,7 @@ impl<'a> Guard<'a> {
                 Interval::new(servo.neutral + low, servo.neutral + high)
             }),
         };
-        // Twice, because what one pair may do depends on the pairs beside it.
+        // Twice, because the range of one pair depends on the pairs beside it.
         for _ in 0..2 {
             let ends = End::ALL.map(|end| end.servos());
             for pair in ends.into_iter().chain(Side::ALL.map(|side| side.servos())) {
@@ -139,8 +136,8 @@ impl<'a> Guard<'a> {
         guard
     }
 
-    /// Beyond this angle of one of two servos no pose is accepted, whatever the other
-    /// one does.
+    /// The angle of one of two servos beyond which no pose is accepted, at any angle of the
+    /// other servo.
     fn end_of(&self, pair: [usize; 2], which: usize, high: bool) -> f64 {
         let sign = if high { -1.0 } else { 1.0 };
         let end = |region: &Region<2>| region.middle[which] - sign * region.half[which];
@@ -175,14 +172,14 @@ impl<'a> Guard<'a> {
         end(&whole)
     }
 
-    /// Whether no pose of a region is accepted, for all that these servos decide alone.
+    /// True if the conditions that these servos decide alone refuse every pose of a region.
     pub fn refuses<const N: usize>(&self, servos: &[usize; N], region: &Region<N>) -> bool {
         let bounds = within(self.robot, servos, region);
         let middle = middle(self.robot, servos, region);
         self.breaks(servos, region, &bounds, &middle)
     }
 
-    /// The same for joints that are known already.
+    /// The same as [`Guard::refuses`], for cranks that are known already.
     pub fn breaks<const N: usize>(
         &self,
         servos: &[usize; N],
@@ -199,32 +196,24 @@ impl<'a> Guard<'a> {
         let legs = servos.iter().any(|&servo| {
             let end = End::of_servo(servo);
             let shape = &self.robot.lizard().leg;
-            // Its margin depends on the direction alone.
+            // A leg's margin depends on the direction alone.
             let bounds = shape.shape(end, Slope::of(0.0), bounds.crank(servo)).margin;
             let middle = shape.shape(end, 0.0, middle.crank(servo)).margin;
             broken((Check::LEG[servo], bounds, middle))
         });
-        legs || End::ALL
-            .into_iter()
-            .filter(|end| all(end.servos()))
-            .any(|end| {
-                let values = middle.end(end).conditions(end);
-                let conditions = bounds.end(end).conditions(end);
-                conditions
-                    .into_iter()
-                    .zip(values)
-                    .any(|((what, bounds), (_, middle))| broken((what, bounds, middle)))
-            })
-            || Side::ALL
-                .into_iter()
-                .filter(|side| all(side.servos()))
-                .any(|side| {
-                    let what = Check::STROKE[usize::from(side == Side::Right)];
-                    broken((what, bounds.side(side).s, middle.side(side).s))
-                })
+        let end = |end: End| {
+            let values = middle.end(end).conditions(end).map(|(_, value)| value);
+            let conditions = bounds.end(end).conditions(end).into_iter().zip(values);
+            all(end.servos()) && { conditions }.any(|((what, of), value)| broken((what, of, value)))
+        };
+        let side = |side: Side| {
+            let what = Check::STROKE[usize::from(side == Side::Right)];
+            all(side.servos()) && broken((what, bounds.side(side).s, middle.side(side).s))
+        };
+        legs || End::ALL.into_iter().any(end) || Side::ALL.into_iter().any(side)
     }
 
-    /// The limit that a value breaks though it is relaxed, if it does.
+    /// The relaxed limit that a value breaks, if any.
     fn broken(&self, what: Check, value: f64) -> Option<f64> {
         // Crossed tips have no limit that could be relaxed.
         let off = match what {
@@ -234,8 +223,8 @@ impl<'a> Guard<'a> {
         self.limits.broken(what, value + off).map(|of| of.limit)
     }
 
-    /// A pose that the guard accepts, with its own limits, where some servos have an
-    /// angle; `None` if none is found.
+    /// A pose in which some servos have given angles and which the guard accepts with its
+    /// unrelaxed limits; `None` if none is found.
     pub fn pose(&self, angles: [Option<f64>; 4]) -> Option<Solution> {
         const ALL: [usize; 4] = [0, 1, 2, 3];
         let or = |of: fn(&lizard_robot::Servo) -> f64| {
@@ -268,11 +257,11 @@ impl<'a> Guard<'a> {
 mod tests {
     use super::*;
 
-    /// What the firmware's integers may decide otherwise by, a sine and mm: docs/firmware.md.
+    /// Largest error of the firmware's integers, a sine and mm: docs/firmware.md.
     const BAND: f64 = 0.002;
     const STEPS: f64 = 4.0 / 256.0;
 
-    /// A robot of `robots/`, and the paper's with no limit in the way of the type-2 one.
+    /// A robot of `robots/`, or the paper's with all limits but the type-2 one lifted.
     fn robot(name: &str) -> Robot {
         let file = name.trim_end_matches(" at its type-2 limit");
         let path = format!("{}/../../robots/{file}.toml", env!("CARGO_MANIFEST_DIR"));
@@ -291,7 +280,7 @@ mod tests {
         Robot::parse(&text).expect(name)
     }
 
-    /// The robot's limits, laxer by what the integers may be off by.
+    /// The robot's limits, relaxed by the largest error of the integers.
     fn lax(robot: &Robot) -> Limits {
         let limits = robot.limits();
         Limits {
@@ -303,26 +292,21 @@ mod tests {
         }
     }
 
-    /// Each limit by itself: some, as that of crossed tips, lie beyond others in every pose.
+    /// Each limit is tried by itself: some, as that of crossed tips, are never reached first.
     #[test]
     fn every_limit_is_relaxed_by_more_than_the_firmware_may_be_off() {
         for name in ["paper", "large", "unequal", "paper at its type-2 limit"] {
             let robot = robot(name);
             let (guard, limits) = (Guard::new(&robot), robot.limits());
             let sine = |limit: f64| [limit - BAND, limit - 0.1];
+            let stroke = |end: f64, sign: f64| [STEPS, 1.0].map(|by| end + sign * by);
             let sines = [
                 (&Check::TYPE2[..], sine(limits.type2)),
                 (&Check::TYPE1, sine(limits.type1)),
                 (&Check::LEG, sine(limits.leg)),
                 (&Check::UNCROSSED, [-STEPS, -1.0]),
-                (
-                    &Check::STROKE,
-                    [limits.stroke_min - STEPS, limits.stroke_min - 1.0],
-                ),
-                (
-                    &Check::STROKE,
-                    [limits.stroke_max + STEPS, limits.stroke_max + 1.0],
-                ),
+                (&Check::STROKE, stroke(limits.stroke_min, -1.0)),
+                (&Check::STROKE, stroke(limits.stroke_max, 1.0)),
             ];
             for (checks, [within, beyond]) in sines {
                 for &what in checks {
@@ -349,11 +333,7 @@ mod tests {
             // To either side with each servo, each pair and all of them.
             for ways in 0..81 {
                 let way = [1, 3, 9, 27].map(|part| f64::from(ways / part % 3) - 1.0);
-                for share in [
-                    [1.0, 1.0, 1.0, 1.0],
-                    [1.0, 0.4, 0.7, 0.2],
-                    [0.2, 0.7, 0.4, 1.0],
-                ] {
+                for share in [[1.0; 4], [1.0, 0.4, 0.7, 0.2], [0.2, 0.7, 0.4, 1.0]] {
                     let at =
                         |by: f64| ALL.map(|servo| neutral[servo] + by * way[servo] * share[servo]);
                     let (mut safe, mut not) = (0.0, 90.0);
@@ -362,10 +342,9 @@ mod tests {
                     }
                     while not - safe > 1e-6 {
                         let middle = (safe + not) / 2.0;
-                        if broken(at(middle)).is_none() {
-                            safe = middle;
-                        } else {
-                            not = middle;
+                        match broken(at(middle)) {
+                            None => safe = middle,
+                            Some(_) => not = middle,
                         }
                     }
                     let region = Region {
@@ -377,23 +356,14 @@ mod tests {
                 }
             }
         }
-        type IsKind = fn(&Check) -> bool;
-        let kinds: [(&str, IsKind); 4] = [
-            ("type-2", |what| {
-                matches!(what, Check::Type2Head | Check::Type2Tail)
-            }),
-            ("type-1", |what| {
-                matches!(
-                    what,
-                    Check::Type1A1 | Check::Type1A2 | Check::Type1A3 | Check::Type1A4
-                )
-            }),
-            ("leg", |what| Check::LEG.contains(what)),
-            ("stroke", |what| Check::STROKE.contains(what)),
-        ];
-        for (kind, is) in kinds {
-            let count = seen.iter().filter(|what| is(what)).count();
-            assert!(count > 0, "no pose at the limit of a {kind}");
+        for (kind, checks) in [
+            ("type-2", &Check::TYPE2[..]),
+            ("type-1", &Check::TYPE1),
+            ("leg", &Check::LEG),
+            ("stroke", &Check::STROKE),
+        ] {
+            let found = seen.iter().any(|what| checks.contains(what));
+            assert!(found, "no pose at the limit of a {kind}");
         }
     }
 }

@@ -8,7 +8,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use lizard_kinematics::{Real, sin_cos};
 
-/// Beyond the error of a computed sine: 1.5 units in the last place.
+/// A bound of the error of a computed sine, which is 1.5 units in the last place.
 const SINE: f64 = 1e-15;
 
 /// All numbers from one to another.
@@ -21,28 +21,28 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// Every number there is.
+    /// The interval of all numbers.
     const ALL: Self = Self {
         low: f64::NEG_INFINITY,
         high: f64::INFINITY,
     };
 
-    /// From one number to another.
+    /// The interval from one number to another.
     pub const fn new(low: f64, high: f64) -> Self {
         Self { low, high }
     }
 
-    /// The farthest from 0.
+    /// The largest absolute value in it.
     pub fn most(self) -> f64 {
         self.low.abs().max(self.high.abs())
     }
 
-    /// What lies in this and in another interval; both hold the same number.
+    /// The intersection with another interval that holds the same number.
     pub fn and(self, other: Self) -> Self {
         Self::new(self.low.max(other.low), self.high.min(other.high))
     }
 
-    /// Bounds of a result, from some that are rounded; all numbers where they are none.
+    /// Bounds of a result from rounded bounds; all numbers if these are not numbers.
     fn outward(low: f64, high: f64) -> Self {
         if low.is_nan() || high.is_nan() {
             return Self::ALL;
@@ -51,7 +51,7 @@ impl Interval {
     }
 
     fn sine_and_cosine(self) -> (Self, Self) {
-        // Where a sine is 1 and where it is -1, or may be for all that rounding knows.
+        // True if the interval, or its rounding, holds an angle at which a sine is 1 or -1.
         let passes = |angle: f64| {
             let turns = ((self.low - angle) / 360.0 - 1e-9).ceil();
             turns * 360.0 + angle <= self.high + 1e-6
@@ -145,10 +145,6 @@ impl Real for Interval {
     fn sin_cos_each<const K: usize>(degrees: [Self; K]) -> ([Self; K], [Self; K]) {
         let both = degrees.map(Self::sine_and_cosine);
         (both.map(|(sine, _)| sine), both.map(|(_, cosine)| cosine))
-    }
-
-    fn atan2_each<const K: usize>(_: [Self; K], _: [Self; K]) -> [Self; K] {
-        [Self::ALL; K]
     }
 }
 

@@ -36,47 +36,45 @@ pub use search::ENOUGH;
 use search::Found;
 use solids::Task;
 
-/// What all parts keep from each other, but those that are made to meet, mm: more than
-/// a printed part is off.
+/// Least distance of parts that are not made to meet, mm: more than the error of a printer.
 pub const LEAST: f64 = 0.2;
-/// What is made to meet may touch; by so much it is not an overlap, mm.
+/// Overlap of parts made to meet that still counts as touching, mm.
 const TOUCH: f64 = 0.02;
 
-/// Angles of each servo at whose poses the joints are checked.
+/// Grid of angles per servo at which the joints are checked.
 const JOINT_STEPS: u32 = 6;
 
-/// Two parts, and how near they come.
+/// The least distance of two bodies.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Near {
-    /// One body.
+    /// The name of one body.
     pub first: String,
-    /// The other.
+    /// The name of the other body.
     pub second: String,
-    /// At every pose that the guard accepts they are apart by this or more, mm; below
-    /// 0 they may overlap.
+    /// Lower bound of their distance over all accepted poses, mm; below 0 they may overlap.
     pub proved: f64,
-    /// A pose that it accepts where they are nearly as near as that; `None` where they
-    /// are no nearer than [`ENOUGH`], or none is found.
+    /// An accepted pose with nearly that distance; `None` if they come no nearer than
+    /// [`ENOUGH`], or if none is found.
     pub seen: Option<Clearance>,
-    /// Servo angles, deg, near which no more is proved, if that is much less than what
-    /// was seen. The guard hardly accepts them, if at all.
+    /// Servo angles, deg, near which no larger distance could be proved, if the bound is
+    /// much below the distance seen. The guard hardly accepts them, if at all.
     pub doubt: Option<[f64; 4]>,
 }
 
-/// That a robot's parts keep clear of each other.
+/// A proof that a robot's parts keep clear of each other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proof {
-    /// Parts that are not made to meet, the nearest first: of all that moves with one
-    /// mount and all that moves with another, the nearest two.
+    /// The nearest two bodies of each two mounts, without those that are made to meet;
+    /// the nearest first.
     pub apart: Vec<Near>,
-    /// The same for parts that are made to meet, as a pin and its hole: the air between
-    /// them.
+    /// The same for bodies that are made to meet, such as a pin and its hole: the gap
+    /// between them.
     pub meeting: Vec<Near>,
-    /// From and to, deg: no servo is ever beyond this in a pose that the guard accepts.
+    /// Bounds of each servo's angle over all accepted poses, deg.
     pub ranges: [[f64; 2]; 4],
-    /// Pairs of shapes checked.
+    /// Number of pairs of shapes checked.
     pub pairs: usize,
-    /// Regions of poses checked.
+    /// Number of regions of poses checked.
     pub regions: u64,
 }
 
@@ -96,29 +94,21 @@ pub enum Clash {
 
 impl fmt::Display for Near {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self {
-            first,
-            second,
-            proved,
-            ..
-        } = self;
-        match self.doubt {
-            Some([a, b, c, d]) if *proved < 0.0 => write!(
-                f,
-                "{first} and {second} may overlap by {:.2} mm near pose {a:.2} {b:.2} {c:.2} {d:.2}",
-                -proved
-            ),
-            Some([a, b, c, d]) => write!(
-                f,
-                "{first} and {second} may come as near as {proved:.2} mm near pose {a:.2} {b:.2} {c:.2} {d:.2}"
-            ),
-            None => write!(f, "{first} and {second} are {proved:.2} mm apart or more"),
+        let (first, second, proved) = (&self.first, &self.second, self.proved);
+        write!(f, "{first} and {second} ")?;
+        let Some([a, b, c, d]) = self.doubt else {
+            return write!(f, "are {proved:.2} mm apart or more");
+        };
+        match proved < 0.0 {
+            true => write!(f, "may overlap by {:.2} mm", -proved)?,
+            false => write!(f, "may come as near as {proved:.2} mm")?,
         }
+        write!(f, " near pose {a:.2} {b:.2} {c:.2} {d:.2}")
     }
 }
 
 impl Near {
-    /// What is wrong with it, if they have to keep this distance, mm.
+    /// The clash of two bodies that have to keep a least distance, mm; `None` if they do.
     fn clash(&self, least: f64) -> Option<Clash> {
         match &self.seen {
             Some(seen) if seen.mm < least.min(0.0) => Some(Clash::Overlap(Box::new(seen.clone()))),
@@ -128,23 +118,23 @@ impl Near {
         }
     }
 
-    /// How near they are for all that is known, mm.
+    /// The least distance known, mm.
     fn mm(&self) -> f64 {
         self.seen.as_ref().map_or(self.proved, |seen| seen.mm)
     }
 }
 
 impl Proof {
-    /// The nearest two parts that are not made to meet.
+    /// The nearest two bodies that are not made to meet.
     #[must_use]
     pub fn least(&self) -> Option<&Near> {
         self.apart.first()
     }
 
-    /// Whether the parts fit.
+    /// Decides whether the parts fit.
     ///
     /// # Errors
-    /// The two parts that overlap most, the pose, and by how much; else two that come
+    /// The two parts that overlap most, with the pose and the overlap; else two that come
     /// nearer than [`LEAST`].
     pub fn judge(&self) -> Result<(), Clash> {
         let apart = self.apart.iter().map(|near| (near, LEAST));
@@ -157,13 +147,14 @@ impl Proof {
     }
 }
 
-/// All that a proof asks: of what moves with one mount and what moves with another, how near
-/// they come. Each can be answered without the others, on another machine as well.
+/// The questions of a proof: for each two mounts the least distance of their bodies. Each
+/// can be answered without the others, even on another machine.
 pub struct Questions<'a> {
     assembly: &'a Assembly,
     guard: Guard<'a>,
     tasks: Vec<Task>,
-    /// Whether parts are seen to meet; then the tasks are those that meet most.
+    /// True if some parts meet at the poses of the quick check. Then only the tasks with the
+    /// largest overlaps are kept.
     seen: bool,
     joints: Vec<Solution>,
 }
@@ -171,14 +162,14 @@ pub struct Questions<'a> {
 /// The answer to one question.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Answer {
-    /// The nearest of what is pinned, which is made to meet.
+    /// The smallest gap of a pinned pair.
     pinned: Option<Near>,
-    /// The closest of all others, and the regions of poses checked.
+    /// The nearest of the other pairs, and the number of regions of poses checked.
     nearest: Option<(Near, u64)>,
 }
 
 impl<'a> Questions<'a> {
-    /// Those of some pairs of bodies.
+    /// The questions about some pairs of bodies.
     pub fn new(assembly: &'a Assembly, which: impl Fn(&Body, &Body) -> bool) -> Self {
         let guard = Guard::new(assembly.robot());
         let tasks = Task::all(assembly, &guard, ENOUGH, which);
@@ -192,19 +183,19 @@ impl<'a> Questions<'a> {
         }
     }
 
-    /// How many there are.
+    /// The number of questions.
     #[must_use]
     pub fn count(&self) -> usize {
         self.tasks.len()
     }
 
-    /// The answer to one, by its place below [`Questions::count`].
+    /// The answer to one question, by its index below [`Questions::count`].
     #[must_use]
     pub fn one(&self, place: usize) -> Answer {
         self.within(place, search::MANY)
     }
 
-    /// The answer to one that looks at no more than `most` regions.
+    /// The answer to one question after at most `most` regions.
     fn within(&self, place: usize, most: u64) -> Answer {
         let mut task = self.tasks[place].clone();
         let pinned = match task.meet {
@@ -219,9 +210,9 @@ impl<'a> Questions<'a> {
         Answer { pinned, nearest }
     }
 
-    /// The proof. Answers that [`Questions::one`] gave elsewhere are taken from `known`, by
-    /// their places. It ends at the first parts that do not fit; where they only may not,
-    /// what follows is checked less closely, and not taken from `known`.
+    /// Makes the proof. Answers that [`Questions::one`] gave elsewhere are taken from `known`,
+    /// by their index. The proof ends at the first parts that do not fit. After parts that
+    /// may not fit, the rest is checked less closely and not taken from `known`.
     pub fn answer(
         &self,
         mut known: impl FnMut(usize) -> Option<Answer>,
@@ -253,7 +244,7 @@ impl<'a> Questions<'a> {
             } else {
                 proof.apart.push(near);
             }
-            // One is enough, and where parts hardly fit each takes long.
+            // One clash is enough, and if parts hardly fit, each question takes long.
             match clash {
                 Some(Clash::Unsure(_)) => most = search::MANY / 10,
                 Some(_) if !self.seen => break,
@@ -269,15 +260,16 @@ impl<'a> Questions<'a> {
 }
 
 impl Assembly {
-    /// How near any two parts come at any pose that the guard accepts; whether that is
-    /// near enough to fit, [`Proof::judge`] says. If parts are seen to meet already at one
-    /// of some poses, it is of the worst of them alone; else it ends at the first that do
-    /// not fit. `progress` is called with what is done and what there is to do.
+    /// Bounds the distance of any two parts over all poses that the guard accepts;
+    /// [`Proof::judge`] then decides whether they fit. If parts meet at one of the poses of
+    /// the quick check, only the worst of them are bounded; otherwise the proof ends at the
+    /// first parts that do not fit. `progress` is called with the number of questions
+    /// answered and their total.
     pub fn prove(&self, progress: impl FnMut(usize, usize)) -> Proof {
         self.prove_some(|_, _| true, progress)
     }
 
-    /// The same for some pairs of bodies.
+    /// The proof for some pairs of bodies only.
     pub fn prove_some(
         &self,
         which: impl Fn(&Body, &Body) -> bool,
@@ -286,45 +278,38 @@ impl Assembly {
         Questions::new(self, which).answer(|_| None, progress)
     }
 
-    /// Takes what is pinned out of a task: pins in round holes, whose centres are one
-    /// point of the linkage, so that they stay as they are.
+    /// Takes the pinned pairs out of a task: pins in round holes whose centres coincide at
+    /// every pose, so that their gap never changes.
     fn take_joint(&self, task: &mut Task, poses: &[Solution]) -> Option<Near> {
-        let places: Vec<_> = poses
-            .iter()
-            .map(|pose| {
-                let [a, b] = task.mounts.map(|mount| self.place(mount, pose));
-                b.seen_from(&a)
-            })
-            .collect();
-        let pose = poses.first()?.pose.into();
+        let place = |pose| {
+            let [a, b] = task.mounts.map(|mount| self.place(mount, pose));
+            b.seen_from(&a)
+        };
+        let places: Vec<_> = poses.iter().map(place).collect();
+        let pose = poses.first()?;
         let mut least: Option<Near> = None;
         task.solids.retain(|solid| {
-            let Some(mm) = solid.pinned(&places) else {
-                return true;
-            };
-            if least.as_ref().is_none_or(|least| mm < least.proved) {
-                let [first, second] = solid.bodies.map(|body| self.bodies()[body].name.clone());
-                least = Some(Near {
-                    seen: Some(Clearance {
-                        first: first.clone(),
-                        second: second.clone(),
-                        pose,
-                        mm,
-                    }),
-                    first,
-                    second,
+            let gap = solid.pinned(&places);
+            if let Some(mm) = gap
+                && least.as_ref().is_none_or(|least| mm < least.proved)
+            {
+                least = Some(self.near(Found {
                     proved: mm,
+                    bodies: solid.bodies,
+                    seen: Some((*pose, mm)),
                     doubt: None,
-                });
+                    regions: 0,
+                }));
             }
-            false
+            gap.is_none()
         });
         least
     }
 
     fn near(&self, found: Found) -> Near {
         let [first, second] = found.bodies.map(|body| self.bodies()[body].name.clone());
-        let servos = self.robot().servos();
+        let neutral = self.robot().servos().each_ref().map(|servo| servo.neutral);
+        let angles = |of: [Option<f64>; 4]| std::array::from_fn(|i| of[i].unwrap_or(neutral[i]));
         Near {
             seen: found.seen.map(|(pose, mm)| Clearance {
                 first: first.clone(),
@@ -332,9 +317,7 @@ impl Assembly {
                 pose: pose.pose.into(),
                 mm,
             }),
-            doubt: found.doubt.map(|angles| {
-                [0, 1, 2, 3].map(|servo| angles[servo].unwrap_or(servos[servo].neutral))
-            }),
+            doubt: found.doubt.map(angles),
             first,
             second,
             proved: found.proved,

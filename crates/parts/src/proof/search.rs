@@ -16,46 +16,46 @@ use super::solids::Task;
 use crate::bodies::assembly::Assembly;
 use crate::layers::placement::Placement;
 
-/// More air than this is not measured, mm.
+/// Distance beyond which parts count as far apart and are not measured, mm.
 pub const ENOUGH: f64 = 2.0;
-/// Beyond the rounding of a distance in floating point, mm.
+/// A bound of the rounding error of a distance, mm.
 const ROUNDING: f64 = 1e-6;
-/// How near the bounds from below and above come, mm, and as a share.
+/// Tolerance between lower and upper bound at which the search ends, mm and as a share.
 const NEAR: f64 = 0.01;
 const SHARE: f64 = 0.05;
-/// The share of what is made to meet: that it has air is all that counts.
+/// The share for parts made to meet, of which only the sign of the gap matters.
 const SHARE_MEETING: f64 = 0.5;
 /// Regions narrower than this are not halved, deg.
 const NARROW: f64 = 0.002;
-/// The most regions that are checked.
+/// The largest number of regions checked.
 pub const MANY: u64 = 100_000;
-/// The same once an overlap is known: its exact depth does not change the result.
+/// The largest number once an overlap is known: its exact depth does not matter.
 const FEW: u64 = 1_000;
 
-/// What is known of the least distance.
+/// The result of a search for the least distance.
 #[derive(Clone, Debug)]
 pub struct Found {
-    /// It is at least this, mm; never more than [`ENOUGH`].
+    /// Lower bound of the distance, mm; never more than [`ENOUGH`].
     pub proved: f64,
-    /// Between these bodies.
+    /// The two nearest bodies.
     pub bodies: [usize; 2],
     /// A pose that the guard accepts, and the distance there, mm.
     pub seen: Option<(Solution, f64)>,
-    /// In the middle of the region where no more is proved, if that is less than what
-    /// was seen: angles of some servos, deg.
+    /// Angles of some servos, deg, in the middle of the region that limits the bound, if
+    /// the bound is less than the distance seen.
     pub doubt: Option<[Option<f64>; 4]>,
-    /// Regions checked.
+    /// Number of regions checked.
     pub regions: u64,
 }
 
-/// A region, and what may be near in it.
+/// A region, and the solids that may be near in it.
 struct Part<const N: usize> {
     region: Region<N>,
-    /// Of all distances in it, mm.
+    /// Lower bound of all distances in it, mm.
     low: f64,
-    /// Which of the solids this is of.
+    /// The solid with that bound.
     by: u32,
-    /// Across which servo it is to be halved.
+    /// The servo across whose angle it is to be halved.
     across: usize,
     alive: Vec<u32>,
 }
@@ -75,13 +75,12 @@ impl<const N: usize> PartialOrd for Part<N> {
 }
 
 impl<const N: usize> Ord for Part<N> {
-    /// The heap gives the greatest first, which is to be the least distance; equal ones
-    /// in an order that is always the same.
+    /// Orders the least distance as the greatest, since the heap returns the greatest
+    /// first; regions break ties, so that the order is always the same.
     fn cmp(&self, other: &Self) -> Ordering {
-        let places = |part: &Self| part.region.middle;
-        other.low.total_cmp(&self.low).then_with(|| {
-            let pairs = places(self).into_iter().zip(places(other));
-            pairs.fold(Ordering::Equal, |order, (a, b)| order.then(a.total_cmp(&b)))
+        let pairs = self.region.middle.iter().zip(&other.region.middle);
+        pairs.fold(other.low.total_cmp(&self.low), |order, (a, b)| {
+            order.then(a.total_cmp(b))
         })
     }
 }
@@ -89,14 +88,32 @@ impl<const N: usize> Ord for Part<N> {
 /// The least distance of a task's solids over all poses that the guard accepts, from
 /// this many regions at `most`.
 pub fn least(assembly: &Assembly, guard: &Guard, task: &Task, most: u64) -> Found {
-    let servos = task.servos();
-    match servos[..] {
-        [] => Search::new(assembly, guard, task, []).run(most),
-        [a] => Search::new(assembly, guard, task, [a]).run(most),
-        [a, b] => Search::new(assembly, guard, task, [a, b]).run(most),
-        [a, b, c] => Search::new(assembly, guard, task, [a, b, c]).run(most),
-        _ => Search::new(assembly, guard, task, [0, 1, 2, 3]).run(most),
+    match task.servos()[..] {
+        [] => search(assembly, guard, task, [], most),
+        [a] => search(assembly, guard, task, [a], most),
+        [a, b] => search(assembly, guard, task, [a, b], most),
+        [a, b, c] => search(assembly, guard, task, [a, b, c], most),
+        _ => search(assembly, guard, task, [0, 1, 2, 3], most),
     }
+}
+
+fn search<const N: usize>(
+    assembly: &Assembly,
+    guard: &Guard,
+    task: &Task,
+    servos: [usize; N],
+    most: u64,
+) -> Found {
+    let search = Search {
+        assembly,
+        guard,
+        task,
+        servos,
+        seen: None,
+        by: 0,
+        regions: 0,
+    };
+    search.run(most)
 }
 
 struct Search<'a, const N: usize> {
@@ -104,31 +121,14 @@ struct Search<'a, const N: usize> {
     guard: &'a Guard<'a>,
     task: &'a Task,
     servos: [usize; N],
-    /// The nearest that was seen, and by which solid.
+    /// The least distance seen at an accepted pose, and the solid that has it.
     seen: Option<(Solution, f64)>,
     by: u32,
     regions: u64,
 }
 
-impl<'a, const N: usize> Search<'a, N> {
-    fn new(
-        assembly: &'a Assembly,
-        guard: &'a Guard<'a>,
-        task: &'a Task,
-        servos: [usize; N],
-    ) -> Self {
-        Self {
-            assembly,
-            guard,
-            task,
-            servos,
-            seen: None,
-            by: 0,
-            regions: 0,
-        }
-    }
-
-    /// The nearest that was seen, or enough.
+impl<const N: usize> Search<'_, N> {
+    /// Upper bound of the least distance, mm.
     fn high(&self) -> f64 {
         self.seen.as_ref().map_or(ENOUGH, |seen| seen.1.min(ENOUGH))
     }
@@ -179,8 +179,8 @@ impl<'a, const N: usize> Search<'a, N> {
         angles
     }
 
-    /// Bounds a region's distances; `None` where nothing can be nearer than what was
-    /// seen already, or the guard accepts no pose.
+    /// Bounds a region's distances; `None` if nothing can be nearer than the distance seen
+    /// already, or if the guard accepts no pose.
     fn look(&mut self, region: Region<N>, alive: &[u32]) -> Option<Part<N>> {
         self.regions += 1;
         let robot = self.assembly.robot();
@@ -197,13 +197,10 @@ impl<'a, const N: usize> Search<'a, N> {
         });
         let place = b.seen_from(&a);
         let bounds = near(&around_b.seen_from(&around_a), &place, &region);
-        let strays = |vector: &Vector<Slope<N>>| {
-            vector
-                .x
-                .strays(&region.half)
-                .hypot(vector.y.strays(&region.half))
-        };
-        let strays = [strays(&bounds.at), strays(&bounds.turn)];
+        let strays = [bounds.at, bounds.turn].map(|vector| {
+            let [x, y] = [vector.x, vector.y].map(|of| of.strays(&region.half));
+            x.hypot(y)
+        });
         let mut part = Part {
             region,
             low: f64::INFINITY,
@@ -244,17 +241,15 @@ impl<'a, const N: usize> Search<'a, N> {
     }
 }
 
-/// Bounds of a place that are no farther from its middle than it can stray.
+/// Bounds of a place, tightened by its value in the middle and the distance it can stray.
 fn near<const N: usize>(
     bounds: &Placement<Slope<N>>,
     middle: &Placement,
     region: &Region<N>,
 ) -> Placement<Slope<N>> {
     let each = |bounds: Vector<Slope<N>>, middle: Vector| {
-        Vector::new(
-            bounds.x.near(middle.x, &region.half),
-            bounds.y.near(middle.y, &region.half),
-        )
+        let x = bounds.x.near(middle.x, &region.half);
+        Vector::new(x, bounds.y.near(middle.y, &region.half))
     };
     Placement {
         at: each(bounds.at, middle.at),
@@ -264,18 +259,14 @@ fn near<const N: usize>(
 
 /// The servo that a place depends on most.
 fn across<const N: usize>(bounds: &Placement<Slope<N>>, region: &Region<N>) -> usize {
-    /// A length at which a turn counts, mm.
+    /// The length at which a turn is counted, mm.
     const LEVER: f64 = 30.0;
-    let numbers = [
-        bounds.at.x,
-        bounds.at.y,
-        bounds.turn.x * LEVER,
-        bounds.turn.y * LEVER,
-    ];
+    let (at, turn) = (bounds.at, bounds.turn * LEVER);
+    let numbers = [at.x, at.y, turn.x, turn.y];
     let weight = |servo: usize| {
         let half = region.half[servo];
         numbers.iter().fold(0.0, |sum, number| {
-            // Without a bound, the widest is halved.
+            // Without a bound, the widest angle is halved.
             let strays = number.slope[servo].most() * half;
             sum + if strays.is_finite() {
                 strays

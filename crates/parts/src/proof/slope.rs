@@ -10,12 +10,12 @@ use lizard_kinematics::Real;
 
 use super::interval::Interval;
 
-/// What a number may be while `N` servos turn within bounds.
+/// Bounds of a number, and of its derivatives, while `N` servos turn within bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slope<const N: usize> {
-    /// Its value.
+    /// Bounds of its value.
     pub value: Interval,
-    /// Its change with each servo, for each degree.
+    /// Bounds of its derivatives by the servos' angles, per degree.
     pub slope: [Interval; N],
 }
 
@@ -30,21 +30,18 @@ impl<const N: usize> Slope<N> {
         }
     }
 
-    /// How far it can be from what it is when all servos stand in the middle, if
-    /// each may be `half` degrees from there.
+    /// Largest distance from its value at the middle angles, if each servo may be `half`
+    /// degrees from there.
     pub fn strays(&self, half: &[f64; N]) -> f64 {
-        let mut sum = 0.0;
-        for (slope, half) in self.slope.iter().zip(half) {
-            sum += slope.most() * half;
-        }
-        sum
+        let slopes = self.slope.iter().zip(half);
+        slopes.fold(0.0, |sum, (slope, half)| sum + slope.most() * half)
     }
 
-    /// The same number with bounds that are no farther from what it is in the middle
-    /// than it strays. That is often much nearer than the bounds that came of the
-    /// operations, which take each operand for independent of the others.
+    /// The same number, its bounds tightened by its value in the middle and the distance it
+    /// can stray. Bounds from operations are often much wider, because each operation takes
+    /// its operands to be independent.
     pub fn near(self, middle: f64, half: &[f64; N]) -> Self {
-        /// Beyond the rounding of `middle`, which floating point has computed.
+        /// A bound of the rounding error of `middle`.
         const ROUNDING: f64 = 1e-9;
         let strays = self.strays(half) + ROUNDING;
         let (low, high) = (middle - strays, middle + strays);
@@ -151,14 +148,6 @@ impl<const N: usize> Real for Slope<N> {
             cos[i] = degrees[i].each(cosines[i], |slope| -turn(slope) * sines[i]);
         }
         (sin, cos)
-    }
-
-    fn atan2_each<const K: usize>(y: [Self; K], x: [Self; K]) -> [Self; K] {
-        let angles = Interval::atan2_each(y.map(|y| y.value), x.map(|x| x.value));
-        angles.map(|angle| Self {
-            value: angle,
-            slope: [angle; N],
-        })
     }
 }
 

@@ -1,8 +1,8 @@
-//! What has to keep clear of what, sorted by what it moves with.
+//! The pairs of shapes that have to keep clear of each other, sorted by mounts.
 //!
-//! A layer is what its shapes cover and no hole takes away. A shape is clear of a layer
-//! if it is beside the layer's shapes, or within one of its holes, as a pin is. The
-//! larger of the two distances counts.
+//! A layer is the union of its shapes less its holes. A shape is clear of a layer if it is
+//! beside the layer's shapes, or within one of its holes, as a pin is. The larger of the
+//! two distances counts.
 
 use lizard_kinematics::Vector;
 
@@ -14,23 +14,23 @@ use crate::layers::body::{Body, Mount, Prism};
 use crate::layers::placement::Placement;
 use crate::layers::shape::Shape;
 
-/// Heights that differ by less are the same, mm.
+/// Difference below which heights count as equal, mm.
 const SAME: f64 = 1e-6;
 
-/// Two shapes of two bodies.
+/// A pair of shapes of two bodies.
 #[derive(Clone, Debug)]
 pub struct Solid {
-    /// The bodies, by their places in [`Assembly::bodies`].
+    /// The bodies, by their index in [`Assembly::bodies`].
     pub bodies: [usize; 2],
-    /// Air between their heights, mm; 0 where they share one.
+    /// Gap between their heights, mm; 0 if they share one.
     gap: f64,
-    /// In the first mount's frame.
+    /// The first shape, in the first mount's frame.
     first: Shape,
-    /// In the second mount's frame.
+    /// The second shape, in the second mount's frame.
     second: Shape,
-    /// Discs that hold the two: middle and radius.
+    /// Discs around the two: centre and radius.
     discs: [(Vector, f64); 2],
-    /// How far the second's points are from its frame's origin, mm.
+    /// Largest distance of the second's points from its frame's origin, mm.
     lever: f64,
     /// Holes of the second's layer that may hold the first.
     around_first: Vec<Shape>,
@@ -38,22 +38,22 @@ pub struct Solid {
     around_second: Vec<Shape>,
 }
 
-/// Everything that moves with one mount, and everything that moves with another.
+/// The pairs of shapes on two mounts.
 #[derive(Clone, Debug)]
 pub struct Task {
     pub mounts: [Mount; 2],
-    /// Whether these are pairs that are made to meet.
+    /// True if these are pairs that are made to meet.
     pub meet: bool,
     pub solids: Vec<Solid>,
 }
 
 impl Task {
-    /// Nearer than this its parts must not come, mm.
+    /// Least distance that its pairs must keep, mm.
     pub fn least(&self) -> f64 {
         if self.meet { -TOUCH } else { LEAST }
     }
 
-    /// The servos that decide how the two stand to each other.
+    /// The servos on which the relative place of the two mounts depends.
     pub fn servos(&self) -> Vec<usize> {
         let mut all: Vec<_> = self.mounts.iter().flat_map(|of| of.servos()).collect();
         all.sort_unstable();
@@ -61,8 +61,8 @@ impl Task {
         all
     }
 
-    /// Everything that is to be asked of a robot: pairs of bodies whose heights are
-    /// less than `within` mm apart, and whose rectangles are.
+    /// The tasks of a robot: all pairs of bodies whose heights, and whose rectangles, are
+    /// less than `within` mm apart.
     pub fn all(
         assembly: &Assembly,
         guard: &Guard,
@@ -140,9 +140,9 @@ fn holes(prism: &Prism, shape: &Shape) -> Vec<Shape> {
 }
 
 impl Solid {
-    /// Whether the two are `by` mm apart or more, wherever the second's points are if
-    /// its frame strays by `moves` mm and its axes' ends by `turns`; quickly, so it may
-    /// say no where they are.
+    /// True if the two are surely `by` mm apart or more while the second's frame strays by
+    /// `moves` mm and the ends of its axes by `turns`. It is a quick test, so it may be
+    /// false although they are apart.
     pub fn far(&self, place: &Placement, [moves, turns]: [f64; 2], by: f64) -> bool {
         let [(a, reach), (b, other)] = self.discs;
         let between = (place.map(b) - a).length() - reach - other;
@@ -150,11 +150,11 @@ impl Solid {
         between - moves - 2.0 * turns * self.lever >= by
     }
 
-    /// The air around a pin that is in the middle of a round hole at every one of some
-    /// places, or beside a disc whose middle stays where it is in the other's frame, mm;
-    /// `None` if neither is so. A linkage that closes keeps it there.
+    /// The constant gap of a pinned pair, mm: a pin in the middle of a round hole, or a disc
+    /// whose centre is fixed in the other's frame, at all of some places. `None` if the pair
+    /// is not pinned.
     pub fn pinned(&self, places: &[Placement]) -> Option<f64> {
-        /// Beyond the rounding of a joint's place, mm.
+        /// A bound of the rounding error of a joint's place, mm.
         const SAME: f64 = 1e-6;
         let centre = |shape: &Shape| match shape.points[..] {
             [centre] => Some(centre),
@@ -170,46 +170,46 @@ impl Solid {
             let holes = holes.iter().filter(around);
             holes.map(|hole| hole.radius - pin.radius).reduce(f64::max)
         };
-        let beside = |disc: &Shape, other: &Shape, holes: &[Shape]| {
+        let beside = |middle: Vector, radius: f64, other: &Shape, holes: &[Shape]| {
+            let disc = Shape::disc(middle, radius);
             let within = holes
                 .iter()
                 .map(|hole| disc.within(hole, Vector::default()));
             within.fold(disc.distance(other), f64::max)
         };
-        air(&self.first, &self.around_first, &stays)
+        let (first, second) = (&self.first, &self.second);
+        let (place, around) = (places.first()?, [&self.around_first, &self.around_second]);
+        air(first, around[0], &stays)
+            .or_else(|| air(second, around[1], &|second, first| stays(first, second)))
             .or_else(|| {
-                let stays = |second, first| stays(first, second);
-                air(&self.second, &self.around_second, &stays)
-            })
-            .or_else(|| {
-                let middle = places.first()?.unmap(centre(&self.first)?);
-                let disc = Shape::disc(middle, self.first.radius);
-                let clear = || beside(&disc, &self.second, &self.around_first);
-                stays(centre(&self.first)?, middle).then(clear)
+                let (own, middle) = (centre(first)?, place.unmap(centre(first)?));
+                let clear = || beside(middle, first.radius, second, around[0]);
+                stays(own, middle).then(clear)
             })
             .or_else(|| {
-                let middle = places.first()?.map(centre(&self.second)?);
-                let disc = Shape::disc(middle, self.second.radius);
-                let clear = || beside(&disc, &self.first, &self.around_second);
-                stays(middle, centre(&self.second)?).then(clear)
+                let (own, middle) = (centre(second)?, place.map(centre(second)?));
+                let clear = || beside(middle, second.radius, first, around[1]);
+                stays(middle, own).then(clear)
             })
-            .map(|air| {
-                if self.gap > 0.0 {
-                    air.max(0.0).hypot(self.gap)
-                } else {
-                    air
-                }
-            })
+            .map(|air| self.with_gap(air))
     }
 
-    /// How far the two are apart, mm, where the second's frame is at a place in the
-    /// first's; below 0 they overlap.
+    /// The distance of two shapes whose distance from above is known, mm.
+    fn with_gap(&self, flat: f64) -> f64 {
+        match self.gap > 0.0 {
+            true => flat.max(0.0).hypot(self.gap),
+            false => flat,
+        }
+    }
+
+    /// The distance of the two, mm, with the second's frame at a place in the first's; below
+    /// 0 they overlap.
     pub fn apart(&self, place: &Placement) -> f64 {
         self.at_least(place, |_| Vector::default())
     }
 
-    /// Their least distance in a region, from where they are in its
-    /// middle and how far each point can stray from there.
+    /// Lower bound of their distance in a region, from their places in its middle and the
+    /// distance that each point can stray from there.
     pub fn apart_within<const N: usize>(
         &self,
         place: &Placement,
@@ -235,10 +235,10 @@ impl Solid {
         let moves = strays(&self.second);
         let mut flat = self.first.distance(&second) - moves.length();
         if self.gap > 0.0 {
-            return flat.max(0.0).hypot(self.gap);
+            return self.with_gap(flat);
         }
         for hole in &self.around_first {
-            // It is the same whether the hole strays or what is in it.
+            // A hole that strays has the same effect as a pin that strays.
             flat = flat.max(self.first.within(&hole.placed(place), strays(hole)));
         }
         for hole in &self.around_second {

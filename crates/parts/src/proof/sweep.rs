@@ -1,7 +1,7 @@
 //! The rectangle that a body never leaves.
 //!
-//! Most pairs are never near each other, such as a head's and a tail's coupler. Their
-//! rectangles show that, so no poses have to be checked.
+//! Most pairs are never near each other, such as the couplers of head and tail. If their
+//! rectangles are apart, no poses have to be checked.
 
 use lizard_kinematics::Vector;
 
@@ -10,10 +10,10 @@ use super::interval::Interval;
 use crate::bodies::assembly::Assembly;
 use crate::layers::body::{Body, Mount};
 
-/// Regions of this half width are not halved, deg.
+/// Half width below which regions are not halved, deg.
 const FINE: f64 = 2.0;
 
-/// From and to along x and y, mm, chassis frame.
+/// Bounds of x and y, mm, chassis frame.
 pub type Rectangle = [Interval; 2];
 
 /// The rectangle of each body, in the order of [`Assembly::bodies`].
@@ -42,7 +42,7 @@ pub fn all(assembly: &Assembly, guard: &Guard) -> Vec<Rectangle> {
     rectangles
 }
 
-/// Whether two rectangles are apart by a length, mm.
+/// True if two rectangles are at least a length apart, mm.
 pub fn apart(a: &Rectangle, b: &Rectangle, by: f64) -> bool {
     a.iter()
         .zip(b)
@@ -83,7 +83,7 @@ impl Sweep<'_> {
         }
     }
 
-    /// Every body of the mount may be where its points may be.
+    /// Extends the rectangle of each body of the mount by the bounds of its points.
     fn cover(&mut self, at: impl Fn(Vector) -> Rectangle) {
         let bodies = self
             .assembly
@@ -93,10 +93,8 @@ impl Sweep<'_> {
         for (body, rectangle) in bodies.filter(|(body, _)| body.mount == self.mount) {
             for (point, radius) in points(body) {
                 for (side, at) in rectangle.iter_mut().zip(at(point)) {
-                    *side = Interval::new(
-                        side.low.min(at.low - radius),
-                        side.high.max(at.high + radius),
-                    );
+                    side.low = side.low.min(at.low - radius);
+                    side.high = side.high.max(at.high + radius);
                 }
             }
         }

@@ -146,14 +146,3 @@ fn a_robot_that_does_not_fit_is_refused_in_one_sentence() {
         assert_eq!(Assembly::new(&robot).fits(), Ok(()), "{name}");
     }
 }
-
-#[test]
-fn an_ideal_spring_is_no_part() {
-    let ideal = "[leg.drive]\nkind = \"spring\"\nstiffness = 10.0";
-    let robot = with("paper", ideal);
-    let refused = Assembly::new(&robot).fits().expect_err("no part is ideal");
-    assert_eq!(
-        refused.to_string(),
-        "leg.drive.kind is \"spring\", an ideal that no part here is; parts need \"rigid\" or \"strut\""
-    );
-}

@@ -1,52 +1,51 @@
-//! Checks every sample of every gait, as the firmware will send it. First by the forward
-//! solution: head, tail, sides and legs against all limits. Then by the firmware's own
-//! guard, which would stop a gait that is closer to a limit than its integers resolve.
+//! The check of every sample of a gait, as the firmware will send it. First by the forward
+//! solution: head, tail, sides and legs against all limits. Then by the firmware's own guard,
+//! which would stop a gait that is closer to a limit than its integers resolve.
 
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::guard::hazard::{Hazard, Margin};
-use lizard_core::numbers::gaits::SAMPLES;
+use lizard_core::numbers::gaits::{Gait as TableGait, SAMPLES};
 use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::units::Sweep;
 use lizard_kinematics::{Check, Solution, Violation};
 
-use crate::file::Problem;
+use crate::checks::accuracy::{self, ALL_PHASES};
 use crate::gaits::Gait;
 use crate::measures::Measures;
 use crate::measures::servo::NAMES;
-use crate::tables::TabledGait;
-use crate::tables::accuracy::{self, ALL_PHASES};
+use crate::tables::Tables;
 use crate::units::{FRAMES_PER_SECOND, PHASES, STEPS_PER_DEGREE};
 
 /// Evenly spaced phases that are checked besides the tables' own samples.
 const CHECKED: usize = 1024;
-/// Phases over which the fastest frame is looked for.
+/// Phases at which the speed of a frame is computed.
 const SPEEDS: usize = 4096;
 /// The largest error of a table, deg.
 const ERROR_LIMIT: f64 = 0.50;
 
-/// The smallest of a kind of margin over a cycle.
+/// The smallest margin of a kind over a cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Least {
-    /// Which one.
+    /// Name of the margin.
     pub what: Check,
-    /// Its value, a sine.
+    /// Value, a sine.
     pub value: f64,
-    /// Where, 0 to 1.
+    /// Phase of the smallest value, 0 to 1.
     pub phase: f64,
 }
 
-/// The fastest that a servo turns between two frames.
+/// The fastest turn of a servo between two frames.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Peak {
-    /// Which servo, 0 to 3.
+    /// Index of the servo, 0 to 3.
     pub servo: usize,
-    /// deg/s, the mean over the 20 ms from one frame to the next.
+    /// Mean speed over the 20 ms from one frame to the next, deg/s.
     pub speed: f64,
-    /// Where the frame begins, 0 to 1.
+    /// Phase at which the frame begins, 0 to 1.
     pub phase: f64,
 }
 
-/// What the check of a gait found.
+/// The smallest margins, the strokes and the fastest frame of a gait.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Audit {
     /// Smallest type-2 margin, head and tail.
@@ -61,86 +60,104 @@ pub struct Audit {
     pub peak: Peak,
 }
 
+impl Audit {
+    /// The audit of a gait without samples.
+    pub(crate) const NONE: Self = Self {
+        type2: Least::none(Check::TYPE2[0]),
+        type1: Least::none(Check::TYPE1[0]),
+        leg: Least::none(Check::LEG[0]),
+        stroke: (f64::INFINITY, f64::NEG_INFINITY),
+        peak: Peak {
+            servo: 0,
+            speed: 0.0,
+            phase: 0.0,
+        },
+    };
+}
+
+impl Least {
+    const fn none(what: Check) -> Self {
+        Self {
+            what,
+            value: f64::INFINITY,
+            phase: 0.0,
+        }
+    }
+}
+
 /// Checks a gait against the limits of its robot.
 ///
 /// # Errors
-/// The first travel or loop that a sample breaks; else, over all samples, the
-/// worst of the first limit broken; else what the firmware's guard would hold the
-/// gait for; else a frame that is too fast, or a table that is too coarse.
+/// The sentence for the first travel or loop that a sample breaks; else, over all samples, for
+/// the worst violation of the first limit broken; else for the pose that the firmware's guard
+/// would stop at; else for a frame that is too fast, or a table that is too coarse.
 pub(crate) fn check(
-    gait: &TabledGait,
+    gait: &Gait,
+    index: usize,
+    tables: &Tables,
     robot: &Measures,
     firmware: &lizard_core::numbers::robot::Robot<'_>,
-) -> Result<Audit, Problem> {
-    let peak = fastest(gait.gait());
-    let mut found: Option<Audit> = None;
+) -> Result<Audit, String> {
+    let mut found = Audit {
+        peak: fastest(gait),
+        ..Audit::NONE
+    };
     let mut worst: Option<(f64, Violation)> = None;
     let mut held: Option<(f64, Check)> = None;
-    for phase in phases(gait) {
-        let angles = gait.angles(phase);
-        let sweeps = Pose(gait.sweeps(phase).map(Sweep));
+    let at = |phase: f64| format!("at phase {phase:.4}");
+    for phase in phases(&tables.gaits[index]) {
+        let sweeps = tables.sweeps(index, phase);
+        let angles = gait.table_angles(sweeps);
+        let sweeps = Pose(sweeps.map(Sweep));
         let phase = f64::from(phase) / PHASES;
-        travels(robot, angles, phase)?;
+        check_travels(robot, angles, phase)?;
         if let Some(hazard) = Clearance::of(firmware, &sweeps).hazard(firmware) {
             held.get_or_insert((phase, condition(&hazard)));
         }
-        let solution = robot
-            .lizard
-            .solve(&angles.into())
-            .map_err(|fault| Problem::Unsafe {
-                phase,
-                violation: fault.to_string(),
-            })?;
+        let solution = robot.lizard.solve(&angles.into());
+        let solution = solution.map_err(|fault| format!("{}: {fault}", at(phase)))?;
         for violation in robot.limits.violations(&solution) {
             worst = Some(match worst {
                 Some(earlier) if !exceeds(violation, earlier.1) => earlier,
                 _ => (phase, violation),
             });
         }
-        let here = Audit::of(&solution, phase, peak);
-        found = Some(found.map_or(here, |so_far| so_far.least(here)));
+        found.add(&solution, phase);
     }
     if let Some((phase, violation)) = worst {
-        return Err(Problem::Unsafe {
-            phase,
-            violation: violation.to_string(),
-        });
+        return Err(format!("{}: {violation}", at(phase)));
     }
     if let Some((phase, what)) = held {
-        return Err(Problem::TooNear {
-            phase,
-            what: what.name(),
-        });
+        return Err(format!(
+            "{}: margin or travel {} is so near to its limit that the firmware's integers take it to be beyond; leave it a little room",
+            at(phase),
+            what.name()
+        ));
     }
-    if peak.speed > robot.pace.gait_slew {
-        let limit = robot.pace.gait_slew;
-        return Err(Problem::TooFast {
-            phase: peak.phase,
-            servo: NAMES[peak.servo],
-            speed: peak.speed,
-            limit,
-        });
+    let Peak {
+        servo,
+        speed,
+        phase,
+    } = found.peak;
+    let limit = robot.pace.gait_slew;
+    if speed > limit {
+        return Err(format!(
+            "{} servo {} would turn at {speed:.1} deg/s; limits.gait_slew is {limit:.1} deg/s",
+            at(phase),
+            NAMES[servo]
+        ));
     }
-    let coarse = accuracy::worst(gait, CHECKED);
+    let coarse = accuracy::worst(gait, index, tables, CHECKED);
     if coarse.max > ERROR_LIMIT {
-        let (phase, servo) = (coarse.phase, NAMES[coarse.servo]);
-        return Err(Problem::Coarse {
-            phase,
-            servo,
-            error: coarse.max,
-            limit: ERROR_LIMIT,
-        });
+        return Err(format!(
+            "its table of {SAMPLES} samples is {:.3} deg off at phase {:.4} (servo {}); at most {ERROR_LIMIT:.2} deg is allowed",
+            coarse.max, coarse.phase, NAMES[coarse.servo]
+        ));
     }
-    // `phases` is never empty, so something was found.
-    found.ok_or(Problem::Coarse {
-        phase: 0.0,
-        servo: NAMES[0],
-        error: f64::NAN,
-        limit: ERROR_LIMIT,
-    })
+    Ok(found)
 }
 
-/// What the firmware's guard found, as the float calls it.
+/// Converts a hazard of the firmware's guard to the condition of the floating-point check.
 fn condition(hazard: &Hazard) -> Check {
     match *hazard {
         Hazard::Margin { margin, .. } => match margin {
@@ -153,17 +170,17 @@ fn condition(hazard: &Hazard) -> Check {
     }
 }
 
-/// Whether a violation is the same limit's, and worse.
+/// True if a violation is of the same limit as an earlier one, and worse.
 fn exceeds(violation: Violation, earlier: Violation) -> bool {
     let by = |v: Violation| (v.value - v.limit).abs();
     violation.what == earlier.what && by(violation) > by(earlier)
 }
 
-/// The phases to check: evenly spaced ones, and every sample of every servo.
-fn phases(gait: &TabledGait) -> Vec<u16> {
+/// Lists the phases to check: evenly spaced ones, and every sample of every servo.
+fn phases(table: &TableGait) -> Vec<u16> {
     let every = |count: usize| (0..count).map(move |i| (i * (ALL_PHASES / count)) as u16);
     let mut phases: Vec<u16> = every(CHECKED).collect();
-    for channel in &gait.table().channels {
+    for channel in &table.channels {
         phases.extend(every(SAMPLES).map(|sample| sample.wrapping_sub(channel.offset)));
     }
     phases.sort_unstable();
@@ -171,34 +188,27 @@ fn phases(gait: &TabledGait) -> Vec<u16> {
     phases
 }
 
-fn travels(robot: &Measures, angles: [f64; 4], phase: f64) -> Result<(), Problem> {
+/// Refuses servo angles outside a travel.
+fn check_travels(robot: &Measures, angles: [f64; 4], phase: f64) -> Result<(), String> {
     // The ends of the travel and the sample are both rounded to an angle step.
     const STEP: f64 = 1.0 / STEPS_PER_DEGREE;
-    for (i, servo) in robot.servos.iter().enumerate() {
+    for ((servo, angle), name) in robot.servos.iter().zip(angles).zip(NAMES) {
         let (min, max) = servo.travel();
-        let sweep = angles[i] - servo.neutral;
+        let sweep = angle - servo.neutral;
         if sweep < min - STEP || sweep > max + STEP {
             let (min, max) = (servo.neutral + min, servo.neutral + max);
-            return Err(Problem::Travel {
-                phase,
-                servo: NAMES[i],
-                angle: angles[i],
-                min,
-                max,
-            });
+            return Err(format!(
+                "at phase {phase:.4} servo {name} would be at {angle:.2} deg, outside its travel of {min:.2} to {max:.2} deg"
+            ));
         }
     }
     Ok(())
 }
 
-/// The fastest frame of a gait at full speed.
+/// Finds the fastest frame of a gait at full speed.
 fn fastest(gait: &Gait) -> Peak {
     let frame = 1.0 / (FRAMES_PER_SECOND * gait.period);
-    let mut peak = Peak {
-        servo: 0,
-        speed: 0.0,
-        phase: 0.0,
-    };
+    let mut peak = Audit::NONE.peak;
     for i in 0..SPEEDS {
         let phase = i as f64 / SPEEDS as f64;
         let (from, to) = (gait.sweeps(phase), gait.sweeps(phase + frame));
@@ -217,40 +227,22 @@ fn fastest(gait: &Gait) -> Peak {
 }
 
 impl Audit {
-    fn of(solution: &Solution, phase: f64, peak: Peak) -> Self {
-        let least = |kind: &[Check]| {
-            let of_kind = solution
-                .margins
-                .iter()
-                .filter(|(what, _)| kind.contains(what));
-            let (what, value) =
-                of_kind.fold(
-                    (kind[0], f64::INFINITY),
-                    |a, b| if b.1 < a.1 { b } else { a },
-                );
-            Least { what, value, phase }
-        };
-        let (left, right) = (solution.left.s, solution.right.s);
-        Self {
-            type2: least(&Check::TYPE2),
-            type1: least(&Check::TYPE1),
-            leg: least(&Check::LEG),
-            stroke: (left.min(right), left.max(right)),
-            peak,
+    /// Adds the pose at a phase.
+    fn add(&mut self, solution: &Solution, phase: f64) {
+        for (what, value) in solution.margins.iter() {
+            let kinds = [
+                (&mut self.type2, &Check::TYPE2[..]),
+                (&mut self.type1, &Check::TYPE1),
+                (&mut self.leg, &Check::LEG),
+            ];
+            for (least, kind) in kinds {
+                if kind.contains(&what) && value < least.value {
+                    *least = Least { what, value, phase };
+                }
+            }
         }
-    }
-
-    fn least(self, other: Self) -> Self {
-        let least = |a: Least, b: Least| if b.value < a.value { b } else { a };
-        Self {
-            type2: least(self.type2, other.type2),
-            type1: least(self.type1, other.type1),
-            leg: least(self.leg, other.leg),
-            stroke: (
-                self.stroke.0.min(other.stroke.0),
-                self.stroke.1.max(other.stroke.1),
-            ),
-            peak: self.peak,
+        for s in [solution.left.s, solution.right.s] {
+            self.stroke = (self.stroke.0.min(s), self.stroke.1.max(s));
         }
     }
 }

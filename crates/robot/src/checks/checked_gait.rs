@@ -1,81 +1,113 @@
-//! A gait that may be walked.
+//! A gait that has passed every check.
+
+use std::sync::Arc;
 
 use lizard_contact::{Ground, Prediction, Travel, Walker};
+use lizard_core::numbers::gaits::Gait as TableGait;
+use lizard_core::numbers::units::phase16;
 use lizard_kinematics::Pose;
 
-use crate::checks::audit::Audit;
-use crate::gaits::Stride;
-use crate::tables::{TableError, TabledGait, accuracy};
+use crate::checks::accuracy::{self, TableError};
+use crate::checks::audit::{self, Audit};
+use crate::file::{Checked, Fault};
+use crate::gaits::{Bars, Gait, Stride};
+use crate::measures::Measures;
+use crate::tables::Tables;
+use crate::units::FRAMES_PER_SECOND;
 
-/// A gait of robot.toml whose every sample has been checked: in floating point,
-/// the truth, and as the firmware's table has it.
+/// A gait of robot.toml, every sample of which has been checked: in floating point, and as the
+/// firmware's tables have it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CheckedGait {
-    gait: TabledGait,
+    gait: Gait,
+    /// Index of the gait in the file and in the tables.
+    index: usize,
+    tables: Arc<Tables>,
     audit: Audit,
 }
 
 impl CheckedGait {
-    /// A gait that was checked, and what the check found.
-    pub(crate) fn new(gait: TabledGait, audit: Audit) -> Self {
-        Self { gait, audit }
+    /// Checks a gait against the measures of its robot and by the firmware's own guard.
+    pub(crate) fn new(
+        gait: Gait,
+        index: usize,
+        tables: &Arc<Tables>,
+        measures: &Measures,
+        firmware: &lizard_core::numbers::robot::Robot,
+    ) -> Checked<Self> {
+        let audit = audit::check(&gait, index, tables, measures, firmware);
+        let audit =
+            audit.map_err(|problem| Fault::clause(format!("gait.{}", gait.name), problem))?;
+        Ok(Self {
+            gait,
+            index,
+            tables: Arc::clone(tables),
+            audit,
+        })
     }
 
-    /// The gait and its table.
-    #[cfg(test)]
-    pub(crate) fn tabled(&self) -> &TabledGait {
-        &self.gait
+    /// The gait as the firmware has it.
+    pub(crate) fn table(&self) -> &TableGait {
+        &self.tables.gaits[self.index]
     }
 
-    /// Its name; with a blank for each dash also its console command.
+    /// Name of the gait; with a blank for each dash also its console command.
     pub fn name(&self) -> &str {
-        self.gait.name()
+        &self.gait.name
     }
 
-    /// Its place among the gaits, from 0.
+    /// Index of the gait in the file.
     pub fn index(&self) -> usize {
-        self.gait.index()
+        self.index
     }
 
     /// Time of one cycle at full speed, s.
     pub fn period(&self) -> f64 {
-        self.gait.gait().period
+        self.gait.period
     }
 
-    /// True where the phase runs backwards, from 1 to 0.
+    /// True if the phase runs backwards, from 1 to 0.
     pub fn is_reversed(&self) -> bool {
-        self.gait.gait().reversed
+        self.gait.reversed
     }
 
     /// True if a servo moves in the course of a cycle.
     pub fn moves(&self) -> bool {
-        self.gait.moves()
+        self.table().channels.iter().any(|channel| {
+            let wave = &self.tables.waves[usize::from(channel.wave)];
+            channel.gain != 0 && wave.iter().any(|sample| *sample != wave[0])
+        })
     }
 
-    /// What each leg does, in servo order: LF, RF, RH, LH.
+    /// The movement of each leg, in servo order: LF, RF, RH, LH.
     pub fn strides(&self) -> &[Stride; 4] {
-        &self.gait.gait().strides
+        &self.gait.strides
+    }
+
+    /// The gait as bars; none if it stands or follows a path.
+    pub fn bars(&self) -> Option<Bars> {
+        self.moves().then(|| Bars::of(&self.gait)).flatten()
     }
 
     /// The neutral servo angles, deg, chassis frame, servo order.
     pub fn neutral(&self) -> [f64; 4] {
-        self.gait.gait().neutral
+        self.gait.neutral
     }
 
     /// The phase, 0 to 1, at a time in s after a start at phase 0, at full speed.
     pub fn phase(&self, seconds: f64) -> f64 {
-        self.gait.gait().phase(seconds)
+        self.gait.phase(seconds)
     }
 
     /// The legs' sweeps from neutral at a phase of 0 to 1, deg, foot forward
     /// positive, servo order.
     pub fn sweeps(&self, phase: f64) -> [f64; 4] {
-        self.gait.gait().sweeps(phase)
+        self.gait.sweeps(phase)
     }
 
     /// The servo angles at a phase of 0 to 1, deg, chassis frame, servo order.
     pub fn angles(&self, phase: f64) -> [f64; 4] {
-        self.gait.gait().angles(phase)
+        self.gait.angles(phase)
     }
 
     /// The pose at a phase of 0 to 1.
@@ -86,43 +118,54 @@ impl CheckedGait {
     /// The servos' sweeps at a phase of 1/65536 cycle as the firmware has them:
     /// 1/65536 turn from neutral, counter-clockwise positive, servo order.
     pub fn table_sweeps(&self, phase: u16) -> [i16; 4] {
-        self.gait.sweeps(phase)
+        self.tables.sweeps(self.index, phase)
     }
 
     /// The servo angles at a phase of 1/65536 cycle as the firmware has them: deg,
     /// chassis frame, servo order.
     pub fn table_angles(&self, phase: u16) -> [f64; 4] {
-        self.gait.angles(phase)
+        self.gait.table_angles(self.table_sweeps(phase))
     }
 
-    /// One cycle at full speed from phase 0 on: the time of each frame in s, and
-    /// its phase in 1/65536 cycle. The last is the first that completes the cycle.
+    /// The frames of one cycle at full speed from phase 0 on: the time of each in s, and its
+    /// phase in 1/65536 cycle. The last is the first that completes the cycle.
     pub fn frames(&self) -> impl Iterator<Item = (f64, u16)> + use<> {
-        self.gait.frames()
+        let increment = self.table().increment;
+        // 1.1 s are 55 frames, though 1.1 * 50.0 is a little more.
+        const SLACK: f64 = 1e-9;
+        let frames = (self.gait.period * FRAMES_PER_SECOND - SLACK).ceil() as i32;
+        (0..=frames).map(move |frame| {
+            let phase = phase16((increment * frame) as u32);
+            (f64::from(frame) / FRAMES_PER_SECOND, phase)
+        })
     }
 
-    /// What the check of every sample found.
+    /// Margins, strokes and speeds that the check of every sample found.
     pub fn audit(&self) -> &Audit {
         &self.audit
     }
 
-    /// The error of the table over every phase that the firmware can be in.
+    /// The error of the tables over all phases.
     pub fn table_error(&self) -> TableError {
-        accuracy::worst(&self.gait, accuracy::ALL_PHASES)
+        self.error_over(accuracy::ALL_PHASES)
     }
 
-    /// Where one cycle takes a robot on this ground, in the time order of a gait
-    /// that starts at phase 0, by the contact model. With springs it is the second
-    /// cycle, which all later ones repeat.
+    /// The error of the tables over `count` evenly spaced phases.
+    pub(crate) fn error_over(&self, count: usize) -> TableError {
+        accuracy::worst(&self.gait, self.index, &self.tables, count)
+    }
+
+    /// Predicts one cycle on this ground, beginning at phase 0, by the contact model. If legs
+    /// lag, it is the second cycle, which all later ones repeat.
     ///
-    /// Whether it depends on ties is decided with rigid legs, because ties are between pads.
+    /// The parts that depend on ties are found with rigid legs, because ties are between pads.
     pub fn predict(&self, ground: &Ground) -> Prediction {
         let known = ground.rigid().predict(self.cycle(COARSE));
         known.known_of(self.walked(ground).travel)
     }
 
-    /// What one cycle does on this ground, whether or not it depends on ties; with
-    /// springs the second cycle.
+    /// Follows one cycle on this ground, also if its result depends on ties. If legs lag, it
+    /// is the second cycle.
     pub fn walked(&self, ground: &Ground) -> Walked {
         let mut walker = Walker::new(*ground, self.sweeps(self.phase(0.0)));
         let mut steps = STEPS;
@@ -144,25 +187,68 @@ impl CheckedGait {
         }
     }
 
-    /// One cycle in equal steps of time, its sweeps at both ends among them.
+    /// The sweeps of one cycle in equal steps of time, both ends included.
     fn cycle(&self, steps: usize) -> impl Iterator<Item = [f64; 4]> {
         (0..=steps).map(move |i| self.sweeps(self.phase(self.period() * i as f64 / steps as f64)))
     }
 }
 
-/// Steps in a cycle; twice as many change no result by 0.01 mm.
+/// Steps in a cycle of rigid legs; twice as many change no result by 0.01 mm.
 const STEPS: usize = 1000;
-/// Steps in a cycle of legs on springs, which take longer; four times as many change no
-/// result by 0.05 mm.
+/// Steps in a cycle of legs that lag, which take longer to compute; four times as many change
+/// no result by 0.05 mm.
 const SPRUNG: usize = 250;
-/// Enough to tell what depends on a tie, which takes longer.
+/// Steps in a cycle for finding ties, which takes longer.
 const COARSE: usize = 250;
 
-/// A cycle that was followed.
+/// The result of a cycle that was followed step by step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Walked {
-    /// Where it led.
+    /// The movement of the body.
     pub travel: Travel,
-    /// How far a leg was behind its servo at most, deg; 0 where legs are rigid.
+    /// Largest lag of a leg behind its servo, deg; 0 if legs are rigid.
     pub lag: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::testing::{all, robot};
+
+    #[test]
+    fn frames_are_20_ms_apart_and_the_last_completes_the_cycle() {
+        for (name, robot) in all() {
+            for gait in robot.gaits() {
+                let frames: Vec<(f64, u16)> = gait.frames().collect();
+                assert_eq!(frames[0], (0.0, 0));
+                let (end, _) = frames[frames.len() - 1];
+                let late = end - gait.period();
+                assert!(
+                    (-1e-9..0.02 - 1e-9).contains(&late),
+                    "{name} {}",
+                    gait.name()
+                );
+                for (seconds, phase) in frames {
+                    // A whole cycle is phase 0 again.
+                    let off = (f64::from(phase) / 65536.0 - gait.phase(seconds)).rem_euclid(1.0);
+                    assert!(
+                        off.min(1.0 - off) < 1e-4,
+                        "{name} {} {seconds}",
+                        gait.name()
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_gait_moves_if_a_leg_does() {
+        let robot = robot("own-gaits");
+        let still: Vec<&str> = robot
+            .gaits()
+            .iter()
+            .filter(|gait| !gait.moves())
+            .map(|gait| gait.name())
+            .collect();
+        assert_eq!(still, ["stand"]);
+    }
 }

@@ -1,12 +1,14 @@
-//! What is checked of every gait before a robot is one.
+//! The checks of every gait before it may be walked.
 //!
 //! One bad sample of one gait can lock the linkage or strip a servo's gears. So every
 //! sample is solved as the firmware will send it, with the robot's true lengths and by the
 //! core's own integers. A gait that passes is a [`CheckedGait`]: it may be walked, and the
 //! contact model says where it leads.
 
-pub(crate) mod audit;
+mod accuracy;
+mod audit;
 mod checked_gait;
 
+pub use accuracy::TableError;
 pub use audit::{Audit, Least, Peak};
 pub use checked_gait::{CheckedGait, Walked};

@@ -1,22 +1,66 @@
-//! robot.toml as typed values. A `Section` is one table of the file; it refuses unknown
-//! keys, and every error names the whole key.
-
-use std::collections::HashMap;
+//! robot.toml as typed values. A [`Section`] is one table of the file; it refuses unknown
+//! keys, and every error has the full name of its key.
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::file::error::{Checked, Hint, Problem};
+use crate::file::error::{Checked, Error, Fault, hint};
+use crate::file::syntax::mistake;
+
+/// Parses the text of a robot file and reads it with `read`. A byte order mark at the start is
+/// skipped.
+///
+/// # Errors
+/// The first mistake in the text, with its line.
+pub(crate) fn parse<T>(text: &str, read: impl Fn(&DeTable) -> Checked<T>) -> Result<T, Error> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let file = "robot.toml".to_string();
+    let line_of = |at: usize| text[..at].matches('\n').count() + 1;
+    let document = DeTable::parse(text).map_err(|fault| {
+        let at = fault.span().map(|span| span.start);
+        let sentence = mistake(text, at.unwrap_or(text.len()), fault.message());
+        Fault::new("", sentence).in_file(file.clone(), at.map(line_of))
+    })?;
+    let table = document.get_ref();
+    read(table).map_err(|fault| {
+        let line = position(table, &fault.key).map(line_of);
+        fault.in_file(file, line)
+    })
+}
+
+/// The position in the text of a key, or of the innermost table in its name that exists.
+fn position(mut table: &DeTable, key: &str) -> Option<usize> {
+    let (mut rest, mut found) = (key, None);
+    loop {
+        // A quoted key may have a dot in it, so the longest one counts.
+        let after = |known: &str| {
+            let after = rest.strip_prefix(known)?;
+            (after.is_empty() || after.starts_with(['.', '['])).then_some(after)
+        };
+        let entries = table.iter().filter_map(|(known, value)| {
+            let name = known.get_ref().as_ref();
+            Some((name.len(), known.span().start, after(name)?, value))
+        });
+        let Some((_, start, after, value)) = entries.max_by_key(|(length, ..)| *length) else {
+            return found;
+        };
+        found = Some(start);
+        match value.get_ref() {
+            DeValue::Table(inner) if after.starts_with('.') => (table, rest) = (inner, &after[1..]),
+            _ => return found,
+        }
+    }
+}
 
 /// One table of the file.
 pub(crate) struct Section<'a> {
-    /// The table's whole key, `servo.A1`; empty for the file itself.
+    /// Full name of the table, such as `servo.A1`; empty for the file itself.
     pub key: String,
     table: &'a DeTable<'a>,
 }
 
 impl<'a> Section<'a> {
-    /// The file's own table, of which only the keys `allowed` may appear.
+    /// Opens the file's own table, which may have only the keys `allowed`.
     pub fn root(table: &'a DeTable<'a>, allowed: &[&str]) -> Checked<Self> {
         Self {
             key: String::new(),
@@ -25,37 +69,41 @@ impl<'a> Section<'a> {
         .only(allowed)
     }
 
-    /// The table under `name`; it must exist and hold no key outside `allowed`.
+    /// Opens the table `name`, which must exist and may have only the keys `allowed`.
     pub fn section(&self, name: &str, allowed: &[&str]) -> Checked<Self> {
         self.open(name)?.only(allowed)
     }
 
-    /// The table under `name`, whatever its keys.
+    /// Opens the table `name` with any keys.
     pub fn open(&self, name: &str) -> Checked<Self> {
-        let key = self.path(name);
-        match self.table.get(name).map(Spanned::get_ref) {
-            Some(DeValue::Table(table)) => Ok(Self { key, table }),
-            Some(other) => Err(wrong(other, "a table").at(key)),
-            None => Err(Problem::Missing("a table").at(key)),
+        match self.value(name, "a table")? {
+            DeValue::Table(table) => Ok(Self {
+                key: self.path(name),
+                table,
+            }),
+            other => Err(self.wrong_type(name, other, "a table")),
         }
     }
 
     /// Refuses keys outside `allowed`.
     pub fn only(self, allowed: &[&str]) -> Checked<Self> {
-        match self
-            .names()
-            .into_iter()
-            .find(|name| !allowed.contains(name))
-        {
-            Some(name) => Err(Problem::Unknown(Hint::new(name, allowed)).at(self.path(name))),
+        let unknown = |name: &&str| !allowed.contains(name);
+        match self.names().into_iter().find(unknown) {
+            Some(name) => {
+                let hint = hint(name, allowed);
+                Err(self.fault(name, format!("is not a known key; {hint}")))
+            }
             None => Ok(self),
         }
     }
 
-    /// Refuses keys that have moved, and says where to.
-    pub fn moved(&self, names: &[&str], to: &'static str) -> Checked<()> {
+    /// Refuses keys of an earlier form of the file; `instead` says what to write.
+    pub fn moved(&self, names: &[&str], instead: &str) -> Checked<()> {
         match names.iter().find(|name| self.has(name)) {
-            Some(name) => Err(Problem::Moved(to).at(self.path(name))),
+            Some(name) => {
+                let sentence = format!("is not read any more; write {instead}");
+                Err(self.fault(name, sentence))
+            }
             None => Ok(()),
         }
     }
@@ -67,12 +115,12 @@ impl<'a> Section<'a> {
         keys.into_iter().map(|key| key.get_ref().as_ref()).collect()
     }
 
-    /// Whether the key is there.
+    /// True if the table has this key.
     pub fn has(&self, name: &str) -> bool {
         self.table.contains_key(name)
     }
 
-    /// The whole key of `name` in this table.
+    /// The full name of a key of this table.
     pub fn path(&self, name: &str) -> String {
         if self.key.is_empty() {
             name.to_string()
@@ -81,31 +129,27 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// A number within `min` to `max` (both allowed).
-    pub fn number(&self, name: &str, min: f64, max: f64, unit: &'static str) -> Checked<f64> {
-        let value = self.value(name, "a number")?;
-        let value = number(value).ok_or_else(|| wrong(value, "a number").at(self.path(name)))?;
-        if (min..=max).contains(&value) {
-            Ok(value)
-        } else {
-            Err(Problem::Range {
-                value,
-                min,
-                max,
-                unit,
-            }
-            .at(self.path(name)))
-        }
+    /// A mistake at a key of this table.
+    pub fn fault(&self, name: &str, problem: impl Into<String>) -> Fault {
+        Fault::new(self.path(name), problem)
     }
 
-    /// Like `number`, with a value for a key that is not there.
+    /// A number within `min` to `max`, both allowed.
+    pub fn number(&self, name: &str, min: f64, max: f64, unit: &str) -> Checked<f64> {
+        const EXPECTED: &str = "a number";
+        let value = self.value(name, EXPECTED)?;
+        let value = number(value).ok_or_else(|| self.wrong_type(name, value, EXPECTED))?;
+        self.within(name, value, (min, max), unit)
+    }
+
+    /// The number of a key, or `default` if the key is left out.
     pub fn number_or(
         &self,
         name: &str,
         default: f64,
         min: f64,
         max: f64,
-        unit: &'static str,
+        unit: &str,
     ) -> Checked<f64> {
         if self.has(name) {
             self.number(name, min, max, unit)
@@ -114,45 +158,30 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Refuses a number that is not less than another of this table.
-    pub fn less(
-        &self,
-        name: &str,
-        value: f64,
-        other: &'static str,
-        other_value: f64,
-    ) -> Checked<()> {
-        if value < other_value {
+    /// Refuses a number that is not less than the one of another key of this table.
+    pub fn less(&self, name: &str, value: f64, other: &str, limit: f64) -> Checked<()> {
+        if value < limit {
             return Ok(());
         }
-        Err(Problem::NotLess {
-            value,
-            other,
-            other_value,
-        }
-        .at(self.path(name)))
+        let sentence = format!("is {value}; it must be less than {other}, which is {limit}");
+        Err(self.fault(name, sentence))
     }
 
     /// A string.
     pub fn text(&self, name: &str) -> Checked<&'a str> {
-        let value = self.value(name, "a string")?;
-        value
-            .as_str()
-            .ok_or_else(|| wrong(value, "a string").at(self.path(name)))
+        const EXPECTED: &str = "a string";
+        let value = self.value(name, EXPECTED)?;
+        let text = value.as_str();
+        text.ok_or_else(|| self.wrong_type(name, value, EXPECTED))
     }
 
-    /// An array of exactly two numbers within `min` to `max`.
-    pub fn pair(&self, name: &str, min: f64, max: f64, unit: &'static str) -> Checked<[f64; 2]> {
-        self.numbers(name, min, max, unit)
-    }
-
-    /// An array of exactly this many numbers within `min` to `max`.
+    /// An array of exactly `N` numbers within `min` to `max`.
     pub fn numbers<const N: usize>(
         &self,
         name: &str,
         min: f64,
         max: f64,
-        unit: &'static str,
+        unit: &str,
     ) -> Checked<[f64; N]> {
         let expected = match N {
             2 => "an array of two numbers",
@@ -160,26 +189,15 @@ impl<'a> Section<'a> {
         };
         let value = self.value(name, expected)?;
         let DeValue::Array(array) = value else {
-            return Err(wrong(value, expected).at(self.path(name)));
+            return Err(self.wrong_type(name, value, expected));
         };
         let numbers: Option<Vec<f64>> = array.iter().map(|item| number(item.get_ref())).collect();
         let Some(Ok(numbers)) = numbers.map(<[f64; N]>::try_from) else {
-            return Err(Problem::Type {
-                found: format!("an array of {}", array.len()),
-                expected,
-            }
-            .at(self.path(name)));
+            let sentence = format!("is an array of {}; it must be {expected}", array.len());
+            return Err(self.fault(name, sentence));
         };
         for value in numbers {
-            if !(min..=max).contains(&value) {
-                return Err(Problem::Range {
-                    value,
-                    min,
-                    max,
-                    unit,
-                }
-                .at(self.path(name)));
-            }
+            self.within(name, value, (min, max), unit)?;
         }
         Ok(numbers)
     }
@@ -191,74 +209,60 @@ impl<'a> Section<'a> {
         let words = value
             .as_array()
             .and_then(|array| array.iter().map(|item| item.get_ref().as_str()).collect());
-        words.ok_or_else(|| wrong(value, EXPECTED).at(self.path(name)))
+        words.ok_or_else(|| self.wrong_type(name, value, EXPECTED))
     }
 
-    /// An array of tables, each holding no key outside `allowed`; none when
-    /// the key is not there.
+    /// An array of tables that may have only the keys `allowed`; empty if the key is left out.
     pub fn list(&self, name: &str, allowed: &[&str]) -> Checked<Vec<Section<'a>>> {
         const EXPECTED: &str = "an array of tables";
         if !self.has(name) {
             return Ok(Vec::new());
         }
         let value = self.value(name, EXPECTED)?;
-        let items = value
-            .as_array()
-            .ok_or_else(|| wrong(value, EXPECTED).at(self.path(name)))?;
+        let items = value.as_array();
+        let items = items.ok_or_else(|| self.wrong_type(name, value, EXPECTED))?;
         let section = |(i, item): (usize, &'a Spanned<DeValue<'a>>)| {
-            let key = format!("{}[{i}]", self.path(name));
+            let name = format!("{name}[{i}]");
             match item.get_ref() {
-                DeValue::Table(table) => Section { key, table }.only(allowed),
-                other => Err(wrong(other, "a table").at(key)),
+                DeValue::Table(table) => Section {
+                    key: self.path(&name),
+                    table,
+                }
+                .only(allowed),
+                other => Err(self.wrong_type(&name, other, "a table")),
             }
         };
         items.iter().enumerate().map(section).collect()
     }
 
-    fn value(&self, name: &str, expected: &'static str) -> Checked<&'a DeValue<'a>> {
-        self.table
-            .get(name)
-            .map(Spanned::get_ref)
-            .ok_or_else(|| Problem::Missing(expected).at(self.path(name)))
+    fn value(&self, name: &str, expected: &str) -> Checked<&'a DeValue<'a>> {
+        let missing = || self.fault(name, format!("is missing; it must be {expected}"));
+        let value = self.table.get(name).map(Spanned::get_ref);
+        value.ok_or_else(missing)
     }
-}
 
-/// The line, from 1, of a key or of the nearest table that holds it.
-pub(crate) fn line(text: &str, table: &DeTable, key: &str) -> Option<usize> {
-    let within = |whole: &String| {
-        key == *whole
-            || key.starts_with(&format!("{whole}."))
-            || key.starts_with(&format!("{whole}["))
-    };
-    lines(text, table)
-        .into_iter()
-        .filter(|(whole, _)| within(whole))
-        .max_by_key(|(whole, _)| whole.len())
-        .map(|(_, line)| line)
-}
-
-/// Where each key of the file stands, by its whole key.
-fn lines(text: &str, table: &DeTable) -> HashMap<String, usize> {
-    fn walk(text: &str, prefix: &str, table: &DeTable, lines: &mut HashMap<String, usize>) {
-        for (key, value) in table {
-            let whole = if prefix.is_empty() {
-                key.get_ref().to_string()
-            } else {
-                format!("{prefix}.{}", key.get_ref())
-            };
-            let line = text[..key.span().start].matches('\n').count() + 1;
-            lines.insert(whole.clone(), line);
-            if let DeValue::Table(inner) = value.get_ref() {
-                walk(text, &whole, inner, lines);
-            }
+    fn within(&self, name: &str, value: f64, range: (f64, f64), unit: &str) -> Checked<f64> {
+        match (range.0..=range.1).contains(&value) {
+            true => Ok(value),
+            false => Err(Fault::range(self.path(name), value, range, unit)),
         }
     }
-    let mut lines = HashMap::new();
-    walk(text, "", table, &mut lines);
-    lines
+
+    fn wrong_type(&self, name: &str, value: &DeValue, expected: &str) -> Fault {
+        let found = match value {
+            DeValue::String(text) => format!("the string \"{text}\""),
+            DeValue::Integer(number) => number.to_string(),
+            DeValue::Float(number) => number.to_string(),
+            DeValue::Boolean(value) => format!("{value}"),
+            DeValue::Datetime(_) => "a date".to_string(),
+            DeValue::Array(_) => "an array".to_string(),
+            DeValue::Table(_) => "a table".to_string(),
+        };
+        self.fault(name, format!("is {found}; it must be {expected}"))
+    }
 }
 
-/// Integers count as numbers; TOML's nan and inf do not.
+/// The value of an integer or a finite float; TOML's nan and inf are no numbers here.
 fn number(value: &DeValue) -> Option<f64> {
     let text = match value {
         DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str(),
@@ -266,17 +270,4 @@ fn number(value: &DeValue) -> Option<f64> {
         _ => return None,
     };
     text.parse().ok().filter(|value: &f64| value.is_finite())
-}
-
-fn wrong(value: &DeValue, expected: &'static str) -> Problem {
-    let found = match value {
-        DeValue::String(text) => format!("the string \"{text}\""),
-        DeValue::Integer(number) => number.to_string(),
-        DeValue::Float(number) => number.to_string(),
-        DeValue::Boolean(value) => format!("{value}"),
-        DeValue::Datetime(_) => "a date".to_string(),
-        DeValue::Array(_) => "an array".to_string(),
-        DeValue::Table(_) => "a table".to_string(),
-    };
-    Problem::Type { found, expected }
 }

@@ -1,24 +1,24 @@
 //! The likely mistake in a line that is not TOML.
 //!
-//! A parser says what it expected next, in the words of its grammar. But the author has
-//! left out a value, written a comma for the point or a unit behind a number, and wants
-//! to know that. So this module checks the line for such mistakes. If it finds none, the
-//! parser's sentence stays.
+//! A parser says which token it expected, in the words of its grammar. But the author has left
+//! out a value, or written a comma for the point or a unit behind a number, and wants to read
+//! that. So this module checks the line for such mistakes. If it finds none, the parser's
+//! sentence stays.
 
-/// The sentence for a mistake at byte `at` of a text, about which the parser says `said`.
+/// Makes the sentence for a mistake at byte `at` of a text; `message` is the parser's own.
 #[must_use]
-pub fn mistake(text: &str, at: usize, said: &str) -> String {
+pub fn mistake(text: &str, at: usize, message: &str) -> String {
     let number = text.get(..at).map_or(0, |text| text.matches('\n').count());
     let lines: Vec<&str> = text.lines().map(without_comment).collect();
     let line = lines.get(number).copied().unwrap_or_default();
-    let twice = (said == "duplicate key").then(|| twice(&lines, number));
+    let twice = (message == "duplicate key").then(|| twice(&lines, number));
     twice
         .flatten()
         .or_else(|| in_line(line))
-        .unwrap_or_else(|| format!("this is not TOML: {said}"))
+        .unwrap_or_else(|| format!("this is not TOML: {message}"))
 }
 
-/// A line without spaces at its ends and without a comment.
+/// Removes the comment of a line, and blanks at its ends.
 fn without_comment(line: &str) -> &str {
     let mut quoted = None;
     let mut escaped = false;
@@ -35,12 +35,12 @@ fn without_comment(line: &str) -> &str {
     line.trim()
 }
 
-/// The name of a table whose heading this line is.
+/// The name of the table if this line is its heading.
 fn heading(line: &str) -> Option<&str> {
     line.strip_prefix('[')?.strip_suffix(']').map(str::trim)
 }
 
-/// Where the table or the key of a line was before.
+/// The sentence for a table or a key that occurs a second time in this line.
 fn twice(lines: &[&str], number: usize) -> Option<String> {
     let before = lines.get(..number)?;
     let line = lines.get(number)?;
@@ -68,7 +68,7 @@ fn twice(lines: &[&str], number: usize) -> Option<String> {
     ))
 }
 
-/// What is wrong with a line by itself.
+/// The sentence for a mistake within one line.
 fn in_line(line: &str) -> Option<String> {
     if line.starts_with('[') && !line.contains('=') && !line.ends_with(']') {
         return Some(format!("`{line}` lacks the ] behind the table's name"));
@@ -87,7 +87,7 @@ fn in_line(line: &str) -> Option<String> {
     number(value).or_else(|| word(value))
 }
 
-/// A number that is written otherwise than TOML has it.
+/// The sentence for a number that is not written as in TOML.
 fn number(value: &str) -> Option<String> {
     let is_number =
         |text: &str| text.parse::<f64>().is_ok() && !text.starts_with(char::is_alphabetic);
@@ -124,7 +124,7 @@ fn number(value: &str) -> Option<String> {
     })
 }
 
-/// A word without its quotation marks.
+/// The sentence for a word without quotation marks.
 fn word(value: &str) -> Option<String> {
     let plain = |c: char| c.is_alphanumeric() || "_-. ".contains(c);
     let is_word = value.starts_with(char::is_alphabetic) && value.chars().all(plain);
@@ -137,15 +137,15 @@ fn word(value: &str) -> Option<String> {
 mod tests {
     use super::mistake;
 
-    /// The error of a text whose last line is wrong.
-    fn said(text: &str) -> String {
+    /// The sentence for a text whose last line has the mistake.
+    fn sentence(text: &str) -> String {
         let at = text.trim_end().rfind('\n').map_or(0, |end| end + 1);
         mistake(text, at, "expected newline")
     }
 
     #[test]
-    fn a_mistake_is_named_and_how_it_is_written_right() {
-        for (line, sentence) in [
+    fn a_mistake_is_named_with_its_correction() {
+        for (line, expected) in [
             ("l1 = ", "`l1` has no value behind the ="),
             ("l1 = # mm", "`l1` has no value behind the ="),
             (
@@ -171,13 +171,13 @@ mod tests {
             ("pin = D9", "`D9` lacks its quotation marks; write \"D9\""),
             ("[links", "`[links` lacks the ] behind the table's name"),
         ] {
-            assert_eq!(said(line), sentence);
-            assert_eq!(said(&format!("[links]\nl0 = 20.0\n{line}\n")), sentence);
+            assert_eq!(sentence(line), expected);
+            assert_eq!(sentence(&format!("[links]\nl0 = 20.0\n{line}\n")), expected);
         }
     }
 
     #[test]
-    fn what_is_there_twice_is_named_with_its_first_place() {
+    fn a_second_occurrence_is_named_with_the_line_of_the_first() {
         let text = "[a]\nx = 1\n[b]\nx = 2 # once\ny = 3\nx = 4\n";
         let at = text.rfind("x = 4").expect("there");
         assert_eq!(
@@ -193,9 +193,13 @@ mod tests {
     }
 
     #[test]
-    fn another_mistake_keeps_the_parsers_sentence() {
+    fn any_other_mistake_keeps_the_parsers_sentence() {
         for line in ["l1 = \"a", "l1 = [1, 2", "l1 = 1 2", "= 3", "l1 = 'it''s'"] {
-            assert_eq!(said(line), "this is not TOML: expected newline", "{line}");
+            assert_eq!(
+                sentence(line),
+                "this is not TOML: expected newline",
+                "{line}"
+            );
         }
         assert_eq!(mistake("", 0, "x"), "this is not TOML: x");
         assert_eq!(mistake("a = 1", 99, "x"), "this is not TOML: x");

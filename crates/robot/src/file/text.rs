@@ -1,27 +1,28 @@
-//! The file itself, before anything in it has a meaning.
+//! The bytes of a robot file, read as text.
 
 use std::io::Read;
 use std::path::Path;
 
-use crate::file::error::Problem;
-
-/// Bytes that a robot file may have. A real one has some thousands; more is not
-/// read, because a device or a pipe may never end.
+/// The largest robot file that is read, bytes. A real one has some thousands; a device or a
+/// pipe may never end.
 pub const LONGEST: u64 = 1 << 20;
 
-/// The text of a file, of which no more than [`LONGEST`] bytes are read.
-pub(crate) fn read(path: &Path) -> Result<String, Problem> {
-    let unreadable = |fault: std::io::Error| Problem::Unreadable(fault.to_string());
+/// Reads a file of at most [`LONGEST`] bytes.
+///
+/// # Errors
+/// The sentence for a file that cannot be read, is too long, or is not UTF-8 text.
+pub(crate) fn read(path: &Path) -> Result<String, String> {
     let mut bytes = Vec::new();
     std::fs::File::open(path)
         .and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes))
-        .map_err(unreadable)?;
+        .map_err(|fault| format!("cannot be read: {fault}"))?;
     if bytes.len() as u64 > LONGEST {
-        return Err(Problem::Huge { mib: LONGEST >> 20 });
+        let mib = LONGEST >> 20;
+        return Err(format!("is longer than {mib} MiB, so it is no robot file"));
     }
     String::from_utf8(bytes).map_err(|fault| {
         let before = &fault.as_bytes()[..fault.utf8_error().valid_up_to()];
         let line = before.iter().filter(|&&byte| byte == b'\n').count() + 1;
-        Problem::NotText(line)
+        format!("is not UTF-8 text: line {line} holds other bytes")
     })
 }

@@ -8,10 +8,9 @@ use lizard_core::memory::settings::key;
 use lizard_core::numbers::gaits::{LONGEST_NAME, MOST_GAITS};
 use lizard_kinematics::End;
 
-use crate::file::{Checked, Hint, Problem, Section};
+use crate::file::{Checked, Fault, Section, hint};
 use crate::gaits::gait::{Gait, Stride};
-use crate::gaits::harmonic::Harmonic;
-use crate::gaits::path::Path;
+use crate::gaits::path::{Harmonic, Path};
 use crate::gaits::path_leg::PathLeg;
 use crate::gaits::waveform::Waveform;
 use crate::measures::Measures;
@@ -34,23 +33,25 @@ const KEYS: [&str; 12] = [
 const WAVEFORMS: [&str; 3] = ["still", "wave", "held"];
 const REFERENCES: [&str; 3] = ["reverse", "mirror", "like"];
 
-/// Every gait of the file, in its order, references resolved.
+/// Reads the gaits in the order of the file and resolves their references.
 pub(crate) fn gaits(root: &Section, body: &Measures) -> Checked<Vec<Gait>> {
     let section = root.open("gait")?;
     let names = section.names();
     for name in &names {
-        check_name(name).map_err(|problem| problem.at(section.path(name)))?;
+        check_name(name).map_err(|problem| section.fault(name, problem))?;
     }
     if names.len() > MOST_GAITS {
-        return Err(Problem::Many {
-            found: names.len(),
-            most: MOST_GAITS,
-        }
-        .at("gait"));
+        let found = names.len();
+        let sentence = format!(
+            "holds {found} gaits; the firmware numbers them with a byte, so leave at most {MOST_GAITS}"
+        );
+        return Err(Fault::new("gait", sentence));
     }
     check_keys(&section, &names)?;
     if names.first() != Some(&"stand") {
-        return Err(Problem::Stand.at("gait"));
+        let sentence =
+            "the first gait must be stand, the neutral pose that the robot takes at power-on";
+        return Err(Fault::clause("gait", sentence));
     }
     let mut resolver = Resolver {
         section,
@@ -69,11 +70,13 @@ pub(crate) fn gaits(root: &Section, body: &Measures) -> Checked<Vec<Gait>> {
     if gaits[0].strides.iter().all(still) {
         Ok(gaits)
     } else {
-        Err(Problem::Moving.at("gait.stand"))
+        let sentence = "must be the neutral pose that the robot takes at power-on: waveform = \"still\" and a period";
+        Err(Fault::new("gait.stand", sentence))
     }
 }
 
-/// The memory keeps the gait of `boot` by a number made of its name.
+/// Refuses two gaits that the EEPROM cannot tell apart: it keeps the gait of `boot` by a number
+/// that is made of its name.
 fn check_keys(section: &Section, names: &[&str]) -> Checked<()> {
     let mut known = HashMap::new();
     for name in names {
@@ -81,41 +84,46 @@ fn check_keys(section: &Section, names: &[&str]) -> Checked<()> {
             .bytes()
             .map(|byte| if byte == b'-' { b' ' } else { byte });
         if let Some(other) = known.insert(key(written), *name) {
-            return Err(Problem::SameKey(other.to_string()).at(section.path(name)));
+            let sentence = format!(
+                "is no gait name: the memory would take it for {other} when `boot` begins it, so one of them needs another name"
+            );
+            return Err(section.fault(name, sentence));
         }
     }
     Ok(())
 }
 
-fn check_name(name: &str) -> Result<(), Problem> {
+fn check_name(name: &str) -> Result<(), String> {
     let letters = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
+    let refused = |why: String| Err(format!("is no gait name: {why}"));
     if !name.chars().all(letters) || !name.starts_with(|c: char| c.is_ascii_lowercase()) {
-        return Err(Problem::Name(
-            "it must be lower-case letters, digits and dashes, a letter first",
-        ));
+        return refused(
+            "it must be lower-case letters, digits and dashes, a letter first".to_string(),
+        );
     }
     if name.len() > LONGEST_NAME {
-        return Err(Problem::LongName {
-            length: name.len(),
-            most: LONGEST_NAME,
-        });
+        let length = name.len();
+        return refused(format!(
+            "it has {length} characters, but `status` must fit into a line of the console with it, so it may have {LONGEST_NAME}"
+        ));
     }
     if name.ends_with('-') || name.contains("--") {
-        return Err(Problem::Name("a dash stands for a blank between two words"));
+        return refused("a dash stands for a blank between two words".to_string());
     }
     let word = name.split('-').next().unwrap_or(name);
     if Word::find(word.as_bytes()).is_some_and(Word::is_reserved) {
-        return Err(Problem::Command(word.to_string()));
+        return refused(format!("\"{word}\" is a command of the console"));
     }
     Ok(())
 }
 
+/// Reads gaits by name, each after those that it refers to.
 struct Resolver<'a> {
     section: Section<'a>,
     names: Vec<&'a str>,
     body: &'a Measures,
     known: HashMap<&'a str, Gait>,
-    /// The gaits that wait for the one being resolved.
+    /// Names of the gaits that refer to the one being read, outermost first.
     chain: Vec<&'a str>,
 }
 
@@ -136,7 +144,7 @@ impl<'a> Resolver<'a> {
         Ok(gait)
     }
 
-    /// A gait that starts from another.
+    /// Reads a gait that is derived from another one.
     fn derived(
         &mut self,
         name: &'a str,
@@ -144,19 +152,16 @@ impl<'a> Resolver<'a> {
         reference: &'static str,
     ) -> Checked<Gait> {
         only(one, &[reference, "period", "gain"], reference)?;
-        let key = one.path(reference);
         let base = one.text(reference)?;
         if !self.names.contains(&base) {
-            let hint = Hint::new(base, &self.names);
-            return Err(Problem::NoSuchGait {
-                name: base.to_string(),
-                hint,
-            }
-            .at(key));
+            let hint = hint(base, &self.names);
+            let sentence = format!("names the gait \"{base}\", which does not exist; {hint}");
+            return Err(one.fault(reference, sentence));
         }
         if self.chain.contains(&base) {
             let circle = [self.chain.as_slice(), &[base]].concat().join(" -> ");
-            return Err(Problem::Circle(circle).at(key));
+            let sentence = format!("the gaits refer to each other in a circle: {circle}");
+            return Err(Fault::clause(one.path(reference), sentence));
         }
         let mut gait = self.resolve(base)?;
         match reference {
@@ -170,7 +175,7 @@ impl<'a> Resolver<'a> {
     }
 }
 
-/// Which of the ways to give a gait this one uses.
+/// Finds the one key that says how this gait is given.
 fn manner(one: &Section) -> Checked<&'static str> {
     let path = one.has("head") || one.has("tail");
     let mut ways: Vec<&'static str> = REFERENCES.into_iter().filter(|key| one.has(key)).collect();
@@ -178,17 +183,18 @@ fn manner(one: &Section) -> Checked<&'static str> {
     ways.extend(path.then_some("head or tail"));
     match ways.as_slice() {
         [way] => Ok(way),
-        _ => Err(
-            Problem::OneOf("waveform, a path (head, tail), reverse, mirror, like")
-                .at(one.key.clone()),
-        ),
+        _ => {
+            let sentence =
+                "needs exactly one of waveform, a path (head, tail), reverse, mirror, like";
+            Err(Fault::new(one.key.clone(), sentence))
+        }
     }
 }
 
-/// Refuses keys that mean nothing together with `with`.
+/// Refuses keys that have no meaning together with `with`.
 fn only(one: &Section, allowed: &[&str], with: &str) -> Checked<()> {
     match one.names().into_iter().find(|name| !allowed.contains(name)) {
-        Some(name) => Err(Problem::Conflict(with.to_string()).at(one.path(name))),
+        Some(name) => Err(one.fault(name, format!("does not go with {with}"))),
         None => Ok(()),
     }
 }
@@ -238,12 +244,8 @@ fn waveform(name: &str, one: &Section, body: &Measures) -> Checked<Gait> {
             })
         }
         word => {
-            let hint = Hint::new(word, &WAVEFORMS);
-            return Err(Problem::Word {
-                word: word.to_string(),
-                hint,
-            }
-            .at(one.path("waveform")));
+            let hint = hint(word, &WAVEFORMS);
+            return Err(one.fault("waveform", format!("is \"{word}\"; {hint}")));
         }
     };
     finish(name, one, body, strides)
@@ -258,12 +260,12 @@ fn path(name: &str, one: &Section, body: &Measures) -> Checked<Gait> {
         }
         let section = one.section(end.name(), &["centre", "x", "y"])?;
         let path = Path {
-            centre: section.pair("centre", -255.0, 255.0, "mm")?,
+            centre: section.numbers("centre", -255.0, 255.0, "mm")?,
             x: harmonics(&section, "x")?,
             y: harmonics(&section, "y")?,
         };
         let legs = PathLeg::pair(body.lizard, body.neutral(), end, &path)
-            .map_err(|problem| problem.at(section.key.clone()))?;
+            .map_err(|problem| Fault::clause(section.key.clone(), problem))?;
         for (servo, leg) in legs {
             strides[servo] = Stride {
                 waveform: Waveform::Path(Box::new(leg)),
@@ -310,7 +312,7 @@ fn gains(one: &Section) -> Checked<[f64; 4]> {
     )
 }
 
-/// A number for each leg, in servo order.
+/// Reads a number for each leg, in servo order.
 fn legs(
     section: &Section,
     default: Option<f64>,
@@ -328,10 +330,10 @@ fn legs(
     Ok(values)
 }
 
-/// Each leg's place in the order of swings, in servo order.
+/// Reads the order of swings: for each leg, in servo order, its place.
 fn order(one: &Section) -> Checked<[usize; 4]> {
     let words = one.words("order")?;
-    let fault = || Problem::Order.at(one.path("order"));
+    let fault = || one.fault("order", "must list each of LF, RF, RH, LH exactly once");
     if words.len() != LEGS.len() {
         return Err(fault());
     }
@@ -350,11 +352,7 @@ fn harmonics(section: &Section, name: &str) -> Checked<Vec<Harmonic>> {
     let term = |term: Section| {
         let k = term.number("k", 1.0, 16.0, "periods in a cycle")?;
         if k.fract() != 0.0 {
-            return Err(Problem::Type {
-                found: k.to_string(),
-                expected: "a whole number",
-            }
-            .at(term.path("k")));
+            return Err(term.fault("k", format!("is {k}; it must be a whole number")));
         }
         Ok(Harmonic {
             k,

@@ -1,18 +1,17 @@
-//! A gait in floating point: the truth that tables, pulses and predictions are
-//! compared with.
+//! A gait in floating point: the reference for tables, pulses and predictions.
 
 use crate::gaits::waveform::Waveform;
 use crate::measures::servo::{FORWARD, OPPOSITE};
+use crate::units::STEPS_PER_DEGREE;
 
-/// What one leg does over a cycle: `amplitude * waveform(phase - start)`.
+/// The movement of one leg over a cycle: `amplitude * waveform(phase - start)`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stride {
-    /// The shape.
+    /// The shape of the movement.
     pub waveform: Waveform,
     /// Phase at which the waveform begins, 0 to 1.
     pub start: f64,
-    /// Sweep at the waveform's 1, deg; negative where the leg runs against the
-    /// others.
+    /// Sweep at the waveform's 1, deg; negative if the leg runs against the others.
     pub amplitude: f64,
 }
 
@@ -34,11 +33,11 @@ impl Stride {
 /// A gait of robot.toml with its references resolved.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Gait {
-    /// Its name, also its console command with a blank for the dash.
+    /// Name of the gait; with a blank for each dash also its console command.
     pub name: String,
     /// Time of one cycle at full speed, s.
     pub period: f64,
-    /// True where the phase runs backwards, from 1 to 0.
+    /// True if the phase runs backwards, from 1 to 0.
     pub reversed: bool,
     /// The legs in servo order: LF, RF, RH, LH.
     pub strides: [Stride; 4],
@@ -47,7 +46,7 @@ pub(crate) struct Gait {
 }
 
 impl Gait {
-    /// The phase at a time after a start at phase 0, s at full speed.
+    /// The phase at a time in s after a start at phase 0, at full speed.
     pub fn phase(&self, seconds: f64) -> f64 {
         let cycles = seconds / self.period;
         (if self.reversed { -cycles } else { cycles }).rem_euclid(1.0)
@@ -65,13 +64,19 @@ impl Gait {
         std::array::from_fn(|i| self.neutral[i] + FORWARD[i] * sweeps[i])
     }
 
-    /// The same gait with left and right exchanged.
+    /// The servo angles at sweeps from neutral as the firmware has them, in angle steps: deg,
+    /// chassis frame, servo order.
+    pub fn table_angles(&self, sweeps: [i16; 4]) -> [f64; 4] {
+        std::array::from_fn(|i| self.neutral[i] + f64::from(sweeps[i]) / STEPS_PER_DEGREE)
+    }
+
+    /// Exchanges left and right.
     pub fn mirrored(mut self) -> Self {
         self.strides = OPPOSITE.map(|i| self.strides[i].clone());
         self
     }
 
-    /// Each leg's sweep times its gain.
+    /// Multiplies each leg's sweep by its gain.
     pub fn scaled(mut self, gains: [f64; 4]) -> Self {
         for (stride, gain) in self.strides.iter_mut().zip(gains) {
             stride.amplitude *= gain;

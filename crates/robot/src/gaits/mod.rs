@@ -1,21 +1,21 @@
 //! Gaits as robot.toml defines them, in floating point.
 //!
 //! A gait is four legs that repeat a movement, each at a phase of its own. An author writes
-//! it as a stroke, as a sine, as the path of the head or the tail, or as another gait with
-//! changes. Here each becomes what a leg does at any phase: the truth that tables, pulses and
-//! predictions are compared with.
+//! it as a stroke, as the path of the head or the tail, or as another gait with changes. Here
+//! each becomes the sweep of a leg at any phase, the reference for tables, pulses and
+//! predictions.
 
+mod bars;
 pub(crate) mod define;
 mod gait;
-mod harmonic;
 mod path;
 mod path_leg;
 mod waveform;
 
+pub use bars::Bars;
 pub(crate) use gait::Gait;
 pub use gait::Stride;
-pub use harmonic::Harmonic;
-pub use path::Path;
+pub use path::{Harmonic, Path};
 pub use path_leg::PathLeg;
 pub use waveform::Waveform;
 pub(crate) use waveform::canonical;

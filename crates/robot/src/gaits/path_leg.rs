@@ -1,9 +1,8 @@
-//! How the two cranks of an end must turn to lead its point along a path: the
-//! inverse of the five-bar.
+//! The sweeps of the two cranks of an end that lead its point along a path: the inverse of
+//! the five-bar.
 
-use lizard_kinematics::{End, Lizard, wrap};
+use lizard_kinematics::{End, Lizard, Vector, wrap};
 
-use crate::file::Problem;
 use crate::gaits::path::Path;
 use crate::measures::servo::FORWARD;
 
@@ -13,9 +12,9 @@ pub struct PathLeg {
     lizard: Lizard,
     end: End,
     path: Path,
-    /// Servo, 0 to 3.
+    /// Index of the servo, 0 to 3.
     servo: usize,
-    /// Its neutral angle, deg.
+    /// Neutral angle of this servo, deg.
     neutral: f64,
 }
 
@@ -23,24 +22,25 @@ pub struct PathLeg {
 const CHECKED: usize = 4096;
 
 impl PathLeg {
-    /// The two servos of an end, with their indices, once every point of the
-    /// path was found within reach. `neutral`: all four neutral angles, deg.
+    /// Makes the legs of the two servos of an end, with their indices. `neutral`: all four
+    /// neutral angles, deg.
+    ///
+    /// # Errors
+    /// The sentence for a point of the path that is out of reach.
     pub(crate) fn pair(
         lizard: Lizard,
         neutral: [f64; 4],
         end: End,
         path: &Path,
-    ) -> Result<[(usize, Self); 2], Problem> {
+    ) -> Result<[(usize, Self); 2], String> {
         for i in 0..CHECKED {
             let phase = i as f64 / CHECKED as f64;
             let point = path.at(phase);
             if lizard.point_angles(end, point).is_err() {
-                return Err(Problem::OutOfReach {
-                    which: end.name(),
-                    x: point.x,
-                    y: point.y,
-                    phase,
-                });
+                let (Vector { x, y }, end) = (point, end.name());
+                return Err(format!(
+                    "the point ({x:.2}, {y:.2}) mm at phase {phase:.4} is out of reach of the {end}"
+                ));
             }
         }
         Ok(end.servos().map(|servo| {
@@ -58,9 +58,9 @@ impl PathLeg {
     /// The leg's sweep from neutral at a phase of 0 to 1, deg, foot forward
     /// positive.
     pub fn sweep(&self, phase: f64) -> f64 {
-        // Out of reach cannot happen: `pair` saw no such point, and the check
-        // of every sample keeps the path's type-1 margins, which are zero at
-        // the edge of reach, far from zero.
+        // No point is out of reach: `pair` has refused such paths, and the check of
+        // every sample keeps the path's type-1 margins, which are zero at the edge of
+        // reach, far from zero.
         let angles = self
             .lizard
             .point_angles(self.end, self.path.at(phase))

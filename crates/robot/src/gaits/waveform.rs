@@ -1,7 +1,7 @@
-//! One leg's sweep over one cycle. Feet are never lifted: a pad drags, and the
-//! robot walks because three feet hold while one returns. So a waveform is a slow
-//! stance, in which the foot goes back, and a fast swing forward; where the swing
-//! is long enough, the two meet without a kink in speed.
+//! The shape of one leg's sweep over a cycle. Feet are never lifted: a pad drags, and the
+//! robot walks because three feet hold while one returns. So a waveform is a slow stance,
+//! in which the foot goes back, and a fast swing forward; if the swing is long enough, the
+//! two meet without a kink in speed.
 //!
 //! A waveform maps the phase (one cycle = 1) to -1..1, foot forward = 1.
 
@@ -10,10 +10,10 @@ use crate::gaits::path_leg::PathLeg;
 /// Shares of the cycle that a held gait gives to each of its five moves.
 const MOVE: f64 = 0.2;
 
-/// A waveform.
+/// A function of the phase with values from -1 to 1.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Waveform {
-    /// Never moves.
+    /// A leg that does not move.
     Still,
     /// Linear stance over `duty` of the cycle, then a cubic Hermite swing that
     /// meets the stance with equal speed at both ends; its peak is 1.
@@ -24,7 +24,7 @@ pub enum Waveform {
     /// A smoothstep back in the first fifth, the stance common to all legs, then a
     /// smoothstep forward, the swing, in fifth number `turn + 1`; it holds otherwise.
     Held {
-        /// 0 to 3: which of the four swings is this leg's.
+        /// Index of this leg's swing among the four, 0 to 3.
         turn: usize,
     },
     /// A leg whose servo follows a path of the head or tail point. Its value is
@@ -78,10 +78,11 @@ fn smoothstep(t: f64) -> f64 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// How a waveform is found in another's table: `at(u) = sign * base.at(u - shift)`.
+/// Reduces a waveform to one that has a table: `at(u) = sign * base.at(u - shift)`. Returns
+/// base, shift and sign.
 ///
-/// The held waveforms of the first and the last swing are each other's
-/// negative, shifted, and so are the two in between; two tables do for four.
+/// The held waveforms of the first and the last swing are each other's negative, shifted, and
+/// so are the two in between; two tables are enough for four.
 pub(crate) fn canonical(waveform: &Waveform) -> (Waveform, f64, f64) {
     match waveform {
         Waveform::Held { turn } if *turn >= 2 => (

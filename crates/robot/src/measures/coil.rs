@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 /// Shear modulus of spring steel, N/mm^2.
 const SHEAR: f64 = 79_300.0;
 
-/// A tension spring as a shop describes it.
+/// A tension spring with the dimensions that a shop gives.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coil {
     /// Diameter of the wire, mm.
@@ -17,7 +17,7 @@ pub struct Coil {
 }
 
 impl Coil {
-    /// The one size that the paper gives, with this wire.
+    /// The spring of the paper's size, with this wire.
     #[must_use]
     pub const fn paper(wire: f64) -> Self {
         Self {
@@ -33,21 +33,21 @@ impl Coil {
         self.outer - self.wire
     }
 
-    /// How many coils give way. The wound body is what the two hooks, each an inner
-    /// diameter long, leave of the length.
+    /// Number of active coils. The wound body has the length without the two hooks, each of
+    /// which is an inner diameter long.
     #[must_use]
     pub fn coils(&self) -> f64 {
         let inner = self.outer - 2.0 * self.wire;
         (self.length - 2.0 * inner) / self.wire - 1.0
     }
 
-    /// Force for each mm, N/mm: G d^4 / (8 D^3 n).
+    /// Rate, N/mm: G d^4 / (8 D^3 n).
     #[must_use]
     pub fn rate(&self) -> f64 {
         SHEAR * self.wire.powi(4) / (8.0 * self.mean().powi(3) * self.coils())
     }
 
-    /// The force that opens its coils, N. Winding leaves a shear stress that falls with
+    /// Initial tension: the force that opens the coils, N. Winding leaves a shear stress that falls with
     /// the ratio of coil to wire C; makers reach 231 / e^(0.105 C) MPa, give or take
     /// 6.9 (4 - (C - 3) / 6.5) MPa.
     #[must_use]
@@ -56,19 +56,19 @@ impl Coil {
         self.force_of(231.0 * (-0.105 * ratio).exp())
     }
 
-    /// Its force at a length inside its hooks, N.
+    /// Force at a length inside the hooks, N.
     #[must_use]
     pub fn force(&self, length: f64) -> f64 {
         self.initial_tension() + self.rate() * (length - self.length).max(0.0)
     }
 
-    /// The shear stress at a force, N/mm^2.
+    /// Shear stress at a force, N/mm^2.
     #[must_use]
     pub fn stress(&self, force: f64) -> f64 {
         force / self.force_of(1.0)
     }
 
-    /// The force at a shear stress of N/mm^2.
+    /// Force at a shear stress in N/mm^2, N.
     fn force_of(&self, stress: f64) -> f64 {
         PI * self.wire.powi(3) * stress / (8.0 * self.mean())
     }

@@ -1,22 +1,18 @@
-//! What drives a leg from its servo's link: `[leg.drive]` in robot.toml.
+//! The drive from a servo's link to its leg: `[leg.drive]` in robot.toml.
 
-use lizard_contact::{Drive, Kind, Spring, Strut};
+use lizard_contact::{Drive, Kind, Strut};
 
-use crate::file::{Checked, Hint, Problem, Section};
+use crate::file::{Checked, Section, hint};
 use crate::measures::legs::LegPlan;
 use crate::measures::parts::Parts;
 use crate::measures::strut;
 
 const TABLE: &str = "drive";
-const KEYS: [&str; 6] = ["kind", "play", "force", "rate", "stiffness", "preload"];
-/// The kinds' words, and the keys that each of them has besides `kind` and `play`.
-const KINDS: [(&str, &[&str]); 3] = [
-    (Kind::WORDS[0], &[]),
-    (Kind::WORDS[1], &["force", "rate"]),
-    (Kind::WORDS[2], &["stiffness", "preload"]),
-];
+const KEYS: [&str; 4] = ["kind", "play", "force", "rate"];
+/// The kinds of drive, and the keys that each of them has besides `kind` and `play`.
+const KINDS: [(&str, &[&str]); 2] = [(Kind::WORDS[0], &[]), (Kind::WORDS[1], &["force", "rate"])];
 
-/// Reads `[leg.drive]` of the table `[leg]`; left out, the legs are rigid.
+/// Reads `[leg.drive]`; if it is left out, the legs are rigid.
 pub(crate) fn read(
     leg: &Section,
     legs: &[LegPlan; 4],
@@ -26,22 +22,23 @@ pub(crate) fn read(
     if !leg.has(TABLE) {
         return Ok(Drive::RIGID);
     }
-    let section = leg.section(TABLE, &KEYS)?;
+    let section = leg.open(TABLE)?;
     let word = match section.has("kind") {
         true => section.text("kind")?,
         false => KINDS[0].0,
     };
+    if word == "spring" {
+        let sentence = "is \"spring\", which no part is; write \"strut\" with the force and rate of its spring, or \"rigid\"";
+        return Err(section.fault("kind", sentence));
+    }
+    let section = section.only(&KEYS)?;
     let Some((_, own)) = KINDS.into_iter().find(|(known, _)| *known == word) else {
-        let problem = Problem::Word {
-            word: word.to_string(),
-            hint: Hint::new(word, &KINDS.map(|(known, _)| known)),
-        };
-        return Err(problem.at(section.path("kind")));
+        let hint = hint(word, &KINDS.map(|(known, _)| known));
+        return Err(section.fault("kind", format!("is \"{word}\"; {hint}")));
     };
     let mut others = KINDS.into_iter().flat_map(|(_, keys)| keys);
     if let Some(other) = others.find(|key| !own.contains(key) && section.has(key)) {
-        let problem = Problem::Conflict(format!("kind = \"{word}\""));
-        return Err(problem.at(section.path(other)));
+        return Err(section.fault(other, format!("does not go with kind = \"{word}\"")));
     }
     let kind = match word {
         "strut" => {
@@ -52,10 +49,6 @@ pub(crate) fn read(
                 ..coil
             })
         }
-        "spring" => Kind::Spring(Spring {
-            rate: section.number("stiffness", 0.01, 10_000.0, "N mm/deg")?,
-            preload: section.number_or("preload", 0.0, 0.0, 10_000.0, "N mm")?,
-        }),
         _ => Kind::Rigid,
     };
     let play = section.number_or("play", 0.0, 0.0, 20.0, "deg")?;

@@ -1,9 +1,8 @@
-//! What the contact model knows of a robot: `[ground]`, `[body]` and `[feet]` in
-//! robot.toml.
+//! The input of the contact model: `[ground]`, `[body]` and `[feet]` in robot.toml.
 
 use lizard_contact::{Body, DEFAULT_FRICTION, Drive, Feet, Ground, Stance};
 
-use crate::file::{Checked, Problem, Section};
+use crate::file::{Checked, Section};
 use crate::measures::servo::LEGS;
 
 /// Reads `[ground]`, `[body]` and `[feet]` of a robot whose feet and legs are known.
@@ -20,7 +19,7 @@ pub(crate) fn read(root: &Section, feet: Feet, drive: Drive) -> Checked<Ground> 
     })
 }
 
-/// What stands on the feet. A mass centre that leaves a foot in the air at neutral is
+/// Reads the mass and its centre. A mass centre that leaves a foot in the air at neutral is
 /// refused.
 fn body(root: &Section, feet: &Feet) -> Checked<Body> {
     if !root.has("body") {
@@ -29,18 +28,24 @@ fn body(root: &Section, feet: &Feet) -> Checked<Body> {
     let section = root.section("body", &["mass", "centre"])?;
     let mass = section.number_or("mass", Body::DEFAULT.mass, 10.0, 10_000.0, "g")?;
     let centre = match section.has("centre") {
-        true => section.pair("centre", -500.0, 500.0, "mm")?,
+        true => section.numbers("centre", -500.0, 500.0, "mm")?,
         false => Body::DEFAULT.centre,
     };
     let body = Body { mass, centre };
     let loads = Stance::LEVEL.loads(&body, feet.at([0.0; 4]));
     match loads.iter().position(|load| *load <= 0.0) {
-        Some(foot) => Err(Problem::InTheAir(LEGS[foot]).at(section.path("centre"))),
+        Some(foot) => {
+            let foot = LEGS[foot];
+            let sentence = format!(
+                "is so far from the middle that foot {foot} is in the air at neutral; all four must carry"
+            );
+            Err(section.fault("centre", sentence))
+        }
         None => Ok(body),
     }
 }
 
-/// Reads `[feet]`, all of which may be left out.
+/// Reads `[feet]`; every key may be left out.
 fn stance(root: &Section) -> Checked<Stance> {
     let all = Stance::DEFAULT;
     if !root.has("feet") {

@@ -1,10 +1,10 @@
-//! The legs seen from above: where they are pivoted, what carries the foot, and the
-//! strut by which the servo pulls the leg along.
+//! The legs seen from above: their pivots, the coupler with the foot, and the strut by which
+//! the servo pulls the leg along.
 //!
-//! The paper's figures do not say where the legs' pivots are. Only the circle of the foot
-//! matters for walking. A parallelogram carries its coupler without turning it, so the
-//! two pivots may be moved together to where there is room, and the foot is moved on the
-//! coupler by the same distance the other way. The driven pivot keeps away from the
+//! The paper's figures do not show the legs' pivots. Only the circle of the foot matters for
+//! walking. A parallelogram carries its coupler without turning it, so the two pivots may be
+//! moved together to where there is room, if the foot is moved on the coupler by the same
+//! distance in the opposite direction. The driven pivot keeps away from the
 //! servo, whose link would sweep over it. The strut between them is the coupler of a
 //! second parallelogram: shaft, pivot and two equal anchor arms.
 //!
@@ -17,18 +17,18 @@ use lizard_kinematics::{Lizard, Vector};
 use crate::measures::parts::Parts;
 use crate::measures::servo::HAND;
 
-/// What no pose moves of a leg, seen from above.
+/// The dimensions of a leg that are the same in every pose, seen from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LegPlan {
     /// The servo's shaft, mm, chassis frame.
     pub shaft: Vector,
     /// The driven crank's pivot, mm, chassis frame.
     pub driven: Vector,
-    /// The follower's pivot.
+    /// The follower's pivot, mm, chassis frame.
     pub idle: Vector,
-    /// From the first to the second, length one; so the coupler points at any pose.
+    /// Unit vector from the driven to the follower's pivot: the coupler's direction in every pose.
     pub along: Vector,
-    /// From the servo's angle to the direction of the leg's crank, deg.
+    /// Angle from the servo's direction to that of the leg's crank, deg.
     pub set: f64,
     /// The crank's joint with the coupler, in the crank's frame, mm: x points as the
     /// servo's crank does while the leg does not lag.
@@ -38,9 +38,9 @@ pub struct LegPlan {
     pub foot: Vector,
     /// From the shaft to the driven pivot, length one.
     pub strut: Vector,
-    /// As long is the strut from anchor to anchor while the leg does not lag, mm.
+    /// Length of the strut from anchor to anchor while the leg does not lag, mm.
     pub strut_length: f64,
-    /// The anchor on the servo's link, and on the leg, in their frames, mm.
+    /// The strut's anchor in the frame of the servo's link, and in that of the leg, mm.
     pub anchor: Vector,
 }
 
@@ -49,16 +49,16 @@ pub struct LegPlan {
 pub struct LegPlace {
     /// The driven crank's pivot and the follower's.
     pub pivots: [Vector; 2],
-    /// Their joints with the coupler, which carries the foot.
+    /// The joints of both cranks with the coupler, which carries the foot.
     pub joints: [Vector; 2],
-    /// The foot.
+    /// The foot on its coupler.
     pub foot: Vector,
     /// The strut's anchors: on the servo's link, and on the leg's crank.
     pub strut: [Vector; 2],
 }
 
 impl LegPlan {
-    /// The leg of a servo (0 to 3) whose neutral angle (deg, chassis frame) this is.
+    /// Plans the leg of a servo (0 to 3) with this neutral angle (deg, chassis frame).
     pub(crate) fn new(
         servo: usize,
         neutral: f64,
@@ -72,8 +72,8 @@ impl LegPlan {
         let shaft = lizard.shafts()[servo];
         let driven = shaft + driven(servo, parts);
         let set = reach.angle() - neutral;
-        // The ground link makes the servo's angle with the crank. Of the two ends that
-        // it may have, the one away from the servo.
+        // The angle between ground link and crank is the servo's. Of the two possible ends of
+        // the link, the one away from the servo is taken.
         let link = Vector::direction(set) * lizard.leg.ground;
         let [idle, other] = [driven + link, driven - link];
         let idle = match (idle - shaft).square() > (other - shaft).square() {
@@ -98,8 +98,8 @@ impl LegPlan {
         }
     }
 
-    /// The leg while its servo is at one angle and its crank follows it at another, both
-    /// in deg, chassis frame. They differ by the lag.
+    /// Places the leg for an angle of the servo and an angle of the leg's crank, both in deg,
+    /// chassis frame. They differ by the lag.
     #[must_use]
     pub fn at(&self, servo: f64, leg: f64) -> LegPlace {
         let turned = |angle: f64, v: Vector| {
@@ -120,12 +120,12 @@ impl LegPlan {
     }
 }
 
-/// From a servo's shaft to the driven pivot of its leg, mm, chassis frame.
+/// The vector from a servo's shaft to the driven pivot of its leg, mm, chassis frame.
 fn driven(servo: usize, parts: &Parts) -> Vector {
     outward(servo, parts.pivot)
 }
 
-/// A vector outward and towards the middle, as at a servo, in the chassis frame.
+/// Converts a distance outward and one towards the middle, at a servo, to the chassis frame.
 pub(crate) fn outward(servo: usize, [outward, inward]: [f64; 2]) -> Vector {
     Vector::new(-LEFT[servo] * outward, -FRONT[servo] * inward)
 }
@@ -138,7 +138,7 @@ mod tests {
     use crate::testing::{all, robot};
 
     #[test]
-    fn a_crank_is_as_long_as_it_is_and_at_its_servos_angle_to_the_ground_link() {
+    fn a_crank_has_its_length_and_its_servos_angle_to_the_ground_link() {
         for (name, robot) in all() {
             let bars = robot.lizard().leg;
             for (servo, of) in robot.servos().iter().enumerate() {
@@ -147,7 +147,7 @@ mod tests {
                     let [ground, coupler] =
                         [leg.pivots, leg.joints].map(|[driven, idle]| idle - driven);
                     let crank = leg.joints[0] - leg.pivots[0];
-                    // Which of its two directions a ground link has is not told.
+                    // A ground link may have either of two opposite directions.
                     let between = wrap(2.0 * (crank.angle() - ground.angle() - angle));
                     assert!(between.abs() < 1e-9, "{name} {servo} {between}");
                     assert!((crank.length() - bars.crank).abs() < 1e-9, "{name} {servo}");

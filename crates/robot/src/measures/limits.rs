@@ -1,5 +1,4 @@
-//! What a pose must keep clear of, and how fast a servo may turn: `[limits]` in
-//! robot.toml.
+//! The limits of poses and of the servos' speed: `[limits]` in robot.toml.
 
 use lizard_kinematics::Limits;
 
@@ -7,10 +6,10 @@ use crate::file::{Checked, Section};
 use crate::measures::scale::LONGEST_BAR;
 use crate::measures::servo::Pace;
 
-/// Slower than this and a move outlasts the firmware's count of its frames.
+/// The smallest speed limit, deg/s: a slower move would overflow the firmware's count of frames.
 const SLOWEST: f64 = 10.0;
 
-/// Reads the table.
+/// Reads `[limits]`.
 pub(crate) fn read(root: &Section) -> Checked<(Limits, Pace)> {
     let section = root.section(
         "limits",
@@ -25,7 +24,7 @@ pub(crate) fn read(root: &Section) -> Checked<(Limits, Pace)> {
         ],
     )?;
     let limits = Limits {
-        // Below .1 the core's tables of the couplers end.
+        // The core's tables of the couplers end at 0.1.
         type2: section.number("type2", 0.1, 0.95, "(a sine)")?,
         type1: section.number("type1", 0.0, 0.95, "(a sine)")?,
         leg: section.number("leg", 0.0, 0.95, "(a sine)")?,

@@ -1,10 +1,9 @@
-//! The robot's measurements in robot.toml, and what each of them may be.
+//! The robot's measurements in robot.toml, each with its range.
 //!
-//! A robot that is written down wrongly breaks itself: bars that do not close, a servo
-//! that is driven against its stop, a chassis that falls over. So every number has its
-//! range, the bars must fit the core's integers, and the neutral pose must be safe. What
-//! has passed is [`Measures`]: linkage, servos, legs, parts, supplies and the ground of the
-//! contact model, which all that follows reads.
+//! A wrong number would break the robot: bars that do not close, a servo that is driven
+//! against its stop, a chassis that falls over. So every number has its range, the bars must
+//! fit the core's integers, and the neutral pose must be safe. [`Measures`] holds the checked
+//! values: linkage, servos, legs, parts, supplies and the ground of the contact model.
 
 mod coil;
 mod drive;
@@ -33,39 +32,38 @@ use lizard_contact::Ground;
 use lizard_core::numbers::bars::SHORTEST_COUPLER;
 use lizard_kinematics::{End, Leg, Limits, Links, Lizard, Side};
 
-use crate::file::{Checked, Problem, Section};
+use crate::file::{Checked, Fault, Section};
 use hips::Hips;
 use scale::LONGEST_BAR;
 
-/// Lengths of a robot that hobby servos move, mm.
+/// Range of a link's length, mm.
 const LENGTHS: (f64, f64) = (1.0, LONGEST_BAR);
 
-/// Where what drives the legs was said before it had a table of its own.
-const SPRING: &str = "[leg.drive] with kind = \"spring\", stiffness and preload, or with kind = \"strut\" and the force and rate of its spring";
+/// The table that replaces `[leg] spring` and `preload`.
+const SPRING: &str = "[leg.drive] with kind = \"strut\" and the force and rate of its spring";
 
 const LINKS: [&str; 20] = [
     "l0", "l1", "l2", "l3", "l4", "l5", "l6", "l7", "l8", "l9", "l10", "l11", "l12", "l13", "l14",
     "l15", "l16", "l17", "l18", "l19",
 ];
 
-/// All of robot.toml but the gaits.
+/// Everything in robot.toml except the gaits.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Measures {
     pub lizard: Lizard,
-    /// A1, A2, A3, A4.
+    /// The servos A1, A2, A3, A4.
     pub servos: [Servo; 4],
     pub limits: Limits,
     pub pace: Pace,
     pub ground: Ground,
     pub supplies: Supplies,
     pub parts: Parts,
-    /// In servo order.
+    /// The legs in servo order.
     pub legs: [LegPlan; 4],
 }
 
 impl Measures {
-    /// Reads and checks the measurements; the neutral pose of what it returns is
-    /// safe.
+    /// Reads and checks the measurements and the neutral pose.
     pub fn read(root: &Section) -> Checked<Self> {
         let links = links(root)?;
         let (leg, hips, mount) = leg(root)?;
@@ -89,8 +87,8 @@ impl Measures {
             lizard,
             parts,
         };
-        measures.fits()?;
-        measures.stands()?;
+        measures.check_lengths()?;
+        measures.check_neutral()?;
         Ok(measures)
     }
 
@@ -99,10 +97,9 @@ impl Measures {
         self.servos.map(|servo| servo.neutral)
     }
 
-    /// What the firmware's 16-bit integers ask of the lengths: couplers that are not
-    /// short compared with the rest of their loop, and a stroke that leaves the slider a
-    /// length.
-    fn fits(&self) -> Checked<()> {
+    /// Refuses lengths that the firmware's 16-bit integers cannot resolve: couplers that are
+    /// short compared with the rest of their loop, or a stroke that leaves the slider no length.
+    fn check_lengths(&self) -> Checked<()> {
         for (end, names) in [
             (End::Head, ["links.l2", "links.l3"]),
             (End::Tail, ["links.l7", "links.l8"]),
@@ -110,15 +107,17 @@ impl Measures {
             let bars = self.lizard.end(end);
             let per_mm = scale::steps_per_mm(scale::of_loop(&bars));
             let least = f64::from(SHORTEST_COUPLER) / per_mm;
-            // As the sentence shows it: what it asks for must do.
-            let shown = (10.0 * least).ceil() / 10.0;
             for (key, value) in names
                 .into_iter()
                 .zip([bars.coupler_left, bars.coupler_right])
             {
                 if value < least {
-                    let least = shown;
-                    return Err(Problem::ShortCoupler { value, least }.at(key));
+                    // Rounded up, so that the length in the sentence is long enough.
+                    let least = (10.0 * least).ceil() / 10.0;
+                    let sentence = format!(
+                        "is {value} mm, which is short beside the rest of its loop; the firmware's 16-bit integers ask for at least {least:.1} mm, or for shorter cranks and a shorter base"
+                    );
+                    return Err(Fault::new(key, sentence));
                 }
             }
         }
@@ -130,21 +129,19 @@ impl Measures {
         ] {
             let (min, max) = (-shortest, LONGEST_BAR);
             if !(min..=max).contains(&value) {
-                return Err(Problem::Range {
-                    value,
-                    min,
-                    max,
-                    unit: "mm, so that the slider keeps a length",
-                }
-                .at(key));
+                let unit = "mm, so that the slider keeps a length";
+                return Err(Fault::range(key.to_string(), value, (min, max), unit));
             }
         }
         Ok(())
     }
 
-    /// Refuses a robot that could not even stand.
-    fn stands(&self) -> Checked<()> {
-        let fault = |text: String| Err(Problem::Neutral(text).at("servo"));
+    /// Refuses a robot whose neutral pose breaks a limit.
+    fn check_neutral(&self) -> Checked<()> {
+        let fault = |text: String| {
+            let sentence = format!("the neutral pose is not safe: {text}");
+            Err(Fault::clause("servo", sentence))
+        };
         match self.lizard.solve(&self.neutral().into()) {
             Err(infeasible) => fault(infeasible.to_string()),
             Ok(solution) => match self.limits.violations(&solution).next() {
@@ -155,7 +152,7 @@ impl Measures {
     }
 }
 
-/// The links of the body.
+/// Reads the links of the body.
 fn links(root: &Section) -> Checked<Links> {
     let section = root.section("links", &LINKS)?;
     let mut lengths = [0.0; 20];
@@ -173,7 +170,7 @@ fn links(root: &Section) -> Checked<Links> {
     Ok(l)
 }
 
-/// The legs: their links, their hips, and their sweep at neutral in deg.
+/// Reads the legs: their links, their hips, and their sweep at neutral in deg.
 fn leg(root: &Section) -> Checked<(Leg, Hips, f64)> {
     let keys = [
         "ground",
@@ -215,22 +212,11 @@ fn leg(root: &Section) -> Checked<(Leg, Hips, f64)> {
     Ok((leg, hips, mount))
 }
 
-fn equal(
-    key: &str,
-    value: f64,
-    other: &'static str,
-    other_value: f64,
-    why: &'static str,
-) -> Checked<()> {
+/// Refuses two lengths that the mechanism needs equal.
+fn equal(key: &str, value: f64, other: &str, other_value: f64, why: &str) -> Checked<()> {
     if value == other_value {
-        Ok(())
-    } else {
-        Err(Problem::Unequal {
-            value,
-            other,
-            other_value,
-            why,
-        }
-        .at(key))
+        return Ok(());
     }
+    let sentence = format!("is {value}, but {other} is {other_value}; {why}");
+    Err(Fault::new(key, sentence))
 }

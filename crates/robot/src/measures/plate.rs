@@ -11,14 +11,14 @@ const BESIDE_SERVO: f64 = 5.0;
 /// Length of the plate beyond a servo's flange, mm.
 const BEYOND_FLANGE: f64 = 2.0;
 
-/// The plate, mm, chassis frame.
+/// The chassis plate, mm, chassis frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plate {
-    /// Half its width and half its length, without the arms.
+    /// Half the width and half the length, without the arms.
     pub half: Vector,
-    /// Radius of its corners.
+    /// Radius of the corners.
     pub corner: f64,
-    /// The arms of each leg: between the pivots, and from each of them to the plate.
+    /// Ends of each leg's arms: between the pivots, and from each of them to the plate.
     pub arms: [[[Vector; 2]; 3]; 4],
     /// Half the width of an arm; its ends are round.
     pub arm: f64,

@@ -5,19 +5,19 @@ use lizard_core::numbers::units::Scale;
 use lizard_core::numbers::{bars, slider};
 use lizard_kinematics::{FiveBar, Slider};
 
-/// The longest that robot.toml may have a bar, mm.
+/// The longest bar that robot.toml may have, mm.
 pub(crate) const LONGEST_BAR: f64 = 1000.0;
 
-// So every mechanism that can be written down fits at some scale.
+// Every mechanism in a robot.toml fits at some scale.
 const _: () = assert!(3.0 * LONGEST_BAR < bars::LONGEST);
 const _: () = assert!(4.0 * LONGEST_BAR < slider::LONGEST_ARMS);
 
-/// Steps of a scale in a millimetre.
+/// The number of steps of a scale in a millimetre.
 pub(crate) fn steps_per_mm(scale: Scale) -> f64 {
     f64::from(1u32 << scale.bits)
 }
 
-/// The scale of an end's five-bar.
+/// Finds the scale of an end's five-bar.
 pub(crate) fn of_loop(bars: &FiveBar) -> Scale {
     let all = bars.base + bars.crank_left + bars.crank_right;
     finest(&[
@@ -27,7 +27,7 @@ pub(crate) fn of_loop(bars: &FiveBar) -> Scale {
     ])
 }
 
-/// The scale of a side whose slider may travel `stroke_max` (mm) from nominal.
+/// Finds the scale of a side whose slider may travel `stroke_max` (mm) from nominal.
 pub(crate) fn of_side(side: &Slider, stroke_max: f64) -> Scale {
     let arms = side.front + side.rear + side.offset.abs();
     finest(&[
@@ -37,7 +37,7 @@ pub(crate) fn of_side(side: &Slider, stroke_max: f64) -> Scale {
     ])
 }
 
-/// The finest scale in which every length (mm) has fewer steps than it may.
+/// Finds the finest scale in which every length (mm) has fewer steps than its bound.
 fn finest(lengths: &[(f64, f64)]) -> Scale {
     let fits = |scale: &Scale| {
         let per_mm = steps_per_mm(*scale);
@@ -55,8 +55,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Whether bars fit at this many bits, in the words of the core: 127 and 255 times
-    /// 256 steps.
+    /// True if bars fit at this number of bits, by the core's bounds: 127 and 255 times 256
+    /// steps.
     fn loop_fits(bars: &FiveBar, bits: u16) -> bool {
         let steps = |mm: f64| mm * f64::from(1u32 << bits);
         let all = bars.base + bars.crank_left + bars.crank_right;

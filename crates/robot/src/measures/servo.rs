@@ -3,7 +3,7 @@
 pub use lizard_contact::FORWARD;
 use lizard_kinematics::{Side, wrap};
 
-use crate::file::{Checked, Problem, Section};
+use crate::file::{Checked, Section, short};
 use crate::units::STEPS_PER_DEGREE;
 
 /// The servos' names.
@@ -12,19 +12,19 @@ pub const NAMES: [&str; 4] = ["A1", "A2", "A3", "A4"];
 /// The leg that each servo carries: left or right, front (F) or hind (H).
 pub const LEGS: [&str; 4] = ["LF", "RF", "RH", "LH"];
 
-/// 1 where the slider's arm of a servo's link stands counter-clockwise from its crank,
-/// else -1.
+/// The side of a servo's link on which the slider's arm stands: 1 if counter-clockwise from its
+/// crank, else -1.
 pub const HAND: [f64; 4] = {
     let (left, right) = (Side::Left.sign(), Side::Right.sign());
     [left, right, -right, -left]
 };
 
-/// Widths that a hobby servo tolerates, us; within a 4 ms slot.
+/// Pulse widths that a hobby servo tolerates, us; within a 4 ms slot.
 const WIDTHS: (f64, f64) = (500.0, 2500.0);
-/// 22 us per degree is the most that the firmware's i16 gain holds.
+/// Gains of a servo, us per degree; the firmware's i16 holds no larger one.
 const GAINS: (f64, f64) = (1.0, 22.0);
 
-/// The servo on the other side: left and right exchanged.
+/// For each servo the one on the other side of the robot.
 pub const OPPOSITE: [usize; 4] = [1, 0, 3, 2];
 
 /// One servo as robot.toml gives it.
@@ -32,60 +32,60 @@ pub const OPPOSITE: [usize; 4] = [1, 0, 3, 2];
 pub struct Servo {
     /// Arduino number of its pin.
     pub pin: u8,
-    /// Chassis-frame angle where its horn is fitted, deg.
+    /// Chassis-frame angle at which the horn is fitted, deg.
     pub neutral: f64,
     /// Pulse width at the neutral angle, us.
     pub neutral_us: f64,
-    /// us per degree, positive where a longer pulse turns it counter-clockwise.
+    /// Gain, us per degree; positive if a longer pulse turns the horn counter-clockwise.
     pub us_per_degree: f64,
-    /// Shortest pulse it may get, us.
+    /// Shortest pulse allowed, us.
     pub min_us: f64,
-    /// Longest pulse it may get, us.
+    /// Longest pulse allowed, us.
     pub max_us: f64,
 }
 
 impl Servo {
-    /// Its travel, as sweeps from neutral in deg: smallest and largest. Never
-    /// beyond half a turn, whatever the pulses would allow.
+    /// The travel as sweeps from neutral in deg: smallest and largest. It is never
+    /// beyond half a turn, even if the pulses allow more.
     pub fn travel(&self) -> (f64, f64) {
         let a = (self.min_us - self.neutral_us) / self.us_per_degree;
         let b = (self.max_us - self.neutral_us) / self.us_per_degree;
         (a.min(b).max(-HALF_TURN), a.max(b).min(HALF_TURN))
     }
 
-    /// Whether it can turn to a chassis-frame angle, deg.
+    /// True if the servo can turn to this chassis-frame angle, deg.
     pub fn reaches(&self, angle: f64) -> bool {
         let (least, most) = self.travel();
         (least - ROUNDING..=most + ROUNDING).contains(&wrap(angle - self.neutral))
     }
 
-    /// The sweep from neutral that a pulse width (us) asks for, deg,
-    /// counter-clockwise positive.
+    /// Converts a pulse width (us) to the sweep from neutral, deg, counter-clockwise
+    /// positive.
     pub fn sweep(&self, pulse: f64) -> f64 {
         (pulse - self.neutral_us) / self.us_per_degree
     }
 
-    /// The pulse width for a chassis-frame angle, us.
+    /// Converts a chassis-frame angle (deg) to the pulse width, us.
     pub fn pulse(&self, angle: f64) -> f64 {
         self.neutral_us + self.us_per_degree * wrap(angle - self.neutral)
     }
 }
 
-/// Angles that miss the end of a travel by less, deg, miss it by rounding.
+/// Rounding error allowed at the end of a travel, deg.
 const ROUNDING: f64 = 1e-9;
 /// The largest sweep that the core holds, deg.
 const HALF_TURN: f64 = i16::MAX as f64 / STEPS_PER_DEGREE;
 
-/// How fast servos may turn.
+/// Limits of the servos' speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pace {
-    /// In a point-to-point move, deg/s.
+    /// Fastest turn in a point-to-point move, deg/s.
     pub slew: f64,
-    /// In a gait, deg/s.
+    /// Fastest turn in a gait, deg/s.
     pub gait_slew: f64,
 }
 
-/// The Arduino number of a pin by its name on the board: D2 to D12, A0 to A5
+/// Converts the name of a pin on the board to its Arduino number: D2 to D12, A0 to A5
 /// (14 to 19).
 pub(crate) fn pin(name: &str) -> Option<u8> {
     let (letter, number) = name.split_at_checked(1)?;
@@ -122,11 +122,11 @@ pub(crate) fn read(root: &Section) -> Checked<[Servo; 4]> {
             .iter()
             .position(|earlier: &Servo| earlier.pin == servo.pin)
         {
-            let problem = Problem::PinTwice {
-                pin: one.text("pin")?.to_string(),
-                other: NAMES[other],
-            };
-            return Err(problem.at(one.path("pin")));
+            let (pin, other) = (one.text("pin")?, NAMES[other]);
+            return Err(one.fault(
+                "pin",
+                format!("is \"{pin}\", which servo.{other} has already"),
+            ));
         }
         servos.push(servo);
     }
@@ -136,10 +136,19 @@ pub(crate) fn read(root: &Section) -> Checked<[Servo; 4]> {
 fn servo(section: &Section) -> Checked<Servo> {
     let width = |name| section.number(name, WIDTHS.0, WIDTHS.1, "us");
     let text = section.text("pin")?;
-    let pin = pin(text).ok_or_else(|| Problem::Pin(text.to_string()).at(section.path("pin")))?;
+    let pin = pin(text).ok_or_else(|| {
+        let sentence = format!(
+            "is \"{text}\"; it must be one of D2 to D12 or A0 to A5 (D0 and D1 are the serial line, D13 is the LED)"
+        );
+        section.fault("pin", sentence)
+    })?;
     let us_per_degree = section.number("us_per_degree", -f64::MAX, f64::MAX, "us")?;
     if !(GAINS.0..=GAINS.1).contains(&us_per_degree.abs()) {
-        return Err(Problem::Gain(us_per_degree).at(section.path("us_per_degree")));
+        let sentence = format!(
+            "is {}; it must be within 1 to 22 us, or -22 to -1 where a longer pulse turns the horn clockwise",
+            short(us_per_degree)
+        );
+        return Err(section.fault("us_per_degree", sentence));
     }
     let servo = Servo {
         pin,

@@ -1,5 +1,5 @@
-//! The slotted strut as its parts make it: how long it is, and how hard a spring from the
-//! shop pulls in it.
+//! The slotted strut of the robot's parts: its length, and the pull of a spring from the shop in
+//! it.
 
 use lizard_contact::{SLOT, Strut};
 
@@ -8,13 +8,13 @@ use crate::measures::legs::LegPlan;
 use crate::measures::parts::Parts;
 use crate::measures::servo::HAND;
 
-/// The length of a spring inside its hooks as it hangs in a strut, mm: both hooks lie
+/// The length, inside its hooks, of a spring that is mounted in a strut, mm: both hooks lie
 /// around the far sides of their screws.
 pub(crate) fn hung(legs: &[LegPlan; 4], parts: &Parts) -> f64 {
     legs[0].strut_length + parts.screw.diameter
 }
 
-/// The strut of a robot with this spring in it; its servos' neutral angles are in deg,
+/// Makes the strut of a robot with this spring in it; the servos' neutral angles are in deg,
 /// chassis frame.
 pub(crate) fn of_coil(legs: &[LegPlan; 4], neutral: [f64; 4], parts: &Parts, coil: &Coil) -> Strut {
     let [radius, angle] = parts.anchor;

@@ -1,45 +1,46 @@
-//! The supplies in robot.toml: what is measured, and when the robot reacts.
+//! The voltage of the board and of the servos: its measurement, and the thresholds at which the
+//! robot slows down, stops and rests.
 
 use lizard_core::numbers::supplies::{Supplies as CoreSupplies, Thresholds};
 
-use crate::file::{Checked, Problem, Section};
+use crate::file::{Checked, Section};
 use crate::measures::servo::{NAMES, Servo, pin};
 
-/// The reference of an ATmega328P, V: data sheet, section 29.8.
+/// The nominal reference of an ATmega328P, V: data sheet, section 29.8.
 const REFERENCE: f64 = 1.1;
 const REFERENCES: (f64, f64) = (1.0, 1.2);
 
-/// What the board's supply may be asked to have, V: the brown-out detector ends it
+/// Range of the thresholds of the board's supply, V: the brown-out detector resets the chip
 /// at 2.7, and the chip tolerates 5.5.
 const BOARD: (f64, f64) = (2.7, 5.5);
 
-/// Low, too low to move, too low to hold. With a reference that nobody has measured a
+/// Default thresholds, V: low, too low to move, too low to hold. With an unmeasured reference a
 /// healthy board may show 4.3 V.
 const DEFAULTS: [f64; 3] = [4.2, 4.0, 3.7];
 
-/// The analogue pins, by their Arduino numbers.
+/// The Arduino numbers of the analogue pins.
 const ANALOGUE: std::ops::RangeInclusive<u8> = 14..=19;
 
-/// What is measured of the supplies, and the voltages (V, falling) below which gaits
-/// slow down, the robot stops, and its pulses end.
+/// The chip's reference, and the voltages (V, falling) below which gaits slow down, the robot
+/// stops, and its pulses end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Supplies {
-    /// The chip's own reference.
+    /// Voltage of the chip's own reference, V.
     pub reference: f64,
-    /// Of the board's supply.
+    /// Thresholds of the board's supply, V.
     pub board: [f64; 3],
-    /// The servos' rail, where it is measured.
+    /// The servos' rail; none if it is not measured.
     pub rail: Option<Rail>,
 }
 
-/// A rail that a divider leads to an analogue pin.
+/// A rail that is measured at an analogue pin, through a divider.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rail {
     /// Arduino number of the pin, 14 to 19.
     pub pin: u8,
-    /// The rail's voltage over the pin's.
+    /// Ratio of the rail's voltage to the pin's.
     pub ratio: f64,
-    /// As those of the board.
+    /// Thresholds of the rail, V.
     pub thresholds: [f64; 3],
 }
 
@@ -54,7 +55,7 @@ impl Default for Supplies {
 }
 
 impl Supplies {
-    /// Reads the table, all of which may be left out.
+    /// Reads `[supply]`; every key may be left out.
     pub(crate) fn read(root: &Section, servos: &[Servo; 4]) -> Checked<Self> {
         if !root.has("supply") {
             return Ok(Self::default());
@@ -68,7 +69,7 @@ impl Supplies {
         })
     }
 
-    /// As the core has them.
+    /// Converts them to the integers of the core.
     pub(crate) fn numbers(&self) -> CoreSupplies {
         CoreSupplies {
             reference: millivolts(self.reference),
@@ -81,16 +82,16 @@ impl Supplies {
     }
 }
 
-/// Where none is measured.
+/// The thresholds of a rail that is not measured.
 const NO_RAIL: Thresholds = Thresholds {
     slow: 0,
     stop: 0,
     rest: 0,
 };
 
-/// The voltage that a servos' rail in good order leaves at its divided pin, mV: for
-/// simulations, since a rail of 0 V ends the pulses. It is 5 V, or well above what the
-/// robot reacts to. None where no rail is measured.
+/// The voltage of a healthy servos' rail at its divided pin, mV: for simulations, since a rail
+/// of 0 V ends the pulses. The rail has 5 V, or well above its thresholds. None if no rail is
+/// measured.
 pub fn healthy_rail_mv(supplies: &CoreSupplies) -> Option<f64> {
     const RESERVE: f64 = 500.0;
     const BOARD: f64 = 5_000.0;
@@ -105,16 +106,13 @@ fn rail(supply: &Section, servos: &[Servo; 4]) -> Checked<Option<Rail>> {
     }
     let section = supply.section("rail", &["pin", "ratio", "slow", "stop", "rest"])?;
     let text = section.text("pin")?;
-    let key = || section.path("pin");
+    let refused = |why: String| section.fault("pin", format!("is \"{text}\"{why}"));
     let pin = pin(text)
         .filter(|pin| ANALOGUE.contains(pin))
-        .ok_or_else(|| Problem::NotAnalogue(text.to_string()).at(key()))?;
+        .ok_or_else(|| refused("; it must be one of A0 to A5".to_string()))?;
     if let Some(servo) = servos.iter().position(|servo| servo.pin == pin) {
-        let problem = Problem::PinTwice {
-            pin: text.to_string(),
-            other: NAMES[servo],
-        };
-        return Err(problem.at(key()));
+        let other = NAMES[servo];
+        return Err(refused(format!(", which servo.{other} has already")));
     }
     // A battery of two lithium cells, 8.4 V, through a divider of two or more.
     let ratio = section.number("ratio", 1.0, 6.0, "(rail over pin)")?;
@@ -125,7 +123,7 @@ fn rail(supply: &Section, servos: &[Servo; 4]) -> Checked<Option<Rail>> {
     }))
 }
 
-/// Three voltages, each below the one before.
+/// Reads three voltages, each below the previous one.
 fn thresholds(
     section: &Section,
     (least, most): (f64, f64),
@@ -167,10 +165,6 @@ mod tests {
         with("paper", &[(BEFORE, &format!("{table}\n{BEFORE}"))])
     }
 
-    fn refused(table: &str) -> String {
-        supplied(table).expect_err(table).to_string()
-    }
-
     #[test]
     fn without_a_table_the_board_is_measured_by_a_reference_of_1100_mv() {
         let robot = with("paper", &[]).expect("the paper's");
@@ -205,39 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_measured_is_refused_with_its_key() {
-        for (table, sentence) in [
-            (
-                "[supply]\nreference = 1.3\n",
-                "supply.reference is 1.3; it must be within 1 to 1.2 V",
-            ),
-            (
-                "[supply]\nslow = 5.6\n",
-                "supply.slow is 5.6; it must be within 2.7 to 5.5 V",
-            ),
-            ("[supply]\nstop = 4.3\n", "supply.stop"),
-            ("[supply]\nrest = 4.1\n", "supply.rest"),
-            ("[supply]\nlow = 4.1\n", "supply.low is not a known key"),
-            (
-                "[supply.rail]\npin = \"D7\"\nratio = 2.0\n",
-                "supply.rail.pin is \"D7\"; it must be one of A0 to A5",
-            ),
-            (
-                "[supply.rail]\npin = \"A1\"\n",
-                "supply.rail.ratio is missing",
-            ),
-            (
-                "[supply.rail]\npin = \"A1\"\nratio = 0.5\n",
-                "supply.rail.ratio is 0.5",
-            ),
-            (
-                "[supply.rail]\npin = \"A1\"\nratio = 1.0\nslow = 5.2\n",
-                "supply.rail.slow is 5.2; it must be within 1 to 5 V",
-            ),
-        ] {
-            let refused = refused(table);
-            assert!(refused.contains(sentence), "{refused}");
-        }
+    fn a_pin_of_a_servo_measures_no_rail() {
         let taken = with(
             "paper",
             &[

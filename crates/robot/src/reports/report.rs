@@ -1,61 +1,57 @@
-//! What the check found for every gait: the table that `make firmware` and `lizard gaits`
-//! print.
+//! The figures of every gait: the table that `make firmware` and `lizard gaits` print.
 
 use std::fmt;
 
 use lizard_contact::Prediction;
 use lizard_core::numbers::section::SPACE;
 
-use crate::checks::Audit;
-use crate::checks::CheckedGait;
+use crate::checks::{Audit, CheckedGait, TableError};
 use crate::measures::servo::NAMES;
 use crate::reports::sprung::Sprung;
 use crate::robot::Robot;
-use crate::tables::TableError;
 
-/// One gait's figures.
+/// The figures of a gait.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
-    /// Its name.
+    /// Name of the gait.
     pub name: String,
     /// Time of a cycle at full speed, s.
     pub period: f64,
     /// Margins, strokes and the fastest frame.
     pub audit: Audit,
-    /// Of its tables, over all 65 536 phases.
+    /// Error of its tables over all 65 536 phases.
     pub error: TableError,
-    /// Where one cycle takes the robot, by the contact model.
+    /// Movement of one cycle by the contact model.
     pub way: Prediction,
-    /// What the drive of its legs takes from it; none where these are rigid and have no
-    /// play.
+    /// Effect of the legs' drive; none if legs are rigid without play.
     pub sprung: Option<Sprung>,
 }
 
 /// The figures of all gaits.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
-    /// One for each gait, in the order of the file.
+    /// Rows of the table, in the order of the file.
     pub rows: Vec<Row>,
     /// Hash of the tables.
     pub hash: u32,
-    /// How many waveforms the gaits share.
+    /// Number of waveforms that the gaits share.
     pub waves: usize,
-    /// What the robot takes of the board's flash, bytes; at most [`SPACE`].
+    /// Bytes of the robot's section in flash; at most [`SPACE`].
     pub flash: usize,
     /// True if a line that names a gait may make a frame late.
     pub searches_long: bool,
-    /// The robot's name.
+    /// Name of the robot.
     pub name: String,
 }
 
-/// What main may do for a line without making a frame late, cycles: docs/firmware.md.
+/// CPU cycles that the main loop may spend on a line without making a frame late: docs/firmware.md.
 const BESIDE_A_FRAME: usize = 34_000;
 
-/// The note for a robot whose console takes longer to find a gait.
+/// The note for a robot whose console takes longer to find a gait's name.
 const SEARCHES_LONG: &str = "many gaits: `cal`, or a line that names one, may make a frame 20 ms late; \
      fewer gaits or shorter names avoid it\n";
 
-/// What a dash in place of a prediction means.
+/// The meaning of a dash in place of a prediction.
 pub const UNDECIDED: &str =
     "- undecided: two feet against two, where the smallest difference between the pads decides\n";
 
@@ -153,12 +149,12 @@ impl fmt::Display for Report {
     }
 }
 
-/// Width of a column that holds these names.
+/// The width of a column for these names.
 pub(crate) fn widest<'a>(names: impl Iterator<Item = &'a str>) -> usize {
     names.map(str::len).fold(12, usize::max)
 }
 
-/// A part of a prediction with its sign; a dash where it is undecided.
+/// Formats a part of a prediction with its sign; a dash if it is undecided.
 pub(crate) fn known(part: Option<f64>, decimals: usize) -> String {
     match part {
         Some(value) => format!("{:+.decimals$}", tidy(value, decimals as i32)),
@@ -166,7 +162,7 @@ pub(crate) fn known(part: Option<f64>, decimals: usize) -> String {
     }
 }
 
-/// Without the sign of a value that rounds to zero.
+/// Rounds a value, without the sign of a zero.
 fn tidy(value: f64, decimals: i32) -> f64 {
     let scale = 10f64.powi(decimals);
     // Adding positive zero turns a negative one positive.

@@ -1,5 +1,5 @@
-//! How pads, mounting, feet and play change the gaits: how far a cycle goes if the floor
-//! or the print differs from robot.toml.
+//! The effect of pads, mounting, feet and play on the gaits, if the floor or the print differs
+//! from robot.toml.
 
 use std::fmt;
 
@@ -8,89 +8,81 @@ use lizard_contact::{Drive, Feet, Ground, Prediction, Stance};
 use crate::reports::report::{UNDECIDED, known, widest};
 use crate::robot::Robot;
 
-/// Friction backward over forward: even pads, pads that grip when pushed back,
-/// and pads that are on the wrong way round.
-pub const RATIOS: [f64; 6] = [0.8, 1.0, 1.1, 1.25, 1.5, 2.0];
-/// Outward sweep of the legs at neutral, deg; 41.4 is a leg in line with its
-/// servo's horn.
-pub const MOUNTS: [f64; 5] = [0.0, 20.0, 41.4, 49.0, -41.4];
+/// Excess length of the front left foot in the table of other feet, mm.
+const LONG: f64 = 0.6;
 
-/// By how much the front left foot may be too long, mm, on the feet that robot.toml has.
-pub const TWISTS: [f64; 4] = [0.5, 1.0, 1.5, 2.0];
-/// Other feet, N/mm, the front left one too long by [`LONG`]; the last are leaves of 2 mm.
-pub const LEAVES: [f64; 3] = [1.0, 2.0, 3.3];
-/// How much too long it is on each of [`LEAVES`], mm.
-pub const LONG: f64 = 0.6;
-/// A leg's play to either side, deg.
-pub const PLAYS: [f64; 2] = [1.0, 2.0];
+/// A value that is changed: its name, its values, and the ground with one of them.
+type Change = (&'static str, &'static [f64], fn(&Ground, f64) -> Ground);
 
-/// Predictions for one gait.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Sensitive {
-    /// The gait's name.
-    pub name: String,
-    /// A cycle for each of [`RATIOS`], legs mounted as robot.toml says.
-    pub ratios: [Prediction; RATIOS.len()],
-    /// A cycle for each of [`MOUNTS`], pads as robot.toml says.
-    pub mounts: [Prediction; MOUNTS.len()],
-    /// A cycle for each of [`TWISTS`].
-    pub twists: [Prediction; TWISTS.len()],
-    /// A cycle for each of [`LEAVES`].
-    pub leaves: [Prediction; LEAVES.len()],
-    /// A cycle for each of [`PLAYS`].
-    pub plays: [Prediction; PLAYS.len()],
+/// The tables in the order of the report.
+const CHANGES: [Change; 5] = [
+    // Even pads, pads that grip when pushed back, and pads that are mounted in reverse.
+    (
+        "friction",
+        &[0.8, 1.0, 1.1, 1.25, 1.5, 2.0],
+        |ground, ratio| Ground { ratio, ..*ground },
+    ),
+    // 41.4 deg outward is a leg in line with its servo's horn.
+    (
+        "mount, deg",
+        &[0.0, 20.0, 41.4, 49.0, -41.4],
+        |ground, mount| Ground {
+            feet: Feet {
+                mount,
+                ..ground.feet
+            },
+            ..*ground
+        },
+    ),
+    ("too long, mm", &[0.5, 1.0, 1.5, 2.0], |ground, twist| {
+        standing(ground, ground.stance.stiffness, twist)
+    }),
+    // The last are leaves of 2 mm.
+    ("feet, N/mm", &[1.0, 2.0, 3.3], |ground, stiffness| {
+        standing(ground, stiffness, LONG)
+    }),
+    ("play, +-deg", &[1.0, 2.0], |ground, play| Ground {
+        drive: Drive {
+            play,
+            ..ground.drive
+        },
+        ..*ground
+    }),
+];
+
+/// The ground with feet of this stiffness, the front left one too long by `twist` mm.
+fn standing(ground: &Ground, stiffness: f64, twist: f64) -> Ground {
+    Ground {
+        stance: Stance {
+            stiffness,
+            twist,
+            ..ground.stance
+        },
+        ..*ground
+    }
 }
 
-/// Predictions for all gaits that move.
+/// Predictions on changed grounds for all gaits that move.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sensitivity {
-    /// In the order of the file.
-    pub rows: Vec<Sensitive>,
-    /// What the robot's feet have, N/mm.
-    pub leaf: f64,
+    /// For each gait its name, and for each table the predictions of a cycle.
+    rows: Vec<(String, [Vec<Prediction>; CHANGES.len()])>,
+    /// Stiffness of the robot's own feet, N/mm.
+    leaf: f64,
 }
 
 impl Sensitivity {
-    /// Predicts the gaits of a robot on other floors and with other mountings.
+    /// Predicts the gaits of a robot on changed grounds.
     pub fn of(robot: &Robot) -> Self {
-        let ground = *robot.ground();
-        let rows = robot
-            .gaits()
-            .iter()
-            .filter(|gait| gait.moves())
-            .map(|gait| {
-                let mounted = |mount: f64| Ground {
-                    feet: Feet {
-                        mount,
-                        ..ground.feet
-                    },
-                    ..ground
-                };
-                let standing = |stiffness: f64, twist: f64| Ground {
-                    stance: Stance {
-                        stiffness,
-                        twist,
-                        ..ground.stance
-                    },
-                    ..ground
-                };
-                let own = ground.stance.stiffness;
-                let playing = |play: f64| Ground {
-                    drive: Drive {
-                        play,
-                        ..ground.drive
-                    },
-                    ..ground
-                };
-                Sensitive {
-                    name: gait.name().to_string(),
-                    ratios: RATIOS.map(|ratio| gait.predict(&Ground { ratio, ..ground })),
-                    mounts: MOUNTS.map(|mount| gait.predict(&mounted(mount))),
-                    twists: TWISTS.map(|twist| gait.predict(&standing(own, twist))),
-                    leaves: LEAVES.map(|leaf| gait.predict(&standing(leaf, LONG))),
-                    plays: PLAYS.map(|play| gait.predict(&playing(play))),
-                }
+        let ground = robot.ground();
+        let moving = robot.gaits().iter().filter(|gait| gait.moves());
+        let rows = moving.map(|gait| {
+            let cells = CHANGES.map(|(_, values, change)| {
+                let predict = |value: &f64| gait.predict(&change(ground, *value));
+                values.iter().map(predict).collect()
             });
+            (gait.name().to_string(), cells)
+        });
         Self {
             rows: rows.collect(),
             leaf: ground.stance.stiffness,
@@ -100,69 +92,45 @@ impl Sensitivity {
 
 impl fmt::Display for Sensitivity {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("One cycle: mm ahead, and deg counter-clockwise where it turns.\n\n")?;
-        let width = widest(self.rows.iter().map(|row| row.name.as_str()));
-        self.table(f, width, "friction", &RATIOS, |row| &row.ratios)?;
-        f.write_str("\n")?;
-        self.table(f, width, "mount, deg", &MOUNTS, |row| &row.mounts)?;
-        writeln!(
-            f,
-            "\nThe front left foot too long, on feet of {} N/mm:",
-            self.leaf
-        )?;
-        self.table(f, width, "too long, mm", &TWISTS, |row| &row.twists)?;
-        writeln!(f, "\nToo long by {LONG} mm, on other feet:")?;
-        self.table(f, width, "feet, N/mm", &LEAVES, |row| &row.leaves)?;
-        f.write_str("\n")?;
-        self.table(f, width, "play, +-deg", &PLAYS, |row| &row.plays)?;
-        let mut all = self
-            .rows
-            .iter()
-            .flat_map(|row| {
-                [
-                    &row.ratios[..],
-                    &row.mounts,
-                    &row.twists,
-                    &row.leaves,
-                    &row.plays,
-                ]
-            })
-            .flatten();
-        if all.any(|way| way.forward.is_none() || way.turn.is_none()) {
-            write!(f, "\n{UNDECIDED}")?;
+        f.write_str("One cycle: mm ahead, and deg counter-clockwise where it turns.\n")?;
+        let width = widest(self.rows.iter().map(|(name, _)| name.as_str()));
+        let mut is_decided = true;
+        for (table, (head, values, _)) in CHANGES.iter().enumerate() {
+            f.write_str("\n")?;
+            match *head {
+                "too long, mm" => {
+                    let leaf = self.leaf;
+                    writeln!(f, "The front left foot too long, on feet of {leaf} N/mm:")?;
+                }
+                "feet, N/mm" => writeln!(f, "Too long by {LONG} mm, on other feet:")?,
+                _ => {}
+            }
+            write!(f, "{head:<width$}")?;
+            for value in *values {
+                write!(f, "{value:>15}")?;
+            }
+            f.write_str("\n")?;
+            for (name, cells) in &self.rows {
+                let cells = &cells[table];
+                is_decided &= cells
+                    .iter()
+                    .all(|way| way.forward.is_some() && way.turn.is_some());
+                let cells: String = cells.iter().map(cell).collect();
+                writeln!(f, "{}", format!("{name:<width$}{cells}").trim_end())?;
+            }
         }
-        Ok(())
+        match is_decided {
+            true => Ok(()),
+            false => write!(f, "\n{UNDECIDED}"),
+        }
     }
 }
 
-impl Sensitivity {
-    /// A row of values, and for each gait a row of what it comes to with them.
-    fn table(
-        &self,
-        f: &mut fmt::Formatter,
-        width: usize,
-        head: &str,
-        values: &[f64],
-        ways: impl Fn(&Sensitive) -> &[Prediction],
-    ) -> fmt::Result {
-        write!(f, "{head:<width$}")?;
-        values
-            .iter()
-            .try_for_each(|value| write!(f, "{value:>15}"))?;
-        f.write_str("\n")?;
-        let mut rows = self.rows.iter();
-        rows.try_for_each(|row| line(f, width, &row.name, ways(row)))
-    }
-}
-
-fn line(f: &mut fmt::Formatter, width: usize, name: &str, ways: &[Prediction]) -> fmt::Result {
-    let mut line = format!("{name:<width$}");
-    for way in ways {
-        let turn = match way.turn {
-            Some(turn) if turn.abs() < 0.05 => String::new(),
-            turn => known(turn, 1),
-        };
-        line += &format!("{:>9}{turn:>6}", known(way.forward, 1));
-    }
-    writeln!(f, "{}", line.trim_end())
+/// Formats a prediction; a turn that rounds to zero is left out.
+fn cell(way: &Prediction) -> String {
+    let turn = match way.turn {
+        Some(turn) if turn.abs() < 0.05 => String::new(),
+        turn => known(turn, 1),
+    };
+    format!("{:>9}{turn:>6}", known(way.forward, 1))
 }

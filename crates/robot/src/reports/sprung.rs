@@ -1,5 +1,5 @@
-//! What springs and play cost a gait: how far its legs lag, and its distance as a share
-//! of that with rigid legs.
+//! The cost of springs and play to a gait: the lag of its legs, and its distance as a share of
+//! that with rigid legs.
 
 use lizard_contact::{Ground, Prediction};
 
@@ -8,21 +8,21 @@ use crate::checks::CheckedGait;
 /// A gait on legs that lag, compared with the same gait on rigid ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sprung {
-    /// Where a cycle leads, as [`CheckedGait::predict`] has it.
+    /// Movement of a cycle, as [`CheckedGait::predict`] has it.
     pub way: Prediction,
-    /// How far a leg is behind its servo at most, deg.
+    /// Largest lag of a leg behind its servo, deg.
     pub lag: f64,
-    /// Its way in a cycle over that of rigid legs: ahead, or the turn of a gait that
-    /// turns in place, or the smaller of both. None where rigid legs get nowhere or
-    /// their way depends on ties.
+    /// Movement of a cycle over that of rigid legs: ahead, or the turn of a gait that turns on
+    /// the spot, or the smaller of both. None if rigid legs go nowhere, or their movement depends
+    /// on ties.
     pub share: Option<f64>,
 }
 
-/// Less than this in a cycle is no way: mm ahead, deg of turn.
+/// Smallest movement of a cycle that counts: mm ahead, deg of turn.
 const NOWHERE: (f64, f64) = (1.0, 0.5);
 
 impl Sprung {
-    /// What this ground's drive does to a gait; none if its legs do not lag.
+    /// Compares a gait on this ground with the same gait on rigid legs; none if legs do not lag.
     #[must_use]
     pub fn of(gait: &CheckedGait, ground: &Ground) -> Option<Self> {
         if !ground.drive.lags() {

@@ -1,22 +1,22 @@
-//! The robot as the core reads it.
+//! The core's view of a robot, on a host.
 //!
 //! The core reads a section of flash. On a host that section is in memory, and the core's
-//! motion borrows it for as long as it runs. So the section of a robot that the core runs
+//! motion borrows it for as long as it runs. So the section of a robot that runs on the core
 //! ([`crate::Robot::firmware`]) is kept until the program ends. It has 5 KB at most, and equal
-//! sections are kept once. Of a robot that is only checked and looked at
-//! ([`crate::Robot::core`]) nothing is kept, so a search may try thousands.
+//! sections are kept once. The section of a robot that is only checked ([`crate::Robot::core`])
+//! is not kept, so a search may try thousands.
 
 use std::collections::HashSet;
 use std::sync::{Mutex, PoisonError};
 
 use lizard_avr::Region;
 
-/// A robot as the core reads it.
+/// The core's view of a robot.
 pub type CoreRobot = lizard_core::numbers::robot::Robot<'static>;
 
 static KEPT: Mutex<Option<HashSet<&'static [u8]>>> = Mutex::new(None);
 
-/// A section as a region of flash: kept until the program ends.
+/// Keeps a section until the program ends and returns it as a region of flash.
 pub fn flash(section: &[u8]) -> Region<'static> {
     let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
     let kept = kept.get_or_insert_default();

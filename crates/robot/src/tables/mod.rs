@@ -1,18 +1,14 @@
 //! The robot as the firmware reads it: integers, tables and maps in a section of flash.
 //!
-//! The chip has no floating point, 32 KB of flash and 20 ms for a frame. So what a robot
-//! needs is computed here once: its numbers in the types of the core, its gaits as waves of
+//! The chip has no floating point, 32 KB of flash and 20 ms for a frame. So everything that it
+//! reads is computed here once: the robot's numbers in the types of the core, its gaits as waves of
 //! 64 samples, and the cells in which every pose is proved to be safe.
 
-pub(crate) mod accuracy;
 mod cells;
 mod core_robot;
 pub(crate) mod numbers;
 mod table;
-mod tabled_gait;
 
-pub use accuracy::TableError;
 pub use cells::CellMaps;
 pub use core_robot::{CoreRobot, flash};
-pub(crate) use table::{Tables, Unfit};
-pub(crate) use tabled_gait::TabledGait;
+pub(crate) use table::Tables;

@@ -1,9 +1,7 @@
-//! The robot's numbers as the firmware has them: integers, in the types of the
-//! core.
+//! The robot's numbers as integers, in the types of the core.
 //!
-//! Sixteen bits hold any robot's lengths if their step follows the robot's size, so each
-//! mechanism has its own scale. A number that is not an integer is rounded to the safe
-//! side: limits of margins up, strokes and travels inwards, the slew limit down.
+//! Sixteen bits hold any robot's lengths if the step fits the robot's size, so each mechanism
+//! has its own scale. A number that is not an integer is rounded to the safe side: limits of margins up, strokes and travels inwards, the slew limit down.
 
 use lizard_avr::Flash;
 use lizard_core::numbers::calibration::Calibration;
@@ -22,10 +20,10 @@ use crate::measures::{Measures, scale};
 use crate::tables::table::Tables;
 use crate::units::{CYCLES_PER_US, FRAMES_PER_SECOND, ONE_Q14, ONE_Q15, STEPS_PER_DEGREE};
 
-/// What rounding may add to a number that robot.toml gives exactly.
+/// Rounding error allowed in a number that robot.toml gives exactly.
 const SLACK: f64 = 1e-6;
 
-/// The numbers of a robot, without its maps of certified cells.
+/// Computes the numbers of a robot, without its maps of certified cells.
 pub(crate) fn content(name: &str, measures: &Measures, tables: &Tables) -> Content {
     let Measures {
         lizard,
@@ -64,8 +62,8 @@ pub(crate) fn content(name: &str, measures: &Measures, tables: &Tables) -> Conte
     }
 }
 
-/// The hash of the servos alone, by which a saved calibration is known to be theirs.
-/// Gaits, bars and limits may change without it.
+/// Computes the hash of the servos alone, which ties a saved calibration to them. Gaits, bars
+/// and limits do not change it.
 fn servo_hash(pins: &[u8; 4], neutral: &[Angle; 4], calibration: &[Calibration; 4]) -> u32 {
     crc32fast::hash(format!("{pins:?} {neutral:?} {calibration:?}").as_bytes())
 }
@@ -97,9 +95,9 @@ fn calibration(servo: &Servo) -> Calibration {
     }
 }
 
-/// The farthest that any gait turns each servo, neutral included. Between two
-/// samples a gait is on the straight line, so no phase goes beyond its samples. A gait that
-/// uses all of a travel, which is rounded inwards, may be rounded to a step beyond it.
+/// Computes the farthest turn of each servo in any gait, neutral included. Between two samples a
+/// gait follows the straight line, so no phase goes beyond the samples. A gait that uses all of
+/// a travel, which is rounded inwards, may be rounded to a step beyond it.
 fn reach(tables: &Tables, travel: &[Calibration; 4]) -> [Reach; 4] {
     let mut reach = [Reach::default(); 4];
     for gait in &tables.gaits {
@@ -121,7 +119,7 @@ fn reach(tables: &Tables, travel: &[Calibration; 4]) -> [Reach; 4] {
     reach
 }
 
-/// A side, its stroke rounded inwards.
+/// Converts a side, with its stroke rounded inwards.
 fn side(slider: &kinematics::Slider, limits: &kinematics::Limits) -> Slider {
     let scale = scale::of_side(slider, limits.stroke_max);
     let length = |mm: f64| steps(mm, scale);
@@ -142,7 +140,7 @@ fn steps(mm: f64, scale: Scale) -> i32 {
     (mm * scale::steps_per_mm(scale)).round() as i32
 }
 
-/// A smallest margin, rounded up.
+/// Converts a limit of a margin, rounded up.
 fn sine(margin: f64) -> Sine {
     Sine(ceil(margin * ONE_Q15) as i16)
 }

@@ -1,53 +1,55 @@
 //! The gaits as the firmware stores them: waveforms of 64 samples that several servos
 //! share, each servo with an offset and a gain.
 //!
-//! What a table means, and how it is read between its samples, is the core's:
+//! The meaning of a table, and the interpolation between its samples, belong to the core:
 //! [`lizard_core::numbers::gaits`].
 
+use lizard_avr::Flash;
 use lizard_core::numbers::gaits::{Channel, Gait as TableGait, MOST_WAVES, SAMPLES, Wave};
 use lizard_core::numbers::units::CYCLE;
 
+use crate::file::{Checked, Fault};
 use crate::gaits::{Gait, Stride, Waveform, canonical};
-use crate::measures::servo::FORWARD;
+use crate::measures::servo::{FORWARD, NAMES};
 use crate::units::{FRAMES_PER_SECOND, ONE_Q14, PHASES, STEPS_PER_DEGREE};
 
 /// Two waveforms that differ by less than this (deg) share a table: a third of
 /// an angle step.
 const SAME: f64 = 0.002;
 
-/// Everything the firmware needs to walk.
+/// The tables that the firmware reads to walk.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Tables {
-    /// Waveforms, angle steps at gain 1.
+    /// Waveforms, in angle steps at gain 1.
     pub waves: Vec<Wave>,
     /// Gaits in the order of the file.
     pub gaits: Vec<TableGait>,
-    /// Their names one after the other, words with a blank in between.
+    /// Names of the gaits, one after the other, with blanks between words.
     pub names: Vec<u8>,
 }
 
-/// Why a gait has no table.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Unfit {
-    /// The sweep of a servo (by its index) is half a turn or more.
-    HalfTurn(usize),
-    /// The gaits so far share as many waveforms as there may be.
-    Waves,
-}
-
 impl Tables {
-    /// Builds the tables, or names the first gait (by index) that the fixed point
-    /// does not hold.
-    pub fn new(gaits: &[Gait]) -> Result<Self, (usize, Unfit)> {
+    /// Builds the tables.
+    ///
+    /// # Errors
+    /// The first gait that the fixed point does not hold.
+    pub fn new(gaits: &[Gait]) -> Checked<Self> {
         let mut bank = Bank::default();
         let mut parts = Vec::new();
-        for (g, gait) in gaits.iter().enumerate() {
-            for (s, stride) in gait.strides.iter().enumerate() {
-                let part = bank.find(stride, FORWARD[s]);
-                parts.push(part.ok_or((g, Unfit::HalfTurn(s)))?);
+        for gait in gaits {
+            let key = format!("gait.{}", gait.name);
+            for ((stride, forward), name) in gait.strides.iter().zip(FORWARD).zip(NAMES) {
+                let Some(part) = bank.find(stride, forward) else {
+                    let sentence = format!("servo {name} would sweep half a turn or more");
+                    return Err(Fault::clause(key, sentence));
+                };
+                parts.push(part);
             }
             if bank.samples.len() > MOST_WAVES {
-                return Err((g, Unfit::Waves));
+                let sentence = format!(
+                    "needs one waveform too many: the firmware numbers them with a byte, so gaits may share {MOST_WAVES}; those that differ only in amplitude, start, gain, period or direction share one"
+                );
+                return Err(Fault::new(key, sentence));
             }
         }
         let largest = bank.largest(&parts);
@@ -90,7 +92,18 @@ impl Tables {
     }
 }
 
-/// Advance of the phase in one frame, 1/2^24 cycle.
+impl Tables {
+    /// The sweeps of a gait, by its index, from neutral at a phase of 1/65536 cycle: in angle
+    /// steps, counter-clockwise positive, servo order.
+    pub fn sweeps(&self, gait: usize, phase: u16) -> [i16; 4] {
+        self.gaits[gait].channels.map(|channel| {
+            let wave = Flash::from(&self.waves[usize::from(channel.wave)]);
+            channel.sweep(wave, phase).0
+        })
+    }
+}
+
+/// The advance of the phase in one frame, 1/2^24 cycle.
 fn increment(gait: &Gait) -> i32 {
     let step = (f64::from(CYCLE) / (FRAMES_PER_SECOND * gait.period)).round() as i32;
     if gait.reversed { -step } else { step }
@@ -99,9 +112,9 @@ fn increment(gait: &Gait) -> i32 {
 /// A stride as amplitude times a waveform of the bank.
 struct Part {
     wave: usize,
-    /// Cycles by which it reads ahead.
+    /// Cycles by which it reads the waveform ahead.
     ahead: f64,
-    /// deg, counter-clockwise positive.
+    /// Amplitude, deg, counter-clockwise positive.
     amplitude: f64,
 }
 
@@ -113,7 +126,7 @@ struct Bank {
 
 impl Bank {
     /// Finds or adds the waveform of a stride; `forward` is the sense in which
-    /// the servo moves its foot forward. None if it sweeps half a turn.
+    /// the servo moves its foot forward. None if the stride sweeps half a turn.
     fn find(&mut self, stride: &Stride, forward: f64) -> Option<Part> {
         let (waveform, shift, sign) = canonical(&stride.waveform);
         let samples = samples(&waveform);
@@ -149,7 +162,7 @@ impl Bank {
         }))
     }
 
-    /// The largest amplitude that each waveform needs, deg. Tables are
+    /// Computes the largest amplitude that each waveform needs, deg. Tables are
     /// stored at that size, so that no gain exceeds 1.
     fn largest(&self, parts: &[Part]) -> Vec<f64> {
         let of = |wave| {
@@ -162,12 +175,12 @@ impl Bank {
     }
 }
 
-/// The samples whose straight lines follow a waveform without a mean error.
+/// Samples a waveform so that the straight lines between the samples have no mean error.
 ///
 /// A line between two points of a curve lies on its inner side, so samples on the curve make
 /// every stride too short (the paper's walk by 1 %). Each is moved outward by the mean distance
 /// of line and curve, a twelfth of the second difference, but not beyond the waveform's peak,
-/// which a servo's travel may end at.
+/// because a servo's travel may end there.
 fn samples(waveform: &Waveform) -> [f64; SAMPLES] {
     let on: [f64; SAMPLES] = std::array::from_fn(|i| waveform.at(i as f64 / SAMPLES as f64));
     let peak = peak(&on);
@@ -183,7 +196,7 @@ fn peak(samples: &[f64; SAMPLES]) -> f64 {
     samples.iter().fold(0.0, larger)
 }
 
-/// The rotation by which `known` gives `samples` within `tolerance`.
+/// Finds the rotation that turns `known` into `samples` within `tolerance`.
 fn same(known: &[f64; SAMPLES], samples: &[f64; SAMPLES], tolerance: f64) -> Option<usize> {
     (0..SAMPLES).find(|rotation| {
         (0..SAMPLES).all(|i| (samples[i] - known[(i + rotation) % SAMPLES]).abs() <= tolerance)
@@ -292,7 +305,7 @@ mod tests {
     }
 
     #[test]
-    fn what_differs_only_in_amplitude_start_and_gain_shares_a_waveform() {
+    fn gaits_that_differ_only_in_amplitude_start_and_gain_share_a_waveform() {
         // Two waves, two held shapes for four turns, one path for two servos that
         // mirror each other.
         assert_eq!(waves(&robot("paper")), 5);

@@ -1,15 +1,9 @@
-//! What drives a leg: struts that yield one way, and play. The figures are those of a
-//! separate implementation of the same model.
+//! The drive of a leg: struts that yield one way, and play. The figures are those of a separate
+//! implementation of the same model.
 
-use lizard_robot::{Body, CheckedGait, Drive, Ground, Kind, Walker};
+use lizard_robot::{Body, Drive, Ground, Kind, Report, Sprung, Walker};
 
-use crate::{gait, paper, paper_with};
-
-/// The mass for which the other implementation was asked, g.
-const STUDIED: Body = Body {
-    mass: 307.0,
-    ..Body::DEFAULT
-};
+use crate::{STUDIED, gait, paper, paper_with, way};
 
 fn on(drive: Drive) -> Ground {
     Ground {
@@ -32,14 +26,6 @@ fn play(play: f64) -> Ground {
         play,
         ..Drive::RIGID
     })
-}
-
-fn way(gait: &CheckedGait, ground: &Ground) -> f64 {
-    let travel = gait.walked(ground).travel;
-    match gait.name() {
-        "left" => travel.turn,
-        _ => travel.forward,
-    }
 }
 
 #[test]
@@ -125,7 +111,6 @@ fn a_lever_is_the_arms_part_square_to_the_strut() {
                 (strut.lever(leg, sweep) - by.abs()).abs() < 1e-4,
                 "{leg} {by}"
             );
-            assert_eq!(strut.yields_forward(leg, sweep), by > 0.0);
             let (way, torque) = strut.end(leg, sweep);
             let way = way.copysign(by);
             assert!((long(way) - long(0.0) - strut.slot).abs() < 1e-6, "{way}");
@@ -143,10 +128,6 @@ fn the_table_of_a_drive_makes_the_ground() {
     };
     assert_eq!(drive(""), Drive::RIGID);
     assert_eq!(drive("kind = \"rigid\", play = 0.5").play, 0.5);
-    assert_eq!(
-        drive("kind = \"spring\", stiffness = 5, preload = 2"),
-        Drive::spring(5.0, 2.0)
-    );
     let strut = *drive("kind = \"strut\", force = 4, rate = 0.4")
         .strut()
         .expect("a strut");
@@ -162,7 +143,7 @@ fn the_table_of_a_drive_makes_the_ground() {
 
 #[test]
 fn a_drive_that_is_changed_takes_its_legs_along() {
-    let mut walker = Walker::new(on(Drive::spring(2.0, 0.0)), [0.0; 4]);
+    let mut walker = Walker::new(strut(0.2), [0.0; 4]);
     (1..=40).for_each(|i| {
         walker.step([0.5 * f64::from(i), 0.0, 0.0, 0.0]);
     });
@@ -171,4 +152,83 @@ fn a_drive_that_is_changed_takes_its_legs_along() {
     assert!((walker.lag()[0] - 1.5).abs() < 1e-9, "{:?}", walker.lag());
     walker.set_ground(play(0.0));
     assert_eq!(walker.lag(), [0.0; 4]);
+}
+
+#[test]
+fn the_pull_that_is_needed_grows_with_mass_and_friction() {
+    let walked = |mass: f64, friction: f64, pull: f64| {
+        let ground = Ground {
+            body: Body {
+                mass,
+                ..Body::DEFAULT
+            },
+            friction,
+            drive: Drive {
+                kind: Kind::Strut(paper().strut_with(pull, 0.4 * pull)),
+                play: 0.0,
+            },
+            ..*paper().ground()
+        };
+        gait(paper(), "walk").walked(&ground)
+    };
+    let (one, two) = (walked(280.0, 0.7, 0.5), walked(420.0, 1.4, 1.5));
+    assert!(one.lag > 3.0 && (one.lag - two.lag).abs() < 1e-6);
+    assert!((one.travel.forward - two.travel.forward).abs() < 1e-6);
+}
+
+#[test]
+fn pads_that_hold_less_let_a_leg_go_and_a_still_one_stays() {
+    let walk = gait(paper(), "walk");
+    let mut walker = Walker::new(strut(0.5), walk.sweeps(0.0));
+    for i in 1..=90 {
+        walker.step(walk.sweeps(f64::from(i) / 100.0));
+    }
+    let (lag, legs) = (walker.lag(), walk.sweeps(0.9));
+    assert!(lag.iter().any(|lag| lag.abs() > 2.0), "{lag:?}");
+    walker.step(legs);
+    for (now, before) in walker.lag().into_iter().zip(lag) {
+        assert!(
+            (now - before).abs() < 1e-6,
+            "no servo turns, so no lag changes"
+        );
+    }
+    walker.set_ground(Ground {
+        friction: 0.07,
+        ..strut(0.5)
+    });
+    walker.step(legs);
+    for lag in walker.lag() {
+        assert!(lag.abs() < 0.5, "{lag}");
+    }
+    walker.set_ground(*paper().ground());
+    assert_eq!(walker.lag(), [0.0; 4]);
+}
+
+#[test]
+fn a_report_has_the_lag_of_the_legs_and_the_share_of_rigid_ones() {
+    assert_eq!(Sprung::of(gait(paper(), "walk"), paper().ground()), None);
+    let of = |name| Sprung::of(gait(paper(), name), &strut(0.5)).expect("it lags");
+    let share = |name| of(name).share.expect(name);
+    assert!((share("trot") - 24.6 / 26.7).abs() < 0.01);
+    assert!((share("left") - 14.3 / 15.3).abs() < 0.01);
+    assert_eq!((of("stand").share, of("look").share), (None, None));
+
+    let drive = "mount = 0.0\ndrive = { kind = \"strut\", force = 0.5, rate = 0.395 }";
+    let robot = paper_with("mount = 0.0", drive).expect("a strut");
+    let report = Report::of(&robot).to_string();
+    let trot = report.lines().find(|line| line.starts_with("trot"));
+    let on = Sprung::of(gait(&robot, "trot"), robot.ground()).expect("it lags");
+    let share = format!("{:.0}", 100.0 * on.share.expect("trot"));
+    assert!(trot.expect("trot").ends_with(&share), "{report}");
+    assert!(report.contains("lag  of rigid"));
+}
+
+#[test]
+fn mass_and_friction_are_read_from_the_file() {
+    let ground = |from: &str, to: &str| *paper_with(from, to).expect("a body").ground();
+    let heavy = ground("mass = 396.4 ", "mass = 310\ncentre = [5.0, -2.0] ");
+    assert_eq!((heavy.body.mass, heavy.body.centre), (310.0, [5.0, -2.0]));
+    assert!((heavy.grip() - 0.7 * 0.31 * 9.80665 / 4.0).abs() < 1e-12);
+    let smooth = ground("[ground]", "[ground]\nfriction = 0.5");
+    assert!((smooth.grip() - 0.5 * 0.3964 * 9.80665 / 4.0).abs() < 1e-12);
 }

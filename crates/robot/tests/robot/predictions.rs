@@ -1,4 +1,4 @@
-//! Where the gaits of the paper's robot go, against the figures they were chosen by, and the exact
+//! The movement of the paper's gaits against the figures by which they were chosen, and exact
 //! consequences of the contact model.
 
 use lizard_robot::{Report, Robot, Travel};

@@ -1,29 +1,47 @@
-//! What an author of robot.toml may do wrong, and the sentence that says so.
+//! Mistakes that an author of robot.toml may make, and the sentence for each.
 
 use lizard_robot::Robot;
 
 use crate::{paper_text, paper_with};
 
-mod gaits;
-mod measures;
+/// A mistake in the paper's robot.toml.
+struct Mistake {
+    /// Text of the file.
+    from: String,
+    /// The text in its place.
+    to: String,
+    /// The sentence after the file's name and line.
+    sentence: String,
+}
 
-/// What to replace, by what, and the message after the file's name and line.
-type Mistake = (&'static str, &'static str, &'static str);
-
-fn mistakes() -> impl Iterator<Item = &'static Mistake> {
-    measures::MISTAKES.iter().chain(gaits::MISTAKES)
+/// Reads mistakes.txt.
+fn mistakes() -> impl Iterator<Item = Mistake> {
+    let blocks = include_str!("mistakes.txt").split("\n\n");
+    blocks.filter(|block| block.starts_with('-')).map(|block| {
+        let lines = |mark: char| -> String {
+            let of_mark = block.lines().filter_map(|line| line.strip_prefix(mark));
+            let text = of_mark.map(|line| line.strip_prefix(' ').unwrap_or(line));
+            text.collect::<Vec<_>>().join("\n")
+        };
+        Mistake {
+            from: lines('-'),
+            to: lines('+'),
+            sentence: lines('='),
+        }
+    })
 }
 
 #[test]
 fn every_mistake_gets_its_sentence() {
-    for (from, to, expected) in mistakes() {
-        let error = paper_with(from, to)
+    assert!(mistakes().count() > 100);
+    for Mistake { from, to, sentence } in mistakes() {
+        let error = paper_with(&from, &to)
             .err()
             .unwrap_or_else(|| panic!("{to:?} was accepted"));
         let line = error.line.expect("a line");
         assert_eq!(
             error.to_string(),
-            format!("robot.toml:{line}: {expected}"),
+            format!("robot.toml:{line}: {sentence}"),
             "for {to:?}"
         );
     }
@@ -31,10 +49,11 @@ fn every_mistake_gets_its_sentence() {
 
 #[test]
 fn every_mistake_gets_the_line_of_its_key_or_table() {
-    for (from, to, _) in mistakes() {
-        let text = paper_text().replacen(from, to, 1);
-        let error = Robot::parse(&text).expect_err(to);
-        let line = text.lines().nth(error.line.expect("a line") - 1).expect(to);
+    for Mistake { from, to, .. } in mistakes() {
+        let text = paper_text().replacen(&from, &to, 1);
+        let error = Robot::parse(&text).expect_err(&to);
+        let line = text.lines().nth(error.line.expect("a line") - 1);
+        let line = line.expect("a line of the file");
         let mut names = error.key.split(['.', '[']).filter(|name| *name != "gait");
         let named = names.any(|name| line.contains(name))
             || line.contains("[gait")
@@ -69,7 +88,7 @@ fn refused(path: &std::path::Path) -> String {
 }
 
 #[test]
-fn what_is_no_text_file_is_refused_without_reading_it_to_its_end() {
+fn a_file_that_is_no_text_is_refused_without_reading_it_to_its_end() {
     // Without a bound this would read until memory is full.
     assert_eq!(
         refused("/dev/zero".as_ref()),

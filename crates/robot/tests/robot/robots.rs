@@ -1,12 +1,12 @@
-//! What holds for every robot whose file is in robots/, and for the builder's own.
+//! Tests of every robot in robots/, and of the builder's own.
 
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 use lizard_kinematics::Check;
-use lizard_robot::{Robot, STEPS_PER_DEGREE};
+use lizard_robot::{CheckedGait, Robot, STEPS_PER_DEGREE};
 
-/// The files in robots/ and robot.toml.
+/// Lists the files in robots/ and robot.toml.
 fn files() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let folder = std::fs::read_dir(root.join("robots")).expect("robots/");
@@ -29,99 +29,99 @@ fn each(test: impl Fn(&str, &Robot)) {
     }
 }
 
-#[test]
-fn every_table_is_within_half_a_degree_at_every_phase() {
+fn each_gait(test: impl Fn(&str, &Robot, &CheckedGait)) {
     each(|file, robot| {
         for gait in robot.gaits() {
-            let error = gait.table_error();
-            assert!(error.max <= 0.50, "{file} {}: {error:?}", gait.name());
-            assert!(error.rms <= error.max);
+            test(file, robot, gait);
         }
+    });
+}
+
+#[test]
+fn every_table_is_within_half_a_degree_at_every_phase() {
+    each_gait(|file, _, gait| {
+        let error = gait.table_error();
+        assert!(error.max <= 0.50, "{file} {}: {error:?}", gait.name());
+        assert!(error.rms <= error.max);
     });
 }
 
 #[test]
 fn every_gait_is_safe_between_its_samples_too() {
-    each(|file, robot| {
-        for gait in robot.gaits() {
-            for phase in (0..=u16::MAX).step_by(7) {
-                let pose = gait.table_angles(phase).into();
-                let solution = robot.lizard().solve(&pose).expect("it closes");
-                if let Some(violation) = robot.limits().violations(&solution).next() {
-                    // The check looks at 1024 phases; between two of them a margin
-                    // moves by less than this.
-                    let by = (violation.value - violation.limit).abs();
-                    assert!(by < 0.01, "{file} {} at {phase}: {violation}", gait.name());
-                }
+    each_gait(|file, robot, gait| {
+        for phase in (0..=u16::MAX).step_by(7) {
+            let pose = gait.table_angles(phase).into();
+            let solution = robot.lizard().solve(&pose).expect("it closes");
+            if let Some(violation) = robot.limits().violations(&solution).next() {
+                // The check looks at 1024 phases; between two of them a margin
+                // moves by less than this.
+                let by = (violation.value - violation.limit).abs();
+                assert!(by < 0.01, "{file} {} at {phase}: {violation}", gait.name());
             }
         }
     });
 }
 
 #[test]
-fn an_audit_is_the_least_of_what_its_phases_give() {
-    each(|file, robot| {
-        for gait in robot.gaits() {
-            let audit = gait.audit();
-            let mut seen = [f64::INFINITY; 3];
-            let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
-            for phase in (0..=u16::MAX).step_by(64) {
-                let pose = gait.table_angles(phase).into();
-                let s = robot.lizard().solve(&pose).expect("it closes");
-                for (place, margins) in [&s.margins.type2[..], &s.margins.type1, &s.margins.leg]
-                    .into_iter()
-                    .enumerate()
-                {
-                    seen[place] = margins.iter().fold(seen[place], |a, b| a.min(*b));
-                }
-                least = least.min(s.left.s).min(s.right.s);
-                most = most.max(s.left.s).max(s.right.s);
+fn an_audit_has_the_least_margins_of_all_phases() {
+    each_gait(|file, robot, gait| {
+        let audit = gait.audit();
+        let mut least_margins = [f64::INFINITY; 3];
+        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+        for phase in (0..=u16::MAX).step_by(64) {
+            let pose = gait.table_angles(phase).into();
+            let s = robot.lizard().solve(&pose).expect("it closes");
+            for (place, margins) in [&s.margins.type2[..], &s.margins.type1, &s.margins.leg]
+                .into_iter()
+                .enumerate()
+            {
+                least_margins[place] = margins.iter().fold(least_margins[place], |a, b| a.min(*b));
             }
-            let found = [audit.type2.value, audit.type1.value, audit.leg.value];
-            for (found, seen) in found.into_iter().zip(seen) {
-                // It looks at more phases, so it may find less.
-                assert!(
-                    (0.0..0.002).contains(&(seen - found)),
-                    "{file} {}",
-                    gait.name()
-                );
-            }
-            assert!(
-                (0.0..0.1).contains(&(least - audit.stroke.0)),
-                "{file} {}",
-                gait.name()
-            );
-            assert!(
-                (0.0..0.1).contains(&(audit.stroke.1 - most)),
-                "{file} {}",
-                gait.name()
-            );
-            assert!(Check::TYPE2.contains(&audit.type2.what), "{file}");
+            least = least.min(s.left.s).min(s.right.s);
+            most = most.max(s.left.s).max(s.right.s);
         }
+        let found = [audit.type2.value, audit.type1.value, audit.leg.value];
+        for (found, sampled) in found.into_iter().zip(least_margins) {
+            // It looks at more phases, so it may find less.
+            assert!(
+                (0.0..0.002).contains(&(sampled - found)),
+                "{file} {}",
+                gait.name()
+            );
+        }
+        assert!(
+            (0.0..0.1).contains(&(least - audit.stroke.0)),
+            "{file} {}",
+            gait.name()
+        );
+        assert!(
+            (0.0..0.1).contains(&(audit.stroke.1 - most)),
+            "{file} {}",
+            gait.name()
+        );
+        assert!(Check::TYPE2.contains(&audit.type2.what), "{file}");
     });
 }
 
 #[test]
 fn the_fastest_frame_is_faster_than_all_others_whichever_way_they_go() {
-    each(|file, robot| {
-        for gait in robot.gaits() {
-            let frame = 0.02 / gait.period();
-            let mut most = 0.0f64;
-            for i in 0..1000 {
-                let phase = f64::from(i) / 1000.0;
-                let (from, to) = (gait.angles(phase), gait.angles(phase + frame));
-                for servo in 0..4 {
-                    most = most.max((to[servo] - from[servo]).abs() * 50.0);
-                }
+    each_gait(|file, robot, gait| {
+        let frame = 0.02 / gait.period();
+        let mut most = 0.0f64;
+        for i in 0..1000 {
+            let phase = f64::from(i) / 1000.0;
+            let (from, to) = (gait.angles(phase), gait.angles(phase + frame));
+            for servo in 0..4 {
+                most = most.max((to[servo] - from[servo]).abs() * 50.0);
             }
-            let peak = gait.audit().peak;
-            assert!(
-                (peak.speed - most).abs() <= 0.005 * most,
-                "{file} {}: {peak:?}, but {most}",
-                gait.name()
-            );
-            assert!(peak.speed <= robot.pace().gait_slew);
         }
+        let peak = gait.audit().peak;
+        assert!(
+            (peak.speed - most).abs() <= 0.005 * most,
+            "{file} {}: {peak:?}, but {most}",
+            gait.name()
+        );
+        assert!(peak.speed <= robot.pace().gait_slew);
     });
 }
 

@@ -1,8 +1,8 @@
-//! The load that statics leaves free: what a foot that is too long takes from a gait.
+//! The load that statics leaves open, and the cost of a foot that is too long.
 
-use lizard_robot::{Body, CheckedGait, Ground, Stance, Walker};
+use lizard_robot::{Body, Ground, Stance, Walker};
 
-use crate::{gait, paper, paper_with};
+use crate::{STUDIED, gait, paper, paper_with, way};
 
 const GAITS: [&str; 8] = [
     "walk",
@@ -14,12 +14,6 @@ const GAITS: [&str; 8] = [
     "arc-left",
     "arc-right",
 ];
-
-/// The mass for which the other implementation was asked, g.
-const STUDIED: Body = Body {
-    mass: 307.0,
-    ..Body::DEFAULT
-};
 
 /// The paper's ground with feet of this stiffness, the front left one too long.
 fn on(stiffness: f64, twist: f64) -> Ground {
@@ -34,17 +28,8 @@ fn on(stiffness: f64, twist: f64) -> Ground {
     }
 }
 
-/// A cycle's way: ahead, or the turn of a gait that turns in place.
-fn way(gait: &CheckedGait, ground: &Ground) -> f64 {
-    let travel = gait.walked(ground).travel;
-    match gait.name() {
-        "left" | "right" => travel.turn,
-        _ => travel.forward,
-    }
-}
-
 #[test]
-fn four_tenths_on_a_diagonal_take_what_another_solver_found() {
+fn four_tenths_on_a_diagonal_cost_as_much_as_another_solver_found() {
     // An implementation of its own, in which both feet of a diagonal carry so much more
     // at every instant, and the others as much less.
     for (name, expected) in [
@@ -70,7 +55,7 @@ fn four_tenths_on_a_diagonal_take_what_another_solver_found() {
 }
 
 #[test]
-fn on_the_feet_that_are_meant_a_foot_a_millimetre_too_long_costs_no_gait_a_tenth() {
+fn on_soft_feet_a_foot_a_millimetre_too_long_costs_no_gait_a_tenth() {
     let Stance {
         stiffness, twist, ..
     } = paper().ground().stance;
@@ -98,7 +83,7 @@ fn on_a_leaf_of_three_newton_a_millimetre_half_a_millimetre_stops_the_robot() {
 }
 
 #[test]
-fn what_counts_is_stiffness_times_length_over_weight() {
+fn the_cost_depends_on_stiffness_times_length_over_weight() {
     let gait = gait(paper(), "walk");
     let one = way(gait, &on(2.0, 0.6));
     assert!((way(gait, &on(0.5, 2.4)) - one).abs() < 1e-6);
@@ -115,7 +100,7 @@ fn what_counts_is_stiffness_times_length_over_weight() {
 }
 
 #[test]
-fn how_the_feet_stand_is_read_from_the_file() {
+fn stiffness_and_twist_are_read_from_the_file() {
     let robot = paper_with("[body]", "[feet]\nstiffness = 2.0\ntwist = -0.6\n[body]");
     let stance = robot.expect("feet").ground().stance;
     assert_eq!((stance.stiffness, stance.twist), (2.0, -0.6));

@@ -1,7 +1,7 @@
-//! `simulated-uno program.hex`: what a program does, without a board.
+//! `simulated-uno program.hex`: runs a program without a board.
 //!
-//! It prints the lines of the serial port as they come, with their time, and then what
-//! an oscilloscope would have shown on each pin.
+//! It prints the lines of the serial port as they arrive, each with its time, and then the pulses
+//! that an oscilloscope would have shown on each pin.
 
 mod report;
 
@@ -22,7 +22,7 @@ use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, LoadError, State, Uno};
 struct Arguments {
     /// The program, as Intel HEX (.hex) or ELF (.elf).
     program: PathBuf,
-    /// How long it runs, in milliseconds of the chip's time.
+    /// Length of the run, in milliseconds of the chip's time.
     #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..=3_600_000))]
     ms: u64,
     /// Send a line after this many milliseconds: --say 500:walk. May be given repeatedly.
@@ -34,12 +34,12 @@ struct Arguments {
     /// Print every pulse and not only a summary of each pin.
     #[arg(long)]
     pulses: bool,
-    /// Use simavr as it is, without the corrections by the data sheet.
+    /// Use stock simavr, without the corrections by the data sheet.
     #[arg(long)]
     stock: bool,
 }
 
-/// A line for the serial port.
+/// A line to be sent to the serial port, and its time.
 #[derive(Clone)]
 struct Line {
     ms: u64,
@@ -68,7 +68,7 @@ fn main() -> ExitCode {
     };
     match run(&arguments, image, &mut io::stdout().lock()) {
         Ok(code) => code,
-        // Who reads has enough, as in `simulated-uno blink.hex | head`.
+        // The reader has closed its end, as in `simulated-uno blink.hex | head`.
         Err(error) if error.kind() == ErrorKind::BrokenPipe => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("simulated-uno: cannot print: {error}");

@@ -1,4 +1,4 @@
-//! What a run has shown, in words and numbers.
+//! The results of a run, in words and numbers.
 
 use std::io::{self, Write};
 
@@ -10,44 +10,45 @@ const LONGEST: usize = 200;
 /// The serial text, line by line.
 #[derive(Default)]
 pub struct Text {
-    /// The line that has no end yet, and the cycle of its last byte.
-    begun: Vec<u8>,
+    /// The line received so far, without an end.
+    line: Vec<u8>,
+    /// The cycle of its last byte.
     cycle: u64,
 }
 
 impl Text {
-    /// Takes bytes, and prints the lines that they end.
+    /// Adds bytes, and prints the lines that they complete.
     pub fn print(&mut self, bytes: &[SerialByte], out: &mut impl Write) -> io::Result<()> {
         for byte in bytes {
             self.cycle = byte.cycle;
             if byte.byte != b'\n' {
-                self.begun.push(byte.byte);
+                self.line.push(byte.byte);
             }
-            if byte.byte == b'\n' || self.begun.len() == LONGEST {
-                self.line(out)?;
+            if byte.byte == b'\n' || self.line.len() == LONGEST {
+                self.print_line(out)?;
             }
         }
         Ok(())
     }
 
-    /// Prints what has no end.
+    /// Prints the last line if it has no end.
     pub fn finish(&mut self, out: &mut impl Write) -> io::Result<()> {
-        match self.begun.is_empty() {
+        match self.line.is_empty() {
             true => Ok(()),
-            false => self.line(out),
+            false => self.print_line(out),
         }
     }
 
-    fn line(&mut self, out: &mut impl Write) -> io::Result<()> {
+    fn print_line(&mut self, out: &mut impl Write) -> io::Result<()> {
         let ms = self.cycle as f64 / CYCLES_PER_MS as f64;
-        let text = String::from_utf8_lossy(&self.begun);
+        let text = String::from_utf8_lossy(&self.line);
         writeln!(out, "{ms:>10.2} ms  {}", shown(text.trim_end_matches('\r')))?;
-        self.begun.clear();
+        self.line.clear();
         Ok(())
     }
 }
 
-/// A text that cannot command the terminal: control characters are written out.
+/// Escapes control characters, so that a text cannot command the terminal.
 pub fn shown(text: &str) -> String {
     let mut shown = String::new();
     for letter in text.chars() {
@@ -59,7 +60,7 @@ pub fn shown(text: &str) -> String {
     shown
 }
 
-/// The pulses of all pins that had any: a line for each pin, or for each pulse.
+/// Prints the pulses of all pins that had any: a line for each pin, or for each pulse.
 pub fn pins(edges: &[Edge], every: bool, out: &mut impl Write) -> io::Result<()> {
     let us = |cycles: u64| cycles as f64 / CYCLES_PER_US as f64;
     writeln!(out)?;
@@ -102,7 +103,7 @@ pub fn pins(edges: &[Edge], every: bool, out: &mut impl Write) -> io::Result<()>
     Ok(())
 }
 
-/// How the run has ended, and what it took.
+/// Prints the state at the end of the run, and the resources used.
 pub fn end(uno: &Uno, flash: u32, out: &mut impl Write) -> io::Result<()> {
     let state = match uno.state() {
         State::Alive => "It runs on.".to_owned(),

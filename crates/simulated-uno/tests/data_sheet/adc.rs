@@ -1,9 +1,9 @@
-//! The simulated supply and ADC against the data sheet, chapters 11.5 and 24.
+//! Tests of the simulated supply and ADC against the data sheet, chapters 11.5 and 24.
 
 use simulated_uno::avr_gcc::c;
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, Pin, ResetCause, Uno};
 
-use super::{causes, marks};
+use super::{causes, distances, mark_cycles, marks, uno};
 
 /// ADC clock of 125 kHz: prescaler 128.
 const CLOCK: u64 = 128;
@@ -22,18 +22,34 @@ fn program(body: &str) -> Image {
     ))
 }
 
-/// The program, corrected towards the data sheet.
+/// An UNO with this program.
 pub fn with(body: &str) -> Uno {
-    Uno::with_image(program(body), Fidelity::DataSheet)
+    uno(program(body))
 }
 
-/// The results shown so far.
+/// An UNO whose main runs these statements once, with voltages at A0 and the pins after it, mV.
+fn once(body: &str, volts: &[u16]) -> Uno {
+    let mut uno = with(&format!("int main(void) {{ {body} for (;;) {{}} }}"));
+    for (n, mv) in (0..).zip(volts) {
+        uno.set_analog_mv(Pin::a(n), *mv);
+    }
+    uno
+}
+
+/// The conversions' results shown so far.
 fn results(uno: &Uno) -> Vec<u16> {
     let bytes = marks(uno);
-    bytes
-        .chunks(2)
+    let pairs = bytes.chunks(2);
+    pairs
         .map(|pair| u16::from_le_bytes([pair[0], pair[1]]))
         .collect()
+}
+
+/// The results of statements that main runs once.
+fn results_of(body: &str, volts: &[u16]) -> Vec<u16> {
+    let mut uno = once(body, volts);
+    uno.run_ms(3);
+    results(&uno)
 }
 
 /// Measures the bandgap against AVcc, settled, again and again.
@@ -67,65 +83,119 @@ fn a_bandgap_beyond_the_data_sheet_is_refused() {
 }
 
 #[test]
-fn each_analogue_pin_is_measured_on_its_own_channel() {
-    let mut uno = with(
-        "int main(void) {
-        for (unsigned char i = 0; i < 6; i++) { ADMUX = 0x40 | i; convert(); }
-        for (;;) {} }",
-    );
-    for n in 0..6 {
-        uno.set_analog_mv(Pin::a(n), 100 + 1000 * u16::from(n));
-    }
-    uno.run_ms(3);
-    let expected: Vec<u16> = (0..6u32)
-        .map(|n| ((100 + 1000 * n) * 1024 / 5000).min(1023) as u16)
-        .collect();
-    assert_eq!(results(&uno), expected);
-}
-
-#[test]
 #[should_panic(expected = "D9 is not an analogue pin")]
 fn a_digital_pin_has_no_voltage_to_set() {
     with(BANDGAP).set_analog_mv(Pin::d(9), 1);
 }
 
 #[test]
-fn ground_reads_zero_and_too_much_reads_1023() {
-    let mut uno = with(
-        "int main(void) {
-        ADMUX = 0x4f; convert();
-        ADMUX = 0xc1; convert();
-        ADMUX = 0xce; convert();
-        for (;;) {} }",
-    );
-    uno.set_analog_mv(Pin::a(1), 550);
-    uno.run_ms(3);
-    // Against the bandgap: half of it, and itself.
-    assert_eq!(results(&uno)[..2], [0, 512]);
-    let mut uno = with("int main(void) { ADMUX = 0x41; convert(); for (;;) {} }");
-    uno.set_analog_mv(Pin::a(1), 6000);
-    uno.run_ms(1);
-    assert_eq!(results(&uno), [1023]);
+fn conversions_have_the_results_of_the_data_sheet() {
+    for (sentence, body, volts, expected) in [
+        (
+            "each analogue pin is measured on its own channel, and too much reads 1023",
+            "for (unsigned char i = 0; i < 6; i++) { ADMUX = 0x40 | i; convert(); }",
+            &[100, 1100, 2100, 3100, 4100, 5100][..],
+            &[20, 225, 430, 634, 839, 1023][..],
+        ),
+        (
+            "ground reads zero, and half of the bandgap against the bandgap 512",
+            "ADMUX = 0x4f; convert(); ADMUX = 0xc1; convert();",
+            &[0, 550],
+            &[0, 512],
+        ),
+        (
+            // "Once the conversion starts, the channel and reference selection is locked to
+            // ensure a sufficient sampling time for the ADC" (24.5).
+            "a channel is locked once the conversion has started",
+            "ADMUX = 0x40; start(); _delay_us(20); ADMUX = 0x41; wait(); show();",
+            &[2500, 1250],
+            &[512],
+        ),
+        (
+            "a pin needs no settling",
+            "ADMUX = 0x4e; start(); wait(); ADMUX = 0x42; start(); wait(); show();",
+            &[0, 0, 2500],
+            &[512],
+        ),
+    ] {
+        assert_eq!(results_of(body, volts), expected, "{sentence}");
+    }
+}
+
+#[test]
+fn registers_read_as_the_data_sheet_says() {
+    for (sentence, body, volts, expected) in [
+        (
+            // "ADSC will read as one as long as a conversion is in progress. When the
+            // conversion is complete, it returns to zero. Writing zero to this bit has no
+            // effect" (24.9.2).
+            "ADSC reads one as long as a conversion is in progress",
+            "ADMUX = 0x40; start();
+            ADCSRA = 0x87; GPIOR0 = ADCSRA & 0x50;
+            wait(); GPIOR0 = ADCSRA & 0x50;
+            ADCSRA = 0x97; GPIOR0 = ADCSRA & 0x50;",
+            &[][..],
+            &[0x40, 0x10, 0x00][..],
+        ),
+        (
+            // "Turning the ADC off while a conversion is in progress, will terminate this
+            // conversion" (24.9.2).
+            "turning the ADC off ends a conversion",
+            "ADMUX = 0x40; start(); ADCSRA = 7;
+            GPIOR0 = ADCSRA; _delay_ms(1); GPIOR0 = ADCSRA;",
+            &[],
+            &[7, 7],
+        ),
+        (
+            "a conversion is not started while the ADC is off",
+            "ADCSRA = 0x47; GPIOR0 = ADCSRA;",
+            &[],
+            &[7],
+        ),
+        (
+            // "if ADCL has been read, and a conversion completes before ADCH is read, neither
+            // register is updated and the result from the conversion is lost" (24.2).
+            "the result is locked from ADCL to ADCH",
+            "ADMUX = 0x40; start(); wait();
+            GPIOR0 = ADCL;
+            ADMUX = 0x41; start(); wait();
+            GPIOR0 = ADCH; GPIOR0 = ADCL; GPIOR0 = ADCH;
+            start(); wait(); show();",
+            &[3300, 700], // 675 = 0x2a3 and 143 = 0x08f
+            &[0xa3, 0x02, 0xa3, 0x02, 0x8f, 0x00],
+        ),
+        (
+            // "Changing the ADLAR bit will affect the ADC Data Register immediately,
+            // regardless of any ongoing conversions" (24.9.1); ADCH alone then holds 8 bits.
+            "ADLAR shifts the result at once",
+            "ADMUX = 0x40; start(); wait(); ADMUX = 0x60;
+            GPIOR0 = ADCH; GPIOR0 = ADCL; GPIOR0 = ADCH;",
+            &[3300], // 675 = 0x2a3 = 10 1010 0011
+            &[0xa8, 0xc0, 0xa8],
+        ),
+    ] {
+        let mut uno = once(body, volts);
+        uno.run_ms(2);
+        assert_eq!(marks(&uno), expected, "{sentence}");
+    }
 }
 
 #[test]
 fn the_first_conversion_takes_25_clocks_and_others_13() {
     // Table 24-1: "First conversion 25", "Normal conversions, single ended 13".
     // It "starts at the following rising edge of the ADC clock", so up to one more.
-    let mut uno = with(
-        "int main(void) {
-        ADMUX = 0x40; ADCSRA = 0x87;
+    let mut uno = once(
+        "ADMUX = 0x40; ADCSRA = 0x87;
         for (unsigned char i = 0; i < 3; i++) { start(); GPIOR0 = i; wait(); GPIOR0 = i; }
         ADCSRA = 7; ADCSRA = 0x87;
-        start(); GPIOR0 = 9; wait(); GPIOR0 = 9;
-        for (;;) {} }",
+        start(); GPIOR0 = 9; wait(); GPIOR0 = 9;",
+        &[],
     );
     uno.run_ms(2);
-    let cycles: Vec<u64> = uno.marks().iter().map(|mark| mark.cycle).collect();
-    let took: Vec<u64> = cycles.chunks(2).map(|pair| pair[1] - pair[0]).collect();
-    for (took, clocks) in took.into_iter().zip([25, 13, 13, 25]) {
+    let lengths = distances(&mark_cycles(&uno));
+    for (length, clocks) in lengths.into_iter().step_by(2).zip([25, 13, 13, 25]) {
         let range = clocks * CLOCK - 4..(clocks + 1) * CLOCK + 12;
-        assert!(range.contains(&took), "{took}, not {clocks} clocks");
+        assert!(range.contains(&length), "{length}, not {clocks} clocks");
     }
 }
 
@@ -133,24 +203,23 @@ fn the_first_conversion_takes_25_clocks_and_others_13() {
 fn the_prescaler_divides_by_table_24_5() {
     // ADPS 000 and 001: 2, 010: 4, ... 111: 128.
     for (select, divisor) in [2, 2, 4, 8, 16, 32, 64, 128].into_iter().enumerate() {
-        let body = format!(
-            "int main(void) {{
-            ADMUX = 0x40; ADCSRA = 0xa0 | {select}; ADCSRA |= 0x40;
-            for (;;) {{ while (!(ADCSRA & 0x10)) {{}} GPIOR0 = 1; ADCSRA |= 0x10; }} }}"
+        let mut uno = once(
+            &format!(
+                "ADMUX = 0x40; ADCSRA = 0xa0 | {select}; ADCSRA |= 0x40;
+                for (;;) {{ while (!(ADCSRA & 0x10)) {{}} GPIOR0 = 1; ADCSRA |= 0x10; }}"
+            ),
+            &[],
         );
-        let mut uno = with(&body);
         uno.run_ms(2);
-        let cycles: Vec<u64> = uno.marks().iter().map(|mark| mark.cycle).collect();
+        let cycles = mark_cycles(&uno);
         let (first, last, count) = (cycles[1], cycles[cycles.len() - 1], cycles.len() as u64 - 2);
-        if divisor >= 8 {
-            // Free running: "a new conversion will be started immediately".
-            assert!(
-                (last - first).abs_diff(count * 13 * divisor) < 40,
-                "{divisor}"
-            );
-        } else {
-            assert!(count > 500, "{divisor}");
-        }
+        // Free running: "a new conversion will be started immediately". The loop cannot follow
+        // the fastest.
+        let is_right = match divisor {
+            8.. => (last - first).abs_diff(count * 13 * divisor) < 40,
+            _ => count > 500,
+        };
+        assert!(is_right, "{divisor}");
     }
 }
 
@@ -158,88 +227,17 @@ fn the_prescaler_divides_by_table_24_5() {
 fn the_lowest_prescalers_both_divide_by_two() {
     // Table 24-5: 13 clocks are 26 cycles.
     for select in [0, 1] {
-        let mut uno = with(&format!(
-            "int main(void) {{
-            ADMUX = 0x40; ADCSRA = 0xc0 | {select}; wait();
-            ADCSRA = 0xc0 | {select}; __builtin_avr_delay_cycles(18); GPIOR0 = ADCSRA & 0x40;
-            ADCSRA = 0xc0 | {select}; __builtin_avr_delay_cycles(40); GPIOR0 = ADCSRA & 0x40;
-            for (;;) {{}} }}"
-        ));
+        let mut uno = once(
+            &format!(
+                "ADMUX = 0x40; ADCSRA = 0xc0 | {select}; wait();
+                ADCSRA = 0xc0 | {select}; __builtin_avr_delay_cycles(18); GPIOR0 = ADCSRA & 0x40;
+                ADCSRA = 0xc0 | {select}; __builtin_avr_delay_cycles(40); GPIOR0 = ADCSRA & 0x40;"
+            ),
+            &[],
+        );
         uno.run_ms(1);
         assert_eq!(marks(&uno), [0x40, 0], "{select}");
     }
-}
-
-#[test]
-fn adsc_reads_one_as_long_as_a_conversion_is_in_progress() {
-    // "ADSC will read as one as long as a conversion is in progress. When the
-    // conversion is complete, it returns to zero. Writing zero to this bit has no
-    // effect" (24.9.2).
-    let mut uno = with(
-        "int main(void) {
-        ADMUX = 0x40; start();
-        ADCSRA = 0x87; GPIOR0 = ADCSRA & 0x50;
-        wait(); GPIOR0 = ADCSRA & 0x50;
-        ADCSRA = 0x97; GPIOR0 = ADCSRA & 0x50;
-        for (;;) {} }",
-    );
-    uno.run_ms(1);
-    assert_eq!(marks(&uno), [0x40, 0x10, 0x00]);
-}
-
-#[test]
-fn turning_the_adc_off_ends_a_conversion() {
-    // "Turning the ADC off while a conversion is in progress, will terminate this
-    // conversion" (24.9.2).
-    let mut uno = with(
-        "int main(void) {
-        ADMUX = 0x40; start(); ADCSRA = 7;
-        GPIOR0 = ADCSRA; _delay_ms(1); GPIOR0 = ADCSRA;
-        for (;;) {} }",
-    );
-    uno.run_ms(2);
-    assert_eq!(marks(&uno), [7, 7]);
-}
-
-#[test]
-fn a_conversion_is_not_started_while_the_adc_is_off() {
-    let mut uno = with("int main(void) { ADCSRA = 0x47; GPIOR0 = ADCSRA; for (;;) {} }");
-    uno.run_ms(1);
-    assert_eq!(marks(&uno), [7]);
-}
-
-#[test]
-fn the_result_is_locked_from_adcl_to_adch() {
-    // "if ADCL has been read, and a conversion completes before ADCH is read, neither
-    // register is updated and the result from the conversion is lost" (24.2).
-    let mut uno = with(
-        "int main(void) {
-        ADMUX = 0x40; start(); wait();
-        GPIOR0 = ADCL;
-        ADMUX = 0x41; start(); wait();
-        GPIOR0 = ADCH; GPIOR0 = ADCL; GPIOR0 = ADCH;
-        start(); wait(); show();
-        for (;;) {} }",
-    );
-    uno.set_analog_mv(Pin::a(0), 3300); // 675 = 0x2a3
-    uno.set_analog_mv(Pin::a(1), 700); // 143 = 0x08f
-    uno.run_ms(2);
-    assert_eq!(marks(&uno), [0xa3, 0x02, 0xa3, 0x02, 0x8f, 0x00]);
-}
-
-#[test]
-fn adlar_shifts_the_result_at_once() {
-    // "Changing the ADLAR bit will affect the ADC Data Register immediately,
-    // regardless of any ongoing conversions" (24.9.1); ADCH alone then holds 8 bits.
-    let mut uno = with(
-        "int main(void) {
-        ADMUX = 0x40; start(); wait(); ADMUX = 0x60;
-        GPIOR0 = ADCH; GPIOR0 = ADCL; GPIOR0 = ADCH;
-        for (;;) {} }",
-    );
-    uno.set_analog_mv(Pin::a(0), 3300); // 675 = 0x2a3 = 10 1010 0011
-    uno.run_ms(1);
-    assert_eq!(marks(&uno), [0xa8, 0xc0, 0xa8]);
 }
 
 #[test]
@@ -253,75 +251,47 @@ fn the_adc_interrupt_wakes_the_cpu_and_clears_its_flag() {
 }
 
 #[test]
-fn a_channel_is_locked_once_the_conversion_has_started() {
-    // "Once the conversion starts, the channel and reference selection is locked to
-    // ensure a sufficient sampling time for the ADC" (24.5).
-    let mut uno = with(
-        "int main(void) {
-        ADMUX = 0x40; start(); _delay_us(20); ADMUX = 0x41; wait(); show();
-        for (;;) {} }",
-    );
-    uno.set_analog_mv(Pin::a(0), 2500);
-    uno.set_analog_mv(Pin::a(1), 1250);
-    uno.run_ms(1);
-    assert_eq!(results(&uno), [512]);
-}
-
-#[test]
-fn a_voltage_is_sampled_one_and_a_half_clocks_after_the_start() {
-    // Table 24-1, "Sample & Hold (Cycles from Start of Conversion)": 1.5.
-    let body = "int main(void) {
-        ADMUX = 0x40; start(); wait(); GPIOR0 = 0;
-        start(); wait(); show();
-        for (;;) {} }";
-    let at = |change: u64| {
-        let mut uno = with(body);
-        uno.run_until(CYCLES_PER_MS, 1, |uno| !uno.marks().is_empty());
-        uno.take_marks();
-        uno.run_cycles(change);
-        uno.set_analog_mv(Pin::a(0), 2500);
-        uno.run_ms(1);
-        results(&uno)[0]
-    };
-    // The start is the next edge, at most a clock after ADSC.
-    assert_eq!(at(CLOCK), 512);
-    assert_eq!(at(3 * CLOCK), 0);
-}
-
-#[test]
-fn the_first_conversion_samples_after_13_and_a_half_clocks() {
-    // Table 24-1, "First conversion": sample & hold after 13.5 cycles.
-    let at = |change: u64| {
-        let mut uno = with("int main(void) { ADMUX = 0x40; GPIOR0 = 0; convert(); for (;;) {} }");
-        uno.run_until(CYCLES_PER_MS, 1, |uno| !uno.marks().is_empty());
-        uno.take_marks();
-        uno.run_cycles(change);
-        uno.set_analog_mv(Pin::a(0), 2500);
-        uno.run_ms(1);
-        results(&uno)[0]
-    };
-    assert_eq!(at(13 * CLOCK), 512);
-    assert_eq!(at(15 * CLOCK), 0);
+fn a_voltage_is_sampled_when_table_24_1_says() {
+    // "Sample & Hold (Cycles from Start of Conversion)": 1.5, in the first conversion 13.5. The
+    // start is the next edge, at most a clock after ADSC.
+    for (body, sampled, too_late) in [
+        (
+            "start(); wait(); GPIOR0 = 0; start(); wait(); show();",
+            1,
+            3,
+        ),
+        ("GPIOR0 = 0; convert();", 13, 15),
+    ] {
+        let result = |change: u64| {
+            let mut uno = once(&format!("ADMUX = 0x40; {body}"), &[]);
+            uno.run_until(CYCLES_PER_MS, 1, |uno| !uno.marks().is_empty());
+            uno.take_marks();
+            uno.run_cycles(change * CLOCK);
+            uno.set_analog_mv(Pin::a(0), 2500);
+            uno.run_ms(1);
+            results(&uno)[0]
+        };
+        assert_eq!((result(sampled), result(too_late)), (512, 0), "{body}");
+    }
 }
 
 #[test]
 fn conversions_keep_step_with_the_adc_clock() {
     // "the conversion starts at the following rising edge of the ADC clock cycle"
-    // (24.4): whenever it is asked for, its end is a whole number of clocks away
-    // from another's.
-    let mut uno = with(
-        "int main(void) {
-        ADMUX = 0x40; start();
+    // (24.4): whenever it is requested, its end is an integer number of clocks away
+    // from that of another.
+    let mut uno = once(
+        "ADMUX = 0x40; start();
         for (unsigned char i = 0; i < 20; i++) {
             while (!(ADCSRA & 0x10)) {}
             GPIOR0 = i;
             for (unsigned char j = 0; j < i; j++) _delay_us(3);
             ADCSRA = 0xd7;
-        }
-        for (;;) {} }",
+        }",
+        &[],
     );
     uno.run_ms(4);
-    let cycles: Vec<u64> = uno.marks().iter().map(|mark| mark.cycle).collect();
+    let cycles = mark_cycles(&uno);
     assert_eq!(cycles.len(), 20);
     for cycle in &cycles {
         let off = (cycle - cycles[0] + 10) % CLOCK;
@@ -330,29 +300,24 @@ fn conversions_keep_step_with_the_adc_clock() {
 }
 
 #[test]
-fn the_bandgap_needs_70_us_after_the_channel_is_chosen() {
+fn the_bandgap_needs_70_us_after_the_channel_is_selected() {
     // "When the bandgap reference voltage is used as input to the ADC, it will take
     // a certain time for the voltage to stabilize. If not stabilized, the first
     // value read after the first conversion may be wrong"; 29.5: start-up
     // time at most 70 us.
-    let first = |wait: u32, before: u16| {
+    let results = |wait: u32, previous: u16| {
         let body = format!(
-            "int main(void) {{
-            ADMUX = 0x40; start(); wait(); _delay_ms(1);
+            "ADMUX = 0x40; start(); wait(); _delay_ms(1);
             ADMUX = 0x4e; _delay_us({wait});
-            start(); wait(); show(); start(); wait(); show();
-            for (;;) {{}} }}"
+            start(); wait(); show(); start(); wait(); show();"
         );
-        let mut uno = with(&body);
-        uno.set_analog_mv(Pin::a(0), before);
-        uno.run_ms(3);
-        results(&uno)
+        results_of(&body, &[previous])
     };
-    assert_eq!(first(72, 0), [225, 225]);
-    let hasty = first(30, 0);
+    assert_eq!(results(72, 0), [225, 225]);
+    let hasty = results(30, 0);
     assert!((80..160).contains(&hasty[0]), "{hasty:?}");
     assert_eq!(hasty[1], 225, "a second one is right");
-    assert!(first(30, 5000)[0] > 400, "from the channel before");
+    assert!(results(30, 5000)[0] > 400, "from the previous channel");
 }
 
 #[test]
@@ -360,15 +325,10 @@ fn the_bandgap_has_settled_after_70_us_and_not_before() {
     // ADC clock of 1 MHz, so that the start is known to a microsecond.
     let first = |wait: u32| {
         let body = format!(
-            "int main(void) {{
-            ADMUX = 0x40; ADCSRA = 0xc4; wait();
-            ADMUX = 0x4e; _delay_us({wait}); ADCSRA = 0xc4; wait(); show();
-            for (;;) {{}} }}"
+            "ADMUX = 0x40; ADCSRA = 0xc4; wait();
+            ADMUX = 0x4e; _delay_us({wait}); ADCSRA = 0xc4; wait(); show();"
         );
-        let mut uno = with(&body);
-        uno.set_analog_mv(Pin::a(0), 5000);
-        uno.run_ms(1);
-        results(&uno)[0]
+        results_of(&body, &[5000])[0]
     };
     assert!((226..250).contains(&first(68)));
     assert_eq!(first(71), 225);
@@ -380,38 +340,22 @@ fn the_bandgap_needs_70_us_after_the_adc_is_switched_on() {
     // up before the output ... is used" (11.7.1).
     let first = |wait: u32| {
         let body = format!(
-            "int main(void) {{
-            ADMUX = 0x4e; _delay_ms(1); ADCSRA = 0x87; _delay_us({wait});
-            start(); wait(); show();
-            for (;;) {{}} }}"
+            "ADMUX = 0x4e; _delay_ms(1); ADCSRA = 0x87; _delay_us({wait});
+            start(); wait(); show();"
         );
-        let mut uno = with(&body);
-        uno.run_ms(3);
-        results(&uno)[0]
+        results_of(&body, &[])[0]
     };
     assert_eq!(first(72), 225);
     assert_ne!(first(20), 225);
 }
 
 #[test]
-fn a_pin_needs_no_settling() {
-    let mut uno = with(
-        "int main(void) { ADMUX = 0x4e; start(); wait(); ADMUX = 0x42; start(); wait(); show(); for (;;) {} }",
-    );
-    uno.set_analog_mv(Pin::a(2), 2500);
-    uno.run_ms(1);
-    assert_eq!(results(&uno), [512]);
-}
-
-#[test]
 fn a_reset_switches_the_adc_off() {
-    let mut uno = with(
-        "int main(void) {
-        GPIOR0 = ADCSRA; GPIOR0 = ADMUX; GPIOR0 = ADCL; GPIOR0 = ADCH;
-        ADMUX = 0x40; start(); wait(); GPIOR0 = ADCL; start();
-        for (;;) {} }",
+    let mut uno = once(
+        "GPIOR0 = ADCSRA; GPIOR0 = ADMUX; GPIOR0 = ADCL; GPIOR0 = ADCH;
+        ADMUX = 0x40; start(); wait(); GPIOR0 = ADCL; start();",
+        &[2500],
     );
-    uno.set_analog_mv(Pin::a(0), 2500);
     uno.run_cycles(30 * CLOCK);
     uno.reset();
     uno.take_marks();

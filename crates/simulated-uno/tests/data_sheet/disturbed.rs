@@ -1,10 +1,10 @@
-//! The simulated UNO disturbed: interrupts out of nowhere, a main program that
-//! stands still, registers as something before the firmware may have left them.
+//! Tests of disturbances of the simulated UNO: interrupts of no source on the chip, a main program
+//! that stands still, registers written from outside.
 
+use simulated_uno::Uno;
 use simulated_uno::avr_gcc::{assembler, c};
-use simulated_uno::{Fidelity, Uno};
 
-use super::{BOTH, LED};
+use super::{BOTH, LED, distances, mark_cycles, marks, uno, widths};
 
 /// The LED is up for 100 cycles of instructions without interrupts, and down for
 /// 99 or so with them.
@@ -34,10 +34,6 @@ const COUNT: &str = "#include <avr/io.h>
         for (;;) PINB = 0x20;
     }";
 
-fn widths(uno: &Uno) -> Vec<u64> {
-    uno.pulses(LED).iter().map(|pulse| pulse.width).collect()
-}
-
 #[test]
 fn a_foreign_interrupt_waits_until_interrupts_are_on_and_takes_its_cycles() {
     let image = assembler(PULSES);
@@ -47,11 +43,10 @@ fn a_foreign_interrupt_waits_until_interrupts_are_on_and_takes_its_cycles() {
             uno.run_until_cycle(at);
             uno.hold(5000);
             uno.run_until_cycle(10_000);
-            let pulses = uno.pulses(LED);
             let widths = widths(&uno);
             assert!(widths.iter().all(|width| *width == widths[0]), "at {at}");
-            let apart = |pair: &[simulated_uno::Pulse]| pair[1].start - pair[0].start;
-            let periods: Vec<u64> = pulses.windows(2).map(apart).collect();
+            let starts: Vec<u64> = uno.pulses(LED).iter().map(|pulse| pulse.start).collect();
+            let periods = distances(&starts);
             let longer: Vec<&u64> = periods.iter().filter(|p| **p != periods[0]).collect();
             assert_eq!(longer, [&(periods[0] + 5000)], "at {at}");
         }
@@ -73,7 +68,7 @@ fn a_foreign_interrupt_ends_a_sleep_and_comes_before_the_chips_own() {
         uno.run_until_cycle(9_000);
         uno.hold(3_000);
         uno.run_until_cycle(35_000);
-        let marks: Vec<u8> = uno.marks().iter().map(|mark| mark.value).collect();
+        let marks = marks(&uno);
         // The first came some 2000 cycles late, the others at once.
         assert!((120..135).contains(&marks[0]), "{marks:?}");
         assert!(marks[1..].iter().all(|mark| *mark < 4), "{marks:?}");
@@ -91,15 +86,14 @@ fn bytes_that_come_while_nothing_is_executed_are_lost_as_on_the_chip() {
             sei();
             for (;;) {}
         }");
-    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    let mut uno = uno(image);
     uno.run_until_cycle(1000);
     uno.send(b"abcdefgh");
     // Three are in; a hold of five more bytes leaves room for two and the last.
     uno.run_until_cycle(1000 + 3 * 1389 + 100);
     uno.hold(5 * 1389);
     uno.run_until_cycle(30_000);
-    let got: Vec<u8> = uno.marks().iter().map(|mark| mark.value).collect();
-    assert_eq!(String::from_utf8_lossy(&got), "abcdeh");
+    assert_eq!(marks(&uno), b"abcdeh");
     assert_eq!(uno.overruns(), 2);
 }
 
@@ -112,11 +106,13 @@ fn main_stands_still_while_interrupts_are_served() {
         uno.stall_main(100_000);
         uno.run_until_cycle(124_000);
         assert_eq!(uno.edges().len(), 0, "main toggles nothing");
-        let marks = uno.marks();
-        assert_eq!(marks.len(), 12, "and twelve interrupts came");
-        let steady =
-            |pair: &[simulated_uno::Mark]| pair[1].cycle.abs_diff(pair[0].cycle + 10_000) < 8;
-        assert!(marks.windows(2).all(steady));
+        let cycles = mark_cycles(&uno);
+        assert_eq!(cycles.len(), 12, "and twelve interrupts are served");
+        assert!(
+            distances(&cycles)
+                .iter()
+                .all(|distance| distance.abs_diff(10_000) < 8)
+        );
         uno.run_until_cycle(126_000);
         assert!(uno.edges().len() > 100, "then main goes on");
     }

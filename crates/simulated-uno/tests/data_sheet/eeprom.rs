@@ -1,19 +1,18 @@
-//! The simulated EEPROM against the data sheet, chapter 8.4 and 8.6.
+//! Tests of the simulated EEPROM against the data sheet, chapters 8.4 and 8.6.
 
 use simulated_uno::avr_gcc::{assembler, c};
-use simulated_uno::{CYCLES_PER_US, EEPROM_SIZE, EepromMode, Fidelity, Image, Pin, Uno};
+use simulated_uno::{CYCLES_PER_US, EEPROM_SIZE, EepromMode, Fidelity, Image, Uno};
 
-use super::marks;
+use super::{FIXED, after, after_ms, distances, mark_cycles, marks, uno, widths};
 
 /// Table 8-1: "Erase and Write in one operation (Atomic Operation)", 3.4 ms.
 pub const ATOMIC: u64 = 3400 * CYCLES_PER_US;
 /// Table 8-1: "Erase Only" and "Write Only", 1.8 ms.
 const SINGLE: u64 = 1800 * CYCLES_PER_US;
 
+/// An UNO after so many cycles of these instructions, followed by an endless loop.
 fn run(source: &str, cycles: u64) -> Uno {
-    let mut uno = Uno::with_image(assembler(source), Fidelity::DataSheet);
-    uno.run_cycles(cycles);
-    uno
+    after(cycles, assembler(&format!("{source}\nend: rjmp end")))
 }
 
 /// `body` with `set(address, byte, mode)` and `get(address)` as the data sheet's
@@ -37,23 +36,20 @@ pub fn program(body: &str) -> Image {
     ))
 }
 
-fn run_c(body: &str, ms: u64) -> Uno {
-    let mut uno = Uno::with_image(program(body), Fidelity::DataSheet);
-    uno.run_ms(ms);
-    uno
+/// An UNO after so many milliseconds, whose main runs these statements once.
+fn once(body: &str, ms: u64) -> Uno {
+    after_ms(
+        ms,
+        program(&format!("int main(void) {{ {body} for (;;) {{}} }}")),
+    )
 }
 
 #[test]
 fn a_new_eeprom_is_erased_and_holds_1024_bytes_that_tests_may_set() {
-    let mut uno = run_c(
-        "int main(void) { GPIOR0 = get(0); GPIOR0 = get(1023); GPIOR0 = get(512); for (;;) {} }",
-        1,
-    );
+    let mut uno = once("GPIOR0 = get(0); GPIOR0 = get(1023); GPIOR0 = get(512);", 1);
     assert_eq!(marks(&uno), [0xff, 0xff, 0xff]);
     let mut contents = [0; EEPROM_SIZE];
-    contents[0] = 1;
-    contents[1023] = 2;
-    contents[512] = 3;
+    (contents[0], contents[1023], contents[512]) = (1, 2, 3);
     uno.set_eeprom(&contents);
     uno.take_marks();
     uno.reset();
@@ -63,29 +59,55 @@ fn a_new_eeprom_is_erased_and_holds_1024_bytes_that_tests_may_set() {
 }
 
 #[test]
-fn an_address_has_ten_bits() {
-    // "EEAR9:0": the others always read as zero (8.6.1).
-    let uno = run_c(
-        "int main(void) { EEAR = 0xffff; GPIOR0 = EEARH; GPIOR0 = EEARL; for (;;) {} }",
-        1,
-    );
-    assert_eq!(marks(&uno), [0x03, 0xff]);
+fn registers_read_as_the_data_sheet_says() {
+    for (sentence, body, expected) in [
+        (
+            // "EEAR9:0": the others always read as zero (8.6.1).
+            "an address has ten bits",
+            "EEAR = 0xffff; GPIOR0 = EEARH; GPIOR0 = EEARL;",
+            &[0x03, 0xff][..],
+        ),
+        (
+            // "If a write operation is in progress, it is neither possible to read the
+            // EEPROM, nor to change the EEAR Register"; "While EEPE is set, any write to
+            // EEPMn will be ignored" (8.6.3).
+            "while busy, address, mode and data of the write in progress cannot be changed",
+            "set(0x123, 0x42, 0);
+            EEAR = 0x2aa; EEDR = 0x99; EECR = 0x20;
+            GPIOR0 = EEARH; GPIOR0 = EEARL; GPIOR0 = EECR;
+            while (busy()) {}
+            EEAR = 0x2aa; GPIOR0 = EEARL;
+            GPIOR0 = get(0x123); GPIOR0 = get(0x2aa);",
+            &[0x01, 0x23, 0x02, 0xaa, 0x42, 0xff],
+        ),
+        (
+            "while busy, a read and a second write are ignored",
+            "set(5, 0x42, 0);
+            EEDR = 0x77;
+            EECR |= 1; GPIOR0 = EEDR;
+            EECR = 4; EECR |= 2;
+            while (busy()) {}
+            GPIOR0 = get(5);",
+            &[0x77, 0x42],
+        ),
+    ] {
+        let uno = once(body, 10);
+        assert_eq!(marks(&uno), expected, "{sentence}");
+        assert!(uno.eeprom_operations().len() <= 1, "{sentence}");
+    }
 }
 
 /// `sbi EEMPE`, `count` nops, `sbi EEPE`: `count + 2` cycles from one bit to the
 /// other.
 fn armed_then(count: usize) -> Uno {
     let nops = "nop\n".repeat(count);
-    run(
-        &format!(
-            "ldi r16, 0x5a $ out EEDR, r16
-             sbi EECR, EEMPE
-             {nops}
-             sbi EECR, EEPE
-        end: rjmp end"
-        ),
-        ATOMIC + 100,
-    )
+    let source = format!(
+        "ldi r16, 0x5a $ out EEDR, r16
+         sbi EECR, EEMPE
+         {nops}
+         sbi EECR, EEPE"
+    );
+    run(&source, ATOMIC + 100)
 }
 
 #[test]
@@ -99,8 +121,6 @@ fn eepe_must_be_set_within_four_cycles_after_eempe() {
         assert_eq!(uno.eeprom()[0], expected, "{nops} nops");
         assert_eq!(uno.eeprom_operations().len(), usize::from(written));
     }
-    let never = run("sbi EECR, EEPE\nend: rjmp end", ATOMIC + 100);
-    assert!(never.eeprom_operations().is_empty());
 }
 
 #[test]
@@ -112,36 +132,30 @@ fn hardware_clears_eempe_after_four_cycles() {
         "sbi EECR, EEMPE
          in r16, EECR $ in r17, EECR $ in r18, EECR $ in r19, EECR $ in r20, EECR
          out GPIOR0, r16 $ out GPIOR0, r17 $ out GPIOR0, r18
-         out GPIOR0, r19 $ out GPIOR0, r20
-    end: rjmp end",
+         out GPIOR0, r19 $ out GPIOR0, r20",
         100,
     );
     assert_eq!(marks(&uno), [4, 4, 4, 4, 0]);
 }
 
 #[test]
-fn setting_both_bits_at_once_arms_nothing() {
-    // "Write a logical one to the EEMPE bit while writing a zero to EEPE" (8.6.3).
-    let uno = run(
-        "ldi r16, 6 $ out EECR, r16 $ out EECR, r16
-    end: rjmp end",
-        ATOMIC,
-    );
-    assert!(uno.eeprom_operations().is_empty());
-}
-
-#[test]
-fn clearing_a_bit_with_cbi_does_not_arm_again() {
-    // "the CBI and SBI instructions will only operate on the specified bit" (8.5).
-    let uno = run(
-        "sbi EECR, EEMPE
-         cbi EECR, EERIE
-         nop
-         sbi EECR, EEPE
-    end: rjmp end",
-        ATOMIC,
-    );
-    assert!(uno.eeprom_operations().is_empty(), "5 cycles after EEMPE");
+fn nothing_is_written_without_the_timed_sequence() {
+    for (sentence, source) in [
+        ("EEPE alone has no effect", "sbi EECR, EEPE"),
+        (
+            // "Write a logical one to the EEMPE bit while writing a zero to EEPE" (8.6.3).
+            "setting both bits at once arms nothing",
+            "ldi r16, 6 $ out EECR, r16 $ out EECR, r16",
+        ),
+        (
+            // "the CBI and SBI instructions will only operate on the specified bit" (8.5).
+            "clearing a bit with cbi, 5 cycles after EEMPE, does not arm again",
+            "sbi EECR, EEMPE $ cbi EECR, EERIE $ nop $ sbi EECR, EEPE",
+        ),
+    ] {
+        let uno = run(source, ATOMIC + 100);
+        assert!(uno.eeprom_operations().is_empty(), "{sentence}");
+    }
 }
 
 #[test]
@@ -152,10 +166,8 @@ fn eepe_reads_one_for_as_long_as_table_8_1_says() {
         (1, SINGLE, EepromMode::EraseOnly),
         (2, SINGLE, EepromMode::WriteOnly),
     ] {
-        let body = format!(
-            "int main(void) {{ set(7, 0x33, {mode}); while (busy()) {{}} GPIOR0 = 1; for (;;) {{}} }}"
-        );
-        let uno = run_c(&body, 5);
+        let body = format!("set(7, 0x33, {mode}); while (busy()) {{}} GPIOR0 = 1;");
+        let uno = once(&body, 5);
         let operation = uno.eeprom_operations()[0];
         assert_eq!((operation.address, operation.mode), (7, kind));
         let busy = uno.marks()[0].cycle - operation.cycle;
@@ -165,76 +177,27 @@ fn eepe_reads_one_for_as_long_as_table_8_1_says() {
 
 #[test]
 fn erasing_sets_all_bits_and_writing_alone_clears_some() {
-    let body = "int main(void) {
-        set(0, 0x0f, 2); set(0, 0xf5, 2);
+    let body = "set(0, 0x0f, 2); set(0, 0xf5, 2);
         set(1, 0x0f, 0); set(1, 0x55, 1);
-        set(2, 0x0f, 0); set(2, 0xf0, 0);
-        for (;;) {} }";
-    let uno = run_c(body, 30);
+        set(2, 0x0f, 0); set(2, 0xf0, 0);";
+    let uno = once(body, 30);
     assert_eq!(uno.eeprom()[..4], [0x05, 0xff, 0xf0, 0xff]);
-    let bytes: Vec<(u8, u8)> = uno
-        .eeprom_operations()
-        .iter()
-        .map(|operation| (operation.old, operation.new))
-        .collect();
-    assert_eq!(
-        bytes,
-        [
-            (0xff, 0x0f),
-            (0x0f, 0x05),
-            (0xff, 0x0f),
-            (0x0f, 0xff),
-            (0xff, 0x0f),
-            (0x0f, 0xf0)
-        ]
-    );
+    let operations = uno.eeprom_operations();
+    let old: Vec<u8> = operations.iter().map(|operation| operation.old).collect();
+    let new: Vec<u8> = operations.iter().map(|operation| operation.new).collect();
+    assert_eq!(old, [0xff, 0x0f, 0xff, 0x0f, 0xff, 0x0f]);
+    assert_eq!(new, [0x0f, 0x05, 0x0f, 0xff, 0x0f, 0xf0]);
 }
 
 #[test]
 fn a_byte_has_its_old_value_until_its_time_is_over() {
-    let mut uno = Uno::with_image(
-        program("int main(void) { set(9, 0x21, 0); for (;;) {} }"),
-        Fidelity::DataSheet,
-    );
+    let mut uno = uno(program("int main(void) { set(9, 0x21, 0); for (;;) {} }"));
     uno.run_until(1000, 1, |uno| !uno.eeprom_operations().is_empty());
     let end = uno.eeprom_operations()[0].cycle + ATOMIC;
     uno.run_until_cycle(end - 10);
     assert_eq!(uno.eeprom()[9], 0xff);
     uno.run_until_cycle(end + 10);
     assert_eq!(uno.eeprom()[9], 0x21);
-}
-
-#[test]
-fn while_busy_address_mode_and_data_of_the_running_write_cannot_be_changed() {
-    // "If a write operation is in progress, it is neither possible to read the
-    // EEPROM, nor to change the EEAR Register"; "While EEPE is set, any write to
-    // EEPMn will be ignored" (8.6.3).
-    let body = "int main(void) {
-        set(0x123, 0x42, 0);
-        EEAR = 0x2aa; EEDR = 0x99; EECR = 0x20;
-        GPIOR0 = EEARH; GPIOR0 = EEARL; GPIOR0 = EECR;
-        while (busy()) {}
-        EEAR = 0x2aa; GPIOR0 = EEARL;
-        for (;;) {} }";
-    let uno = run_c(body, 5);
-    assert_eq!(marks(&uno), [0x01, 0x23, 0x02, 0xaa]);
-    assert_eq!(uno.eeprom()[0x123], 0x42);
-    assert_eq!(uno.eeprom()[0x2aa], 0xff);
-}
-
-#[test]
-fn while_busy_a_read_and_a_second_write_are_ignored() {
-    let body = "int main(void) {
-        set(5, 0x42, 0);
-        EEDR = 0x77;
-        EECR |= 1; GPIOR0 = EEDR;
-        EECR = 4; EECR |= 2;
-        while (busy()) {}
-        for (;;) {} }";
-    let uno = run_c(body, 10);
-    assert_eq!(marks(&uno), [0x77]);
-    assert_eq!(uno.eeprom_operations().len(), 1);
-    assert_eq!(uno.eeprom()[5], 0x42);
 }
 
 #[test]
@@ -253,28 +216,24 @@ fn the_cpu_halts_four_cycles_to_read_and_two_to_write() {
          cbi PORTB, 5
          sbi PORTB, 5
          sbi EECR, EEPE
-         cbi PORTB, 5
-    end: rjmp end",
+         cbi PORTB, 5",
         100,
     );
-    let widths: Vec<u64> = uno.pulses(Pin::d(13)).iter().map(|p| p.width).collect();
     // sbi 2 + halt + cbi 2; the last EEPE is ignored.
-    assert_eq!(widths, [8, 6, 4]);
+    assert_eq!(widths(&uno), [8, 6, 4]);
 }
 
 #[test]
 fn a_timer_is_on_time_though_the_eeprom_halts_the_cpu() {
     // Timer1 counts while the CPU stands still, so its interrupt is not late.
-    let image = c("#include <avr/io.h>
-        #include <avr/interrupt.h>
-        ISR(TIMER1_COMPA_vect) { GPIOR0 = TCNT1L; }
+    let image = program(
+        "ISR(TIMER1_COMPA_vect) { GPIOR0 = TCNT1L; }
         int main(void) {
             OCR1A = 1999; TIMSK1 = 2; TCCR1B = 9; sei();
             for (;;) { EECR |= 1; EECR |= 1; EECR |= 1; EECR |= 1; }
-        }");
-    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
-    uno.run_ms(20);
-    let counts = marks(&uno);
+        }",
+    );
+    let counts = marks(&after_ms(20, image));
     assert!(counts.len() > 150);
     let spread = counts.iter().max().unwrap() - counts.iter().min().unwrap();
     assert!(spread <= 6, "{counts:?}"); // the longest instruction: sbi and its halt
@@ -294,15 +253,14 @@ fn the_ready_interrupt_is_a_level_while_eepe_is_zero() {
         }
         int main(void) { SMCR = 1; EECR = 8; sei(); for (;;) asm volatile (\"sleep\"); }",
     );
-    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
-    uno.run_ms(15);
+    let uno = after_ms(15, image);
     assert_eq!(marks(&uno), [0, 1, 2, 3]);
     assert_eq!(uno.eeprom()[..4], [1, 2, 3, 0xff]);
     let asleep = uno.asleep_cycles() as f64 / uno.cycle() as f64;
     assert!(asleep > 0.6, "it sleeps while a byte is programmed");
     let starts: Vec<u64> = uno.eeprom_operations().iter().map(|o| o.cycle).collect();
-    for pair in starts.windows(2) {
-        assert!((ATOMIC..ATOMIC + 150).contains(&(pair[1] - pair[0])));
+    for distance in distances(&starts) {
+        assert!((ATOMIC..ATOMIC + 150).contains(&distance));
     }
 }
 
@@ -319,12 +277,11 @@ fn the_ready_interrupt_comes_at_once_and_again_after_one_instruction() {
          sei
          nop
          sbi EECR, EERIE
-         nop
-    end: rjmp end",
+         nop",
         400,
     );
     // entry 4, sbi 2, reti 4, one instruction (nop 1, then rjmp 2)
-    let cycles: Vec<u64> = uno.marks().iter().map(|mark| mark.cycle).collect();
+    let cycles = mark_cycles(&uno);
     // jmp 3, ldi out ldi out 4, sei 1, nop 1, sbi 2: at 11; entry 4, sbi 2.
     assert_eq!(cycles[0], 17);
     assert_eq!(cycles[1] - cycles[0], 4 + 1 + 4 + 2);
@@ -337,18 +294,13 @@ fn a_reset_lets_a_running_write_finish_and_keeps_its_mode() {
     // operation will be completed provided that the power supply voltage is
     // sufficient" (8.4.2); "During reset, the EEPMn bits will be reset to 0b00
     // unless the EEPROM is busy programming" (8.6.3).
-    let mut uno = Uno::with_image(
-        program(
-            "int main(void) {
-                GPIOR0 = EECR;
-                if (!busy()) set(3, 0x42, 2);
-                while (busy()) {}
-                GPIOR0 = 0xaa;
-                for (;;) {} }",
-        ),
-        Fidelity::DataSheet,
+    let mut uno = once(
+        "GPIOR0 = EECR;
+        if (!busy()) set(3, 0x42, 2);
+        while (busy()) {}
+        GPIOR0 = 0xaa;",
+        1,
     );
-    uno.run_ms(1);
     uno.reset();
     uno.run_cycles(100);
     assert_eq!(marks(&uno), [0x00, 0x22]);
@@ -363,14 +315,8 @@ fn a_reset_lets_a_running_write_finish_and_keeps_its_mode() {
 
 #[test]
 fn a_reset_disarms_eempe() {
-    let image = assembler(
-        "in r16, GPIOR1
-         sbi EECR, EEPE
-         sbi EECR, EEMPE
-    end: rjmp end",
-    );
-    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
-    uno.run_cycles(5); // up to and with the sbi to EEMPE
+    // Up to the sbi to EEMPE, and that.
+    let mut uno = run("in r16, GPIOR1 $ sbi EECR, EEPE $ sbi EECR, EEMPE", 5);
     uno.reset();
     uno.run_cycles(100);
     assert!(uno.eeprom_operations().is_empty());
@@ -381,10 +327,6 @@ fn stock_simavr_writes_at_once_and_never_reads_busy() {
     let image = program("int main(void) { set(0, 0x21, 1); GPIOR0 = EECR; for (;;) {} }");
     let mut uno = Uno::with_image(image, Fidelity::Stock);
     uno.run_cycles(200);
-    assert_eq!(
-        marks(&uno),
-        [0x10],
-        "stock simavr has learnt this: drop the correction"
-    );
+    assert_eq!(marks(&uno), [0x10], "{FIXED}");
     assert_eq!(uno.eeprom()[0], 0x21, "though it was an erase");
 }

@@ -1,9 +1,9 @@
-//! Images as Intel HEX, against the same program as ELF and against lines written by hand.
+//! Tests of images as Intel HEX, against the same program as ELF and against lines written by hand.
 
+use simulated_uno::Image;
 use simulated_uno::avr_gcc::c;
-use simulated_uno::{Fidelity, Image, Uno};
 
-use super::LED;
+use super::{LED, after_ms};
 
 /// `:` length address type bytes checksum, as avr-objcopy has them.
 fn line(address: u16, kind: u8, bytes: &[u8]) -> String {
@@ -17,11 +17,6 @@ fn line(address: u16, kind: u8, bytes: &[u8]) -> String {
 }
 
 const END: &str = ":00000001FF\n";
-
-fn words(text: &str) -> String {
-    let error = Image::parse_hex(text).expect_err("it is no image");
-    error.to_string()
-}
 
 #[test]
 fn a_program_as_hex_does_what_it_does_as_elf() {
@@ -39,8 +34,7 @@ fn a_program_as_hex_does_what_it_does_as_elf() {
     assert_eq!(hex.flash(), flash);
     assert_eq!((hex.static_ram(), hex.symbols().len()), (0, 0));
     let edges = |image| {
-        let mut uno = Uno::with_image(image, Fidelity::DataSheet);
-        uno.run_ms(10);
+        let uno = after_ms(10, image);
         assert!(uno.pulses(LED).len() > 20);
         uno.edges()
     };
@@ -77,23 +71,27 @@ fn addresses_of_more_than_16_bits_and_gaps_are_understood() {
 #[test]
 fn hex_that_is_wrong_is_refused_with_the_line() {
     let good = line(0, 0, &[0xff, 0xcf]);
-    let bad = good.replace("FFCF", "FFCE") + END;
-    assert!(
-        words(&bad).starts_with("line 1 is not Intel HEX: "),
-        "{bad}"
-    );
-    assert!(words(&(good.clone() + "blink\n")).starts_with("line 2 is not Intel HEX: "));
-    assert_eq!(
-        words(&good),
-        "the HEX file has no end record: only a part of it is there"
-    );
-    assert_eq!(words(END), "the file holds no code");
-    assert_eq!(
-        words(&(line(0x7fff, 0, &[1, 2]) + END)),
-        "2 bytes at 0x7fff do not fit an ATmega328P"
-    );
-    assert_eq!(
-        words(&(line(0, 4, &[0xff, 0xff]) + &line(0xffff, 0, &[1]) + END)),
-        "1 bytes at 0xffffffff do not fit an ATmega328P"
-    );
+    for (text, error) in [
+        (
+            good.replace("FFCF", "FFCE") + END,
+            "line 1 is not Intel HEX: ",
+        ),
+        (good.clone() + "blink\n", "line 2 is not Intel HEX: "),
+        (
+            good,
+            "the HEX file has no end record: only a part of it is there",
+        ),
+        (END.to_owned(), "the file holds no code"),
+        (
+            line(0x7fff, 0, &[1, 2]) + END,
+            "2 bytes at 0x7fff do not fit an ATmega328P",
+        ),
+        (
+            line(0, 4, &[0xff, 0xff]) + &line(0xffff, 0, &[1]) + END,
+            "1 bytes at 0xffffffff do not fit an ATmega328P",
+        ),
+    ] {
+        let refusal = Image::parse_hex(&text).expect_err("it is no image");
+        assert!(refusal.to_string().starts_with(error), "{refusal}: {text}");
+    }
 }

@@ -1,10 +1,10 @@
-//! The simulated UNO against programs whose timing follows from the data sheet
-//! by counting cycles.
+//! Tests of the simulated UNO by programs whose timing follows from the data sheet by
+//! counting cycles.
 
 use simulated_uno::avr_gcc::{assembler, c};
-use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin, State, Uno, most_pins_high};
+use simulated_uno::{CYCLES_PER_MS, Image, Pin, State, Uno, most_pins_high};
 
-use super::{BOTH, LED};
+use super::{BOTH, LED, after, edges, uno, widths};
 
 #[test]
 fn a_pulse_of_counted_instructions_has_its_counted_width() {
@@ -48,8 +48,7 @@ fn unlike_stores_are_stamped_alike() {
     for fidelity in BOTH {
         let mut uno = Uno::with_image(image.clone(), fidelity);
         uno.run_cycles(100);
-        let widths: Vec<u64> = uno.pulses(LED).iter().map(|pulse| pulse.width).collect();
-        assert_eq!(widths, [4, 2]);
+        assert_eq!(widths(&uno), [4, 2]);
     }
 }
 
@@ -67,24 +66,12 @@ fn pins_are_named_as_on_the_board_and_counted_when_high_together() {
          cbi PORTB, 3
     end: rjmp end",
     );
-    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
-    uno.run_cycles(100);
-    let edges: Vec<(u8, bool)> = uno
-        .edges()
-        .iter()
-        .map(|edge| (edge.pin.number(), edge.high))
-        .collect();
-    assert_eq!(
-        edges,
-        [
-            (3, true),
-            (9, true),
-            (3, false),
-            (9, false),
-            (11, true),
-            (11, false)
-        ]
+    let uno = after(100, image);
+    let (one, two) = (
+        [(3, true), (9, true), (3, false)],
+        [(9, false), (11, true), (11, false)],
     );
+    assert_eq!(edges(&uno), [one, two].concat());
     assert_eq!(most_pins_high(&uno.edges()), 2);
 }
 
@@ -109,12 +96,11 @@ fn every_pin_of_every_port_is_recorded_under_its_arduino_number() {
         uno.run_cycles(200);
         for (pin, start, width) in &expected {
             let pulses = uno.pulses(*pin);
-            assert_eq!(pulses.len(), 1, "{pin}");
-            assert_eq!(
-                (pulses[0].start, pulses[0].width),
-                (*start, *width),
-                "{pin}"
-            );
+            let found: Vec<_> = pulses
+                .iter()
+                .map(|pulse| (pulse.start, pulse.width))
+                .collect();
+            assert_eq!(found, [(*start, *width)], "{pin}");
         }
         assert_eq!(uno.edges().len(), 2 * 18, "D2 to D13, A0 to A5");
         assert_eq!(most_pins_high(&uno.edges()), 1);
@@ -138,7 +124,7 @@ fn the_level_of_an_analogue_pin_is_seen_and_toggled_alone() {
          sbi PINC, 5
     end: rjmp end",
     );
-    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    let mut uno = uno(image);
     assert!(!uno.is_high(Pin::a(0)));
     uno.run_cycles(100);
     let high: Vec<u8> = (2..20).filter(|n| uno.is_high(Pin::arduino(*n))).collect();
@@ -154,14 +140,8 @@ fn sbi_on_a_pin_register_toggles_one_pin() {
          sbi PINB, 5
     end: rjmp end",
     );
-    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
-    uno.run_cycles(100);
-    let edges: Vec<(u8, bool)> = uno
-        .edges()
-        .iter()
-        .map(|edge| (edge.pin.number(), edge.high))
-        .collect();
-    assert_eq!(edges, [(9, true), (13, true), (13, false)]);
+    let uno = after(100, image);
+    assert_eq!(edges(&uno), [(9, true), (13, true), (13, false)]);
 }
 
 #[test]
@@ -177,7 +157,7 @@ fn sleeping_with_interrupts_off_is_a_halt() {
 #[test]
 fn an_address_outside_memory_is_a_crash() {
     let image = assembler("ldi r16, 1 $ sts 0x0fff, r16\nend: rjmp end");
-    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    let mut uno = uno(image);
     assert!(matches!(uno.run_ms(1), State::Crashed { .. }));
 }
 
@@ -208,7 +188,7 @@ fn the_paint_shows_how_deep_the_stack_went() {
     end: rjmp end
     deep: push r16 $ push r16 $ pop r16 $ pop r16 $ ret",
     );
-    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    let mut uno = uno(image);
     assert_eq!(uno.stack_used(), 0);
     uno.run_cycles(100);
     assert_eq!(uno.stack_used(), 4);
@@ -221,11 +201,8 @@ fn sizes_come_from_the_elf() {
         static volatile unsigned char given[20] = {1};
         int main(void) { return zeroed[3] + given[4]; }");
     assert_eq!(image.static_ram(), 120);
-    assert!(
-        (200..500).contains(&image.flash_used()),
-        "{}",
-        image.flash_used()
-    );
+    let flash = image.flash_used();
+    assert!((200..500).contains(&flash), "{flash}");
     assert_eq!(image.symbol("given").map(|symbol| symbol.size), Some(20));
 }
 
@@ -246,7 +223,7 @@ fn a_call_is_timed_with_and_without_the_interrupts_in_it() {
          ret",
     );
     let entry = image.symbol("work").expect("it is global").address as u32;
-    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    let mut uno = uno(image);
     let calls = uno.time_calls(entry, 10_000);
     assert_eq!(calls.len(), 1);
     // ldi 1; 200 * (nop, dec, brne 2) - 1; ret 4
@@ -264,16 +241,12 @@ fn a_function_that_calls_itself_is_timed_to_its_own_return() {
         }
         int main(void) { work(9); for (;;) {} }");
     let entry = image.function("work").expect("it is a function").address as u32;
-    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    let mut uno = uno(image);
     // Watched from inside the first call on: all that follow come from one place.
     assert!(uno.run_until(1000, 1, |uno| !uno.marks().is_empty()));
     let calls = uno.time_calls(entry, 20_000);
     assert_eq!(calls.len(), 1);
-    assert!(
-        (9_000..9_300).contains(&calls[0].cycles()),
-        "{:?}",
-        calls[0]
-    );
+    assert!((9_000..9_300).contains(&calls[0].cycles()), "{calls:?}");
 }
 
 #[test]
@@ -291,7 +264,7 @@ fn interrupts_in_a_timed_call_are_told_apart() {
             for (;;) {}
         }");
     let entry = image.symbol("work").expect("it is global").address as u32;
-    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    let mut uno = uno(image);
     let calls = uno.time_calls(entry, 20 * CYCLES_PER_MS);
     assert_eq!(calls.len(), 2);
     assert_eq!(calls[0].interrupted, 0);
@@ -303,10 +276,10 @@ fn interrupts_in_a_timed_call_are_told_apart() {
 #[test]
 fn only_an_avr_elf_is_loaded() {
     let own = std::env::current_exe().expect("the test has a name");
-    assert!(simulated_uno::Image::read(own).is_err());
-    let error = simulated_uno::Image::read("no/such.elf").expect_err("it does not exist");
+    assert!(Image::read(own).is_err());
+    let error = Image::read("no/such.elf").expect_err("it does not exist");
     assert!(error.to_string().starts_with("cannot read no/such.elf"));
-    let endless = simulated_uno::Image::read("/dev/zero").expect_err("it never ends");
+    let endless = Image::read("/dev/zero").expect_err("it never ends");
     assert_eq!(
         endless.to_string(),
         "not an ELF file of an AVR: it is longer than 4 MiB"

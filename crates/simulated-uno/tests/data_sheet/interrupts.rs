@@ -1,9 +1,9 @@
-//! Interrupts and Timer1 of the simulated UNO, against counted cycles.
+//! Tests of the simulated UNO's interrupts and Timer1, against counted cycles.
 
 use simulated_uno::avr_gcc::{assembler, c};
 use simulated_uno::{Fidelity, Uno};
 
-use super::{BOTH, LED};
+use super::{BOTH, FIXED, LED, after, mark_cycles, marks};
 
 /// Timer1 in CTC mode with a compare interrupt; the handler toggles the LED by
 /// its first instruction.
@@ -39,8 +39,7 @@ fn a_compare_interrupt_from_sleep_costs_what_the_data_sheet_says() {
     // The counter starts with the last cycle of the `sts` to TCCR1B, which the
     // model puts at its first; it matches 10 000 cycles later. Then 4 + 4 cycles
     // to enter, 3 for the vector's jmp, 1 for out.
-    let mut uno = Uno::with_image(assembler(TICK), Fidelity::DataSheet);
-    uno.run_cycles(100_000);
+    let mut uno = after(100_000, assembler(TICK));
     let starts: Vec<u64> = uno.pulses(LED).iter().map(|pulse| pulse.start).collect();
     assert!(starts.len() >= 9);
     // jmp 3, then 2 * (ldi, out) 4, sbi 2, ldi 2, 2 * (ldi, sts) 6, (ldi, sts) 3,
@@ -67,8 +66,7 @@ fn stock_simavr_enters_an_interrupt_for_nothing() {
 
 #[test]
 fn interrupts_are_counted_with_their_cycles() {
-    let mut uno = Uno::with_image(assembler(TICK), Fidelity::DataSheet);
-    uno.run_cycles(100_000);
+    let uno = after(100_000, assembler(TICK));
     let used = uno.interrupts();
     assert_eq!(used.len(), 1);
     assert_eq!(simulated_uno::vector_name(used[0].vector), "TIMER1_COMPA");
@@ -128,11 +126,7 @@ fn enabling_an_interrupt_whose_flag_is_up_fires_it() {
         uno.edges().len()
     };
     assert_eq!(up_at(Fidelity::DataSheet), 1);
-    assert_eq!(
-        up_at(Fidelity::Stock),
-        0,
-        "stock simavr has learnt this: drop the correction"
-    );
+    assert_eq!(up_at(Fidelity::Stock), 0, "{FIXED}");
 }
 
 #[test]
@@ -154,10 +148,9 @@ fn an_interrupt_that_is_enabled_while_its_flag_is_up_comes_after_that_instructio
     over: out GPIOR0, r16
          reti",
     );
-    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
-    uno.run_cycles(70_000);
-    let marks: Vec<u64> = uno.marks().iter().map(|mark| mark.cycle).collect();
-    assert_eq!(marks[1] - marks[0], 2 + 4 + 3 + 1);
+    let uno = after(70_000, image);
+    let cycles = mark_cycles(&uno);
+    assert_eq!(cycles[1] - cycles[0], 2 + 4 + 3 + 1);
 }
 
 #[test]
@@ -177,11 +170,7 @@ fn writing_one_timer_flag_leaves_the_others() {
         uno.marks()[0].value
     };
     assert_eq!(mark(Fidelity::DataSheet), 4);
-    assert_eq!(
-        mark(Fidelity::Stock),
-        0,
-        "stock simavr has learnt this: drop the correction"
-    );
+    assert_eq!(mark(Fidelity::Stock), 0, "{FIXED}");
 }
 
 #[test]
@@ -196,10 +185,8 @@ fn the_high_byte_of_a_16_bit_register_goes_through_the_shared_temp_byte() {
             GPIOR0 = OCR1AH; GPIOR0 = OCR1AL; GPIOR0 = OCR1BH; GPIOR0 = OCR1BL;
             for (;;) {}
         }");
-    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
-    uno.run_cycles(500);
-    let marks: Vec<u8> = uno.marks().iter().map(|mark| mark.value).collect();
-    assert_eq!(marks, [0x34, 0x78, 0x34, 0x56]);
+    let uno = after(500, image);
+    assert_eq!(marks(&uno), [0x34, 0x78, 0x34, 0x56]);
 }
 
 #[test]

@@ -1,9 +1,9 @@
-//! The EEPROM when power goes in the middle of a write.
+//! Tests of the EEPROM when the power fails in the middle of a write.
 
-use simulated_uno::{EEPROM_SIZE, Fidelity, PowerCut, ResetCause, State, Uno};
+use simulated_uno::{EEPROM_SIZE, PowerCut, ResetCause, State, Uno};
 
 use super::eeprom::{ATOMIC, program};
-use super::marks;
+use super::{causes, marks, uno};
 
 /// Writes 0x35 over 0xa6 at address 0, then 0x5c at address 1.
 const TWO_BYTES: &str = "int main(void) {
@@ -12,7 +12,7 @@ const TWO_BYTES: &str = "int main(void) {
     for (;;) {} }";
 
 fn two_bytes() -> Uno {
-    let mut uno = Uno::with_image(program(TWO_BYTES), Fidelity::DataSheet);
+    let mut uno = uno(program(TWO_BYTES));
     let mut contents = [0xff; EEPROM_SIZE];
     contents[0] = 0xa6;
     uno.set_eeprom(&contents);
@@ -73,7 +73,7 @@ fn a_power_cut_at_a_cycle_takes_the_phase_of_that_moment() {
 fn operations_that_only_erase_or_only_write_are_torn_in_their_own_way() {
     let torn = |mode: u8, when: PowerCut, ones: u8| {
         let body = format!("int main(void) {{ set(0, 0x35, {mode}); for (;;) {{}} }}");
-        let mut uno = Uno::with_image(program(&body), Fidelity::DataSheet);
+        let mut uno = uno(program(&body));
         uno.set_eeprom(&[0xa6; EEPROM_SIZE]);
         uno.cut_power(when, ones);
         assert_eq!(*uno.run_ms(5), State::Off);
@@ -97,15 +97,14 @@ fn after_a_power_cut_the_board_starts_again_with_the_same_eeprom() {
     uno.power_cycle();
     assert_eq!(*uno.run_ms(20), State::Alive);
     assert_eq!(marks(&uno), [0x35 | 0x08]);
-    let causes: Vec<ResetCause> = uno.reset_events().iter().map(|r| r.cause).collect();
-    assert_eq!(causes, [ResetCause::PowerOn, ResetCause::PowerOn]);
+    assert_eq!(causes(&uno), [ResetCause::PowerOn, ResetCause::PowerOn]);
 }
 
 #[test]
 fn a_power_cut_comes_once() {
     let body = "int main(void) { set(0, get(0) - 1, 0); for (;;) {} }";
     for when in [PowerCut::AtCycle(30_000), PowerCut::InErase(0)] {
-        let mut uno = Uno::with_image(program(body), Fidelity::DataSheet);
+        let mut uno = uno(program(body));
         uno.cut_power(when, 0xff);
         assert_eq!(*uno.run_ms(5), State::Off);
         uno.power_cycle();

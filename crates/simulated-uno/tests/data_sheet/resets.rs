@@ -1,25 +1,29 @@
-//! Resets of the simulated UNO against the data sheet, chapter 11.
+//! Tests of the simulated UNO's resets against the data sheet, chapter 11.
 
 use simulated_uno::avr_gcc::{assembler, assembler_at, c};
 use simulated_uno::{
-    CYCLES_PER_MS, Fidelity, Image, Pin, PowerCut, Pulse, ResetCause, SRAM_END, SRAM_START, State,
-    Uno,
+    CYCLES_PER_MS, Fidelity, Image, Pin, PowerCut, ResetCause, SRAM_END, SRAM_START, State, Uno,
 };
 
-use super::{BOTH, causes, marks};
+use super::{BOTH, after, after_ms, causes, marks, text, uno};
+
+/// A program whose main runs these statements once.
+fn once(body: &str) -> Image {
+    c(&format!(
+        "#include <avr/io.h>\nint main(void) {{ {body} for (;;) {{}} }}"
+    ))
+}
 
 /// Shows MCUSR at each start and leaves it.
 fn show_cause() -> Image {
-    c("#include <avr/io.h>
-    int main(void) { GPIOR0 = MCUSR; for (;;) {} }")
+    once("GPIOR0 = MCUSR;")
 }
 
 #[test]
 fn mcusr_gathers_the_causes_until_power_on() {
     // "The bit is reset by a Power-on Reset, or by writing a logic zero to the
     // flag" (11.9.1), of EXTRF, BORF and WDRF.
-    let mut uno = Uno::with_image(show_cause(), Fidelity::DataSheet);
-    uno.run_ms(1);
+    let mut uno = after_ms(1, show_cause());
     uno.reset();
     uno.run_ms(1);
     uno.set_supply_mv(2500.0);
@@ -42,13 +46,11 @@ fn mcusr_gathers_the_causes_until_power_on() {
 
 #[test]
 fn software_clears_flags_of_mcusr_and_cannot_set_them() {
-    let image = c("#include <avr/io.h>
-        int main(void) {
-            GPIOR0 = MCUSR; MCUSR = 0x0e; GPIOR0 = MCUSR;
-            MCUSR = 0x0f; GPIOR0 = MCUSR;
-            for (;;) {} }");
-    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
-    uno.run_ms(1);
+    let image = once(
+        "GPIOR0 = MCUSR; MCUSR = 0x0e; GPIOR0 = MCUSR;
+        MCUSR = 0x0f; GPIOR0 = MCUSR;",
+    );
+    let mut uno = after_ms(1, image);
     uno.reset();
     uno.run_ms(1);
     assert_eq!(marks(&uno), [1, 0, 0, 2, 2, 2]);
@@ -95,7 +97,7 @@ fn sram_and_registers_survive_every_reset_but_power_on() {
 #[test]
 fn power_on_fills_the_sram_with_noise_that_a_seed_chooses() {
     let sram = |seed: Option<u64>| {
-        let mut uno = Uno::with_image(assembler("end: rjmp end"), Fidelity::DataSheet);
+        let mut uno = uno(assembler("end: rjmp end"));
         if let Some(seed) = seed {
             uno.set_noise_seed(seed);
             uno.power_cycle();
@@ -117,7 +119,7 @@ fn each_power_on_leaves_other_noise_and_the_stack_is_measured_anew() {
          push r16 $ push r16 $ push r16
     end: rjmp end",
     );
-    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    let mut uno = uno(image);
     let first = uno.peek(0x300);
     uno.run_ms(1);
     assert_eq!(uno.stack_used(), 3);
@@ -134,10 +136,7 @@ fn each_power_on_leaves_other_noise_and_the_stack_is_measured_anew() {
 fn a_reset_makes_every_pin_an_input_and_ends_its_pulse() {
     // "the I/O ports of the AVR are immediately reset to their initial state when a
     // reset source goes active" (11.1).
-    let image = c("#include <avr/io.h>
-        int main(void) {
-            DDRB = 2; PORTB = 2;
-            for (;;) {} }");
+    let image = once("DDRB = 2; PORTB = 2;");
     for fidelity in BOTH {
         let mut uno = Uno::with_image(image.clone(), fidelity);
         uno.run_ms(1);
@@ -148,30 +147,27 @@ fn a_reset_makes_every_pin_an_input_and_ends_its_pulse() {
         uno.cut_power(PowerCut::AtCycle(3 * CYCLES_PER_MS), 0);
         assert_eq!(*uno.run_ms(9), State::Off);
         assert!(!uno.is_high(Pin::d(9)));
-        let pulses: Vec<Pulse> = uno.pulses(Pin::d(9));
-        let ends: Vec<u64> = pulses
-            .iter()
-            .map(|pulse| pulse.start + pulse.width)
-            .collect();
-        assert_eq!(ends[0], CYCLES_PER_MS);
-        assert!(ends[1] - 3 * CYCLES_PER_MS < 5);
-        assert_eq!(ends.len(), 2);
+        let pulses = uno.pulses(Pin::d(9));
+        let [first, second] = pulses[..] else {
+            panic!("two pulses, not {pulses:?}")
+        };
+        assert_eq!(first.start + first.width, CYCLES_PER_MS);
+        assert!(second.start + second.width - 3 * CYCLES_PER_MS < 5);
     }
 }
 
 #[test]
 fn a_timer_stands_still_after_a_reset() {
     // CTC with a match every 1000 cycles; after the reset the program only looks.
-    let image = c("#include <avr/io.h>
-        int main(void) {
-            if (MCUSR & 2) {
-                OCR1A = 77; GPIOR0 = TCNT1L;
-                __builtin_avr_delay_cycles(5000);
-                GPIOR0 = TCNT1L; GPIOR0 = TIFR1; GPIOR0 = TCCR1B;
-                for (;;) {}
-            }
-            OCR1A = 999; TCCR1B = 9;
-            for (;;) {} }");
+    let image = once(
+        "if (MCUSR & 2) {
+            OCR1A = 77; GPIOR0 = TCNT1L;
+            __builtin_avr_delay_cycles(5000);
+            GPIOR0 = TCNT1L; GPIOR0 = TIFR1; GPIOR0 = TCCR1B;
+            for (;;) {}
+        }
+        OCR1A = 999; TCCR1B = 9;",
+    );
     for fidelity in BOTH {
         let mut uno = Uno::with_image(image.clone(), fidelity);
         uno.run_ms(1);
@@ -188,22 +184,22 @@ fn temp_is_cleared_by_a_reset() {
          ldi r16, 0x34 $ sts OCR1AH, r16
     end: rjmp end",
     );
-    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
-    uno.run_ms(1);
+    let mut uno = after_ms(1, image);
     uno.reset();
     uno.run_ms(1);
     assert_eq!(marks(&uno), [0, 0]);
 }
 
 #[test]
-fn a_reset_revives_a_firmware_that_sleeps_for_ever_or_has_crashed() {
-    for source in [
-        "ldi r16, 1 $ out SMCR, r16 $ cli $ sleep",
-        "ldi r16, 1 $ sts 0x0fff, r16",
+fn a_reset_revives_a_firmware_that_has_halted_or_crashed() {
+    for (source, halts) in [
+        ("ldi r16, 1 $ out SMCR, r16 $ cli $ sleep", true),
+        ("ldi r16, 1 $ sts 0x0fff, r16", false),
     ] {
         let image = assembler(&format!("out GPIOR0, r1\n{source}\nend: rjmp end"));
-        let mut uno = Uno::with_image(image, Fidelity::DataSheet);
-        assert_ne!(*uno.run_ms(1), State::Alive);
+        let mut uno = after_ms(1, image);
+        assert_ne!(*uno.state(), State::Alive);
+        assert_eq!(*uno.state() == State::Halted, halts, "{source}");
         uno.reset();
         assert_eq!(*uno.state(), State::Alive);
         assert_ne!(*uno.run_ms(1), State::Alive);
@@ -217,8 +213,7 @@ fn a_board_that_sleeps_is_reset_at_the_cycle_reached() {
         "out GPIOR0, r1 $ ldi r16, 1 $ out SMCR, r16 $ sei
     end: sleep $ rjmp end",
     );
-    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
-    uno.run_cycles(12_345);
+    let mut uno = after(12_345, image);
     let asleep = uno.asleep_cycles();
     uno.reset();
     assert_eq!((uno.cycle(), uno.asleep_cycles()), (12_345, asleep));
@@ -232,15 +227,13 @@ fn a_serial_line_goes_on_after_a_reset() {
         int main(void) {
             UCSR0A = 2; UBRR0 = 16; UCSR0B = 0x18;
             for (;;) { while (!(UCSR0A & 0x80)) {} UDR0 = UDR0; } }");
-    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
-    uno.run_ms(1);
+    let mut uno = after_ms(1, image);
     uno.send(b"abcdefgh");
     uno.run_cycles(3 * 1389 + 700);
     uno.reset();
     uno.run_ms(3);
-    let text: Vec<u8> = uno.transmitted().iter().map(|byte| byte.byte).collect();
     // `c` was on its way back, `d` on its way in.
-    assert_eq!(text, b"abefgh");
+    assert_eq!(text(&uno), b"abefgh");
 }
 
 #[test]
@@ -254,7 +247,7 @@ fn behind_a_boot_loader_mcusr_is_zero_and_the_watchdog_off() {
             static volatile unsigned char starts __attribute__((section(\".noinit\")));
             if (GPIOR0 == 0 && starts != 0x99) { starts = 0x99; wdt_enable(WDTO_15MS); }
             for (;;) {} }");
-    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    let mut uno = uno(image);
     uno.set_boot_loader(true);
     uno.run_ms(60);
     uno.reset();
@@ -280,22 +273,12 @@ fn behind_a_boot_loader_mcusr_is_zero_and_the_watchdog_off() {
 
 #[test]
 fn a_boot_loader_set_before_the_first_cycle_may_be_taken_back() {
-    let mut uno = Uno::with_image(show_cause(), Fidelity::DataSheet);
+    let mut uno = uno(show_cause());
     uno.set_boot_loader(true);
     uno.set_boot_loader(false);
     uno.run_ms(1);
     assert_eq!(marks(&uno), [1]);
     assert_eq!(causes(&uno), [ResetCause::PowerOn]);
-}
-
-#[test]
-fn a_reset_wakes_a_chip_that_sleeps_for_ever() {
-    let halted = "int main(void) { asm(\"cli\\n sleep\"); for (;;) {} }";
-    let mut uno = Uno::with_image(c(halted), Fidelity::DataSheet);
-    uno.run_ms(1);
-    assert_eq!(*uno.state(), State::Halted);
-    uno.reset();
-    assert_eq!(*uno.state(), State::Alive);
 }
 
 #[test]

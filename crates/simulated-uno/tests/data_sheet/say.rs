@@ -1,9 +1,9 @@
-//! A line to the UNO and the line that it answers.
+//! Tests of a line to the UNO and the line that it answers.
 
 use simulated_uno::avr_gcc::c;
-use simulated_uno::{Fidelity, State, Uno};
+use simulated_uno::{State, Uno};
 
-use super::BOTH;
+use super::{BOTH, after_ms, uno};
 
 /// 115 200 baud; answers each line with its capitals. `x` says nothing, `!` halts.
 const CAPITALS: &str = r"
@@ -37,15 +37,14 @@ fn an_answer_is_the_line_that_comes_back_without_its_end() {
 #[test]
 fn silence_for_a_second_of_the_chips_time_is_no_answer() {
     // Stays deaf: nothing is echoed and nothing ends a line.
-    let mut uno = Uno::with_image(c("int main(void) { for (;;) {} }"), Fidelity::DataSheet);
+    let mut uno = uno(c("int main(void) { for (;;) {} }"));
     assert_eq!(uno.say("anybody"), None);
     assert!((1000.0..1001.0).contains(&uno.ms()), "{}", uno.ms());
 }
 
 #[test]
 fn a_firmware_that_halts_does_not_answer() {
-    let mut uno = Uno::with_image(c(CAPITALS), Fidelity::DataSheet);
-    uno.run_ms(2);
+    let mut uno = after_ms(2, c(CAPITALS));
     assert_eq!(uno.say("!"), None);
     assert_eq!(*uno.state(), State::Halted);
 }

@@ -1,7 +1,9 @@
-//! The simulated serial line: pace, loss and flood, by the data sheet.
+//! Tests of the simulated serial line against the data sheet: rate, loss and flood.
 
 use simulated_uno::avr_gcc::c;
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, Uno};
+
+use super::{BOTH, after, after_ms, distances, marks, text, uno};
 
 /// Cycles of a 10-bit frame at 115 200 baud, as the sender counts them.
 const FRAME: f64 = 10.0 * 16_000_000.0 / 115_200.0;
@@ -24,13 +26,9 @@ fn program(body: &str) -> Image {
     ))
 }
 
-fn text(uno: &Uno) -> Vec<u8> {
-    uno.transmitted().iter().map(|byte| byte.byte).collect()
-}
-
 #[test]
 fn an_echo_returns_what_was_sent() {
-    for fidelity in [Fidelity::Stock, Fidelity::DataSheet] {
+    for fidelity in BOTH {
         let mut uno = Uno::with_image(program("put(get());"), fidelity);
         uno.run_ms(1);
         uno.send(b"the quick brown fox");
@@ -62,10 +60,12 @@ fn bytes_go_out_back_to_back_at_ten_bits_each() {
     uno.run_ms(10);
     let stamps: Vec<u64> = uno.transmitted().iter().map(|byte| byte.cycle).collect();
     assert!(stamps.len() > 100);
-    for pair in stamps.windows(2) {
-        // The timer may find the CPU in mid-instruction; nothing adds up.
-        assert_eq!(pair[1] - pair[0], UNO_FRAME);
-    }
+    // The timer may find the CPU in mid-instruction; that does not accumulate.
+    assert!(
+        distances(&stamps)
+            .iter()
+            .all(|distance| *distance == UNO_FRAME)
+    );
 }
 
 #[test]
@@ -73,13 +73,9 @@ fn the_sender_keeps_the_baud_rate_in_the_long_run() {
     let mut uno = Uno::with_image(program("get();"), Fidelity::DataSheet);
     uno.flood(b"0123456789");
     uno.run_ms(1000);
-    assert!(
-        uno.bytes_sent().abs_diff(11_520) <= 1,
-        "{}",
-        uno.bytes_sent()
-    );
-    uno.flood(b"");
     let sent = uno.bytes_sent();
+    assert!(sent.abs_diff(11_520) <= 1, "{sent}");
+    uno.flood(b"");
     uno.run_ms(10);
     assert!(uno.bytes_sent() <= sent + 1, "the flood has ended");
 }
@@ -93,33 +89,24 @@ fn two_bytes_wait_and_a_third_in_the_shift_register() {
         ("abcd", b"abd", 1),   // c is overwritten by d
         ("abcdef", b"abf", 3), // then d by e, e by f
     ] {
-        let mut uno = Uno::with_image(program(late), Fidelity::DataSheet);
-        uno.run_cycles(3200);
+        let mut uno = after(3200, program(late));
         uno.send(sent.as_bytes());
         uno.run_ms(4);
-        assert_eq!(
-            (text(&uno).as_slice(), uno.overruns()),
-            (kept, lost),
-            "{sent}"
-        );
+        assert_eq!((&*text(&uno), uno.overruns()), (kept, lost), "{sent}");
     }
     let mut uno = Uno::with_image(program(late), Fidelity::Stock);
     uno.run_cycles(3200);
     uno.send(b"abcde");
     uno.run_ms(5);
-    assert_eq!(
-        (text(&uno).len(), uno.overruns()),
-        (5, 0),
-        "stock simavr hides the loss"
-    );
+    let hidden = (text(&uno).len(), uno.overruns());
+    assert_eq!(hidden, (5, 0), "stock simavr hides the loss");
 }
 
 #[test]
 fn an_overrun_is_flagged_until_the_next_read() {
     let body = "_delay_ms(2); unsigned char before = UCSR0A, byte = UDR0, after = UCSR0A;
                 (void)byte; GPIOR0 = before; GPIOR0 = after;";
-    let mut uno = Uno::with_image(program(body), Fidelity::DataSheet);
-    uno.run_cycles(3200);
+    let mut uno = after(3200, program(body));
     uno.send(b"abcd");
     uno.run_ms(3);
     let marks = uno.marks();
@@ -137,7 +124,7 @@ fn a_receive_interrupt_that_keeps_up_loses_nothing_in_a_flood() {
             sei();
             for (;;) {}
         }");
-    for fidelity in [Fidelity::Stock, Fidelity::DataSheet] {
+    for fidelity in BOTH {
         let mut uno = Uno::with_image(image.clone(), fidelity);
         uno.run_cycles(1000);
         let bytes: Vec<u8> = (0..1000).map(|n| (n * 7) as u8).collect();
@@ -159,58 +146,46 @@ fn the_data_register_interrupt_feeds_the_line_without_a_gap() {
         #include <avr/interrupt.h>
         ISR(USART_UDRE_vect) { static unsigned char n; UDR0 = n++; if (n == 100) UCSR0B &= ~0x20; }
         int main(void) { UCSR0A = 2; UBRR0 = 16; UCSR0B = 0x28; sei(); for (;;) {} }");
-    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
-    uno.run_ms(20);
-    let received = uno.transmitted();
+    let uno = after_ms(20, image);
     assert_eq!(text(&uno), (0..100).collect::<Vec<u8>>());
-    assert!(
-        received
-            .windows(2)
-            .all(|pair| pair[1].cycle - pair[0].cycle == UNO_FRAME)
-    );
+    let stamps: Vec<u64> = uno.transmitted().iter().map(|byte| byte.cycle).collect();
+    assert_eq!(distances(&stamps), [UNO_FRAME; 99]);
 }
 
 #[test]
 fn a_byte_written_while_the_transmitter_is_full_is_ignored() {
     // One in the shift register, one waiting; there is no place for a third.
     let body = "UDR0 = 'a'; UDR0 = 'b'; UDR0 = 'c'; _delay_ms(1); put('d'); for (;;) {}";
-    let mut uno = Uno::with_image(program(body), Fidelity::DataSheet);
-    uno.run_ms(3);
+    let uno = after_ms(3, program(body));
     assert_eq!(text(&uno), b"abd");
+}
+
+/// The first byte that a program shows after another was sent at this rate.
+fn shown_at(baud: f64, byte: u8, body: &str) -> u8 {
+    let mut uno = uno(program(body));
+    uno.set_baud(baud);
+    uno.run_ms(1);
+    uno.send(&[byte]);
+    uno.run_ms(2);
+    marks(&uno)[0]
 }
 
 #[test]
 fn a_wrong_baud_rate_is_a_framing_error() {
-    let flags = |baud| {
-        let mut uno = Uno::with_image(
-            program("while (!(UCSR0A & 0x80)) {} GPIOR0 = UCSR0A; (void)UDR0;"),
-            Fidelity::DataSheet,
-        );
-        uno.set_baud(baud);
-        uno.run_ms(1);
-        uno.send(b"x");
-        uno.run_ms(2);
-        uno.marks()[0].value & 0x10
-    };
-    assert_eq!(flags(115_200.0), 0, "UBRR 16 is 2.1 % fast: good enough");
-    assert_eq!(flags(57_600.0), 0x10);
+    let body = "while (!(UCSR0A & 0x80)) {} GPIOR0 = UCSR0A & 0x10; (void)UDR0;";
+    let fast = shown_at(115_200.0, b'x', body);
+    assert_eq!(fast, 0, "UBRR 16 is 2.1 % fast: good enough");
+    assert_eq!(shown_at(57_600.0, b'x', body), 0x10);
 }
 
 #[test]
 fn at_a_wrong_baud_rate_other_bytes_are_read() {
-    let read = |baud| {
-        let mut uno = Uno::with_image(program("GPIOR0 = get();"), Fidelity::DataSheet);
-        uno.set_baud(baud);
-        uno.run_ms(1);
-        uno.send(b"0");
-        uno.run_ms(2);
-        uno.marks()[0].value
-    };
+    let read = |baud| shown_at(baud, b'0', "GPIOR0 = get();");
     assert_eq!(read(115_200.0), b'0');
     // '0' is 0b0011_0000. A sender twice as slow has sent its start bit and four data bits, all of
-    // them 0, when the UNO has taken its eight: at 0.73, 1.22, ... 4.16 bits of the sender.
+    // them 0, when the UNO has sampled its eight: at 0.73, 1.22, ... 4.16 bits of the sender.
     assert_eq!(read(57_600.0), 0);
-    // Twice as fast: taken at 2.9 (0), 4.9 (0), 6.9 (1), 8.8 (0) and then in the silence.
+    // Twice as fast: sampled at 2.9 (0), 4.9 (0), 6.9 (1), 8.8 (0) and then in the silence.
     assert_eq!(read(230_400.0), 0b1111_0100);
 }
 
@@ -219,16 +194,15 @@ fn a_low_stop_bit_is_a_framing_error_of_that_byte_alone() {
     // The flag is valid until UDR0 is read, so it is looked at first (data sheet 20.7.4).
     let body = "unsigned char status; while (!((status = UCSR0A) & 0x80)) {}
                 GPIOR0 = status & 0x10; GPIOR0 = UDR0;";
-    for fidelity in [Fidelity::Stock, Fidelity::DataSheet] {
+    for fidelity in BOTH {
         let mut uno = Uno::with_image(program(body), fidelity);
         uno.run_ms(1);
         uno.send(b"a");
         uno.send_with_framing_error(b"bc");
         uno.send(b"d");
         uno.run_ms(2);
-        let marks: Vec<u8> = uno.marks().iter().map(|mark| mark.value).collect();
-        let told = [0, b'a', 0x10, b'b', 0x10, b'c', 0, b'd'];
-        assert_eq!(marks, told, "{fidelity:?}");
+        let expected = [0, b'a', 0x10, b'b', 0x10, b'c', 0, b'd'];
+        assert_eq!(marks(&uno), expected, "{fidelity:?}");
         assert_eq!(uno.received_by_uno().len(), 4, "on the line all are bytes");
     }
 }
@@ -240,8 +214,7 @@ fn a_framing_error_waits_with_its_byte_and_goes_with_it() {
                 for (unsigned char i = 0; i < 3; i++) { GPIOR0 = UCSR0A & 0x90; (void)UDR0; }
                 GPIOR0 = UCSR0A & 0x90;";
     let statuses = |broken: usize| {
-        let mut uno = Uno::with_image(program(body), Fidelity::DataSheet);
-        uno.run_cycles(3200);
+        let mut uno = after(3200, program(body));
         for (at, byte) in b"abc".iter().enumerate() {
             if at == broken {
                 uno.send_with_framing_error(&[*byte]);
@@ -250,9 +223,7 @@ fn a_framing_error_waits_with_its_byte_and_goes_with_it() {
             }
         }
         uno.run_ms(3);
-        let marks = uno.marks();
-        <[u8; 4]>::try_from(marks.iter().map(|mark| mark.value).collect::<Vec<_>>())
-            .expect("one round")
+        marks(&uno)
     };
     // Two bytes wait in the buffer, the third in the shift register.
     assert_eq!(statuses(0), [0x90, 0x80, 0x80, 0]);
@@ -263,10 +234,7 @@ fn a_framing_error_waits_with_its_byte_and_goes_with_it() {
 
 #[test]
 fn a_line_is_waited_for_no_longer_than_it_takes() {
-    let mut uno = Uno::with_image(
-        program("put('o'); put('k'); put('\\n'); _delay_ms(50);"),
-        Fidelity::DataSheet,
-    );
+    let mut uno = uno(program("put('o'); put('k'); put('\\n'); _delay_ms(50);"));
     assert!(uno.run_until_line(20 * CYCLES_PER_MS));
     assert_eq!(text(&uno), b"ok\n");
     assert!(uno.cycle() < 4 * UNO_FRAME);
@@ -284,7 +252,7 @@ fn bytes_sent_to_a_sleeping_board_arrive_on_time_however_the_run_is_cut() {
             for (;;) asm volatile (\"sleep\");
         }");
     let run = |pieces: u64| {
-        let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
+        let mut uno = uno(image.clone());
         uno.run_until_cycle(12_345);
         uno.send(b"hello");
         for n in 1..=pieces {
@@ -298,8 +266,7 @@ fn bytes_sent_to_a_sleeping_board_arrive_on_time_however_the_run_is_cut() {
     // entry from sleep 8, jmp 3, some pushes and a read
     assert!(
         (arrival..arrival + 40).contains(&whole[0].cycle),
-        "{}",
-        whole[0].cycle
+        "{whole:?}"
     );
     assert_eq!(run(1000), whole);
 }

@@ -1,9 +1,9 @@
-//! The simulated watchdog against the data sheet, chapter 11.8 and 11.9.2.
+//! Tests of the simulated watchdog against the data sheet, chapters 11.8 and 11.9.2.
 
 use simulated_uno::avr_gcc::{assembler, c};
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, ResetCause, State, Uno};
 
-use super::marks;
+use super::{FIXED, after, after_ms, distances, mark_cycles, marks, uno};
 
 /// 2 048 cycles of the 128 kHz oscillator: the shortest time-out.
 const SHORTEST: u64 = 16 * CYCLES_PER_MS;
@@ -30,9 +30,20 @@ fn program(body: &str) -> Image {
 }
 
 fn run(body: &str, ms: u64) -> Uno {
-    let mut uno = Uno::with_image(program(body), Fidelity::DataSheet);
-    uno.run_ms(ms);
-    uno
+    after_ms(ms, program(body))
+}
+
+/// An UNO whose main runs these statements once, after MCUSR has been cleared.
+fn once(body: &str, ms: u64) -> Uno {
+    run(
+        &format!("int main(void) {{ MCUSR = 0; {body} for (;;) {{}} }}"),
+        ms,
+    )
+}
+
+/// Cycles from a write to GPIOR0 to the first reset by the watchdog.
+fn to_the_bite(uno: &Uno, mark: usize) -> u64 {
+    bites(uno)[0] - uno.marks()[mark].cycle
 }
 
 #[test]
@@ -46,26 +57,45 @@ fn every_prescaler_gives_the_time_out_of_table_11_2() {
                 if (MCUSR & 8) {{ MCUSR = 0; set(0); for (;;) {{}} }}
                 GPIOR0 = 1; set({value}); SMCR = 1; asm volatile (\"sleep\"); for (;;) {{}} }}"
         );
-        let mut uno = Uno::with_image(program(&body), Fidelity::DataSheet);
         let expected = (2048u64 << wdp) * 125;
-        uno.run_cycles(expected + CYCLES_PER_MS);
-        let bites = bites(&uno);
-        assert_eq!(bites.len(), 1, "WDP = {wdp}");
-        let passed = bites[0] - uno.marks()[0].cycle;
-        assert!((expected..expected + 12).contains(&passed), "{passed}");
+        let uno = after(expected + CYCLES_PER_MS, program(&body));
+        assert_eq!(bites(&uno).len(), 1, "WDP = {wdp}");
+        let elapsed = to_the_bite(&uno, 0);
+        assert!((expected..expected + 12).contains(&elapsed), "{elapsed}");
     }
 }
 
 #[test]
-fn wdr_starts_the_time_anew() {
-    let body = "int main(void) {
-        MCUSR = 0; set(8);
-        for (unsigned char i = 0; i < 10; i++) { _delay_ms(15); GPIOR0 = i; wdr(); }
-        for (;;) {} }";
-    let uno = run(body, 175);
-    let last = uno.marks()[9].cycle;
-    let passed = bites(&uno)[0] - last;
-    assert!((SHORTEST..SHORTEST + 5).contains(&passed), "{passed}");
+fn the_time_runs_from_the_last_wdr_or_from_where_the_watchdog_was_switched_on() {
+    for (sentence, body, ms, mark, expected) in [
+        (
+            "wdr restarts the time",
+            "set(8); for (unsigned char i = 0; i < 10; i++) { _delay_ms(15); GPIOR0 = i; wdr(); }",
+            175,
+            9,
+            SHORTEST..SHORTEST + 5,
+        ),
+        (
+            "a watchdog that was off starts with its full time",
+            "_delay_ms(40); GPIOR0 = 1; set(8);",
+            57,
+            0,
+            SHORTEST..SHORTEST + 12,
+        ),
+        (
+            // "The Watchdog Timer should be reset before any change of the WDP bits, since
+            // a change in the WDP bits can result in a time-out when switching to a shorter
+            // time-out period" (11.8.2).
+            "a shorter prescaler does not restart the time",
+            "set(0x0e); _delay_ms(20); GPIOR0 = 1; set(8);",
+            21,
+            0,
+            0..20,
+        ),
+    ] {
+        let elapsed = to_the_bite(&once(body, ms), mark);
+        assert!(expected.contains(&elapsed), "{sentence}: {elapsed}");
+    }
 }
 
 /// Starts at 16 ms; then WDCE and WDE, `count` nops, and 0 to WDTCSR.
@@ -80,9 +110,7 @@ fn off_after(count: usize) -> Uno {
     end: rjmp end",
         "nop\n".repeat(count)
     );
-    let mut uno = Uno::with_image(assembler(&source), Fidelity::DataSheet);
-    uno.run_ms(17);
-    uno
+    after_ms(17, assembler(&source))
 }
 
 #[test]
@@ -95,64 +123,55 @@ fn wde_is_cleared_only_within_four_cycles_after_wdce() {
 }
 
 #[test]
-fn wde_is_not_cleared_nor_the_prescaler_changed_without_the_sequence() {
-    let uno = run(
-        "int main(void) { MCUSR = 0; WDTCSR = 8; WDTCSR = 0; WDTCSR = 0x27; GPIOR0 = WDTCSR; for (;;) {} }",
-        17,
-    );
-    assert_eq!(marks(&uno)[0], 0x08);
-    assert_eq!(bites(&uno).len(), 1);
+fn wdtcsr_reads_as_the_data_sheet_says() {
+    for (sentence, body, ms, expected) in [
+        (
+            "WDE is not cleared nor the prescaler changed without the sequence",
+            "WDTCSR = 8; WDTCSR = 0; WDTCSR = 0x27; GPIOR0 = WDTCSR;",
+            1,
+            &[0x08][..],
+        ),
+        (
+            // "but with the WDCE bit cleared" (11.8.2).
+            "the second write must have WDCE cleared",
+            "WDTCSR = 0x18; WDTCSR = 0x1e; GPIOR0 = WDTCSR & 0x27;",
+            1,
+            &[0],
+        ),
+        (
+            // "A logic one must be written to WDE regardless of the previous value of the
+            // WDE bit" (11.8.2).
+            "WDCE alone opens nothing",
+            "WDTCSR = 0x10; WDTCSR = 7; GPIOR0 = WDTCSR;",
+            1,
+            &[0],
+        ),
+        (
+            // "This bit is set when a time-out occurs in the Watchdog Timer and the Watchdog
+            // Timer is configured for interrupt... WDIF is cleared by writing a logic one to
+            // the flag" (11.9.2).
+            "an interrupt that is not served waits as a flag, and never resets",
+            "set(0x40); _delay_ms(40); GPIOR0 = WDTCSR;
+            WDTCSR = 0x40; GPIOR0 = WDTCSR;
+            WDTCSR = 0xc0; GPIOR0 = WDTCSR;",
+            45,
+            &[0xc0, 0xc0, 0x40],
+        ),
+    ] {
+        assert_eq!(marks(&once(body, ms)), expected, "{sentence}");
+    }
+    let never_cleared = once("WDTCSR = 8; WDTCSR = 0; WDTCSR = 0x27;", 17);
+    assert_eq!(bites(&never_cleared).len(), 1);
 }
 
 #[test]
-fn the_second_write_must_have_wdce_cleared() {
-    // "but with the WDCE bit cleared" (11.8.2).
-    let uno = run(
-        "int main(void) { MCUSR = 0; WDTCSR = 0x18; WDTCSR = 0x1e; GPIOR0 = WDTCSR & 0x27; for (;;) {} }",
-        1,
-    );
-    assert_eq!(marks(&uno), [0]);
-}
-
-#[test]
-fn wdce_alone_opens_nothing_and_goes_after_four_cycles() {
-    // "A logic one must be written to WDE regardless of the previous value of the
-    // WDE bit" (11.8.2); "hardware will clear WDCE after four clock cycles" (11.9.2).
-    let uno = run(
-        "int main(void) { MCUSR = 0; WDTCSR = 0x10; WDTCSR = 7; GPIOR0 = WDTCSR; for (;;) {} }",
-        1,
-    );
-    assert_eq!(marks(&uno), [0]);
+fn wdce_goes_after_four_cycles() {
+    // "hardware will clear WDCE after four clock cycles" (11.9.2).
     let source = "ldi r17, 0x18 $ sts WDTCSR, r17
          lds r18, WDTCSR $ lds r19, WDTCSR $ lds r20, WDTCSR
          out GPIOR0, r18 $ out GPIOR0, r19 $ out GPIOR0, r20
     end: rjmp end";
-    let mut uno = Uno::with_image(assembler(source), Fidelity::DataSheet);
-    uno.run_cycles(50);
-    assert_eq!(marks(&uno), [0x18, 0x18, 0x08]);
-}
-
-#[test]
-fn a_shorter_prescaler_does_not_start_the_time_anew() {
-    // "The Watchdog Timer should be reset before any change of the WDP bits, since
-    // a change in the WDP bits can result in a time-out when switching to a shorter
-    // time-out period" (11.8.2).
-    let uno = run(
-        "int main(void) { MCUSR = 0; set(0x0e); _delay_ms(20); GPIOR0 = 1; set(8); for (;;) {} }",
-        21,
-    );
-    let passed = bites(&uno)[0] - uno.marks()[0].cycle;
-    assert!(passed < 20, "{passed}");
-}
-
-#[test]
-fn a_watchdog_that_was_off_starts_with_its_whole_time() {
-    let uno = run(
-        "int main(void) { MCUSR = 0; _delay_ms(40); GPIOR0 = 1; set(8); for (;;) {} }",
-        57,
-    );
-    let passed = bites(&uno)[0] - uno.marks()[0].cycle;
-    assert!((SHORTEST..SHORTEST + 12).contains(&passed), "{passed}");
+    assert_eq!(marks(&after(50, assembler(source))), [0x18, 0x18, 0x08]);
 }
 
 #[test]
@@ -162,31 +181,8 @@ fn the_interrupt_mode_never_resets_and_stays_on() {
         int main(void) { SMCR = 1; MCUSR = 0; set(0x40); sei(); for (;;) asm volatile (\"sleep\"); }";
     let uno = run(body, 100);
     assert_eq!(marks(&uno), [0x40; 6], "WDIE still set, WDIF cleared");
-    let apart: Vec<u64> = uno
-        .marks()
-        .windows(2)
-        .map(|pair| pair[1].cycle - pair[0].cycle)
-        .collect();
-    assert_eq!(apart, [SHORTEST; 5]);
+    assert_eq!(distances(&mark_cycles(&uno)), [SHORTEST; 5]);
     assert!(bites(&uno).is_empty());
-}
-
-#[test]
-fn an_interrupt_that_is_not_served_waits_as_a_flag() {
-    // "This bit is set when a time-out occurs in the Watchdog Timer and the Watchdog
-    // Timer is configured for interrupt... WDIF is cleared by writing a logic one to
-    // the flag" (11.9.2).
-    let body = "int main(void) {
-        MCUSR = 0; set(0x40);
-        _delay_ms(40); GPIOR0 = WDTCSR;
-        WDTCSR = 0x40; GPIOR0 = WDTCSR;
-        WDTCSR = 0xc0; GPIOR0 = WDTCSR;
-        for (;;) {} }";
-    assert_eq!(
-        marks(&run(body, 45)),
-        [0xc0, 0xc0, 0x40],
-        "and never resets"
-    );
 }
 
 #[test]
@@ -200,8 +196,8 @@ fn interrupt_and_reset_mode_warns_first_and_then_resets() {
             set(0x48); sei(); for (;;) {} }";
     let uno = run(body, 40);
     assert_eq!(marks(&uno), [0x08]);
-    let after = bites(&uno)[0] - uno.marks()[0].cycle;
-    assert!((SHORTEST - 100..SHORTEST).contains(&after), "{after}");
+    let elapsed = to_the_bite(&uno, 0);
+    assert!((SHORTEST - 100..SHORTEST).contains(&elapsed), "{elapsed}");
 }
 
 #[test]
@@ -212,10 +208,10 @@ fn an_interrupt_that_is_not_executed_before_the_next_time_out_ends_in_a_reset() 
         if (MCUSR & 8) { MCUSR = 0; set(0); for (;;) {} }
         GPIOR0 = 1; set(0x48); for (;;) {} }";
     let uno = run(body, 40);
-    let after = bites(&uno)[0] - uno.marks()[0].cycle;
+    let elapsed = to_the_bite(&uno, 0);
     assert!(
-        (2 * SHORTEST..2 * SHORTEST + 12).contains(&after),
-        "{after}"
+        (2 * SHORTEST..2 * SHORTEST + 12).contains(&elapsed),
+        "{elapsed}"
     );
 }
 
@@ -250,7 +246,7 @@ fn the_watchdog_ends_a_sleep_with_interrupts_off() {
     let image = program(
         "int main(void) { SMCR = 1; MCUSR = 0; set(8); asm volatile (\"sleep\"); GPIOR0 = 1; for (;;) {} }",
     );
-    let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
+    let mut uno = uno(image.clone());
     assert_eq!(*uno.run_ms(40), State::Alive);
     assert_eq!(uno.resets(), 2);
     assert!(uno.marks().is_empty());
@@ -260,10 +256,11 @@ fn the_watchdog_ends_a_sleep_with_interrupts_off() {
 
 #[test]
 fn an_enabled_interrupt_does_not_end_a_sleep_with_interrupts_off() {
-    let body = "int main(void) {
-        SMCR = 1; MCUSR = 0; OCR1A = 999; TIMSK1 = 2; TCCR1B = 9; set(8);
-        asm volatile (\"sleep\"); GPIOR0 = 1; for (;;) {} }";
-    let uno = run(body, 40);
+    let uno = once(
+        "SMCR = 1; OCR1A = 999; TIMSK1 = 2; TCCR1B = 9; set(8);
+        asm volatile (\"sleep\"); GPIOR0 = 1;",
+        40,
+    );
     assert!(uno.marks().is_empty());
     assert_eq!(uno.resets(), 2);
 }
@@ -281,8 +278,7 @@ fn an_interrupt_in_the_very_cycle_of_a_sleep_does_not_end_it_either() {
         end: rjmp end",
             "nop\n".repeat(nops)
         );
-        let mut uno = Uno::with_image(assembler(&source), Fidelity::DataSheet);
-        uno.run_ms(10);
+        let uno = after_ms(10, assembler(&source));
         assert!(uno.marks().is_empty(), "{nops} nops");
     }
 }
@@ -290,14 +286,14 @@ fn an_interrupt_in_the_very_cycle_of_a_sleep_does_not_end_it_either() {
 #[test]
 fn a_watchdog_reset_comes_at_the_same_cycle_however_the_run_is_cut() {
     let image = program("int main(void) { set(8); for (;;) GPIOR0++; }");
-    let mut whole = Uno::with_image(image.clone(), Fidelity::DataSheet);
+    let mut whole = uno(image.clone());
     whole.run_until_cycle(50 * CYCLES_PER_MS);
-    let mut pieces = Uno::with_image(image.clone(), Fidelity::DataSheet);
+    let mut pieces = uno(image.clone());
     while pieces.cycle() < 50 * CYCLES_PER_MS {
         pieces.run_until_cycle((pieces.cycle() + 997).min(50 * CYCLES_PER_MS));
     }
     assert_eq!(pieces.reset_events(), whole.reset_events());
-    let mut exact = Uno::with_image(image, Fidelity::DataSheet);
+    let mut exact = uno(image);
     exact.run_until_cycle(bites(&whole)[0]);
     assert_eq!(exact.resets(), 1, "by the last cycle of a run");
     assert_eq!(pieces.marks(), whole.marks());
@@ -308,9 +304,5 @@ fn stock_simavr_never_resets_while_the_interrupt_is_enabled() {
     let image = program("int main(void) { set(0x48); for (;;) {} }");
     let mut uno = Uno::with_image(image, Fidelity::Stock);
     uno.run_ms(100);
-    assert_eq!(
-        uno.resets(),
-        0,
-        "stock simavr has learnt this: drop the correction"
-    );
+    assert_eq!(uno.resets(), 0, "{FIXED}");
 }

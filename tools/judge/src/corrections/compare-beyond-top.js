@@ -1,5 +1,5 @@
-// A compare value beyond the counter's top is never reached. avr8js takes the wrap for passing it, and sets
-// OCF1B each time that the counter begins again.
+// A compare value beyond the counter's top is never reached. avr8js treats the wrap as a match, and sets
+// OCF1B each time that the counter restarts.
 
 export function compareBeyondTop({ timers }) {
   for (const timer of timers) {

@@ -1,4 +1,4 @@
-// Everything that has become due during an instruction is due at its end. avr8js deals with one event
+// All events that become due during an instruction are due at its end. avr8js handles one event
 // and leaves the next to the next instruction, so that a byte delays a timer's flag.
 const SREG = 0x5f;
 const I = 0x80;

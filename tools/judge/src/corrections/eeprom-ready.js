@@ -1,5 +1,5 @@
-// The EEPROM's interrupt comes as long as no byte is being written (data sheet, EECR). avr8js goes on
-// calling the handler after it has begun to write one, and takes no byte from it then.
+// The EEPROM's interrupt is pending as long as no byte is being written (data sheet, EECR). avr8js continues
+// to call the handler while a byte is being written, and ignores the handler's byte then.
 const EEPE = 0x02;
 
 export function eepromReady({ cpu, eeprom }) {

@@ -1,4 +1,4 @@
-// What is corrected of avr8js 0.21.1. The order matters: each may wrap what those before it have made.
+// The corrections of avr8js 0.21.1. The order matters: each may wrap functions of the previous ones.
 import { wakeTimersAtTheirFlags } from '../timer-events.js';
 import { compareBeyondTop } from './compare-beyond-top.js';
 import { dataRegisterEmpty } from './data-register-empty.js';

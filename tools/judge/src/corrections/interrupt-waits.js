@@ -1,6 +1,6 @@
 // The instruction after the one that switches interrupts on runs before any interrupt (data sheet,
 // 7.7). Programs rely on it: the compiler restores the stack pointer by `out SREG` and `out SPL`, and
-// an interrupt between the two writes over the stack. avr8js lets it in at once.
+// an interrupt between the two overwrites the stack. avr8js serves it at once.
 const SREG = 0x5f;
 const I = 0x80;
 

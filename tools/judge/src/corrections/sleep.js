@@ -1,5 +1,5 @@
-// avr8js takes SLEEP for a NOP. Here time passes to the next event, again and again, until an interrupt
-// is due; that costs four cycles more than one that finds the processor awake (data sheet, 7.7.1).
+// avr8js treats SLEEP as a NOP. Here time passes from event to event until an interrupt
+// is due; its entry takes four cycles more than from an awake processor (data sheet, 7.7.1).
 const SLEEP = 0x9588;
 const SMCR = 0x53;
 const SE = 1;

@@ -1,5 +1,5 @@
-// The transmitter sends one byte and holds another (data sheet, 19.6): UDRE0 is up as long as there is no
-// second one, and bytes go out back to back. avr8js holds one, so a gap follows each byte.
+// The transmitter sends one byte and holds another (data sheet, 19.6): UDRE0 is set as long as there is no
+// second one, and bytes are sent back to back. avr8js holds one, so a gap follows each byte.
 
 export function transmitBuffer({ cpu, usart }) {
   let busy = false;

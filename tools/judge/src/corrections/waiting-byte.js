@@ -1,4 +1,4 @@
-// Only a receiver that is switched off forgets a byte that waits (data sheet, 19.8.5). avr8js drops it
+// Only a receiver that is switched off drops a byte that waits (data sheet, 19.8.5). avr8js drops it
 // whenever UCSR0B is written while the receiver is on and stays on, say to enable the transmit interrupt.
 const RXC = 0x80;
 const RXEN = 0x10;

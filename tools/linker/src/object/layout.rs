@@ -1,21 +1,22 @@
-//! The order of an object's functions: which may move, and sections in the order found.
+//! The order of an object's functions: decides which may move, and moves their sections.
 
 use object::build::elf::{Section, SectionId};
 use object::elf;
 
 use super::Object;
 use crate::edit::Reference;
-use crate::instruction::{runs_on, skips};
+use crate::instruction::{falls_through, skips};
 use crate::order::{Call, Pieces};
 
-/// Bytes of the routines of `frames.S`, about; what is estimated by it is their distance.
+/// The approximate size of the routines of `frames.S`, bytes, for estimates of distances.
 const ROUTINES_SIZE: u32 = 320;
 
 impl Object<'_> {
     /// Puts the functions into an order in which calls are short, with the routines of
-    /// `frames.S` in their middle: what is to lie before those is named `.lowtext`, as the
-    /// linker's script has it, and the rest comes behind them if they are linked first. Nothing
-    /// is done if a piece of code might run on into the next, or branches to another.
+    /// `frames.S` in their middle: sections before those are named `.lowtext`, as in the
+    /// linker's script, and the others follow them if they are linked first. Does nothing
+    /// if one section could fall through into the next, or branches to another. Returns the
+    /// number of bytes saved.
     pub(super) fn order(&mut self) -> i64 {
         let functions = self.functions();
         let may_move = |section: &Section| {
@@ -23,11 +24,11 @@ impl Object<'_> {
                 return false;
             };
             let ends = match code.instructions.as_slice() {
-                [.., before, last] => !skips(before.code) && !runs_on(last.code),
-                [last] => !runs_on(last.code),
+                [.., skip, last] => !skips(skip.code) && !falls_through(last.code),
+                [last] => !falls_through(last.code),
                 [] => true,
             };
-            // A branch to another section has its limit.
+            // A branch to another section would have a limited reach.
             let is_near = |reference: &Reference| {
                 let near = [elf::R_AVR_7_PCREL, elf::R_AVR_13_PCREL];
                 !near.contains(&reference.kind)
@@ -41,7 +42,8 @@ impl Object<'_> {
         if !codes().all(may_move) {
             return 0;
         }
-        // Functions; the routines, and what is left where it is behind them; other files.
+        // The pieces are the functions; the routines with the sections that stay behind them; and
+        // all other files.
         let [middle, others] = [functions.len(), functions.len() + 1];
         let piece = |section: SectionId| functions.iter().position(|other| *other == section);
         let mut pieces = Pieces::default();
@@ -90,8 +92,8 @@ impl Object<'_> {
         saved
     }
 
-    /// Makes a section of code, and its table of relocations, the last ones of the file: the
-    /// linker meets a section where it reads the one or the other first.
+    /// Moves a section of code and its table of relocations to the end of the file: the
+    /// linker places a section by whichever of the two it reads first.
     fn move_to_the_end(&mut self, section: SectionId, is_low: bool) {
         let new = self.0.sections.copy(section);
         if let (true, Some(name)) = (is_low, new.name.strip_prefix(b".text")) {

@@ -1,20 +1,20 @@
-// Connect, and what answers.
+// The step Board: connects a board and identifies it.
 import { hasSerial, NO_SERIAL } from '../../link/port-link';
 import type { Session } from '../../session';
 import { button, list, note, row, warning, words } from './parts';
 import type { Step } from './step';
 
-/** The page's robot, for people. */
+/** The name of the page's robot in sentences. */
 export function nameOf({ file, toml, original }: Session): string {
   return toml === original ? `${file}.toml` : `${file}.toml with your changes`;
 }
 
-/** What is at the other end of the line, as a sentence. */
+/** The sentence that identifies the board. */
 export function answerOf(session: Session): string {
   const { link, has } = session;
   if (has === undefined) return `The ${link.name} has not said yet what it is.`;
-  if (has === null && session.isReal && !session.hasLoader) return `The ${link.name} answers neither as this firmware nor as a boot loader. Is it the right port, and an UNO?`;
-  if (has === null) return `The ${link.name} is an UNO by its boot loader, and this firmware is not on it.`;
+  if (has === null && session.isReal && !session.hasLoader) return `The ${link.name} answers neither as this firmware nor as a boot loader. Is it the right port, and a UNO?`;
+  if (has === null) return `The ${link.name} is a UNO by its boot loader, and this firmware is not on it.`;
   if (has === 'unknown') return `The ${link.name} has this firmware. For which robot it says only after its reset button was pressed.`;
   if (session.hasThis) return `The ${link.name} has this firmware and this robot, ${nameOf(session)}.`;
   if (!has.robot) return `The ${link.name} has this firmware and no robot, so it moves nothing. Write this one.`;

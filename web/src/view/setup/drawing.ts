@@ -1,20 +1,20 @@
-// The robot from above for somebody with a screwdriver: where each servo is, where its crank points, which way one is to
-// turn. Ahead is up. The body is drawn short, so that the cranks are large.
+// The drawing of the first connection, from above, forward is up: each servo, the direction of its crank, and an arrow for
+// a turn. The body is drawn short, so that the cranks are large.
 import type { Description, Four, Scene, Spot } from '../../robot';
 
 export const PLACES = ['front left', 'front right', 'back right', 'back left'] as const;
 export const nameOf = (servo: number): string => `A${servo + 1}, ${PLACES[servo]}`;
 
-/** What one servo does. */
+/** The selected servo. */
 export interface Shown {
   servo: number;
-  /** It turns by so much, deg counter-clockwise; null for not at all. */
+  /** Its turn, deg counter-clockwise; null for none. */
   by: number | null;
 }
 
 /** Half of the distance between the shafts in front and those behind, as drawn, mm. */
 const SHORT = 34;
-/** Length of the arrow's arc, deg: more than the servo turns, so that its way is plain. */
+/** Length of the arrow's arc, deg: more than the servo turns, to be clear. */
 const ARC = 55;
 const NAMESPACE = 'http://www.w3.org/2000/svg';
 const RADIANS = Math.PI / 180;
@@ -28,26 +28,26 @@ function shape(tag: string, attributes: Record<string, string | number>, text = 
   return made;
 }
 
-/** From a place by so many mm at an angle, in the drawing's frame, where y is downwards. */
+/** The point at a distance, mm, and angle from another, in the drawing's frame with y downwards. */
 function from([x, y]: Spot, length: number, degrees: number): Spot {
   return [x + length * Math.cos(degrees * RADIANS), y - length * Math.sin(degrees * RADIANS)];
 }
 
 const line = (className: string, [x1, y1]: Spot, [x2, y2]: Spot) => shape('line', { class: className, x1, y1, x2, y2 });
 
-/** An arrow about a shaft, from an angle onwards. */
+/** Draws an arrow about a shaft that begins at an angle. */
 function arrow(shaft: Spot, radius: number, begin: number, by: number): SVGElement[] {
   const sense = Math.sign(by);
   const end = begin + sense * ARC;
   const [x1, y1] = from(shaft, radius, begin);
   const [x2, y2] = from(shaft, radius, end);
-  // Counter-clockwise is against the sweep of a frame whose y is downwards.
+  // Counter-clockwise is a negative sweep where y is downwards.
   const arc = shape('path', { class: 'arrow', d: `M ${x1} ${y1} A ${radius} ${radius} 0 0 ${by > 0 ? 0 : 1} ${x2} ${y2}` });
   const head = [from(shaft, radius + 6, end - sense * 9), [x2, y2], from(shaft, radius - 6, end - sense * 9)];
   return [arc, shape('polyline', { class: 'arrow', points: head.map((spot) => spot.map((n) => (n as number).toFixed(2)).join()).join(' ') })];
 }
 
-/** Draws it; `shown` picks out one servo. */
+/** Draws the robot; `shown` selects one servo. */
 export function drawing({ servos, plate }: Description, { shafts, tips }: Scene, shown: Shown | null): SVGElement {
   const cut = Math.max(...shafts.map(([, y]) => Math.abs(y))) - SHORT;
   const short = ([x, y]: Spot): Spot => [x, -Math.sign(y) * (Math.abs(y) - cut)];
@@ -80,7 +80,7 @@ export function drawing({ servos, plate }: Description, { shafts, tips }: Scene,
       group.append(line('ghost', shaft, from(shaft, length, neutral + shown.by)), ...arrow(shaft, length * 0.75, neutral + Math.sign(shown.by) * 8, shown.by));
     }
     group.append(shape('circle', { class: 'shaft', cx: shaft[0], cy: shaft[1], r: 5 }));
-    // Outside of the arrow, which may come as far as the crank is long.
+    // Outside the arrow, which may reach as far as the crank.
     const isLeft = shaft[0] < 0;
     const x = (isLeft ? -1 : 1) * (Math.abs(shaft[0]) + length + 6);
     const y = shaft[1] + Math.sign(shaft[1]) * length * 0.4;

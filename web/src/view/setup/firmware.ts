@@ -1,4 +1,4 @@
-// Firmware and robot, written by the board's boot loader.
+// The step Firmware: writes firmware and robot through the boot loader.
 import { answerOf, nameOf } from './board';
 import { button, note, row, words } from './parts';
 import type { Step } from './step';

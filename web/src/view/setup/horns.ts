@@ -1,4 +1,4 @@
-// The horns: each servo holds its middle while its crank is pressed on.
+// The step Horns: each servo holds its middle while its crank is pressed on.
 import { button, list, note, row, words } from './parts';
 import type { Step } from './step';
 

@@ -1,4 +1,4 @@
-// What was set, saved in the board and kept as a file.
+// The step Keep: saves the calibration in the board and as a file.
 import { fileOf } from '../../setup/calibration-file';
 import { nameOf } from './drawing';
 import { button, note, row, save, table, words } from './parts';

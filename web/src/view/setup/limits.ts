@@ -1,10 +1,10 @@
-// The limits: how far a servo may go before a part of the print touches another.
+// The step Limits: a servo's travel before printed parts touch each other.
 import { angle } from '../../setup/calibration';
 import { nameOf, type Shown } from './drawing';
 import { button, note, number, row, words } from './parts';
 import type { Step, Tools } from './step';
 
-/** By how much it is turned at a time, deg. */
+/** Turn of a servo for each press, deg. */
 const BY = 5;
 
 export class Limits implements Step {
@@ -12,7 +12,7 @@ export class Limits implements Step {
   readonly title = 'Limit their travel';
   readonly needsRobot = true;
   readonly isByServo = true;
-  /** Where a servo was turned to, deg; null while it stands. */
+  /** The angle that a servo was turned to, deg; null while it stands. */
   private at: { servo: number; degrees: number } | null = null;
 
   forget(): void {

@@ -1,4 +1,4 @@
-// What the steps are made of: paragraphs, buttons, boxes for numbers.
+// Elements of the steps: paragraphs, buttons, number boxes.
 
 type Child = Node | string;
 
@@ -22,7 +22,7 @@ export function button(label: string, act: () => void, isMain = false): HTMLButt
   return box;
 }
 
-/** A box for a number; `act` gets what a person has put in. */
+/** Makes a number box; `act` gets the number that the user enters. */
 export function number(label: string, value: number | null, step: string, act: (value: number) => void): HTMLElement {
   const box = document.createElement('input');
   box.type = 'number';
@@ -32,7 +32,7 @@ export function number(label: string, value: number | null, step: string, act: (
   return made('label', [label, ' ', box], 'number');
 }
 
-/** A link to a file that is made when a person asks for it. */
+/** Saves a text as a file. */
 export function save(name: string, type: string, text: string): void {
   const link = document.createElement('a');
   link.href = URL.createObjectURL(new Blob([text], { type }));
@@ -41,7 +41,7 @@ export function save(name: string, type: string, text: string): void {
   URL.revokeObjectURL(link.href);
 }
 
-/** A table with a head. */
+/** Makes a table with a header row. */
 export function table(caption: string, head: string[], rows: string[][]): HTMLElement {
   const cells = (texts: string[], isHead: boolean) =>
     made('tr', texts.map((text, n) => {

@@ -1,4 +1,4 @@
-// The scale: not every servo turns a degree for 10 us of pulse.
+// The step Scale: not every servo turns a degree for 10 us of pulse.
 import { nameOf, type Shown } from './drawing';
 import { button, note, number, row, words } from './parts';
 import type { Step, Tools } from './step';
@@ -8,7 +8,7 @@ export class Scale implements Step {
   readonly title = 'Measure how far they turn';
   readonly needsRobot = true;
   readonly isByServo = true;
-  /** By how much a servo was turned, deg; null before. */
+  /** The servo that was turned, and its turn, deg; null before. */
   private turned: { servo: number; by: number } | null = null;
 
   forget(): void {

@@ -1,4 +1,4 @@
-// The signs: a servo whose sign is wrong stands on the other side of its neutral angle, and the guard would take
+// The step Signs: a servo with a wrong sign stands on the other side of its neutral angle, and the guard would take
 // an unsafe pose for a safe one.
 import { nameOf, PLACES, type Shown } from './drawing';
 import { button, note, row, words } from './parts';
@@ -6,7 +6,7 @@ import type { Step, Tools } from './step';
 
 const doneWord = (servo: number) => `sign ${servo}`;
 
-/** The servos whose signs nobody has proven. */
+/** The servos whose signs are not proven. */
 export const unproven = (tools: Tools): number[] => [0, 1, 2, 3].filter((servo) => !tools.isDone(doneWord(servo)));
 
 export class Signs implements Step {
@@ -14,13 +14,13 @@ export class Signs implements Step {
   readonly title = 'Prove the signs';
   readonly needsRobot = true;
   readonly isByServo = true;
-  /** By how much a servo has been turned, deg; null before. */
+  /** The servo that was turned, and its turn, deg; null before. */
   private moved: { servo: number; by: number } | null = null;
-  /** What a person has seen that no answer mends. */
-  private seen: 'other' | 'none' | null = null;
+  /** The user's observation that points to the wiring. */
+  private observed: 'other' | 'none' | null = null;
 
   forget(): void {
-    this.moved = this.seen = null;
+    this.moved = this.observed = null;
   }
 
   drawing({ servo }: Tools): Shown {
@@ -43,7 +43,7 @@ export class Signs implements Step {
     const { servo, session } = tools;
     const { pin } = session.description.servos[servo];
     const say = (what: 'other' | 'none') => () => {
-      this.seen = what;
+      this.observed = what;
       tools.show();
     };
     const advice = {
@@ -58,7 +58,7 @@ export class Signs implements Step {
         button('Another servo turned', say('other')),
         button('Nothing turned', say('none')),
       ),
-      ...(this.seen ? [words(advice[this.seen])] : []),
+      ...(this.observed ? [words(advice[this.observed])] : []),
     ];
   }
 
@@ -66,7 +66,7 @@ export class Signs implements Step {
     const { servo } = tools;
     tools.run(async (guide) => {
       const by = await guide.prove(servo);
-      this.seen = null;
+      this.observed = null;
       this.moved = { servo, by };
       return `A${servo + 1} was told to turn ${Math.abs(by)}° ${by > 0 ? 'counter-clockwise' : 'clockwise'}.`;
     });
@@ -81,7 +81,7 @@ export class Signs implements Step {
     });
   }
 
-  /** This one is right: to the next that nobody has proven, or to the next step. */
+  /** Marks this sign as proven and goes to the next unproven servo, or to the next step. */
   private proven(tools: Tools): void {
     tools.done(doneWord(tools.servo));
     this.forget();

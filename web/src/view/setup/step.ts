@@ -1,4 +1,4 @@
-// A step of the first connection, and what it may use.
+// A step of the first connection, and the tools that it may use.
 import type { Guide } from '../../setup/guide';
 import type { Session } from '../../session';
 import type { What, Writer } from '../writer';
@@ -7,25 +7,25 @@ import type { Shown } from './drawing';
 export interface Tools {
   readonly session: Session;
   readonly writer: Writer;
-  /** What the robot has; null before it has said that. */
+  /** The guide; null until the robot has sent its calibration. */
   readonly guide: Guide | null;
   /** The servo that a step is about, 0 to 3. */
   servo: number;
-  /** Takes or leaves a board on USB. */
+  /** Connects or disconnects a board on USB. */
   connect(): void;
   /** Writes the page's robot, alone or with the firmware. */
   write(what: What): void;
-  /** Does something at the robot; what is returned is said, and so is why it was not done. */
+  /** Runs an action at the robot; shows the returned sentence or the reason of a failure. */
   run(act: (guide: Guide) => Promise<string>): void;
-  /** Gives the robot the calibration of a file, unsaved. */
+  /** Sets the calibration of a file, unsaved. */
   give(text: string, name: string): void;
-  /** Says that this step is done. */
+  /** Marks this step as done. */
   done(step: string): void;
-  /** Whether it was. */
+  /** Returns true if a step is done. */
   isDone(step: string): boolean;
-  /** To another step. */
+  /** Goes to another step. */
   go(step: string): void;
-  /** Shows the step anew. */
+  /** Redraws the step. */
   show(): void;
 }
 
@@ -33,14 +33,14 @@ export interface Step {
   /** Its name in the list of steps. */
   readonly name: string;
   readonly title: string;
-  /** Whether a robot with this firmware has to answer. */
+  /** True if the step needs a robot with this firmware. */
   readonly needsRobot: boolean;
-  /** Whether it goes from servo to servo. */
+  /** True if the step goes from servo to servo. */
   readonly isByServo?: boolean;
-  /** What a person sees and may do. */
+  /** Makes the elements of the step. */
   parts(tools: Tools): Node[];
-  /** What the drawing shows; without it there is none. */
+  /** The servo selected in the drawing; a step without this has no drawing. */
   drawing?(tools: Tools): Shown | null;
-  /** Begins anew, for another board or after it was left. */
+  /** Resets the step, for another board or after it was left. */
   forget?(): void;
 }

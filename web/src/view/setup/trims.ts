@@ -1,4 +1,4 @@
-// The trims: each crank is straightened by degrees, which act at once.
+// The step Trims: each crank is straightened in small turns, which act at once.
 import { nameOf } from './drawing';
 import { button, note, row, words } from './parts';
 import type { Step } from './step';

@@ -1,4 +1,4 @@
-// The first walk, before anything is kept.
+// The step First walk, before anything is saved.
 import { button, note, row, warning, words } from './parts';
 import { unproven } from './signs';
 import type { Step } from './step';

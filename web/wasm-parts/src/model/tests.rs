@@ -144,8 +144,12 @@ fn a_printed_body_is_that_of_its_part_and_in_one_step() {
 
 #[test]
 fn a_robot_that_no_part_can_be_of_is_refused_with_the_sentence_of_lizard_parts() {
-    let ideal = format!("{PAPER}\n[leg.drive]\nkind = \"spring\"\nstiffness = 10.0\npreload = 0.0");
-    let refused = Model::read(&ideal).err().expect("refused");
-    assert!(refused.refused.contains("an ideal"), "{}", refused.refused);
+    let low = format!("{PAPER}\n[parts]\nheight = 10.0");
+    let refused = Model::read(&low).err().expect("refused");
+    assert!(
+        refused.refused.contains("parts.height is 10 mm"),
+        "{}",
+        refused.refused
+    );
     assert!(Model::read("[links]").is_err());
 }

@@ -12,8 +12,11 @@ use std::{fs, io};
 use lizard_robot::Robot;
 use serde::Serialize;
 
+use crate::make::draw;
 use crate::paper::design;
-use crate::{Failure, PoseArgs, RobotFile, draw, files, json};
+use crate::shared::progress::bar;
+use crate::shared::{files, json};
+use crate::{Failure, PoseArgs, RobotFile};
 
 /// Grid of the performance charts, and rings of their circles.
 const STEP: f64 = 0.005;
@@ -32,9 +35,6 @@ pub struct Args {
     /// Folder for the files; it is created if it does not exist
     #[arg(value_name = "DIR")]
     folder: PathBuf,
-    /// Older versions also wrote PNG; there is nothing to leave out any more
-    #[arg(long, hide = true)]
-    svg_only: bool,
     /// Print the list of files as JSON
     #[arg(long)]
     json: bool,
@@ -57,10 +57,7 @@ struct Drawn {
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let pose = args.pose.get().unwrap_or_else(|| robot.neutral());
-    let solution = robot
-        .lizard()
-        .solve(&pose)
-        .map_err(|infeasible| Failure::Impossible(infeasible.to_string()))?;
+    let solution = robot.lizard().solve(&pose)?;
     // Before anything is computed, which takes seconds.
     fs::create_dir_all(&args.folder).map_err(|error| files::cannot(&args.folder, &error))?;
     let mut pictures = charts(&robot);
@@ -86,7 +83,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 
 /// Every chart that does not depend on a pose, with its name.
 pub fn charts(robot: &Robot) -> Vec<(&'static str, String)> {
-    let progress = design::bar("performance charts");
+    let progress = bar(0, "performance charts {bar:40} {pos}/{len} {eta}");
     let points = design::chart(STEP, RINGS, &progress);
     progress.finish_and_clear();
     vec![

@@ -4,9 +4,9 @@ use std::collections::HashMap;
 
 use svg::node::element::Group;
 
-use super::plot::{Axis, Plot, Scale, VIRIDIS, page, title};
-use crate::draw::ink::{Anchor, DARK, circle, line, text};
+use super::plot::{Axis, Plot, Scale, VIRIDIS, title};
 use crate::paper::design::{Point, Proportions, SUM};
+use crate::shared::ink::{circle, line, page, text_start};
 
 const SIZE: (f64, f64) = (1530.0, 570.0);
 const PANEL: f64 = 340.0;
@@ -95,13 +95,7 @@ pub fn performance(points: &[Point], step: f64) -> String {
                     .set("stroke-width", 2.5),
             );
         group = plot.axes(group, &axes.0, &axes.1);
-        group = group.add(text(
-            name,
-            (plot.corner.0, 128.0),
-            17.0,
-            DARK,
-            Anchor::Start,
-        ));
+        group = group.add(text_start(name, (plot.corner.0, 128.0), 17.0));
         group = scale.key(
             group,
             (plot.corner.0 + PANEL + 20.0, 150.0),

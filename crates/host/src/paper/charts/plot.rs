@@ -5,7 +5,9 @@ use std::fmt::Write as _;
 
 use svg::node::element::{Group, Path, Polyline};
 
-use crate::draw::ink::{Anchor, DARK, GREY, GRID, curve, line, rectangle, text};
+use crate::shared::ink::{
+    Anchor, DARK, GREY, GRID, curve, line, rectangle, text, text_end, text_middle, text_start,
+};
 
 /// Viridis in ten bands: even steps in lightness, so that it reads in grey and
 /// for every kind of colour vision.
@@ -19,7 +21,7 @@ pub const BLUES: &[&str] = &[
     "#f7fbff", "#e3eef8", "#d0e1f2", "#b7d4ea", "#9ac7e0", "#7fb8da", "#65a9d2",
 ];
 
-/// What is out of the question.
+/// The colour of impossible regions.
 pub const SHUT: &str = "#d4d0cb";
 
 /// A rectangle of the page with a coordinate system.
@@ -44,7 +46,7 @@ pub struct Axis<'a> {
 }
 
 impl Plot {
-    /// Where a point lies on the page.
+    /// The place of a point on the page.
     pub fn at(&self, x: f64, y: f64) -> (f64, f64) {
         (
             self.corner.0 + self.size.0 * (x - self.x.0) / (self.x.1 - self.x.0),
@@ -87,12 +89,10 @@ impl Plot {
             let at = self.at(value, 0.0).0;
             group = group
                 .add(line((at, bottom), (at, bottom + 6.0), DARK, 1.0))
-                .add(text(
+                .add(text_middle(
                     &number(value, x.step),
                     (at, bottom + 23.0),
                     15.0,
-                    DARK,
-                    Anchor::Middle,
                 ));
         }
         for value in ticks(self.y, y.step) {
@@ -104,19 +104,17 @@ impl Plot {
                     DARK,
                     1.0,
                 ))
-                .add(text(
+                .add(text_end(
                     &number(value, y.step),
                     (self.corner.0 - 10.0, at + 5.0),
                     15.0,
-                    DARK,
-                    Anchor::End,
                 ));
         }
         let below = ((self.corner.0 + right) / 2.0, bottom + 50.0);
         let beside = (self.corner.0 - 58.0, (self.corner.1 + bottom) / 2.0);
         group
-            .add(text(x.name, below, 17.0, DARK, Anchor::Middle))
-            .add(text(y.name, beside, 17.0, DARK, Anchor::Middle).set(
+            .add(text_middle(x.name, below, 17.0))
+            .add(text_middle(y.name, beside, 17.0).set(
                 "transform",
                 format!("rotate(-90 {} {})", beside.0, beside.1),
             ))
@@ -222,30 +220,22 @@ impl Scale {
         for i in 0..=count {
             let value = self.least + (self.most - self.least) * i as f64 / count as f64;
             let at = corner.1 + height - i as f64 * band;
-            group = group.add(text(
+            group = group.add(text_start(
                 &format!("{value:.digits$}"),
                 (corner.0 + 30.0, at + 5.0),
                 14.0,
-                DARK,
-                Anchor::Start,
             ));
         }
         group
             .add(rectangle(corner, (22.0, height), "none").set("stroke", DARK))
-            .add(text(
-                name,
-                (corner.0, corner.1 - 14.0),
-                15.0,
-                DARK,
-                Anchor::Start,
-            ))
+            .add(text_start(name, (corner.0, corner.1 - 14.0), 15.0))
     }
 }
 
 /// A page's title and the line below it.
 pub fn title(group: Group, left: f64, words: &str, note: &str) -> Group {
     group
-        .add(text(words, (left, 40.0), 24.0, DARK, Anchor::Start).set("font-weight", "bold"))
+        .add(text_start(words, (left, 40.0), 24.0).set("font-weight", "bold"))
         .add(text(note, (left, 66.0), 15.0, GREY, Anchor::Start))
 }
 
@@ -253,22 +243,5 @@ pub fn title(group: Group, left: f64, words: &str, note: &str) -> Group {
 pub fn entry(group: Group, at: (f64, f64), colour: &str, dashes: &str, words: &str) -> Group {
     group
         .add(line(at, (at.0 + 34.0, at.1), colour, 3.0).set("stroke-dasharray", dashes))
-        .add(text(
-            words,
-            (at.0 + 44.0, at.1 + 5.0),
-            15.0,
-            DARK,
-            Anchor::Start,
-        ))
-}
-
-/// A page of a size.
-pub fn page(size: (f64, f64), group: Group) -> String {
-    svg::Document::new()
-        .set("viewBox", (0.0, 0.0, size.0, size.1))
-        .set("width", size.0)
-        .set("height", size.1)
-        .add(rectangle((0.0, 0.0), size, "white"))
-        .add(group)
-        .to_string()
+        .add(text_start(words, (at.0 + 44.0, at.1 + 5.0), 15.0))
 }

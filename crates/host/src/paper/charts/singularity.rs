@@ -5,8 +5,8 @@ use lizard_kinematics::{Check, End, FiveBar, Pose, SingularPose, Singularity, wr
 use lizard_robot::{CheckedGait, Robot};
 use svg::node::element::Group;
 
-use super::plot::{Axis, BLUES, Plot, SHUT, Scale, entry, page, title};
-use crate::draw::ink::{Anchor, DARK, circle, line, rectangle, text};
+use super::plot::{Axis, BLUES, Plot, SHUT, Scale, entry, title};
+use crate::shared::ink::{DARK, circle, cross, line, page, rectangle, text_start};
 
 const SIZE: (f64, f64) = (1500.0, 860.0);
 const WHOLE: (f64, f64) = (0.0, 180.0);
@@ -103,13 +103,7 @@ pub fn singularity(robot: &Robot) -> String {
         } else {
             group = group
                 .add(circle((at.0 + 17.0, at.1), 6.0, colour))
-                .add(text(
-                    &names,
-                    (at.0 + 44.0, at.1 + 5.0),
-                    15.0,
-                    DARK,
-                    Anchor::Start,
-                ));
+                .add(text_start(&names, (at.0 + 44.0, at.1 + 5.0), 15.0));
         }
     }
     group = scale.key(group, (800.0, 640.0 - 20.0), 160.0, "least margin", 1);
@@ -126,28 +120,23 @@ pub fn singularity(robot: &Robot) -> String {
             words,
         );
     }
-    group = cross(group, (947.0, 696.0))
-        .add(text(
+    group = group
+        .add(cross((947.0, 696.0), 7.0, DARK, 3.0))
+        .add(text_start(
             "crank tips coincide (type 2)",
             (974.0, 701.0),
             15.0,
-            DARK,
-            Anchor::Start,
         ))
         .add(rectangle((930.0, 716.0), (34.0, 18.0), SHUT))
-        .add(text(
+        .add(text_start(
             "below the robot's limits, or cranks crossed",
             (974.0, 730.0),
             15.0,
-            DARK,
-            Anchor::Start,
         ))
-        .add(text(
+        .add(text_start(
             "Margins: type 2, type 1 and front legs.",
             (930.0, 762.0),
             15.0,
-            DARK,
-            Anchor::Start,
         ));
     group = title(
         group,
@@ -265,7 +254,8 @@ fn curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
     });
     for pose in bars.coinciding_tips() {
         if pose.theta_left >= 0.0 && pose.theta_right >= 0.0 {
-            group = cross(group, plot.at(pose.theta_left, pose.theta_right));
+            let at = plot.at(pose.theta_left, pose.theta_right);
+            group = group.add(cross(at, 7.0, DARK, 3.0));
         }
     }
     group
@@ -305,11 +295,4 @@ fn sweep(mut group: Group, plot: &Plot, at: impl Fn(f64) -> Vec<SingularPose>) -
         before = here;
     }
     group
-}
-
-fn cross(group: Group, (x, y): (f64, f64)) -> Group {
-    let r = 7.0;
-    group
-        .add(line((x - r, y - r), (x + r, y + r), DARK, 3.0))
-        .add(line((x - r, y + r), (x + r, y - r), DARK, 3.0))
 }

@@ -1,10 +1,11 @@
-//! How far the sliders travel in each gait.
+//! The chart of the sliders' travel in each gait.
 
 use lizard_robot::{CheckedGait, Robot};
 use svg::node::element::Group;
 
-use super::plot::{Axis, Plot, SHUT, entry, page, title};
-use crate::draw::ink::{Anchor, DARK, GREY, rectangle, text};
+use super::plot::{Axis, Plot, SHUT, entry, title};
+use crate::shared::ink::{Anchor, GREY, page, rectangle, text, text_start};
+use crate::shared::number::tidy;
 
 const COLUMNS: usize = 4;
 const PANEL: (f64, f64) = (255.0, 150.0);
@@ -94,20 +95,9 @@ fn panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &CheckedGait) -> Gr
     let least = values().fold(f64::INFINITY, f64::min);
     let most = values().fold(f64::NEG_INFINITY, f64::max);
     let head = (plot.corner.0, plot.corner.1 - 10.0);
-    // To a tenth, without a negative zero.
-    let tenth = |s: f64| (s * 10.0).round() / 10.0 + 0.0;
-    let range = format!("{:+.1} to {:+.1} mm", tenth(least), tenth(most));
+    let range = format!("{:+.1} to {:+.1} mm", tidy(least, 1), tidy(most, 1));
     group
-        .add(
-            text(
-                &gait.name().replace('-', " "),
-                head,
-                17.0,
-                DARK,
-                Anchor::Start,
-            )
-            .set("font-weight", "bold"),
-        )
+        .add(text_start(&gait.name().replace('-', " "), head, 17.0).set("font-weight", "bold"))
         .add(text(
             &range,
             (plot.corner.0 + plot.size.0, head.1),

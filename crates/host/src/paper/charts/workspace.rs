@@ -1,12 +1,12 @@
-//! Where the head point can go, and how well the servos steer it there.
+//! The chart of the points that the head can reach, and of how well the servos steer it there.
 
 use lizard_kinematics::{Circle, End, Vector, Workspace};
 use lizard_robot::Robot;
 use svg::node::element::{Circle as Ring, Group};
 
-use super::plot::{Axis, Plot, SHUT, Scale, VIRIDIS, entry, page, title};
-use crate::draw::ink::{Anchor, DARK, GREY, circle, text};
+use super::plot::{Axis, Plot, SHUT, Scale, VIRIDIS, entry, title};
 use crate::paper::design::{CLAIM, Performance, lci};
+use crate::shared::ink::{DARK, GREY, circle, page, text_start};
 
 const SIZE: (f64, f64) = (1120.0, 900.0);
 const MM: Axis<'static> = Axis {
@@ -76,13 +76,7 @@ pub fn workspace(robot: &Robot) -> String {
         format!("centre (0, {:.2}) mm", p.y_mic),
     ];
     for (i, fact) in facts.iter().enumerate() {
-        group = group.add(text(
-            fact,
-            (left, 250.0 + 24.0 * i as f64),
-            16.0,
-            DARK,
-            Anchor::Start,
-        ));
+        group = group.add(text_start(fact, (left, 250.0 + 24.0 * i as f64), 16.0));
     }
     page(SIZE, group)
 }
@@ -137,9 +131,7 @@ pub fn conditioning(robot: &Robot) -> String {
             "7 4",
             &format!("all ≥ {CLAIM} within {:.2} mm", index.radius_above),
         );
-        group = group.add(text(
-            &format!("in the circle: mean {:.3}, least {:.3}, most {:.3}; above {CLAIM} on {:.1} % of its area", index.mean, index.least, index.most, 100.0 * index.share_above),
-            (90.0, 690.0), 16.0, DARK, Anchor::Start));
+        group = group.add(text_start(&format!("in the circle: mean {:.3}, least {:.3}, most {:.3}; above {CLAIM} on {:.1} % of its area", index.mean, index.least, index.most, 100.0 * index.share_above), (90.0, 690.0), 16.0));
     }
     group = plot.axes(group, &MM, &MM_UP);
     group = scale.key(group, (870.0, 120.0), 360.0, "LCI", 1);

@@ -1,6 +1,6 @@
 //! The performance charts: every figure over the whole (r1, r2, r3) triangle.
 
-use indicatif::{ParallelProgressIterator, ProgressBar, ProgressStyle};
+use indicatif::{ParallelProgressIterator, ProgressBar};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -10,10 +10,10 @@ use super::proportions::{Proportions, triangle};
 /// A point of the charts. Lengths in units of D.
 #[derive(Clone, Copy, Serialize)]
 pub struct Point {
-    /// Where in the triangle.
+    /// The point in the triangle of proportions.
     #[serde(flatten)]
     pub proportions: Proportions,
-    /// What it is worth.
+    /// The performance of a five-bar of these proportions.
     #[serde(flatten)]
     pub performance: Performance,
 }
@@ -31,11 +31,4 @@ pub fn chart(step: f64, rings: usize, progress: &ProgressBar) -> Vec<Point> {
             performance: Performance::of(&proportions.at_scale(1.0), rings),
         })
         .collect()
-}
-
-/// A bar on standard error; it hides itself where that is no terminal.
-pub fn bar(what: &'static str) -> ProgressBar {
-    let style = ProgressStyle::with_template("{msg} {bar:40} {pos}/{len} {eta}")
-        .unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::new(0).with_style(style).with_message(what)
 }

@@ -11,19 +11,20 @@ use std::io::{self, BufWriter, Write};
 use lizard_robot::Robot;
 use serde::{Deserialize, Serialize};
 
-use crate::json;
-use crate::pose_args::length;
-use crate::spread::{Spread, Spreads};
+use crate::shared::json;
+use crate::shared::pose_args::length;
+use crate::shared::progress::bar;
+use crate::shared::spread::{Spread, Spreads};
 use crate::{Failure, RobotFile};
 
-pub use chart::{Point, bar, chart};
+pub use chart::{Point, chart};
 pub use performance::{CLAIM, Conditioning, Performance, lci};
 pub use proportions::{Proportions, SUM, triangle};
 pub use search::{Demands, Design, Search, design, ranked};
 
 /// Rings across the inscribed circle for one design, and for each of many.
 const FINE: usize = 128;
-/// See `FINE`.
+/// Points across the grid of a coarse chart; see `FINE`.
 pub const COARSE: usize = 32;
 
 /// Dimensional synthesis of the head and tail five-bar.
@@ -72,7 +73,7 @@ pub struct Args {
     /// Number of designs that --search prints
     #[arg(long, default_value_t = 12)]
     top: usize,
-    /// Print JSON
+    /// Print JSON instead of text
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -254,7 +255,7 @@ lg1, lg13               {:8.2}   robot.toml; the paper gives no rule
     }
 }
 
-/// Where "LCI > 0.7" holds.
+/// The regions where "LCI > 0.7" holds, in words.
 fn verdict(lci: &Conditioning, r_mic: f64) -> String {
     let mean = if lci.mean > CLAIM { "holds" } else { "fails" };
     let bound = if lci.least > CLAIM { "holds" } else { "fails" };
@@ -266,7 +267,7 @@ fn verdict(lci: &Conditioning, r_mic: f64) -> String {
 }
 
 fn charts(args: &Args, out: &mut impl Write) -> Result<(), Failure> {
-    let progress = bar("performance charts");
+    let progress = bar(0, "performance charts {bar:40} {pos}/{len} {eta}");
     let points = chart(args.step, COARSE, &progress);
     progress.finish_and_clear();
     if args.json {
@@ -318,7 +319,7 @@ fn ranking(
         shortest: args.shortest,
         sweep: args.sweep,
     };
-    let progress = bar("designs");
+    let progress = bar(0, "designs {bar:40} {pos}/{len} {eta}");
     let search = Search::new(args.step, demands, &progress, |count| {
         args.spread.own(count)
     });

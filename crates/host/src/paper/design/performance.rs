@@ -1,4 +1,4 @@
-//! How good a five-bar of given proportions is: workspace, maximal inscribed circle, and
+//! The performance of a five-bar of given proportions: workspace, maximal inscribed circle, and
 //! the local conditioning index over it.
 
 use lizard_kinematics::{Circle, FiveBar, Vector, Workspace};
@@ -27,7 +27,7 @@ pub struct Conditioning {
     pub mean: f64,
     /// Least, on the rim: 0 where the circle touches the workspace's edge.
     pub least: f64,
-    /// Largest.
+    /// The largest value.
     pub most: f64,
     /// Share of the area above the paper's 0.7.
     pub share_above: f64,

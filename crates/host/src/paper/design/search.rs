@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::proportions::{Proportions, triangle};
 
-/// What does not depend on the proportions.
+/// The demands on a design that do not depend on its proportions.
 #[derive(Clone, Copy)]
 pub struct Demands {
     /// Base l0, mm.
@@ -35,7 +35,7 @@ pub struct Demands {
 /// A design that can sweep at least as far as is demanded.
 #[derive(Clone, Copy, Serialize, Deserialize)]
 pub struct Design {
-    /// Its proportions.
+    /// The proportions of the five-bar.
     #[serde(flatten)]
     pub proportions: Proportions,
     /// Dimensional factor, mm.
@@ -44,7 +44,7 @@ pub struct Design {
     pub neutral: f64,
     /// Largest safe sweep to either side, degrees.
     pub sweep: f64,
-    /// How far a foot goes with it, mm.
+    /// The distance that a foot goes with it, mm.
     pub stride: f64,
     /// Least margin at the demanded sweep.
     pub margin: f64,
@@ -86,7 +86,7 @@ impl<'a> Search<'a> {
         search
     }
 
-    /// How many pieces there are.
+    /// The number of pieces to compute.
     #[must_use]
     pub fn pieces(&self) -> usize {
         self.points.len().div_ceil(AT_ONCE)

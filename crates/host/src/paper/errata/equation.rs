@@ -8,33 +8,63 @@ pub type Miss = fn(&Sample) -> Option<f64>;
 
 /// A printed equation.
 pub struct Equation {
-    /// Where it stands.
+    /// The place in the paper.
     pub place: &'static str,
-    /// As printed.
+    /// The equation as printed.
     pub printed: &'static str,
-    /// How far the printed form misses.
+    /// The error of the printed form.
     pub miss: Miss,
     /// Unit of every miss of this equation.
     pub unit: &'static str,
-    /// How far it misses when right-hand angles are read clockwise from -x,
-    /// where the paper's drawing suggests it.
+    /// The error if right-hand angles are read clockwise from -x, where the paper's drawing
+    /// suggests it.
     pub clockwise: Option<Miss>,
-    /// What holds instead, and how far it misses.
+    /// The corrected form, and its error.
     pub corrected: Option<(&'static str, Miss)>,
-    /// A closer look at one place, in the same unit; no verdict of its own.
-    pub aside: Option<Aside>,
+    /// A place that deserves a closer look, and the error of the printed form there; no verdict
+    /// of its own.
+    pub aside: Option<(&'static str, Miss)>,
 }
 
-/// The printed form at a special place.
-#[derive(Clone, Copy)]
-pub struct Aside {
-    /// Which place.
-    pub place: &'static str,
-    /// How far the printed form misses there.
-    pub miss: Miss,
+impl Equation {
+    /// An equation as printed, and its error in a unit.
+    pub const fn new(
+        place: &'static str,
+        printed: &'static str,
+        unit: &'static str,
+        miss: Miss,
+    ) -> Self {
+        Self {
+            place,
+            printed,
+            miss,
+            unit,
+            clockwise: None,
+            corrected: None,
+            aside: None,
+        }
+    }
+
+    /// Adds the error of the clockwise reading.
+    pub const fn clockwise(mut self, miss: Miss) -> Self {
+        self.clockwise = Some(miss);
+        self
+    }
+
+    /// Adds the corrected form.
+    pub const fn corrected(mut self, form: &'static str, miss: Miss) -> Self {
+        self.corrected = Some((form, miss));
+        self
+    }
+
+    /// Adds a place that deserves a closer look.
+    pub const fn aside(mut self, place: &'static str, miss: Miss) -> Self {
+        self.aside = Some((place, miss));
+        self
+    }
 }
 
-/// How far a form misses over all samples.
+/// The errors of a form over all samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Misses {
     /// Largest miss where there is a real value.

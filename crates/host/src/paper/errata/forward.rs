@@ -4,115 +4,100 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use lizard_kinematics::{End, Links, Vector};
 
-use super::equation::{Aside, Equation};
+use super::equation::Equation;
 use super::sample::{Sample, apart, cis};
 
 /// In the paper's order.
 pub const EQUATIONS: &[Equation] = &[
-    Equation {
-        place: "4.2 head loop",
-        printed: "l1 cos θ1 + l2 cos θ2 - l3 cos θ3 - l4 cos θ4 - l0 = 0 (and sin)",
-        miss: |s| {
+    Equation::new(
+        "4.2 head loop",
+        "l1 cos θ1 + l2 cos θ2 - l3 cos θ3 - l4 cos θ4 - l0 = 0 (and sin)",
+        "mm",
+        |s| {
             let (l, t) = (&s.lizard.links, s.angles().t);
             Some(loop_gap(
                 [(l.l1, t[1]), (l.l2, t[2]), (l.l3, t[3]), (l.l4, t[4])],
                 l.l0,
             ))
         },
-        unit: "mm",
-        aside: None,
-        clockwise: Some(|s| {
-            let (l, t) = (&s.lizard.links, s.angles().t);
-            Some(loop_gap(
-                [
-                    (l.l1, t[1]),
-                    (l.l2, t[2]),
-                    (l.l3, PI - t[3]),
-                    (l.l4, PI - t[4]),
-                ],
-                l.l0,
-            ))
-        }),
-        corrected: None,
-    },
-    Equation {
-        place: "4.2 head, θ3",
-        printed: "θ3 = 2 atan((-B - sqrt(B² - 4AC))/2A)",
-        miss: |s| {
+    )
+    .clockwise(|s| {
+        let (l, t) = (&s.lizard.links, s.angles().t);
+        Some(loop_gap(
+            [
+                (l.l1, t[1]),
+                (l.l2, t[2]),
+                (l.l3, PI - t[3]),
+                (l.l4, PI - t[4]),
+            ],
+            l.l0,
+        ))
+    }),
+    Equation::new(
+        "4.2 head, θ3",
+        "θ3 = 2 atan((-B - sqrt(B² - 4AC))/2A)",
+        "deg",
+        |s| {
             let (a, b, c) = abc(s, s.angles().t[4]);
             Some(apart(2.0 * root(a, b, c, -1.0)?.atan(), s.angles().t[3]))
         },
-        unit: "deg",
-        aside: Some(Aside {
-            place: "θ4 within 1e-9° of A = 0",
-            miss: near_vanishing_a,
-        }),
-        clockwise: None,
-        corrected: Some((
-            "two circles met by their chord, as `kinematics` does (miss: mm of loop closure)",
-            |s| {
-                let Some(zero) = vanishing_a(s) else {
-                    return Some(0.0);
-                };
-                let theta1 = s.s.pose.theta1;
-                let Ok(there) = s.lizard.end(End::Head).forward(theta1, zero * 180.0 / PI) else {
-                    return Some(0.0);
-                };
-                let (l, t) = (&s.lizard.links, PI / 180.0);
-                let (theta2, theta3) = (there.theta_left_coupler(), there.theta_right_coupler());
-                Some(loop_gap(
-                    [
-                        (l.l1, theta1 * t),
-                        (l.l2, theta2 * t),
-                        (l.l3, theta3 * t),
-                        (l.l4, zero),
-                    ],
-                    l.l0,
-                ))
-            },
-        )),
-    },
-    Equation {
-        place: "4.2 head, θ2",
-        printed: "θ2 = 2 atan((-E + sqrt(E² + 4DF))/2D), K4 = -l4 cos θ4 + l1 cos θ1 + l0",
-        miss: |s| {
+    )
+    .corrected(
+        "two circles met by their chord, as `kinematics` does (miss: mm of loop closure)",
+        |s| {
+            let Some(zero) = vanishing_a(s) else {
+                return Some(0.0);
+            };
+            let theta1 = s.s.pose.theta1;
+            let Ok(there) = s.lizard.end(End::Head).forward(theta1, zero * 180.0 / PI) else {
+                return Some(0.0);
+            };
+            let (l, t) = (&s.lizard.links, PI / 180.0);
+            let (theta2, theta3) = (there.theta_left_coupler(), there.theta_right_coupler());
+            Some(loop_gap(
+                [
+                    (l.l1, theta1 * t),
+                    (l.l2, theta2 * t),
+                    (l.l3, theta3 * t),
+                    (l.l4, zero),
+                ],
+                l.l0,
+            ))
+        },
+    )
+    .aside("θ4 within 1e-9° of A = 0", near_vanishing_a),
+    Equation::new(
+        "4.2 head, θ2",
+        "θ2 = 2 atan((-E + sqrt(E² + 4DF))/2D), K4 = -l4 cos θ4 + l1 cos θ1 + l0",
+        "deg",
+        |s| {
             let (d, e, f) = def(s, 1.0);
             let under = e * e + 4.0 * d * f;
             let real = (under >= 0.0).then(|| (-e + under.sqrt()) / (2.0 * d))?;
             Some(apart(2.0 * real.atan(), s.angles().t[2]))
         },
-        unit: "deg",
-        aside: None,
-        clockwise: None,
-        corrected: Some((
-            "θ2 = 2 atan((E - sqrt(E² - 4DF))/2D), K4 = -l4 cos θ4 + l1 cos θ1 - l0",
-            |s| {
-                let (d, e, f) = def(s, -1.0);
-                let under = e * e - 4.0 * d * f;
-                let real = (under >= 0.0).then(|| (e - under.sqrt()) / (2.0 * d))?;
-                Some(apart(2.0 * real.atan(), s.angles().t[2]))
-            },
-        )),
-    },
-    Equation {
-        place: "4.2 tail loop",
-        printed: "R6 + R7 - R8 - R9 - R5 = 0",
-        miss: |s| {
-            let (l, t) = (&s.lizard.links, s.angles().t);
-            Some(loop_gap(
-                [(l.l6, t[5]), (l.l7, t[6]), (l.l8, t[7]), (l.l9, t[8])],
-                l.l5,
-            ))
+    )
+    .corrected(
+        "θ2 = 2 atan((E - sqrt(E² - 4DF))/2D), K4 = -l4 cos θ4 + l1 cos θ1 - l0",
+        |s| {
+            let (d, e, f) = def(s, -1.0);
+            let under = e * e - 4.0 * d * f;
+            let real = (under >= 0.0).then(|| (e - under.sqrt()) / (2.0 * d))?;
+            Some(apart(2.0 * real.atan(), s.angles().t[2]))
         },
-        unit: "mm",
-        aside: None,
-        clockwise: None,
-        corrected: None,
-    },
-    Equation {
-        place: "4.2 left loop, its slider drawn out by s",
-        printed: "R11 + R12 - R13 - R14 - R10 = 0",
-        miss: |s| {
+    ),
+    Equation::new("4.2 tail loop", "R6 + R7 - R8 - R9 - R5 = 0", "mm", |s| {
+        let (l, t) = (&s.lizard.links, s.angles().t);
+        Some(loop_gap(
+            [(l.l6, t[5]), (l.l7, t[6]), (l.l8, t[7]), (l.l9, t[8])],
+            l.l5,
+        ))
+    }),
+    Equation::new(
+        "4.2 left loop, its slider drawn out by s",
+        "R11 + R12 - R13 - R14 - R10 = 0",
+        "mm",
+        |s| {
             let (l, t, half) = (&s.lizard.links, s.angles().t, s.s.left.s / 2.0);
             let sum = cis(l.l11, t[9]) + cis(l.l12 + half, t[10])
                 - cis(l.l13 + half, t[11])
@@ -120,15 +105,12 @@ pub const EQUATIONS: &[Equation] = &[
                 - cis(l.l10, FRAC_PI_2);
             Some(sum.length())
         },
-        unit: "mm",
-        aside: None,
-        clockwise: None,
-        corrected: None,
-    },
-    Equation {
-        place: "4.2 right loop, its slider drawn out by s",
-        printed: "R16 + R17 - R18 - R19 - R15 = 0",
-        miss: |s| {
+    ),
+    Equation::new(
+        "4.2 right loop, its slider drawn out by s",
+        "R16 + R17 - R18 - R19 - R15 = 0",
+        "mm",
+        |s| {
             let (l, t, half) = (&s.lizard.links, s.angles().t, s.s.right.s / 2.0);
             let sum = cis(l.l16, t[13]) + cis(l.l17 + half, t[14])
                 - cis(l.l18 + half, t[15])
@@ -136,83 +118,51 @@ pub const EQUATIONS: &[Equation] = &[
                 - cis(l.l15, FRAC_PI_2);
             Some(sum.length())
         },
-        unit: "mm",
-        aside: None,
-        clockwise: None,
-        corrected: None,
-    },
-    Equation {
-        place: "4.2 left slider halves",
-        printed: "θ10 + θ11 = 0",
-        miss: |s| Some(apart(s.angles().t[10] + s.angles().t[11], 0.0)),
-        unit: "deg",
-        aside: None,
-        clockwise: Some(|s| Some(apart(s.angles().t[10] + (PI - s.angles().t[11]), 0.0))),
-        corrected: Some(("θ11 = θ10 + 180°", |s| {
-            Some(apart(s.angles().t[11], s.angles().t[10] + PI))
-        })),
-    },
-    Equation {
-        place: "4.2 right slider halves",
-        printed: "θ14 + θ15 = 0",
-        miss: |s| Some(apart(s.angles().t[14] + s.angles().t[15], 0.0)),
-        unit: "deg",
-        aside: None,
-        clockwise: Some(|s| Some(apart(s.angles().t[14] + (PI - s.angles().t[15]), 0.0))),
-        corrected: Some(("θ15 = θ14 + 180°", |s| {
-            Some(apart(s.angles().t[15], s.angles().t[14] + PI))
-        })),
-    },
-    Equation {
-        place: "4.2 arm on A1",
-        printed: "θ1 - θ12 + C1 = 0",
-        miss: |s| Some(apart(s.angles().t[1] + FRAC_PI_2, s.angles().t[12])),
-        unit: "deg",
-        aside: None,
-        clockwise: None,
-        corrected: None,
-    },
-    Equation {
-        place: "4.2 arm on A2",
-        printed: "θ4 - θ16 + C2 = 0",
-        miss: |s| Some(apart(s.angles().t[4] + FRAC_PI_2, s.angles().t[16])),
-        unit: "deg",
-        aside: None,
-        clockwise: Some(|s| {
-            Some(apart(
-                PI - s.angles().t[4] + FRAC_PI_2,
-                PI - s.angles().t[16],
-            ))
-        }),
-        corrected: Some(("θ16 = θ4 - C2", |s| {
-            Some(apart(s.angles().t[4] - FRAC_PI_2, s.angles().t[16]))
-        })),
-    },
-    Equation {
-        place: "4.2 arm on A4",
-        printed: "θ9 - θ5 + C3 = 0",
-        miss: |s| Some(apart(s.angles().t[9] + FRAC_PI_2, s.angles().t[5])),
-        unit: "deg",
-        aside: None,
-        clockwise: None,
-        corrected: None,
-    },
-    Equation {
-        place: "4.2 arm on A3",
-        printed: "θ13 - θ8 + C4 = 0",
-        miss: |s| Some(apart(s.angles().t[13] + FRAC_PI_2, s.angles().t[8])),
-        unit: "deg",
-        aside: None,
-        clockwise: Some(|s| {
-            Some(apart(
-                PI - s.angles().t[13] + FRAC_PI_2,
-                PI - s.angles().t[8],
-            ))
-        }),
-        corrected: Some(("θ13 = θ8 + C4", |s| {
-            Some(apart(s.angles().t[13] - FRAC_PI_2, s.angles().t[8]))
-        })),
-    },
+    ),
+    Equation::new("4.2 left slider halves", "θ10 + θ11 = 0", "deg", |s| {
+        Some(apart(s.angles().t[10] + s.angles().t[11], 0.0))
+    })
+    .clockwise(|s| Some(apart(s.angles().t[10] + (PI - s.angles().t[11]), 0.0)))
+    .corrected("θ11 = θ10 + 180°", |s| {
+        Some(apart(s.angles().t[11], s.angles().t[10] + PI))
+    }),
+    Equation::new("4.2 right slider halves", "θ14 + θ15 = 0", "deg", |s| {
+        Some(apart(s.angles().t[14] + s.angles().t[15], 0.0))
+    })
+    .clockwise(|s| Some(apart(s.angles().t[14] + (PI - s.angles().t[15]), 0.0)))
+    .corrected("θ15 = θ14 + 180°", |s| {
+        Some(apart(s.angles().t[15], s.angles().t[14] + PI))
+    }),
+    Equation::new("4.2 arm on A1", "θ1 - θ12 + C1 = 0", "deg", |s| {
+        Some(apart(s.angles().t[1] + FRAC_PI_2, s.angles().t[12]))
+    }),
+    Equation::new("4.2 arm on A2", "θ4 - θ16 + C2 = 0", "deg", |s| {
+        Some(apart(s.angles().t[4] + FRAC_PI_2, s.angles().t[16]))
+    })
+    .clockwise(|s| {
+        Some(apart(
+            PI - s.angles().t[4] + FRAC_PI_2,
+            PI - s.angles().t[16],
+        ))
+    })
+    .corrected("θ16 = θ4 - C2", |s| {
+        Some(apart(s.angles().t[4] - FRAC_PI_2, s.angles().t[16]))
+    }),
+    Equation::new("4.2 arm on A4", "θ9 - θ5 + C3 = 0", "deg", |s| {
+        Some(apart(s.angles().t[9] + FRAC_PI_2, s.angles().t[5]))
+    }),
+    Equation::new("4.2 arm on A3", "θ13 - θ8 + C4 = 0", "deg", |s| {
+        Some(apart(s.angles().t[13] + FRAC_PI_2, s.angles().t[8]))
+    })
+    .clockwise(|s| {
+        Some(apart(
+            PI - s.angles().t[13] + FRAC_PI_2,
+            PI - s.angles().t[8],
+        ))
+    })
+    .corrected("θ13 = θ8 + C4", |s| {
+        Some(apart(s.angles().t[13] - FRAC_PI_2, s.angles().t[8]))
+    }),
 ];
 
 /// |first + second - third - fourth - base|, mm.

@@ -7,10 +7,11 @@ use super::sample::{Sample, apart, cis};
 
 /// In the paper's order.
 pub const EQUATIONS: &[Equation] = &[
-    Equation {
-        place: "4.2 leg loops",
-        printed: "LG1 + LG12 - LG13 - LG10 = 0, and with LG10 for legs 2 to 4",
-        miss: |s| {
+    Equation::new(
+        "4.2 leg loops",
+        "LG1 + LG12 - LG13 - LG10 = 0, and with LG10 for legs 2 to 4",
+        "mm; LG20, LG30, LG40 are meant",
+        |s| {
             let leg = &s.lizard.leg;
             worst_of(s, ALL, |theta| {
                 let sum = cis(leg.crank, theta) + Vector::new(leg.coupler - leg.ground, 0.0)
@@ -18,70 +19,52 @@ pub const EQUATIONS: &[Equation] = &[
                 Some(sum.length())
             })
         },
-        unit: "mm; LG20, LG30, LG40 are meant",
-        aside: None,
-        clockwise: None,
-        corrected: None,
-    },
-    Equation {
-        place: "4.2 θ_lg13, front legs",
-        printed: "θ_lg13 = 2 atan((-H + sqrt(H² - 4GI))/2G)",
-        miss: |s| follower(s, FRONT, 1.0, None),
-        unit: "deg",
-        aside: None,
-        clockwise: None,
-        corrected: Some(("the root with - for 0 < θ_lg < 180°", |s| {
-            follower(s, FRONT, -1.0, None)
-        })),
-    },
-    Equation {
-        place: "4.2 θ_lg13, back legs",
-        printed: "the same, with the + root",
-        miss: |s| follower(s, BACK, 1.0, None),
-        unit: "deg",
-        aside: None,
-        clockwise: None,
-        corrected: None,
-    },
-    Equation {
-        place: "4.2 H, legs 2 to 4",
-        printed: "H = -2 sin θ1",
-        miss: |s| {
+    ),
+    Equation::new(
+        "4.2 θ_lg13, front legs",
+        "θ_lg13 = 2 atan((-H + sqrt(H² - 4GI))/2G)",
+        "deg",
+        |s| follower(s, FRONT, 1.0, None),
+    )
+    .corrected("the root with - for 0 < θ_lg < 180°", |s| {
+        follower(s, FRONT, -1.0, None)
+    }),
+    Equation::new(
+        "4.2 θ_lg13, back legs",
+        "the same, with the + root",
+        "deg",
+        |s| follower(s, BACK, 1.0, None),
+    ),
+    Equation::new(
+        "4.2 H, legs 2 to 4",
+        "H = -2 sin θ1",
+        "deg in θ_lg13, root already corrected",
+        |s| {
             let h = Some(-2.0 * s.angles().t[1].sin());
             let front = follower(s, &[4], -1.0, h);
             let back = follower(s, BACK, 1.0, h);
             Some(front?.max(back?))
         },
-        unit: "deg in θ_lg13, root already corrected",
-        aside: None,
-        clockwise: None,
-        corrected: Some(("H = -2 sin θ_lgi", |s| {
-            Some(follower(s, &[4], -1.0, None)?.max(follower(s, BACK, 1.0, None)?))
-        })),
-    },
-    Equation {
-        place: "4.2 θ_lg12, front legs",
-        printed: "θ_lg12 = 2 atan((-K - sqrt(K² - 4JL))/2J), J: -lg10 cos θ/lg12, L: -(lg10/lg12 + 1) cos θ",
-        miss: |s| coupler(s, FRONT, -1.0, -1.0),
-        unit: "deg",
-        aside: None,
-        clockwise: None,
-        corrected: Some(("J: +lg10 cos θ/lg12, L: +(lg10/lg12 - 1) cos θ", |s| {
-            coupler(s, FRONT, 1.0, -1.0)
-        })),
-    },
-    Equation {
-        place: "4.2 θ_lg12, back legs",
-        printed: "the same",
-        miss: |s| coupler(s, BACK, -1.0, -1.0),
-        unit: "deg",
-        aside: None,
-        clockwise: None,
-        corrected: Some((
-            "J and L as above, and the + root for 180° < θ_lg < 360°",
-            |s| coupler(s, BACK, 1.0, 1.0),
-        )),
-    },
+    )
+    .corrected("H = -2 sin θ_lgi", |s| {
+        Some(follower(s, &[4], -1.0, None)?.max(follower(s, BACK, 1.0, None)?))
+    }),
+    Equation::new(
+        "4.2 θ_lg12, front legs",
+        "θ_lg12 = 2 atan((-K - sqrt(K² - 4JL))/2J), J: -lg10 cos θ/lg12, L: -(lg10/lg12 + 1) cos θ",
+        "deg",
+        |s| coupler(s, FRONT, -1.0, -1.0),
+    )
+    .corrected("J: +lg10 cos θ/lg12, L: +(lg10/lg12 - 1) cos θ", |s| {
+        coupler(s, FRONT, 1.0, -1.0)
+    }),
+    Equation::new("4.2 θ_lg12, back legs", "the same", "deg", |s| {
+        coupler(s, BACK, -1.0, -1.0)
+    })
+    .corrected(
+        "J and L as above, and the + root for 180° < θ_lg < 360°",
+        |s| coupler(s, BACK, 1.0, 1.0),
+    ),
 ];
 
 /// The servo angles that drive the legs, by the paper's numbers.

@@ -16,16 +16,16 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::Failure;
-use crate::json;
+use crate::shared::json;
 use equation::{Equation, Misses};
 use sample::Sample;
 
-/// Which of the paper's equations hold.
+/// Check which of the paper's equations hold
 ///
-/// Each is evaluated at random poses (theta1, -theta5 in 90..180, theta4, -theta8 in
-/// 0..90; the same poses on every run) and compared with the geometric solution, as
-/// printed and as corrected. If the drawings suggest it, an equation is also tried with
-/// right-hand angles measured clockwise from -x.
+/// Each is evaluated at random poses (theta1, -theta5 in 90..180, theta4, -theta8 in 0..90; the
+/// same poses on every run) and compared with the geometric solution, as printed and as
+/// corrected. If the drawings suggest it, an equation is also tried with right-hand angles
+/// measured clockwise from -x.
 #[derive(clap::Args)]
 #[command(after_help = "docs/errata.md is made by:
   lizard errata --markdown > docs/errata.md")]
@@ -36,7 +36,7 @@ pub struct Args {
     /// Print the table as Markdown
     #[arg(long, conflicts_with = "json")]
     markdown: bool,
-    /// Print JSON
+    /// Print JSON instead of text
     #[arg(long)]
     json: bool,
 }
@@ -110,7 +110,7 @@ pub fn measure(samples: u32) -> Vec<Entry> {
                 unit: equation.unit,
                 aside: equation
                     .aside
-                    .map(|aside| (Misses::of(aside.miss, &samples).worst, aside.place)),
+                    .map(|(place, miss)| (Misses::of(miss, &samples).worst, place)),
                 holds_clockwise: equation
                     .clockwise
                     .map(|miss| Misses::of(miss, &samples).holds()),
@@ -202,7 +202,7 @@ fn text(entries: &[Entry], samples: u32) -> String {
     page
 }
 
-/// docs/errata.md.
+/// The text of docs/errata.md.
 pub fn markdown(entries: &[Entry], samples: u32) -> String {
     let holding = entries.iter().filter(|entry| entry.holds).count();
     let mut page = format!(

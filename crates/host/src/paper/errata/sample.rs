@@ -34,7 +34,7 @@ pub fn paper_lizard() -> Lizard {
 
 /// A solved pose, and random numbers for what is not about a pose.
 pub struct Sample {
-    /// The robot.
+    /// The robot of all samples.
     pub lizard: Lizard,
     /// The geometric solution.
     pub s: Solution,

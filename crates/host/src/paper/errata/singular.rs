@@ -4,275 +4,193 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use lizard_kinematics::End;
 
-use super::equation::{Aside, Equation};
+use super::equation::Equation;
 use super::sample::Sample;
 
 /// In the paper's order.
 pub const EQUATIONS: &[Equation] = &[
-    Equation {
-        place: "5.1 shape of K",
-        printed: "K is 8x8, its determinant must not vanish",
-        miss: |s| Some(8.0 - s.s.active_matrix()[0].len() as f64),
-        unit: "columns more than servos",
-        aside: None,
-        clockwise: None,
-        corrected: Some(("K is 8x4: four active rates, no determinant", |s| {
-            Some(4.0 - s.s.active_matrix()[0].len() as f64)
-        })),
-    },
-    Equation {
-        place: "5.1 K, head",
-        printed: "[-l1 sin θ1, -l4 sin θ4; l1 cos θ1, -l4 cos θ4]",
-        miss: |s| Some(against(&k(s, 0, 0, 1), &k_head(s, s.angles().t[4]))),
-        unit: "mm/rad",
-        aside: None,
-        // d/dθ4 changes sign with the sense of θ4.
-        clockwise: Some(|s| {
-            let mut truth = k(s, 0, 0, 1);
-            truth[1] = -truth[1];
-            truth[3] = -truth[3];
-            Some(against(&truth, &k_head(s, PI - s.angles().t[4])))
-        }),
-        corrected: Some(("second column +l4 sin θ4, -l4 cos θ4", |s| {
-            let (l, t) = (&s.lizard.links, s.angles().t);
-            let block = [
-                -l.l1 * t[1].sin(),
-                l.l4 * t[4].sin(),
-                l.l1 * t[1].cos(),
-                -l.l4 * t[4].cos(),
-            ];
-            Some(against(&k(s, 0, 0, 1), &block))
-        })),
-    },
-    Equation {
-        place: "5.1 K, tail",
-        printed: "[-l6 sin θ5, -l9 sin θ8; l6 cos θ5, -l9 cos θ8]",
-        miss: |s| Some(against(&k(s, 2, 3, 2), &k_tail(s, s.angles().t[8]))),
-        unit: "mm/rad",
-        aside: None,
-        clockwise: Some(|s| {
-            let mut truth = k(s, 2, 3, 2);
-            truth[1] = -truth[1];
-            truth[3] = -truth[3];
-            Some(against(&truth, &k_tail(s, PI - s.angles().t[8])))
-        }),
-        corrected: Some(("second column +l9 sin θ8, -l9 cos θ8", |s| {
-            let (l, t) = (&s.lizard.links, s.angles().t);
-            let block = [
-                -l.l6 * t[5].sin(),
-                l.l9 * t[8].sin(),
-                l.l6 * t[5].cos(),
-                -l.l9 * t[8].cos(),
-            ];
-            Some(against(&k(s, 2, 3, 2), &block))
-        })),
-    },
-    Equation {
-        place: "5.1 K, left",
-        printed: "[l11 sin(C3 - θ5), -l14 sin(C1 + θ1); l11 cos(C3 - θ5), -l14 cos(C1 + θ1)]",
-        miss: |s| {
+    Equation::new(
+        "5.1 shape of K",
+        "K is 8x8, its determinant must not vanish",
+        "columns more than servos",
+        |s| Some(8.0 - s.s.active_matrix()[0].len() as f64),
+    )
+    .corrected("K is 8x4: four active rates, no determinant", |s| {
+        Some(4.0 - s.s.active_matrix()[0].len() as f64)
+    }),
+    Equation::new(
+        "5.1 K, head",
+        "[-l1 sin θ1, -l4 sin θ4; l1 cos θ1, -l4 cos θ4]",
+        "mm/rad",
+        |s| K_HEAD.printed(s),
+    )
+    .clockwise(|s| K_HEAD.clockwise(s))
+    .corrected("second column +l4 sin θ4, -l4 cos θ4", |s| {
+        K_HEAD.corrected(s)
+    }),
+    Equation::new(
+        "5.1 K, tail",
+        "[-l6 sin θ5, -l9 sin θ8; l6 cos θ5, -l9 cos θ8]",
+        "mm/rad",
+        |s| K_TAIL.printed(s),
+    )
+    .clockwise(|s| K_TAIL.clockwise(s))
+    .corrected("second column +l9 sin θ8, -l9 cos θ8", |s| {
+        K_TAIL.corrected(s)
+    }),
+    Equation::new(
+        "5.1 K, left",
+        "[l11 sin(C3 - θ5), -l14 sin(C1 + θ1); l11 cos(C3 - θ5), -l14 cos(C1 + θ1)]",
+        "mm/rad",
+        |s| {
             let (l, t) = (&s.lizard.links, s.angles().t);
             let block = side([l.l11, l.l14], FRAC_PI_2 - t[5], FRAC_PI_2 + t[1], -1.0);
             Some(against(&k(s, 4, 3, 0).map(|v| -v), &block))
         },
-        unit: "mm/rad",
-        aside: None,
-        clockwise: None,
-        corrected: Some(("+l14 sin(C1 + θ1)", |s| {
-            let (l, t) = (&s.lizard.links, s.angles().t);
-            let block = side([l.l11, l.l14], FRAC_PI_2 - t[5], FRAC_PI_2 + t[1], 1.0);
-            Some(against(&k(s, 4, 3, 0).map(|v| -v), &block))
-        })),
-    },
-    Equation {
-        place: "5.1 K, right",
-        printed: "[l16 sin(C4 - θ8), -l19 sin(C2 + θ4); l16 cos(C4 - θ8), -l19 cos(C2 + θ4)]",
-        miss: |s| {
+    )
+    .corrected("+l14 sin(C1 + θ1)", |s| {
+        let (l, t) = (&s.lizard.links, s.angles().t);
+        let block = side([l.l11, l.l14], FRAC_PI_2 - t[5], FRAC_PI_2 + t[1], 1.0);
+        Some(against(&k(s, 4, 3, 0).map(|v| -v), &block))
+    }),
+    Equation::new(
+        "5.1 K, right",
+        "[l16 sin(C4 - θ8), -l19 sin(C2 + θ4); l16 cos(C4 - θ8), -l19 cos(C2 + θ4)]",
+        "mm/rad",
+        |s| {
             let (l, t) = (&s.lizard.links, s.angles().t);
             let block = side([l.l16, l.l19], FRAC_PI_2 - t[8], FRAC_PI_2 + t[4], -1.0);
             Some(against(&k(s, 6, 2, 1).map(|v| -v), &block))
         },
-        unit: "mm/rad",
-        aside: None,
-        clockwise: None,
-        corrected: Some(("+l19 sin(C2 + θ4), and C2 = C4 = -90°", |s| {
-            let (l, t) = (&s.lizard.links, s.angles().t);
-            let block = side([l.l16, l.l19], -FRAC_PI_2 - t[8], -FRAC_PI_2 + t[4], 1.0);
-            Some(against(&k(s, 6, 2, 1).map(|v| -v), &block))
-        })),
-    },
-    Equation {
-        place: "5.1 K*, head",
-        printed: "[-l2 sin θ2, -l3 sin θ3; l2 cos θ2, -l3 cos θ3]",
-        miss: |s| {
-            Some(against(
-                &passive(s, 0),
-                &k_star(s, HEAD, s.angles().t[3], -1.0),
-            ))
-        },
-        unit: "mm/rad",
-        aside: None,
-        clockwise: Some(|s| {
-            let mut truth = passive(s, 0);
-            truth[1] = -truth[1];
-            truth[3] = -truth[3];
-            Some(against(
-                &truth,
-                &k_star(s, HEAD, PI - s.angles().t[3], -1.0),
-            ))
-        }),
-        corrected: Some(("second column +l3 sin θ3, -l3 cos θ3", |s| {
-            Some(against(
-                &passive(s, 0),
-                &k_star(s, HEAD, s.angles().t[3], 1.0),
-            ))
-        })),
-    },
-    Equation {
-        place: "5.1 K*, tail",
-        printed: "[-l7 sin θ6, -l8 sin θ7; l7 cos θ6, -l8 cos θ7]",
-        miss: |s| {
-            Some(against(
-                &passive(s, 2),
-                &k_star(s, TAIL, s.angles().t[7], -1.0),
-            ))
-        },
-        unit: "mm/rad",
-        aside: None,
-        clockwise: Some(|s| {
-            let mut truth = passive(s, 2);
-            truth[1] = -truth[1];
-            truth[3] = -truth[3];
-            Some(against(
-                &truth,
-                &k_star(s, TAIL, PI - s.angles().t[7], -1.0),
-            ))
-        }),
-        corrected: Some(("second column +l8 sin θ7, -l8 cos θ7", |s| {
-            Some(against(
-                &passive(s, 2),
-                &k_star(s, TAIL, s.angles().t[7], 1.0),
-            ))
-        })),
-    },
-    Equation {
-        place: "5.1 determinant of the printed K*",
-        printed: "l2 l3 l7 l8 l12 l13 l17 l18 sin 2θ11 sin 2θ14 (cos(θ2+θ3-θ6-θ7) - cos(θ2+θ3+θ6+θ7))/2",
-        miss: |s| {
+    )
+    .corrected("+l19 sin(C2 + θ4), and C2 = C4 = -90°", |s| {
+        let (l, t) = (&s.lizard.links, s.angles().t);
+        let block = side([l.l16, l.l19], -FRAC_PI_2 - t[8], -FRAC_PI_2 + t[4], 1.0);
+        Some(against(&k(s, 6, 2, 1).map(|v| -v), &block))
+    }),
+    Equation::new(
+        "5.1 K*, head",
+        "[-l2 sin θ2, -l3 sin θ3; l2 cos θ2, -l3 cos θ3]",
+        "mm/rad",
+        |s| PASSIVE_HEAD.printed(s),
+    )
+    .clockwise(|s| PASSIVE_HEAD.clockwise(s))
+    .corrected("second column +l3 sin θ3, -l3 cos θ3", |s| {
+        PASSIVE_HEAD.corrected(s)
+    }),
+    Equation::new(
+        "5.1 K*, tail",
+        "[-l7 sin θ6, -l8 sin θ7; l7 cos θ6, -l8 cos θ7]",
+        "mm/rad",
+        |s| PASSIVE_TAIL.printed(s),
+    )
+    .clockwise(|s| PASSIVE_TAIL.clockwise(s))
+    .corrected("second column +l8 sin θ7, -l8 cos θ7", |s| {
+        PASSIVE_TAIL.corrected(s)
+    }),
+    Equation::new(
+        "5.1 determinant of the printed K*",
+        "l2 l3 l7 l8 l12 l13 l17 l18 sin 2θ11 sin 2θ14 (cos(θ2+θ3-θ6-θ7) - cos(θ2+θ3+θ6+θ7))/2",
+        "per product of lengths; it follows from the printed matrix",
+        |s| {
             let t = s.angles().t;
             let product = (t[2] + t[3]).sin() * (t[6] + t[7]).sin();
             let printed =
                 ((t[2] + t[3] - t[6] - t[7]).cos() - (t[2] + t[3] + t[6] + t[7]).cos()) / 2.0;
             Some((product - printed).abs())
         },
-        unit: "per product of lengths; it follows from the printed matrix",
-        aside: None,
-        clockwise: None,
-        corrected: None,
-    },
-    Equation {
-        place: "5.1 singular head",
-        printed: "sin(θ2 + θ3) = 0",
-        miss: |s| {
+    ),
+    Equation::new(
+        "5.1 singular head",
+        "sin(θ2 + θ3) = 0",
+        "in the sine",
+        |s| {
             let t = s.angles().t;
             Some(((t[2] + t[3]).sin().abs() - s.s.margins.type2[0]).abs())
         },
-        unit: "in the sine",
-        aside: Some(Aside {
-            place: "the neutral pose, which it flags",
-            miss: |s| {
-                let (home, sum) = neutral(s)?;
-                Some((sum.sin().abs() - home).abs())
-            },
-        }),
-        clockwise: Some(|s| {
-            let t = s.angles().t;
-            Some(((t[2] + PI - t[3]).sin().abs() - s.s.margins.type2[0]).abs())
-        }),
-        corrected: Some(("sin(θ3 - θ2) = 0", |s| {
-            let t = s.angles().t;
-            Some(((t[3] - t[2]).sin() - determinant_sine(&passive(s, 0), 2500.0)).abs())
-        })),
-    },
-    Equation {
-        place: "5.1 singular tail",
-        printed: "sin(θ6 + θ7) = 0",
-        miss: |s| {
+    )
+    .clockwise(|s| {
+        let t = s.angles().t;
+        Some(((t[2] + PI - t[3]).sin().abs() - s.s.margins.type2[0]).abs())
+    })
+    .corrected("sin(θ3 - θ2) = 0", |s| {
+        let t = s.angles().t;
+        Some(((t[3] - t[2]).sin() - determinant_sine(&passive(s, 0), 2500.0)).abs())
+    })
+    .aside("the neutral pose, which it flags", |s| {
+        let (home, sum) = neutral(s)?;
+        Some((sum.sin().abs() - home).abs())
+    }),
+    Equation::new(
+        "5.1 singular tail",
+        "sin(θ6 + θ7) = 0",
+        "in the sine",
+        |s| {
             let t = s.angles().t;
             Some(((t[6] + t[7]).sin().abs() - s.s.margins.type2[1]).abs())
         },
-        unit: "in the sine",
-        aside: None,
-        clockwise: Some(|s| {
-            let t = s.angles().t;
-            Some(((t[6] + PI - t[7]).sin().abs() - s.s.margins.type2[1]).abs())
-        }),
-        corrected: Some(("sin(θ7 - θ6) = 0", |s| {
-            let t = s.angles().t;
-            Some(((t[7] - t[6]).sin() - determinant_sine(&passive(s, 2), 2500.0)).abs())
-        })),
-    },
-    Equation {
-        place: "5.1 singular left side",
-        printed: "sin 2θ11 = 0",
-        miss: |s| Some(1.0 - (2.0 * s.angles().t[11]).sin().abs()),
-        unit: "in the sine, of a block that is never singular",
-        aside: None,
-        clockwise: None,
-        corrected: Some(("never: the block's determinant is -d", |s| {
-            let [a, b, c, d] = passive(s, 4);
-            Some((a * d - b * c + s.s.left.d).abs())
-        })),
-    },
-    Equation {
-        place: "5.1 singular right side",
-        printed: "sin 2θ14 = 0",
-        miss: |s| Some(1.0 - (2.0 * s.angles().t[14]).sin().abs()),
-        unit: "in the sine, of a block that is never singular",
-        aside: None,
-        clockwise: None,
-        corrected: Some(("never: the block's determinant is -d", |s| {
-            let [a, b, c, d] = passive(s, 6);
-            Some((a * d - b * c + s.s.right.d).abs())
-        })),
-    },
-    Equation {
-        place: "5.2 shape of the leg's K",
-        printed: "K is 2x2 and holds θ_lg12, which is passive",
-        miss: |s| Some(2.0 - mobility_of_leg(s)),
-        unit: "columns more than drives",
-        aside: None,
-        clockwise: None,
-        corrected: Some(("K is 2x1: [-lg1 sin θ_lg1; lg1 cos θ_lg1]", |s| {
-            Some(1.0 - mobility_of_leg(s))
-        })),
-    },
-    Equation {
-        place: "5.2 singular leg",
-        printed: "-lg12 lg13 sin(θ_lg1 + θ_lg12 - θ_lg13) = 0",
-        miss: |s| {
+    )
+    .clockwise(|s| {
+        let t = s.angles().t;
+        Some(((t[6] + PI - t[7]).sin().abs() - s.s.margins.type2[1]).abs())
+    })
+    .corrected("sin(θ7 - θ6) = 0", |s| {
+        let t = s.angles().t;
+        Some(((t[7] - t[6]).sin() - determinant_sine(&passive(s, 2), 2500.0)).abs())
+    }),
+    Equation::new(
+        "5.1 singular left side",
+        "sin 2θ11 = 0",
+        "in the sine, of a block that is never singular",
+        |s| Some(1.0 - (2.0 * s.angles().t[11]).sin().abs()),
+    )
+    .corrected("never: the block's determinant is -d", |s| {
+        let [a, b, c, d] = passive(s, 4);
+        Some((a * d - b * c + s.s.left.d).abs())
+    }),
+    Equation::new(
+        "5.1 singular right side",
+        "sin 2θ14 = 0",
+        "in the sine, of a block that is never singular",
+        |s| Some(1.0 - (2.0 * s.angles().t[14]).sin().abs()),
+    )
+    .corrected("never: the block's determinant is -d", |s| {
+        let [a, b, c, d] = passive(s, 6);
+        Some((a * d - b * c + s.s.right.d).abs())
+    }),
+    Equation::new(
+        "5.2 shape of the leg's K",
+        "K is 2x2 and holds θ_lg12, which is passive",
+        "columns more than drives",
+        |s| Some(2.0 - mobility_of_leg(s)),
+    )
+    .corrected("K is 2x1: [-lg1 sin θ_lg1; lg1 cos θ_lg1]", |s| {
+        Some(1.0 - mobility_of_leg(s))
+    }),
+    Equation::new(
+        "5.2 singular leg",
+        "-lg12 lg13 sin(θ_lg1 + θ_lg12 - θ_lg13) = 0",
+        "in the sine",
+        |s| {
             let theta = s.angles().t[1];
             Some(((theta + 0.0 - theta).sin().abs() - theta.sin().abs()).abs())
         },
-        unit: "in the sine",
-        aside: None,
-        clockwise: None,
-        corrected: Some((
-            "lg12 lg13 sin(θ_lg12 - θ_lg13) = 0, so sin θ_lg1 = 0",
-            |s| {
-                let (leg, theta) = (&s.lizard.leg, s.angles().t[1]);
-                // Columns by θ_lg12 = 0 and θ_lg13 = θ_lg1.
-                let columns = [
-                    0.0,
-                    leg.follower * theta.sin(),
-                    leg.coupler,
-                    -leg.follower * theta.cos(),
-                ];
-                let truth = (0.0 - theta).sin();
-                Some((-determinant_sine(&columns, leg.coupler * leg.follower) - truth).abs())
-            },
-        )),
-    },
+    )
+    .corrected(
+        "lg12 lg13 sin(θ_lg12 - θ_lg13) = 0, so sin θ_lg1 = 0",
+        |s| {
+            let (leg, theta) = (&s.lizard.leg, s.angles().t[1]);
+            // Columns by θ_lg12 = 0 and θ_lg13 = θ_lg1.
+            let columns = [
+                0.0,
+                leg.follower * theta.sin(),
+                leg.coupler,
+                -leg.follower * theta.cos(),
+            ];
+            let truth = (0.0 - theta).sin();
+            Some((-determinant_sine(&columns, leg.coupler * leg.follower) - truth).abs())
+        },
+    ),
 ];
 
 /// theta1 where every slider is at nominal: the neutral pose, degrees.
@@ -296,8 +214,70 @@ fn neutral(s: &Sample) -> Option<(f64, f64)> {
     Some((pose.type2, sum.to_radians()))
 }
 
-const HEAD: [usize; 3] = [2, 2, 3];
-const TAIL: [usize; 3] = [6, 7, 8];
+/// A block of K or K* for two bars of an end.
+struct Block {
+    /// The true block, by rows.
+    truth: fn(&Sample) -> [f64; 4],
+    /// The numbers of the left and the right bar's angles.
+    angles: [usize; 2],
+    /// The numbers of the bars.
+    bars: [usize; 2],
+}
+
+const K_HEAD: Block = Block {
+    truth: |s| k(s, 0, 0, 1),
+    angles: [1, 4],
+    bars: [1, 4],
+};
+const K_TAIL: Block = Block {
+    truth: |s| k(s, 2, 3, 2),
+    angles: [5, 8],
+    bars: [6, 9],
+};
+const PASSIVE_HEAD: Block = Block {
+    truth: |s| passive(s, 0),
+    angles: [2, 3],
+    bars: [2, 3],
+};
+const PASSIVE_TAIL: Block = Block {
+    truth: |s| passive(s, 2),
+    angles: [6, 7],
+    bars: [7, 8],
+};
+
+impl Block {
+    /// The error of the printed block.
+    fn printed(&self, s: &Sample) -> Option<f64> {
+        let right = s.angles().t[self.angles[1]];
+        Some(against(&(self.truth)(s), &self.with(s, right, -1.0)))
+    }
+
+    /// The error of the printed block with the right angle clockwise from -x. The derivative by
+    /// it changes sign with its sense.
+    fn clockwise(&self, s: &Sample) -> Option<f64> {
+        let [a, b, c, d] = (self.truth)(s);
+        let right = PI - s.angles().t[self.angles[1]];
+        Some(against(&[a, -b, c, -d], &self.with(s, right, -1.0)))
+    }
+
+    /// The error of the corrected block.
+    fn corrected(&self, s: &Sample) -> Option<f64> {
+        let right = s.angles().t[self.angles[1]];
+        Some(against(&(self.truth)(s), &self.with(s, right, 1.0)))
+    }
+
+    /// The block with some angle of the right bar, and a sign of its sine.
+    fn with(&self, s: &Sample, right: f64, sign: f64) -> [f64; 4] {
+        let l = s.lizard.links.to_array();
+        let ([a, b], left) = (self.bars, s.angles().t[self.angles[0]]);
+        [
+            -l[a] * left.sin(),
+            sign * l[b] * right.sin(),
+            l[a] * left.cos(),
+            -l[b] * right.cos(),
+        ]
+    }
+}
 
 /// The largest difference of two 2x2 blocks, given by rows.
 fn against(truth: &[f64; 4], block: &[f64; 4]) -> f64 {
@@ -324,26 +304,6 @@ fn passive(s: &Sample, at: usize) -> [f64; 4] {
     [k[at][at], k[at][at + 1], k[at + 1][at], k[at + 1][at + 1]]
 }
 
-fn k_head(s: &Sample, theta4: f64) -> [f64; 4] {
-    let (l, t) = (&s.lizard.links, s.angles().t);
-    [
-        -l.l1 * t[1].sin(),
-        -l.l4 * theta4.sin(),
-        l.l1 * t[1].cos(),
-        -l.l4 * theta4.cos(),
-    ]
-}
-
-fn k_tail(s: &Sample, theta8: f64) -> [f64; 4] {
-    let (l, t) = (&s.lizard.links, s.angles().t);
-    [
-        -l.l6 * t[5].sin(),
-        -l.l9 * theta8.sin(),
-        l.l6 * t[5].cos(),
-        -l.l9 * theta8.cos(),
-    ]
-}
-
 /// A printed side block: rear arm, then front arm with the sign of its sine.
 fn side([rear, front]: [f64; 2], rear_angle: f64, front_angle: f64, sign: f64) -> [f64; 4] {
     [
@@ -351,18 +311,6 @@ fn side([rear, front]: [f64; 2], rear_angle: f64, front_angle: f64, sign: f64) -
         sign * front * front_angle.sin(),
         rear * rear_angle.cos(),
         -front * front_angle.cos(),
-    ]
-}
-
-/// A coupler block of K*: angle of the left coupler, and its two links; the
-/// sign of the second sine.
-fn k_star(s: &Sample, [left, a, b]: [usize; 3], right: f64, sign: f64) -> [f64; 4] {
-    let (l, t) = (s.lizard.links.to_array(), s.angles().t);
-    [
-        -l[a] * t[left].sin(),
-        sign * l[b] * right.sin(),
-        l[a] * t[left].cos(),
-        -l[b] * right.cos(),
     ]
 }
 

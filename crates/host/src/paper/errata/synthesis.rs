@@ -11,28 +11,9 @@ use crate::paper::mobility;
 
 /// In the paper's order.
 pub const EQUATIONS: &[Equation] = &[
-    Equation {
-        place: "2.1 mobility of the body",
-        printed: "M = 3(N - 1 - j) + sum f = 4, with N = 13, j = 16",
-        miss: |s| Some((mobility::body_freedoms(&s.lizard, &s.s) as f64 - 4.0).abs()),
-        unit: "freedoms against the rank of the constraints",
-        aside: None,
-        clockwise: None,
-        corrected: None,
-    },
-    Equation {
-        place: "2.2 mobility of a leg",
-        printed: "M = 1",
-        miss: |s| Some((mobility::leg_freedoms(&s.lizard, &s.s) as f64 - 1.0).abs()),
-        unit: "freedoms against the rank of the constraints",
-        aside: None,
-        clockwise: None,
-        corrected: None,
-    },
-    Equation {
-        place: "3.1 dimensional factor",
-        printed: "D = (R1 + R2 + R3)/0.9 = R3/r3, r1 + r2 + r3 = 0.9",
-        miss: |s| {
+    Equation::new("2.1 mobility of the body", "M = 3(N - 1 - j) + sum f = 4, with N = 13, j = 16", "freedoms against the rank of the constraints", |s| Some((mobility::body_freedoms(&s.lizard, &s.s) as f64 - 4.0).abs())),
+    Equation::new("2.2 mobility of a leg", "M = 1", "freedoms against the rank of the constraints", |s| Some((mobility::leg_freedoms(&s.lizard, &s.s) as f64 - 1.0).abs())),
+    Equation::new("3.1 dimensional factor", "D = (R1 + R2 + R3)/0.9 = R3/r3, r1 + r2 + r3 = 0.9", "mm", |s| {
             let (d, p) = (10.0 + 100.0 * s.random[0], Proportions::PAPER);
             let bars = p.at_scale(d);
             let sum = bars.crank_left + bars.coupler_left + bars.base / 2.0;
@@ -41,39 +22,15 @@ pub const EQUATIONS: &[Equation] = &[
                     .abs()
                     .max((p.scale_for_base(bars.base) - d).abs()),
             )
-        },
-        unit: "mm",
-        aside: None,
-        clockwise: None,
-        corrected: None,
-    },
-    Equation {
-        place: "3.1 design space",
-        printed: "r3 < 0.45 assures r1 + r2 > r3",
-        miss: |s| {
+        }),
+    Equation::new("3.1 design space", "r3 < 0.45 assures r1 + r2 > r3", "D", |s| {
             let r3 = 0.45 * s.random[0];
             Some((r3 - (SUM - r3)).max(0.0))
-        },
-        unit: "D",
-        aside: None,
-        clockwise: None,
-        corrected: None,
-    },
-    Equation {
-        place: "3.1.2 workspace circles (all four)",
-        printed: "(x11 ± l0/2)² + y11 = (l1 ± l2)²",
-        miss: |s| circles(s, |y| y),
-        unit: "mm in radius",
-        aside: None,
-        clockwise: None,
-        corrected: Some(("(x11 ± l0/2)² + y11² = (l1 ± l2)²", |s| {
+        }),
+    Equation::new("3.1.2 workspace circles (all four)", "(x11 ± l0/2)² + y11 = (l1 ± l2)²", "mm in radius", |s| circles(s, |y| y)).corrected("(x11 ± l0/2)² + y11² = (l1 ± l2)²", |s| {
             circles(s, |y| y * y)
-        })),
-    },
-    Equation {
-        place: "3.1.3 maximal inscribed circle",
-        printed: "r = (l1 + l2 - |l1 - l2|)/2, y = sqrt((l1 + l2 + |l1 - l2|)²/4 - (l0/2)²)",
-        miss: |s| {
+        }),
+    Equation::new("3.1.3 maximal inscribed circle", "r = (l1 + l2 - |l1 - l2|)/2, y = sqrt((l1 + l2 + |l1 - l2|)²/4 - (l0/2)²)", "mm", |s| {
             let bars = s.lizard.end(End::Head);
             let (sum, difference) = (
                 bars.crank_left + bars.coupler_left,
@@ -92,55 +49,22 @@ pub const EQUATIONS: &[Equation] = &[
             // It is inscribed, and no other centre has more room.
             let other = clearance(sum * (2.0 * s.random[0] - 1.0), sum * s.random[1]);
             Some((clearance(0.0, y) - r).abs().max(other - r))
-        },
-        unit: "mm",
-        aside: None,
-        clockwise: None,
-        corrected: None,
-    },
-    Equation {
-        place: "3.1.4 conditioning",
-        printed: "LCI > 0.7 inside the inscribed circle",
-        miss: |s| Some((CLAIM - lci_at(s, 1.0)).max(0.0)),
-        unit: "of LCI short",
-        aside: None,
-        clockwise: None,
-        corrected: Some((
-            "LCI > 0.7 inside the concentric circle of half the radius; over the whole circle as a mean only",
-            |s| Some((CLAIM - lci_at(s, 0.5)).max(0.0)),
-        )),
-    },
-    Equation {
-        place: "3.2 table of links",
-        printed: "l12, l13, l16, l18 = 45 (l16 = 30 before)",
-        miss: |_| Some(missing(|i, _| i)),
-        unit: "links without a length",
-        aside: None,
-        clockwise: None,
-        corrected: Some(("l12, l13, l17, l18 = 45", |_| {
+        }),
+    Equation::new("3.1.4 conditioning", "LCI > 0.7 inside the inscribed circle", "of LCI short", |s| Some((CLAIM - lci_at(s, 1.0)).max(0.0))).corrected("LCI > 0.7 inside the concentric circle of half the radius; over the whole circle as a mean only",
+            |s| Some((CLAIM - lci_at(s, 0.5)).max(0.0))),
+    Equation::new("3.2 table of links", "l12, l13, l16, l18 = 45 (l16 = 30 before)", "links without a length", |_| Some(missing(|i, _| i))).corrected("l12, l13, l17, l18 = 45", |_| {
             Some(missing(
                 |i, length| if i == 16 && length == 45.0 { 17 } else { i },
             ))
-        })),
-    },
-    Equation {
-        place: "3.2 legs",
-        printed: "the parallelogram does not operate in the singularity zone",
-        miss: |s| {
+        }),
+    Equation::new("3.2 legs", "the parallelogram does not operate in the singularity zone", "of the margin 0.3 short", |s| {
             let (least, flat) = (0.3, 360.0 * s.random[0]);
             Some((least - flat.to_radians().sin().abs()).max(0.0))
-        },
-        unit: "of the margin 0.3 short",
-        aside: None,
-        clockwise: None,
-        corrected: Some((
-            "change points at theta_lg = 0 and 180; the margin |sin theta_lg| is 0.3 within 72.5 deg of 90 and 270",
+        }).corrected("change points at theta_lg = 0 and 180; the margin |sin theta_lg| is 0.3 within 72.5 deg of 90 and 270",
             |s| {
                 let theta: f64 = 90.0 + 72.5 * (2.0 * s.random[0] - 1.0);
                 Some((0.3 - theta.to_radians().sin().abs()).max(0.0))
-            },
-        )),
-    },
+            }),
 ];
 
 /// A point on the rim of an arm's reach, put into a circle equation whose y
@@ -177,7 +101,8 @@ fn lci_at(s: &Sample, shrink: f64) -> f64 {
         })
 }
 
-/// How many of l0 to l19 the table leaves out, its entries read in some way.
+/// The number of lengths l0 to l19 that the table leaves out, if its entries are read in some
+/// way.
 fn missing(read: fn(usize, f64) -> usize) -> f64 {
     let named = |link: usize| {
         TABLE

@@ -97,7 +97,7 @@ fn a_slider_that_runs_out_on_one_side_alone_is_named() {
 }
 
 #[test]
-fn what_the_guard_finds_is_called_as_solve_calls_it() {
+fn a_hazard_of_the_guard_has_the_name_of_its_condition() {
     let margin = |margin| Hazard::Margin {
         margin,
         value: Sine(0),
@@ -121,8 +121,8 @@ fn what_the_guard_finds_is_called_as_solve_calls_it() {
 fn every_sample_of_every_servo_is_checked() {
     for (name, robot) in all() {
         for gait in robot.gaits() {
-            let phases = super::phases(gait.tabled());
-            for channel in gait.tabled().table().channels {
+            let phases = super::phases(gait.table());
+            for channel in gait.table().channels {
                 for sample in (0..=u16::MAX).step_by(1024) {
                     let phase = sample.wrapping_sub(channel.offset);
                     assert!(phases.contains(&phase), "{name} {} {phase}", gait.name());
@@ -229,7 +229,7 @@ fn each_kind_of_margin_has_the_limit_of_its_kind() {
 }
 
 #[test]
-fn what_floating_point_allows_and_the_firmwares_guard_does_not_is_refused() {
+fn a_gait_that_only_the_firmwares_guard_rejects_is_refused() {
     // Within a step or two of the integers above the gaits' least margin the float
     // still agrees, and the guard of some robot does not.
     let mut refusals = Vec::new();
@@ -265,7 +265,7 @@ fn what_floating_point_allows_and_the_firmwares_guard_does_not_is_refused() {
 }
 
 #[test]
-fn what_was_found_lies_where_it_was_found() {
+fn the_least_margins_are_those_at_their_phases() {
     for (name, robot) in all() {
         for gait in robot.gaits() {
             let audit = gait.audit();

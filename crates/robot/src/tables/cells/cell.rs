@@ -1,16 +1,15 @@
-//! A cell of two servos' angles, and whether all of its poses keep a condition.
+//! A cell of two servos' angles, and the proof that all of its poses keep a condition.
 
 use std::f64::consts::TAU;
 
 use lizard_core::numbers::units::TURN;
 use lizard_kinematics::Vector;
 
-/// How often a cell is divided in four before it is given up. A bound over a cell is
-/// too wide by about the cell's size, so each division lets cells in that are half as
-/// near to a limit.
+/// Most divisions of a cell in four before it is given up. A bound over a cell is too wide by
+/// about the cell's size, so each division admits cells at half the distance from a limit.
 const DIVISIONS: u32 = 4;
 
-/// What floating point itself may be off by, sines and mm: far more than it is.
+/// Allowance for the error of floating point, sines and mm; far more than it is.
 pub(super) const HAIR: f64 = 1e-9;
 
 /// A range of one servo's angles in the chassis frame, 1/65536 turn.
@@ -24,38 +23,38 @@ pub(super) struct Span {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cell(pub [Span; 2]);
 
-/// What can be said of a condition in all of a cell.
+/// The result of judging a condition over a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Verdict {
-    /// The integers keep it at every pose.
+    /// The integers keep the condition at every pose.
     Kept,
-    /// Its centre breaks it.
+    /// The centre of the cell breaks the condition.
     Broken,
-    /// The bounds are too wide to say.
+    /// The bounds are too wide to decide.
     Open,
 }
 
 /// A condition of the guard that depends on two servos.
 pub(super) trait Condition {
-    /// Row and column, places in servo order.
+    /// The servos of row and column, by their indices.
     fn servos(&self) -> [usize; 2];
 
-    /// What is known of it in a cell.
+    /// Judges the condition over a cell.
     fn judge(&self, cell: &Cell) -> Verdict;
 }
 
 impl Span {
-    /// The middle, degrees.
+    /// The middle of the span, degrees.
     pub fn centre(&self) -> f64 {
         (self.low + self.high) / 2.0 * 360.0 / f64::from(TURN)
     }
 
-    /// How far its ends are from the middle, radians.
+    /// Half the width of the span, radians.
     pub fn half(&self) -> f64 {
         (self.high - self.low) / 2.0 * TAU / f64::from(TURN)
     }
 
-    /// The direction of its middle.
+    /// Unit vector of the middle.
     pub fn direction(&self) -> Vector {
         Vector::direction(self.centre())
     }
@@ -76,7 +75,7 @@ impl Span {
 }
 
 impl Cell {
-    /// Whether a condition is proved in all of it.
+    /// True if a condition is proved in all of the cell.
     pub fn keeps(&self, condition: &impl Condition) -> bool {
         self.keeps_within(condition, DIVISIONS)
     }

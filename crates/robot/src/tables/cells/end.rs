@@ -1,4 +1,4 @@
-//! What is known of an end in a cell: its couplers, its elbows and its legs.
+//! The conditions of an end over a cell: its couplers, its elbows and its legs.
 //!
 //! While the crank angles go from the cell's centre to any other pose of it, the crank
 //! tips move by at most crank times angle, and so does the line `k` between them. Three
@@ -26,7 +26,7 @@ use lizard_kinematics::{AssemblyMode, End, FiveBar, Lizard, Vector};
 use super::cell::{Cell, Condition, HAIR, Span, Verdict};
 use crate::units::ONE_Q15;
 
-/// The conditions of an end.
+/// The conditions of head or tail.
 pub(super) struct Rule {
     end: End,
     bars: FiveBar,
@@ -54,11 +54,11 @@ impl Rule {
         }
     }
 
-    /// The least sine of a leg over its servo's range, which is less than half a turn.
+    /// Least sine of a leg over its servo's range, which is less than half a turn.
     fn least_leg(&self, span: &Span) -> f64 {
         let half = span.half();
         let Vector { x: cos, y: sin } = self.end.mirror(span.direction());
-        // Of the centre turned by half the range, either way.
+        // The centre turned by half the range, either way.
         sin * half.cos() - cos.abs() * half.sin()
     }
 }

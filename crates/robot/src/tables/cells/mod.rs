@@ -1,11 +1,11 @@
 //! The maps of cells in which the integer guard is proved to accept every pose.
 //!
-//! On its chip the robot measures how far a pose is from every hazard, and that takes
-//! most of a frame's time. Every condition depends on one servo or on the two of an end
-//! or of a side. So the poses that are far from every limit can be listed beforehand, in
-//! four maps over pairs of servos: [`lizard_core::numbers::cells`]. This module makes them from
-//! the robot's true measurements, with bounds over a whole cell and a bound of the
-//! integers' error. No pose is sampled, so the proof holds for every pose in a cell.
+//! The chip computes the distance of a pose from every hazard, and that takes most of a
+//! frame's time. Every condition depends on one servo or on the two of an end or of a side. So
+//! the poses that are far from every limit can be listed beforehand, in four maps over pairs of
+//! servos: [`lizard_core::numbers::cells`]. This module makes them from the robot's true measurements,
+//! with bounds over a whole cell and a bound of the integers' error. No pose is sampled, so the
+//! proof holds for every pose in a cell.
 
 mod cell;
 mod end;
@@ -22,16 +22,16 @@ use lizard_kinematics::{End, Lizard, Side};
 
 use cell::{Cell, Condition, Span};
 
-/// The maps of a robot. A pose is certified where all of them hold it.
+/// The maps of a robot. A pose is certified if all of them hold it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CellMaps {
-    /// Rows A1, columns A2.
+    /// Map of the head: rows A1, columns A2.
     pub head: Map,
-    /// Rows A3, columns A4.
+    /// Map of the tail: rows A3, columns A4.
     pub tail: Map,
-    /// Rows A1, columns A4.
+    /// Map of the left side: rows A1, columns A4.
     pub left: Map,
-    /// Rows A2, columns A3.
+    /// Map of the right side: rows A2, columns A3.
     pub right: Map,
 }
 
@@ -39,7 +39,7 @@ pub struct CellMaps {
 const NO_CELL: [i8; 2] = [1, 0];
 
 impl CellMaps {
-    /// The maps of true measurements and of the integers that were made of them.
+    /// Computes the maps from the true measurements and their integers.
     pub(crate) fn new(lizard: &Lizard, numbers: &Content) -> Self {
         let end = |end: End| map(&end::Rule::new(lizard, numbers, end), numbers);
         let side = |side: Side| map(&side::Rule::new(lizard, numbers, side), numbers);
@@ -51,7 +51,7 @@ impl CellMaps {
         }
     }
 
-    /// Whether a pose is certified: the guard accepts it.
+    /// True if a pose is certified, so that the guard accepts it.
     pub fn hold(&self, pose: &Pose) -> bool {
         let [a1, a2, a3, a4] = pose.0;
         self.head.cells().hold(a1, a2)
@@ -61,7 +61,7 @@ impl CellMaps {
     }
 }
 
-/// The cells in which a condition is proved.
+/// Finds the cells in which a condition is proved.
 fn map(rule: &impl Condition, numbers: &Content) -> Map {
     let [row, column] = rule.servos().map(|servo| Servo {
         neutral: numbers.neutral[servo],
@@ -93,6 +93,7 @@ fn map(rule: &impl Condition, numbers: &Content) -> Map {
         rows: all[begin..end].to_vec(),
     }
 }
+
 /// A servo whose travel is divided into cells.
 struct Servo {
     neutral: Angle,
@@ -100,7 +101,7 @@ struct Servo {
 }
 
 impl Servo {
-    /// The cells that its travel touches, of those that a map may have.
+    /// The cells that the servo's travel touches, of those that a map may have.
     fn cells(&self, bits: u32, may: RangeInclusive<i32>) -> RangeInclusive<i32> {
         let [min, max] = [self.travel.min, self.travel.max].map(|end| i32::from(end.0 >> bits));
         min.max(*may.start())..=max.min(*may.end())

@@ -1,4 +1,4 @@
-//! What is known of a side in a cell: the length of its slider.
+//! The condition of a side over a cell: the length of its slider.
 //!
 //! While the crank angles go from the cell's centre to any other pose of it, the tips of
 //! the arms move by at most arm times angle, and the slider's length by as much. With the
@@ -12,13 +12,13 @@ use lizard_kinematics::{Lizard, Side, Slider};
 use super::cell::{Cell, Condition, HAIR, Verdict};
 use crate::measures::scale;
 
-/// The stroke of a side.
+/// The stroke condition of a side.
 pub(super) struct Rule {
     side: Side,
     slider: Slider,
-    /// What the integers may be off by, mm.
+    /// Error bound of the integers, mm.
     off: f64,
-    /// The shortest and the longest that the slider may be, mm.
+    /// Least and greatest length of the slider, mm.
     min: f64,
     max: f64,
 }
@@ -37,7 +37,7 @@ impl Rule {
         }
     }
 
-    /// The slider's length at the centre of a cell, mm.
+    /// Length of the slider at the centre of a cell, mm.
     fn length(&self, cell: &Cell) -> f64 {
         let [front, rear] = cell.0.map(|span| span.direction());
         let (rear, front) = (self.side.rear_arm(rear), self.side.front_arm(front));

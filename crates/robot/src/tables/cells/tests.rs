@@ -17,7 +17,7 @@ use crate::tables::table::Tables;
 use crate::testing::{all, robot};
 use crate::{Robot, Servo};
 
-/// What a robot's file says of it.
+/// The measures of a robot.
 fn measures(robot: &Robot) -> Measures {
     Measures {
         lizard: *robot.lizard(),
@@ -75,14 +75,14 @@ fn random() -> impl Strategy<Value = Measures> {
     })
 }
 
-/// A map, and what it vouches for.
+/// A map, and the conditions that it proves.
 struct Part<'a> {
     map: &'a Map,
-    /// Row and column, places in servo order.
+    /// Servos of row and column, by their indices.
     servos: [usize; 2],
-    /// Places in [`Clearance::margins`].
+    /// Indices in [`Clearance::margins`].
     margins: &'static [usize],
-    /// Place in [`Clearance::sliders_sq`].
+    /// Index in [`Clearance::sliders_sq`].
     slider: Option<usize>,
 }
 
@@ -102,7 +102,7 @@ impl Subject {
         }
     }
 
-    /// One without gaits.
+    /// A subject without gaits.
     fn still(name: &str, measures: &Measures) -> Self {
         let content = numbers::content(name, measures, &Tables::new(&[]).expect("no gait"));
         Self {
@@ -133,8 +133,8 @@ impl Subject {
         ]
     }
 
-    /// The number of cells, if the guard accepts some pairs of every one: of its
-    /// margins and sliders those that depend on the pair. Else the first that it refuses.
+    /// Counts the cells, if the guard accepts some pairs of angles in every one, by the margins
+    /// and sliders that depend on the pair. Else returns the first pair that it refuses.
     fn check(&self, runner: &mut TestRunner) -> Result<usize, String> {
         let Limits { type2, type1, leg } = self.robot.limits();
         let least = [type2, type2, type1, type1, type1, type1, leg, leg, leg, leg];
@@ -227,8 +227,8 @@ fn the_guard_accepts_every_pose_that_all_four_maps_hold() {
     }
 }
 
-/// The comparison compares: each limit alone, a little stricter than in the maps, is
-/// broken in some cell.
+/// Each limit alone, a little stricter than in the maps, is broken in some cell: so the
+/// comparison notices a wrong map.
 #[test]
 fn a_stricter_limit_than_that_of_the_maps_is_broken_in_a_cell() {
     let robot = robot("unequal");
@@ -266,7 +266,7 @@ fn maps_fit_into_a_section_and_begin_and_end_with_a_cell() {
     }
 }
 
-/// Which share of its phases a gait is within the cells.
+/// The share of a gait's phases at which its pose is within the cells.
 fn share(robot: &CoreRobot, maps: &CellMaps, gait: GaitId) -> f64 {
     let gait = robot.gait(gait);
     let held = (0..1u32 << 16)

@@ -1,0 +1,146 @@
+//! `lizard gaits`: what the check of every gait found, and how far each gait walks.
+
+use std::io::Write;
+
+use lizard_kinematics::Check;
+use lizard_robot::{Report, Robot, Row, Sensitivity, servo};
+use serde::Serialize;
+
+use crate::shared::json;
+use crate::shared::pose_args::ANGLES;
+use crate::shared::suggestion::did_you_mean;
+use crate::{Failure, RobotFile};
+
+/// Check every gait of robot.toml and predict how far it walks.
+///
+/// Prints for each gait: the time of a cycle, its fastest frame, the error of its table
+/// over all 65536 phases, the smallest margins and the slider travel over every sample,
+/// and the displacement of one cycle by the contact model. A dash means that two feet
+/// pull against two, so the model cannot decide. If a gait breaks a limit, the program
+/// names the gait, its phase, the margin, its value and the limit, and ends with exit
+/// code 2. It does the same for any other mistake in the file.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:
+  lizard gaits
+  lizard gaits --robot my/robot.toml --json
+  lizard gaits --trace walk > walk.csv
+  lizard gaits --trace walk | lizard pose")]
+pub struct Args {
+    /// Print one JSON object a line, one for each gait
+    #[arg(long)]
+    json: bool,
+    /// Print instead the servo angles of one gait over a cycle as CSV, with the header
+    /// seconds,theta1,theta4,theta8,theta5: frames of 20 ms at full speed, degrees in the
+    /// chassis frame, as `lizard pose` reads them
+    #[arg(long, value_name = "GAIT", conflicts_with = "json")]
+    trace: Option<String>,
+    /// Print instead how far each gait walks on other pads (friction backward over
+    /// forward), with the legs mounted differently, and on other feet
+    #[arg(long, conflicts_with_all = ["json", "trace"])]
+    sensitivity: bool,
+    #[command(flatten)]
+    robot: RobotFile,
+}
+
+/// Prints the table, the objects or the trace.
+///
+/// # Errors
+/// A wrong robot.toml, a gait that it does not have, an output that cannot be
+/// written.
+pub fn run(args: Args) -> Result<(), Failure> {
+    let robot = args.robot.load()?;
+    let mut out = std::io::stdout().lock();
+    match args.trace {
+        Some(name) => out.write_all(trace(&robot, &name)?.as_bytes())?,
+        None if args.sensitivity => write!(out, "{}", Sensitivity::of(&robot))?,
+        None if args.json => {
+            for row in &Report::of(&robot).rows {
+                json::line(&mut out, &GaitLine::new(row))?;
+            }
+        }
+        None => write!(out, "{}", Report::of(&robot))?,
+    }
+    Ok(out.flush()?)
+}
+
+/// One cycle of a gait, frame by frame, as the firmware reads its table.
+fn trace(robot: &Robot, name: &str) -> Result<String, Failure> {
+    let Some(gait) = robot.gait(name) else {
+        let known: Vec<&str> = robot.gaits().iter().map(|gait| gait.name()).collect();
+        return Err(Failure::Input(format!(
+            "--trace {name}: the gaits are {}{}",
+            known.join(", "),
+            did_you_mean(name, known)
+        )));
+    };
+    let mut text = format!("seconds,{}\n", ANGLES.join(","));
+    for (seconds, phase) in gait.frames() {
+        let [a1, a2, a3, a4] = gait.table_angles(phase);
+        text += &format!("{seconds:.2},{a1:.3},{a2:.3},{a3:.3},{a4:.3}\n");
+    }
+    Ok(text)
+}
+
+/// A gait's figures under the names of `--json`.
+#[derive(Serialize)]
+struct GaitLine<'a> {
+    gait: &'a str,
+    /// Duration of one cycle, s.
+    period: f64,
+    /// deg/s, over one frame
+    peak_speed: f64,
+    peak_servo: &'static str,
+    /// deg, over all phases
+    table_error_max: f64,
+    table_error_rms: f64,
+    type2: Least,
+    type1: Least,
+    leg: Least,
+    /// mm from nominal, smallest and largest
+    stroke: [f64; 2],
+    /// Displacement of one cycle: mm and deg, counter-clockwise; null is
+    /// what depends on a tie of two feet against two
+    predicted: Predicted,
+}
+
+#[derive(Serialize)]
+struct Least {
+    margin: f64,
+    what: &'static str,
+    phase: f64,
+}
+
+#[derive(Serialize)]
+struct Predicted {
+    forward: Option<f64>,
+    left: Option<f64>,
+    turn: Option<f64>,
+}
+
+impl<'a> GaitLine<'a> {
+    fn new(row: &'a Row) -> Self {
+        let least = |least: lizard_robot::Least| Least {
+            margin: least.value,
+            what: Check::name(least.what),
+            phase: least.phase,
+        };
+        let audit = &row.audit;
+        Self {
+            gait: &row.name,
+            period: row.period,
+            peak_speed: audit.peak.speed,
+            peak_servo: servo::NAMES[audit.peak.servo],
+            table_error_max: row.error.max,
+            table_error_rms: row.error.rms,
+            type2: least(audit.type2),
+            type1: least(audit.type1),
+            leg: least(audit.leg),
+            stroke: [audit.stroke.0, audit.stroke.1],
+            predicted: Predicted {
+                forward: row.way.forward,
+                left: row.way.left,
+                turn: row.way.turn,
+            },
+        }
+    }
+}

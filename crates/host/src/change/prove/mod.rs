@@ -1,0 +1,261 @@
+//! `lizard prove`: the integer guard against floating point at every pair of
+//! positions that two servos can take.
+//!
+//! Every condition of a safe pose depends on one servo (a leg), on the two of an end or
+//! on the two of a side. So trying every pair of each end and of each side, in the steps
+//! in which the firmware counts angles, decides every possible pose: 1.8e18 for servos of
+//! half a turn. Nothing is sampled.
+
+mod positions;
+mod tally;
+mod walk;
+
+use std::io::{self, Write};
+
+use lizard_robot::{CoreRobot, Robot};
+use serde::{Deserialize, Serialize};
+
+use crate::shared::json;
+use crate::shared::number::grouped;
+use crate::shared::progress::bar;
+use crate::shared::spread::{Spread, Spreads};
+use crate::{Failure, RobotFile};
+
+pub use tally::{MARGIN_BAND, STEPS_BAND, Tally, margin_band};
+
+/// Compare the firmware's guard with floating point at every possible pose.
+///
+/// Every condition of a safe pose depends on one servo or on two. So this command takes
+/// every pair of positions of the two servos of the head, the tail, the left and the
+/// right side, in the firmware's own steps of 1/65536 turn, and decides it both with the
+/// firmware's integers and in floating point. In certified cells, where the firmware does
+/// not measure a pose, the guard must accept every pair. The command prints the largest
+/// error of each margin (of an end whose type-2 margin keeps its limit), and how far from
+/// its limit a pose is at most if the two decide differently. The exit code is 1 if that
+/// is farther than the documentation says, or if a pose in a cell is refused.
+#[derive(clap::Args, Debug, Serialize, Deserialize)]
+#[command(after_help = "Examples:
+  lizard prove
+  lizard prove --robot robots/unequal.toml
+  lizard prove --one-in 64 --offset 5")]
+pub struct Args {
+    /// Check only one pair in N, evenly spread
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    one_in: u32,
+    /// Offset of the selected pairs; each number below N selects other ones
+    #[arg(long, value_name = "K", default_value_t = 0)]
+    offset: u32,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    #[serde(skip)]
+    robot: RobotFile,
+    #[command(flatten)]
+    #[serde(skip)]
+    spread: Spread,
+}
+
+impl Spreads for Args {
+    const COMMAND: &'static str = "prove";
+
+    fn places(&mut self) -> (&mut RobotFile, &mut Spread) {
+        (&mut self.robot, &mut self.spread)
+    }
+}
+
+/// A sample of the pairs: in each row, the pairs whose column has a certain remainder modulo
+/// `one_in`. The remainder differs from row to row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Share {
+    /// One pair in N is checked; at least 1.
+    pub one_in: u32,
+    /// Offset of the selected pairs, below `one_in`.
+    pub offset: u32,
+}
+
+impl Share {
+    /// The sample that contains all pairs.
+    pub const ALL: Self = Self {
+        one_in: 1,
+        offset: 0,
+    };
+}
+
+/// The result of comparing the guard with geometry at one end or one side.
+#[derive(Clone, Debug, Serialize)]
+pub struct Finding {
+    /// `head`, `tail`, `left side`, `right side`, or the leg of a servo.
+    pub part: String,
+    /// The servos that decide it.
+    pub servos: Vec<&'static str>,
+    /// Of its conditions.
+    #[serde(flatten)]
+    pub tally: Tally,
+}
+
+/// The comparison for a whole robot.
+#[derive(Clone, Debug, Serialize)]
+pub struct Proof {
+    /// Ends, sides and legs.
+    pub findings: Vec<Finding>,
+    /// Hash of the firmware's numbers.
+    pub hash: u32,
+    /// Distance from a margin's limit within which the decisions may differ, a sine.
+    pub margin_band: f64,
+}
+
+impl Proof {
+    /// Walks a share of the pairs of a robot with a guard, which is to be the
+    /// robot's own. `progress` is called with the number of rows walked since its
+    /// last call; [`Proof::rows`] says how many there are.
+    pub fn of(
+        robot: &Robot,
+        guard: &CoreRobot,
+        share: Share,
+        progress: &(dyn Fn(u64) + Sync),
+    ) -> Self {
+        let walk = walk::Walk::new(robot, guard, share);
+        let piece = |place| walk.piece(place, progress);
+        Self::with(robot, guard, (0..walk::PIECES).map(piece).collect())
+    }
+
+    /// The same of what its pieces have found.
+    fn with(robot: &Robot, guard: &CoreRobot, pieces: Vec<Tally>) -> Self {
+        Self {
+            findings: walk::findings(robot, guard, pieces),
+            hash: guard.hash(),
+            margin_band: walk::widest_band(robot),
+        }
+    }
+
+    /// Rows that [`Proof::of`] walks.
+    pub fn rows(guard: &CoreRobot) -> u64 {
+        walk::rows(guard)
+    }
+
+    /// Pairs in cells of the robot's maps, whose poses the firmware does not measure.
+    pub fn certified(&self) -> u64 {
+        self.findings
+            .iter()
+            .map(|finding| finding.tally.certified)
+            .sum()
+    }
+
+    /// Poses farther from every limit than the bands, and decided wrong all the
+    /// same, and poses of a cell that the guard refuses: 0 proves guard and cells.
+    pub fn wrong(&self) -> u64 {
+        self.findings
+            .iter()
+            .map(|finding| finding.tally.wrong)
+            .sum()
+    }
+}
+
+/// Walks and prints.
+///
+/// # Errors
+/// A wrong robot.toml; a pose that is decided wrong.
+pub fn run(args: Args) -> Result<(), Failure> {
+    let robot = args.robot.load()?;
+    let guard = robot.firmware();
+    let share = Share {
+        one_in: args.one_in,
+        offset: args.offset,
+    };
+    let rows = Proof::rows(guard) * args.spread.own(walk::PIECES) as u64 / walk::PIECES as u64;
+    let bar = bar(
+        rows as usize,
+        "{bar:40} {percent} % of all rows, {eta} left",
+    );
+    let walk = walk::Walk::new(&robot, guard, share);
+    let piece = |place| walk.piece(place, &|rows| bar.inc(rows));
+    let pieces = args.spread.all(&args, &args.robot, walk::PIECES, piece)?;
+    bar.finish_and_clear();
+    let Some(pieces) = pieces else {
+        return Ok(());
+    };
+    let proof = Proof::with(&robot, guard, pieces);
+
+    let mut out = io::stdout().lock();
+    if args.json {
+        json::line(&mut out, &proof)?;
+    } else {
+        print(&proof, share, &mut out)?;
+    }
+    out.flush()?;
+    match proof.wrong() {
+        0 => Ok(()),
+        wrong => Err(Failure::Impossible(format!(
+            "the guard decides {wrong} pairs wrong that are outside the band or in a cell"
+        ))),
+    }
+}
+
+fn print(proof: &Proof, share: Share, out: &mut impl Write) -> io::Result<()> {
+    writeln!(
+        out,
+        "                                      largest error          decided otherwise within"
+    )?;
+    writeln!(
+        out,
+        "part        servos          pairs   type-2   type-1      mm    margin      mm   wrong"
+    )?;
+    for finding in &proof.findings {
+        let Tally {
+            pairs,
+            type2,
+            type1,
+            leg,
+            travel,
+            margin_band,
+            length_band,
+            wrong,
+            ..
+        } = finding.tally;
+        let cell = |value: Option<f64>, digits: usize| {
+            value.map_or("-".to_string(), |value| format!("{value:.digits$}"))
+        };
+        writeln!(
+            out,
+            "{:<11} {:<7} {:>13} {:>8} {:>8} {:>7} {:>9} {:>7} {:>7}",
+            finding.part,
+            finding.servos.join(" "),
+            grouped(pairs as f64, 0),
+            cell(type2.or(leg), 5),
+            cell(type1, 5),
+            cell(travel, 4),
+            cell(margin_band, 6),
+            cell(length_band, 4),
+            wrong
+        )?;
+    }
+    for finding in &proof.findings {
+        if let Some(example) = &finding.tally.example {
+            writeln!(out, "{}: {example}", finding.part)?;
+        }
+    }
+    let what = if share.one_in == 1 {
+        "every pair of positions".to_string()
+    } else {
+        format!("one pair of positions in {}", share.one_in)
+    };
+    writeln!(
+        out,
+        "\n{what}, in steps of 0.0055 deg, of a robot with tables {:08x}",
+        proof.hash
+    )?;
+    if proof.wrong() == 0 {
+        writeln!(
+            out,
+            "no pose that is farther than {:.4} (a sine) or {STEPS_BAND} steps of length from a limit is decided wrong",
+            proof.margin_band
+        )?;
+        writeln!(
+            out,
+            "the guard accepts all {} pairs in the robot's cells, where the firmware does not ask it",
+            grouped(proof.certified() as f64, 0)
+        )?;
+    }
+    Ok(())
+}

@@ -1,0 +1,108 @@
+//! The sums of a walk over many pairs of positions.
+
+use lizard_kinematics::FiveBar;
+use serde::{Deserialize, Serialize};
+
+/// Distance from a margin's limit within which the guard may decide otherwise than floating
+/// point, a sine; see [`margin_band`].
+pub const MARGIN_BAND: f64 = 0.002;
+
+/// Distance from the end of a stroke, or from the crossing of the crank tips, within which
+/// decisions may differ, in steps of the mechanism's lengths: 1/256 mm for a robot of the
+/// paper's size.
+pub const STEPS_BAND: f64 = 4.0;
+
+/// Distance from the limit of a type-2 or type-1 margin within which decisions about an end may
+/// differ: [`MARGIN_BAND`], or the angle by which [`STEPS_BAND`] rounded steps of `step` mm
+/// turn its couplers. If the couplers are nearly in line that is a lot: they turn by the
+/// reciprocal of the sine between them, which is at least `type2`.
+pub fn margin_band(bars: &FiveBar, type2: f64, step: f64) -> f64 {
+    let (a, b) = (bars.coupler_left, bars.coupler_right);
+    let apart = (a + b).min(bars.base + bars.crank_left + bars.crank_right);
+    let per_mm = (apart / (a * b)).max(1.0 / a.min(b));
+    MARGIN_BAND.max(STEPS_BAND * step * per_mm / type2)
+}
+
+/// Errors and disagreements of one end, one side or one leg.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Tally {
+    /// Pairs of positions checked.
+    pub pairs: u64,
+    /// Those of them that a cell of the robot's maps holds: the guard must accept each.
+    pub certified: u64,
+    /// Largest error of the type-2 margin, a sine.
+    pub type2: Option<f64>,
+    /// Largest error of a type-1 margin.
+    pub type1: Option<f64>,
+    /// Largest error of a leg's margin.
+    pub leg: Option<f64>,
+    /// Largest error of a slider's travel, mm.
+    pub travel: Option<f64>,
+    /// Farthest from a margin's limit that the decisions differ.
+    pub margin_band: Option<f64>,
+    /// Farthest from the end of a stroke, or from the crossing of the crank tips,
+    /// that the decisions differ, mm.
+    pub length_band: Option<f64>,
+    /// Pairs outside the band that are decided wrong.
+    pub wrong: u64,
+    /// The first of them, in words.
+    pub example: Option<String>,
+}
+
+impl Tally {
+    /// Raises a largest value.
+    #[inline(always)]
+    pub fn raise(largest: &mut Option<f64>, value: f64) {
+        if largest.is_none_or(|largest| value > largest) {
+            *largest = Some(value);
+        }
+    }
+
+    /// Of two walks together.
+    pub fn and(mut self, other: Self) -> Self {
+        self.pairs += other.pairs;
+        self.certified += other.certified;
+        for (largest, value) in [
+            (&mut self.type2, other.type2),
+            (&mut self.type1, other.type1),
+            (&mut self.leg, other.leg),
+            (&mut self.travel, other.travel),
+            (&mut self.margin_band, other.margin_band),
+            (&mut self.length_band, other.length_band),
+        ] {
+            if let Some(value) = value {
+                Self::raise(largest, value);
+            }
+        }
+        self.wrong += other.wrong;
+        self.example = self.example.or(other.example);
+        self
+    }
+
+    /// Notes a pair that a cell holds and that the guard refuses, if it does.
+    #[inline(always)]
+    pub fn certify(&mut self, accepted: bool, place: impl FnOnce() -> String) {
+        self.certified += 1;
+        if !accepted {
+            self.wrong += 1;
+            self.example
+                .get_or_insert_with(|| format!("{}: in a cell, but the guard refuses it", place()));
+        }
+    }
+
+    /// Notes a pair that is decided differently: it is `by` from the limit, where
+    /// `band` is allowed.
+    #[cold]
+    pub fn differ(&mut self, length: bool, by: f64, band: f64, example: impl FnOnce() -> String) {
+        let widest = if length {
+            &mut self.length_band
+        } else {
+            &mut self.margin_band
+        };
+        Self::raise(widest, by);
+        if by > band {
+            self.wrong += 1;
+            self.example.get_or_insert_with(example);
+        }
+    }
+}

@@ -1,0 +1,265 @@
+//! `lizard tune`: searches gaits that walk faster with servos that turn no faster.
+
+mod report;
+
+use std::io::{self, Write};
+
+use lizard_robot::{CheckedGait, Robot};
+use lizard_tune::{Built, Comparison, Kind, NoTuning, Scored, Tuning, trials};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::shared::json;
+use crate::shared::progress::bar;
+use crate::shared::spread::{Spread, Spreads};
+use crate::shared::suggestion::did_you_mean;
+use crate::{Failure, RobotFile};
+
+/// Search a gait that walks faster with the same servo rate
+///
+/// Takes a gait of robot.toml that goes straight ahead or turns on the spot, and searches
+/// a wave or a held gait that goes farther in a second while its fastest servo turns no
+/// faster. Each candidate is checked against robot.toml's limits and judged by the
+/// contact model with SG-90 servos on random robots and floors: 95 % of them exceed its
+/// score. Finally the best one is compared with the given gait on other random robots,
+/// and its table for robot.toml is printed. The same seed gives the same result on every
+/// machine.
+#[derive(clap::Args, Debug, Serialize, Deserialize)]
+#[command(after_help = "Examples:
+  lizard tune
+  lizard tune --gait left
+  lizard tune --rate 200 --name gentle >> robot.toml
+  lizard tune --rounds 60 --seed 2 --json
+
+In a terminal or a file, what is not the table is a comment, so the output may be appended to
+a robot.toml as it is.")]
+pub struct Args {
+    /// The gait to improve; it goes straight ahead or turns on the spot
+    #[arg(long, value_name = "NAME", default_value = "walk")]
+    gait: String,
+    /// Fastest turn of a servo, deg/s [default: as in that gait]
+    #[arg(long, value_name = "DEG_PER_S", allow_negative_numbers = true)]
+    rate: Option<f64>,
+    /// The name for the gait that is found
+    #[arg(long, value_name = "NAME", default_value = "tuned")]
+    name: String,
+    /// Rounds of the search, 40 trials each
+    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 25, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    rounds: u32,
+    /// Number of random robots and floors for the comparison
+    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 200, value_parser = clap::value_parser!(u32).range(20..=100_000))]
+    robots: u32,
+    /// Seed of the random numbers
+    #[arg(
+        long,
+        value_name = "N",
+        allow_negative_numbers = true,
+        default_value_t = 1
+    )]
+    seed: u64,
+    /// Print one JSON object instead
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    #[serde(skip)]
+    robot: RobotFile,
+    #[command(flatten)]
+    #[serde(skip)]
+    spread: Spread,
+}
+
+impl Spreads for Args {
+    const COMMAND: &'static str = "tune";
+
+    fn places(&mut self) -> (&mut RobotFile, &mut Spread) {
+        (&mut self.robot, &mut self.spread)
+    }
+}
+
+/// Searches and tells.
+///
+/// # Errors
+/// A wrong robot.toml, a gait that is not there or cannot be tuned, a rate or a name that will not
+/// do; no gait that the limits allow; an output that cannot be written.
+pub fn run(args: Args) -> Result<(), Failure> {
+    let robot = args.robot.load()?;
+    let Some(report) = tune(&robot, &args)? else {
+        return Ok(());
+    };
+    let mut out = io::stdout().lock();
+    if args.json {
+        json::line(&mut out, &report)?;
+    } else {
+        report::print(&report, &mut out)?;
+    }
+    Ok(out.flush()?)
+}
+
+/// The comparison; none where a part was computed alone.
+fn tune(robot: &Robot, args: &Args) -> Result<Option<Comparison>, Failure> {
+    let gait = surpassed(robot, &args.gait)?;
+    free(robot, &args.name)?;
+    let tuning = Tuning::new(
+        robot,
+        robot.ground(),
+        gait,
+        args.rate,
+        &args.name,
+        args.seed,
+    )
+    .map_err(|no| {
+        Failure::Input(match no {
+            NoTuning::Goal(_) => no.to_string(),
+            NoTuning::Rate { .. } => format!("--rate {no}"),
+        })
+    })?;
+    let found = found(&tuning, args)?;
+    Ok(found.map(|found| tuning.compare(&found, args.robots as usize)))
+}
+
+fn surpassed<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failure> {
+    robot.gait(name).ok_or_else(|| {
+        let moving = robot.gaits().iter().filter(|gait| gait.moves());
+        let gaits: Vec<&str> = moving.map(|gait| gait.name()).collect();
+        Failure::Input(format!(
+            "robot.toml has no gait `{name}` to surpass; --gait takes one of {}{}",
+            gaits.join(", "),
+            did_you_mean(name, gaits)
+        ))
+    })
+}
+
+/// Refuses a name that robot.toml has already or would not take.
+fn free(robot: &Robot, name: &str) -> Result<(), Failure> {
+    let refused = |why: String| Err(Failure::Input(format!("--name {name}: {why}")));
+    if robot.gait(name).is_some() {
+        return refused("robot.toml has a gait of this name already".to_owned());
+    }
+    let gait = format!("[gait.{name:?}]\nperiod = 1.0\nwaveform = \"still\"\n");
+    match robot.with_gait(&gait) {
+        Err(error) => refused(error.problem),
+        Ok(read) if read.gait(name).is_none() => refused("it is no name".to_owned()),
+        Ok(_) => Ok(()),
+    }
+}
+
+/// The best gait of all kinds; none where a part was computed alone. Kinds are searched apart
+/// from each other, and so are the pieces; the trials of a round on all cores.
+fn found(tuning: &Tuning, args: &Args) -> Result<Option<Built>, Failure> {
+    let rounds = args.rounds as usize;
+    let kinds = args.spread.own(Kind::ALL.len());
+    let bar = bar(kinds * trials(rounds), "{bar:40} {pos}/{len} gaits, {eta}");
+    let one = |place: usize| -> Vec<(f64, Vec<f64>)> {
+        let kind = Kind::ALL[place];
+        let mut search = tuning.search(kind);
+        for _ in 0..=rounds {
+            let judged = search.trials().par_iter().map(|parameters| {
+                bar.inc(1);
+                tuning.score(kind, parameters)
+            });
+            let scores: Vec<_> = judged.collect();
+            search.score(scores);
+        }
+        search.found()
+    };
+    let pieces = args.spread.all(args, &args.robot, Kind::ALL.len(), one)?;
+    bar.finish_and_clear();
+    let Some(pieces) = pieces else {
+        return Ok(None);
+    };
+    let kinds = Kind::ALL.into_iter().zip(pieces);
+    let scored = kinds.flat_map(|(kind, piece)| {
+        piece.into_iter().map(move |(score, parameters)| Scored {
+            kind,
+            score,
+            parameters,
+        })
+    });
+    let found = tuning.best(scored.collect());
+    found.map(Some).ok_or_else(|| {
+        let rate = tuning.rate();
+        Failure::Impossible(format!(
+            "no gait was found that robot.toml's limits allow at {rate:.0} deg/s; more --rounds may find one"
+        ))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser as _;
+
+    use super::*;
+
+    #[derive(clap::Parser)]
+    struct Line {
+        #[command(flatten)]
+        args: Args,
+    }
+
+    const PAPER: &str = include_str!("../../../../../robots/paper.toml");
+
+    fn tuned(words: &str) -> Result<Comparison, String> {
+        let robot = Robot::parse(PAPER).expect("right");
+        let line = Line::try_parse_from(std::iter::once("tune").chain(words.split_whitespace()));
+        let args = line.map_err(|error| error.to_string())?.args;
+        let report = tune(&robot, &args).map_err(|failure| failure.to_string())?;
+        Ok(report.expect("all parts"))
+    }
+
+    /// Of `lizard tune --rounds 1 --robot robots/paper.toml`, which docs/twin.md quotes.
+    #[test]
+    fn a_short_search_surpasses_walk_at_the_same_rate_as_the_docs_say() {
+        let report = tuned("--rounds 1").expect("it finds one");
+        let (walk, found) = (&report.gait, &report.tuned);
+        assert!(found.rate <= walk.rate, "{found:?}");
+        assert!(found.speeds[0] > 1.15 * walk.speeds[0], "{report:?}");
+        assert!(report.faster >= 195, "{report:?}");
+        // What is printed may be appended to a robot.toml, and walks as it says.
+        let mut printed = Vec::new();
+        report::print(&report, &mut printed).expect("written");
+        let printed = String::from_utf8(printed).expect("text");
+        let robot = Robot::parse(&format!("{PAPER}\n{printed}")).expect("it builds");
+        let gait = robot.gait("tuned").expect("the gait");
+        let forward = robot.predict(gait).forward.expect("decided");
+        assert!(
+            (forward / gait.period() - found.predicted).abs() < 0.01,
+            "{forward}"
+        );
+        assert!(
+            include_str!("../../../../../docs/twin.md").contains(&format!("```text\n{printed}```")),
+            "docs/twin.md does not quote\n{printed}"
+        );
+    }
+
+    #[test]
+    fn what_cannot_be_tuned_says_why() {
+        for (words, why) in [
+            (
+                "--gait run",
+                "no gait `run` to surpass; --gait takes one of walk, trot, crawl",
+            ),
+            ("--gait stand", "the gait `stand` goes nowhere"),
+            ("--gait look", "undecided"),
+            ("--gait arc-left", "goes ahead and turns"),
+            (
+                "--rate 900",
+                "--rate 900: from 10 to 310 deg/s, which is limits.gait_slew",
+            ),
+            ("--rate -5", "--rate -5: from 10 to 310 deg/s"),
+            ("--rate nan", "--rate NaN: from 10"),
+            (
+                "--name walk",
+                "--name walk: robot.toml has a gait of this name already",
+            ),
+            ("--name Fast", "--name Fast: is no gait name: it must be"),
+            ("--name status", "--name status: "),
+            ("--name a.b", "--name a.b: is no gait name"),
+            ("--seed -1", "invalid value '-1' for '--seed <N>'"),
+            ("--rounds 0", "0 is not in 1..=10000"),
+            ("--robots 3", "3 is not in 20..=100000"),
+        ] {
+            let said = tuned(words).expect_err(words);
+            assert!(said.contains(why), "{words}: {said}");
+        }
+    }
+}

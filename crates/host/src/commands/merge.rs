@@ -1,0 +1,205 @@
+//! `lizard merge`: the parts of a long computation, put together.
+
+use std::collections::BTreeMap;
+use std::io::{self, Read};
+use std::path::PathBuf;
+
+use serde_json::Value;
+
+use crate::shared::files;
+use crate::shared::spread::{Share, Spreads, other_pieces};
+use crate::{Failure, RobotFile};
+
+/// Put the parts of a long computation together
+///
+/// `prove`, `fit`, `tune` and `design --search` take `--part K/N`. This command takes the
+/// output of all N parts, in any order, and prints the same bytes as the command without
+/// `--part`. The parts contain the robot and the options.
+#[derive(clap::Args, Debug)]
+#[command(after_help = "Examples:
+  parallel lizard prove --part {}/8 ::: 1 2 3 4 5 6 7 8 | lizard merge
+  lizard fit --part $SLURM_ARRAY_TASK_ID/20 > part-$SLURM_ARRAY_TASK_ID
+  lizard merge part-*")]
+pub struct MergeArgs {
+    /// Files with the output of the parts, one or more parts a file [default: standard
+    /// input]
+    #[arg(value_name = "FILE")]
+    files: Vec<PathBuf>,
+}
+
+/// Reads all parts, and runs the command with what they have found.
+///
+/// # Errors
+/// A part is missing, is there twice or differs from the others; and what the command says.
+pub fn merge(args: MergeArgs) -> Result<(), Failure> {
+    let whole = Whole::of(shares(&args.files)?)?;
+    match whole.command.as_str() {
+        #[cfg(feature = "paper")]
+        "prove" => whole.run(crate::change::prove::run),
+        #[cfg(feature = "paper")]
+        "design" => whole.run(crate::paper::design::run),
+        #[cfg(all(feature = "simulator", feature = "paper"))]
+        "tune" => whole.run(crate::change::tune::run),
+        #[cfg(feature = "parts")]
+        "fit" => whole.run(crate::make::parts::fit::run),
+        other => Err(Failure::Input(format!(
+            "the parts are of `lizard {other}`, which this program does not have"
+        ))),
+    }
+}
+
+/// The parts in files, or in standard input.
+fn shares(files: &[PathBuf]) -> Result<Vec<Share>, Failure> {
+    let mut shares = Vec::new();
+    let mut read = |name: &str, text: &str| {
+        for (number, line) in (1..).zip(text.lines()) {
+            if line.trim().is_empty() {
+                continue;
+            }
+            let share = serde_json::from_str(line).map_err(|error| {
+                Failure::Input(format!("{name}: line {number} is no part: {error}"))
+            })?;
+            shares.push(share);
+        }
+        Ok::<(), Failure>(())
+    };
+    if files.is_empty() {
+        let mut text = String::new();
+        io::stdin().lock().read_to_string(&mut text)?;
+        read("standard input", &text)?;
+    }
+    for file in files {
+        let name = file.display().to_string();
+        let text = files::read_text(file)?;
+        read(&name, &text)?;
+    }
+    Ok(shares)
+}
+
+/// All parts of one computation.
+struct Whole {
+    command: String,
+    options: Value,
+    robot: String,
+    found: BTreeMap<usize, Value>,
+}
+
+impl Whole {
+    /// The parts together, if they are all of one computation.
+    fn of(shares: Vec<Share>) -> Result<Self, Failure> {
+        let refused = |why: String| Err(Failure::Input(why));
+        let Some(first) = shares.first() else {
+            return refused(
+                "there are no parts; `lizard merge --help` says how to make them".to_owned(),
+            );
+        };
+        let (of, pieces) = (first.part.of, first.pieces);
+        let mut whole = Self {
+            command: first.command.clone(),
+            options: first.options.clone(),
+            robot: first.robot.clone(),
+            found: BTreeMap::new(),
+        };
+        let mut seen = vec![false; of as usize];
+        for share in shares {
+            let name = String::from(share.part);
+            let version = env!("CARGO_PKG_VERSION");
+            if share.lizard != version {
+                return refused(format!(
+                    "part {name} is of version {}, and this is {version}",
+                    share.lizard
+                ));
+            }
+            if share.command != whole.command {
+                return refused(format!(
+                    "part {name} is of `lizard {}`, and another one is of `lizard {}`",
+                    share.command, whole.command
+                ));
+            }
+            if share.options != whole.options || share.part.of != of || share.pieces != pieces {
+                return refused(format!("part {name} has other options than another part"));
+            }
+            if share.robot != whole.robot {
+                return refused(format!("part {name} has another robot than another part"));
+            }
+            let place = share.part.number as usize - 1;
+            if std::mem::replace(&mut seen[place], true) {
+                return refused(format!("part {name} is there twice"));
+            }
+            whole.found.extend(share.found);
+        }
+        if let Some(missing) = seen.iter().position(|seen| !seen) {
+            return refused(format!("part {}/{of} is missing", missing + 1));
+        }
+        Ok(whole)
+    }
+
+    /// The command as one machine runs it, with the pieces that were found.
+    #[cfg_attr(
+        not(any(feature = "paper", feature = "parts")),
+        allow(dead_code, reason = "nothing can be spread")
+    )]
+    fn run<C: Spreads>(self, run: impl FnOnce(C) -> Result<(), Failure>) -> Result<(), Failure> {
+        let mut command: C = serde_json::from_value(self.options).map_err(|_| other_pieces())?;
+        let (robot, spread) = command.places();
+        *robot = RobotFile::with_text(self.robot);
+        spread.take(self.found);
+        run(command)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn share(part: &str) -> Share {
+        Share {
+            lizard: env!("CARGO_PKG_VERSION").to_owned(),
+            command: "prove".to_owned(),
+            options: Value::Null,
+            robot: "one".to_owned(),
+            part: part.parse().expect(part),
+            pieces: 4,
+            found: BTreeMap::new(),
+        }
+    }
+
+    fn refusal(shares: Vec<Share>) -> String {
+        match Whole::of(shares) {
+            Ok(_) => panic!("it is taken"),
+            Err(failure) => failure.to_string(),
+        }
+    }
+
+    #[test]
+    fn parts_that_are_not_of_one_computation_are_refused() {
+        let changed = |change: fn(&mut Share)| {
+            let mut second = share("2/2");
+            change(&mut second);
+            refusal(vec![share("1/2"), second])
+        };
+        assert_eq!(refusal(vec![share("1/2")]), "part 2/2 is missing");
+        assert_eq!(
+            refusal(vec![share("1/2"), share("1/2"), share("2/2")]),
+            "part 1/2 is there twice"
+        );
+        assert_eq!(
+            changed(|part| part.robot = "other".to_owned()),
+            "part 2/2 has another robot than another part"
+        );
+        assert_eq!(
+            changed(|part| part.options = Value::Bool(true)),
+            "part 2/2 has other options than another part"
+        );
+        assert_eq!(
+            changed(|part| part.command = "fit".to_owned()),
+            "part 2/2 is of `lizard fit`, and another one is of `lizard prove`"
+        );
+        assert!(changed(|part| part.lizard = "0.0.1".to_owned()).contains("is of version 0.0.1"));
+        assert!(refusal(Vec::new()).starts_with("there are no parts"));
+        assert!(
+            Whole::of(vec![share("2/2"), share("1/2")]).is_ok(),
+            "in any order"
+        );
+    }
+}

@@ -1,0 +1,154 @@
+//! `lizard backup` and `lizard restore`: a calibration kept in a file.
+
+use std::io::{Read, Write};
+use std::path::PathBuf;
+
+use super::calibration::Calibration;
+use super::connect::Connect;
+use super::file;
+use super::link::{Link, LinkError};
+use crate::Failure;
+use crate::shared::files;
+
+/// Save the robot's calibration to a file
+///
+/// Writes trims, limits, signs and scales of the servos, `boot` and `deadman` as TOML.
+/// Opening the port resets the board, so these are the values that were saved last.
+#[derive(clap::Args, Debug)]
+pub struct BackupArgs {
+    /// The file to write; an existing file is replaced
+    file: PathBuf,
+    #[command(flatten)]
+    connect: Connect,
+}
+
+/// Send a calibration from a file to the robot, and save it there
+///
+/// The robot checks it: if it refuses any value, nothing is saved and the robot keeps its
+/// old calibration.
+#[derive(clap::Args, Debug)]
+pub struct RestoreArgs {
+    /// A file that `lizard backup` wrote
+    file: PathBuf,
+    #[command(flatten)]
+    connect: Connect,
+}
+
+/// Runs `lizard backup`.
+///
+/// # Errors
+/// No board, or the file cannot be written.
+pub fn backup(args: BackupArgs) -> Result<(), Failure> {
+    let finder = args.connect.finder("backup FILE")?;
+    let (mut board, _) = finder.meet()?;
+    let set = Calibration::ask(&mut board.link).map_err(|error| board.failure(&error))?;
+    files::write(&args.file, file::text(&set).as_bytes())?;
+    println!(
+        "the calibration of {} is in {}",
+        board.name,
+        args.file.display()
+    );
+    Ok(())
+}
+
+/// Runs `lizard restore`.
+///
+/// # Errors
+/// A wrong file, no board, or a robot that refuses.
+pub fn restore(args: RestoreArgs) -> Result<(), Failure> {
+    let set = file::read(&args.file)?;
+    let finder = args.connect.finder("restore FILE")?;
+    let (mut board, _) = finder.meet()?;
+    give(&set, &mut board.link)
+        .map_err(|error| Failure::Impossible(format!("{}: {error}", args.file.display())))?;
+    println!(
+        "{} has the calibration of {} and has saved it",
+        board.name,
+        args.file.display()
+    );
+    Ok(())
+}
+
+/// The reason why the robot did not accept a calibration.
+#[derive(Debug, thiserror::Error)]
+pub enum GiveError {
+    /// A part of it is refused.
+    #[error("{0}; nothing was saved, the robot has what it had before")]
+    Refused(LinkError),
+    /// Neither the new nor the old one is in effect.
+    #[error("{0}; nothing was saved; send `load` or `factory`, or press the board's reset button")]
+    Between(LinkError),
+    /// The robot reads it back otherwise.
+    #[error("the robot has not taken all of it; nothing was saved, it has what it had before")]
+    Differs,
+}
+
+/// Gives a robot a calibration, reads it back and saves it; if that fails, gives it
+/// what it had before.
+///
+/// # Errors
+/// A refusal, or a connection that breaks.
+pub fn give<P: Read + Write>(set: &Calibration, link: &mut Link<P>) -> Result<(), GiveError> {
+    let before = Calibration::ask(link).map_err(GiveError::Refused)?;
+    let given = set
+        .apply(link)
+        .and_then(|()| Calibration::ask(link))
+        .map(|now| now.is_same(set));
+    let error = match given {
+        Ok(true) => match link.tell("save") {
+            Ok(_) => return Ok(()),
+            Err(error) => GiveError::Refused(error),
+        },
+        Ok(false) => GiveError::Differs,
+        Err(error) => GiveError::Refused(error),
+    };
+    before.apply(link).map_err(GiveError::Between)?;
+    Err(error)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::double::robot;
+    use super::*;
+
+    #[test]
+    fn what_was_backed_up_is_there_again_after_restoring_and_loading() {
+        let mut link = robot();
+        link.tell("trim 3 -4.25").expect("it is taken");
+        link.tell("boot walk").expect("it is taken");
+        let kept = Calibration::ask(&mut link).expect("it answers");
+        let kept = file::parse(&file::text(&kept)).expect("it is a calibration");
+        link.tell("factory").expect("it is taken");
+        give(&kept, &mut link).expect("it is taken and saved");
+        link.tell("factory").expect("it is taken");
+        link.tell("load").expect("something was saved");
+        assert!(
+            Calibration::ask(&mut link)
+                .expect("it answers")
+                .is_same(&kept)
+        );
+    }
+
+    #[test]
+    fn a_refused_calibration_leaves_what_was_there_also_unsaved() {
+        let mut link = robot();
+        link.tell("trim 3 -4.25").expect("it is taken");
+        let before = Calibration::ask(&mut link).expect("it answers");
+        let mut set = before.clone();
+        set.servo.at(0).trim = 5.0;
+        set.servo.at(2).scale = 99.0;
+        let error = give(&set, &mut link).expect_err("it is refused");
+        assert_eq!(
+            error.to_string(),
+            "the robot refuses `scale 3 99.00`: 3 scale must be 5..20; nothing was saved, the \
+             robot has what it had before"
+        );
+        assert!(
+            Calibration::ask(&mut link)
+                .expect("it answers")
+                .is_same(&before)
+        );
+        let load = link.ask("load").expect("it answers").answer;
+        assert!(load.starts_with("err 9"), "{load}");
+    }
+}

@@ -1,0 +1,370 @@
+//! The steps of a calibration: the robot's movements in each, and the effect of each key.
+//!
+//! The signs are proven before the trims: a servo with the wrong sign would turn away from the
+//! arrow.
+
+use std::io::{Read, Write};
+use std::time::{Duration, Instant};
+
+use lizard_robot::STILL_FRAMES;
+
+use super::super::calibration::Calibration;
+use super::super::link::{Link, LinkError};
+use super::super::status::Status;
+use step::{STEPS, Step};
+pub use view::View;
+
+/// Angles by which a servo is moved to prove its sign, degrees; the first that the robot
+/// accepts is used.
+const PROOFS: [f64; 4] = [10.0, 5.0, -10.0, -5.0];
+/// Angles by which a servo is moved to measure its scale, degrees; the first that the robot
+/// accepts is used. A larger angle measures more exactly.
+const FAR: [f64; 6] = [30.0, -30.0, 20.0, -20.0, 10.0, -10.0];
+/// The longest wait for a motion to end.
+const MOTION: Duration = Duration::from_secs(5);
+/// Between two looks at the robot.
+const LOOK: Duration = Duration::from_millis(25);
+
+/// A key that means something here.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Key {
+    /// To the next step.
+    Next,
+    /// To the step before.
+    Back,
+    /// Leave; nothing is changed.
+    Leave,
+    /// Do what the step is about.
+    Act,
+    /// The answer is yes.
+    Yes,
+    /// The answer is no.
+    No,
+    /// Turn the servo by this many degrees, counter-clockwise if positive.
+    Turn(f64),
+}
+
+/// A calibration on its way.
+#[derive(Debug)]
+pub struct Guide<'a, P> {
+    link: &'a mut Link<P>,
+    /// The calibration at the beginning, or after the last save.
+    before: Calibration,
+    /// The calibration that is active now.
+    now: Calibration,
+    /// The neutral angles, degrees.
+    neutral: [f64; 4],
+    at: usize,
+    /// By how much the servo of this step has been moved, if it has.
+    moved: Option<f64>,
+    /// True if scales and limits are skipped.
+    left_out: bool,
+    walks: bool,
+    message: String,
+}
+
+impl<'a, P: Read + Write> Guide<'a, P> {
+    /// Asks the robot what it has, and lets it stand.
+    ///
+    /// # Errors
+    /// No answer, or the robot cannot stand.
+    pub fn new(link: &'a mut Link<P>) -> Result<Self, LinkError> {
+        let before = Calibration::ask(link)?;
+        link.tell("stand")?;
+        let pose = settle(link)?;
+        Ok(Self {
+            link,
+            now: before.clone(),
+            before,
+            neutral: pose,
+            at: 0,
+            moved: None,
+            left_out: false,
+            walks: false,
+            message: String::new(),
+        })
+    }
+
+    fn step(&self) -> Step {
+        STEPS[self.at]
+    }
+
+    /// True if the active calibration is saved.
+    pub fn is_saved(&self) -> bool {
+        self.step() == Step::Saved
+    }
+
+    /// Takes a key; true when the person is done or has left.
+    ///
+    /// # Errors
+    /// The connection breaks. A refusal is no error: it is shown.
+    pub fn key(&mut self, key: Key) -> Result<bool, LinkError> {
+        self.message.clear();
+        let done = match (key, self.step()) {
+            (Key::Leave, Step::Saved) | (Key::Next, Step::Saved) => Ok(true),
+            (Key::Leave, _) => self.leave().map(|()| true),
+            (Key::Back, Step::Walk) if self.left_out => self.to(Step::More).map(|()| false),
+            (Key::Back, _) => self.go(self.at.saturating_sub(1)).map(|()| false),
+            (Key::Next, Step::More) => {
+                self.left_out = true;
+                self.to(Step::Walk).map(|()| false)
+            }
+            (Key::Yes, Step::More) => {
+                self.left_out = false;
+                self.go(self.at + 1).map(|()| false)
+            }
+            (Key::Next, Step::Sign(_)) => {
+                self.message = "Press the space bar, look, then answer with y or n.".to_owned();
+                Ok(false)
+            }
+            (Key::Next, Step::Save) => self.save().map(|()| false),
+            (Key::Next, _) => self.go(self.at + 1).map(|()| false),
+            (Key::Act, Step::Sign(servo)) => self.move_one(servo, &PROOFS).map(|()| false),
+            (Key::Act, Step::Scale(servo)) => self.move_one(servo, &FAR).map(|()| false),
+            (Key::Turn(degrees), Step::Scale(servo)) => self.scale(servo, degrees).map(|()| false),
+            (Key::Turn(degrees), Step::Limit(servo)) => self.limit(servo, degrees).map(|()| false),
+            (Key::Yes | Key::No, Step::Sign(servo)) => self.prove(servo, key).map(|()| false),
+            (Key::Turn(degrees), Step::Trim(servo)) => self.trim(servo, degrees).map(|()| false),
+            (Key::Act, Step::Walk) => self.walk(!self.walks).map(|()| false),
+            _ => Ok(false),
+        };
+        match done {
+            Err(LinkError::Refused { line, reason }) if key != Key::Leave => {
+                self.message = format!("The robot refuses `{line}`: {reason}.");
+                Ok(false)
+            }
+            other => other,
+        }
+    }
+
+    /// Lets the robot speak while no key comes.
+    ///
+    /// # Errors
+    /// The connection breaks.
+    pub fn idle(&mut self) -> Result<(), LinkError> {
+        while let Some(line) = self.link.line(Duration::ZERO)? {
+            if line.starts_with("# lizard ") {
+                self.message = "The board was reset: leave with q and begin again.".to_owned();
+            } else if let Some(note) = line.strip_prefix("# ") {
+                self.message = format!("The robot says: {note}.");
+            }
+        }
+        if self.walks {
+            // Also keeps `deadman` from ending the gait.
+            let reply = self.link.ask("status")?;
+            self.walks = Status::parse(&reply.answer).is_some_and(|status| status.walks());
+        }
+        Ok(())
+    }
+
+    /// Gives the robot what it had before, and lets it stand.
+    fn leave(&mut self) -> Result<(), LinkError> {
+        match self.stand() {
+            // The supply may be too low for it. That is no reason to stay.
+            Ok(()) | Err(LinkError::Refused { .. }) => {}
+            Err(error) => return Err(error),
+        }
+        if self.now != self.before {
+            self.before.apply(self.link)?;
+        }
+        Ok(())
+    }
+
+    fn save(&mut self) -> Result<(), LinkError> {
+        self.link.tell("save")?;
+        self.before = self.now.clone();
+        self.go(self.at + 1)
+    }
+
+    fn to(&mut self, step: Step) -> Result<(), LinkError> {
+        let place = STEPS.iter().position(|at| *at == step);
+        self.go(place.unwrap_or(self.at))
+    }
+
+    fn go(&mut self, to: usize) -> Result<(), LinkError> {
+        match STEPS[to] {
+            Step::Horns => {
+                self.stand()?;
+                self.link.tell("center")?;
+                settle(self.link)?;
+            }
+            _ if self.step() == Step::Save => {}
+            _ => self.stand()?,
+        }
+        self.at = to;
+        Ok(())
+    }
+
+    fn stand(&mut self) -> Result<(), LinkError> {
+        self.link.tell("stand")?;
+        self.walks = false;
+        self.moved = None;
+        settle(self.link)?;
+        Ok(())
+    }
+
+    /// Moves one servo by the first of some angles that the robot does not refuse.
+    fn move_one(&mut self, servo: usize, angles: &[f64]) -> Result<(), LinkError> {
+        self.stand()?;
+        let mut refusal = None;
+        for by in angles {
+            match self.turn_to(servo, *by) {
+                Ok(()) => {
+                    self.message = format!("A{} has moved.", servo + 1);
+                    return Ok(());
+                }
+                Err(error @ LinkError::Refused { .. }) => refusal = Some(error),
+                Err(error) => return Err(error),
+            }
+        }
+        refusal.map_or(Ok(()), Err)
+    }
+
+    /// Moves one servo so far from its middle, the others in theirs.
+    fn turn_to(&mut self, servo: usize, by: f64) -> Result<(), LinkError> {
+        let mut pose = self.neutral;
+        pose[servo] = (pose[servo] + by).rem_euclid(360.0);
+        let [a1, a2, a3, a4] = pose;
+        self.link
+            .tell(&format!("pose {a1:.2} {a2:.2} {a3:.2} {a4:.2}"))?;
+        self.moved = Some(by);
+        settle(self.link)?;
+        Ok(())
+    }
+
+    /// Sets the scale with which a servo that was moved turns by this many degrees more. Its
+    /// middle stays where it is, so its trim counts in the new degrees.
+    fn scale(&mut self, servo: usize, degrees: f64) -> Result<(), LinkError> {
+        let Some(by) = self.moved else {
+            self.message = "Press the space bar first, and look where it points.".to_owned();
+            return Ok(());
+        };
+        let mut next = self.now.clone();
+        let set = next.servo.at(servo);
+        let (old_scale, old_trim) = (set.scale, set.trim);
+        set.scale = hundredths(old_scale * (1.0 + degrees / by));
+        set.trim = hundredths(old_trim * old_scale / set.scale);
+        let (n, scale, trim) = (servo + 1, set.scale, set.trim);
+        self.link.tell(&format!("scale {n} {scale:.2}"))?;
+        if trim != old_trim
+            && let Err(error) = self.link.tell(&format!("trim {n} {trim:.2}"))
+        {
+            self.link.tell(&format!("scale {n} {old_scale:.2}"))?;
+            return Err(error);
+        }
+        self.now = next;
+        Ok(())
+    }
+
+    /// Moves an end of a servo's travel by one degree: its first one with the keys that turn
+    /// far, its second with those that turn little.
+    fn limit(&mut self, servo: usize, degrees: f64) -> Result<(), LinkError> {
+        let mut next = self.now.clone();
+        let set = next.servo.at(servo);
+        let end = &mut set.limit[usize::from(degrees.abs() < 0.3)];
+        *end = hundredths((*end + degrees.signum()).rem_euclid(360.0));
+        let [min, max] = set.limit;
+        self.link
+            .tell(&format!("limit {} {min:.2} {max:.2}", servo + 1))?;
+        self.now = next;
+        Ok(())
+    }
+
+    fn prove(&mut self, servo: usize, answer: Key) -> Result<(), LinkError> {
+        if self.moved.is_none() {
+            self.message = "Press the space bar first, and look which way it turns.".to_owned();
+            return Ok(());
+        }
+        if answer == Key::Yes {
+            return self.go(self.at + 1);
+        }
+        self.stand()?;
+        let n = servo + 1;
+        let mut next = self.now.clone();
+        let set = next.servo.at(servo);
+        set.dir = set.dir.reversed();
+        // The horn stays where it is: the same pulse is now the opposite trim.
+        set.trim = -set.trim;
+        let (dir, trim) = (set.dir.sign(), set.trim);
+        self.link.tell(&format!("dir {n} {dir}"))?;
+        if trim != 0.0 {
+            self.link.tell(&format!("trim {n} {trim:.2}"))?;
+        }
+        self.now = next;
+        settle(self.link)?;
+        self.message =
+            format!("The sign of A{n} is `{dir}` now. Press the space bar to look once more.");
+        Ok(())
+    }
+
+    fn trim(&mut self, servo: usize, degrees: f64) -> Result<(), LinkError> {
+        let mut next = self.now.clone();
+        let set = next.servo.at(servo);
+        set.trim = hundredths(set.trim + degrees);
+        let line = format!("trim {} {:.2}", servo + 1, set.trim);
+        self.link.tell(&line)?;
+        self.now = next;
+        Ok(())
+    }
+
+    fn walk(&mut self, begin: bool) -> Result<(), LinkError> {
+        if !begin {
+            return self.stand();
+        }
+        let gait = self.first_gait()?;
+        self.link.tell(&gait)?;
+        self.walks = true;
+        self.message = format!("The robot does `{gait}`.");
+        Ok(())
+    }
+
+    /// `walk`, or the first gait that the robot has besides `stand`.
+    fn first_gait(&mut self) -> Result<String, LinkError> {
+        let help = self.link.tell("help")?;
+        let gaits = help
+            .notes
+            .iter()
+            .filter_map(|line| line.strip_prefix("# gaits: "));
+        let gaits: Vec<&str> = gaits.flat_map(|names| names.split('|')).collect();
+        let moves = gaits.iter().copied().find(|name| *name == "walk");
+        let moves = moves.or_else(|| gaits.iter().copied().find(|name| *name != "stand"));
+        Ok(moves.unwrap_or("stand").to_owned())
+    }
+}
+
+/// A number as the robot has it, and no negative zero.
+fn hundredths(value: f64) -> f64 {
+    (value * 100.0).round() / 100.0 + 0.0
+}
+
+/// Waits until the robot stands still; returns its pose.
+fn settle<P: Read + Write>(link: &mut Link<P>) -> Result<[f64; 4], LinkError> {
+    let end = Instant::now() + MOTION;
+    let mut last: Option<Status> = None;
+    loop {
+        let reply = link.tell("status")?;
+        let now = Status::parse(&reply.answer);
+        let Some((now, pose)) = now.and_then(|now| now.pose.map(|pose| (now, pose))) else {
+            return Err(LinkError::Unclear {
+                line: "status".to_owned(),
+                answer: reply.answer,
+            });
+        };
+        let frames = now.frames;
+        let since = last
+            .as_ref()
+            .and_then(|last| frames.checked_sub(last.frames));
+        match since {
+            Some(0..STILL_FRAMES) if Instant::now() < end => {}
+            Some(_) if last.is_some_and(|last| last.pose == Some(pose)) => return Ok(pose),
+            _ if Instant::now() >= end => return Ok(pose),
+            _ => last = Some(now),
+        }
+        link.pause(LOOK)?;
+    }
+}
+
+mod step;
+#[cfg(test)]
+mod tests;
+mod view;

@@ -1,0 +1,248 @@
+use super::*;
+use crate::drive::console::calibration::Direction;
+use crate::drive::console::double::{PAPER, robot};
+use lizard_core::virtual_board::Running;
+
+fn press<P: Read + Write>(guide: &mut Guide<'_, P>, keys: &[Key]) -> bool {
+    let mut done = false;
+    for key in keys {
+        done = guide.key(*key).expect("the robot answers");
+    }
+    done
+}
+
+const PROVE: [Key; 2] = [Key::Act, Key::Yes];
+
+#[test]
+fn a_whole_calibration_turns_a_sign_trims_a_servo_walks_and_saves() {
+    let mut link = robot();
+    let [min, max] = Calibration::ask(&mut link)
+        .expect("it answers")
+        .servo
+        .a1
+        .limit;
+    let mut guide = Guide::new(&mut link).expect("it answers");
+    press(&mut guide, &[Key::Next, Key::Next]);
+    press(&mut guide, &PROVE);
+    assert!(
+        guide
+            .view()
+            .title
+            .contains("which way does A2, front right turn")
+    );
+    press(&mut guide, &[Key::Act, Key::No, Key::Act, Key::Yes]);
+    press(&mut guide, &PROVE);
+    press(&mut guide, &PROVE);
+    assert!(
+        guide.view().title.contains("straighten A1"),
+        "{:?}",
+        guide.view()
+    );
+    press(
+        &mut guide,
+        &[Key::Turn(0.5), Key::Turn(0.5), Key::Turn(-0.1), Key::Next],
+    );
+    press(
+        &mut guide,
+        &[Key::Turn(-0.5), Key::Next, Key::Next, Key::Next],
+    );
+    assert!(guide.view().title.contains("scales and limits"));
+    press(&mut guide, &[Key::Next, Key::Back, Key::Next, Key::Act]);
+    guide.idle().expect("it answers");
+    assert!(guide.view().text[1].starts_with("It walks"));
+    press(&mut guide, &[Key::Next]);
+    assert!(
+        guide.view().text.contains(&format!(
+            "    A1, front left  sign +  trim +0.90  limits {min:.2} to {max:.2}  scale 10.00"
+        )),
+        "{:?}",
+        guide.view()
+    );
+    // The space bar does nothing here: only Enter is offered.
+    press(&mut guide, &[Key::Act]);
+    assert!(!guide.is_saved());
+    assert!(!press(&mut guide, &[Key::Next]));
+    assert!(guide.is_saved(), "{:?}", guide.view());
+    press(&mut guide, &[Key::Back]);
+    assert!(press(&mut guide, &[Key::Leave]), "what is saved stays");
+    let left = Calibration::ask(&mut link).expect("it answers");
+    assert_eq!(left.servo.a1.trim, 0.9);
+    link.tell("factory").expect("it is taken");
+    link.tell("load").expect("it was saved");
+    let kept = Calibration::ask(&mut link).expect("it answers");
+    assert_eq!(kept.servo.a1.trim, 0.9);
+    assert_eq!(kept.servo.a2.trim, -0.5);
+    assert_eq!(kept.servo.a2.dir, Direction::Minus);
+    assert_eq!(kept.servo.a3.dir, Direction::Plus);
+}
+
+#[test]
+fn who_leaves_at_any_step_leaves_everything_as_it_was() {
+    let way: Vec<Key> = [Key::Next, Key::Next]
+        .into_iter()
+        .chain([Key::Act, Key::No, Key::Act, Key::Yes])
+        .chain(PROVE.repeat(3))
+        .chain([
+            Key::Turn(4.0),
+            Key::Next,
+            Key::Next,
+            Key::Next,
+            Key::Next,
+            Key::Next,
+            Key::Act,
+        ])
+        .collect();
+    for length in [1, 4, 13, 19] {
+        let mut link = robot();
+        link.tell("trim 1 2.50").expect("it is taken");
+        link.tell("boot walk").expect("it is taken");
+        let before = Calibration::ask(&mut link).expect("it answers");
+        let mut guide = Guide::new(&mut link).expect("it answers");
+        press(&mut guide, &way[..length]);
+        assert!(press(&mut guide, &[Key::Leave]), "after {length} keys");
+        let after = Calibration::ask(&mut link).expect("it answers");
+        assert_eq!(after, before, "after {length} keys");
+        let status = link.ask("status").expect("it answers").answer;
+        assert!(status.starts_with("ok gait=stand"), "{status}");
+        let load = link.ask("load").expect("it answers").answer;
+        assert!(load.starts_with("err 9"), "nothing was saved: {load}");
+    }
+}
+
+#[test]
+fn the_horn_keeps_its_pulse_when_a_sign_is_turned_round() {
+    let mut link = robot();
+    link.tell("trim 1 3").expect("it is taken");
+    let mut guide = Guide::new(&mut link).expect("it answers");
+    press(&mut guide, &[Key::Next, Key::Next, Key::Act, Key::No]);
+    assert_eq!(guide.now.servo.a1.trim, -3.0);
+    let now = Calibration::ask(&mut link).expect("it answers");
+    assert_eq!(
+        (now.servo.a1.trim, now.servo.a1.dir),
+        (-3.0, Direction::Minus)
+    );
+}
+
+#[test]
+fn one_servo_alone_is_moved_and_only_after_the_space_bar_is_an_answer_taken() {
+    let mut link = robot();
+    let mut guide = Guide::new(&mut link).expect("it answers");
+    press(&mut guide, &[Key::Next, Key::Next, Key::Yes]);
+    assert!(guide.view().message.contains("space bar first"));
+    press(&mut guide, &[Key::Next]);
+    assert!(guide.view().title.contains("A1"), "no step is left out");
+    press(&mut guide, &[Key::Act]);
+    let status = link.ask("status").expect("it answers").answer;
+    assert!(
+        status.contains("pose=148.59,41.41,318.59,221.41"),
+        "{status}"
+    );
+}
+
+#[test]
+fn a_motion_that_has_begun_is_seen_before_the_robot_is_taken_to_stand() {
+    // The slowest that a robot may be, and the smallest turn of a key.
+    let slow = PAPER.replacen("\nslew = 300.0", "\nslew = 10.0", 1);
+    assert_ne!(slow, PAPER);
+    for (text, way) in [
+        (PAPER, 10.0),
+        (PAPER, 0.1),
+        (slow.as_str(), 10.0),
+        (slow.as_str(), 0.1),
+    ] {
+        let robot = lizard_robot::Robot::parse(text).expect("it is right");
+        let mut running = Running::power_on(*robot.firmware());
+        running.run(200);
+        let before = running.status("pose");
+        let [a1, a2, a3, a4] = robot.servos().map(|servo| servo.neutral);
+        let line = format!("pose {:.2} {a2:.2} {a3:.2} {a4:.2}", a1 + way);
+        assert!(running.say(&line).starts_with("ok pose"), "{line}");
+        let unseen = (0..100).take_while(|_| {
+            running.run(1);
+            running.status("pose") == before
+        });
+        let unseen = unseen.count() as u64;
+        assert!(
+            unseen + 2 < STILL_FRAMES,
+            "{way} deg: {unseen} frames show nothing"
+        );
+    }
+}
+
+#[test]
+fn one_can_go_back_and_a_refused_trim_is_said_and_changes_nothing() {
+    let mut link = robot();
+    let mut guide = Guide::new(&mut link).expect("it answers");
+    press(&mut guide, &[Key::Back, Key::Next, Key::Next]);
+    for _ in 0..4 {
+        press(&mut guide, &PROVE);
+    }
+    press(&mut guide, &[Key::Turn(19.9), Key::Turn(0.5)]);
+    let view = guide.view();
+    assert!(
+        view.message
+            .starts_with("The robot refuses `trim 1 20.40`: 3 trim must")
+    );
+    assert!(
+        view.text.contains(&"    trim +19.90 deg".to_owned()),
+        "{view:?}"
+    );
+    press(&mut guide, &[Key::Back]);
+    assert!(guide.view().title.contains("which way does A4"));
+}
+
+/// The keys from the beginning to the first scale.
+fn to_scales() -> Vec<Key> {
+    let mut keys = vec![Key::Next, Key::Next];
+    keys.extend(PROVE.repeat(4));
+    keys.extend([Key::Next; 4]);
+    keys.push(Key::Yes);
+    keys
+}
+
+#[test]
+fn a_scale_is_set_where_the_crank_points_and_its_middle_stays() {
+    let mut link = robot();
+    link.tell("trim 1 2.00").expect("it is taken");
+    let mut guide = Guide::new(&mut link).expect("it answers");
+    press(&mut guide, &to_scales());
+    assert!(
+        guide
+            .view()
+            .title
+            .contains("how far does A1, front left turn")
+    );
+    press(&mut guide, &[Key::Turn(0.5)]);
+    assert!(guide.view().message.contains("space bar first"));
+    press(&mut guide, &[Key::Act]);
+    let by = guide.moved.expect("it was moved");
+    assert!(by.abs() >= 20.0, "{by}");
+    // Four times half a degree more in this many.
+    press(&mut guide, &[Key::Turn(0.5); 4]);
+    let expected = 10.0 * (1.0 + 0.5 / by).powi(4);
+    let now = Calibration::ask(&mut link).expect("it answers").servo.a1;
+    assert!((now.scale - expected).abs() < 0.03, "{now:?}");
+    // The pulse of the middle is as before: trim times scale.
+    assert!((now.trim * now.scale - 20.0).abs() < 0.2, "{now:?}");
+}
+
+#[test]
+fn each_end_of_the_travel_is_moved_and_not_into_what_the_gaits_need() {
+    let mut link = robot();
+    let before = Calibration::ask(&mut link).expect("it answers").servo.a1;
+    let mut guide = Guide::new(&mut link).expect("it answers");
+    press(&mut guide, &to_scales());
+    press(&mut guide, &[Key::Next; 4]);
+    let title = guide.view().title;
+    assert!(title.contains("how far may A1, front left turn"), "{title}");
+    press(&mut guide, &[Key::Turn(0.5); 3]);
+    press(&mut guide, &[Key::Turn(-0.1); 2]);
+    let now = guide.now.servo.a1.clone();
+    assert_eq!(now.limit, [before.limit[0] + 3.0, before.limit[1] - 2.0]);
+    press(&mut guide, &[Key::Turn(-0.1); 90]);
+    let view = guide.view();
+    assert!(view.message.contains("refuses `limit 1"), "{view:?}");
+    let now = Calibration::ask(&mut link).expect("it answers").servo.a1;
+    let shown = format!("    limits {:.2} to {:.2} deg", now.limit[0], now.limit[1]);
+    assert!(view.text.contains(&shown), "{view:?}, {now:?}");
+}

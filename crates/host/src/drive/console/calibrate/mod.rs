@@ -1,0 +1,209 @@
+//! `lizard calibrate`: a person with a screwdriver in the other hand, one key at a
+//! time.
+
+mod guide;
+
+use std::io::{self, IsTerminal, Stdout, Write};
+use std::time::{Duration, Instant};
+
+use crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+use crossterm::style::{Attribute, Print, SetAttribute};
+use crossterm::terminal::{Clear, ClearType, EnterAlternateScreen, LeaveAlternateScreen};
+use crossterm::{cursor, execute, queue, terminal as mode};
+
+use super::connect::Connect;
+use super::terminal;
+use super::turn_error::TurnError;
+use crate::Failure;
+use guide::{Guide, Key, View};
+
+/// Calibrate the robot, step by step
+///
+/// Centres the servos for fitting the horns, finds out which way each of them turns,
+/// trims each with the arrow keys, walks, and saves. Nothing is saved before the last
+/// step; if you leave earlier, the robot keeps its old calibration.
+#[derive(clap::Args, Debug)]
+pub struct Args {
+    #[command(flatten)]
+    connect: Connect,
+}
+
+/// Interval between reads from the robot while no key is pressed.
+const TURN: Duration = Duration::from_millis(200);
+/// Interval between checks of the keys.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// Runs `lizard calibrate`.
+///
+/// # Errors
+/// No terminal, no board, or a connection that breaks.
+pub fn run(args: Args) -> Result<(), Failure> {
+    if !(io::stdin().is_terminal() && io::stdout().is_terminal()) {
+        let words = "calibrate asks for single keys; run it in a terminal";
+        return Err(Failure::Input(words.to_owned()));
+    }
+    let finder = args.connect.finder("calibrate")?;
+    let (mut board, _) = finder.meet()?;
+    let ended = Guide::new(&mut board.link).map_err(TurnError::from);
+    let ended = ended.and_then(|mut guide| with_keys(&mut guide));
+    match ended {
+        Ok(saved) => {
+            // The terminal may be gone; then nobody can read this.
+            let words = if saved {
+                "the calibration is saved"
+            } else {
+                "left: the robot has what it had before"
+            };
+            let _ = writeln!(io::stdout(), "{words}");
+            Ok(())
+        }
+        Err(TurnError::Io(error)) => Err(error.into()),
+        Err(TurnError::File(failure)) => Err(failure),
+        // Opening the port resets the board, so what was not saved is gone then.
+        Err(TurnError::Link(error)) => Err(Failure::Impossible(format!(
+            "{}: {error}; what was not saved is forgotten when the port is opened again",
+            board.name
+        ))),
+    }
+}
+
+/// Shows the steps until the person is done; whether it was saved. A person whose
+/// terminal goes away leaves.
+fn with_keys<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, TurnError> {
+    match steps(guide) {
+        Err(TurnError::Io(_)) if !terminal::is_there() => {
+            guide.key(Key::Leave)?;
+            Ok(false)
+        }
+        ended => ended,
+    }
+}
+
+fn steps<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, TurnError> {
+    let mut page = Page::new()?;
+    let mut shown = None;
+    let mut heard = Instant::now();
+    loop {
+        let view = guide.view();
+        if shown.as_ref() != Some(&view) {
+            page.show(&view)?;
+            shown = Some(view);
+        }
+        if !terminal::is_there() {
+            return Err(io::Error::from(io::ErrorKind::UnexpectedEof).into());
+        }
+        // Asked without waiting: a terminal that is closed while it is waited for keeps
+        // the one who waits busy for ever.
+        if !event::poll(Duration::ZERO)? {
+            if heard.elapsed() >= TURN {
+                guide.idle()?;
+                heard = Instant::now();
+            }
+            std::thread::sleep(LOOK);
+            continue;
+        }
+        match event::read()? {
+            Event::Key(key) if stops(key) => {
+                page.leave()?;
+                terminal::stop()?;
+                page.enter()?;
+                shown = None;
+            }
+            Event::Key(key) => {
+                if let Some(key) = meaning(key)
+                    && guide.key(key)?
+                {
+                    return Ok(guide.is_saved());
+                }
+            }
+            Event::Resize(..) => shown = None,
+            _ => {}
+        }
+    }
+}
+
+/// True if a key is Ctrl-Z, which suspends the program.
+fn stops(key: KeyEvent) -> bool {
+    key.code == KeyCode::Char('z') && key.modifiers.contains(KeyModifiers::CONTROL)
+}
+
+/// The meaning of a key, if it has one.
+fn meaning(key: KeyEvent) -> Option<Key> {
+    if key.kind == KeyEventKind::Release {
+        return None;
+    }
+    let fine = key.modifiers.contains(KeyModifiers::SHIFT);
+    let step = if fine { 0.1 } else { 0.5 };
+    Some(match key.code {
+        KeyCode::Char('c' | 'd') if key.modifiers.contains(KeyModifiers::CONTROL) => Key::Leave,
+        KeyCode::Char('q' | 'Q') | KeyCode::Esc => Key::Leave,
+        KeyCode::Enter => Key::Next,
+        KeyCode::Backspace | KeyCode::Char('b' | 'B') => Key::Back,
+        KeyCode::Char(' ') => Key::Act,
+        KeyCode::Char('y' | 'Y') => Key::Yes,
+        KeyCode::Char('n' | 'N') => Key::No,
+        KeyCode::Left => Key::Turn(step),
+        KeyCode::Right => Key::Turn(-step),
+        KeyCode::Up => Key::Turn(0.1),
+        KeyCode::Down => Key::Turn(-0.1),
+        _ => return None,
+    })
+}
+
+/// A whole terminal for one step. It is as before when this is dropped.
+struct Page(Stdout);
+
+impl Page {
+    fn new() -> io::Result<Self> {
+        let mut page = Self(io::stdout());
+        page.enter()?;
+        Ok(page)
+    }
+
+    fn enter(&mut self) -> io::Result<()> {
+        terminal::end_when_gone();
+        mode::enable_raw_mode()?;
+        execute!(self.0, EnterAlternateScreen, cursor::Hide)
+    }
+
+    fn leave(&mut self) -> io::Result<()> {
+        execute!(self.0, cursor::Show, LeaveAlternateScreen)?;
+        mode::disable_raw_mode()
+    }
+
+    fn show(&mut self, view: &View) -> io::Result<()> {
+        let out = &mut self.0;
+        queue!(
+            out,
+            Clear(ClearType::All),
+            cursor::MoveTo(0, 1),
+            SetAttribute(Attribute::Bold),
+            Print(&view.title),
+            SetAttribute(Attribute::Reset),
+            Print("\r\n\r\n"),
+        )?;
+        for line in &view.text {
+            queue!(out, Print(line), Print("\r\n"))?;
+        }
+        queue!(
+            out,
+            Print("\r\n"),
+            SetAttribute(Attribute::Reverse),
+            Print(&view.keys),
+            SetAttribute(Attribute::Reset),
+            Print("\r\n\r\n"),
+            SetAttribute(Attribute::Bold),
+            Print(&view.message),
+            SetAttribute(Attribute::Reset),
+        )?;
+        out.flush()
+    }
+}
+
+impl Drop for Page {
+    fn drop(&mut self) {
+        // The terminal may be gone; then nothing is left to be done.
+        let _ = self.leave();
+        let _ = mode::disable_raw_mode();
+    }
+}

@@ -1,0 +1,175 @@
+//! From the arguments to a board that has said what it is.
+
+use std::path::PathBuf;
+
+use serialport::SerialPort;
+
+use super::find;
+use super::link::{Link, LinkError, Patience};
+use super::port;
+use crate::shared::plain::plain;
+use crate::{Failure, RobotFile};
+
+/// The board that a subcommand connects to.
+#[derive(clap::Args, Debug)]
+pub struct Connect {
+    /// The board's serial port [default: the one that has a UNO, or the only one]
+    port: Option<String>,
+    /// Use a simulated UNO instead, in real time
+    #[arg(long, conflicts_with = "port")]
+    sim: bool,
+    /// With --sim: the firmware: an ELF that has this robot in it [default: the one inside this
+    /// program]
+    #[arg(long, value_name = "FILE", requires = "sim")]
+    elf: Option<PathBuf>,
+    /// With --sim: the robot, a file or a name as for `lizard sim` [default: robot.toml in
+    /// this folder or one above it, else the one this program was built with]
+    #[arg(long, value_name = "FILE", requires = "sim")]
+    robot: Option<PathBuf>,
+}
+
+/// The place to look for the board. It is searched again on each call, because a board that is
+/// plugged in again may get another port.
+#[derive(Debug)]
+pub struct Finder {
+    port: Option<String>,
+    command: &'static str,
+    #[cfg(all(feature = "simulator", target_os = "linux"))]
+    simulated: Option<simulated_uno::Background>,
+}
+
+/// An open port with a board at it.
+pub struct Connection {
+    /// The serial link to the board.
+    pub link: Link<Box<dyn SerialPort>>,
+    /// The port's name for messages.
+    pub name: String,
+}
+
+impl Connect {
+    /// Decides where to look; starts the simulated UNO if it is selected.
+    ///
+    /// # Errors
+    /// No firmware for it, or no pseudo terminal.
+    pub fn finder(self, command: &'static str) -> Result<Finder, Failure> {
+        if self.sim {
+            let robot = RobotFile::at(self.robot);
+            return simulated(self.elf.as_deref(), &robot, command);
+        }
+        Ok(Finder {
+            port: self.port,
+            command,
+            #[cfg(all(feature = "simulator", target_os = "linux"))]
+            simulated: None,
+        })
+    }
+}
+
+#[cfg(all(feature = "simulator", target_os = "linux"))]
+fn simulated(
+    elf: Option<&std::path::Path>,
+    file: &RobotFile,
+    command: &'static str,
+) -> Result<Finder, Failure> {
+    use simulated_uno::{Fidelity, Port, Uno};
+    let robot = file.load()?;
+    let image = crate::shared::firmware::of_robot(elf, file, &robot)?.image;
+    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    crate::simulate::sim::supplies::connect(&mut uno, &robot);
+    let port = Port::new().map_err(|error| {
+        Failure::Impossible(format!("this machine gives no pseudo terminal: {error}"))
+    })?;
+    let board = port.in_background(uno, |uno| {
+        uno.take_edges();
+        uno.take_marks();
+    })?;
+    Ok(Finder {
+        port: Some(board.path().display().to_string()),
+        command,
+        simulated: Some(board),
+    })
+}
+
+#[cfg(not(all(feature = "simulator", target_os = "linux")))]
+fn simulated(
+    _: Option<&std::path::Path>,
+    _: &RobotFile,
+    _: &'static str,
+) -> Result<Finder, Failure> {
+    Err(Failure::Input(
+        "--sim is missing: this program was built without the simulator, or not for Linux"
+            .to_owned(),
+    ))
+}
+
+impl Finder {
+    /// Opens the port, which resets the board. To be greeted next.
+    ///
+    /// # Errors
+    /// No board, more than one, or its port cannot be opened.
+    pub fn open(&self) -> Result<Connection, Failure> {
+        let (port, name) = match &self.port {
+            Some(port) => (port.clone(), self.name_of(port)),
+            None => {
+                let found = find::choose(&find::usb_ports(), self.command)
+                    .map_err(|error| Failure::Impossible(error.to_string()))?;
+                // What the board calls itself is the board's word.
+                (found.name.clone(), plain(&found.to_string()))
+            }
+        };
+        Ok(Connection {
+            link: Link::new(port::open(&port)?, Patience::default()),
+            name,
+        })
+    }
+
+    /// Opens the port, says on standard error which, and waits for the banner.
+    ///
+    /// # Errors
+    /// As [`Finder::open`], or no lizard answers.
+    pub fn meet(&self) -> Result<(Connection, Option<String>), Failure> {
+        let mut board = self.open()?;
+        eprintln!("lizard: waiting for the board at {}", board.name);
+        let banner = board.greet()?;
+        Ok((board, banner))
+    }
+
+    /// True if the board is a simulated one, which ends with this program.
+    #[must_use]
+    pub fn is_simulated(&self) -> bool {
+        #[cfg(all(feature = "simulator", target_os = "linux"))]
+        let simulated = self.simulated.is_some();
+        #[cfg(not(all(feature = "simulator", target_os = "linux")))]
+        let simulated = false;
+        simulated
+    }
+
+    #[cfg(all(feature = "simulator", target_os = "linux"))]
+    fn name_of(&self, port: &str) -> String {
+        match self.simulated {
+            Some(_) => format!("{port} (a simulated UNO)"),
+            None => port.to_owned(),
+        }
+    }
+
+    #[cfg(not(all(feature = "simulator", target_os = "linux")))]
+    fn name_of(&self, port: &str) -> String {
+        port.to_owned()
+    }
+}
+
+impl Connection {
+    /// Waits for the banner; see [`Link::greet`].
+    ///
+    /// # Errors
+    /// No lizard answers; the sentence names the port.
+    pub fn greet(&mut self) -> Result<Option<String>, Failure> {
+        self.link.greet().map_err(|error| self.failure(&error))
+    }
+
+    /// The error as a sentence with the port's name.
+    #[must_use]
+    pub fn failure(&self, error: &LinkError) -> Failure {
+        Failure::Impossible(format!("{}: {error}", self.name))
+    }
+}

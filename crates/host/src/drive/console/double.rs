@@ -1,0 +1,82 @@
+//! For tests: the firmware's own console behind a connection, without a chip. Time
+//! advances when there is nothing left to read, much faster than real time.
+
+use std::collections::VecDeque;
+use std::io::{self, ErrorKind, Read, Write};
+use std::time::Duration;
+
+use lizard_core::virtual_board::Running;
+use lizard_robot::Robot;
+
+use super::link::{Link, Patience};
+
+/// The core on its board without a chip, and what it has written.
+pub struct Double {
+    running: Running,
+    out: VecDeque<u8>,
+    /// Every line it was sent.
+    pub sent: String,
+}
+
+/// A connection to the paper's robot, its banner already read.
+pub fn robot() -> Link<Double> {
+    robot_of(PAPER)
+}
+
+/// The paper's robot.
+pub const PAPER: &str = include_str!("../../../../../robots/paper.toml");
+
+/// A connection to the robot of this robot.toml.
+pub fn robot_of(text: &str) -> Link<Double> {
+    let robot = Robot::parse(text).expect("its robot.toml is right");
+    let mut link = Link::new(Double::of(&robot), Patience::default());
+    link.greet().expect("it has a banner");
+    link
+}
+
+impl Double {
+    fn of(robot: &Robot) -> Self {
+        Self {
+            running: Running::power_on(*robot.firmware()),
+            out: VecDeque::new(),
+            sent: String::new(),
+        }
+    }
+
+    /// Puts out what the robot has said.
+    fn hear(&mut self) {
+        self.running.settle();
+        let text = &mut self.running.board.transmitter.text;
+        self.out
+            .extend(text.drain(..).map(|character| character as u8));
+    }
+}
+
+impl Read for Double {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        if self.out.is_empty() {
+            self.running.frame();
+            self.hear();
+        }
+        if self.out.is_empty() {
+            std::thread::sleep(Duration::from_micros(200));
+            return Err(ErrorKind::TimedOut.into());
+        }
+        self.out.read(into)
+    }
+}
+
+impl Write for Double {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.sent.push_str(&String::from_utf8_lossy(bytes));
+        for byte in bytes {
+            self.running.board.send(&[*byte]);
+            self.hear();
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}

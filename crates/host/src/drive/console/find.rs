@@ -1,0 +1,177 @@
+//! Finds the serial port of the board if none was named.
+
+use serialport::{SerialPortInfo, SerialPortType};
+
+/// Vendors whose USB chips are on UNOs and their copies: Arduino under two numbers,
+/// and WCH, the maker of the CH340.
+const VENDORS: [u16; 3] = [ARDUINO[0], ARDUINO[1], 0x1a86];
+const ARDUINO: [u16; 2] = [0x2341, 0x2a03];
+
+/// A USB serial port.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct UsbPort {
+    /// Such as /dev/ttyACM0 or COM3.
+    pub name: String,
+    /// The number of the vendor of its chip.
+    pub vendor: u16,
+    /// The product name that the chip reports.
+    pub product: Option<String>,
+}
+
+/// The reason why no port could be chosen.
+#[derive(Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FindError {
+    /// There is none.
+    #[error(
+        "no board found: this machine has no USB serial port. Connect the UNO by a cable that \
+         carries data (some only charge), or name its port: lizard {command} /dev/ttyACM0; \
+         --sim takes a simulated UNO"
+    )]
+    None {
+        /// The subcommand, with the words before the port.
+        command: &'static str,
+    },
+    /// There is more than one.
+    #[error("several boards found: {}. Say which one: lizard {command} {}", list(.ports), .ports[0].name)]
+    Several {
+        /// The subcommand, with what comes before the port.
+        command: &'static str,
+        /// Those that might be meant.
+        ports: Vec<UsbPort>,
+    },
+}
+
+/// The USB serial ports of this machine. Others, such as those of a mainboard, have
+/// to be named.
+#[must_use]
+pub fn usb_ports() -> Vec<UsbPort> {
+    let mut ports: Vec<UsbPort> = serialport::available_ports()
+        .unwrap_or_default()
+        .into_iter()
+        .filter_map(usb)
+        .collect();
+    ports.sort_by(|a, b| a.name.cmp(&b.name));
+    ports
+}
+
+fn usb(port: SerialPortInfo) -> Option<UsbPort> {
+    let SerialPortType::UsbPort(usb) = port.port_type else {
+        return None;
+    };
+    // macOS lists each port twice; this one waits for a modem's carrier.
+    if port.port_name.starts_with("/dev/tty.") {
+        return None;
+    }
+    Some(UsbPort {
+        name: port.port_name,
+        vendor: usb.vid,
+        product: usb.product,
+    })
+}
+
+impl UsbPort {
+    /// True if its chip has a vendor number of Arduino's.
+    #[must_use]
+    pub fn is_arduinos(&self) -> bool {
+        ARDUINO.contains(&self.vendor)
+    }
+}
+
+/// The one port with a UNO's USB chip, or else the only port.
+///
+/// # Errors
+/// None, or more than one.
+pub fn choose(ports: &[UsbPort], command: &'static str) -> Result<UsbPort, FindError> {
+    let known = ports.iter().filter(|port| VENDORS.contains(&port.vendor));
+    let known: Vec<&UsbPort> = known.collect();
+    match (known.as_slice(), ports) {
+        ([one], _) => Ok((*one).clone()),
+        ([], [one]) => Ok(one.clone()),
+        ([], []) => Err(FindError::None { command }),
+        ([], several) => Err(FindError::Several {
+            command,
+            ports: several.to_vec(),
+        }),
+        (several, _) => Err(FindError::Several {
+            command,
+            ports: several.iter().map(|port| (*port).clone()).collect(),
+        }),
+    }
+}
+
+impl std::fmt::Display for UsbPort {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match &self.product {
+            Some(product) => write!(f, "{} ({})", self.name, product.replace('_', " ")),
+            None => f.write_str(&self.name),
+        }
+    }
+}
+
+fn list(ports: &[UsbPort]) -> String {
+    let names: Vec<String> = ports.iter().map(ToString::to_string).collect();
+    names.join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn port(name: &str, vendor: u16) -> UsbPort {
+        UsbPort {
+            name: format!("/dev/{name}"),
+            vendor,
+            product: (vendor == 0x2341).then(|| "Arduino_Uno".to_owned()),
+        }
+    }
+
+    fn chosen(ports: &[(&str, u16)]) -> Result<String, String> {
+        let ports: Vec<UsbPort> = ports.iter().map(|(name, id)| port(name, *id)).collect();
+        choose(&ports, "console")
+            .map(|port| port.to_string())
+            .map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn the_one_uno_is_taken_among_other_devices() {
+        assert_eq!(
+            chosen(&[
+                ("ttyUSB0", 0x0403),
+                ("ttyACM0", 0x2341),
+                ("ttyACM1", 0x1546)
+            ]),
+            Ok("/dev/ttyACM0 (Arduino Uno)".to_owned())
+        );
+        assert_eq!(
+            chosen(&[("ttyUSB0", 0x0403), ("ttyUSB1", 0x1a86)]),
+            Ok("/dev/ttyUSB1".to_owned())
+        );
+    }
+
+    #[test]
+    fn the_only_port_is_taken_whatever_its_chip() {
+        assert_eq!(
+            chosen(&[("ttyUSB0", 0x0403)]),
+            Ok("/dev/ttyUSB0".to_owned())
+        );
+    }
+
+    #[test]
+    fn none_and_several_are_said_with_what_to_do() {
+        let none = chosen(&[]).expect_err("there is none");
+        assert!(none.contains("carries data") && none.contains("lizard console /dev/ttyACM0"));
+        assert_eq!(
+            chosen(&[
+                ("ttyACM0", 0x2341),
+                ("ttyUSB0", 0x1a86),
+                ("ttyUSB1", 0x0403)
+            ]),
+            Err(
+                "several boards found: /dev/ttyACM0 (Arduino Uno), /dev/ttyUSB0. Say which one: \
+                 lizard console /dev/ttyACM0"
+                    .to_owned()
+            )
+        );
+        assert!(chosen(&[("ttyUSB0", 1), ("ttyUSB1", 2)]).is_err());
+    }
+}

@@ -1,0 +1,301 @@
+//! `lizard console`: a person, or a script on standard input,
+//! talks to the robot.
+
+use std::fs::File;
+use std::io::{self, BufRead, BufWriter, IsTerminal, Write};
+use std::path::PathBuf;
+use std::sync::mpsc::{self, Receiver, TryRecvError};
+use std::time::{Duration, Instant};
+
+use crossterm::event::{self, Event as TerminalEvent};
+
+use super::connect::{Connect, Connection, Finder};
+use super::history;
+use super::link::LinkError;
+use super::prompt::{Outcome, Prompt};
+use super::recorder::{self, Event, FORMAT, Recorder};
+use super::refusals::Refusals;
+use super::screen::Screen;
+use super::session::Session;
+use super::terminal;
+use super::turn_error::TurnError;
+use crate::Failure;
+
+/// Talk to the robot
+///
+/// Finds the board, waits for it to start, and passes lines to it; `help` lists its
+/// commands. The arrow keys bring back older lines; Ctrl-C, Ctrl-D or `quit` end the
+/// program. The line at the bottom shows gait, pose, smallest margin, supply and faults.
+/// For that the program asks the robot for its `status` twice a second, so `boot` and
+/// `deadman` do not act. If standard input is a file or a pipe, its lines are sent one
+/// after another, and the exit code is 1 if the robot refuses one.
+#[derive(clap::Args, Debug)]
+pub struct ConsoleArgs {
+    /// A new file that records the session: commands, answers, the pose of every frame, and
+    /// faults, as a JSON object a line, each with its time in ms; `lizard replay` draws it
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+    #[command(flatten)]
+    connect: Connect,
+}
+
+type FileRecorder = Recorder<BufWriter<File>>;
+
+/// Time that the loop waits for the robot before it checks the keys.
+const TURN: Duration = Duration::from_millis(10);
+/// Interval between attempts to find a vanished port.
+const RETRY: Duration = Duration::from_millis(300);
+
+/// Runs `lizard console`.
+///
+/// # Errors
+/// No board, the terminal fails, or the file is there already or cannot be written.
+pub fn console(args: ConsoleArgs) -> Result<(), Failure> {
+    if let Some(file) = args.record.as_ref().filter(|file| file.exists()) {
+        recorder::create(file)?;
+    }
+    talk(&args.connect.finder("console")?, args.record)
+}
+
+fn talk(finder: &Finder, file: Option<PathBuf>) -> Result<(), Failure> {
+    let (board, banner) = finder.meet()?;
+    let mut talk = Talk {
+        session: Session::new(Instant::now(), true, file.is_some()),
+        recorder: None,
+        mark: "",
+        refusals: Refusals::default(),
+    };
+    if let Some(path) = file {
+        talk.mark = "REC  ";
+        let mut recorder = recorder::create(&path)?;
+        let event = Event::Begin {
+            format: FORMAT.to_owned(),
+            port: board.name.clone(),
+            banner: banner.clone(),
+        };
+        recorder.write(Instant::now(), event)?;
+        talk.recorder = Some(recorder);
+    }
+    let first = banner.unwrap_or_else(|| "(the board goes on, it was not reset)".to_owned());
+    if io::stdin().is_terminal() && io::stdout().is_terminal() {
+        match talk.with_a_person(finder, board, &first) {
+            // The person has left with the terminal.
+            Err(Failure::Io(_)) if !terminal::is_there() => Ok(()),
+            ended => ended,
+        }
+    } else {
+        talk.with_a_script(board, &first)
+    }
+}
+
+/// A session with where it is kept.
+struct Talk {
+    session: Session,
+    recorder: Option<FileRecorder>,
+    mark: &'static str,
+    refusals: Refusals,
+}
+
+impl Talk {
+    /// Passes on what is to be sent, and takes what has come; `show` gets the lines
+    /// for the person.
+    fn turn(
+        &mut self,
+        board: &mut Connection,
+        mut show: impl FnMut(&str) -> io::Result<()>,
+    ) -> Result<(), TurnError> {
+        if let Some(line) = self.session.due(Instant::now()) {
+            board.link.send(&line)?;
+        }
+        // Not for ever: the keys wait.
+        for wait in [TURN; 1].into_iter().chain([Duration::ZERO; 50]) {
+            let Some(line) = board.link.line(wait)? else {
+                break;
+            };
+            if let Some(line) = self.session.receive(&line) {
+                show(&line)?;
+            }
+        }
+        let overdue = self.session.overdue(Instant::now());
+        self.keep()?;
+        if let Some(unanswered) = overdue {
+            self.refusals.count_silence(&unanswered);
+            show(&unanswered.to_string())?;
+        }
+        Ok(())
+    }
+
+    fn keep(&mut self) -> Result<(), Failure> {
+        let said = self.session.take_said();
+        said.iter().for_each(|said| self.refusals.hear(said));
+        if let Some(recorder) = &mut self.recorder {
+            let now = Instant::now();
+            for said in said {
+                recorder.write(now, said.into())?;
+            }
+        }
+        Ok(())
+    }
+
+    fn with_a_script(mut self, mut board: Connection, first: &str) -> Result<(), Failure> {
+        let mut out = io::stdout();
+        writeln!(out, "{first}")?;
+        // The answers are all that is wanted.
+        self.session = Session::new(
+            Instant::now(),
+            self.recorder.is_some(),
+            self.recorder.is_some(),
+        );
+        let lines = lines_of_stdin();
+        let mut ended = false;
+        while !(ended && self.session.is_idle()) {
+            while !ended {
+                match lines.try_recv() {
+                    Ok(line) if line.trim().is_empty() => {}
+                    Ok(line) => self.session.say(line.trim()),
+                    Err(TryRecvError::Empty) => break,
+                    Err(TryRecvError::Disconnected) => ended = true,
+                }
+            }
+            let shown = self.turn(&mut board, |line| writeln!(out, "{line}"));
+            shown.map_err(|error| failure(error, &board))?;
+        }
+        if let Some(recorder) = &mut self.recorder {
+            recorder.flush()?;
+        }
+        self.refusals.verdict()
+    }
+
+    fn with_a_person(
+        mut self,
+        finder: &Finder,
+        board: Connection,
+        first: &str,
+    ) -> Result<(), Failure> {
+        let mut screen = Screen::new()?;
+        let mut prompt = Prompt::new(history::load());
+        screen.print(first)?;
+        screen.print("(help lists the commands; Ctrl-D leaves)")?;
+        let mut board = Some(board);
+        let mut failed = None;
+        while !self.keys(&mut screen, &mut prompt)? {
+            let Some(present) = &mut board else {
+                screen.draw("waiting for the board; Ctrl-C leaves", &prompt)?;
+                board = self.look_again(finder, &mut screen)?;
+                continue;
+            };
+            match self.turn(present, |line| screen.print(line)) {
+                Ok(()) => {}
+                Err(TurnError::Link(LinkError::Gone)) => {
+                    let words = format!("{}: {}", present.name, LinkError::Gone);
+                    screen.print(&words)?;
+                    if let Some(recorder) = &mut self.recorder {
+                        recorder.write(Instant::now(), Event::Gone)?;
+                    }
+                    board = None;
+                    continue;
+                }
+                Err(error) => {
+                    failed = Some(failure(error, present));
+                    break;
+                }
+            }
+            let status = self.session.status().map(super::status::Status::line);
+            let status = status.unwrap_or_default();
+            screen.draw(&format!("{}{status}", self.mark), &prompt)?;
+        }
+        drop(screen);
+        history::save(prompt.history());
+        if self
+            .session
+            .status()
+            .is_some_and(super::status::Status::walks)
+            && board.is_some()
+            && !finder.is_simulated()
+        {
+            // The terminal may be gone; then nobody can read this.
+            let _ = writeln!(io::stdout(), "the robot goes on with its gait");
+        }
+        if let Some(recorder) = &mut self.recorder {
+            recorder.flush()?;
+        }
+        failed.map_or(Ok(()), Err)
+    }
+
+    /// Takes the keys that have been pressed; true if the person leaves.
+    fn keys(&mut self, screen: &mut Screen, prompt: &mut Prompt) -> Result<bool, Failure> {
+        if !terminal::is_there() {
+            return Ok(true);
+        }
+        while event::poll(Duration::ZERO)? {
+            let outcomes = match event::read()? {
+                TerminalEvent::Key(key) => vec![prompt.key(key)],
+                TerminalEvent::Paste(text) => prompt.paste(&text),
+                _ => vec![],
+            };
+            for outcome in outcomes {
+                match outcome {
+                    Outcome::Edited => {}
+                    Outcome::Leave => return Ok(true),
+                    Outcome::Stop => {
+                        screen.leave()?;
+                        terminal::stop()?;
+                        screen.enter()?;
+                    }
+                    Outcome::Line(line) => {
+                        screen.print(&format!("> {line}"))?;
+                        self.session.say(&line);
+                    }
+                }
+            }
+        }
+        Ok(false)
+    }
+
+    /// The board, if it is there again.
+    fn look_again(
+        &mut self,
+        finder: &Finder,
+        screen: &mut Screen,
+    ) -> Result<Option<Connection>, Failure> {
+        std::thread::sleep(RETRY);
+        let Ok(mut board) = finder.open() else {
+            return Ok(None);
+        };
+        match board.link.greet() {
+            Ok(banner) => {
+                let banner = banner.unwrap_or_default();
+                screen.print(&format!("{} is there again: {banner}", board.name))?;
+                self.session = Session::new(Instant::now(), true, self.recorder.is_some());
+                Ok(Some(board))
+            }
+            Err(LinkError::Gone) => Ok(None),
+            Err(error) => Err(board.failure(&error)),
+        }
+    }
+}
+
+/// The message to the user after the dialogue has failed.
+fn failure(error: TurnError, board: &Connection) -> Failure {
+    match error {
+        TurnError::Link(error) => board.failure(&error),
+        TurnError::Io(error) => error.into(),
+        TurnError::File(failure) => failure,
+    }
+}
+
+/// The lines of standard input as they come; disconnected at its end.
+fn lines_of_stdin() -> Receiver<String> {
+    let (send, receive) = mpsc::channel();
+    std::thread::spawn(move || {
+        for line in io::stdin().lock().lines() {
+            let Ok(line) = line else {
+                break;
+            };
+            if send.send(line).is_err() {
+                break;
+            }
+        }
+    });
+    receive
+}

@@ -1,0 +1,436 @@
+//! A line-based connection to the robot over anything that reads and writes bytes.
+//!
+//! The serial line loses nothing, but it does not mark the end of an answer, and a board
+//! may be reset, unplugged or not a lizard at all. So after each line the link waits for
+//! its one `ok` or `err`, and collects the lines that begin with `#` meanwhile. If
+//! nothing comes, it fails with a sentence.
+
+use std::collections::VecDeque;
+use std::io::{self, ErrorKind, Read, Write};
+use std::time::{Duration, Instant};
+
+/// The beginning of a robot's first line.
+const BANNER: &str = "# lizard ";
+/// The beginning of an answer to `status`.
+const STATUS: &str = "ok gait=";
+/// Longer lines are cut: the firmware's are shorter, noise may be endless.
+const LONGEST: usize = 512;
+
+/// Time limits of a connection.
+#[derive(Debug, Clone, Copy)]
+pub struct Patience {
+    /// For the banner after the port has been opened. A UNO's boot loader takes
+    /// more than a second of it.
+    pub banner: Duration,
+    /// For an answer. `save` takes the longest, a third of a second.
+    pub answer: Duration,
+}
+
+impl Default for Patience {
+    fn default() -> Self {
+        Self {
+            banner: Duration::from_millis(3000),
+            answer: Duration::from_millis(2000),
+        }
+    }
+}
+
+/// The reason why the other end gives no usable answer.
+#[derive(Debug, thiserror::Error)]
+pub enum LinkError {
+    /// The port has vanished.
+    #[error("the port is gone: the board was unplugged, or its cable is loose")]
+    Gone,
+    /// A line was not answered.
+    #[error("the robot does not answer to `{0}`")]
+    Silent(String),
+    /// The first line of a device that is no lizard.
+    #[error(
+        "this is no lizard: it says `{0}`, not `# lizard ...`; is it the right port, and has \
+         the board been flashed (make flash)?"
+    )]
+    Stranger(String),
+    /// Nothing answers at all.
+    #[error(
+        "nothing answers: no banner and no answer to `status`; is it the right port, and has \
+         the board been flashed (make flash)?"
+    )]
+    Mute,
+    /// The robot refuses a line.
+    #[error("the robot refuses `{line}`: {reason}")]
+    Refused {
+        /// The line that was sent.
+        line: String,
+        /// The code and the reason.
+        reason: String,
+    },
+    /// The answer is not of the form that this program knows.
+    #[error("the robot's answer to `{line}` is not understood: `{answer}`")]
+    Unclear {
+        /// The line that was sent.
+        line: String,
+        /// The answer that was received.
+        answer: String,
+    },
+    /// The system's own reason.
+    #[error("{0}")]
+    Io(io::Error),
+}
+
+impl From<LinkError> for crate::Failure {
+    fn from(error: LinkError) -> Self {
+        Self::Impossible(error.to_string())
+    }
+}
+
+/// The robot's reply to a line.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Reply {
+    /// The `#` lines before the answer.
+    pub notes: Vec<String>,
+    /// `ok ...` or `err ...`.
+    pub answer: String,
+}
+
+/// A connection. Reading from `port` must end by itself within some milliseconds,
+/// with [`ErrorKind::TimedOut`] if there is nothing.
+#[derive(Debug)]
+pub struct Link<P> {
+    port: P,
+    patience: Patience,
+    /// The beginning of a line whose end has not come yet.
+    partial: Vec<u8>,
+    lines: VecDeque<String>,
+}
+
+impl<P: Read + Write> Link<P> {
+    /// A connection over an open port.
+    pub fn new(port: P, patience: Patience) -> Self {
+        Self {
+            port,
+            patience,
+            partial: Vec::new(),
+            lines: VecDeque::new(),
+        }
+    }
+
+    /// Waits for the banner and returns it. A board that was not reset when the
+    /// port was opened has none to say, so it is asked for its status; then the
+    /// result is `None`.
+    ///
+    /// # Errors
+    /// Nothing answers, or no lizard does.
+    pub fn greet(&mut self) -> Result<Option<String>, LinkError> {
+        let end = Instant::now() + self.patience.banner;
+        let mut first = None;
+        while let Some(line) = self.line_before(end)? {
+            if line.starts_with(BANNER) {
+                return Ok(Some(line));
+            }
+            first = first.or(Some(line));
+        }
+        let end = Instant::now() + self.patience.answer;
+        self.send("status")?;
+        while let Some(line) = self.line_before(end)? {
+            if line.starts_with(STATUS) {
+                return Ok(None);
+            }
+            first = first.or(Some(line));
+        }
+        Err(first.map_or(LinkError::Mute, LinkError::Stranger))
+    }
+
+    /// Sends a line and does not wait.
+    ///
+    /// # Errors
+    /// The port is gone.
+    pub fn send(&mut self, line: &str) -> Result<(), LinkError> {
+        let bytes = format!("{line}\n");
+        self.port.write_all(bytes.as_bytes()).map_err(broken)?;
+        self.port.flush().map_err(broken)
+    }
+
+    /// Sends a line and waits for its answer, whatever it is.
+    ///
+    /// # Errors
+    /// No answer, or the port is gone.
+    pub fn ask(&mut self, line: &str) -> Result<Reply, LinkError> {
+        self.send(line)?;
+        let end = Instant::now() + self.patience.answer;
+        let mut notes = Vec::new();
+        while let Some(answer) = self.line_before(end)? {
+            if !answer.starts_with('#') {
+                return Ok(Reply { notes, answer });
+            }
+            notes.push(answer);
+        }
+        Err(LinkError::Silent(line.to_owned()))
+    }
+
+    /// Sends a line that must be accepted; returns the `#` lines before the answer.
+    ///
+    /// # Errors
+    /// As [`Link::ask`], and if the robot refuses.
+    pub fn tell(&mut self, line: &str) -> Result<Reply, LinkError> {
+        let reply = self.ask(line)?;
+        let line = line.to_owned();
+        if let Some(reason) = reply.answer.strip_prefix("err ") {
+            let reason = reason.to_owned();
+            return Err(LinkError::Refused { line, reason });
+        }
+        if !reply.answer.starts_with("ok ") {
+            let answer = reply.answer;
+            return Err(LinkError::Unclear { line, answer });
+        }
+        Ok(reply)
+    }
+
+    /// The next line, waited for at most `wait`.
+    ///
+    /// # Errors
+    /// The port is gone.
+    pub fn line(&mut self, wait: Duration) -> Result<Option<String>, LinkError> {
+        self.line_before(Instant::now() + wait)
+    }
+
+    /// Lets time pass; what comes meanwhile is dropped.
+    ///
+    /// # Errors
+    /// The port is gone.
+    pub fn pause(&mut self, time: Duration) -> Result<(), LinkError> {
+        let end = Instant::now() + time;
+        while self.line_before(end)?.is_some() {}
+        Ok(())
+    }
+
+    fn line_before(&mut self, end: Instant) -> Result<Option<String>, LinkError> {
+        loop {
+            if let Some(line) = self.lines.pop_front() {
+                return Ok(Some(line));
+            }
+            self.receive()?;
+            if self.lines.is_empty() && Instant::now() >= end {
+                return Ok(None);
+            }
+        }
+    }
+
+    fn receive(&mut self) -> Result<(), LinkError> {
+        let mut bytes = [0; 256];
+        match self.port.read(&mut bytes) {
+            Ok(0) => Err(LinkError::Gone),
+            Ok(count) => {
+                for byte in &bytes[..count] {
+                    self.take(*byte);
+                }
+                Ok(())
+            }
+            Err(error) => match error.kind() {
+                ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted => Ok(()),
+                _ => Err(broken(error)),
+            },
+        }
+    }
+
+    fn take(&mut self, byte: u8) {
+        if byte != b'\n' {
+            if self.partial.len() < LONGEST {
+                self.partial.push(byte);
+            }
+            return;
+        }
+        let bytes = std::mem::take(&mut self.partial);
+        let text = String::from_utf8_lossy(&bytes);
+        let text = text.trim_end_matches('\r');
+        // A reset cuts off what the board was saying; that is no line, and its first line
+        // follows on it.
+        let text = &text[text.find(BANNER).unwrap_or(0)..];
+        if !text.is_empty() {
+            // A terminal obeys control characters: noise must not reach it.
+            let clean = |c: char| if c.is_control() { '\u{fffd}' } else { c };
+            self.lines.push_back(text.chars().map(clean).collect());
+        }
+    }
+}
+
+/// An error of the system at an open port nearly always means that it is gone.
+fn broken(error: io::Error) -> LinkError {
+    if is_gone(&error) {
+        LinkError::Gone
+    } else {
+        LinkError::Io(error)
+    }
+}
+
+/// True if an error of the system means that the board was unplugged.
+pub(crate) fn is_gone(error: &io::Error) -> bool {
+    // EIO, ENXIO, ENODEV: what Linux says of a USB port without its board.
+    matches!(error.raw_os_error(), Some(5 | 6 | 19))
+        || matches!(
+            error.kind(),
+            ErrorKind::BrokenPipe
+                | ErrorKind::NotConnected
+                | ErrorKind::NotFound
+                | ErrorKind::UnexpectedEof
+                | ErrorKind::ConnectionAborted
+        )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A port that plays back what was written down for it: each write lets the
+    /// next piece come. `None` at the end is a port that vanishes.
+    struct Script {
+        pieces: VecDeque<Option<&'static str>>,
+        ready: VecDeque<u8>,
+        gone: bool,
+        sent: String,
+    }
+
+    impl Script {
+        fn link(pieces: &[Option<&'static str>]) -> Link<Self> {
+            let mut script = Self {
+                pieces: pieces.iter().copied().collect(),
+                ready: VecDeque::new(),
+                gone: false,
+                sent: String::new(),
+            };
+            script.next();
+            let ms = Duration::from_millis(20);
+            let patience = Patience {
+                banner: ms,
+                answer: ms,
+            };
+            Link::new(script, patience)
+        }
+
+        fn next(&mut self) {
+            match self.pieces.pop_front() {
+                Some(Some(piece)) => self.ready.extend(piece.bytes()),
+                Some(None) => self.gone = true,
+                None => {}
+            }
+        }
+    }
+
+    impl Read for Script {
+        fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+            if self.ready.is_empty() {
+                if self.gone {
+                    return Err(io::Error::from_raw_os_error(5));
+                }
+                return Err(ErrorKind::TimedOut.into());
+            }
+            // In small pieces, as a serial port gives them.
+            let count = into.len().min(3);
+            self.ready.read(&mut into[..count])
+        }
+    }
+
+    impl Write for Script {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            self.sent.push_str(&String::from_utf8_lossy(bytes));
+            self.next();
+            Ok(bytes.len())
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    const HELLO: &str = "# lizard 0.2.0 robot paper 1a2b3c4d, send help for the commands\r\n";
+
+    #[test]
+    fn a_banner_behind_what_a_reset_has_cut_off_is_one() {
+        for cut in ["", "ok wal", "# t=12 pose=138.5", "\u{fffd}x"] {
+            let said = format!("{cut}# lizard 0.2.0 robot paper 1\r\n");
+            let said: &'static str = said.leak();
+            let mut link = Script::link(&[Some(said)]);
+            let banner = link.greet().expect("it greets");
+            assert_eq!(
+                banner.as_deref(),
+                Some("# lizard 0.2.0 robot paper 1"),
+                "{cut:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_banner_is_found_behind_the_noise_of_an_opening() {
+        let mut link = Script::link(&[Some(
+            "\u{fffd}\x00x\n# t=7 po\r\n# lizard 0.2.0 robot paper 1a\r\n",
+        )]);
+        let banner = link.greet().expect("it is a lizard");
+        assert_eq!(banner.as_deref(), Some("# lizard 0.2.0 robot paper 1a"));
+    }
+
+    #[test]
+    fn a_board_that_was_not_reset_is_known_by_its_status() {
+        let mut link = Script::link(&[Some(""), Some("# t=1 pose=1\r\nok gait=stand phase=0\r\n")]);
+        assert_eq!(link.greet().expect("it is a lizard"), None);
+        assert_eq!(link.port.sent, "status\n");
+    }
+
+    #[test]
+    fn another_device_is_named_by_what_it_says_and_a_silent_one_is_called_silent() {
+        let words = |pieces: &[Option<&'static str>]| {
+            let error = Script::link(pieces).greet().expect_err("no lizard");
+            error.to_string()
+        };
+        let words_of_printer = words(&[Some("start\nGrbl 1.1\n"), Some("error:20\n")]);
+        assert!(
+            words_of_printer.starts_with("this is no lizard: it says `start`"),
+            "{words_of_printer}"
+        );
+        assert!(words(&[]).starts_with("nothing answers"));
+    }
+
+    #[test]
+    fn an_answer_is_the_first_line_that_is_no_note() {
+        let mut link = Script::link(&[
+            Some(HELLO),
+            Some("# boot stand\r\n# deadman 0\r\nok cal\r\n"),
+        ]);
+        link.greet().expect("it is a lizard");
+        let reply = link.ask("cal").expect("it answers");
+        assert_eq!(reply.notes, ["# boot stand", "# deadman 0"]);
+        assert_eq!(reply.answer, "ok cal");
+    }
+
+    #[test]
+    fn a_refusal_names_the_line_and_the_reason() {
+        let mut link = Script::link(&[Some(HELLO), Some("err 3 trim must be -20..20\r\n")]);
+        link.greet().expect("it is a lizard");
+        let error = link.tell("trim 1 50").expect_err("it is refused");
+        assert_eq!(
+            error.to_string(),
+            "the robot refuses `trim 1 50`: 3 trim must be -20..20"
+        );
+    }
+
+    #[test]
+    fn silence_and_a_vanished_port_are_two_things() {
+        let mut link = Script::link(&[Some(HELLO), Some("# a note\r\n"), None]);
+        link.greet().expect("it is a lizard");
+        assert!(matches!(link.ask("walk"), Err(LinkError::Silent(line)) if line == "walk"));
+        assert!(matches!(link.ask("walk"), Err(LinkError::Gone)));
+    }
+
+    #[test]
+    fn an_endless_line_is_cut_and_control_characters_are_replaced() {
+        let mut link = Script::link(&[]);
+        for _ in 0..2000 {
+            link.take(b'a');
+        }
+        link.take(b'\n');
+        for byte in b"\x1b[2Jhi\r\n\r\n\n" {
+            link.take(*byte);
+        }
+        assert_eq!(link.lines[0].len(), LONGEST);
+        assert_eq!(link.lines[1], "\u{fffd}[2Jhi");
+        assert_eq!(link.lines.len(), 2, "empty lines are none");
+    }
+}

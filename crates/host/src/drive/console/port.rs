@@ -1,0 +1,202 @@
+//! Opening a serial port, and saying in a sentence why it cannot be opened.
+
+use std::io;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use serialport::{ErrorKind, SerialPort};
+
+use super::find;
+
+/// The console's speed.
+pub const BAUD: u32 = 115_200;
+/// Time that a read waits for a byte; a loop over it repeats that often.
+const READ: Duration = Duration::from_millis(5);
+/// Time that another program may take to close the port.
+const CLOSING: Duration = Duration::from_secs(1);
+
+/// The reason why a port cannot be opened.
+#[derive(Debug, thiserror::Error)]
+pub enum PortError {
+    /// There is no such file.
+    #[error("there is no {name}; USB serial ports of this machine: {ports}")]
+    Missing {
+        /// The port that was asked for.
+        name: String,
+        /// Those that are there.
+        ports: String,
+    },
+    /// Another program has it.
+    #[error("{name} is open in {who}; close that program, then try again")]
+    Busy {
+        /// The port that is busy.
+        name: String,
+        /// The other program.
+        who: String,
+    },
+    /// The user may not.
+    #[error(
+        "you may not open {0}: it belongs to a group, on Debian dialout. As root: \
+         usermod -aG dialout <user>, then log in again"
+    )]
+    Forbidden(String),
+    /// It is something else.
+    #[error("{0} is no serial port")]
+    NoPort(String),
+    /// The system's own reason.
+    #[error("{name} cannot be opened: {error}")]
+    Other {
+        /// The port that was asked for.
+        name: String,
+        /// The error of the serial port library.
+        error: serialport::Error,
+    },
+}
+
+impl From<PortError> for crate::Failure {
+    fn from(error: PortError) -> Self {
+        let sentence = error.to_string();
+        match error {
+            PortError::Missing { .. } | PortError::NoPort(_) => Self::Input(sentence),
+            _ => Self::Impossible(sentence),
+        }
+    }
+}
+
+/// Opens a port for this program alone. That resets a UNO.
+///
+/// # Errors
+/// There is none, or it must not or cannot be opened.
+pub fn open(name: &str) -> Result<Box<dyn SerialPort>, PortError> {
+    if cfg!(unix) && !Path::new(name).exists() {
+        return Err(missing(name));
+    }
+    let busy = |who: String| PortError::Busy {
+        name: name.to_owned(),
+        who,
+    };
+    if let Some(who) = lasting_holder(name) {
+        return Err(busy(who));
+    }
+    let opened = serialport::new(name, BAUD).timeout(READ).open();
+    opened.map_err(|error| match error.kind() {
+        ErrorKind::Io(io::ErrorKind::PermissionDenied) => PortError::Forbidden(name.to_owned()),
+        ErrorKind::Io(io::ErrorKind::NotFound) => missing(name),
+        ErrorKind::NoDevice => busy("another program".to_owned()),
+        _ if cfg!(unix) && is_no_terminal(name) => PortError::NoPort(name.to_owned()),
+        _ => PortError::Other {
+            name: name.to_owned(),
+            error,
+        },
+    })
+}
+
+fn missing(name: &str) -> PortError {
+    let ports = find::usb_ports();
+    let ports: Vec<String> = ports.iter().map(ToString::to_string).collect();
+    PortError::Missing {
+        name: name.to_owned(),
+        ports: if ports.is_empty() {
+            "none".to_owned()
+        } else {
+            ports.join(", ")
+        },
+    }
+}
+
+/// A program that has the port open and keeps it: one that is about to close it, as a
+/// console that has just been left or a simulated board that clears its line, is waited
+/// for.
+fn lasting_holder(name: &str) -> Option<String> {
+    let begin = Instant::now();
+    loop {
+        let holder = holder(name)?;
+        if begin.elapsed() > CLOSING {
+            return Some(holder);
+        }
+        std::thread::sleep(READ);
+    }
+}
+
+/// A program that has the port open, where the system says so: two programs at one
+/// port take bytes from each other. Processes of other users are not seen.
+fn holder(name: &str) -> Option<String> {
+    let port = std::fs::canonicalize(name).ok()?;
+    let own = std::process::id().to_string();
+    let processes = std::fs::read_dir("/proc").ok()?;
+    processes.flatten().find_map(|process| {
+        let id = process.file_name().into_string().ok()?;
+        if id == own || !id.bytes().all(|byte| byte.is_ascii_digit()) {
+            return None;
+        }
+        let mut files = std::fs::read_dir(process.path().join("fd")).ok()?.flatten();
+        files.find(|file| std::fs::read_link(file.path()).is_ok_and(|open| open == port))?;
+        let program = std::fs::read_to_string(process.path().join("comm")).ok()?;
+        Some(format!("{} (process {id})", program.trim()))
+    })
+}
+
+fn is_no_terminal(name: &str) -> bool {
+    use std::io::IsTerminal;
+    std::fs::File::open(name).is_ok_and(|file| !file.is_terminal())
+}
+
+#[cfg(test)]
+mod tests {
+    #[cfg(target_os = "linux")]
+    use lizard_time_limit::LIMIT;
+
+    use super::*;
+
+    fn refusal(name: &str) -> PortError {
+        open(name).expect_err("it does not open")
+    }
+
+    #[test]
+    fn a_port_that_is_not_there_and_a_file_that_is_no_port_are_two_things() {
+        let words = refusal("/dev/no-such-port").to_string();
+        assert!(words.starts_with("there is no /dev/no-such-port; USB serial ports"));
+        let file = tempfile::NamedTempFile::new().expect("a file");
+        let name = file.path().display().to_string();
+        assert_eq!(
+            refusal(&name).to_string(),
+            format!("{name} is no serial port")
+        );
+        assert_eq!(crate::Failure::from(refusal(&name)).exit_code(), 2);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_program_that_is_about_to_close_the_port_is_waited_for() {
+        let file = tempfile::NamedTempFile::new().expect("a file");
+        let name = file.path().display().to_string();
+        let mut other = std::process::Command::new("sleep")
+            .arg("0.1")
+            .stdin(file.reopen().expect("it opens"))
+            .spawn()
+            .expect("it starts");
+        let words = refusal(&name).to_string();
+        LIMIT.end_of(&mut other).expect("it ends");
+        assert_eq!(words, format!("{name} is no serial port"));
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_port_that_another_program_has_open_is_refused_with_its_name() {
+        let file = tempfile::NamedTempFile::new().expect("a file");
+        let name = file.path().display().to_string();
+        let mut other = std::process::Command::new("sleep")
+            .arg("60")
+            .stdin(file.reopen().expect("it opens"))
+            .spawn()
+            .expect("it starts");
+        let words = refusal(&name).to_string();
+        other.kill().expect("it ends");
+        LIMIT.end_of(&mut other).expect("it ends");
+        let id = other.id();
+        assert_eq!(
+            words,
+            format!("{name} is open in sleep (process {id}); close that program, then try again")
+        );
+    }
+}

@@ -1,0 +1,227 @@
+//! The line that a person types, with the lines typed before.
+
+use crossterm::event::{Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+use tui_input::Input;
+use tui_input::backend::crossterm::EventHandler;
+
+/// Lines that are remembered.
+const REMEMBERED: usize = 500;
+
+/// The effect of a key.
+#[derive(Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// Nothing for the robot.
+    Edited,
+    /// A line, to be sent.
+    Line(String),
+    /// The person wants to leave.
+    Leave,
+    /// The program is to stop until the shell lets it go on.
+    Stop,
+}
+
+/// An input line.
+#[derive(Debug, Default)]
+pub struct Prompt {
+    input: Input,
+    history: Vec<String>,
+    /// Place in the history; its end is the line being typed.
+    at: usize,
+    /// The unfinished line, while an older one is shown.
+    draft: String,
+}
+
+impl Prompt {
+    /// An empty line with a history.
+    #[must_use]
+    pub fn new(history: Vec<String>) -> Self {
+        Self {
+            at: history.len(),
+            history,
+            ..Self::default()
+        }
+    }
+
+    /// Takes a key.
+    pub fn key(&mut self, key: KeyEvent) -> Outcome {
+        if key.kind == KeyEventKind::Release {
+            return Outcome::Edited;
+        }
+        let control = key.modifiers.contains(KeyModifiers::CONTROL);
+        match key.code {
+            KeyCode::Char('c') if control => return Outcome::Leave,
+            KeyCode::Char('d') if control => {
+                if self.text().is_empty() {
+                    return Outcome::Leave;
+                }
+                self.input.handle(tui_input::InputRequest::DeleteNextChar);
+            }
+            KeyCode::Char('z') if control => return Outcome::Stop,
+            KeyCode::Up => self.go(self.at.saturating_sub(1)),
+            KeyCode::Char('p') if control => self.go(self.at.saturating_sub(1)),
+            KeyCode::Down => self.go(self.at + 1),
+            KeyCode::Char('n') if control => self.go(self.at + 1),
+            KeyCode::Enter => return self.enter(),
+            KeyCode::Char('j' | 'm') if control => return self.enter(),
+            _ => {
+                self.input.handle_event(&Event::Key(key));
+            }
+        }
+        Outcome::Edited
+    }
+
+    /// Takes text that was pasted; each line end in it is one.
+    pub fn paste(&mut self, text: &str) -> Vec<Outcome> {
+        let mut outcomes = Vec::new();
+        for c in text.chars() {
+            match c {
+                '\r' => {}
+                '\n' => outcomes.push(self.enter()),
+                c if c.is_control() => {}
+                c => {
+                    self.input.handle(tui_input::InputRequest::InsertChar(c));
+                }
+            }
+        }
+        outcomes
+    }
+
+    fn enter(&mut self) -> Outcome {
+        let line = self.input.value_and_reset().trim().to_owned();
+        if !line.is_empty() && self.history.last() != Some(&line) {
+            self.history.push(line.clone());
+            let surplus = self.history.len().saturating_sub(REMEMBERED);
+            self.history.drain(..surplus);
+        }
+        self.at = self.history.len();
+        self.draft.clear();
+        match line.as_str() {
+            "" => Outcome::Edited,
+            "quit" | "exit" => Outcome::Leave,
+            _ => Outcome::Line(line),
+        }
+    }
+
+    fn go(&mut self, to: usize) {
+        let end = self.history.len();
+        let to = to.min(end);
+        if to == self.at {
+            return;
+        }
+        if self.at == end {
+            self.draft = self.text().to_owned();
+        }
+        self.at = to;
+        let line = self.history.get(to).unwrap_or(&self.draft);
+        self.input = Input::new(line.clone());
+    }
+
+    /// The text typed so far.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        self.input.value()
+    }
+
+    /// The part of it that fits in `width` columns, and the cursor's column in it.
+    #[must_use]
+    pub fn view(&self, width: usize) -> (String, usize) {
+        let scroll = self.input.visual_scroll(width.max(1));
+        let shown = self.text().chars().skip(scroll).take(width).collect();
+        (shown, self.input.visual_cursor().saturating_sub(scroll))
+    }
+
+    /// The lines typed so far.
+    #[must_use]
+    pub fn history(&self) -> &[String] {
+        &self.history
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn press(prompt: &mut Prompt, code: KeyCode) -> Outcome {
+        prompt.key(KeyEvent::new(code, KeyModifiers::NONE))
+    }
+
+    fn control(prompt: &mut Prompt, c: char) -> Outcome {
+        prompt.key(KeyEvent::new(KeyCode::Char(c), KeyModifiers::CONTROL))
+    }
+
+    fn typed(prompt: &mut Prompt, text: &str) -> Outcome {
+        for c in text.chars() {
+            press(prompt, KeyCode::Char(c));
+        }
+        press(prompt, KeyCode::Enter)
+    }
+
+    #[test]
+    fn a_line_is_edited_in_its_middle_before_it_is_sent() {
+        let mut prompt = Prompt::default();
+        for c in "wal 5".chars() {
+            press(&mut prompt, KeyCode::Char(c));
+        }
+        press(&mut prompt, KeyCode::Backspace);
+        press(&mut prompt, KeyCode::Left);
+        press(&mut prompt, KeyCode::Char('k'));
+        assert_eq!(prompt.view(20), ("walk ".to_owned(), 4));
+        assert_eq!(
+            press(&mut prompt, KeyCode::Enter),
+            Outcome::Line("walk".to_owned())
+        );
+        assert_eq!(prompt.text(), "");
+    }
+
+    #[test]
+    fn the_arrows_bring_back_older_lines_and_then_the_draft() {
+        let mut prompt = Prompt::new(vec!["stand".to_owned()]);
+        typed(&mut prompt, "walk");
+        typed(&mut prompt, "walk");
+        press(&mut prompt, KeyCode::Char('s'));
+        let mut seen = Vec::new();
+        for code in [
+            KeyCode::Up,
+            KeyCode::Up,
+            KeyCode::Up,
+            KeyCode::Down,
+            KeyCode::Down,
+            KeyCode::Down,
+        ] {
+            press(&mut prompt, code);
+            seen.push(prompt.text().to_owned());
+        }
+        assert_eq!(seen, ["walk", "stand", "stand", "walk", "s", "s"]);
+        assert_eq!(prompt.history(), ["stand", "walk"], "a repeated line once");
+    }
+
+    #[test]
+    fn control_c_control_d_on_an_empty_line_and_quit_leave() {
+        let mut prompt = Prompt::default();
+        assert_eq!(control(&mut prompt, 'c'), Outcome::Leave);
+        assert_eq!(control(&mut prompt, 'd'), Outcome::Leave);
+        assert_eq!(typed(&mut prompt, "quit"), Outcome::Leave);
+        press(&mut prompt, KeyCode::Char('x'));
+        press(&mut prompt, KeyCode::Home);
+        assert_eq!(control(&mut prompt, 'd'), Outcome::Edited, "it deletes");
+        assert_eq!(prompt.text(), "");
+        assert_eq!(press(&mut prompt, KeyCode::Enter), Outcome::Edited);
+    }
+
+    #[test]
+    fn pasted_lines_are_sent_one_by_one() {
+        let mut prompt = Prompt::default();
+        let outcomes = prompt.paste("walk\r\nspeed 50\nst");
+        let lines = ["walk", "speed 50"].map(|line| Outcome::Line(line.to_owned()));
+        assert_eq!(outcomes, lines);
+        assert_eq!(prompt.text(), "st");
+    }
+
+    #[test]
+    fn a_long_line_scrolls_with_its_cursor() {
+        let mut prompt = Prompt::default();
+        prompt.paste("0123456789");
+        let (shown, cursor) = prompt.view(6);
+        assert!(shown.ends_with('9') && cursor <= 6, "{shown} {cursor}");
+    }
+}

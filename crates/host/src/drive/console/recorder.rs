@@ -1,0 +1,222 @@
+//! A session as a file: one JSON object in a line, with the time in ms.
+
+use std::fs::File;
+use std::io::{self, BufWriter, ErrorKind, Write};
+use std::path::Path;
+use std::time::Instant;
+
+use serde::{Deserialize, Serialize};
+
+use super::session::Said;
+use super::status::angles;
+use crate::Failure;
+use crate::shared::plain::plain;
+use crate::shared::{files, json};
+
+/// The value of `format` in the first line. The number rises when a key changes its meaning.
+pub const FORMAT: &str = "lizard record 1";
+
+/// A line of the file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Entry {
+    /// Milliseconds since the session began.
+    pub ms: u64,
+    /// The event at that time.
+    #[serde(flatten)]
+    pub event: Event,
+}
+
+/// An event of a session.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Event {
+    /// The session began; always the first line.
+    Begin {
+        /// The format of the file: [`FORMAT`].
+        format: String,
+        /// The port of the board.
+        port: String,
+        /// The robot's first line, unless it was not reset.
+        banner: Option<String>,
+    },
+    /// A person's line.
+    Sent(String),
+    /// The robot's answer to it.
+    Answer(String),
+    /// A line that begins with `#`.
+    Note(String),
+    /// An answer to `status`, which the program asked for.
+    Status(String),
+    /// A report of `watch`.
+    Pose {
+        /// Frames since power-on, 50 a second.
+        frame: u64,
+        /// Degrees, chassis frame, A1 to A4.
+        angles: [f64; 4],
+    },
+    /// The port has vanished.
+    Gone,
+}
+
+/// Writes a session.
+#[derive(Debug)]
+pub struct Recorder<W: Write> {
+    /// The file's name for messages.
+    name: String,
+    out: W,
+    begin: Instant,
+}
+
+/// A new file for a session.
+///
+/// # Errors
+/// It is there already, or cannot be made.
+pub fn create(path: &Path) -> Result<Recorder<BufWriter<File>>, Failure> {
+    let name = path.display().to_string();
+    match File::create_new(path) {
+        Ok(file) => Ok(Recorder::new(name, BufWriter::new(file), Instant::now())),
+        Err(error) if error.kind() == ErrorKind::AlreadyExists => Err(Failure::Input(format!(
+            "{name} is there already; name a new file for the session"
+        ))),
+        Err(error) => Err(files::cannot(path, &error)),
+    }
+}
+
+impl<W: Write> Recorder<W> {
+    /// A session that begins now, in a file of this name.
+    pub fn new(name: String, out: W, begin: Instant) -> Self {
+        Self { name, out, begin }
+    }
+
+    /// Writes an event. All but poses are in the file at once.
+    ///
+    /// # Errors
+    /// Writing failed; the sentence names the file.
+    pub fn write(&mut self, now: Instant, event: Event) -> Result<(), Failure> {
+        let ms = now.saturating_duration_since(self.begin).as_millis() as u64;
+        let is_pose = matches!(event, Event::Pose { .. });
+        json::line(&mut self.out, &Entry { ms, event }).map_err(|error| self.cannot(&error))?;
+        if is_pose { Ok(()) } else { self.flush() }
+    }
+
+    /// Puts all that was written into the file.
+    ///
+    /// # Errors
+    /// As [`Recorder::write`].
+    pub fn flush(&mut self) -> Result<(), Failure> {
+        self.out.flush().map_err(|error| self.cannot(&error))
+    }
+
+    fn cannot(&self, error: &io::Error) -> Failure {
+        files::cannot(Path::new(&self.name), error)
+    }
+}
+
+impl Event {
+    /// The event with its texts fit for a terminal: a file may hold anything.
+    #[must_use]
+    pub fn plain(self) -> Self {
+        match self {
+            Self::Begin {
+                format,
+                port,
+                banner,
+            } => Self::Begin {
+                format: plain(&format),
+                port: plain(&port),
+                banner: banner.as_deref().map(plain),
+            },
+            Self::Sent(line) => Self::Sent(plain(&line)),
+            Self::Answer(line) => Self::Answer(plain(&line)),
+            Self::Note(line) => Self::Note(plain(&line)),
+            Self::Status(line) => Self::Status(plain(&line)),
+            Self::Pose { .. } | Self::Gone => self,
+        }
+    }
+}
+
+impl From<Said> for Event {
+    fn from(said: Said) -> Self {
+        match said {
+            Said::Sent(line) => Self::Sent(line),
+            Said::Answer(line) => Self::Answer(line),
+            Said::Status(line) => Self::Status(line),
+            Said::Note(line) => match pose(&line) {
+                Some((frame, angles)) => Self::Pose { frame, angles },
+                None => Self::Note(line),
+            },
+        }
+    }
+}
+
+/// `# t=<frame> pose=<angles>`.
+fn pose(line: &str) -> Option<(u64, [f64; 4])> {
+    let (frame, pose) = line.strip_prefix("# t=")?.split_once(" pose=")?;
+    Some((frame.parse().ok()?, angles(pose)?))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+
+    #[test]
+    fn each_event_is_a_line_of_json_with_its_time() {
+        let begin = Instant::now();
+        let mut out = Vec::new();
+        let mut recorder = Recorder::new("a".to_owned(), &mut out, begin);
+        let events = [
+            Event::Begin {
+                format: FORMAT.to_owned(),
+                port: "p".to_owned(),
+                banner: None,
+            },
+            Said::Sent("walk".to_owned()).into(),
+            Said::Note("# t=7 pose=1.00,2.00,3.00,4.50".to_owned()).into(),
+            Said::Note("# fault: x".to_owned()).into(),
+            Event::Gone,
+        ];
+        for (n, event) in events.iter().enumerate() {
+            let now = begin + Duration::from_millis(20 * n as u64);
+            recorder
+                .write(now, event.clone())
+                .expect("a vector takes it");
+        }
+        let text = String::from_utf8(out).expect("it is text");
+        assert_eq!(
+            text,
+            "{\"ms\":0,\"begin\":{\"format\":\"lizard record 1\",\"port\":\"p\",\"banner\":null}}\n\
+             {\"ms\":20,\"sent\":\"walk\"}\n\
+             {\"ms\":40,\"pose\":{\"frame\":7,\"angles\":[1.0,2.0,3.0,4.5]}}\n\
+             {\"ms\":60,\"note\":\"# fault: x\"}\n\
+             {\"ms\":80,\"gone\":null}\n"
+        );
+        let read: Vec<Event> = text
+            .lines()
+            .map(|line| {
+                serde_json::from_str::<Entry>(line)
+                    .expect("it is an entry")
+                    .event
+            })
+            .collect();
+        assert_eq!(read, events);
+    }
+
+    #[test]
+    fn a_file_that_is_there_is_not_overwritten() {
+        let file = tempfile::NamedTempFile::new().expect("a file");
+        let words = create(file.path()).expect_err("it is there").to_string();
+        assert!(words.ends_with("is there already; name a new file for the session"));
+    }
+
+    #[test]
+    fn a_disk_that_is_full_is_said_with_the_name_of_the_file() {
+        let full: &mut [u8] = &mut [0; 10];
+        let mut recorder = Recorder::new("a.jsonl".to_owned(), full, Instant::now());
+        let event = Event::Sent("walk".to_owned());
+        let words = recorder.write(Instant::now(), event).expect_err("no room");
+        let words = words.to_string();
+        assert!(words.starts_with("cannot write a.jsonl: "), "{words}");
+    }
+}

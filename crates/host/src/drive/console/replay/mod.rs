@@ -1,0 +1,82 @@
+//! `lizard replay`: a kept session printed, summed up and drawn.
+
+mod session;
+mod summary;
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+use crate::simulate::sim::analysis::Run;
+use crate::simulate::sim::dialogue::Printer;
+use crate::simulate::sim::session::{DialogueLine, Sender};
+use crate::simulate::sim::timeline::{self, Caption};
+use crate::{Failure, RobotFile};
+
+use super::recorder::Event;
+use session::Session;
+
+/// Draw a session that `lizard console --record` has recorded
+///
+/// Prints the dialogue and a summary, and draws servo angles and footfalls over
+/// time.
+#[derive(clap::Args, Debug)]
+pub struct Args {
+    /// The recorded session
+    file: PathBuf,
+    /// The file for the picture
+    #[arg(long, value_name = "FILE", default_value = "out/lizard-replay.svg")]
+    svg: PathBuf,
+    #[command(flatten)]
+    robot: RobotFile,
+}
+
+const CAPTION: Caption = Caption {
+    title: "Servo angles and footfalls of a session",
+    note: "degrees in the chassis frame, as the robot reported them; dashed: the neutral angle",
+    axis: "time since the session began (s)",
+};
+
+/// Runs it.
+///
+/// # Errors
+/// The file is no session, or the picture cannot be written.
+pub fn run(args: Args) -> Result<(), Failure> {
+    let robot = args.robot.load()?;
+    let name = args.file.display();
+    let text = crate::shared::files::read_text(&args.file)?;
+    let session =
+        Session::parse(&text).map_err(|error| Failure::Input(format!("{name}: {error}")))?;
+
+    let mut out = io::stdout().lock();
+    let mut printer = Printer::new(true);
+    for entry in &session.entries {
+        let (from, text) = match &entry.event {
+            Event::Sent(line) => (Sender::User, line.clone()),
+            Event::Answer(line) | Event::Note(line) => (Sender::Robot, line.clone()),
+            Event::Gone => (Sender::Robot, "(the port was gone)".to_owned()),
+            Event::Begin { .. } | Event::Status(_) | Event::Pose { .. } => continue,
+        };
+        let ms = entry.ms as f64;
+        printer.print(&DialogueLine { ms, from, text }, &mut out)?;
+    }
+    writeln!(out)?;
+    summary::print(&session, &mut out)?;
+
+    let hash = format!(" {:08x},", robot.firmware().hash());
+    if session
+        .banner()
+        .is_some_and(|banner| !banner.contains(&hash))
+    {
+        writeln!(
+            out,
+            "picture     the session's robot is another than this robot.toml: angles are right, \
+             footfalls may not be"
+        )?;
+    }
+    let log = session.frames(&robot);
+    let (robot, log) = (&robot, &log);
+    let picture = timeline::draw(Run { robot, log }, &session.spans(), &CAPTION);
+    crate::shared::files::write(&args.svg, picture.as_bytes())?;
+    writeln!(out, "picture     {}", args.svg.display())?;
+    Ok(())
+}

@@ -1,0 +1,308 @@
+//! A session read back: its events, its frames, its commands.
+
+use lizard_robot::Robot;
+use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US};
+
+use super::super::recorder::{Entry, Event, FORMAT};
+use super::super::status::Status;
+use crate::simulate::sim::frame_log::FrameLog;
+use crate::simulate::sim::script::{Script, Step};
+use crate::simulate::sim::spans::{self, Span};
+
+/// Milliseconds of a frame.
+const FRAME_MS: u64 = 20;
+/// Frames without a report for which the pose is taken to be the last one.
+const HELD: usize = 50;
+/// Frames by which the robot's count and this machine's clock may differ. A line may
+/// come late; a simulated robot falls behind where the machine is too slow.
+const APART: usize = 10;
+/// The longest session that is drawn, a day.
+const LONGEST_MS: u64 = 86_400_000;
+
+/// The reason why a file is not a valid session.
+#[derive(Debug, PartialEq, Eq, thiserror::Error)]
+pub(super) enum SessionError {
+    /// It is another file, or of another format.
+    #[error("this is no session of `lizard console --record`: its first line has no \"{FORMAT}\"")]
+    Format,
+    /// A line is no event.
+    #[error("line {line}: {problem}")]
+    Line {
+        /// The number of the line, from 1.
+        line: usize,
+        /// The problem with this line.
+        problem: String,
+    },
+}
+
+/// A recorded session.
+#[derive(Debug)]
+pub(super) struct Session {
+    /// The events in order of time.
+    pub(super) entries: Vec<Entry>,
+}
+
+impl Session {
+    /// Reads the lines of a file. A last line that was cut short, by a program that
+    /// was killed or a disk that was full, is left out.
+    pub(super) fn parse(text: &str) -> Result<Self, SessionError> {
+        let mut entries: Vec<Entry> = Vec::new();
+        for (index, line) in text.lines().enumerate() {
+            let cut = !text.ends_with('\n') && index + 1 == text.lines().count();
+            let wrong = |problem: String| match index {
+                0 => SessionError::Format,
+                _ => SessionError::Line {
+                    line: index + 1,
+                    problem,
+                },
+            };
+            let entry: Entry = match serde_json::from_str(line) {
+                Ok(entry) => entry,
+                Err(_) if cut && index > 0 => break,
+                Err(error) => return Err(wrong(format!("it is no event: {error}"))),
+            };
+            let begins = matches!(&entry.event, Event::Begin { format, .. } if format == FORMAT);
+            if begins != (index == 0) {
+                return Err(wrong("a session begins once, in its first line".to_owned()));
+            }
+            if entry.ms > LONGEST_MS || entries.last().is_some_and(|last| last.ms > entry.ms) {
+                return Err(wrong(format!("{} ms is out of order", entry.ms)));
+            }
+            entries.push(Entry {
+                event: entry.event.plain(),
+                ..entry
+            });
+        }
+        if entries.is_empty() {
+            return Err(SessionError::Format);
+        }
+        Ok(Self { entries })
+    }
+
+    /// The robot's first line.
+    pub(super) fn banner(&self) -> Option<&str> {
+        match &self.entries.first()?.event {
+            Event::Begin { banner, .. } => banner.as_deref(),
+            _ => None,
+        }
+    }
+
+    /// When the last event happened, ms.
+    pub(super) fn end_ms(&self) -> u64 {
+        self.entries.last().map_or(0, |last| last.ms)
+    }
+
+    /// The pulses that make the poses, frame by frame since the session began: none
+    /// while the robot rested or said nothing.
+    pub(super) fn frames(&self, robot: &Robot) -> FrameLog {
+        let mut widths: Vec<[u16; 4]> = vec![[0; 4]; (self.end_ms() / FRAME_MS) as usize + 1];
+        let mut resting = false;
+        // The robot's count of frames and our own, where they were compared last.
+        let mut begin: Option<(u64, usize)> = None;
+        let mut count = 0;
+        // Our count of the last pose, unless the robot has rested or was reset since.
+        let mut last: Option<usize> = None;
+        for entry in &self.entries {
+            match &entry.event {
+                Event::Answer(line) if line == "ok rest" => resting = true,
+                Event::Answer(line) if line == "ok stand" => resting = false,
+                Event::Status(line) => {
+                    if let Some(status) = Status::parse(line) {
+                        resting = status.gait == "rest";
+                    }
+                }
+                Event::Pose { frame, angles } => {
+                    let now = (entry.ms / FRAME_MS) as usize;
+                    if *frame < count {
+                        (begin, last) = (None, None);
+                    }
+                    count = *frame;
+                    // The robot's count is steadier than the time at which a line came.
+                    let counted = begin.and_then(|(first, at)| {
+                        at.checked_add(usize::try_from(frame.checked_sub(first)?).ok()?)
+                    });
+                    let place = counted
+                        .filter(|place| place.abs_diff(now) <= APART)
+                        .unwrap_or(now);
+                    if counted != Some(place) {
+                        begin = Some((*frame, place));
+                    }
+                    let Some(slot) = widths.get_mut(place) else {
+                        continue;
+                    };
+                    if resting {
+                        last = None;
+                        continue;
+                    }
+                    let pulses = std::array::from_fn(|servo| {
+                        let us = robot.servos()[servo].pulse(angles[servo]);
+                        (us * CYCLES_PER_US as f64).round().clamp(1.0, 65_534.0) as u16
+                    });
+                    *slot = pulses;
+                    if let Some(before) =
+                        last.filter(|before| place.saturating_sub(*before) <= HELD)
+                    {
+                        let held = widths[before];
+                        for slot in widths.iter_mut().take(place).skip(before + 1) {
+                            *slot = held;
+                        }
+                    }
+                    last = Some(place);
+                }
+                _ => {}
+            }
+        }
+        FrameLog {
+            first: 0,
+            widths,
+            ..FrameLog::default()
+        }
+    }
+
+    /// The commands and the time spans in which each was in effect.
+    pub(super) fn spans(&self) -> Vec<Span> {
+        let mut steps = Vec::new();
+        let mut answers = Vec::new();
+        for entry in &self.entries {
+            match &entry.event {
+                Event::Sent(command) => {
+                    answers.resize(steps.len(), None);
+                    steps.push(Step {
+                        ms: entry.ms,
+                        command: command.clone(),
+                    });
+                }
+                Event::Answer(line) => answers.push(Some(line.clone())),
+                _ => {}
+            }
+        }
+        answers.resize(steps.len(), None);
+        let end_ms = self.end_ms();
+        spans::spans(&Script { steps, end_ms }, &answers)
+    }
+}
+
+/// Frames begin where milliseconds do.
+const _: () = assert!(crate::simulate::sim::frame::FRAME == FRAME_MS * CYCLES_PER_MS);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shared::robot_file::named;
+
+    const BEGIN: &str =
+        "{\"ms\":0,\"begin\":{\"format\":\"lizard record 1\",\"port\":\"p\",\"banner\":null}}\n";
+
+    fn session(lines: &[String]) -> Session {
+        let text = format!("{BEGIN}{}\n", lines.join("\n"));
+        Session::parse(&text).expect("it is a session")
+    }
+
+    fn pose(ms: u64, frame: u64, a1: f64) -> String {
+        format!(
+            "{{\"ms\":{ms},\"pose\":{{\"frame\":{frame},\"angles\":[{a1},41.41,318.59,221.41]}}}}"
+        )
+    }
+
+    #[test]
+    fn what_a_file_says_cannot_command_the_terminal() {
+        let text = BEGIN.replace("\"p\"", "\"p\\u001b[2J\"")
+            + "{\"ms\":1,\"note\":\"# x\\u001b]0;y\\u0007\"}\n{\"ms\":2,\"sent\":\"\\u009b1m\"}\n";
+        let session = Session::parse(&text).expect("it is a session");
+        let events: Vec<&Event> = session.entries.iter().map(|entry| &entry.event).collect();
+        assert!(
+            matches!(events[0], Event::Begin { port, .. } if port == "p\\u{1b}[2J"),
+            "{events:?}"
+        );
+        assert_eq!(events[1], &Event::Note("# x\\u{1b}]0;y\\u{7}".to_owned()));
+        assert_eq!(events[2], &Event::Sent("\\u{9b}1m".to_owned()));
+    }
+
+    #[test]
+    fn a_pose_becomes_the_pulses_that_make_it_and_a_missing_one_is_that_before() {
+        let session = session(&[
+            pose(104, 50, 138.590378),
+            pose(131, 51, 139.590378),
+            // Late by a frame and a half; frame 52 is missing.
+            pose(190, 53, 140.590378),
+        ]);
+        let log = session.frames(&named("paper"));
+        let a1: Vec<u16> = log.widths.iter().map(|widths| widths[0]).collect();
+        assert_eq!(
+            a1,
+            [0, 0, 0, 0, 0, 24_000, 24_160, 24_160, 24_320, 0],
+            "10 us for a degree, 16 cycles for a us"
+        );
+    }
+
+    #[test]
+    fn a_robot_that_falls_behind_the_clock_has_no_gap() {
+        let slow = (0..100).map(|n| pose(20 + 30 * n, n, 138.590378));
+        let log = session(&slow.collect::<Vec<_>>()).frames(&named("paper"));
+        let first = log.widths.iter().position(|widths| widths[0] > 0);
+        assert_eq!(first, Some(1));
+        assert!(log.widths[1..140].iter().all(|widths| widths[0] == 24_000));
+    }
+
+    #[test]
+    fn a_robot_that_rests_or_was_reset_has_no_pulses() {
+        let session = session(&[
+            pose(20, 1, 138.590378),
+            "{\"ms\":30,\"answer\":\"ok rest\"}".to_owned(),
+            pose(40, 2, 138.590378),
+            pose(60, 3, 138.590378),
+            "{\"ms\":70,\"answer\":\"ok stand\"}".to_owned(),
+            pose(80, 4, 138.590378),
+            // A reset.
+            pose(160, 0, 138.590378),
+            pose(180, 1, 138.590378),
+            // No robot counts so far.
+            pose(190, u64::MAX, 138.590378),
+        ]);
+        let log = session.frames(&named("paper"));
+        let lit: Vec<usize> = (0..10).filter(|n| log.widths[*n][0] > 0).collect();
+        assert_eq!(lit, [1, 4, 8, 9]);
+    }
+
+    #[test]
+    fn commands_are_in_effect_unless_refused() {
+        let session = session(&[
+            "{\"ms\":1000,\"sent\":\"walk\"}".to_owned(),
+            "{\"ms\":1001,\"answer\":\"ok walk\"}".to_owned(),
+            "{\"ms\":2000,\"sent\":\"fly\"}".to_owned(),
+            "{\"ms\":2001,\"answer\":\"err 1 no\"}".to_owned(),
+            "{\"ms\":3000,\"sent\":\"stop\"}".to_owned(),
+        ]);
+        let spans = session.spans();
+        let found: Vec<(&str, f64)> = spans
+            .iter()
+            .map(|span| (span.command.as_str(), span.from))
+            .collect();
+        assert_eq!(found, [("stand", 0.0), ("walk", 1.0), ("stop", 3.0)]);
+    }
+
+    #[test]
+    fn what_is_no_session_is_refused_with_its_line() {
+        let words = |text: &str| Session::parse(text).expect_err("it is wrong").to_string();
+        for text in ["", "{}\n", "walk\n", "{\"ms\":0,\"sent\":\"walk\"}\n"] {
+            assert!(words(text).starts_with("this is no session"), "{text}");
+        }
+        let line = |line: &str| words(&format!("{BEGIN}{{\"ms\":9,\"gone\":null}}\n{line}\n"));
+        assert!(line("{\"ms\":10,\"flew\":1}").starts_with("line 3: it is no event: "));
+        assert_eq!(
+            line("{\"ms\":8,\"gone\":null}"),
+            "line 3: 8 ms is out of order"
+        );
+        assert_eq!(
+            line("{\"ms\":99999999999,\"gone\":null}"),
+            "line 3: 99999999999 ms is out of order"
+        );
+    }
+
+    #[test]
+    fn a_last_line_that_was_cut_short_is_left_out() {
+        let text = format!("{BEGIN}{{\"ms\":9,\"gone\":null}}\n{{\"ms\":10,\"se");
+        let session = Session::parse(&text).expect("the rest is whole");
+        assert_eq!(session.entries.len(), 2);
+    }
+}

@@ -1,0 +1,145 @@
+//! A session in a few lines.
+
+use std::io::{self, Write};
+
+use super::super::recorder::Event;
+use super::super::status::Status;
+use super::session::Session;
+
+/// Prints how long it was, what was asked, what was close, what went wrong.
+pub(super) fn print(session: &Session, out: &mut impl Write) -> io::Result<()> {
+    let entries = &session.entries;
+    let count = |is: fn(&Event) -> bool| entries.iter().filter(|entry| is(&entry.event)).count();
+    if let Some(Event::Begin { port, banner, .. }) = entries.first().map(|entry| &entry.event) {
+        writeln!(out, "board       {port}")?;
+        let banner = banner
+            .as_deref()
+            .unwrap_or("it was not reset, so it did not say");
+        writeln!(out, "firmware    {}", banner.trim_start_matches("# "))?;
+    }
+    let seconds = session.end_ms() as f64 / 1000.0;
+    let frames = session.end_ms() / 20 + 1;
+    let poses = count(|event| matches!(event, Event::Pose { .. }));
+    writeln!(
+        out,
+        "time        {seconds:.1} s, the pose of {poses} of {frames} frames"
+    )?;
+    let refused = count(|event| matches!(event, Event::Answer(line) if line.starts_with("err")));
+    let sent = count(|event| matches!(event, Event::Sent(_)));
+    writeln!(out, "commands    {sent}, of these refused: {refused}")?;
+
+    let statuses: Vec<(u64, Status)> = entries
+        .iter()
+        .filter_map(|entry| match &entry.event {
+            Event::Status(line) | Event::Answer(line) => Some((entry.ms, Status::parse(line)?)),
+            _ => None,
+        })
+        .collect();
+    let margins = statuses
+        .iter()
+        .filter_map(|(ms, status)| Some((ms, status.margin?)));
+    if let Some((ms, margin)) = margins.min_by(|a, b| a.1.total_cmp(&b.1)) {
+        let seconds = *ms as f64 / 1000.0;
+        writeln!(
+            out,
+            "margin      smallest {margin:.3}, at {seconds:.1} s, of {} looks",
+            statuses.len()
+        )?;
+    }
+    range(
+        out,
+        "supply",
+        statuses.iter().filter_map(|(_, status)| status.vcc),
+    )?;
+    range(
+        out,
+        "servos",
+        statuses.iter().filter_map(|(_, status)| status.rail),
+    )?;
+    if let Some((_, last)) = statuses.last() {
+        writeln!(
+            out,
+            "counters    late pulses {}, bytes lost {}",
+            last.late, last.rx_lost
+        )?;
+    }
+    let mut faults = 0;
+    for entry in entries {
+        let words = match &entry.event {
+            Event::Note(line) if is_trouble(line) => line.trim_start_matches("# "),
+            Event::Gone => "the port was gone",
+            _ => continue,
+        };
+        faults += 1;
+        writeln!(
+            out,
+            "trouble     at {:.1} s: {words}",
+            entry.ms as f64 / 1000.0
+        )?;
+    }
+    if faults == 0 {
+        writeln!(out, "trouble     none")?;
+    }
+    Ok(())
+}
+
+/// True if a note reports a problem. A banner in the middle of a session is a reset.
+fn is_trouble(note: &str) -> bool {
+    ["# fault: ", "# supply: ", "# held ", "# lizard "]
+        .iter()
+        .any(|start| note.starts_with(start))
+}
+
+fn range(out: &mut impl Write, name: &str, volts: impl Iterator<Item = f64>) -> io::Result<()> {
+    let ends = volts.fold(None, |ends: Option<(f64, f64)>, volts| {
+        let (low, high) = ends.unwrap_or((volts, volts));
+        Some((low.min(volts), high.max(volts)))
+    });
+    match ends {
+        Some((low, high)) => writeln!(out, "{name:<12}{low:.2}..{high:.2} V"),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_summary_has_what_was_close_and_what_went_wrong() {
+        let status = |ms, margin| {
+            format!(
+                "{{\"ms\":{ms},\"status\":\"ok gait=walk pose=1,2,3,4 margin={margin} late=1 \
+                 rx_lost=0 vcc=4.{ms}\"}}"
+            )
+        };
+        let text = [
+            "{\"ms\":0,\"begin\":{\"format\":\"lizard record 1\",\"port\":\"p\",\"banner\":\"# lizard 0.2.0\"}}".to_owned(),
+            "{\"ms\":10,\"sent\":\"fly\"}".to_owned(),
+            "{\"ms\":20,\"answer\":\"err 1 no\"}".to_owned(),
+            status(500, 0.5),
+            status(600, 0.25),
+            status(700, 0.75),
+            "{\"ms\":1500,\"note\":\"# fault: a pulse came late\"}".to_owned(),
+            "{\"ms\":1600,\"note\":\"# boot: stand\"}".to_owned(),
+            "{\"ms\":2000,\"gone\":null}".to_owned(),
+        ]
+        .join("\n");
+        let session = Session::parse(&(text + "\n")).expect("it is a session");
+        let mut out = Vec::new();
+        print(&session, &mut out).expect("a vector takes it");
+        assert_eq!(
+            String::from_utf8(out).expect("it is text"),
+            "board       p\n\
+             firmware    lizard 0.2.0\n\
+             time        2.0 s, the pose of 0 of 101 frames\n\
+             commands    1, of these refused: 1\n\
+             margin      smallest 0.250, at 0.6 s, of 3 looks\n\
+             supply      4.50..4.70 V\n\
+             counters    late pulses 1, bytes lost 0\n\
+             trouble     at 1.5 s: a pulse came late\n\
+             trouble     at 2.0 s: the port was gone\n"
+                .replace("a pulse came late", "fault: a pulse came late")
+        );
+    }
+}

@@ -1,0 +1,145 @@
+//! The terminal: lines above, which scroll away as usual, and at the bottom the
+//! status and the line being typed.
+
+use std::io::{self, Stdout, Write};
+
+use crossterm::style::{Attribute, Print, SetAttribute};
+use crossterm::terminal::{self, Clear, ClearType};
+use crossterm::{cursor, event, execute, queue};
+
+use super::prompt::Prompt;
+
+const SIGN: &str = "> ";
+
+/// A terminal whose keys come one by one. It is as before when this is dropped.
+pub struct Screen {
+    out: Stdout,
+    /// The columns of the two lines at the bottom, the second as far as the cursor, if
+    /// they are drawn.
+    drawn: Option<[usize; 2]>,
+    /// The status line, the prompt, the cursor and the width that were drawn last.
+    last: Option<(String, String, usize, u16)>,
+}
+
+impl Screen {
+    /// Takes the terminal.
+    ///
+    /// # Errors
+    /// It is none.
+    pub fn new() -> io::Result<Self> {
+        let mut screen = Self {
+            out: io::stdout(),
+            drawn: None,
+            last: None,
+        };
+        screen.enter()?;
+        Ok(screen)
+    }
+
+    /// Takes the terminal again, after [`Screen::leave`].
+    ///
+    /// # Errors
+    /// It is gone.
+    pub fn enter(&mut self) -> io::Result<()> {
+        super::terminal::end_when_gone();
+        terminal::enable_raw_mode()?;
+        execute!(self.out, event::EnableBracketedPaste)
+    }
+
+    /// Gives the terminal back as it was.
+    ///
+    /// # Errors
+    /// It is gone.
+    pub fn leave(&mut self) -> io::Result<()> {
+        self.erase()?;
+        execute!(self.out, event::DisableBracketedPaste)?;
+        terminal::disable_raw_mode()
+    }
+
+    /// Prints a line above the two at the bottom.
+    ///
+    /// # Errors
+    /// Writing failed.
+    pub fn print(&mut self, line: &str) -> io::Result<()> {
+        self.erase()?;
+        queue!(self.out, Print(line), Print("\r\n"))?;
+        self.out.flush()
+    }
+
+    /// Draws the two lines at the bottom, if they have changed.
+    ///
+    /// # Errors
+    /// Writing failed.
+    pub fn draw(&mut self, status: &str, prompt: &Prompt) -> io::Result<()> {
+        let (width, _) = terminal::size()?;
+        // A line that fills its last column would wrap.
+        let room = usize::from(width).saturating_sub(1);
+        let status: String = status.chars().take(room).collect();
+        let sign = &SIGN[..SIGN.len().min(room)];
+        let (text, cursor) = prompt.view(room - sign.len());
+        let next = (status, text, cursor, width);
+        if self.drawn.is_some() && self.last.as_ref() == Some(&next) {
+            return Ok(());
+        }
+        self.erase()?;
+        let (status, text, cursor, _) = &next;
+        queue!(
+            self.out,
+            SetAttribute(Attribute::Reverse),
+            Print(format!("{status:room$}")),
+            SetAttribute(Attribute::Reset),
+            Print("\r\n"),
+            Print(sign),
+            Print(text),
+            cursor::MoveToColumn((sign.len() + cursor) as u16),
+        )?;
+        self.drawn = Some([room, sign.len() + cursor]);
+        self.last = Some(next);
+        self.out.flush()
+    }
+
+    /// Takes the two lines away; the cursor is where they began.
+    fn erase(&mut self) -> io::Result<()> {
+        if let Some(columns) = self.drawn.take() {
+            let (width, _) = terminal::size()?;
+            let up = rows_above(columns, width.into());
+            queue!(self.out, cursor::MoveToPreviousLine(up as u16))?;
+        }
+        queue!(
+            self.out,
+            cursor::MoveToColumn(0),
+            Clear(ClearType::FromCursorDown)
+        )
+    }
+}
+
+/// The number of rows between the first of the two lines and the cursor. A terminal that became
+/// narrower has folded them.
+fn rows_above([status, cursor]: [usize; 2], width: usize) -> usize {
+    let width = width.max(1);
+    status.div_ceil(width).max(1) + cursor / width
+}
+
+impl Drop for Screen {
+    fn drop(&mut self) {
+        // The terminal may be gone; then nothing is left to be done.
+        let _ = self.leave();
+        let _ = terminal::disable_raw_mode();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_that_a_narrower_terminal_has_folded_are_counted_as_it_shows_them() {
+        assert_eq!(rows_above([99, 12], 100), 1, "as they were drawn");
+        assert_eq!(rows_above([99, 12], 200), 1, "wider");
+        assert_eq!(rows_above([99, 12], 50), 2, "the status takes two rows");
+        assert_eq!(rows_above([99, 60], 50), 3, "and what is typed, too");
+        assert_eq!(rows_above([99, 60], 33), 4);
+        assert_eq!(rows_above([0, 0], 1), 1);
+        assert_eq!(rows_above([0, 0], 0), 1, "a terminal without a size");
+    }
+}

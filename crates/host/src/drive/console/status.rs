@@ -1,0 +1,158 @@
+//! The answer to `status`, read and shortened to what fits in a line of a terminal.
+
+/// The fault of a board without a usable robot in its flash.
+const NO_ROBOT: &str = "robot";
+
+/// The state that a robot reports.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Status {
+    /// A gait with dashes for blanks, or pose, stop, rest.
+    pub gait: String,
+    /// Servo angles, degrees, chassis frame; none without a robot in the flash.
+    pub pose: Option<[f64; 4]>,
+    /// Frames since power-on.
+    pub frames: u64,
+    /// The smallest margin; none without a robot in the flash.
+    pub margin: Option<f64>,
+    /// True if the guard holds the robot.
+    pub held: bool,
+    /// The fault's name, if there is one.
+    pub fault: Option<String>,
+    /// Supply of the board, volts.
+    pub vcc: Option<f64>,
+    /// Supply of the servos, volts, if it is measured.
+    pub rail: Option<f64>,
+    /// Edges that came late.
+    pub late: u32,
+    /// Bytes that were lost.
+    pub rx_lost: u32,
+}
+
+impl Status {
+    /// Reads `ok gait=...`; `None` for any other line. Keys that this program does
+    /// not know are skipped.
+    #[must_use]
+    pub fn parse(answer: &str) -> Option<Self> {
+        let pairs = answer.strip_prefix("ok ")?;
+        let value = |key: &str| {
+            let pairs = pairs.split(' ').filter_map(|pair| pair.split_once('='));
+            pairs
+                .into_iter()
+                .find(|(name, _)| *name == key)
+                .map(|(_, value)| value)
+        };
+        let volts = |key: &str| value(key)?.parse().ok();
+        let pose = value("pose").and_then(angles);
+        let margin = volts("margin");
+        let is_whole = pose.is_some() && margin.is_some();
+        if !is_whole && value("fault") != Some(NO_ROBOT) {
+            return None;
+        }
+        Some(Self {
+            gait: value("gait")?.to_owned(),
+            pose,
+            frames: value("frames").and_then(|n| n.parse().ok()).unwrap_or(0),
+            margin,
+            held: value("guard") == Some("held"),
+            fault: value("fault")
+                .filter(|name| *name != "none")
+                .map(str::to_owned),
+            vcc: volts("vcc"),
+            rail: volts("rail"),
+            late: value("late").and_then(|n| n.parse().ok()).unwrap_or(0),
+            rx_lost: value("rx_lost").and_then(|n| n.parse().ok()).unwrap_or(0),
+        })
+    }
+
+    /// True if the servos turn, or may at any moment.
+    #[must_use]
+    pub fn walks(&self) -> bool {
+        !matches!(self.gait.as_str(), "stand" | "pose" | "stop" | "rest")
+    }
+
+    /// The line at the bottom of the console.
+    #[must_use]
+    pub fn line(&self) -> String {
+        let mut line = self.gait.clone();
+        if let Some([a1, a2, a3, a4]) = self.pose {
+            line += &format!("  A1..A4 {a1:.1} {a2:.1} {a3:.1} {a4:.1}");
+        }
+        if let Some(margin) = self.margin {
+            line += &format!("  margin {margin:.2}");
+        }
+        if let Some(vcc) = self.vcc {
+            line += &format!("  {vcc:.2} V");
+        }
+        if let Some(rail) = self.rail {
+            line += &format!("  servos {rail:.2} V");
+        }
+        match (&self.fault, self.held) {
+            (Some(fault), _) => line += &format!("  FAULT {fault}"),
+            (None, true) => line += "  HELD by the guard",
+            (None, false) => line += "  no fault",
+        }
+        for (count, what) in [(self.late, "late"), (self.rx_lost, "bytes lost")] {
+            if count > 0 {
+                line += &format!("  {count} {what}");
+            }
+        }
+        line
+    }
+}
+
+/// Four angles with commas between them.
+#[must_use]
+pub fn angles(text: &str) -> Option<[f64; 4]> {
+    let angles: Option<Vec<f64>> = text.split(',').map(|angle| angle.parse().ok()).collect();
+    angles?.try_into().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WALKS: &str = "ok gait=arc-left phase=0.350 pose=138.59,41.41,318.60,221.40 \
+        margin=0.812 speed=100 frames=1234 late=0 rx_lost=2 guard=clear fault=none \
+        reset=external resets=3 vcc=5.02 rail=5.91";
+
+    #[test]
+    fn a_status_is_read_and_shortened() {
+        let status = Status::parse(WALKS).expect("it is a status");
+        assert!(status.walks());
+        assert_eq!(
+            status.line(),
+            "arc-left  A1..A4 138.6 41.4 318.6 221.4  margin 0.81  5.02 V  servos 5.91 V  \
+             no fault  2 bytes lost"
+        );
+    }
+
+    #[test]
+    fn a_fault_and_the_guard_stand_out() {
+        let fault = WALKS.replace("fault=none", "fault=supply");
+        let line = Status::parse(&fault).expect("it is a status").line();
+        assert!(line.contains("FAULT supply"), "{line}");
+        let held = WALKS.replace("clear", "held");
+        let line = Status::parse(&held).expect("it is a status").line();
+        assert!(line.contains("HELD by the guard"), "{line}");
+    }
+
+    #[test]
+    fn a_board_without_a_robot_has_no_pose_and_says_why() {
+        let line = "ok gait=rest late=0 rx_lost=0 guard=clear fault=robot reset=power resets=0";
+        let status = Status::parse(line).expect("it is a status");
+        assert_eq!((status.pose, status.margin, status.vcc), (None, None, None));
+        assert_eq!(status.line(), "rest  FAULT robot");
+    }
+
+    #[test]
+    fn what_is_no_status_is_none() {
+        for line in [
+            "ok walk",
+            "err 1 no",
+            "ok gait=walk",
+            "ok gait=a pose=1,2,3 margin=1",
+        ] {
+            assert_eq!(Status::parse(line), None, "{line}");
+        }
+    }
+}

@@ -1,0 +1,34 @@
+//! The chips that may be on a board: an image for one runs on no other.
+
+use std::fmt;
+
+/// The signature of a chip, as its boot loader tells it (data sheets, "Signature Bytes").
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Chip(pub [u8; 3]);
+
+impl Chip {
+    /// The chip of a UNO.
+    pub const ATMEGA328P: Self = Self([0x1e, 0x95, 0x0f]);
+
+    /// The chip's name, of those that are on boards like a UNO.
+    fn name(self) -> Option<&'static str> {
+        Some(match self.0 {
+            [0x1e, 0x95, 0x0f] => "an ATmega328P",
+            [0x1e, 0x95, 0x14] => "an ATmega328, without P",
+            [0x1e, 0x95, 0x16] => "an ATmega328PB",
+            [0x1e, 0x94, 0x06] => "an ATmega168",
+            [0x1e, 0x94, 0x0b] => "an ATmega168P",
+            [0x1e, 0x93, 0x07] => "an ATmega8",
+            [0x1e, 0x97, 0x03] => "an ATmega1280",
+            _ => return None,
+        })
+    }
+}
+
+impl fmt::Display for Chip {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [a, b, c] = self.0;
+        let name = self.name().unwrap_or("an unknown chip");
+        write!(f, "{name} (signature {a:02X} {b:02X} {c:02X})")
+    }
+}

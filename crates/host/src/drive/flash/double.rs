@@ -1,0 +1,226 @@
+//! For tests: a board whose boot loader is played, byte for byte as optiboot.c, version 4.4,
+//! or ATmegaBOOT_168.c has it, with troubles where a test wants them.
+
+use std::collections::VecDeque;
+use std::io::{self, ErrorKind, Read, Write};
+use std::thread;
+use std::time::Duration;
+
+use super::stk500::{Board, Kind};
+
+/// The board, its flash, and what is to go wrong.
+pub struct Double {
+    /// All 32 KiB; the boot loader itself is a few bytes at its start here.
+    pub flash: Vec<u8>,
+    /// The kind of boot loader. At another speed it receives nothing.
+    pub kind: Kind,
+    /// The chip signature that the loader reports.
+    pub signature: [u8; 3],
+    /// A program that talks on until the reset, and what is heard of it afterwards.
+    pub garbage: Vec<u8>,
+    /// So many calls are not heard after each reset.
+    pub deaf: usize,
+    /// The loader never answers.
+    pub mute: bool,
+    /// The number of the byte to the board that is lost, counted from 0.
+    pub lost_to: Option<usize>,
+    /// The number of the byte from the board that is lost, counted from 0.
+    pub lost_from: Option<usize>,
+    /// Bits that are stuck at 0.
+    pub worn: Option<(usize, u8)>,
+    /// The port vanishes when so many pages have been written.
+    pub unplugged_after: Option<usize>,
+    /// Of pages written, in their order.
+    pub written: Vec<usize>,
+    /// The number of resets so far.
+    pub resets: usize,
+    /// True if the last command started the program in flash.
+    pub left: bool,
+    /// Bytes on their way to the board so far, those that were lost among them.
+    pub received: usize,
+    /// Bytes from the board so far, likewise.
+    pub sent: usize,
+    /// The number of bytes that ATmegaBOOT did not understand since the reset.
+    errors: usize,
+    listening: bool,
+    unheard: usize,
+    address: usize,
+    command: Vec<u8>,
+    out: VecDeque<u8>,
+}
+
+impl Double {
+    /// A board with a chip whose flash is blank.
+    pub fn blank() -> Self {
+        Self::of(Kind::Optiboot, 0x7e00, [0x11, 0x24, 0x84, 0xb7])
+    }
+
+    /// An old Nano, likewise.
+    pub fn old_nano() -> Self {
+        Self::of(Kind::AtmegaBoot, 0x7800, [0x0c, 0x94, 0x34, 0x3c])
+    }
+
+    fn of(kind: Kind, start: usize, loader: [u8; 4]) -> Self {
+        let mut flash = vec![0xff; 0x8000];
+        flash[start..start + 4].copy_from_slice(&loader);
+        Self {
+            flash,
+            kind,
+            errors: 0,
+            signature: [0x1e, 0x95, 0x0f],
+            garbage: Vec::new(),
+            deaf: 0,
+            mute: false,
+            lost_to: None,
+            lost_from: None,
+            worn: None,
+            unplugged_after: None,
+            written: Vec::new(),
+            resets: 0,
+            left: false,
+            received: 0,
+            sent: 0,
+            listening: false,
+            unheard: 0,
+            address: 0,
+            command: Vec::new(),
+            out: VecDeque::new(),
+        }
+    }
+
+    /// The same with these bytes from address 0.
+    pub fn with(program: &[u8]) -> Self {
+        let mut double = Self::blank();
+        double.flash[..program.len()].copy_from_slice(program);
+        double
+    }
+
+    fn is_unplugged(&self) -> bool {
+        let after = self.unplugged_after;
+        after.is_some_and(|after| self.written.len() >= after)
+    }
+
+    /// Answers a command if it is complete.
+    fn obey(&mut self) {
+        let command = std::mem::take(&mut self.command);
+        let length = match command[0] {
+            b'0' | b'Q' | b'u' => 2,
+            b'U' => 4,
+            b't' => 5,
+            b'd' => 5 + command.get(2).map_or(0, |&count| usize::from(count)),
+            // Unknown commands have no parameters.
+            _ => 2,
+        };
+        if command.len() < length {
+            self.command = command;
+            return;
+        }
+        if command[length - 1] != b' ' && self.kind == Kind::AtmegaBoot {
+            self.errors += 1;
+            // MAX_ERROR_COUNT: the program starts.
+            self.listening = self.errors < 5;
+            return;
+        }
+        if command[length - 1] != b' ' {
+            // verifySpace(): the watchdog resets the chip, and the program starts.
+            self.listening = false;
+            return;
+        }
+        let mut answer = vec![0x14];
+        match command[0] {
+            b'U' => {
+                let words = u16::from_le_bytes([command[1], command[2]]);
+                self.address = 2 * usize::from(words);
+            }
+            b'u' => answer.extend(self.signature),
+            b't' => {
+                let end = self.address + usize::from(command[2]);
+                answer.extend(&self.flash[self.address..end]);
+                self.address = end;
+            }
+            b'd' => self.write_page(&command[4..length - 1]),
+            b'Q' => {
+                // ATmegaBOOT listens on, until nobody says anything for a while.
+                self.listening = self.kind == Kind::AtmegaBoot;
+                self.left = true;
+            }
+            _ => {}
+        }
+        answer.push(0x10);
+        for byte in answer {
+            if self.lost_from != Some(self.sent) {
+                self.out.push_back(byte);
+            }
+            self.sent += 1;
+        }
+    }
+
+    fn write_page(&mut self, bytes: &[u8]) {
+        assert_eq!(bytes.len(), 128, "a page of an ATmega328P");
+        assert_eq!(self.address % 128, 0, "pages begin where pages begin");
+        self.flash[self.address..self.address + 128].copy_from_slice(bytes);
+        if let Some((address, bits)) = self.worn {
+            self.flash[address] &= !bits;
+        }
+        self.written.push(self.address);
+    }
+}
+
+impl Board for Double {
+    fn reset(&mut self, baud: u32) -> io::Result<()> {
+        self.resets += 1;
+        self.errors = 0;
+        self.listening = !self.mute && baud == self.kind.baud();
+        self.unheard = self.deaf;
+        self.left = false;
+        self.command.clear();
+        self.out.clear();
+        self.out.extend(&self.garbage);
+        Ok(())
+    }
+}
+
+impl Read for Double {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        if self.is_unplugged() {
+            // EIO, as Linux has it.
+            return Err(io::Error::from_raw_os_error(5));
+        }
+        if self.out.is_empty() {
+            // A port waits for a while, too, and leaves the processor to others.
+            thread::sleep(Duration::from_micros(200));
+            return Err(ErrorKind::TimedOut.into());
+        }
+        // In small pieces, as a serial port gives them.
+        let count = bytes.len().min(50);
+        self.out.read(&mut bytes[..count])
+    }
+}
+
+impl Write for Double {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.is_unplugged() {
+            return Err(io::Error::from_raw_os_error(5));
+        }
+        for byte in bytes {
+            let lost = self.lost_to == Some(self.received);
+            self.received += 1;
+            if lost || !self.listening {
+                continue;
+            }
+            self.command.push(*byte);
+            if self.unheard > 0 && self.command == *b"0 " {
+                self.unheard -= 1;
+                self.command.clear();
+            }
+            if !self.command.is_empty() {
+                self.obey();
+            }
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}

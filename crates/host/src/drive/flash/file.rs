@@ -1,0 +1,83 @@
+//! The sources of an image: a file, or the firmware inside this program.
+
+use std::path::Path;
+
+use lizard_core::numbers::section::START;
+use lizard_robot::Robot;
+
+use super::image::{BLANK, Image, ImageError};
+use crate::Failure;
+use crate::shared::files;
+use crate::shared::firmware::CODE;
+
+/// The image of a robot: the code inside this program with this robot's section behind it.
+///
+/// # Errors
+/// Never: a test makes one for every robot there is.
+pub fn image(robot: &Robot) -> Result<Image, ImageError> {
+    let mut bytes = Image::from_hex(CODE)?.bytes().to_vec();
+    bytes.resize(START.into(), BLANK);
+    bytes.extend(robot.section());
+    Image::new(bytes)
+}
+
+/// A robot's section alone.
+///
+/// # Errors
+/// Never: a section has room.
+pub fn robot_alone(robot: &Robot) -> Result<Image, ImageError> {
+    Image::robot_alone(robot.section())
+}
+
+/// Reads an image from a file of Intel HEX.
+///
+/// # Errors
+/// It cannot be read, or is no image for a UNO.
+pub fn read(path: &Path) -> Result<Image, Failure> {
+    let name = path.display();
+    let text = files::read_text(path)?;
+    Image::from_hex(&text).map_err(|error| Failure::Input(format!("{name}: {error}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use lizard_core::numbers::mark::Mark;
+
+    use super::*;
+
+    #[test]
+    fn every_robot_is_behind_the_same_code_or_alone() {
+        let code = Image::from_hex(CODE).expect("it is Intel HEX");
+        let code = code.bytes();
+        assert_eq!(Mark::find(code), Some(Mark::HERE));
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots");
+        let mut count = 0;
+        for file in std::fs::read_dir(folder).expect("robots/") {
+            let path = file.expect("a file").path();
+            let robot = Robot::load(&path).expect("it is right");
+            let image = image(&robot).expect("it fits");
+            let (begin, section) = image.bytes().split_at(START.into());
+            let (begin, gap) = begin.split_at(code.len());
+            assert!(begin == code, "{}", path.display());
+            assert!(gap.iter().all(|byte| *byte == BLANK));
+            assert!(section == robot.section(), "{}", path.display());
+            let alone = robot_alone(&robot).expect("it fits");
+            assert!(alone.bytes() == section);
+            assert_eq!(alone.end(), image.end());
+            count += 1;
+        }
+        assert!(count >= 4, "{count} robots");
+    }
+
+    #[test]
+    fn a_file_that_is_no_image_is_named() {
+        let file = tempfile::NamedTempFile::new().expect("a file");
+        std::fs::write(file.path(), "[servo]\n").expect("it is written");
+        let words = read(file.path()).expect_err("it is no image").to_string();
+        let name = file.path().display();
+        assert_eq!(
+            words,
+            format!("{name}: line 1 is no Intel HEX: missing start code ':'")
+        );
+    }
+}

@@ -1,0 +1,204 @@
+//! The contents of a board's flash before it is written.
+//!
+//! Writing destroys them, and the user may have chosen the wrong board, so they are reported
+//! first. The firmware does not run meanwhile, so they are read from flash.
+
+use std::fmt;
+
+use lizard_core::numbers::mark::Mark;
+use lizard_core::numbers::section::START;
+
+use super::image::{BLANK, Image, PAGE};
+use crate::shared::firmware::{named, robot_in};
+
+/// The first page of a board whose upload was not finished: `rjmp .-2`, a jump to itself.
+pub(super) const IDLE: [u8; 2] = [0xff, 0xcf];
+
+/// The address of a robot's section.
+const ROBOT: usize = START as usize;
+
+/// The contents of a board's flash, compared with an image.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Found {
+    /// The program in flash.
+    pub program: Program,
+    /// The robot behind it, if it is a lizard's code.
+    pub robot: TheirRobot,
+    /// True if flash holds the image already.
+    pub has_image: bool,
+}
+
+/// The code in a flash.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Program {
+    /// Nothing: as a chip is sold.
+    Blank,
+    /// An upload was not finished; the chip does nothing.
+    Half,
+    /// The firmware of a lizard.
+    Lizard {
+        /// The version mark in the code.
+        mark: Mark,
+        /// It is not the code that is to be written, though it may have its version.
+        differs: bool,
+    },
+    /// A program that is no lizard firmware.
+    Other {
+        /// Up to its last byte; none where only its beginning was read.
+        bytes: Option<usize>,
+    },
+}
+
+/// The robot behind a lizard's code.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum TheirRobot {
+    /// Nothing was ever written there.
+    None,
+    /// Its name and hash.
+    Named(String),
+    /// One that was not written to its end, was damaged, or is of another format.
+    Damaged,
+}
+
+impl Found {
+    /// Compares `flash`, from address 0 to the boot loader, with an image. For an image that is
+    /// a robot alone, only the first page and the robot's pages were read.
+    #[must_use]
+    pub fn in_flash(flash: &[u8], image: &Image) -> Self {
+        let pages = image.pages();
+        let is_there = |page: &&super::image::Page| flash[page.range()] == page.bytes;
+        let code = pages.iter().filter(|page| page.address < ROBOT);
+        let program = match Mark::find(flash) {
+            Some(mark) => Program::Lizard {
+                mark,
+                differs: !code.clone().all(|page| is_there(&page)),
+            },
+            None if flash[..2] == IDLE && is_blank(&flash[2..PAGE]) => Program::Half,
+            None if image.is_robot_alone() && is_blank(&flash[..PAGE]) => Program::Blank,
+            None if image.is_robot_alone() => Program::Other { bytes: None },
+            None => match flash.iter().rposition(|&byte| byte != BLANK) {
+                None => Program::Blank,
+                Some(last) => Program::Other {
+                    bytes: Some(last + 1),
+                },
+            },
+        };
+        // A robot behind another program is one that nobody reads.
+        let has_code = matches!(program, Program::Lizard { .. }) || !image.is_robot_alone();
+        let has_image = has_code && pages.iter().all(|page| is_there(&page));
+        let robot = match robot_in(flash) {
+            Some(robot) => TheirRobot::Named(named(&robot)),
+            None if is_blank(&flash[ROBOT..ROBOT + PAGE]) => TheirRobot::None,
+            None => TheirRobot::Damaged,
+        };
+        Self {
+            program,
+            robot,
+            has_image,
+        }
+    }
+}
+
+fn is_blank(bytes: &[u8]) -> bool {
+    bytes.iter().all(|&byte| byte == BLANK)
+}
+
+impl fmt::Display for Found {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("the board has ")?;
+        match self.program {
+            Program::Blank => f.write_str("no program")?,
+            Program::Half => f.write_str("half a program, which does nothing")?,
+            Program::Other { .. } if self.has_image => f.write_str("this program")?,
+            Program::Other { bytes: None } => f.write_str("another program")?,
+            Program::Other { bytes: Some(bytes) } => {
+                write!(f, "another program, of {bytes} bytes")?;
+            }
+            Program::Lizard { mark, differs } => {
+                let [major, minor, patch] = mark.version;
+                if differs && mark == Mark::HERE {
+                    f.write_str("another build of ")?;
+                }
+                write!(f, "lizard {major}.{minor}.{patch}")?;
+                match &self.robot {
+                    TheirRobot::None => f.write_str(" without a robot")?,
+                    TheirRobot::Damaged => f.write_str(" with a damaged robot")?,
+                    TheirRobot::Named(name) => write!(f, " robot {name}")?,
+                }
+            }
+        }
+        f.write_str(if self.has_image { " already" } else { "" })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use lizard_robot::Robot;
+
+    use super::*;
+    use crate::drive::flash::file;
+    use crate::drive::flash::image::BOOT;
+
+    #[test]
+    fn flash_is_blank_or_has_half_a_program_or_another_one() {
+        let image = Image::new(vec![1, 2, 3]).expect("it fits");
+        let found = |changes: &[(usize, u8)]| {
+            let mut flash = vec![0xff; BOOT];
+            for (address, byte) in changes {
+                flash[*address] = *byte;
+            }
+            Found::in_flash(&flash, &image).to_string()
+        };
+        assert_eq!(found(&[]), "the board has no program");
+        assert_eq!(
+            found(&[(1, 0xcf), (0x1000, 7)]),
+            "the board has half a program, which does nothing"
+        );
+        assert_eq!(
+            found(&[(0, 1), (1, 2), (2, 4)]),
+            "the board has another program, of 3 bytes"
+        );
+        assert_eq!(
+            found(&[(0, 1), (0x1fff, 7)]),
+            "the board has another program, of 8192 bytes"
+        );
+    }
+
+    #[test]
+    fn a_lizard_is_named_with_its_robot() {
+        let robot = |name: &str| {
+            let path = format!("{}/../../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+            Robot::load(std::path::Path::new(&path)).expect("it is right")
+        };
+        let [paper, large] = ["paper", "large"].map(robot);
+        let image = file::image(&paper).expect("it fits");
+        let alone = file::robot_alone(&paper).expect("it fits");
+        let mut flash = image.bytes().to_vec();
+        flash.resize(BOOT, 0xff);
+        let lizard = format!("the board has lizard {}", env!("CARGO_PKG_VERSION"));
+        let its = |robot: &Robot| format!("{lizard} robot {}", named(robot.firmware()));
+        let found = |flash: &[u8], image: &Image| Found::in_flash(flash, image).to_string();
+        assert_eq!(found(&flash, &image), format!("{} already", its(&paper)));
+        assert_eq!(found(&flash, &alone), format!("{} already", its(&paper)));
+        let other = file::image(&large).expect("it fits");
+        assert_eq!(found(&flash, &other), its(&paper));
+        // A sketch, shorter than the firmware, whose robot is still there.
+        let mut sketch = flash.clone();
+        sketch[..1000].fill(0x95);
+        assert_eq!(found(&sketch, &alone), "the board has another program");
+        let mut damaged = flash.clone();
+        damaged[ROBOT + 100] ^= 1;
+        assert_eq!(
+            found(&damaged, &image),
+            format!("{lizard} with a damaged robot")
+        );
+        damaged[ROBOT..].fill(0xff);
+        assert_eq!(found(&damaged, &image), format!("{lizard} without a robot"));
+        let mut build = flash;
+        build[0x1000] ^= 1;
+        assert_eq!(
+            found(&build, &image),
+            its(&paper).replace("has ", "has another build of ")
+        );
+    }
+}

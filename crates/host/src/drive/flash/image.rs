@@ -1,0 +1,346 @@
+//! An image for the flash of a UNO: code and robot, or a robot alone.
+//!
+//! Flash is written in pages. Its last 512 bytes hold the boot loader, which writes all other
+//! pages and cannot write itself. So an image ends before it.
+
+use std::ops::Range;
+
+use ihex::Record;
+use lizard_core::numbers::section::START;
+
+/// Bytes that the chip writes at once (ATmega328P data sheet, table 27-7: 64 words).
+pub const PAGE: usize = 128;
+/// The address of a UNO's boot loader.
+pub const BOOT: usize = 0x7e00;
+/// The address of a Nano's boot section (the fuses of Arduino's boards.txt: 2 KB). The chip
+/// starts there, even if the boot loader is shorter.
+pub const NANO_BOOT: usize = 0x7800;
+/// A byte of flash that was never written.
+pub const BLANK: u8 = 0xff;
+
+/// Bytes of a line of Intel HEX, as avr-objcopy has them.
+const LINE: usize = 16;
+
+/// The firmware with its robot, or a robot alone.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Image {
+    /// Address of the first byte, at the beginning of a page.
+    start: usize,
+    bytes: Vec<u8>,
+}
+
+/// The address of a robot's section.
+const ROBOT: usize = START as usize;
+
+const _: () = assert!(ROBOT.is_multiple_of(PAGE), "code and robot share no page");
+
+/// A page of flash that an image fills, or a part of which it fills.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Page {
+    /// Of its first byte.
+    pub address: usize,
+    /// [`BLANK`] where the image has none.
+    pub bytes: [u8; PAGE],
+}
+
+/// The reason why bytes are no valid image.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ImageError {
+    /// A chip starts at address 0.
+    #[error("there is no code at address 0, where the chip starts")]
+    NoStart,
+    /// A robot without a byte.
+    #[error("there is no robot")]
+    NoRobot,
+    /// The code reaches into the boot loader.
+    #[error("the firmware has {0} bytes; {BOOT} fit before the boot loader")]
+    Long(usize),
+    /// A line is no Intel HEX.
+    #[error("line {line} is no Intel HEX: {reason}")]
+    Line {
+        /// Counted from 1.
+        line: usize,
+        /// The error of the Intel HEX reader.
+        reason: ihex::ReaderError,
+    },
+    /// The last line is missing, and so perhaps others before it.
+    #[error("the HEX file has no end: only a part of it is there")]
+    NoEnd,
+    /// One address, two values.
+    #[error("line {line} gives another value to address {address:#06x}")]
+    Twice {
+        /// Counted from 1.
+        line: usize,
+        /// The address in flash.
+        address: usize,
+    },
+    /// The boot loader cannot write itself.
+    #[error(
+        "line {line} is for address {address:#06x}; the boot loader, which is never written, \
+         begins at {BOOT:#06x}"
+    )]
+    BootLoader {
+        /// Counted from 1.
+        line: usize,
+        /// Of its last byte.
+        address: usize,
+    },
+}
+
+impl From<ImageError> for crate::Failure {
+    fn from(error: ImageError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+impl Image {
+    /// An image of these bytes, from address 0 on.
+    ///
+    /// # Errors
+    /// There are none, or too many.
+    pub fn new(bytes: Vec<u8>) -> Result<Self, ImageError> {
+        match bytes.len() {
+            0 => Err(ImageError::NoStart),
+            1..=BOOT => Ok(Self { start: 0, bytes }),
+            long => Err(ImageError::Long(long)),
+        }
+    }
+
+    /// A robot's section without code.
+    ///
+    /// # Errors
+    /// It has no bytes, or too many.
+    pub fn robot_alone(section: Vec<u8>) -> Result<Self, ImageError> {
+        match ROBOT + section.len() {
+            ROBOT => Err(ImageError::NoRobot),
+            end if end > BOOT => Err(ImageError::Long(end)),
+            _ => Ok(Self {
+                start: ROBOT,
+                bytes: section,
+            }),
+        }
+    }
+
+    /// True if the image has no code.
+    #[must_use]
+    pub fn is_robot_alone(&self) -> bool {
+        self.start == ROBOT
+    }
+
+    /// Reads Intel HEX.
+    ///
+    /// # Errors
+    /// The text is no Intel HEX, is cut off, contradicts itself, or is not for this chip.
+    pub fn from_hex(text: &str) -> Result<Self, ImageError> {
+        let mut flash = vec![None; BOOT];
+        let mut base = 0;
+        let mut ended = false;
+        for (index, record) in text.lines().map(str::trim).enumerate() {
+            let line = index + 1;
+            if record.is_empty() || ended {
+                continue;
+            }
+            let record = Record::from_record_string(record)
+                .map_err(|reason| ImageError::Line { line, reason })?;
+            match record {
+                Record::Data { offset, value } => {
+                    let start = base + usize::from(offset);
+                    put(&mut flash, start, &value, line)?;
+                }
+                Record::EndOfFile => ended = true,
+                Record::ExtendedLinearAddress(upper) => base = usize::from(upper) << 16,
+                Record::ExtendedSegmentAddress(segment) => base = usize::from(segment) << 4,
+                // The chip starts at 0, whatever they say.
+                Record::StartLinearAddress(_) | Record::StartSegmentAddress { .. } => {}
+            }
+        }
+        if !ended {
+            return Err(ImageError::NoEnd);
+        }
+        if flash[0].is_none() {
+            return Err(ImageError::NoStart);
+        }
+        let end = flash.iter().rposition(Option::is_some);
+        let bytes = flash[..=end.unwrap_or(0)].iter();
+        Self::new(bytes.map(|byte| byte.unwrap_or(BLANK)).collect())
+    }
+
+    /// The image as Intel HEX.
+    ///
+    /// # Panics
+    /// Never: all addresses have 16 bits, and lines are short.
+    #[must_use]
+    pub fn to_hex(&self) -> String {
+        let mut records = Vec::new();
+        for (index, line) in self.bytes.chunks(LINE).enumerate() {
+            records.push(Record::Data {
+                offset: (self.start + index * LINE) as u16,
+                value: line.to_vec(),
+            });
+        }
+        records.push(Record::EndOfFile);
+        let text = ihex::create_object_file_representation(&records);
+        text.expect("short lines and one end")
+    }
+
+    /// Its bytes as flash holds them, from its first to its last.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    /// Address behind its last byte.
+    #[must_use]
+    pub fn end(&self) -> usize {
+        self.start + self.bytes.len()
+    }
+
+    /// Its pages in the order of their addresses.
+    #[must_use]
+    pub fn pages(&self) -> Vec<Page> {
+        let page = |(index, part): (usize, &[u8])| {
+            let mut bytes = [BLANK; PAGE];
+            bytes[..part.len()].copy_from_slice(part);
+            let address = self.start + index * PAGE;
+            Page { address, bytes }
+        };
+        self.bytes.chunks(PAGE).enumerate().map(page).collect()
+    }
+}
+
+impl Page {
+    /// The addresses in flash that the image occupies.
+    #[must_use]
+    pub fn range(&self) -> Range<usize> {
+        self.address..self.address + PAGE
+    }
+}
+
+fn put(
+    flash: &mut [Option<u8>],
+    start: usize,
+    bytes: &[u8],
+    line: usize,
+) -> Result<(), ImageError> {
+    let end = start + bytes.len();
+    let Some(there) = flash.get_mut(start..end) else {
+        let address = end - 1;
+        return Err(ImageError::BootLoader { line, address });
+    };
+    for (index, (there, byte)) in there.iter_mut().zip(bytes).enumerate() {
+        if there.is_some_and(|there| there != *byte) {
+            let address = start + index;
+            return Err(ImageError::Twice { line, address });
+        }
+        *there = Some(*byte);
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two lines of a file of avr-objcopy.
+    const HEX: &str = "\
+:100000000C9434000C943E000C943E000C943E0082\n\
+:0400100001020304E2\n\
+:00000001FF\n";
+
+    fn complaint(text: &str) -> String {
+        Image::from_hex(text)
+            .expect_err("it is no image")
+            .to_string()
+    }
+
+    #[test]
+    fn a_hex_file_is_bytes_from_address_0_and_blank_where_it_has_none() {
+        let image = Image::from_hex(HEX).expect("it is an image");
+        assert_eq!(image.bytes().len(), 20);
+        assert_eq!(image.bytes()[..3], [0x0c, 0x94, 0x34]);
+        assert_eq!(image.bytes()[16..], [1, 2, 3, 4]);
+        let apart = HEX.replace(":0400100001020304E2", ":026E0000AABB2B");
+        let image = Image::from_hex(&apart).expect("it is an image");
+        assert_eq!(image.bytes().len(), 0x6e02);
+        assert!(image.bytes()[16..0x6e00].iter().all(|&byte| byte == 0xff));
+        assert_eq!(image.bytes()[0x6e00..], [0xaa, 0xbb]);
+    }
+
+    #[test]
+    fn an_image_is_the_same_after_the_way_through_a_hex_file() {
+        let bytes: Vec<u8> = (0..1000).map(|at| (at * 7) as u8).collect();
+        let image = Image::new(bytes).expect("it fits");
+        let text = image.to_hex();
+        assert_eq!(Image::from_hex(&text), Ok(image));
+        assert_eq!(Image::from_hex(HEX).expect("an image").to_hex(), HEX);
+    }
+
+    #[test]
+    fn a_page_that_is_filled_in_part_is_blank_behind_it() {
+        let image = Image::new(vec![5; 130]).expect("it fits");
+        let pages = image.pages();
+        assert_eq!([pages[0].address, pages[1].address], [0, 128]);
+        assert_eq!(pages.len(), 2);
+        assert_eq!(pages[1].bytes[..3], [5, 5, 0xff]);
+        assert_eq!(pages[1].range(), 128..256);
+    }
+
+    #[test]
+    fn a_robot_alone_is_at_its_place_and_ends_before_the_boot_loader() {
+        let robot = Image::robot_alone(vec![5; 130]).expect("it fits");
+        let addresses: Vec<usize> = robot.pages().iter().map(|page| page.address).collect();
+        assert_eq!(addresses, [0x6e00, 0x6e80]);
+        assert_eq!(robot.end(), 0x6e82);
+        assert!(robot.is_robot_alone());
+        assert!(robot.to_hex().starts_with(":106E0000"));
+        assert_eq!(Image::robot_alone(Vec::new()), Err(ImageError::NoRobot));
+        assert!(Image::robot_alone(vec![0; 0x1000]).is_ok());
+        assert!(Image::robot_alone(vec![0; 0x1001]).is_err());
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused_with_its_size() {
+        let error = Image::new(vec![0; 32_257]).expect_err("too long");
+        assert_eq!(
+            error.to_string(),
+            "the firmware has 32257 bytes; 32256 fit before the boot loader"
+        );
+        assert!(Image::new(vec![0; 32_256]).is_ok());
+        assert_eq!(Image::new(Vec::new()), Err(ImageError::NoStart));
+    }
+
+    #[test]
+    fn a_hex_file_that_is_wrong_is_refused_with_its_line() {
+        let second = |line: &str| complaint(&HEX.replacen(":0400100001020304E2", line, 1));
+        assert!(second(":0400100001020304E3").starts_with("line 2 is no Intel HEX: invalid check"));
+        assert!(second("<html>").starts_with("line 2 is no Intel HEX: missing start"));
+        assert_eq!(
+            second(":010004009566\n"),
+            "line 2 gives another value to address 0x0004"
+        );
+        assert_eq!(
+            second(":027DFF0001027F"),
+            "line 2 is for address 0x7e00; the boot loader, which is never written, begins at \
+             0x7e00"
+        );
+        // In a file for a larger chip, beyond the first 64 KiB.
+        assert_eq!(
+            second(":020000040001F9\n:0100000005FA"),
+            "line 3 is for address 0x10000; the boot loader, which is never written, begins at \
+             0x7e00"
+        );
+    }
+
+    #[test]
+    fn half_a_hex_file_is_refused() {
+        let half = HEX.lines().take(2).collect::<Vec<_>>().join("\n");
+        assert_eq!(
+            complaint(&half),
+            "the HEX file has no end: only a part of it is there"
+        );
+        assert_eq!(
+            complaint(":0100100005EA\n:00000001FF"),
+            "there is no code at address 0, where the chip starts"
+        );
+    }
+}

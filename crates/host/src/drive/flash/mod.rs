@@ -1,0 +1,227 @@
+//! `lizard flash`: the firmware into a UNO or a Nano, by the boot loader that each of them has.
+//!
+//! A boot loader is talked to over the same USB cable as the console, but within a second
+//! after a reset, without checksums, and a part of flash is wrong whenever a cable is pulled in
+//! the middle. So what is on the board is read first, only pages that differ are written, all of
+//! them are read back, and the place where the chip starts is written last.
+
+mod chip;
+#[cfg(test)]
+mod double;
+pub mod file;
+mod found;
+pub mod image;
+pub mod serial_board;
+pub mod stk500;
+pub mod target;
+pub mod upload;
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+pub use chip::Chip;
+pub use found::{Found, Program, TheirRobot};
+
+use crate::drive::console::find::{self, FindError, UsbPort};
+use crate::drive::console::link::{self, Link};
+use crate::drive::console::port::BAUD;
+use crate::shared::progress::bar;
+use crate::{Failure, RobotFile};
+use image::{Image, PAGE};
+use serial_board::SerialBoard;
+use stk500::{Loader, Patience};
+use target::{Model, Target};
+use upload::{Done, Event, Step};
+
+/// Write the firmware with your robot to a UNO or a Nano on USB
+///
+/// The firmware is inside this program and needs no compiler; the robot is that of
+/// robot.toml. Says what the board has, writes the pages that differ, reads them back, starts the
+/// firmware and prints its first line. The EEPROM, and the calibration in it, is left as it is.
+/// A new board takes about ten seconds; with --only-robot it is one.
+#[derive(clap::Args, Debug)]
+pub struct Args {
+    /// The board's serial port [default: the one that has a UNO, or the only one]
+    port: Option<String>,
+    /// The board's model [default: detected from its boot loader and its USB chip]
+    #[arg(long, value_enum)]
+    board: Option<Model>,
+    /// Write only the robot, where the board has a firmware that reads it: a new gait, another
+    /// length
+    #[arg(long)]
+    only_robot: bool,
+    /// Write this file of Intel HEX instead, whatever it is
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["path", "only_robot"])]
+    image: Option<PathBuf>,
+    #[command(flatten)]
+    robot: RobotFile,
+}
+
+/// Writes a board.
+///
+/// # Errors
+/// No image, no board, or none that can be written; the sentence says what is in its flash.
+pub fn run(args: Args) -> Result<(), Failure> {
+    let image = match &args.image {
+        Some(path) => file::read(path)?,
+        None if args.only_robot => file::robot_alone(&args.robot.load()?)?,
+        None => file::image(&args.robot.load()?)?,
+    };
+    let ports = find::usb_ports();
+    let (port, name) = match args.port {
+        Some(port) => (port.clone(), port),
+        None => {
+            let found = choose(&ports)?;
+            (found.name.clone(), found.to_string())
+        }
+    };
+    let target = Target {
+        model: args.board,
+        may_be_nano: may_be_nano(&ports, &port),
+    };
+    let board = SerialBoard::open(&port)?;
+    eprintln!("lizard: calling the boot loader of the board at {name}");
+    let at = |sentence: String| Failure::Impossible(format!("{name}: {sentence}"));
+    let board = write(board, &image, target).map_err(|error| at(error.to_string()))?;
+    let banner = greet(board).map_err(|error| {
+        at(format!(
+            "the flash is written and verified, but the firmware is not heard: {error}"
+        ))
+    })?;
+    writeln!(io::stdout(), "{banner}")?;
+    Ok(())
+}
+
+/// The one board of this machine.
+fn choose(ports: &[UsbPort]) -> Result<UsbPort, Failure> {
+    find::choose(ports, "flash").map_err(|error| {
+        Failure::Impossible(match error {
+            // Without a simulated one, which others offer.
+            FindError::None { .. } => "no board found: this machine has no USB serial port. \
+                 Connect the UNO by a cable that carries data (some only charge), or name its \
+                 port: lizard flash /dev/ttyACM0"
+                .to_owned(),
+            error => error.to_string(),
+        })
+    })
+}
+
+/// True if a port has a USB chip that a Nano may have. Chips of Arduino are on its UNOs alone.
+fn may_be_nano(ports: &[UsbPort], name: &str) -> bool {
+    // It may have been given by a link, as those of /dev/serial/by-id.
+    let target = std::fs::canonicalize(name).unwrap_or_else(|_| name.into());
+    let port = ports.iter().find(|port| target == Path::new(&port.name));
+    port.is_some_and(|port| !port.is_arduinos())
+}
+
+/// Writes the board and says what is done, with a bar meanwhile. Returns the board, its
+/// firmware starting.
+fn write(board: SerialBoard, image: &Image, target: Target) -> Result<SerialBoard, Failure> {
+    let bar = bar(0, "{msg} {wide_bar} {percent} %");
+    let mut loader = Loader::new(board, Patience::default());
+    let begin = Instant::now();
+    let done = upload::upload(&mut loader, image, target, &mut |event| match event {
+        Event::Found(found) => bar.suspend(|| println(&found.to_string())),
+        Event::Again {
+            trouble,
+            called,
+            next,
+        } => bar.suspend(|| match (called.baud(), next.baud()) {
+            (before, now) if before != now => {
+                eprintln!("lizard: no answer at {before} baud; calling again at {now} baud");
+            }
+            _ => eprintln!("lizard: {trouble}; the board is reset, and all begins again"),
+        }),
+        Event::Progress(step, done, of) => {
+            bar.set_message(match step {
+                Step::Reading => "reading  ",
+                Step::Writing => "writing  ",
+                Step::Verifying => "verifying",
+            });
+            bar.set_length(of as u64);
+            bar.set_position(done as u64);
+        }
+    });
+    bar.finish_and_clear();
+    println(&summary(done?, begin.elapsed()));
+    let mut board = loader.into_board();
+    board.set_baud(BAUD)?;
+    Ok(board)
+}
+
+/// A sentence about a finished upload.
+fn summary(done: Done, time: Duration) -> String {
+    let [written, kept] = [done.written, done.kept].map(|pages| pages * PAGE);
+    let seconds = time.as_secs_f64();
+    match written {
+        0 => format!("nothing to write: all {kept} bytes are right; {seconds:.1} s"),
+        _ => format!(
+            "{written} bytes written and verified, {kept} were right already; {seconds:.1} s"
+        ),
+    }
+}
+
+/// To whom nothing can be said any more, the board is written all the same.
+fn println(line: &str) {
+    let _ = writeln!(io::stdout(), "{line}");
+}
+
+/// Waits for the firmware's first line.
+fn greet(board: SerialBoard) -> Result<String, link::LinkError> {
+    let mut link = Link::new(board, link::Patience::default());
+    let banner = link.greet()?;
+    Ok(banner.unwrap_or_else(|| "the robot answers".to_owned()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_summary_counts_bytes() {
+        let words = |written, kept| {
+            let time = Duration::from_millis(1240);
+            summary(Done { written, kept }, time)
+        };
+        assert_eq!(
+            words(2, 210),
+            "256 bytes written and verified, 26880 were right already; 1.2 s"
+        );
+        assert_eq!(
+            words(0, 212),
+            "nothing to write: all 27136 bytes are right; 1.2 s"
+        );
+    }
+
+    #[test]
+    fn a_board_with_a_usb_chip_of_arduino_is_no_nano_and_one_with_another_may_be() {
+        let at = |name: &str, vendor| UsbPort {
+            name: name.to_owned(),
+            vendor,
+            product: None,
+        };
+        let ports = [at("/dev/ttyACM7", 0x2341), at("/dev/ttyUSB7", 0x1a86)];
+        assert!(!may_be_nano(&ports, "/dev/ttyACM7"));
+        assert!(may_be_nano(&ports, "/dev/ttyUSB7"));
+        assert!(!may_be_nano(&ports, "/dev/pts/7"), "no USB port");
+    }
+
+    #[test]
+    fn without_a_board_it_says_what_to_connect_and_of_several_that_one_is_to_be_named() {
+        let words = |ports: &[UsbPort]| {
+            let error = choose(ports).expect_err("there is not one");
+            error.to_string()
+        };
+        assert!(words(&[]).ends_with("lizard flash /dev/ttyACM0"));
+        let port = |name: &str| UsbPort {
+            name: name.to_owned(),
+            vendor: 0x2341,
+            product: None,
+        };
+        assert_eq!(
+            words(&[port("COM3"), port("COM4")]),
+            "several boards found: COM3, COM4. Say which one: lizard flash COM3"
+        );
+    }
+}

@@ -1,0 +1,100 @@
+//! A board at a serial port of this machine.
+
+use std::io::{self, ErrorKind, Read, Write};
+use std::thread::sleep;
+use std::time::Duration;
+
+use serialport::SerialPort;
+
+use super::stk500::Board;
+use crate::drive::console::port::{self, PortError};
+
+/// Time for which the reset line is pulled.
+const PULL: Duration = Duration::from_millis(50);
+
+/// An open port, which can be opened again.
+pub struct SerialBoard {
+    name: String,
+    /// None for the moment between closing and opening.
+    port: Option<Box<dyn SerialPort>>,
+    /// It was just opened, which resets a board as well.
+    fresh: bool,
+}
+
+impl SerialBoard {
+    /// Opens a port for this program alone.
+    ///
+    /// # Errors
+    /// There is none, or it cannot be opened.
+    pub fn open(name: &str) -> Result<Self, PortError> {
+        Ok(Self {
+            name: name.to_owned(),
+            port: Some(port::open(name)?),
+            fresh: true,
+        })
+    }
+
+    fn port(&mut self) -> io::Result<&mut Box<dyn SerialPort>> {
+        self.port.as_mut().ok_or_else(|| ErrorKind::NotFound.into())
+    }
+
+    /// Pulls the lines from which boards make a reset: DTR on a UNO, RTS on some copies.
+    fn pull(&mut self) -> io::Result<()> {
+        let port = self.port()?;
+        for level in [false, true] {
+            port.write_data_terminal_ready(level)?;
+            port.write_request_to_send(level)?;
+            sleep(PULL);
+        }
+        Ok(())
+    }
+
+    /// Sets the speed of the line.
+    ///
+    /// # Errors
+    /// The port is gone.
+    pub fn set_baud(&mut self, baud: u32) -> io::Result<()> {
+        Ok(self.port()?.set_baud_rate(baud)?)
+    }
+
+    fn open_again(&mut self) -> io::Result<()> {
+        self.port = None;
+        sleep(PULL);
+        let opened = port::open(&self.name).map_err(|error| match error {
+            PortError::Missing { .. } => ErrorKind::NotFound.into(),
+            error => io::Error::other(error.to_string()),
+        });
+        self.port = Some(opened?);
+        Ok(())
+    }
+}
+
+impl Board for SerialBoard {
+    fn reset(&mut self, baud: u32) -> io::Result<()> {
+        let fresh = std::mem::take(&mut self.fresh);
+        match self.pull() {
+            Ok(()) => {}
+            // A pseudo terminal, as a simulated board has it, has no such lines; but opening it
+            // resets that board. Nor have they a port that is gone, which then does not open.
+            Err(_) if fresh => {}
+            Err(_) => self.open_again()?,
+        }
+        self.set_baud(baud)
+    }
+}
+
+impl Read for SerialBoard {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        self.port()?.read(bytes)
+    }
+}
+
+impl Write for SerialBoard {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.port()?.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.port()?.flush()
+    }
+}

@@ -1,0 +1,292 @@
+//! The language of the boot loaders of UNO and Nano: STK500, version 1.
+//!
+//! After a reset by its button or by USB's DTR line, the chip starts in the boot loader. It
+//! blinks, then listens for about a second, and starts the program in flash if nobody calls.
+//! Whatever it does not understand, once or some times, makes it start that program at once; then
+//! only another reset brings it back. Commands and answers have no checksums: what was written
+//! must be read back.
+//!
+//! There are two of them, and which one a board has shows only in the speed at which it answers:
+//! see [`Kind`].
+//!
+//! Sources: Atmel application note AVR061 for the commands; optiboot.c, version 4.4, as UNOs
+//! have it, and ATmegaBOOT_168.c, as Nanos had it until 2018, for the times and for what they
+//! leave out.
+
+use std::io::{self, ErrorKind, Read, Write};
+use std::time::{Duration, Instant};
+
+use super::image::{BOOT, NANO_BOOT, PAGE};
+use crate::drive::console::link::is_gone;
+
+const OK: u8 = 0x10;
+const IN_SYNC: u8 = 0x14;
+const END: u8 = 0x20;
+const GET_SYNC: u8 = 0x30;
+const LEAVE: u8 = 0x51;
+const LOAD_ADDRESS: u8 = 0x55;
+const PROGRAM_PAGE: u8 = 0x64;
+const READ_PAGE: u8 = 0x74;
+const READ_SIGNATURE: u8 = 0x75;
+/// The memory that a page is of.
+const FLASH: u8 = b'F';
+/// The number of calls to the loader after one reset.
+const CALLS: usize = 5;
+
+/// A boot loader.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// The boot loader of UNOs, and of Nanos since 2018.
+    Optiboot,
+    /// The boot loader of older Nanos and of many copies of them. It does not start the program
+    /// when it is told to leave, but a second and a half after the last byte.
+    AtmegaBoot,
+}
+
+impl Kind {
+    /// The speed of the serial line at which it listens.
+    #[must_use]
+    pub fn baud(self) -> u32 {
+        match self {
+            Self::Optiboot => 115_200,
+            Self::AtmegaBoot => 57_600,
+        }
+    }
+
+    /// Its first byte in flash.
+    #[must_use]
+    pub fn start(self) -> usize {
+        match self {
+            Self::Optiboot => BOOT,
+            Self::AtmegaBoot => NANO_BOOT,
+        }
+    }
+}
+
+/// A connection to a board. Reading must end by itself within some milliseconds, with
+/// [`ErrorKind::TimedOut`] if there is nothing.
+pub trait Board: Read + Write {
+    /// Resets the chip, which starts its boot loader, and sets the speed of the line.
+    ///
+    /// # Errors
+    /// The connection is gone.
+    fn reset(&mut self, baud: u32) -> io::Result<()>;
+}
+
+/// Time limits for answers of a boot loader.
+#[derive(Debug, Clone, Copy)]
+pub struct Patience {
+    /// After a reset: the loader blinks and does not listen. What is sent meanwhile overflows
+    /// its receiver, and half a command makes it give up.
+    pub blinks: Duration,
+    /// For the answer to one call.
+    pub call: Duration,
+    /// After the first answer, for those to earlier calls that are late.
+    pub quiet: Duration,
+    /// For an answer to any other command. Writing a page takes about 20 ms.
+    pub answer: Duration,
+}
+
+impl Default for Patience {
+    fn default() -> Self {
+        Self {
+            blinks: Duration::from_millis(400),
+            call: Duration::from_millis(110),
+            quiet: Duration::from_millis(40),
+            answer: Duration::from_millis(500),
+        }
+    }
+}
+
+/// The reason why a command failed.
+#[derive(Debug, thiserror::Error)]
+pub enum Trouble {
+    /// No answer, or a part of one.
+    #[error("the board does not answer")]
+    Silent,
+    /// An answer of another form.
+    #[error("the board's answers are garbled")]
+    OutOfStep,
+    /// The port has vanished.
+    #[error("the port is gone: the board was unplugged, or its cable is loose")]
+    Gone,
+    /// The system's own reason.
+    #[error("{0}")]
+    Io(io::Error),
+}
+
+impl Trouble {
+    /// True if another reset may help.
+    #[must_use]
+    pub fn may_pass(&self) -> bool {
+        matches!(self, Self::Silent | Self::OutOfStep)
+    }
+}
+
+impl From<io::Error> for Trouble {
+    fn from(error: io::Error) -> Self {
+        match error.kind() {
+            // What could not be sent has no answer.
+            ErrorKind::TimedOut => Self::Silent,
+            _ if is_gone(&error) => Self::Gone,
+            _ => Self::Io(error),
+        }
+    }
+}
+
+/// A board whose boot loader is talked to.
+#[derive(Debug)]
+pub struct Loader<B> {
+    board: B,
+    patience: Patience,
+}
+
+impl<B: Board> Loader<B> {
+    /// Nothing is sent before [`Loader::call`].
+    pub fn new(board: B, patience: Patience) -> Self {
+        Self { board, patience }
+    }
+
+    /// The connection, with all that has come and was not yet read.
+    pub fn into_board(self) -> B {
+        self.board
+    }
+
+    /// Resets the board and calls a boot loader of this kind until it answers.
+    ///
+    /// # Errors
+    /// [`Trouble::Silent`] if it never does.
+    pub fn call(&mut self, kind: Kind) -> Result<(), Trouble> {
+        self.board.reset(kind.baud())?;
+        // What the program said before the reset comes meanwhile, too.
+        self.pass_over(self.patience.blinks)?;
+        for _ in 0..CALLS {
+            self.board.write_all(&[GET_SYNC, END])?;
+            if self.finds_answer(self.patience.call)? {
+                return self.pass_over(self.patience.quiet);
+            }
+        }
+        Err(Trouble::Silent)
+    }
+
+    /// The three bytes that tell the kind of chip.
+    ///
+    /// # Errors
+    /// See [`Trouble`].
+    pub fn signature(&mut self) -> Result<[u8; 3], Trouble> {
+        let mut signature = [0; 3];
+        self.command(&[READ_SIGNATURE], &mut signature)?;
+        Ok(signature)
+    }
+
+    /// A page of flash; `address` is that of its first byte.
+    ///
+    /// # Errors
+    /// See [`Trouble`].
+    pub fn read_page(&mut self, address: usize) -> Result<[u8; PAGE], Trouble> {
+        self.go_to(address)?;
+        let mut page = [0; PAGE];
+        self.command(&[READ_PAGE, 0, PAGE as u8, FLASH], &mut page)?;
+        Ok(page)
+    }
+
+    /// Erases and writes a page of flash.
+    ///
+    /// # Errors
+    /// See [`Trouble`].
+    pub fn write_page(&mut self, address: usize, page: &[u8; PAGE]) -> Result<(), Trouble> {
+        self.go_to(address)?;
+        let head = [PROGRAM_PAGE, 0, PAGE as u8, FLASH];
+        self.command(&[head.as_slice(), page].concat(), &mut [])
+    }
+
+    /// Ends the boot loader, which starts the program in flash.
+    ///
+    /// # Errors
+    /// See [`Trouble`].
+    pub fn leave(&mut self) -> Result<(), Trouble> {
+        self.command(&[LEAVE], &mut [])
+    }
+
+    /// Sets the address of the next page. It is sent in words of two bytes.
+    fn go_to(&mut self, address: usize) -> Result<(), Trouble> {
+        let [low, high] = ((address / 2) as u16).to_le_bytes();
+        self.command(&[LOAD_ADDRESS, low, high], &mut [])
+    }
+
+    fn command(&mut self, bytes: &[u8], answer: &mut [u8]) -> Result<(), Trouble> {
+        self.board.write_all(&[bytes, &[END]].concat())?;
+        let end = Instant::now() + self.patience.answer;
+        if self.byte(end)? != IN_SYNC {
+            return Err(Trouble::OutOfStep);
+        }
+        self.take(answer, end)?;
+        if self.byte(end)? != OK {
+            return Err(Trouble::OutOfStep);
+        }
+        Ok(())
+    }
+
+    /// Searches for [`IN_SYNC`] and [`OK`] behind any other bytes.
+    fn finds_answer(&mut self, time: Duration) -> Result<bool, Trouble> {
+        let end = Instant::now() + time;
+        let mut last = 0;
+        loop {
+            let byte = match self.byte(end) {
+                Err(Trouble::Silent) => return Ok(false),
+                byte => byte?,
+            };
+            if [last, byte] == [IN_SYNC, OK] {
+                return Ok(true);
+            }
+            last = byte;
+            // A board that never stops talking would hold this up for ever.
+            if Instant::now() > end {
+                return Ok(false);
+            }
+        }
+    }
+
+    /// Lets time pass; what comes meanwhile is dropped.
+    fn pass_over(&mut self, time: Duration) -> Result<(), Trouble> {
+        let end = Instant::now() + time;
+        let mut bytes = [0; 256];
+        loop {
+            self.read(&mut bytes)?;
+            if Instant::now() >= end {
+                return Ok(());
+            }
+        }
+    }
+
+    fn byte(&mut self, end: Instant) -> Result<u8, Trouble> {
+        let mut byte = [0];
+        self.take(&mut byte, end)?;
+        Ok(byte[0])
+    }
+
+    /// Fills `bytes` and reads no more: what follows may be for somebody else.
+    fn take(&mut self, mut bytes: &mut [u8], end: Instant) -> Result<(), Trouble> {
+        while !bytes.is_empty() {
+            let count = self.read(bytes)?;
+            bytes = &mut bytes[count..];
+            // Looked at afterwards: this program may have been held up, not the board.
+            if count == 0 && Instant::now() >= end {
+                return Err(Trouble::Silent);
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads the bytes that are available; returns 0 if there are none.
+    fn read(&mut self, bytes: &mut [u8]) -> Result<usize, Trouble> {
+        match self.board.read(bytes) {
+            Ok(0) => Err(Trouble::Gone),
+            Ok(count) => Ok(count),
+            Err(error) => match error.kind() {
+                ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted => Ok(0),
+                _ => Err(error.into()),
+            },
+        }
+    }
+}

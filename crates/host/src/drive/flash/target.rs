@@ -1,0 +1,69 @@
+//! The model of the board, and the part of flash that it leaves for an image.
+//!
+//! An Arduino Nano has the UNO's chip and runs the UNO's firmware, but it starts 1.5 KB
+//! earlier: its boot section has 2 KB (Arduino's boards.txt: high fuse 0xDA), a UNO's has 512
+//! bytes. Code written into that section would be started as if it were a boot loader, and only
+//! a programmer at the pins could repair that. No boot loader reports its fuses. An old Nano is
+//! recognised by its speed; a newer one talks like a UNO, and only its USB chip may tell.
+
+use super::image::{BOOT, Image, NANO_BOOT};
+use super::stk500::Kind;
+
+/// A board that a user names.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Model {
+    /// An Arduino UNO, or a copy of it
+    Uno,
+    /// An Arduino Nano, or a copy of it
+    Nano,
+}
+
+/// The facts about a board before its boot loader is called.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Target {
+    /// The model that the user has named.
+    pub model: Option<Model>,
+    /// It has a USB chip that UNOs have as well as Nanos.
+    pub may_be_nano: bool,
+}
+
+/// An image reaches into what may be the boot section of a Nano.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("{} bytes of flash are needed, and a Nano has {NANO_BOOT} before its boot section{}. \
+         Nothing was written", .end, if *.in_doubt {
+    "; this board may be one, because of its USB chip. If it is a UNO, say so: --board uno"
+} else {
+    ". Gaits can be left out of robot.toml until it fits"
+})]
+pub struct TooLong {
+    /// Behind the image's last byte.
+    end: usize,
+    /// The board may also be a UNO.
+    in_doubt: bool,
+}
+
+impl Target {
+    /// Boot loaders that it may have, in the order in which they are called.
+    #[must_use]
+    pub fn loaders(self) -> &'static [Kind] {
+        match self.model {
+            Some(Model::Uno) => &[Kind::Optiboot],
+            Some(Model::Nano) | None => &[Kind::Optiboot, Kind::AtmegaBoot],
+        }
+    }
+
+    /// Checks that an image leaves the boot section alone, now that this loader has answered.
+    ///
+    /// # Errors
+    /// It does not, or it may not.
+    pub fn has_room(self, image: &Image, loader: Kind) -> Result<(), TooLong> {
+        let is_nano = self.model == Some(Model::Nano) || loader == Kind::AtmegaBoot;
+        let in_doubt = !is_nano && self.model.is_none() && self.may_be_nano;
+        let room = if is_nano || in_doubt { NANO_BOOT } else { BOOT };
+        let end = image.end();
+        if end > room {
+            return Err(TooLong { end, in_doubt });
+        }
+        Ok(())
+    }
+}

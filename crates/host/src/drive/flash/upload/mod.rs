@@ -1,0 +1,396 @@
+//! Writing an image to a board, so that no moment of it is dangerous.
+//!
+//! A cable may be pulled at any moment, and the chip then starts whatever is in flash: half
+//! a program may drive the servos anywhere. So, before code is changed, the page where the chip
+//! starts becomes a loop that does nothing; pins then stay inputs, and servos get no pulses. The
+//! other pages are written and read back, and that first page comes last.
+//!
+//! A robot alone is written likewise: the first page of its section is made blank, and comes
+//! last. The firmware then meets either a whole robot or none, for which it has a fault and
+//! moves no servo. Since the code stays, it must be code that reads this robot: its mark
+//! ([`lizard_core::numbers::mark`]) is read before anything is written.
+//!
+//! Pages that are right already are left alone: it saves time, and flash wears out (10 000 times,
+//! ATmega328P data sheet, "Features").
+
+use std::fmt;
+use std::ops::Range;
+
+use lizard_core::numbers::mark::Mark;
+use lizard_core::numbers::section::{FORMAT, Header, MAGIC, Region, START};
+
+use super::chip::Chip;
+use super::found::{Found, IDLE, Program};
+use super::image::{BLANK, BOOT, Image, PAGE, Page};
+use super::stk500::{Board, Kind, Loader, Trouble};
+use super::target::{Target, TooLong};
+
+/// The number of attempts, each after a reset: two at each speed if the board does not answer,
+/// or more if bytes were lost.
+const ATTEMPTS: usize = 4;
+/// The page where a robot's section begins.
+const ROBOT: usize = START as usize / PAGE;
+
+/// The operation on pages that is in progress.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Step {
+    /// Reading the contents of flash.
+    Reading,
+    /// Pages are written.
+    Writing,
+    /// Reading back the written pages.
+    Verifying,
+}
+
+/// The progress of an upload, for the user.
+#[derive(Debug)]
+pub enum Event<'a> {
+    /// The contents of the board's flash, reported once.
+    Found(Found),
+    /// So many pages of so many are done.
+    Progress(Step, usize, usize),
+    /// The board is reset, and all begins again.
+    Again {
+        /// The reason for another attempt.
+        trouble: &'a Trouble,
+        /// The boot loader that was called.
+        called: Kind,
+        /// The boot loader that is called next.
+        next: Kind,
+    },
+}
+
+/// The result of an upload.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Done {
+    /// Pages that are different now.
+    pub written: usize,
+    /// Pages that were right before.
+    pub kept: usize,
+}
+
+/// The reason why a board does not hold the image.
+#[derive(Debug, thiserror::Error)]
+pub enum UploadError {
+    /// No boot loader.
+    #[error(
+        "no boot loader answers. Is it a UNO or a Nano? Has another program this port open? Is something \
+         wired to D0 or D1? Where USB does not reset the board, press its button just after the \
+         start of this command"
+    )]
+    Nobody,
+    /// Not the chip of a UNO.
+    #[error("the chip is {0}; the firmware is for {uno}. Nothing was written", uno = Chip::ATMEGA328P)]
+    Chip(Chip),
+    /// A robot alone, and no code that it could be written behind.
+    #[error(
+        "{0}, and a robot alone moves nothing: write both, without --only-robot. Nothing was written"
+    )]
+    NoLizard(Found),
+    /// A robot alone, and code that reads other ones.
+    #[error(
+        "{found}, whose robots are of format {}; this program's are of format {FORMAT}. Write \
+         both, without --only-robot. Nothing was written",
+        mark.format
+    )]
+    Format {
+        /// The contents of the board's flash.
+        found: Found,
+        /// The version mark of its code.
+        mark: Mark,
+    },
+    /// It would reach into the boot section.
+    #[error(transparent)]
+    TooLong(#[from] TooLong),
+    /// A byte was written twice and is still another.
+    #[error(
+        "the flash does not keep the byte at address {address:#06x}: written {written:#04x}, read \
+         {read:#04x}. The flash is worn out, or the supply too weak. {left}"
+    )]
+    NotKept {
+        /// Of the byte.
+        address: usize,
+        /// The byte that was written.
+        written: u8,
+        /// The byte that was read back.
+        read: u8,
+        /// The state of flash now.
+        left: Left,
+    },
+    /// The connection failed.
+    #[error("{trouble}. {left}")]
+    Broken {
+        /// The error of the boot loader.
+        trouble: Trouble,
+        /// The state of flash now.
+        left: Left,
+    },
+}
+
+/// The state of flash after an upload has failed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Left {
+    /// Flash holds its old contents.
+    AsBefore,
+    /// The loop that does nothing, and a part of the code.
+    Idle,
+    /// The firmware, and no robot that it could move.
+    NoRobot,
+}
+
+impl fmt::Display for Left {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::AsBefore => "Nothing was written: the board has what it had",
+            Self::NoRobot => {
+                "The board has half a robot now: its firmware says fault=robot and moves no \
+                 servo. Run this command again"
+            }
+            Self::Idle => {
+                "The board has half a program now, and does nothing. Its boot loader is still \
+                 there: run this command again"
+            }
+        })
+    }
+}
+
+impl From<UploadError> for crate::Failure {
+    fn from(error: UploadError) -> Self {
+        Self::Impossible(error.to_string())
+    }
+}
+
+/// Writes an image to a board, and starts it. Resets the board up to four times, where it does
+/// not answer or bytes are lost on the way.
+///
+/// # Errors
+/// See [`UploadError`].
+pub fn upload<B: Board>(
+    loader: &mut Loader<B>,
+    image: &Image,
+    target: Target,
+    tell: &mut dyn FnMut(Event<'_>),
+) -> Result<Done, UploadError> {
+    let mut upload = Upload {
+        loader,
+        image,
+        target,
+        tell,
+        answered: false,
+        told: false,
+        left: Left::AsBefore,
+    };
+    let mut written = vec![false; BOOT / PAGE];
+    let mut loaders = target.loaders().iter().copied().cycle();
+    let mut kind = Kind::Optiboot;
+    for attempt in 1.. {
+        if !upload.answered {
+            kind = loaders.next().unwrap_or(kind);
+        }
+        let trouble = match upload.attempt(kind, &mut written) {
+            Ok(()) => break,
+            Err(Stop::Error(error)) => return Err(error),
+            Err(Stop::Trouble(trouble)) => trouble,
+        };
+        if attempt == ATTEMPTS || !trouble.may_pass() {
+            return Err(upload.broken(trouble));
+        }
+        let next = match upload.answered {
+            true => kind,
+            false => loaders.clone().next().unwrap_or(kind),
+        };
+        (upload.tell)(Event::Again {
+            trouble: &trouble,
+            called: kind,
+            next,
+        });
+    }
+    let pages = image.pages().len();
+    let written = written.into_iter().filter(|it| *it).count();
+    Ok(Done {
+        written,
+        kept: pages - written,
+    })
+}
+
+/// The reason why one attempt ended.
+enum Stop {
+    Trouble(Trouble),
+    Error(UploadError),
+}
+
+impl From<Trouble> for Stop {
+    fn from(trouble: Trouble) -> Self {
+        Self::Trouble(trouble)
+    }
+}
+
+struct Upload<'a, B> {
+    loader: &'a mut Loader<B>,
+    image: &'a Image,
+    target: Target,
+    tell: &'a mut dyn FnMut(Event<'_>),
+    /// The loader has answered once.
+    answered: bool,
+    /// True if the board's contents were reported.
+    told: bool,
+    left: Left,
+}
+
+impl<B: Board> Upload<'_, B> {
+    /// From a reset to the start of the program. Marks what it writes.
+    fn attempt(&mut self, kind: Kind, written: &mut [bool]) -> Result<(), Stop> {
+        self.loader.call(kind)?;
+        self.answered = true;
+        let chip = Chip(self.loader.signature()?);
+        if chip != Chip::ATMEGA328P {
+            return Err(Stop::Error(UploadError::Chip(chip)));
+        }
+        let room = self.target.has_room(self.image, kind);
+        room.map_err(|error| Stop::Error(error.into()))?;
+        let flash = self.look(kind.start())?;
+        let mut goal = self.image.pages();
+        goal.retain(|page| flash[page.range()] != page.bytes);
+        if !goal.is_empty() {
+            for page in &goal {
+                written[page.address / PAGE] = true;
+            }
+            // There was something else meanwhile.
+            written[self.first_page().address / PAGE] = true;
+            self.write_pages(goal, &flash)?;
+        }
+        // All is written; the program starts after a second in any case.
+        let _ = self.loader.leave();
+        Ok(())
+    }
+
+    /// The page without which the others do nothing: where the chip starts, or where the
+    /// robot's section begins.
+    fn first_page(&self) -> Page {
+        let mut pages = self.image.pages();
+        pages.swap_remove(0)
+    }
+
+    /// Writes pages: the first of the image comes last.
+    fn write_pages(&mut self, mut goal: Vec<Page>, flash: &[u8]) -> Result<(), Stop> {
+        let first = self.first_page();
+        let mut closed = [BLANK; PAGE];
+        if self.image.is_robot_alone() {
+            self.left = Left::NoRobot;
+        } else {
+            self.left = Left::Idle;
+            closed[..IDLE.len()].copy_from_slice(&IDLE);
+        }
+        goal.retain(|page| page.address != first.address);
+        if !goal.is_empty() && flash[first.range()] != closed {
+            self.write_page(first.address, &closed)?;
+        }
+        self.write(&goal)?;
+        self.write(&[first])
+    }
+
+    /// Reads flash, all of it but the boot loader, and says what is there. Of the code, a
+    /// robot alone needs only the first page.
+    fn look(&mut self, boot: usize) -> Result<Vec<u8>, Stop> {
+        let mut flash = vec![BLANK; BOOT];
+        if self.image.is_robot_alone() {
+            self.read(&mut flash, 0..1)?;
+            self.read(&mut flash, ROBOT..ROBOT + 1)?;
+            let end = self.image.end().max(end_of_robot(&flash, boot));
+            self.read(&mut flash, ROBOT + 1..end.div_ceil(PAGE))?;
+        } else {
+            self.read(&mut flash, 0..boot / PAGE)?;
+        }
+        let found = Found::in_flash(&flash, self.image);
+        if self.image.is_robot_alone() {
+            self.fits(&found)?;
+        }
+        if !self.told {
+            self.told = true;
+            (self.tell)(Event::Found(found));
+        }
+        Ok(flash)
+    }
+
+    /// Checks that the code in flash can read the robot that is to be written behind it.
+    fn fits(&self, found: &Found) -> Result<(), Stop> {
+        let found = found.clone();
+        Err(Stop::Error(match found.program {
+            Program::Lizard { mark, .. } if mark.format == FORMAT => return Ok(()),
+            Program::Lizard { mark, .. } => UploadError::Format { found, mark },
+            _ => UploadError::NoLizard(found),
+        }))
+    }
+
+    fn read(&mut self, flash: &mut [u8], pages: Range<usize>) -> Result<(), Stop> {
+        let of = pages.len();
+        for (done, page) in pages.enumerate() {
+            let address = page * PAGE;
+            let read = self.loader.read_page(address)?;
+            flash[address..address + PAGE].copy_from_slice(&read);
+            (self.tell)(Event::Progress(Step::Reading, done + 1, of));
+        }
+        Ok(())
+    }
+
+    /// Writes pages and reads them back. One that has changed on the way is written again.
+    fn write(&mut self, pages: &[Page]) -> Result<(), Stop> {
+        for (done, page) in pages.iter().enumerate() {
+            self.write_page(page.address, &page.bytes)?;
+            (self.tell)(Event::Progress(Step::Writing, done + 1, pages.len()));
+        }
+        for (done, page) in pages.iter().enumerate() {
+            let mut read = self.loader.read_page(page.address)?;
+            if read != page.bytes {
+                self.write_page(page.address, &page.bytes)?;
+                read = self.loader.read_page(page.address)?;
+            }
+            if let Some(at) = difference(&read, &page.bytes) {
+                return Err(Stop::Error(UploadError::NotKept {
+                    address: page.address + at,
+                    written: page.bytes[at],
+                    read: read[at],
+                    left: self.left,
+                }));
+            }
+            (self.tell)(Event::Progress(Step::Verifying, done + 1, pages.len()));
+        }
+        Ok(())
+    }
+
+    fn write_page(&mut self, address: usize, bytes: &[u8; PAGE]) -> Result<(), Stop> {
+        assert!(address < BOOT, "an image ends before the boot loader");
+        Ok(self.loader.write_page(address, bytes)?)
+    }
+
+    fn broken(&self, trouble: Trouble) -> UploadError {
+        match trouble {
+            Trouble::Silent if !self.answered => UploadError::Nobody,
+            trouble => UploadError::Broken {
+                trouble,
+                left: self.left,
+            },
+        }
+    }
+}
+
+/// The address at which the robot in a flash ends, according to its header. Only the first page
+/// of the robot is needed.
+fn end_of_robot(flash: &[u8], boot: usize) -> usize {
+    let start = usize::from(START);
+    let header: Header = Region::new(&flash[start..]).read(0);
+    let end = start + usize::from(header.length);
+    if header.magic == MAGIC && end <= boot {
+        end
+    } else {
+        start
+    }
+}
+
+/// The first byte in which two pages differ.
+fn difference(a: &[u8], b: &[u8]) -> Option<usize> {
+    a.iter().zip(b).position(|(a, b)| a != b)
+}
+
+#[cfg(test)]
+mod tests;

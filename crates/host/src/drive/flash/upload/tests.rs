@@ -1,0 +1,317 @@
+//! An upload to a board whose boot loader is played.
+
+use std::path::Path;
+use std::time::Duration;
+
+use lizard_core::numbers::mark::AT;
+use lizard_robot::Robot;
+
+use super::super::double::Double;
+use super::super::stk500::Patience;
+use super::super::target::Model;
+use super::*;
+use crate::drive::flash::file;
+use crate::shared::firmware::robot_in;
+
+mod alone;
+mod nano;
+
+/// Five pages, the last in part.
+fn image() -> Image {
+    Image::new(bytes(600, 3)).expect("it fits")
+}
+
+/// The pages of [`image`].
+const PAGES: [usize; 5] = [0, 0x80, 0x100, 0x180, 0x200];
+
+fn bytes(count: usize, factor: usize) -> Vec<u8> {
+    (0..count).map(|at| (at * factor + 1) as u8).collect()
+}
+
+/// A board that has the image.
+fn with_image() -> Double {
+    Double::with(image().bytes())
+}
+
+/// An upload, what it has told, and the board afterwards.
+struct Run {
+    result: Result<Done, UploadError>,
+    found: Vec<String>,
+    again: usize,
+    board: Double,
+}
+
+fn run(board: Double) -> Run {
+    run_with(board, &image())
+}
+
+fn run_with(board: Double, image: &Image) -> Run {
+    run_as(board, image, Target::default())
+}
+
+/// With what is known of the board.
+fn run_as(board: Double, image: &Image, target: Target) -> Run {
+    let patience = Patience {
+        blinks: Duration::ZERO,
+        call: Duration::from_millis(2),
+        quiet: Duration::ZERO,
+        answer: Duration::from_millis(5),
+    };
+    let mut loader = Loader::new(board, patience);
+    let (mut found, mut again) = (Vec::new(), 0);
+    let result = upload(&mut loader, image, target, &mut |event| match event {
+        Event::Found(what) => found.push(what.to_string()),
+        Event::Again { .. } => again += 1,
+        Event::Progress(_, done, of) => assert!((1..=of).contains(&done), "{done} of {of}"),
+    });
+    let board = loader.into_board();
+    Run {
+        result,
+        found,
+        again,
+        board,
+    }
+}
+
+impl Run {
+    /// The board has the image, was told to start it, and has its boot loader.
+    fn is_right(&self) -> Done {
+        let done = *self.result.as_ref().expect("it is written");
+        let (flash, blank) = (&self.board.flash, Double::blank().flash);
+        assert_eq!(flash[..600], bytes(600, 3));
+        assert_eq!(flash[0x7e00..], blank[0x7e00..], "the boot loader");
+        assert!(self.board.left, "the program is started");
+        done
+    }
+
+    fn words(&self) -> String {
+        let error = self.result.as_ref().expect_err("it is not written");
+        error.to_string()
+    }
+
+    /// The chip starts in a loop: `rjmp .-2`.
+    fn does_nothing(&self) -> bool {
+        self.board.flash[..2] == [0xff, 0xcf]
+    }
+}
+
+/// A file of robots/.
+fn robot(name: &str) -> Robot {
+    let robots = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots");
+    Robot::load(robots.join(name).with_extension("toml")).expect("it is right")
+}
+
+/// A board with the firmware and this robot.
+fn with_robot(name: &str) -> Double {
+    let image = file::image(&robot(name)).expect("it fits");
+    Double::with(image.bytes())
+}
+
+fn alone(name: &str) -> Image {
+    file::robot_alone(&robot(name)).expect("it fits")
+}
+
+/// The name of the robot that the firmware would find.
+fn its_robot(board: &Double) -> Option<String> {
+    robot_in(&board.flash[..BOOT]).map(|robot| robot.label().map(char::from).collect())
+}
+
+/// The robot of this file with the code.
+fn whole(name: &str) -> Image {
+    file::image(&robot(name)).expect("it fits")
+}
+
+#[test]
+fn a_blank_board_gets_every_page_of_the_image_and_no_other() {
+    let run = run(Double::blank());
+    let done = run.is_right();
+    assert_eq!((done.written, done.kept), (5, 0));
+    assert_eq!(run.found, ["the board has no program"]);
+    assert!(run.board.flash[0x280..0x7e00].iter().all(|&it| it == 0xff));
+    assert_eq!((run.board.resets, run.again), (1, 0));
+}
+
+#[test]
+fn the_first_page_is_a_loop_that_does_nothing_until_all_others_are_written() {
+    let run = run(Double::with(&[9; 5000]));
+    run.is_right();
+    assert_eq!(run.found, ["the board has another program, of 5000 bytes"]);
+    assert_eq!(run.board.written, [&PAGES[..], &[0]].concat());
+}
+
+#[test]
+fn a_board_that_has_the_image_is_only_started() {
+    let run = run(with_image());
+    let done = run.is_right();
+    assert_eq!((done.written, done.kept), (0, 5));
+    assert_eq!(run.found, ["the board has this program already"]);
+    assert!(run.board.written.is_empty());
+}
+
+#[test]
+fn only_pages_that_differ_are_written() {
+    let mut board = with_image();
+    board.flash[0x105] ^= 1;
+    let run = run(board);
+    let done = run.is_right();
+    assert_eq!(run.board.written, [0, 0x100, 0]);
+    assert_eq!((done.written, done.kept), (2, 3));
+}
+
+#[test]
+fn a_loader_that_hears_only_the_third_call_is_waited_for() {
+    let mut board = Double::blank();
+    board.deaf = 2;
+    let run = run(board);
+    run.is_right();
+    assert_eq!(run.board.resets, 1);
+}
+
+#[test]
+fn what_the_old_program_says_before_the_answer_is_passed_over() {
+    let mut board = Double::with(&[9; 500]);
+    // The two bytes of an answer are among it, not beside each other.
+    board.garbage = b"# t=1\r\n\x14\x15\x10ok\r\n".repeat(30);
+    run(board).is_right();
+}
+
+#[test]
+fn a_board_that_never_answers_is_called_after_four_resets_and_not_written() {
+    let mut board = Double::with(&[9; 500]);
+    board.mute = true;
+    let run = run(board);
+    assert!(matches!(run.result, Err(UploadError::Nobody)));
+    assert!(
+        run.words()
+            .starts_with("no boot loader answers. Is it a UNO or a Nano?")
+    );
+    assert_eq!((run.board.resets, run.again), (4, 3));
+    assert!(run.board.written.is_empty());
+}
+
+#[test]
+fn a_board_that_talks_without_end_is_no_boot_loader() {
+    struct Talker;
+    impl std::io::Read for Talker {
+        fn read(&mut self, bytes: &mut [u8]) -> std::io::Result<usize> {
+            bytes.fill(b'x');
+            Ok(bytes.len())
+        }
+    }
+    impl std::io::Write for Talker {
+        fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+            Ok(bytes.len())
+        }
+        fn flush(&mut self) -> std::io::Result<()> {
+            Ok(())
+        }
+    }
+    impl Board for Talker {
+        fn reset(&mut self, _baud: u32) -> std::io::Result<()> {
+            Ok(())
+        }
+    }
+    let result = lizard_time_limit::LIMIT.within("the end of the calls", || {
+        let patience = Patience {
+            blinks: Duration::from_millis(2),
+            call: Duration::from_millis(2),
+            ..Patience::default()
+        };
+        let mut loader = Loader::new(Talker, patience);
+        upload(&mut loader, &image(), Target::default(), &mut |_| {})
+    });
+    assert!(matches!(result, Err(UploadError::Nobody)));
+}
+
+#[test]
+fn another_chip_is_named_and_not_written() {
+    let words = |signature| {
+        let mut board = Double::blank();
+        board.signature = signature;
+        let run = run(board);
+        assert!(run.board.written.is_empty());
+        run.words()
+    };
+    assert_eq!(
+        words([0x1e, 0x95, 0x14]),
+        "the chip is an ATmega328, without P (signature 1E 95 14); the firmware is for an \
+         ATmega328P (signature 1E 95 0F). Nothing was written"
+    );
+    assert!(words([1, 2, 3]).starts_with("the chip is an unknown chip (signature 01 02 03)"));
+}
+
+#[test]
+fn any_one_byte_that_is_lost_on_the_way_to_the_board_is_made_up_for() {
+    let old = [9; 500];
+    let whole = run(Double::with(&old)).board;
+    assert!(whole.received > 2000, "{} bytes", whole.received);
+    // A page is read by 9 bytes: with steps of 7, each of them has its turn.
+    for at in (0..whole.received).step_by(7) {
+        let mut board = Double::with(&old);
+        board.lost_to = Some(at);
+        let run = run(board);
+        assert!(run.result.is_ok(), "byte {at}: {}", run.words());
+        let flash = &run.board.flash;
+        assert!(flash[..600] == bytes(600, 3), "byte {at}");
+        assert_eq!(run.found.len(), 1, "byte {at}: told once what was found");
+    }
+}
+
+#[test]
+fn any_one_byte_that_is_lost_on_the_way_from_the_board_is_made_up_for() {
+    let old = [9; 500];
+    let whole = run(Double::with(&old)).board;
+    assert!(whole.sent > 30_000, "{} bytes", whole.sent);
+    // The call and the first pages byte by byte, the rest here and there.
+    for at in (0..300).chain((300..whole.sent).step_by(101)) {
+        let mut board = Double::with(&old);
+        board.lost_from = Some(at);
+        let run = run(board);
+        assert!(run.result.is_ok(), "byte {at}: {}", run.words());
+        run.is_right();
+    }
+}
+
+#[test]
+fn a_byte_that_the_flash_does_not_keep_is_named_and_the_board_does_nothing() {
+    let mut board = Double::with(&[9; 500]);
+    let right = image().bytes()[0x85];
+    board.worn = Some((0x85, right & right.wrapping_neg()));
+    let run = run(board);
+    let words = run.words();
+    assert!(words.contains("the byte at address 0x0085"), "{words}");
+    assert!(words.ends_with("run this command again"), "{words}");
+    assert!(run.does_nothing());
+    assert_eq!(run.again, 0, "another reset does not mend flash");
+}
+
+#[test]
+fn a_board_unplugged_in_the_middle_does_nothing_and_is_written_by_the_next_upload() {
+    for pages in 1..=5 {
+        let mut board = Double::with(&[9; 500]);
+        board.unplugged_after = Some(pages);
+        let cut = run(board);
+        let words = cut.words();
+        assert!(words.starts_with("the port is gone"), "{words}");
+        assert!(
+            words.contains("half a program now, and does nothing"),
+            "{words}"
+        );
+        assert!(cut.does_nothing(), "after {pages} pages");
+        let mut board = cut.board;
+        board.unplugged_after = None;
+        run(board).is_right();
+    }
+}
+
+#[test]
+fn a_board_unplugged_before_the_first_page_has_what_it_had() {
+    let mut board = Double::with(&[9; 500]);
+    board.unplugged_after = Some(0);
+    let run = run(board);
+    assert!(
+        run.words()
+            .ends_with("Nothing was written: the board has what it had")
+    );
+    assert_eq!(run.board.flash[..500], [9; 500]);
+}

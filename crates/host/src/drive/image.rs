@@ -1,0 +1,63 @@
+//! `lizard image`: the firmware with a robot as a file, for any program that writes boards.
+//!
+//! A robot.toml comes to a board by `lizard flash`. Who has another programmer, or another
+//! machine at the board, needs a file.
+
+use std::io::{self, IsTerminal, Write};
+use std::path::PathBuf;
+
+use lizard_core::numbers::section::SPACE;
+
+use crate::drive::flash::file;
+use crate::shared::{files, firmware};
+use crate::{Failure, RobotFile};
+
+/// Make the image of your robot as a file of Intel HEX, without a compiler
+///
+/// It is the firmware inside this program with the robot of robot.toml behind it: what `lizard
+/// flash` writes. avrdude and other programs write it, too.
+#[derive(clap::Args, Debug)]
+pub struct Args {
+    /// The file for the image [default: standard output, unless that is a terminal]
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Only the robot, for a board that has this firmware: avrdude -D leaves the rest as it is
+    #[arg(long)]
+    only_robot: bool,
+    #[command(flatten)]
+    robot: RobotFile,
+}
+
+/// Makes the image.
+///
+/// # Errors
+/// The robot is wrong, or the file cannot be written.
+pub fn run(args: Args) -> Result<(), Failure> {
+    if args.output.is_none() && io::stdout().is_terminal() {
+        return Err(Failure::Input(
+            "an image is not for a terminal; --output lizard.hex writes it to a file".to_owned(),
+        ));
+    }
+    let robot = args.robot.load()?;
+    let image = match args.only_robot {
+        true => file::robot_alone(&robot)?,
+        false => file::image(&robot)?,
+    };
+    let hex = image.to_hex();
+    let Some(path) = args.output else {
+        return Ok(io::stdout().lock().write_all(hex.as_bytes())?);
+    };
+    files::write(&path, hex.as_bytes())?;
+    let what = match args.only_robot {
+        true => String::new(),
+        false => format!("lizard {} ", env!("CARGO_PKG_VERSION")),
+    };
+    writeln!(
+        io::stdout(),
+        "{}: {what}robot {}; the robot has {} of {SPACE} bytes",
+        path.display(),
+        firmware::named(robot.firmware()),
+        robot.section().len(),
+    )?;
+    Ok(())
+}

@@ -1,0 +1,6 @@
+//! Drive a board on USB: write the firmware, open its console, calibrate it, save its
+//! settings, and replay a recorded session.
+
+pub mod console;
+pub mod flash;
+pub mod image;

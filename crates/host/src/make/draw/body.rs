@@ -1,0 +1,117 @@
+//! Plate and legs from above, as they are built; every drawing of the robot has them.
+//!
+//! Drawn from below: feet with the leaves that carry them, couplers, the plate, cranks
+//! and followers, struts. Bars are thinner than the parts, so that joints are seen.
+
+use lizard_kinematics::Vector;
+use lizard_robot::{LegPlace, Plate};
+use svg::node::element::{Circle, Group, Line};
+
+use crate::shared::ink::{DARK, SERVO, circle, fixed, line, rectangle};
+
+const FRAME: &str = "#f4f1ea";
+const EDGE: &str = "#b8b0a0";
+const LEAF: &str = "#8a8a8a";
+const STRUT: &str = "#6b6b6b";
+/// Radius of a foot, mm, and width of the plate's edge, mm.
+const FOOT: f64 = 6.5;
+const RIM: f64 = 0.6;
+
+/// A page onto which the robot is drawn.
+pub struct Sheet<At> {
+    /// From mm in the chassis frame to the page.
+    pub at: At,
+    /// Of a mm on the page.
+    pub scale: f64,
+    /// The robot's turn on the page, deg counter-clockwise.
+    pub turn: f64,
+}
+
+impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
+    /// A bar this many mm wide.
+    pub fn bar(&self, from: Vector, to: Vector, colour: &str, mm: f64) -> Line {
+        line((self.at)(from), (self.at)(to), colour, mm * self.scale)
+    }
+
+    /// A joint this many mm large.
+    pub fn joint(&self, at: Vector, mm: f64) -> Circle {
+        self.disc(at, mm, "white")
+    }
+
+    /// A disc with an edge.
+    pub fn disc(&self, at: Vector, mm: f64, fill: &str) -> Circle {
+        circle((self.at)(at), mm * self.scale, fill)
+            .set("stroke", DARK)
+            .set("stroke-width", 0.6 * self.scale)
+    }
+
+    /// A rectangle about a middle.
+    fn rectangle(&self, middle: Vector, half: Vector, corner: f64, fill: &str) -> Group {
+        let (x, y) = (self.at)(middle);
+        let [wide, long] = [half.x, half.y].map(|half| half * self.scale);
+        let shape = rectangle((x - wide, y - long), (2.0 * wide, 2.0 * long), fill)
+            .set("rx", fixed(corner * self.scale));
+        let turn = fixed(-self.turn);
+        match turn == 0.0 {
+            true => Group::new().add(shape),
+            false => Group::new().add(shape.set(
+                "transform",
+                format!("rotate({turn} {} {})", fixed(x), fixed(y)),
+            )),
+        }
+    }
+
+    /// The legs' parts that lie next to the plate and under it; the feet in these colours.
+    pub fn feet(&self, mut group: Group, legs: &[LegPlace; 4], pads: [&str; 4]) -> Group {
+        for (i, leg) in legs.iter().enumerate() {
+            let [driven, idle] = leg.joints;
+            group = group
+                .add(self.bar(idle, leg.foot, LEAF, 2.2))
+                .add(self.disc(leg.foot, FOOT, pads[i]))
+                .add(self.bar(driven, idle, SERVO[i], 4.2));
+        }
+        group
+    }
+
+    /// The plate and the servos in it.
+    pub fn plate(&self, mut group: Group, plate: &Plate) -> Group {
+        let middle = Vector::default();
+        let grown = |by: f64| plate.half + Vector::new(by, by);
+        for (by, colour) in [(RIM, EDGE), (0.0, FRAME)] {
+            for [from, to] in plate.arms.as_flattened() {
+                group = group.add(self.bar(*from, *to, colour, 2.0 * (plate.arm + by)));
+            }
+            group = group.add(self.rectangle(middle, grown(by), plate.corner + by, colour));
+        }
+        for (case, colour) in plate.cases.into_iter().zip(SERVO) {
+            let case = self.rectangle(case, plate.case * 0.5, 1.3, colour);
+            group = group.add(case.set("fill-opacity", 0.35));
+        }
+        group
+    }
+
+    /// The legs' parts above the plate, and the arms of the servos' links that hold them.
+    pub fn cranks(&self, mut group: Group, shafts: [Vector; 4], legs: &[LegPlace; 4]) -> Group {
+        for (i, leg) in legs.iter().enumerate() {
+            let [link, crank] = leg.strut;
+            group = group.add(self.bar(leg.pivots[0], crank, SERVO[i], 3.2));
+            for (pivot, joint) in leg.pivots.into_iter().zip(leg.joints) {
+                group = group
+                    .add(self.bar(pivot, joint, SERVO[i], 3.2))
+                    .add(self.joint(pivot, 1.7))
+                    .add(self.joint(joint, 1.7));
+            }
+            group = group
+                .add(self.bar(link, crank, STRUT, 1.6))
+                .add(self.joint(crank, 1.2))
+                .add(self.bar(shafts[i], link, SERVO[i], 3.0));
+        }
+        group
+    }
+
+    /// The screws that hold the struts at the servos' links, which lie above all of that.
+    pub fn anchors(&self, group: Group, legs: &[LegPlace; 4]) -> Group {
+        let screws = legs.iter().map(|leg| self.joint(leg.strut[0], 1.2));
+        screws.fold(group, Group::add)
+    }
+}

@@ -1,0 +1,123 @@
+//! The labels of the view from above.
+
+use lizard_kinematics::{Vector, sin_cos};
+use lizard_robot::servo::NAMES;
+use svg::node::element::Group;
+
+use super::top_view::{Joint, NAME_BEYOND, SIZE, SKIN_BEYOND, View};
+use crate::shared::ink::{
+    Anchor, DARK, GREY, SERVO, line, pin_name, text, text_middle, text_start,
+};
+
+/// Distance of the servos' names from the page's middle, to the side and up, pixels.
+const NAMES_AT: f64 = 347.0;
+
+impl View<'_> {
+    /// Names, angles and measures.
+    pub(super) fn labels(&self, mut group: Group) -> Group {
+        let angles = self.angles();
+        for servo in 0..4 {
+            let shaft = self.shafts()[servo];
+            let left = matches!(servo, 0 | 3);
+            let side = if left { -1.0 } else { 1.0 };
+            let up = shaft.y.signum();
+            let anchor = if left { Anchor::End } else { Anchor::Start };
+            let (x, y) = (SIZE.0 / 2.0 + side * NAMES_AT, SIZE.1 / 2.0 - up * NAMES_AT);
+            let toward = self.page(shaft + Vector::new(side * 3.5, up * 2.0));
+            let name = format!(
+                "{} · {}",
+                NAMES[servo],
+                pin_name(self.robot.servos()[servo].pin)
+            );
+            let symbol = ["θ1", "θ4", "θ8", "θ5"][servo];
+            let angle = format!("{symbol} = {:.2}°", angles[servo].rem_euclid(360.0));
+            let begin = (x + 6.0 * -side, y - 4.0);
+            group = group
+                .add(line(begin, toward, SERVO[servo], 1.2).set("stroke-dasharray", "3 4"))
+                .add(
+                    text(&name, (x, y - 8.0), 20.0, SERVO[servo], anchor)
+                        .set("font-weight", "bold"),
+                )
+                .add(text(&angle, (x, y + 16.0), 18.0, DARK, anchor));
+        }
+        group = self.part_labels(group);
+        compass(group, self.scale)
+    }
+
+    fn part_labels(&self, mut group: Group) -> Group {
+        let solution = self.solution;
+        let head = solution.head_point();
+        let tail = solution.tail_point();
+        let coordinates = |name: &str, at: Joint| format!("{name} ({:.1}, {:.1}) mm", at.x, at.y);
+        let (x, y) = self.page(head + Vector::new(0.0, SKIN_BEYOND * self.grown() + NAME_BEYOND));
+        group = group.add(text_middle(&coordinates("head", head), (x, y), 18.0));
+        let (x, y) = self.page(tail + Vector::new(0.0, -26.0 * self.grown() - 8.0));
+        group = group.add(text_middle(&coordinates("tail", tail), (x, y), 18.0));
+        for (side, slider) in [(-1.0, solution.left), (1.0, solution.right)] {
+            let anchor = if side < 0.0 {
+                Anchor::End
+            } else {
+                Anchor::Start
+            };
+            let (x, y) = self.page(Vector::new(side * 50.0 * self.grown(), 0.0));
+            let travel = if slider.s.abs() < 0.05 {
+                "s = 0.0 mm".to_owned()
+            } else {
+                format!("s = {:+.1} mm", slider.s)
+            };
+            group = group
+                .add(text("slider", (x, y - 4.0), 17.0, GREY, anchor))
+                .add(text(&travel, (x, y + 18.0), 17.0, GREY, anchor));
+        }
+        for servo in 0..4 {
+            let foot = self.foot(servo);
+            let side = foot.x.signum();
+            let anchor = if side < 0.0 {
+                Anchor::End
+            } else {
+                Anchor::Start
+            };
+            let (x, y) = self.page(foot + Vector::new(side * 24.0, -2.0));
+            let name = [
+                "front left foot",
+                "front right foot",
+                "back right foot",
+                "back left foot",
+            ][servo];
+            group = group.add(text(name, (x, y), 17.0, GREY, anchor));
+        }
+        group
+    }
+}
+
+/// The axes of the chassis frame and a scale.
+fn compass(mut group: Group, scale: f64) -> Group {
+    let origin = (50.0, SIZE.1 - 50.0);
+    for (degrees, name) in [(0.0, "x, right"), (90.0, "y, forward")] {
+        let (sin, cos) = sin_cos(degrees);
+        let tip = (origin.0 + 62.0 * cos, origin.1 - 62.0 * sin);
+        let barb = |turn: f64| {
+            let (sin, cos) = sin_cos(degrees + turn);
+            (tip.0 + 11.0 * cos, tip.1 - 11.0 * sin)
+        };
+        let at = if degrees == 0.0 {
+            (tip.0 + 10.0, tip.1 + 6.0)
+        } else {
+            (tip.0 - 10.0, tip.1 - 12.0)
+        };
+        group = group
+            .add(line(origin, tip, DARK, 2.0))
+            .add(line(tip, barb(155.0), DARK, 2.0))
+            .add(line(tip, barb(-155.0), DARK, 2.0))
+            .add(text_start(name, at, 16.0));
+    }
+    let end = (SIZE.0 - 60.0, SIZE.1 - 48.0);
+    let begin = (end.0 - 50.0 * scale, end.1);
+    for at in [begin, end] {
+        group = group.add(line((at.0, at.1 - 7.0), (at.0, at.1 + 7.0), DARK, 2.0));
+    }
+    let middle = ((begin.0 + end.0) / 2.0, end.1 - 12.0);
+    group
+        .add(line(begin, end, DARK, 2.0))
+        .add(text_middle("50 mm", middle, 16.0))
+}

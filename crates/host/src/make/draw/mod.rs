@@ -1,0 +1,71 @@
+//! `lizard draw`: the robot from above, its wiring, and how its cranks are fitted.
+
+pub mod body;
+mod horns;
+mod labels;
+mod route;
+mod top_view;
+mod uno;
+mod wiring;
+
+use std::io::{self, IsTerminal, Write};
+use std::path::PathBuf;
+
+use crate::shared::files;
+use crate::{Failure, PoseArgs, RobotFile};
+
+pub use horns::horns;
+pub use top_view::top_view;
+pub use wiring::wiring;
+
+/// Draw the robot from above as SVG, or its wiring, or its cranks
+///
+/// The view from above shows the neutral pose, or the pose given by --theta1 and so on.
+/// --wiring and --horns draw what a builder needs.
+#[derive(clap::Args, Debug)]
+pub struct Args {
+    /// The file for the picture [default: standard output, unless that is a terminal]
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Leave out names and dimensions
+    #[arg(long)]
+    plain: bool,
+    /// Draw the wiring: servos, supply, board
+    #[arg(long, conflicts_with_all = ["plain", "theta1", "horns"])]
+    wiring: bool,
+    /// Draw the cranks at the angles at which to fit them, and what a trim corrects
+    #[arg(long, conflicts_with_all = ["plain", "theta1"])]
+    horns: bool,
+    #[command(flatten)]
+    pose: PoseArgs,
+    #[command(flatten)]
+    robot: RobotFile,
+}
+
+/// Draws the robot.
+///
+/// # Errors
+/// A pose that the robot cannot have, or a file that cannot be written.
+pub fn run(args: Args) -> Result<(), Failure> {
+    if args.output.is_none() && io::stdout().is_terminal() {
+        return Err(Failure::Input(
+            "the picture is SVG, which a terminal does not show; --output lizard.svg writes it to \
+             a file"
+                .to_owned(),
+        ));
+    }
+    let robot = args.robot.load()?;
+    let picture = if args.wiring {
+        wiring(&robot)
+    } else if args.horns {
+        horns(&robot)
+    } else {
+        let pose = args.pose.get().unwrap_or_else(|| robot.neutral());
+        let solution = robot.lizard().solve(&pose)?;
+        top_view(&robot, &solution, !args.plain)
+    };
+    match args.output {
+        Some(path) => files::write(&path, picture.as_bytes()),
+        None => Ok(io::stdout().lock().write_all(picture.as_bytes())?),
+    }
+}

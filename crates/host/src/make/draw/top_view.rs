@@ -1,0 +1,325 @@
+//! The mechanism from above, head up: chassis, five-bars, sliders and legs.
+
+use lizard_kinematics::{End, Side, Solution, Vector};
+use lizard_robot::{LegPlace, Robot};
+use svg::node::element::{Group, Path};
+
+use super::body::Sheet;
+use crate::shared::ink::{DARK, SERVO, circle, page};
+
+pub(super) const SIZE: (f64, f64) = (1000.0, 1110.0);
+/// Pixels of a mm, unless the robot is too large for the page.
+const PIXELS_PER_MM: f64 = 3.1;
+/// Pixels that are left at the page's edge for names and measures.
+const MARGIN: (f64, f64) = (80.0, 28.0);
+/// A head's skin reaches so far beyond its point, mm; a tail's less.
+pub(super) const SKIN_BEYOND: f64 = 30.0;
+/// From the skin to the name of what it is of, mm.
+pub(super) const NAME_BEYOND: f64 = 6.0;
+/// Half the length of the plate for which the skin is drawn, mm.
+const SKIN_LENGTH: f64 = 80.4;
+
+const SKIN: &str = "#e3ecdc";
+const STEEL: &str = "#555555";
+
+/// A joint of the robot: mm, chassis frame.
+pub(super) type Joint = Vector;
+
+/// The robot at a solved pose, as SVG text; with names and measures if
+/// `labels`.
+#[must_use]
+pub fn top_view(robot: &Robot, solution: &Solution, labels: bool) -> String {
+    let view = View::new(robot, solution);
+    let mut group = view.skin(Group::new());
+    let (legs, sheet) = (view.legs(), view.sheet());
+    group = sheet.feet(group, &legs, [DARK; 4]);
+    group = sheet.plate(group, &robot.plate());
+    group = sheet.cranks(group, view.shafts(), &legs);
+    for side in Side::ALL {
+        group = view.slider(group, side);
+    }
+    for end in End::ALL {
+        group = view.five_bar(group, end);
+    }
+    group = sheet.anchors(group, &legs);
+    if labels {
+        group = view.labels(group);
+    }
+    page(SIZE, group)
+}
+
+pub(super) struct View<'a> {
+    pub(super) robot: &'a Robot,
+    pub(super) solution: &'a Solution,
+    /// Pixels of a mm.
+    pub(super) scale: f64,
+}
+
+impl<'a> View<'a> {
+    fn new(robot: &'a Robot, solution: &'a Solution) -> Self {
+        let view = Self {
+            robot,
+            solution,
+            scale: PIXELS_PER_MM,
+        };
+        let legs = view.legs();
+        let joints = legs.iter().flat_map(|leg| leg.joints);
+        let wide = joints.map(|joint| joint.x.abs()).fold(1.0, f64::max);
+        let ends = [solution.head_point(), solution.tail_point()];
+        let beyond = SKIN_BEYOND * view.grown() + NAME_BEYOND;
+        let long = ends.map(|end| end.y.abs()).into_iter().fold(1.0, f64::max) + beyond;
+        let fits = [(SIZE.0, MARGIN.0, wide), (SIZE.1, MARGIN.1, long)];
+        let fits = fits.map(|(page, margin, mm)| (page / 2.0 - margin) / mm);
+        Self {
+            scale: fits.into_iter().fold(PIXELS_PER_MM, f64::min),
+            ..view
+        }
+    }
+
+    /// From the chassis frame to the page.
+    pub(super) fn page(&self, joint: Joint) -> (f64, f64) {
+        (
+            SIZE.0 / 2.0 + self.scale * joint.x,
+            SIZE.1 / 2.0 - self.scale * joint.y,
+        )
+    }
+
+    /// The robot's size relative to the paper's robot.
+    pub(super) fn grown(&self) -> f64 {
+        self.robot.plate().half.y / SKIN_LENGTH
+    }
+
+    fn sheet(&self) -> Sheet<impl Fn(Joint) -> (f64, f64)> {
+        Sheet {
+            at: |joint| self.page(joint),
+            scale: self.scale,
+            turn: 0.0,
+        }
+    }
+
+    fn bar(&self, from: Joint, to: Joint, colour: &str, mm: f64) -> svg::node::element::Line {
+        self.sheet().bar(from, to, colour, mm)
+    }
+
+    fn pivot(&self, at: Joint, mm: f64) -> svg::node::element::Circle {
+        self.sheet().joint(at, mm)
+    }
+
+    pub(super) fn angles(&self) -> [f64; 4] {
+        self.solution.pose.into()
+    }
+
+    pub(super) fn shafts(&self) -> [Joint; 4] {
+        self.robot.lizard().shafts()
+    }
+
+    /// Tip of a servo's crank.
+    fn crank_tip(&self, servo: usize) -> Joint {
+        self.solution.crank_tips()[servo]
+    }
+
+    /// A lizard's outline, pale, so that a mechanism looks like an animal.
+    fn skin(&self, group: Group) -> Group {
+        let grown = self.grown();
+        let around = |point: Joint, x: f64, y: f64| {
+            let (x, y) = self.page(point + Vector::new(x, y) * grown);
+            format!("{x:.1} {y:.1}")
+        };
+        let at = |x: f64, y: f64| around(Vector::default(), x, y);
+        let head = self.solution.head_point();
+        let tail = self.solution.tail_point();
+        let d = [
+            format!("M {}", around(head, 0.0, 30.0)),
+            format!(
+                "C {} {} {}",
+                around(head, 18.0, 30.0),
+                around(head, 27.0, 2.0),
+                at(27.0, 84.0)
+            ),
+            format!(
+                "C {} {} {}",
+                at(44.0, 50.0),
+                at(44.0, -50.0),
+                at(27.0, -84.0)
+            ),
+            format!(
+                "C {} {} {}",
+                around(tail, 22.0, 0.0),
+                around(tail, 6.0, -6.0),
+                around(tail, 3.0, -26.0)
+            ),
+            format!("L {}", around(tail, -3.0, -26.0)),
+            format!(
+                "C {} {} {}",
+                around(tail, -6.0, -6.0),
+                around(tail, -22.0, 0.0),
+                at(-27.0, -84.0)
+            ),
+            format!(
+                "C {} {} {}",
+                at(-44.0, -50.0),
+                at(-44.0, 50.0),
+                at(-27.0, 84.0)
+            ),
+            format!(
+                "C {} {} {} Z",
+                around(head, -27.0, 2.0),
+                around(head, -18.0, 30.0),
+                around(head, 0.0, 30.0)
+            ),
+        ];
+        let outline = Path::new().set("d", d.join(" ")).set("fill", SKIN);
+        let eye = |x: f64| circle(self.page(head + Vector::new(x, 12.0) * grown), 6.5, DARK);
+        group.add(outline).add(eye(-9.0)).add(eye(9.0))
+    }
+
+    /// The prismatic joint between the arms of a front and a rear servo.
+    fn slider(&self, mut group: Group, side: Side) -> Group {
+        let ([front, rear], slider) = (side.servos(), self.solution.side(side));
+        let rear_shaft = self.shafts()[rear];
+        let (low, high) = (rear_shaft + slider.rear_tip, rear_shaft + slider.front_tip);
+        let links = self.robot.lizard().links;
+        let tube = match side {
+            Side::Left => links.l12,
+            Side::Right => links.l17,
+        };
+        let along = (high - low) * (1.0 / slider.d);
+        group = group.add(self.bar(low, high, STEEL, 1.8)).add(self.bar(
+            low,
+            low + along * tube,
+            "#9a9a9a",
+            5.0,
+        ));
+        for (servo, tip) in [(front, high), (rear, low)] {
+            group = group
+                .add(
+                    self.bar(self.shafts()[servo], tip, SERVO[servo], 3.0)
+                        .set("stroke-opacity", 0.75),
+                )
+                .add(self.pivot(tip, 2.0));
+        }
+        group
+    }
+
+    /// Two cranks, two couplers and the point that they carry.
+    fn five_bar(&self, mut group: Group, end: End) -> Group {
+        let (servos, point) = (end.servos(), self.solution.point(end));
+        for servo in servos {
+            group = group.add(self.bar(self.crank_tip(servo), point, STEEL, 3.4));
+        }
+        for servo in servos {
+            let (shaft, tip) = (self.shafts()[servo], self.crank_tip(servo));
+            group = group
+                .add(self.bar(shaft, tip, SERVO[servo], 4.6))
+                .add(self.pivot(tip, 2.3))
+                .add(circle(self.page(shaft), 3.4 * self.scale, DARK))
+                .add(circle(self.page(shaft), 1.2 * self.scale, "white"));
+        }
+        group.add(
+            circle(self.page(point), 3.4 * self.scale, "#f0e442")
+                .set("stroke", DARK)
+                .set("stroke-width", 2.5),
+        )
+    }
+
+    pub(super) fn foot(&self, servo: usize) -> Joint {
+        self.legs()[servo].foot
+    }
+
+    /// The legs, none of which lags.
+    pub(super) fn legs(&self) -> [LegPlace; 4] {
+        let angles = self.angles();
+        std::array::from_fn(|i| self.robot.legs()[i].at(angles[i], angles[i]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shared::robot_file::named;
+    use lizard_kinematics::{Pose, wrap};
+
+    fn check(pose: Option<Pose>, verdict: impl Fn(&View)) {
+        let robot = named("paper");
+        let pose = pose.unwrap_or_else(|| robot.neutral());
+        let solution = robot.lizard().solve(&pose).expect("the pose closes");
+        verdict(&View::new(&robot, &solution));
+    }
+
+    const ASKEW: [f64; 4] = [120.0, 50.0, 330.0, 200.0];
+
+    #[test]
+    fn every_drawn_link_has_its_length() {
+        for pose in [None, Some(ASKEW.into())] {
+            check(pose, |view| {
+                for servo in 0..4 {
+                    let tip = view.crank_tip(servo);
+                    let crank = tip - view.shafts()[servo];
+                    assert!((crank.length() - 30.0).abs() < 1e-9);
+                    assert!((wrap(crank.angle() - view.angles()[servo])).abs() < 1e-9);
+                    let point = if servo < 2 {
+                        view.solution.head_point()
+                    } else {
+                        view.solution.tail_point()
+                    };
+                    assert!(((point - tip).length() - 50.0).abs() < 1e-9);
+                }
+            });
+        }
+    }
+
+    #[test]
+    fn at_neutral_each_foot_is_straight_beside_its_hip() {
+        check(None, |view| {
+            let feet: Vec<(f64, f64)> = (0..4)
+                .map(|servo| view.foot(servo))
+                .map(|foot| (foot.x.round(), foot.y.round()))
+                .collect();
+            assert_eq!(
+                feet,
+                [(-80.0, 55.0), (80.0, 55.0), (80.0, -55.0), (-80.0, -55.0)]
+            );
+        });
+    }
+
+    #[test]
+    fn a_foot_goes_forward_where_the_gaits_say_so() {
+        use lizard_robot::servo::FORWARD;
+        check(None, |view| {
+            for servo in 0..4 {
+                let mut angles: [f64; 4] = view.angles();
+                angles[servo] += 10.0 * FORWARD[servo];
+                let before = view.foot(servo);
+                check(Some(angles.into()), |swept| {
+                    assert!(swept.foot(servo).y > before.y + 7.0);
+                });
+            }
+        });
+    }
+
+    #[test]
+    fn a_large_robot_is_on_the_page() {
+        let robot = named("large");
+        let solution = robot.lizard().solve(&robot.neutral()).expect("it closes");
+        let view = View::new(&robot, &solution);
+        let mut joints = view
+            .legs()
+            .iter()
+            .flat_map(|leg| leg.joints)
+            .collect::<Vec<_>>();
+        joints.extend([solution.head_point(), solution.tail_point()]);
+        for joint in joints {
+            let (x, y) = view.page(joint);
+            assert!((50.0..SIZE.0 - 50.0).contains(&x), "{x}");
+            assert!((50.0..SIZE.1 - 50.0).contains(&y), "{y}");
+        }
+    }
+
+    #[test]
+    fn names_can_be_left_out() {
+        check(None, |view| {
+            assert!(top_view(view.robot, view.solution, true).contains("θ1 = 138.59°"));
+            assert!(!top_view(view.robot, view.solution, false).contains("<text"));
+        });
+    }
+}

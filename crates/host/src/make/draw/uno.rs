@@ -1,0 +1,150 @@
+//! An Arduino UNO from above, its pins where the board has them.
+
+use svg::node::element::{Group, Text};
+
+use crate::shared::ink::pin_name;
+use crate::shared::ink::{
+    Anchor, DARK, GREY, PANEL, circle, fixed, rectangle, text, text_middle, text_start,
+};
+
+/// Pixels between neighbouring pins, a tenth of an inch.
+const PITCH: f64 = 14.0;
+
+/// The board, in tenths of an inch.
+const BOARD: (f64, f64) = (27.0, 21.0);
+
+/// Rows of pins, in tenths of an inch from the board's lower edge.
+const UPPER_ROW: f64 = 20.0;
+const LOWER_ROW: f64 = 1.0;
+
+/// The power header: its first pin, in tenths of an inch from the left edge, and the names
+/// printed beside its pins.
+const POWER: (f64, [&str; 7]) = (12.0, ["IOREF", "RESET", "3.3V", "5V", "GND", "GND", "VIN"]);
+const REFERENCES: (f64, [&str; 4]) = (7.4, ["SCL", "SDA", "AREF", "GND"]);
+
+/// Of the pins beside the upper header's GND, and of its other half.
+const D13: f64 = 11.4;
+const D7: f64 = 18.0;
+const A0: f64 = 20.0;
+
+/// The UNO's place on a page.
+#[derive(Clone, Copy, Debug)]
+pub struct Uno {
+    /// Its upper left corner.
+    pub corner: (f64, f64),
+}
+
+impl Uno {
+    /// The right and the lower edge.
+    pub fn far_corner(&self) -> (f64, f64) {
+        self.at(BOARD.0, 0.0)
+    }
+
+    /// A pin by its Arduino number, 0 to 19; 14 to 19 are A0 to A5.
+    pub fn pin(&self, number: u8) -> (f64, f64) {
+        let n = f64::from(number);
+        match number {
+            0..=7 => self.at(D7 + 7.0 - n, UPPER_ROW),
+            8..=13 => self.at(D13 + 13.0 - n, UPPER_ROW),
+            _ => self.at(A0 + n - 14.0, LOWER_ROW),
+        }
+    }
+
+    /// The ground pin beside D13.
+    pub fn ground(&self) -> (f64, f64) {
+        self.at(D13 - 1.0, UPPER_ROW)
+    }
+
+    /// The 5V pin.
+    pub fn five_volts(&self) -> (f64, f64) {
+        self.at(POWER.0 + 3.0, LOWER_ROW)
+    }
+
+    /// The board; the pins of `used` stand out.
+    pub fn draw(&self, used: &[u8]) -> Group {
+        let size = (BOARD.0 * PITCH, BOARD.1 * PITCH);
+        let mut group = Group::new().add(
+            rectangle(self.corner, size, "#dfeaec")
+                .set("rx", 8)
+                .set("stroke", DARK)
+                .set("stroke-width", 1.5),
+        );
+        group = self.sockets(group);
+        for number in 0..=19 {
+            let name = pin_name(number);
+            let is_used = used.contains(&number);
+            let hole = hole(self.pin(number), is_used).set("id", format!("pin-{name}"));
+            group = group
+                .add(hole)
+                .add(self.label(self.pin(number), &name, is_used));
+        }
+        for (place, name) in REFERENCES.1.iter().enumerate() {
+            let at = self.at(REFERENCES.0 + place as f64, UPPER_ROW);
+            let is_used = at == self.ground();
+            group = group
+                .add(hole(at, is_used))
+                .add(self.label(at, name, is_used));
+        }
+        for (place, name) in POWER.1.iter().enumerate() {
+            let at = self.at(POWER.0 + place as f64, LOWER_ROW);
+            group = group.add(hole(at, false)).add(self.label(at, name, false));
+        }
+        let name = self.at(9.0, 11.2);
+        group.add(text_start("Arduino UNO", name, 18.0))
+    }
+
+    /// Sockets, chip and LED.
+    fn sockets(&self, group: Group) -> Group {
+        let block = |x: f64, top: f64, size: (f64, f64), fill| {
+            rectangle(self.at(x, top), (size.0 * PITCH, size.1 * PITCH), fill)
+                .set("stroke", DARK)
+                .set("stroke-width", 1.2)
+        };
+        let led = self.at(9.4, 13.6);
+        group
+            .add(block(-2.5, 17.5, (6.4, 4.7), "#c9c9c9"))
+            .add(text_middle("USB", self.at(0.7, 14.8), 14.0))
+            .add(block(-0.8, 4.8, (5.4, 3.6), "#bdbdbd"))
+            .add(text_middle("7-12 V", self.at(1.9, 2.6), 13.0))
+            .add(block(11.5, 9.2, (13.0, 3.0), "#8f8f8f"))
+            .add(circle(led, 4.5, "#f0e442").set("stroke", DARK))
+            .add(text_start("LED", (led.0 + 9.0, led.1 + 5.0), 13.0))
+    }
+
+    /// The name printed beside a pin, upwards.
+    fn label(&self, pin: (f64, f64), name: &str, is_used: bool) -> Text {
+        let upper = pin.1 < self.corner.1 + BOARD.1 * PITCH / 2.0;
+        let (y, anchor) = if upper {
+            (pin.1 + 9.0, Anchor::End)
+        } else {
+            (pin.1 - 9.0, Anchor::Start)
+        };
+        let x = pin.0 + 4.5;
+        let colour = if is_used { DARK } else { GREY };
+        let label = text(name, (x, y), 12.0, colour, anchor).set(
+            "transform",
+            format!("rotate(-90 {} {})", fixed(x), fixed(y)),
+        );
+        if is_used {
+            label.set("font-weight", "bold")
+        } else {
+            label
+        }
+    }
+
+    /// A place on the page, from tenths of an inch of the board.
+    fn at(&self, right: f64, up: f64) -> (f64, f64) {
+        (
+            self.corner.0 + right * PITCH,
+            self.corner.1 + (BOARD.1 - up) * PITCH,
+        )
+    }
+}
+
+/// A hole of a header.
+fn hole(at: (f64, f64), is_used: bool) -> svg::node::element::Circle {
+    let fill = if is_used { DARK } else { PANEL };
+    circle(at, 4.0, fill)
+        .set("stroke", DARK)
+        .set("stroke-width", 1.2)
+}

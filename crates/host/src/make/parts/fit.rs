@@ -1,0 +1,207 @@
+//! `lizard fit`: how near the robot's parts come to each other, proved.
+
+use std::io::{self, Write};
+
+use lizard_parts::{Answer, Assembly, ENOUGH, Near, Proof, Questions, Unfit};
+use lizard_robot::servo::NAMES;
+use serde::{Deserialize, Serialize};
+
+use crate::shared::progress::bar;
+use crate::shared::spread::{Spread, Spreads};
+use crate::{Failure, RobotFile};
+
+/// Prove that no two parts meet at any pose that the guard accepts
+///
+/// Servos, screws, nuts, springs, board and battery are parts, too. The proof covers all
+/// poses, not samples: the servos' angles are divided into regions, and in each region
+/// either the guard refuses every pose, or no two parts can come closer than is printed.
+/// Clearances up to 2 mm are measured. docs/fit.md says what is proved and what is not.
+/// The exit code is 1 if two parts overlap or come closer than 0.2 mm.
+#[derive(clap::Args, Debug, Serialize, Deserialize)]
+#[command(after_help = "Examples:
+  lizard fit
+  lizard fit --robot robots/unequal.toml --all")]
+pub struct Args {
+    /// Print every pair that comes closer than 2 mm, not only the closest
+    #[arg(long)]
+    all: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    #[serde(skip)]
+    robot: RobotFile,
+    #[command(flatten)]
+    #[serde(skip)]
+    spread: Spread,
+}
+
+impl Spreads for Args {
+    const COMMAND: &'static str = "fit";
+
+    fn places(&mut self) -> (&mut RobotFile, &mut Spread) {
+        (&mut self.robot, &mut self.spread)
+    }
+}
+
+/// Two parts as `--json` prints them.
+#[derive(Serialize)]
+struct Pair<'a> {
+    first: &'a str,
+    second: &'a str,
+    /// At least so far apart, mm.
+    proved: f64,
+    /// So far at a pose that the guard accepts, mm.
+    seen: Option<f64>,
+    /// The pose at which they meet: A1 to A4, deg.
+    pose: Option<[f64; 4]>,
+    /// The smallest region of poses that could not be proved, deg.
+    doubt: Option<[f64; 4]>,
+}
+
+/// The proof as `--json` prints it.
+#[derive(Serialize)]
+struct Report<'a> {
+    fits: bool,
+    /// The reason why they cannot be judged.
+    reason: Option<String>,
+    apart: Vec<Pair<'a>>,
+    meeting: Vec<Pair<'a>>,
+    /// From and to, deg, A1 to A4.
+    ranges: [[f64; 2]; 4],
+    pairs: usize,
+    regions: u64,
+}
+
+impl<'a> From<&'a Near> for Pair<'a> {
+    fn from(near: &'a Near) -> Self {
+        Self {
+            first: &near.first,
+            second: &near.second,
+            proved: near.proved,
+            seen: near.seen.as_ref().map(|seen| seen.mm),
+            pose: near.seen.as_ref().map(|seen| seen.pose),
+            doubt: near.doubt,
+        }
+    }
+}
+
+/// A bar of pairs of mounts.
+const PAIRS: &str = "{wide_bar} {pos}/{len} looking for parts that meet";
+
+/// Proves it, with a bar.
+pub(super) fn proof(assembly: &Assembly) -> Proof {
+    answered(&Questions::new(assembly, |_, _| true), None)
+}
+
+/// The proof, of answers that are known or else are found here.
+fn answered(questions: &Questions, known: Option<Vec<Answer>>) -> Proof {
+    let bar = bar(questions.count(), PAIRS);
+    let known = |place: usize| known.as_ref()?.get(place).cloned();
+    let proof = questions.answer(known, |done, _| bar.set_position(done as u64));
+    bar.finish_and_clear();
+    proof
+}
+
+/// Proves and prints.
+///
+/// # Errors
+/// A wrong robot.toml, measures that do not go together, parts that meet.
+pub fn run(args: Args) -> Result<(), Failure> {
+    let robot = args.robot.load()?;
+    let assembly = Assembly::new(&robot);
+    assembly.measures_fit()?;
+    let questions = Questions::new(&assembly, |_, _| true);
+    let count = questions.count();
+    if let Some(part) = args.spread.part() {
+        let bar = bar(part.count(count), PAIRS);
+        let one = |place| {
+            bar.inc(1);
+            questions.one(place)
+        };
+        part.print(&args, &args.robot, count, one)?;
+        bar.finish_and_clear();
+        return Ok(());
+    }
+    let proof = answered(&questions, args.spread.read(count)?);
+    let judged = proof.judge();
+    let mut out = io::stdout().lock();
+    if args.json {
+        let report = Report {
+            fits: judged.is_ok(),
+            reason: judged.as_ref().err().map(ToString::to_string),
+            apart: proof.apart.iter().map(Pair::from).collect(),
+            meeting: proof.meeting.iter().map(Pair::from).collect(),
+            ranges: proof.ranges,
+            pairs: proof.pairs,
+            regions: proof.regions,
+        };
+        serde_json::to_writer(&mut out, &report)?;
+        writeln!(out)?;
+    } else {
+        print(&proof, args.all, &mut out)?;
+    }
+    out.flush()?;
+    judged.map_err(|clash| Unfit::from(clash).into())
+}
+
+fn print(proof: &Proof, all: bool, out: &mut impl Write) -> io::Result<()> {
+    /// Rows that are printed without --all.
+    const FEW: usize = 10;
+    writeln!(
+        out,
+        "proved   seen   parts                                          at A1 A2 A3 A4, deg"
+    )?;
+    writeln!(out, "    mm     mm")?;
+    let list = |near: &[Near], out: &mut dyn Write| -> io::Result<()> {
+        let near: Vec<_> = near
+            .iter()
+            .filter(|near| near.proved < ENOUGH * 0.9)
+            .collect();
+        let shown = if all { near.len() } else { FEW.min(near.len()) };
+        for near in &near[..shown] {
+            row(near, out)?;
+        }
+        match near.len() - shown {
+            0 => Ok(()),
+            more => writeln!(out, "... and {more} more (--all)"),
+        }
+    };
+    list(&proof.apart, out)?;
+    writeln!(out, "\nmade to meet: air between them")?;
+    list(&proof.meeting, out)?;
+    writeln!(out, "\nthe guard lets the servos turn at most")?;
+    for (name, [from, to]) in NAMES.iter().zip(proof.ranges) {
+        writeln!(out, "  {name} {from:7.2} to {to:7.2} deg")?;
+    }
+    writeln!(
+        out,
+        "{} pairs of shapes, {} regions of poses",
+        proof.pairs, proof.regions
+    )?;
+    if let (Ok(()), Some(least)) = (proof.judge(), proof.least()) {
+        writeln!(
+            out,
+            "no two parts come nearer than {:.2} mm at any pose that the guard accepts",
+            least.proved
+        )?;
+    }
+    Ok(())
+}
+
+fn row(near: &Near, out: &mut dyn Write) -> io::Result<()> {
+    let seen = near.seen.as_ref();
+    let parts = format!("{}, {}", near.first, near.second);
+    write!(
+        out,
+        "{:6.2} {:>6}   {parts:<44}",
+        near.proved,
+        seen.map_or("-".to_owned(), |seen| format!("{:.2}", seen.mm))
+    )?;
+    if let Some(pose) = seen.map(|seen| seen.pose).or(near.doubt) {
+        for angle in pose {
+            write!(out, " {angle:6.1}")?;
+        }
+    }
+    writeln!(out)
+}

@@ -1,0 +1,160 @@
+//! `lizard parts`: everything that is needed to build the robot, as files.
+
+pub mod fit;
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use lizard_parts::{Assembly, Bill, File, Unfit, coupon, papers, part_files};
+use lizard_robot::{Body, Robot};
+use serde::Serialize;
+
+use crate::shared::files;
+use crate::shared::progress::bar;
+use crate::{Failure, RobotFile};
+
+/// Make the parts of the robot: files to print and to cut, what to buy, how to build it
+///
+/// Writes into DIR: step/ (solids for a drawing program), stl/ (lying as they are
+/// printed), cut/ (DXF and SVG, 1:1 in mm, of the parts that can be cut from a sheet),
+/// guide/ (how to build the robot, as HTML and Markdown; placements.json says where each
+/// part is) and bill.json (what to print and to buy). Links, servos, screws and fits come
+/// from robot.toml. A robot whose parts would meet is refused.
+#[derive(clap::Args, Debug)]
+#[command(after_help = "Examples:
+  lizard parts out/parts
+  lizard parts out/large --robot robots/large.toml
+  lizard parts out/fit --coupon
+  lizard parts out/corner --corner
+
+Print the coupon first: the first column into which everything goes by hand is the `fit`
+of your printer, and belongs under [parts] in robot.toml. Then print one corner: a seat
+for A1, its link, leg, strut and foot.")]
+pub struct Args {
+    /// Folder for the files; it is created if it does not exist
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    /// Make only the fit coupon
+    #[arg(long)]
+    coupon: bool,
+    /// Make only one corner, to try before you print everything
+    #[arg(long, conflicts_with = "coupon")]
+    corner: bool,
+    /// Print the list of parts as JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    robot: RobotFile,
+}
+
+/// A part as `--json` prints it.
+#[derive(Serialize)]
+struct Listed {
+    part: String,
+    count: usize,
+    /// The part that it may be put in instead of, if the robot has it not.
+    instead_of: Option<String>,
+    /// The bodies that are made so, by their names in the assembly.
+    bodies: Vec<String>,
+    /// Of one, mm^3.
+    volume: f64,
+    files: Vec<String>,
+}
+
+impl From<Unfit> for Failure {
+    fn from(unfit: Unfit) -> Self {
+        Self::Impossible(unfit.to_string())
+    }
+}
+
+/// Makes and writes everything.
+///
+/// # Errors
+/// A wrong robot.toml, parts that do not fit, a folder or a file that cannot be written.
+/// Nothing is written unless all of it could be made.
+pub fn run(args: Args) -> Result<(), Failure> {
+    let robot = args.robot.load()?;
+    let kerf = robot.parts().kerf;
+    let assembly = Assembly::new(&robot);
+    let whole = !args.coupon && !args.corner;
+    let mut parts = Vec::new();
+    if !args.corner {
+        parts.extend(coupon(robot.parts()));
+    }
+    if !args.coupon {
+        assembly.measures_fit()?;
+        fit::proof(&assembly).judge().map_err(Unfit::from)?;
+        parts.extend(match args.corner {
+            true => assembly.corner(),
+            false => assembly.parts(),
+        });
+    }
+    let bar = bar(parts.len(), "{wide_bar} {pos}/{len} {msg}");
+    let mut files = Vec::new();
+    let mut list = Vec::new();
+    for part in &parts {
+        bar.set_message(part.name.clone());
+        let made = part_files(part, kerf)?;
+        list.push(Listed {
+            part: part.name.clone(),
+            count: part.count(),
+            instead_of: part.instead_of.clone(),
+            bodies: part.bodies.clone(),
+            volume: part.volume(),
+            files: made.iter().map(|file| file.path.clone()).collect(),
+        });
+        files.extend(made);
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    let mut weight = None;
+    if whole {
+        let pose = robot.lizard().solve(&robot.neutral())?;
+        let bill = Bill::of(&assembly, &assembly.parts(), &pose);
+        files.extend(papers(&assembly, &bill, &pose)?);
+        weight = bill
+            .differs(&robot.ground().body)
+            .then(|| said(&bill, &robot));
+    }
+    write(&args.folder, &files)?;
+    let mut out = io::stdout().lock();
+    if args.json {
+        serde_json::to_writer_pretty(&mut out, &list)?;
+        writeln!(out)?;
+    } else {
+        let needed = list.iter().filter(|part| part.instead_of.is_none());
+        let pieces: usize = needed.map(|part| part.count).sum();
+        writeln!(
+            out,
+            "{} parts, {pieces} pieces, {} files in {}",
+            list.len(),
+            files.len(),
+            args.folder.display()
+        )?;
+        if let Some(weight) = weight {
+            write!(out, "\n{weight}")?;
+        }
+    }
+    Ok(out.flush()?)
+}
+
+/// The lines for a robot.toml whose weight is not that of the parts.
+fn said(bill: &Bill, robot: &Robot) -> String {
+    let Body { mass, centre } = robot.ground().body;
+    format!(
+        "The parts weigh {:.0} g, and their mass centre is {} the middle of the plate; robot.toml has {mass} g and \
+         {centre:?} mm. For predictions with these parts put into it:\n\n{}",
+        bill.grams,
+        bill.beside(),
+        bill.body_toml()
+    )
+}
+
+/// Writes all files.
+fn write(folder: &Path, files: &[File]) -> Result<(), Failure> {
+    for file in files {
+        let path = folder.join(&file.path);
+        files::write(&path, &file.bytes)?;
+    }
+    Ok(())
+}

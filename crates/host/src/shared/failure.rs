@@ -1,0 +1,50 @@
+//! The failure that ends the program: a sentence for the user, and an exit code.
+
+use std::io;
+
+/// The reason why a subcommand ended without its result.
+#[derive(Debug, thiserror::Error)]
+pub enum Failure {
+    /// An argument or a line of input is wrong.
+    #[error("{0}")]
+    Input(String),
+    /// robot.toml is missing or wrong.
+    #[error("{0}")]
+    Robot(#[from] lizard_robot::Error),
+    /// The input is well formed, but what it asks for does not exist.
+    #[error("{0}")]
+    Impossible(String),
+    /// Standard input, standard output or the terminal failed. What concerns a file or
+    /// a port is said with its name.
+    #[error("standard input or output: {0}")]
+    Io(#[from] io::Error),
+}
+
+impl Failure {
+    /// 2 for wrong input, 1 for everything else.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Input(_) | Self::Robot(_) => 2,
+            Self::Impossible(_) | Self::Io(_) => 1,
+        }
+    }
+
+    /// True if the reader of our output went away, as `lizard ... | head` does;
+    /// that is no fault.
+    pub fn is_silent(&self) -> bool {
+        matches!(self, Self::Io(error) if error.kind() == io::ErrorKind::BrokenPipe)
+    }
+}
+
+impl From<lizard_kinematics::Infeasible> for Failure {
+    fn from(infeasible: lizard_kinematics::Infeasible) -> Self {
+        Self::Impossible(infeasible.to_string())
+    }
+}
+
+impl From<serde_json::Error> for Failure {
+    /// Our own values always serialise, so this is a write that failed.
+    fn from(error: serde_json::Error) -> Self {
+        Self::Io(error.into())
+    }
+}

@@ -1,0 +1,314 @@
+//! The files that a command reads and writes: all of them go through here.
+//!
+//! A program that is ended while it writes leaves half a file, and half an image or
+//! half a calibration is worse than none. So the bytes go into a file without a name, or a
+//! temporary one where the system has no such files, which takes its name at the end.
+//!
+//! A file may replace only an ordinary file. If it replaced a device such as /dev/null,
+//! every program of the machine would get it. And no file replaces a robot's description, or
+//! what the same command has read: it is somebody's work, and a wrong name is typed easily.
+
+use std::fs::{self, File, Permissions};
+use std::io::{self, ErrorKind, Read, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use crate::Failure;
+
+/// The files that this command has read.
+static READ: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// Notes a file that is about to be read, so that no output replaces it.
+#[must_use]
+pub fn reading(path: &Path) -> &Path {
+    let mut read = READ.lock().unwrap_or_else(PoisonError::into_inner);
+    read.push(path.to_owned());
+    path
+}
+
+/// The text of an input.
+///
+/// # Errors
+/// It cannot be read, is no text, or does not end within 256 MiB, as a device may not.
+pub fn read_text(path: &Path) -> Result<String, Failure> {
+    const LONGEST: u64 = 256 << 20;
+    let mut text = String::new();
+    let read = File::open(reading(path)).and_then(|file| {
+        match file.take(LONGEST + 1).read_to_string(&mut text)? as u64 {
+            0..=LONGEST => Ok(()),
+            _ => Err(io::Error::other("it is longer than 256 MiB")),
+        }
+    });
+    read.map_err(|error| Failure::Input(format!("cannot read {}: {error}", path.display())))?;
+    Ok(text)
+}
+
+/// Checks that an output replaces neither an input nor a robot's description.
+///
+/// # Errors
+/// It would.
+pub fn check_replaceable(path: &Path) -> Result<(), Failure> {
+    let read = READ.lock().unwrap_or_else(PoisonError::into_inner);
+    let is_input = |input: &PathBuf| same_file::is_same_file(input, path).unwrap_or(false);
+    let why = if read.iter().any(is_input) {
+        "this command reads it"
+    } else if is_robot(path) {
+        "it describes a robot"
+    } else {
+        return Ok(());
+    };
+    Err(Failure::Input(format!(
+        "{} would be overwritten, but {why}; name another file for the output",
+        path.display()
+    )))
+}
+
+/// True for a file that is named robot.toml or has the table of a robot's lengths, even if
+/// the rest of it is wrong.
+fn is_robot(path: &Path) -> bool {
+    if !path.is_file() {
+        return false;
+    }
+    let Ok(end) = path.canonicalize() else {
+        return false;
+    };
+    let has_lengths = |bytes: Vec<u8>| {
+        let text = String::from_utf8_lossy(&bytes);
+        text.lines().any(|line| line.trim() == "[links]")
+    };
+    end.ends_with("robot.toml") || fs::read(end).is_ok_and(has_lengths)
+}
+
+/// Writes a file whole or not at all, and makes the folders it needs. A file that is there is
+/// replaced, also where a link leads to it, and keeps its permissions. A stream, such as
+/// /dev/stdout or a named pipe, gets the bytes.
+///
+/// # Errors
+/// The folder cannot be made or written to; or there is something at this path that is
+/// no ordinary file, such as a device or a folder: it would be replaced by a file. Or the file
+/// is an input or a robot ([`check_replaceable`]).
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    check_replaceable(path)?;
+    let done = if is_stream(path) {
+        // As it is: nothing is made, nothing is cut.
+        File::options()
+            .write(true)
+            .open(path)
+            .and_then(|mut stream| stream.write_all(bytes))
+    } else {
+        folders(path).and_then(|()| persist(path, bytes))
+    };
+    done.map_err(|error| cannot(path, &error))
+}
+
+/// The sentence for a path that cannot be written.
+pub fn cannot(path: &Path, error: &io::Error) -> Failure {
+    let why = error.to_string();
+    // tempfile adds the name of the temporary file, which means nothing to a user.
+    let why = why
+        .split_once(" at path ")
+        .map_or(why.as_str(), |(why, _)| why);
+    Failure::Impossible(format!("cannot write {}: {why}", path.display()))
+}
+
+fn folders(path: &Path) -> io::Result<()> {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => fs::create_dir_all(folder),
+        _ => Ok(()),
+    }
+}
+
+#[cfg(unix)]
+fn is_stream(path: &Path) -> bool {
+    use std::os::unix::fs::FileTypeExt;
+    path.metadata()
+        .map(|there| there.file_type())
+        .is_ok_and(|kind| kind.is_char_device() || kind.is_fifo())
+}
+
+#[cfg(not(unix))]
+fn is_stream(_: &Path) -> bool {
+    false
+}
+
+/// The file behind a path, after following links, and its permissions, if it exists.
+fn place(path: &Path) -> io::Result<(PathBuf, Option<Permissions>)> {
+    match path.metadata() {
+        Ok(there) if there.is_file() => Ok((path.canonicalize()?, Some(there.permissions()))),
+        Ok(_) => Err(io::Error::other("it is there already and no ordinary file")),
+        Err(_) if path.is_symlink() => Err(io::Error::other("it is a link that leads nowhere")),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok((path.to_owned(), None)),
+        Err(error) => Err(error),
+    }
+}
+
+fn persist(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let (path, permissions) = place(path)?;
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let fill = |file: &mut File| {
+        file.write_all(bytes)?;
+        if let Some(permissions) = permissions {
+            file.set_permissions(permissions)?;
+        }
+        file.sync_all()
+    };
+    #[cfg(target_os = "linux")]
+    if let Some(mut file) = nameless(folder) {
+        fill(&mut file)?;
+        let link = |name: &Path| name_it(&file, name);
+        tempfile::Builder::new()
+            .make_in(folder, link)?
+            .persist(path)?;
+        return Ok(());
+    }
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // As any other file: the user's umask takes its part away.
+        builder.permissions(Permissions::from_mode(0o666));
+    }
+    // In the same folder: a file moves into its place at once only there.
+    let mut file = builder.tempfile_in(folder)?;
+    fill(file.as_file_mut())?;
+    file.persist(path)?;
+    Ok(())
+}
+
+/// A file in this folder that has no name yet, and is gone if the program is killed; none where
+/// the file system has no such files.
+#[cfg(target_os = "linux")]
+fn nameless(folder: &Path) -> Option<File> {
+    use rustix::fs::{Mode, OFlags, open};
+    let flags = OFlags::TMPFILE | OFlags::WRONLY | OFlags::CLOEXEC;
+    let file = open(folder, flags, Mode::from_raw_mode(0o666)).ok()?;
+    // Only there can it be given a name.
+    Path::new("/proc/self/fd").is_dir().then(|| file.into())
+}
+
+/// Gives a file of [`nameless`] a name.
+#[cfg(target_os = "linux")]
+fn name_it(file: &File, name: &Path) -> io::Result<()> {
+    use rustix::fs::{AtFlags, CWD, linkat};
+    use std::os::fd::AsRawFd;
+    let open = format!("/proc/self/fd/{}", file.as_raw_fd());
+    Ok(linkat(CWD, open, CWD, name, AtFlags::SYMLINK_FOLLOW)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refusal(path: &Path) -> String {
+        write(path, b"x")
+            .expect_err("it is not written")
+            .to_string()
+    }
+
+    #[test]
+    fn a_file_is_replaced_and_nothing_else_is_left_in_its_folder() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("new/folder/a");
+        write(&path, b"old and longer").expect("it is written");
+        write(&path, &[0, 0xff]).expect("it is replaced");
+        assert_eq!(fs::read(&path).expect("it is read"), [0, 0xff]);
+        let folder = path.parent().expect("its folder");
+        assert_eq!(folder.read_dir().expect("a folder").count(), 1);
+    }
+
+    #[test]
+    fn an_input_and_a_robot_are_not_replaced_by_whatever_name() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let [input, other, robot, mine] =
+            ["a.jsonl", "b", "robot.toml", "mine"].map(|name| folder.path().join(name));
+        fs::write(&input, "an input").expect("it is written");
+        fs::write(&robot, "broken").expect("it is written");
+        fs::write(&mine, "# mine\n [links]\nl0 = x\n").expect("it is written");
+        fs::hard_link(&input, &other).expect("another name of it");
+        let _ = reading(&folder.path().join("../").join(&input));
+        for (path, why) in [
+            (&input, "but this command reads it; name another file"),
+            (&other, "but this command reads it; name another file"),
+            (&robot, "but it describes a robot; name another file"),
+            (&mine, "but it describes a robot; name another file"),
+        ] {
+            let before = fs::read(path).expect("it is there");
+            let words = refusal(path);
+            assert!(words.contains(why), "{words}");
+            assert_eq!(fs::read(path).expect("it is there"), before);
+        }
+        write(&folder.path().join("c"), b"x").expect("a file like any other");
+    }
+
+    #[test]
+    fn a_file_that_cannot_be_written_is_named() {
+        assert_eq!(
+            refusal(Path::new("/dev/null/folder/a.toml")),
+            "cannot write /dev/null/folder/a.toml: Not a directory (os error 20)"
+        );
+    }
+
+    #[test]
+    fn a_folder_is_not_replaced() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let inner = folder.path().join("inner");
+        fs::create_dir(&inner).expect("a folder in it");
+        assert!(refusal(&inner).ends_with("it is there already and no ordinary file"));
+        assert!(inner.is_dir());
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_link_stays_one_and_the_file_at_its_end_is_replaced_with_its_permissions() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+        let folder = tempfile::tempdir().expect("a folder");
+        let [file, link, astray] = ["file", "link", "astray"].map(|name| folder.path().join(name));
+        fs::write(&file, "old").expect("it is written");
+        fs::set_permissions(&file, Permissions::from_mode(0o640)).expect("it is ours");
+        symlink("file", &link).expect("a link");
+        write(&link, b"new").expect("it is written");
+        assert!(link.is_symlink());
+        assert_eq!(fs::read(&file).expect("it is read"), b"new");
+        let mode = file.metadata().expect("it is there").permissions().mode();
+        assert_eq!(mode & 0o777, 0o640);
+        symlink("nothing", &astray).expect("a link");
+        assert!(refusal(&astray).ends_with("astray: it is a link that leads nowhere"));
+        assert!(astray.is_symlink());
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_stream_gets_the_bytes_and_stays() {
+        let folder = tempfile::tempdir().expect("a folder");
+        // A link, so that a mistake here would not harm the machine.
+        let device = folder.path().join("device");
+        std::os::unix::fs::symlink("/dev/null", &device).expect("a link");
+        write(&device, b"<svg/>").expect("it takes everything");
+        assert!(device.is_symlink());
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn of_a_folder_that_takes_no_files_the_file_alone_is_named() {
+        let words = refusal(Path::new("/proc/self/a.toml"));
+        assert!(
+            words.starts_with("cannot write /proc/self/a.toml: "),
+            "{words}"
+        );
+        assert!(!words.contains("at path"), "{words}");
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn a_full_device_is_named() {
+        let words = write(Path::new("/dev/full"), b"<svg/>").expect_err("it is full");
+        let words = words.to_string();
+        assert!(
+            words.starts_with("cannot write /dev/full: No space left"),
+            "{words}"
+        );
+    }
+}

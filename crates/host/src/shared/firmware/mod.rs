@@ -1,0 +1,41 @@
+//! The choice of a firmware and its robot.
+//!
+//! The firmware is one image for any lizard: its robot is a section of flash behind the code.
+//! The code is inside this program, so a robot.toml is all that a user needs: `lizard flash`,
+//! `image`, `sim`, `twin`, `console --sim` and all others put the section of the selected robot
+//! behind that code. A build in some folder is never used implicitly. Developers of the
+//! firmware name their build: by `--elf` for a simulation, as `make sim` does, or by `--image`
+//! for a board. Only `lizard bench` always needs an ELF, because it times functions by their
+//! names.
+//!
+//! An ELF has a robot in it. If that is not the selected robot, one of the two is a mistake,
+//! and the ELF is refused.
+
+use lizard_core::numbers::robot::Robot as CoreRobot;
+use lizard_core::numbers::section::{Region, START};
+
+#[cfg(feature = "simulator")]
+pub use simulated::{Firmware, Unreadable, inside, read, with_robot};
+
+#[cfg(feature = "simulator")]
+pub(crate) use simulated::{code_bytes, of_robot};
+
+#[cfg(feature = "simulator")]
+mod simulated;
+
+/// The code of the firmware in Intel HEX, up to where the robot's section begins.
+///
+/// `make code-image` writes the file anew, and a test compares it with what the source builds.
+pub const CODE: &str = include_str!("../../../../../firmware/code.hex");
+
+/// A robot's name and hash, as its banner says them.
+#[must_use]
+pub fn named(robot: &CoreRobot) -> String {
+    let name: String = robot.label().map(char::from).collect();
+    format!("{name} {:08x}", robot.hash())
+}
+
+/// The robot in a flash, from address 0 on.
+pub(crate) fn robot_in(flash: &[u8]) -> Option<CoreRobot<'_>> {
+    CoreRobot::open(Region::new(flash.get(usize::from(START)..)?)).ok()
+}

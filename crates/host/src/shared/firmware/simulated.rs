@@ -1,0 +1,145 @@
+//! The firmware for a simulated UNO.
+
+use std::path::{Path, PathBuf};
+
+use lizard_core::numbers::section::{SPACE, START};
+use lizard_robot::Robot;
+use simulated_uno::{Image, LoadError};
+
+use super::{CODE, named, robot_in};
+use crate::shared::files::reading;
+use crate::{Failure, RobotFile};
+
+/// An image to run, and where it is from.
+#[derive(Debug, Clone)]
+pub struct Firmware {
+    /// The file, or that it is this program's own.
+    pub name: String,
+    /// The code with the robot behind it.
+    pub image: Image,
+}
+
+/// A file that is no program of an AVR, or cannot be read.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {error}; `make firmware` builds it", elf.display())]
+pub struct Unreadable {
+    elf: PathBuf,
+    error: LoadError,
+}
+
+impl From<Unreadable> for Failure {
+    fn from(error: Unreadable) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+/// Reads the program of an ELF or HEX file.
+///
+/// # Errors
+/// It cannot be read, or is no program of an AVR.
+pub fn read(elf: &Path) -> Result<Image, Unreadable> {
+    Image::read(reading(elf)).map_err(|error| Unreadable {
+        elf: elf.to_owned(),
+        error,
+    })
+}
+
+/// The reason why an image is not run.
+#[derive(Debug, thiserror::Error)]
+enum FirmwareError {
+    #[error("there is no firmware at {0}; without --elf, the one inside this program is taken")]
+    Missing(String),
+    #[error(
+        "{} has the robot {its} in it, and not {robot}, which is {wanted}; without --elf, the \
+         firmware inside this program runs with any robot",
+        elf.display()
+    )]
+    OtherRobot {
+        elf: PathBuf,
+        robot: String,
+        its: String,
+        wanted: String,
+    },
+}
+
+impl From<FirmwareError> for Failure {
+    fn from(error: FirmwareError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+/// The firmware to run for a robot: the file given, which must have this robot in it, or the
+/// code inside this program with this robot. `file` is where the robot was read from.
+///
+/// An image that has no robot's section is no lizard's and is let through: what it does is
+/// seen when it runs.
+///
+/// # Errors
+/// The file is missing, is no program of an AVR, or has another robot in it.
+pub(crate) fn of_robot(
+    elf: Option<&Path>,
+    file: &RobotFile,
+    robot: &Robot,
+) -> Result<Firmware, Failure> {
+    let Some(elf) = elf else {
+        let name = format!("the firmware of lizard {}", env!("CARGO_PKG_VERSION"));
+        let image = inside(robot);
+        return Ok(Firmware { name, image });
+    };
+    if !elf.is_file() {
+        return Err(FirmwareError::Missing(elf.display().to_string()).into());
+    }
+    let image = read(elf)?;
+    if let Some(its) = robot_in(&image.flash())
+        && its.hash() != robot.firmware().hash()
+    {
+        return Err(FirmwareError::OtherRobot {
+            robot: file.name()?,
+            its: named(&its),
+            wanted: named(robot.firmware()),
+            elf: elf.to_owned(),
+        }
+        .into());
+    }
+    let name = elf.display().to_string();
+    Ok(Firmware { name, image })
+}
+
+/// Bytes of code in an image with this robot, without the erased flash up to the section.
+pub(crate) fn code_bytes(image: &Image, robot: &Robot) -> u32 {
+    let end = image.symbol("__code_end").map(|end| end.address as u32);
+    // A HEX file of another program that writes them has a gap there.
+    end.unwrap_or_else(|| image.flash_used() - robot.section().len() as u32)
+}
+
+/// The code inside this program with this robot behind it.
+///
+/// # Panics
+/// Never: a test reads that code, and a robot's section has room.
+#[must_use]
+pub fn inside(robot: &Robot) -> Image {
+    let mut image = Image::parse_hex(CODE).expect("a test reads it");
+    put(&mut image, robot).expect("a robot's section has room");
+    image
+}
+
+/// The program of an ELF or HEX file with this robot in the place of the one that it has;
+/// as it is where it has none.
+///
+/// # Errors
+/// It cannot be read, or is no program of an AVR.
+pub fn with_robot(path: &Path, robot: &Robot) -> Result<Image, Unreadable> {
+    let mut image = read(path)?;
+    if robot_in(&image.flash()).is_some() {
+        put(&mut image, robot).map_err(|error| Unreadable {
+            elf: path.to_owned(),
+            error,
+        })?;
+    }
+    Ok(image)
+}
+
+fn put(image: &mut Image, robot: &Robot) -> Result<(), LoadError> {
+    let start = u32::from(START);
+    image.replace(start..start + u32::from(SPACE), &robot.section())
+}

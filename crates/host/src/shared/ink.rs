@@ -1,0 +1,149 @@
+//! Colours and strokes that every drawing shares.
+
+use svg::Document;
+use svg::node::element::{Circle, Group, Line, Polyline, Rectangle, Text};
+
+/// Servos A1 to A4, and their legs: three of Okabe and Ito's colours and a purple
+/// of Tol's, which the colour-blind can tell apart too.
+pub const SERVO: [&str; 4] = ["#0072b2", "#d55e00", "#009e73", "#aa4499"];
+/// Places of the servos on the robot.
+pub const PLACES: [&str; 4] = ["front left", "front right", "back right", "back left"];
+/// Text and axes.
+pub const DARK: &str = "#222222";
+/// The colour of secondary text.
+pub const GREY: &str = "#666666";
+/// The colour of grid lines.
+pub const GRID: &str = "#dddddd";
+/// The wires of a servo: signal, +5 V, ground. Grey, they are light, middling and dark.
+pub const ORANGE: &str = "#e8930c";
+/// The +5 V wire, see [`ORANGE`].
+pub const RED: &str = "#e5383b";
+/// The ground wire, see [`ORANGE`].
+pub const BROWN: &str = "#3d2210";
+/// Backgrounds of panels.
+pub const PANEL: &str = "#f7f7f7";
+
+/// The fonts, the likeliest first.
+const FONTS: &str = "Helvetica, Arial, 'DejaVu Sans', sans-serif";
+
+/// The part of a text that is at its point.
+#[derive(Clone, Copy)]
+pub enum Anchor {
+    /// At its beginning.
+    Start,
+    /// In its middle.
+    Middle,
+    /// At its end.
+    End,
+}
+
+/// A line of text; `y` is its base line.
+pub fn text(words: &str, at: (f64, f64), size: f64, colour: &str, anchor: Anchor) -> Text {
+    let anchor = match anchor {
+        Anchor::Start => "start",
+        Anchor::Middle => "middle",
+        Anchor::End => "end",
+    };
+    Text::new(words)
+        .set("x", fixed(at.0))
+        .set("y", fixed(at.1))
+        .set("font-size", size)
+        .set("font-family", FONTS)
+        .set("fill", colour)
+        .set("text-anchor", anchor)
+}
+
+/// Dark text that starts at a point.
+pub fn text_start(words: &str, at: (f64, f64), size: f64) -> Text {
+    text(words, at, size, DARK, Anchor::Start)
+}
+
+/// Dark text about a point.
+pub fn text_middle(words: &str, at: (f64, f64), size: f64) -> Text {
+    text(words, at, size, DARK, Anchor::Middle)
+}
+
+/// Dark text that ends at a point.
+pub fn text_end(words: &str, at: (f64, f64), size: f64) -> Text {
+    text(words, at, size, DARK, Anchor::End)
+}
+
+/// The text of a picture on a white page.
+pub fn page(size: (f64, f64), group: Group) -> String {
+    Document::new()
+        .set("viewBox", (0.0, 0.0, size.0, size.1))
+        .set("width", size.0)
+        .set("height", size.1)
+        .add(rectangle((0.0, 0.0), size, "white"))
+        .add(group)
+        .to_string()
+}
+
+/// A cross of two strokes.
+pub fn cross(at: (f64, f64), arm: f64, colour: &str, width: f64) -> Group {
+    let (x, y) = at;
+    Group::new()
+        .add(line((x - arm, y - arm), (x + arm, y + arm), colour, width))
+        .add(line((x - arm, y + arm), (x + arm, y - arm), colour, width))
+}
+
+/// A straight line.
+pub fn line(from: (f64, f64), to: (f64, f64), colour: &str, width: f64) -> Line {
+    Line::new()
+        .set("x1", fixed(from.0))
+        .set("y1", fixed(from.1))
+        .set("x2", fixed(to.0))
+        .set("y2", fixed(to.1))
+        .set("stroke", colour)
+        .set("stroke-width", width)
+        .set("stroke-linecap", "round")
+}
+
+/// A rectangle by its upper left corner and its size.
+pub fn rectangle(at: (f64, f64), size: (f64, f64), fill: &str) -> Rectangle {
+    Rectangle::new()
+        .set("x", fixed(at.0))
+        .set("y", fixed(at.1))
+        .set("width", fixed(size.0))
+        .set("height", fixed(size.1))
+        .set("fill", fill)
+}
+
+/// A circle by its centre and radius.
+pub fn circle(centre: (f64, f64), radius: f64, fill: &str) -> Circle {
+    Circle::new()
+        .set("cx", fixed(centre.0))
+        .set("cy", fixed(centre.1))
+        .set("r", radius)
+        .set("fill", fill)
+}
+
+/// An open curve through points.
+pub fn curve(points: &[(f64, f64)], colour: &str, width: f64) -> Polyline {
+    let list: Vec<String> = points
+        .iter()
+        .map(|(x, y)| format!("{},{}", fixed(*x), fixed(*y)))
+        .collect();
+    Polyline::new()
+        .set("points", list.join(" "))
+        .set("fill", "none")
+        .set("stroke", colour)
+        .set("stroke-width", width)
+        .set("stroke-linejoin", "round")
+        .set("stroke-linecap", "round")
+}
+
+/// A hundredth of a pixel is enough, and keeps files small and equal on all machines.
+pub fn fixed(value: f64) -> f64 {
+    (value * 100.0).round() / 100.0
+}
+
+/// The name on the board of an Arduino pin number: D9, or A0 for 14.
+#[must_use]
+pub fn pin_name(number: u8) -> String {
+    const A0: u8 = 14;
+    match number.checked_sub(A0) {
+        Some(n) => format!("A{n}"),
+        None => format!("D{number}"),
+    }
+}

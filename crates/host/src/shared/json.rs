@@ -1,0 +1,32 @@
+//! Output as JSON, for `--json`.
+
+use std::io::{self, Write};
+
+use serde::Serialize;
+
+/// Prints a value as JSON, or else as this text.
+///
+/// # Errors
+/// Standard output cannot be written.
+#[cfg(feature = "paper")]
+pub fn either(
+    json: bool,
+    value: &impl Serialize,
+    text: impl FnOnce() -> String,
+) -> Result<(), crate::Failure> {
+    let mut out = io::stdout().lock();
+    match json {
+        true => line(&mut out, value)?,
+        false => out.write_all(text().as_bytes())?,
+    }
+    Ok(())
+}
+
+/// Writes one value as one line of JSON.
+///
+/// # Errors
+/// Writing failed.
+pub fn line(out: &mut impl Write, value: &impl Serialize) -> io::Result<()> {
+    serde_json::to_writer(&mut *out, value)?;
+    writeln!(out)
+}

@@ -1,0 +1,51 @@
+//! Numbers for people.
+
+/// A value rounded to some decimals, as it will be printed, without the sign of
+/// a zero: no "-0.000".
+#[must_use]
+pub fn tidy(value: f64, decimals: i32) -> f64 {
+    let scale = 10f64.powi(decimals);
+    // Adding a positive zero turns a negative one positive.
+    (value * scale).round() / scale + 0.0
+}
+
+/// A number with blanks between its thousands.
+#[must_use]
+pub fn grouped(value: f64, decimals: usize) -> String {
+    let plain = format!("{value:.decimals$}");
+    let (whole, fraction) = plain.split_at(plain.find('.').unwrap_or(plain.len()));
+    let mut text = String::new();
+    for (n, digit) in whole.chars().enumerate() {
+        if n > 0 && (whole.len() - n).is_multiple_of(3) {
+            text.push(' ');
+        }
+        text.push(digit);
+    }
+    text + fraction
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thousands_are_set_apart() {
+        for (value, decimals, text) in [
+            (0.0, 0, "0"),
+            (999.4, 0, "999"),
+            (16_384.0, 0, "16 384"),
+            (1_234_567.89, 1, "1 234 567.9"),
+        ] {
+            assert_eq!(grouped(value, decimals), text);
+        }
+    }
+
+    #[test]
+    fn what_rounds_to_zero_has_no_sign() {
+        for value in [-0.0, 0.0, -0.00049, 0.00049] {
+            assert_eq!(format!("{:+.3}", tidy(value, 3)), "+0.000");
+        }
+        assert_eq!(format!("{:.3}", tidy(-0.0005, 3)), "-0.001");
+        assert_eq!(format!("{:.2}", tidy(-319.987, 2)), "-319.99");
+    }
+}

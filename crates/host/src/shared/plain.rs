@@ -1,0 +1,62 @@
+//! Makes text from files and boards safe for a terminal.
+//!
+//! A terminal obeys escape characters: one in the name of a robot or in a recorded line
+//! moves the cursor, changes the window's title or hides what follows. So text from a
+//! file or a board is shown with such characters spelled out.
+
+/// The text with every control character as Rust writes it, such as `\u{1b}`.
+#[must_use]
+pub fn plain(text: &str) -> String {
+    let mut shown = String::with_capacity(text.len());
+    for c in text.chars() {
+        if c.is_control() {
+            shown.extend(c.escape_default());
+        } else {
+            shown.push(c);
+        }
+    }
+    shown
+}
+
+/// A text with plain lines of a length that a person reads: of a longer line, the middle is
+/// omitted.
+#[must_use]
+pub fn readable_lines(text: &str) -> String {
+    let lines: Vec<String> = text.split('\n').map(|line| short(&plain(line))).collect();
+    lines.join("\n")
+}
+
+fn short(line: &str) -> String {
+    const SIDE: usize = 300;
+    let count = line.chars().count();
+    if count <= 3 * SIDE {
+        return line.to_owned();
+    }
+    let begin: String = line.chars().take(SIDE).collect();
+    let end: String = line.chars().skip(count - SIDE).collect();
+    format!("{begin} [...{} characters...] {end}", count - 2 * SIDE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_that_nobody_reads_loses_its_middle() {
+        let [fits, long] = [900, 901].map(|count| "ä".repeat(count));
+        assert_eq!(readable_lines(&fits), fits);
+        let side = "ä".repeat(300);
+        let said = format!("no\n{side} [...301 characters...] {side}");
+        assert_eq!(readable_lines(&format!("no\n{long}")), said);
+    }
+
+    #[test]
+    fn control_characters_are_spelled_out_and_all_others_stay() {
+        assert_eq!(
+            plain("a\u{1b}]0;x\u{7}\u{9b}1m\t\r\n"),
+            "a\\u{1b}]0;x\\u{7}\\u{9b}1m\\t\\r\\n"
+        );
+        assert_eq!(plain("Ä 5 µs \\"), "Ä 5 µs \\");
+        assert_eq!(readable_lines("a\nb\u{1b}\n"), "a\nb\\u{1b}\n");
+    }
+}

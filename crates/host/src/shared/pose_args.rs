@@ -1,0 +1,153 @@
+//! Numbers and poses on the command line. It has every bound on a number that a user
+//! types; beyond them a double has no digits left for the result.
+
+use std::fmt;
+
+use lizard_kinematics::Pose;
+
+/// The servo angles' names in servo order, A1 to A4: columns, flags and keys
+/// come in this order everywhere.
+pub const ANGLES: [&str; 4] = ["theta1", "theta4", "theta8", "theta5"];
+
+/// A physical quantity, which sets the bounds of a typed number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quantity {
+    most: f64,
+    unit: &'static str,
+}
+
+impl Quantity {
+    /// An angle, degrees: some thousand turns.
+    pub const ANGLE: Self = Self {
+        most: 1e6,
+        unit: "degrees",
+    };
+    /// A speed of a servo, deg/s.
+    pub const RATE: Self = Self {
+        most: 1e6,
+        unit: "deg/s",
+    };
+    /// An acceleration of a servo, deg/s^2.
+    pub const ACCELERATION: Self = Self {
+        most: 1e9,
+        unit: "deg/s^2",
+    };
+    /// A time, s.
+    pub const TIME: Self = Self {
+        most: 1e9,
+        unit: "s",
+    };
+    /// A coordinate or a length, mm.
+    pub const LENGTH: Self = Self {
+        most: 1e6,
+        unit: "mm",
+    };
+
+    /// A number within the bounds.
+    ///
+    /// # Errors
+    /// If the text is no number, or one out of bounds; NaN and infinity are.
+    pub fn parse(self, text: &str) -> Result<f64, NumberFault> {
+        match text.parse::<f64>() {
+            Ok(value) if value.abs() <= self.most => Ok(value),
+            Ok(value) if !value.is_finite() => Err(NumberFault::NotFinite),
+            Ok(_) => Err(NumberFault::OutOfRange(self)),
+            Err(_) => Err(NumberFault::NotANumber),
+        }
+    }
+}
+
+/// The reason why a typed number is refused; the text continues a sentence about it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NumberFault {
+    /// It is no number.
+    NotANumber,
+    /// It is infinite, not a number by name, or too large for a double.
+    NotFinite,
+    /// It is larger than its quantity may be.
+    OutOfRange(Quantity),
+}
+
+impl fmt::Display for NumberFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotANumber => f.write_str("is not a number"),
+            Self::NotFinite => f.write_str("is not a finite number"),
+            Self::OutOfRange(Quantity { most, unit }) => {
+                write!(f, "is not within -{most} to {most} {unit}")
+            }
+        }
+    }
+}
+
+impl std::error::Error for NumberFault {}
+
+fn number(quantity: Quantity, text: &str) -> Result<f64, String> {
+    quantity.parse(text).map_err(|fault| format!("it {fault}"))
+}
+
+/// An angle in degrees, for clap.
+///
+/// # Errors
+/// The text is no number, or beyond the bounds of an angle.
+pub fn angle(text: &str) -> Result<f64, String> {
+    number(Quantity::ANGLE, text)
+}
+
+/// A speed in deg/s, for clap.
+///
+/// # Errors
+/// The text is no number, or beyond the bounds of a rate.
+pub fn rate(text: &str) -> Result<f64, String> {
+    number(Quantity::RATE, text)
+}
+
+/// An acceleration in deg/s^2, for clap.
+///
+/// # Errors
+/// The text is no number, or beyond the bounds of an acceleration.
+pub fn acceleration(text: &str) -> Result<f64, String> {
+    number(Quantity::ACCELERATION, text)
+}
+
+/// A coordinate or a length in mm, for clap.
+///
+/// # Errors
+/// The text is no number, or beyond the bounds of a length.
+pub fn length(text: &str) -> Result<f64, String> {
+    number(Quantity::LENGTH, text)
+}
+
+/// `--theta1` and its three companions.
+#[derive(clap::Args, Debug, Default)]
+#[command(allow_negative_numbers = true)]
+pub struct PoseArgs {
+    /// Servo A1, front left, degrees
+    #[arg(long, value_name = "DEG", value_parser = angle, help_heading = "Pose",
+          requires_all = ["theta4", "theta8", "theta5"])]
+    theta1: Option<f64>,
+    /// Servo A2, front right, degrees
+    #[arg(long, value_name = "DEG", value_parser = angle, help_heading = "Pose",
+          requires_all = ["theta1", "theta8", "theta5"])]
+    theta4: Option<f64>,
+    /// Servo A3, back right, degrees
+    #[arg(long, value_name = "DEG", value_parser = angle, help_heading = "Pose",
+          requires_all = ["theta1", "theta4", "theta5"])]
+    theta8: Option<f64>,
+    /// Servo A4, back left, degrees
+    #[arg(long, value_name = "DEG", value_parser = angle, help_heading = "Pose",
+          requires_all = ["theta1", "theta4", "theta8"])]
+    theta5: Option<f64>,
+}
+
+impl PoseArgs {
+    /// The pose, if one was given; clap takes care that it is whole.
+    pub fn get(&self) -> Option<Pose> {
+        Some(Pose {
+            theta1: self.theta1?,
+            theta4: self.theta4?,
+            theta8: self.theta8?,
+            theta5: self.theta5?,
+        })
+    }
+}

@@ -1,0 +1,165 @@
+//! The robot that a command uses.
+
+use std::path::{Path, PathBuf};
+
+use lizard_robot::Robot;
+
+use crate::Failure;
+use crate::shared::files::{self, reading};
+
+/// The robot.toml of this source tree, for use outside of it.
+const BUILT_IN: &str = include_str!("../../../../robot.toml");
+
+/// The robots of robots/, by their names.
+const NAMED: [(&str, &str); 4] = [
+    ("large", include_str!("../../../../robots/large.toml")),
+    (
+        "own-gaits",
+        include_str!("../../../../robots/own-gaits.toml"),
+    ),
+    ("paper", include_str!("../../../../robots/paper.toml")),
+    ("unequal", include_str!("../../../../robots/unequal.toml")),
+];
+
+/// A robot of robots/, for tests.
+#[cfg(test)]
+pub fn named(name: &str) -> Robot {
+    let file = NAMED.iter().find(|(known, _)| *known == name);
+    Robot::parse(file.expect(name).1).expect("robots/ holds valid robots")
+}
+
+/// The option `--robot`.
+#[derive(clap::Args, Debug, Default)]
+pub struct RobotFile {
+    /// The robot's measurements and limits [default: robot.toml in this folder
+    /// or one above it, else the one this program was built with]; or the name of a robot
+    /// that the program has: large, own-gaits, paper, unequal
+    #[arg(long = "robot", value_name = "FILE", help_heading = "Robot")]
+    path: Option<PathBuf>,
+    /// The text itself, where it was read elsewhere.
+    #[arg(skip)]
+    text: Option<String>,
+}
+
+impl RobotFile {
+    /// The one with this text.
+    #[must_use]
+    pub(crate) fn with_text(text: String) -> Self {
+        Self {
+            path: None,
+            text: Some(text),
+        }
+    }
+
+    /// The text of the robot file.
+    ///
+    /// # Errors
+    /// It is missing or no text.
+    pub(crate) fn text(&self) -> Result<String, Failure> {
+        if let Some(text) = &self.text {
+            return Ok(text.clone());
+        }
+        let path = match self.found()? {
+            Found::File(path) => path,
+            Found::BuiltIn(text) => return Ok(text.to_owned()),
+        };
+        files::read_text(&path)
+    }
+
+    /// The one at a path, or else as [`RobotFile::load`] finds it.
+    #[must_use]
+    pub fn at(path: Option<PathBuf>) -> Self {
+        Self { path, text: None }
+    }
+
+    /// Reads and checks the robot.
+    ///
+    /// # Errors
+    /// The file is missing or wrong.
+    pub fn load(&self) -> Result<Robot, Failure> {
+        if let Some(text) = &self.text {
+            return Ok(Robot::parse(text)?);
+        }
+        Ok(match self.found()? {
+            Found::File(path) => Robot::load(reading(&path))?,
+            Found::BuiltIn(text) => Robot::parse(text)?,
+        })
+    }
+
+    /// The file that was named with `--robot`.
+    #[must_use]
+    pub fn given(&self) -> Option<&Path> {
+        self.path.as_deref()
+    }
+
+    /// The name of the robot's source for messages.
+    ///
+    /// # Errors
+    /// This folder has no name any more.
+    pub fn name(&self) -> Result<String, Failure> {
+        Ok(match (self.found()?, &self.path) {
+            (Found::File(path), _) => path.display().to_string(),
+            (Found::BuiltIn(_), Some(name)) => format!("the robot {}", name.display()),
+            (Found::BuiltIn(_), None) => {
+                "the robot.toml that this program was built with".to_owned()
+            }
+        })
+    }
+
+    /// Finds the robot. A file takes precedence over a built-in robot of the same name.
+    fn found(&self) -> Result<Found, Failure> {
+        if let Some(path) = &self.path {
+            let named = NAMED.iter().find(|(name, _)| path.as_os_str() == *name);
+            return Ok(match named {
+                Some((_, text)) if !path.exists() => Found::BuiltIn(text),
+                _ => Found::File(path.clone()),
+            });
+        }
+        let here = here()?;
+        let mut above = here.ancestors().map(|folder| folder.join("robot.toml"));
+        let file = above.find(|path| path.is_file());
+        Ok(file.map_or(Found::BuiltIn(BUILT_IN), Found::File))
+    }
+}
+
+/// The source of a robot.
+enum Found {
+    /// A file at this path.
+    File(PathBuf),
+    /// This text of the program.
+    BuiltIn(&'static str),
+}
+
+/// This folder.
+///
+/// # Errors
+/// It was removed, or may not be read.
+pub(crate) fn here() -> Result<PathBuf, Failure> {
+    std::env::current_dir()
+        .map_err(|error| Failure::Impossible(format!("this folder has no path: {error}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_file_of_robots_is_in_the_program_by_its_name() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots");
+        let files = std::fs::read_dir(folder).expect("robots/");
+        let mut names: Vec<_> = files
+            .map(|file| file.expect("a file").path())
+            .map(|path| path.file_stem().expect("a name").to_owned())
+            .collect();
+        names.sort();
+        assert_eq!(names, NAMED.map(|(name, _)| name));
+        for (name, text) in NAMED {
+            let file = RobotFile::at(Some(name.into()));
+            assert!(file.load().is_ok(), "{name}");
+            assert_eq!(file.text().expect("a text"), text);
+            assert_eq!(file.name().expect("a name"), format!("the robot {name}"));
+        }
+        let missing = RobotFile::at(Some("papre".into())).load();
+        assert!(missing.is_err_and(|error| error.to_string().contains("papre")));
+    }
+}

@@ -1,0 +1,249 @@
+//! Long computations spread over machines.
+//!
+//! `lizard prove --part 2/8` computes an eighth and prints what it has found as one line;
+//! `lizard merge` takes all eight and prints the same bytes as one machine. This holds by
+//! construction: a computation is a list of pieces that do not depend on each other. One
+//! machine computes them all, a part computes its own pieces, and a merge runs the same
+//! program with the pieces that it has read. A part contains the version, the options and
+//! the robot, so that parts of different computations cannot be mixed.
+#![cfg_attr(
+    not(any(feature = "paper", feature = "parts")),
+    allow(dead_code, reason = "nothing can be spread")
+)]
+
+use std::collections::BTreeMap;
+use std::io;
+use std::str::FromStr;
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::shared::json;
+use crate::{Failure, RobotFile};
+
+/// The most parts; more than any queue has use for.
+const MOST: u32 = 1_000_000;
+
+/// One of several parts of a computation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct Part {
+    /// From 1 on.
+    pub(crate) number: u32,
+    /// The number of parts.
+    pub(crate) of: u32,
+}
+
+impl FromStr for Part {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("it must be as 2/8, from 1/8 to 8/8, of at most {MOST}");
+        let (number, of) = text.split_once('/').ok_or_else(wrong)?;
+        let (Ok(number), Ok(of)) = (number.parse(), of.parse()) else {
+            return Err(wrong());
+        };
+        if (1..=MOST).contains(&of) && (1..=of).contains(&number) {
+            Ok(Self { number, of })
+        } else {
+            Err(wrong())
+        }
+    }
+}
+
+impl TryFrom<String> for Part {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        text.parse()
+    }
+}
+
+impl From<Part> for String {
+    fn from(part: Part) -> Self {
+        format!("{}/{}", part.number, part.of)
+    }
+}
+
+impl Part {
+    /// True if a piece belongs to this part. Pieces in a row go to different parts, because a
+    /// piece that takes long often has neighbours that do, too.
+    fn has(self, piece: usize) -> bool {
+        piece % self.of as usize == self.number as usize - 1
+    }
+
+    /// The number of this part's pieces.
+    #[must_use]
+    pub fn count(self, pieces: usize) -> usize {
+        (0..pieces).filter(|piece| self.has(*piece)).count()
+    }
+
+    /// Computes this part's pieces and prints them.
+    ///
+    /// # Errors
+    /// The robot cannot be read, or the output not written.
+    pub fn print<C: Spreads, T: Serialize>(
+        self,
+        command: &C,
+        robot: &RobotFile,
+        pieces: usize,
+        mut one: impl FnMut(usize) -> T,
+    ) -> Result<(), Failure> {
+        let robot = robot.text()?;
+        let mut found = BTreeMap::new();
+        for place in (0..pieces).filter(|place| self.has(*place)) {
+            found.insert(place, serde_json::to_value(one(place))?);
+        }
+        let share = Share {
+            lizard: env!("CARGO_PKG_VERSION").to_owned(),
+            command: C::COMMAND.to_owned(),
+            options: serde_json::to_value(command)?,
+            robot,
+            part: self,
+            pieces,
+            found,
+        };
+        Ok(json::line(&mut io::stdout().lock(), &share)?)
+    }
+}
+
+/// `--part`, and how a computation takes part in it.
+#[derive(clap::Args, Debug, Default)]
+pub struct Spread {
+    /// Compute only one of N parts, and print it for `lizard merge`
+    #[arg(long, value_name = "K/N", help_heading = "Spread over machines")]
+    part: Option<Part>,
+    /// The results of all parts, in a merge.
+    #[arg(skip)]
+    merged: Option<BTreeMap<usize, Value>>,
+}
+
+/// A command that can be spread: its options say all but the robot.
+pub trait Spreads: Serialize + DeserializeOwned {
+    /// The command's name.
+    const COMMAND: &'static str;
+
+    /// Its robot and its part.
+    fn places(&mut self) -> (&mut RobotFile, &mut Spread);
+}
+
+/// The output of one part.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Share {
+    /// The version of the program.
+    pub(crate) lizard: String,
+    pub(crate) command: String,
+    pub(crate) options: Value,
+    /// The text of robot.toml.
+    pub(crate) robot: String,
+    pub(crate) part: Part,
+    /// The number of pieces of all parts.
+    pub(crate) pieces: usize,
+    /// The pieces of this part, by their places.
+    pub(crate) found: BTreeMap<usize, Value>,
+}
+
+impl Spread {
+    /// Takes what parts have found.
+    pub(crate) fn take(&mut self, merged: BTreeMap<usize, Value>) {
+        self.merged = Some(merged);
+    }
+
+    /// The part that alone is computed, if one is.
+    #[must_use]
+    pub fn part(&self) -> Option<Part> {
+        self.part
+    }
+
+    /// The results of all parts in order, in a merge.
+    ///
+    /// # Errors
+    /// It is not what this computes.
+    pub fn read<T: DeserializeOwned>(&self, count: usize) -> Result<Option<Vec<T>>, Failure> {
+        let Some(merged) = &self.merged else {
+            return Ok(None);
+        };
+        let values = merged.iter().zip(0..);
+        if merged.len() != count || values.clone().any(|((place, _), at)| *place != at) {
+            return Err(other_pieces());
+        }
+        let of = |((_, value), _): ((&usize, &Value), usize)| T::deserialize(value);
+        let read: Result<Vec<T>, _> = values.map(of).collect();
+        read.map(Some).map_err(|_| other_pieces())
+    }
+
+    /// All pieces in their order, each by `one` from its place: computed here, or read from
+    /// parts. None where this is a part, which has been printed.
+    ///
+    /// # Errors
+    /// The output cannot be written, or parts do not hold what this computes.
+    pub fn all<T: Serialize + DeserializeOwned>(
+        &self,
+        command: &impl Spreads,
+        robot: &RobotFile,
+        count: usize,
+        one: impl FnMut(usize) -> T,
+    ) -> Result<Option<Vec<T>>, Failure> {
+        if let Some(part) = self.part {
+            return part.print(command, robot, count, one).map(|()| None);
+        }
+        let read = self.read(count)?;
+        Ok(Some(read.unwrap_or_else(|| (0..count).map(one).collect())))
+    }
+
+    /// The number of pieces computed here, for a progress bar.
+    #[must_use]
+    pub fn own(&self, count: usize) -> usize {
+        match (&self.merged, self.part) {
+            (Some(_), _) => 0,
+            (None, None) => count,
+            (None, Some(part)) => part.count(count),
+        }
+    }
+}
+
+pub(crate) fn other_pieces() -> Failure {
+    Failure::Input("the parts do not hold what this computation finds".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_piece_is_of_one_part() {
+        for of in [1, 2, 3, 7, 40] {
+            for piece in 0..20 {
+                let parts = (1..=of).filter(|number| {
+                    Part {
+                        number: *number,
+                        of,
+                    }
+                    .has(piece)
+                });
+                assert_eq!(parts.count(), 1, "piece {piece} of {of} parts");
+            }
+        }
+    }
+
+    #[test]
+    fn a_part_is_written_as_two_numbers() {
+        assert_eq!("2/8".parse(), Ok(Part { number: 2, of: 8 }));
+        for wrong in [
+            "",
+            "2",
+            "0/8",
+            "9/8",
+            "1/0",
+            "-1/8",
+            "1/8/8",
+            "a/b",
+            "1/1000001",
+        ] {
+            let said = wrong.parse::<Part>().expect_err(wrong);
+            assert!(said.starts_with("it must be as 2/8"), "{wrong}: {said}");
+        }
+    }
+}

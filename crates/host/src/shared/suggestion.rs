@@ -1,0 +1,34 @@
+//! The name that a user may have meant who typed an unknown one.
+
+/// The similarity of two words, 0 to 1, from which one counts as a mistyped form of the other;
+/// the same value as clap's for commands and options.
+const LIKE: f64 = 0.7;
+
+/// The end of a sentence: `; did you mean NAME?` with the name most like the word; nothing if
+/// none is like it.
+#[must_use]
+pub fn did_you_mean<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> String {
+    let like = names
+        .into_iter()
+        .map(|name| (strsim::jaro(word, name), name))
+        .filter(|(like, _)| *like > LIKE);
+    let most = like.max_by(|a, b| a.0.total_cmp(&b.0));
+    most.map_or_else(String::new, |(_, name)| format!("; did you mean `{name}`?"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_name_most_like_the_word_is_suggested_and_none_that_is_unlike() {
+        let names = ["stand", "walk", "arc-left", "arc-right"];
+        assert_eq!(did_you_mean("wlak", names), "; did you mean `walk`?");
+        assert_eq!(
+            did_you_mean("arc left", names),
+            "; did you mean `arc-left`?"
+        );
+        assert_eq!(did_you_mean("xyz", names), "");
+        assert_eq!(did_you_mean("walk", []), "");
+    }
+}

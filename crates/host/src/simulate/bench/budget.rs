@@ -1,0 +1,147 @@
+//! Budgets: the limits of the figures, and the figures of the Arduino Servo library.
+
+use lizard_core::numbers::section::{SPACE, START};
+use serde::Serialize;
+
+use super::Figures;
+
+/// The budget of a figure.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Bound {
+    /// It may be this large.
+    AtMost(f64),
+    /// It may be this small.
+    AtLeast(f64),
+    /// There is no budget for it.
+    None,
+}
+
+/// A figure and its budget.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    /// The name of the figure.
+    pub what: &'static str,
+    /// In which unit.
+    pub unit: &'static str,
+    /// The figure, if it could be measured.
+    pub measured: Option<f64>,
+    /// The budget of the figure.
+    pub budget: Bound,
+    /// The same figure of Arduino Servo 1.3.0 with four servos at a constant
+    /// 1500 us, where there is one; see `SERVO_LIBRARY`.
+    pub servo_library: Option<&'static str>,
+    /// True for a figure that depends on the machine that it is measured on.
+    pub wall_clock: bool,
+}
+
+impl Row {
+    /// True if the figure keeps to its budget; a figure that was not measured passes.
+    #[must_use]
+    pub fn is_met(&self) -> bool {
+        self.measured.is_none_or(|measured| match self.budget {
+            Bound::AtMost(most) => measured <= most,
+            Bound::AtLeast(least) => measured >= least,
+            Bound::None => true,
+        })
+    }
+}
+
+/// The subject of the right-hand column.
+pub const SERVO_LIBRARY: &str = "Arduino Servo 1.3.0 (core 1.8.8, ATmega328P at 16 MHz) with four servos at a constant \
+     1500 us; its float solve is theta2 and theta3 of head and tail";
+
+/// Cycles from the tick to the end of its slot, where the next frame is taken.
+const IN_TIME: f64 = 63_000.0;
+/// Of these, what interrupts leave to main while the line is saturated both ways.
+const LEFT_TO_MAIN: f64 = 0.87;
+/// Cycles of the control tick, mean and worst.
+const TICK: [f64; 2] = [5_000.0, 10_000.0];
+/// The same of a robot whose gaits leave no room for the maps of certified cells, so that
+/// the guard measures every pose.
+const TICK_WITHOUT_MAPS: [f64; 2] = [20_000.0, 20_000.0];
+/// Cycles that the servo interrupts leave to others: their lead of 220 cycles, less the 60 that
+/// they need before they read the timer.
+const BESIDE_SERVOS: f64 = 160.0;
+/// Wall time that ten simulated minutes may take, s.
+const PATIENCE: f64 = 60.0;
+/// Ten minutes, s.
+const LONG: f64 = 600.0;
+
+/// The table of all figures.
+#[must_use]
+pub fn rows(figures: &Figures) -> Vec<Row> {
+    use Bound::{AtLeast, AtMost};
+    let row = |what, unit, measured, budget, servo_library| Row {
+        what,
+        unit,
+        measured,
+        budget,
+        servo_library,
+        wall_clock: false,
+    };
+    let wall = |what, unit, measured, budget| Row {
+        wall_clock: true,
+        ..row(what, unit, Some(measured), budget, None)
+    };
+    let whole = |figure: Option<u64>| figure.map(|figure| figure as f64);
+    let count = |figure: u64| Some(figure as f64);
+    let f = figures;
+    let [tick_mean, tick_worst] = if f.has_maps { TICK } else { TICK_WITHOUT_MAPS };
+    #[rustfmt::skip]
+    let table = vec![
+        row("pulse jitter, idle line", "cycles", whole(f.jitter_idle), AtMost(0.0), Some("77-113")),
+        row("pulse jitter, line saturated", "cycles", whole(f.jitter_flooded), AtMost(0.0), Some("121-135")),
+        row("width less command, worst", "cycles", whole(f.width_error), AtMost(0.0), None),
+        row("width resolution", "cycles", whole(f.resolution), AtMost(1.0), Some("16")),
+        row("period less 20 ms, worst", "cycles", count(f.period_error), AtMost(0.0), None),
+        row("servo pins high at once", "", count(f.pins_high.into()), AtMost(1.0), None),
+        row("late edges counted", "", count(f.late), AtMost(0.0), None),
+        row("bytes lost, sender waits", "bytes", count(f.lost), AtMost(0.0), None),
+        row("control tick, mean in any gait", "cycles", f.tick_mean, AtMost(tick_mean), None),
+        row("  of which the guard", "cycles", f.guard, Bound::None, Some("35 400, float solve")),
+        row("control tick, worst", "cycles", count(f.tick_worst), AtMost(tick_worst), None),
+        row("tick to frame, line saturated", "cycles", count(f.tick_latency), AtMost(IN_TIME), None),
+        row("any other step, worst", "cycles", count(f.step), AtMost(LEFT_TO_MAIN * IN_TIME - tick_worst), None),
+        row("main, mean per frame of a gait", "cycles", f.main, Bound::None, None),
+        row("servo interrupts per frame", "cycles", Some(f.servo_interrupts), Bound::None, Some("1 513")),
+        row("longest serial interrupt", "cycles", count(f.serial_interrupt), AtMost(BESIDE_SERVOS), None),
+        row("CPU asleep in a gait", "%", f.asleep, AtLeast(90.0), Some("0")),
+        row("flash, code", "bytes", count(f.code.into()), AtMost(START.into()), Some("5 994")),
+        row("flash, the robot's section", "bytes", count(f.section.into()), AtMost(SPACE.into()), None),
+        row("static RAM", "bytes", count(f.static_ram.into()), AtMost(900.0), Some("365")),
+        row("between stack and static RAM", "bytes", count(f.stack_spare.into()), AtLeast(400.0), None),
+        row("  with the deepest stack", "bytes", Some(f.stack_margin.into()), AtLeast(400.0), None),
+        wall("ten simulated minutes", "s", f.wall, AtMost(PATIENCE)),
+        wall("  times faster than a board", "", LONG / f.wall, Bound::None),
+    ];
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_figure_on_its_bound_is_met_and_beyond_is_not() {
+        let row = |measured: Option<f64>, budget| Row {
+            what: "",
+            unit: "",
+            measured,
+            budget,
+            servo_library: None,
+            wall_clock: false,
+        };
+        for (measured, budget, met) in [
+            (Some(3.0), Bound::AtMost(3.0), true),
+            (Some(3.1), Bound::AtMost(3.0), false),
+            (Some(3.0), Bound::AtLeast(3.0), true),
+            (Some(2.9), Bound::AtLeast(3.0), false),
+            (Some(1e9), Bound::None, true),
+            (None, Bound::AtLeast(3.0), true),
+        ] {
+            let row = row(measured, budget);
+            assert_eq!(row.is_met(), met, "{measured:?} {budget:?}");
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! The exactness of the pulses.
+
+use simulated_uno::most_pins_high;
+
+use lizard_robot::CoreRobot;
+
+use crate::simulate::board::{BoardError, SimulatedBoard};
+use crate::simulate::sim::core_run;
+use crate::simulate::sim::frame::{FRAME, frames, opens};
+
+/// The errors of the pulses' widths and periods.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Exactness {
+    /// Least and largest width less its command, cycles; nothing if the commands
+    /// are not known, because the firmware is not of this program's source.
+    pub error: Option<[i64; 2]>,
+    /// Largest deviation of two frames' distance from 20 ms, cycles.
+    pub period: u64,
+    /// The most servo pins high at once.
+    pub pins_high: u32,
+    /// The step in which widths vary, cycles; nothing if they do not.
+    pub step: Option<u64>,
+}
+
+impl Exactness {
+    /// Of all pulses so far of the firmware of `robot`, where no more than the first `commands` of the bytes
+    /// sent have been commands.
+    ///
+    /// # Errors
+    /// The board has sent no pulse.
+    pub fn of(
+        board: &mut SimulatedBoard,
+        robot: &CoreRobot,
+        commands: usize,
+    ) -> Result<Self, BoardError> {
+        let banner = board.lines().first().map(|line| line.text.clone());
+        let first = board.first_pulse()?;
+        let pins = board.pins();
+        let mut edges = board.uno.edges();
+        let count = (board.uno.cycle() - opens(first)) / FRAME;
+        let sent = frames(&edges, pins, first, count);
+        let received = &board.uno.received_by_uno()[..commands];
+        let asked = core_run::play(*robot, received, first, sent.len());
+        let known = banner.as_deref() == asked.written.lines().next();
+
+        let mut error = [i64::MAX, i64::MIN];
+        let (mut period, mut step) = (0, 0);
+        for (frame, asked) in sent.iter().zip(&asked.widths) {
+            for (width, asked) in frame.widths.iter().zip(asked) {
+                let difference = width.unwrap_or(0) as i64 - i64::from(*asked);
+                error = [error[0].min(difference), error[1].max(difference)];
+            }
+        }
+        for pair in sent.windows(2) {
+            for servo in 0..4 {
+                if let (Some(here), Some(next)) = (pair[0].starts[servo], pair[1].starts[servo]) {
+                    period = (next - here).abs_diff(FRAME).max(period);
+                }
+                if let (Some(here), Some(next)) = (pair[0].widths[servo], pair[1].widths[servo]) {
+                    step = common(step, here.abs_diff(next));
+                }
+            }
+        }
+        edges.retain(|edge| pins.contains(&edge.pin));
+        Ok(Self {
+            error: known.then_some(error),
+            period,
+            pins_high: most_pins_high(&edges),
+            step: (step > 0).then_some(step),
+        })
+    }
+
+    /// Peak to peak, cycles.
+    pub fn jitter(&self) -> Option<u64> {
+        self.error.map(|[least, most]| most.abs_diff(least))
+    }
+
+    /// Worst deviation of a width from its command, cycles.
+    pub fn worst(&self) -> Option<u64> {
+        self.error
+            .map(|[least, most]| least.unsigned_abs().max(most.unsigned_abs()))
+    }
+}
+
+/// The greatest common divisor.
+fn common(a: u64, b: u64) -> u64 {
+    if b == 0 { a } else { common(b, a % b) }
+}

@@ -1,0 +1,413 @@
+//! The measurements, each on a board of its own.
+
+use std::iter::zip;
+use std::path::Path;
+use std::time::Instant;
+
+use lizard_robot::Robot;
+use simulated_uno::{Call, Fidelity};
+
+use super::exactness::Exactness;
+use super::stack::StackDepth;
+use crate::Failure;
+use crate::shared::firmware;
+use crate::simulate::board::{BoardError, SimulatedBoard};
+use crate::simulate::sim::frame::FRAME;
+use crate::simulate::sim::tour;
+
+/// The firmware's costs and exactness. Cycles are of 62.5 ns. None stands for a figure that
+/// could not be measured: a robot without a gait that moves has no figures of one, and a
+/// firmware of another source than this program's has no commands to compare its pulses with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Figures {
+    /// The gait that was measured: the first that moves.
+    pub gait: Option<String>,
+    /// Bytes of flash that the code has, with its tables and initial values.
+    pub code: u32,
+    /// Bytes of the robot's section.
+    pub section: u32,
+    /// True if the section has maps of certified cells; else the guard measures every pose.
+    pub has_maps: bool,
+    /// Bytes of RAM that are static.
+    pub static_ram: u16,
+    /// Fewest bytes ever between the stack and static data.
+    pub stack_spare: u16,
+    /// The same for the deepest stack that the code allows, worked out and not
+    /// measured.
+    pub stack_margin: i32,
+    /// Mean cycles of the control tick, interrupts left out, in the gait in which they are
+    /// the most.
+    pub tick_mean: Option<f64>,
+    /// The most cycles of a control tick in any motion, interrupts left out.
+    pub tick_worst: u64,
+    /// The most cycles from the tick to the end of its computation while the
+    /// serial line is saturated both ways, interrupts and answers included.
+    pub tick_latency: u64,
+    /// The most cycles of any other step of main, interrupts left out: a line that is
+    /// written, a byte that ends a line, a part of a save or load.
+    pub step: u64,
+    /// Mean cycles of the guard in a tick of the gait.
+    pub guard: Option<f64>,
+    /// Mean cycles of all that main does in a frame of the gait, tick included.
+    pub main: Option<f64>,
+    /// Cycles that the servo interrupts take in a frame.
+    pub servo_interrupts: f64,
+    /// The longest that a serial interrupt keeps a servo's edge waiting, cycles.
+    pub serial_interrupt: u64,
+    /// Share of the gait's time that the CPU is asleep, percent.
+    pub asleep: Option<f64>,
+    /// Peak to peak of measured less commanded width, cycles: idle line.
+    pub jitter_idle: Option<u64>,
+    /// The same with the line saturated both ways.
+    pub jitter_flooded: Option<u64>,
+    /// Worst deviation of a width from its command, cycles, in both.
+    pub width_error: Option<u64>,
+    /// Worst deviation of a servo's period from 20 ms, cycles, in both.
+    pub period_error: u64,
+    /// The most servo pins high at once, in both.
+    pub pins_high: u32,
+    /// The step in which widths vary in the gait, cycles.
+    pub resolution: Option<u64>,
+    /// Edges that the firmware counts as late.
+    pub late: u64,
+    /// Bytes that it counts as lost while the sender waits for answers.
+    pub lost: u64,
+    /// Wall time of ten simulated minutes of the gait, s.
+    pub wall: f64,
+}
+
+/// The function of the firmware that computes a frame: the control tick.
+const TICK: &str = "Control::frame";
+/// The guard's function in the ELF.
+const GUARD: &str = "clearance::hazard";
+/// The functions of all other steps of main.
+const STEPS: [&str; 3] = [
+    "Console::write_line",
+    "Console::receive",
+    "Control::write_memory",
+];
+/// Lines that take long: every answer of several lines, and settings that end a servo's
+/// travel where its pulses do.
+const LONG_LINES: [&str; 20] = [
+    "status",
+    "help",
+    "cal",
+    "save",
+    "load",
+    "pose 0 0 0 0",
+    "trim 1 3.3",
+    "trim 2 3.3",
+    "trim 3 3.3",
+    "trim 4 3.3",
+    "scale 1 17.77",
+    "scale 2 17.77",
+    "scale 3 17.77",
+    "scale 4 17.77",
+    "dir 1 -",
+    "dir 1 +",
+    "limit 3 0 359",
+    "boot stand",
+    "center",
+    "factory",
+];
+/// Data sheet numbers of TIMER1_COMPA and TIMER1_COMPB.
+const SERVO_VECTORS: [u8; 2] = [11, 12];
+/// And those of USART_RX and USART_UDRE.
+const SERIAL_VECTORS: [u8; 2] = [18, 19];
+/// Cycles from the end of an instruction to a handler's first: 4 of the interrupt
+/// and 3 of the jump in the vector table.
+const ENTRY: u64 = 7;
+/// Ten minutes, ms.
+const LONG: u64 = 600_000;
+
+impl Figures {
+    /// Measures an ELF. `progress` gets what is being measured.
+    ///
+    /// # Errors
+    /// A firmware that cannot be loaded, dies, or does not answer.
+    pub fn measure(
+        elf: &Path,
+        robot: &Robot,
+        progress: impl Fn(&'static str),
+    ) -> Result<Self, Failure> {
+        let gaits: Vec<String> = tour::gaits(robot).into_iter().map(command).collect();
+        // A robot that only stands is measured while it stands.
+        let gait = gaits.first().map_or("stand", String::as_str);
+        let turn = gaits.last().map_or("stand", String::as_str);
+        let moves = !gaits.is_empty();
+        let awake = || -> Result<SimulatedBoard, BoardError> {
+            let mut board = SimulatedBoard::power_on(elf, Fidelity::DataSheet, robot)?;
+            board.run_ms(1000)?;
+            Ok(board)
+        };
+        progress("the stack's depth");
+        let image = firmware::read(elf)?;
+        let stack = StackDepth::of(&image).map_err(|e| Failure::Impossible(e.to_string()))?;
+        progress("pulses on an idle line");
+        let mut idle = Steady::of(awake()?, gait, 20_000)?;
+        let sent = idle.board.uno.received_by_uno().len();
+        let idle_exact = Exactness::of(&mut idle.board, robot.firmware(), sent)?;
+        progress("pulses on a saturated line");
+        let (mut flooded, sent) = flood(awake()?, turn)?;
+        let flooded_exact = Exactness::of(&mut flooded, robot.firmware(), sent)?;
+        progress("every command");
+        let mut session = session(awake()?, robot)?;
+        progress("the control tick in every motion");
+        let ticks = times(awake()?, TICK, &motions(robot))?;
+        let in_gaits = ticks.iter().take(robot.gaits().len());
+        progress("the guard");
+        let guard = mean(&times(awake()?, GUARD, &[gait])?.concat());
+        progress("the control tick on a saturated line");
+        let tick_latency = latency(awake()?, turn)?;
+        progress("every other step");
+        let step = longest_step(elf, robot)?;
+        progress("serial interrupts");
+        let serial_interrupt = longest_serial(awake, turn)?;
+        progress("ten minutes of a gait");
+        let begin = Instant::now();
+        let long = Steady::of(awake()?, gait, LONG)?;
+        let wall = begin.elapsed().as_secs_f64();
+
+        let frames = idle.cycles as f64 / FRAME as f64;
+        let of_gait = |figure: f64| moves.then_some(figure);
+        let section = robot.section().len() as u32;
+        let width_error = idle_exact.worst().zip(flooded_exact.worst());
+        Ok(Self {
+            code: firmware::code_bytes(long.board.uno.image(), robot),
+            section,
+            has_maps: robot.has_room_for_maps(),
+            static_ram: long.board.uno.image().static_ram(),
+            stack_spare: session.uno.stack_spare().min(flooded.uno.stack_spare()),
+            stack_margin: stack.margin(),
+            tick_mean: of_gait(in_gaits.map(|calls| mean(calls)).fold(0.0, f64::max)),
+            tick_worst: ticks
+                .iter()
+                .flatten()
+                .map(Call::own_cycles)
+                .max()
+                .unwrap_or(0),
+            tick_latency,
+            step,
+            guard: of_gait(guard),
+            main: of_gait((idle.awake - idle.in_handlers) as f64 / frames),
+            servo_interrupts: idle.in_servos as f64 / frames,
+            serial_interrupt,
+            asleep: of_gait(100.0 - 100.0 * idle.awake as f64 / idle.cycles as f64),
+            jitter_idle: idle_exact.jitter(),
+            jitter_flooded: flooded_exact.jitter(),
+            width_error: width_error.map(|(idle, flooded)| idle.max(flooded)),
+            period_error: idle_exact.period.max(flooded_exact.period),
+            pins_high: idle_exact.pins_high.max(flooded_exact.pins_high),
+            resolution: idle_exact.step,
+            late: session.count("late")? + flooded.count("late")?,
+            lost: session.count("rx_lost")?,
+            wall,
+            gait: gaits.first().cloned(),
+        })
+    }
+}
+
+/// The most cycles of a step of main that is no frame, interrupts left out.
+///
+/// # Errors
+/// See [`Figures::measure`].
+pub fn longest_step(elf: &Path, robot: &Robot) -> Result<u64, BoardError> {
+    let gait = tour::gaits(robot)
+        .first()
+        .map_or("stand".into(), |gait| command(gait));
+    let mut most = 0;
+    for function in STEPS {
+        let mut board = SimulatedBoard::power_on(elf, Fidelity::DataSheet, robot)?;
+        board.run_ms(1000)?;
+        most = longest(board, function, &gait, &long_lines(robot))?.max(most);
+    }
+    Ok(most)
+}
+
+/// The console command of a gait.
+fn command(gait: &str) -> String {
+    gait.replace('-', " ")
+}
+
+/// A board that has done the same for a time on an idle line, and the cycles that
+/// took.
+struct Steady {
+    board: SimulatedBoard,
+    cycles: u64,
+    awake: u64,
+    in_handlers: u64,
+    in_servos: u64,
+}
+
+impl Steady {
+    fn of(mut board: SimulatedBoard, line: &str, ms: u64) -> Result<Self, BoardError> {
+        board.say(line)?;
+        board.run_ms(1000)?;
+        let counts = |board: &SimulatedBoard| {
+            [
+                board.uno.cycle(),
+                board.uno.awake_cycles(),
+                board.handler_cycles(|_| true),
+                board.handler_cycles(|vector| SERVO_VECTORS.contains(&vector)),
+            ]
+        };
+        let before = counts(&board);
+        board.run_ms(ms)?;
+        let after = counts(&board);
+        let [cycles, awake, in_handlers, in_servos] = std::array::from_fn(|i| after[i] - before[i]);
+        Ok(Self {
+            board,
+            cycles,
+            awake,
+            in_handlers,
+            in_servos,
+        })
+    }
+}
+
+/// Twenty seconds of commands that move nothing, as fast as they go through the
+/// line, while the robot turns, and as many bytes back. Also returns how many
+/// bytes came before.
+fn flood(mut board: SimulatedBoard, gait: &str) -> Result<(SimulatedBoard, usize), BoardError> {
+    let before = saturate(&mut board, gait)?;
+    board.run_ms(20_000)?;
+    board.uno.flood(b"");
+    board.run_ms(300)?;
+    // What is left of the flood ends with this line.
+    board.uno.send(b"\n");
+    board.run_ms(100)?;
+    Ok((board, before))
+}
+
+/// Returns how many bytes came before the flood.
+fn saturate(board: &mut SimulatedBoard, gait: &str) -> Result<usize, BoardError> {
+    board.say("watch 1")?;
+    board.say(gait)?;
+    let before = board.uno.received_by_uno().len();
+    board.uno.flood(b"status\n");
+    Ok(before)
+}
+
+/// Everything one can ask for that moves: each gait from the one before, a far
+/// pose, home, a stop.
+fn motions(robot: &Robot) -> Vec<String> {
+    let names = robot.gaits().iter().map(|gait| command(gait.name()));
+    let mut lines: Vec<String> = names.collect();
+    lines.push(pose(robot, [-35.0, 0.0, -35.0, 0.0]));
+    lines.push(pose(robot, [0.0; 4]));
+    lines.push("stop".into());
+    lines
+}
+
+/// The command for a pose this many degrees from neutral.
+fn pose(robot: &Robot, turns: [f64; 4]) -> String {
+    let neutral = <[f64; 4]>::from(robot.neutral());
+    let [a1, a2, a3, a4]: [f64; 4] = std::array::from_fn(|i| neutral[i] + turns[i]);
+    format!("pose {a1:.2} {a2:.2} {a3:.2} {a4:.2}")
+}
+
+/// Every command with a report of every frame, each sent when the one before has
+/// been answered.
+fn session(mut board: SimulatedBoard, robot: &Robot) -> Result<SimulatedBoard, BoardError> {
+    board.say("watch 1")?;
+    let mut lines = motions(robot);
+    lines.extend(["help", "?", "status", "speed 55"].map(str::to_owned));
+    let gait = tour::gaits(robot).first().copied().map(command);
+    lines.extend(gait.clone());
+    lines.push("rest".into());
+    lines.extend(gait);
+    lines.extend(["stand", "watch 0", "what", "speed", "speed 5"].map(str::to_owned));
+    lines.push(pose(robot, [-48.59, 48.59, 0.0, 0.0]));
+    lines.push(pose(robot, [11.41, 0.0, 0.0, -21.41]));
+    lines.push("a line that is longer than the sixty-three characters it may have".into());
+    for line in &lines {
+        board.say(line)?;
+        board.run_ms(700)?;
+    }
+    Ok(board)
+}
+
+/// Times a function while the robot does one thing after the other: the calls of each.
+fn times(
+    mut board: SimulatedBoard,
+    function: &str,
+    lines: &[impl AsRef<str>],
+) -> Result<Vec<Vec<Call>>, BoardError> {
+    let mut calls = Vec::new();
+    for line in lines {
+        board.say(line.as_ref())?;
+        calls.push(board.time_calls(function, 3000)?);
+    }
+    Ok(calls)
+}
+
+/// Lines that take long. Among those that are no gait's name, the one that is compared
+/// with the most characters of the names.
+fn long_lines(robot: &Robot) -> Vec<String> {
+    let names = || robot.gaits().iter().map(|gait| command(gait.name()));
+    let alike = |line: &String| -> usize {
+        let same = |name: String| {
+            zip(name.bytes(), line.bytes())
+                .take_while(|(a, b)| a == b)
+                .count()
+        };
+        names().map(same).sum()
+    };
+    let nearly = names().max_by_key(alike).unwrap_or_default();
+    let mut lines = LONG_LINES.map(str::to_owned).to_vec();
+    lines.push(format!("boot {nearly}"));
+    lines.push("cal".into());
+    lines.push(format!("{nearly}x"));
+    lines.push(format!("boot {nearly}x"));
+    lines
+}
+
+/// The most cycles of a function while each line is obeyed in a gait. A line may be
+/// refused: that takes as long.
+fn longest(
+    mut board: SimulatedBoard,
+    function: &str,
+    gait: &str,
+    lines: &[String],
+) -> Result<u64, BoardError> {
+    board.say(gait)?;
+    let mut most = 0;
+    for line in lines {
+        board.uno.send(line.as_bytes());
+        board.uno.send(b"\n");
+        let calls = board.time_calls(function, 400)?;
+        most = most.max(calls.iter().map(Call::own_cycles).max().unwrap_or(0));
+    }
+    Ok(most)
+}
+
+fn mean(calls: &[Call]) -> f64 {
+    let all: u64 = calls.iter().map(Call::own_cycles).sum();
+    all as f64 / calls.len().max(1) as f64
+}
+
+/// The longest time from a tick to the return of the function that computes its
+/// frame, on a saturated line.
+fn latency(mut board: SimulatedBoard, gait: &str) -> Result<u64, BoardError> {
+    saturate(&mut board, gait)?;
+    let calls = board.time_calls(TICK, 5000)?;
+    // The tick comes a slot before A1's pulse.
+    let tick = board.first_pulse()? - FRAME / 5;
+    let late = calls.iter().map(|call| (call.leave - tick) % FRAME);
+    Ok(late.max().unwrap_or(0))
+}
+
+/// The longest of the serial interrupts on a saturated line, with their entry.
+fn longest_serial(
+    awake: impl Fn() -> Result<SimulatedBoard, BoardError>,
+    gait: &str,
+) -> Result<u64, BoardError> {
+    let mut longest = 0;
+    for vector in SERIAL_VECTORS {
+        let mut board = awake()?;
+        saturate(&mut board, gait)?;
+        let calls = board.time_calls(&format!("__vector_{vector}"), 2000)?;
+        longest = calls.iter().map(Call::cycles).fold(longest, u64::max);
+    }
+    Ok(longest + ENTRY)
+}

@@ -1,0 +1,96 @@
+//! `lizard bench`: what the firmware costs and how exact it is, compared with its budgets
+//! and with the Arduino Servo library.
+
+mod budget;
+mod exactness;
+mod figures;
+mod stack;
+mod table;
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+use crate::shared::firmware;
+use crate::shared::progress::bar;
+use crate::{Failure, RobotFile};
+
+pub use budget::{Bound, Row, rows};
+pub use figures::{Figures, longest_step};
+pub use stack::{StackDepth, StackError};
+
+/// Measure the firmware on a simulated Arduino UNO against its budgets
+///
+/// Flash, RAM and stack; cycles of the control tick, the guard and the
+/// interrupts; exactness of pulses while the serial line is saturated; and how
+/// much faster than a real board the simulation is. All but the last is counted in
+/// cycles and comes out the same on any machine. Exit code 1 if a budget is
+/// broken.
+#[derive(clap::Args, Debug)]
+pub struct Args {
+    /// The firmware that was built, with the names of its functions:
+    /// target/avr-atmega328p/release/lizard.elf
+    #[arg(long, value_name = "FILE")]
+    elf: Option<PathBuf>,
+    /// Print the table as one JSON object
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    robot: RobotFile,
+}
+
+/// A row and whether it keeps to its budget, for `--json`.
+#[derive(serde::Serialize)]
+struct Judged<'a> {
+    #[serde(flatten)]
+    row: &'a Row,
+    met: bool,
+}
+
+impl<'a> Judged<'a> {
+    fn of(row: &'a Row) -> Self {
+        let met = row.is_met();
+        Self { row, met }
+    }
+}
+
+/// Measures and prints.
+///
+/// # Errors
+/// No firmware, a firmware that dies or does not answer, a broken budget.
+pub fn run(args: Args) -> Result<(), Failure> {
+    let Some(elf) = args.elf else {
+        return Err(Failure::Input(
+            "functions are measured by their names, which the firmware inside this program does \
+             not have. Build it from the source with `make firmware`, then: lizard bench --elf \
+             target/avr-atmega328p/release/lizard.elf"
+                .to_owned(),
+        ));
+    };
+    let robot = args.robot.load()?;
+    firmware::of_robot(Some(&elf), &args.robot, &robot)?;
+    let progress = bar(0, "{spinner} {msg}, {elapsed}");
+    progress.enable_steady_tick(std::time::Duration::from_millis(100));
+    let figures = Figures::measure(&elf, &robot, |step| progress.set_message(step))?;
+    progress.finish_and_clear();
+
+    let rows = rows(&figures);
+    let mut out = io::stdout().lock();
+    if args.json {
+        let rows: Vec<_> = rows.iter().map(Judged::of).collect();
+        let elf = elf.display().to_string();
+        writeln!(out, "{}", serde_json::json!({ "elf": elf, "rows": rows }))?;
+    } else {
+        table::print(&rows, figures.gait.as_deref(), &mut out)?;
+    }
+    let broken: Vec<&str> = rows
+        .iter()
+        .filter(|row| !row.is_met())
+        .map(|row| row.what)
+        .collect();
+    if broken.is_empty() {
+        Ok(())
+    } else {
+        let which = broken.join(", ");
+        Err(Failure::Impossible(format!("over budget: {which}")))
+    }
+}

@@ -1,0 +1,153 @@
+//! The effect of an AVR instruction on the stack and on the flow of the program, for the few
+//! instructions that have one, by the AVR Instruction Set Manual.
+
+/// An instruction's part in it. Addresses are of bytes in flash.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effect {
+    /// No effect on stack or flow.
+    None,
+    Push,
+    Pop,
+    Call(u32),
+    Jump(u32),
+    /// To here or to the next instruction.
+    Branch(u32),
+    /// To the next instruction or over it.
+    Skip,
+    Return,
+    /// `ijmp`, `icall` and their extended kin.
+    Indirect,
+    /// Enables interrupts: `sei`.
+    EnableInterrupts,
+    /// r29:r28 gets the stack pointer (its low byte; the high one follows).
+    PointerFromStack,
+    /// The stack pointer gets r29:r28 (its low byte, written last).
+    StackFromPointer,
+    /// The stack pointer gets something else.
+    StackFromOther,
+    /// r29:r28 changes by so much.
+    AddToPointer(i16),
+    /// The low half of a 16-bit subtraction from it: `subi r28`.
+    SubtractLow(u8),
+    /// The high half: `sbci r29` or `sbc r29`.
+    SubtractHigh(u8),
+    /// `ldi r28` and `ldi r29`.
+    LoadLow(u8),
+    LoadHigh(u8),
+    /// r29:r28 gets something else.
+    LosePointer,
+    /// `ldi r26`: how much room a shared beginning or end is about.
+    LoadRoom(u8),
+}
+
+/// A decoded instruction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Instruction {
+    pub effect: Effect,
+    /// Bytes: 2 or 4.
+    pub size: u32,
+}
+
+/// I/O addresses of the stack pointer's halves, and their data addresses.
+const SPL: u16 = 0x3d;
+const SPH: u16 = 0x3e;
+const SP_DATA: [u16; 2] = [0x5d, 0x5e];
+
+/// The instruction at a byte address; none if flash ends there.
+pub fn decode(flash: &[u8], at: u32) -> Option<Instruction> {
+    let code = word(flash, at)?;
+    let is_long = code & 0xfe0f == 0x9000 // lds
+        || code & 0xfe0f == 0x9200 // sts
+        || code & 0xfe0c == 0x940c; // jmp, call
+    let size = if is_long { 4 } else { 2 };
+    let second = if is_long { word(flash, at + 2)? } else { 0 };
+    let effect = effect(code, second, at);
+    Some(Instruction { effect, size })
+}
+
+/// The target of the `jmp` or `rjmp` at a byte address; none for any other instruction.
+pub fn jump_target(flash: &[u8], at: u32) -> Option<u32> {
+    match decode(flash, at)?.effect {
+        Effect::Jump(target) => Some(target),
+        _ => None,
+    }
+}
+
+fn word(flash: &[u8], at: u32) -> Option<u16> {
+    let at = at as usize;
+    let bytes = flash.get(at..at + 2)?;
+    Some(u16::from_le_bytes([bytes[0], bytes[1]]))
+}
+
+fn effect(code: u16, second: u16, at: u32) -> Effect {
+    let register = code >> 4 & 0x1f;
+    match code {
+        0x9508 | 0x9518 => Effect::Return, // ret, reti
+        0x9409 | 0x9419 | 0x9509 | 0x9519 => Effect::Indirect,
+        0x9478 => Effect::EnableInterrupts,
+        _ if code & 0xfe0f == 0x920f => Effect::Push,
+        _ if code & 0xfe0f == 0x900f => Effect::Pop,
+        _ if code & 0xfe0e == 0x940e => Effect::Call(far(code, second)),
+        _ if code & 0xfe0e == 0x940c => Effect::Jump(far(code, second)),
+        _ if code & 0xf000 == 0xc000 => Effect::Jump(near(code, 12, at)), // rjmp
+        _ if code & 0xf000 == 0xd000 => Effect::Call(near(code, 12, at)), // rcall
+        _ if code & 0xf800 == 0xf000 => Effect::Branch(near(code >> 3, 7, at)),
+        // cpse; sbrc and sbrs; sbic and sbis
+        _ if code & 0xfc00 == 0x1000 => Effect::Skip,
+        _ if code & 0xfc08 == 0xfc00 => Effect::Skip,
+        _ if code & 0xfd00 == 0x9900 => Effect::Skip,
+        _ if code & 0xfe0f == 0x9200 && SP_DATA.contains(&second) => Effect::StackFromOther,
+        _ if code & 0xf800 == 0xb000 => match (port(code), register) {
+            (SPL, 28) => Effect::PointerFromStack,
+            (SPH, 29) => Effect::None,
+            (_, 28 | 29) => Effect::LosePointer,
+            _ => Effect::None,
+        },
+        _ if code & 0xf800 == 0xb800 => match (port(code), register) {
+            (SPL, 28) => Effect::StackFromPointer,
+            (SPH, 29) => Effect::None,
+            (SPL | SPH, _) => Effect::StackFromOther,
+            _ => Effect::None,
+        },
+        // adiw and sbiw of r29:r28
+        _ if code & 0xff30 == 0x9620 => Effect::AddToPointer(small(code)),
+        _ if code & 0xff30 == 0x9720 => Effect::AddToPointer(-small(code)),
+        // subi, sbci and ldi know r16 to r31 only
+        _ if code & 0xf0f0 == 0x50c0 => Effect::SubtractLow(byte(code)),
+        _ if code & 0xf0f0 == 0x40d0 => Effect::SubtractHigh(byte(code)),
+        0x09d1 => Effect::SubtractHigh(0), // sbc r29, r1, which is always 0
+        _ if code & 0xf0f0 == 0xe0a0 => Effect::LoadRoom(byte(code)),
+        _ if code & 0xf0f0 == 0xe0c0 => Effect::LoadLow(byte(code)),
+        _ if code & 0xf0f0 == 0xe0d0 => Effect::LoadHigh(byte(code)),
+        _ if code & 0xfff0 == 0x01e0 => Effect::LosePointer, // movw r28
+        _ => Effect::None,
+    }
+}
+
+/// The target of `jmp` and `call`: 22 bits, of words.
+fn far(code: u16, second: u16) -> u32 {
+    let high = u32::from(code >> 3 & 0x3e | code & 1);
+    (high << 16 | u32::from(second)) * 2
+}
+
+/// A target relative to the next instruction, in words of this many bits with a sign.
+fn near(offset: u16, bits: u32, at: u32) -> u32 {
+    let shift = 16 - bits;
+    let words = (offset << shift) as i16 >> shift;
+    at.wrapping_add(2).wrapping_add_signed(i32::from(words) * 2)
+}
+
+/// The I/O address of `in` and `out`.
+fn port(code: u16) -> u16 {
+    code >> 5 & 0x30 | code & 0x0f
+}
+
+/// The constant of `adiw` and `sbiw`.
+fn small(code: u16) -> i16 {
+    (code >> 2 & 0x30 | code & 0x0f) as i16
+}
+
+/// The constant of `ldi` and its like.
+fn byte(code: u16) -> u8 {
+    (code >> 4 & 0xf0 | code & 0x0f) as u8
+}

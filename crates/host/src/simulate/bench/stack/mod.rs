@@ -1,0 +1,105 @@
+//! The greatest depth of the stack, computed from the machine code.
+//!
+//! On a chip without memory protection, a stack that grows into the static data changes a
+//! servo's width or a decision of the guard, and nothing reports it. A measurement shows
+//! how deep the stack got, and not how deep it can get: perhaps no interrupt came at the
+//! worst moment, or a rare refusal was not printed. So this module follows every path
+//! through the code and adds up what it pushes.
+//!
+//! It decodes the code itself and does not read avr-objdump's listing: only two dozen
+//! instructions matter to the stack, which takes fewer lines than a parser of that
+//! listing, and the program needs no other tool.
+//!
+//! The bound assumes the following. Interrupts do not nest, which is checked; only during
+//! a handler that never returns, as the watchdog's, may one more come. No function calls
+//! itself, nothing jumps to a computed address, and the stack pointer changes by `push`,
+//! `pop`, calls, returns, and frames that r28 and r29 point to. Anything else is refused,
+//! with the name of the function.
+
+mod instruction;
+mod walk;
+
+use simulated_uno::{Image, SRAM_END};
+
+use walk::{Context, Walk};
+
+/// Vectors of an ATmega328P, reset included, each a `jmp` of four bytes.
+const VECTORS: u32 = 26;
+/// An interrupt pushes the address that it returns to.
+const ENTRY: u16 = 2;
+
+/// The reason why a depth cannot be computed.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("the depth of the stack cannot be worked out: {function}, at {address:#06x}, {what}")]
+pub struct StackError {
+    /// The function that stands in the way.
+    pub function: String,
+    /// Byte address of its instruction in flash.
+    pub address: u32,
+    /// The instruction's effect, in words.
+    pub what: &'static str,
+}
+
+/// The worst depths, bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StackDepth {
+    /// Of the program from reset on, without interrupts.
+    pub main: u16,
+    /// Of the deepest interrupt, its return address included; 0 without interrupts.
+    pub handler: u16,
+    /// Of the deepest interrupt that lets others in and never returns; 0 without one.
+    pub last: u16,
+    /// First address of SRAM that the stack may use.
+    floor: u16,
+}
+
+impl StackDepth {
+    /// Works out an image's depths. A vector table is recognised by the `jmp` at
+    /// address 0; vectors that lead to avr-libc's `__bad_interrupt` are not in use.
+    ///
+    /// # Errors
+    /// See [`StackError`].
+    pub fn of(image: &Image) -> Result<Self, StackError> {
+        let flash = image.flash();
+        let unused = image.symbol("__bad_interrupt");
+        let unused = unused.map(|symbol| symbol.address as u32);
+        let (mut handler, mut last) = (0, 0);
+        let mut walk = Walk::new(image, &flash, Context::Interrupt);
+        for vector in 1..VECTORS {
+            let target = instruction::jump_target(&flash, 0)
+                .and_then(|_| instruction::jump_target(&flash, vector * 4));
+            if let Some(target) = target.filter(|target| Some(*target) != unused) {
+                let function = walk.function(target)?;
+                match function.lets_in {
+                    None => handler = handler.max(ENTRY + function.depth),
+                    Some(at) if function.returns => {
+                        let what = "lets interrupts into an interrupt";
+                        return Err(walk.refuse(target, at, what));
+                    }
+                    Some(_) => last = last.max(ENTRY + function.depth),
+                }
+            }
+        }
+        let main = Walk::new(image, &flash, Context::Main).function(0)?.depth;
+        let floor = image.data_end();
+        Ok(Self {
+            main,
+            handler,
+            last,
+            floor,
+        })
+    }
+
+    /// The deepest of all: on top of main at its deepest an interrupt, or one that never
+    /// returns and another.
+    #[must_use]
+    pub fn worst(&self) -> u16 {
+        self.main + self.last + self.handler
+    }
+
+    /// Bytes between static data and the deepest stack; negative if they collide.
+    #[must_use]
+    pub fn margin(&self) -> i32 {
+        i32::from(SRAM_END) - i32::from(self.floor) - i32::from(self.worst())
+    }
+}

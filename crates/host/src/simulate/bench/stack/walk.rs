@@ -1,0 +1,275 @@
+//! Every way through a function, with the bytes on the stack at each instruction.
+
+use std::collections::HashMap;
+
+use simulated_uno::{Image, SRAM_END};
+
+use super::StackError;
+use super::instruction::{Effect, decode};
+
+/// Bytes that a call pushes.
+const RETURN_ADDRESS: i32 = 2;
+
+/// The context in which the analysed code runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Context {
+    /// From reset on.
+    Main,
+    /// As an interrupt's handler, with interrupts off.
+    Interrupt,
+}
+
+/// The contents of r29:r28.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Pointer {
+    /// Something that does not matter here.
+    Unknown,
+    /// The stack pointer with this many bytes pushed since the function's beginning.
+    Depth(i32),
+    /// A constant address.
+    Address(u16),
+}
+
+/// The facts known before an instruction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct State {
+    /// Bytes pushed since the function's beginning.
+    depth: i32,
+    pointer: Pointer,
+    /// Of a subtraction from r29:r28 whose high half is still to come.
+    low: u8,
+    /// The constant that the previous instruction loaded into r26.
+    room: Option<u8>,
+}
+
+/// Shared beginnings and ends of functions (`tools/linker/src/frames.S`), by their addresses.
+struct Shared {
+    save: HashMap<u32, i32>,
+    restore: HashMap<u32, i32>,
+}
+
+impl Shared {
+    /// Those of an image. What each saves besides the room in r26: the registers from its
+    /// own to r17, and r28 and r29.
+    fn of(image: &Image) -> Self {
+        let all = |prefix: &str| {
+            let bytes = |symbol: &simulated_uno::Symbol| {
+                let first: i32 = symbol.name.strip_prefix(prefix)?.parse().ok()?;
+                Some((symbol.address as u32, 20 - first))
+            };
+            image.symbols().iter().filter_map(bytes).collect()
+        };
+        Self {
+            save: all("__frame_save_"),
+            restore: all("__frame_restore_"),
+        }
+    }
+}
+
+/// The functions walked so far.
+pub struct Walk<'a> {
+    image: &'a Image,
+    flash: &'a [u8],
+    context: Context,
+    shared: Shared,
+    /// Each function walked, by address; none while it is being walked.
+    known: HashMap<u32, Option<Function>>,
+}
+
+/// The effect of a function on the stack.
+#[derive(Debug, Clone, Copy)]
+pub struct Function {
+    /// The most bytes in it and all that it calls, its own return address left out.
+    pub depth: u16,
+    /// True if the function returns. Code behind a call of one that does not return is not its
+    /// caller's.
+    pub returns: bool,
+    /// The address at which a handler enables other interrupts, if it does.
+    pub lets_in: Option<u32>,
+}
+
+impl<'a> Walk<'a> {
+    pub fn new(image: &'a Image, flash: &'a [u8], context: Context) -> Self {
+        Self {
+            image,
+            flash,
+            context,
+            shared: Shared::of(image),
+            known: HashMap::new(),
+        }
+    }
+
+    /// Walks through the function at `entry` and all that it calls.
+    pub fn function(&mut self, entry: u32) -> Result<Function, StackError> {
+        match self.known.get(&entry) {
+            Some(Some(function)) => return Ok(*function),
+            Some(None) => return Err(self.refuse(entry, entry, "calls itself")),
+            None => {}
+        }
+        self.known.insert(entry, None);
+        let function = self.walk(entry)?;
+        self.known.insert(entry, Some(function));
+        Ok(function)
+    }
+
+    fn walk(&mut self, entry: u32) -> Result<Function, StackError> {
+        let mut worst = 0;
+        let mut returns = false;
+        let mut lets_in = None;
+        let mut seen: HashMap<u32, State> = HashMap::new();
+        let begin = State {
+            depth: 0,
+            pointer: Pointer::Unknown,
+            low: 0,
+            room: None,
+        };
+        let mut open = vec![(entry, begin)];
+        while let Some((at, mut state)) = open.pop() {
+            if let Some(before) = seen.get(&at) {
+                if before.depth != state.depth {
+                    let what = "is reached with more or less on the stack than before";
+                    return Err(self.refuse(entry, at, what));
+                }
+                if before.pointer == state.pointer || before.pointer == Pointer::Unknown {
+                    continue;
+                }
+                state.pointer = Pointer::Unknown;
+            }
+            seen.insert(at, state);
+            let Some(instruction) = decode(self.flash, at) else {
+                return Err(self.refuse(entry, at, "runs out of the code"));
+            };
+            let next = at + instruction.size;
+            let room = state.room.take().map(i32::from);
+            let mut after = vec![next];
+            match instruction.effect {
+                // The shortest way to make room for two bytes.
+                Effect::Call(target) if target == next => state.depth += RETURN_ADDRESS,
+                Effect::Call(target) if self.shared.save.contains_key(&target) => {
+                    let Some(room) = room else {
+                        return Err(self.refuse(entry, at, ROOM));
+                    };
+                    state.depth += self.shared.save[&target] + room;
+                    state.pointer = Pointer::Depth(state.depth);
+                    // Its own way back lies below what it made room for.
+                    worst = worst.max(state.depth + RETURN_ADDRESS);
+                }
+                Effect::Jump(target) if self.shared.restore.contains_key(&target) => {
+                    let Some(room) = room else {
+                        return Err(self.refuse(entry, at, ROOM));
+                    };
+                    if state.depth != self.shared.restore[&target] + room {
+                        let what = "restores something else than it saved";
+                        return Err(self.refuse(entry, at, what));
+                    }
+                    returns = true;
+                    after.clear();
+                }
+                Effect::Call(target) => {
+                    let called = self.function(target)?;
+                    let below = i32::from(called.depth);
+                    worst = worst.max(state.depth + RETURN_ADDRESS + below);
+                    lets_in = lets_in.or(called.lets_in);
+                    if !called.returns {
+                        after.clear();
+                    }
+                }
+                // The program restarts, and so does its stack.
+                Effect::Jump(0) => after.clear(),
+                Effect::Jump(target) => after = vec![target],
+                Effect::Branch(target) => after.push(target),
+                Effect::Skip => {
+                    let skipped = decode(self.flash, next).map_or(2, |skipped| skipped.size);
+                    after.push(next + skipped);
+                }
+                Effect::Return if state.depth == 0 => {
+                    returns = true;
+                    after.clear();
+                }
+                Effect::Return => {
+                    return Err(self.refuse(entry, at, "returns with something on the stack"));
+                }
+                Effect::Indirect => {
+                    let what = "goes to an address that it computes";
+                    return Err(self.refuse(entry, at, what));
+                }
+                Effect::EnableInterrupts if self.context == Context::Interrupt => {
+                    lets_in = Some(at);
+                }
+                Effect::StackFromOther => return Err(self.refuse(entry, at, POINTER)),
+                effect => {
+                    if !state.apply(effect) {
+                        return Err(self.refuse(entry, at, POINTER));
+                    }
+                }
+            }
+            worst = worst.max(state.depth);
+            open.extend(after.into_iter().map(|at| (at, state)));
+        }
+        let depth = u16::try_from(worst)
+            .map_err(|_| self.refuse(entry, entry, "needs more stack than there is"))?;
+        Ok(Function {
+            depth,
+            returns,
+            lets_in,
+        })
+    }
+
+    /// An error of the function at `entry`.
+    pub fn refuse(&self, entry: u32, address: u32, what: &'static str) -> StackError {
+        let before =
+            |symbol: &&simulated_uno::Symbol| symbol.function && u64::from(entry) >= symbol.address;
+        let symbols = self.image.symbols().iter().filter(before);
+        let nearest = symbols.max_by_key(|symbol| symbol.address);
+        StackError {
+            function: nearest.map_or_else(|| "the code".to_owned(), |symbol| symbol.path()),
+            address,
+            what,
+        }
+    }
+}
+
+const ROOM: &str = "makes room of an unknown size";
+const POINTER: &str = "sets the stack pointer to something unknown";
+
+impl State {
+    /// Follows an instruction that only works on the stack and its pointer. False if
+    /// the stack pointer is then unknown.
+    fn apply(&mut self, effect: Effect) -> bool {
+        let add = |pointer: Pointer, more: i16| match pointer {
+            Pointer::Depth(depth) => Pointer::Depth(depth - i32::from(more)),
+            Pointer::Address(address) => Pointer::Address(address.wrapping_add_signed(more)),
+            Pointer::Unknown => Pointer::Unknown,
+        };
+        match effect {
+            Effect::Push => self.depth += 1,
+            Effect::Pop => self.depth -= 1,
+            Effect::PointerFromStack => self.pointer = Pointer::Depth(self.depth),
+            Effect::StackFromPointer => {
+                self.depth = match self.pointer {
+                    Pointer::Depth(depth) => depth,
+                    // The beginning of a program: from the end of SRAM down.
+                    Pointer::Address(address) => i32::from(SRAM_END - 1) - i32::from(address),
+                    Pointer::Unknown => return false,
+                }
+            }
+            Effect::AddToPointer(more) => self.pointer = add(self.pointer, more),
+            Effect::SubtractLow(low) => self.low = low,
+            Effect::SubtractHigh(high) => {
+                let less = i16::from_le_bytes([self.low, high]);
+                self.pointer = add(self.pointer, less.wrapping_neg());
+            }
+            Effect::LoadLow(low) => self.pointer = Pointer::Address(low.into()),
+            Effect::LoadHigh(high) => {
+                self.pointer = match self.pointer {
+                    Pointer::Address(low) => Pointer::Address(low & 0xff | u16::from(high) << 8),
+                    _ => Pointer::Unknown,
+                }
+            }
+            Effect::LoadRoom(room) => self.room = Some(room),
+            Effect::LosePointer => self.pointer = Pointer::Unknown,
+            _ => {}
+        }
+        true
+    }
+}

@@ -1,0 +1,81 @@
+//! The budgets as a table for people.
+
+use std::io::{self, Write};
+
+use super::budget::{Bound, Row, SERVO_LIBRARY};
+use crate::shared::number::grouped;
+
+/// Prints the table.
+///
+/// # Errors
+/// Writing failed.
+pub fn print(rows: &[Row], gait: Option<&str>, out: &mut impl Write) -> io::Result<()> {
+    writeln!(
+        out,
+        "{:<30} {:>10} {:<7} {:>16}   Arduino Servo",
+        "", "measured", "", "budget"
+    )?;
+    for row in rows {
+        let budget = match row.budget {
+            Bound::AtMost(most) => format!("at most {}", grouped(most, 0)),
+            Bound::AtLeast(least) => format!("at least {}", grouped(least, 0)),
+            Bound::None => "-".to_owned(),
+        };
+        let decimals = if row.unit == "%" || row.unit == "s" {
+            1
+        } else {
+            0
+        };
+        let line = format!(
+            "{:<30} {:>10} {:<7} {:>16}   {}{}",
+            row.what,
+            row.measured
+                .map_or("-".to_owned(), |measured| grouped(measured, decimals)),
+            row.unit,
+            budget,
+            row.servo_library.unwrap_or(""),
+            if row.is_met() { "" } else { "  OVER BUDGET" },
+        );
+        writeln!(out, "{}", line.trim_end())?;
+    }
+    let gait = match gait {
+        Some(gait) => format!("The gait is {gait}."),
+        None => "-: not measured, this robot has no gait that moves.".to_owned(),
+    };
+    if rows
+        .iter()
+        .any(|row| row.what == "width less command, worst" && row.measured.is_none())
+    {
+        writeln!(
+            out,
+            "\nThis firmware was not built from the same source and robot.toml as this program: \
+             its widths were not compared."
+        )?;
+    }
+    writeln!(out, "\nA cycle is 62.5 ns. {gait} {SERVO_LIBRARY}.")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_broken_budget_stands_out() {
+        let row = Row {
+            what: "flash",
+            unit: "bytes",
+            measured: Some(20_000.0),
+            budget: Bound::AtMost(16_384.0),
+            servo_library: Some("5 994"),
+            wall_clock: false,
+        };
+        let mut text = Vec::new();
+        print(&[row], None, &mut text).expect("a vector takes it");
+        let text = String::from_utf8(text).expect("it is text");
+        assert!(text.contains("20 000 bytes"), "{text}");
+        assert!(
+            text.contains("at most 16 384   5 994  OVER BUDGET"),
+            "{text}"
+        );
+    }
+}

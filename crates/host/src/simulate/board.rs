@@ -1,0 +1,296 @@
+//! A simulated UNO, used as with a serial cable and an oscilloscope: power it on, send
+//! lines, read answers, look at its servos' pulses.
+
+use std::path::Path;
+
+use lizard_robot::Robot;
+use simulated_uno::{CYCLES_PER_MS, Call, Fidelity, Image, Pin, SerialByte, State, Uno};
+
+use crate::Failure;
+use crate::shared::firmware;
+use crate::simulate::sim::frame::{
+    FRAME, Frame, frames, latest_start, next_start, opens, servo_pins,
+};
+use crate::simulate::sim::lines::{Line, LineReader};
+use crate::simulate::sim::supplies;
+
+/// The longest wait for an answer after its command has been sent, ms. The
+/// console promises much less.
+const PATIENCE_MS: u64 = 200;
+/// The longest wait for the banner after power-on, ms.
+pub(crate) const BANNER_MS: u64 = 500;
+/// Cycles that a byte of the sender takes, rounded up.
+const BYTE_CYCLES: u64 = 1400;
+
+/// The reason why a board did not do what a test asked for.
+#[derive(Debug, thiserror::Error)]
+pub enum BoardError {
+    /// The firmware cannot be loaded.
+    #[error(transparent)]
+    Load(#[from] firmware::Unreadable),
+    /// The first line is not the firmware's banner.
+    #[error("no banner `# lizard ...` within {BANNER_MS} ms of power-on, but {0:?}")]
+    Banner(Option<String>),
+    /// A command was not answered.
+    #[error("no answer to {line:?} within {PATIENCE_MS} ms, only {notes:?}")]
+    Silent {
+        /// The command that was sent.
+        line: String,
+        /// The information lines that came.
+        notes: Vec<String>,
+    },
+    /// The firmware sleeps with interrupts off.
+    #[error("the firmware sleeps with interrupts off, for ever")]
+    Halted,
+    /// The firmware went where there is nothing.
+    #[error("the firmware crashed: {0}")]
+    Crashed(String),
+    /// The power has been cut.
+    #[error("the board has no power")]
+    Off,
+    /// The watchdog fired.
+    #[error("the watchdog reset the firmware")]
+    Reset,
+    /// A function cannot be timed.
+    #[error("the ELF has no one function {0}")]
+    Function(String),
+    /// A line of `status` lacks a counter.
+    #[error("`{status}` has no {key}")]
+    Counter {
+        /// The answer to `status`.
+        status: String,
+        /// The name of the counter.
+        key: String,
+    },
+    /// The first servo gets no pulse.
+    #[error("A1 gets no pulse")]
+    NoPulse,
+}
+
+impl From<BoardError> for Failure {
+    fn from(error: BoardError) -> Self {
+        match error {
+            BoardError::Load(_) => Self::Input(error.to_string()),
+            _ => Self::Impossible(format!("the firmware cannot be measured: {error}")),
+        }
+    }
+}
+
+/// A simulated UNO with a firmware in its flash.
+pub struct SimulatedBoard {
+    /// The UNO. Take its transmitted bytes through the board only.
+    pub uno: Uno,
+    pins: [Pin; 4],
+    reader: LineReader,
+    bytes: Vec<SerialByte>,
+    lines: Vec<Line>,
+    /// Number of lines that [`SimulatedBoard::next_line`] has returned.
+    returned: usize,
+    /// Start of a frame: where the others are counted from.
+    anchor: Option<u64>,
+}
+
+impl SimulatedBoard {
+    /// Powers a robot's board on, its supplies in good order; not a cycle has passed.
+    ///
+    /// # Errors
+    /// The ELF file is missing or wrong.
+    pub fn power_on(elf: &Path, fidelity: Fidelity, robot: &Robot) -> Result<Self, BoardError> {
+        let image = firmware::with_robot(elf, robot)?;
+        Ok(Self::with_image(image, fidelity, robot))
+    }
+
+    /// The same with an image that has the robot in it already.
+    #[must_use]
+    pub fn with_image(image: Image, fidelity: Fidelity, robot: &Robot) -> Self {
+        let mut uno = Uno::with_image(image, fidelity);
+        supplies::connect(&mut uno, robot);
+        Self::with_uno(uno, servo_pins(robot))
+    }
+
+    /// Powers a board on and waits for the lizard's banner.
+    ///
+    /// # Errors
+    /// See [`SimulatedBoard::power_on`]; another first line, or none within 500 ms.
+    pub fn boot(elf: &Path, fidelity: Fidelity, robot: &Robot) -> Result<Self, BoardError> {
+        let mut board = Self::power_on(elf, fidelity, robot)?;
+        match board.next_line(BANNER_MS) {
+            Some(line) if line.starts_with("# lizard") => Ok(board),
+            other => Err(BoardError::Banner(other)),
+        }
+    }
+
+    /// A board around any simulated UNO. `pins` are those of the servos A1 to A4.
+    #[must_use]
+    pub fn with_uno(uno: Uno, pins: [Pin; 4]) -> Self {
+        Self {
+            uno,
+            pins,
+            reader: LineReader::default(),
+            bytes: Vec::new(),
+            lines: Vec::new(),
+            returned: 0,
+            anchor: None,
+        }
+    }
+
+    /// The pins of the servos A1 to A4.
+    #[must_use]
+    pub fn pins(&self) -> [Pin; 4] {
+        self.pins
+    }
+
+    /// Sends a line and returns its answer, the first line that is not
+    /// information. What came before is in [`SimulatedBoard::lines`].
+    ///
+    /// # Errors
+    /// No answer within 200 ms after the line has been sent.
+    pub fn say(&mut self, line: &str) -> Result<String, BoardError> {
+        Ok(self.ask(line)?.1)
+    }
+
+    /// Sends a line; returns the `#` lines that came first, and the answer.
+    ///
+    /// # Errors
+    /// See [`SimulatedBoard::say`].
+    pub fn ask(&mut self, line: &str) -> Result<(Vec<String>, String), BoardError> {
+        self.returned = self.lines().len();
+        self.send(line);
+        let mut notes = Vec::new();
+        while let Some(answer) = self.next_line(PATIENCE_MS) {
+            if !answer.starts_with('#') {
+                return Ok((notes, answer));
+            }
+            notes.push(answer);
+        }
+        let line = line.to_owned();
+        Err(BoardError::Silent { line, notes })
+    }
+
+    /// Sends a line and a line feed, and does not wait.
+    pub fn send(&mut self, line: &str) {
+        self.uno.send(line.as_bytes());
+        self.uno.send(b"\n");
+    }
+
+    /// The next line not yet returned, waited for at most `ms` beyond the time
+    /// the sender needs. Line ends are gone.
+    pub fn next_line(&mut self, ms: u64) -> Option<String> {
+        let sending = self.uno.unsent() as u64 * BYTE_CYCLES;
+        let end = self.uno.cycle() + sending + ms * CYCLES_PER_MS;
+        loop {
+            let next = self.returned;
+            if let Some(line) = self.lines().get(next) {
+                let text = line.text.clone();
+                self.returned += 1;
+                return Some(text);
+            }
+            if self.uno.cycle() >= end || *self.uno.state() != State::Alive {
+                return None;
+            }
+            self.uno.run_until_line(end - self.uno.cycle());
+        }
+    }
+
+    /// Every line the firmware has sent since power-on.
+    pub fn lines(&mut self) -> &[Line] {
+        self.collect();
+        &self.lines
+    }
+
+    /// Every byte the firmware has sent since power-on.
+    pub fn bytes(&mut self) -> &[SerialByte] {
+        self.collect();
+        &self.bytes
+    }
+
+    fn collect(&mut self) {
+        let bytes = self.uno.take_transmitted();
+        self.lines.extend(self.reader.read(&bytes));
+        self.bytes.extend(bytes);
+    }
+
+    /// A counter of `status`.
+    ///
+    /// # Errors
+    /// See [`SimulatedBoard::say`]; `status` does not list it.
+    pub fn count(&mut self, key: &str) -> Result<u64, BoardError> {
+        let status = self.say("status")?;
+        let value = status.split(' ').find_map(|pair| {
+            let (name, value) = pair.split_once('=')?;
+            (name == key).then(|| value.parse().ok())?
+        });
+        let key = key.to_owned();
+        value.ok_or(BoardError::Counter { status, key })
+    }
+
+    /// Lets time pass.
+    ///
+    /// # Errors
+    /// The firmware crashes, halts or is reset meanwhile.
+    pub fn run_ms(&mut self, ms: u64) -> Result<(), BoardError> {
+        self.run_until(self.uno.cycle() + ms * CYCLES_PER_MS)
+    }
+
+    fn run_until(&mut self, cycle: u64) -> Result<(), BoardError> {
+        let resets = self.uno.resets();
+        match self.uno.run_until_cycle(cycle) {
+            State::Alive => {}
+            State::Halted => return Err(BoardError::Halted),
+            State::Crashed { message, .. } => return Err(BoardError::Crashed(message.clone())),
+            State::Off => return Err(BoardError::Off),
+        }
+        if self.uno.resets() == resets {
+            Ok(())
+        } else {
+            Err(BoardError::Reset)
+        }
+    }
+
+    /// Lets time pass and times every call of a function of the firmware, named
+    /// as in `Control::frame`.
+    ///
+    /// # Errors
+    /// The ELF has no such function, or more than one.
+    pub fn time_calls(&mut self, function: &str, ms: u64) -> Result<Vec<Call>, BoardError> {
+        let symbol = self.uno.image().function(function);
+        let symbol = symbol.ok_or_else(|| BoardError::Function(function.to_owned()))?;
+        let entry = symbol.address as u32;
+        Ok(self.uno.time_calls(entry, ms * CYCLES_PER_MS))
+    }
+
+    /// Cycles spent so far in the handlers of some vectors.
+    pub fn handler_cycles(&self, which: impl Fn(u8) -> bool) -> u64 {
+        let all = self.uno.interrupts();
+        let those = all.iter().filter(|used| which(used.vector));
+        those.map(|used| used.cycles).sum()
+    }
+
+    /// Cycle of A1's first pulse among the edges that nobody has taken.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn first_pulse(&self) -> Result<u64, BoardError> {
+        let pulses = self.uno.pulses(self.pins[0]);
+        let first = pulses.first().map(|pulse| pulse.start);
+        first.ok_or(BoardError::NoPulse)
+    }
+
+    /// Lets `count` whole frames pass, starting with the next, and returns
+    /// their pulses. Frames are counted from A1's latest pulse on; before
+    /// there has been one, from now. Edges recorded before are dropped.
+    ///
+    /// # Errors
+    /// See [`SimulatedBoard::run_ms`].
+    pub fn run_for_frames(&mut self, count: u64) -> Result<Vec<Frame>, BoardError> {
+        let now = self.uno.cycle();
+        self.anchor = latest_start(&self.uno.edges(), self.pins).or(self.anchor);
+        let start = self
+            .anchor
+            .map_or(now + FRAME, |anchor| next_start(anchor, now));
+        self.run_until(opens(start))?;
+        self.uno.take_edges();
+        self.run_until(opens(start + count * FRAME))?;
+        Ok(frames(&self.uno.edges(), self.pins, start, count))
+    }
+}

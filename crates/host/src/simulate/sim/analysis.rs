@@ -1,0 +1,345 @@
+//! Frames read back into servo angles, and what can be said about them.
+
+use std::collections::HashMap;
+
+use lizard_robot::servo::{FORWARD, LEGS, NAMES};
+use lizard_robot::{Robot, Travel};
+use serde::Serialize;
+use simulated_uno::{CYCLES_PER_US, FREQUENCY};
+
+use super::frame::{FRAME, Frame};
+use super::frame_log::FrameLog;
+use super::spans::Span;
+use crate::shared::ink::pin_name;
+
+/// One frame as the servos understand it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Instant {
+    /// Seconds since power-on.
+    pub seconds: f64,
+    /// Servo angles in degrees, chassis frame; `None` while the robot rests.
+    pub angles: Option<[f64; 4]>,
+    /// Their sweeps from neutral in degrees, foot forward positive.
+    #[serde(skip)]
+    pub sweeps: Option<[f64; 4]>,
+}
+
+/// The pulses of one servo.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ServoReport {
+    /// A1 to A4.
+    pub servo: &'static str,
+    /// Its leg: L or R, F or H for hind.
+    pub leg: &'static str,
+    /// Its pin, `D9` or `A0`.
+    pub pin: String,
+    /// Number of pulses.
+    pub pulses: usize,
+    /// Shortest pulse, us.
+    pub min_us: f64,
+    /// Longest pulse, us.
+    pub max_us: f64,
+    /// Worst deviation of a width from its command, cycles.
+    pub width_error: Option<u64>,
+    /// Worst deviation of a period from 20 ms, cycles.
+    pub period_error: u64,
+    /// Fastest turn from one frame to the next, deg/s.
+    pub slew: f64,
+}
+
+/// The tightest moment of the run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Tightest {
+    /// The name of the margin.
+    pub margin: String,
+    /// The value of the margin.
+    pub value: f64,
+    /// When, in seconds since power-on.
+    pub seconds: f64,
+}
+
+/// The smallest margins and the strokes over all poses of the run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Safety {
+    /// The smallest margin.
+    pub least: Option<Tightest>,
+    /// Least and largest slider travel, mm.
+    pub stroke: [f64; 2],
+    /// Frames that break a limit of robot.toml, with the first reason.
+    pub violations: usize,
+    /// The first violation in words.
+    pub first_violation: Option<String>,
+}
+
+/// The path under one command, by the contact model.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Leg {
+    /// The command in effect.
+    pub command: String,
+    /// From this many seconds since power-on.
+    pub from: f64,
+    /// To this many.
+    pub to: f64,
+    /// Forward, mm, seen from where it began; nothing if that depends on a tie, two
+    /// feet against two.
+    pub forward: Option<f64>,
+    /// To the left, mm, likewise.
+    pub left: Option<f64>,
+    /// Counter-clockwise, deg, likewise.
+    pub turn: Option<f64>,
+}
+
+impl Instant {
+    /// A frame that starts at a time (s) with these pulses (cycles).
+    fn of(robot: &Robot, seconds: f64, widths: Option<[u64; 4]>) -> Self {
+        let us = |width: u64| width as f64 / CYCLES_PER_US as f64;
+        let turns = widths.map(|widths| -> [f64; 4] {
+            std::array::from_fn(|i| robot.servos()[i].sweep(us(widths[i])))
+        });
+        Self {
+            seconds,
+            angles: turns
+                .map(|turns| std::array::from_fn(|i| robot.servos()[i].neutral + turns[i])),
+            sweeps: turns.map(|turns| std::array::from_fn(|i| turns[i] * FORWARD[i])),
+        }
+    }
+}
+
+/// Reads frames back into angles.
+#[must_use]
+pub fn instants(robot: &Robot, frames: &[Frame]) -> Vec<Instant> {
+    let seconds = |frame: &Frame| frame.start as f64 / FREQUENCY as f64;
+    frames
+        .iter()
+        .map(|frame| Instant::of(robot, seconds(frame), frame.all()))
+        .collect()
+}
+
+/// A run's frames with the robot whose servos got them.
+#[derive(Debug, Clone, Copy)]
+pub struct Run<'a> {
+    /// The robot that the frames are of.
+    pub robot: &'a Robot,
+    /// The frames of the run.
+    pub log: &'a FrameLog,
+}
+
+impl<'a> Run<'a> {
+    /// Frame by frame, those whose numbers are in `range`.
+    pub fn within(
+        self,
+        range: std::ops::Range<usize>,
+    ) -> impl Iterator<Item = Instant> + Clone + 'a {
+        range.map(move |n| {
+            let widths = self.log.widths[n];
+            let all = widths.iter().all(|width| *width > 0);
+            let widths = all.then_some(widths.map(u64::from));
+            Instant::of(self.robot, self.log.seconds(n), widths)
+        })
+    }
+
+    /// Frame by frame.
+    pub fn instants(self) -> impl Iterator<Item = Instant> + Clone + 'a {
+        self.within(0..self.log.widths.len())
+    }
+}
+
+impl Serialize for Run<'_> {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.instants())
+    }
+}
+
+/// Each servo's row of the table. `commands` are the widths in cycles that the
+/// firmware's core asked for, frame by frame, 0 for none.
+#[must_use]
+pub fn servos(run: Run<'_>, commands: Option<&[[u16; 4]]>) -> Vec<ServoReport> {
+    let frames = &run.log.widths;
+    let mut slew = [0.0f64; 4];
+    let mut before = None;
+    for angles in run.instants().map(|at| at.angles) {
+        if let (Some(before), Some(angles)) = (before, angles) {
+            let before: [f64; 4] = before;
+            slew = std::array::from_fn(|i| slew[i].max((angles[i] - before[i]).abs()));
+        }
+        before = angles;
+    }
+    let row = |i: usize| {
+        let widths = || frames.iter().map(move |frame| frame[i]).filter(|w| *w > 0);
+        let us = |width: Option<u16>| f64::from(width.unwrap_or(0)) / CYCLES_PER_US as f64;
+        let width_error = commands.map(|commands| {
+            let pairs = frames.iter().zip(commands);
+            let errors = pairs.map(|(frame, command)| frame[i].abs_diff(command[i]));
+            u64::from(errors.max().unwrap_or(0))
+        });
+        ServoReport {
+            servo: NAMES[i],
+            leg: LEGS[i],
+            pin: pin_name(run.robot.servos()[i].pin),
+            pulses: widths().count(),
+            min_us: us(widths().min()),
+            max_us: us(widths().max()),
+            width_error,
+            period_error: run.log.period_error[i],
+            slew: slew[i] * FREQUENCY as f64 / FRAME as f64,
+        }
+    };
+    (0..4).map(row).collect()
+}
+
+/// Solves every pose of the run.
+#[must_use]
+pub fn safety(run: Run<'_>) -> Safety {
+    let mut safety = Safety {
+        least: None,
+        stroke: [f64::INFINITY, f64::NEG_INFINITY],
+        violations: 0,
+        first_violation: None,
+    };
+    // A robot that stands repeats its pose: solved once.
+    let mut latest: Option<([f64; 4], Option<String>)> = None;
+    for instant in run.instants() {
+        let Some(angles) = instant.angles else {
+            continue;
+        };
+        let broken = match latest.take() {
+            Some((before, broken)) if before == angles => broken,
+            _ => safety.add(run.robot, angles, instant.seconds),
+        };
+        if let Some(reason) = &broken {
+            safety.violations += 1;
+            safety.first_violation.get_or_insert_with(|| reason.clone());
+        }
+        latest = Some((angles, broken));
+    }
+    safety
+}
+
+impl Safety {
+    /// Takes a pose into account; returns why it breaks a limit.
+    fn add(&mut self, robot: &Robot, angles: [f64; 4], seconds: f64) -> Option<String> {
+        let solution = match robot.lizard().solve(&angles.into()) {
+            Err(infeasible) => return Some(infeasible.to_string()),
+            Ok(solution) => solution,
+        };
+        let (check, value) = solution.margins.min();
+        if self.least.as_ref().is_none_or(|least| value < least.value) {
+            self.least = Some(Tightest {
+                margin: check.to_string(),
+                value,
+                seconds,
+            });
+        }
+        for s in [solution.left.s, solution.right.s] {
+            self.stroke = [self.stroke[0].min(s), self.stroke[1].max(s)];
+        }
+        let violation = robot.limits().violations(&solution).next();
+        violation.map(|violation| violation.to_string())
+    }
+}
+
+/// The path under each command by the contact model, and the path of the complete run as the
+/// last one. Legs count as rigid, so that each pair of frames is computed once; `lizard twin`
+/// lets them lag. Feet are never lifted: see [`lizard_robot::Ground`].
+#[must_use]
+pub fn way(run: Run<'_>, spans: &[Span]) -> Vec<Leg> {
+    let mut steps = Steps {
+        run,
+        known: HashMap::new(),
+    };
+    let mut whole = NOWHERE;
+    let mut all_known = [true; 3];
+    let mut predictions = HashMap::new();
+    let mut legs = Vec::with_capacity(spans.len() + 1);
+    for span in spans {
+        let mut travel = NOWHERE;
+        for n in run.log.index(span.from)..run.log.index(span.to) {
+            let step = steps.from(n);
+            travel = followed_by(travel, step);
+            whole = followed_by(whole, step);
+        }
+        let known = *predictions
+            .entry(span.command.as_str())
+            .or_insert_with(|| decided(run.robot, &span.command));
+        all_known = std::array::from_fn(|part| all_known[part] && known[part]);
+        legs.push(Leg::new(&span.command, [span.from, span.to], travel, known));
+    }
+    let end = spans.last().map_or(0.0, |span| span.to);
+    legs.push(Leg::new("all", [0.0, end], whole, all_known));
+    legs
+}
+
+/// True for each part of a command's path (forward, left, turn) that is determined. A part of a
+/// gait's path may depend on a tie.
+fn decided(robot: &Robot, command: &str) -> [bool; 3] {
+    robot.gait(command).map_or([true; 3], |gait| {
+        let way = robot.predict(gait);
+        [way.forward, way.left, way.turn].map(|part| part.is_some())
+    })
+}
+
+impl Leg {
+    fn new(command: &str, [from, to]: [f64; 2], travel: Travel, known: [bool; 3]) -> Self {
+        let [forward, left, turn] = known;
+        Self {
+            command: command.to_owned(),
+            from,
+            to,
+            forward: forward.then_some(travel.forward),
+            left: left.then_some(travel.left),
+            turn: turn.then_some(travel.turn),
+        }
+    }
+}
+
+/// The way of a robot that stands.
+const NOWHERE: Travel = Travel {
+    forward: 0.0,
+    left: 0.0,
+    turn: 0.0,
+};
+
+/// Widths of a frame and of the next.
+type Pair = [[u16; 4]; 2];
+
+/// The movement from one frame to the next. A gait repeats its frames, so each pair is computed
+/// once.
+struct Steps<'a> {
+    run: Run<'a>,
+    known: HashMap<Pair, Travel>,
+}
+
+impl Steps<'_> {
+    /// From frame number `n`. A frame in which the robot rests moves nothing.
+    fn from(&mut self, n: usize) -> Travel {
+        /// Pairs that are kept, some megabytes.
+        const KEPT: usize = 100_000;
+        let frames = &self.run.log.widths;
+        let Some(next) = frames.get(n + 1) else {
+            return NOWHERE;
+        };
+        let pair = [frames[n], *next];
+        if let Some(travel) = self.known.get(&pair) {
+            return *travel;
+        }
+        let sweeps = self.run.within(n..n + 2).filter_map(|at| at.sweeps);
+        let travel = self.run.robot.ground().rigid().travel(sweeps);
+        if self.known.len() < KEPT {
+            self.known.insert(pair, travel);
+        }
+        travel
+    }
+}
+
+/// One way and then another, the second seen from where the first ends.
+fn followed_by(first: Travel, second: Travel) -> Travel {
+    let (sin, cos) = first.turn.to_radians().sin_cos();
+    Travel {
+        forward: first.forward + cos * second.forward - sin * second.left,
+        left: first.left + sin * second.forward + cos * second.left,
+        turn: first.turn + second.turn,
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,168 @@
+//! Frames made by hand, and what is found in them.
+
+use super::*;
+
+fn robot() -> Robot {
+    crate::shared::robot_file::named("paper")
+}
+
+/// The frames that servos of `angles(seconds)` would get, from second 1 on.
+fn frames_of(robot: &Robot, count: u64, angles: impl Fn(f64) -> [f64; 4]) -> FrameLog {
+    let width = |i: usize, angle: f64| (robot.servos()[i].pulse(angle) * 16.0).round() as u16;
+    let frame = |n: u64| {
+        let angles = angles(n as f64 / 50.0);
+        std::array::from_fn(|i| width(i, angles[i]))
+    };
+    FrameLog {
+        first: FREQUENCY,
+        widths: (0..count).map(frame).collect(),
+        ..FrameLog::default()
+    }
+}
+
+fn gait_frames(robot: &Robot, name: &str, count: u64) -> FrameLog {
+    let gait = robot.gait(name).expect("it is in robot.toml");
+    frames_of(robot, count, |seconds| gait.angles(gait.phase(seconds)))
+}
+
+#[test]
+fn an_angle_survives_the_way_through_a_pulse() {
+    let robot = robot();
+    let pose = [120.0, 45.0, 300.0, 230.0];
+    let log = frames_of(&robot, 2, |_| pose);
+    let (robot, log) = (&robot, &log);
+    let first = Run { robot, log }.instants().next().expect("two frames");
+    let angles = first.angles.expect("all four have a pulse");
+    for i in 0..4 {
+        // Half a cycle of 62.5 ns at 10 us per degree.
+        assert!(
+            (angles[i] - pose[i]).abs() <= 0.0032,
+            "{} {}",
+            angles[i],
+            pose[i]
+        );
+    }
+    assert_eq!(first.seconds, 1.0);
+}
+
+#[test]
+fn walking_and_turning_lead_where_the_contact_model_says() {
+    let robot = robot();
+    for (gait, forward, turn) in [
+        ("walk", 34.16, 0.0),
+        ("left", 0.0, 15.34),
+        ("back", -34.16, 0.0),
+    ] {
+        let frames = gait_frames(&robot, gait, 51);
+        let span = Span {
+            command: gait.to_owned(),
+            from: 0.0,
+            to: 10.0,
+        };
+        let run = Run {
+            robot: &robot,
+            log: &frames,
+        };
+        let way = way(run, &[span]);
+        let all = way.last().expect("the whole run");
+        let off = |found: Option<f64>, wanted: f64| found.map(|found| (found - wanted).abs());
+        assert!(off(all.forward, forward) < Some(0.35), "{gait}: {all:?}");
+        assert!(off(all.turn, turn) < Some(0.2), "{gait}: {all:?}");
+        assert!(all.forward.is_some() && all.turn.is_some());
+    }
+}
+
+#[test]
+fn a_way_that_hangs_on_a_tie_is_not_told() {
+    let robot = robot();
+    let log = gait_frames(&robot, "look", 100);
+    let run = Run {
+        robot: &robot,
+        log: &log,
+    };
+    let span = |command: &str, from, to| Span {
+        command: command.to_owned(),
+        from,
+        to,
+    };
+    let legs = way(run, &[span("stand", 0.0, 1.0), span("look", 1.0, 3.0)]);
+    let forward: Vec<bool> = legs.iter().map(|leg| leg.forward.is_some()).collect();
+    assert_eq!(forward, [true, false, false], "{legs:?}");
+}
+
+#[test]
+fn a_way_step_by_step_is_the_way_as_a_whole() {
+    let robot = robot();
+    for gait in ["arc-left", "right"] {
+        let log = gait_frames(&robot, gait, 400);
+        let run = Run {
+            robot: &robot,
+            log: &log,
+        };
+        let span = |from, to| Span {
+            command: gait.to_owned(),
+            from,
+            to,
+        };
+        let legs = way(run, &[span(0.0, 3.0), span(3.0, 20.0)]);
+        let whole = robot
+            .ground()
+            .travel(run.instants().filter_map(|at| at.sweeps));
+        let [first, second, all] = &legs[..] else {
+            panic!("two commands and the whole: {legs:?}")
+        };
+        let travel = |leg: &Leg| Travel {
+            forward: leg.forward.expect("it is decided"),
+            left: leg.left.expect("it is decided"),
+            turn: leg.turn.expect("it is decided"),
+        };
+        let apart = |a: Travel, b: Travel| {
+            (a.forward - b.forward).hypot(a.left - b.left) + (a.turn - b.turn).abs()
+        };
+        assert!(apart(travel(all), whole) < 1e-6, "{all:?} {whole:?}");
+        let both = followed_by(travel(first), travel(second));
+        assert!(apart(travel(all), both) < 1e-6);
+    }
+}
+
+#[test]
+fn the_table_tells_widths_periods_slew_and_errors() {
+    let robot = robot();
+    let mut frames = frames_of(&robot, 3, |seconds| {
+        let mut angles: [f64; 4] = robot.neutral().into();
+        angles[0] += 100.0 * seconds;
+        angles
+    });
+    frames.period_error[1] = 7;
+    frames.widths[1][2] -= 3;
+    let commands: Vec<[u16; 4]> = (0..3)
+        .map(|n| [24_000 + 320 * n, 24_000, 24_000, 24_000])
+        .collect();
+    let (robot, log) = (&robot, &frames);
+    let rows = servos(Run { robot, log }, Some(&commands));
+    assert_eq!(
+        (rows[0].pulses, rows[0].min_us, rows[0].max_us),
+        (3, 1500.0, 1540.0)
+    );
+    assert!((rows[0].slew - 100.0).abs() < 0.5);
+    let errors: Vec<_> = rows
+        .iter()
+        .map(|row| (row.width_error, row.period_error))
+        .collect();
+    assert_eq!(
+        errors,
+        [(Some(0), 0), (Some(0), 7), (Some(3), 0), (Some(0), 0)]
+    );
+}
+
+#[test]
+fn a_pose_near_a_singularity_is_reported() {
+    let robot = robot();
+    let of = |log: &FrameLog| safety(Run { robot: &robot, log });
+    let fine = of(&gait_frames(&robot, "walk", 50));
+    assert_eq!(fine.violations, 0);
+    assert!(fine.least.is_some_and(|least| least.value > 0.3));
+    let found = of(&frames_of(&robot, 2, |_| [90.0, 90.0, 318.59, 221.41]));
+    assert_eq!(found.violations, 2);
+    assert!(found.first_violation.is_some());
+}

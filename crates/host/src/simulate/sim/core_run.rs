@@ -1,0 +1,138 @@
+//! The firmware's core run on this machine, compared with the simulated chip.
+//!
+//! The core is plain integer Rust, so with the same bytes received before the same ticks it
+//! must compute the same widths here as on the AVR, to the bit. The pulses at the pins are
+//! compared with them: any difference is a fault of the compiler, of the board's code or of the
+//! pulses.
+//!
+//! The time at which main takes a byte has to be reconstructed: not before it is complete at
+//! the UNO, and not while the serial line has no room for the longest answer. That follows from
+//! the length of the text written so far. The waits of main while it writes the EEPROM are not
+//! reconstructed; here they take no time.
+
+use lizard_core::console::LONGEST_LINE;
+use lizard_core::numbers::robot::Robot;
+use lizard_core::virtual_board::{Converter, Running, Transmitter, VirtualBoard};
+use simulated_uno::SerialByte;
+
+use super::frame::{FRAME, SLOT};
+use super::supplies;
+
+/// Cycles that the UNO takes to send a byte: 10 bits, 17 * 8 cycles each.
+const BYTE: u64 = 1360;
+/// Bytes that the serial line takes before its writer has to wait: a ring of 255,
+/// and two in the transmitter.
+const CAPACITY: u64 = 255 + 2;
+/// The number of queued bytes that leaves room for the longest answer.
+const QUEUED: u64 = CAPACITY - LONGEST_LINE as u64;
+/// Cycles that the AVR takes to compute a frame, about.
+const FRAME_TAKES: u64 = 8_000;
+/// Cycles that the AVR takes to read the end of a line and to act on it, at most.
+const READING_TAKES: u64 = 3_000;
+/// The robot wakes within this many frames of power-on.
+const WAKES: usize = 500;
+
+/// The firmware's main on such a board.
+struct CoreRun {
+    running: Running,
+}
+
+impl CoreRun {
+    fn new(robot: Robot<'static>) -> Self {
+        let supplies = robot.supplies();
+        let mut board = VirtualBoard::default();
+        board.transmitter = Transmitter::new(BYTE, CAPACITY);
+        board.converter =
+            Converter::new(supplies::reading(&supplies), supplies.rail_reference != 0);
+        Self {
+            running: Running::on(robot.section(), board),
+        }
+    }
+
+    /// The main loop, woken at a cycle, until it has nothing left to do.
+    fn wake(&mut self, cycle: u64) {
+        self.running.board.transmitter.at(cycle);
+        self.running.settle();
+    }
+
+    /// The frame that a tick at this cycle begins.
+    fn tick(&mut self, cycle: u64) -> [u16; 4] {
+        self.wake(cycle);
+        self.running.board.tick();
+        _ = self.running.main.step(&mut self.running.board);
+        let widths = self.running.board.submitted().0.map(|width| width.0);
+        // The output of a frame comes right after it.
+        self.wake(cycle + FRAME_TAKES);
+        widths
+    }
+
+    /// When lines and bytes that wait for room are written and taken.
+    fn retry(&self) -> Option<u64> {
+        let board = &self.running.board;
+        let waits = board.waiting() > 0 || self.running.has_output();
+        waits.then(|| board.transmitter.free().saturating_sub(QUEUED * BYTE))
+    }
+}
+
+/// The pulse widths computed by the core.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Commands {
+    /// Widths in cycles, 0 for no pulse, of each frame from A1's first pulse on.
+    pub widths: Vec<[u16; 4]>,
+    /// All that it writes, `late` and `rx_lost` left at 0.
+    pub written: String,
+}
+
+/// Runs the core of a robot along with a recording: `received` are the bytes that
+/// reached the UNO, `first` is the cycle of A1's first pulse, `count` the number of
+/// frames from there on. Exact but for the lines of [`undecided`].
+#[must_use]
+pub fn play(robot: Robot<'static>, received: &[SerialByte], first: u64, count: usize) -> Commands {
+    let silent = frames_before_waking(robot);
+    let mut run = CoreRun::new(robot);
+    let mut received = received.iter().peekable();
+    let mut widths = Vec::with_capacity(count);
+    for frame in 0..silent + count {
+        let start = first + frame as u64 * FRAME;
+        // A tick comes a slot before the first pulse of the frame it begins.
+        let tick = start.saturating_sub(silent as u64 * FRAME + SLOT);
+        loop {
+            let retry = run.retry().filter(|retry| *retry < tick);
+            let due = |byte: &&SerialByte| {
+                byte.cycle < tick && retry.is_none_or(|retry| byte.cycle < retry)
+            };
+            if let Some(byte) = received.next_if(due) {
+                run.running.board.send(&[byte.byte]);
+                run.wake(byte.cycle);
+            } else if let Some(retry) = retry {
+                run.wake(retry);
+            } else {
+                break;
+            }
+        }
+        let pulses = run.tick(tick);
+        if frame >= silent {
+            widths.push(pulses);
+        }
+    }
+    Commands {
+        widths,
+        written: run.running.board.transmitter.text,
+    }
+}
+
+/// The numbers (from 0) of lines that are completed so shortly before a tick that it is a
+/// matter of cycles if main has read them in time.
+pub fn undecided(received: &[SerialByte], first: u64) -> impl Iterator<Item = usize> {
+    let tick = first.saturating_sub(SLOT) % FRAME;
+    let ends = received.iter().filter(|byte| byte.byte == b'\n');
+    let left = ends.map(move |end| (tick + FRAME - end.cycle % FRAME) % FRAME);
+    left.enumerate()
+        .filter_map(|(line, left)| (left < READING_TAKES).then_some(line))
+}
+
+/// Frames before A1's first pulse, if no command comes.
+fn frames_before_waking(robot: Robot<'static>) -> usize {
+    let mut run = CoreRun::new(robot);
+    (0..WAKES).take_while(|_| run.tick(0)[0] == 0).count()
+}

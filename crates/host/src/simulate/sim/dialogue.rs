@@ -1,0 +1,104 @@
+//! The dialogue, printed line by line as it happens.
+
+use std::io::{self, Write};
+
+use super::session::{DialogueLine, Sender};
+use crate::shared::plain::plain;
+
+/// Lines of a run of `# t=` lines that are printed before the rest is counted.
+const SHOWN: usize = 3;
+
+/// Prints lines; of a long run of `watch`'s `# t=` lines only the first three
+/// and how many follow, unless it is to print all.
+#[derive(Debug)]
+pub struct Printer {
+    all: bool,
+    /// Lines of the present run of `# t=` lines.
+    run: usize,
+}
+
+impl Printer {
+    /// A printer of all lines, or one that shortens runs.
+    #[must_use]
+    pub fn new(all: bool) -> Self {
+        Self { all, run: 0 }
+    }
+
+    /// Prints a line.
+    ///
+    /// # Errors
+    /// Writing failed.
+    pub fn print(&mut self, line: &DialogueLine, out: &mut impl Write) -> io::Result<()> {
+        let watch = line.from == Sender::Robot && line.text.starts_with("# t=");
+        if watch && !self.all {
+            self.run += 1;
+            if self.run > SHOWN {
+                return Ok(());
+            }
+        } else {
+            self.finish(out)?;
+        }
+        let mark = match line.from {
+            Sender::User => ">",
+            Sender::Robot => " ",
+        };
+        writeln!(
+            out,
+            "{:>9.3} s  {mark} {}",
+            line.ms / 1000.0,
+            plain(&line.text)
+        )?;
+        out.flush()
+    }
+
+    /// Says how many lines were left out, if any.
+    ///
+    /// # Errors
+    /// Writing failed.
+    pub fn finish(&mut self, out: &mut impl Write) -> io::Result<()> {
+        let left_out = std::mem::take(&mut self.run).saturating_sub(SHOWN);
+        if left_out > 0 {
+            writeln!(
+                out,
+                "               ({left_out} more lines `# t=`; --all prints them)"
+            )?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn printed(all: bool, lines: &[(Sender, &str)]) -> String {
+        let mut out = Vec::new();
+        let mut printer = Printer::new(all);
+        for (from, text) in lines {
+            let (ms, from, text) = (1500.0, *from, (*text).to_owned());
+            let line = DialogueLine { ms, from, text };
+            printer.print(&line, &mut out).expect("a vector takes it");
+        }
+        printer.finish(&mut out).expect("a vector takes it");
+        String::from_utf8(out).expect("it is text")
+    }
+
+    #[test]
+    fn a_run_of_watch_lines_is_counted_and_every_other_line_is_printed() {
+        let watch = [(Sender::Robot, "# t=1 pose=1,2,3,4"); 5];
+        let mut lines = vec![(Sender::User, "watch 1"), (Sender::Robot, "ok watch 1")];
+        lines.extend(watch);
+        lines.push((Sender::Robot, "# hold"));
+        lines.extend(&watch[..3]);
+        lines.push((Sender::User, "# t=0"));
+        lines.extend(&watch[..4]);
+        let short = printed(false, &lines);
+        assert_eq!(short.matches("# t=1").count(), 9, "{short}");
+        assert!(short.contains("(2 more lines `# t=`; --all prints them)\n    1.500 s    # hold"));
+        assert!(short.ends_with("(1 more lines `# t=`; --all prints them)\n"));
+        assert_eq!(short.matches("more lines").count(), 2);
+        let all = printed(true, &lines);
+        assert_eq!(all.lines().count(), lines.len());
+        assert!(all.starts_with("    1.500 s  > watch 1\n    1.500 s    ok watch 1\n"));
+    }
+}

@@ -1,0 +1,131 @@
+//! The movement of each foot: it is never lifted, so only its direction matters.
+
+use simulated_uno::FREQUENCY;
+
+use super::analysis::Instant;
+use super::frame::FRAME;
+
+/// A foot slower than this (deg/s of its leg) stands still: a cubic or smoothstep
+/// end passes it within a frame.
+const STILL: f64 = 4.0;
+
+/// The movement of a foot from one frame to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// It moves back: in a forward gait it pushes the body on.
+    Stance,
+    /// It moves forward.
+    Swing,
+    /// It stands still.
+    Still,
+}
+
+/// A time, in seconds, during which a foot does the same.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretch {
+    /// The movement of the foot.
+    pub phase: Phase,
+    /// The beginning, s.
+    pub from: f64,
+    /// The end, s.
+    pub to: f64,
+}
+
+/// The movements of a servo's foot, in order of time. None while it rests.
+#[must_use]
+pub fn stretches(instants: impl Iterator<Item = Instant> + Clone, servo: usize) -> Vec<Stretch> {
+    let frame = FRAME as f64 / FREQUENCY as f64;
+    let mut stretches: Vec<Stretch> = Vec::new();
+    for (here, next) in instants.clone().zip(instants.skip(1)) {
+        let (Some(before), Some(after)) = (here.sweeps, next.sweeps) else {
+            continue;
+        };
+        let rate = (after[servo] - before[servo]) / frame;
+        let phase = if rate.abs() < STILL {
+            Phase::Still
+        } else if rate > 0.0 {
+            Phase::Swing
+        } else {
+            Phase::Stance
+        };
+        let (from, to) = (here.seconds, next.seconds);
+        match stretches.last_mut() {
+            Some(last) if last.phase == phase && from - last.to < frame / 2.0 => last.to = to,
+            _ => stretches.push(Stretch { phase, from, to }),
+        }
+    }
+    stretches
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lizard_robot::servo::FORWARD;
+
+    /// Five seconds of a gait, then a second of rest.
+    fn instants(gait: &str) -> Vec<Instant> {
+        let robot = crate::shared::robot_file::named("paper");
+        let gait = robot.gait(gait).expect("it is in robot.toml");
+        let neutral: [f64; 4] = robot.neutral().into();
+        (0..300)
+            .map(|n| f64::from(n) / 50.0)
+            .map(|seconds| {
+                let angles = (seconds < 5.0).then(|| gait.angles(gait.phase(seconds)));
+                let sweep = |angles: [f64; 4], i: usize| (angles[i] - neutral[i]) * FORWARD[i];
+                Instant {
+                    seconds,
+                    angles,
+                    sweeps: angles.map(|angles| std::array::from_fn(|i| sweep(angles, i))),
+                }
+            })
+            .collect()
+    }
+
+    fn at(gait: &str, servo: usize, seconds: f64) -> Option<Phase> {
+        let stretches = stretches(instants(gait).into_iter(), servo);
+        let here = stretches
+            .iter()
+            .find(|stretch| (stretch.from..stretch.to).contains(&seconds));
+        here.map(|stretch| stretch.phase)
+    }
+
+    #[test]
+    fn walk_is_three_quarters_stance_and_every_foot_returns_once_a_second() {
+        for servo in 0..4 {
+            let stretches = stretches(instants("walk").into_iter(), servo);
+            let within = |phase| {
+                let ours = stretches
+                    .iter()
+                    .filter(move |stretch| stretch.phase == phase);
+                ours.map(|stretch| stretch.to.min(4.0) - stretch.from.max(1.0))
+                    .filter(|seconds| *seconds > 0.0)
+                    .sum::<f64>()
+            };
+            // Still only where it turns round.
+            assert!(
+                (within(Phase::Stance) - 2.25).abs() < 0.13,
+                "{}",
+                within(Phase::Stance)
+            );
+            assert!(
+                (within(Phase::Swing) - 0.75).abs() < 0.13,
+                "{}",
+                within(Phase::Swing)
+            );
+        }
+    }
+
+    #[test]
+    fn turning_left_pushes_forward_on_the_left_and_back_on_the_right() {
+        // The common stroke of `left` is its first fifth.
+        let phases = [0, 1, 2, 3].map(|servo| at("left", servo, 1.1));
+        let [left, right] = [Some(Phase::Swing), Some(Phase::Stance)];
+        assert_eq!(phases, [left, right, right, left]);
+    }
+
+    #[test]
+    fn a_foot_that_holds_stands_still_and_one_that_rests_does_nothing() {
+        assert_eq!(at("stand", 0, 2.0), Some(Phase::Still));
+        assert_eq!(at("walk", 0, 5.5), None);
+    }
+}

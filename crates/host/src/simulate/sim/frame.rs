@@ -1,0 +1,147 @@
+//! Edges cut into frames: one pulse for each servo every 20 ms.
+
+use lizard_robot::Robot;
+use simulated_uno::{CYCLES_PER_MS, Edge, Pin, pulses};
+
+/// Cycles of a frame, 20 ms.
+pub const FRAME: u64 = 20 * CYCLES_PER_MS;
+
+/// Cycles between two servos' pulses. A pulse that comes this much before its
+/// frame's start still belongs to it, halved.
+pub(super) const SLOT: u64 = FRAME / 5;
+
+/// The servo pulses of one frame, in servo order A1, A2, A3, A4.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Frame {
+    /// Cycle at which A1's pulse starts, or would.
+    pub start: u64,
+    /// Cycle at which each pulse starts, `None` without one.
+    pub starts: [Option<u64>; 4],
+    /// Width of each pulse in cycles of 62.5 ns.
+    pub widths: [Option<u64>; 4],
+}
+
+impl Frame {
+    /// The four widths, if all four servos have a pulse.
+    #[must_use]
+    pub fn all(&self) -> Option<[u64; 4]> {
+        let [a1, a2, a3, a4] = self.widths;
+        Some([a1?, a2?, a3?, a4?])
+    }
+
+    /// The four widths in cycles.
+    ///
+    /// # Panics
+    /// If a servo has no pulse in this frame.
+    #[must_use]
+    pub fn widths(&self) -> [u64; 4] {
+        self.all()
+            .unwrap_or_else(|| panic!("a servo has no pulse: {self:?}"))
+    }
+
+    /// True if no servo has a pulse: the robot rests.
+    #[must_use]
+    pub fn is_silent(&self) -> bool {
+        self.widths == [None; 4]
+    }
+}
+
+/// The pins of the robot's servos A1, A2, A3, A4.
+#[must_use]
+pub fn servo_pins(robot: &Robot) -> [Pin; 4] {
+    robot.servos().map(|servo| Pin::arduino(servo.pin))
+}
+
+/// The first cycle that belongs to the frame which starts at cycle `start`: half
+/// a slot earlier, so that no pulse falls between two frames.
+#[must_use]
+pub fn opens(start: u64) -> u64 {
+    start.saturating_sub(SLOT / 2)
+}
+
+/// Start of the first frame that opens at cycle `now` or later, on the grid of
+/// frames that `anchor` is a start of.
+#[must_use]
+pub fn next_start(anchor: u64, now: u64) -> u64 {
+    anchor + (now + SLOT / 2).saturating_sub(anchor).div_ceil(FRAME) * FRAME
+}
+
+/// Cycle of A1's latest rising edge.
+#[must_use]
+pub fn latest_start(edges: &[Edge], pins: [Pin; 4]) -> Option<u64> {
+    edges
+        .iter()
+        .rev()
+        .find(|edge| edge.high && edge.pin == pins[0])
+        .map(|edge| edge.cycle)
+}
+
+/// `count` frames, the first of which starts at cycle `start`.
+#[must_use]
+pub fn frames(edges: &[Edge], pins: [Pin; 4], start: u64, count: u64) -> Vec<Frame> {
+    let empty = |n| Frame {
+        start: start + n * FRAME,
+        starts: [None; 4],
+        widths: [None; 4],
+    };
+    let mut frames: Vec<Frame> = (0..count).map(empty).collect();
+    let first = opens(start);
+    for (servo, pin) in pins.into_iter().enumerate() {
+        for pulse in pulses(edges, pin) {
+            let Some(since) = pulse.start.checked_sub(first) else {
+                continue;
+            };
+            if let Some(frame) = frames.get_mut((since / FRAME) as usize) {
+                frame.starts[servo] = Some(pulse.start);
+                frame.widths[servo] = Some(pulse.width);
+            }
+        }
+    }
+    frames
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PINS: [Pin; 4] = [Pin::d(9), Pin::d(10), Pin::d(11), Pin::d(3)];
+
+    fn pulse(start: u64, width: u64, pin: Pin) -> [Edge; 2] {
+        [
+            Edge {
+                cycle: start,
+                pin,
+                high: true,
+            },
+            Edge {
+                cycle: start + width,
+                pin,
+                high: false,
+            },
+        ]
+    }
+
+    #[test]
+    fn a_pulse_belongs_to_the_frame_it_starts_in_even_a_little_early() {
+        let start = 1_000_000;
+        let mut edges = Vec::new();
+        edges.extend(pulse(start, 24_000, PINS[0]));
+        edges.extend(pulse(start + 3 * SLOT, 25_000, PINS[3]));
+        edges.extend(pulse(start + FRAME - 1, 26_000, PINS[0]));
+        let frames = frames(&edges, PINS, start, 3);
+        assert_eq!(frames[0].widths, [Some(24_000), None, None, Some(25_000)]);
+        assert_eq!(frames[1].widths, [Some(26_000), None, None, None]);
+        assert_eq!(frames[1].starts[0], Some(start + FRAME - 1));
+        assert!(frames[2].is_silent());
+    }
+
+    #[test]
+    fn the_next_frame_is_one_that_has_not_opened_yet() {
+        assert_eq!(next_start(500, 0), 500 + FRAME);
+        assert_eq!(next_start(1_000_000, 0), 1_000_000);
+        let next = next_start(1_000_000, 1_000_000);
+        assert_eq!(next, 1_000_000 + FRAME);
+        assert_eq!(next_start(1_000_000, opens(next)), next);
+        assert_eq!(next_start(1_000_000, opens(next) + 1), next + FRAME);
+    }
+}

@@ -1,0 +1,181 @@
+//! All frames of a run, small enough for a simulated day: eight bytes a frame.
+
+use simulated_uno::{Edge, FREQUENCY, Pin};
+
+use super::frame::{FRAME, opens};
+
+/// Every frame from A1's first pulse on.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct FrameLog {
+    /// Cycle at which the first frame's A1 pulse starts.
+    pub first: u64,
+    /// Widths of each frame's pulses, cycles, in servo order; 0 without a pulse,
+    /// 65535 for one that is longer.
+    pub widths: Vec<[u16; 4]>,
+    /// For each servo the largest deviation of two successive pulses' distance
+    /// from 20 ms, cycles.
+    pub period_error: [u64; 4],
+    /// The most servo pins high at once.
+    pub most_pins_high: u32,
+}
+
+impl FrameLog {
+    /// Seconds from power-on to the start of frame number `n`.
+    #[must_use]
+    pub fn seconds(&self, n: usize) -> f64 {
+        (self.first + n as u64 * FRAME) as f64 / FREQUENCY as f64
+    }
+
+    /// Number of the first frame that starts at a time or later.
+    #[must_use]
+    pub fn index(&self, seconds: f64) -> usize {
+        let since = seconds * FREQUENCY as f64 - self.first as f64;
+        let n = (since / FRAME as f64).ceil().max(0.0) as usize;
+        n.min(self.widths.len())
+    }
+}
+
+/// Makes a [`FrameLog`] of edges as they come.
+#[derive(Debug)]
+pub struct FrameReader {
+    pins: [Pin; 4],
+    log: FrameLog,
+    rise: [Option<u64>; 4],
+    /// Each servo's latest pulse: number of its frame, cycle of its start.
+    latest: [Option<(usize, u64)>; 4],
+    started: bool,
+}
+
+impl FrameReader {
+    /// Reads the pulses of these pins, A1 to A4; there is room for `frames`.
+    #[must_use]
+    pub fn new(pins: [Pin; 4], frames: usize) -> Self {
+        Self {
+            pins,
+            log: FrameLog {
+                widths: Vec::with_capacity(frames),
+                ..FrameLog::default()
+            },
+            rise: [None; 4],
+            latest: [None; 4],
+            started: false,
+        }
+    }
+
+    /// Takes edges in order of time. Edges of other pins are skipped.
+    pub fn read(&mut self, mut edges: Vec<Edge>) {
+        // At equal cycles a fall comes first: back-to-back pulses do not overlap.
+        edges.sort_by_key(|edge| (edge.cycle, edge.high));
+        for edge in edges {
+            let Some(servo) = self.pins.iter().position(|pin| *pin == edge.pin) else {
+                continue;
+            };
+            if edge.high {
+                if servo == 0 && !self.started {
+                    self.log.first = edge.cycle;
+                    self.started = true;
+                }
+                self.rise[servo] = Some(edge.cycle);
+                let high = self.rise.iter().flatten().count() as u32;
+                self.log.most_pins_high = self.log.most_pins_high.max(high);
+            } else if let Some(start) = self.rise[servo].take() {
+                self.pulse(servo, start, edge.cycle - start);
+            }
+        }
+    }
+
+    fn pulse(&mut self, servo: usize, start: u64, width: u64) {
+        let Some(since) = start.checked_sub(opens(self.log.first)) else {
+            return;
+        };
+        if !self.started {
+            return;
+        }
+        let n = (since / FRAME) as usize;
+        if self.log.widths.len() <= n {
+            self.log.widths.resize(n + 1, [0; 4]);
+        }
+        self.log.widths[n][servo] = u16::try_from(width).unwrap_or(u16::MAX);
+        if let Some((before, at)) = self.latest[servo].replace((n, start))
+            && before + 1 == n
+        {
+            let error = &mut self.log.period_error[servo];
+            *error = (*error).max((start - at).abs_diff(FRAME));
+        }
+    }
+
+    /// The whole frames up to a cycle.
+    #[must_use]
+    pub fn finish(mut self, cycle: u64) -> FrameLog {
+        let whole = if self.started {
+            (cycle - opens(self.log.first)) / FRAME
+        } else {
+            0
+        };
+        self.log.widths.resize(whole as usize, [0; 4]);
+        self.log
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulate::sim::frame::SLOT;
+
+    const PINS: [Pin; 4] = [Pin::d(9), Pin::d(10), Pin::a(0), Pin::d(3)];
+
+    fn pulse(pin: Pin, start: u64, width: u64) -> [Edge; 2] {
+        [(start, true), (start + width, false)].map(|(cycle, high)| Edge { cycle, pin, high })
+    }
+
+    fn read(edges: &[Edge], cut: usize, cycle: u64) -> FrameLog {
+        let mut reader = FrameReader::new(PINS, 0);
+        reader.read(edges[..cut].to_vec());
+        reader.read(edges[cut..].to_vec());
+        reader.finish(cycle)
+    }
+
+    #[test]
+    fn wherever_the_edges_are_cut_the_log_is_the_same() {
+        let start = 1_000_000;
+        let mut edges = Vec::new();
+        edges.extend(pulse(PINS[3], 500_000, 20_000)); // before A1's first
+        edges.extend(pulse(PINS[0], start, 24_000));
+        edges.extend(pulse(Pin::d(13), start + 10, 5)); // no servo
+        edges.extend(pulse(PINS[2], start + SLOT, 25_000));
+        edges.extend(pulse(PINS[0], start + FRAME + 7, 26_000));
+        edges.extend(pulse(PINS[0], start + 3 * FRAME - 1, 27_000));
+        edges.sort_by_key(|edge| edge.cycle);
+        let end = start + 4 * FRAME;
+        for cut in 0..edges.len() {
+            let log = read(&edges, cut, end);
+            let [a, b, c] = [24_000, 26_000, 27_000];
+            let widths = [[a, 0, 25_000, 0], [b, 0, 0, 0], [0; 4], [c, 0, 0, 0]];
+            assert_eq!((log.first, &log.widths[..]), (start, &widths[..]), "{cut}");
+            assert_eq!(log.period_error, [7, 0, 0, 0], "a gap is no period");
+            assert_eq!(log.most_pins_high, 1);
+        }
+    }
+
+    #[test]
+    fn pulses_that_overlap_are_counted_and_those_that_touch_are_not() {
+        let two = |second: u64| {
+            let mut edges = Vec::from(pulse(PINS[0], 1_000_000, 100));
+            edges.extend(pulse(PINS[1], second, 100));
+            read(&edges, 0, 3_000_000).most_pins_high
+        };
+        assert_eq!((two(1_000_099), two(1_000_100)), (2, 1));
+    }
+
+    #[test]
+    fn a_frame_is_found_by_its_time() {
+        let log = FrameLog {
+            first: FREQUENCY,
+            widths: vec![[0; 4]; 50],
+            ..FrameLog::default()
+        };
+        assert_eq!((log.index(0.0), log.index(1.0), log.index(1.01)), (0, 0, 1));
+        assert_eq!((log.index(1.02), log.index(9.0)), (1, 50));
+        assert_eq!(log.seconds(25), 1.5);
+    }
+}

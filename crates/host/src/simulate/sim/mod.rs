@@ -1,0 +1,291 @@
+//! `lizard sim`: the real firmware on a simulated UNO: what it prints, which pulses its
+//! servos get, and how far the robot would walk.
+
+pub mod analysis;
+pub mod core_run;
+pub(crate) mod dialogue;
+pub mod footfall;
+pub mod frame;
+pub mod frame_log;
+pub mod lines;
+mod report;
+pub mod script;
+#[cfg(target_os = "linux")]
+mod served;
+pub mod session;
+pub mod spans;
+pub mod supplies;
+pub(crate) mod timeline;
+pub mod tour;
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use indicatif::ProgressBar;
+use lizard_robot::Robot;
+use simulated_uno::{FREQUENCY, Fidelity, State, Uno};
+
+use crate::shared::firmware::{self, Firmware};
+use crate::shared::progress::bar;
+use crate::shared::suggestion::did_you_mean;
+use crate::shared::{files, json};
+use crate::{Failure, RobotFile};
+use analysis::Run;
+use dialogue::Printer;
+use report::{Ram, Report};
+use script::Script;
+use session::{DialogueLine, Event, Recording};
+
+/// Run the firmware on a simulated Arduino UNO
+///
+/// By default it plays boot, the first gait that moves, the gait that turns most, stop
+/// and rest. It prints the dialogue, a table of the servos and the predicted distance,
+/// and draws servo angles and footfalls. Time is simulated: ten minutes take a few
+/// seconds.
+#[derive(clap::Args, Debug)]
+pub struct Args {
+    /// The firmware: an ELF that has this robot in it [default: the one inside this
+    /// program]
+    #[arg(long, value_name = "FILE")]
+    elf: Option<PathBuf>,
+    /// Play one gait of robot.toml
+    #[arg(long, value_name = "NAME", conflicts_with = "script")]
+    gait: Option<String>,
+    /// Play a file with lines of the form `<ms since power-on> <command>`
+    #[arg(long, value_name = "FILE")]
+    script: Option<PathBuf>,
+    /// Simulated time in seconds [default: 12, or a second after the script]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    duration: Option<f64>,
+    /// Print every line of the dialogue, including long runs of `# t=` lines
+    #[arg(long)]
+    all: bool,
+    /// Print everything as one JSON object, including the angles of each frame
+    #[arg(long)]
+    json: bool,
+    /// The file for the picture
+    #[arg(long, value_name = "FILE", default_value = "out/lizard-sim.svg")]
+    svg: PathBuf,
+    /// The fidelity of the simulated chip
+    #[arg(long, value_enum, default_value_t)]
+    fidelity: FidelityArg,
+    /// Run in real time
+    #[arg(long)]
+    realtime: bool,
+    /// Act as a board on USB instead: in real time at a pseudo terminal that other
+    /// programs can open, until Ctrl-C. LINK becomes a link to it
+    #[cfg(target_os = "linux")]
+    #[arg(long, value_name = "LINK", num_args = 0..=1,
+          conflicts_with_all = ["gait", "script", "duration", "all", "json", "svg", "realtime"])]
+    pty: Option<Option<PathBuf>>,
+    /// With --pty: a new board, with this boot loader in flash (ELF) and no firmware, so
+    /// that `make flash` can write it
+    #[cfg(target_os = "linux")]
+    #[arg(long, value_name = "FILE", requires = "pty", conflicts_with = "elf")]
+    boot_loader: Option<PathBuf>,
+    #[command(flatten)]
+    robot: RobotFile,
+}
+
+#[derive(clap::ValueEnum, Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum FidelityArg {
+    /// Corrected by the ATmega328P's data sheet
+    #[default]
+    DataSheet,
+    /// simavr 1.6 as it is
+    Stock,
+}
+
+/// Longest run, seconds: a day.
+const LONGEST: f64 = 86_400.0;
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value <= LONGEST => Ok(value),
+        Ok(_) => Err(format!("it must be above 0 and at most {LONGEST}")),
+        Err(_) => Err("it is not a number".to_owned()),
+    }
+}
+
+/// Runs the firmware and shows what came of it.
+///
+/// # Errors
+/// No firmware, a wrong script, a firmware that dies, a file that cannot be
+/// written.
+pub fn run(args: Args) -> Result<(), Failure> {
+    let fidelity = match args.fidelity {
+        FidelityArg::DataSheet => Fidelity::DataSheet,
+        FidelityArg::Stock => Fidelity::Stock,
+    };
+    let robot = args.robot.load()?;
+    #[cfg(target_os = "linux")]
+    if let Some(link) = &args.pty {
+        let mut uno = match &args.boot_loader {
+            Some(loader) => served::as_sold(loader, fidelity)?,
+            None => {
+                let image = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?.image;
+                Uno::with_image(image, fidelity)
+            }
+        };
+        supplies::connect(&mut uno, &robot);
+        return served::until_interrupted(uno, link.as_deref());
+    }
+    let script = script(&args, &robot)?;
+    let Firmware { name, image } = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?;
+    let mut uno = Uno::with_image(image, fidelity);
+    supplies::connect(&mut uno, &robot);
+    let mut kept = Vec::new();
+    let recording = record(&mut uno, &robot, &script, &args, &mut kept)?;
+
+    let progress = analysis_progress();
+    let spans = spans::spans(&script, &recording.answers);
+    let commands = commands(&robot, &recording);
+    let (robot, log) = (&robot, &recording.frames);
+    let frames = Run { robot, log };
+    let picture = timeline::draw(frames, &spans, &timeline::SIMULATED);
+    files::write(&args.svg, picture.as_bytes())?;
+    let report = Report {
+        elf: name,
+        fidelity: match fidelity {
+            Fidelity::DataSheet => "data-sheet",
+            Fidelity::Stock => "stock",
+        },
+        seconds: recording.cycles as f64 / FREQUENCY as f64,
+        wall_seconds: recording.wall.as_secs_f64(),
+        servos: analysis::servos(frames, commands.as_deref()),
+        safety: analysis::safety(frames),
+        way: analysis::way(frames, &spans),
+        most_pins_high: log.most_pins_high,
+        asleep_percent: 100.0 * uno.asleep_cycles() as f64 / uno.cycle().max(1) as f64,
+        flash: firmware::code_bytes(uno.image(), robot) + robot.section().len() as u32,
+        ram: Ram::of(&uno),
+        overruns: uno.overruns(),
+        resets: uno.resets(),
+        ended: ended(&recording.state),
+        svg: Some(args.svg.display().to_string()),
+        dialogue: kept,
+        frames,
+    };
+    progress.finish_and_clear();
+    let mut out = io::stdout().lock();
+    if args.json {
+        json::line(&mut out, &report)?;
+    } else {
+        report.print(&mut out)?;
+    }
+    match recording.state {
+        State::Alive => Ok(()),
+        _ => Err(Failure::Impossible(report.ended)),
+    }
+}
+
+/// Plays the script. The dialogue is printed as it happens, or kept for JSON.
+fn record(
+    uno: &mut Uno,
+    robot: &Robot,
+    script: &Script,
+    args: &Args,
+    kept: &mut Vec<DialogueLine>,
+) -> io::Result<Recording> {
+    let bar = simulated_time(script.end_ms);
+    let mut printer = Printer::new(args.all);
+    let mut out = io::stdout();
+    let pins = frame::servo_pins(robot);
+    let recording = session::play(uno, pins, script, args.realtime, |event| {
+        match event {
+            Event::Time(ms) => bar.set_position(ms),
+            Event::Line(line) if args.json => kept.push(line.clone()),
+            Event::Line(line) => return bar.suspend(|| printer.print(line, &mut out)),
+        }
+        Ok(())
+    })?;
+    bar.finish_and_clear();
+    if !args.json {
+        printer.finish(&mut out)?;
+        writeln!(out)?;
+    }
+    Ok(recording)
+}
+
+/// The widths that the firmware's core asks for, if the firmware's banner says
+/// that it was built from the same core and tables as this program.
+fn commands(robot: &Robot, recording: &Recording) -> Option<Vec<[u16; 4]>> {
+    let log = &recording.frames;
+    let commands = core_run::play(
+        *robot.firmware(),
+        &recording.received_by_uno,
+        log.first,
+        log.widths.len(),
+    );
+    let same = recording.banner.as_deref()? == commands.written.lines().next()?;
+    same.then_some(commands.widths)
+}
+
+fn ended(state: &State) -> String {
+    match state {
+        State::Alive => "the firmware is alive".to_owned(),
+        State::Halted => "the firmware sleeps with interrupts off, for ever".to_owned(),
+        State::Crashed { pc, message } => {
+            // The simulator's name for it, where it has no words.
+            let why = match message.as_str() {
+                "avr_sadly_crashed" => "no such instruction or address",
+                words => words,
+            };
+            format!("the firmware crashed at {pc:#06x}: {why}")
+        }
+        State::Off => "the board has no power".to_owned(),
+    }
+}
+
+fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
+    let given = args.duration.map(|seconds| (seconds * 1000.0) as u64);
+    if let Some(path) = &args.script {
+        let script = read_script(path)?;
+        return Ok(Script {
+            end_ms: given.unwrap_or(script.end_ms),
+            ..script
+        });
+    }
+    if let Some(gait) = &args.gait
+        && robot.gait(gait).is_none()
+    {
+        let names: Vec<&str> = robot.gaits().iter().map(|gait| gait.name()).collect();
+        return Err(Failure::Input(format!(
+            "robot.toml has no gait `{gait}`; it has {}{}",
+            names.join(", "),
+            did_you_mean(gait, names)
+        )));
+    }
+    let ms = given.unwrap_or(12_000);
+    if ms < Script::SHORTEST_MS {
+        let least = Script::SHORTEST_MS / 1000;
+        return Err(Failure::Input(format!(
+            "--duration must be at least {least} s without --script"
+        )));
+    }
+    Ok(args.gait.as_deref().map_or_else(
+        || Script::of_gaits(&tour::gaits(robot), ms),
+        |gait| Script::of_gaits(&[gait], ms),
+    ))
+}
+
+/// A script from its file.
+pub(crate) fn read_script(path: &Path) -> Result<Script, Failure> {
+    let name = path.display();
+    let text = files::read_text(path)?;
+    Script::parse(&text).map_err(|error| Failure::Input(format!("{name}: {error}")))
+}
+
+/// A bar of the simulated time.
+pub(crate) fn simulated_time(end_ms: u64) -> ProgressBar {
+    bar(
+        end_ms as usize,
+        "{bar:40} {pos}/{len} ms simulated, {elapsed}",
+    )
+}
+
+fn analysis_progress() -> ProgressBar {
+    let bar = ProgressBar::new_spinner().with_message("looking at every frame");
+    bar.enable_steady_tick(std::time::Duration::from_millis(100));
+    bar
+}

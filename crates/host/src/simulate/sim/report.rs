@@ -1,0 +1,193 @@
+//! The run in a table, or as JSON.
+
+use std::io::{self, Write};
+
+use lizard_robot::UNDECIDED;
+use serde::Serialize;
+use simulated_uno::Uno;
+
+use super::analysis::{Leg, Run, Safety, ServoReport};
+use super::session::DialogueLine;
+use crate::shared::number::tidy;
+
+/// Everything that a run has to show.
+#[derive(Debug, Serialize)]
+pub struct Report<'a> {
+    /// The name of the firmware.
+    pub elf: String,
+    /// `data-sheet` or `stock`.
+    pub fidelity: &'static str,
+    /// Simulated time, s.
+    pub seconds: f64,
+    /// Wall time in seconds.
+    pub wall_seconds: f64,
+    /// The console's dialogue.
+    pub dialogue: Vec<DialogueLine>,
+    /// The table of servos.
+    pub servos: Vec<ServoReport>,
+    /// Margins and strokes of every pose sent.
+    pub safety: Safety,
+    /// Predicted way, command by command; the last is the whole run.
+    pub way: Vec<Leg>,
+    /// The most servo pins high at once.
+    pub most_pins_high: u32,
+    /// Share of cycles that the CPU was asleep, percent.
+    pub asleep_percent: f64,
+    /// Bytes of flash that the firmware has.
+    pub flash: u32,
+    /// The RAM in use. An ELF tells it, a bare image does not.
+    #[serde(flatten)]
+    pub ram: Option<Ram>,
+    /// Received bytes that the UNO lost.
+    pub overruns: u64,
+    /// The number of watchdog resets.
+    pub resets: u64,
+    /// The state in which the firmware ended.
+    pub ended: String,
+    /// The file of the picture.
+    pub svg: Option<String>,
+    /// Servo angles of every frame.
+    pub frames: Run<'a>,
+}
+
+impl Report<'_> {
+    /// Prints the report for people, the dialogue left out.
+    ///
+    /// # Errors
+    /// Writing failed.
+    pub fn print(&self, out: &mut impl Write) -> io::Result<()> {
+        self.print_servos(out)?;
+        self.print_way(out)?;
+        self.print_rest(out)
+    }
+
+    fn print_servos(&self, out: &mut impl Write) -> io::Result<()> {
+        writeln!(
+            out,
+            "servo         pulses    min us    max us   width error  period error   fastest"
+        )?;
+        writeln!(
+            out,
+            "                                              (cycles)      (cycles)   (deg/s)"
+        )?;
+        for row in &self.servos {
+            let error = row
+                .width_error
+                .map_or("?".to_owned(), |error| error.to_string());
+            writeln!(
+                out,
+                "{} {} {:<5} {:>9} {:>9.2} {:>9.2} {:>13} {:>13} {:>9.1}",
+                row.servo,
+                row.leg,
+                row.pin,
+                row.pulses,
+                row.min_us,
+                row.max_us,
+                error,
+                row.period_error,
+                row.slew
+            )?;
+        }
+        if self.servos.iter().any(|row| row.width_error.is_none()) {
+            writeln!(
+                out,
+                "?: this firmware was not built from the same source as this program"
+            )?;
+        }
+        writeln!(out)
+    }
+
+    fn print_way(&self, out: &mut impl Write) -> io::Result<()> {
+        writeln!(
+            out,
+            "predicted way        from      to   forward      left      turn"
+        )?;
+        for leg in &self.way {
+            let cell = |part: Option<f64>, digits: usize| {
+                let tidy = |part| format!("{:.digits$}", tidy(part, digits as i32));
+                part.map_or("-".to_owned(), tidy)
+            };
+            writeln!(
+                out,
+                "{:<16} {:>6.2} s {:>5.2} s {:>6} mm {:>6} mm {:>6} deg",
+                leg.command,
+                leg.from,
+                leg.to,
+                cell(leg.forward, 1),
+                cell(leg.left, 1),
+                cell(leg.turn, 2)
+            )?;
+        }
+        if self.frames.robot.drive().lags() {
+            writeln!(
+                out,
+                "Legs are where their servos are here; `lizard twin` lets them lag."
+            )?;
+        }
+        let parts = |leg: &Leg| [leg.forward, leg.left, leg.turn];
+        if self.way.iter().any(|leg| parts(leg).contains(&None)) {
+            write!(out, "{UNDECIDED}")?;
+        }
+        writeln!(out)
+    }
+
+    fn print_rest(&self, out: &mut impl Write) -> io::Result<()> {
+        if let Some(least) = &self.safety.least {
+            writeln!(
+                out,
+                "smallest margin {:.3} ({}) at {:.2} s; slider travel {:+.1} to {:+.1} mm",
+                least.value,
+                least.margin,
+                least.seconds,
+                tidy(self.safety.stroke[0], 1),
+                tidy(self.safety.stroke[1], 1)
+            )?;
+        }
+        if let Some(reason) = &self.safety.first_violation {
+            let frames = self.safety.violations;
+            writeln!(
+                out,
+                "{frames} frames break a limit of robot.toml, the first: {reason}"
+            )?;
+        }
+        let ram = self.ram.as_ref().map_or_else(String::new, |ram| {
+            let (spare, data) = (ram.stack_spare, ram.static_ram);
+            format!("static RAM {data} B, stack {spare} B from it, ")
+        });
+        writeln!(
+            out,
+            "CPU asleep {:.1} %, flash {} B, {ram}bytes lost {}, resets {}, pins high at once {}",
+            self.asleep_percent, self.flash, self.overruns, self.resets, self.most_pins_high
+        )?;
+        writeln!(
+            out,
+            "{:.1} s simulated ({}) in {:.2} s; {}",
+            self.seconds, self.fidelity, self.wall_seconds, self.ended
+        )?;
+        if let Some(svg) = &self.svg {
+            writeln!(out, "picture: {svg}")?;
+        }
+        Ok(())
+    }
+}
+
+/// The RAM that a program uses.
+#[derive(Debug, Serialize)]
+pub struct Ram {
+    /// Bytes of static data.
+    pub static_ram: u16,
+    /// Fewest bytes between the stack and static data.
+    pub stack_spare: u16,
+}
+
+impl Ram {
+    /// The RAM of a UNO's program; none if the image does not say where its data ends.
+    #[must_use]
+    pub fn of(uno: &Uno) -> Option<Self> {
+        let static_ram = uno.image().static_ram();
+        (static_ram > 0).then(|| Self {
+            static_ram,
+            stack_spare: uno.stack_spare(),
+        })
+    }
+}

@@ -1,0 +1,174 @@
+//! A script: commands for the robot, each with its time.
+
+/// A command at a time.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Step {
+    /// Milliseconds since power-on.
+    pub ms: u64,
+    /// The line, without its end.
+    pub command: String,
+}
+
+/// Commands in order of time.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Script {
+    /// The commands in order of time.
+    pub steps: Vec<Step>,
+    /// When the run ends, ms since power-on.
+    pub end_ms: u64,
+}
+
+/// An invalid line of a script.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("line {line}: {problem}")]
+pub struct ScriptError {
+    /// Line of the script, from 1.
+    pub line: usize,
+    /// The problem with the line.
+    pub problem: ScriptProblem,
+}
+
+/// A problem with a line of a script.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ScriptProblem {
+    /// The line does not begin with a time.
+    #[error("it begins with `{0}`, not with a time in whole milliseconds")]
+    Time(String),
+    /// There is nothing after the time.
+    #[error("no command follows the time")]
+    Silent,
+    /// It comes before the line above it.
+    #[error("{now} ms comes before the {before} ms of the command above")]
+    Backwards {
+        /// The time of this line.
+        now: u64,
+        /// The time of the line before.
+        before: u64,
+    },
+}
+
+/// Time that the robot stands before the first command of the built-in scripts.
+const STAND_MS: u64 = 1000;
+/// Time for stop, status and rest at the end.
+const CLOSE_MS: u64 = 2000;
+
+impl Script {
+    /// The shortest of the built-in scripts, ms.
+    pub const SHORTEST_MS: u64 = STAND_MS + CLOSE_MS + 1000;
+
+    /// Boot, gaits one after the other, stop, status, rest, within `ms`. The
+    /// last gait gets what is left of the time.
+    #[must_use]
+    pub fn of_gaits(gaits: &[&str], ms: u64) -> Self {
+        let time = ms - STAND_MS - CLOSE_MS;
+        // Of two gaits the first gets the longer part.
+        let start = |n: usize| STAND_MS + time * 5 * n as u64 / (4 + 5 * (gaits.len() as u64 - 1));
+        let command = |gait: &str| gait.replace('-', " ");
+        let mut steps: Vec<Step> = gaits
+            .iter()
+            .enumerate()
+            .map(|(n, gait)| step(start(n), &command(gait)))
+            .collect();
+        steps.push(step(ms - CLOSE_MS, "stop"));
+        steps.push(step(ms - CLOSE_MS / 2 - 200, "status"));
+        steps.push(step(ms - CLOSE_MS / 2, "rest"));
+        Self { steps, end_ms: ms }
+    }
+
+    /// Reads lines `<ms> <command>`. Blank lines and lines that begin with `#`
+    /// are skipped, and so is a byte order mark. The run ends a second after the last command.
+    ///
+    /// # Errors
+    /// A line without a time or a command, or out of order.
+    pub fn parse(text: &str) -> Result<Self, ScriptError> {
+        let mut steps: Vec<Step> = Vec::new();
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        for (index, line) in text.lines().enumerate() {
+            let line = line.trim();
+            if line.is_empty() || line.starts_with('#') {
+                continue;
+            }
+            let fault = |problem| ScriptError {
+                line: index + 1,
+                problem,
+            };
+            let (time, command) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+            let ms = time
+                .parse()
+                .map_err(|_| fault(ScriptProblem::Time(time.to_owned())))?;
+            let command = command.trim();
+            if command.is_empty() {
+                return Err(fault(ScriptProblem::Silent));
+            }
+            if let Some(last) = steps.last().filter(|last| last.ms > ms) {
+                return Err(fault(ScriptProblem::Backwards {
+                    now: ms,
+                    before: last.ms,
+                }));
+            }
+            steps.push(step(ms, command));
+        }
+        let end_ms = steps.last().map_or(0, |last| last.ms) + 1000;
+        Ok(Self { steps, end_ms })
+    }
+}
+
+fn step(ms: u64, command: &str) -> Step {
+    Step {
+        ms,
+        command: command.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_script_is_times_and_commands() {
+        let text = "\u{feff}500 walk\r\n# a comment\n\n 1500\tspeed 50\r\n1500 stop";
+        let script = Script::parse(text);
+        let steps = vec![
+            step(500, "walk"),
+            step(1500, "speed 50"),
+            step(1500, "stop"),
+        ];
+        assert_eq!(
+            script,
+            Ok(Script {
+                steps,
+                end_ms: 2500
+            })
+        );
+    }
+
+    #[test]
+    fn a_fault_names_its_line() {
+        let message = |text| Script::parse(text).expect_err("it is wrong").to_string();
+        assert_eq!(
+            message("100 walk\nsoon stop"),
+            "line 2: it begins with `soon`, not with a time in whole milliseconds"
+        );
+        assert_eq!(message("100"), "line 1: no command follows the time");
+        assert_eq!(
+            message("100 walk\n\n90 stop"),
+            "line 3: 90 ms comes before the 100 ms of the command above"
+        );
+    }
+
+    #[test]
+    fn the_built_in_scripts_are_in_order_and_end_in_time() {
+        for script in [
+            Script::of_gaits(&["walk", "left"], Script::SHORTEST_MS),
+            Script::of_gaits(&["arc-left"], 9000),
+            Script::of_gaits(&[], 9000),
+        ] {
+            assert!(script.steps.is_sorted_by_key(|step| step.ms));
+            assert!(script.steps.iter().all(|step| step.ms < script.end_ms));
+        }
+        assert_eq!(
+            Script::of_gaits(&["arc-left"], 9000).steps[0].command,
+            "arc left"
+        );
+    }
+}

@@ -1,0 +1,132 @@
+//! The simulated UNO at a serial port of this machine, for other programs.
+
+use std::fs;
+use std::io::{self, Write};
+use std::os::unix::fs::symlink;
+use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::Duration;
+
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::iterator::Signals;
+use simulated_uno::{Fidelity, Image, Port, State, Uno};
+
+use crate::Failure;
+use crate::shared::files::{self, reading};
+
+/// A board as sold, with this boot loader in flash and nothing else.
+///
+/// # Errors
+/// The file is missing or no AVR program.
+pub(super) fn as_sold(boot_loader: &Path, fidelity: Fidelity) -> Result<Uno, Failure> {
+    let image = Image::read(reading(boot_loader))
+        .map_err(|error| Failure::Input(format!("{}: {error}", boot_loader.display())))?;
+    Ok(Uno::with_boot_loader(image, fidelity))
+}
+
+/// Serves the UNO until the program is ended. `link` becomes a symbolic link to
+/// the port, whose own name differs from run to run, and is removed at the end.
+///
+/// # Errors
+/// No pseudo terminal, or `link` is something else already.
+pub(super) fn until_interrupted(mut uno: Uno, link: Option<&Path>) -> Result<(), Failure> {
+    let mut port = Port::new().map_err(|error| {
+        Failure::Impossible(format!("this machine gives no pseudo terminal: {error}"))
+    })?;
+    let name = match link {
+        Some(link) => {
+            // First, so that the program cannot end between the two.
+            remove_at_end(link.to_owned(), port.path().to_owned())?;
+            point(link, port.path())?;
+            link.to_owned()
+        }
+        None => port.path().to_owned(),
+    };
+    let mut out = io::stdout();
+    writeln!(out, "the simulated UNO is at {}", name.display())?;
+    writeln!(out, "opening the port resets it; Ctrl-C ends it")?;
+    let mut told = State::Alive;
+    loop {
+        port.serve(&mut uno, Duration::from_secs(1))
+            .map_err(|error| Failure::Impossible(format!("the pseudo terminal: {error}")))?;
+        uno.take_edges();
+        uno.take_marks();
+        if *uno.state() != told {
+            told = uno.state().clone();
+            writeln!(out, "{}", ended(&told, uno.flash(), &name))?;
+        }
+    }
+}
+
+/// The message when the chip stops. A board as sold has nothing in flash where its
+/// firmware would begin, so it stops as soon as the boot loader hands over.
+fn ended(state: &State, flash: &[u8], port: &Path) -> String {
+    match state {
+        State::Crashed { .. } if flash.starts_with(&[0xff, 0xff]) => format!(
+            "there is no firmware in this board yet; `lizard flash {}` writes it",
+            port.display()
+        ),
+        _ => super::ended(state),
+    }
+}
+
+/// Removes the link when the program is ended by a signal, as Ctrl-C does; unless it
+/// leads elsewhere by then. The program then ends as it would have without this.
+fn remove_at_end(link: PathBuf, port: PathBuf) -> Result<(), Failure> {
+    let mut signals = Signals::new([SIGINT, SIGTERM, SIGHUP])
+        .map_err(|error| Failure::Impossible(format!("Ctrl-C cannot be waited for: {error}")))?;
+    thread::spawn(move || {
+        for signal in &mut signals {
+            if fs::read_link(&link).is_ok_and(|end| end == port) {
+                // Without it the link leads nowhere, and the next run replaces it.
+                let _ = fs::remove_file(&link);
+            }
+            let _ = signal_hook::low_level::emulate_default_handler(signal);
+        }
+    });
+    Ok(())
+}
+
+/// Makes `link` point at `port`. A link to another pseudo terminal, which a run that
+/// was killed has left, is replaced.
+fn point(link: &Path, port: &Path) -> Result<(), Failure> {
+    let cannot = |error: io::Error| files::cannot(link, &error);
+    let foreign = || {
+        let name = link.display();
+        Failure::Input(format!(
+            "{name} is there already and no link to a pseudo terminal"
+        ))
+    };
+    if fs::read_link(link).is_ok_and(|end| end.starts_with("/dev/pts")) {
+        fs::remove_file(link).map_err(cannot)?;
+    }
+    if let Some(folder) = link.parent() {
+        fs::create_dir_all(folder).map_err(cannot)?;
+    }
+    symlink(port, link).map_err(|error| match error.kind() {
+        io::ErrorKind::AlreadyExists => foreign(),
+        _ => cannot(error),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_board_without_a_firmware_is_no_crash_and_a_crash_has_no_name_of_the_simulator() {
+        let crashed = State::Crashed {
+            pc: 0x7fe4,
+            message: "avr_sadly_crashed".to_owned(),
+        };
+        let port = Path::new("out/uno");
+        assert_eq!(
+            ended(&crashed, &[0xff; 8], port),
+            "there is no firmware in this board yet; `lizard flash out/uno` writes it"
+        );
+        assert_eq!(
+            ended(&crashed, &[0x0c, 0x94, 0xff], port),
+            "the firmware crashed at 0x7fe4: no such instruction or address"
+        );
+    }
+}

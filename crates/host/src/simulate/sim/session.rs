@@ -1,0 +1,148 @@
+//! A script played on the simulated UNO.
+
+use std::io;
+use std::time::{Duration, Instant};
+
+use simulated_uno::{CYCLES_PER_MS, FREQUENCY, Pin, SerialByte, State, Uno};
+
+use super::frame::FRAME;
+use super::frame_log::{FrameLog, FrameReader};
+use super::lines::LineReader;
+use super::script::Script;
+
+/// The end of the serial line that sent a line of text.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Sender {
+    /// The person at the console.
+    User,
+    /// The firmware on the simulated board.
+    Robot,
+}
+
+/// A line of the dialogue.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct DialogueLine {
+    /// Milliseconds since power-on: for the robot at the line's end, for the
+    /// user at its start.
+    pub ms: f64,
+    /// The sender of the line.
+    pub from: Sender,
+    /// Its text without the line end.
+    pub text: String,
+}
+
+/// An event that [`play`] reports while it runs.
+#[derive(Debug)]
+pub enum Event<'a> {
+    /// The next line of the dialogue.
+    Line(&'a DialogueLine),
+    /// The time reached, ms since power-on; every 20 ms.
+    Time(u64),
+}
+
+/// The result of a run.
+#[derive(Debug)]
+pub struct Recording {
+    /// The firmware's first line.
+    pub banner: Option<String>,
+    /// The answer to each command of the script, if it came before the end.
+    pub answers: Vec<Option<String>>,
+    /// Every pulse of the servos.
+    pub frames: FrameLog,
+    /// The bytes of the commands, complete at the UNO.
+    pub received_by_uno: Vec<SerialByte>,
+    /// The number of simulated cycles.
+    pub cycles: u64,
+    /// The state in which the firmware ended.
+    pub state: State,
+    /// Wall time it took.
+    pub wall: Duration,
+}
+
+/// Plays a script from power-on. `realtime` waits for the wall clock. `on_event`
+/// gets what happens, in order of time.
+///
+/// # Errors
+/// Those of `on_event`, which end the run.
+pub fn play(
+    uno: &mut Uno,
+    pins: [Pin; 4],
+    script: &Script,
+    realtime: bool,
+    on_event: impl FnMut(Event<'_>) -> io::Result<()>,
+) -> io::Result<Recording> {
+    let begin = Instant::now();
+    let frames = script.end_ms as usize / 20 + 1;
+    let mut dialogue = Dialogue {
+        reader: LineReader::default(),
+        banner: None,
+        answers: Vec::with_capacity(script.steps.len()),
+        on_event,
+    };
+    let mut pulses = FrameReader::new(pins, frames);
+    let mut steps = script.steps.iter().peekable();
+    let mut ms = 0;
+    while ms < script.end_ms && *uno.state() == State::Alive {
+        let until = (ms + FRAME / CYCLES_PER_MS).min(script.end_ms);
+        while let Some(step) = steps.next_if(|step| step.ms < until) {
+            uno.run_until_cycle(step.ms * CYCLES_PER_MS);
+            dialogue.receive(uno)?;
+            dialogue.send(uno, &step.command)?;
+        }
+        uno.run_until_cycle(until * CYCLES_PER_MS);
+        dialogue.receive(uno)?;
+        pulses.read(uno.take_edges());
+        ms = until;
+        (dialogue.on_event)(Event::Time(ms))?;
+        if realtime {
+            std::thread::sleep(Duration::from_millis(ms).saturating_sub(begin.elapsed()));
+        }
+    }
+    dialogue.answers.resize(script.steps.len(), None);
+    Ok(Recording {
+        banner: dialogue.banner,
+        answers: dialogue.answers,
+        frames: pulses.finish(uno.cycle()),
+        received_by_uno: uno.received_by_uno(),
+        cycles: uno.cycle(),
+        state: uno.state().clone(),
+        wall: begin.elapsed(),
+    })
+}
+
+/// The traffic on the serial line.
+struct Dialogue<F> {
+    reader: LineReader,
+    banner: Option<String>,
+    /// Commands are answered in the order in which they are sent.
+    answers: Vec<Option<String>>,
+    on_event: F,
+}
+
+impl<F: FnMut(Event<'_>) -> io::Result<()>> Dialogue<F> {
+    fn send(&mut self, uno: &mut Uno, command: &str) -> io::Result<()> {
+        uno.send(command.as_bytes());
+        uno.send(b"\n");
+        (self.on_event)(Event::Line(&DialogueLine {
+            ms: uno.ms(),
+            from: Sender::User,
+            text: command.to_owned(),
+        }))
+    }
+
+    fn receive(&mut self, uno: &mut Uno) -> io::Result<()> {
+        for line in self.reader.read(&uno.take_transmitted()) {
+            if line.is_answer() {
+                self.answers.push(Some(line.text.clone()));
+            }
+            self.banner.get_or_insert_with(|| line.text.clone());
+            (self.on_event)(Event::Line(&DialogueLine {
+                ms: line.cycle as f64 * 1000.0 / FREQUENCY as f64,
+                from: Sender::Robot,
+                text: line.text,
+            }))?;
+        }
+        Ok(())
+    }
+}

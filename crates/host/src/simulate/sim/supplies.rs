@@ -1,0 +1,40 @@
+//! The default supplies of a simulated UNO.
+//!
+//! The firmware ends the pulses when a supply is too low. So a simulated board needs,
+//! besides its own 5 V, the voltage that it measures according to robot.toml: the servos'
+//! rail through its divider.
+
+use lizard_core::control::supply::Reading;
+use lizard_core::numbers::supplies::Supplies;
+use lizard_robot::{Robot, healthy_rail_mv};
+use simulated_uno::{Pin, Uno};
+
+/// The board's supply, mV.
+const BOARD: f64 = 5_000.0;
+/// Parts of the supply that the converter tells apart.
+const FULL_SCALE: f64 = 1_024.0;
+
+/// The analogue pin that measures the servos' rail, and the voltage there, mV. None if
+/// none does.
+#[must_use]
+pub fn at_pin(robot: &Robot) -> Option<(Pin, u16)> {
+    let mv = healthy_rail_mv(&robot.firmware().supplies())?;
+    Some((Pin::arduino(robot.firmware().rail_pin()?), mv as u16))
+}
+
+/// Gives the UNO the supplies of a robot in good order.
+pub fn connect(uno: &mut Uno, robot: &Robot) {
+    uno.set_bandgap_mv(robot.supplies().reference * 1_000.0);
+    if let Some((pin, mv)) = at_pin(robot) {
+        uno.set_analog_mv(pin, mv);
+    }
+}
+
+/// The converter's readings of the supplies.
+pub(super) fn reading(supplies: &Supplies) -> Reading {
+    let part = |mv: f64| (FULL_SCALE * mv / BOARD) as u16;
+    Reading {
+        reference: part(f64::from(supplies.reference)),
+        rail: healthy_rail_mv(supplies).map_or(0, part),
+    }
+}

@@ -1,0 +1,391 @@
+//! Servo angles over time, and below them which foot pushes and which returns.
+
+use lizard_robot::servo::NAMES;
+use svg::node::element::Group;
+
+use super::analysis::Run;
+use super::footfall::{Phase, Stretch, stretches};
+use super::spans::Span;
+use crate::shared::ink::pin_name;
+use crate::shared::ink::{
+    Anchor, DARK, GREY, GRID, PANEL, PLACES, SERVO, curve, line, page, rectangle, text,
+    text_middle, text_start,
+};
+
+const WIDTH: f64 = 1280.0;
+const LEFT: f64 = 200.0;
+const RIGHT: f64 = 36.0;
+const COMMANDS: f64 = 88.0;
+const STRIPS: f64 = 132.0;
+const STRIP: f64 = 104.0;
+const STRIP_GAP: f64 = 14.0;
+const FEET: f64 = STRIPS + 4.0 * (STRIP + STRIP_GAP) + 34.0;
+const FOOT: f64 = 28.0;
+const FOOT_GAP: f64 = 8.0;
+const AXIS: f64 = FEET + 4.0 * (FOOT + FOOT_GAP) + 4.0;
+const HEIGHT: f64 = AXIS + 96.0;
+
+/// The title and description of the picture.
+#[derive(Debug, Clone, Copy)]
+pub struct Caption {
+    /// Above it, large.
+    pub title: &'static str,
+    /// Below that, small.
+    pub note: &'static str,
+    /// Below the axis of time.
+    pub axis: &'static str,
+}
+
+/// Of a run on the simulated UNO.
+pub const SIMULATED: Caption = Caption {
+    title: "Servo angles and footfalls, measured on the simulated UNO",
+    note: "degrees in the chassis frame, read back from every pulse; dashed: the neutral angle",
+    axis: "time since power-on (s)",
+};
+
+/// The picture as SVG text. `spans` are the commands that were in effect.
+#[must_use]
+pub fn draw(run: Run<'_>, spans: &[Span], caption: &Caption) -> String {
+    let end = spans.last().map_or(0.0, |span| span.to);
+    let chart = Chart {
+        run,
+        spans,
+        caption,
+        seconds: end.max(0.1),
+    };
+    let reach = chart.reach();
+    let mut group = chart.title(Group::new());
+    group = chart.commands(group);
+    for servo in 0..4 {
+        group = chart.strip(group, servo, reach);
+        group = chart.feet(group, servo);
+    }
+    group = chart.marks(group);
+    group = chart.axis(group);
+    page((WIDTH, HEIGHT), group)
+}
+
+struct Chart<'a> {
+    run: Run<'a>,
+    spans: &'a [Span],
+    caption: &'a Caption,
+    seconds: f64,
+}
+
+impl Chart<'_> {
+    fn x(&self, seconds: f64) -> f64 {
+        LEFT + (WIDTH - LEFT - RIGHT) * seconds / self.seconds
+    }
+
+    fn title(&self, group: Group) -> Group {
+        let Caption { title, note, .. } = self.caption;
+        group
+            .add(text_start(title, (LEFT, 40.0), 24.0).set("font-weight", "bold"))
+            .add(text(note, (LEFT, 66.0), 15.0, GREY, Anchor::Start))
+    }
+
+    /// The band that says which command is in effect.
+    fn commands(&self, mut group: Group) -> Group {
+        for (n, Span { from, to, command }) in self.spans.iter().enumerate() {
+            let (x, end) = (self.x(*from), self.x(*to));
+            let fill = if n % 2 == 0 { "#e6e6e6" } else { "#d2d2d2" };
+            group = group.add(rectangle((x, COMMANDS), (end - x, 26.0), fill));
+            // About 7.5 px a letter: leave out what would run over.
+            if command.len() as f64 * 7.5 < end - x {
+                let at = ((x + end) / 2.0, COMMANDS + 18.0);
+                group = group.add(text_middle(command, at, 15.0));
+            }
+        }
+        group.add(text(
+            "command",
+            (LEFT - 12.0, COMMANDS + 18.0),
+            15.0,
+            GREY,
+            Anchor::End,
+        ))
+    }
+
+    /// A line down the whole picture where a command is given.
+    fn marks(&self, mut group: Group) -> Group {
+        for span in self.spans.iter().skip(1) {
+            let x = self.x(span.from);
+            let mark = line((x, COMMANDS), (x, AXIS), GREY, 1.0);
+            group = group.add(mark.set("stroke-dasharray", "2 4"));
+        }
+        group
+    }
+
+    /// Half the height of every strip in degrees, the same for all so that
+    /// slopes compare.
+    fn reach(&self) -> f64 {
+        let sweeps = self.run.instants().filter_map(|at| at.sweeps).flatten();
+        (sweeps.fold(20.0, |most: f64, sweep| most.max(sweep.abs())) / 10.0).ceil() * 10.0 + 5.0
+    }
+
+    fn strip(&self, mut group: Group, servo: usize, reach: f64) -> Group {
+        let top = STRIPS + servo as f64 * (STRIP + STRIP_GAP);
+        let neutral = self.run.robot.servos()[servo].neutral;
+        let y = |angle: f64| top + STRIP / 2.0 * (1.0 - (angle - neutral) / reach);
+        let (begin, end) = (self.x(0.0), self.x(self.seconds));
+        let name = format!("{} {}", NAMES[servo], PLACES[servo]);
+        let pin = pin_name(self.run.robot.servos()[servo].pin);
+        group = group
+            .add(rectangle((begin, top), (end - begin, STRIP), PANEL))
+            .add(
+                text(
+                    &name,
+                    (14.0, top + STRIP / 2.0 - 2.0),
+                    17.0,
+                    SERVO[servo],
+                    Anchor::Start,
+                )
+                .set("font-weight", "bold"),
+            )
+            .add(text(
+                &pin,
+                (14.0, top + STRIP / 2.0 + 18.0),
+                14.0,
+                GREY,
+                Anchor::Start,
+            ));
+        let step = if reach > 50.0 { 40.0 } else { 20.0 };
+        let first = -(reach / step).floor() as i32;
+        for n in first..=-first {
+            let angle = neutral + f64::from(n) * step;
+            let rule = line((begin, y(angle)), (end, y(angle)), GRID, 1.0);
+            group = group.add(if n == 0 {
+                rule.set("stroke", "#999999").set("stroke-dasharray", "6 4")
+            } else {
+                rule
+            });
+            let label = format!("{angle:.0}°");
+            let at = (LEFT - 8.0, y(angle) + 4.5);
+            group = group.add(text(&label, at, 13.0, GREY, Anchor::End));
+        }
+        for run in self.runs(servo) {
+            let points: Vec<(f64, f64)> = run
+                .iter()
+                .map(|(seconds, angle)| (self.x(*seconds), y(*angle)))
+                .collect();
+            group = group.add(curve(&points, SERVO[servo], 2.2));
+        }
+        group
+    }
+
+    /// The unbroken stretches of a servo's angle: (seconds, degrees). A run with
+    /// many frames to a pixel keeps the outermost of each.
+    fn runs(&self, servo: usize) -> Vec<Vec<(f64, f64)>> {
+        let dense = self.run.log.widths.len() as f64 > 4.0 * (WIDTH - LEFT - RIGHT);
+        let mut runs = vec![Curve::default()];
+        for at in self.run.instants() {
+            match (at.angles, runs.last_mut()) {
+                (Some(angles), Some(run)) => {
+                    let column = dense.then(|| self.x(at.seconds) as i64);
+                    run.add(column, (at.seconds, angles[servo]));
+                }
+                (None, Some(run)) if run.points.is_empty() => {}
+                _ => runs.push(Curve::default()),
+            }
+        }
+        runs.into_iter()
+            .map(|run| run.points)
+            .filter(|points| !points.is_empty())
+            .collect()
+    }
+
+    fn feet(&self, mut group: Group, servo: usize) -> Group {
+        let top = FEET + servo as f64 * (FOOT + FOOT_GAP);
+        let (begin, end) = (self.x(0.0), self.x(self.seconds));
+        if servo == 0 {
+            let at = (14.0, FEET - 12.0);
+            group = group.add(text_start("Footfalls", at, 17.0).set("font-weight", "bold"));
+            group = self.legend(group);
+        }
+        group = group
+            .add(rectangle((begin, top), (end - begin, FOOT), PANEL))
+            .add(text(
+                PLACES[servo],
+                (LEFT - 12.0, top + FOOT / 2.0 + 5.0),
+                15.0,
+                SERVO[servo],
+                Anchor::End,
+            ));
+        let stretches = stretches(self.run.instants(), servo);
+        if stretches.len() as f64 > (end - begin) / 2.0 {
+            let at = ((begin + end) / 2.0, top + FOOT / 2.0 + 5.0);
+            let words = "steps shorter than a pixel: simulate less to see them";
+            return group.add(text(words, at, 13.0, GREY, Anchor::Middle));
+        }
+        for Stretch { phase, from, to } in stretches {
+            let (x, width) = (self.x(from), self.x(to) - self.x(from));
+            group = group.add(foot(phase, SERVO[servo], (x, top), (width, FOOT)));
+        }
+        group
+    }
+
+    fn legend(&self, mut group: Group) -> Group {
+        let entries = [
+            (Phase::Stance, "moves back: stance of a forward gait"),
+            (Phase::Still, "stands still"),
+            (Phase::Swing, "moves forward: return"),
+        ];
+        let mut x = LEFT;
+        for (phase, words) in entries {
+            group = group
+                .add(foot(phase, "#444444", (x, FEET - 25.0), (30.0, 15.0)))
+                .add(text(
+                    words,
+                    (x + 38.0, FEET - 12.5),
+                    14.0,
+                    GREY,
+                    Anchor::Start,
+                ));
+            x += 60.0 + 7.2 * words.len() as f64;
+        }
+        group
+    }
+
+    fn axis(&self, mut group: Group) -> Group {
+        let steps = [
+            0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 60.0, 120.0, 300.0, 600.0, 1800.0, 3600.0,
+        ];
+        let step = steps
+            .into_iter()
+            .find(|step| self.seconds / step <= 15.0)
+            .unwrap_or(7200.0);
+        group = group.add(line(
+            (self.x(0.0), AXIS),
+            (self.x(self.seconds), AXIS),
+            DARK,
+            1.2,
+        ));
+        for n in 0..=(self.seconds / step + 1e-9) as u32 {
+            let seconds = f64::from(n) * step;
+            let x = self.x(seconds);
+            let label = if step < 1.0 {
+                format!("{seconds:.1}")
+            } else {
+                format!("{seconds:.0}")
+            };
+            group = group
+                .add(line((x, AXIS), (x, AXIS + 7.0), DARK, 1.2))
+                .add(text_middle(&label, (x, AXIS + 25.0), 14.0));
+        }
+        let middle = (self.x(0.0) + self.x(self.seconds)) / 2.0;
+        group.add(text_middle(self.caption.axis, (middle, AXIS + 50.0), 15.0))
+    }
+}
+
+/// A stretch of a footfall row: full for stance, pale for still, empty for
+/// swing, so that it reads without colour.
+fn foot(
+    phase: Phase,
+    colour: &str,
+    at: (f64, f64),
+    size: (f64, f64),
+) -> svg::node::element::Rectangle {
+    match phase {
+        Phase::Stance => rectangle(at, size, colour),
+        Phase::Still => rectangle(at, size, colour).set("fill-opacity", 0.22),
+        Phase::Swing => {
+            let inner = (
+                (at.0 + 0.7, at.1 + 0.7),
+                ((size.0 - 1.4).max(0.2), size.1 - 1.4),
+            );
+            rectangle(inner.0, inner.1, "white")
+                .set("stroke", colour.to_owned())
+                .set("stroke-width", 1.4)
+        }
+    }
+}
+
+/// A curve that is being read.
+#[derive(Default)]
+struct Curve {
+    points: Vec<(f64, f64)>,
+    column: Option<i64>,
+}
+
+impl Curve {
+    /// Adds a point. Of the points in one column of pixels, if it has one, only
+    /// the lowest and the highest are kept.
+    fn add(&mut self, column: Option<i64>, point: (f64, f64)) {
+        if column.is_none() {
+            self.points.push(point);
+            return;
+        }
+        if column != self.column {
+            self.column = column;
+            self.points.extend([point, point]);
+            return;
+        }
+        if let [.., first, last] = self.points.as_mut_slice() {
+            let (low, high) = if first.1 <= last.1 {
+                (first, last)
+            } else {
+                (last, first)
+            };
+            if point.1 < low.1 {
+                *low = point;
+            } else if point.1 > high.1 {
+                *high = point;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulate::sim::frame_log::FrameLog;
+
+    fn picture(frames: usize, width: impl Fn(usize) -> u16, spans: &[Span]) -> String {
+        let robot = crate::shared::robot_file::named("paper");
+        let log = FrameLog {
+            widths: (0..frames).map(|n| [width(n); 4]).collect(),
+            ..FrameLog::default()
+        };
+        let (robot, log) = (&robot, &log);
+        draw(Run { robot, log }, spans, &SIMULATED)
+    }
+
+    fn span(command: &str, from: f64, to: f64) -> Span {
+        let command = command.to_owned();
+        Span { command, from, to }
+    }
+
+    #[test]
+    fn each_unbroken_stretch_of_each_servo_is_one_curve() {
+        let rests = |n| n == 100 || n >= 350;
+        let picture = picture(
+            400,
+            |n| if rests(n) { 0 } else { 24_000 },
+            &[span("stand", 0.0, 1.0), span("walk", 1.0, 8.0)],
+        );
+        assert_eq!(picture.matches("<polyline").count(), 8);
+        assert!(picture.contains("walk"));
+    }
+
+    #[test]
+    fn a_long_run_is_drawn_with_as_many_points_as_pixels_and_keeps_its_extremes() {
+        // One frame of 10 000 stands out.
+        let width = |n| match n {
+            5000 => 24_800,
+            _ => 24_000 + 10 * (n as u16 % 3),
+        };
+        let picture = picture(10_000, width, &[span("stand", 0.0, 200.0)]);
+        assert!(picture.len() < 300_000, "{} bytes", picture.len());
+        // 50 us are 5 degrees, of 25 in half a strip of 104 pixels.
+        let first = picture.split("points=\"").nth(1).expect("a curve");
+        let ys = first
+            .split('"')
+            .next()
+            .expect("its points")
+            .split_whitespace();
+        let ys = ys.filter_map(|point| point.split_once(',')?.1.parse::<f64>().ok());
+        let [low, high] = ys.fold([f64::MAX, f64::MIN], |[low, high], y| {
+            [low.min(y), high.max(y)]
+        });
+        assert!((high - low - 10.4).abs() < 0.2, "{low} to {high}");
+    }
+}

@@ -1,0 +1,40 @@
+//! The gaits of a robot that a demonstration shows.
+
+use lizard_robot::Robot;
+
+/// Names of the gaits that move a servo, in the order of robot.toml.
+#[must_use]
+pub fn moving(robot: &Robot) -> Vec<&str> {
+    let moving = robot.gaits().iter().filter(|gait| gait.moves());
+    moving.map(|gait| gait.name()).collect()
+}
+
+/// The gaits of a tour: the first that moves, and of the others the one that is
+/// predicted to turn the robot most in a cycle. Fewer where there are fewer.
+#[must_use]
+pub fn gaits(robot: &Robot) -> Vec<&str> {
+    let moving = moving(robot);
+    let turn = |name: &str| {
+        let found = robot.gait(name);
+        found.map_or(0.0, |gait| robot.predict(gait).turn.map_or(0.0, f64::abs))
+    };
+    let others = moving.iter().copied().skip(1);
+    // Of several equal ones the first, because mirrored gaits turn equally fast.
+    let most = others.fold(None, |best: Option<&str>, name| match best {
+        Some(best) if turn(name) <= turn(best) + 1e-6 => Some(best),
+        _ => Some(name),
+    });
+    moving.first().copied().into_iter().chain(most).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_paper_robot_walks_and_turns_left() {
+        let robot = crate::shared::robot_file::named("paper");
+        assert_eq!(gaits(&robot), ["walk", "left"]);
+        assert!(!moving(&robot).contains(&"stand"));
+    }
+}

@@ -1,0 +1,176 @@
+//! `lizard twin`: the real firmware on the simulated UNO moves a robot that nobody has
+//! built yet, and shows how it walks.
+
+pub mod replay;
+pub mod report;
+mod robust;
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+use lizard_robot::{CheckedGait, Robot};
+use lizard_twin::ServoModel;
+use simulated_uno::{Fidelity, State, Uno};
+
+use crate::shared::firmware;
+use crate::shared::suggestion::did_you_mean;
+use crate::simulate::sim::script::{Script, Step};
+use crate::simulate::sim::session::{self, Event, Recording};
+use crate::simulate::sim::{frame, read_script, simulated_time, spans, supplies, tour};
+use crate::{Failure, RobotFile};
+use replay::Replay;
+use report::Report;
+
+/// Let the firmware walk: servos, linkage, springs, feet, the path over the floor
+///
+/// Runs the image on the simulated UNO and gives its pulses to servos that turn the
+/// linkage; springs pull the legs, and the contact model computes how the body moves.
+/// Without a script, every gait of robot.toml walks for some cycles. The table compares
+/// each gait's last whole cycle with the prediction of `lizard gaits`.
+#[derive(clap::Args, Debug)]
+#[command(after_help = "Examples:
+  lizard twin
+  lizard twin dance.txt
+  lizard twin --gait crawl --robust 200
+
+A script is a file of lines `<ms since power-on> <command>`.")]
+pub struct Args {
+    /// A file of commands and their times, as for `lizard sim` [default: every gait]
+    #[arg(value_name = "SCRIPT")]
+    script: Option<PathBuf>,
+    /// Walk one gait of robot.toml
+    #[arg(long, value_name = "NAME", conflicts_with = "script")]
+    gait: Option<String>,
+    /// The firmware: an ELF that has this robot in it [default: the one inside this
+    /// program]
+    #[arg(long, value_name = "FILE")]
+    elf: Option<PathBuf>,
+    /// The model of the servos
+    #[arg(long, value_enum, default_value_t)]
+    servo: ServoArg,
+    /// Print one JSON object a line, one for each command
+    #[arg(long)]
+    json: bool,
+    /// Then walk each gait N more times with random friction, loads, mounting, hips,
+    /// feet, springs and play, and print the spread of the distances
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=100_000))]
+    robust: Option<u32>,
+    #[command(flatten)]
+    robot: RobotFile,
+}
+
+#[derive(clap::ValueEnum, Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum ServoArg {
+    /// 60 degrees in 0.12 s, dead band 10 us
+    #[default]
+    Sg90,
+    /// Follows its pulse at once
+    Ideal,
+}
+
+/// Walks and tells.
+///
+/// # Errors
+/// No firmware, a wrong script, a firmware that dies, a file that cannot be written.
+pub fn run(args: Args) -> Result<(), Failure> {
+    let robot = args.robot.load()?;
+    let script = script(&args, &robot)?;
+    let image = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?.image;
+    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    let recording = record(&mut uno, &robot, &script)?;
+    let model = match args.servo {
+        ServoArg::Sg90 => ServoModel::SG90,
+        ServoArg::Ideal => ServoModel::IDEAL,
+    };
+    let spans = spans::spans(&script, &recording.answers);
+    let paced = script
+        .steps
+        .iter()
+        .any(|step| step.command.starts_with("speed"));
+    let replay = Replay::of(&robot, &recording.frames, spans, model);
+    let report = Report::of(&robot, &replay, paced);
+
+    let mut out = io::stdout().lock();
+    if args.json {
+        report.json(&mut out)?;
+    } else {
+        report.print(&mut out)?;
+    }
+    if let Some(times) = args.robust {
+        robust::run(&robot, &replay, model, times, args.json, &mut out)?;
+    }
+    Ok(out.flush()?)
+}
+
+/// Plays the script silently.
+///
+/// # Errors
+/// The firmware ends before the script does.
+pub(crate) fn record(uno: &mut Uno, robot: &Robot, script: &Script) -> Result<Recording, Failure> {
+    supplies::connect(uno, robot);
+    let bar = simulated_time(script.end_ms);
+    let pins = frame::servo_pins(robot);
+    let recording = session::play(uno, pins, script, false, |event| {
+        if let Event::Time(ms) = event {
+            bar.set_position(ms);
+        }
+        Ok(())
+    })?;
+    bar.finish_and_clear();
+    match recording.state {
+        State::Alive => Ok(recording),
+        _ => Err(Failure::Impossible(
+            "the firmware ended; `lizard sim` says how".to_owned(),
+        )),
+    }
+}
+
+fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
+    if let Some(path) = &args.script {
+        return read_script(path);
+    }
+    Ok(match &args.gait {
+        None => every(robot, &tour::moving(robot)),
+        Some(name) => every(robot, &[moving_gait(robot, name)?.name()]),
+    })
+}
+
+/// The gait of this name, if it moves a servo.
+pub(crate) fn moving_gait<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failure> {
+    match robot.gait(name) {
+        Some(gait) if gait.moves() => Ok(gait),
+        Some(_) => Err(Failure::Input(format!("the gait `{name}` moves no servo"))),
+        None => {
+            let gaits = tour::moving(robot);
+            Err(Failure::Input(format!(
+                "robot.toml has no gait `{name}`; those that move are {}{}",
+                gaits.join(", "),
+                did_you_mean(name, gaits)
+            )))
+        }
+    }
+}
+
+/// Each of these gaits after a second at its beginning, for three cycles.
+pub(crate) fn every(robot: &Robot, gaits: &[&str]) -> Script {
+    const CYCLES: f64 = 3.0;
+    const STAND_MS: u64 = 1000;
+    let mut ms = STAND_MS;
+    let mut steps = Vec::new();
+    for name in gaits {
+        steps.push(Step {
+            ms,
+            command: name.replace('-', " "),
+        });
+        let period = robot.gait(name).map_or(1.0, |gait| gait.period());
+        ms += STAND_MS + (1000.0 * CYCLES * period).ceil() as u64;
+    }
+    steps.push(Step {
+        ms,
+        command: "stop".to_owned(),
+    });
+    Script {
+        steps,
+        end_ms: ms + STAND_MS,
+    }
+}

@@ -1,0 +1,77 @@
+//! A run of the firmware, walked frame by frame.
+
+use std::ops::Range;
+
+use lizard_robot::{CheckedGait, Place, Robot};
+use lizard_twin::{FRAME, ServoModel, State, Tally, Twin};
+use simulated_uno::CYCLES_PER_US;
+
+use crate::simulate::sim::frame_log::FrameLog;
+use crate::simulate::sim::spans::Span;
+
+/// Every frame of a run.
+pub struct Replay {
+    /// The robot that walked.
+    pub robot: Robot,
+    /// Seconds from power-on to the first frame.
+    pub first: f64,
+    /// The robot after each frame.
+    pub states: Vec<State>,
+    /// The commands, in order.
+    pub stages: Vec<Stage>,
+}
+
+/// The frames under one command.
+pub struct Stage {
+    /// The command of this stage.
+    pub command: String,
+    /// The frames of this stage.
+    pub frames: Range<usize>,
+}
+
+impl Replay {
+    /// Walks the frames of a run.
+    #[must_use]
+    pub fn of(robot: &Robot, log: &FrameLog, spans: Vec<Span>, model: ServoModel) -> Self {
+        let us = |width: u16| (width > 0).then(|| f64::from(width) / CYCLES_PER_US as f64);
+        let mut twin = Twin::new(robot, model);
+        let states = log.widths.iter().map(|widths| twin.push(widths.map(us)));
+        let stage = |span: Span| Stage {
+            frames: log.index(span.from)..log.index(span.to),
+            command: span.command,
+        };
+        Self {
+            robot: robot.clone(),
+            first: log.seconds(0),
+            states: states.collect(),
+            stages: spans.into_iter().map(stage).collect(),
+        }
+    }
+
+    /// Sums up these frames.
+    #[must_use]
+    pub fn tally(&self, frames: Range<usize>) -> Tally {
+        let begin = match frames.start {
+            0 => Place::START,
+            first => self.states[first - 1].place,
+        };
+        let mut tally = Tally::new(begin);
+        for state in &self.states[frames] {
+            tally.add(state);
+        }
+        tally
+    }
+
+    /// The frames of the last whole cycle under a command, if it is a gait's and
+    /// there was one cycle before it.
+    #[must_use]
+    pub fn last_cycle(&self, stage: &Stage) -> Option<(&CheckedGait, Range<usize>)> {
+        let gait = self
+            .robot
+            .gait(&stage.command)
+            .filter(|gait| gait.moves())?;
+        let cycle = (gait.period() / FRAME).round() as usize;
+        let begin = stage.frames.end.checked_sub(cycle)?;
+        (begin >= stage.frames.start + cycle).then_some((gait, begin..stage.frames.end))
+    }
+}

@@ -1,0 +1,230 @@
+//! The result of each command, compared with its prediction.
+
+use std::io::{self, Write};
+
+use lizard_robot::{Prediction, Robot, Sprung, Travel, UNDECIDED};
+use lizard_twin::Tally;
+use serde::Serialize;
+
+use super::replay::Replay;
+use crate::shared::json;
+use crate::shared::number::tidy;
+
+/// A row for each command.
+pub struct Report {
+    /// In order of time.
+    pub rows: Vec<Row>,
+}
+
+/// The result of one command.
+#[derive(Debug, Serialize)]
+pub struct Row {
+    /// The command as it was sent.
+    pub command: String,
+    /// Its first frame's and its end's time since power-on, s.
+    pub seconds: [f64; 2],
+    /// The complete path under the command.
+    pub way: Way,
+    /// The gait's last whole cycle, and what is predicted for one.
+    pub cycle: Option<Cycle>,
+    /// The rest is of the last whole cycle where there is one, else of all frames:
+    /// how far the feet slid over the floor, mm, servo order.
+    pub foot_slip: [f64; 4],
+    /// The largest lag of a leg behind its servo, deg.
+    pub lag: f64,
+    /// The smallest margin and its name.
+    pub margin: Option<(&'static str, f64)>,
+    /// Least and greatest slider travel, mm.
+    pub stroke: Option<[f64; 2]>,
+    /// The fastest turn of a servo, deg/s.
+    pub servo_rate: f64,
+    /// The most that a servo was away from its pulse, deg.
+    pub servo_error: f64,
+}
+
+/// A way; null is what depends on a tie.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Way {
+    /// Distance forward, mm.
+    pub forward: Option<f64>,
+    /// Distance to the left, mm.
+    pub left: Option<f64>,
+    /// Turn, deg counter-clockwise.
+    pub turn: Option<f64>,
+}
+
+/// One cycle of a gait.
+#[derive(Debug, Serialize)]
+pub struct Cycle {
+    /// The path of the cycle.
+    pub way: Way,
+    /// The path that the contact model predicts for ideal servos.
+    pub predicted: Way,
+    /// mm/s from the cycle's beginning to its end; null where the way depends on a tie.
+    pub speed: Option<f64>,
+    /// Its way over that of rigid legs, by the prediction; null where legs are rigid
+    /// or there is none to compare.
+    pub share_of_rigid: Option<f64>,
+}
+
+impl Way {
+    fn known(travel: Travel, known: Option<&Prediction>) -> Self {
+        let keep = |part: fn(&Prediction) -> Option<f64>, value: f64| match known {
+            Some(known) => part(known).map(|_| value),
+            None => Some(value),
+        };
+        Self {
+            forward: keep(|way| way.forward, travel.forward),
+            left: keep(|way| way.left, travel.left),
+            turn: keep(|way| way.turn, travel.turn),
+        }
+    }
+}
+
+impl Report {
+    /// Sums up a replay. With `paced` gaits went at other speeds than their own, and
+    /// their cycles are not reported.
+    #[must_use]
+    pub fn of(robot: &Robot, replay: &Replay, paced: bool) -> Self {
+        let rows = replay
+            .stages
+            .iter()
+            .filter(|stage| !stage.frames.is_empty());
+        let row = |stage: &super::replay::Stage| {
+            let whole = replay.tally(stage.frames.clone());
+            let gait = robot.gait(&stage.command);
+            let prediction = gait.map(|gait| robot.predict(gait));
+            let cycle = replay.last_cycle(stage).filter(|_| !paced);
+            let last = cycle
+                .as_ref()
+                .map(|(_, frames)| replay.tally(frames.clone()));
+            let known = prediction.as_ref();
+            let seconds = |n: usize| replay.first + n as f64 * lizard_twin::FRAME;
+            let of: &Tally = last.as_ref().unwrap_or(&whole);
+            Row {
+                command: stage.command.clone(),
+                seconds: [seconds(stage.frames.start), seconds(stage.frames.end)],
+                way: Way::known(whole.travel(), known),
+                cycle: last.zip(cycle).map(|(tally, (gait, _))| Cycle {
+                    way: Way::known(tally.travel(), known),
+                    predicted: known.map_or(Way::known(tally.travel(), None), |way| Way {
+                        forward: way.forward,
+                        left: way.left,
+                        turn: way.turn,
+                    }),
+                    speed: known.and_then(|way| way.forward).map(|_| {
+                        let travel = tally.travel();
+                        travel.forward.hypot(travel.left) / tally.seconds()
+                    }),
+                    share_of_rigid: Sprung::of(gait, robot.ground()).and_then(|on| on.share),
+                }),
+                foot_slip: of.slip,
+                lag: of.lag,
+                margin: of.margin.map(|(check, value)| (check.name(), value)),
+                stroke: of.stroke,
+                servo_rate: of.rate,
+                servo_error: of.error,
+            }
+        };
+        Self {
+            rows: rows.map(row).collect(),
+        }
+    }
+
+    /// One object a line.
+    ///
+    /// # Errors
+    /// Writing failed.
+    pub fn json(&self, out: &mut impl Write) -> io::Result<()> {
+        for row in &self.rows {
+            json::line(out, row)?;
+        }
+        Ok(())
+    }
+
+    /// A table of the gaits' cycles, and a line for each other command that moved the
+    /// body.
+    ///
+    /// # Errors
+    /// Writing failed.
+    pub fn print(&self, out: &mut impl Write) -> io::Result<()> {
+        let springs = self.rows.iter().any(|row| row.lag > 0.0);
+        let width = self
+            .rows
+            .iter()
+            .map(|row| row.command.len())
+            .fold(10, usize::max);
+        writeln!(
+            out,
+            "{:width$}   one cycle, mm and deg        predicted                  speed  feet slid  least margin       slider, mm   servos{}",
+            "",
+            if springs { "    springs" } else { "" }
+        )?;
+        writeln!(
+            out,
+            "{:width$}     ahead    left    turn    ahead    left    turn     mm/s  mm a foot                     least  most   deg/s{}",
+            "gait",
+            if springs { "  lag deg  % of rigid" } else { "" }
+        )?;
+        for row in &self.rows {
+            let Some(cycle) = &row.cycle else { continue };
+            write!(out, "{:width$}  ", row.command)?;
+            for way in [&cycle.way, &cycle.predicted] {
+                for (part, decimals) in [(way.forward, 1), (way.left, 1), (way.turn, 1)] {
+                    write!(out, "{:>8}", known(part, decimals))?;
+                }
+            }
+            write!(
+                out,
+                " {:>8} {:>10.1}  {:>6} {:<11}",
+                cycle
+                    .speed
+                    .map_or("-".to_owned(), |speed| format!("{speed:.1}")),
+                row.foot_slip.iter().sum::<f64>() / 4.0,
+                row.margin
+                    .map_or("-".to_owned(), |(_, value)| format!("{value:.3}")),
+                row.margin.map_or("", |(name, _)| name),
+            )?;
+            let [least, most] = row.stroke.unwrap_or_default();
+            write!(out, " {least:>+6.1} {most:>+5.1} {:>7.0}", row.servo_rate)?;
+            if springs {
+                let share = cycle.share_of_rigid.map(|share| 100.0 * share);
+                let share = share.map_or("-".to_owned(), |share| format!("{share:.0}"));
+                write!(out, " {:>8.1} {share:>11}", row.lag)?;
+            }
+            writeln!(out)?;
+        }
+        for row in self.rows.iter().filter(|row| row.cycle.is_none()) {
+            let [from, to] = row.seconds;
+            let way = &row.way;
+            if [way.forward, way.left, way.turn]
+                .map(|part| part.is_some_and(|part| part.abs() > 0.05))
+                == [false; 3]
+            {
+                continue;
+            }
+            writeln!(
+                out,
+                "\n{} from {from:.2} to {to:.2} s: ahead {} mm, left {} mm, turn {} deg",
+                row.command,
+                known(way.forward, 1),
+                known(way.left, 1),
+                known(way.turn, 1)
+            )?;
+        }
+        let undecided =
+            |way: &Way| way.forward.is_none() || way.left.is_none() || way.turn.is_none();
+        if self.rows.iter().any(|row| undecided(&row.way)) {
+            write!(out, "\n{UNDECIDED}")?;
+        }
+        Ok(())
+    }
+}
+
+/// A part of a way with its sign, without that of a zero; a dash where it is unknown.
+#[must_use]
+pub fn known(part: Option<f64>, decimals: usize) -> String {
+    part.map_or("-".to_owned(), |value| {
+        format!("{:+.decimals$}", tidy(value, decimals as i32))
+    })
+}

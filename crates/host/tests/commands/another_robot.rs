@@ -1,0 +1,59 @@
+//! An image that was built for another robot than the one that is named.
+
+use std::path::PathBuf;
+
+use crate::program::{robot, root, run};
+
+fn release() -> PathBuf {
+    root().join("target/avr-atmega328p/release")
+}
+
+/// The name and the number of a robot, as `lizard gaits` and the firmware's build write them.
+fn robot_in(report: &str) -> String {
+    let first = report.lines().next().expect("a line");
+    let (_, robot) = first.split_once("robot ").expect("its name");
+    robot.to_owned()
+}
+
+/// The robot of the image that was built.
+fn of_the_image() -> String {
+    let gaits = std::fs::read_to_string(release().join("gaits.txt"));
+    robot_in(&gaits.expect("`make firmware` has been run"))
+}
+
+/// The file of a robot that is not in the image, and its name and number.
+fn another() -> (String, String) {
+    let named = ["unequal", "large"].map(|name| {
+        let path = robot(name);
+        let report = run(&["gaits", "--robot", &path]).said();
+        (path, robot_in(&report))
+    });
+    let image = of_the_image();
+    let others = named.into_iter().find(|(_, robot)| *robot != image);
+    others.expect("two robots have two numbers")
+}
+
+#[test]
+fn every_command_that_runs_an_image_refuses_an_elf_of_another_robot() {
+    let (robot, wanted) = another();
+    let image = of_the_image();
+    let elf = release().join("lizard.elf").display().to_string();
+    for words in [
+        &["sim"][..],
+        &["sim", "--pty"],
+        &["twin"],
+        &["bench"],
+        &["console", "--sim"],
+        &["backup", "never.toml", "--sim"],
+    ] {
+        let with = ["--elf", &elf, "--robot", &robot];
+        assert_eq!(
+            run(&[words, &with].concat()).refusal(),
+            format!(
+                "lizard: {elf} has the robot {image} in it, and not {robot}, which is {wanted}; \
+                 without --elf, the firmware inside this program runs with any robot"
+            ),
+            "{words:?}"
+        );
+    }
+}

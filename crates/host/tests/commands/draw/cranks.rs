@@ -1,0 +1,106 @@
+//! The cranks and the spline.
+
+use lizard_host::draw::horns;
+use lizard_robot::Robot;
+
+use super::drawing::{Drawing, Point};
+use super::files::{SERVOS, files, paper, said};
+
+#[test]
+fn a_crank_is_drawn_and_named_at_its_neutral_angle() {
+    for (name, text) in files() {
+        let drawing = Drawing::of(&horns(&Robot::parse(&text).expect("a robot")));
+        // All four in the same scale.
+        let link = |key: &str| -> f64 {
+            let line = text
+                .lines()
+                .find(|line| line.starts_with(&format!("{key} ")));
+            let value = line
+                .and_then(|line| line.split(['=', '#']).nth(1))
+                .expect(key);
+            value.trim().parse().expect("mm")
+        };
+        let scales = SERVOS
+            .iter()
+            .zip(["l1", "l4", "l9", "l6"])
+            .map(|(servo, key)| {
+                let crank = drawing.path(&format!("crank-{servo}"));
+                (crank[1].0 - crank[0].0).hypot(crank[1].1 - crank[0].1) / link(key)
+            });
+        let scales: Vec<f64> = scales.collect();
+        assert!(
+            scales
+                .iter()
+                .all(|scale| (scale / scales[0] - 1.0).abs() < 1e-3),
+            "{name}"
+        );
+        for servo in SERVOS {
+            let neutral: f64 = said(&text, servo, "neutral").parse().expect("degrees");
+            let crank = drawing.path(&format!("crank-{servo}"));
+            assert!(
+                turned(neutral, direction(&crank)).abs() < 0.02,
+                "{name} {servo}"
+            );
+            let label = &drawing.named(&format!("angle-{servo}")).words;
+            assert_eq!(*label, format!("{neutral:.2}°"), "{name} {servo}");
+        }
+    }
+}
+
+/// The direction of a line of at least 50 pixels, degrees counter-clockwise from the
+/// right; its ends are rounded to hundredths.
+fn direction(line: &[Point]) -> f64 {
+    let (x, y) = (line[1].0 - line[0].0, line[0].1 - line[1].1);
+    assert!(x.hypot(y) > 50.0);
+    y.atan2(x).to_degrees()
+}
+
+/// By how much one turns counter-clockwise from one direction to another.
+fn turned(from: f64, to: f64) -> f64 {
+    (to - from + 180.0).rem_euclid(360.0) - 180.0
+}
+
+#[test]
+fn the_trim_of_the_example_turns_the_crank_to_its_neutral_angle() {
+    for (name, text) in files() {
+        let drawing = Drawing::of(&horns(&Robot::parse(&text).expect("a robot")));
+        let (sits, should) = (drawing.path("sits"), drawing.path("should"));
+        let neutral: f64 = said(&text, "A1", "neutral").parse().expect("degrees");
+        assert!(turned(neutral, direction(&should)).abs() < 0.02, "{name}");
+        let words = drawing.0.iter().map(|element| element.words.as_str());
+        let trims: Vec<&str> = words
+            .filter_map(|words| words.strip_prefix("trim 1 "))
+            .collect();
+        let trim: f64 = trims[0].parse().expect("degrees");
+        let off = turned(direction(&sits), direction(&should)) - trim;
+        assert!(off.abs() < 0.02, "{name} {off}");
+        assert!(trim.abs() <= 7.2, "more than the teeth leave");
+    }
+}
+
+#[test]
+fn the_spline_has_25_teeth_and_a_crank_is_off_by_half_a_tooth_at_most() {
+    let drawing = Drawing::of(&horns(&Robot::parse(&paper()).expect("a robot")));
+    let corners = drawing.path("spline");
+    let count = corners.len() as f64;
+    let sum = corners
+        .iter()
+        .fold((0.0, 0.0), |sum, at| (sum.0 + at.0, sum.1 + at.1));
+    let middle = (sum.0 / count, sum.1 / count);
+    let radius = |at: &Point| (at.0 - middle.0).hypot(at.1 - middle.1);
+    let mean = corners.iter().map(radius).sum::<f64>() / count;
+    let rises = (0..corners.len()).filter(|place| {
+        let before = &corners[(place + corners.len() - 1) % corners.len()];
+        radius(before) < mean && radius(&corners[*place]) > mean
+    });
+    assert_eq!(rises.count(), 25);
+    let words: String = drawing
+        .0
+        .iter()
+        .map(|element| element.words.as_str())
+        .collect();
+    assert!(
+        words.contains("14.4° apart") && words.contains("7.2° at most"),
+        "{words}"
+    );
+}

@@ -1,0 +1,67 @@
+//! The drawings that a builder follows: pins, wires and angles are those of robot.toml, for
+//! every robot.
+
+mod cranks;
+mod drawing;
+mod files;
+mod wires;
+
+use lizard_host::draw::{horns, top_view, wiring};
+use lizard_robot::Robot;
+
+use crate::program::read;
+use drawing::Drawing;
+use files::{files, paper};
+
+#[test]
+fn everything_is_on_the_page_and_large_enough_to_be_read() {
+    for (name, text) in files() {
+        let robot = Robot::parse(&text).expect("a robot");
+        for svg in [wiring(&robot), horns(&robot)] {
+            let drawing = Drawing::of(&svg);
+            let (width, height) = {
+                let page = &drawing.0[0];
+                (page.number("width"), page.number("height"))
+            };
+            assert!(width <= 700.0, "a README is that wide");
+            for element in &drawing.0[1..] {
+                let mut points = element.points();
+                if element.tag == "text" {
+                    let size = element.number("font-size");
+                    assert!(size >= 12.0, "{name}: {element:?}");
+                    // A wide font: 0.55 of its size for a character.
+                    let long = 0.55 * size * element.words.chars().count() as f64;
+                    let (x, y) = points[0];
+                    if element.text("transform").is_empty() {
+                        let (left, right) = match element.text("text-anchor") {
+                            "start" => (0.0, long),
+                            "end" => (long, 0.0),
+                            _ => (long / 2.0, long / 2.0),
+                        };
+                        points.extend([(x - left, y - size), (x + right, y)]);
+                    }
+                }
+                for (x, y) in points {
+                    let inside = (0.0..=width).contains(&x) && (0.0..=height).contains(&y);
+                    assert!(inside, "{name}: {x} {y} {element:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_drawings_in_docs_are_of_the_paper_robot_as_it_is_drawn_now() {
+    let robot = Robot::parse(&paper()).expect("a robot");
+    let neutral = robot.lizard().solve(&robot.neutral()).expect("it closes");
+    let above = top_view(&robot, &neutral, true);
+    for (name, svg) in [
+        ("wiring", wiring(&robot)),
+        ("horns", horns(&robot)),
+        ("lizard", above.clone()),
+        ("charts/top-view", above),
+    ] {
+        let kept = read(&format!("docs/{name}.svg"));
+        assert!(kept == svg, "docs/{name}.svg: run `make docs`");
+    }
+}

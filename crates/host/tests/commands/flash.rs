@@ -1,0 +1,94 @@
+//! `lizard flash` as a user meets it without a board.
+
+use std::fs;
+use std::time::{Duration, Instant};
+
+use lizard_robot::Robot;
+
+use crate::program::{robot, run_in};
+
+/// An image of 20 bytes, as avr-objcopy writes it.
+const HEX: &str = "\
+:100000000C9434000C943E000C943E000C943E0082\n\
+:0400100001020304E2\n\
+:00000001FF\n";
+
+#[test]
+fn without_a_board_and_without_a_firmware_built_it_gets_as_far_as_the_port() {
+    let empty = tempfile::tempdir().expect("a folder");
+    for words in [&[][..], &["--only-robot"], &["--robot", "large"]] {
+        let arguments = [&["flash", "/dev/no-such-port"], words].concat();
+        let said = run_in(empty.path(), &arguments, "").refusal();
+        assert!(said.contains("no-such-port"), "{said}");
+    }
+}
+
+#[test]
+fn an_image_of_any_robot_is_made_in_an_empty_folder() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, options) in [("large", &[][..]), ("unequal", &["--only-robot"])] {
+        let arguments = [&["image", "--robot", name, "--output", "x.hex"], options].concat();
+        let begin = Instant::now();
+        let made = run_in(folder.path(), &arguments, "");
+        assert!(
+            begin.elapsed() < Duration::from_secs(20),
+            "{:?}",
+            begin.elapsed()
+        );
+        assert_eq!(made.err, "");
+        let said = made.said();
+        assert!(
+            said.starts_with("x.hex: ") && said.contains(&format!("robot {name} ")),
+            "{said}"
+        );
+        let text = fs::read_to_string(folder.path().join("x.hex")).expect("it is written");
+        let piped = [&["image", "--robot", name], options].concat();
+        let piped = run_in(folder.path(), &piped, "").said();
+        assert!(piped == text, "the same goes to a pipe");
+        // By another reader of Intel HEX than the one that wrote it.
+        let image = simulated_uno::Image::parse_hex(&text).expect("it is Intel HEX");
+        let robot = Robot::load(robot(name)).expect("it is right");
+        let flash = image.flash();
+        assert!(flash[0x6e00..] == robot.section());
+        let is_code = flash[..2] == [0x0c, 0x94];
+        assert_eq!(is_code, options.is_empty(), "a jump, where the chip starts");
+    }
+}
+
+#[test]
+fn a_robot_that_is_wrong_gives_no_image() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("x.toml"), "[servo]\n").expect("a file");
+    let arguments = ["image", "--robot", "x.toml", "--output", "x.hex"];
+    let said = run_in(folder.path(), &arguments, "").refusal();
+    assert!(said.contains("x.toml"), "{said}");
+    assert!(!folder.path().join("x.hex").exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_port_that_is_not_there_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("a.hex"), HEX).expect("a file");
+    let arguments = ["flash", "/dev/no-such-port", "--image", "a.hex"];
+    let said = run_in(folder.path(), &arguments, "").refusal();
+    let begin = "lizard: there is no /dev/no-such-port; USB serial ports of this machine: ";
+    assert!(said.starts_with(begin), "{said}");
+}
+
+#[test]
+fn a_file_that_is_no_image_is_refused_before_any_port_is_opened() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("half.hex"), &HEX[..60]).expect("a file");
+    let arguments = ["flash", "/dev/no-such-port", "--image", "half.hex"];
+    let said = run_in(folder.path(), &arguments, "").refusal();
+    assert!(
+        said.starts_with("lizard: half.hex: line 2 is no Intel HEX"),
+        "{said}"
+    );
+    for other in [&["--robot", "robot.toml"][..], &["--only-robot"]] {
+        let both = [&arguments[..], other].concat();
+        let said = run_in(folder.path(), &both, "").refusal();
+        assert!(said.contains("cannot be used with"), "{said}");
+    }
+}

@@ -1,0 +1,16 @@
+//! The commands of `lizard` as a user runs them: the program itself, its exit codes, and the
+//! files and pages that it makes.
+
+mod another_robot;
+mod draw;
+mod flash;
+mod merge;
+mod mjcf;
+mod outputs;
+mod paper;
+mod parts;
+mod program;
+mod quickstart;
+mod sim;
+mod twin;
+mod words;

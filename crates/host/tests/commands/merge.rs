@@ -1,0 +1,68 @@
+//! Long computations in parts: processes that know nothing of each other compute them, and
+//! `lizard merge` prints what one process prints. `make parallel-test` does it with GNU parallel
+//! and the commands that take longer.
+
+use crate::program::{lizard, paper};
+
+fn complaint(words: &str, input: &str) -> String {
+    lizard(words, input).refusal()
+}
+
+/// The output of all parts, the last one first.
+fn parts(words: &str, of: usize) -> String {
+    let part = |number| lizard(&format!("{words} --part {number}/{of}"), "").said();
+    (1..=of).rev().map(part).collect()
+}
+
+#[test]
+fn parts_together_print_byte_for_byte_what_one_process_prints() {
+    for (words, of) in [
+        ("prove --one-in 30000", 3),
+        ("prove --one-in 30000 --json", 2),
+        ("design --search --step 0.05", 2),
+        // More parts than there is to do.
+        ("design --search --step 0.1 --top 3 --json", 5),
+    ] {
+        let words = paper(words);
+        let whole = lizard(&words, "").said();
+        assert!(whole.len() > 100, "{words}: {whole}");
+        let merged = lizard("merge", parts(&words, of)).said();
+        assert_eq!(merged, whole, "{words}");
+    }
+}
+
+#[test]
+fn a_merge_refuses_what_is_not_all_of_one_computation() {
+    let words = paper("design --search --step 0.1");
+    let parts = parts(&words, 2);
+    let (last, first) = parts.split_once('\n').expect("two lines");
+    assert_eq!(complaint("merge", last), "lizard: part 1/2 is missing");
+    let other = "design --search --step 0.1 --robot robots/unequal.toml --part 1/2";
+    let other = lizard(other, "").said();
+    assert_eq!(
+        complaint("merge", &format!("{last}\n{other}")),
+        "lizard: part 1/2 has another robot than another part"
+    );
+    let step = lizard(&paper("design --search --step 0.2 --part 1/2"), "").said();
+    assert!(complaint("merge", &format!("{last}\n{step}")).contains("other options"));
+    // A job that was killed leaves half a line.
+    let half = &first[..first.len() / 2];
+    let said = complaint("merge", &format!("{last}\n{half}"));
+    assert!(
+        said.starts_with("lizard: standard input: line 2 is no part: "),
+        "{said}"
+    );
+    assert!(complaint("merge", "").contains("there are no parts"));
+    assert!(complaint("merge no-such-part", "").contains("cannot read no-such-part: "));
+}
+
+#[test]
+fn a_part_is_of_so_many_and_of_what_takes_long() {
+    let said = complaint("prove --part 3/2", "");
+    assert!(
+        said.contains("it must be as 2/8, from 1/8 to 8/8"),
+        "{said}"
+    );
+    let said = complaint(&paper("design --part 1/2"), "");
+    assert!(said.contains("--part goes with --search"), "{said}");
+}

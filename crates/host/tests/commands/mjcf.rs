@@ -1,0 +1,54 @@
+//! `lizard mjcf` as its user runs it.
+
+use std::fs;
+use std::path::PathBuf;
+
+use crate::program::{run, scratch};
+
+/// A path at which there is no file.
+fn fresh(name: &str) -> PathBuf {
+    let file = scratch().join(name);
+    let _ = fs::remove_file(&file);
+    file
+}
+
+#[test]
+fn the_file_holds_a_robot_with_four_servos_and_four_feet() {
+    let file = fresh("robot.xml");
+    let path = file.display().to_string();
+    run(&["mjcf", &path]).said();
+    let text = fs::read_to_string(&file).expect("a file");
+    for part in [
+        "<position name=\"A1\"",
+        "<position name=\"A4\"",
+        "<geom name=\"pad LH\"",
+    ] {
+        assert_eq!(text.matches(part).count(), 1, "{part}");
+    }
+    assert!(text.ends_with("</mujoco>\n"));
+    assert!(!text.contains("<key "), "nobody asked for a gait");
+}
+
+#[test]
+#[cfg(unix)]
+fn a_stream_gets_the_file_and_nothing_else() {
+    let text = run(&["mjcf", "/dev/stdout", "--long-foot", "LH=-0.5"]).said();
+    assert!(text.starts_with("<mujoco ") && text.ends_with("</mujoco>\n"));
+}
+
+#[test]
+fn what_is_wrong_is_refused_in_a_sentence_and_no_file_is_written() {
+    let file = fresh("wrong.xml");
+    let path = file.display().to_string();
+    let refusal = |words: &[&str]| run(&[&["mjcf", &path], words].concat()).refusal();
+    let wolk = refusal(&["--drive", "wolk"]);
+    assert!(wolk.contains("robot.toml has no gait `wolk`"), "{wolk}");
+    assert!(wolk.ends_with("did you mean `walk`?"), "{wolk}");
+    let stand = refusal(&["--drive", "stand"]);
+    assert_eq!(stand, "lizard: the gait `stand` moves no servo");
+    let far = refusal(&["--long-foot", "LF=5.1"]);
+    assert!(far.contains("at most 5 mm either way"), "{far}");
+    let twice = refusal(&["--long-foot", "LF=1", "--long-foot", "lf=0"]);
+    assert_eq!(twice, "lizard: --long-foot LF is given twice");
+    assert!(!file.exists());
+}

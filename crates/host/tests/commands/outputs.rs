@@ -1,0 +1,85 @@
+//! The files that commands write: what they never replace, and what a killed command leaves.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use lizard_time_limit::LIMIT;
+
+use crate::program::{Outcome, read, run_in};
+
+fn lizard(folder: &Path, line: &str) -> Outcome {
+    run_in(folder, &line.split(' ').collect::<Vec<_>>(), "")
+}
+
+#[test]
+fn no_command_writes_over_its_input_or_over_a_robot() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let here = folder.path();
+    let robot = &read("robots/paper.toml");
+    let session =
+        "{\"ms\":0,\"begin\":{\"format\":\"lizard record 1\",\"port\":\"p\",\"banner\":null}}\n";
+    let files = [
+        ("my.toml", robot.as_str()),
+        ("robot.toml", robot),
+        ("broken", "[links]\nl0 = wrong\n"),
+        ("a.jsonl", session),
+        ("a.txt", "500 walk\n"),
+    ];
+    for (name, text) in files {
+        fs::write(here.join(name), text).expect("it is written");
+    }
+    fs::create_dir(here.join("charts")).expect("a folder");
+    fs::hard_link(here.join("my.toml"), here.join("charts/top-view.svg")).expect("another name");
+    for (line, file) in [
+        ("image --robot my.toml --output my.toml", "my.toml"),
+        ("image --robot my.toml --output ./x/../my.toml", "my.toml"),
+        ("image --robot large --output robot.toml", "robot.toml"),
+        ("image --robot large --output broken", "broken"),
+        ("draw --robot my.toml --output my.toml", "my.toml"),
+        ("draw --robot my.toml --output robot.toml", "robot.toml"),
+        ("mjcf my.toml --robot my.toml", "my.toml"),
+        ("mjcf robot.toml --robot my.toml", "robot.toml"),
+        ("replay a.jsonl --svg a.jsonl", "a.jsonl"),
+        ("sim --duration 4 --svg robot.toml", "robot.toml"),
+        ("sim --script a.txt --svg a.txt", "a.txt"),
+        ("charts charts --robot my.toml", "top-view.svg"),
+    ] {
+        fs::create_dir_all(here.join("x")).expect("a folder");
+        let Outcome {
+            code, err: error, ..
+        } = lizard(here, line);
+        assert_eq!(code, Some(2), "{line}: {error}");
+        assert!(
+            error.contains(file) && error.contains("; name another file for the output"),
+            "{line}: {error}"
+        );
+    }
+    for (name, text) in files {
+        let now = fs::read_to_string(here.join(name)).expect("it is there");
+        assert!(now == text, "{name} has changed");
+    }
+}
+
+#[test]
+fn an_image_makes_the_folders_that_it_needs() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let line = "image --robot large --output new/folder/x.hex";
+    lizard(folder.path(), line).said();
+    assert!(folder.path().join("new/folder/x.hex").is_file());
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_command_that_is_killed_while_it_writes_leaves_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // The system kills a program that writes more than 8 KiB into a file.
+    let line = "ulimit -c 0 -f 8; exec \"$0\" image --robot large --output x.hex";
+    let mut bash = Command::new("bash");
+    bash.args(["-c", line, env!("CARGO_BIN_EXE_lizard")])
+        .current_dir(folder.path());
+    let done = LIMIT.output(&mut bash, b"").expect("bash runs");
+    assert_eq!(done.status.code(), None, "no signal: {done:?}");
+    let left: Vec<_> = folder.path().read_dir().expect("a folder").collect();
+    assert!(left.is_empty(), "{left:?}");
+}

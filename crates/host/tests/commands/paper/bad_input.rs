@@ -1,0 +1,217 @@
+//! Bad input: each case its message, its exit code, and nothing half written.
+
+use lizard_time_limit::LIMIT;
+
+use crate::program::{lizard, paper};
+
+const HEADER: &str = "theta1,theta4,theta8,theta5\n";
+
+#[test]
+fn a_malformed_row_names_line_and_column_and_ends_with_code_2() {
+    let cases: &[(&str, &str)] = &[
+        (
+            "138,42,x,221\n",
+            "line 2, column 3 (theta8): \"x\" is not a number",
+        ),
+        ("138,42,221\n", "line 2, column 4 (theta5): no value"),
+        ("138,,221,318\n", "line 2, column 2 (theta4): no value"),
+        (
+            "138,42,318,221,5\n",
+            "line 2, column 5: \"5\" is one value too many",
+        ),
+        (
+            "nan,42,318,221\n",
+            "line 2, column 1 (theta1): \"nan\" is not a finite number",
+        ),
+        (
+            "138,inf,318,221\n",
+            "line 2, column 2 (theta4): \"inf\" is not a finite number",
+        ),
+        (
+            "138,42,318,1e999\n",
+            "line 2, column 4 (theta5): \"1e999\" is not a finite number",
+        ),
+        (
+            "138,42,318,1e308\n",
+            "line 2, column 4 (theta5): \"1e308\" is not within -1000000 to 1000000 degrees",
+        ),
+        (
+            "138,42,318,221\n\n138;42;318;221\n",
+            "line 4, column 1 (theta1): \"138;42;318;221\" is not a number",
+        ),
+    ];
+    for (rows, message) in cases {
+        for json in ["pose", "pose --json"] {
+            let outcome = lizard(json, format!("{HEADER}{rows}"));
+            assert_eq!(outcome.code, Some(2), "{rows}");
+            assert_eq!(outcome.err.trim_end(), format!("lizard: {message}"));
+            assert!(outcome.out.is_empty() || outcome.out.ends_with('\n'));
+        }
+    }
+}
+
+#[test]
+fn rows_before_the_malformed_one_are_answered_whole() {
+    let outcome = lizard(
+        "pose --json",
+        format!("{HEADER}138,42,318,221\n138,42,318,221\n?,42,318,221\n"),
+    );
+    assert_eq!((outcome.code, outcome.out.lines().count()), (Some(2), 2));
+    for line in outcome.out.lines() {
+        serde_json::from_str::<serde_json::Value>(line).expect("a whole object");
+    }
+}
+
+#[test]
+fn a_wrong_header_is_refused() {
+    let header =
+        "; the header is theta1,theta4,theta8,theta5, in any order, and seconds if you like";
+    let cases: &[(&[u8], String)] = &[
+        (
+            b"",
+            "line 1, column 1: the input is empty, expected the header theta1,theta4,theta8,theta5"
+                .into(),
+        ),
+        (
+            b"A1,A2,A3,A4\n",
+            format!("line 1, column 1: \"A1\" is not a column{header}"),
+        ),
+        (
+            b"theta1,theta4,theta5,seconds\n",
+            format!("line 1, column 5: theta8 is missing{header}"),
+        ),
+        (
+            b"theta1,theta4,theta5,theta5\n",
+            format!("line 1, column 4: \"theta5\" comes twice{header}"),
+        ),
+        (
+            b"theta1,theta4,\xff,theta8\n",
+            "line 1, column 3: not UTF-8 text".into(),
+        ),
+    ];
+    for (input, message) in cases {
+        let outcome = lizard("pose --json", input);
+        assert_eq!(outcome.code, Some(2));
+        assert_eq!(outcome.err.trim_end(), format!("lizard: {message}"));
+        assert_eq!(outcome.out, "");
+    }
+    let endless = lizard("pose", vec![b'1'; 100_000]);
+    assert_eq!(endless.code, Some(2));
+    assert_eq!(
+        endless.err.trim_end(),
+        "lizard: line 1, column 1: longer than 1024 bytes"
+    );
+}
+
+#[test]
+fn wrong_arguments_end_with_code_2_and_say_what_is_wrong() {
+    let cases: &[(&str, &str)] = &[
+        ("pose --theta1 138", "--theta4"),
+        (
+            "pose --theta1 138 --theta4 42 --theta5 x --theta8 318",
+            "it is not a number",
+        ),
+        (
+            "pose --theta1 138 --theta4 42 --theta5 inf --theta8 318",
+            "it is not a finite number",
+        ),
+        ("pose --head 5 120 --show rates", "cannot be used with"),
+        ("pose --head 5", "2 values"),
+        ("pose --head 5 nan", "it is not a finite number"),
+        (
+            "pose --head 5 1e308",
+            "it is not within -1000000 to 1000000 mm",
+        ),
+        (
+            "pose --theta1 1e308 --theta4 42 --theta8 318 --theta5 221",
+            "it is not within -1000000 to 1000000 degrees",
+        ),
+        (
+            "pose --show rates --omega8 1e200",
+            "it is not within -1000000 to 1000000 deg/s",
+        ),
+        (
+            "pose --show rates --alpha5 -1e200",
+            "it is not within -1000000000 to 1000000000 deg/s^2",
+        ),
+        (
+            "design --l0 1e308",
+            "it is not within -1000000 to 1000000 mm",
+        ),
+        (
+            "design --r1 0.4 --r3 1e-300",
+            "r3 is 1.0e-300, too short to build: it must be at least 0.001",
+        ),
+        (
+            "gaits --robot /dev/zero",
+            "/dev/zero: is longer than 1 MiB, so it is no robot file",
+        ),
+        ("gaits --robot /", "cannot be read"),
+        ("pose --show rates --omega1 fast", "it is not a number"),
+        ("design --r1 0.3", "give two or three of --r1, --r2, --r3"),
+        (
+            "design --r1 0.3 --r2 0.3 --r3 0.1",
+            "it must be 0.9; the same shape is r1 0.385714",
+        ),
+        (
+            "design --r1 0.1 --r2 0.2 --r3 0.6",
+            "r3 is 0.6, it must lie between 0 and 0.45",
+        ),
+        ("design --l0 -5", "it must be at least 0.001 mm"),
+        ("design --l0 0", "it must be at least 0.001 mm"),
+        ("design --chart --step 0", "it must be 0.002 to 0.2"),
+        ("errata --samples 0", "0 is not in"),
+        ("pose --robot no/such/robot.toml", "no/such/robot.toml"),
+        ("charts", "<DIR>"),
+        ("walk", "walk"),
+    ];
+    for (args, message) in cases {
+        let outcome = lizard(args, "");
+        assert_eq!(outcome.code, Some(2), "{args}: {}", outcome.err);
+        assert!(outcome.err.contains(message), "{args}: {}", outcome.err);
+        assert_eq!(outcome.out, "", "{args}");
+    }
+}
+
+#[test]
+fn what_does_not_exist_ends_with_code_1() {
+    let cases: &[(&str, &str)] = &[
+        (
+            "pose --head 0 200",
+            "head: the point is 132.877 mm from the left shaft",
+        ),
+        (
+            "pose --show rates --theta1 70.528779365509308 --theta4 109.47122063449069 --theta5 221 --theta8 318",
+            "singular",
+        ),
+        (
+            "charts /proc/no/such/folder",
+            "cannot write /proc/no/such/folder",
+        ),
+    ];
+    for (args, message) in cases {
+        let outcome = lizard(&paper(args), "");
+        assert_eq!(outcome.code, Some(1), "{args}: {}", outcome.err);
+        assert!(outcome.err.contains(message), "{args}: {}", outcome.err);
+    }
+}
+
+#[test]
+fn a_pipe_that_closes_is_no_failure() {
+    let mut input = HEADER.to_string();
+    input += &"138,42,318,221\n".repeat(50_000);
+    std::fs::write(std::env::temp_dir().join("lizard-poses.csv"), input).unwrap();
+    let script = format!(
+        "'{}' pose --json < {}/lizard-poses.csv | head -n 1; exit ${{PIPESTATUS[0]}}",
+        env!("CARGO_BIN_EXE_lizard"),
+        std::env::temp_dir().display()
+    );
+    let mut bash = std::process::Command::new("bash");
+    let output = LIMIT.output(bash.args(["-c", &script]), b"").unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    assert_eq!(String::from_utf8_lossy(&output.stderr), "");
+}

@@ -1,0 +1,287 @@
+//! The paper's figures and those measured for this project, from the commands
+//! that print them, by the paper's robot.
+
+use serde_json::Value;
+
+use crate::program::{lizard, paper, read};
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().expect("a number")
+}
+
+#[test]
+fn the_papers_design_has_its_dimensions_and_its_conditioning_only_as_a_mean() {
+    let design = lizard("design --json", "").json();
+    let expect = [
+        ("d", 100.0, 1e-9),
+        ("l0", 20.0, 1e-9),
+        ("l1", 30.0, 1e-9),
+        ("l2", 50.0, 1e-9),
+        ("area", 14_892.6, 0.05),
+        ("r_mic", 30.0, 1e-9),
+        ("y_mic", 48.990, 1e-3),
+    ];
+    for (key, value, tolerance) in expect {
+        assert!((number(&design[key]) - value).abs() < tolerance, "{key}");
+    }
+    let lci = &design["lci"];
+    assert!((number(&lci["mean"]) - 0.736).abs() < 5e-4);
+    assert!((number(&lci["share_above"]) - 0.668).abs() < 1e-3);
+    assert!((number(&lci["radius_above"]) - 15.45).abs() < 0.01);
+    assert!(number(&lci["least"]) < 1e-6);
+    assert!((number(&lci["most"]) - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn a_design_of_another_size_keeps_its_shape() {
+    let small = lizard("design --json --r1 0.35 --r2 0.45", "").json();
+    let large = lizard("design --json --r1 0.35 --r2 0.45 --l0 60", "").json();
+    assert!((number(&large["d"]) / number(&small["d"]) - 3.0).abs() < 1e-12);
+    assert!((number(&large["area"]) / number(&small["area"]) - 9.0).abs() < 1e-9);
+    for key in ["mean", "share_above"] {
+        assert!((number(&large["lci"][key]) - number(&small["lci"][key])).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn the_charts_cover_the_whole_triangle_and_hold_the_papers_design() {
+    let points = lizard("design --chart --json --step 0.05", "").json();
+    let points = points.as_array().unwrap();
+    // Every (i, j) with r3 = .9 - (i + j) .05 between 0 and .45.
+    let expected = (1..18)
+        .flat_map(|i| (1..18).map(move |j| i + j))
+        .filter(|sum| (10..18).contains(sum))
+        .count();
+    assert_eq!(points.len(), expected);
+    let paper = points
+        .iter()
+        .find(|p| (number(&p["r1"]) - 0.3).abs() < 1e-9 && (number(&p["r2"]) - 0.5).abs() < 1e-9)
+        .unwrap();
+    assert!((number(&paper["r_mic"]) - 0.3).abs() < 1e-9);
+    assert!((number(&paper["area"]) - 1.48926).abs() < 1e-5);
+    assert!((number(&paper["lci"]["mean"]) - 0.736).abs() < 5e-3);
+}
+
+#[test]
+fn the_search_keeps_its_promises() {
+    let designs = lizard(&paper("design --search --json --step 0.05 --top 50"), "").json();
+    let designs = designs.as_array().unwrap();
+    assert!(!designs.is_empty());
+    let mut last = f64::INFINITY;
+    for design in designs {
+        let d = number(&design["d"]);
+        assert!(
+            number(&design["r1"]) * d >= 20.0 - 1e-9 && number(&design["r2"]) * d >= 20.0 - 1e-9
+        );
+        assert!(number(&design["margin"]) >= 0.3 && number(&design["sweep"]) >= 20.0);
+        assert!(number(&design["score"]) <= last);
+        last = number(&design["score"]);
+    }
+}
+
+#[test]
+fn count_and_rank_give_four_freedoms_and_one_for_each_leg() {
+    let all = lizard(&paper("pose --show freedoms --json"), "").json();
+    let freedoms: Vec<(i64, i64)> = all
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|m| {
+            (
+                m["gruebler"].as_i64().unwrap(),
+                m["freedoms"].as_i64().unwrap(),
+            )
+        })
+        .collect();
+    assert_eq!(freedoms, [(4, 4), (1, 1), (1, 1), (1, 1), (1, 1)]);
+    assert_eq!(all[0]["rank"], 32);
+    // A flat leg gains a freedom, which counting cannot see.
+    let flat = lizard(
+        &paper("pose --show freedoms --json --theta1 138 --theta4 0 --theta5 221 --theta8 318"),
+        "",
+    )
+    .json();
+    assert_eq!(
+        (&flat[2]["gruebler"], &flat[2]["freedoms"]),
+        (&Value::from(1), &Value::from(2))
+    );
+}
+
+#[test]
+fn the_determinant_is_the_product_of_its_blocks_and_the_nearest_singularity_is_one() {
+    let report = lizard(
+        &paper(
+            "pose --show singularities --json --theta1 120 --theta4 70 --theta5 230 --theta8 310",
+        ),
+        "",
+    )
+    .json();
+    let (eliminated, factored) = (number(&report["determinant"]), number(&report["factored"]));
+    assert!((eliminated / factored - 1.0).abs() < 1e-9);
+    let start = [120.0, 70.0, 310.0, 230.0];
+    let mut last = 0.0;
+    for near in report["nearest"].as_array().unwrap() {
+        let distance = number(&near["distance"]);
+        assert!(distance >= last);
+        last = distance;
+        let there: Vec<f64> = (0..4)
+            .map(|i| start[i] + number(&near["turn"][i]))
+            .collect();
+        let pose = format!(
+            "theta1,theta4,theta8,theta5\n{},{},{},{}\n",
+            there[0], there[1], there[2], there[3]
+        );
+        let solved = lizard(&paper("pose --json"), pose).json();
+        let margins: Vec<f64> = match solved["margins"].as_object() {
+            Some(margins) => margins.values().map(number).collect(),
+            None => vec![0.0],
+        };
+        let least = margins.iter().fold(1.0_f64, |least, m| least.min(m.abs()));
+        assert!(least < 1e-4, "{} {least}", near["what"]);
+    }
+}
+
+#[test]
+fn rates_agree_with_differences_of_positions() {
+    let rows = lizard(&paper("pose --show rates --json --omega1 120 --omega4 -80 --omega5 60 --omega8 90 --alpha1 500 --alpha8 -700"), "").json();
+    for row in rows.as_array().unwrap() {
+        assert!(number(&row["rate_deviation"]).abs() < 1e-6 * (1.0 + number(&row["rate"]).abs()));
+        assert!(
+            number(&row["acceleration_deviation"]).abs()
+                < 1e-6 * (100.0 + number(&row["acceleration"]).abs())
+        );
+    }
+}
+
+#[test]
+fn rates_of_any_size_agree_with_differences() {
+    for drive in [
+        "--omega1 1e6 --omega8 -3e5",
+        "--alpha4 1e9",
+        "--omega1 1e-3 --alpha5 1e-3",
+    ] {
+        let rows = lizard(&paper(&format!("pose --show rates {drive}")), "").out;
+        let verdicts = rows
+            .lines()
+            .skip(1)
+            .filter(|row| row.ends_with("agree to 1e-6"));
+        assert_eq!(verdicts.count(), 12, "{drive}\n{rows}");
+    }
+}
+
+#[test]
+fn a_point_leads_to_angles_and_back_to_the_point() {
+    // The last two would take a leg through its change point.
+    for (point, safe) in [
+        ("5 120", true),
+        ("-6 118", true),
+        ("0 139", true),
+        ("-22 110", false),
+        ("20 105.5", false),
+    ] {
+        let report = lizard(&paper(&format!("pose --json --head {point}")), "").json();
+        let ways = report["head"]["working_modes"].as_array().unwrap();
+        assert_eq!(ways.len(), 4);
+        for way in ways {
+            assert!(number(&way["error_mm"]) < 1e-9, "{point}");
+        }
+        assert_eq!(ways[0]["reachable"], safe, "{point}");
+        assert_eq!(report["safe"], safe, "{point}");
+        assert_eq!(ways[3]["reachable"], false, "{point}");
+    }
+}
+
+#[test]
+fn the_papers_gesture_look_stays_where_the_conditioning_is_at_least_0_7() {
+    let robot = lizard_robot::Robot::parse(&read("robots/paper.toml")).expect("robots/paper.toml");
+    let look = robot.gait("look").expect("look");
+    for i in 0..1000 {
+        let solution = robot
+            .lizard()
+            .solve(&look.pose(f64::from(i) / 1000.0))
+            .unwrap();
+        assert!(solution.head.lci() >= 0.7, "{}", solution.head.lci());
+    }
+}
+
+#[test]
+fn at_type_2_the_locked_servos_leave_the_papers_end_point_loose() {
+    let at = |pose: &str| lizard(&paper(&format!("pose --show freedoms --json {pose}")), "").json();
+    let home = at("");
+    for mechanism in home.as_array().unwrap() {
+        assert_eq!(mechanism["locked_freedoms"], 0, "{mechanism}");
+    }
+    // Crank tips that coincide but for the seventh digit.
+    let head = at("--theta1 70.528779 --theta4 109.471221 --theta8 318.59 --theta5 221.41");
+    assert_eq!(
+        (&head[0]["freedoms"], &head[0]["locked_freedoms"]),
+        (&Value::from(4), &Value::from(1))
+    );
+    assert_eq!(
+        head[0]["loose"][0],
+        "the head's end point is loose (type 2)"
+    );
+    let tail = at("--theta1 138.59 --theta4 41.41 --theta8 -109.471221 --theta5 -70.528779");
+    assert_eq!(
+        tail[0]["loose"][0],
+        "the tail's end point is loose (type 2)"
+    );
+    let text = lizard(
+        &paper(
+            "pose --show freedoms --theta1 70.528779 --theta4 109.471221 --theta8 318.59 --theta5 221.41",
+        ),
+        "",
+    );
+    assert!(
+        !text.out.contains("four servos hold the body"),
+        "{}",
+        text.out
+    );
+    assert!(
+        text.out.contains("the head's end point is loose"),
+        "{}",
+        text.out
+    );
+    // A flat leg is loose even with its crank locked.
+    let flat = at("--theta1 138 --theta4 0 --theta8 318 --theta5 221");
+    assert_eq!(flat[2]["locked_freedoms"], 1);
+}
+
+#[test]
+fn a_wide_base_has_a_circle() {
+    let design = lizard("design --json --r1 0.2 --r2 0.3", "").json();
+    assert!((number(&design["r_mic"]) - 2.5).abs() < 1e-9);
+    assert_eq!(number(&design["y_mic"]), 0.0);
+    let points = lizard("design --chart --json --step 0.05", "").json();
+    for point in points.as_array().unwrap() {
+        assert!(number(&point["r_mic"]) > 0.0, "{point}");
+    }
+}
+
+#[test]
+fn matrices_name_their_rows_and_columns_in_servo_order() {
+    let report = lizard("pose --show singularities --json", "").json();
+    assert_eq!(
+        report["k"]["columns"],
+        serde_json::json!(["theta1", "theta4", "theta8", "theta5"])
+    );
+    for (matrix, columns) in [("k", 4), ("k_star", 8)] {
+        let matrix = &report[matrix];
+        assert_eq!(matrix["rows"].as_array().unwrap().len(), 8);
+        assert_eq!(matrix["columns"].as_array().unwrap().len(), columns);
+        for row in matrix["values"].as_array().unwrap() {
+            assert_eq!(row.as_array().unwrap().len(), columns);
+        }
+    }
+    // The head's rows know the front servos only, the tail's the back ones.
+    for (row, front) in [(0, true), (1, true), (2, false), (3, false)] {
+        for column in 0..4 {
+            let entry = number(&report["k"]["values"][row][column]);
+            assert_eq!(
+                entry != 0.0,
+                (column < 2) == front,
+                "{row} {column} {entry}"
+            );
+        }
+    }
+}

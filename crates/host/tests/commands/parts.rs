@@ -1,0 +1,148 @@
+//! `lizard parts` as its user runs it.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::program::{Outcome, read, robot, run, scratch};
+
+fn make(folder: &Path, words: &[&str]) -> Outcome {
+    let folder = folder.display().to_string();
+    run(&[&["parts", &folder], words].concat())
+}
+
+/// A path at which there is no folder.
+fn fresh(name: &str) -> PathBuf {
+    let folder = scratch().join(name);
+    let _ = fs::remove_dir_all(&folder);
+    folder
+}
+
+/// The paper's robot with changes, in a file of this name.
+fn changed(name: &str, change: impl Fn(String) -> String) -> String {
+    let file = scratch().join(name);
+    fs::write(&file, change(read("robots/paper.toml"))).expect("a file");
+    file.display().to_string()
+}
+
+#[test]
+fn a_folder_holds_everything_to_build_the_robot() {
+    let folder = fresh("parts-all");
+    make(&folder, &["--robot", &robot("paper")]).said();
+    for file in [
+        "step/plate.step",
+        "stl/link-A1-A3.stl",
+        "cut/link-A1-A3.dxf",
+        "cut/coupler-A1.svg",
+        "stl/coupon.stl",
+        "stl/rigid-strut.stl",
+        "bill.json",
+        "guide/guide.html",
+        "guide/guide.md",
+        "guide/robot.svg",
+        "guide/step-11-done.svg",
+        "guide/step-1-near.svg",
+        "guide/step-2-below.svg",
+        "guide/placements.json",
+        "stl/head-plate.stl",
+    ] {
+        assert!(folder.join(file).is_file(), "{file}");
+    }
+    let guide = fs::read_to_string(folder.join("guide/guide.md")).expect("a guide");
+    assert!(guide.contains("## 9. Struts\n"), "{guide}");
+    assert!(
+        guide.contains("Instead of the struts, 4 x strut,"),
+        "{guide}"
+    );
+    assert!(
+        !guide.contains("hook of the spring") && !guide.contains("tension"),
+        "{guide}"
+    );
+    for line in guide.lines().filter(|line| line.starts_with("![")) {
+        let (_, file) = line.trim_end_matches(')').rsplit_once('(').expect("a file");
+        assert!(folder.join("guide").join(file).is_file(), "{file}");
+    }
+}
+
+#[test]
+fn one_corner_can_be_printed_first() {
+    let folder = fresh("parts-corner");
+    let list = make(&folder, &["--robot", &robot("paper"), "--corner", "--json"]).json();
+    let list = list.as_array().expect("a list");
+    let names: Vec<_> = list
+        .iter()
+        .filter_map(|part| part["part"].as_str())
+        .collect();
+    for part in [
+        "seat A1",
+        "link A1 A3",
+        "crank LF RH",
+        "follower",
+        "leg coupler",
+        "foot LF RH",
+    ] {
+        assert!(names.contains(&part), "{names:?}");
+    }
+    assert!(
+        names.iter().any(|name| name.ends_with("strut")),
+        "{names:?}"
+    );
+    assert!(list.iter().all(|part| part["count"] == 1), "{list:?}");
+    assert!(!names.contains(&"plate") && !folder.join("bill.json").exists());
+    assert!(folder.join("stl/seat-A1.stl").is_file());
+}
+
+#[test]
+fn a_weight_that_is_not_the_parts_is_told_with_what_to_put_in_its_place() {
+    let light = changed("light.toml", |text| {
+        text.replace("mass = 396.4", "mass = 280.0")
+    });
+    let said = |robot: &str| make(&fresh("parts-light"), &["--robot", robot]).said();
+    let light = said(&light);
+    assert!(
+        light.contains("The parts weigh 396 g") && light.ends_with("\n[body]\nmass = 396.0\n"),
+        "{light}"
+    );
+    assert_eq!(said(&robot("paper")).lines().count(), 1);
+}
+
+#[test]
+fn struts_may_have_springs() {
+    let folder = fresh("parts-strut");
+    let robot = changed("strut.toml", |text| {
+        text + "\n[leg.drive]\nkind = \"strut\"\nforce = 4.0\nrate = 0.4\n"
+    });
+    make(&folder, &["--robot", &robot]).said();
+    for file in [
+        "stl/rigid-strut.stl",
+        "cut/rigid-strut.dxf",
+        "stl/strut.stl",
+    ] {
+        assert!(folder.join(file).is_file(), "{file}");
+    }
+    let guide = fs::read_to_string(folder.join("guide/guide.md")).expect("a guide");
+    assert!(guide.contains("## 9. Struts and springs"), "{guide}");
+    for words in [
+        "Instead of the struts, 4 x rigid strut,",
+        "hook",
+        "tension",
+        "pulls 4.0 N (0.40 N/mm)",
+        "[leg.drive]\nkind = \"strut\"\nforce = 4.00\nrate = 0.400\n",
+    ] {
+        assert!(guide.contains(words), "{words}: {guide}");
+    }
+}
+
+#[test]
+fn a_robot_whose_parts_meet_is_refused_and_nothing_is_written() {
+    let folder = fresh("parts-refused");
+    let robot = changed("wide.toml", |text| text + "\n[parts]\nbar = 24.0\n");
+    let made = make(&folder, &["--robot", &robot]);
+    assert_eq!(made.code, Some(1));
+    let said = made.err;
+    assert!(
+        said.contains(" overlap by ") && said.contains(" at pose "),
+        "{said}"
+    );
+    assert_eq!(said.lines().count(), 1, "{said}");
+    assert!(!folder.exists());
+}

@@ -1,0 +1,114 @@
+//! Runs `lizard`.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use lizard_time_limit::LIMIT;
+
+/// The result of a run.
+#[derive(Debug)]
+pub struct Outcome {
+    /// The exit code; none after a signal.
+    pub code: Option<i32>,
+    pub out: String,
+    pub err: String,
+}
+
+impl Outcome {
+    /// Standard output of a run that succeeds.
+    pub fn said(self) -> String {
+        assert_eq!(self.code, Some(0), "{}", self.err);
+        self.out
+    }
+
+    /// Standard output as one JSON value.
+    pub fn json(self) -> serde_json::Value {
+        serde_json::from_str(&self.said()).expect("JSON")
+    }
+
+    /// The message of a run that refuses its input and writes nothing.
+    pub fn refusal(self) -> String {
+        assert_eq!(self.code, Some(2), "{}", self.err);
+        assert_eq!(self.out, "", "nothing is half written");
+        self.err.trim().to_owned()
+    }
+}
+
+/// The root of the repository.
+pub fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// The text of a file of the repository.
+pub fn read(path: &str) -> String {
+    std::fs::read_to_string(root().join(path)).unwrap_or_else(|fault| panic!("{path}: {fault}"))
+}
+
+/// A folder for files of tests.
+pub fn scratch() -> &'static Path {
+    Path::new(env!("CARGO_TARGET_TMPDIR"))
+}
+
+/// The path of a robot of robots/.
+pub fn robot(name: &str) -> String {
+    let path = root().join("robots").join(name).with_extension("toml");
+    path.display().to_string()
+}
+
+/// Adds the paper's robot to a command line: for tests that check its figures.
+pub fn paper(args: &str) -> String {
+    format!("{args} --robot robots/paper.toml")
+}
+
+/// A robot file for one test, the paper's with some lines changed; removed when
+/// dropped.
+pub struct RobotFile(std::path::PathBuf);
+
+impl RobotFile {
+    pub fn with(name: &str, changes: &[(&str, &str)]) -> Self {
+        let mut text = read("robots/paper.toml");
+        for (from, to) in changes {
+            assert!(text.contains(from), "robots/paper.toml has no {from:?}");
+            text = text.replacen(from, to, 1);
+        }
+        let path = std::env::temp_dir().join(format!("{}-{name}.toml", std::process::id()));
+        std::fs::write(&path, text).expect("a temporary file");
+        Self(path)
+    }
+
+    /// The command line for this robot.
+    pub fn of(&self, args: &str) -> String {
+        format!("{args} --robot {}", self.0.display())
+    }
+}
+
+impl Drop for RobotFile {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_file(&self.0);
+    }
+}
+
+/// Runs the program in the repository's root with this standard input.
+pub fn lizard(line: &str, input: impl AsRef<[u8]>) -> Outcome {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    run_in(&root(), &words, input)
+}
+
+/// Runs the program in a folder for files of tests.
+pub fn run(words: &[&str]) -> Outcome {
+    run_in(scratch(), words, "")
+}
+
+/// Runs the program in a folder with this standard input.
+pub fn run_in(folder: &Path, words: &[&str], input: impl AsRef<[u8]>) -> Outcome {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
+    command.args(words).current_dir(folder);
+    // A program that stops at bad input closes its end; that is no failure here.
+    let output = LIMIT.output(&mut command, input.as_ref());
+    let output = output.expect("lizard ends");
+    Outcome {
+        code: output.status.code(),
+        out: String::from_utf8(output.stdout).expect("UTF-8"),
+        err: String::from_utf8(output.stderr).expect("UTF-8"),
+    }
+}

@@ -1,0 +1,103 @@
+//! docs/quickstart.md: what it lets its reader type is what the firmware answers.
+
+use lizard_core::virtual_board::Running;
+use lizard_robot::Robot;
+
+use crate::program::read;
+
+/// The paper's robot with an EEPROM that was never written, on 5 V.
+struct Board {
+    running: Running,
+}
+
+impl Board {
+    fn new() -> Self {
+        let robot = Robot::parse(&read("robots/paper.toml")).expect("robots/paper.toml");
+        Self {
+            running: Running::power_on(*robot.firmware()),
+        }
+    }
+
+    /// The lines printed within some frames.
+    fn run(&mut self, frames: u32) -> Vec<String> {
+        self.running.run(frames)
+    }
+
+    /// The answer to a line, until all motion has ended.
+    fn send(&mut self, line: &str) -> Vec<String> {
+        let mut said = self.running.send(format!("{line}\r").as_bytes());
+        said.extend(self.run(100));
+        said
+    }
+}
+
+/// True if a line is as the page shows it, which may omit its end.
+fn is(line: &str, shown: &str) -> bool {
+    shown
+        .strip_suffix("...")
+        .map_or(line == shown, |begin| line.starts_with(begin))
+}
+
+#[test]
+fn every_line_of_the_quickstart_is_answered_as_it_shows() {
+    let page = read("docs/quickstart.md");
+    let mut board = Board::new();
+    let greeting = board.run(50);
+    for line in &greeting[1..] {
+        assert!(page.contains(line), "{line}");
+    }
+    let mut lines = 0;
+    for block in page.split("```text\n").skip(1) {
+        let block = block.split("```").next().expect("a closed block");
+        for turn in block.split("> ").skip(1) {
+            let mut shown = turn.lines();
+            let line = shown.next().expect("a line");
+            let shown: Vec<&str> = shown.collect();
+            let said = board.send(line);
+            let alike = said.len() == shown.len()
+                && said.iter().zip(&shown).all(|(said, shown)| is(said, shown));
+            assert!(
+                alike,
+                "{line}\n  is answered by {said:#?}\n  but shown as {shown:#?}"
+            );
+            lines += 1;
+        }
+    }
+    assert!(lines > 20, "{lines}");
+}
+
+#[test]
+fn every_sentence_in_the_table_of_troubles_is_one_of_the_firmware() {
+    let (page, sentences) = (
+        read("docs/quickstart.md"),
+        read("crates/core/src/console/text.rs"),
+    );
+    let (_, table) = page.split_once("## Troubleshooting").expect("a table");
+    let mut codes = [false; 10];
+    let mut rows = 0;
+    for row in table.lines().filter(|line| line.starts_with('|')) {
+        rows += 1;
+        for quoted in row.split('`').skip(1).step_by(2) {
+            let said = if let Some(refusal) = quoted.strip_prefix("err ") {
+                let (code, reason) = refusal.split_at(1);
+                codes[code.parse::<usize>().expect("a code")] = true;
+                reason
+            } else if quoted.starts_with("# ") {
+                quoted
+            } else {
+                continue;
+            };
+            for words in said
+                .split("...")
+                .map(|words| words.trim_matches([' ', ',']))
+            {
+                assert!(sentences.contains(words), "nothing says {words:?}");
+            }
+        }
+    }
+    assert!(rows > 17, "{rows}");
+    assert_eq!(
+        codes,
+        [false, true, true, true, true, true, true, true, true, true]
+    );
+}

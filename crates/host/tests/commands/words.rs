@@ -1,0 +1,202 @@
+//! The words of the command line: which there are, which are meant by others, and what
+//! shells and `man` know of them.
+
+use std::path::Path;
+use std::process::Command;
+
+use lizard_time_limit::LIMIT;
+
+use crate::program::{robot, run, scratch};
+
+fn said(words: &[&str]) -> String {
+    run(words).said()
+}
+
+fn complaint(words: &[&str]) -> String {
+    run(words).refusal()
+}
+
+/// The first words of the lines under a heading of `lizard --help`.
+fn under(help: &str, heading: &str) -> Vec<String> {
+    let (_, after) = help.split_once(&format!("\n{heading}:\n")).expect(heading);
+    let (section, _) = after.split_once("\n\n").expect("a section ends");
+    let first = |line: &str| line.split_whitespace().next().expect("a word").to_owned();
+    section.lines().map(first).collect()
+}
+
+#[test]
+fn help_has_every_command_under_what_it_is_for_and_the_owners_first() {
+    let help = said(&["--help"]);
+    let headings = [
+        "Drive the robot",
+        "Simulate it",
+        "Build it",
+        "Change its gaits and measures",
+        "The paper, computed",
+        "For scripts and development",
+        "Options",
+    ];
+    let places = headings.map(|heading| help.find(&format!("\n{heading}:\n")).expect(heading));
+    assert!(places.is_sorted(), "{help}");
+    assert!(
+        help.contains("\n  merge, completions, man, bench\n"),
+        "{help}"
+    );
+    let listed = headings[..5]
+        .iter()
+        .map(|heading| under(&help, heading).len());
+    assert!(listed.sum::<usize>() <= 20, "{help}");
+    assert!(under(&help, "Drive the robot").contains(&"console".to_owned()));
+    assert_eq!(said(&["help"]), help);
+}
+
+#[test]
+fn a_roboticists_words_mean_the_same_commands() {
+    assert_eq!(said(&["monitor", "--help"]), said(&["console", "--help"]));
+    let help = said(&["help"]);
+    let line = help.lines().find(|line| line.contains(" console "));
+    assert!(line.expect("console").ends_with("[also: monitor]"));
+}
+
+#[test]
+fn a_word_of_the_version_before_does_the_same_and_names_the_new_one() {
+    for (old, new) in [
+        ("fk --help", "pose --help"),
+        ("inverse --head 5 120", "pose --head 5 120"),
+        ("jacobian --omega1 5", "pose --show rates --omega1 5"),
+        ("singularity --json", "pose --show singularities --json"),
+        ("mobility --json", "pose --show freedoms --json"),
+        ("record a.jsonl --help", "console --help"),
+    ] {
+        let [old, new] = [old, new].map(|line| run(&line.split(' ').collect::<Vec<_>>()));
+        assert!(old.out == new.out, "{old:?}");
+        let note = old.err;
+        assert!(
+            note.contains("` now; the next version will not know"),
+            "{note}"
+        );
+        assert_eq!(new.err, "");
+    }
+    let gone = complaint(&["spring", "--wire", "0.6"]);
+    assert!(
+        gone.contains("no command `spring` any more; a spring's force"),
+        "{gone}"
+    );
+}
+
+#[test]
+fn a_word_of_20_000_letters_is_not_repeated_in_full() {
+    let long = "x".repeat(20_000);
+    let folder = tempfile::tempdir().expect("a folder");
+    let robot = folder.path().join("x.toml");
+    std::fs::write(&robot, format!("name = {long}\n")).expect("it is written");
+    let robot = robot.display().to_string();
+    for words in [
+        &[long.as_str()][..],
+        &["gaits", "--robot", &long],
+        &["gaits", "--robot", &robot],
+        &["sim", "--gait", &long],
+        &["draw", "--theta1", &long],
+        &["restore", &long],
+    ] {
+        let error = complaint(words);
+        assert!(error.contains("xxx [..."), "{error}");
+        assert!(error.len() < 2500, "{} bytes: {error}", error.len());
+    }
+}
+
+#[test]
+fn a_mistyped_word_is_answered_with_the_one_that_was_meant() {
+    let paper = &robot("paper");
+    for (words, meant) in [
+        (&["claibrate"][..], "'calibrate'"),
+        (&["sim", "--durration", "5"], "'--duration'"),
+        (&["draw", "--wirring"], "'--wiring'"),
+        (&["sim", "--fidelity", "stok"], "'stock'"),
+        (
+            &["sim", "--gait", "wlak", "--robot", paper],
+            "; did you mean `walk`?",
+        ),
+        (
+            &["twin", "--gait", "trott", "--robot", paper],
+            "; did you mean `trot`?",
+        ),
+        (
+            &["tune", "--gait", "wakl", "--robot", paper],
+            "; did you mean `walk`?",
+        ),
+        (
+            &["gaits", "--trace", "arc-lfet", "--robot", paper],
+            "; did you mean `arc-left`?",
+        ),
+    ] {
+        let error = complaint(words);
+        assert!(error.contains(meant), "{words:?}: {error}");
+    }
+}
+
+/// The completions that bash offers after some words, from the script alone.
+#[cfg(unix)]
+fn offered(script: &Path, words: &str, place: usize) -> Vec<String> {
+    let line = format!(
+        ". {}; COMP_WORDS=({words}); COMP_CWORD={place}; COMP_LINE='{words}'; \
+         _lizard lizard \"${{COMP_WORDS[{place}]}}\" \"${{COMP_WORDS[{}]}}\"; \
+         printf '%s\\n' \"${{COMPREPLY[@]}}\"",
+        script.display(),
+        place - 1
+    );
+    let mut bash = Command::new("bash");
+    bash.args(["--norc", "-c", &line]);
+    let output = LIMIT.output(&mut bash, b"").expect("bash runs");
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{error}");
+    let text = String::from_utf8_lossy(&output.stdout);
+    text.lines().map(str::to_owned).collect()
+}
+
+#[test]
+#[cfg(unix)]
+fn bash_completes_commands_and_options() {
+    let script = scratch().join("lizard.bash");
+    std::fs::write(&script, said(&["completions", "bash"])).expect("it is written");
+    assert_eq!(offered(&script, "lizard calib", 1), ["calibrate"]);
+    assert_eq!(
+        offered(&script, "lizard twin --ro", 2),
+        ["--robust", "--robot"]
+    );
+    assert_eq!(offered(&script, "lizard sim --fidelity sto", 3), ["stock"]);
+}
+
+#[test]
+fn every_command_has_a_manual_page_that_names_its_options() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let pages = folder.path().join("man1");
+    said(&["man", &pages.display().to_string()]);
+    let help = said(&["--help"]);
+    let mut count = 0;
+    for heading in [
+        "Drive the robot",
+        "Simulate it",
+        "Build it",
+        "The paper, computed",
+    ] {
+        for name in under(&help, heading) {
+            let page = std::fs::read_to_string(pages.join(format!("lizard-{name}.1")));
+            let page = page.expect("it is there");
+            assert!(page.contains(&format!(".TH lizard-{name} 1")), "{page}");
+            // In a manual page a hyphen that is to be typed is written `\-`.
+            assert!(page.contains(r"\-\-help"), "{page}");
+            count += 1;
+        }
+    }
+    assert!(count > 15, "{count}");
+    let whole = std::fs::read_to_string(pages.join("lizard.1")).expect("it is there");
+    assert!(whole.contains("lizard\\-console(1)"), "{whole}");
+}
+
+#[test]
+fn bench_without_a_build_says_what_it_needs_and_where_it_comes_from() {
+    let words = complaint(&["bench"]);
+    assert!(words.contains("`make firmware`"), "{words}");
+    assert!(words.contains("lizard bench --elf "), "{words}");
+}

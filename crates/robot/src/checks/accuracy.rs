@@ -1,0 +1,81 @@
+//! The error of the tables, as the firmware reads them, against the gaits in floating
+//! point.
+
+use lizard_core::numbers::units::CYCLE16;
+
+use crate::gaits::Gait;
+use crate::tables::Tables;
+
+/// The error of a gait's tables over a cycle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TableError {
+    /// Largest error over all servos, deg.
+    pub max: f64,
+    /// Root mean square over all servos, deg.
+    pub rms: f64,
+    /// Index of the servo with the largest error, 0 to 3.
+    pub servo: usize,
+    /// Phase of the largest error, 0 to 1.
+    pub phase: f64,
+}
+
+/// Number of phases that the firmware can be in.
+pub(crate) const ALL_PHASES: usize = CYCLE16 as usize;
+
+/// Computes the error of the tables of a gait, by its index, over `count` evenly spaced phases, a divisor of [`ALL_PHASES`].
+pub(crate) fn worst(gait: &Gait, index: usize, tables: &Tables, count: usize) -> TableError {
+    let mut error = TableError {
+        max: 0.0,
+        rms: 0.0,
+        servo: 0,
+        phase: 0.0,
+    };
+    let mut squares = 0.0;
+    for i in 0..count {
+        let step = (i * (ALL_PHASES / count)) as u16;
+        let phase = f64::from(step) / ALL_PHASES as f64;
+        let table = gait.table_angles(tables.sweeps(index, step));
+        let float = gait.angles(phase);
+        for servo in 0..4 {
+            let off = (table[servo] - float[servo]).abs();
+            squares += off * off;
+            if off > error.max {
+                error = TableError {
+                    max: off,
+                    servo,
+                    phase,
+                    ..error
+                };
+            }
+        }
+    }
+    error.rms = (squares / (4 * count) as f64).sqrt();
+    error
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::testing::all;
+
+    #[test]
+    fn the_error_is_the_largest_of_all_servos() {
+        const COUNT: usize = 1024;
+        for (name, robot) in all() {
+            for gait in robot.gaits() {
+                let mut errors = [0.0f64; 4];
+                for i in 0..COUNT {
+                    let table = gait.table_angles((64 * i) as u16);
+                    let float = gait.angles(i as f64 / COUNT as f64);
+                    for servo in 0..4 {
+                        errors[servo] = errors[servo].max((table[servo] - float[servo]).abs());
+                    }
+                }
+                let worst = gait.error_over(COUNT);
+                let most = errors.into_iter().fold(0.0, f64::max);
+                assert_eq!(worst.max, most, "{name} {}", gait.name());
+                assert_eq!(errors[worst.servo], most);
+                assert!(worst.rms <= most && 2.0 * worst.rms >= most / COUNT as f64);
+            }
+        }
+    }
+}

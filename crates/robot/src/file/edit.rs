@@ -1,0 +1,230 @@
+//! Changes of single values in the text of a robot.toml: comments, blanks and all other lines
+//! stay as they are.
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// The keys of the hips' distances ahead and to the side. Left out, they follow from the legs.
+pub const HIPS: [&str; 2] = ["leg.hip_forward", "leg.hip_side"];
+
+/// Keys that a robot.toml may leave out, and that are added when they get a value.
+const OPTIONAL: [&str; 10] = [
+    HIPS[0],
+    HIPS[1],
+    "leg.drive.kind",
+    "leg.drive.force",
+    "leg.drive.rate",
+    "leg.drive.play",
+    "feet.stiffness",
+    "feet.twist",
+    "ground.friction",
+    "body.mass",
+];
+
+/// The error for a key that the text does not have, or that cannot be changed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NoSuchKey(
+    /// The full name of the key.
+    pub String,
+);
+
+impl std::fmt::Display for NoSuchKey {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(f, "robot.toml has no number {}", self.0)
+    }
+}
+
+/// Sets the number of a key, such as `links.l1`. A key that may be left out is added below the
+/// last line of its table, and a missing table at the end of the text.
+///
+/// # Errors
+/// If the text is not TOML or has no number at this key.
+pub fn with_number(text: &str, key: &str, value: f64) -> Result<String, NoSuchKey> {
+    with_value(text, key, &format!("{value:?}"), |value| {
+        matches!(value, DeValue::Float(_) | DeValue::Integer(_))
+    })
+}
+
+/// Sets the string of a key, as [`with_number`] sets a number.
+///
+/// # Errors
+/// If the text is not TOML or has no string at this key.
+pub fn with_word(text: &str, key: &str, word: &str) -> Result<String, NoSuchKey> {
+    with_value(text, key, &format!("\"{word}\""), |value| {
+        matches!(value, DeValue::String(_))
+    })
+}
+
+fn with_value(
+    text: &str,
+    key: &str,
+    value: &str,
+    has_type: fn(&DeValue) -> bool,
+) -> Result<String, NoSuchKey> {
+    let missing = || NoSuchKey(key.to_string());
+    let document = DeTable::parse(text).map_err(|_| missing())?;
+    let (table, name) = key.rsplit_once('.').ok_or_else(missing)?;
+    if let Some(old) = find(document.get_ref(), key) {
+        if !has_type(old.get_ref()) {
+            return Err(missing());
+        }
+        let mut changed = text.to_string();
+        changed.replace_range(old.span(), value);
+        return Ok(changed);
+    }
+    if !OPTIONAL.contains(&key) {
+        return Err(missing());
+    }
+    let line = format!("{name} = {value}");
+    let Some(entries) = find(document.get_ref(), table) else {
+        let end = if text.ends_with('\n') { "" } else { "\n" };
+        return Ok(format!("{text}{end}\n[{table}]\n{line}\n"));
+    };
+    let entries = entries.get_ref().as_table().ok_or_else(missing)?;
+    let last = entries.values().map(|value| value.span().end).max();
+    let end = line_end(text, last.ok_or_else(missing)?);
+    let mut longer = text.to_string();
+    longer.insert_str(end, &format!("\n{line}"));
+    // In a table that is written on one line, the new line would belong to another table.
+    let document = DeTable::parse(&longer).map_err(|_| missing())?;
+    match find(document.get_ref(), key) {
+        Some(added) if added.span().start > end => Ok(longer.clone()),
+        _ => Err(missing()),
+    }
+}
+
+/// Removes the line of a key that may be left out. Without the key the text stays as it is.
+///
+/// # Errors
+/// If the key is in a table that is written on one line.
+pub fn without(text: &str, key: &str) -> Result<String, NoSuchKey> {
+    let missing = || NoSuchKey(key.to_string());
+    let document = DeTable::parse(text).map_err(|_| missing())?;
+    let (_, name) = key.rsplit_once('.').ok_or_else(missing)?;
+    let Some(value) = find(document.get_ref(), key) else {
+        return Ok(text.to_string());
+    };
+    let begin = text[..value.span().start]
+        .rfind('\n')
+        .map_or(0, |line| line + 1);
+    let end = (line_end(text, value.span().end) + 1).min(text.len());
+    if !text[begin..end].trim_start().starts_with(name) {
+        return Err(missing());
+    }
+    Ok(text[..begin].to_string() + &text[end..])
+}
+
+/// Adds the table of a gait, in place of the gait of the same name or at the end of the text.
+#[must_use]
+pub fn with_gait(text: &str, name: &str, table: &str) -> String {
+    let (own, below) = (format!("[gait.{name}]"), format!("[gait.{name}."));
+    let (mut kept, mut is_own, mut done) = (String::new(), false, false);
+    for line in text.lines() {
+        let head = line.trim_start();
+        if head.starts_with('[') {
+            is_own = head.starts_with(&own) || head.starts_with(&below);
+            if is_own && !done {
+                done = true;
+                kept += table;
+                kept.push('\n');
+            }
+        }
+        // A comment below the last key may belong to the next table.
+        if !is_own || head.starts_with('#') {
+            kept += line;
+            kept.push('\n');
+        }
+    }
+    if !done {
+        kept.push('\n');
+        kept += table;
+    }
+    kept
+}
+
+/// The value of a key of dotted names.
+fn find<'a>(table: &'a DeTable<'a>, key: &str) -> Option<&'a Spanned<DeValue<'a>>> {
+    match key.split_once('.') {
+        Some((first, rest)) => find(table.get(first)?.get_ref().as_table()?, rest),
+        None => table.get(key),
+    }
+}
+
+/// The end of the line that this position is in.
+fn line_end(text: &str, from: usize) -> usize {
+    text[from..]
+        .find('\n')
+        .map_or(text.len(), |line| from + line)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str =
+        "[links]  # lengths\nl0 = 20.0 # base\nl1 = 30\nname = \"x\"\n[servo.A1]\nneutral = 1.5\n";
+
+    #[test]
+    fn only_the_number_changes() {
+        let changed = with_number(TEXT, "links.l0", 21.5).expect("there");
+        assert_eq!(changed, TEXT.replace("20.0", "21.5"));
+        let changed = with_number(TEXT, "servo.A1.neutral", 2.0).expect("there");
+        assert_eq!(changed, TEXT.replace("1.5", "2.0"));
+    }
+
+    #[test]
+    fn a_number_that_was_left_out_is_written_below_its_table() {
+        const LEG: &str = "[leg] # legs\nground = 50.0 # lg10\n# hip_side = 35.0\n\n[servo]\n";
+        let changed = with_number(LEG, "leg.hip_side", 36.0).expect("it may be set");
+        let expected = LEG.replace("# lg10\n", "# lg10\nhip_side = 36.0\n");
+        assert_eq!(changed, expected);
+        let again = with_number(&changed, "leg.hip_side", 37.5).expect("there");
+        assert_eq!(again, expected.replace("36.0", "37.5"));
+        for text in [
+            "leg = { ground = 50.0 }\n",
+            "leg.ground = 50.0\n",
+            "[leg]\n",
+        ] {
+            assert!(with_number(text, "leg.hip_side", 36.0).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_table_that_was_left_out_is_written_below_all() {
+        for text in ["[leg]\nground = 50.0\n", "[leg]\nground = 50.0"] {
+            let changed = with_number(text, "body.mass", 250.0).expect("it may be set");
+            assert_eq!(changed, "[leg]\nground = 50.0\n\n[body]\nmass = 250.0\n");
+        }
+    }
+
+    #[test]
+    fn a_number_is_taken_away_with_its_line() {
+        const DRIVE: &str = "[leg.drive]\nkind = \"strut\"\nforce = 3.0 # N\nplay = 0.5\n";
+        let rest = without(DRIVE, "leg.drive.force").expect("it may be left out");
+        assert_eq!(rest, "[leg.drive]\nkind = \"strut\"\nplay = 0.5\n");
+        assert_eq!(without(&rest, "leg.drive.force"), Ok(rest.clone()));
+        let one = "[leg]\ndrive = { kind = \"strut\", force = 3.0 }\n";
+        assert!(without(one, "leg.drive.force").is_err());
+    }
+
+    #[test]
+    fn a_word_takes_the_place_of_another() {
+        const DRIVE: &str = "[leg.drive] # bars\nkind = \"rigid\" # or not\n";
+        let changed = with_word(DRIVE, "leg.drive.kind", "strut").expect("there");
+        assert_eq!(changed, DRIVE.replace("rigid", "strut"));
+        let added = with_word("[leg]\nmount = 0.0\n", "leg.drive.kind", "strut").expect("new");
+        assert_eq!(
+            added,
+            "[leg]\nmount = 0.0\n\n[leg.drive]\nkind = \"strut\"\n"
+        );
+        assert!(with_word("[leg]\nmount = 0.0\n", "leg.mount", "x").is_err());
+    }
+
+    #[test]
+    fn a_value_that_is_no_number_is_not_changed() {
+        for key in ["links.l2", "links.name", "wings.l0", "links", "servo.A1"] {
+            assert!(with_number(TEXT, key, 1.0).is_err(), "{key}");
+        }
+        assert!(with_number("[links", "links.l0", 1.0).is_err());
+    }
+}

@@ -1,0 +1,122 @@
+//! A gait as the four bars of a gait diagram, each showing when its foot stands: the form in
+//! which the page edits a gait and the search of `lizard tune` varies one.
+
+use crate::gaits::gait::Gait;
+use crate::gaits::waveform::Waveform;
+use crate::measures::servo::LEGS;
+
+/// A gait whose legs have one waveform, each with its own start and gain.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Bars {
+    /// Name of the gait in robot.toml.
+    pub name: String,
+    /// True if the legs move one after the other and hold in between; false if they always move.
+    pub held: bool,
+    /// Time of a cycle at full speed, s.
+    pub period: f64,
+    /// The stance's share of the cycle; unused if legs hold.
+    pub duty: f64,
+    /// Largest sweep of a leg, deg.
+    pub amplitude: f64,
+    /// Phase at which each stance begins, 0 to 1, in servo order: LF, RF, RH, LH. Only their
+    /// order counts if legs hold.
+    pub start: [f64; 4],
+    /// Each leg's share of the amplitude; negative if it runs against the others.
+    pub gain: [f64; 4],
+}
+
+impl Bars {
+    /// Takes a gait apart that moves; none if it follows a path. A reversed gait comes as the
+    /// bars of the same movement.
+    pub(crate) fn of(gait: &Gait) -> Option<Self> {
+        let largest = |most: f64, leg: f64| most.max(leg.abs());
+        let amplitudes = gait.strides.each_ref().map(|leg| leg.amplitude);
+        let amplitude = amplitudes.into_iter().fold(0.0, largest);
+        let mut bars = Self {
+            name: gait.name.clone(),
+            held: false,
+            period: gait.period,
+            duty: 0.75,
+            amplitude,
+            start: [0.0; 4],
+            gain: amplitudes.map(|leg| leg / amplitude),
+        };
+        for (start, stride) in bars.start.iter_mut().zip(&gait.strides) {
+            match stride.waveform {
+                Waveform::Wave { duty } => {
+                    bars.duty = duty;
+                    *start = stride.start;
+                }
+                Waveform::Held { turn } => {
+                    bars.held = true;
+                    *start = turn as f64 / 4.0;
+                }
+                _ => return None,
+            }
+        }
+        Some(match gait.reversed {
+            true => bars.reversed(),
+            false => bars,
+        })
+    }
+
+    /// Reverses the gait in time, so that it walks back if this one walks ahead.
+    ///
+    /// A wave's slow and fast part are each odd about their middle. So in reverse it is its own
+    /// negative, which begins where this one's stance ends. A held wave in reverse is the
+    /// negative of the one in the opposite order; that all four begin at another time makes no
+    /// difference.
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        let start = |leg: usize| match self.held {
+            true => 1.0 - self.start[leg],
+            false => (-self.start[leg] - self.duty).rem_euclid(1.0),
+        };
+        let mut reversed = Self {
+            start: std::array::from_fn(start),
+            gain: self.gain.map(|gain| -gain),
+            ..self.clone()
+        };
+        if self.held {
+            // As places in the order, which are quarters from 0.
+            let first = reversed.start.into_iter().fold(f64::MAX, f64::min);
+            reversed.start = reversed.start.map(|start| start - first);
+        }
+        reversed
+    }
+
+    /// Writes the gait as a table of robot.toml, rounded to thousandths.
+    #[must_use]
+    pub fn table(&self) -> String {
+        let legs = |values: [f64; 4]| {
+            let each = LEGS.iter().zip(values);
+            let each = each.map(|(leg, value)| format!("{leg} = {:?}", rounded(value)));
+            format!("{{ {} }}", each.collect::<Vec<_>>().join(", "))
+        };
+        let (period, amplitude) = (rounded(self.period), rounded(self.amplitude));
+        let waveform = if self.held {
+            let mut order = [0, 1, 2, 3];
+            order.sort_by(|a, b| self.start[*a].total_cmp(&self.start[*b]));
+            let order = order.map(|leg| format!("\"{}\"", LEGS[leg])).join(", ");
+            format!("waveform = \"held\"\namplitude = {amplitude:?}\norder = [{order}]\n")
+        } else {
+            let duty = rounded(self.duty);
+            let start = legs(self.start.map(|start| rounded(start) % 1.0));
+            format!(
+                "waveform = \"wave\"\nduty = {duty:?}\namplitude = {amplitude:?}\nstart = {start}\n"
+            )
+        };
+        let gain = match self.gain.iter().all(|gain| (gain - 1.0).abs() <= 1e-9) {
+            true => String::new(),
+            false => format!("gain = {}\n", legs(self.gain)),
+        };
+        let name = &self.name;
+        format!("[gait.{name}]\nperiod = {period:?}\n{waveform}{gain}")
+    }
+}
+
+/// Rounds a value to thousandths.
+fn rounded(value: f64) -> f64 {
+    (value * 1000.0).round() / 1000.0
+}
