@@ -1,7 +1,6 @@
-//! Turns robot.toml, or the file that LIZARD_ROBOT names, into the section of flash
-//! that says to the firmware what robot it is in. A value or a gait that will not do
-//! ends the build with the sentence that says why; what the check of the gaits found is
-//! left in `gaits.txt` beside the firmware.
+//! Turns robot.toml, or the file that LIZARD_ROBOT names, into the robot's section of flash.
+//! An invalid value or gait ends the build with a sentence that explains it; the report on
+//! the gaits is written to `gaits.txt` beside the firmware.
 
 use std::path::{Path, PathBuf};
 use std::process::exit;

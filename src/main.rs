@@ -15,9 +15,9 @@ mod simavr;
 
 use board::{Uno, sleep};
 
-/// All that main knows. At a fixed address, which the compiler then puts into the
-/// instructions: on the stack, every access would have to work out its own, and the
-/// program would be a tenth larger.
+/// The state of main. Its address is fixed, so the compiler puts it into the instructions:
+/// on the stack, every access would have to compute it, and the program would be a tenth
+/// larger.
 static mut MAIN: Main = Main::new();
 
 #[avr_device::entry]

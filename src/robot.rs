@@ -1,8 +1,8 @@
-//! The robot: whatever lies behind the code in flash.
+//! The robot's section, which lies behind the code in flash.
 //!
-//! This is the one image for any lizard. Its robot is a section of its own
-//! ([`lizard_core::numbers::section`]) at a fixed address, and this program reads it from there
-//! whatever it was built with: another one can be written over it.
+//! The code is the same for any lizard. The robot is a separate section
+//! ([`lizard_core::numbers::section`]) at a fixed address. The program reads it from there, so
+//! that another robot can be written over the one that it was built with.
 
 use lizard_core::numbers::section::SPACE;
 

@@ -1,5 +1,5 @@
-//! What stock simavr asks of an ELF file: chip, clock and voltages. It is in no flash; without
-//! it simavr takes the supply for 3.3 V, at which the firmware does not move.
+//! The note in the ELF file by which stock simavr knows chip, clock and voltages. It is not
+//! part of the flash; without it simavr assumes a supply of 3.3 V, too low to move.
 
 /// A tag of simavr's `avr_mcu_section.h` with a number of 32 bits.
 const fn number(tag: u8, value: u32) -> [u8; 6] {

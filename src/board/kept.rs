@@ -4,8 +4,8 @@
 use core::arch::global_asm;
 
 use avr_device::atmega328p::CPU;
-use lizard_core::memory::kept::{self, CELLS, Cells, Flags};
-use lizard_core::memory::restart::{Restart, Stance};
+use lizard_core::memory::kept::{self, CELLS, Cells};
+use lizard_core::memory::restart::{Cause, Restart, Stance};
 
 use servo_pulses::cells::Byte;
 
@@ -48,27 +48,33 @@ fn cell(at: usize) -> &'static Byte {
     unsafe { &*(&raw const KEPT).cast::<Byte>().add(at) }
 }
 
-/// Why the program begins, and what it did until then; from now on it runs. Once,
-/// with interrupts off, before the watchdog starts.
+/// Returns the cause of the reset and the state from before it, and marks the program as
+/// running. Once, with interrupts off, before the watchdog starts.
 pub fn restart(cpu: &CPU) -> Restart {
     let register = cpu.mcusr.read();
-    let flags = Flags {
-        power_on: register.porf().bit_is_set(),
-        external: register.extrf().bit_is_set(),
-        brown_out: register.borf().bit_is_set(),
-        watchdog: register.wdrf().bit_is_set(),
+    // Several may be set; none is where a boot loader has cleared them.
+    let reported = if register.porf().bit_is_set() {
+        Some(Cause::Power)
+    } else if register.wdrf().bit_is_set() {
+        Some(Cause::Watchdog)
+    } else if register.borf().bit_is_set() {
+        Some(Cause::BrownOut)
+    } else if register.extrf().bit_is_set() {
+        Some(Cause::External)
+    } else {
+        None
     };
     // The watchdog cannot be changed while WDRF is set.
     cpu.mcusr.reset();
-    kept::begin(&Ram, flags)
+    kept::begin(&Ram, reported)
 }
 
-/// Keeps what the servos do.
+/// Stores the servos' state.
 pub fn keep(stance: &Stance, brown_outs: u8) {
     kept::keep(&Ram, stance, brown_outs);
 }
 
-/// From the watchdog's interrupt: the program has hung.
+/// Marks the program as hung; called by the watchdog's interrupt.
 pub fn mark_hung() {
     kept::mark_hung(&Ram);
 }

@@ -1,4 +1,4 @@
-//! The board: the one place that knows registers, pins and interrupts.
+//! The board: the only code that knows registers, pins and interrupts.
 //!
 //! An Arduino UNO has one processor for everything, and the servos react to every cycle
 //! by which an edge is late. So the interrupts do as little as the hardware allows and
@@ -9,8 +9,8 @@
 //! - [`serial`] owns the USART and its two rings.
 //! - [`led`] owns D13.
 //! - [`eeprom`] owns the EEPROM, [`supply`] the analogue converter.
-//! - [`watchdog`] restarts the program when it hangs; [`kept`] is what the new program
-//!   knows of the one before; [`stack`] protects the data from the stack.
+//! - [`watchdog`] restarts the program when it hangs; [`kept`] carries the servos' state from
+//!   the previous run to the next; [`stack`] protects the data from the stack.
 //! - [`sleep`] stops the processor until a tick or a byte.
 //!
 //! Main never switches interrupts off for more than the few cycles that `sleep`, a 16-bit
@@ -37,7 +37,7 @@ use lizard_core::memory::restart::{Restart, Stance};
 use lizard_core::step::Board;
 use lizard_core::control::supply::Reading;
 
-/// The board, started.
+/// The started board of an Arduino UNO.
 pub struct Uno {
     writer: serial::Writer,
     eeprom: eeprom::Eeprom,

@@ -6,16 +6,16 @@
 //! the other out. The handlers are short, because the servos' edges may have to wait for
 //! one of them.
 
-use core::convert::Infallible;
 
 use avr_device::atmega328p::USART0;
 use avr_device::atmega328p::usart0::RegisterBlock;
 use lizard_core::console::line::GARBLED;
+use lizard_core::console::output::Output;
 
 use servo_pulses::cells::{Byte, Counter};
 
-/// A whole line: main may look away for 64 bytes, 89 000 cycles, seven times what
-/// a frame may take.
+/// Room for a complete line: main may be busy for 64 bytes, 89 000 cycles, seven times the
+/// limit of a frame.
 const RECEIVE: usize = 64;
 
 /// The longest line of the console fits, and numbers modulo 256 are the cheapest.
@@ -53,7 +53,7 @@ impl<const N: usize> Ring<N> {
         }
     }
 
-    /// Bytes that fit.
+    /// The number of bytes that fit in.
     fn room(&self) -> u8 {
         Self::CAPACITY - self.head.get().wrapping_sub(self.tail.get())
     }
@@ -110,12 +110,12 @@ pub fn read() -> Option<u8> {
     RECEIVED.take()
 }
 
-/// Whether [`read`] would give a byte.
+/// True if [`read`] would return a byte.
 pub fn pending() -> bool {
     !RECEIVED.is_empty()
 }
 
-/// Whether bytes wait to be sent.
+/// True while bytes wait to be sent.
 pub fn sending() -> bool {
     !TO_SEND.is_empty()
 }
@@ -135,22 +135,10 @@ pub fn lost() -> u16 {
 /// until the line has taken another, 1389 cycles at most.
 pub struct Writer;
 
-impl ufmt::uWrite for Writer {
-    type Error = Infallible;
-
-    fn write_str(&mut self, text: &str) -> Result<(), Infallible> {
-        for &byte in text.as_bytes() {
-            send(byte);
-        }
-        Ok(())
-    }
-
-    // The robot speaks ASCII. What the trait does for other characters would take as
-    // long as all else that a character needs.
+impl Output for Writer {
     #[inline(always)]
-    fn write_char(&mut self, character: char) -> Result<(), Infallible> {
-        send(character as u8);
-        Ok(())
+    fn byte(&mut self, byte: u8) {
+        send(byte);
     }
 }
 

@@ -2,13 +2,13 @@
 //!
 //! The stack grows down from the end of RAM towards the data, and nothing in the chip
 //! stops it there. `make bench` computes how deep it can get. The word between the two is
-//! for cases that nobody has foreseen; it is checked in every frame.
+//! for unforeseen cases; it is checked in every frame.
 
 use core::arch::global_asm;
 
 use servo_pulses::cells::Byte;
 
-/// What is hardly ever pushed by accident.
+/// A pattern that is hardly ever pushed by accident.
 const GUARD: [u8; 4] = [0xde, 0x5a, 0xc3, 0x17];
 
 // The last of the data: the section comes after all others. The start-up code does
@@ -32,7 +32,7 @@ fn word() -> &'static [Byte; 4] {
     unsafe { &WORD }
 }
 
-/// Sets the guard. Once.
+/// Writes the guard word. Once.
 pub fn start() {
     // Byte by byte: the loop over both arrays takes four times as much flash.
     let [a, b, c, d] = word();
@@ -42,7 +42,7 @@ pub fn start() {
     d.set(GUARD[3]);
 }
 
-/// Whether the stack has kept off the data.
+/// True while the stack has not grown into the data.
 pub fn is_intact() -> bool {
     let [a, b, c, d] = word();
     a.get() == GUARD[0] && b.get() == GUARD[1] && c.get() == GUARD[2] && d.get() == GUARD[3]

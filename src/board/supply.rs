@@ -28,11 +28,11 @@ pub struct Converter {
     reading: Reading,
     /// The channel of the servos' rail, where it is measured.
     channel: Option<u8>,
-    /// Whether the rail's turn is under way.
+    /// True while the rail is being measured, false while the reference is.
     rail: bool,
-    /// Whether the channel has been chosen and nothing converted yet.
+    /// True if the channel is selected and its conversion has not been started yet.
     chosen: bool,
-    /// Whether all that is measured has been.
+    /// True once every voltage has been measured.
     complete: bool,
 }
 
@@ -56,8 +56,8 @@ impl Converter {
         self.channel = pin.map(|pin| pin.wrapping_sub(A0) & 7);
     }
 
-    /// What was read last, all of it or nothing; begins the next part of a
-    /// measurement. To be called once a frame.
+    /// The last complete reading, or nothing; begins the next part of a measurement. To be
+    /// called once a frame.
     pub fn next(&mut self) -> Reading {
         if self.chosen {
             self.chosen = false;

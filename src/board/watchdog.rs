@@ -2,7 +2,7 @@
 //!
 //! It has its own clock of 128 kHz. If it is not fed for 125 ms, it interrupts the
 //! program; after 125 ms more it resets the chip (data sheet, section 11.8). The
-//! interrupt marks in memory that the program hung, lets no further pulse begin, and
+//! interrupt marks in RAM that the program hung, lets no further pulse begin, and
 //! never returns: a program that has hung is not trusted again, even if it could
 //! continue. Meanwhile the pulses' own interrupts run, so the reset does not cut a pulse
 //! short, and the next program knows why it began.
@@ -20,7 +20,7 @@ const WDTCSR: u8 = 0x60;
 const CHANGE: u8 = 0x18;
 const GUARD: u8 = 0x4b;
 
-/// Sets it going. With interrupts off, once; WDRF must have been cleared before.
+/// Starts it. With interrupts off, once; WDRF must have been cleared before.
 pub fn start() {
     // SAFETY: only the watchdog is changed; the second store comes two cycles after
     // the first.
@@ -37,7 +37,7 @@ pub fn start() {
     }
 }
 
-/// Puts off what it would do by 125 ms.
+/// Feeds it: it waits another 125 ms.
 pub fn feed() {
     avr_device::asm::wdr();
 }

@@ -16,7 +16,7 @@ use core::marker::PhantomData;
 use core::mem::{MaybeUninit, transmute_copy};
 use core::ptr::NonNull;
 
-/// Where a constant lies in flash; on any other machine, an ordinary reference.
+/// The address of a constant in flash; on any other machine, an ordinary reference.
 pub struct Flash<'a, T: ?Sized> {
     at: NonNull<T>,
     lifetime: PhantomData<&'a T>,
@@ -64,7 +64,7 @@ impl<'a, T: ?Sized> From<&'a T> for Flash<'a, T> {
 }
 
 impl<T: Copy> Flash<'_, T> {
-    /// Fetches the constant.
+    /// Reads the constant from flash.
     #[cfg(not(target_arch = "avr"))]
     #[inline]
     pub fn load(self) -> T {
@@ -72,7 +72,7 @@ impl<T: Copy> Flash<'_, T> {
         unsafe { self.at.as_ptr().read_unaligned() }
     }
 
-    /// Fetches the constant.
+    /// Reads the constant from flash.
     #[cfg(target_arch = "avr")]
     #[inline]
     pub fn load(self) -> T {
@@ -125,7 +125,7 @@ impl<'a, T> Flash<'a, [T]> {
         self.at.len()
     }
 
-    /// Whether there is no element.
+    /// True if there is no element.
     #[inline]
     pub const fn is_empty(self) -> bool {
         self.len() == 0
@@ -146,7 +146,7 @@ impl<'a, T> Flash<'a, [T]> {
 }
 
 impl<'a, T> Flash<'a, [T]> {
-    /// Nothing.
+    /// A slice without elements.
     pub const EMPTY: Self = Self {
         at: NonNull::slice_from_raw_parts(NonNull::dangling(), 0),
         lifetime: PhantomData,
@@ -205,7 +205,7 @@ const fn nonzero(size: usize) -> usize {
 /// # Safety
 /// Every pattern of `size_of::<Self>()` bytes is a value, and no byte is padding.
 pub unsafe trait Plain: Copy {
-    /// Its bytes.
+    /// The string's bytes.
     #[inline]
     fn bytes(&self) -> &[u8] {
         // SAFETY: no byte of it is padding.

@@ -1,4 +1,4 @@
-//! What an AVR can do and Rust does not reach.
+//! AVR features that Rust does not reach by itself.
 //!
 //! The firmware's core is plain Rust without `unsafe`, so that it runs and is tested on
 //! any machine. Two features of this processor need more than that: its second address
@@ -6,6 +6,10 @@
 //! compiler leaves idle when it calls a 32-bit library routine for a product of two
 //! 16-bit factors. Both are here, behind safe functions that are plain Rust everywhere
 //! else.
+//!
+//! Do not use it on an AVR with more than 64 KiB of flash: addresses have 16 bits here.
+//! For tables that are always indexed within their bounds, `avr-progmem` does the same
+//! with a richer interface, and needs a nightly compiler.
 
 #![no_std]
 #![allow(unsafe_code)] // Reaching flash and the multiplier is; see flash.rs, multiply.rs.

@@ -14,14 +14,14 @@ const IS_PLAIN: bool = match option_env!("LIZARD_PLAIN_LINK") {
     None => false,
 };
 
-/// Where the region begins, and how many bytes it has: from behind 27.5 KiB of code up to
-/// the boot loader of an Arduino UNO.
+/// The region's first address, behind 27.5 KiB of code. The region ends where the boot loader
+/// of an Arduino UNO begins.
 pub const START: u16 = if IS_PLAIN { 0x7780 } else { 0x6e00 };
 
-/// How many bytes the region has.
+/// The size of the region in bytes.
 pub const SPACE: u16 = if IS_PLAIN { 0x8000 } else { 0x7e00 } - START;
 
-/// The region.
+/// The region of flash that holds the robot's section.
 #[derive(Clone, Copy, Debug)]
 pub struct Region<'a> {
     #[cfg(not(target_arch = "avr"))]
@@ -32,20 +32,20 @@ pub struct Region<'a> {
 
 #[cfg(not(target_arch = "avr"))]
 impl<'a> Region<'a> {
-    /// Nothing.
+    /// A region of no bytes.
     pub const EMPTY: Self = Self { bytes: &[] };
 
-    /// These bytes, and nothing behind them.
+    /// A region of these bytes.
     pub const fn new(bytes: &'a [u8]) -> Self {
         Self { bytes }
     }
 
-    /// Its bytes.
+    /// The region's bytes.
     pub const fn bytes(self) -> &'a [u8] {
         self.bytes
     }
 
-    /// How many bytes it has, at most [`SPACE`].
+    /// The region's size in bytes, at most [`SPACE`].
     pub const fn size(self) -> u16 {
         let len = self.bytes.len();
         if len > SPACE as usize {
@@ -55,21 +55,19 @@ impl<'a> Region<'a> {
         }
     }
 
-    /// Its first `length` bytes: what is behind them is no part of it.
+    /// The region's first `length` bytes.
     pub fn first(self, length: u16) -> Self {
         Self::new(self.bytes.get(..length.into()).unwrap_or(self.bytes))
     }
 
-    /// The value whose bytes begin at `at`; where it is not wholly there, one of zeros.
-    /// Of a region that is not empty nobody should ask for that, and a test does not let
-    /// it pass.
+    /// Reads the value whose bytes begin at `at`; zeros if it is not completely inside. Tests
+    /// panic in that case, unless the region is empty.
     pub fn read<T: Plain>(self, at: u16) -> T {
         self.must_have(at, size_of::<T>());
         Flash::from(self.bytes).read(at.into())
     }
 
-    /// `count` values whose bytes begin at `at`; none where they are not wholly there,
-    /// likewise.
+    /// `count` values whose bytes begin at `at`; none if they are not completely inside.
     pub fn values<T: Plain>(self, at: u16, count: u16) -> Flash<'a, [T]> {
         let length = usize::from(count) * size_of::<T>();
         self.must_have(at, length);
@@ -88,19 +86,19 @@ impl<'a> Region<'a> {
 
 #[cfg(target_arch = "avr")]
 impl<'a> Region<'a> {
-    /// The region.
+    /// The region of flash that holds the robot's section.
     pub const EMPTY: Self = Self {
         lifetime: core::marker::PhantomData,
     };
 
-    /// How many bytes it has.
+    /// The region's size in bytes.
     #[inline(always)]
     pub const fn size(self) -> u16 {
         SPACE
     }
 
-    /// Its first `length` bytes, of which nothing is kept here: what reads them has been
-    /// checked.
+    /// The region's first `length` bytes. The length is not stored, since all offsets into a
+    /// section have been checked.
     #[inline(always)]
     pub const fn first(self, _length: u16) -> Self {
         self

@@ -44,7 +44,7 @@ pub const STEPS_PER_DEGREE: f64 = 65536.0 / 360.0;
 /// The gaits of every sample; the last one leaves safe ground halfway.
 pub const GAITS: [&str; 6] = ["stand", "sway", "sway left", "swing", "back", "stray"];
 
-/// What the gaits need of the servos; no more than the travel, see [`waves`].
+/// The sweeps that the gaits need of the servos, within the travel; see [`waves`].
 const REACH: [Reach; 4] = [
     Reach {
         min: Sweep(-2000),
@@ -166,7 +166,7 @@ impl Loop {
         })
     }
 
-    /// As a section has them.
+    /// The loop in the form that a section has.
     fn content(&self) -> section::Loop {
         let [base, left, right] = self.bars;
         section::Loop {
@@ -238,7 +238,7 @@ impl Sample {
         }
     }
 
-    /// With some of its numbers changed.
+    /// The sample with some of its numbers changed.
     pub fn with(mut self, change: impl FnOnce(&mut Content)) -> Self {
         change(&mut self.content);
         self.robot = read(&self.content);
@@ -366,7 +366,7 @@ pub fn side_of(side: &kinematics::Slider, stroke_min: f64, stroke_max: f64) -> S
     }
 }
 
-/// A board on which all is well: 5.0 V on the chip and 6.0 V on the rail.
+/// A board without a fault: 5.0 V on the chip and 6.0 V on the rail.
 pub const WELL: Health = Health {
     supply: Reading {
         reference: 221,
@@ -392,7 +392,7 @@ fn waves() -> Vec<Wave> {
     ]
 }
 
-/// What [`GAITS`] names.
+/// The gaits that [`GAITS`] names.
 fn gaits(names: &mut Vec<u8>) -> Vec<Gait> {
     let channel = |wave, offset, gain| Channel { wave, offset, gain };
     let still = [channel(0, 0, 0); 4];

@@ -8,12 +8,10 @@
 //! played as one, and the servos would leap. So it does while a frame that it was late
 //! with still waits to be played.
 
-use core::convert::Infallible;
-
 use lizard_avr::Region;
-use ufmt::uWrite;
 
 use crate::console::answer::Counters;
+use crate::console::output::Output;
 use crate::console::{Console, LONGEST_LINE};
 use crate::control::Control;
 use crate::control::safety::Health;
@@ -23,12 +21,12 @@ use crate::memory::restart::{Restart, Stance};
 use crate::numbers::pose::Pulses;
 use crate::numbers::units::CYCLES_PER_US;
 
-/// What main needs of a board.
+/// The hardware that the main loop needs.
 pub trait Board {
     /// The serial line's other direction.
-    type Writer: uWrite<Error = Infallible>;
+    type Writer: Output;
 
-    /// What outlasts power.
+    /// The memory that keeps its bytes without power.
     type Memory: Memory;
 
     /// Bytes that the writer takes without waiting when the line has taken all before;
@@ -59,20 +57,20 @@ pub trait Board {
     /// ended the pulses, nothing may put it off, and main must not go on.
     fn feed(&mut self);
 
-    /// Keeps what the servos do, and how many restarts in a row a weak supply may have
-    /// made, where a reset of the processor cannot take it away.
+    /// Stores the servos' state and the consecutive resets that a weak supply may have
+    /// caused, where they survive a reset of the processor.
     fn keep(&mut self, stance: &Stance, brown_outs: u8);
 
-    /// Why the program began, and what was kept until then.
+    /// The cause of the last reset, and the state from before it.
     fn restart(&self) -> &Restart;
 
     /// The supplies as measured last; begins the next measurement.
     fn supply(&mut self) -> Reading;
 
-    /// Whether the stack has kept off the data.
+    /// True while the stack has not grown into the data.
     fn stack_is_intact(&self) -> bool;
 
-    /// What outlasts power.
+    /// The memory that keeps its bytes without power.
     fn memory(&mut self) -> &mut Self::Memory;
 
     /// Switches the LED on or off.
@@ -101,12 +99,12 @@ pub struct Main {
     ticks: u8,
 }
 
-/// What a step did.
+/// The result of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// Something; there may be more to do.
+    /// The step did something; there may be more to do.
     Worked,
-    /// Nothing, until [`Board::ticks`] is no longer this number or a byte comes.
+    /// Nothing to do until [`Board::ticks`] differs from this number or a byte is received.
     Idle(u8),
 }
 
@@ -117,7 +115,7 @@ impl Default for Main {
 }
 
 impl Main {
-    /// No robot yet; [`Main::begin`] has to follow.
+    /// A main without a robot; [`Main::begin`] has to follow.
     ///
     /// Every bit of it is zero, so that a firmware's `Main` needs no copy in flash; its linker
     /// script refuses one that does.
@@ -146,7 +144,7 @@ impl Main {
         self.ticks = board.ticks();
     }
 
-    /// The robot.
+    /// The robot's control.
     pub const fn control(&self) -> &Control {
         &self.control
     }
@@ -156,7 +154,7 @@ impl Main {
         &self.console
     }
 
-    /// The most urgent thing that there is to do.
+    /// Does the most urgent task.
     #[inline(always)]
     pub fn step<B: Board>(&mut self, board: &mut B) -> Step {
         let ticks = board.ticks();
@@ -182,7 +180,7 @@ impl Main {
             }
             let counters = board.counters();
             let out = board.writer();
-            let Ok(()) = self.console.write_line(&mut self.control, out, counters);
+            self.console.write_line(&mut self.control, out, counters);
         } else if self.control.waits_for_supply() {
             return Step::Idle(self.ticks);
         } else if self.control.is_writing() {
@@ -224,7 +222,7 @@ mod tests {
         Running::on(Sample::odd().section(), board)
     }
 
-    /// Whether main does something in a step.
+    /// True if main does something in a step.
     fn works(running: &mut Running) -> bool {
         running.main.step(&mut running.board) == Step::Worked
     }
@@ -329,7 +327,7 @@ mod tests {
         assert!(status.contains(" frames=30 late=0 rx_lost=34 "), "{status}");
     }
 
-    /// After how many frames the LED changes.
+    /// The numbers of the frames at which the LED changes.
     fn beats(leds: &[bool]) -> Vec<usize> {
         let changes: Vec<usize> = (1..leds.len())
             .filter(|n| leds[*n] != leds[n - 1])

@@ -29,7 +29,6 @@ use std::collections::VecDeque;
 
 use crate::console::answer::Counters;
 use crate::control::supply::Reading;
-use crate::memory::kept::Flags;
 use crate::memory::restart::{Cause, Restart, Stance};
 use crate::numbers::pose::Pulses;
 use crate::numbers::units::{CYCLES_PER_US, Width};
@@ -65,7 +64,7 @@ pub struct VirtualBoard {
     ms: u8,
     ticks: u8,
     submitted: Pulses,
-    /// Whether what was handed over waits to be taken over.
+    /// True while the submitted frame waits to be taken over.
     fresh: bool,
     playing: Pulses,
     begun: Pulses,
@@ -74,17 +73,17 @@ pub struct VirtualBoard {
     lost: u16,
     /// Edges that came late.
     pub late: u16,
-    /// Whether the stack has kept off the data.
+    /// True while the stack has not grown into the data.
     pub stack_is_intact: bool,
     /// The serial line's other direction.
     pub transmitter: Transmitter,
-    /// What outlasts power.
+    /// The memory that keeps its bytes without power.
     pub memory: Eeprom,
-    /// What measures the supplies.
+    /// The converter that measures the supplies.
     pub converter: Converter,
-    /// What a reset leaves.
+    /// The bytes that survive a reset.
     pub ram: Ram,
-    /// Whether a boot loader hides what the chip knows of a reset.
+    /// True if a boot loader hides the chip's cause of a reset.
     pub boot_loader: bool,
     restart: Restart,
     /// Milliseconds since the watchdog was fed.
@@ -101,7 +100,7 @@ impl Default for VirtualBoard {
 }
 
 impl VirtualBoard {
-    /// At power-on, with what its memory holds; the supplies cannot be measured.
+    /// A board at power-on with this memory; its supplies cannot be measured.
     #[must_use]
     pub fn new(memory: Eeprom) -> Self {
         Self {
@@ -128,7 +127,7 @@ impl VirtualBoard {
         }
     }
 
-    /// The same board, the program about to begin for this reason.
+    /// The same board after a reset with this cause and state.
     #[must_use]
     pub fn restarted(self, restart: Restart) -> Self {
         if let Some(stance) = &restart.before {
@@ -137,14 +136,14 @@ impl VirtualBoard {
         Self { restart, ..self }
     }
 
-    /// The same board, its next tick the one after this.
+    /// The same board at this tick.
     #[must_use]
     pub fn at_tick(self, ticks: u8) -> Self {
         Self { ticks, ..self }
     }
 
-    /// Time passes, until the watchdog resets the processor if main does not feed it.
-    /// Returns whether it does; then [`VirtualBoard::reset`] has to follow.
+    /// Lets time pass, at most until the watchdog resets the processor, since main does not
+    /// feed it. Returns true in that case; then [`VirtualBoard::reset`] has to follow.
     pub fn pass(&mut self, ms: u16) -> bool {
         for _ in 0..ms {
             self.unfed = self.unfed.saturating_add(1);
@@ -179,7 +178,7 @@ impl VirtualBoard {
         }
     }
 
-    /// A tick, however soon after the last one, whose frame is taken over in between.
+    /// Gives a tick at once, after taking over the submitted frame.
     pub fn tick(&mut self) {
         self.take_over();
         self.ticks = self.ticks.wrapping_add(1);
@@ -199,16 +198,10 @@ impl VirtualBoard {
         (FRAME_MS - self.ms) as u16
     }
 
-    /// The program restarts: what a reset clears is gone, and main has to begin.
+    /// Resets the processor: its state is lost, and main has to begin again.
     pub fn reset(&mut self, cause: Cause) {
         let power_on = cause == Cause::Power;
-        let told = !self.boot_loader;
-        let flags = Flags {
-            power_on: power_on && told,
-            external: cause == Cause::External && told,
-            brown_out: cause == Cause::BrownOut && told,
-            watchdog: cause == Cause::Watchdog && told,
-        };
+        let reported = (!self.boot_loader).then_some(cause);
         let ram = core::mem::take(&mut self.ram);
         let mut memory = core::mem::take(&mut self.memory);
         // Whoever starts the program takes longer than that.
@@ -217,7 +210,7 @@ impl VirtualBoard {
             transmitter: core::mem::take(&mut self.transmitter).reset(),
             converter: core::mem::take(&mut self.converter).reset(),
             boot_loader: self.boot_loader,
-            restart: ram.begin(flags),
+            restart: ram.begin(reported),
             ram,
             ..Self::new(memory)
         };
@@ -227,8 +220,8 @@ impl VirtualBoard {
         }
     }
 
-    /// Power is lost and comes back. A byte that was being written to the memory may
-    /// then hold anything, hence `torn`.
+    /// Turns the power off and on. A byte that was being written to the memory gets the value
+    /// `torn`, since it may hold anything.
     pub fn lose_power(&mut self, torn: Option<u8>) {
         if let Some(byte) = torn {
             self.memory.tear(byte);
@@ -236,7 +229,7 @@ impl VirtualBoard {
         self.reset(Cause::Power);
     }
 
-    /// Bytes come over the serial line. What the receiver has no room for is lost.
+    /// Sends bytes to the board. Bytes that the receiver has no room for are lost.
     pub fn send(&mut self, bytes: &[u8]) {
         for byte in bytes {
             if self.received.len() < RECEIVED {
@@ -247,24 +240,24 @@ impl VirtualBoard {
         }
     }
 
-    /// Bytes that main has not taken yet.
+    /// The number of bytes that main has not read yet.
     #[must_use]
     pub fn waiting(&self) -> usize {
         self.received.len()
     }
 
-    /// Counts bytes as lost that were never there.
+    /// Counts so many bytes as lost.
     pub const fn lose(&mut self, bytes: u16) {
         self.lost = self.lost.saturating_add(bytes);
     }
 
-    /// What main handed over last.
+    /// The frame that main submitted last.
     #[must_use]
     pub const fn submitted(&self) -> Pulses {
         self.submitted
     }
 
-    /// Whether that still waits to be taken over.
+    /// True while that frame waits to be taken over.
     #[must_use]
     pub const fn is_fresh(&self) -> bool {
         self.fresh
@@ -276,7 +269,7 @@ impl VirtualBoard {
         self.begun
     }
 
-    /// Whether the LED is lit.
+    /// True while the LED is lit.
     #[must_use]
     pub const fn is_lit(&self) -> bool {
         self.lit
@@ -288,13 +281,13 @@ impl VirtualBoard {
         self.unfed
     }
 
-    /// What a reset would leave of what the servos do.
+    /// The servos' state that would survive a reset.
     #[must_use]
     pub fn kept(&self) -> Option<Stance> {
-        self.ram.found(Flags::default()).before
+        self.ram.found(None).before
     }
 
-    /// Whether the watchdog has ended the pulses.
+    /// True once the watchdog has ended the pulses.
     #[must_use]
     pub const fn is_hushed(&self) -> bool {
         self.hushed

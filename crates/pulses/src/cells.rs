@@ -1,4 +1,4 @@
-//! What main and the interrupts share: bytes.
+//! Bytes that main and the interrupts share.
 //!
 //! The processor loads or stores a byte in one instruction, which no interrupt
 //! can split, so a byte with one writer needs no lock. (The compiler's atomics
@@ -27,14 +27,14 @@ impl Byte {
         Self(UnsafeCell::new(value))
     }
 
-    /// Its value.
+    /// Reads the value.
     #[inline(always)]
     pub fn get(&self) -> u8 {
         // SAFETY: the pointer is the cell's own; for other accesses see `Sync`.
         unsafe { self.0.get().read_volatile() }
     }
 
-    /// Changes it.
+    /// Sets the value.
     #[inline(always)]
     pub fn set(&self, value: u8) {
         // SAFETY: as in `get`.
@@ -66,13 +66,13 @@ impl Word {
         [self.low.get(), self.high.get()]
     }
 
-    /// Its value, the low byte first.
+    /// Reads the value, the low byte first.
     #[inline(always)]
     pub fn get(&self) -> u16 {
         u16::from_le_bytes(self.bytes())
     }
 
-    /// Changes it, the low byte first.
+    /// Sets the value, the low byte first.
     #[inline(always)]
     pub fn set(&self, value: u16) {
         let [low, high] = value.to_le_bytes();
@@ -91,13 +91,13 @@ impl Default for Counter {
 }
 
 impl Counter {
-    /// Zero.
+    /// A counter at zero.
     #[must_use]
     pub const fn new() -> Self {
         Self(Word::new(0))
     }
 
-    /// One more. Only in interrupts, which cannot interrupt each other.
+    /// Counts one fault. Only in interrupts, which cannot interrupt each other.
     #[inline(always)]
     pub fn count(&self) {
         // Byte by byte, because the common way through is then four instructions.

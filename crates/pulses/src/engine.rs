@@ -1,4 +1,4 @@
-//! What happens in a slot.
+//! The engine: the interrupts that open and close the slots.
 
 use crate::cells::{Byte, Counter, Word};
 #[cfg(any(test, target_arch = "avr"))]
@@ -17,8 +17,8 @@ pub struct Engine<'a, const SERVOS: usize, const SIZE: usize> {
     /// Two sets of widths: the one that plays and the one that main fills.
     pub frames: &'a [[Word; SIZE]; 2],
     #[doc(hidden)]
-    /// Which of `frames` plays. Changed only by the handler, and only while `fresh` is
-    /// set.
+    /// The index of the frame that plays. Changed only by the handler, and only while `fresh`
+    /// is set.
     pub playing: &'a Byte,
     #[doc(hidden)]
     /// 1 when the other frame is complete and waits to be taken over. Main sets it; the
@@ -30,10 +30,10 @@ pub struct Engine<'a, const SERVOS: usize, const SIZE: usize> {
     /// TIMER1_COMPA takes a pulse out that it was late for.
     pub slot: &'a Byte,
     #[doc(hidden)]
-    /// The plan: where the pin is.
+    /// The plan: the port of the pin.
     pub port: &'a Byte,
     #[doc(hidden)]
-    /// The plan: which bit, 0 for no pulse.
+    /// The plan: the bit of the pin, 0 for no pulse.
     pub mask: &'a Byte,
     #[doc(hidden)]
     /// The plan: the count for which the falling edge is due.
@@ -53,8 +53,8 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     /// The slot without a pin.
     #[cfg(any(test, target_arch = "avr"))]
     const TICK_SLOT: u8 = SERVOS as u8;
-    /// When a slot without a pulse is closed. Late, because the slot with the tick then
-    /// waits the longest for main.
+    /// The count at which a slot without a pulse is closed. It is late, so that main has the
+    /// longest time in the slot with the tick.
     const CLOSE: u16 = most_width(SERVOS);
     /// The falling edge of a slot without one.
     #[doc(hidden)]
@@ -92,7 +92,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         self.fresh.get() == 0
     }
 
-    /// From now on no pulse begins; one that is under way ends as planned, within a
+    /// Lets no further pulse begin; one that is under way ends as planned, within a
     /// slot. Call it before you reset the board, which would cut the pulse short and so
     /// send the servo to its end stop. The tick continues. One store, right in an
     /// interrupt and anywhere else; only a reset ends it.
@@ -119,7 +119,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         (slot != Self::TICK_SLOT && fits).then_some((servo, width))
     }
 
-    /// A slot closes: the next one is planned.
+    /// Plans the next slot, when one closes.
     #[cfg(any(test, target_arch = "avr"))]
     #[inline(always)]
     fn plan(&self) {
@@ -149,7 +149,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     }
 }
 
-/// What touches registers.
+/// The part of the engine that accesses registers.
 #[cfg(any(doc, target_arch = "avr"))]
 mod registers {
     use core::ptr::with_exposed_provenance_mut;
@@ -234,7 +234,7 @@ mod registers {
             }
         }
 
-        /// Sets the timer going; the first tick comes a slot later. Once.
+        /// Starts the timer; the first tick comes a slot later. Once.
         ///
         /// # Safety
         /// Interrupts are off, and nothing else uses Timer1 from now on.
@@ -372,7 +372,7 @@ mod tests {
         }
     }
 
-    /// What the slots of a frame play, in turn: slot, mask and when it closes.
+    /// The plan of each slot of a frame: slot, mask and closing time.
     fn frame<const SERVOS: usize, const SIZE: usize>(
         engine: &Engine<'_, SERVOS, SIZE>,
     ) -> [(u8, u8, u16); 9] {

@@ -23,8 +23,8 @@
 //! The length of a slot follows from the number of servos, [`slot_cycles`]: with four it
 //! is 4 ms, and a frame 20 ms to the cycle.
 //!
-//! What a slot does is planned at the end of the slot before, so that the opening
-//! interrupt has next to nothing to do before its edge.
+//! Each slot is planned at the end of the slot before, so that the opening interrupt has
+//! next to nothing to do before its edge.
 //!
 //! # Use
 //!
@@ -42,7 +42,13 @@
 //! servos::submit([1500 * CYCLES_PER_US; 4]);
 //! ```
 //!
-//! The program needs `#![feature(abi_avr_interrupt)]`. `examples/sweep.rs` is a whole one.
+//! The program needs `#![feature(abi_avr_interrupt)]`. `examples/sweep.rs` is a complete one.
+//!
+//! # When not to use it
+//!
+//! The engine occupies Timer1 and pays for its precision with interrupts that wait, a few
+//! per cent of the processor. Two servos on pins 9 and 10 need neither: the timer's own
+//! compare outputs are exact without any code. It does not run on other chips or clocks.
 //!
 //! # An edge that cannot be on time
 //!
@@ -57,7 +63,7 @@
 //!   pulse.
 //! - Both are counted, in `late`.
 //!
-//! # Rules this rests on
+//! # Rules
 //!
 //! - The longest of the program's other handlers and the longest stretch with interrupts
 //!   off take less than [`LEAD`] together, less the 60 cycles that a handler here needs

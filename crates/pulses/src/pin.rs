@@ -1,4 +1,4 @@
-//! Which register and bit a pin of the Arduino is.
+//! Arduino pins as registers and bits.
 //!
 //! The numbers printed on the board are not those of the chip, whose pins are in three
 //! ports in another order.
@@ -46,8 +46,8 @@ impl Pin {
 mod tests {
     use super::*;
 
-    /// What the data sheet calls the pins of the UNO's sockets D0 to D13 and A0 to A5,
-    /// from the UNO's circuit diagram.
+    /// The data sheet's names of the pins at the UNO's sockets D0 to D13 and A0 to A5, from the
+    /// UNO's circuit diagram.
     const SOCKETS: [(u8, char, u8); 20] = [
         (0, 'D', 0),
         (1, 'D', 1),

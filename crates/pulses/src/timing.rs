@@ -1,4 +1,4 @@
-//! How long slots, frames and pulses are.
+//! The lengths of slots, frames and pulses.
 
 /// Cycles from a compare match to the moment from which its edge follows at a
 /// fixed distance. At most 255, because the wait is counted in a byte.
@@ -19,7 +19,7 @@ const FRAME_CYCLES: u32 = 320_000;
 /// 2.5 ms. The longest pulse of a slot is then 2.4375 ms, beyond any servo's travel.
 const SHORTEST_SLOT: u32 = 40_000;
 
-/// 4 ms: what a slot has with four servos.
+/// 4 ms, the length of a slot with four servos.
 const LONGEST_SLOT: u32 = 64_000;
 
 /// Cycles of a slot with this many servos: 20 ms shared by them and the slot of the tick.

@@ -167,7 +167,7 @@ fn an_image_without_room_is_refused_with_the_excess_and_what_is_largest() {
     );
     assert!(lines[0].starts_with(&excess), "{sentence}");
     assert_eq!(lines.len(), 1 + 10, "{sentence}");
-    assert!(lines[1].ends_with("::control::frame"), "{sentence}");
+    assert!(lines[1].ends_with("::controller::frame"), "{sentence}");
     let start = image
         .symbol("__robot_start")
         .expect("it is in the ELF")

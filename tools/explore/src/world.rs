@@ -4,7 +4,6 @@ mod rules;
 
 use lizard_core::console::line::GARBLED;
 use lizard_core::memory::copies::{COPIES, RESTED};
-use lizard_core::memory::kept::Flags;
 use lizard_core::memory::record::{LENGTH, WHOLE};
 use lizard_core::memory::restart::{Cause, Restart};
 use lizard_core::numbers::pose::Pulses;
@@ -78,7 +77,7 @@ impl World {
                 print.add(u64::from(*byte));
             }
         }
-        print.add(fingerprint::coarse(&board.ram.found(Flags::default())));
+        print.add(fingerprint::coarse(&board.ram.found(None)));
         let truth = board.converter.truth();
         let flags = [
             board.memory.worn,
@@ -205,7 +204,7 @@ impl World {
                 break;
             }
             let step = self.running.main.step(&mut self.running.board);
-            if step != Step::Worked || self.running.board.memory.is_asked_in_vain() {
+            if step != Step::Worked || self.running.board.memory.was_polled_busy() {
                 // It is read when there is time for it.
                 break;
             }

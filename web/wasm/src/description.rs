@@ -223,7 +223,7 @@ impl Description {
 /// The version of the core.
 fn version() -> String {
     let mut version = String::new();
-    let Ok(()) = Text::Version.print(&mut version);
+    Text::Version.print(&mut version);
     version
 }
 

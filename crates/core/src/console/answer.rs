@@ -18,7 +18,7 @@ pub enum Answer {
     Gaits(GaitId),
     /// The words of the console.
     Words,
-    /// What else there is to say to who asks for help.
+    /// The hint that ends the list of commands.
     Hint,
     /// The end of help, `ok help`.
     Helped,
@@ -37,7 +37,7 @@ pub enum Answer {
     Refused(Refusal),
 }
 
-/// What the board counts for `status`.
+/// The board's counters, as `status` prints them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
     /// Pulse edges that came late.

@@ -15,18 +15,18 @@ use crate::numbers::part::Servo;
 use crate::numbers::robot::Robot;
 use crate::numbers::units::{Angle, Sweep, TURN_CENTIDEG};
 
-/// A command, with its arguments checked as far as syntax and range go.
+/// A command whose arguments have passed the checks of syntax and range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Command {
-    /// The gaits and the words of the other commands.
+    /// List the gaits and the words of the other commands.
     Help,
-    /// The state of the robot.
+    /// Print the state of the robot.
     Status,
-    /// All settings.
+    /// Print all settings.
     Cal,
-    /// The pose every this many frames; 0: no more.
+    /// Print the pose every so many frames; 0 ends that.
     Watch(u16),
-    /// Something to do.
+    /// An order to the robot.
     Order(Order),
 }
 
@@ -61,11 +61,11 @@ pub const DEADMAN_MOST: u16 = 60_000;
 /// Larger angles are taken for mistakes; a turn either way is enough.
 const LARGEST_ANGLE: u16 = TURN_CENTIDEG as u16;
 
-/// How an argument is written.
+/// The syntax of an argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 enum Kind {
-    /// Digits.
+    /// A whole number in decimal digits.
     Whole,
     /// Degrees with a sign and at most two decimals, read as an [`Angle`].
     Degrees,
@@ -78,11 +78,11 @@ enum Kind {
 /// The arguments of a command.
 #[derive(Clone, Copy)]
 struct Form {
-    /// Whether a servo's number comes first.
+    /// True if the first argument is a servo's number.
     servo: bool,
-    /// How many there are besides.
+    /// The number of arguments after it.
     count: u8,
-    /// What each of them is.
+    /// The syntax of each of them.
     kind: Kind,
     /// The range of each, without its sign.
     least: u16,
@@ -107,7 +107,7 @@ flash! {
     ];
 }
 
-/// Where the form of a command is that takes arguments.
+/// The index into `FORMS` for a command that takes arguments.
 const fn form(word: Word) -> Option<usize> {
     match word {
         Word::Pose => Some(0),
@@ -125,12 +125,13 @@ const fn form(word: Word) -> Option<usize> {
 /// Reads a line that is trimmed, not empty and in lower case.
 ///
 /// # Errors
-/// What keeps the line from being a command.
+/// The reason for which the line is not a command.
 pub fn parse(line: &[u8], robot: &Robot) -> Result<Command, Misread> {
     parse_among::<RESERVED>(line, robot)
 }
 
-/// The same; words from number `YIELDING` on yield to a gait of the same name.
+/// Parses a line; a gait has priority over a word of the same name whose number is `YIELDING`
+/// or more.
 #[inline(never)]
 fn parse_among<const YIELDING: usize>(line: &[u8], robot: &Robot) -> Result<Command, Misread> {
     let mut words = Words(line);
@@ -172,8 +173,8 @@ fn parse_among<const YIELDING: usize>(line: &[u8], robot: &Robot) -> Result<Comm
     }))
 }
 
-/// The effect of a line on the servos: that of its word, or of a gait. A line that is no
-/// command has none.
+/// The effect of a line on the servos: that of its word, or of a gait. A line that is not
+/// a command has none.
 pub fn effect(line: &str, robot: &Robot) -> Effect {
     let line = line.as_bytes();
     match parse(line, robot) {
@@ -183,7 +184,7 @@ pub fn effect(line: &str, robot: &Robot) -> Effect {
     }
 }
 
-/// What follows the word `boot`.
+/// Reads the argument of `boot`.
 fn boot(rest: &[u8], robot: &Robot) -> Result<Boot, Misread> {
     if Word::find(rest) == Some(Word::Rest) {
         return Ok(Boot::Rest);
@@ -194,7 +195,7 @@ fn boot(rest: &[u8], robot: &Robot) -> Result<Boot, Misread> {
     }
 }
 
-/// What follows a word.
+/// The arguments of a command, read and checked.
 struct Arguments {
     /// The servo that is to be set.
     servo: Servo,
@@ -204,13 +205,13 @@ struct Arguments {
 }
 
 impl Arguments {
-    /// None at all.
+    /// No arguments.
     const NONE: Self = Self {
         servo: Servo::A1,
         numbers: [0; 4],
     };
 
-    /// Reads what follows `word`.
+    /// Reads the arguments that follow `word`.
     #[inline(never)]
     fn read(word: Word, mut words: Words, form: &Form) -> Result<Self, Misread> {
         let wants = Err(Misread::Wants(form.wants));
@@ -249,7 +250,7 @@ impl Arguments {
     }
 }
 
-/// What is left of a line, to be taken word by word.
+/// The rest of a line, split into words one by one.
 #[derive(Clone, Copy)]
 struct Words<'a>(&'a [u8]);
 
@@ -271,7 +272,7 @@ impl<'a> Words<'a> {
     }
 }
 
-/// A gait's name, or what is wrong with it. Any blanks between words will do.
+/// Finds the gait of this name. Any blanks between its words are accepted.
 #[inline(never)]
 fn gait(line: &[u8], robot: &Robot) -> Result<GaitId, Misread> {
     let line = line.trim_ascii_start();
@@ -286,8 +287,8 @@ fn gait(line: &[u8], robot: &Robot) -> Result<GaitId, Misread> {
     Err(misread)
 }
 
-/// What keeps a line from being a name. It is read no farther than it is one: there
-/// may be many names, and a frame may wait.
+/// Compares a line with a name and returns the mismatch, if any. Stops at the first byte
+/// that differs: there may be many names, and a frame may be due.
 fn compare(line: &[u8], name: Name) -> Option<Misread> {
     let mut rest = line;
     for byte in name {

@@ -4,12 +4,11 @@
 //! line has room for a whole line, the caller lets it write one. So nothing waits: a long
 //! list comes line by line between the frames, and a slow listener never delays a frame.
 
-use ufmt::uWrite;
-
 use crate::console::answer::{Answer, Counters};
 use crate::console::command::{self, Command, Misread};
 use crate::console::digits;
 use crate::console::line::{Ended, Line};
+use crate::console::output::Output;
 use crate::console::print;
 use crate::console::refusal;
 use crate::console::text::Text;
@@ -26,20 +25,20 @@ pub const LONGEST_LINE: u8 = 250;
 
 /// A line that waits to be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Output {
-    /// What robot this is, once after power-on.
+enum Pending {
+    /// The firmware's version and the robot's name, once after power-on.
     Banner,
     /// The answer to the last line received, or a part of it.
     Answer(Answer),
     /// A notice that comes without a command.
     Notice(Notice),
-    /// Why the guard holds the robot.
+    /// The reason for which the guard holds the robot.
     Held,
     /// The pose, as `watch` asked for it.
     Report,
 }
 
-/// Somebody at the other end of a serial line.
+/// The console at one serial line: the line being received, and the answer being written.
 #[derive(Clone, Debug)]
 pub struct Console {
     line: Line,
@@ -55,7 +54,7 @@ impl Default for Console {
 }
 
 impl Console {
-    /// The banner is not yet written, and nothing has come.
+    /// A console that has received nothing; it writes the banner first.
     pub const fn new() -> Self {
         Self {
             line: Line::new(),
@@ -65,7 +64,7 @@ impl Console {
         }
     }
 
-    /// A frame has passed.
+    /// Advances the timer of `watch` by a frame.
     pub fn frame(&mut self) {
         self.watch.frame();
     }
@@ -73,18 +72,18 @@ impl Console {
     /// True while a line waits to be written. No byte is to be passed on
     /// meanwhile: the answer may still need the line it answers.
     pub const fn has_output(&self, control: &Control) -> bool {
-        self.next_output(control).is_some()
+        self.next_pending(control).is_some()
     }
 
     /// Takes a byte from the serial line and executes the line that it ends.
     // Out of line, as the next: half a kilobyte of flash.
     #[inline(never)]
     pub fn receive(&mut self, byte: u8, control: &mut Control) {
-        control.byte_came();
+        control.note_byte();
         let Some(ended) = self.line.push(byte) else {
             return;
         };
-        control.line_came();
+        control.note_line();
         let answer = match ended {
             Ended::Line => self.obey(control),
             Ended::TooLong => Err(Answer::Misread(Misread::TooLong)),
@@ -93,8 +92,8 @@ impl Console {
         self.answer = answer.unwrap_or_else(Some);
     }
 
-    /// Does what the line says. No answer yet where the memory has to do something
-    /// first: then [`Console::done`] has to follow.
+    /// Executes the line. Returns no answer while the EEPROM is still being written: then
+    /// [`Console::done`] has to follow.
     #[inline(never)]
     fn obey(&mut self, control: &mut Control) -> Result<Option<Answer>, Answer> {
         let robot = control.motion().robot();
@@ -121,7 +120,7 @@ impl Console {
         })
     }
 
-    /// What was to be done later has been done, or not.
+    /// Reports the outcome of an order that had to wait for the EEPROM.
     pub fn done(&mut self, outcome: Result<(), Refusal>) {
         self.answer = Some(match outcome {
             Ok(()) => Answer::Done,
@@ -129,68 +128,57 @@ impl Console {
         });
     }
 
-    /// Writes one line, if one waits, at most [`LONGEST_LINE`] bytes: what robot this
-    /// is, once after power-on; an answer or a part of it; a notice; why
-    /// the guard holds the robot; the pose, as `watch` asked for it. Of the longest
-    /// line it writes one part, and the next calls the others.
-    ///
-    /// # Errors
-    /// Those of `out`.
+    /// Writes one line, if one waits, at most [`LONGEST_LINE`] bytes: the banner, once after
+    /// power-on; an answer or a part of it; a notice; the reason for which the guard holds
+    /// the robot; or the pose, as `watch` asked for it. The longest line, `status`, is written
+    /// in parts, one with each call.
     #[inline(never)]
-    pub fn write_line<W>(
-        &mut self,
-        control: &mut Control,
-        out: &mut W,
-        counters: Counters,
-    ) -> Result<(), W::Error>
-    where
-        W: uWrite + ?Sized,
-    {
-        match self.next_output(control) {
-            None => return Ok(()),
-            Some(Output::Banner) => {
+    pub fn write_line(&mut self, control: &mut Control, out: &mut impl Output, counters: Counters) {
+        match self.next_pending(control) {
+            None => return,
+            Some(Pending::Banner) => {
                 self.greeted = true;
-                print::banner(out, control.motion().robot())?;
+                print::banner(out, control.motion().robot());
             }
-            Some(Output::Answer(answer)) => {
-                self.answer = print::answer(out, answer, &self.line, control, counters)?;
+            Some(Pending::Answer(answer)) => {
+                self.answer = print::answer(out, answer, &self.line, control, counters);
                 if matches!(answer, Answer::Status | Answer::Margin) {
-                    return Ok(());
+                    return;
                 }
             }
-            Some(Output::Notice(notice)) => {
+            Some(Pending::Notice(notice)) => {
                 control.written(notice);
-                print::notice(out, notice, control)?;
+                print::notice(out, notice, control);
             }
-            Some(Output::Held) => {
+            Some(Pending::Held) => {
                 if let Some(hazard) = control.take_held() {
-                    Text::Held.print(out)?;
-                    refusal::print_hazard(hazard, control.motion(), out)?;
+                    Text::Held.print(out);
+                    refusal::print_hazard(hazard, control.motion(), out);
                 }
             }
-            Some(Output::Report) => {
+            Some(Pending::Report) => {
                 self.watch.due = false;
-                Text::WatchTime.print(out)?;
-                digits::number(out, control.motion().frames(), 0)?;
-                print::pose(out, control.motion())?;
+                Text::WatchTime.print(out);
+                digits::number(out, control.motion().frames(), 0);
+                print::pose(out, control.motion());
             }
         }
-        out.write_char('\r')?;
-        out.write_char('\n')
+        out.byte(b'\r');
+        out.byte(b'\n');
     }
 
-    /// What is to be written next: the one order of everything that may wait.
-    const fn next_output(&self, control: &Control) -> Option<Output> {
+    /// The output to write next, in a fixed order of priority.
+    const fn next_pending(&self, control: &Control) -> Option<Pending> {
         if !self.greeted {
-            Some(Output::Banner)
+            Some(Pending::Banner)
         } else if let Some(answer) = self.answer {
-            Some(Output::Answer(answer))
+            Some(Pending::Answer(answer))
         } else if let Some(notice) = control.safety().notice() {
-            Some(Output::Notice(notice))
+            Some(Pending::Notice(notice))
         } else if control.was_held() {
-            Some(Output::Held)
+            Some(Pending::Held)
         } else if self.watch.due {
-            Some(Output::Report)
+            Some(Pending::Report)
         } else {
             None
         }

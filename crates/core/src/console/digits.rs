@@ -1,8 +1,8 @@
-//! Numbers as text: the chip has no division worth its time, and its texts are in flash.
+//! Prints numbers without division, which is slow on the chip.
 
 use lizard_avr::flash;
-use ufmt::uWrite;
 
+use crate::console::output::Output;
 use crate::console::text::Text;
 use crate::numbers::part::Servo;
 use crate::numbers::pose::Pose;
@@ -10,45 +10,25 @@ use crate::numbers::robot::Robot;
 use crate::numbers::units::Sine;
 
 /// Prints bytes of seven bits as they are.
-///
-/// # Errors
-/// Those of `out`.
-pub fn ascii<W>(out: &mut W, bytes: impl Iterator<Item = u8>) -> Result<(), W::Error>
-where
-    W: uWrite + ?Sized,
-{
+pub fn ascii(out: &mut impl Output, bytes: impl Iterator<Item = u8>) {
     for byte in bytes {
-        out.write_char(char::from(byte & 0x7f))?;
+        out.byte(byte & 0x7f);
     }
-    Ok(())
 }
 
 /// Prints the four chassis angles of a pose in degrees, with commas between them.
-///
-/// # Errors
-/// Those of `out`.
-pub fn angles<W>(out: &mut W, pose: &Pose, robot: &Robot) -> Result<(), W::Error>
-where
-    W: uWrite + ?Sized,
-{
+pub fn angles(out: &mut impl Output, pose: &Pose, robot: &Robot) {
     for servo in Servo::all() {
         if servo != Servo::A1 {
-            out.write_char(',')?;
+            out.byte(b',');
         }
         let angle = robot.neutral_of(servo).swept(*servo.of(&pose.0));
-        number(out, angle.centideg().into(), 2)?;
+        number(out, angle.centideg().into(), 2);
     }
-    Ok(())
 }
 
 /// Prints a number, the last `decimals` of its digits behind a point.
-///
-/// # Errors
-/// Those of `out`.
-pub fn number<W>(out: &mut W, value: u32, decimals: usize) -> Result<(), W::Error>
-where
-    W: uWrite + ?Sized,
-{
+pub fn number(out: &mut impl Output, value: u32, decimals: usize) {
     let mut rest = value;
     let mut begun = false;
     let mut place = DECADES.as_slice().len();
@@ -62,13 +42,12 @@ where
         }
         begun |= digit != b'0' || place <= decimals;
         if begun {
-            out.write_char(char::from(digit & 0x7f))?;
+            out.byte(digit);
             if place == decimals && place > 0 {
-                out.write_char('.')?;
+                out.byte(b'.');
             }
         }
     }
-    Ok(())
 }
 
 flash! {
@@ -78,48 +57,29 @@ flash! {
 }
 
 /// Prints a text and a number after it, with two decimals.
-///
-/// # Errors
-/// Those of `out`.
 #[inline(never)]
-pub fn field<W>(out: &mut W, text: Text, hundredths: u16) -> Result<(), W::Error>
-where
-    W: uWrite + ?Sized,
-{
-    text.print(out)?;
+pub fn field(out: &mut impl Output, text: Text, hundredths: u16) {
+    text.print(out);
     number(out, hundredths.into(), 2)
 }
 
 /// Prints a text and a whole number after it.
-///
-/// # Errors
-/// Those of `out`.
 #[inline(never)]
-pub fn count<W: uWrite + ?Sized>(out: &mut W, text: Text, count: u32) -> Result<(), W::Error> {
-    text.print(out)?;
+pub fn count(out: &mut impl Output, text: Text, count: u32) {
+    text.print(out);
     number(out, count, 0)
 }
 
 /// Prints a number that may be negative, `decimals` behind the point.
-///
-/// # Errors
-/// Those of `out`.
-pub fn signed<W: uWrite + ?Sized>(
-    out: &mut W,
-    value: i32,
-    decimals: usize,
-) -> Result<(), W::Error> {
+pub fn signed(out: &mut impl Output, value: i32, decimals: usize) {
     if value < 0 {
-        out.write_char('-')?;
+        out.byte(b'-');
     }
     number(out, value.unsigned_abs(), decimals)
 }
 
 /// Prints a margin with three decimals.
-///
-/// # Errors
-/// Those of `out`.
-pub fn sine<W: uWrite + ?Sized>(out: &mut W, sine: Sine) -> Result<(), W::Error> {
+pub fn sine(out: &mut impl Output, sine: Sine) {
     signed(out, sine.thousandths().into(), 3)
 }
 
@@ -136,7 +96,7 @@ mod tests {
 
     fn printed(value: u32, decimals: usize) -> String {
         let mut text = String::new();
-        let Ok(()) = number(&mut text, value, decimals);
+        number(&mut text, value, decimals);
         text
     }
 
@@ -168,7 +128,7 @@ mod tests {
     fn a_negative_number_has_its_sign_and_zero_has_none() {
         for value in (-33_000..33_000).chain([i32::MIN, i32::MAX]) {
             let mut text = String::new();
-            let Ok(()) = signed(&mut text, value, 3);
+            signed(&mut text, value, 3);
             let sign = if value < 0 { "-" } else { "" };
             assert_eq!(text, format!("{sign}{}", expected(value.unsigned_abs(), 3)));
         }
@@ -180,7 +140,7 @@ mod tests {
         let centideg = [0, 4_141, 31_860, 35_999];
         let robot = Sample::odd();
         let pose = Pose::at(&centideg.map(Angle::from_centideg), &robot.neutral());
-        let Ok(()) = angles(&mut text, &pose, &robot);
+        angles(&mut text, &pose, &robot);
         assert_eq!(text, "0.00,41.41,318.60,359.99");
     }
 

@@ -1,26 +1,26 @@
-//! Bytes into lines.
+//! Splits received bytes into lines.
 //!
 //! Terminals disagree about line ends: some send CR, some LF, some both. Here each of
 //! them ends a line. An empty line is ignored, so CRLF ends only one.
 
 use heapless::Vec;
 
-/// The longest line, without its end.
+/// The longest line, in bytes without the line end.
 pub const LONGEST: usize = 63;
 
-/// What a byte completed.
+/// The result of a line end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ended {
     /// A line, to be read with [`Line::text`].
     Line,
     /// A line that was longer than [`LONGEST`]; all of it is dropped.
     TooLong,
-    /// A line with a byte in it that came garbled: its other bytes may make a command,
-    /// but not the one that was sent.
+    /// A line with a garbled byte: its other bytes may form a command, but not the one that
+    /// was sent.
     Garbled,
 }
 
-/// What a board passes on for a byte that came garbled. No text holds this byte.
+/// The byte that a board passes on in place of a garbled one. Text never contains it.
 pub const GARBLED: u8 = 0xff;
 
 /// The line that is being received.
@@ -94,8 +94,7 @@ mod tests {
 
     use super::*;
 
-    /// Every line that bytes end: its text, or nothing for one that was too long or
-    /// came garbled.
+    /// Every line that the bytes complete: its text, or `None` if it was too long or garbled.
     fn ended(bytes: &[u8]) -> Vec<Option<String>> {
         let mut line = Line::new();
         let mut ended = Vec::new();
@@ -111,7 +110,7 @@ mod tests {
         ended
     }
 
-    /// The same, told by another reader of lines.
+    /// The same lines, split by a simple second implementation.
     fn expected(bytes: &[u8]) -> Vec<Option<String>> {
         let mut lines = Vec::new();
         for line in bytes.split(|byte| matches!(byte, b'\r' | b'\n')) {

@@ -8,6 +8,7 @@ pub mod command;
 mod dialogue;
 pub mod digits;
 pub mod line;
+pub mod output;
 mod print;
 mod refusal;
 pub mod text;

@@ -1,10 +1,9 @@
-//! How the console's lines are written.
-
-use ufmt::uWrite;
+//! Prints the lines of the console.
 
 use crate::console::answer::{Answer, Counters};
 use crate::console::digits;
 use crate::console::line::Line;
+use crate::console::output::Output;
 use crate::console::text::Text;
 use crate::console::word::{RESERVED, Word};
 use crate::control::Control;
@@ -22,106 +21,97 @@ use crate::numbers::robot::Robot;
 use crate::numbers::section::Damage;
 use crate::numbers::units::{Angle, Sweep, thousandths_from_phase};
 
-/// The longest line of gaits' names, without its line end: a frame may wait for one.
+/// The longest line of gaits' names, without its line end: it delays a frame by so much.
 pub(super) const LONGEST_NAMES: u8 = 125;
 
-/// Places of the lines of `cal`.
+/// The numbers of the lines that `cal` prints.
 const CAL_BOOT: u8 = 4;
 const CAL_DEADMAN: u8 = 5;
 const CAL_END: u8 = 6;
 
-/// Prints a line of an answer; returns what is left of it.
+/// Prints a line of an answer; returns the part that is still to be printed.
 #[inline(never)]
-pub(super) fn answer<W>(
-    out: &mut W,
+pub(super) fn answer(
+    out: &mut impl Output,
     answer: Answer,
     line: &Line,
     control: &Control,
     counters: Counters,
-) -> Result<Option<Answer>, W::Error>
-where
-    W: uWrite + ?Sized,
-{
+) -> Option<Answer> {
     match answer {
         Answer::Misread(misread) => {
-            Text::Err.print(out)?;
-            misread.print(control.motion(), out)?;
+            Text::Err.print(out);
+            misread.print(control.motion(), out);
         }
         Answer::Refused(refusal) => {
-            Text::Err.print(out)?;
-            refusal.print(control.motion(), out)?;
+            Text::Err.print(out);
+            refusal.print(control.motion(), out);
         }
         Answer::Gaits(first) => {
-            let rest = gaits(out, first, control.motion().robot())?;
-            return Ok(Some(rest.map_or(Answer::Words, Answer::Gaits)));
+            let rest = gaits(out, first, control.motion().robot());
+            return Some(rest.map_or(Answer::Words, Answer::Gaits));
         }
         Answer::Words => {
-            Text::HelpWords.print(out)?;
-            Word::print_all::<_, RESERVED>(out, control.motion().robot())?;
-            return Ok(Some(Answer::Hint));
+            Text::HelpWords.print(out);
+            Word::print_all::<RESERVED>(out, control.motion().robot());
+            return Some(Answer::Hint);
         }
         Answer::Hint => {
-            Text::HelpHint.print(out)?;
-            return Ok(Some(Answer::Helped));
+            Text::HelpHint.print(out);
+            return Some(Answer::Helped);
         }
-        Answer::Helped => Text::OkHelp.print(out)?,
+        Answer::Helped => Text::OkHelp.print(out),
         Answer::Done => {
-            Text::Ok.print(out)?;
-            digits::ascii(out, line.text().iter().copied())?;
+            Text::Ok.print(out);
+            digits::ascii(out, line.text().iter().copied());
         }
         Answer::Status => {
-            status(out, control.motion())?;
-            return Ok(Some(Answer::Margin));
+            status(out, control.motion());
+            return Some(Answer::Margin);
         }
         Answer::Margin => {
-            margin(out, control.motion())?;
-            return Ok(Some(Answer::Health));
+            margin(out, control.motion());
+            return Some(Answer::Health);
         }
-        Answer::Health => health(out, control, counters)?,
+        Answer::Health => health(out, control, counters),
         Answer::Settings(line) => {
-            if settings(out, line, control)? {
-                return Ok(Some(Answer::Settings(line + 1)));
+            if settings(out, line, control) {
+                return Some(Answer::Settings(line + 1));
             }
         }
     }
-    Ok(None)
+    None
 }
 
-/// `# gaits: stand|walk|...`, as many as a line takes; returns the first that
-/// it has no room for.
-fn gaits<W>(out: &mut W, first: GaitId, robot: &Robot) -> Result<Option<GaitId>, W::Error>
-where
-    W: uWrite + ?Sized,
-{
-    Text::HelpGaits.print(out)?;
+/// Prints `# gaits: stand|walk|...`, as many names as fit in a line; returns the first
+/// gait that did not fit.
+fn gaits(out: &mut impl Output, first: GaitId, robot: &Robot) -> Option<GaitId> {
+    Text::HelpGaits.print(out);
     // Whatever is in the flash then is no name.
     if robot.is_none() {
-        return Ok(None);
+        return None;
     }
     let mut length = Text::HelpGaits.length();
     let mut gait = first;
     loop {
         let name = robot.name(gait);
         if name.length() >= LONGEST_NAMES - length {
-            return Ok(Some(gait));
+            return Some(gait);
         }
         length += 1 + name.length();
-        out.write_char(if gait == first { ' ' } else { '|' })?;
-        digits::ascii(out, name)?;
+        out.byte(if gait == first { b' ' } else { b'|' });
+        digits::ascii(out, name);
         match gait.next(robot.gait_count()) {
             Some(next) => gait = next,
-            None => return Ok(None),
+            None => return None,
         }
     }
 }
 
 #[inline(never)]
-fn status<W>(out: &mut W, motion: &Motion) -> Result<(), W::Error>
-where
-    W: uWrite + ?Sized,
-{
+fn status(out: &mut impl Output, motion: &Motion) {
     let robot = motion.robot();
-    Text::OkGait.print(out)?;
+    Text::OkGait.print(out);
     match motion.activity() {
         // A gait's name as a value without a blank: `arc-left`.
         Activity::Gait(gait) => {
@@ -129,118 +119,105 @@ where
             digits::ascii(
                 out,
                 bytes.map(|byte| if byte == b' ' { b'-' } else { byte }),
-            )?;
+            );
         }
-        Activity::Pose => Text::Pose.print(out)?,
-        Activity::Stop => Text::Stop.print(out)?,
-        Activity::Rest => Text::Rest.print(out)?,
+        Activity::Pose => Text::Pose.print(out),
+        Activity::Stop => Text::Stop.print(out),
+        Activity::Rest => Text::Rest.print(out),
     }
     // What is no robot rests, and has no pose and no margin.
     if robot.is_none() {
-        return Ok(());
+        return;
     }
-    Text::StatusPhase.print(out)?;
-    digits::number(out, thousandths_from_phase(motion.phase()).into(), 3)?;
+    Text::StatusPhase.print(out);
+    digits::number(out, thousandths_from_phase(motion.phase()).into(), 3);
     pose(out, motion)
 }
 
-/// ` margin=0.661 speed=100 frames=321`
-fn margin<W>(out: &mut W, motion: &Motion) -> Result<(), W::Error>
-where
-    W: uWrite + ?Sized,
-{
+/// Prints ` margin=0.661 speed=100 frames=321`.
+fn margin(out: &mut impl Output, motion: &Motion) {
     let robot = motion.robot();
     if robot.is_none() {
-        return Ok(());
+        return;
     }
-    Text::StatusMargin.print(out)?;
-    digits::sine(out, Clearance::of(robot, motion.pose()).smallest())?;
-    digits::count(out, Text::StatusSpeed, motion.speed().into())?;
+    Text::StatusMargin.print(out);
+    digits::sine(out, Clearance::of(robot, motion.pose()).smallest());
+    digits::count(out, Text::StatusSpeed, motion.speed().into());
     digits::count(out, Text::StatusFrames, motion.frames())
 }
 
-/// ` late=0 rx_lost=0 guard=clear fault=none reset=power resets=0 vcc=5.02 rail=5.91`, the rail where it is
-/// measured.
+/// Prints ` late=0 rx_lost=0 guard=clear fault=none reset=power resets=0 vcc=5.02 rail=5.91`;
+/// the rail only if it is measured.
 #[inline(never)]
-fn health<W>(out: &mut W, control: &Control, counters: Counters) -> Result<(), W::Error>
-where
-    W: uWrite + ?Sized,
-{
-    digits::count(out, Text::StatusLate, counters.late.into())?;
-    digits::count(out, Text::StatusRxLost, counters.rx_lost.into())?;
-    Text::StatusGuard.print(out)?;
+fn health(out: &mut impl Output, control: &Control, counters: Counters) {
+    digits::count(out, Text::StatusLate, counters.late.into());
+    digits::count(out, Text::StatusRxLost, counters.rx_lost.into());
+    Text::StatusGuard.print(out);
     match control.motion().hazard() {
         None => Text::GuardClear,
         Some(_) => Text::GuardHeld,
     }
-    .print(out)?;
-    Text::StatusFault.print(out)?;
+    .print(out);
+    Text::StatusFault.print(out);
     control
         .fault()
         .map_or(Text::FaultNone, fault_word)
-        .print(out)?;
-    Text::StatusReset.print(out)?;
-    cause_word(control.cause()).print(out)?;
-    digits::count(out, Text::StatusResets, control.restarts().into())?;
+        .print(out);
+    Text::StatusReset.print(out);
+    cause_word(control.cause()).print(out);
+    digits::count(out, Text::StatusResets, control.restarts().into());
     let robot = control.motion().robot();
     // Only a robot says by which reference a voltage is to be computed.
     if robot.is_none() {
-        return Ok(());
+        return;
     }
     let supplies = robot.supplies();
     let reading = control.safety().supply().reading();
     let board = Voltage::of_board(reading, &supplies);
-    digits::field(out, Text::StatusVcc, board.hundredths())?;
+    digits::field(out, Text::StatusVcc, board.hundredths());
     if supplies.rail_reference != 0 {
         let rail = Voltage::of_rail(reading, &supplies);
-        digits::field(out, Text::StatusRail, rail.hundredths())?;
+        digits::field(out, Text::StatusRail, rail.hundredths());
     }
-    Ok(())
 }
 
-/// A line of `cal`; false after the last one, which is `ok cal`.
+/// Prints a line of `cal`; returns false after the last one, which is `ok cal`.
 #[inline(never)]
-fn settings<W>(out: &mut W, line: u8, control: &Control) -> Result<bool, W::Error>
-where
-    W: uWrite + ?Sized,
-{
+fn settings(out: &mut impl Output, line: u8, control: &Control) -> bool {
     let settings = control.settings();
     match line {
         CAL_BOOT => {
-            Text::CalBoot.print(out)?;
-            boot(out, control)?;
+            Text::CalBoot.print(out);
+            boot(out, control);
         }
         CAL_DEADMAN => {
-            digits::count(out, Text::CalDeadman, settings.deadman().into())?;
+            digits::count(out, Text::CalDeadman, settings.deadman().into());
         }
         CAL_END.. => {
-            Text::Ok.print(out)?;
-            Text::Cal.print(out)?;
-            return Ok(false);
+            Text::Ok.print(out);
+            Text::Cal.print(out);
+            return false;
         }
         _ => {
             let servo = Servo::at(usize::from(line));
             let set = settings.servo(servo);
             let neutral = control.motion().robot().neutral_of(servo);
-            Text::Information.print(out)?;
-            out.write_char('A')?;
-            out.write_char(char::from(b'1' + line))?;
-            Text::CalTrim.print(out)?;
-            sweep(out, set.trim)?;
-            digits::field(out, Text::CalLimit, neutral.swept(set.min).centideg())?;
-            digits::field(out, Text::Blank, neutral.swept(set.max).centideg())?;
-            Text::CalDir.print(out)?;
-            out.write_char(if set.is_direct() { '+' } else { '-' })?;
-            digits::field(out, Text::CalScale, set.scale())?;
+            Text::Information.print(out);
+            out.byte(b'A');
+            out.byte(b'1' + line);
+            Text::CalTrim.print(out);
+            sweep(out, set.trim);
+            digits::field(out, Text::CalLimit, neutral.swept(set.min).centideg());
+            digits::field(out, Text::Blank, neutral.swept(set.max).centideg());
+            Text::CalDir.print(out);
+            out.byte(if set.is_direct() { b'+' } else { b'-' });
+            digits::field(out, Text::CalScale, set.scale());
         }
     }
-    Ok(true)
+    true
 }
 
-fn boot<W>(out: &mut W, control: &Control) -> Result<(), W::Error>
-where
-    W: uWrite + ?Sized,
-{
+fn boot(out: &mut impl Output, control: &Control) {
     let robot = control.motion().robot();
     match control.settings().boot(robot) {
         Boot::Rest => Text::Rest.print(out),
@@ -248,11 +225,8 @@ where
     }
 }
 
-/// Prints what comes without a command.
-pub(super) fn notice<W>(out: &mut W, notice: Notice, control: &Control) -> Result<(), W::Error>
-where
-    W: uWrite + ?Sized,
-{
+/// Prints a notice, a line that comes without a command.
+pub(super) fn notice(out: &mut impl Output, notice: Notice, control: &Control) {
     match notice {
         Notice::Memory => match control.found() {
             Outcome::Latest | Outcome::Blank => Text::MemoryBlank,
@@ -264,7 +238,7 @@ where
         .print(out),
         Notice::NotKept => Text::MemoryNotKept.print(out),
         Notice::Fault => {
-            Text::NoticeFault.print(out)?;
+            Text::NoticeFault.print(out);
             let fault = control.safety().fault();
             match control.damage() {
                 Some(Damage::Format) => Text::WhyRobotFormat,
@@ -274,9 +248,9 @@ where
             .print(out)
         }
         Notice::Supply => {
-            digits::field(out, Text::NoticeSupply, control.voltage().hundredths())?;
-            out.write_char(' ')?;
-            out.write_char('V')?;
+            digits::field(out, Text::NoticeSupply, control.voltage().hundredths());
+            out.byte(b' ');
+            out.byte(b'V');
             match control.safety().supply().level() {
                 Level::Good => Text::LevelGood,
                 Level::Slow => Text::LevelSlow,
@@ -286,39 +260,36 @@ where
             .print(out)
         }
         Notice::Boot => {
-            Text::NoticeBoot.print(out)?;
+            Text::NoticeBoot.print(out);
             boot(out, control)
         }
     }
 }
 
-/// ` pose=`, and the chassis angles of the four servos.
-pub(super) fn pose<W>(out: &mut W, motion: &Motion) -> Result<(), W::Error>
-where
-    W: uWrite + ?Sized,
-{
-    Text::WatchPose.print(out)?;
+/// Prints ` pose=` and the chassis angles of the four servos.
+pub(super) fn pose(out: &mut impl Output, motion: &Motion) {
+    Text::WatchPose.print(out);
     digits::angles(out, motion.pose(), motion.robot())
 }
 
-/// A sweep in degrees with two decimals.
-fn sweep<W: uWrite + ?Sized>(out: &mut W, sweep: Sweep) -> Result<(), W::Error> {
+/// Prints a sweep in degrees with two decimals.
+fn sweep(out: &mut impl Output, sweep: Sweep) {
     let size = Angle(sweep.0.unsigned_abs()).centideg();
     let centideg = i32::from(size);
     digits::signed(out, if sweep.0 < 0 { -centideg } else { centideg }, 2)
 }
 
-/// `# lizard 0.2.0 robot paper 1a2b3c4d, send help for the commands`.
-pub(super) fn banner<W: uWrite + ?Sized>(out: &mut W, robot: &Robot) -> Result<(), W::Error> {
-    Text::Banner.print(out)?;
-    Text::Version.print(out)?;
+/// Prints `# lizard 0.2.0 robot paper 1a2b3c4d, send help for the commands`.
+pub(super) fn banner(out: &mut impl Output, robot: &Robot) {
+    Text::Banner.print(out);
+    Text::Version.print(out);
     if robot.is_none() {
-        Text::BannerNone.print(out)?;
+        Text::BannerNone.print(out);
         return Text::BannerEnd.print(out);
     }
-    Text::BannerRobot.print(out)?;
-    digits::ascii(out, robot.label())?;
-    out.write_char(' ')?;
+    Text::BannerRobot.print(out);
+    digits::ascii(out, robot.label());
+    out.byte(b' ');
     let hash = robot.hash();
     for digit in 0..8 {
         let nibble = (hash >> (28 - 4 * digit)) as u8 & 0xf;
@@ -327,7 +298,7 @@ pub(super) fn banner<W: uWrite + ?Sized>(out: &mut W, robot: &Robot) -> Result<(
         } else {
             b'a' - 10 + nibble
         };
-        out.write_char(char::from(digit))?;
+        out.byte(digit);
     }
     Text::BannerEnd.print(out)
 }

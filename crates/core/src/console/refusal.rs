@@ -2,10 +2,9 @@
 //!
 //! The codes are part of the protocol and never change their meaning.
 
-use ufmt::uWrite;
-
 use crate::console::command::Misread;
 use crate::console::digits::{field, number, signed, sine};
+use crate::console::output::Output;
 use crate::console::text::Text;
 use crate::control::refusal::Refusal;
 use crate::guard::hazard::{Hazard, Margin};
@@ -18,14 +17,8 @@ use crate::numbers::slider::Slider;
 
 impl Misread {
     /// Prints the protocol's number of this error, and the reason.
-    ///
-    /// # Errors
-    /// Those of `out`.
     #[inline(never)]
-    pub fn print<W>(self, motion: &Motion, out: &mut W) -> Result<(), W::Error>
-    where
-        W: uWrite + ?Sized,
-    {
+    pub fn print(self, motion: &Motion, out: &mut impl Output) {
         let (code, text) = match self {
             Self::Unknown => (1, Text::Unknown),
             Self::Garbled => (1, Text::Garbled),
@@ -34,12 +27,12 @@ impl Misread {
             Self::Wants(text) => (2, text),
             Self::Range(text) => (3, text),
             Self::PoseRange(servo) => {
-                print_code(3, out)?;
+                print_code(3, out);
                 return print_travel(servo, motion, out);
             }
             Self::TooLong => (6, Text::TooLong),
         };
-        print_code(code, out)?;
+        print_code(code, out);
         text.print(out)
     }
 }
@@ -59,24 +52,18 @@ impl Refusal {
     }
 
     /// Prints the protocol's number of this refusal, and the reason.
-    ///
-    /// # Errors
-    /// Those of `out`.
-    pub fn print<W>(self, motion: &Motion, out: &mut W) -> Result<(), W::Error>
-    where
-        W: uWrite + ?Sized,
-    {
-        print_code(self.code(), out)?;
+    pub fn print(self, motion: &Motion, out: &mut impl Output) {
+        print_code(self.code(), out);
         match self {
             Self::Unsafe(hazard) => print_hazard(hazard, motion, out),
             Self::Unfit(servo) => {
-                print_servo(servo, out)?;
-                Text::Needed.print(out)?;
+                print_servo(servo, out);
+                Text::Needed.print(out);
                 let needed = motion.robot().reach(servo);
                 print_range(servo, &needed, motion, out)
             }
             Self::Elsewhere(servo) => {
-                print_servo(servo, out)?;
+                print_servo(servo, out);
                 Text::NotHere.print(out)
             }
             Self::Resting => Text::Resting.print(out),
@@ -89,39 +76,27 @@ impl Refusal {
 }
 
 /// Prints the protocol's number of an error and a blank.
-fn print_code<W: uWrite + ?Sized>(code: u8, out: &mut W) -> Result<(), W::Error> {
-    number(out, code.into(), 0)?;
-    out.write_char(' ')
+fn print_code(code: u8, out: &mut impl Output) {
+    number(out, code.into(), 0);
+    out.byte(b' ')
 }
-/// `A2 reaches 311.41..131.41`.
-fn print_travel<W>(servo: Servo, motion: &Motion, out: &mut W) -> Result<(), W::Error>
-where
-    W: uWrite + ?Sized,
-{
-    print_servo(servo, out)?;
-    Text::Beyond.print(out)?;
+/// Prints `A2 reaches 311.41..131.41`.
+fn print_travel(servo: Servo, motion: &Motion, out: &mut impl Output) {
+    print_servo(servo, out);
+    Text::Beyond.print(out);
     let Calibration { min, max, .. } = *servo.of(motion.calibration());
     print_range(servo, &Reach { min, max }, motion, out)
 }
 
-fn print_range<W>(servo: Servo, reach: &Reach, motion: &Motion, out: &mut W) -> Result<(), W::Error>
-where
-    W: uWrite + ?Sized,
-{
+fn print_range(servo: Servo, reach: &Reach, motion: &Motion, out: &mut impl Output) {
     let neutral = motion.robot().neutral_of(servo);
-    field(out, Text::Nothing, neutral.swept(reach.min).centideg())?;
+    field(out, Text::Nothing, neutral.swept(reach.min).centideg());
     field(out, Text::Dots, neutral.swept(reach.max).centideg())
 }
 
 /// Prints what is wrong with a pose: the margin or the travel, and its limit.
-///
-/// # Errors
-/// Those of `out`.
 #[inline(never)]
-pub fn print_hazard<W>(hazard: Hazard, motion: &Motion, out: &mut W) -> Result<(), W::Error>
-where
-    W: uWrite + ?Sized,
-{
+pub fn print_hazard(hazard: Hazard, motion: &Motion, out: &mut impl Output) {
     let robot = motion.robot();
     match hazard {
         Hazard::Travel(servo) => print_travel(servo, motion, out),
@@ -129,31 +104,31 @@ where
             let limits = robot.limits();
             let least = match margin {
                 Margin::Type2(End::Head) => {
-                    Text::Type2Head.print(out)?;
+                    Text::Type2Head.print(out);
                     limits.type2
                 }
                 Margin::Type2(End::Tail) => {
-                    Text::Type2Tail.print(out)?;
+                    Text::Type2Tail.print(out);
                     limits.type2
                 }
                 Margin::Type1(servo) => {
-                    Text::Type1.print(out)?;
-                    print_servo(servo, out)?;
+                    Text::Type1.print(out);
+                    print_servo(servo, out);
                     limits.type1
                 }
                 Margin::Leg(servo) => {
-                    Text::Leg.print(out)?;
-                    print_servo(servo, out)?;
+                    Text::Leg.print(out);
+                    print_servo(servo, out);
                     limits.leg
                 }
             };
             if margin.is_known(value) {
-                Text::Is.print(out)?;
-                sine(out, value)?;
+                Text::Is.print(out);
+                sine(out, value);
             } else {
-                Text::IsBelow.print(out)?;
+                Text::IsBelow.print(out);
             }
-            Text::Least.print(out)?;
+            Text::Least.print(out);
             sine(out, least)
         }
         Hazard::Stroke { side, length } => {
@@ -161,10 +136,10 @@ where
                 Side::Left => Text::Left,
                 Side::Right => Text::Right,
             }
-            .print(out)?;
+            .print(out);
             let Slider { min, max, .. } = robot.side(side);
-            print_stroke(Text::Slider, length, side, robot, out)?;
-            print_stroke(Text::Within, min, side, robot, out)?;
+            print_stroke(Text::Slider, length, side, robot, out);
+            print_stroke(Text::Within, min, side, robot, out);
             print_stroke(Text::Dots, max, side, robot, out)
         }
     }
@@ -172,28 +147,19 @@ where
 
 /// Prints the travel from nominal of a slider's length, after `text`.
 #[inline(never)]
-fn print_stroke<W>(
-    text: Text,
-    length: u16,
-    side: Side,
-    robot: &Robot,
-    out: &mut W,
-) -> Result<(), W::Error>
-where
-    W: uWrite + ?Sized,
-{
-    text.print(out)?;
+fn print_stroke(text: Text, length: u16, side: Side, robot: &Robot, out: &mut impl Output) {
+    text.print(out);
     signed(out, robot.side(side).travel(length), 2)
 }
 
-fn print_servo<W: uWrite + ?Sized>(servo: Servo, out: &mut W) -> Result<(), W::Error> {
-    out.write_char('A')?;
-    out.write_char(char::from(b'1' + servo.index() as u8))
+fn print_servo(servo: Servo, out: &mut impl Output) {
+    out.byte(b'A');
+    out.byte(b'1' + servo.index() as u8)
 }
 
 #[cfg(test)]
 mod tests {
-    use std::convert::Infallible;
+    use std::format;
     use std::string::String;
 
     use super::*;
@@ -202,9 +168,9 @@ mod tests {
 
     /// A refusal as the console of the odd robot prints it, with its code.
     /// The text that a function prints.
-    fn printed(print: impl FnOnce(&Motion, &mut String) -> Result<(), Infallible>) -> String {
+    fn printed(print: impl FnOnce(&Motion, &mut String)) -> String {
         let mut text = String::new();
-        let Ok(()) = print(&Motion::new(*Sample::odd()), &mut text);
+        print(&Motion::new(*Sample::odd()), &mut text);
         text
     }
 
@@ -214,103 +180,113 @@ mod tests {
 
     #[test]
     fn every_error_has_its_code_and_its_sentence() {
+        use Misread::{PoseRange, Range, Wants};
         for (misread, sentence) in [
             (
                 Misread::Unknown,
                 "1 unknown command, send help for the list",
             ),
+            (Misread::Garbled, "1 the line came garbled, send it again"),
             (Misread::Surplus, "2 this command takes no argument"),
             (Misread::Incomplete, "2 this command wants one more word"),
             (
-                Misread::Wants(Text::SpeedWants),
+                Wants(Text::SpeedWants),
                 "2 speed wants a whole number, 10..100",
             ),
-            (Misread::Range(Text::SpeedRange), "3 speed must be 10..100"),
+            (Range(Text::SpeedRange), "3 speed must be 10..100"),
             (
-                Misread::Wants(Text::WatchWants),
+                Wants(Text::WatchWants),
                 "2 watch wants a whole number, 0..10000",
             ),
-            (Misread::Range(Text::WatchRange), "3 watch must be 0..10000"),
+            (Range(Text::WatchRange), "3 watch must be 0..10000"),
             (
-                Misread::Wants(Text::PoseWants),
+                Wants(Text::PoseWants),
                 "2 pose wants four angles in degrees, at most two decimals",
             ),
-            (Misread::PoseRange(Servo::A1), "3 A1 reaches 61.37..215.36"),
+            (PoseRange(Servo::A1), "3 A1 reaches 61.37..215.36"),
             (Misread::TooLong, "6 a line has at most 63 characters"),
-            (Misread::Garbled, "1 the line came garbled, send it again"),
         ] {
             assert_eq!(printed(|motion, out| misread.print(motion, out)), sentence);
         }
+        assert_eq!(
+            told(Refusal::Resting),
+            "7 servos are resting, send stand first"
+        );
         // The ends of the travel, in whole steps within it: A1 turns 71 deg clockwise of
         // 132.37 and 83 the other way; the servo of A2 is reversed.
-        for (refusal, sentence) in [
-            (
-                Refusal::Unsafe(Hazard::Travel(Servo::A2)),
-                "3 A2 reaches 341.92..135.91",
-            ),
-            (
-                Refusal::Unsafe(Hazard::Travel(Servo::A3)),
-                "3 A3 reaches 235.64..18.64",
-            ),
-            (
-                Refusal::Unsafe(Hazard::Travel(Servo::A4)),
-                "3 A4 reaches 134.18..307.18",
-            ),
-            (Refusal::Resting, "7 servos are resting, send stand first"),
+        for (servo, sentence) in [
+            (Servo::A2, "3 A2 reaches 341.92..135.91"),
+            (Servo::A3, "3 A3 reaches 235.64..18.64"),
+            (Servo::A4, "3 A4 reaches 134.18..307.18"),
         ] {
-            assert_eq!(told(refusal), sentence);
+            assert_eq!(told(Refusal::Unsafe(Hazard::Travel(servo))), sentence);
         }
     }
 
     #[test]
     fn every_hazard_is_told_with_its_value_and_its_own_limit() {
-        let margin = |margin, value| Hazard::Margin {
-            margin,
-            value: Sine(value),
-        };
-        let stroke = |side, length| Hazard::Stroke { side, length };
-        let robot = Sample::odd();
-        // Nominal 91 mm on the left and 98 mm on the right, 256 steps each.
-        assert_eq!(robot.content.sides.map(|side| side.scale.bits), [8, 8]);
-        for (hazard, sentence) in [
+        use Margin::{Leg, Type1, Type2};
+        for (margin, value, sentence) in [
             (
-                margin(Margin::Type2(End::Head), 1000),
-                "4 type-2 margin of the head is 0.031, at least 0.340",
+                Type2(End::Head),
+                1000,
+                "type-2 margin of the head is 0.031, at least 0.340",
             ),
             (
-                margin(Margin::Type2(End::Tail), -33),
-                "4 type-2 margin of the tail is -0.001, at least 0.340",
+                Type2(End::Tail),
+                -33,
+                "type-2 margin of the tail is -0.001, at least 0.340",
             ),
             (
-                margin(Margin::Type2(End::Tail), 0),
-                "4 type-2 margin of the tail is below 0.1, at least 0.340",
+                Type2(End::Tail),
+                0,
+                "type-2 margin of the tail is below 0.1, at least 0.340",
             ),
             (
-                margin(Margin::Type1(Servo::A1), 0),
-                "4 type-1 margin of A1 is 0.000, at least 0.220",
+                Type1(Servo::A1),
+                0,
+                "type-1 margin of A1 is 0.000, at least 0.220",
             ),
             (
-                margin(Margin::Type1(Servo::A3), -9830),
-                "4 type-1 margin of A3 is -0.300, at least 0.220",
+                Type1(Servo::A3),
+                -9830,
+                "type-1 margin of A3 is -0.300, at least 0.220",
             ),
             (
-                margin(Margin::Leg(Servo::A2), 2000),
-                "4 leg margin of A2 is 0.061, at least 0.130",
+                Leg(Servo::A2),
+                2000,
+                "leg margin of A2 is 0.061, at least 0.130",
             ),
             (
-                margin(Margin::Leg(Servo::A4), -32_767),
-                "4 leg margin of A4 is -1.000, at least 0.130",
-            ),
-            (
-                stroke(Side::Left, 256 * 131),
-                "5 left slider is at 40.00 mm, stroke -21.00..38.00",
-            ),
-            (
-                stroke(Side::Right, 256 * 70),
-                "5 right slider is at -28.00 mm, stroke -21.00..38.00",
+                Leg(Servo::A4),
+                -32_767,
+                "leg margin of A4 is -1.000, at least 0.130",
             ),
         ] {
-            assert_eq!(told(Refusal::Unsafe(hazard)), sentence);
+            let value = Sine(value);
+            let hazard = Hazard::Margin { margin, value };
+            assert_eq!(told(Refusal::Unsafe(hazard)), format!("4 {sentence}"));
+        }
+        // Nominal 91 mm on the left and 98 mm on the right, 256 steps each.
+        assert_eq!(
+            Sample::odd().content.sides.map(|side| side.scale.bits),
+            [8, 8]
+        );
+        for (side, mm, sentence) in [
+            (
+                Side::Left,
+                131,
+                "left slider is at 40.00 mm, stroke -21.00..38.00",
+            ),
+            (
+                Side::Right,
+                70,
+                "right slider is at -28.00 mm, stroke -21.00..38.00",
+            ),
+        ] {
+            let length = 256 * mm;
+            let hazard = Hazard::Stroke { side, length };
+            assert_eq!(told(Refusal::Unsafe(hazard)), format!("5 {sentence}"));
         }
     }
 }

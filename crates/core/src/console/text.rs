@@ -6,7 +6,8 @@
 //! when they are printed.
 
 use lizard_avr::flash;
-use ufmt::uWrite;
+
+use crate::console::output::Output;
 
 macro_rules! texts {
     ($($name:ident = $sentence:expr;)*) => {
@@ -150,7 +151,7 @@ texts! {
     NothingSaved = "nothing is saved that could be loaded";
 }
 
-/// What occurs in several sentences, kept once.
+/// Phrases that occur in several sentences, stored once.
 const PHRASES: &[&str] = &[
     " wants a servo 1..4 and ",
     ", robot.toml's is in use",
@@ -186,16 +187,16 @@ const PHRASES: &[&str] = &[
 /// Every character of the sentences, the commonest first.
 const ALPHABET: &[u8; 45] = b" eotsarnldipmgcw0uh.=fb:vk1y2-,x6#z?_3+54'789";
 
-/// How many of them have a code of four bits, which those of the others do not begin
-/// with.
+/// The number of characters with a code of four bits; no longer code begins with one of
+/// these.
 const SHORT: u8 = 12;
 
 const COUNT: usize = SENTENCES.len();
 
-/// Sentences and phrases; what is packed is numbered in this order.
+/// The number of packed strings: the sentences first, then the phrases.
 const STRINGS: usize = COUNT + PHRASES.len();
 
-/// Strings to a block. Only where a block starts is kept, and how long a string is.
+/// Strings in a block. Only the start of each block is stored, and the length of each string.
 const BLOCK: usize = 16;
 
 const PACKED: Packed = pack();
@@ -209,11 +210,8 @@ flash! {
 
 impl Text {
     /// Prints the sentence.
-    ///
-    /// # Errors
-    /// Those of `out`.
     #[inline(never)]
-    pub fn print<W: uWrite + ?Sized>(self, out: &mut W) -> Result<(), W::Error> {
+    pub fn print(self, out: &mut impl Output) {
         let mut part = Part::of(self as u8);
         // What follows the phrase that `part` is of.
         let mut rest = Part::NONE;
@@ -223,7 +221,7 @@ impl Text {
                 rest.left = 0;
             }
             if part.left == 0 {
-                return Ok(());
+                return;
             }
             let mut code = part.next();
             if code >= SHORT {
@@ -232,7 +230,7 @@ impl Text {
             match code.checked_sub(ALPHABET.len() as u8) {
                 None => {
                     let character = CHARACTERS.at(usize::from(code)).load();
-                    out.write_char(char::from(character & 0x7f))?;
+                    out.byte(character);
                 }
                 Some(phrase) => {
                     rest = part;
@@ -242,13 +240,13 @@ impl Text {
         }
     }
 
-    /// Its length in bytes.
+    /// The length of the sentence in bytes.
     pub const fn length(self) -> u8 {
         SENTENCES[self as usize].len() as u8
     }
 }
 
-/// Nibbles of a string that are left.
+/// The nibbles of a string that are still to be read.
 #[derive(Clone, Copy)]
 struct Part {
     at: u16,
@@ -258,7 +256,7 @@ struct Part {
 impl Part {
     const NONE: Self = Self { at: 0, left: 0 };
 
-    /// A sentence or a phrase.
+    /// All nibbles of a sentence or a phrase.
     #[inline(never)]
     fn of(string: u8) -> Self {
         let string = usize::from(string);
@@ -273,7 +271,7 @@ impl Part {
         }
     }
 
-    /// The next one.
+    /// Reads the next nibble.
     #[inline(always)]
     fn next(&mut self) -> u8 {
         let pair = NIBBLES.at(usize::from(self.at >> 1)).load();
@@ -284,7 +282,7 @@ impl Part {
     }
 }
 
-/// All strings as nibbles, of each pair the first one in the lower half.
+/// All strings as nibbles; the first of each pair is in the lower half of a byte.
 struct Packed {
     nibbles: [u8; MOST],
     count: usize,
@@ -292,7 +290,7 @@ struct Packed {
     blocks: [u16; STRINGS.div_ceil(BLOCK)],
 }
 
-/// More bytes than are needed.
+/// The size of the compiler's buffer, in bytes: more than the strings need.
 const MOST: usize = 4096;
 
 impl Packed {
@@ -356,7 +354,7 @@ const fn pack() -> Packed {
     packed
 }
 
-/// The first phrase that a text begins with, and what follows it.
+/// The first phrase that a text begins with, and the rest of the text.
 const fn phrase_of(text: &[u8]) -> Option<(usize, &[u8])> {
     let mut phrase = 0;
     while phrase < PHRASES.len() {
@@ -400,7 +398,7 @@ mod tests {
             (Text::Resting, "servos are resting, send stand first"),
         ] {
             let mut printed = String::new();
-            let Ok(()) = text.print(&mut printed);
+            text.print(&mut printed);
             assert_eq!(printed, expected);
             assert_eq!(usize::from(text.length()), expected.len());
         }

@@ -1,13 +1,13 @@
 //! Pose reports, as `watch` asks for them.
 
-/// When the next report is due.
+/// The timer of the pose reports.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Watch {
     /// Frames from one report to the next; 0 for none.
     every: u16,
-    /// Frames until the next one.
+    /// Frames until the next report.
     left: u16,
-    /// Whether one waits to be written.
+    /// True while a report waits to be written.
     pub(super) due: bool,
 }
 

@@ -1,12 +1,12 @@
-//! The words that the console takes for its own.
+//! The words of the console.
 
 use lizard_avr::flash;
-use ufmt::uWrite;
 
+use crate::console::output::Output;
 use crate::numbers::gaits::GaitId;
 use crate::numbers::robot::Robot;
 
-/// The effect of a command on the servos, if the robot does it.
+/// The effect of a command on the servos, if the robot carries it out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
     /// No pulse changes: a question, or a setting for later.
@@ -33,7 +33,8 @@ macro_rules! words {
             $($new = $new_word $new_arguments, $new_effect;)*
         }
 
-        /// Of [`Word::ALL`] the first that are reserved for ever.
+        /// The number of words at the beginning of [`Word::ALL`] that no gait's name may begin
+        /// with.
         pub(crate) const RESERVED: usize = [$(Word::$old),*].len();
     };
     (@all $($name:ident = $word:literal $arguments:literal, $effect:ident;)*) => {
@@ -44,7 +45,7 @@ macro_rules! words {
         pub enum Word { $($name),* }
 
         impl Word {
-            /// All of them, as `help` lists them.
+            /// All words, in the order in which `help` lists them.
             pub const ALL: &[Self] = &[$(Self::$name),*];
 
             /// The word as it is written.
@@ -65,7 +66,7 @@ macro_rules! words {
             }
         }
 
-        /// Each with a bar behind it.
+        /// All words, each with a bar behind it.
         const LIST: &str = concat!($($word, "|"),*);
     };
 }
@@ -100,7 +101,7 @@ words! {
     }
 }
 
-/// Follows each word in the list.
+/// The character behind each word of the list.
 const BAR: u8 = b'|';
 
 flash! {
@@ -109,7 +110,7 @@ flash! {
 }
 
 impl Word {
-    /// The one that is written so.
+    /// Finds the word that is spelled like this.
     #[inline(never)]
     pub fn find(written: &[u8]) -> Option<Self> {
         let mut number = 0;
@@ -135,18 +136,9 @@ impl Word {
         (self as usize) < RESERVED
     }
 
-    /// Prints all of them, with bars in between. Those from number `YIELDING` on are left
-    /// out where the robot has a gait of the same name.
-    ///
-    /// # Errors
-    /// Those of `out`.
-    pub(crate) fn print_all<W, const YIELDING: usize>(
-        out: &mut W,
-        robot: &Robot,
-    ) -> Result<(), W::Error>
-    where
-        W: uWrite + ?Sized,
-    {
+    /// Prints all words, with bars in between. A word whose number is `YIELDING` or more is
+    /// left out if the robot has a gait of the same name.
+    pub(crate) fn print_all<const YIELDING: usize>(out: &mut impl Output, robot: &Robot) {
         let mut number = 0;
         let mut is_printed = true;
         for place in 0..LIST.len() - 1 {
@@ -157,14 +149,13 @@ impl Word {
                 is_printed = number < YIELDING || !is_gait(place + 1, robot);
             }
             if is_printed {
-                out.write_char(char::from(character & 0x7f))?;
+                out.byte(character);
             }
         }
-        Ok(())
     }
 }
 
-/// True if the word that begins at `place` is the whole name of a gait.
+/// True if the word that begins at `place` is the name of a gait.
 fn is_gait(place: usize, robot: &Robot) -> bool {
     GaitId::all(robot.gait_count()).any(|id| {
         let letters = (place..LIST.len()).map(|place| CHARACTERS.at(place).load());
@@ -182,7 +173,7 @@ mod tests {
     use super::*;
     use crate::sample::Sample;
 
-    /// The words of the first versions: a promise to the robots of their time.
+    /// The words of the first versions, which every later version keeps.
     const RESERVED_FOR_EVER: &str = "help|?|stop|rest|status|pose|speed|watch|trim|limit|dir|\
         scale|cal|center|save|load|factory|boot|deadman";
 
@@ -208,12 +199,12 @@ mod tests {
         }
     }
 
-    /// All words but those without which they are to be listed.
+    /// All words, without those that are to be left out.
     fn listed<const YIELDING: usize>(robot: &Robot, left_out: &[Word]) {
         let words = Word::ALL.iter().filter(|word| !left_out.contains(word));
         let words: Vec<&str> = words.map(|word| word.text()).collect();
         let mut list = String::new();
-        let Ok(()) = Word::print_all::<_, YIELDING>(&mut list, robot);
+        Word::print_all::<YIELDING>(&mut list, robot);
         assert_eq!(list, words.join("|"));
     }
 

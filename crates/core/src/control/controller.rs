@@ -1,4 +1,4 @@
-//! What the robot does, order by order and frame by frame. It knows no text.
+//! The robot as a whole: carries out orders, computes frames, and reacts to faults.
 //!
 //! A console on a serial line, or something else, gives orders to the robot and learns
 //! which of them are refused. Fifty times a second the robot computes a frame and watches
@@ -29,32 +29,32 @@ use job::Job;
 mod adjust;
 mod job;
 
-/// Frames without a restart after which a weak supply is one no more, 30 s.
+/// Frames without a reset after which the supply counts as good again: 30 s.
 const STEADY: u32 = 1500;
 
-/// The robot.
+/// The robot: its motion, settings, safety, and the EEPROM operation in progress.
 #[derive(Clone, Debug)]
 pub struct Control {
     motion: Motion,
     settings: Settings,
-    /// Why there is no robot.
+    /// The reason for which the flash holds no usable robot.
     damage: Option<Damage>,
-    /// What was found of them at power-on.
+    /// The state of the saved settings at power-on.
     found: Outcome,
     safety: Safety,
-    /// Why the program began.
+    /// The cause of the last reset.
     cause: Cause,
-    /// How many times since power came on.
+    /// Resets since power-on.
     restarts: u8,
-    /// Whether a weak supply may have been the cause, and nothing else.
+    /// True if a weak supply is the only possible cause of the reset.
     may_be_supply: bool,
-    /// Restarts in a row that a weak supply may have made.
+    /// Consecutive resets that a weak supply may have caused.
     brown_outs: u8,
-    /// What an order has the memory do.
+    /// The EEPROM operation that an order has started.
     job: Option<Job>,
-    /// The pose of a rest on its way into the memory, or out of it.
+    /// The record of the rest pose that is being written or invalidated.
     rested: Option<Writing>,
-    /// Why the guard holds the robot, until that is printed.
+    /// The reason for which the guard holds the robot, until it is printed.
     held: Option<Hazard>,
 }
 
@@ -65,11 +65,11 @@ impl Default for Control {
 }
 
 impl Control {
-    /// No robot yet; [`Control::begin`] has to follow.
+    /// A control without a robot; [`Control::begin`] has to follow.
     pub const fn new() -> Self {
         Self {
             settings: Settings::NONE,
-            motion: Motion::unbegun(Robot::NONE),
+            motion: Motion::unstarted(Robot::NONE),
             damage: None,
             found: Outcome::Latest,
             safety: Safety::new(),
@@ -83,9 +83,9 @@ impl Control {
         }
     }
 
-    /// Takes the robot at the beginning of `flash`, if it is whole; then takes over what
-    /// the memory keeps: settings, and the pose of the last rest; and what is known of the
-    /// program before, if there was one. Without a robot there are no pulses, ever.
+    /// Loads the robot's section from `flash` if it is valid, then restores settings and rest
+    /// pose from the EEPROM, and the servos' state from before the reset. Without a robot it
+    /// never sends pulses.
     #[inline(never)]
     pub fn begin<M: Memory>(&mut self, flash: Region<'static>, memory: &M, restart: &Restart) {
         self.cause = restart.cause;
@@ -113,7 +113,7 @@ impl Control {
         };
         let (beginning, fault) = supervisor::beginning(restart.cause, self.brown_outs, before);
         if let Some(fault) = fault {
-            self.safety.byte_came();
+            self.safety.note_byte();
             self.safety.fail(fault);
         }
         let rested = copies::rested(self.motion.robot(), memory);
@@ -128,7 +128,7 @@ impl Control {
             _ => false,
         };
         if began {
-            self.rested = Some(RESTED.forget());
+            self.rested = Some(RESTED.invalidate());
             return;
         }
         // A program that hung before its first frame has moved nothing since the rest.
@@ -147,37 +147,37 @@ impl Control {
         &self.motion
     }
 
-    /// What is set.
+    /// The settings in use.
     pub const fn settings(&self) -> &Settings {
         &self.settings
     }
 
-    /// Why there is no robot, where there is none.
+    /// The reason for which there is no robot, if there is none.
     pub const fn damage(&self) -> Option<Damage> {
         self.damage
     }
 
-    /// What was found of the settings at power-on.
+    /// The state of the saved settings at power-on.
     pub const fn found(&self) -> Outcome {
         self.found
     }
 
-    /// What may go wrong, and has.
+    /// The watch over supply, line, pulses and stack.
     pub const fn safety(&self) -> &Safety {
         &self.safety
     }
 
-    /// Why the program began.
+    /// The cause of the last reset.
     pub const fn cause(&self) -> Cause {
         self.cause
     }
 
-    /// How many times it has begun since power came on, less one; stays at 255.
+    /// Resets since power-on; stays at 255.
     pub const fn restarts(&self) -> u8 {
         self.restarts
     }
 
-    /// The guard's fault, or another one.
+    /// The present fault: the guard's first, else that of [`Safety`].
     pub fn fault(&self) -> Option<Fault> {
         match self.motion.hazard() {
             Some(_) => Some(Fault::Guard),
@@ -185,16 +185,16 @@ impl Control {
         }
     }
 
-    /// Restarts in a row that a weak supply may have made.
+    /// Consecutive resets that a weak supply may have caused.
     pub const fn brown_outs(&self) -> u8 {
         self.brown_outs
     }
 
-    /// One frame on: the pulses to send in it. To be called 50 times a second.
+    /// Computes the pulses of the next frame. To be called 50 times a second.
     // Out of line, so that a simulator can time it by its name.
     #[inline(never)]
     pub fn frame(&mut self, health: &Health) -> Pulses {
-        self.look_after(health);
+        self.check_health(health);
         let was_held = self.motion.hazard().is_some();
         let pulses = self.motion.tick();
         let hazard = self.motion.hazard();
@@ -204,23 +204,23 @@ impl Control {
         if self.motion.frames() == STEADY {
             self.brown_outs = 0;
         }
-        self.safety.beat(hazard.is_some());
+        self.safety.advance_led(hazard.is_some());
         pulses
     }
 
-    /// Whether the LED is lit in this frame.
+    /// True while the LED is lit.
     pub const fn is_lit(&self) -> bool {
         self.safety.is_lit()
     }
 
-    /// A byte has come, so a computer is connected.
-    pub fn byte_came(&mut self) {
-        self.safety.byte_came();
+    /// Notes that a byte was received, so a computer is connected.
+    pub fn note_byte(&mut self) {
+        self.safety.note_byte();
     }
 
-    /// A line has come.
-    pub fn line_came(&mut self) {
-        self.safety.line_came();
+    /// Notes that a line was received.
+    pub fn note_line(&mut self) {
+        self.safety.note_line();
         // Who opens the port resets the board. A brown-out sends no line.
         if self.may_be_supply && self.cause == Cause::External {
             self.may_be_supply = false;
@@ -228,28 +228,28 @@ impl Control {
         }
     }
 
-    /// Why the guard holds the robot, once.
+    /// Takes the reason for which the guard holds the robot; the next call returns `None`.
     pub fn take_held(&mut self) -> Option<Hazard> {
         self.held.take()
     }
 
-    /// Whether the guard holds the robot and that has not been printed yet.
+    /// True while the guard's reason waits to be printed.
     pub const fn was_held(&self) -> bool {
         self.held.is_some()
     }
 
-    /// What is to be said unasked has been written.
+    /// Notes that a notice has been printed.
     pub fn written(&mut self, notice: Notice) {
         self.safety.written(notice);
     }
 
-    /// The supply that is the reason to refuse something.
+    /// The voltage of the supply that allows less.
     #[inline(never)]
     pub fn voltage(&self) -> Voltage {
         self.safety.supply().worst(&self.motion.robot().supplies())
     }
 
-    /// What the robot does, as the supervisor's table has it.
+    /// The robot's state, as a column of the supervisor's table.
     fn state(&self) -> State {
         match self.motion.activity() {
             Activity::Rest => State::Resting,
@@ -258,8 +258,8 @@ impl Control {
         }
     }
 
-    /// Watches what may go wrong, and does what that asks for.
-    fn look_after(&mut self, health: &Health) {
+    /// Checks the board's health and reacts to a fault.
+    fn check_health(&mut self, health: &Health) {
         // Without a robot there is nothing to stop, and no voltage that would be too low.
         if self.motion.robot().is_none() {
             return;
@@ -276,7 +276,7 @@ impl Control {
         self.motion.set_slow(self.safety.is_slow());
     }
 
-    /// Does what `boot` says, unless the robot does so already.
+    /// Carries out the `boot` setting, unless the robot does so already.
     fn boot(&mut self, state: State) {
         let boot = self.settings.boot(self.motion.robot());
         let rests = state == State::Resting;
@@ -285,17 +285,17 @@ impl Control {
             Boot::Rest if rests => return,
             Boot::Gait(gait) => {
                 self.motion.start_gait(gait);
-                self.rested = Some(RESTED.forget());
+                self.rested = Some(RESTED.invalidate());
             }
             Boot::Rest => self.rest(),
         }
         self.safety.notify(Notice::Boot);
     }
 
-    /// Takes an order.
+    /// Carries out an order.
     ///
     /// # Errors
-    /// Why it is refused; then nothing has changed.
+    /// The refusal; then nothing has changed.
     #[inline(never)]
     pub fn execute(&mut self, order: &Order) -> Result<Taken, Refusal> {
         if self.motion.robot().is_none() {
@@ -303,12 +303,12 @@ impl Control {
         }
         match order {
             Order::Gait(gait) => {
-                self.may(match *gait {
+                self.check_allowed(match *gait {
                     GaitId::STAND => Event::Stand,
                     _ => Event::Move,
                 })?;
                 self.motion.start_gait(*gait);
-                self.moves();
+                self.note_motion();
             }
             Order::Pose(angles) => {
                 let pose = Pose::at(angles, &self.motion.robot().neutral());
@@ -322,11 +322,11 @@ impl Control {
                 self.go_to(&pose)?;
             }
             Order::Stop => {
-                self.may(Event::Stop)?;
+                self.check_allowed(Event::Stop)?;
                 self.motion.stop();
             }
             Order::Rest => {
-                if self.may(Event::Rest)? {
+                if self.check_allowed(Event::Rest)? {
                     self.rest();
                 }
             }
@@ -339,7 +339,7 @@ impl Control {
                 self.replace(&factory)?;
             }
             Order::Save => {
-                self.may(Event::Save)?;
+                self.check_allowed(Event::Save)?;
                 self.job = Some(Job::Save);
                 return Ok(Taken::Later);
             }
@@ -351,12 +351,12 @@ impl Control {
         Ok(Taken::Done)
     }
 
-    /// Whether a command leaves anything to do.
+    /// Looks the order up in the supervisor's table; false if there is nothing to do.
     ///
     /// # Errors
-    /// Why it is refused.
+    /// The refusal.
     #[inline(never)]
-    fn may(&self, event: Event) -> Result<bool, Refusal> {
+    fn check_allowed(&self, event: Event) -> Result<bool, Refusal> {
         match self.safety.response(event, self.state()) {
             Response::RefuseResting => Err(Refusal::Resting),
             Response::RefuseSupply => Err(Refusal::Supply),
@@ -368,21 +368,21 @@ impl Control {
         if let Some(servo) = pose.beyond(self.motion.calibration()) {
             return Err(Refusal::Unsafe(Hazard::Travel(servo)));
         }
-        self.may(Event::Move)?;
+        self.check_allowed(Event::Move)?;
         self.motion.go_to(pose).map_err(Refusal::Unsafe)?;
-        self.moves();
+        self.note_motion();
         Ok(())
     }
 
-    /// A motion begins by a command: faults are over, and the pose of the last
-    /// rest is, too.
-    fn moves(&mut self) {
+    /// Notes that an order begins a motion: it clears the fault, and the saved rest pose is
+    /// no longer true.
+    fn note_motion(&mut self) {
         self.safety.clear();
         self.brown_outs = 0;
-        self.rested = Some(RESTED.forget());
+        self.rested = Some(RESTED.invalidate());
     }
 
-    /// Ends the pulses; the pose is kept for the next power-on.
+    /// Ends the pulses and saves the pose for the next power-on.
     fn rest(&mut self) {
         self.motion.rest();
         self.rested = Some(RESTED.write());

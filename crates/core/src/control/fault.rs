@@ -1,4 +1,4 @@
-//! What has gone wrong, as a code, a word and a pattern of the LED.
+//! Faults, and the patterns by which the LED shows them.
 //!
 //! Without a cable, the LED on D13 is all that a person sees. It blinks slowly while all
 //! is well. After a fault it flashes as many times as the fault's code, pauses, and
@@ -28,7 +28,7 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// Its code: how many times the LED flashes.
+    /// The fault's code: the number of flashes.
     pub const fn code(self) -> u8 {
         self as u8
     }
@@ -43,7 +43,7 @@ const PAUSE: u8 = 48;
 /// Frames that the beat of a robot without a fault is lit, and dark.
 const BEAT: u8 = 32;
 
-/// The LED.
+/// The pattern that the LED shows.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Led {
     /// Frames since its pattern began.
@@ -58,7 +58,7 @@ impl Led {
         Self { frames: 0, code: 0 }
     }
 
-    /// One frame on: whether it is lit.
+    /// Advances the pattern by a frame; true if the LED is lit in it.
     pub fn frame(&mut self, fault: Option<Fault>) -> bool {
         let code = fault.map_or(0, Fault::code);
         let period = match code {
@@ -96,7 +96,7 @@ mod tests {
         Fault::Robot,
     ];
 
-    /// How long the LED is lit and dark, in turn, for some frames.
+    /// The lengths of the LED's lit and dark runs over some frames.
     fn runs(led: &mut Led, fault: Option<Fault>, frames: usize) -> Vec<(bool, usize)> {
         let mut runs: Vec<(bool, usize)> = Vec::new();
         for _ in 0..frames {
@@ -109,7 +109,7 @@ mod tests {
         runs
     }
 
-    /// What docs/faults.md says of a pattern, this many frames after it began.
+    /// The LED's state by docs/faults.md, so many frames after a pattern began.
     fn is_lit(fault: Option<Fault>, frame: usize) -> bool {
         let Some(fault) = fault else {
             return frame % 64 < 32;
@@ -156,8 +156,7 @@ mod tests {
         }
     }
 
-    /// Whatever the LED shows, and however far it has got with it: a long pattern may
-    /// have come farther than a short one that follows ever gets.
+    /// A pattern may be interrupted at any frame, also beyond the end of the one that follows.
     #[test]
     fn any_pattern_begins_at_once_at_any_place_of_any_other_and_goes_on() {
         let shown: Vec<Option<Fault>> = ALL.into_iter().map(Some).chain([None]).collect();

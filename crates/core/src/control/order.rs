@@ -1,4 +1,4 @@
-//! The orders that the robot takes.
+//! The orders that the robot carries out.
 
 use crate::memory::settings::Boot;
 use crate::numbers::gaits::GaitId;
@@ -8,7 +8,7 @@ use crate::numbers::units::{Angle, Sweep};
 /// An order, its arguments within their ranges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
-    /// Go over to a gait; `stand` also wakes the servos.
+    /// Change to a gait; `stand` also wakes the servos.
     Gait(GaitId),
     /// Go to a pose, given as chassis angles in servo order.
     Pose([Angle; 4]),
@@ -22,24 +22,24 @@ pub enum Order {
     Speed(u8),
     /// A setting of a servo.
     Set(Servo, Setting),
-    /// What is done three seconds after power-on.
+    /// The action three seconds after power-on.
     Boot(Boot),
-    /// A gait ends when no line has come for this many milliseconds; 0: never.
+    /// End a gait when no line has been received for so many milliseconds; 0: never.
     Deadman(u16),
-    /// Keep the settings.
+    /// Save the settings in the EEPROM.
     Save,
-    /// Take the settings that are kept.
+    /// Load the settings from the EEPROM.
     Load,
-    /// Take robot.toml's settings.
+    /// Restore robot.toml's settings.
     Factory,
 }
 
 /// A setting of a servo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Setting {
-    /// By how much the horn has to turn, at most 20 deg either way.
+    /// The correction of the horn's angle, at most 20 deg either way.
     Trim(Sweep),
-    /// Whether a longer pulse turns it counter-clockwise.
+    /// True if a longer pulse turns the servo counter-clockwise.
     Direct(bool),
     /// Hundredths of a microsecond per degree, 500..=2000.
     Scale(u16),
@@ -47,11 +47,11 @@ pub enum Setting {
     Limit(Angle, Angle),
 }
 
-/// How an order has been taken.
+/// The progress of an order that was accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Taken {
-    /// It is done, or under way.
+    /// The order is done, or its motion has begun.
     Done,
-    /// The memory will do it, byte by byte; the result comes then.
+    /// The EEPROM is being written or read; the outcome follows later.
     Later,
 }

@@ -1,5 +1,5 @@
-//! The faults other than an unsafe pose, which are watched in every frame: the supply,
-//! the line, the pulses, the stack. And what the robot does by itself after power-on.
+//! Watches for faults in every frame: the supply, the line, the pulses, the stack. It also
+//! times the `boot` action after power-on.
 //!
 //! The table of [`supervisor`] says what each event causes. A fault stops the motion and
 //! stays until a command moves the robot again. Nothing here begins a motion by itself,
@@ -11,19 +11,19 @@ use crate::control::supply::{Level, Reading, Supply};
 use crate::numbers::supplies::Supplies;
 use crate::numbers::units::FRAMES_PER_SECOND;
 
-/// What the board reports with every frame.
+/// The board's health, reported with every frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Health {
-    /// The supplies.
+    /// The last reading of the supplies.
     pub supply: Reading,
     /// Pulse edges that came late, so far.
     pub late: u16,
-    /// Whether the stack has kept off the data.
+    /// True while the stack has not grown into the data.
     pub stack_is_intact: bool,
 }
 
 impl Default for Health {
-    /// Nothing measured yet, and nothing wrong.
+    /// A board without a fault, whose supply is not measured yet.
     fn default() -> Self {
         Self {
             supply: Reading::default(),
@@ -33,57 +33,57 @@ impl Default for Health {
     }
 }
 
-/// What a frame asks for; of several, the last of this list counts.
+/// The action that a frame requires; of several, the last of this list counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Reaction {
-    /// Nothing.
+    /// No action.
     None,
-    /// Do what `boot` says.
+    /// Carry out the `boot` setting.
     Boot,
-    /// Freeze.
+    /// Freeze the pose.
     Freeze,
     /// End the pulses.
     EndPulses,
 }
 
-/// What is watched.
+/// The state of the watch: supply, silence, faults, and the notices to be printed.
 #[derive(Clone, Debug)]
 pub struct Safety {
     supply: Supply,
     fault: Option<Fault>,
     led: Led,
     lit: bool,
-    /// Late edges that have been reported.
+    /// Late edges that have been handled as faults.
     late: u16,
     /// Milliseconds since the last line, up to 65535.
     silence: u16,
-    /// Frames since power-on, up to [`BOOT_AFTER`]: `boot` is done then, or called off.
+    /// Frames since power-on, up to [`BOOT_AFTER`]: then `boot` is done or cancelled.
     boot: u8,
-    /// What is still to be said, a bit for each [`Notice`].
+    /// The notices that wait to be printed, a bit for each [`Notice`].
     notices: u8,
 }
 
-/// A line that is written without being asked for.
+/// A line that is printed without a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Notice {
-    /// What was found in the memory at power-on.
+    /// The state of the saved settings at power-on.
     Memory,
-    /// The memory has not kept the pose of a rest.
+    /// The EEPROM has not kept the rest pose.
     NotKept,
-    /// A fault.
+    /// A fault has occurred.
     Fault,
     /// The supply's level has changed.
     Supply,
-    /// `boot` begins.
+    /// The `boot` action begins.
     Boot,
 }
 
-/// How many notices there are.
+/// The number of notices.
 const NOTICES: u8 = 5;
 
 impl Notice {
-    /// The notice at a place of the order in which they are written.
+    /// The notice at a place of the order in which they are printed.
     const fn at(place: u8) -> Self {
         match place {
             0 => Self::Memory,
@@ -108,7 +108,7 @@ impl Default for Safety {
 }
 
 impl Safety {
-    /// At power-on.
+    /// The state at power-on.
     pub const fn new() -> Self {
         Self {
             supply: Supply::new(),
@@ -122,43 +122,43 @@ impl Safety {
         }
     }
 
-    /// The fault that stopped the robot last, unless it has been told to move since.
+    /// The fault that stopped the robot last, unless it has been ordered to move since.
     pub const fn fault(&self) -> Option<Fault> {
         self.fault
     }
 
-    /// The supply.
+    /// The supply's present level and reading.
     pub const fn supply(&self) -> &Supply {
         &self.supply
     }
 
-    /// Whether the LED is lit.
+    /// True while the LED is lit.
     pub const fn is_lit(&self) -> bool {
         self.lit
     }
 
-    /// Whether the supply allows gaits no more than half their pace.
+    /// True if the supply limits gaits to half their pace.
     pub fn is_slow(&self) -> bool {
         self.supply.level() > Level::Good
     }
 
-    /// Whether the supply allows to write the memory. Not before it was measured.
+    /// True if the supply is good enough to write the EEPROM; false until it is measured.
     pub fn allows_writing(&self) -> bool {
         self.supply.measured() == Some(Level::Good)
     }
 
-    /// Whether it does so at this moment: not while it dips.
+    /// True if the EEPROM may be written at this moment: also not during a dip.
     pub fn allows_writing_now(&self) -> bool {
         self.allows_writing() && self.supply.is_steady()
     }
 
-    /// What follows from an event.
+    /// The supervisor's response to an event.
     #[inline(never)]
     pub fn response(&self, event: Event, state: State) -> Response {
         supervisor::response(event, self.supply.measured(), state)
     }
 
-    /// One frame on. A gait ends after `deadman` milliseconds without a line (0:
+    /// Checks a frame's health. A gait ends after `deadman` milliseconds without a line (0:
     /// never), and no sooner.
     pub fn frame(
         &mut self,
@@ -181,29 +181,29 @@ impl Safety {
         }
         // The line came at some time in the first of these frames.
         if deadman != 0 && self.silence.saturating_sub(FRAME_MS) >= deadman {
-            reaction = reaction.max(self.meet(Event::Silence, state));
+            reaction = reaction.max(self.handle(Event::Silence, state));
         }
         if self.supply.measure(health.supply, supplies) {
             self.notify(Notice::Supply);
             reaction = reaction.max(match self.supply.level() {
                 Level::Good | Level::Slow => Reaction::None,
-                Level::Stop => self.meet(Event::TooLow, state),
-                Level::Rest => self.meet(Event::Empty, state),
+                Level::Stop => self.handle(Event::TooLow, state),
+                Level::Rest => self.handle(Event::Empty, state),
             });
         }
         if health.late != self.late {
             self.late = health.late;
-            reaction = reaction.max(self.meet(Event::LateEdge, state));
+            reaction = reaction.max(self.handle(Event::LateEdge, state));
         }
         if !health.stack_is_intact && self.fault != Some(Fault::Stack) {
-            reaction = reaction.max(self.meet(Event::Stack, state));
+            reaction = reaction.max(self.handle(Event::Stack, state));
         }
         reaction
     }
 
-    /// Something has gone wrong: tells it, as the table says.
+    /// Records the fault that the table assigns to an event, and returns the reaction.
     #[inline(never)]
-    fn meet(&mut self, event: Event, state: State) -> Reaction {
+    fn handle(&mut self, event: Event, state: State) -> Reaction {
         match self.response(event, state) {
             Response::Freeze(fault) => {
                 self.fail(fault);
@@ -217,8 +217,8 @@ impl Safety {
         }
     }
 
-    /// The LED's part of a frame; `guard` says whether the guard holds the robot.
-    pub fn beat(&mut self, guard: bool) {
+    /// Advances the LED by a frame; `guard` is true while the guard holds the robot.
+    pub fn advance_led(&mut self, guard: bool) {
         let fault = if guard {
             Some(Fault::Guard)
         } else {
@@ -227,34 +227,34 @@ impl Safety {
         self.lit = self.led.frame(fault);
     }
 
-    /// A fault, from now on.
+    /// Records a fault and has it printed.
     #[inline(never)]
     pub fn fail(&mut self, fault: Fault) {
         self.fault = Some(fault);
         self.notify(Notice::Fault);
     }
 
-    /// The robot has been told to move.
+    /// Clears the fault, since an order moves the robot.
     pub fn clear(&mut self) {
         self.fault = None;
     }
 
-    /// A byte has come, so a computer is connected, and `boot` is cancelled.
-    pub fn byte_came(&mut self) {
+    /// Cancels `boot`: a received byte means that a computer is connected.
+    pub fn note_byte(&mut self) {
         self.boot = BOOT_AFTER;
     }
 
-    /// A line has come.
-    pub fn line_came(&mut self) {
+    /// Notes that a line was received.
+    pub fn note_line(&mut self) {
         self.silence = 0;
     }
 
-    /// Has something written.
+    /// Has a notice printed.
     pub fn notify(&mut self, notice: Notice) {
         self.notices |= 1 << notice as u8;
     }
 
-    /// What is to be written next, if anything.
+    /// The notice to print next, if any.
     pub const fn notice(&self) -> Option<Notice> {
         let mut place = 0;
         while place < NOTICES {
@@ -266,7 +266,7 @@ impl Safety {
         None
     }
 
-    /// It has been written.
+    /// Notes that a notice has been printed.
     pub fn written(&mut self, notice: Notice) {
         self.notices &= !(1 << notice as u8);
     }

@@ -1,18 +1,17 @@
-//! What the robot does when something happens: one table.
+//! The supervisor: one table with the reaction to every event in every state.
 //!
 //! A person sends a command, the supply falls, the line breaks, the program hangs, and
-//! any two of these may happen in the same frame. So one table has the consequence of
-//! every event in every state, and the code that acts looks it up here. docs/faults.md
-//! prints the same tables.
+//! any two of these may happen in the same frame. So the reactions are in one table, and
+//! all other code looks them up here. docs/faults.md prints the same tables.
 
 use crate::control::fault::Fault;
 use crate::control::supply::Level;
 use crate::memory::restart::Cause;
 
-/// What the robot is doing, as far as this matters here.
+/// The robot's state, as far as reactions depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
-    /// There are no pulses.
+    /// The servos get no pulses.
     Resting,
     /// It stands, holds a pose or moves to one.
     Still,
@@ -20,22 +19,22 @@ pub enum State {
     Walking,
 }
 
-/// What happens.
+/// An event that the supervisor reacts to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// Somebody sends `stand`.
+    /// The command `stand`.
     Stand,
-    /// Somebody sends another motion.
+    /// The command of any other motion.
     Move,
-    /// `stop`.
+    /// The command `stop`.
     Stop,
-    /// `rest`.
+    /// The command `rest`.
     Rest,
-    /// `save`.
+    /// The command `save`.
     Save,
-    /// Three seconds have passed since the start, no byte has come and nothing is wrong.
+    /// Three seconds have passed since power-on without a received byte or a fault.
     Boot,
-    /// No line has come for as long as `deadman` says.
+    /// No line has been received for the time that `deadman` sets.
     Silence,
     /// The supply has become too low to move.
     TooLow,
@@ -49,31 +48,31 @@ pub enum Event {
     Unsafe,
 }
 
-/// What follows.
+/// The supervisor's reaction to an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Response {
-    /// Nothing.
+    /// No reaction.
     Nothing,
-    /// What was asked for.
+    /// Carry out the command.
     Obey,
-    /// It is refused, because the servos rest.
+    /// Refuse the command, because the servos rest.
     RefuseResting,
-    /// It is refused, because the supply is too low.
+    /// Refuse the command, because the supply is too low.
     RefuseSupply,
-    /// The pose is frozen, if there is one, and the fault shown until a command orders
-    /// a motion.
+    /// Freeze the pose, if there are pulses, and show the fault until a command orders a
+    /// motion.
     Freeze(Fault),
-    /// The pulses end, and the fault is shown until a command moves the robot.
+    /// End the pulses, and show the fault until a command orders a motion.
     EndPulses(Fault),
 }
 
 impl State {
-    /// All of them, as the columns of the table.
+    /// All values, as the columns of the table.
     pub const ALL: [Self; 3] = [Self::Resting, Self::Still, Self::Walking];
 }
 
 impl Event {
-    /// All of them, as the rows of the table.
+    /// All values, as the rows of the table.
     pub const ALL: [Self; 12] = [
         Self::Stand,
         Self::Move,
@@ -90,8 +89,8 @@ impl Event {
     ];
 }
 
-/// The table: what follows an event, by the level of the supply, if it has been
-/// measured yet, and by the state.
+/// The table of events: the reaction to an event, given the supply's level, if it is
+/// measured already, and the state.
 #[rustfmt::skip]
 pub const fn response(event: Event, supply: Option<Level>, state: State) -> Response {
     use Event::{Boot, Empty, LateEdge, Move, Rest, Save, Silence, Stack, Stand, Stop, TooLow, Unsafe};
@@ -125,43 +124,42 @@ pub const fn response(event: Event, supply: Option<Level>, state: State) -> Resp
     }
 }
 
-/// So many restarts in a row that a weak supply may have made, and the robot rests:
-/// servos that wake would pull the supply down again.
+/// Consecutive resets by a possibly weak supply after which the robot rests: waking
+/// servos would pull the supply down again.
 pub const BROWN_OUTS: u8 = 3;
 
-/// What the program before this one did with the servos.
+/// The servos' state before the reset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Before {
-    /// Nothing, or nothing is known of it.
+    /// Not known.
     Nothing,
-    /// It sent no pulses.
+    /// The servos got no pulses.
     Rested,
-    /// It held them.
+    /// The servos were held by pulses.
     Held,
 }
 
-/// How the robot begins.
+/// The robot's first action after a reset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Beginning {
     /// The servos wake one after the other in the pose of the last `rest`, if the
     /// memory holds one, or else in the neutral one; then the robot stands.
     Wake,
-    /// They wake one after the other with the pulses that they had; then it stands.
+    /// The servos wake one after the other with the pulses that they had; then the robot stands.
     TakeOver,
-    /// They are held with the pulses that they had, all at once.
+    /// The servos are held with the pulses that they had, all at once.
     Hold,
-    /// There are no pulses.
+    /// The servos get no pulses.
     Rest,
 }
 
 impl Before {
-    /// All of them, as the columns of the table.
+    /// All values, as the columns of the table.
     pub const ALL: [Self; 3] = [Self::Nothing, Self::Rested, Self::Held];
 }
 
-/// The table of restarts: how the robot begins, and the fault that is shown, by the
-/// cause, by the restarts in a row that a weak supply may have made, and by what the
-/// program before did.
+/// The table of resets: the first action and the fault that is shown, given the cause, the
+/// consecutive resets that a weak supply may have caused, and the servos' state before.
 #[rustfmt::skip]
 pub const fn beginning(cause: Cause, brown_outs: u8, before: Before) -> (Beginning, Option<Fault>) {
     use Beginning::{Hold, Rest, TakeOver, Wake};

@@ -1,4 +1,4 @@
-//! The supply: measured every frame, and what the robot still does when it is low.
+//! The supply's voltage: measured every frame, and turned into a level that limits the robot.
 //!
 //! Four servos that start at once pull a weak supply down; below 2.7 V the chip resets,
 //! and well above that a servo loses its position and an EEPROM write its data. The chip
@@ -17,7 +17,7 @@ use crate::numbers::supplies::{Supplies, Thresholds};
 /// Steps of the analogue converter.
 const FULL_SCALE: u16 = 1024;
 
-/// What the converter has read, 0..=1023; 0 stands for nothing yet.
+/// A reading of the converter, 0..=1023; 0 stands for nothing measured yet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Reading {
     /// The reference, in parts of the supply.
@@ -26,24 +26,24 @@ pub struct Reading {
     pub rail: u16,
 }
 
-/// What the supply allows.
+/// The level of a supply, by the actions that it allows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
-    /// Everything.
+    /// Everything is allowed.
     #[default]
     Good,
-    /// Gaits at half their pace.
+    /// Gaits are limited to half their pace, and the EEPROM is not written.
     Slow,
-    /// Standing still.
+    /// The robot may stand still only.
     Stop,
-    /// No pulses.
+    /// The servos get no pulses.
     Rest,
 }
 
 /// A voltage as a quotient, so that comparing it takes no division.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Voltage {
-    /// mV times `counts`.
+    /// The voltage in mV, times `counts`.
     product: u32,
     counts: u16,
 }
@@ -55,24 +55,24 @@ pub struct Supply {
     level: Level,
     /// Frames for which another level has been measured.
     frames: u8,
-    /// Of these levels the one that is nearest to the present one.
+    /// The one of these levels that is nearest to the present one.
     nearest: Level,
-    /// Readings so far, up to as many as a level wants to be believed.
+    /// Readings so far, up to [`TO_WORSE`].
     readings: u8,
 }
 
-/// A level is left for a worse one that lasts for as many frames: a servo's start pulls
-/// the supply down for a few milliseconds. A reading stands for four frames where the
-/// rail is measured, too, so one that has met such a dip changes nothing.
+/// Frames for which a worse level must last before it counts: a servo's start pulls the
+/// supply down for a few milliseconds. A reading stands for up to four frames, if the rail
+/// is measured too, so a single dip changes nothing.
 const TO_WORSE: u8 = 6;
 
-/// And for a better one that lasts for a second, by a voltage that much above the
-/// threshold.
+/// Frames for which a better level must last: a second, at a voltage above the threshold by
+/// [`HYSTERESIS`], mV.
 const TO_BETTER: u8 = 50;
 const HYSTERESIS: u16 = 150;
 
 impl Voltage {
-    /// The chip's supply.
+    /// The voltage of the chip's supply.
     pub fn of_board(reading: Reading, supplies: &Supplies) -> Self {
         Self {
             product: mul_unsigned(FULL_SCALE, supplies.reference),
@@ -80,7 +80,7 @@ impl Voltage {
         }
     }
 
-    /// The servos' rail.
+    /// The voltage of the servos' rail.
     pub fn of_rail(reading: Reading, supplies: &Supplies) -> Self {
         Self {
             product: mul_unsigned(reading.rail, supplies.rail_reference),
@@ -88,7 +88,7 @@ impl Voltage {
         }
     }
 
-    /// Whether it is below `mv`. An unknown voltage is not.
+    /// True if the voltage is below `mv`; false if it is unknown.
     pub fn is_below(self, mv: u16) -> bool {
         self.product < mul_unsigned(mv, self.counts)
     }
@@ -134,7 +134,7 @@ impl Supplies {
 }
 
 impl Supply {
-    /// Nothing measured yet.
+    /// A supply that is not measured yet.
     pub const fn new() -> Self {
         Self {
             reading: Reading {
@@ -148,23 +148,22 @@ impl Supply {
         }
     }
 
-    /// What was measured last.
+    /// The last reading.
     pub const fn reading(&self) -> Reading {
         self.reading
     }
 
-    /// What the supply allows.
+    /// The level of a supply, by the actions that it allows.
     pub const fn level(&self) -> Level {
         self.level
     }
 
-    /// Whether the last reading is of that level. If not, it may only be a dip.
+    /// True if the last reading is of the present level; if not, it may be a mere dip.
     pub const fn is_steady(&self) -> bool {
         self.frames == 0
     }
 
-    /// The same, once it has been measured for as long as another one would have had
-    /// to be: until then it is only assumed.
+    /// The present level, once enough frames have measured it; until then it is assumed.
     pub const fn measured(&self) -> Option<Level> {
         if self.readings < TO_WORSE {
             None
@@ -185,8 +184,8 @@ impl Supply {
         }
     }
 
-    /// One frame on; true where the level has changed: to what held for all of the
-    /// frames that a change takes, so that one reading decides nothing.
+    /// Takes a frame's reading; true if the level has changed. A change needs several frames,
+    /// so a single reading decides nothing.
     pub fn measure(&mut self, reading: Reading, supplies: &Supplies) -> bool {
         self.reading = reading;
         if reading.reference > 0 && self.readings < TO_WORSE {

@@ -1,4 +1,4 @@
-//! What the integers may differ from floating point by: proved, not tried.
+//! The largest difference between the integers and floating point: proved, not measured.
 //!
 //! Each bound here adds up the roundings on the way of one number, in the order in
 //! which they happen, each at its worst. Nothing in it is measured but the sines of
@@ -56,7 +56,7 @@ use lizard_kinematics::Vector;
 use crate::numbers::slider::Slider;
 use crate::numbers::units::Scale;
 
-/// What a sine or a cosine may be off by; see the test of [`crate::guard::trig`].
+/// The error of a sine or a cosine; see the test of [`crate::guard::trig`].
 pub const DIRECTION: f64 = 4.5e-5;
 
 /// The step of a margin.
@@ -82,7 +82,7 @@ const Q10: f64 = 1.0 / 1024.0;
 /// .0031 for folded ones of a ratio of 8, where it is .077.
 pub const KNOWN: f64 = 0.08;
 
-/// What the tables of a pair of couplers may be off by.
+/// The error of the tables of a pair of couplers.
 ///
 /// A curve has sixteen steps to an octave. A straight line over a step `d` of a function
 /// `f` is off by at most `d^2 / 8` times its largest second derivative, and `d` is at
@@ -100,9 +100,9 @@ pub const KNOWN: f64 = 0.08;
 /// quarter that `R` and `N` lose when they are rounded down to whole steps.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Lean {
-    /// Of the rise, as a number.
+    /// The error of the rise, as a number.
     pub rise: f64,
-    /// Of the skew, likewise.
+    /// The error of the skew, as a number.
     pub skew: f64,
 }
 
@@ -209,26 +209,25 @@ impl Product {
     }
 }
 
-/// What the roundings of an end depend on besides its true bars.
+/// The rounded numbers of an end, on which its errors depend besides its true bars.
 #[derive(Clone, Copy, Debug)]
 pub struct Bars {
-    /// Of its lengths.
+    /// The scale of the end's lengths.
     pub scale: Scale,
     /// The left and the right coupler in whole steps.
     pub couplers: [i16; 2],
 }
 
-/// What the margins of an end may be off by, at a pair of crank angles or at any of a
-/// range.
+/// The errors of an end's margins, at a pair of crank angles or at any of a range.
 #[derive(Clone, Copy, Debug)]
 pub struct End {
-    /// Of the type-2 margin's size, a sine.
+    /// The error of the type-2 margin's size, a sine.
     pub type2: f64,
-    /// Of the left crank's type-1 margin, a sine.
+    /// The error of the left crank's type-1 margin, a sine.
     pub type1_left: f64,
-    /// Of the right crank's.
+    /// The error of the right crank's type-1 margin, a sine.
     pub type1_right: f64,
-    /// Of the crank tips' distance along the base, mm.
+    /// The error of the crank tips' distance along the base, mm.
     pub along: f64,
     /// The smallest true type-2 margin of the range, a sine; 0 where a loop of it does
     /// not close.
@@ -334,15 +333,15 @@ impl End {
         }
     }
 
-    /// Of either type-1 margin, a sine.
+    /// The larger error of the two type-1 margins, a sine.
     pub fn type1(&self) -> f64 {
         self.type1_left.max(self.type1_right)
     }
 }
 
-/// What the length of a slider may be off by, mm: of either coordinate, the offset or
-/// the base and both arms are rounded to a step, half a step each, the sum of the
-/// products too, and the arms' directions are off by [`DIRECTION`].
+/// The error of a slider's length, mm: of either coordinate, the offset or the base and
+/// both arms are rounded to a step, half a step each, the sum of the products too, and
+/// the arms' directions are off by [`DIRECTION`].
 pub fn slider(side: &kinematics::Slider, integers: &Slider) -> f64 {
     let per_mm = per_mm(integers.scale);
     let arms = (side.front * per_mm).round() + (side.rear * per_mm).round();

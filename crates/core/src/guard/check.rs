@@ -33,7 +33,7 @@ impl<'a> Robot<'a> {
     /// The robot whose section is at the beginning of `flash`.
     ///
     /// # Errors
-    /// Why there is none.
+    /// The reason for which the section is not a usable robot.
     #[inline(never)]
     pub fn open(flash: Region<'a>) -> Result<Self, Damage> {
         let length = section::find(flash)?;
@@ -44,7 +44,7 @@ impl<'a> Robot<'a> {
         }
     }
 
-    /// True if the pins are a servo's, the pulses what a servo bears, and the neutral pose safe.
+    /// True if pins and pulses suit servos and the neutral pose is safe.
     fn is_harmless(&self) -> bool {
         self.has_pins() && self.has_servos() && {
             let neutral = Pose::NEUTRAL;
@@ -52,13 +52,13 @@ impl<'a> Robot<'a> {
         }
     }
 
-    /// The two bytes at a place.
+    /// Reads the two bytes at a place.
     #[inline(never)]
     fn word(&self, at: u16) -> u16 {
         self.section().read(at)
     }
 
-    /// Pins of the board that are free, each used once; the rail's measures a voltage.
+    /// True if all pins are free ones of the board, each used once, and the rail's can measure.
     #[inline(always)]
     fn has_pins(&self) -> bool {
         let rail = self.word(place!(rail)) as u8;
@@ -81,7 +81,7 @@ impl<'a> Robot<'a> {
         rail == 0 || is_analogue(rail)
     }
 
-    /// Servos whose pulses stay within those that servos bear, as far as the gaits need.
+    /// True if every servo reaches what the gaits need with pulses that a servo tolerates.
     #[inline(always)]
     fn has_servos(&self) -> bool {
         let mut servo = 0;

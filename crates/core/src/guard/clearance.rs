@@ -21,7 +21,7 @@ use crate::numbers::units::Sine;
 /// The ten margins in the order in which they are checked.
 const MARGINS: usize = 10;
 
-/// Where the type-1 margins begin, and those of the legs.
+/// The places of the first type-1 margin and of the first leg margin.
 const TYPE1: usize = 2;
 const LEGS: usize = 6;
 
@@ -40,8 +40,8 @@ flash! {
     ];
 }
 
-/// The first limit that a pose breaks. A pose in certified cells needs no measuring: in
-/// them the measures below break none, which is proved when the section is made.
+/// Returns the first limit that a pose breaks. A pose in certified cells is not measured: it
+/// was proved when the section was made that they are safe.
 #[inline(never)]
 pub fn hazard(robot: &Robot, pose: &Pose) -> Option<Hazard> {
     if robot.is_certified(pose) {

@@ -1,4 +1,4 @@
-//! How far a five-bar linkage is from its singularities, without a float.
+//! The distance of a five-bar linkage from its singularities, in integers.
 //!
 //! Two cranks hold the ends of two couplers whose common joint is the end point, the head
 //! or the tail. If the couplers line up, the end point can move although both servos
@@ -50,15 +50,15 @@ pub struct EndMargins {
 }
 
 impl<'a> FiveBar<'a> {
-    /// No loop: it never closes.
+    /// A linkage without bars, which never closes.
     pub const NONE: Self = Self::new(Bars::NONE, Tables::NONE);
 
-    /// A loop with these bars, and the curves of its couplers.
+    /// A loop of these bars, with the tables of its couplers.
     pub const fn new(bars: Bars, tables: Tables<'a>) -> Self {
         Self { bars, tables }
     }
 
-    /// Its bars.
+    /// The bars of the loop.
     pub const fn bars(&self) -> &Bars {
         &self.bars
     }
@@ -126,12 +126,12 @@ impl Tips {
     }
 }
 
-/// A sine that rounding has pushed past 1 is 1.
+/// Limits a sine that rounding has pushed past 1.
 fn saturate(margin: i32) -> i16 {
     margin.clamp(-0x7fff, 0x7fff) as i16
 }
 
-/// The upper half, rounded to nearest.
+/// The upper 16 bits of a product, rounded to nearest.
 pub(crate) fn upper(product: i32) -> i16 {
     (product.wrapping_add(0x8000) >> 16) as i16
 }

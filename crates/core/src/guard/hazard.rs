@@ -1,4 +1,4 @@
-//! What is wrong with a pose, and by how much: the guard's reason.
+//! Hazards: the limit that a pose breaks, and by how much.
 
 use crate::numbers::part::{End, Servo, Side};
 use crate::numbers::units::Sine;
@@ -18,9 +18,9 @@ pub enum Margin {
 }
 
 impl Margin {
-    /// False for a value that stands for no value: an end whose couplers are nearly in
-    /// line, or do not meet, has a type-2 margin below a tenth, and the guard knows no
-    /// more of it. See [`crate::guard::five_bar::FiveBar::margins`].
+    /// False if the value is a mere placeholder: if an end's couplers are nearly in line, or
+    /// do not meet, the guard knows only that the type-2 margin is below a tenth. See
+    /// [`crate::guard::five_bar::FiveBar::margins`].
     pub fn is_known(self, value: Sine) -> bool {
         !matches!(self, Self::Type2(_)) || value != Sine(0)
     }
@@ -31,18 +31,18 @@ impl Margin {
 pub enum Hazard {
     /// A margin is below its limit.
     Margin {
-        /// Which one.
+        /// The margin that is too small.
         margin: Margin,
-        /// Its value.
+        /// The value of the margin.
         value: Sine,
     },
     /// A slider is outside its stroke.
     Stroke {
-        /// Which one.
+        /// The side of the slider.
         side: Side,
-        /// Its length, in its own steps.
+        /// The slider's length, in its own steps.
         length: u16,
     },
-    /// This servo does not turn so far.
+    /// The pose is beyond the travel of this servo.
     Travel(Servo),
 }

@@ -18,7 +18,7 @@ pub struct Direction {
 }
 
 impl Direction {
-    /// The direction of an angle.
+    /// Looks up the direction of an angle.
     pub fn of(angle: Angle) -> Self {
         let angle = angle.0;
         let across = angle & 0x3fff;
@@ -42,8 +42,8 @@ impl Direction {
         }
     }
 
-    /// The direction mirrored in the x axis of the chassis: what a crank of the
-    /// tail is in the tail's own frame, in which the tail is built as the head.
+    /// The direction mirrored in the x axis of the chassis: a crank of the tail in the
+    /// tail's own frame, in which the tail is built like the head.
     pub const fn in_tail_frame(self) -> Self {
         Self {
             sin: -self.sin,

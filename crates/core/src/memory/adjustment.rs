@@ -1,4 +1,4 @@
-//! What a person may set of a servo while the robot runs.
+//! The settings of a servo that a person may change while the robot runs.
 //!
 //! A horn goes on its spline every 14 degrees, servos of one type differ in their gain,
 //! and some are mounted upside down. So a person finds the four numbers here by looking
@@ -13,10 +13,10 @@ use crate::numbers::units::{ONE_Q14, Sweep, Width};
 /// The numbers of one servo that a person may set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Adjustment {
-    /// By how much the horn sits clockwise of where it should, so by how much
-    /// the servo has to turn counter-clockwise to stand at its neutral angle.
+    /// The angle by which the horn sits too far clockwise: so far the servo has to turn
+    /// counter-clockwise to stand at its neutral angle.
     pub trim: Sweep,
-    /// As [`Calibration::gain`].
+    /// The servo's gain, as [`Calibration::gain`].
     pub gain: i16,
     /// The travel's clockwise end.
     pub min: Sweep,
@@ -25,7 +25,7 @@ pub struct Adjustment {
 }
 
 impl Adjustment {
-    /// The servo as robot.toml has it.
+    /// The adjustment that leaves a servo as robot.toml has it.
     pub const fn of(factory: &Calibration) -> Self {
         Self {
             trim: Sweep(0),
@@ -73,7 +73,7 @@ impl Adjustment {
         };
     }
 
-    /// Whether a longer pulse turns the servo counter-clockwise.
+    /// True if a longer pulse turns the servo counter-clockwise.
     pub const fn is_direct(&self) -> bool {
         self.gain > 0
     }

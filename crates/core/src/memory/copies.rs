@@ -1,9 +1,8 @@
-//! What the robot keeps in its EEPROM: two copies of the settings, and where it
-//! rested last.
+//! The contents of the EEPROM: two copies of the settings, and the last rest pose.
 //!
-//! The two copies are written alternately, so that one is complete while the other is
-//! being written; the newer one counts. A copy that is not completely
-//! right is not used. If neither is, robot.toml's numbers are.
+//! The two copies are written alternately, so that one is valid while the other is being
+//! written; the newer one counts. A damaged copy is not used. If both are damaged,
+//! robot.toml's numbers are used.
 //!
 //! | address | what |
 //! |---|---|
@@ -16,27 +15,27 @@ use crate::memory::settings::{Settings, TURN};
 use crate::numbers::pose::Pose;
 use crate::numbers::robot::Robot;
 
-/// The two copies of the settings.
+/// The addresses of the two copies of the settings.
 pub const COPIES: [Address; 2] = [copy(0), copy(1)];
 
-/// The first copy for an even number, the second for an odd one.
+/// The address of the first copy for an even number, of the second for an odd one.
 const fn copy(number: usize) -> Address {
     Address((number as u16 & 1) * 64)
 }
 
-/// The pose.
+/// The address of the rest pose.
 pub const RESTED: Address = Address(128);
 
-/// What was found in the memory.
+/// The state of the saved settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// The settings saved last.
+    /// The settings saved last are valid.
     Latest,
-    /// Nothing: nothing was ever saved.
+    /// No settings were ever saved.
     Blank,
-    /// Settings, but the other copy is damaged; it may have been the later one.
+    /// One copy is valid, the other is damaged and may have been the later one.
     Other,
-    /// Nothing that is whole.
+    /// No copy is valid.
     Damaged,
     /// Settings for other servos, or of another firmware.
     Foreign,
@@ -44,11 +43,11 @@ pub enum Outcome {
     Unfit,
 }
 
-/// What the memory holds of settings.
+/// The state of both copies.
 struct Copies {
-    /// What was found of each.
+    /// The result of checking each copy.
     found: [Found; 2],
-    /// The number of the one that was saved last, if any is whole.
+    /// The number of the copy that was saved last, if any is valid.
     latest: usize,
 }
 
@@ -74,7 +73,7 @@ impl Copies {
     }
 }
 
-/// Reads the settings saved last into `settings`, where they are for this robot.
+/// Reads the settings saved last into `settings`, and tells whether they can be used.
 #[inline(never)]
 pub fn read<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Outcome {
     let copies = Copies::check(memory);
@@ -94,8 +93,8 @@ pub fn read<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Ou
     }
 }
 
-/// Reads the settings to use into `settings`: those saved last, if the gaits can be
-/// walked with them. If not, robot.toml's.
+/// Loads the settings to use: those saved last if the gaits can be walked with them, else
+/// robot.toml's.
 #[inline(never)]
 pub fn load<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Outcome {
     let mut outcome = read(robot, memory, settings);
@@ -109,8 +108,8 @@ pub fn load<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Ou
     outcome
 }
 
-/// Begins to save settings over the older copy, and gives them their turn. None where
-/// they are what the latest copy holds.
+/// Starts writing the settings over the older of the two copies. None if the newer one holds
+/// the same settings.
 pub fn save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<Writing> {
     let copies = Copies::check(memory);
     if copies.none_is_whole() {
@@ -128,7 +127,7 @@ pub fn save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<Writing> {
     Some(copy(copies.latest ^ 1).write())
 }
 
-/// Where the robot rested last, if it has not moved since.
+/// The pose of the last rest, if the robot has not moved since.
 pub fn rested<M: Memory>(robot: &Robot, memory: &M) -> Option<Pose> {
     let mut bytes = [0; CONTENT];
     RESTED.fetch(memory, &mut bytes);

@@ -1,11 +1,11 @@
-//! What a reset of the processor leaves: a few bytes of RAM that the start of the program
-//! does not clear.
+//! The state that survives a reset of the processor: a few bytes of RAM that the start-up
+//! code does not clear.
 //!
 //! RAM keeps its contents as long as there is power. The boot loader of the UNO clears
-//! the register that says why the chip was reset, and does not pass its value on. So
-//! these bytes tell the next program, by a mark and checksums, that power was not lost,
-//! whether the program hung, and what the servos were doing. Of random bytes one in 32
-//! 768 passes for a mark, and of these one in 256 for a stance.
+//! the register with the cause of the reset, and does not pass its value on. So these
+//! bytes tell the next run, by a mark and checksums, that power was not lost, if the
+//! program hung, and the state of the servos. Random bytes pass for a mark once in 32 768
+//! times, and then for a stance once in 256.
 //!
 //! A reset may come between any two stores, and nothing is lost. There are two copies of
 //! the stance, which are written alternately. One byte says which of them is complete,
@@ -16,13 +16,13 @@
 //! | 0 | a mark: power was not lost |
 //! | 1 | the program runs, or hung |
 //! | 2 | restarts since power came on |
-//! | 3 | the copy that is whole, in the last bit |
+//! | 3 | the copy that is valid, in the last bit |
 //! | 4 | first copy: state, brown-outs in a row, pose (8), pulses (8), check |
 //! | 23 | second copy |
 
 use crate::memory::restart::{Cause, Restart, Stance};
 
-/// How many cells there are.
+/// The number of cells.
 pub const CELLS: usize = COPIES + 2 * COPY;
 
 /// Bytes that a reset leaves alone. At first each may hold anything.
@@ -34,20 +34,6 @@ pub trait Cells {
     fn set(&self, at: usize, byte: u8);
 }
 
-/// What the chip itself knows of the reset. None of these where a boot loader has
-/// cleared them.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Flags {
-    /// Power came on.
-    pub power_on: bool,
-    /// The reset pin.
-    pub external: bool,
-    /// The supply was too low.
-    pub brown_out: bool,
-    /// The watchdog.
-    pub watchdog: bool,
-}
-
 const MARK: usize = 0;
 const STATE: usize = 1;
 const COUNT: usize = 2;
@@ -57,39 +43,37 @@ const COPIES: usize = 4;
 /// Cells of a copy.
 const COPY: usize = 19;
 
-/// Stands in the first cell as long as there is power.
+/// The first cell's value as long as there is power.
 const ALIVE: u8 = 0x96;
 
-/// A program that runs, and one that hung.
+/// The values of [`STATE`] for a program that runs, and for one that hung.
 const RUNNING: u8 = 0x5c;
 const HUNG: u8 = 0xa3;
 
 /// In a copy's first byte, beside the frames since pulses began: there are none.
 const RESTING: u8 = 0x80;
 
-/// That byte where nothing is kept.
+/// The value of that byte if nothing is kept.
 const NOTHING: u8 = 0x7f;
 
-/// Why the program begins, and what it did until then; from now on it runs. Once,
-/// before the watchdog starts.
+/// Returns the cause of the reset and the state from before it, and marks the program as
+/// running. `reported` is the cause that the chip reports, or None if a boot loader has
+/// cleared it. To be called once, before the watchdog starts.
 #[inline(never)]
-pub fn begin<C: Cells>(cells: &C, flags: Flags) -> Restart {
+pub fn begin<C: Cells>(cells: &C, reported: Option<Cause>) -> Restart {
     let (state, count) = (cells.get(STATE), cells.get(COUNT));
     let survived = cells.get(MARK) == ALIVE && matches!(state, RUNNING | HUNG);
-    let hidden = flags == Flags::default();
-    let cause = if flags.power_on || hidden && !survived {
-        Cause::Power
-    } else if flags.watchdog || hidden && state == HUNG {
-        Cause::Watchdog
-    } else if flags.brown_out {
-        Cause::BrownOut
-    } else {
-        Cause::External
+    let cause = match reported {
+        Some(cause) => cause,
+        None if !survived => Cause::Power,
+        None if state == HUNG => Cause::Watchdog,
+        None => Cause::External,
     };
+    let is_hidden = reported.is_none();
     let mut restart = Restart {
         cause,
         count: 0,
-        may_be_supply: cause == Cause::BrownOut || cause == Cause::External && hidden,
+        may_be_supply: cause == Cause::BrownOut || cause == Cause::External && is_hidden,
         brown_outs: 0,
         before: None,
     };
@@ -107,8 +91,8 @@ pub fn begin<C: Cells>(cells: &C, flags: Flags) -> Restart {
     restart
 }
 
-/// Keeps what the servos do, and how many restarts in a row a weak supply may have
-/// made. What was kept before stays whole until all of this is there.
+/// Stores the servos' state, and the consecutive resets that a weak supply may have caused.
+/// The older copy stays valid until the new one is complete.
 #[inline(never)]
 pub fn keep<C: Cells>(cells: &C, stance: &Stance, brown_outs: u8) {
     let turn = !cells.get(WHOLE) & 1;
@@ -125,12 +109,12 @@ pub fn keep<C: Cells>(cells: &C, stance: &Stance, brown_outs: u8) {
     cells.set(WHOLE, turn);
 }
 
-/// From the watchdog's interrupt: the program has hung.
+/// Marks the program as hung; called by the watchdog's interrupt.
 pub fn mark_hung<C: Cells>(cells: &C) {
     cells.set(STATE, HUNG);
 }
 
-/// Takes over what is kept, if it is whole.
+/// Reads the valid copy, if there is one.
 #[inline(never)]
 fn take<C: Cells>(cells: &C, restart: &mut Restart) {
     let mut copy = Copy::of(cells, cells.get(WHOLE) & 1);

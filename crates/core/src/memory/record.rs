@@ -7,9 +7,9 @@
 
 use crate::numbers::checksum::Checksum;
 
-/// Bytes that outlast power.
+/// A memory that keeps its bytes without power.
 pub trait Memory {
-    /// Whether the last write has ended; only then the memory may be used.
+    /// True once the last write has ended; only then may the memory be used.
     fn is_ready(&self) -> bool;
 
     /// The byte at an address below 1024.
@@ -19,43 +19,43 @@ pub trait Memory {
     fn write(&mut self, address: u16, byte: u8);
 }
 
-/// Bytes of a memory.
+/// The size of a memory in bytes.
 pub const SIZE: usize = 1024;
 
-/// Bytes of what a record says.
+/// Bytes of a record's content.
 pub const CONTENT: usize = 42;
 
 // Whether the step is even distinguishes the CRC's two bytes.
 const _: () = assert!(CONTENT.is_multiple_of(2));
 
-/// What a record says.
+/// The content of a record.
 pub type Content = [u8; CONTENT];
 
 /// Bytes of a record: the mark, the content, the CRC.
 pub const LENGTH: u16 = CONTENT as u16 + 3;
 
-/// A record's first byte while it is whole.
+/// The first byte of a valid record.
 pub const WHOLE: u8 = 0xa5;
 
-/// That byte while it is not; also what an erased memory holds.
+/// The first byte of an invalid record; also the value of an erased byte.
 pub const ERASED: u8 = 0xff;
 
 /// The address of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Address(pub u16);
 
-/// What is at a place.
+/// The state of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Found {
     /// Nothing was ever written there.
     Blank,
     /// A record that was not written to its end, or has changed since.
     Damaged,
-    /// A record.
+    /// A valid record.
     Whole,
 }
 
-/// How a step of writing a record has ended.
+/// The result of a step of writing a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
     /// There is more to write, or the memory is not ready.
@@ -66,31 +66,31 @@ pub enum Progress {
     Failed,
 }
 
-/// The byte of a step.
+/// The progress of the byte of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 // From 1 on, since none at all has to be zero: see `Main::new`.
 #[repr(u8)]
 enum Byte {
-    /// To be written, if the memory does not have it yet.
+    /// To be written, unless the memory holds this value already.
     Due = 1,
-    /// Written: the memory has to have it.
+    /// Written, to be read back.
     Written,
 }
 
-/// A record on its way into the memory, a byte at a time.
+/// A record that is being written, a byte at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Writing {
     address: Address,
-    /// The step: 0 takes the mark away, each of the next writes a byte, and the last
-    /// one puts the mark back.
+    /// The step: 0 removes the mark, each of the next writes a byte, and the last one writes
+    /// the mark again.
     step: u8,
-    /// The step to end with.
+    /// The last step.
     last: u8,
     byte: Byte,
 }
 
 impl Address {
-    /// Finds out what is there.
+    /// Checks the record's mark and CRC.
     #[inline(never)]
     pub fn check<M: Memory>(self, memory: &M) -> Found {
         let mut content = [0; CONTENT];
@@ -106,7 +106,7 @@ impl Address {
         }
     }
 
-    /// Reads the content, whole or not.
+    /// Reads the content without a check.
     #[inline(never)]
     pub fn fetch<M: Memory>(self, memory: &M, content: &mut Content) {
         let mut at = self.0;
@@ -116,7 +116,7 @@ impl Address {
         }
     }
 
-    /// A byte of the content.
+    /// Reads a byte of the content.
     pub fn byte<M: Memory>(self, memory: &M, n: u16) -> u8 {
         memory.read(self.0 + 1 + n)
     }
@@ -131,8 +131,8 @@ impl Address {
         }
     }
 
-    /// Begins to take a record away.
-    pub const fn forget(self) -> Writing {
+    /// Begins to invalidate a record.
+    pub const fn invalidate(self) -> Writing {
         Writing {
             last: 0,
             ..self.write()
@@ -141,7 +141,7 @@ impl Address {
 }
 
 impl Writing {
-    /// One step on: writes a byte at most, and none that is there already.
+    /// Does a step: writes one byte at most, and none whose value is there already.
     /// `content` must be the same in every step.
     #[inline(never)]
     pub fn step<M: Memory>(&mut self, content: &Content, memory: &mut M) -> Progress {
@@ -198,7 +198,7 @@ mod tests {
         })
     }
 
-    /// Writes to the end.
+    /// Writes a record to its end.
     fn write(chip: &mut Eeprom, content: &Content) -> Progress {
         let mut writing = PLACE.write();
         for _ in 0..10_000 {
@@ -287,7 +287,7 @@ mod tests {
         let mut chip = Eeprom::blank();
         write(&mut chip, &[3; CONTENT]);
         let before = *chip.bytes();
-        let mut writing = PLACE.forget();
+        let mut writing = PLACE.invalidate();
         while writing.step(&[0; CONTENT], &mut chip) == Progress::Going {}
         assert_eq!(read(&chip).0, Found::Damaged);
         assert_eq!(chip.bytes()[64], ERASED);

@@ -1,4 +1,4 @@
-//! Why the program began, and what it did until then.
+//! The cause of a reset, and the servos' state from before it.
 //!
 //! A robot that restarts in mid-step need not fall over: the servos are where they were,
 //! and a few bytes of memory that survive a reset say where that is ([`crate::memory::kept`]).
@@ -6,10 +6,10 @@
 use crate::numbers::pose::{Pose, Pulses};
 use crate::numbers::units::Width;
 
-/// What made the program begin.
+/// The cause of a reset.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Cause {
-    /// Power came on.
+    /// Power was switched on.
     #[default]
     Power,
     /// The reset button, or a computer that opened the port.
@@ -21,45 +21,45 @@ pub enum Cause {
 }
 
 impl Cause {
-    /// All of them.
+    /// All causes.
     pub const ALL: [Self; 4] = [Self::Power, Self::External, Self::BrownOut, Self::Watchdog];
 }
 
-/// What the servos are doing: all that has to survive a reset for the next program to
-/// take them over without a leap.
+/// The state of the servos that has to survive a reset, so that the next run can take them
+/// over without a jump.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Stance {
-    /// Whether there are no pulses.
+    /// True while the servos get no pulses.
     pub resting: bool,
     /// Frames since pulses began, up to [`crate::motion::AWAKE`]; servos wake one
     /// after the other.
     pub awake: u8,
-    /// The pose.
+    /// The pose that the servos hold or last held.
     pub pose: Pose,
     /// The pulses of the last frame, of servos that sleep, too. They may belong to a
     /// calibration that was never saved.
     pub sent: Pulses,
 }
 
-/// What is known at the beginning.
+/// The information that survived a reset.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Restart {
-    /// Why.
+    /// The reset's cause.
     pub cause: Cause,
-    /// How many times since power came on; stays at 255.
+    /// Resets since power-on; stays at 255.
     pub count: u8,
-    /// Whether it may have been a weak supply: a brown-out, or a reset behind a boot
-    /// loader that does not tell one from the other.
+    /// True if a weak supply may be the cause: a brown-out, or a reset whose cause a boot
+    /// loader hides.
     pub may_be_supply: bool,
-    /// Restarts in a row before this one that a weak supply may have made.
+    /// Consecutive resets before this one that a weak supply may have caused.
     pub brown_outs: u8,
-    /// What the servos did until then, if that is known. Never after
+    /// The servos' state before the reset, if it is known. Always `None` after
     /// [`Cause::Power`].
     pub before: Option<Stance>,
 }
 
 impl Stance {
-    /// No pulses, and none before.
+    /// Servos that get no pulses and never got any.
     pub const RESTING: Self = Self {
         resting: true,
         awake: 0,
@@ -69,7 +69,7 @@ impl Stance {
 }
 
 impl Restart {
-    /// Power came on, and nothing is known.
+    /// The state after power-on, when nothing survives.
     pub const NONE: Self = Self {
         cause: Cause::Power,
         count: 0,

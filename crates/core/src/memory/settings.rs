@@ -25,14 +25,14 @@ use crate::numbers::units::Sweep;
 /// Raised when the meaning of the bytes changes.
 pub const FORMAT: u8 = 1;
 
-/// Where the turn is.
+/// The place of the turn, the number of the save.
 pub const TURN: usize = 1;
 const HASH: usize = 2;
 const SERVOS: usize = 6;
 const BOOT: usize = 38;
 const DEADMAN: usize = 40;
 
-/// What the robot does three seconds after power-on.
+/// The robot's action three seconds after power-on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Boot {
     /// A gait; `stand` is one.
@@ -48,12 +48,12 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Of no robot.
+    /// Settings of no robot.
     pub const NONE: Self = Self {
         bytes: [0; CONTENT],
     };
 
-    /// Those of robot.toml.
+    /// The settings of robot.toml.
     #[inline(never)]
     pub fn of(robot: &Robot) -> Self {
         let mut settings = Self::NONE;
@@ -65,7 +65,7 @@ impl Settings {
         settings
     }
 
-    /// Makes them a record for the servos of a robot.
+    /// Sets format and servo hash to those of a robot.
     fn set_head(&mut self, robot: &Robot) {
         self.bytes[0] = FORMAT;
         let hash = robot.servo_hash();
@@ -99,22 +99,22 @@ impl Settings {
         pose
     }
 
-    /// Bytes that a memory has kept.
+    /// Settings from the bytes of a record.
     pub const fn from_bytes(bytes: Content) -> Self {
         Self { bytes }
     }
 
-    /// What a memory keeps.
+    /// The bytes of the record.
     pub const fn bytes(&self) -> &Content {
         &self.bytes
     }
 
-    /// The same, to be filled.
+    /// The bytes of the record, to be filled.
     pub const fn bytes_mut(&mut self) -> &mut Content {
         &mut self.bytes
     }
 
-    /// Whether they are of this format and for the servos of this robot.
+    /// True if the settings have this format and belong to the servos of this robot.
     pub fn are_for(&self, robot: &Robot) -> bool {
         let hash = robot.servo_hash();
         self.bytes[0] == FORMAT
@@ -122,17 +122,17 @@ impl Settings {
             && self.get(HASH + 2) == (hash >> 16) as u16
     }
 
-    /// How many times settings had been saved when these were.
+    /// The number of this save, modulo 256.
     pub const fn turn(&self) -> u8 {
         self.bytes[TURN]
     }
 
-    /// Sets the turn.
+    /// Sets the number of this save.
     pub const fn set_turn(&mut self, turn: u8) {
         self.bytes[TURN] = turn;
     }
 
-    /// A servo's adjustment.
+    /// The adjustment of a servo.
     pub fn servo(&self, servo: Servo) -> Adjustment {
         let number = |n: usize| self.get(SERVOS + 8 * servo.index() + 2 * n) as i16;
         Adjustment {
@@ -153,7 +153,7 @@ impl Settings {
         }
     }
 
-    /// What is done after power-on; `stand` for a gait that is no more.
+    /// The action after power-on; `stand` in place of a gait that no longer exists.
     pub fn boot(&self, robot: &Robot) -> Boot {
         let kept = self.get(BOOT);
         if kept == 0 {
@@ -163,7 +163,7 @@ impl Settings {
         Boot::Gait(gait.unwrap_or(GaitId::STAND))
     }
 
-    /// Sets what is done after power-on.
+    /// Sets the action after power-on.
     pub fn set_boot(&mut self, boot: Boot, robot: &Robot) {
         let kept = match boot {
             Boot::Rest => 0,
@@ -182,7 +182,7 @@ impl Settings {
         self.put(DEADMAN, ms);
     }
 
-    /// A servo's calibration.
+    /// The calibration of a servo, with its adjustment applied.
     #[inline(never)]
     pub fn calibration(&self, servo: Servo, robot: &Robot) -> Calibration {
         self.servo(servo).apply(&robot.servo(servo))
@@ -211,9 +211,9 @@ impl Settings {
     }
 }
 
-/// What a gait is kept by: a number made of its name, so that it is found again
-/// when robot.toml has other gaits. Never 0. The host that makes a robot has checked that
-/// no two of its gaits have the same.
+/// The number under which a gait is saved. It is made from the gait's name, so that the gait
+/// is found again when robot.toml has other gaits. Never 0. The host that makes a robot has
+/// checked that no two of its gaits have the same number.
 pub fn key(name: impl Iterator<Item = u8>) -> u16 {
     let mut key = 0u16;
     for byte in name {

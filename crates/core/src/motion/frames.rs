@@ -1,4 +1,4 @@
-//! From commands to frames: one pose every 20 ms, whatever happens.
+//! The robot's motion: one pose every 20 ms, whatever is ordered.
 //!
 //! A servo that gets a distant angle turns as fast as it can. If all four do, the supply
 //! sags. So nothing here ever jumps. A change from any motion to any other has three
@@ -13,8 +13,8 @@
 //! `stop` alone skips the braking: it freezes the pose in the next frame.
 //!
 //! # States
-//! What the robot does and what it is to do next, and what a frame makes of that.
-//! "Standing still" is a pace of 0.
+//! The state, the motion that comes next, and the effect of a frame on both. "Standing
+//! still" is a pace of 0.
 //!
 //! | state | command | frame |
 //! |---|---|---|
@@ -60,21 +60,21 @@ const SLOW: u8 = 50;
 /// Frames from the first pulse until all four are awake and motion may begin.
 pub const AWAKE: u8 = 4 * WAKE_APART;
 
-/// The robot's motion.
+/// The motion of a robot: its state, its target and the pulses of the last frame.
 #[derive(Clone, Debug)]
 pub struct Motion {
     robot: Robot<'static>,
     calibration: [Calibration; 4],
     state: State,
-    /// What follows once the present motion stands still. None while it rests.
+    /// The target once the present motion has come to a stop. None while the robot rests.
     next: Option<Target>,
     /// Percent of the gaits' own pace.
     speed: u8,
-    /// Whether the supply allows no more than [`SLOW`].
+    /// True while the supply limits the pace to [`SLOW`].
     slow: bool,
-    /// Whether they are on their way to those of another calibration.
+    /// True while the pulses move to a new calibration's widths.
     settling: bool,
-    /// What the servos do; they rest in [`State::Resting`] alone.
+    /// The servos' state; `resting` is true in [`State::Resting`] only.
     stance: Stance,
     hazard: Option<Hazard>,
     frames: u32,
@@ -83,7 +83,7 @@ pub struct Motion {
 impl Motion {
     /// The robot at power-on: waking, then standing.
     pub fn new(robot: Robot<'static>) -> Self {
-        let mut motion = Self::unbegun(robot);
+        let mut motion = Self::unstarted(robot);
         motion.speed = FULL;
         motion.begin();
         for servo in Servo::all() {
@@ -92,10 +92,10 @@ impl Motion {
         motion
     }
 
-    /// Nothing: no robot, and every bit zero, so that it needs no copy in flash.
+    /// A motion without a robot, every bit zero, so that it needs no copy in flash.
     /// [`Motion::take_robot`] or [`Motion::begin`] has to follow, and the calibration of every
     /// servo.
-    pub const fn unbegun(robot: Robot<'static>) -> Self {
+    pub const fn unstarted(robot: Robot<'static>) -> Self {
         Self {
             calibration: [Calibration::NONE; 4],
             state: State::Resting,
@@ -113,11 +113,11 @@ impl Motion {
         }
     }
 
-    /// Takes the robot at the beginning of `flash` in place of none; the calibration
-    /// of every servo has to follow.
+    /// Loads the robot at the beginning of `flash`; the calibration of every servo has to
+    /// follow.
     ///
     /// # Errors
-    /// Why there is none.
+    /// The reason for which the flash holds no usable robot.
     pub fn take_robot(&mut self, flash: Region<'static>) -> Result<(), Damage> {
         self.speed = FULL;
         self.stance.resting = true;
@@ -151,8 +151,8 @@ impl Motion {
         self.calibration = *calibration;
     }
 
-    /// Lets the pulses go over to the new calibration, at the slew limit. Nothing
-    /// else moves meanwhile.
+    /// Moves the pulses to the new calibration, at the slew limit. Nothing else moves
+    /// meanwhile.
     pub fn settle(&mut self) {
         if let State::Moving { pace, .. } | State::Cycling { pace, .. } = &mut self.state {
             *pace = 0;
@@ -189,7 +189,7 @@ impl Motion {
         }
     }
 
-    /// Takes over a robot without pulses: it stays so, and wakes in that pose.
+    /// Resumes a robot without pulses: it stays at rest, and will wake in that pose.
     #[inline(never)]
     pub fn resume_rest(&mut self, stance: Option<&Stance>) {
         self.freeze(State::Resting);
@@ -201,10 +201,10 @@ impl Motion {
         }
     }
 
-    /// Takes over servos that were held until a reset, with the pulses that they had;
-    /// says whether it may: within the travel and safe. All that had pulses get them
-    /// at once. If the robot is to `stand`, the servos wake one after the other, to
-    /// spare the supply, and then it stands.
+    /// Resumes servos that were held until a reset, with the pulses that they had; false if
+    /// their pose is unsafe or beyond the travel. All that had pulses get them at once. If
+    /// the robot is to `stand`, the servos wake one after the other, to spare the supply,
+    /// and then it stands.
     #[inline(never)]
     pub fn resume(&mut self, stance: &Stance, stand: bool) -> bool {
         if !self.may_hold(&stance.pose) {
@@ -224,7 +224,7 @@ impl Motion {
         true
     }
 
-    /// What the servos do, for the program after a reset.
+    /// The servos' state, which has to survive a reset.
     pub const fn stance(&self) -> &Stance {
         &self.stance
     }
@@ -233,8 +233,7 @@ impl Motion {
         self.hazard_of(pose).is_none()
     }
 
-    /// Begins a gait, by way of its first pose. The gait that is already under
-    /// way just goes on.
+    /// Starts a gait by a move to its first pose. A gait that is already under way continues.
     #[inline(never)]
     pub fn start_gait(&mut self, id: GaitId) {
         if self.activity() != Activity::Gait(id) {
@@ -245,7 +244,7 @@ impl Motion {
     /// Goes to a pose within the servos' travel.
     ///
     /// # Errors
-    /// What is wrong with the pose; then nothing has changed.
+    /// The limit that the pose breaks; then nothing has changed.
     pub fn go_to(&mut self, pose: &Pose) -> Result<(), Hazard> {
         match self.hazard_of(pose) {
             Some(hazard) => Err(hazard),
@@ -273,12 +272,12 @@ impl Motion {
         self.speed = percent;
     }
 
-    /// Keeps gaits at half their pace, or no longer.
+    /// Limits gaits to half their pace, or ends the limit.
     pub fn set_slow(&mut self, slow: bool) {
         self.slow = slow;
     }
 
-    /// One frame on: the pulses to send in it.
+    /// Computes the pulses of the next frame.
     pub fn tick(&mut self) -> Pulses {
         self.frames = self.frames.wrapping_add(1);
         let mut pulses = Pulses::default();
@@ -321,7 +320,7 @@ impl Motion {
         pulses
     }
 
-    /// What the robot is doing, or on its way to do.
+    /// The present activity, or the one that the robot is moving to.
     pub const fn activity(&self) -> Activity {
         match (self.next, self.state) {
             (Some(Target::Gait(id)), _) => Activity::Gait(id),
@@ -349,7 +348,7 @@ impl Motion {
         &self.stance.pose
     }
 
-    /// Whether there are no pulses.
+    /// True while the servos get no pulses.
     pub const fn is_resting(&self) -> bool {
         matches!(self.state, State::Resting)
     }
@@ -369,12 +368,12 @@ impl Motion {
         self.frames
     }
 
-    /// Why the guard stopped the robot, until the next motion begins.
+    /// The reason for which the guard stopped the robot, until the next motion begins.
     pub const fn hazard(&self) -> Option<Hazard> {
         self.hazard
     }
 
-    /// What is wrong with a pose.
+    /// The first limit that a pose breaks.
     fn hazard_of(&self, pose: &Pose) -> Option<Hazard> {
         match pose.beyond(&self.calibration) {
             Some(servo) => Some(Hazard::Travel(servo)),

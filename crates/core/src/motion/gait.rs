@@ -13,7 +13,7 @@ use crate::numbers::pose::Pose;
 use crate::numbers::units::{CYCLE, Sweep, phase16};
 
 impl Gait {
-    /// Where the servos stand at `phase` (1/2^24 cycle), by a robot's waveforms.
+    /// The pose at `phase` (1/2^24 cycle), read from a robot's waveforms.
     pub fn pose(&self, waves: Flash<[Wave]>, phase: u32) -> Pose {
         let mut pose = Pose::NEUTRAL;
         for (sweep, channel) in pose.0.iter_mut().zip(&self.channels) {

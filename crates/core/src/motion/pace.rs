@@ -1,4 +1,4 @@
-//! How fast a motion goes, as a share of its own full pace.
+//! The pace of a motion, as a share of its own full pace.
 //!
 //! A servo with a load cannot change its speed at once. A motion gathers pace when it
 //! begins and loses it before it ends; a gait's pace is its speed in percent, too.

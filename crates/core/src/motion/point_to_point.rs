@@ -21,10 +21,10 @@ const END: u16 = 1 << 15;
 pub struct PointToPoint {
     from: Pose,
     to: Pose,
-    /// Share of the time that goes by in each frame at full pace, Q15.
+    /// Share of the move's time for each frame at full pace, Q15.
     step: u16,
-    /// Share of the time gone by, Q15.
-    gone: u16,
+    /// Share of the move's time that has elapsed, Q15.
+    elapsed: u16,
 }
 
 impl PointToPoint {
@@ -36,32 +36,32 @@ impl PointToPoint {
             from: *from,
             to: *to,
             step: END / frames.max(SHORTEST),
-            gone: 0,
+            elapsed: 0,
         }
     }
 
-    /// Where it leads.
+    /// The pose at the end of the move.
     pub const fn target(&self) -> &Pose {
         &self.to
     }
 
-    /// One frame on, at `pace` (1024 is full).
+    /// Advances the move by a frame, at `pace` (1024 is full).
     pub fn advance(&mut self, pace: u16) {
         let step = (mul_unsigned(self.step, pace) >> 10) as u16;
-        self.gone = (self.gone + step).min(END);
+        self.elapsed = (self.elapsed + step).min(END);
     }
 
-    /// True where the move has arrived.
+    /// True once the move has arrived.
     pub const fn arrived(&self) -> bool {
-        self.gone == END
+        self.elapsed == END
     }
 
-    /// Where the servos stand now.
+    /// The pose at the present time of the move.
     pub fn pose(&self) -> Pose {
         if self.arrived() {
             return self.to;
         }
-        let share = smoothstep(self.gone) as i16;
+        let share = smoothstep(self.elapsed) as i16;
         let mut pose = self.from;
         for (sweep, to) in pose.0.iter_mut().zip(&self.to.0) {
             // Twice half the way, because a way may be more than half a turn.
@@ -172,11 +172,11 @@ mod tests {
             while !path.arrived() {
                 path.advance(FULL);
                 let here = path.pose();
-                let share = f64::from(path.gone) / 32_768.0;
+                let share = f64::from(path.elapsed) / 32_768.0;
                 let share = share * share * (3.0 - 2.0 * share);
                 for (n, way) in ways.iter().enumerate() {
-                    let gone = f64::from(here.0[n].0) - f64::from(from.0[n].0);
-                    let off = gone - share * way;
+                    let elapsed = f64::from(here.0[n].0) - f64::from(from.0[n].0);
+                    let off = elapsed - share * way;
                     prop_assert!(off.abs() <= 2.0 + way.abs() / 8000.0, "A{}: {off}", n + 1);
                 }
             }

@@ -1,11 +1,11 @@
-//! What the servos follow, and what comes after it.
+//! The state of the motion, and the target that comes next.
 
 use crate::motion::point_to_point::PointToPoint;
 use crate::numbers::gaits::{Gait, GaitId};
 use crate::numbers::pose::Pose;
 use crate::numbers::robot::Robot;
 
-/// What the robot does, or is on its way to do.
+/// An activity of the robot; one that it is still moving to counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Activity {
     /// A gait (`stand` is one).
@@ -18,41 +18,41 @@ pub enum Activity {
     Rest,
 }
 
-/// Where a motion leads.
+/// The target of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 // From 1 on, since none at all has to be zero: see `Main::new`.
 #[repr(u8)]
 pub enum Target {
-    /// To a pose, to be held.
+    /// A pose, to be held.
     Pose(Pose) = 1,
-    /// To the first pose of a gait, and through its cycles.
+    /// A gait, reached by a move to its first pose.
     Gait(GaitId),
 }
 
-/// What the servos follow at the moment.
+/// The path that the servos follow at the moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 // `Resting` is zero, whatever the others hold: see `Main::new`.
 #[repr(u8)]
 pub enum State {
-    /// Nothing: there are no pulses.
+    /// Resting: the servos get no pulses.
     Resting,
-    /// The last pose.
+    /// Holding the last pose.
     Holding {
-        /// Whether it was asked for, or the robot was stopped in it.
+        /// True if a command asked for the pose, false if the robot was stopped in it.
         asked: bool,
     },
-    /// A point-to-point move.
+    /// Following a point-to-point move.
     Moving {
         path: PointToPoint,
         pace: u16,
         /// The gait that begins at its end; without one, the pose is held.
         gait: Option<GaitId>,
     },
-    /// A gait.
+    /// Cycling through a gait.
     Cycling {
         id: GaitId,
         gait: Gait,
-        /// 1/2^24 cycle.
+        /// The phase, 1/2^24 cycle.
         phase: u32,
         pace: u16,
     },

@@ -12,8 +12,8 @@ pub const LONGEST: f64 = 127.0 * 256.0;
 pub const SHORTEST_COUPLER: i16 = 4097;
 
 lizard_avr::plain! {
-    /// The bars of one loop, and what follows from them. A length is counted in steps of
-    /// which `scale` says how many are a millimetre; margins do not depend on it.
+    /// The bars of one loop, and factors that follow from them. Lengths are in steps of `scale`;
+    /// margins do not depend on it.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Bars {
         pub(crate) couplers: Coupling,
@@ -30,13 +30,13 @@ lizard_avr::plain! {
         /// Takes rise times that to sixteen bits.
         pub(crate) area_shift: u16,
         pub(crate) scale: Scale,
-        /// Nothing: it fills up what the fields above leave of four bytes.
+        /// Unused: it pads the fields above to a multiple of four bytes.
         pub(crate) rest: u16,
     }
 }
 
 impl Bars {
-    /// No loop: it never closes.
+    /// A linkage without bars, which never closes.
     pub const NONE: Self = Self {
         base: 0,
         left: 0,
@@ -56,7 +56,7 @@ impl Bars {
     /// couplers.
     ///
     /// # Panics
-    /// Where a coupler is shorter than [`SHORTEST_COUPLER`].
+    /// If a coupler is shorter than [`SHORTEST_COUPLER`].
     pub const fn new([base, left, right]: [i16; 3], [a, b]: [i16; 2], scale: Scale) -> Self {
         assert!(a >= SHORTEST_COUPLER && b >= SHORTEST_COUPLER);
         let half_sum = (a as u32 + b as u32) / 2;
@@ -91,7 +91,7 @@ impl Bars {
         self.scale
     }
 
-    /// The couplers.
+    /// The couplers of the loop.
     pub const fn couplers(&self) -> Coupling {
         self.couplers
     }

@@ -1,8 +1,8 @@
-//! How one servo turns a pulse into an angle.
+//! A servo's calibration: the relation of its pulses to its angles.
 //!
-//! Servos of one type differ, and a horn goes on its spline only every 14 degrees. So
-//! this is not a constant of the robot. It is a value in the motion, made from
-//! robot.toml's numbers and from what a person has set ([`crate::memory::adjustment`]).
+//! Servos of one type differ, and a horn fits its spline only every 14 degrees. So this is
+//! not a constant of the robot. It is a value in the motion, made from robot.toml's numbers
+//! and from the settings of a person ([`crate::memory::adjustment`]).
 
 use lizard_avr::{mul, mul_unsigned};
 
@@ -25,7 +25,7 @@ lizard_avr::plain! {
 }
 
 impl Calibration {
-    /// No servo: without travel.
+    /// A servo without travel.
     pub const NONE: Self = Self {
         neutral: Width(0),
         gain: 0,
@@ -49,7 +49,7 @@ impl Calibration {
         (mul(sweep.0, self.gain) + (1 << 13)) >> 14
     }
 
-    /// How far the pulse may change in a frame, for a turn of `per_frame`, 1/65536
+    /// The largest change of the pulse in a frame, for a turn of `per_frame`, 1/65536
     /// turn; at least one cycle.
     pub fn slew(&self, per_frame: u16) -> u16 {
         let cycles = (mul_unsigned(per_frame, self.gain.unsigned_abs()) >> 14) as u16;
@@ -67,15 +67,15 @@ lizard_avr::plain! {
     /// among them.
     #[derive(Debug, Default, PartialEq, Eq)]
     pub struct Reach {
-        /// The farthest clockwise.
+        /// The clockwise end.
         pub min: Sweep,
-        /// The farthest counter-clockwise.
+        /// The counter-clockwise end.
         pub max: Sweep,
     }
 }
 
 impl Reach {
-    /// Whether a servo's travel reaches all of it.
+    /// True if a servo's travel covers this range.
     pub fn is_within(&self, servo: &Calibration) -> bool {
         servo.min <= self.min && self.max <= servo.max
     }

@@ -1,5 +1,5 @@
-//! Poses that need no measuring: cells of two servos' sweeps in which the guard is
-//! known to accept every pose.
+//! Certified cells: ranges of two servos' sweeps in which the guard is known to accept every
+//! pose, so that it need not be measured.
 //!
 //! Measuring all margins of a pose takes most of a frame's time, and far from all limits
 //! the result is always "safe". Every condition of the guard depends on one servo or on
@@ -18,7 +18,7 @@ pub const MOST_ROWS: usize = 64;
 /// Binary logarithm of the steps of a sweep (1/65536 turn) that a row is wide: 1.4 deg.
 pub const ROW_BITS: u32 = 8;
 
-/// The same of a column: 0.7 deg.
+/// Binary logarithm of the steps of a sweep that a column is wide: 0.7 deg.
 pub const COLUMN_BITS: u32 = 7;
 
 flash! {
@@ -30,14 +30,14 @@ flash! {
 #[derive(Clone, Copy)]
 pub struct Cells<'a> {
     first: i8,
-    /// Where its rows begin, and how many they are.
+    /// The place of its first row, and the number of its rows.
     begin: u16,
     count: u8,
     rows: Flash<'a, [[i8; 2]]>,
 }
 
 impl Cells<'static> {
-    /// No cell at all: every pose is measured.
+    /// A map without cells: every pose is measured.
     pub const NONE: Self = Self::among(0, 0, 0, NO_ROWS.as_slice());
 }
 
@@ -87,7 +87,7 @@ mod tests {
 
     use super::*;
 
-    /// What a map says, by division and without a shortcut.
+    /// The same question answered by division and without a shortcut.
     fn held(first: i8, rows: &[[i8; 2]], row: i16, column: i16) -> bool {
         let row = f64::from(row).div_euclid(256.0) as i32;
         // A turn has 256 rows, and the one behind the last is the first.

@@ -6,15 +6,15 @@
 //! it misses one in 65 536. The crate `crc` takes six times the flash for it; the tests
 //! compare with it.
 
-/// The sum of bytes that come one after another.
+/// The checksum of the bytes that were added so far.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Checksum(pub u16);
 
 impl Checksum {
-    /// Of nothing yet.
+    /// The checksum of no bytes.
     pub const NOTHING: Self = Self(u16::MAX);
 
-    /// With one byte more.
+    /// The checksum with one more byte.
     #[cfg_attr(target_arch = "avr", inline(never))] // once in flash
     pub const fn and(self, byte: u8) -> Self {
         // Eight steps at once: the byte meets the sum's high half, and what leaves at the
@@ -24,7 +24,7 @@ impl Checksum {
         Self((self.0 << 8) ^ (out << 12) ^ (out << 5) ^ out)
     }
 
-    /// Of some bytes.
+    /// Computes the checksum of `bytes`.
     #[inline(never)]
     pub fn of(bytes: &[u8]) -> Self {
         let mut sum = Self::NOTHING;

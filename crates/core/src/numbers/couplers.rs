@@ -19,7 +19,7 @@
 
 use lizard_avr::Flash;
 
-use crate::numbers::curve::{Curve, ENTRIES, OCTAVES, Table, argument};
+use crate::numbers::curve::{Curve, OCTAVES, Table, argument};
 
 /// The tables of a pair of couplers. Q10.
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +37,7 @@ pub struct Tables<'a> {
 }
 
 impl Tables<'_> {
-    /// None at all: nothing is known of such couplers.
+    /// No tables, so that no lean is known.
     pub const NONE: Self = Self {
         rise: None,
         stretched: None,
@@ -54,7 +54,7 @@ lizard_avr::plain! {
         right: i16,
         /// `R` in steps of `s`, a quarter of the bars' squared ones.
         reach_sq: u32,
-        /// `N`, likewise.
+        /// `N` in the same steps.
         least_sq: u32,
         /// Leading zeros of both.
         reach_zeros: u16,
@@ -63,7 +63,7 @@ lizard_avr::plain! {
 }
 
 impl Coupling {
-    /// None: they never meet.
+    /// Couplers without length, which never meet.
     pub const NONE: Self = Self {
         left: 0,
         right: 0,
@@ -108,7 +108,7 @@ pub struct Couplers<'a> {
     tables: Tables<'a>,
 }
 
-/// How the couplers lean at one distance of the crank tips, Q10.
+/// The shape of the couplers' triangle at one distance of the crank tips, Q10.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lean {
     /// Twice the height of the end point over the distance of the crank tips.
@@ -118,8 +118,8 @@ pub struct Lean {
 }
 
 impl<'a> Couplers<'a> {
-    /// Couplers of these lengths, in the steps of their loop, with the tables that
-    /// belong to them; of what a table that is not there would tell, nothing is known.
+    /// Couplers of these lengths, in the steps of their loop, with their tables. A lean that
+    /// needs a missing table is not known.
     pub const fn new(lengths: Coupling, tables: Tables<'a>) -> Self {
         Self { lengths, tables }
     }
@@ -178,71 +178,51 @@ const fn is_near_stretched(reach_sq: u32, tips_sq: u32) -> bool {
 }
 
 /// The rise over `s` for couplers of these lengths; made by a host.
-pub const fn rise(left: i16, right: i16) -> Table {
+pub fn rise(left: i16, right: i16) -> Table {
     let (reach_sq, least_sq) = (reach_sq(left, right), least_sq(left, right));
-    let mut table = [0; ENTRIES];
-    let mut index = 0;
-    while index < ENTRIES {
-        // Rounded down, because a straight line between two points of this curve
-        // lies above it.
-        let mut tips_sq = argument(reach_sq, index);
-        if tips_sq < peak_sq(left, right) as u64 {
-            tips_sq = peak_sq(left, right) as u64;
-        }
-        table[index] = rise_q10(reach_sq, least_sq, tips_sq, 0);
-        index += 1;
-    }
-    table
+    let peak_sq = peak_sq(left, right).into();
+    // Rounded down, because a straight line between two points of this curve lies above it.
+    core::array::from_fn(|index| {
+        let tips_sq = argument(reach_sq, index).max(peak_sq);
+        rise_q10(reach_sq, least_sq, tips_sq, 0)
+    })
 }
 
 /// The rise over `R - s`; made by a host.
-pub const fn stretched(left: i16, right: i16) -> Table {
+pub fn stretched(left: i16, right: i16) -> Table {
     let (reach_sq, least_sq) = (reach_sq(left, right), least_sq(left, right));
-    let mut table = [0; ENTRIES];
-    let mut index = 0;
-    while index < ENTRIES {
+    core::array::from_fn(|index| {
         let short = argument(reach_sq / 4, index);
-        if short < reach_sq as u64 {
-            table[index] = rise_q10(reach_sq, least_sq, reach_sq as u64 - short, 1);
-        }
-        index += 1;
-    }
-    table
+        let tips_sq = u64::from(reach_sq).saturating_sub(short);
+        rise_q10(reach_sq, least_sq, tips_sq, 1)
+    })
 }
 
 /// The rise over `s - N`; made by a host.
-pub const fn folded(left: i16, right: i16) -> Table {
+pub fn folded(left: i16, right: i16) -> Table {
     let (reach_sq, least_sq) = (reach_sq(left, right), least_sq(left, right));
-    let mut table = [0; ENTRIES];
-    let mut index = 0;
-    while index < ENTRIES {
-        let above = argument(least_sq, index);
-        table[index] = rise_q10(reach_sq, least_sq, least_sq as u64 + above, 1);
-        index += 1;
-    }
-    table
+    core::array::from_fn(|index| {
+        let tips_sq = u64::from(least_sq) + argument(least_sq, index);
+        rise_q10(reach_sq, least_sq, tips_sq, 1)
+    })
 }
 
 /// The size of the skew over `s`; made by a host.
-pub const fn skew(left: i16, right: i16) -> Table {
+pub fn skew(left: i16, right: i16) -> Table {
     let reach_sq = reach_sq(left, right);
     // a^2 - b^2 in the steps of `s`, a quarter of the bars' squared ones.
-    let difference = (left as i64 * left as i64 - right as i64 * right as i64).unsigned_abs() / 4;
-    let mut table = [0; ENTRIES];
-    let mut index = 0;
-    while index < ENTRIES {
+    let difference = (i64::from(left).pow(2) - i64::from(right).pow(2)).unsigned_abs() / 4;
+    core::array::from_fn(|index| {
         let tips_sq = argument(reach_sq, index);
         let skew = ((difference << 10) + tips_sq / 2) / tips_sq;
-        table[index] = if skew < 0x7fff { skew as i16 } else { 0x7fff };
-        index += 1;
-    }
-    table
+        skew.min(0x7fff) as i16
+    })
 }
 
 /// `sqrt((R - s)(s - N)) / s` in Q10, to nearest where `round` is 1, down where
 /// it is 0; 0 outside of N..R.
-const fn rise_q10(reach_sq: u32, least_sq: u32, tips_sq: u64, round: u128) -> i16 {
-    let (reach_sq, least_sq) = (reach_sq as u64, least_sq as u64);
+fn rise_q10(reach_sq: u32, least_sq: u32, tips_sq: u64, round: u128) -> i16 {
+    let (reach_sq, least_sq) = (u64::from(reach_sq), u64::from(least_sq));
     if tips_sq >= reach_sq || tips_sq <= least_sq {
         return 0;
     }
@@ -250,10 +230,10 @@ const fn rise_q10(reach_sq: u32, least_sq: u32, tips_sq: u64, round: u128) -> i1
     // One bit more than Q10 for the rounding.
     let twice = ((product << 22) / (tips_sq as u128 * tips_sq as u128)).isqrt();
     let rise = (twice + round) >> 1;
-    if rise < 0x7fff { rise as i16 } else { 0x7fff }
+    rise.min(0x7fff) as i16
 }
 
-/// `R` in steps of `s`, a quarter of the bars' squared ones.
+/// Computes `R` in steps of `s`, a quarter of the bars' squared ones.
 const fn reach_sq(left: i16, right: i16) -> u32 {
     let sum = left as u32 + right as u32;
     // Half of the sum squared; of equal couplers exactly the coupler squared.
@@ -266,8 +246,8 @@ const fn least_sq(left: i16, right: i16) -> u32 {
     difference * difference / 4
 }
 
-/// Where the rise is largest, in steps of `s`.
-const fn peak_sq(left: i16, right: i16) -> u32 {
+/// The squared distance at which the rise is largest, in steps of `s`.
+fn peak_sq(left: i16, right: i16) -> u32 {
     let (reach_sq, least_sq) = (reach_sq(left, right) as u64, least_sq(left, right) as u64);
     (2 * reach_sq * least_sq / (reach_sq + least_sq)) as u32
 }

@@ -34,7 +34,7 @@ impl<'a> Curve<'a> {
         Self::of_octave(table, largest.leading_zeros() as u16)
     }
 
-    /// The same, for a largest argument with this many leading zeros.
+    /// The function in `table`, whose largest argument has this many leading zeros.
     pub const fn of_octave(table: Flash<'a, Table>, zeros: u16) -> Self {
         Self {
             table,
@@ -48,12 +48,12 @@ impl<'a> Curve<'a> {
         self.read(argument, 0)
     }
 
-    /// The value of any function, rounded to nearest, likewise.
+    /// The value of any function, rounded to nearest; None as for [`Curve::falling`].
     pub fn at(&self, argument: u32) -> Option<i16> {
         self.read(argument, 0x8000)
     }
 
-    /// The value; `round` is what is added before the lower half of a change is left out.
+    /// Interpolates the value; `round` is added to a change before its lower half is dropped.
     #[inline(never)]
     fn read(&self, argument: u32, round: u16) -> Option<i16> {
         let mut mantissa = argument;
@@ -98,7 +98,7 @@ mod tests {
     use lizard_avr::Flash;
     use proptest::prelude::*;
 
-    /// What a table holds for a function of the argument's share of the largest.
+    /// The table of a function of the argument's share of the largest.
     fn table(largest: u32, function: impl Fn(f64) -> f64) -> Table {
         core::array::from_fn(|index| {
             let share = argument(largest, index) as f64 / f64::from(largest);

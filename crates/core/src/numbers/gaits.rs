@@ -36,7 +36,7 @@ impl<'a> Name<'a> {
         }
     }
 
-    /// Bytes that are left of it.
+    /// The number of bytes that are still to be read.
     pub const fn length(&self) -> u8 {
         self.left
     }
@@ -54,12 +54,12 @@ impl Iterator for Name<'_> {
 }
 
 lizard_avr::plain! {
-    /// What one servo does in a gait.
+    /// The motion of one servo in a gait.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Channel {
-        /// Which waveform.
+        /// The number of the waveform.
         pub wave: u16,
-        /// How far the servo's reading is ahead of the phase, 1/65536 cycle.
+        /// The lead of the servo's phase over that of the gait, 1/65536 cycle.
         pub offset: u16,
         /// Factor of the waveform, Q14, counter-clockwise positive.
         pub gain: i16,
@@ -67,15 +67,15 @@ lizard_avr::plain! {
 }
 
 lizard_avr::plain! {
-    /// One gait.
+    /// A gait.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Gait {
         /// Phase in 1/2^24 cycle for each frame at full pace; negative where the
         /// table is read backwards.
         pub increment: i32,
-        /// The four servos.
+        /// The channels of the four servos.
         pub channels: [Channel; 4],
-        /// Where its name begins among the names of its robot.
+        /// The place of its name's first byte among the names of its robot.
         pub name_start: u16,
         /// The name's length, at most [`LONGEST_NAME`].
         pub name_length: u16,
@@ -95,7 +95,7 @@ impl GaitId {
         (0..count as u8).map(Self)
     }
 
-    /// Its place.
+    /// The gait's place.
     pub const fn index(self) -> usize {
         self.0 as usize
     }
@@ -107,7 +107,7 @@ impl GaitId {
 }
 
 impl Gait {
-    /// A gait that does nothing.
+    /// A gait that does not move.
     pub const STILL: Self = Self {
         name_start: 0,
         name_length: 0,

@@ -1,4 +1,4 @@
-//! What a pose must keep clear of.
+//! The limits that a pose must keep to.
 
 use crate::numbers::units::Sine;
 

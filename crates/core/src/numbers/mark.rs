@@ -17,14 +17,14 @@
 
 use crate::numbers::section::{FORMAT, MAGIC};
 
-/// Where it is in flash: behind the 26 vectors of an ATmega328P, 4 bytes each (data sheet,
+/// The mark's address in flash: behind the 26 vectors of an ATmega328P, 4 bytes each (data sheet,
 /// table 12-6).
 pub const AT: usize = 26 * 4;
 
 /// Bytes of the mark.
 pub const LENGTH: usize = 10;
 
-/// What the code says of itself.
+/// The mark: format and version of the code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mark {
     /// [`FORMAT`] of the sections that it reads.
@@ -34,7 +34,7 @@ pub struct Mark {
 }
 
 impl Mark {
-    /// That of this code.
+    /// The mark of this code.
     pub const HERE: Self = Self {
         format: FORMAT,
         version: [
@@ -54,7 +54,7 @@ impl Mark {
         [a, b, c, d, low, high, major, minor, patch, 0]
     }
 
-    /// That of a flash, if it begins with a lizard's code.
+    /// Reads the mark of a flash that begins with a lizard's code; None for any other.
     #[must_use]
     pub fn find(flash: &[u8]) -> Option<Self> {
         let bytes = flash.get(AT..AT + LENGTH)?;

@@ -1,4 +1,4 @@
-//! Which one: servos, ends and sides by name.
+//! The names of the robot's parts: servos, ends and sides.
 
 /// A servo; the order of every array of four.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,10 +33,10 @@ pub enum Side {
 }
 
 impl Servo {
-    /// All four, in their order.
+    /// All four servos, in their order.
     pub const ALL: [Self; 4] = [Self::A1, Self::A2, Self::A3, Self::A4];
 
-    /// The same, one after another, without a table in RAM.
+    /// Iterates over all four servos, without a table in RAM.
     pub fn all() -> impl Iterator<Item = Self> {
         (0..4).map(Self::at)
     }
@@ -51,22 +51,22 @@ impl Servo {
         }
     }
 
-    /// Whether its crank is one of the tail's.
+    /// True for a servo at the tail.
     pub const fn is_rear(self) -> bool {
         matches!(self, Self::A3 | Self::A4)
     }
 
-    /// Its place in an array of four.
+    /// The servo's place in an array of four.
     pub const fn index(self) -> usize {
         self as usize
     }
 
-    /// Its element of an array in that order.
+    /// The servo's element of an array in that order.
     pub const fn of<T>(self, four: &[T; 4]) -> &T {
         &four[self as usize]
     }
 
-    /// The same, to be changed.
+    /// The servo's element of an array in that order, mutable.
     pub const fn of_mut<T>(self, four: &mut [T; 4]) -> &mut T {
         &mut four[self as usize]
     }
@@ -81,7 +81,7 @@ impl End {
         }
     }
 
-    /// Both, the head first.
+    /// Both ends, the head first.
     pub const ALL: [Self; 2] = [Self::Head, Self::Tail];
 }
 
@@ -94,7 +94,7 @@ impl Side {
         }
     }
 
-    /// Both, the left one first.
+    /// Both sides, the left one first.
     pub const ALL: [Self; 2] = [Self::Left, Self::Right];
 }
 

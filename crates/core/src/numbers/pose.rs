@@ -1,4 +1,4 @@
-//! A pose of the robot: where the four servos stand, as sweeps from neutral.
+//! A pose of the robot: the sweeps of the four servos from their neutral angles.
 //!
 //! The horns are fitted while the servos hold their neutral pulse. So a sweep is the
 //! angle that the servo really turns, and a chassis angle can be read off the robot.

@@ -1,4 +1,4 @@
-//! What the core knows of a robot, read from its section of flash.
+//! A robot's numbers, read from its section of flash.
 //!
 //! The same core walks any lizard: bars, limits, servos and gaits come from a section
 //! ([`crate::numbers::section`]) that lies in the flash of a microcontroller or in the memory of a
@@ -40,14 +40,13 @@ impl fmt::Debug for Robot<'_> {
 }
 
 impl<'a> Robot<'a> {
-    /// No robot: it has no gait, and may not be moved.
+    /// No robot: it has no gait and may not be moved.
     pub const NONE: Self = Self {
         section: Region::EMPTY,
         is_there: false,
     };
 
-    /// What is in `flash`, which must be a section that is whole and nothing behind it:
-    /// [`Robot::open`] looks at it.
+    /// The robot in `flash`, which must be exactly a valid section: [`Robot::open`] checks it.
     #[inline(always)]
     pub(crate) const fn at(flash: Region<'a>) -> Self {
         Self {
@@ -64,7 +63,7 @@ impl<'a> Robot<'a> {
         Some(Self::at(flash.first(length)))
     }
 
-    /// Whether there is no robot.
+    /// True if there is no robot.
     pub const fn is_none(&self) -> bool {
         !self.is_there
     }
@@ -74,13 +73,13 @@ impl<'a> Robot<'a> {
         self.section
     }
 
-    /// What is `offset` bytes behind the beginning of the numbers.
+    /// Reads the number at `offset` bytes behind the beginning of [`Numbers`].
     #[inline(always)]
     fn number<T: Plain>(&self, offset: usize) -> T {
         self.section.read(NUMBERS + offset as u16)
     }
 
-    /// Its name, byte by byte.
+    /// The robot's name, byte by byte.
     pub fn label(&self) -> impl Iterator<Item = u8> + use<'a> {
         let section = self.section;
         let name = offset_of!(Header, name) as u16;
@@ -89,12 +88,12 @@ impl<'a> Robot<'a> {
             .take_while(|byte| *byte != 0)
     }
 
-    /// A number that differs between two robots.
+    /// The hash of the robot's numbers, by which robots are told apart.
     pub fn hash(&self) -> u32 {
         self.section.read(offset_of!(Header, hash) as u16)
     }
 
-    /// The same of the servos alone: their pins, pulses and neutral angles.
+    /// The hash of the servos alone: their pins, pulses and neutral angles.
     pub fn servo_hash(&self) -> u32 {
         self.section.read(offset_of!(Header, servo_hash) as u16)
     }
@@ -142,7 +141,7 @@ impl<'a> Robot<'a> {
         self.number(offset_of!(Numbers, limits))
     }
 
-    /// How fast servos may turn in a point-to-point move.
+    /// The slew limit of point-to-point moves.
     pub fn slew(&self) -> Slew {
         self.number(offset_of!(Numbers, slew))
     }
@@ -175,12 +174,12 @@ impl<'a> Robot<'a> {
         self.number(offset_of!(Numbers, reach) + servo.index() * size_of::<Reach>())
     }
 
-    /// The supplies that are measured, and what their voltages mean.
+    /// The supplies that are measured, and their thresholds.
     pub fn supplies(&self) -> Supplies {
         self.number(offset_of!(Numbers, supplies))
     }
 
-    /// How many gaits it has; the first is `stand`, which holds the neutral pose.
+    /// The number of gaits; the first is `stand`, which holds the neutral pose.
     pub fn gait_count(&self) -> usize {
         match self.is_there {
             true => usize::from(self.place(Part::Gaits).count),
@@ -188,12 +187,12 @@ impl<'a> Robot<'a> {
         }
     }
 
-    /// Where a part is, and how many it has.
+    /// The place of a part and the number of its elements.
     pub(crate) fn place(&self, part: Part) -> Place {
         self.number(offset_of!(Numbers, parts) + part as usize * size_of::<Place>())
     }
 
-    /// All of a part.
+    /// All elements of a part.
     #[inline(always)]
     fn part<T: Plain>(&self, part: Part) -> Flash<'a, [T]> {
         let Place { at, count } = self.place(part);
@@ -205,7 +204,7 @@ impl<'a> Robot<'a> {
         self.part(Part::Waves)
     }
 
-    /// A gait.
+    /// Reads a gait.
     #[inline(never)]
     pub fn gait(&self, id: GaitId) -> Gait {
         self.part(Part::Gaits)
@@ -213,7 +212,7 @@ impl<'a> Robot<'a> {
             .map_or(Gait::STILL, Flash::load)
     }
 
-    /// A gait's name.
+    /// The name of a gait.
     #[inline(never)]
     pub fn name(&self, id: GaitId) -> Name<'a> {
         // Not the whole gait: a line may be compared with every name.
@@ -224,8 +223,8 @@ impl<'a> Robot<'a> {
         Name::of(start, length, self.part(Part::Names))
     }
 
-    /// Whether a pose is in certified cells, in which the guard accepts every pose:
-    /// head, tail, left and right have a map each. False says nothing.
+    /// True if a pose is in certified cells, in which the guard accepts every pose: head, tail,
+    /// left and right have a map each. A pose outside may be safe, too.
     pub fn is_certified(&self, pose: &Pose) -> bool {
         let maps = self.part::<[i8; 2]>(Part::Rows);
         let mut begin = 0;
@@ -247,6 +246,6 @@ impl<'a> Robot<'a> {
 }
 
 lizard_avr::flash! {
-    /// The servos of the maps: that of the rows, that of the columns.
+    /// The servos of each map: first that of the rows, then that of the columns.
     const PAIRS: [[u8; 2]; 4] = [[0, 1], [2, 3], [0, 3], [1, 2]];
 }

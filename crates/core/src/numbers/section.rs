@@ -47,22 +47,22 @@ mod seal;
 /// Raised when the meaning of a byte changes.
 pub const FORMAT: u16 = 2;
 
-/// What a section begins with.
+/// The first four bytes of a section.
 pub const MAGIC: u32 = u32::from_le_bytes(*b"LZRD");
 
-/// Where the section is in flash, and the most bytes that it may have.
+/// The section's address in flash, and its largest size in bytes.
 pub use lizard_avr::{SPACE, START};
 
 /// The longest name of a robot.
 pub const LONGEST_NAME: usize = 18;
 
 lizard_avr::plain! {
-    /// What stands before everything else.
+    /// The first part of a section.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Header {
-        /// [`MAGIC`].
+        /// Always [`MAGIC`].
         pub magic: u32,
-        /// [`FORMAT`].
+        /// The section's format, [`FORMAT`].
         pub format: u16,
         /// Bytes of the section, this header among them.
         pub length: u16,
@@ -70,9 +70,9 @@ lizard_avr::plain! {
         pub crc: u16,
         /// The robot's name, filled up with zeros.
         pub name: [u8; LONGEST_NAME],
-        /// By which two robots are told apart: CRC-32 of all but header and maps.
+        /// The hash by which robots are told apart: CRC-32 of all but header and maps.
         pub hash: u32,
-        /// By which saved settings are known to be for these servos.
+        /// The hash by which saved settings are matched with servos.
         pub servo_hash: u32,
     }
 }
@@ -89,15 +89,15 @@ lizard_avr::plain! {
         pub neutral: [Angle; 4],
         /// Their pulses and travel.
         pub calibration: [Calibration; 4],
-        /// What the gaits need of them.
+        /// The sweeps that the gaits need of them.
         pub reach: [Reach; 4],
-        /// The smallest margins.
+        /// The smallest margins that are allowed.
         pub limits: Limits,
-        /// How fast servos may turn in a move.
+        /// The slew limit of a move.
         pub slew: Slew,
-        /// The supplies.
+        /// The supplies and their thresholds.
         pub supplies: Supplies,
-        /// Where the curves of the couplers of head and tail begin: rise, stretched, folded,
+        /// The places of the curves of the couplers of head and tail: rise, stretched, folded,
         /// skew; 0 for one that they do not need.
         pub curves: [[u16; CURVES]; 2],
         /// The parts, in the order of [`Part`].
@@ -105,7 +105,7 @@ lizard_avr::plain! {
         /// Arduino number of the pin where the servos' rail is measured; 0 where it is
         /// not.
         pub rail: u16,
-        /// Those of the servos' pins; 14 to 19 are A0 to A5.
+        /// Arduino numbers of the servos' pins; 14 to 19 are A0 to A5.
         pub pins: [u8; 4],
         /// The heads of the maps of head, tail, left and right. The last of the numbers,
         /// because the hash is not of them.
@@ -113,19 +113,19 @@ lizard_avr::plain! {
     }
 }
 
-/// Where the numbers are, and what follows them.
+/// The places of the numbers and of the first byte behind them.
 pub(crate) const NUMBERS: u16 = size_of::<Header>() as u16;
 pub(crate) const REST: u16 = NUMBERS + size_of::<Numbers>() as u16;
 
-/// The curves that couplers may have.
+/// The number of curves that couplers may have.
 pub const CURVES: usize = 4;
 
-/// What there is several of besides the curves.
+/// A part of the section that is an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// [`crate::numbers::gaits::Gait`].
+    /// The gaits, each a [`crate::numbers::gaits::Gait`].
     Gaits,
-    /// Waveforms, [`crate::numbers::gaits::Wave`].
+    /// The waveforms, each a [`crate::numbers::gaits::Wave`].
     Waves,
     /// Bytes of the gaits' names.
     Names,
@@ -133,16 +133,16 @@ pub enum Part {
     Rows,
 }
 
-/// How many of them.
+/// The number of such parts.
 pub const PARTS: usize = 4;
 
 lizard_avr::plain! {
-    /// Where a part of the section is.
+    /// The place of a part of the section.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Place {
         /// Bytes from the section's beginning.
         pub at: u16,
-        /// How many.
+        /// The number of elements.
         pub count: u16,
     }
 }
@@ -153,30 +153,30 @@ lizard_avr::plain! {
     pub struct MapHead {
         /// The first row.
         pub first: i8,
-        /// How many rows.
+        /// The number of rows.
         pub rows: u8,
     }
 }
 
-/// Why a section is no robot.
+/// The reason for which a section is not a usable robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 // From 1 on, since none at all has to be zero: see `Main::new`.
 #[repr(u8)]
 pub enum Damage {
-    /// There is none: no magic.
+    /// There is no section: the magic is missing.
     Missing = 1,
-    /// It is for another version of the firmware.
+    /// The section is for another version of the firmware.
     Format,
-    /// It was not written to its end, or has changed since.
+    /// The section was not written to its end, or has changed since.
     Damaged,
-    /// It is whole and says what cannot be.
+    /// The section is intact, but its numbers are impossible.
     Impossible,
 }
 
-/// Where the bytes begin that the CRC is of.
+/// The first byte that the CRC covers.
 const CHECKED: usize = offset_of!(Header, name);
 
-/// The length of the section at the beginning of a region, whole as its CRC says.
+/// The length of the section at the beginning of a region, once its CRC is checked.
 ///
 /// # Errors
 /// [`Damage::Missing`], [`Damage::Format`] or [`Damage::Damaged`].

@@ -1,25 +1,25 @@
 //! The slew limit: how fast servos may turn when the robot goes from one pose to another.
 
 lizard_avr::plain! {
-    /// How fast the servos may turn in a move.
+    /// The slew limit of a move.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Slew {
-        /// The most in a frame, 1/65536 turn.
+        /// The largest turn in a frame, 1/65536 turn.
         pub per_frame: u16,
-        /// Frames for each 1/65536 turn of the longest way, Q16, rounded up.
+        /// Frames for each 1/65536 turn of the longest distance, Q16, rounded up.
         pub(crate) frames_per_way: u16,
     }
 }
 
 impl Slew {
-    /// The least that a limit may be, 1/65536 turn in a frame: slower, and a move
-    /// takes more frames than sixteen bits count.
+    /// The lowest limit, 1/65536 turn in a frame: below it, a move would take more frames than
+    /// sixteen bits count.
     pub const SLOWEST: u16 = 36;
 
     /// A limit in 1/65536 turn a frame.
     ///
     /// # Panics
-    /// Where it is below [`Slew::SLOWEST`].
+    /// If the limit is below [`Slew::SLOWEST`].
     pub const fn new(per_frame: u16) -> Self {
         assert!(per_frame >= Self::SLOWEST);
         Self {

@@ -16,7 +16,7 @@ lizard_avr::plain! {
     /// One side of the body, lengths in steps of `scale`.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Slider {
-        /// How many steps are a millimetre.
+        /// The steps of all lengths.
         pub scale: Scale,
         /// Front shaft's x less the rear shaft's.
         pub offset: i16,
@@ -30,13 +30,13 @@ lizard_avr::plain! {
         pub nominal: u16,
         /// The shortest that its stroke allows.
         pub min: u16,
-        /// The longest.
+        /// The longest that its stroke allows.
         pub max: u16,
     }
 }
 
 impl Slider {
-    /// No slider.
+    /// A slider without length.
     pub const NONE: Self = Self {
         scale: Scale { bits: 0 },
         offset: 0,

@@ -4,11 +4,11 @@ lizard_avr::plain! {
     /// Voltages of one supply below which the robot reacts, mV, falling.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Thresholds {
-        /// Below: gaits at no more than half their pace, and no EEPROM writes.
+        /// Below it, gaits are limited to half their pace and the EEPROM is not written.
         pub slow: u16,
-        /// Below: the robot freezes.
+        /// Below it, the robot freezes.
         pub stop: u16,
-        /// Below: the pulses end.
+        /// Below it, the pulses end.
         pub rest: u16,
     }
 }
@@ -19,12 +19,12 @@ lizard_avr::plain! {
     pub struct Supplies {
         /// The chip's reference, mV.
         pub reference: u16,
-        /// Of the chip's own supply.
+        /// The thresholds of the chip's own supply.
         pub board: Thresholds,
         /// The reference times the ratio of the divider through which the servos' rail is
-        /// measured, mV; 0 where it is not.
+        /// measured, mV; 0 if it is not measured.
         pub rail_reference: u16,
-        /// Of the rail itself.
+        /// The thresholds of the rail.
         pub rail: Thresholds,
     }
 }

@@ -1,23 +1,23 @@
-//! The analogue converter: what it reads, and when it has read all of it.
+//! The analogue converter, and the time that its measurements take.
 
 use crate::control::supply::Reading;
 use crate::numbers::supplies::Supplies;
 
-/// What measures the supplies, a part of them in every second frame.
+/// The converter; it measures one voltage in every second frame.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Converter {
-    /// What the supplies are.
+    /// The present supplies.
     truth: Reading,
-    /// Whether the servos' rail is measured, too.
+    /// True if the servos' rail is measured, too.
     rail: bool,
     read: Reading,
-    /// Frames since power-on, up to a whole measurement; then which part is under way.
+    /// Frames since power-on, up to a complete measurement; then the part that is under way.
     frames: u8,
     complete: bool,
 }
 
 impl Converter {
-    /// Of supplies as they are, with the servos' rail or without.
+    /// A converter with these supplies, with the servos' rail or without.
     #[must_use]
     pub fn new(truth: Reading, rail: bool) -> Self {
         Self {
@@ -27,18 +27,18 @@ impl Converter {
         }
     }
 
-    /// The supplies are different from now on.
+    /// Changes the supplies.
     pub const fn set(&mut self, truth: Reading) {
         self.truth = truth;
     }
 
-    /// What the supplies are.
+    /// The present supplies.
     #[must_use]
     pub const fn truth(&self) -> Reading {
         self.truth
     }
 
-    /// Whether all of it has been measured once since the program began.
+    /// True once every voltage has been measured since the program began.
     #[must_use]
     pub const fn is_complete(&self) -> bool {
         self.complete
@@ -48,7 +48,7 @@ impl Converter {
         Self::new(self.truth, self.rail)
     }
 
-    /// What was read last, all of it or nothing; begins the next part.
+    /// The last complete reading, or nothing; begins the next measurement.
     pub(super) fn next(&mut self) -> Reading {
         match self.frames {
             1 => {
@@ -71,7 +71,7 @@ impl Converter {
     }
 }
 
-/// What the converter reads of a supply, and of a rail behind its divider, mV.
+/// The converter's reading of a supply, and of a rail behind its divider, mV.
 #[must_use]
 pub fn reading(supplies: &Supplies, board: u32, rail: u32) -> Reading {
     let board = u64::from(board);

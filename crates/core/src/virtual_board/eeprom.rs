@@ -11,18 +11,18 @@ use crate::memory::record::{ERASED, Memory, SIZE};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Eeprom {
     bytes: Arc<[u8; SIZE]>,
-    /// How many times it is asked after a write before it is ready again; or, where
-    /// it is `timed`, milliseconds.
+    /// The number of polls after a write until it is ready again; or, if it is `timed`,
+    /// milliseconds.
     pub slowness: u16,
-    /// Whether time alone makes it ready, as on the chip.
+    /// True if time makes it ready, as on the chip, and not polls.
     pub timed: bool,
-    /// Whether bytes stay as they are.
+    /// True if it is worn out, so that writes change nothing.
     pub worn: bool,
-    /// Every byte written: address, what was there, what was meant to be.
+    /// Every byte written: address, old value, new value.
     pub log: Vec<(u16, u8, u8)>,
     busy: Cell<u16>,
-    /// Whether it has been asked and was not ready.
-    in_vain: Cell<bool>,
+    /// True if it was polled while it was not ready.
+    polled_busy: Cell<bool>,
     /// The byte that is being written.
     under_way: Cell<Option<u16>>,
 }
@@ -44,13 +44,13 @@ impl Hash for Eeprom {
 }
 
 impl Eeprom {
-    /// As it comes from the factory.
+    /// An erased EEPROM, as it comes from the factory.
     #[must_use]
     pub fn blank() -> Self {
         Self::with([ERASED; SIZE])
     }
 
-    /// With these bytes.
+    /// An EEPROM with these bytes.
     #[must_use]
     pub fn with(bytes: [u8; SIZE]) -> Self {
         Self {
@@ -60,7 +60,7 @@ impl Eeprom {
             worn: false,
             log: Vec::new(),
             busy: Cell::new(0),
-            in_vain: Cell::new(false),
+            polled_busy: Cell::new(false),
             under_way: Cell::new(None),
         }
     }
@@ -71,7 +71,7 @@ impl Eeprom {
         &self.bytes
     }
 
-    /// The same, to be changed by another hand than the program's.
+    /// All its bytes, to be changed by a test.
     pub fn bytes_mut(&mut self) -> &mut [u8; SIZE] {
         Arc::make_mut(&mut self.bytes)
     }
@@ -82,13 +82,13 @@ impl Eeprom {
         self.under_way.get()
     }
 
-    /// Whether it has been asked since the last call and only time makes it ready.
+    /// True if it was polled while busy since the last call and only time makes it ready.
     #[must_use]
-    pub fn is_asked_in_vain(&self) -> bool {
-        self.in_vain.take()
+    pub fn was_polled_busy(&self) -> bool {
+        self.polled_busy.take()
     }
 
-    /// A millisecond passes.
+    /// Lets a millisecond pass.
     pub(super) fn pass(&mut self) {
         let busy = self.busy.get().saturating_sub(u16::from(self.timed));
         self.busy.set(busy);
@@ -97,13 +97,13 @@ impl Eeprom {
         }
     }
 
-    /// Time enough passes for the byte that was being written.
+    /// Lets enough time pass for the byte that is being written.
     pub(super) fn settle(&mut self) {
         self.busy.set(0);
         self.under_way.set(None);
     }
 
-    /// Power is lost: the byte that was being written holds something else.
+    /// Cuts the power: the byte that was being written gets this value.
     pub(super) fn tear(&mut self, byte: u8) {
         if let Some(address) = self.under_way.take() {
             self.bytes_mut()[usize::from(address)] = byte;
@@ -116,7 +116,7 @@ impl Memory for Eeprom {
     fn is_ready(&self) -> bool {
         let busy = self.busy.get();
         if self.timed {
-            self.in_vain.set(busy > 0);
+            self.polled_busy.set(busy > 0);
         } else {
             self.busy.set(busy.saturating_sub(1));
         }

@@ -3,21 +3,18 @@
 use core::cell::Cell;
 use core::hash::{Hash, Hasher};
 
-use crate::memory::kept::{self, CELLS, Cells, Flags};
-use crate::memory::restart::{Restart, Stance};
+use crate::memory::kept::{self, CELLS, Cells};
+use crate::memory::restart::{Cause, Restart, Stance};
 
-/// Those bytes.
+/// The cells of [`crate::memory::kept`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Ram(Cell<[u8; CELLS]>);
 
 impl Default for Ram {
-    /// Power has just come on, and the program has begun.
+    /// The cells just after power-on.
     fn default() -> Self {
         let ram = Self(Cell::new([0; CELLS]));
-        ram.begin(Flags {
-            power_on: true,
-            ..Flags::default()
-        });
+        ram.begin(Some(Cause::Power));
         ram
     }
 }
@@ -41,23 +38,23 @@ impl Cells for Ram {
 }
 
 impl Ram {
-    /// What a program that begins now would find.
+    /// The state that the program would find if it started now.
     #[must_use]
-    pub fn found(&self, flags: Flags) -> Restart {
-        kept::begin(&self.clone(), flags)
+    pub fn found(&self, reported: Option<Cause>) -> Restart {
+        kept::begin(&self.clone(), reported)
     }
 
-    /// A program begins.
-    pub fn begin(&self, flags: Flags) -> Restart {
-        kept::begin(self, flags)
+    /// Starts the program.
+    pub fn begin(&self, reported: Option<Cause>) -> Restart {
+        kept::begin(self, reported)
     }
 
-    /// What the servos do is kept.
+    /// Stores the servos' state.
     pub fn keep(&self, stance: &Stance, brown_outs: u8) {
         kept::keep(self, stance, brown_outs);
     }
 
-    /// The program has hung.
+    /// Marks the program as hung.
     pub fn mark_hung(&self) {
         kept::mark_hung(self);
     }

@@ -16,21 +16,21 @@ use crate::step::{Main, Step};
 /// The firmware's main and its board.
 #[derive(Clone, Debug)]
 pub struct Running {
-    /// The robot.
+    /// The firmware's main.
     pub main: Main,
-    /// What it runs on.
+    /// The board that it runs on.
     pub board: VirtualBoard,
-    /// Where its robot's section is.
+    /// The flash that holds the robot's section.
     flash: Region<'static>,
 }
 
 impl Running {
-    /// At power-on, with supplies in good order and nothing saved.
+    /// A robot at power-on, with good supplies and nothing saved.
     pub fn power_on(robot: Robot<'static>) -> Self {
         Self::with(robot, Eeprom::blank(), Restart::default())
     }
 
-    /// The same with what a memory holds and why the program begins.
+    /// A robot with this memory, after this reset.
     pub fn with(robot: Robot<'static>, memory: Eeprom, restart: Restart) -> Self {
         let supplies = robot.supplies();
         // A rail well above what it needs.
@@ -43,7 +43,7 @@ impl Running {
         Self::on(robot.section(), board)
     }
 
-    /// On a board as it is, with whatever is where the robot's section should be.
+    /// The firmware on this board, with this flash in place of the robot's section.
     pub fn on(flash: Region<'static>, mut board: VirtualBoard) -> Self {
         let mut main = Main::new();
         main.begin(flash, &mut board);
@@ -60,31 +60,30 @@ impl Running {
         self.main.console().has_output(self.main.control())
     }
 
-    /// Whether the watchdog has ended the pulses: main does not go on, and is begun
-    /// anew.
+    /// True once the watchdog has ended the pulses: main stops, and waits for its restart.
     pub const fn is_over(&self) -> bool {
         self.board.is_hushed()
     }
 
-    /// Steps until there is nothing to do before time passes.
+    /// Steps until main has nothing to do before time passes.
     ///
     /// # Panics
-    /// If that never comes.
+    /// If main never becomes idle.
     pub fn settle(&mut self) {
         if self.is_over() {
             return;
         }
         for _ in 0..100_000 {
             let step = self.main.step(&mut self.board);
-            if step != Step::Worked || self.board.memory.is_asked_in_vain() {
+            if step != Step::Worked || self.board.memory.was_polled_busy() {
                 return;
             }
         }
         panic!("it never rests");
     }
 
-    /// A frame: main computes it for the next tick, and its pulses begin. Returns
-    /// those.
+    /// Runs a frame: main computes it for the next tick, and its pulses begin. Returns the
+    /// pulses.
     pub fn frame(&mut self) -> Pulses {
         self.settle();
         self.board.pass(self.board.until_tick());
@@ -97,7 +96,7 @@ impl Running {
         self.board.begun()
     }
 
-    /// Frames, and the output in them.
+    /// Runs frames, and returns the output in them.
     pub fn run(&mut self, frames: u32) -> Vec<String> {
         let mut said = Vec::new();
         for _ in 0..frames {
@@ -107,7 +106,7 @@ impl Running {
         said
     }
 
-    /// Frames in which nobody reads the output.
+    /// Runs frames in which nobody reads the output.
     pub fn run_unheard(&mut self, frames: u32) {
         self.board.transmitter.held = true;
         for _ in 0..frames {
@@ -116,10 +115,10 @@ impl Running {
         self.board.transmitter.held = false;
     }
 
-    /// Every line that waits, each checked for its form.
+    /// Reads every line that waits, and checks its form.
     ///
     /// # Panics
-    /// If a line is not as lines are.
+    /// If a line has a wrong form.
     pub fn lines(&mut self) -> Vec<String> {
         self.settle();
         let text = core::mem::take(&mut self.board.transmitter.text);
@@ -145,10 +144,10 @@ impl Running {
         lines
     }
 
-    /// Sends a line and returns its final line, the only one and the last.
+    /// Sends a line and returns the final line of its answer.
     ///
     /// # Panics
-    /// If it is not.
+    /// If the answer does not end with exactly one final line.
     pub fn say(&mut self, line: &str) -> String {
         self.lines();
         let mut said = self.send(line.as_bytes());
@@ -159,10 +158,32 @@ impl Running {
         last.clone()
     }
 
-    /// A value of the status line.
+    /// Sends a line, which must be accepted.
     ///
     /// # Panics
-    /// If it has no such key.
+    /// If the answer is not `ok` and the line.
+    #[track_caller]
+    pub fn accept(&mut self, line: &str) {
+        assert_eq!(self.say(line), std::format!("ok {line}"));
+    }
+
+    /// Sends a line, which must be refused with an answer that begins with `err` and `reason`.
+    ///
+    /// # Panics
+    /// If it is not.
+    #[track_caller]
+    pub fn refuse(&mut self, line: &str, reason: &str) {
+        let answer = self.say(line);
+        let refused = answer
+            .strip_prefix("err ")
+            .is_some_and(|text| text.starts_with(reason));
+        assert!(refused, "{line}: {answer}, not {reason}");
+    }
+
+    /// Reads a value of the status line.
+    ///
+    /// # Panics
+    /// If the status line has no such key.
     pub fn status(&mut self, key: &str) -> String {
         let line = self.say("status");
         let pairs = line.split(' ').filter_map(|word| word.split_once('='));
@@ -172,8 +193,8 @@ impl Running {
 }
 
 impl Running {
-    /// Time passes in which main does nothing. Once the watchdog has ended the pulses,
-    /// main does not go on and the reset is waited for. Returns whether it comes.
+    /// Lets time pass in which main hangs. Once the watchdog has ended the pulses, main stays
+    /// stopped until the reset. Returns true if that comes.
     pub fn stall(&mut self, ms: u16) -> bool {
         let mut bites = self.board.pass(ms);
         while self.is_over() && !bites {
@@ -185,19 +206,19 @@ impl Running {
         bites
     }
 
-    /// The processor is reset, for this reason.
+    /// Resets the processor with this cause.
     pub fn reset(&mut self, cause: Cause) {
         self.board.reset(cause);
-        self.begin_anew();
+        self.restart_main();
     }
 
-    /// Power is lost and comes back; see [`VirtualBoard::lose_power`].
+    /// Turns the power off and on; see [`VirtualBoard::lose_power`].
     pub fn lose_power(&mut self, torn: Option<u8>) {
         self.board.lose_power(torn);
-        self.begin_anew();
+        self.restart_main();
     }
 
-    fn begin_anew(&mut self) {
+    fn restart_main(&mut self) {
         self.main = Main::new();
         self.main.begin(self.flash, &mut self.board);
     }

@@ -1,4 +1,4 @@
-//! The board does what the UNO's does.
+//! The virtual board behaves like the UNO.
 
 use super::*;
 use std::format;
@@ -38,7 +38,7 @@ fn a_frame_is_played_once_handed_over_and_repeats_while_main_is_late() {
 }
 
 #[test]
-fn a_stall_below_125_ms_is_borne_and_a_longer_one_begins_the_program_anew() {
+fn a_stall_below_125_ms_changes_nothing_and_a_longer_one_restarts_the_program() {
     let mut short = standing();
     assert!(!short.stall(WATCHDOG_MS - 20));
     assert!(!short.board.is_hushed());
@@ -161,7 +161,7 @@ fn the_first_pulse_after_a_reset_is_at_most_the_frame_on_its_way_then() {
     assert_eq!(first, on_its_way.0.map(Some));
 }
 
-/// How far the pulses of each servo are from the one before, at most, cycles.
+/// The largest change of each servo's pulse from one frame to the next, cycles.
 fn leaps(running: &mut Running, frames: usize) -> [u16; 4] {
     let mut last = *running.motion().sent();
     let mut leaps = [0; 4];

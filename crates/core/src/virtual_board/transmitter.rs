@@ -1,33 +1,32 @@
-//! What the robot prints, and a listener who reads it slowly.
+//! The transmitter: the robot's output, and a line that takes its time.
 
-use core::convert::Infallible;
 use core::hash::{Hash, Hasher};
 use std::string::String;
 
-use ufmt::uWrite;
+use crate::console::output::Output;
 
 /// CPU cycles of a millisecond.
 const MS: u64 = 16_000;
 
-/// Bytes that wait to be sent, and all that was written.
+/// The transmitter of the serial line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Transmitter {
-    /// All that was written and not taken yet.
+    /// The text that was written and not read yet.
     pub text: String,
-    /// Whether nobody reads anything.
+    /// True while nobody reads the line, so that it never gets free.
     pub held: bool,
-    /// CPU cycles for a byte; 0 for a line that takes all at once.
+    /// CPU cycles for a byte; 0 for a line without delay.
     per_byte: u64,
-    /// Bytes that it takes before a writer has to wait.
+    /// Bytes that fit in before a writer has to wait.
     capacity: u64,
-    /// The cycle of the moment.
+    /// The present cycle.
     now: u64,
-    /// The cycle at which all that was written is through the line.
+    /// The cycle at which everything written has been sent.
     free: u64,
 }
 
 impl Default for Transmitter {
-    /// A line that takes all at once.
+    /// A line without delay.
     fn default() -> Self {
         Self::new(0, 255)
     }
@@ -55,23 +54,23 @@ impl Transmitter {
         }
     }
 
-    /// Time passes.
+    /// Lets milliseconds pass.
     pub(super) const fn pass(&mut self, ms: u64) {
         self.now += ms * MS;
     }
 
-    /// It is this cycle now.
+    /// Sets the present cycle.
     pub const fn at(&mut self, cycle: u64) {
         self.now = cycle;
     }
 
-    /// The cycle at which all that was written is through the line.
+    /// The cycle at which everything written has been sent.
     #[must_use]
     pub const fn free(&self) -> u64 {
         self.free
     }
 
-    /// As many bytes as that are still to be sent, from before.
+    /// Adds bytes from an earlier run that are still to be sent.
     pub const fn fill(&mut self, bytes: u64) {
         self.free = self.now + bytes * self.per_byte;
     }
@@ -98,13 +97,9 @@ impl Transmitter {
     }
 }
 
-impl uWrite for Transmitter {
-    type Error = Infallible;
-
-    fn write_str(&mut self, text: &str) -> Result<(), Infallible> {
-        let bytes = text.len() as u64;
-        self.text.push_str(text);
-        self.free = self.free.max(self.now) + bytes * self.per_byte;
-        Ok(())
+impl Output for Transmitter {
+    fn byte(&mut self, byte: u8) {
+        self.text.byte(byte);
+        self.free = self.free.max(self.now) + self.per_byte;
     }
 }

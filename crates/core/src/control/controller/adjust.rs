@@ -1,5 +1,5 @@
-//! How settings of the servos take effect: at once, and only if the robot can still walk
-//! all gaits and keep its present pose and target.
+//! Changes the settings of the servos. They take effect at once, and only if the robot can
+//! still walk all gaits and keep its present pose and target.
 
 use super::Control;
 use crate::control::order::Setting;
@@ -9,7 +9,7 @@ use crate::numbers::calibration::Calibration;
 use crate::numbers::part::Servo;
 
 impl Control {
-    /// Sets something of a servo.
+    /// Changes a setting of a servo.
     #[inline(never)]
     pub(super) fn set_servo(&mut self, servo: Servo, setting: Setting) -> Result<(), Refusal> {
         let mut settings = self.settings;
@@ -28,7 +28,7 @@ impl Control {
         self.replace(&settings)
     }
 
-    /// Takes other settings.
+    /// Replaces all settings.
     #[inline(never)]
     pub(super) fn replace(&mut self, settings: &Settings) -> Result<(), Refusal> {
         let mut calibration = *self.motion.calibration();
@@ -46,7 +46,7 @@ impl Control {
         Ok(())
     }
 
-    /// An error where a gait leaves a servo's travel.
+    /// An error if a gait leaves a servo's travel.
     #[inline(never)]
     fn fits(&self, servo: Servo, calibration: &Calibration) -> Result<(), Refusal> {
         match self.motion.robot().reach(servo).is_within(calibration) {

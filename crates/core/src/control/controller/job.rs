@@ -13,30 +13,29 @@ use crate::memory::copies::{self, Outcome};
 use crate::memory::record::{Memory, Progress, Writing};
 use crate::memory::settings::Settings;
 
-/// Frames after which the supplies have been measured, or never will be.
+/// Frames by which the supplies have been measured; later, nothing waits for that.
 const MEASURED_BY: u32 = 25;
 
-/// What an order has the memory do.
+/// An EEPROM operation that an order has started.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Job {
-    /// Take the settings that are kept.
+    /// Load the saved settings.
     Load,
-    /// Find out where the settings are to be kept.
+    /// Choose the copy that the settings overwrite.
     Save,
-    /// Keep the settings.
+    /// Write the settings.
     Saving(Writing),
 }
 
 impl Control {
-    /// True while there is something to do with the memory. No order is to be given
-    /// meanwhile. The pose of a rest waits for a supply that allows to write it, and
-    /// nothing has to wait with it.
+    /// True while an EEPROM operation is in progress; no order may be given meanwhile. A rest
+    /// pose that waits for a better supply does not count, so nothing waits with it.
     pub fn is_writing(&self) -> bool {
         self.job.is_some() || self.rested.is_some() && self.safety.allows_writing_now()
     }
 
-    /// True while an order waits for the supply: to be measured, or for a dip to end or
-    /// to be a low supply. Nothing can be done before the next frame.
+    /// True while an order waits for the supply: until it is measured, or until a dip ends or
+    /// turns out to be a low supply. There is nothing to do before the next frame.
     pub fn waits_for_supply(&self) -> bool {
         let supply = self.safety.supply();
         let soon = match supply.measured() {
@@ -46,8 +45,8 @@ impl Control {
         self.job.is_some() && soon
     }
 
-    /// Does a part of what there is to do with the memory: one byte at most. Returns
-    /// what has come of an order, once it is done.
+    /// Does a step of the EEPROM operation: one byte at most. Returns the outcome of an order
+    /// once it is complete.
     #[inline(never)]
     pub fn write_memory<M: Memory>(&mut self, memory: &mut M) -> Option<Result<(), Refusal>> {
         if !memory.is_ready() || self.waits_for_supply() {

@@ -10,7 +10,7 @@ fn supplies() -> Supplies {
 /// At power-on, `boot` called off.
 fn without_boot() -> Safety {
     let mut safety = Safety::default();
-    safety.byte_came();
+    safety.note_byte();
     safety
 }
 
@@ -100,7 +100,7 @@ fn a_byte_calls_boot_off_and_so_does_a_fault_or_a_low_supply() {
         booted
     };
     assert!(boots(|_| {}));
-    assert!(!boots(Safety::byte_came));
+    assert!(!boots(Safety::note_byte));
     assert!(!boots(|safety| safety.fail(Fault::Late)));
     assert!(!boots(|safety| {
         for _ in 0..6 {
@@ -116,7 +116,7 @@ fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says_and_no_sooner()
     for deadman in [1u16, 19, 20, 21, 100, 1000, 60_000] {
         let mut safety = without_boot();
         for _ in 0..10 {
-            safety.line_came();
+            safety.note_line();
             let mut frames = 0;
             while safety.frame(&WELL, &supplies, State::Walking, deadman) == Reaction::None {
                 frames += 1;

@@ -146,16 +146,22 @@ fn what_is_answered_never_gets_better_as_the_supply_sinks() {
 }
 
 #[test]
-fn only_power_and_a_program_that_did_nothing_wake_servos_where_nobody_held_them() {
+fn servos_wake_only_where_nothing_held_them_and_are_taken_over_only_where_something_did() {
     for cause in Cause::ALL {
         for brown_outs in 0..=BROWN_OUTS {
             for before in Before::ALL {
+                let case = format!("{cause:?}, {brown_outs} brown-outs, {before:?}");
                 let (begins, fault) = beginning(cause, brown_outs, before);
-                let wakes = begins == Beginning::Wake;
                 let nothing_known = before == Before::Nothing && fault.is_none();
-                assert_eq!(wakes, cause == Cause::Power || nothing_known);
-                let takes = matches!(begins, Beginning::TakeOver | Beginning::Hold);
-                assert!(!takes || before == Before::Held);
+                let wakes = cause == Cause::Power || nothing_known;
+                match begins {
+                    Beginning::Wake => assert!(wakes, "must not wake: {case}"),
+                    Beginning::TakeOver | Beginning::Hold => {
+                        assert_eq!(before, Before::Held, "nothing to take over: {case}");
+                        assert!(!wakes, "must wake: {case}");
+                    }
+                    Beginning::Rest => assert!(!wakes, "must wake: {case}"),
+                }
             }
         }
     }

@@ -1,4 +1,4 @@
-//! What readings of the supplies make of the robot, frame by frame.
+//! Levels of the supply from readings, frame by frame.
 
 use std::vec::Vec;
 
@@ -6,37 +6,34 @@ use proptest::prelude::*;
 
 use super::*;
 
+const fn thresholds([slow, stop, rest]: [u16; 3]) -> Thresholds {
+    Thresholds { slow, stop, rest }
+}
+
 const SUPPLIES: Supplies = Supplies {
     reference: 1100,
-    board: Thresholds {
-        slow: 4500,
-        stop: 4300,
-        rest: 4100,
-    },
+    board: thresholds([4500, 4300, 4100]),
     rail_reference: 0,
-    rail: Thresholds {
-        slow: 0,
-        stop: 0,
-        rest: 0,
-    },
+    rail: thresholds([0; 3]),
 };
 
 const WITH_RAIL: Supplies = Supplies {
     rail_reference: 2200,
-    rail: Thresholds {
-        slow: 6400,
-        stop: 6200,
-        rest: 6000,
-    },
+    rail: thresholds([6400, 6200, 6000]),
     ..SUPPLIES
 };
 
-/// What the converter reads of a board at `volts`, its rail at `rail` volts.
+/// The converter's reading of a board at `volts` with a rail at `rail` volts.
 fn reading(volts: f64, rail: f64) -> Reading {
     Reading {
         reference: (1.1 / volts * 1024.0) as u16,
         rail: (rail / 2.0 / volts * 1024.0) as u16,
     }
+}
+
+/// Frames until the level of a board without a measured rail changes, and the level.
+fn until(supply: &mut Supply, volts: f64) -> (usize, Level) {
+    until_change(supply, reading(volts, 0.0), &SUPPLIES)
 }
 
 /// Frames until the level changes, and the level.
@@ -57,10 +54,8 @@ fn a_voltage_is_told_to_two_decimals_for_every_reading() {
                 reference: mv,
                 ..SUPPLIES
             };
-            let reading = Reading {
-                reference,
-                rail: 700,
-            };
+            let rail = 700;
+            let reading = Reading { reference, rail };
             let exact = 1024.0 * f64::from(mv) / f64::from(reference) / 10.0;
             let told = Voltage::of_board(reading, &supplies).hundredths();
             // More than 81.91 V is no supply.
@@ -71,10 +66,8 @@ fn a_voltage_is_told_to_two_decimals_for_every_reading() {
             assert_eq!(f64::from(rail), exact.floor().min(8191.0));
         }
     }
-    assert_eq!(
-        Voltage::of_board(Reading::default(), &SUPPLIES).hundredths(),
-        0
-    );
+    let unknown = Voltage::of_board(Reading::default(), &SUPPLIES);
+    assert_eq!(unknown.hundredths(), 0);
 }
 
 proptest! {
@@ -89,19 +82,16 @@ proptest! {
 #[test]
 fn a_falling_supply_slows_then_stops_then_ends_the_pulses_each_after_six_frames() {
     let mut supply = Supply::default();
-    assert_eq!(until_change(&mut supply, reading(5.0, 0.0), &SUPPLIES).0, 0);
+    assert_eq!(until(&mut supply, 5.0).0, 0);
     for (volts, level) in [
         (4.45, Level::Slow),
         (4.25, Level::Stop),
         (4.05, Level::Rest),
     ] {
-        assert_eq!(
-            until_change(&mut supply, reading(volts, 0.0), &SUPPLIES),
-            (6, level)
-        );
+        assert_eq!(until(&mut supply, volts), (6, level));
     }
     let mut supply = Supply::default();
-    let change = until_change(&mut supply, reading(3.9, 0.0), &SUPPLIES);
+    let change = until(&mut supply, 3.9);
     assert_eq!(change, (6, Level::Rest), "all at once, if it falls at once");
 }
 
@@ -127,7 +117,7 @@ fn one_reading_decides_nothing_what_held_for_all_six_frames_counts() {
 fn one_reading_does_not_recover_a_supply_either() {
     for odd in 0..50 {
         let mut supply = Supply::default();
-        until_change(&mut supply, reading(4.2, 0.0), &SUPPLIES);
+        until(&mut supply, 4.2);
         for frame in 0..50 {
             let volts = if frame == odd { 4.5 } else { 5.0 };
             supply.measure(reading(volts, 0.0), &SUPPLIES);
@@ -150,17 +140,14 @@ fn a_short_dip_changes_nothing() {
 #[test]
 fn a_supply_is_good_again_a_second_after_it_has_risen_well_above_the_threshold() {
     let mut supply = Supply::default();
-    until_change(&mut supply, reading(4.2, 0.0), &SUPPLIES);
+    until(&mut supply, 4.2);
     assert_eq!(supply.level(), Level::Stop);
     // Between the threshold and .15 V more it stays as it is.
-    assert_eq!(
-        until_change(&mut supply, reading(4.40, 0.0), &SUPPLIES).0,
-        0
-    );
-    let slow = until_change(&mut supply, reading(4.5, 0.0), &SUPPLIES);
+    assert_eq!(until(&mut supply, 4.40).0, 0);
+    let slow = until(&mut supply, 4.5);
     assert_eq!(slow, (50, Level::Slow));
-    assert_eq!(until_change(&mut supply, reading(4.6, 0.0), &SUPPLIES).0, 0);
-    let good = until_change(&mut supply, reading(4.7, 0.0), &SUPPLIES);
+    assert_eq!(until(&mut supply, 4.6).0, 0);
+    let good = until(&mut supply, 4.7);
     assert_eq!(good, (50, Level::Good));
 }
 
@@ -198,8 +185,6 @@ fn the_worse_of_two_supplies_counts_and_is_the_one_that_is_told() {
 fn what_has_not_been_measured_yet_is_not_low() {
     let supplies = WITH_RAIL;
     let mut supply = Supply::default();
-    assert_eq!(
-        until_change(&mut supply, Reading::default(), &supplies).0,
-        0
-    );
+    let (frames, _) = until_change(&mut supply, Reading::default(), &supplies);
+    assert_eq!(frames, 0);
 }

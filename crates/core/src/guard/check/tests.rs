@@ -1,4 +1,4 @@
-//! Sections that are whole and would harm a servo or the board: a number at a time, each
+//! Intact sections that would harm a servo or the board: a number at a time, each
 //! beside the nearest one that does not.
 
 use std::vec::Vec;

@@ -23,7 +23,7 @@ fn posed() -> impl Strategy<Value = (Sample, [Pose; 8])> {
     })
 }
 
-/// What the integers may be off by at a pose.
+/// The largest errors of the integers at a pose.
 struct Bounds {
     ends: [bounds::End; 2],
     /// Of the sliders, mm.
@@ -57,7 +57,7 @@ impl Bounds {
     }
 }
 
-/// Whether the truth is clear of all its limits by more than the errors, or
+/// True if the exact value is clear of all its limits by more than the errors, or
 /// beyond one of them; None in between.
 fn truth(robot: &Sample, pose: &Pose) -> Option<bool> {
     let bounds = Bounds::of(robot, pose);

@@ -91,7 +91,7 @@ fn what_is_there_already_is_not_written_again() {
     assert!(chip.log.iter().all(|(_, old, new)| old != new));
 }
 
-/// What a byte may hold when power fails while it is written: the erase has raised
+/// The values of a byte after power failed during its write: the erase has raised
 /// some of its bits, or the write lowered some of the erased ones.
 fn torn(old: u8, new: u8) -> impl Iterator<Item = u8> {
     (0..=255u8).flat_map(move |ones| [old | ones, new | ones])
@@ -266,7 +266,7 @@ fn a_rest_is_remembered_until_it_is_forgotten_and_only_by_its_own_robot() {
         let other = robot.clone().with(|content| content.servo_hash = 7);
         assert_eq!(rested(&other, &chip), None);
     }
-    let mut writing = RESTED.forget();
+    let mut writing = RESTED.invalidate();
     while writing.step(&[0; CONTENT], &mut chip) == Progress::Going {}
     assert_eq!(rested(&robot, &chip), None);
     let outside = |at: &u16| !(128..128 + LENGTH).contains(at);

@@ -29,7 +29,7 @@ impl Ram {
     /// As power-on leaves it.
     fn powered() -> Self {
         let ram = Self::of(std::vec![0; CELLS]);
-        let restart = begin(&ram, POWER);
+        let restart = begin(&ram, Some(Cause::Power));
         assert_eq!(restart, Restart::NONE);
         ram
     }
@@ -41,7 +41,7 @@ impl Ram {
         ram
     }
 
-    /// What the next program finds.
+    /// The state that the next run finds.
     fn after_the_reset(&self) -> Self {
         Self::of(self.bytes.borrow().clone())
     }
@@ -61,28 +61,12 @@ impl Cells for Ram {
     }
 }
 
-const HIDDEN: Flags = Flags {
-    power_on: false,
-    external: false,
-    brown_out: false,
-    watchdog: false,
-};
-const POWER: Flags = Flags {
-    power_on: true,
-    ..HIDDEN
-};
-const EXTERNAL: Flags = Flags {
-    external: true,
-    ..HIDDEN
-};
-const BROWN_OUT: Flags = Flags {
-    brown_out: true,
-    ..HIDDEN
-};
-const WATCHDOG: Flags = Flags {
-    watchdog: true,
-    ..HIDDEN
-};
+const CAUSES: [Option<Cause>; 4] = [
+    None,
+    Some(Cause::External),
+    Some(Cause::BrownOut),
+    Some(Cause::Watchdog),
+];
 
 fn stance(n: i16) -> Stance {
     Stance {
@@ -98,17 +82,21 @@ fn what_is_kept_is_there_after_a_reset_and_gone_after_a_loss_of_power() {
     let ram = Ram::powered();
     for n in 1..100 {
         keep(&ram, &stance(n), n as u8);
-        for flags in [EXTERNAL, BROWN_OUT, WATCHDOG, HIDDEN] {
+        for reported in CAUSES {
             let again = ram.after_the_reset();
-            let restart = begin(&again, flags);
+            let restart = begin(&again, reported);
             assert_eq!(restart.before, Some(stance(n)));
             assert_eq!(restart.brown_outs, n as u8);
             // A second reset, before the program has kept anything.
-            assert_eq!(begin(&again, flags).before, Some(stance(n)));
+            assert_eq!(begin(&again, reported).before, Some(stance(n)));
         }
         let off = ram.after_the_reset();
-        assert_eq!(begin(&off, POWER), Restart::NONE);
-        assert_eq!(begin(&off, EXTERNAL).before, None, "nothing was kept since");
+        assert_eq!(begin(&off, Some(Cause::Power)), Restart::NONE);
+        assert_eq!(
+            begin(&off, Some(Cause::External)).before,
+            None,
+            "nothing was kept since"
+        );
     }
 }
 
@@ -123,7 +111,7 @@ fn a_reset_between_any_two_stores_leaves_the_stance_before_or_the_new_one() {
         for stores in 0..=whole.stores.get() {
             let torn = ram.with_reset_after(stores);
             keep(&torn, &stance(n), n as u8);
-            let found = begin(&torn.after_the_reset(), HIDDEN).before;
+            let found = begin(&torn.after_the_reset(), None).before;
             let place = usize::from(found == Some(stance(n)));
             assert!(place == 1 || found == Some(stance(n - 1)), "{n} {stores}");
             seen[place] += 1;
@@ -139,12 +127,12 @@ fn a_reset_between_any_two_stores_of_the_beginning_loses_nothing() {
     keep(&ram, &stance(5), 5);
     mark_hung(&ram);
     let whole = ram.with_reset_after(usize::MAX);
-    begin(&whole, HIDDEN);
+    begin(&whole, None);
     assert!(whole.stores.get() >= 3);
     for stores in 0..=whole.stores.get() {
         let torn = ram.with_reset_after(stores);
-        begin(&torn, HIDDEN);
-        let found = begin(&torn.after_the_reset(), HIDDEN);
+        begin(&torn, None);
+        let found = begin(&torn.after_the_reset(), None);
         assert_eq!(found.before, Some(stance(5)), "{stores}");
         assert!((1..=2).contains(&found.count));
         assert!(matches!(found.cause, Cause::Watchdog | Cause::External));
@@ -153,20 +141,20 @@ fn a_reset_between_any_two_stores_of_the_beginning_loses_nothing() {
 
 #[test]
 fn every_cause_is_told_by_its_flag_or_by_what_ram_still_knows() {
-    for (flags, hung, cause, may_be_supply) in [
-        (EXTERNAL, false, Cause::External, false),
-        (BROWN_OUT, false, Cause::BrownOut, true),
-        (WATCHDOG, false, Cause::Watchdog, false),
-        (POWER, false, Cause::Power, false),
-        (HIDDEN, false, Cause::External, true),
-        (HIDDEN, true, Cause::Watchdog, false),
-        (EXTERNAL, true, Cause::External, false),
+    for (reported, hung, cause, may_be_supply) in [
+        (Some(Cause::External), false, Cause::External, false),
+        (Some(Cause::BrownOut), false, Cause::BrownOut, true),
+        (Some(Cause::Watchdog), false, Cause::Watchdog, false),
+        (Some(Cause::Power), false, Cause::Power, false),
+        (None, false, Cause::External, true),
+        (None, true, Cause::Watchdog, false),
+        (Some(Cause::External), true, Cause::External, false),
     ] {
         let ram = Ram::powered();
         if hung {
             mark_hung(&ram);
         }
-        let restart = begin(&ram, flags);
+        let restart = begin(&ram, reported);
         assert_eq!(
             (restart.cause, restart.may_be_supply),
             (cause, may_be_supply)
@@ -178,27 +166,30 @@ fn every_cause_is_told_by_its_flag_or_by_what_ram_still_knows() {
 fn restarts_are_counted_up_to_255() {
     let ram = Ram::powered();
     for n in 1..=600u32 {
-        assert_eq!(u32::from(begin(&ram, EXTERNAL).count), n.min(255));
+        assert_eq!(
+            u32::from(begin(&ram, Some(Cause::External)).count),
+            n.min(255)
+        );
     }
-    assert_eq!(begin(&ram, POWER).count, 0);
+    assert_eq!(begin(&ram, Some(Cause::Power)).count, 0);
 }
 
 proptest! {
     #[test]
     fn what_ram_holds_after_power_on_is_not_believed(
         bytes in prop::collection::vec(any::<u8>(), CELLS),
-        flags in prop_oneof![Just(HIDDEN), Just(EXTERNAL), Just(BROWN_OUT), Just(WATCHDOG)],
+        reported in prop::sample::select(&CAUSES[..]),
     ) {
         let mut bytes = bytes;
         // The one mark in 65 536 that passes.
         prop_assume!(bytes[MARK] != ALIVE);
         let ram = Ram::of(bytes.clone());
-        let restart = begin(&ram, flags);
+        let restart = begin(&ram, reported);
         prop_assert_eq!((restart.count, restart.before), (0, None));
-        prop_assert_eq!(begin(&ram, EXTERNAL).before, None);
+        prop_assert_eq!(begin(&ram, Some(Cause::External)).before, None);
         bytes[MARK] = ALIVE;
         bytes[STATE] = 0x5b;
-        prop_assert_eq!(begin(&Ram::of(bytes), flags).before, None);
+        prop_assert_eq!(begin(&Ram::of(bytes), reported).before, None);
     }
 
     #[test]
@@ -207,6 +198,6 @@ proptest! {
         keep(&ram, &stance(n), n as u8);
         let copy = COPIES + COPY * usize::from(ram.get(WHOLE) & 1);
         ram.set(copy + bit / 8, ram.get(copy + bit / 8) ^ (1 << (bit % 8)));
-        prop_assert_eq!(begin(&ram, HIDDEN).before, None);
+        prop_assert_eq!(begin(&ram, None).before, None);
     }
 }

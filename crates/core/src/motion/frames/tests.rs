@@ -16,11 +16,11 @@ mod waking;
 /// Frames until all servos are awake.
 const WAKING: u32 = 20;
 
-/// Braking, the longest move of these tests, gathering pace.
+/// Frames for braking, the longest move of these tests, and gathering pace.
 const LONG_ENOUGH: u32 = 150;
 
 impl Motion {
-    /// Awake, standing, for as long as it takes to have all its pace.
+    /// Awake and standing, at full pace.
     fn standing() -> Self {
         Self::awake(Sample::odd())
     }
@@ -31,7 +31,7 @@ impl Motion {
         motion
     }
 
-    /// In a gait, some frames after it was asked for.
+    /// In a gait, some frames after it was ordered.
     fn in_gait(name: &str, frames: u32) -> Self {
         let mut motion = Self::standing();
         motion.start(name);
@@ -85,7 +85,7 @@ impl Motion {
 const THERE: [i16; 4] = [900, -700, 800, -1100];
 const BACK: [i16; 4] = [-600, 500, -800, 700];
 
-/// Two motions that have nothing to tell them apart for some frames.
+/// Checks that two motions are the same for some frames.
 fn assert_same(mut one: Motion, mut other: Motion) {
     for _ in 0..100 {
         assert_eq!(one.tick(), other.tick());
@@ -105,7 +105,7 @@ fn resting() -> Motion {
 }
 
 #[test]
-fn a_held_pose_stays_and_says_whether_it_was_asked_for() {
+fn a_held_pose_stays_and_its_activity_is_pose_if_it_was_ordered_else_stop() {
     let mut stopped = Motion::in_gait("sway", 90);
     stopped.stop();
     let mut posed = Motion::standing();
@@ -263,7 +263,7 @@ fn the_last_of_several_commands_counts() {
 }
 
 #[test]
-fn a_gait_that_is_left_and_asked_for_again_before_it_stands_still_begins_anew() {
+fn a_gait_that_is_ordered_again_while_it_brakes_for_another_motion_restarts() {
     let mut motion = Motion::in_gait("sway", 90);
     motion.head_for_pose(THERE);
     motion.run(2);
@@ -324,7 +324,7 @@ fn rest_ends_the_pulses_in_the_next_frame_of_every_gait() {
 }
 
 #[test]
-fn stop_and_rest_forget_what_was_to_come_next() {
+fn stop_and_rest_drop_the_next_motion() {
     for ask in [Motion::stop, Motion::rest] {
         let mut motion = Motion::in_gait("sway", 90);
         motion.head_for_pose(THERE);
@@ -337,7 +337,7 @@ fn stop_and_rest_forget_what_was_to_come_next() {
 }
 
 #[test]
-fn a_stopped_gait_begins_anew_at_its_first_pose() {
+fn a_stopped_gait_restarts_at_its_first_pose() {
     let mut motion = Motion::in_gait("sway", 90);
     motion.stop();
     motion.run(5);

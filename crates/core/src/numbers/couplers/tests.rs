@@ -4,6 +4,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::numbers::bars::SHORTEST_COUPLER;
+use crate::numbers::curve::ENTRIES;
 use crate::sample::Bars;
 use crate::sample::bounds::{self, KNOWN};
 

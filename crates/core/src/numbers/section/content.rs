@@ -1,4 +1,4 @@
-//! What a host puts into a section.
+//! The content of a section, and its bytes, made by a host.
 
 use std::string::String;
 use std::vec::Vec;
@@ -21,31 +21,31 @@ use crate::numbers::slider::Slider;
 use crate::numbers::supplies::Supplies;
 use crate::numbers::units::{Angle, Scale};
 
-/// Tells robots apart.
+/// The algorithm of the hash by which robots are told apart.
 static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
-/// A robot's numbers.
+/// The numbers of a robot, from which a section is made.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Content {
     /// At most [`LONGEST_NAME`] characters.
     pub name: String,
-    /// By which saved settings are known to be for these servos.
+    /// The hash by which saved settings are matched with servos.
     pub servo_hash: u32,
     /// Arduino numbers of the servos' pins, A1 to A4; 14 to 19 are A0 to A5.
     pub pins: [u8; 4],
-    /// That of the pin where the servos' rail is measured.
+    /// Arduino number of the pin where the servos' rail is measured.
     pub rail: Option<u8>,
     /// The servos' angles in the neutral pose.
     pub neutral: [Angle; 4],
     /// Their pulses and travel.
     pub calibration: [Calibration; 4],
-    /// What the gaits need of them.
+    /// The sweeps that the gaits need of them.
     pub reach: [Reach; 4],
-    /// The smallest margins.
+    /// The smallest margins that are allowed.
     pub limits: Limits,
-    /// How fast the servos may turn in a move.
+    /// The slew limit of a move.
     pub slew: Slew,
-    /// The supplies.
+    /// The supplies and their thresholds.
     pub supplies: Supplies,
     /// The bars of head and tail.
     pub ends: [Loop; 2],
@@ -72,7 +72,7 @@ pub struct Loop {
     pub cranks: [i16; 2],
     /// The left coupler and the right one.
     pub couplers: [i16; 2],
-    /// Whether the crank tips can part so far that the couplers are nearly stretched.
+    /// True if the crank tips can part so far that the couplers are nearly stretched.
     pub near_stretched: bool,
 }
 
@@ -87,7 +87,7 @@ pub struct Map {
 }
 
 impl Map {
-    /// As the guard reads it.
+    /// The map in the form that the guard reads.
     #[must_use]
     pub fn cells(&self) -> Cells<'_> {
         Cells::new(self.first, Flash::from(self.rows.as_slice()))
@@ -95,7 +95,7 @@ impl Map {
 }
 
 impl Loop {
-    /// The bars, and what follows from them.
+    /// The bars, and the factors that follow from them.
     #[must_use]
     pub fn bars(&self) -> Bars {
         let [left, right] = self.cranks;
@@ -115,8 +115,8 @@ impl Loop {
 }
 
 impl Content {
-    /// Bytes of the section, which may be more than fits a board; where chance wants it,
-    /// [`Content::section`] has one more.
+    /// Bytes of the section, which may be more than fits a board; [`Content::section`] sometimes
+    /// needs one more, see [`super::seal()`].
     #[must_use]
     pub fn length(&self) -> usize {
         let mut curves = Vec::new();
@@ -133,7 +133,7 @@ impl Content {
     /// The section. Its length may be more than fits a board: see [`super::SPACE`].
     ///
     /// # Panics
-    /// Where there are more gaits, waveforms or rows than a byte counts, or more bytes
+    /// If there are more gaits, waveforms or rows than a byte counts, or more bytes
     /// of all than two count.
     #[must_use]
     pub fn section(&self) -> Vec<u8> {

@@ -1,4 +1,4 @@
-//! What makes a section whole: its length and its checksum.
+//! Seals a section with its length and its checksum.
 //!
 //! Sixteen bits of a checksum miss one change in 65 536. A section that was written to some
 //! byte, with erased flash behind it, is a change that happens, and a section has
@@ -14,25 +14,24 @@ use crate::numbers::checksum::Checksum;
 /// A byte of erased flash.
 const ERASED: u8 = 0xff;
 
-/// Where the length is, and the checksum, which what it is of follows.
+/// The place of the length and that of the checksum, which covers all bytes behind it.
 const LENGTH: usize = offset_of!(Header, length);
 const CRC: usize = offset_of!(Header, crc);
 
-/// Puts the checksum of a section right, whatever its bytes are.
+/// Writes the right checksum into a section, whatever its bytes are.
 ///
 /// # Panics
-/// Where they are fewer than a header.
+/// If there are fewer bytes than a header has.
 pub fn seal(section: &mut [u8]) {
     let crc = Checksum::of(&section[CHECKED..]).0;
     section[CRC..CHECKED].copy_from_slice(&crc.to_le_bytes());
 }
 
-/// The section with its length and checksum: none of its beginnings with erased flash
-/// behind it has the same sum, and neither has another length that is one bit off. For that
-/// it may get a byte more.
+/// Adds length and checksum to a section, and a byte if that is needed so that a section
+/// that was cut short, or whose length has a flipped bit, never has the same checksum.
 ///
 /// # Panics
-/// Where it is longer than two bytes count.
+/// If the section is longer than 65 535 bytes.
 pub(super) fn sealed(mut section: Vec<u8>) -> Vec<u8> {
     loop {
         let length = u16::try_from(section.len()).expect("at most 65535");
@@ -59,8 +58,8 @@ fn sums(bytes: &[u8]) -> Vec<Checksum> {
     sums
 }
 
-/// Whether bytes that were written to some place, with erased flash behind them, have the
-/// sum of all of them. They may be all of them: the last ones may be erased flash's own.
+/// True if a proper beginning of the bytes, with erased flash behind it, has the sum of all
+/// of them. The last bytes may equal erased flash themselves.
 fn a_beginning_passes(bytes: &[u8], sums: &[Checksum]) -> bool {
     // What a beginning's sum would have to be, for the erased bytes behind it to make it that
     // of all.
@@ -87,8 +86,8 @@ const fn before(sum: Checksum, byte: u8) -> Checksum {
     Checksum((high as u16) << 8 | low)
 }
 
-/// Whether a length that is one bit off has the sum of this one, with erased flash behind
-/// the section. No board takes one of more than [`SPACE`].
+/// True if a length that is one bit off gives the same sum, with erased flash behind the
+/// section. No board accepts more than [`SPACE`] bytes.
 fn another_length_passes(length: u16, sums: &[Checksum]) -> bool {
     let own = sums[usize::from(length) - CHECKED];
     let is_one_off = |other: u16| (other ^ length).is_power_of_two();

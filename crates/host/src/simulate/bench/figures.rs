@@ -78,7 +78,7 @@ pub struct Figures {
 /// The function of the firmware that computes a frame: the control tick.
 const TICK: &str = "Control::frame";
 /// The guard's function in the ELF.
-const GUARD: &str = "guard::hazard";
+const GUARD: &str = "clearance::hazard";
 /// The functions of all other steps of main.
 const STEPS: [&str; 3] = [
     "Console::write_line",

@@ -61,14 +61,8 @@ fn what_is_no_angle_is_not_taken_for_one() {
             "{word}"
         );
     }
-    for line in [
-        "pose",
-        "pose 1",
-        "pose 1 2 3",
-        "pose 1 2 3 4 5",
-        "pose 1 2 3 4 x",
-        "pose 1 999 3 4 5",
-    ] {
+    let lines = "pose|pose 1|pose 1 2 3|pose 1 2 3 4 5|pose 1 2 3 4 x|pose 1 999 3 4 5";
+    for line in lines.split('|') {
         assert_eq!(read(line), Err(Misread::Wants(Text::PoseWants)), "{line}");
     }
 }

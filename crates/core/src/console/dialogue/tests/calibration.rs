@@ -1,4 +1,4 @@
-//! What is set of the servos, kept, and taken back.
+//! Settings of the servos: set, saved, and restored.
 
 use super::*;
 use crate::memory::copies::COPIES;
@@ -26,7 +26,7 @@ fn cal_prints_all_that_is_set_and_nothing_that_varies() {
         "boot sway left",
         "deadman 1500",
     ] {
-        assert_eq!(dialogue.say(line), format!("ok {line}"));
+        dialogue.accept(line);
     }
     let set = cal(&mut dialogue);
     assert!(
@@ -43,7 +43,7 @@ fn cal_prints_all_that_is_set_and_nothing_that_varies() {
     dialogue.say("sway");
     dialogue.run(77);
     assert_eq!(cal(&mut dialogue), set);
-    assert_eq!(dialogue.say("factory"), "ok factory");
+    dialogue.accept("factory");
     assert_eq!(cal(&mut dialogue), untouched);
 }
 
@@ -51,7 +51,7 @@ fn cal_prints_all_that_is_set_and_nothing_that_varies() {
 fn what_is_saved_is_there_after_power_on_and_what_is_not_is_not() {
     let mut dialogue = standing();
     dialogue.say("trim 2 4");
-    assert_eq!(dialogue.say("save"), "ok save");
+    dialogue.accept("save");
     let saved = cal(&mut dialogue);
     dialogue.say("trim 2 5");
     assert_ne!(cal(&mut dialogue), saved);
@@ -63,23 +63,17 @@ fn what_is_saved_is_there_after_power_on_and_what_is_not_is_not() {
     assert_eq!(again.lines().len(), 1, "the banner alone");
     assert_eq!(cal(&mut again), saved);
     // And without power going off.
-    assert_eq!(dialogue.say("load"), "ok load");
+    dialogue.accept("load");
     assert_eq!(cal(&mut dialogue), saved);
 }
 
 #[test]
 fn there_is_nothing_to_load_before_the_first_save_and_a_worn_memory_is_told() {
     let mut dialogue = standing();
-    assert_eq!(
-        dialogue.say("load"),
-        "err 9 nothing is saved that could be loaded"
-    );
+    dialogue.refuse("load", "9 nothing is saved that could be loaded");
     dialogue.board.memory.worn = true;
-    assert_eq!(
-        dialogue.say("save"),
-        "err 9 the memory does not keep what is written"
-    );
-    assert_eq!(dialogue.say("stand"), "ok stand");
+    dialogue.refuse("save", "9 the memory does not keep what is written");
+    dialogue.accept("stand");
 }
 
 #[test]
@@ -106,7 +100,7 @@ fn a_calibration_takes_effect_at_once_within_the_slew_limit_and_without_moving_t
         dialogue.say("pose 145 50 311 224.5");
         dialogue.run(150);
         let before = widths(&mut dialogue);
-        assert_eq!(dialogue.say(change), format!("ok {change}"));
+        dialogue.accept(change);
         let motion = dialogue.motion();
         let wanted = motion
             .pose()
@@ -169,11 +163,8 @@ fn a_calibration_that_gaits_or_the_pose_cannot_bear_is_refused_and_changes_nothi
     assert_eq!(cal(&mut dialogue), before);
     dialogue.say("stand");
     dialogue.run(150);
-    assert_eq!(dialogue.say("limit 1 61.37 149"), "ok limit 1 61.37 149");
-    assert_eq!(
-        dialogue.say("pose 150 47.91 309.64 226.18"),
-        "err 3 A1 reaches 61.37..149.00"
-    );
+    dialogue.accept("limit 1 61.37 149");
+    dialogue.refuse("pose 150 47.91 309.64 226.18", "3 A1 reaches 61.37..149.00");
 }
 
 #[test]
@@ -185,49 +176,38 @@ fn a_factory_or_a_load_that_is_refused_changes_nothing() {
         "save",
         "limit 1 61.37 215.36",
     ] {
-        assert_eq!(dialogue.say(line), format!("ok {line}"));
+        dialogue.accept(line);
     }
     dialogue.say("pose 155 47.91 309.64 226.18");
     dialogue.run(150);
     let before = cal(&mut dialogue);
-    assert!(
-        dialogue
-            .say("load")
-            .starts_with("err 3 A1 would not reach where it is")
-    );
+    dialogue.refuse("load", "3 A1 would not reach where it is");
     assert_eq!(cal(&mut dialogue), before);
     let mut other = standing();
     other.say("trim 3 4");
     let before = cal(&mut other);
     other.board.memory.bytes_mut()[0] = 0;
-    assert_eq!(
-        other.say("load"),
-        "err 9 nothing is saved that could be loaded"
-    );
+    other.refuse("load", "9 nothing is saved that could be loaded");
     assert_eq!(cal(&mut other), before);
     // Saved for other servos: not loaded, and what is set stays.
     let mut chip = standing();
     chip.say("save");
     other.board.memory = chip.board.memory.clone();
     other.board.memory.bytes_mut()[44] ^= 1;
-    assert!(other.say("load").starts_with("err 9 "));
+    other.refuse("load", "9 ");
     assert_eq!(cal(&mut other), before);
     // A trim moves the travel: this pose is within it, but not within robot.toml's.
     let narrow = Sweep(2200);
     let robot = Sample::odd().with(|content| content.calibration[0].max = narrow);
     let mut narrow = awake(robot);
-    assert_eq!(narrow.say("trim 1 -5"), "ok trim 1 -5");
-    assert_eq!(narrow.say("limit 1 67 149"), "ok limit 1 67 149");
+    narrow.accept("trim 1 -5");
+    narrow.accept("limit 1 67 149");
     narrow.run(100);
     let pose = "pose 146 47.91 309.64 226.18";
-    assert_eq!(narrow.say(pose), format!("ok {pose}"));
+    narrow.accept(pose);
     narrow.run(150);
     let before = cal(&mut narrow);
-    assert!(
-        narrow
-            .say("factory")
-            .starts_with("err 3 A1 would not reach where it is")
-    );
+    narrow.refuse("factory", "3 A1 would not reach where it is");
     assert_eq!(cal(&mut narrow), before);
 }
 
@@ -259,8 +239,8 @@ fn center_goes_to_the_neutral_pulses_of_robot_toml_whatever_the_trims() {
         dialogue.say(line);
     }
     dialogue.run(100);
-    assert!(dialogue.say("center 1").starts_with("err 2 "));
-    assert_eq!(dialogue.say("center"), "ok center");
+    dialogue.refuse("center 1", "2 ");
+    dialogue.accept("center");
     dialogue.run(200);
     let neutral = Sample::odd().calibration().map(|servo| servo.neutral.0);
     for (width, neutral) in widths(&mut dialogue).into_iter().zip(neutral) {
@@ -287,7 +267,7 @@ fn a_boot_gait_is_the_one_that_was_named_however_alike_the_names_are() {
             dialogue.say(&format!("boot {name}")),
             format!("ok boot {name}")
         );
-        assert_eq!(dialogue.say("save"), "ok save");
+        dialogue.accept("save");
         let memory = dialogue.board.memory.clone();
         let mut again = Dialogue::with(*robot(), memory, Restart::NONE);
         again.run(151);
@@ -313,10 +293,7 @@ fn a_travel_may_not_end_before_a_pose_that_is_to_come_next() {
     dialogue.say("sway left");
     dialogue.run(150);
     // Far outside of all gaits. The gait brakes first, so the pose is only to come.
-    assert_eq!(
-        dialogue.say("pose 152 50 311 224.5"),
-        "ok pose 152 50 311 224.5"
-    );
+    dialogue.accept("pose 152 50 311 224.5");
     dialogue.run(2);
     let refused = dialogue.say("limit 1 115 150");
     assert!(
@@ -327,7 +304,7 @@ fn a_travel_may_not_end_before_a_pose_that_is_to_come_next() {
     assert_eq!(dialogue.status("pose"), "152.00,50.00,311.00,224.50");
     dialogue.say("stand");
     dialogue.run(200);
-    assert_eq!(dialogue.say("limit 1 115 150"), "ok limit 1 115 150");
+    dialogue.accept("limit 1 115 150");
 }
 
 #[test]

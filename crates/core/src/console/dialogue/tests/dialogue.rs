@@ -1,4 +1,4 @@
-//! A robot with somebody at the other end of its line.
+//! A robot and the user at the other end of its line.
 
 use std::collections::HashMap;
 use std::string::{String, ToString};

@@ -1,13 +1,13 @@
-//! What stops the robot, and where it begins.
+//! Faults stop the robot; after a reset it starts in the right state.
 
 use super::*;
 
 #[test]
-fn boot_does_what_it_says_three_seconds_after_power_on_unless_a_byte_comes() {
+fn boot_is_carried_out_three_seconds_after_power_on_unless_a_byte_comes() {
     let mut dialogue = standing();
     for boot in ["sway left", "rest"] {
         dialogue.say(&format!("boot {boot}"));
-        assert_eq!(dialogue.say("save"), "ok save");
+        dialogue.accept("save");
         let chip = dialogue.board.memory.clone();
         let mut alone = Dialogue::with(*Sample::odd(), chip.clone(), Restart::default());
         let said = alone.run(149);
@@ -64,14 +64,14 @@ fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses_and_nothin
     );
     let half = f64::from(pace(&mut dialogue)) / f64::from(full);
     assert!((half - 0.5).abs() < 0.02, "{half}");
-    assert_eq!(dialogue.say("save"), "err 8 the supply is too low");
+    dialogue.refuse("save", "8 the supply is too low");
     supply(&mut dialogue, 4_200);
     let said = dialogue.run(40);
     assert_eq!(said.len(), 2);
     assert_eq!(dialogue.status("gait"), "stop");
     assert_eq!(dialogue.status("fault"), "supply");
-    assert!(dialogue.say("sway").starts_with("err 8 "));
-    assert!(dialogue.say(NEUTRAL).starts_with("err 8 "));
+    dialogue.refuse("sway", "8 ");
+    dialogue.refuse(NEUTRAL, "8 ");
     supply(&mut dialogue, 4_000);
     dialogue.run(40);
     assert_eq!(dialogue.status("gait"), "rest");
@@ -83,7 +83,7 @@ fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses_and_nothin
         "{said:?}"
     );
     assert_eq!(dialogue.status("gait"), "rest");
-    assert_eq!(dialogue.say("stand"), "ok stand");
+    dialogue.accept("stand");
 }
 
 /// Servos that were held in a pose, with the pulses of robot.toml.
@@ -151,7 +151,7 @@ fn a_pose_that_is_not_safe_or_not_reached_is_not_taken_over_and_the_robot_rests(
 fn a_pose_beyond_a_travel_that_was_saved_narrower_is_not_taken_over() {
     let mut dialogue = standing();
     assert!(dialogue.say("limit 1 115 160").starts_with("ok "));
-    assert_eq!(dialogue.say("save"), "ok save");
+    dialogue.accept("save");
     let chip = dialogue.board.memory.clone();
     // 132.37 deg and 30 more is safe, and beyond 160.
     let beyond = held([5461, 0, 0, 0]);
@@ -271,7 +271,7 @@ fn the_pose_of_a_rest_that_a_reset_cut_off_reaches_the_memory_after_it() {
 }
 
 #[test]
-fn brown_outs_or_presses_in_a_row_end_in_a_rest_that_says_why_until_somebody_orders_a_motion() {
+fn brown_outs_or_presses_in_a_row_end_in_a_rest_that_says_why_until_a_motion_is_ordered() {
     // A boot loader hides which of the two it was.
     for (boot_loader, cause) in [
         (false, Cause::BrownOut),
@@ -293,17 +293,21 @@ fn brown_outs_or_presses_in_a_row_end_in_a_rest_that_says_why_until_somebody_ord
         dialogue.run(300);
         assert_eq!(dialogue.frame(), Pulses::default(), "boot is called off");
         assert_eq!(dialogue.status("fault"), "brownout");
-        assert!(dialogue.say("sway").starts_with("err 7 "));
-        assert_eq!(dialogue.say("stand"), "ok stand");
+        dialogue.refuse("sway", "7 ");
+        dialogue.accept("stand");
         dialogue.run(30);
         dialogue.reset(Cause::BrownOut);
         dialogue.run(30);
-        assert_ne!(dialogue.frame(), Pulses::default(), "the count began anew");
+        assert_ne!(
+            dialogue.frame(),
+            Pulses::default(),
+            "the count restarted at zero"
+        );
     }
 }
 
 #[test]
-fn who_opens_the_port_again_and_again_and_says_something_is_no_weak_supply() {
+fn opening_the_port_many_times_and_sending_a_line_does_not_count_as_a_weak_supply() {
     let mut dialogue = standing();
     dialogue.board.boot_loader = true;
     for _ in 0..20 {

@@ -1,4 +1,4 @@
-//! What is written into the EEPROM, when, and what a rest leaves there.
+//! EEPROM writes: their content, their timing, and the record of a rest.
 
 use super::*;
 
@@ -25,10 +25,10 @@ fn nothing_is_written_before_the_supply_has_been_measured_or_while_it_is_low() {
     supply(&mut again, 4_400);
     again.run(30);
     let writes = again.board.memory.log.len();
-    assert_eq!(again.say("stand"), "ok stand");
+    again.accept("stand");
     again.run(50);
     assert_eq!(again.board.memory.log.len(), writes, "a byte at 4.4 V");
-    assert_eq!(again.say("save"), "err 8 the supply is too low");
+    again.refuse("save", "8 the supply is too low");
     supply(&mut again, 5_000);
     again.run(80);
     assert_eq!(again.board.memory.bytes()[128], 0xff, "forgotten later");
@@ -38,7 +38,7 @@ fn nothing_is_written_before_the_supply_has_been_measured_or_while_it_is_low() {
 fn a_save_that_meets_a_low_supply_is_refused_and_the_settings_before_stay() {
     let mut dialogue = standing();
     dialogue.say("deadman 1000");
-    assert_eq!(dialogue.say("save"), "ok save");
+    dialogue.accept("save");
     dialogue.say("deadman 2000");
     dialogue.board.memory.slowness = 1;
     dialogue.board.send(b"save\r");
@@ -70,7 +70,7 @@ fn rest_sent_again_and_again_writes_nothing_and_a_worn_cell_is_told() {
     dialogue.run(2);
     let writes = dialogue.board.memory.log.len();
     for _ in 0..50 {
-        assert_eq!(dialogue.say("rest"), "ok rest");
+        dialogue.accept("rest");
         dialogue.run(2);
     }
     assert_eq!(dialogue.board.memory.log.len(), writes);

@@ -1,4 +1,4 @@
-//! What `status` and `watch` tell.
+//! The output of `status` and `watch`.
 
 use super::*;
 
@@ -60,7 +60,7 @@ fn the_longest_status_that_there_can_be_fits_a_line() {
     let mut dialogue = awake(robot);
     dialogue.board.late = u16::MAX;
     dialogue.board.lose(u16::MAX);
-    assert_eq!(dialogue.say(name), format!("ok {name}"));
+    dialogue.accept(name);
     let line = dialogue.say("status");
     // Each number as long as it gets.
     let values = pairs(line.strip_prefix("ok ").expect("a status"));

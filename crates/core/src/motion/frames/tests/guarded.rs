@@ -1,4 +1,4 @@
-//! What the guard does in a motion.
+//! The guard's effect on a motion.
 
 use super::*;
 
