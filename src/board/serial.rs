@@ -6,11 +6,12 @@
 //! the other out. The handlers are short, because the servos' edges may have to wait for
 //! one of them.
 
+use core::convert::Infallible;
 
 use avr_device::atmega328p::USART0;
 use avr_device::atmega328p::usart0::RegisterBlock;
 use lizard_core::console::line::GARBLED;
-use lizard_core::console::output::Output;
+use ufmt::uWrite;
 
 use servo_pulses::cells::{Byte, Counter};
 
@@ -135,10 +136,20 @@ pub fn lost() -> u16 {
 /// until the line has taken another, 1389 cycles at most.
 pub struct Writer;
 
-impl Output for Writer {
+impl uWrite for Writer {
+    type Error = Infallible;
+
+    fn write_str(&mut self, text: &str) -> Result<(), Infallible> {
+        text.bytes().for_each(send);
+        Ok(())
+    }
+
+    // The robot prints ASCII. Encoding other characters, as the trait does, would take as
+    // long as all else that a character needs.
     #[inline(always)]
-    fn byte(&mut self, byte: u8) {
-        send(byte);
+    fn write_char(&mut self, character: char) -> Result<(), Infallible> {
+        send(character as u8);
+        Ok(())
     }
 }
 

@@ -1,4 +1,8 @@
-//! The place that text is written to.
+//! The place that text is written to: any writer of `ufmt` that cannot fail.
+
+use core::convert::Infallible;
+
+use ufmt::uWrite;
 
 /// A serial line, or a string on a host. Writing cannot fail: a serial line waits.
 pub trait Output {
@@ -6,9 +10,9 @@ pub trait Output {
     fn byte(&mut self, byte: u8);
 }
 
-#[cfg(any(test, feature = "host"))]
-impl Output for std::string::String {
+impl<W: uWrite<Error = Infallible>> Output for W {
+    #[inline(always)]
     fn byte(&mut self, byte: u8) {
-        self.push(char::from(byte));
+        let Ok(()) = self.write_char(char::from(byte));
     }
 }

@@ -1,9 +1,10 @@
 //! The transmitter: the robot's output, and a line that takes its time.
 
+use core::convert::Infallible;
 use core::hash::{Hash, Hasher};
 use std::string::String;
 
-use crate::console::output::Output;
+use ufmt::uWrite;
 
 /// CPU cycles of a millisecond.
 const MS: u64 = 16_000;
@@ -97,9 +98,12 @@ impl Transmitter {
     }
 }
 
-impl Output for Transmitter {
-    fn byte(&mut self, byte: u8) {
-        self.text.byte(byte);
-        self.free = self.free.max(self.now) + self.per_byte;
+impl uWrite for Transmitter {
+    type Error = Infallible;
+
+    fn write_str(&mut self, text: &str) -> Result<(), Infallible> {
+        self.text.push_str(text);
+        self.free = self.free.max(self.now) + self.per_byte * text.len() as u64;
+        Ok(())
     }
 }
