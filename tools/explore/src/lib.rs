@@ -3,7 +3,7 @@
 //!
 //! It does not explore a model of the firmware, but the firmware's own core, [`Main`], on
 //! the board without a chip, [`VirtualBoard`]. A [`World`] contains both and what an
-//! observer remembers ([`Seen`]). An [`Action`] is what may happen to it. [`search()`]
+//! [`Observer`](lizard_rules::Observer) remembers. An [`Action`] is what may happen to it. [`search()`]
 //! goes from all beginnings through all actions, breadth first, so the first sequence
 //! found that breaks a rule is a shortest one.
 //!
@@ -14,11 +14,9 @@ pub mod action;
 pub mod beginnings;
 pub mod fingerprint;
 pub mod search;
-pub mod seen;
 pub mod small;
 pub mod world;
 
 pub use action::Action;
 pub use search::search;
-pub use seen::Seen;
 pub use world::World;

@@ -1,5 +1,5 @@
 //! Waits with a time limit. A test that waits for another program, a port or a thread
-//! would wait for ever if that never comes, and the whole run with it. Here every wait
+//! would never end if that never comes, and the whole run with it. Here every wait
 //! has a limit, after which the test fails and says what it has waited for.
 //!
 //! The limit does not measure speed: a machine may be busy, and only a test that hangs
@@ -20,7 +20,7 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// How often a condition is checked.
+/// The period at which a condition is checked.
 const LOOK: Duration = Duration::from_millis(1);
 
 /// The limit of all tests: much longer than anything takes on a busy machine.
@@ -67,7 +67,7 @@ impl TimeLimit {
         assert!(self.comes(condition), "waited {self} for {what}");
     }
 
-    /// What `work` returns, which may block: a read, a join. It runs on a thread of its
+    /// Returns the result of `work`, which may block: a read, a join. It runs on a thread of its
     /// own, which continues until the test program ends if the limit comes first.
     ///
     /// # Panics
@@ -93,7 +93,7 @@ impl TimeLimit {
         }
     }
 
-    /// How a program ends. Its output, if it is piped, must be read elsewhere.
+    /// Waits for the end of a program. Its output, if it is piped, must be read elsewhere.
     ///
     /// # Errors
     /// Those of the system; [`ErrorKind::TimedOut`] with a sentence if it does not end
