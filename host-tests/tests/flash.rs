@@ -38,7 +38,7 @@ fn make_flash_writes_the_image_and_the_robot_walks() {
 
     let elf = FirmwareBench::elf();
     let truth = Uno::load(&elf, Fidelity::DataSheet).expect("the image loads");
-    desk.assert_written(&truth.flash());
+    desk.assert_written(truth.flash());
 
     // All four servos awake, then two steps.
     shell.say("stand");

@@ -100,7 +100,8 @@ impl Board {
             b'\r' | b'\n' => {
                 let line = std::mem::take(&mut self.line);
                 let overlong = std::mem::take(&mut self.is_overlong);
-                let text = String::from_utf8_lossy(&line).into_owned();
+                let text = String::from_utf8_lossy(&line).to_ascii_lowercase();
+                let text = text.trim().replace('\t', " ");
                 if overlong || !line.trim_ascii().is_empty() {
                     self.observe(Event::Line);
                     ended = Some(if overlong { String::new() } else { text });

@@ -38,6 +38,10 @@ impl Observer {
         if WRONG.contains(&line) {
             self.fail(Rule::Wrong, format!("{line}: {text}"));
         }
+        // Another time may have been saved.
+        if matches!(text, "ok load" | "ok factory") {
+            self.deadman = 0;
+        }
         if let Some(ms) = text.strip_prefix("ok deadman ") {
             self.deadman = ms.parse().unwrap_or(0) * MS;
         }

@@ -52,7 +52,9 @@ impl Reports {
 impl Observer {
     /// A line of the robot.
     pub(crate) fn said(&mut self, since: Time, line: &str) {
-        if is_final(line) {
+        // A reset may have cut a line off.
+        let is_whole = since >= self.start;
+        if is_whole && is_final(line) {
             self.lines -= 1;
             if self.lines < 0 {
                 self.fail(Rule::OneAnswer, format!("unasked: {line}"));
