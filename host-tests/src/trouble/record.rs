@@ -1,5 +1,5 @@
-//! What was seen of a scenario, from the outside: pulses, lines, the LED, resets, what
-//! was written; and what was done to the board.
+//! A record of a scenario, seen from the outside: pulses, lines, the LED, resets, writes to
+//! the EEPROM; and the troubles that the board was given.
 
 use lizard_core::word::Effect;
 use lizard_host::sim::lines::Line;

@@ -1,4 +1,4 @@
-//! What is answered is done.
+//! Answers, and the promises that they make.
 
 use lizard_core::word::Effect;
 

@@ -1,4 +1,4 @@
-//! What stops the robot is reported: by `status` and on the console.
+//! Reports of a stop: by `status` and on the console.
 
 use lizard_core::restart::Cause;
 use lizard_core::virtual_board::is_final;
@@ -52,9 +52,8 @@ impl Reports {
 impl Observer {
     /// A line of the robot.
     pub(crate) fn said(&mut self, since: Time, line: &str) {
-        // A reset may have cut a line off.
-        let is_whole = since >= self.start;
-        if is_whole && is_final(line) {
+        // After a reset the banner follows the part of a line that was cut off.
+        if is_final(line) && !line.contains("# lizard ") {
             self.lines -= 1;
             if self.lines < 0 {
                 self.fail(Rule::OneAnswer, format!("unasked: {line}"));

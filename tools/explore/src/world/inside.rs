@@ -22,7 +22,7 @@ const LONG: u32 = 160;
 /// Time in which the supply is measured and believed.
 const BELIEVED: Time = 14 * FRAME;
 
-/// What the observer has to know of a robot.
+/// The observer's limits for a robot.
 pub(super) fn limits(robot: &Robot) -> Limits {
     let board = robot.supplies().board;
     Limits {
