@@ -1,4 +1,4 @@
-//! How long tests with random inputs go on: short at a desk, long in continuous integration.
+//! The duration of tests with random inputs: short at a desk, long in continuous integration.
 
 use std::num::NonZeroU64;
 

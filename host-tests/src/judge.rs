@@ -50,7 +50,7 @@ impl fmt::Display for PinPulse {
 pub struct Account {
     /// The finished pulses of all pins, in the order of their ends.
     pub pulses: Vec<PinPulse>,
-    /// What the UNO has sent, each byte with the cycle at which its stop bit ends.
+    /// The bytes that the UNO sent, each with the cycle at which its stop bit ends.
     pub sent: Vec<SerialByte>,
     /// The cycle at which the run has ended.
     pub end: u64,
@@ -85,7 +85,7 @@ impl Account {
 /// avr8js's account of a run, and what it cost.
 #[derive(Debug, Clone, Default)]
 pub struct Verdict {
-    /// What the firmware did.
+    /// The firmware's account of the run.
     pub account: Account,
     /// The 1024 bytes of EEPROM at the end.
     pub eeprom: Vec<u8>,
@@ -134,7 +134,7 @@ pub fn judge(
 /// corrected.
 ///
 /// # Errors
-/// What is missing, or the tests that fail.
+/// A missing program, or the tests that fail.
 pub fn own_tests() -> Result<String, String> {
     let folder = judge_folder().join("test");
     let files = std::fs::read_dir(&folder).map_err(|error| error.to_string())?;
@@ -157,7 +157,7 @@ fn node() -> Result<Command, String> {
     Ok(Command::new("node"))
 }
 
-/// What a program prints when it is given `input`.
+/// Runs a program on `input` and returns its output.
 fn done(command: &mut Command, debian: &str, input: &str) -> Result<String, String> {
     let program = command.get_program().to_string_lossy().into_owned();
     let output = LIMIT.output(command, input.as_bytes());
@@ -205,12 +205,12 @@ fn read(said: &str) -> Option<Verdict> {
     (verdict.eeprom.len() == 1024).then_some(verdict)
 }
 
-/// What two simulators agree about.
+/// The comparison of two simulators.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Agreement {
     /// Pulses or bytes.
     pub what: &'static str,
-    /// How many.
+    /// The number of them.
     pub count: usize,
     /// Cycles by which avr8js's all come later.
     pub offset: i64,

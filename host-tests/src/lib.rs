@@ -1,4 +1,4 @@
-//! What the tests share: the robots that they run over, a bench with the running
+//! Shared parts of the tests: the robots that they run over, a bench with the running
 //! firmware on it, and little AVR programs to test the bench itself.
 
 pub mod avr_gcc;

@@ -91,7 +91,7 @@ pub fn robots() -> &'static [Named] {
     &ROBOTS
 }
 
-/// What random numbers begin from: `PROPTEST_RNG_SEED`, or 1.
+/// The seed of random numbers: `PROPTEST_RNG_SEED`, or 1.
 ///
 /// # Panics
 /// If that is no whole number.

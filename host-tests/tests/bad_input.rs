@@ -15,7 +15,7 @@ use lizard_host_tests::{robot, times};
 #[path = "firmware/lines.rs"]
 mod lines;
 
-/// How many of each.
+/// The number of bytes, of lines, and of a thousand memories each.
 const COUNT: u64 = 2_000_000;
 
 /// Parts that run at once.

@@ -16,7 +16,7 @@ use lizard_host::sim::supplies;
 use lizard_host_tests::{FirmwareBench, robot, root};
 use simulated_uno::{Fidelity, Image, State, Uno};
 
-/// What is to be done where it is not.
+/// The advice if the file is out of date.
 const RENEW: &str =
     "firmware/code.hex is not what the source builds: run `make code-image` and commit it";
 

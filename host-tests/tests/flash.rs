@@ -7,7 +7,7 @@
 mod desk;
 mod shell;
 
-use desk::{BOOT, Desk, boot_loader};
+use desk::{BOOT, Desk};
 use lizard_host::sim::frame::{frames, servo_pins};
 use lizard_host_tests::{FRAME, FirmwareBench, Frame, robot};
 use lizard_time_limit::LIMIT;
@@ -38,18 +38,7 @@ fn make_flash_writes_the_image_and_the_robot_walks() {
 
     let elf = FirmwareBench::elf();
     let truth = Uno::load(&elf, Fidelity::DataSheet).expect("the image loads");
-    let wrong: Vec<usize> = (0..BOOT)
-        .filter(|&at| desk.uno.flash()[at] != truth.flash()[at])
-        .collect();
-    assert!(
-        wrong.is_empty(),
-        "flash differs from the image at {wrong:x?}"
-    );
-    let new = Uno::with_boot_loader(boot_loader(), Fidelity::DataSheet);
-    assert!(
-        desk.uno.flash()[BOOT..] == new.flash()[BOOT..],
-        "the boot loader is whole"
-    );
+    desk.assert_written(truth.flash());
 
     // All four servos awake, then two steps.
     shell.say("stand");
@@ -149,9 +138,7 @@ fn a_board_that_never_answers_ends_the_upload_with_an_explanation() {
     // A boot loader that does nothing: `rjmp .-2`.
     desk.uno.set_flash(BOOT as u16, &[0xff, 0xcf]);
     let shell = make_flash(&desk);
-    let ended = desk.until(|_| shell.has_ended());
-    let screen = shell.screen();
-    assert!(ended, "waited {LIMIT} for the end of the upload:\n{screen}");
+    let screen = desk.end(&shell);
     assert!(screen.contains("the board does not answer"), "{screen}");
     assert!(desk.uno.flash()[..BOOT].iter().all(|&byte| byte == 0xff));
 }

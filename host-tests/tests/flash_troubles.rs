@@ -11,8 +11,8 @@ use lizard_time_limit::LIMIT;
 use simulated_uno::Port;
 use tempfile::TempDir;
 
-/// What `scripts/flash --check` says of serial ports in this folder, and whether
-/// it goes on. `port`: what RAVEDUDE_PORT names.
+/// Runs `scripts/flash --check` on the serial ports of a folder. Returns its output, and
+/// true if it goes on. `port` is the value of RAVEDUDE_PORT.
 fn check_as(user: &[&str], ports: &Path, port: Option<&Path>) -> (String, bool) {
     let scripts = scripts();
     let script = scripts.path().join("scripts/flash");
@@ -32,7 +32,7 @@ fn check(ports: &Path) -> (String, bool) {
     check_as(&[], ports, None)
 }
 
-/// Whether another user can be played.
+/// True if the tests may run programs as another user.
 fn is_root() -> bool {
     rustix::process::geteuid().is_root()
 }

@@ -24,7 +24,7 @@ fn gaits() -> Vec<String> {
     names.map(|name| name.replace('-', " ")).collect()
 }
 
-/// How far apart in time two consoles may be, which say the same.
+/// The tolerance in time between two consoles with the same output.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Apart {
     /// By two cycles: two interrupts may hold up main before a byte, and where each comes

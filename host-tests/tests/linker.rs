@@ -74,7 +74,7 @@ fn far_calls(more: &str) -> String {
     )
 }
 
-/// What [`far_calls`] computes.
+/// The result of [`far_calls`].
 fn far_sum() -> u16 {
     fn f(index: u16, a: u16) -> u16 {
         let a = a.wrapping_mul(33).wrapping_add(index);

@@ -19,7 +19,7 @@ fn refusal(image: &Image) -> StackError {
     StackDepth::of(image).expect_err("it must be refused")
 }
 
-/// How deep the stack gets in a hundredth of a second.
+/// The depth of the stack in a hundredth of a second.
 fn measured(image: &Image) -> u16 {
     let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
     uno.run_ms(10);

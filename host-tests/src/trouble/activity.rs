@@ -1,11 +1,11 @@
-//! What a robot does when trouble comes.
+//! The robot's activity when trouble comes.
 
 use std::fmt;
 
-/// What the robot does when trouble begins.
+/// The robot's activity when trouble begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Activity {
-    /// It rests, or has just been told to.
+    /// It rests, or has just received `rest`.
     Resting,
     /// Its servos wake after a rest.
     Waking,
@@ -39,15 +39,6 @@ impl Activity {
 
 impl fmt::Display for Activity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::Resting => "resting",
-            Self::Waking => "waking",
-            Self::Holding => "holding",
-            Self::Moving => "moving",
-            Self::Cycling => "cycling",
-            Self::Saving => "saving",
-            Self::Starting => "just started",
-            Self::Talking => "talking",
-        })
+        f.pad(&format!("{self:?}").to_lowercase())
     }
 }

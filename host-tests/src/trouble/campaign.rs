@@ -7,38 +7,39 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
 
 use lizard_robot::Robot;
+use lizard_rules::{Broken, Rule};
 use simulated_uno::Image;
 
 use super::activity::Activity;
-use super::invariants::{INVARIANTS, Rules};
+use super::judge::broken;
 use super::scenario::Scenario;
 use super::stage::play;
 
-/// A scenario that broke an invariant.
+/// A scenario that broke a rule.
 #[derive(Debug, Clone)]
 pub struct Failure {
     /// The scenario.
     pub scenario: Scenario,
-    /// The sentences that do not hold, with what was seen.
-    pub broken: Vec<(&'static str, String)>,
+    /// The broken rules.
+    pub broken: Vec<Broken>,
 }
 
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.scenario)?;
-        for (sentence, seen) in &self.broken {
-            writeln!(f, "  does not hold: {sentence}\n    {seen}")?;
+        for Broken { rule, seen } in &self.broken {
+            writeln!(f, "  does not hold: {}\n    {seen}", rule.sentence())?;
         }
         Ok(())
     }
 }
 
-/// What came of many scenarios.
+/// The results of many scenarios.
 #[derive(Debug, Default)]
 pub struct Summary {
-    /// How many scenarios of each activity were played, and how many failed.
+    /// The numbers of scenarios that were played and that failed, by activity.
     pub activities: BTreeMap<Activity, (u64, u64)>,
-    /// What failed, in order of number.
+    /// Failed scenarios, in order of number.
     pub failures: Vec<Failure>,
     /// Simulated cycles.
     pub cycles: u64,
@@ -49,14 +50,15 @@ impl fmt::Display for Summary {
         for (activity, (played, failed)) in &self.activities {
             writeln!(f, "{activity:14} {played:6} scenarios, {failed} failed")?;
         }
-        for (sentence, _) in INVARIANTS {
-            let broken = |failure: &&Failure| failure.broken.iter().any(|(s, _)| *s == sentence);
+        for rule in Rule::ALL {
+            let broken = |failure: &&Failure| failure.broken.iter().any(|one| one.rule == *rule);
             let failures: Vec<&Failure> = self.failures.iter().filter(broken).collect();
             if let Some(first) = failures.first() {
                 let (count, number) = (failures.len(), first.scenario.number);
                 writeln!(
                     f,
-                    "{count:6} times not so: {sentence} (first in scenario {number})"
+                    "{count:6} times not so: {} (first in scenario {number})",
+                    rule.sentence()
                 )?;
             }
         }
@@ -68,13 +70,7 @@ impl fmt::Display for Summary {
 #[must_use]
 pub fn judge(image: &Image, robot: &Robot, scenario: &Scenario) -> (u64, Option<Failure>) {
     let record = play(image, robot, scenario);
-    let rules = Rules::of(robot, scenario);
-    let mut broken = Vec::new();
-    for (sentence, holds) in INVARIANTS {
-        if let Err(seen) = holds(&record, &rules) {
-            broken.push((sentence, seen));
-        }
-    }
+    let broken = broken(&record, robot, scenario);
     let failure = (!broken.is_empty()).then(|| Failure {
         scenario: scenario.clone(),
         broken,
@@ -82,8 +78,8 @@ pub fn judge(image: &Image, robot: &Robot, scenario: &Scenario) -> (u64, Option<
     (record.end, failure)
 }
 
-/// Plays the scenarios `0..count` of a seed on `threads` threads; `progress` hears the
-/// number of each that is done.
+/// Plays the scenarios `0..count` of a seed on `threads` threads; `progress` gets the
+/// number of scenarios done, and the failure of the last.
 pub fn campaign(
     image: &Image,
     robot: &Robot,

@@ -1,15 +1,14 @@
-//! Trouble at random moments: scenarios on the simulated UNO, and what must hold in all
-//! of them.
+//! Trouble at random moments: scenarios on the simulated UNO, judged by the rules of safety.
 //!
 //! Tests of single features miss faults where two features interact. So main stalls for 1
 //! to 300 ms at random cycles of everything that the robot does; resets, power cuts and
 //! dips of the supply come between. Only what can be seen from outside is judged: pulses,
-//! lines, the LED, what is written to the EEPROM. A scenario follows from its seed and
+//! lines, the LED, writes to the EEPROM. A scenario follows from its seed and
 //! number alone, so one that fails can be played again.
 
 mod activity;
 pub mod campaign;
-pub mod invariants;
+mod judge;
 pub mod record;
 pub mod scenario;
 mod setup;
@@ -18,5 +17,6 @@ pub mod step;
 
 pub use activity::Activity;
 pub use campaign::{Failure, Summary, campaign, judge};
+pub use judge::events;
 pub use scenario::Scenario;
 pub use stage::play;

@@ -24,11 +24,11 @@ pub struct Scenario {
     pub seed: u64,
     /// Its number among those of the seed.
     pub number: u64,
-    /// What the robot does when trouble begins.
+    /// The robot's activity when trouble begins.
     pub activity: Activity,
-    /// Whether a boot loader has cleared what the chip knows of a reset.
+    /// True if a boot loader has cleared the chip's record of a reset.
     pub boot_loader: bool,
-    /// What is done.
+    /// The steps, in order.
     pub steps: Vec<Step>,
 }
 
@@ -225,7 +225,7 @@ impl<'a> Script<'a> {
         self.wait_up_to(120);
     }
 
-    /// What goes wrong, until it is over.
+    /// Adds a trouble of a random kind, until it is over.
     fn trouble(&mut self, activity: Activity) {
         match self.rng.u8(0..100) {
             0..50 => self.stall(),
@@ -276,13 +276,15 @@ impl<'a> Script<'a> {
         self.steps.push(Step::Supply(5_000));
     }
 
+    /// The supply's levels for writing, moving and pulses, mV.
+    fn levels(&self) -> [u16; 3] {
+        let board = self.robot.supplies().board;
+        board.map(|volts| (1_000.0 * volts) as u16)
+    }
+
     /// The supply sinks, and for a moment more.
     fn sag(&mut self) {
-        let [slow, stop, rest] = self
-            .robot
-            .supplies()
-            .board
-            .map(|volts| (1_000.0 * volts) as u16);
+        let [slow, stop, rest] = self.levels();
         let first = self.rng.u16(stop - 50..slow + 50);
         let second = self.rng.u16(rest - 400..stop);
         self.steps.push(Step::Supply(first));
@@ -296,11 +298,7 @@ impl<'a> Script<'a> {
 
     /// The supply allows to move and not to write, for long, and is asked for both.
     fn low(&mut self) {
-        let [slow, stop, _] = self
-            .robot
-            .supplies()
-            .board
-            .map(|volts| (1_000.0 * volts) as u16);
+        let [slow, stop, _] = self.levels();
         let mv = self.rng.u16(stop + 50..slow - 50);
         self.steps.push(Step::Supply(mv));
         self.wait(250);
@@ -342,8 +340,8 @@ impl<'a> Script<'a> {
         self.steps.push(Step::Stall(300 * MS));
         self.wait(300);
         self.wait_up_to(2_000);
-        let mv = self.robot.supplies().board[1] * 1_000.0 - 100.0;
-        self.steps.push(Step::Supply(mv as u16));
+        let mv = self.levels()[1] - 100;
+        self.steps.push(Step::Supply(mv));
         self.wait(5_000);
         self.say("status");
         self.steps.push(Step::Supply(5_000));

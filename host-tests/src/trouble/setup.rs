@@ -1,4 +1,4 @@
-//! What is set before trouble begins: settings that are saved or not, a boot gait, a
+//! Settings before trouble begins, saved or not: of the servos, a boot gait, a
 //! deadman, a travel.
 
 use fastrand::Rng;

@@ -8,7 +8,7 @@ use lizard_host::sim::supplies;
 use lizard_robot::Robot;
 use simulated_uno::{CYCLES_PER_MS, Edge, Fidelity, Image, Pin, State, Uno};
 
-use super::record::{Exchange, Heard, Record, Span};
+use super::record::{Exchange, Received, Record, Span};
 use super::scenario::Scenario;
 use super::step::Step;
 
@@ -220,7 +220,7 @@ impl Stage<'_> {
         record.end = self.uno.cycle();
         record.starts = self.uno.reset_events();
         record.written = self.uno.eeprom_operations();
-        record.state = self.uno.state().clone();
+        record.state = Some(self.uno.state().clone());
         let mut text = Vec::new();
         for byte in self.uno.received_by_uno() {
             record.bytes.push(byte.cycle);
@@ -228,15 +228,15 @@ impl Stage<'_> {
                 text.push(byte.byte);
                 continue;
             }
-            let text_heard = String::from_utf8_lossy(&text).into_owned();
-            record.heard.push(Heard {
+            let line = String::from_utf8_lossy(&text).into_owned();
+            record.received.push(Received {
                 cycle: byte.cycle,
-                effect: effect_of_an_end(&text_heard, self.robot),
-                text: text_heard,
+                effect: effect_of_an_end(&line, self.robot),
+                text: line,
             });
             text.clear();
         }
-        record.see_pulses(self.pins);
+        record.find_pulses(self.pins);
         record
     }
 }

@@ -1,4 +1,4 @@
-//! What is done to the board, step by step: a scenario in words.
+//! The steps of a scenario, in words.
 
 use std::fmt;
 

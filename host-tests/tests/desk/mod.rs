@@ -44,7 +44,7 @@ impl Desk {
         }
     }
 
-    /// The port's name.
+    /// The name of the board's serial port.
     pub fn name(&self) -> String {
         self.port.path().display().to_string()
     }
@@ -69,5 +69,28 @@ impl Desk {
             seen && screen.contains(text),
             "waited up to {LIMIT} for {text:?} in\n{screen}"
         );
+    }
+
+    /// Lets the board live until the program has ended. Returns the screen.
+    pub fn end(&mut self, shell: &Shell) -> String {
+        let ended = self.until(|_| shell.has_ended());
+        let screen = shell.screen();
+        assert!(ended, "waited {LIMIT} for the end of the upload:\n{screen}");
+        screen
+    }
+
+    /// Addresses below the boot loader where the flash is not that of a program.
+    pub fn differences(&self, program: &[u8]) -> Vec<usize> {
+        let flash = self.uno.flash();
+        (0..BOOT).filter(|&at| flash[at] != program[at]).collect()
+    }
+
+    /// Checks that the flash holds a program, and the boot loader as it was.
+    pub fn assert_written(&self, program: &[u8]) {
+        let wrong = self.differences(program);
+        assert!(wrong.is_empty(), "the flash differs at {wrong:x?}");
+        let new = Uno::with_boot_loader(boot_loader(), Fidelity::DataSheet);
+        let is_whole = self.uno.flash()[BOOT..] == new.flash()[BOOT..];
+        assert!(is_whole, "the boot loader has changed");
     }
 }

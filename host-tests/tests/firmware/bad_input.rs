@@ -14,7 +14,7 @@ use crate::{awake, end_flood, lines};
 /// Bytes that the line carries in a second.
 const PER_SECOND: usize = 11_520;
 
-/// How long each goes on, seconds.
+/// The duration of each flood, seconds.
 const SECONDS: u64 = 15;
 
 /// Sends bytes for all that time, and looks every second.

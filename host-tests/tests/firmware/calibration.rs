@@ -1,4 +1,4 @@
-//! What a person sets of the servos, measured at the pins, and what outlasts power.
+//! Settings of the servos, measured at the pins, and those that outlast power.
 
 use lizard_host::sim::frame::FRAME;
 use lizard_host_tests::robot;

@@ -12,7 +12,7 @@ use crate::{Status, awake, comparable, for_each};
 /// Cycles of a sender's byte, rounded up.
 const BYTE: u64 = 1400;
 
-/// The last cycle.
+/// The last cycle that is compared.
 fn end() -> u64 {
     60 * minutes() * FREQUENCY
 }

@@ -21,7 +21,7 @@ const DAMAGED: &str = "# fault: the robot in the flash is damaged, write it agai
 
 const LED: Pin = Pin::d(13);
 
-/// What is in the flash instead of a robot.
+/// Bytes in the flash instead of a robot.
 struct Damage {
     what: String,
     section: Vec<u8>,
@@ -134,7 +134,7 @@ fn flipped() -> Vec<Damage> {
     all
 }
 
-/// What somebody may write who has the checksum right and nothing else.
+/// Sections whose checksum is right and nothing else.
 fn wrong() -> Vec<Damage> {
     vec![
         impossible("a servo on the serial line", |section| {
@@ -174,7 +174,7 @@ fn board(damage: &Damage, fidelity: Fidelity) -> FirmwareBench {
     FirmwareBench::with_board(SimulatedBoard::with_image(image, fidelity, robot()))
 }
 
-/// What all damage has in common.
+/// Checks that the firmware finds no robot, keeps the servos still and says so.
 fn is_no_robot(damage: &Damage) {
     let bench = &mut board(damage, Fidelity::DataSheet);
     bench.run_ms(300);

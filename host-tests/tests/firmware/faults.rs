@@ -8,7 +8,7 @@ use crate::kept::{flashes, pulses, pulses_in, widths_now};
 use crate::walk::Walk;
 use crate::{Status, doing, moving};
 
-/// What a fault does: nothing moves, `status` and one line name it, the LED flashes so
+/// Checks a fault's effects: nothing moves, `status` and one line name it, the LED flashes so
 /// many times.
 fn assert_stopped(bench: &mut FirmwareBench, word: &str, sentence: &str, code: usize) {
     let status = Status::of(bench);

@@ -13,7 +13,7 @@ use simulated_uno::Fidelity;
 
 use crate::{SECOND, Status, awake, for_each, neutral_widths};
 
-/// What the guard may differ from floating point by in a slider's travel, mm.
+/// The most that the guard may differ from floating point in a slider's travel, mm.
 fn stroke_band() -> f64 {
     let scales = Side::ALL.map(|side| robot().firmware().side(side).scale.bits);
     STEPS_BAND / f64::from(1 << scales[0].min(scales[1]))
@@ -45,13 +45,13 @@ fn limits(by: f64) -> Limits {
     }
 }
 
-/// Whether a pose (deg, chassis frame) is safe by these limits.
+/// True if a pose (deg, chassis frame) is safe by these limits.
 fn is_safe(angles: [f64; 4], limits: &Limits) -> bool {
     let solved = robot().lizard().solve(&Pose::from(angles));
     solved.is_ok_and(|solution| limits.allow(&solution))
 }
 
-/// Whether every servo reaches its angle by more than rounding.
+/// True if every servo reaches its angle by more than rounding.
 fn is_within_travel(angles: [f64; 4]) -> bool {
     robot().servos().iter().zip(angles).all(|(servo, angle)| {
         let (min, max) = servo.travel();
@@ -112,7 +112,7 @@ fn a_pose_is_accepted_exactly_where_floating_point_finds_it_safe() {
     });
 }
 
-/// What a refusal names, and its value, if the guard knows one:
+/// Reads the condition that a refusal names, and its value, if the guard knows one:
 /// `err 4 leg margin of A1 is 0.259, ...`, `err 4 type-2 margin of the head is below 0.1,
 /// ...`, `err 5 left slider is at 55.35 mm, ...`.
 fn told(answer: &str) -> (&str, Option<f64>) {

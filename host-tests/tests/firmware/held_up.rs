@@ -8,7 +8,7 @@ use crate::pulses::servo_edges;
 use crate::walk::{SLOT, Walk};
 use crate::{in_both, neutral_widths};
 
-/// What other handlers and stretches with interrupts off may take, cycles.
+/// The most that other handlers and stretches with interrupts off may take, cycles.
 const MAY_TAKE: u64 = 160;
 
 /// Something that keeps interrupts off for `length` cycles, this many before an edge.
@@ -18,7 +18,7 @@ struct Hold {
     length: u64,
 }
 
-/// Which edges are held up.
+/// The edges that are held up.
 #[derive(Clone, Copy, PartialEq)]
 enum Edges {
     Rising,

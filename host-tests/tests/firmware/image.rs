@@ -1,4 +1,4 @@
-//! What the ELF is made of: no panic, no float, no core::fmt, and tables that
+//! The contents of the ELF: no panic, no float, no core::fmt, and tables that
 //! stay in flash.
 
 use std::process::Command;

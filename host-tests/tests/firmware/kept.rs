@@ -1,4 +1,4 @@
-//! What the tests of calibration, power cuts and faults share.
+//! Shared parts of the tests of calibration, power cuts and faults.
 
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::{Pin, Pulse};
@@ -47,7 +47,7 @@ pub fn power_cycle(bench: &mut FirmwareBench) {
     panic!("no banner after power-on: {:?}", &bench.lines()[said..]);
 }
 
-/// What `cal` prints.
+/// The lines that `cal` prints.
 pub fn calibration(bench: &mut FirmwareBench) -> Vec<String> {
     let (lines, answer) = bench.ask("cal");
     assert_eq!(answer, "ok cal");
@@ -70,7 +70,7 @@ fn way_at(gain: f64, slew: f64) -> u64 {
     (slew / 50.0 * gain.abs() * 16.0) as u64 + 3
 }
 
-/// Whether no pulse of a gait is farther from the one before than its slew limit allows.
+/// Checks that no pulse of a gait is farther from the one before than its slew limit allows.
 pub fn assert_no_leap_in_a_gait(pulses: &[Vec<Pulse>; 4]) {
     let pace = robot().pace();
     for (servo, pulses) in robot().servos().iter().zip(pulses) {
@@ -82,7 +82,7 @@ pub fn assert_no_leap_in_a_gait(pulses: &[Vec<Pulse>; 4]) {
     }
 }
 
-/// Whether no pulse is farther from the one before than the slew limit allows.
+/// Checks that no pulse is farther from the one before than the slew limit allows.
 pub fn assert_no_leap(pulses: &[Vec<Pulse>; 4]) {
     let gains = robot().servos().each_ref().map(|servo| servo.us_per_degree);
     assert_no_leap_at(pulses, gains);
@@ -102,8 +102,7 @@ pub fn assert_no_leap_at(pulses: &[Vec<Pulse>; 4], gains: [f64; 4]) {
     }
 }
 
-/// How many times the LED flashes between two pauses, as often as it does so in some
-/// seconds.
+/// Counts the LED's flashes between each two pauses in some seconds.
 pub fn flashes(bench: &mut FirmwareBench, seconds: u64) -> Vec<usize> {
     bench.uno.take_edges();
     bench.uno.run_ms(1000 * seconds);

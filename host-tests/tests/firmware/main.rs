@@ -145,7 +145,7 @@ fn widths(frames: &[Frame]) -> Vec<[u64; 4]> {
     frames.iter().map(Frame::widths).collect()
 }
 
-/// What `status` says, key by key.
+/// The answer to `status`, by key.
 struct Status(HashMap<String, String>);
 
 impl Status {

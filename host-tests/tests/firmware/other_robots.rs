@@ -17,7 +17,7 @@ use crate::{SECOND, for_each};
 /// Lines that move nothing, each as fast as the line carries it.
 const FLOODS: [&str; 5] = ["status\n", "help\n", "cal\n", "?\r", "x"];
 
-/// How many robots; `make other-robots` tries 100.
+/// The number of robots; `make other-robots` tries 100.
 fn count() -> u64 {
     let given = std::env::var("LIZARD_ROBOTS").ok();
     given.map_or(4, |count| count.parse().expect("LIZARD_ROBOTS is a number"))
@@ -67,7 +67,7 @@ fn no_frame_is_late_for_any_robot_in_any_gait_under_any_flood() {
 
 #[test]
 fn no_step_of_main_keeps_a_frame_waiting_for_too_long_however_many_gaits_there_are() {
-    /// What every robot may ask for besides, `factory` the longest.
+    /// The cycles of every robot's other commands, of which `factory` takes the longest.
     const OTHERS: usize = 34_000;
     let (text, robot) = random_robot(&mut rng(2_000));
     let lengths = [10, 24, LONGEST_NAME];

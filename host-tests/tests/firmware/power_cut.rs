@@ -10,7 +10,7 @@ use simulated_uno::{EEPROM_SIZE, EepromOperation, Fidelity, PowerCut};
 use crate::awake;
 use crate::kept::{calibration, power_cycle};
 
-/// What an EEPROM says to the core, the turn left out.
+/// Loads the settings of an EEPROM as the core does, without their turn.
 fn loaded(contents: &[u8; EEPROM_SIZE]) -> (Settings, Outcome) {
     let mut settings = Settings::of(robot().firmware());
     let outcome = copies::load(robot().firmware(), &Eeprom::with(*contents), &mut settings);
@@ -22,7 +22,7 @@ fn loaded(contents: &[u8; EEPROM_SIZE]) -> (Settings, Outcome) {
 struct Saved {
     bench: FirmwareBench,
     before: [u8; EEPROM_SIZE],
-    /// What `cal` prints of the saved settings and of the others.
+    /// The output of `cal` for the saved settings and for the others.
     calibrations: [Vec<String>; 2],
 }
 

@@ -14,7 +14,7 @@ pub fn servo_edges(uno: &Uno) -> Vec<Edge> {
     uno.edges().into_iter().filter(of_servo).collect()
 }
 
-/// What holds of pulses at any time: one of each servo in each frame, 20 ms
+/// Checks the pulses' times: one of each servo in each frame, 20 ms
 /// apart to the cycle, one pin high at a time.
 fn assert_in_step(bench: &FirmwareBench, frames: &[Frame]) {
     for frame in frames {

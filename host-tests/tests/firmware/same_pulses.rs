@@ -1,6 +1,6 @@
 //! The pulses of every robot of robots/, cycle for cycle, are those that were recorded.
 //!
-//! What was recorded is one number for each robot: a digest of every edge of its
+//! Each robot has one recorded number: a digest of every edge of its
 //! servos' pins in so many simulated minutes of random commands. A pulse that is one cycle
 //! longer, later or elsewhere gives another number. So does every change of a robot's
 //! numbers or of what a command does: then the pulses are meant to be others, and the

@@ -20,7 +20,7 @@ fn gait() -> String {
     robot().gaits()[1].name().replace('-', " ")
 }
 
-/// What an EEPROM holds after `boot` and `save`, as a HEX file.
+/// Writes the EEPROM after `boot` and `save` as a HEX file.
 fn eeprom(folder: &Path) {
     let mut running = Running::power_on(*robot().firmware());
     running.run(50);

@@ -7,7 +7,7 @@ use simulated_uno::{Fidelity, Pin};
 use crate::kept::{flashes, pulses_in, widths_now};
 use crate::{Status, awake, doing, moving};
 
-/// What a reading may be off by, V: a step of the converter at 5.5 V, and two decimals.
+/// The largest error of a reading, V: a step of the converter at 5.5 V, and two decimals.
 const STEP: f64 = 0.04;
 
 /// The first pin that can measure a rail, by its Arduino number.
@@ -238,7 +238,7 @@ fn status_tells_the_servos_rail_where_robot_toml_names_its_pin() {
     }
 }
 
-/// What a reading of a rail may be off by, V: a step of the converter either way for the
+/// The largest error of a rail's reading, V: a step of the converter either way for the
 /// rail and for the reference, and two decimals.
 fn rail_step(rail: &Rail, volts: f64) -> f64 {
     0.01 + rail.ratio * 5.0 / 1024.0 + volts / 225.0

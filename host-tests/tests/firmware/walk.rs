@@ -72,7 +72,7 @@ impl Walk {
         commanded(&self.bench, self.first, self.received, &frames)
     }
 
-    /// Whether the simulation is the one corrected by the data sheet.
+    /// True if the simulation is the one corrected by the data sheet.
     pub fn is_by_the_data_sheet(&self) -> bool {
         self.fidelity == Fidelity::DataSheet
     }
@@ -88,7 +88,7 @@ impl Walk {
         address.unwrap_or_else(|| panic!("the firmware has no variable {variable}"))
     }
 
-    /// What one of its 16-bit variables holds.
+    /// The value of one of its 16-bit variables.
     pub fn word(&self, variable: &str) -> u16 {
         let address = self.address(variable);
         u16::from_le_bytes([0, 1].map(|n| self.bench.uno.peek(address + n)))

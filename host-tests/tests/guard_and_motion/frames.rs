@@ -24,7 +24,7 @@ pub const STEP_PER_FRAME: f64 = 50.0 * 360.0 / 65536.0;
 /// Frames in which a motion gathers or loses all its pace.
 const GATHERING: f64 = 7.0;
 
-/// What rounding may add to a change of speed, in steps of angle a frame.
+/// The most that rounding may add to a change of speed, in steps of angle a frame.
 const ROUNDING: f64 = 4.0;
 
 /// The most that a servo's speed may change from one frame to the next, deg/s, but
@@ -32,7 +32,7 @@ const ROUNDING: f64 = 4.0;
 ///
 /// A point-to-point move changes speed the most where its shortest, of eight frames,
 /// begins or ends: `6 way / 8^2` a frame, with a mean pace of 2/3 of the slew limit.
-/// That is half the slew limit, also where one move ends and the next leads straight
+/// It is half the slew limit, also where one move ends and the next leads straight
 /// back. A gait has its own changes, and gathers or loses its pace on top of them.
 ///
 /// Computed once for each robot, by the hash of its numbers: a walker asks for it.
@@ -163,7 +163,7 @@ impl<'a> Walker<'a> {
         typed(angles(self.robot.firmware(), pose))
     }
 
-    /// Some frames.
+    /// Lets some frames pass.
     pub fn run(&mut self, frames: u32) {
         for _ in 0..frames {
             self.frame();
@@ -279,7 +279,7 @@ pub fn any_command(rng: &mut Rng, robot: &Robot) -> String {
     }
 }
 
-/// What a robot does once a command has come to its end.
+/// The robot's activity once a command is complete.
 pub fn meant(robot: &Robot, command: &str) -> Option<Activity> {
     let gait = robot.gaits().iter().position(|gait| words(gait) == command);
     let id = |place: usize| {

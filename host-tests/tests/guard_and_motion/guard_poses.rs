@@ -21,7 +21,7 @@ const POSES: usize = 40_000;
 /// Pairs of neighbouring poses of each robot with a limit between them.
 const PAIRS: usize = 1500;
 
-/// What a walk over many poses of one robot found.
+/// The findings of a walk over many poses of one robot.
 #[derive(Default)]
 struct Findings {
     type2: Spread,
@@ -37,7 +37,7 @@ struct Findings {
     /// farthest from a limit that one of them was, in bands.
     differ: usize,
     farthest: f64,
-    /// How often each of the twelve conditions was named.
+    /// The number of times that each of the twelve conditions was named.
     named: [usize; 12],
 }
 

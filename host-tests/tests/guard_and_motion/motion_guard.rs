@@ -1,4 +1,4 @@
-//! What happens where the way leads through a pose that is not safe: between two
+//! Motions whose way leads through a pose that is not safe: between two
 //! safe poses there may be one that is not.
 
 use fastrand::Rng;

@@ -1,4 +1,4 @@
-//! Why the guard is not built on the conditions that the paper prints,
+//! Reasons not to build the guard on the conditions that the paper prints,
 //! sin(theta2 + theta3) = 0 (and its kin of the tail) and sin(2 theta11) = 0.
 
 use lizard_core::guard::clearance::Clearance;

@@ -1,4 +1,4 @@
-//! What is right, in floating point and without the core: every condition of a
+//! The truth, in floating point and without the core: every condition of a
 //! safe pose from lizard-kinematics, at exactly the angles that the core means.
 
 use std::fmt;
@@ -14,7 +14,7 @@ use lizard_host::prove::STEPS_BAND;
 use lizard_kinematics::{Check, Infeasible, Limits, Part};
 use lizard_robot::{CoreRobot, Robot};
 
-/// What the guard's arithmetic may add to a margin, a sine; the rounding of lengths
+/// The most that the guard's arithmetic may add to a margin, a sine; the rounding of lengths
 /// comes on top.
 pub const MARGIN_BAND: f64 = 0.002;
 /// The least type-2 limit that robot.toml may set; below it the guard only has to
@@ -72,12 +72,12 @@ pub struct Truth {
     /// type-2.
     pub broken: [bool; 12],
     limits: Limits,
-    /// What the guard may err by: of each margin; then in mm of the strokes, left
+    /// The guard's largest errors: of each margin; then in mm of the strokes, left
     /// and right, and of K2 of head and tail.
     pub bands: [f64; 14],
 }
 
-/// Where a pose stands, the band apart.
+/// The verdict on a pose. Near a limit, within the band, there is none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// Clear of every limit by more than the band.
@@ -92,7 +92,7 @@ impl Truth {
     /// At chassis angles in degrees.
     ///
     /// # Errors
-    /// Where a loop does not close.
+    /// A loop that does not close.
     pub fn of(robot: &Robot, angles: [f64; 4]) -> Result<Self, Infeasible> {
         let solution = robot.lizard().solve(&angles.into())?;
         let across = [solution.head.gap.x, solution.tail.gap.x];
@@ -138,7 +138,7 @@ impl Truth {
         })
     }
 
-    /// How far each margin and then each stroke is on the safe side of its limit,
+    /// The distance of each margin and then each stroke from its limit, positive where safe,
     /// in bands. Crossed crank tips fail type-2, as the guard has it.
     pub fn clear_by(&self) -> [f64; 12] {
         let Limits {
@@ -162,7 +162,7 @@ impl Truth {
         })
     }
 
-    /// Whether K2 of an end, by its index, is too near to 0 for a sign.
+    /// True if K2 of an end, by its index, is too near to 0 for a sign.
     pub fn is_at_crossing(&self, end: usize) -> bool {
         self.across[end].abs() <= self.bands[12 + end]
     }
@@ -184,7 +184,7 @@ fn place(check: Check) -> usize {
     places.next().expect("every condition is of one kind")
 }
 
-/// What an end's margins may be wrong by: type-2, type-1 left and right. Besides the
+/// The largest errors of an end's margins: type-2, type-1 left and right. Besides the
 /// guard's arithmetic it is the rounding of lengths, `step` mm of the distance `tips`
 /// of the crank tips (mm): next to a singularity (`type2` is small) that turns the
 /// couplers a lot.

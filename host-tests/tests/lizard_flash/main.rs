@@ -13,7 +13,7 @@ mod shell;
 
 use std::sync::LazyLock;
 
-use desk::{BOOT, Desk, boot_loader, loader};
+use desk::{BOOT, Desk, loader};
 use lizard_core::numbers::section::START;
 use lizard_host::firmware::named;
 use lizard_host::sim::frame::servo_pins;
@@ -77,33 +77,29 @@ fn unplug(desk: &mut Desk) {
     desk.port = Port::new().expect("a pseudo terminal");
 }
 
-/// Lets the board live until the program has ended. Returns the screen.
+/// Lets the board live until the program has ended. Returns the last screen.
 fn end(desk: &mut Desk, shell: &Shell) -> String {
-    let ended = desk.until(|_| shell.has_ended());
-    let screen = shell.screen();
-    assert!(ended, "waited {LIMIT} for the end of the upload:\n{screen}");
+    desk.end(shell);
     shell.last_screen()
 }
 
-/// Addresses below the boot loader where the board's flash is not that of the firmware.
-fn differences(desk: &Desk) -> Vec<usize> {
-    let firmware = firmware();
-    (0..BOOT)
-        .filter(|&at| desk.uno.flash()[at] != firmware[at])
-        .collect()
+/// Lets an upload end, which leaves the firmware on the board, and the robot says so.
+/// Returns the screen.
+fn end_well(desk: &mut Desk, shell: &Shell) -> String {
+    let screen = end(desk, shell);
+    assert!(screen.contains("\n# lizard "), "{screen}");
+    desk.assert_written(&firmware());
+    screen
 }
 
-fn assert_written(desk: &Desk) {
-    let wrong = differences(desk);
-    assert!(
-        wrong.is_empty(),
-        "flash differs from the image at {wrong:x?}"
-    );
-    let new = Uno::with_boot_loader(boot_loader(), Fidelity::DataSheet);
-    assert!(
-        desk.uno.flash()[BOOT..] == new.flash()[BOOT..],
-        "the boot loader is whole"
-    );
+/// Begins an upload to a board, and waits until some pages of the new code are there.
+fn begin(desk: &mut Desk) -> Shell {
+    let shell = lizard_flash(desk, &[]);
+    let half = desk.until(|uno| uno.flash()[0x1000] != 0xff || shell.has_ended());
+    let screen = shell.screen();
+    let has_begun = half && !shell.has_ended();
+    assert!(has_begun, "the upload has begun:\n{screen}");
+    shell
 }
 
 /// A board that has the firmware, as if it had been written.
@@ -117,12 +113,10 @@ fn with_firmware() -> Desk {
 fn a_blank_board_is_written_and_its_robot_says_what_it_is() {
     let mut desk = Desk::with_a_new_board();
     let shell = lizard_flash(&desk, &[]);
-    let screen = end(&mut desk, &shell);
+    let screen = end_well(&mut desk, &shell);
     assert!(screen.contains("the board has no program\n"), "{screen}");
     // What is erased between code and robot is right already.
     assert!(screen.contains(" bytes written and verified, "), "{screen}");
-    assert!(screen.contains("\n# lizard "), "{screen}");
-    assert_written(&desk);
 }
 
 #[test]
@@ -139,25 +133,19 @@ fn a_board_whose_program_never_stops_talking_is_written_and_keeps_its_eeprom() {
         desk.uno.eeprom() == kept,
         "the upload has changed the EEPROM"
     );
-    let screen = end(&mut desk, &shell);
+    let screen = end_well(&mut desk, &shell);
     let found = format!("the board has another program, of {} bytes\n", talker.len());
     assert!(screen.contains(&found), "{screen}");
-    assert!(screen.contains("\n# lizard "), "{screen}");
-    assert_written(&desk);
 }
 
 #[test]
 fn a_board_that_has_the_image_is_left_as_it_is() {
     let mut desk = with_firmware();
     let shell = lizard_flash(&desk, &[]);
-    let screen = end(&mut desk, &shell);
-    assert!(
-        screen.contains(&format!("robot {} already", named(robot().firmware()))),
-        "{screen}"
-    );
+    let screen = end_well(&mut desk, &shell);
+    let already = format!("robot {} already", named(robot().firmware()));
+    assert!(screen.contains(&already), "{screen}");
     assert!(screen.contains("nothing to write: all"), "{screen}");
-    assert!(screen.contains("\n# lizard "), "{screen}");
-    assert_written(&desk);
 }
 
 #[test]
@@ -166,31 +154,19 @@ fn one_page_that_differs_is_written_alone() {
     let old = desk.uno.flash()[0x2005];
     desk.uno.set_flash(0x2005, &[old ^ 0x10]);
     let shell = lizard_flash(&desk, &[]);
-    let screen = end(&mut desk, &shell);
-    assert!(
-        screen.contains("the board has another build of lizard"),
-        "{screen}"
-    );
+    let screen = end_well(&mut desk, &shell);
+    let another = "the board has another build of lizard";
+    assert!(screen.contains(another), "{screen}");
     // It, and the page where the chip starts.
-    assert!(
-        screen.contains("\n256 bytes written and verified"),
-        "{screen}"
-    );
-    assert_written(&desk);
+    let two = "\n256 bytes written and verified";
+    assert!(screen.contains(two), "{screen}");
 }
 
 #[test]
 fn a_board_unplugged_in_the_middle_does_nothing_until_it_is_written_again() {
     let mut desk = Desk::with_a_new_board();
     desk.uno.set_flash(0, &TALKER.flash());
-    let shell = lizard_flash(&desk, &[]);
-    // Some pages of the new code are there.
-    let half = desk.until(|uno| uno.flash()[0x1000] != 0xff || shell.has_ended());
-    let screen = shell.screen();
-    assert!(
-        half && !shell.has_ended(),
-        "the upload has begun:\n{screen}"
-    );
+    let shell = begin(&mut desk);
     unplug(&mut desk);
     let screen = end(&mut desk, &shell);
     assert!(screen.contains("the port is gone"), "{screen}");
@@ -198,7 +174,7 @@ fn a_board_unplugged_in_the_middle_does_nothing_until_it_is_written_again() {
         screen.contains("half a program now, and does nothing"),
         "{screen}"
     );
-    assert!(!differences(&desk).is_empty());
+    assert!(!desk.differences(&firmware()).is_empty());
 
     // Plugged in again: power, then nobody who calls.
     desk.uno.power_cycle();
@@ -212,26 +188,16 @@ fn a_board_unplugged_in_the_middle_does_nothing_until_it_is_written_again() {
     unplug(&mut desk);
 
     let shell = lizard_flash(&desk, &[]);
-    let screen = end(&mut desk, &shell);
-    assert!(screen.contains("\n# lizard "), "{screen}");
-    assert_written(&desk);
+    end_well(&mut desk, &shell);
 }
 
 #[test]
 fn a_board_whose_button_is_pressed_in_the_middle_is_called_again_and_written() {
     let mut desk = Desk::with_a_new_board();
-    let shell = lizard_flash(&desk, &[]);
-    let half = desk.until(|uno| uno.flash()[0x1000] != 0xff || shell.has_ended());
-    let screen = shell.screen();
-    assert!(
-        half && !shell.has_ended(),
-        "the upload has begun:\n{screen}"
-    );
+    let shell = begin(&mut desk);
     desk.uno.reset();
-    let screen = end(&mut desk, &shell);
+    let screen = end_well(&mut desk, &shell);
     assert!(screen.contains("all begins again"), "{screen}");
-    assert!(screen.contains("\n# lizard "), "{screen}");
-    assert_written(&desk);
 }
 
 #[test]
@@ -251,7 +217,7 @@ fn a_byte_that_changes_after_it_was_written_is_written_again() {
     assert!(ended, "waited {LIMIT} for the end of the upload:\n{screen}");
     assert!(changed, "nothing was written:\n{screen}");
     assert!(screen.contains("\n# lizard "), "{screen}");
-    assert_written(&desk);
+    desk.assert_written(&firmware());
 }
 
 #[test]

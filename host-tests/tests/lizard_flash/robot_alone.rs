@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// What the board says in the next milliseconds, which are none on the wall.
+/// The board's output in the next simulated milliseconds.
 fn says(desk: &mut Desk, line: &str, ms: u64) -> String {
     desk.uno.take_transmitted();
     desk.uno.send(line.as_bytes());

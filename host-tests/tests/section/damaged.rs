@@ -19,7 +19,7 @@ use lizard_robot::flash;
 
 use crate::sections;
 
-/// Where things are in a header.
+/// The places of fields in a header.
 const FORMAT: std::ops::Range<usize> = 4..6;
 const LENGTH: std::ops::Range<usize> = 6..8;
 
@@ -27,7 +27,7 @@ fn damage(section: &[u8]) -> Option<Damage> {
     Robot::open(Region::new(section)).err()
 }
 
-/// What is in the flash of a chip whose section was written no farther than that.
+/// The flash of a chip whose section was written no farther than this.
 fn erased_behind(section: &[u8]) -> Vec<u8> {
     let mut flash = section.to_vec();
     flash.resize(SPACE.into(), 0xff);

@@ -1,4 +1,4 @@
-//! What the core reads from a section is what robot.toml says, field by field: the
+//! A section that is read back holds what robot.toml says, field by field: the
 //! reader is the one of the AVR, and the truth is the robot in floating point, not the
 //! numbers that the section was made of.
 
@@ -190,7 +190,7 @@ fn the_bars_and_the_sliders() {
     });
 }
 
-/// What an entry of a curve should be, by the triangle of the couplers.
+/// The expected entry of a curve, by the triangle of the couplers.
 #[derive(Clone, Copy, PartialEq)]
 enum Shape {
     Rise,
@@ -303,7 +303,7 @@ fn maps(flash: Region<'_>) -> [Vec<[std::ops::RangeInclusive<i32>; 2]>; 4] {
     })
 }
 
-/// Whether the exact guard accepts what depends on the servos of a map.
+/// True if the exact guard accepts everything that depends on the servos of a map.
 fn accepts(robot: &Robot, pair: usize, pose: &Pose) -> bool {
     let clearance = Clearance::of(robot, pose);
     let limits = robot.limits();

@@ -79,7 +79,7 @@ int main(void) {
 }
 "#;
 
-/// Where a variable is in RAM.
+/// The address of a variable in RAM.
 fn address(image: &Image, name: &str) -> u16 {
     (image.symbol(name).expect("it has one").address - 0x80_0000) as u16
 }

@@ -138,7 +138,7 @@ fn program(random: &mut Rng) -> String {
     )
 }
 
-/// What the functions returned.
+/// The values that the functions returned.
 fn results(image: &Image) -> Vec<[u8; 4]> {
     let [done, results] = ["done", "results"].map(|name| address(image, name));
     let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);

@@ -17,7 +17,7 @@ use lizard_host_tests::root;
 use lizard_time_limit::LIMIT;
 use rustix::process::{Pid, Signal, kill_process_group};
 
-/// How long a person waits before Ctrl-C is pressed again.
+/// The time before Ctrl-C is pressed again.
 const AGAIN: Duration = Duration::from_secs(1);
 
 pub struct Shell {

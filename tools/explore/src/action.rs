@@ -1,18 +1,18 @@
-//! What may happen to a robot, in the words of a person.
+//! Actions that may happen to a robot, in the words of a person.
 
 use std::fmt;
 
 use lizard_core::console::word::Word;
 use lizard_core::memory::restart::Cause;
 
-/// One thing that happens.
+/// An action: something that happens to the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
-    /// A line is sent, and executed; what there is to say or to keep is still to do.
+    /// A line is sent and executed; its output and its writes to the memory are still to do.
     Say(&'static str),
     /// A line comes in which noise has changed a byte.
     Noise,
-    /// Main does the one thing that is the most urgent.
+    /// Main does its most urgent task.
     Step,
     /// Frames pass.
     Frames(u8),
@@ -20,7 +20,7 @@ pub enum Action {
     Stall(u16),
     /// The supply falls or rises to this many millivolts.
     Supply(u16),
-    /// From now on three servos that wake pull the supply down to 2.4 V, or no longer.
+    /// From now on three servos that wake pull the supply down to 2.4 V if true, or no longer.
     Weak(bool),
     /// A pulse's edge comes late.
     Late,
@@ -30,7 +30,7 @@ pub enum Action {
     Reset(Cause),
     /// Power is lost and comes back; a byte that was being written holds this.
     LosePower(Option<u8>),
-    /// The listener stops reading the output, or reads it again.
+    /// The listener stops reading the output if true, or reads it again.
     Deaf(bool),
 }
 
@@ -63,7 +63,7 @@ const LINES: [&str; 24] = [
 ];
 
 impl Action {
-    /// All that may happen in any state.
+    /// Every action, whatever the state.
     #[must_use]
     pub fn all() -> Vec<Self> {
         let mut all = vec![

@@ -1,4 +1,4 @@
-//! Where a walk begins: memories of every kind, and robots that already do something.
+//! The initial states of a search: memories of every kind, and robots that already do something.
 
 use lizard_core::memory::copies::COPIES;
 use lizard_core::memory::record::Progress;
@@ -12,13 +12,13 @@ use lizard_core::virtual_board::Eeprom;
 use crate::action::Action::{self, Frames, LosePower, Reset, Say, Stall, Supply};
 use crate::world::World;
 
-/// A state to begin with, and how it came about.
+/// An initial state and its origin.
 pub struct Beginning {
-    /// What is special at power-on.
+    /// The special condition at power-on.
     pub with: &'static str,
-    /// What happened since.
+    /// The actions since then.
     pub actions: Vec<Action>,
-    /// The state.
+    /// The initial state itself.
     pub world: World,
 }
 
@@ -75,7 +75,7 @@ const MEMORIES: [(&str, &[Action]); 5] = [
 /// A boot loader hides what the chip knows of a reset.
 const BEHIND_A_BOOT_LOADER: &str = "a boot loader and a blank memory";
 
-/// What the robot does before the walk begins.
+/// The robot's actions before the search begins.
 const DOES: [&[Action]; 9] = [
     &[],
     &[Frames(160)],
@@ -106,7 +106,7 @@ fn cut_off(robot: &Robot) -> Eeprom {
     Eeprom::with(*memory.bytes())
 }
 
-/// All beginnings.
+/// Every initial state.
 ///
 /// # Panics
 /// If a memory cannot be made.

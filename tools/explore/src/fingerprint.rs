@@ -1,5 +1,5 @@
-//! When two states count as equal: if the core's own `Debug` shows the same, except for
-//! counters that only count.
+//! The equality of states: two count as equal if the core's own `Debug` shows the same,
+//! except for counters that only count.
 //!
 //! The core derives `Debug` for everything it holds, so a new field is included
 //! automatically, and the core needs no code for this. A field that cannot matter is left
@@ -9,10 +9,10 @@
 
 use std::fmt::{self, Write};
 
-/// What makes a number coarser.
+/// A function that rounds a number.
 type Coarser = fn(u64) -> u64;
 
-/// What becomes of a field.
+/// The treatment of a field.
 #[derive(Clone, Copy)]
 enum Rule {
     Skip,
@@ -21,13 +21,13 @@ enum Rule {
 
 use Rule::{Coarse, Skip};
 
-/// What a field is in, its name, and what becomes of it.
+/// A struct, its field, and the treatment of that field.
 type Field = (&'static str, &'static str, Rule);
 
-/// Fields, by the name of what they are in.
+/// The treatment of fields, by the name of their struct.
 const RULES: &[Field] = &[
     ("Main", "ticks", Skip),
-    // What the last line was; the next byte begins a new one.
+    // The last line; the next byte begins a new one.
     ("Console", "line", Skip),
     (
         "Motion",
@@ -57,7 +57,7 @@ const RULES: &[Field] = &[
     ("Control", "restarts", Coarse(|count| count.min(1))),
 ];
 
-/// What a command that is refused may change: that a line came.
+/// The fields that a refused command may change: they record that a line came.
 const A_LINE_CAME: &[Field] = &[
     ("Main", "ticks", Skip),
     ("Console", "line", Skip),
@@ -121,7 +121,7 @@ impl Default for Print {
 }
 
 impl Print {
-    /// One more.
+    /// Mixes in one more number.
     pub fn add(&mut self, value: u64) {
         let mixed = (self.0 ^ value).wrapping_mul(0xff51_afd7_ed55_8ccd);
         self.0 = (mixed ^ (mixed >> 32)).wrapping_mul(0xc4ce_b9fe_1a85_ec53) ^ (mixed >> 29);
@@ -133,15 +133,15 @@ impl Print {
 struct Reader {
     rules: &'static [Field],
     print: Print,
-    /// What the value is in: the hash of a struct's name, 0 for what has no fields.
+    /// The structs around the value: hashes of their names, 0 for a value without fields.
     within: Vec<u64>,
     /// The hash of the piece before.
     last: u64,
-    /// Whether the next piece is a field's name.
+    /// True if the next piece is a field's name.
     names_field: bool,
-    /// What becomes of the numbers of the field that is this deep.
+    /// The rounding of numbers in the field at this depth.
     number: Option<(Coarser, usize)>,
-    /// How deep the value is that is left out.
+    /// The depth of the value that is left out.
     skipped: Option<usize>,
 }
 
@@ -259,7 +259,7 @@ mod tests {
         list: [1, 2, 3],
     };
 
-    /// The motion, changed.
+    /// The motion with one change.
     fn with(change: impl Fn(&mut Motion)) -> Motion {
         let mut motion = MOTION;
         change(&mut motion);

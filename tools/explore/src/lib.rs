@@ -1,11 +1,12 @@
-//! Explores the supervisor instead of sampling it: what a user may rely on after any
-//! commands and any faults, in as many orders as time allows.
+//! A search for sequences of commands and faults that break a rule of safety, instead of a
+//! sample of them: shortest first, as many as time allows.
 //!
 //! It does not explore a model of the firmware, but the firmware's own core, [`Main`], on
-//! the board without a chip, [`VirtualBoard`]. A [`World`] contains both and what an
-//! observer remembers ([`Seen`]). An [`Action`] is what may happen to it. [`search()`]
-//! goes from all beginnings through all actions, breadth first, so the first sequence
-//! found that breaks a rule is a shortest one.
+//! the board without a chip, [`VirtualBoard`]. A [`World`] contains both and an
+//! [`Observer`](lizard_rules::Observer). An [`Action`] is a command or a fault. [`search()`]
+//! goes from all initial states through all actions, breadth first, so the first sequence
+//! found that breaks a rule is a shortest one. States that differ little count as one
+//! ([`fingerprint`]).
 //!
 //! [`Main`]: lizard_core::step::Main
 //! [`VirtualBoard`]: lizard_core::virtual_board::VirtualBoard
@@ -14,11 +15,9 @@ pub mod action;
 pub mod beginnings;
 pub mod fingerprint;
 pub mod search;
-pub mod seen;
 pub mod small;
 pub mod world;
 
 pub use action::Action;
 pub use search::search;
-pub use seen::Seen;
 pub use world::World;

@@ -24,7 +24,7 @@ fn main() -> ExitCode {
         if found.closed { "closed" } else { "not closed" },
     );
     for (rule, (times, sequence)) in &found.broken {
-        println!("\nBROKEN {times} times: {rule}\n{sequence}");
+        println!("\nBROKEN {times} times: {}\n{sequence}", rule.sentence());
     }
     if found.broken.is_empty() {
         ExitCode::SUCCESS

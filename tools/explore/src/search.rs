@@ -6,7 +6,6 @@
 
 use std::collections::{BTreeMap, HashSet};
 use std::fmt::Write as _;
-use std::hash::{BuildHasherDefault, Hasher};
 use std::panic::{self, AssertUnwindSafe};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -14,35 +13,18 @@ use std::thread;
 use std::vec;
 
 use lizard_core::numbers::robot::Robot;
+use lizard_rules::{Broken, Rule};
 
 use crate::action::Action;
 use crate::beginnings::{self, Beginning};
-use crate::world::{Broken, Held, World};
-
-/// Numbers of states are random as they are.
-#[derive(Default)]
-struct AsIs(u64);
-
-impl Hasher for AsIs {
-    fn finish(&self) -> u64 {
-        self.0
-    }
-
-    fn write(&mut self, _: &[u8]) {
-        unreachable!("only numbers");
-    }
-
-    fn write_u64(&mut self, number: u64) {
-        self.0 = number;
-    }
-}
+use crate::world::{Held, World};
 
 /// States that a thread takes at once.
 const CHUNK: usize = 256;
 
-type Known = HashSet<u64, BuildHasherDefault<AsIs>>;
+type Known = HashSet<u64>;
 
-/// What a walk has found.
+/// The results of a search.
 #[derive(Debug, Default)]
 pub struct Found {
     /// Distinct states.
@@ -51,13 +33,13 @@ pub struct Found {
     pub tried: usize,
     /// Actions of the longest sequence.
     pub longest: usize,
-    /// Whether there is no state left that was not gone through.
+    /// True if no state is left to explore.
     pub closed: bool,
-    /// How many times each rule was broken, and its first sequence.
-    pub broken: BTreeMap<&'static str, (usize, String)>,
+    /// The broken rules, each with its count and its first sequence.
+    pub broken: BTreeMap<Rule, (usize, String)>,
 }
 
-/// How a state was reached: from which one, by which action.
+/// A step of a sequence: the state before it, and the action.
 #[derive(Clone, Copy)]
 struct Step {
     from: u32,
@@ -128,7 +110,7 @@ pub fn search(robot: Robot<'static>, most: usize) -> Found {
     found
 }
 
-/// What a thread has reached.
+/// The results of one thread.
 #[derive(Default)]
 struct Part {
     tried: usize,
@@ -196,16 +178,13 @@ impl Part {
     }
 }
 
-/// What happens; a panic is one of the things that must not.
+/// Applies an action; a panic breaks a rule, too.
 fn happens(world: &mut World, action: Action) -> Held {
     let applied = panic::catch_unwind(AssertUnwindSafe(|| world.apply(action)));
     applied.unwrap_or_else(|why| {
         let said = why.downcast_ref::<String>().cloned();
         let said = said.or_else(|| why.downcast_ref::<&str>().map(ToString::to_string));
-        Err(Broken {
-            rule: "main comes to rest, and uses the board as the board allows",
-            seen: said.unwrap_or_default(),
-        })
+        Err(Broken::new(Rule::Lives, said.unwrap_or_default()))
     })
 }
 

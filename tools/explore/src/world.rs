@@ -1,61 +1,67 @@
 //! A robot, the board it runs on, and an observer who checks the rules.
 
-mod rules;
+mod inside;
 
+use lizard_core::console::command::effect;
 use lizard_core::console::line::GARBLED;
+use lizard_core::control::fault::Fault;
 use lizard_core::memory::copies::{COPIES, RESTED};
 use lizard_core::memory::record::{LENGTH, WHOLE};
 use lizard_core::memory::restart::{Cause, Restart};
-use lizard_core::numbers::pose::Pulses;
 use lizard_core::numbers::robot::Robot;
 use lizard_core::step::{Board, Step};
-use lizard_core::virtual_board::{Eeprom, Running, reading};
+use lizard_core::virtual_board::{Eeprom, Running, is_final, reading};
+use lizard_rules::{Broken, Event, MS, Observer, Rule, Time, led};
 
 use crate::action::Action;
 use crate::fingerprint::{self, Print};
-use crate::seen::Seen;
 
-/// A rule that was broken: its sentence, and what was seen.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Broken {
-    /// The rule.
-    pub rule: &'static str,
-    /// What was seen.
-    pub seen: String,
-}
-
-/// Whether the rules still hold.
+/// The verdict of the rules.
 pub type Held = Result<(), Broken>;
 
-fn broken(rule: &'static str, seen: impl Into<String>) -> Held {
-    Err(Broken {
-        rule,
-        seen: seen.into(),
-    })
+fn broken(rule: Rule, seen: impl Into<String>) -> Held {
+    Err(Broken::new(rule, seen))
 }
 
-/// Frames in which the supply is measured and believed.
-const BELIEVED: u8 = 14;
+/// The cycles of a frame.
+const FRAME: Time = 20 * MS;
 
 /// A state of the walk.
 #[derive(Clone, Debug)]
 pub struct World {
     /// The firmware on its board.
     pub running: Running,
-    /// What a bystander remembers.
-    pub seen: Seen,
+    /// The observer from outside.
+    pub observer: Observer,
+    now: Time,
+    /// True while three servos that wake pull the supply down.
+    is_weak: bool,
+    /// True if main was late for the last frame.
+    is_late: bool,
+    /// The last line that was sent, until its answer is known.
+    unread: Option<&'static str>,
+    /// Lines whose answer is judged already and not printed yet.
+    known: u8,
 }
 
 impl World {
-    /// Power comes on.
+    /// A robot whose power has just come on.
     #[must_use]
     pub fn power_on(robot: Robot<'static>, mut memory: Eeprom) -> Self {
         memory.slowness = 4;
         memory.timed = true;
-        Self {
+        let mut world = Self {
             running: Running::with(robot, memory, Restart::default()),
-            seen: Seen::new(),
-        }
+            observer: Observer::new(inside::limits(&robot)),
+            now: 0,
+            is_weak: false,
+            is_late: false,
+            unread: None,
+            known: 0,
+        };
+        world.observe(Event::Supply(5_000));
+        world.observe(Event::Start(Cause::Power));
+        world
     }
 
     /// The number that equal states share.
@@ -63,11 +69,11 @@ impl World {
     pub fn print(&self) -> u64 {
         let board = &self.running.board;
         let mut print = Print(fingerprint::coarse(&self.running.main));
-        print.add(fingerprint::coarse(&self.seen.coarse()));
+        print.add(fingerprint::coarse(&self.observer.coarse()));
         let memory = board.memory.bytes();
         for record in COPIES.map(|copy| copy.0).into_iter().chain([RESTED.0]) {
             let record = &memory[usize::from(record)..][..usize::from(LENGTH)];
-            // What is in a record that is not whole is never used.
+            // The content of a record that is not valid is never used.
             let used = if record[0] == WHOLE {
                 record
             } else {
@@ -90,6 +96,9 @@ impl World {
             board.restart().before.is_some(),
             board.waiting() > 0,
             board.is_fresh(),
+            self.is_weak,
+            self.is_late,
+            self.known > 0,
         ];
         print.add(flags.iter().fold(u64::from(truth.reference), |all, flag| {
             all << 1 | u64::from(*flag)
@@ -97,7 +106,7 @@ impl World {
         print.0
     }
 
-    /// Whether this may happen now.
+    /// True if this may happen now.
     #[must_use]
     pub fn can(&self, action: Action) -> bool {
         let board = &self.running.board;
@@ -112,25 +121,25 @@ impl World {
             | Action::LosePower(None)
             | Action::Supply(_) => true,
             Action::LosePower(Some(_)) => board.memory.under_way().is_some(),
-            Action::Weak(weak) => weak != self.seen.is_weak,
+            Action::Weak(weak) => weak != self.is_weak,
             Action::Late => board.late < 3,
             Action::Stack => board.stack_is_intact,
             Action::Deaf(deaf) => deaf != board.transmitter.held,
         }
     }
 
-    /// What happens.
+    /// Lets an action happen.
     ///
     /// # Errors
     /// The first rule that is broken by it.
     pub fn apply(&mut self, action: Action) -> Held {
-        let was_kept = self.rest_is_kept();
+        let was_kept = self.observer.rests() && self.rest_is_kept();
         match action {
-            Action::Say(line) => self.say(line.as_bytes())?,
-            Action::Noise => self.say(&[b'w', b'a', GARBLED, b'k'])?,
+            Action::Say(line) => self.say(line, line.as_bytes())?,
+            Action::Noise => self.say("", &[b'w', b'a', GARBLED, b'k'])?,
             Action::Step => {
                 self.running.main.step(&mut self.running.board);
-                self.listen()?;
+                self.listen(self.now)?;
             }
             Action::Frames(count) => self.frames(count)?,
             Action::Stall(ms) => self.stall(ms)?,
@@ -138,34 +147,37 @@ impl World {
                 let supplies = self.robot().supplies();
                 let truth = reading(&supplies, u32::from(mv), 0);
                 self.running.board.converter.set(truth);
+                self.observe(Event::Supply(u32::from(mv)));
             }
-            Action::Weak(weak) => self.seen.is_weak = weak,
+            Action::Weak(weak) => self.is_weak = weak,
             Action::Late => {
                 self.running.board.late += 1;
-                self.seen.stop();
+                self.observe(Event::Fault);
                 self.frame()?;
             }
             Action::Stack => {
                 self.running.board.stack_is_intact = false;
-                self.seen.stop();
+                self.observe(Event::Fault);
                 self.frame()?;
             }
             Action::Reset(cause) => self.reset(cause),
             Action::LosePower(torn) => {
                 self.running.lose_power(torn);
-                self.begun_anew();
-                self.seen.power_on();
+                self.restarted(Cause::Power);
             }
             Action::Deaf(deaf) => self.running.board.transmitter.held = deaf,
         }
         let robot_rests = self.running.motion().is_resting();
         if was_kept && robot_rests && !self.rest_is_kept() {
-            return broken(
-                "where the robot rests stays in the memory, also after a reset",
-                action.to_string(),
-            );
+            return broken(Rule::RestKept, action.to_string());
         }
-        self.written()
+        self.written()?;
+        self.observer.drop_pending();
+        self.observer.verdict()
+    }
+
+    fn observe(&mut self, event: Event<'_>) {
+        self.observer.observe(self.now, event);
     }
 
     fn robot(&self) -> Robot<'static> {
@@ -174,31 +186,25 @@ impl World {
 
     fn reset(&mut self, cause: Cause) {
         self.running.reset(cause);
-        self.begun_anew();
-        match cause {
-            // Somebody pressed the button, or opened the port.
-            Cause::External => self.seen.stopped = 0,
-            Cause::BrownOut => self.seen.stopped = 0,
-            _ => {
-                self.seen.stopped = 0;
-                self.seen.stop();
-            }
-        }
+        self.restarted(cause);
     }
 
     /// The program has restarted, and its output is cut off.
-    fn begun_anew(&mut self) {
+    fn restarted(&mut self, cause: Cause) {
         self.running.board.transmitter.text.clear();
-        self.seen.reset();
+        self.unread = None;
+        self.known = 0;
+        self.observe(Event::Start(cause));
     }
 
-    /// A line, up to what it does at once.
-    fn say(&mut self, line: &[u8]) -> Held {
+    /// A line, up to its immediate effect.
+    fn say(&mut self, line: &'static str, bytes: &[u8]) -> Held {
         let before = self.settled();
-        self.running.board.send(line);
+        self.running.board.send(bytes);
         self.running.board.send(b"\n");
-        self.seen.owed += 1;
-        self.seen.line_ms = 0;
+        self.observe(Event::Byte);
+        self.observe(Event::Line);
+        self.unread = Some(line);
         for _ in 0..10_000 {
             if self.running.board.waiting() == 0 {
                 break;
@@ -210,9 +216,13 @@ impl World {
             }
         }
         if self.running.board.waiting() == 0 {
-            self.foresee(&before)?;
+            self.predict(line, &before)?;
         }
-        self.listen()
+        if self.unread.is_some() {
+            let effect = effect(line, &self.robot());
+            self.order(effect, None);
+        }
+        self.listen(self.now)
     }
 
     /// The same robot with nothing left to say.
@@ -223,56 +233,92 @@ impl World {
         settled
     }
 
-    /// What has been said.
-    fn listen(&mut self) -> Held {
+    /// Judges the answer that the robot is about to give, if it gives one at once: it has
+    /// done by now what it answers.
+    fn predict(&mut self, line: &'static str, before: &Running) -> Held {
+        let after = self.settled();
+        let text = &after.board.transmitter.text;
+        let Some(answer) = text.lines().find(|line| is_final(line)) else {
+            return Ok(());
+        };
+        let print = |running: &Running| fingerprint::but_for_the_line(&running.main);
+        if answer.starts_with("err ")
+            && (print(&after) != print(before)
+                || after.board.memory.bytes() != before.board.memory.bytes())
+        {
+            return broken(Rule::Refused, text.clone());
+        }
+        if answer.starts_with("ok gait=") {
+            // It is judged as it is printed.
+            return Ok(());
+        }
+        self.known += 1;
+        self.unread = None;
+        self.answer(line, answer)?;
+        self.look_ahead()
+    }
+
+    /// Passes on the lines of the robot, decided no earlier than at `since`.
+    fn listen(&mut self, since: Time) -> Held {
         let text = std::mem::take(&mut self.running.board.transmitter.text);
         // Of the longest line the first part may be there alone.
         let (whole, rest) = text.rsplit_once("\r\n").unwrap_or(("", &text));
         rest.clone_into(&mut self.running.board.transmitter.text);
         for line in whole.split("\r\n").filter(|line| !line.is_empty()) {
-            self.hear(line)?;
+            self.observe(Event::Said(since, line));
+            if is_final(line) {
+                if self.known > 0 && !line.starts_with("ok gait=") {
+                    self.known -= 1;
+                } else if let Some(asked) = self.unread.take() {
+                    self.answer(asked, line)?;
+                }
+            }
         }
-        Ok(())
+        self.look_ahead()
     }
 
-    /// The same robot, left alone for some frames.
-    fn after(&self, frames: u32) -> Running {
-        let mut running = self.running.clone();
-        for _ in 0..frames {
-            running.frame();
+    /// Tells the observer what `boot` does although nobody listens.
+    fn predict_boot(&mut self) {
+        let mut heard = self.running.clone();
+        heard.board.transmitter.held = false;
+        heard.settle();
+        let lines = heard.board.transmitter.text.lines();
+        for line in lines.filter(|line| line.starts_with("# boot: ")) {
+            self.observe(Event::Said(self.now, line));
         }
-        running
     }
 
-    /// Frames, main running.
+    /// Lets frames pass, main running.
     fn frames(&mut self, count: u8) -> Held {
-        let (mut lit, mut longest) = (0u32, 0u32);
-        let stopped = self.seen.stopped > 0;
+        let begun = self.now;
+        let fault = (self.fault(), self.observer.stopped_since());
+        let mut edges = Vec::new();
         for _ in 0..count {
+            let was_lit = self.running.board.is_lit();
             self.frame()?;
-            lit = if self.running.board.is_lit() {
-                lit + 1
-            } else {
-                0
-            };
-            longest = longest.max(lit);
+            let is_lit = self.running.board.is_lit();
+            if is_lit != was_lit {
+                edges.push((self.now, is_lit));
+            }
         }
         if count < 100 || self.running.board.transmitter.held {
             return Ok(());
         }
-        if self.seen.owed > 0 {
-            return broken(
-                "the console is never mute for ever",
-                format!("{} lines", self.seen.owed),
-            );
+        if self.observer.owes_answers() {
+            return broken(Rule::Answered, "frames went by");
         }
-        if stopped && self.seen.stopped > count && longest > 20 {
-            return broken(
-                "whatever stopped the robot is on the LED until a person acts",
-                format!("lit for {longest} frames"),
-            );
+        let is_same = (self.fault(), self.observer.stopped_since()) == fault;
+        if is_same && self.observer.runs_for() > self.now - begun {
+            led::shows(&edges, begun + 3 * FRAME, self.now, fault.0)
+                .map_err(|seen| Broken::new(Rule::Led, seen))?;
         }
         Ok(())
+    }
+
+    /// The code of the fault that stopped the robot, 0 for none.
+    fn fault(&self) -> u8 {
+        let fault = self.running.main.control().fault();
+        fault.map_or(0, Fault::code)
     }
 
     fn frame(&mut self) -> Held {
@@ -280,94 +326,85 @@ impl World {
             // Main no longer runs; the watchdog is about to restart it.
             return self.stall(20);
         }
-        let was_on = self.seen.is_on;
-        // `stand` and `stop` within a frame leave it held, for a reason that is told.
+        // `stand` and `stop` within a frame leave it held, for a reason that is reported.
         let was_held = self.running.motion().hazard().is_some();
+        let since = self.now;
+        let rested = self.running.motion().is_resting();
         self.running.frame();
-        self.pulses(was_on, true)?;
+        if self.running.board.transmitter.held && self.running.motion().is_resting() != rested {
+            self.predict_boot();
+        }
+        self.pulses(true)?;
         if !was_held && self.running.motion().hazard().is_some() {
-            self.seen.stop();
+            self.observe(Event::Fault);
         }
-        self.listen()?;
+        // It was decided at the beginning of the frame.
+        self.listen(since + MS)?;
         self.written()?;
-        self.supply(true);
-        let hears = !self.running.board.transmitter.held && !self.running.is_over();
-        if self.seen.stopped > 3 && !self.seen.is_told && hears && !self.seen.is_late {
-            return broken(
-                "whatever stopped the robot is told on the console",
-                "nothing",
-            );
+        let is_heard = !self.running.board.transmitter.held && !self.running.is_over();
+        if is_heard && !self.is_late {
+            self.observer.check_told();
         }
-        let woken = self.seen.is_on.iter().filter(|on| **on).count();
-        if self.seen.is_weak && woken == 3 {
-            self.seen.brown_outs += 1;
-            if self.seen.brown_outs > 8 {
-                return broken("brown-outs in a row come to an end", "nine of them");
-            }
+        self.is_late = false;
+        if self.is_weak
+            && self
+                .running
+                .board
+                .begun()
+                .0
+                .iter()
+                .filter(|one| one.0 > 0)
+                .count()
+                == 3
+        {
             self.reset(Cause::BrownOut);
         }
-        Ok(())
-    }
-
-    /// Whether the supply is too low to write, to move and to hold.
-    fn is_below(&self) -> [bool; 3] {
-        let supplies = self.robot().supplies();
-        let truth = self.running.board.converter.truth();
-        let mv = 1024 * u32::from(supplies.reference) / u32::from(truth.reference.max(1));
-        let board = supplies.board;
-        [board.slow, board.stop, board.rest].map(|level| mv < u32::from(level))
-    }
-
-    fn supply(&mut self, main_ran: bool) {
-        self.seen.supply(self.is_below(), main_ran);
-        if self.seen.too_low > BELIEVED {
-            self.seen.stop();
-        }
+        self.observer.verdict()
     }
 
     /// Main does nothing; then it does what it missed, to the end of that frame. Or the
     /// watchdog restarts it.
     fn stall(&mut self, ms: u16) -> Held {
+        self.observe(Event::Stalled(self.now + Time::from(ms) * MS));
         for _ in 0..ms / 20 {
-            let was_on = self.seen.is_on;
             if self.lapse(20) {
-                return self.listen();
+                return self.listen(self.now);
             }
-            self.pulses(was_on, false)?;
-            self.supply(false);
+            self.pulses(false)?;
         }
         let left = ms % 20;
         if left > 0 {
-            let was_on = self.seen.is_on;
             if self.lapse(left) {
-                return self.listen();
+                return self.listen(self.now);
             }
             self.running.settle();
             if self.lapse(20 - left) {
-                return self.listen();
+                return self.listen(self.now);
             }
-            self.pulses(was_on, left < 5)?;
-            self.supply(false);
+            self.pulses(false)?;
         }
-        self.running.settle();
-        self.listen()
+        self.listen(self.now - FRAME)
     }
 
-    /// Time passes without main; says whether the watchdog has restarted it.
+    /// Time passes without main; true if the watchdog has restarted it.
     fn lapse(&mut self, ms: u16) -> bool {
         let bites = self.running.board.pass(ms);
         if bites {
-            self.running.reset(Cause::Watchdog);
-            self.begun_anew();
-            self.seen.stopped = 0;
-            self.seen.stop();
+            self.reset(Cause::Watchdog);
         }
         bites
     }
 
-    fn seen_frame(&mut self, begun: &Pulses, main_ran: bool) -> Held {
-        let ran = main_ran && !self.running.is_over();
-        self.seen.frame(begun, ran);
-        Ok(())
+    /// The bytes that were written to the memory.
+    fn written(&mut self) -> Held {
+        let log = &mut self.running.board.memory.log;
+        if !log.is_empty() {
+            log.clear();
+            if !self.running.board.converter.is_complete() {
+                return broken(Rule::Written, "before the supply is measured");
+            }
+            self.observe(Event::Written);
+        }
+        self.observer.verdict()
     }
 }

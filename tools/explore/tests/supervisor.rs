@@ -18,7 +18,9 @@ fn whatever_happens_and_in_whatever_order_every_rule_holds() {
     let broken: Vec<String> = found
         .broken
         .iter()
-        .map(|(rule, (times, sequence))| format!("broken {times} times: {rule}\n{sequence}"))
+        .map(|(rule, (times, sequence))| {
+            format!("broken {times} times: {}\n{sequence}", rule.sentence())
+        })
         .collect();
     assert!(broken.is_empty(), "{}", broken.join("\n\n"));
 }

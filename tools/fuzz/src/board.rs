@@ -1,135 +1,199 @@
-//! The core on a board without time: what it says and does is checked at every byte
-//! and every frame.
+//! The core on a board whose time is a call: an observer judges each byte and each frame.
 
+use lizard_core::console::command::effect;
 use lizard_core::console::line::GARBLED;
 use lizard_core::memory::copies::{self, Outcome, RESTED};
 use lizard_core::memory::record::Memory;
-use lizard_core::memory::restart::Restart;
+use lizard_core::memory::restart::{Cause, Restart};
 use lizard_core::memory::settings::Settings;
 use lizard_core::virtual_board::{Eeprom, Running};
+use lizard_core::console::word::Effect;
 use lizard_robot::Robot;
+use lizard_rules::{Event, Limits, MS, Observer, Pulse, Rule, Time};
 
-/// The core on a board without time.
+/// The core on a board whose time is a call.
 pub struct Board {
     robot: &'static Robot,
     running: Running,
+    observer: Observer,
+    now: Time,
     said: String,
-    /// The line under way as another reader of lines has it.
+    /// The line so far, as an independent reader of lines has it.
     line: Vec<u8>,
-    overlong: bool,
+    is_overlong: bool,
+}
+
+/// The limits of a robot whose supply is good and whose lines come between frames.
+fn limits(robot: &Robot) -> Limits {
+    let cycles = |us: f64| (us * 16.0).round() as u32;
+    let servos = robot.servos().each_ref();
+    Limits {
+        widths: servos.map(|servo| (cycles(servo.min_us) - 3, cycles(servo.max_us) + 3)),
+        ..Limits::default()
+    }
 }
 
 impl Board {
-    /// A robot that has begun with this memory.
+    /// A robot that has started with this memory.
     ///
     /// # Panics
-    /// If it never falls silent.
+    /// If it breaks a rule.
     #[must_use]
     pub fn new(robot: &'static Robot, memory: Eeprom) -> Self {
-        let mut running = Running::with(*robot.firmware(), memory, Restart::default());
-        // Until the supplies have been measured, a `save` waits.
-        for _ in 0..30 {
-            running.frame();
-        }
         let mut board = Self {
             robot,
-            running,
+            running: Running::with(*robot.firmware(), memory, Restart::default()),
+            observer: Observer::new(limits(robot)),
+            now: 0,
             said: String::new(),
             line: Vec::new(),
-            overlong: false,
+            is_overlong: false,
         };
-        board.settle();
+        board.observe(Event::Start(Cause::Power));
+        // Until the supplies have been measured, a `save` waits.
+        for _ in 0..30 {
+            board.frame();
+        }
         board
     }
 
-    /// Lets it write all that it has to write.
+    fn observe(&mut self, event: Event<'_>) {
+        self.observer.observe(self.now, event);
+    }
+
+    /// Lets the robot write all that it has to write.
     fn settle(&mut self) {
         self.running.settle();
-        self.said.push_str(&self.running.board.transmitter.text);
-        self.running.board.transmitter.text.clear();
+        let text = std::mem::take(&mut self.running.board.transmitter.text);
+        for line in text.lines() {
+            self.observe(Event::Said(self.now, line));
+        }
+        self.said.push_str(&text);
         self.running.board.memory.log.clear();
     }
 
-    /// What was said since the last byte.
+    fn assert_rules_hold(&mut self) {
+        let verdict = self.observer.verdict();
+        assert!(verdict.is_ok(), "{}: {:?}", verdict.unwrap_err(), self.said);
+    }
+
+    /// The output since the last byte.
     #[must_use]
     pub fn said(&self) -> &str {
         &self.said
     }
 
-    /// What it keeps.
+    /// The robot's memory.
     #[must_use]
     pub const fn memory(&self) -> &Eeprom {
         &self.running.board.memory
     }
 
-    /// A byte; what it ends has exactly one answer.
+    /// Sends a byte. A line that it ends has exactly one answer.
     ///
     /// # Panics
-    /// If it has not.
+    /// If it breaks a rule.
     pub fn take(&mut self, byte: u8) {
         self.said.clear();
-        self.running.board.send(&[byte]);
-        self.settle();
-        let mut due = 0;
+        let mut ended = None;
         match byte {
             b'\r' | b'\n' => {
-                due = usize::from(self.overlong || !self.line.trim_ascii().is_empty());
-                self.line.clear();
-                self.overlong = false;
+                let line = std::mem::take(&mut self.line);
+                let overlong = std::mem::take(&mut self.is_overlong);
+                let text = String::from_utf8_lossy(&line).to_ascii_lowercase();
+                let text = text.trim().replace('\t', " ");
+                if overlong || !line.trim_ascii().is_empty() {
+                    self.observe(Event::Line);
+                    ended = Some(if overlong { String::new() } else { text });
+                }
             }
             0x08 | 0x7f => _ = self.line.pop(),
-            // What stands for a garbled byte: its line is answered, whatever else it is.
-            GARBLED => self.overlong = true,
-            _ if self.line.len() == 63 => self.overlong = true,
+            // A garbled byte: its line is answered, whatever else it contains.
+            GARBLED => self.is_overlong = true,
+            _ if self.line.len() == 63 => self.is_overlong = true,
             _ => self.line.push(byte),
         }
-        let answers = self.said.lines().filter(|line| !line.starts_with('#'));
-        let mut count = 0;
-        for answer in answers {
-            assert!(
-                answer.starts_with("ok ") || answer.starts_with("err "),
-                "{answer}"
-            );
-            count += 1;
+        self.observe(Event::Byte);
+        self.running.board.send(&[byte]);
+        self.settle();
+        if let Some(line) = ended {
+            self.answered(&line);
         }
-        assert_eq!(count, due, "{:?}", self.said);
+        self.assert_rules_hold();
     }
 
-    /// A frame: its pulses are those of no servo beyond its limits.
+    /// Tells the observer of the answer to a line.
+    fn answered(&mut self, line: &str) {
+        assert!(
+            !self.observer.owes_answers(),
+            "{}: {line:?}",
+            Rule::OneAnswer.sentence()
+        );
+        let effect = effect(line, self.robot.firmware());
+        let said = std::mem::take(&mut self.said);
+        let is_answer = |line: &&str| !line.starts_with('#');
+        let text = said
+            .lines()
+            .find(is_answer)
+            .expect("the observer counts it");
+        if matches!(effect, Effect::Moves | Effect::Freezes | Effect::Rests) {
+            let done = Some(text.starts_with("ok "));
+            self.observe(Event::Order { effect, done });
+        }
+        let asked = self.now;
+        self.observe(Event::Answer {
+            line,
+            effect,
+            asked,
+            text,
+        });
+        self.said = said;
+    }
+
+    /// Lets a frame pass.
     ///
     /// # Panics
-    /// If one is.
+    /// If its pulses break a rule.
     pub fn frame(&mut self) {
         self.running.frame();
-        let pulses = self.running.board.submitted();
-        for (width, servo) in pulses.0.into_iter().zip(self.robot.servos()) {
-            let us = f64::from(width.0) / 16.0;
-            assert!(
-                width.0 == 0 || (servo.min_us - 0.2..=servo.max_us + 0.2).contains(&us),
-                "{us} us"
-            );
+        let widths = self.running.board.begun().0.map(|width| width.0);
+        for (servo, width) in widths
+            .into_iter()
+            .enumerate()
+            .filter(|(_, width)| *width > 0)
+        {
+            let at = self.now + (5 + 4 * servo as Time) * MS;
+            let pulse = Pulse {
+                servo,
+                width: width.into(),
+                is_cut: false,
+                is_held_up: false,
+            };
+            self.observer.observe(at, Event::Pulse(pulse));
         }
+        self.now += 20 * MS;
+        self.observe(Event::Pass);
         self.settle();
+        self.assert_rules_hold();
     }
 
-    /// The memory holds settings that are whole, or nothing; and so the pose.
+    /// Checks that the memory holds whole settings, or none; and the same for the pose.
     ///
     /// # Panics
     /// If not.
     pub fn assert_memory_is_right(&self) {
+        let rule = Rule::Memory.sentence();
         let robot = self.robot.firmware();
         let mut settings = Settings::of(robot);
         let outcome = copies::load(robot, self.memory(), &mut settings);
-        assert!(
-            matches!(outcome, Outcome::Latest | Outcome::Blank),
-            "{outcome:?}"
-        );
+        let is_whole = matches!(outcome, Outcome::Latest | Outcome::Blank);
+        assert!(is_whole, "{rule}: {outcome:?}");
         let is_forgotten = self.memory().read(RESTED.0) == 0xff;
+        let is_rest = copies::rested(robot, self.memory()).is_some();
+        assert!(is_forgotten || is_rest, "{rule}: a pose");
         assert!(
-            is_forgotten || copies::rested(robot, self.memory()).is_some(),
-            "a pose that is not whole"
+            (192..1024).all(|at| self.memory().read(at) == 0xff),
+            "{rule}"
         );
-        let beyond = 192..1024;
-        assert!(beyond.into_iter().all(|at| self.memory().read(at) == 0xff));
     }
 }

@@ -1,4 +1,4 @@
-//! What must not harm the core: any bytes at its console, any bytes in its EEPROM.
+//! Inputs that must not harm the core: any bytes at its console, any bytes in its EEPROM.
 //!
 //! Bytes come from a half-open port, a modem manager or a cat on the keyboard; the
 //! EEPROM may hold another program's data. Whatever they are, each line has one

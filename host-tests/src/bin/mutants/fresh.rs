@@ -5,7 +5,7 @@ use fastrand::Rng;
 
 use super::list::Mutant;
 
-/// What makes the console's text and nothing else. Every other file of the core, the
+/// Files that make only the console's text. Every other file of the core, the
 /// board's and the pulses' move a servo or a saved value.
 const TEXT: [&str; 8] = [
     "answer.rs",
@@ -28,7 +28,7 @@ const HOST_ONLY: [&str; 6] = [
     "section/seal.rs",
 ];
 
-/// What is written, and what is written in its place.
+/// Operators, each with the one that replaces it.
 const SWAPS: [(&str, &str); 19] = [
     (" == ", " != "),
     (" != ", " == "),
@@ -100,7 +100,7 @@ pub fn all(file: &str, text: &str) -> Vec<Mutant> {
     mutants
 }
 
-/// What a line of code can be instead, each with a word about it.
+/// Returns every changed form of a line of code, each with a word about it.
 fn changes(line: &str) -> Vec<(String, String)> {
     let code = line.split("//").next().unwrap_or_default();
     let trimmed = code.trim();

@@ -5,12 +5,10 @@
 pub struct Mutant {
     /// The file, from the root of the tree.
     pub file: String,
-    /// What is wrong with it then.
+    /// A sentence that names the mistake.
     pub wrong: String,
     /// The part of a test's name that the tests have that are tried first.
     pub test: Option<String>,
-    /// A test file that compiles the mistaken file on its own.
-    pub compiled_by: Option<String>,
     /// The package whose own tests are to notice, of code that runs on the host, too.
     pub package: Option<String>,
     /// True if nobody has chosen it.
@@ -37,7 +35,7 @@ impl Mutant {
     }
 }
 
-/// Reads the list.
+/// Reads the entries of `mutants.txt`.
 ///
 /// # Errors
 /// A line that is none of an entry's, an entry without a file, a mistake or texts.
@@ -76,7 +74,6 @@ pub fn read(list: &str) -> Result<Vec<Mutant>, String> {
                 "wrong" => mutant.wrong = value.into(),
                 "test" => mutant.test = Some(value.into()),
                 "package" => mutant.package = Some(value.into()),
-                "compiled-by" => mutant.compiled_by = Some(value.into()),
                 _ => return Err(format!("line {line_number}: what is {key:?}?")),
             }
         }

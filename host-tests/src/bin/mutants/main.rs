@@ -18,26 +18,26 @@
 mod fresh;
 mod list;
 
+use std::ffi::OsStr;
 use std::fs;
-use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use list::Mutant;
 
-/// The longest that the image's tests may take, or the mistake makes them hang.
-const PATIENCE: Duration = Duration::from_secs(1800);
+/// The longest that the image's tests may take, s, or the mistake makes them hang.
+const PATIENCE: u32 = 1_800;
 
-/// The same of a package's own, which take seconds.
-const PATIENCE_ALONE: Duration = Duration::from_secs(300);
+/// The longest that a package's own tests may take, s. They take seconds.
+const PATIENCE_ALONE: u32 = 300;
 
 /// The root of the repository.
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// What became of a mistake.
+/// The outcome of a mistake.
 enum Fate {
     Caught(String),
     Lives,
@@ -163,7 +163,7 @@ fn text(path: &Path) -> Result<String, String> {
 /// A copy of the tree to make mistakes in, with build folders of its own.
 struct Scratch {
     folder: PathBuf,
-    /// What is in it.
+    /// Its files.
     files: Vec<String>,
 }
 
@@ -219,10 +219,9 @@ impl Scratch {
         // Of the copy: the tree may be edited meanwhile.
         let right = text(&self.folder.join("tree").join(&mutant.file))?;
         self.write(&mutant.file, mutant.make(&right)?.as_bytes())?;
-        let fate = match (&mutant.compiled_by, &mutant.package) {
-            (Some(test), _) => self.alone(test),
-            (None, Some(package)) => self.in_its_package(package, mutant),
-            (None, None) => self.in_the_firmware(mutant),
+        let fate = match &mutant.package {
+            Some(package) => self.in_its_package(package, mutant),
+            None => self.in_the_firmware(mutant),
         };
         self.write(&mutant.file, right.as_bytes())?;
         fate.map_err(|error| format!("{}: {}: {error}", mutant.file, mutant.wrong))
@@ -285,48 +284,34 @@ impl Scratch {
         arguments: &[&str],
     ) -> Result<Option<(bool, String)>, String> {
         run_limited(
-            Command::new("cargo")
-                .args(["test", "-p", package])
-                .args(arguments)
-                .current_dir(self.folder.join("tree/crates"))
-                .env("CARGO_TARGET_DIR", self.folder.join("host")),
             PATIENCE_ALONE,
+            &self.folder.join("tree/crates"),
+            &[&["-p", package], arguments].concat(),
+            &[("CARGO_TARGET_DIR", self.folder.join("host").as_os_str())],
         )
-    }
-
-    /// Compiles and runs one test file of the copy without cargo.
-    fn alone(&self, test: &str) -> Result<Fate, String> {
-        let program = self.folder.join("alone");
-        let built = Command::new("rustc")
-            .args(["--edition=2024", "--test", "-o"])
-            .arg(&program)
-            .arg(self.folder.join("tree").join(test))
-            .stderr(Stdio::null())
-            .status();
-        if !built.is_ok_and(|status| status.success()) {
-            return Err("it does not build".into());
-        }
-        let run = Command::new(&program).output().map_err(|e| e.to_string())?;
-        let failed = failures(&String::from_utf8_lossy(&run.stdout));
-        Ok(if failed.is_empty() {
-            Fate::Lives
-        } else {
-            Fate::Caught(failed.join(", "))
-        })
     }
 }
 
 /// Runs those of the firmware's tests whose names have `filter` in them. Returns the
 /// names of those that fail, or nothing if they do not end.
 fn tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
+    let arguments = [
+        "-p",
+        "lizard-host-tests",
+        "--test",
+        "firmware",
+        "--test",
+        "trouble",
+    ];
     let run = run_limited(
-        Command::new("cargo")
-            .args(["test", "-p", "lizard-host-tests"])
-            .args(["--test", "firmware", "--test", "trouble", "--", filter])
-            .current_dir(root().join("crates"))
-            .env("LIZARD_ELF", elf)
-            .env("LIZARD_FUZZ", "5"), // as long as in continuous integration
         PATIENCE,
+        &root().join("crates"),
+        &[&arguments[..], &["--", filter]].concat(),
+        // As long as in continuous integration.
+        &[
+            ("LIZARD_ELF", elf.as_os_str()),
+            ("LIZARD_FUZZ", "5".as_ref()),
+        ],
     )?;
     let Some((_, said)) = run else {
         return Ok(None);
@@ -337,35 +322,29 @@ fn tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
     Ok(Some(failures(&said)))
 }
 
-/// Runs tests; says whether they passed, and what they said. Nothing if they do not end.
+/// Runs a command of cargo in a folder. Returns true if the tests passed, and their output;
+/// nothing if they do not end within `patience`, in seconds.
 fn run_limited(
-    command: &mut Command,
-    patience: Duration,
+    patience: u32,
+    folder: &Path,
+    arguments: &[&str],
+    variables: &[(&str, &OsStr)],
 ) -> Result<Option<(bool, String)>, String> {
-    let output = root().join("target/mutants/tests.txt");
-    let file = fs::File::create(&output).map_err(|error| error.to_string())?;
-    let mut run = command
+    /// The exit code of `timeout`, which also ends the tests that cargo has started.
+    const TOO_LONG: i32 = 124;
+    let run = Command::new("timeout")
+        .args(["--kill-after=5", &patience.to_string(), "cargo", "test"])
+        .args(arguments)
+        .current_dir(folder)
         .env("PROPTEST_RNG_SEED", "1")
         .env("RUST_BACKTRACE", "0")
-        .stdout(file)
+        .envs(variables.iter().copied())
         .stderr(Stdio::null())
-        .process_group(0)
-        .spawn()
+        .output()
         .map_err(|error| format!("cargo: {error}"))?;
-    let begin = Instant::now();
-    loop {
-        if let Some(status) = run.try_wait().map_err(|error| error.to_string())? {
-            return Ok(Some((status.success(), text(&output)?)));
-        }
-        if begin.elapsed() > patience {
-            // With the tests that it has started.
-            let group = format!("-{}", run.id());
-            _ = Command::new("kill").args(["-9", "--", &group]).status();
-            _ = run.wait();
-            return Ok(None);
-        }
-        std::thread::sleep(Duration::from_millis(50));
-    }
+    let said = String::from_utf8_lossy(&run.stdout).into_owned();
+    let is_over = run.status.code() != Some(TOO_LONG);
+    Ok(is_over.then_some((run.status.success(), said)))
 }
 
 /// The tests that failed, by their harness's lines.

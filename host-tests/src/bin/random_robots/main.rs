@@ -54,7 +54,7 @@ fn run(arguments: &[String]) -> Result<(), String> {
     Ok(())
 }
 
-/// Whether something is true of a robot.
+/// A property of a robot.
 type Has = fn(&Robot) -> bool;
 
 /// An error that names what no robot has.

@@ -9,8 +9,9 @@ use std::process::ExitCode;
 use std::thread;
 use std::time::Instant;
 
-use lizard_host_tests::trouble::{Scenario, campaign, judge};
+use lizard_host_tests::trouble::{Scenario, campaign, events, judge};
 use lizard_host_tests::{FirmwareBench, robot};
+use lizard_rules::{Event, MS, Time};
 use simulated_uno::{FREQUENCY, Image};
 
 /// Failing scenarios that are printed whole.
@@ -36,11 +37,8 @@ fn main() -> ExitCode {
     let summary = campaign(&image, robot(), seed, count, threads, |done, failure| {
         if let Some(failure) = failure {
             let number = failure.scenario.number;
-            let (sentence, seen) = &failure.broken[0];
-            println!(
-                "scenario {number} ({}): not so: {sentence}: {seen}",
-                failure.scenario.activity
-            );
+            let (activity, broken) = (failure.scenario.activity, &failure.broken[0]);
+            println!("scenario {number} ({activity}): not so: {broken}");
         } else if done.is_multiple_of(100) && std::io::stdout().is_terminal() {
             print!("{done} of {count}\r");
             _ = std::io::stdout().flush();
@@ -63,39 +61,29 @@ fn main() -> ExitCode {
     }
 }
 
-/// Plays one and says all that was said.
+/// Plays one scenario and prints its events.
 fn one(image: &Image, seed: u64, number: u64) -> ExitCode {
     let scenario = Scenario::of(seed, number, robot());
     print!("{scenario}");
     let record = lizard_host_tests::trouble::play(image, robot(), &scenario);
-    for heard in &record.heard {
-        println!(
-            "{:10.3} ms  > {}",
-            heard.cycle as f64 / 16_000.0,
-            heard.text
-        );
-    }
-    for start in &record.starts {
-        println!(
-            "{:10.3} ms  start: {:?}",
-            start.cycle as f64 / 16_000.0,
-            start.cause
-        );
-    }
-    for line in &record.lines {
-        println!("{:10.3} ms  {}", line.cycle as f64 / 16_000.0, line.text);
-    }
-    for begin in record.begins() {
-        let at = begin.pulse.start as f64 / 16_000.0;
-        println!(
-            "{at:10.3} ms  A{} begins, {} cycles",
-            begin.servo + 1,
-            begin.pulse.width
-        );
+    let mut last = [Time::MIN / 2; 4];
+    for (at, event) in events(&record) {
+        let is_told = match event {
+            Event::Byte | Event::Pass => false,
+            // Only the first after the servo had none.
+            Event::Pulse(pulse) => {
+                let before = std::mem::replace(&mut last[pulse.servo], at);
+                at - before > 30 * MS
+            }
+            _ => true,
+        };
+        if is_told {
+            println!("{:10.3} ms  {event:?}", at as f64 / MS as f64);
+        }
     }
     match judge(image, robot(), &scenario).1 {
         None => {
-            println!("every sentence holds");
+            println!("every rule holds");
             ExitCode::SUCCESS
         }
         Some(failure) => {

@@ -1,0 +1,118 @@
+//! Answers, and the promises that they make.
+
+use lizard_core::console::word::Effect;
+
+use crate::event::{MS, Time};
+use crate::observer::Observer;
+use crate::rule::Rule;
+
+/// From an order to the pulses of all four servos.
+const UNTIL_AWAKE: Time = 600 * MS;
+
+/// From an answer that there are no pulses, to the end of their watch.
+const WATCHED: Time = 140 * MS;
+
+/// A pose is in the EEPROM so long after `rest`: the bytes of a record.
+const KEPT_AFTER: Time = 400 * MS;
+
+/// Lines that no robot may accept.
+const WRONG: [&str; 6] = [
+    "nonsense",
+    "trim 1 90",
+    "speed 5",
+    "limit 2 1 2",
+    "boot walk 1",
+    "pose 0 0 0 0",
+];
+
+impl Observer {
+    /// Judges the answer to a line, and notes what it promises.
+    pub(crate) fn answer(&mut self, line: &str, effect: Effect, asked: Time, text: &str) {
+        let at = self.now;
+        if text.starts_with("ok gait=") {
+            return self.status(text);
+        }
+        if !text.starts_with("ok") {
+            return;
+        }
+        if WRONG.contains(&line) {
+            self.fail(Rule::Wrong, format!("{line}: {text}"));
+        }
+        // Another time may have been saved.
+        if matches!(text, "ok load" | "ok factory") {
+            self.deadman = 0;
+        }
+        if let Some(ms) = text.strip_prefix("ok deadman ") {
+            self.deadman = ms.parse().unwrap_or(0) * MS;
+        }
+        match effect {
+            Effect::Moves if !self.is_troubled(at) => {
+                self.pending.moves = Some((at, at + UNTIL_AWAKE, [false; 4]));
+            }
+            Effect::Rests => {
+                if self.disturbed <= asked {
+                    self.pending.quiet =
+                        Some((at + self.limits.frame_left, at + WATCHED, Rule::RestEnds));
+                }
+                let poor = self.limits.levels[0] + crate::supply::WELL_ABOVE;
+                let good = self.supply.is_good_since(self.rested, poor);
+                let again = self.rested > self.start && asked > self.rested + KEPT_AFTER;
+                if again && good && self.limits.keeps_memory {
+                    self.pending.unwritten = Some(asked + 500 * MS);
+                } else if self.rested < self.start {
+                    self.rested = asked;
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Judges the promises whose time has come.
+    pub(crate) fn check_pending(&mut self) {
+        if let Some((from, until, has_pulses)) = self.pending.moves
+            && self.now > until
+        {
+            self.pending.moves = None;
+            let missing = has_pulses.iter().position(|has| !has);
+            if let Some(servo) = missing
+                && !self.is_troubled(from)
+            {
+                self.fail(Rule::Moves, format!("A{} has no pulses", servo + 1));
+            }
+        }
+        if let Some((until, text)) = self.pending.status.take_if(|(until, _)| self.now > *until)
+            && !self.is_troubled(until - 600 * MS)
+        {
+            self.fail(Rule::StatusSaysWhy, text);
+        }
+        self.pending.unwritten.take_if(|until| self.now > *until);
+    }
+
+    /// A pulse begins: promises about pulses are judged by it.
+    pub(crate) fn pulse_is_expected(&mut self, servo: usize) {
+        let at = self.now;
+        if let Some((_, _, has_pulses)) = &mut self.pending.moves {
+            has_pulses[servo] = true;
+        }
+        self.pending.status = None;
+        if let Some((from, until, rule)) = self.pending.quiet
+            && (from..until).contains(&at)
+            && (rule == Rule::RestEnds || !self.is_troubled(from - self.limits.frame_left))
+        {
+            let ms = (at - from + self.limits.frame_left) / MS;
+            self.fail(rule, format!("A{} has a pulse {ms} ms later", servo + 1));
+            self.pending.quiet = None;
+        }
+    }
+
+    /// True if a servo of a robot that restarts now must wake where it rests.
+    pub(crate) fn outlasts_a_rest(&self, servo: usize) -> bool {
+        let since = self.servos[servo].whole_at;
+        let poor = self.limits.levels[0] + crate::supply::WELL_ABOVE;
+        self.limits.keeps_memory
+            && self.now - since > KEPT_AFTER
+            && self.supply.is_good_since(since, poor)
+            && self.disturbed <= since
+            && !self.is_unsaved
+    }
+}

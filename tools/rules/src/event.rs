@@ -1,0 +1,81 @@
+//! Observations from outside the robot, and their times.
+
+use lizard_core::memory::restart::Cause;
+use lizard_core::console::word::Effect;
+
+/// A time in cycles of 1/16 us.
+pub type Time = i64;
+
+/// Cycles of a millisecond.
+pub const MS: Time = 16_000;
+
+/// A time before any event.
+pub(crate) const NEVER: Time = Time::MIN / 4;
+
+/// A servo's pulse.
+#[derive(Clone, Copy, Debug)]
+pub struct Pulse {
+    /// The servo, 0 to 3.
+    pub servo: usize,
+    /// The width, cycles.
+    pub width: u32,
+    /// True if a reset or the supply cut it short.
+    pub is_cut: bool,
+    /// True if interrupts were held up when it ought to have ended.
+    pub is_held_up: bool,
+}
+
+/// An observation.
+#[derive(Clone, Copy, Debug)]
+pub enum Event<'a> {
+    /// Time passes.
+    Pass,
+    /// The program starts.
+    Start(Cause),
+    /// RESET is pulled, or power goes.
+    Cut,
+    /// Main executes nothing until then.
+    Stalled(Time),
+    /// Interrupts are held up until then.
+    HeldUp(Time),
+    /// The supply has this many mV from now on.
+    Supply(u32),
+    /// A byte arrives at the robot.
+    Byte,
+    /// The end of a line arrives that needs an answer.
+    Line,
+    /// A command that moves, freezes or rests the robot; true in `done` if it was accepted,
+    /// false if refused, `None` if unknown.
+    Order {
+        /// Its effect on the servos.
+        effect: Effect,
+        /// Its outcome.
+        done: Option<bool>,
+    },
+    /// Settings of the servos change; true if the memory has them.
+    Calibrated {
+        /// True if the settings in use are saved.
+        saved: bool,
+    },
+    /// The answer to a line.
+    Answer {
+        /// The line.
+        line: &'a str,
+        /// The line's effect on the servos.
+        effect: Effect,
+        /// When it was sent.
+        asked: Time,
+        /// The answer.
+        text: &'a str,
+    },
+    /// A line that was sent at this time got no answer.
+    Unanswered(Time, &'a str),
+    /// A line of the robot, answers included; its first byte was written at this time.
+    Said(Time, &'a str),
+    /// A pulse begins.
+    Pulse(Pulse),
+    /// A byte of the EEPROM is written.
+    Written,
+    /// A fault that stops the robot occurs.
+    Fault,
+}

@@ -1,0 +1,49 @@
+//! The LED: short flashes, as many as the fault's code, and a pause; without a fault long
+//! and slow.
+
+use crate::event::{MS, Time};
+
+/// The words of `fault=` in `status`, by their code.
+const FAULTS: [&str; 8] = [
+    "none", "guard", "supply", "link", "watchdog", "late", "stack", "brownout",
+];
+
+/// The code of a fault, by its word in `status`.
+///
+/// # Errors
+/// A word that is no fault's.
+pub fn code(fault: &str) -> Result<u8, String> {
+    let code = FAULTS.iter().position(|word| *word == fault);
+    code.map(|code| code as u8)
+        .ok_or_else(|| format!("fault={fault} is not known"))
+}
+
+/// Checks that the LED shows nothing but a fault's `code`, 0 for none, in `from..to`.
+/// `edges` are the LED's changes: a time, and true if it was switched on.
+///
+/// # Errors
+/// The first part of a pattern that belongs to no fault or to another one.
+pub fn shows(edges: &[(Time, bool)], from: Time, to: Time, code: u8) -> Result<(), String> {
+    let mut flashes = None;
+    for pair in edges.windows(2) {
+        if pair[0].0 < from || pair[1].0 > to {
+            continue;
+        }
+        let ms = (pair[1].0 - pair[0].0) / MS;
+        match (pair[0].1, ms) {
+            (true, 150..=170) if code > 0 => flashes = flashes.map(|n: u8| n + 1),
+            (false, 150..=170) if code > 0 => {}
+            (false, 1_100..=1_140) if code > 0 => {
+                if flashes.is_some_and(|n| n != code) {
+                    return Err(format!("fault {code}: the LED flashes {flashes:?} times"));
+                }
+                flashes = Some(0);
+            }
+            (_, 630..=650) if code == 0 => {}
+            (high, ms) => {
+                return Err(format!("fault {code}: the LED is high={high} for {ms} ms"));
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,75 @@
+//! The observer's memory, as coarse as tells states apart.
+
+use std::fmt;
+
+use crate::event::{MS, Time};
+use crate::observer::Observer;
+
+/// Frames of 20 ms in few classes.
+#[must_use]
+pub const fn frames_class(age: Time) -> u8 {
+    match age / (20 * MS) {
+        ..=0 => 0,
+        1..=3 => 1,
+        4..=14 => 4,
+        15..=70 => 15,
+        _ => 71,
+    }
+}
+
+impl Observer {
+    /// A value whose `Debug` is the same for states that need no telling apart.
+    #[must_use]
+    pub fn coarse(&self) -> impl fmt::Debug + use<> {
+        let age = |at: Time| frames_class(self.now.saturating_sub(at));
+        let signed = |age: i64| {
+            if age > 0 {
+                i16::from(frames_class(age))
+            } else {
+                -i16::from(frames_class(-age)) - 1
+            }
+        };
+        let servos = self.servos.map(|servo| {
+            let is_on = self.now - servo.at < 30 * MS;
+            (
+                servo.width >> 11,
+                is_on,
+                servo.since,
+                servo.is_hung,
+                servo.is_lost,
+            )
+        });
+        let last = self.servos.iter().map(|servo| servo.at).max();
+        let silent = last.map(age);
+        let since_line = if self.deadman > 0 {
+            (self.now - self.last_line) / (20 * MS)
+        } else {
+            0
+        };
+        let recent = |at: Time, ms: Time| self.now - at < ms * MS;
+        let brown_outs = self
+            .brown_outs
+            .iter()
+            .filter(|at| recent(**at, 4_000) && **at > self.ordered);
+        (
+            (servos, silent, since_line, self.deadman, self.lines),
+            (
+                self.permission.may,
+                self.permission.ends(),
+                self.permission.boot.is_some(),
+            ),
+            (
+                recent(self.start, 500),
+                recent(self.ordered, 45),
+                recent(self.disturbed, 300),
+            ),
+            self.supply.ages(self.limits.levels, self.now).map(signed),
+            (
+                self.reports.stopped.map(age),
+                self.reports.is_told,
+                recent(self.reports.told, 400),
+            ),
+            (brown_outs.count(), self.cause),
+        )
+    }
+}

@@ -1,0 +1,137 @@
+//! Reports of a stop: by `status` and on the console.
+
+use lizard_core::memory::restart::Cause;
+use lizard_core::virtual_board::is_final;
+
+use crate::event::{MS, NEVER, Time};
+use crate::observer::Observer;
+use crate::rule::Rule;
+
+/// A stop, and its report.
+#[derive(Clone, Debug)]
+pub(crate) struct Reports {
+    /// Since when the robot is stopped by a fault, until a person acts.
+    pub stopped: Option<Time>,
+    /// True once the console has said why.
+    pub is_told: bool,
+    /// When the console last told of a fault.
+    pub told: Time,
+}
+
+impl Default for Reports {
+    fn default() -> Self {
+        Self {
+            stopped: None,
+            is_told: false,
+            told: NEVER,
+        }
+    }
+}
+
+impl Reports {
+    /// A fault stops the robot.
+    pub(crate) fn stop(&mut self, at: Time) {
+        if self.stopped.is_none() {
+            self.stopped = Some(at);
+            self.is_told = at - self.told < 400 * MS;
+        }
+    }
+
+    pub(crate) fn start(&mut self, cause: Cause, at: Time) {
+        *self = Self::default();
+        if cause == Cause::Watchdog {
+            self.stopped = Some(at);
+        }
+    }
+
+    pub(crate) const fn order(&mut self) {
+        self.stopped = None;
+    }
+}
+
+impl Observer {
+    /// A line of the robot.
+    pub(crate) fn said(&mut self, since: Time, line: &str) {
+        // After a reset the banner follows the part of a line that was cut off.
+        if is_final(line) && !line.contains("# lizard ") {
+            self.lines -= 1;
+            if self.lines < 0 {
+                self.fail(Rule::OneAnswer, format!("unasked: {line}"));
+            }
+        }
+        if line.starts_with("# fault: ") || line.starts_with("# held") {
+            self.reports.is_told = true;
+            self.reports.told = self.now;
+            if line.contains("no line for") {
+                self.reports.stop(self.now);
+                let silence = since - self.last_line;
+                if self.deadman > 0 && silence < self.deadman {
+                    let (ms, says) = (silence / MS, self.deadman / MS);
+                    self.fail(Rule::Deadman, format!("deadman {says}, after {ms} ms"));
+                }
+            }
+        }
+        if let Some(text) = line.strip_prefix("# supply: ") {
+            self.supply_says(text);
+        }
+        if let Some(boot) = line.strip_prefix("# boot: ") {
+            if boot == "rest" {
+                self.booted_to_rest = self.now;
+            }
+            self.permission.booted(self.now, boot);
+        }
+        if line.ends_with("pulses ended") || line.contains("several times in a row") {
+            self.permission.end(self.now);
+        }
+    }
+
+    /// Judges that a stop has been reported on the console by now; the apparatus asks when
+    /// somebody listens.
+    pub fn check_told(&mut self) {
+        let stopped = self.reports.stopped;
+        let is_due = |at| self.now - at > self.limits.until_told;
+        if stopped.is_some_and(is_due) && !self.reports.is_told {
+            self.fail(Rule::Told, "nothing on the console");
+        }
+    }
+
+    /// Judges an answer to `status`.
+    pub(crate) fn status(&mut self, text: &str) {
+        let at = self.now;
+        let value = |key: &str| {
+            let mut pairs = text.split(' ').filter_map(|pair| pair.split_once('='));
+            pairs.find(|(name, _)| *name == key).map(|(_, value)| value)
+        };
+        let (gait, fault) = (value("gait"), value("fault"));
+        let has_fault = fault != Some("none");
+        if !has_fault && value("guard") == Some("held") {
+            self.fail(Rule::GuardNamed, text);
+        }
+        let until_told = self.limits.until_told;
+        let is_due = |since| at - since > until_told;
+        if !has_fault && self.reports.stopped.is_some_and(is_due) {
+            self.fail(Rule::Told, text);
+        }
+        let hung = self.cause == Cause::Watchdog && is_due(self.start);
+        if hung && value("reset") != Some("watchdog") {
+            self.fail(Rule::Told, text);
+        }
+        let stop = self.limits.levels[1].saturating_sub(self.limits.exact);
+        let low = at - 340 * MS;
+        if !has_fault && low > self.start && self.supply.is_low_since(stop, low) {
+            self.fail(Rule::Told, format!("the supply is low: {text}"));
+        }
+        self.check_told();
+        if has_fault && self.reports.stopped.is_none() {
+            self.reports.stopped = Some(at);
+            self.reports.is_told = true;
+        }
+        if gait == Some("rest") {
+            self.pending.quiet =
+                Some((at + self.limits.frame_left, at + 140 * MS, Rule::RestIsRest));
+        } else if !has_fault && self.ordered < at - 400 * MS && !self.is_troubled(at - 400 * MS) {
+            let silent = self.servos.iter().all(|servo| servo.at < at - 200 * MS);
+            self.pending.status = silent.then(|| (at + 200 * MS, text.to_owned()));
+        }
+    }
+}

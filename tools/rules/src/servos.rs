@@ -1,0 +1,276 @@
+//! Pulses: when they may begin, and how far each may be from the one before.
+
+use lizard_core::memory::restart::Cause;
+use lizard_core::console::word::Effect;
+
+use crate::event::{MS, NEVER, Pulse, Time};
+use crate::observer::Observer;
+use crate::rule::Rule;
+
+/// A servo without a pulse for longer has none: a frame was left out.
+const GONE: Time = 30 * MS;
+
+/// From an order to rest, to the end of the last pulse.
+const UNTIL_REST: Time = 45 * MS;
+
+/// From a start to what `boot` says, somewhat early: the first tick comes before a frame
+/// has passed.
+const BOOT: Time = 2_975 * MS;
+
+/// Pulses that begin so close to each other begin in one frame, or in two that follow:
+/// servos are to wake 0.1 s apart.
+const TOGETHER: Time = 75 * MS;
+
+/// From the end of the pulses to the reset of a hang: the watchdog's second stage and a
+/// frame.
+const UNTIL_RESET: Time = 160 * MS;
+
+/// Permission for pulses to begin.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Permission {
+    /// True while pulses may begin.
+    pub may: bool,
+    /// When it ends, and true if an order ends it.
+    end: Option<(Time, bool)>,
+    /// When `boot` grants it.
+    pub boot: Option<Time>,
+}
+
+impl Permission {
+    pub(crate) fn advance(&mut self, now: Time) {
+        if self.boot.take_if(|at| *at <= now).is_some() {
+            self.may = true;
+        }
+        if self.end.take_if(|(at, _)| *at <= now).is_some() {
+            self.may = false;
+        }
+    }
+
+    /// An order that something else comes before is perhaps not obeyed.
+    pub(crate) fn cancel_order(&mut self) {
+        self.end.take_if(|(_, is_order)| *is_order);
+    }
+
+    pub(crate) fn start(&mut self, cause: Cause, at: Time, boots_to_rest: bool) {
+        self.cancel_order();
+        self.may |= cause == Cause::Power;
+        let boots = cause != Cause::Watchdog && !boots_to_rest;
+        self.boot = boots.then_some(at + BOOT);
+    }
+
+    pub(crate) fn order(&mut self, at: Time, effect: Effect, is_sure: bool) {
+        self.cancel_order();
+        match effect {
+            Effect::Rests if is_sure => self.end = Some((at + UNTIL_REST, true)),
+            Effect::Moves => {
+                self.may = true;
+                self.end = None;
+            }
+            _ => {}
+        }
+    }
+
+    pub(crate) fn booted(&mut self, at: Time, boot: &str) {
+        if boot == "rest" {
+            self.end(at);
+        } else {
+            self.may = true;
+        }
+    }
+
+    pub(crate) const fn end(&mut self, at: Time) {
+        self.end = Some((at + UNTIL_REST, false));
+    }
+
+    pub(crate) const fn ends(&self) -> bool {
+        self.end.is_some()
+    }
+}
+
+/// The events since a servo's last whole pulse, as far as they matter for the next one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Since {
+    /// Nothing that a servo may leap by.
+    Nothing,
+    /// A reset that left RAM alone, of a robot that had pulses.
+    Reset,
+    /// A reset of a robot that rested.
+    ResetInRest,
+    /// The servo's place is not known.
+    Unknown,
+}
+
+/// A servo's last pulses.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Servo {
+    /// The start of the last pulse.
+    pub at: Time,
+    /// The end of the last pulse.
+    pub end: Time,
+    /// The width of the last whole pulse.
+    pub width: u32,
+    /// The start of the last whole pulse.
+    pub whole_at: Time,
+    pub since: Since,
+    /// True if a hang interrupted the pulses.
+    pub is_hung: bool,
+    /// True if a reset made the robot forget where the servo is.
+    pub is_lost: bool,
+    /// True if settings have changed.
+    pub is_calibrated: bool,
+    held_up: Time,
+}
+
+impl Servo {
+    pub(crate) const UNKNOWN: Self = Self {
+        at: NEVER,
+        end: NEVER,
+        width: 0,
+        whole_at: NEVER,
+        since: Since::Unknown,
+        is_hung: false,
+        is_lost: false,
+        is_calibrated: false,
+        held_up: NEVER,
+    };
+
+    /// Interrupts are held up: frames go by without a pulse.
+    pub(crate) fn miss_pulses(&mut self, until: Time) {
+        self.held_up = until;
+        if self.since == Since::Nothing {
+            self.since = Since::Unknown;
+        }
+    }
+
+    /// A servo that is told to rest before it woke has no pulse to start from.
+    pub(crate) fn released(&mut self) {
+        self.is_hung = false;
+        if self.since == Since::Reset {
+            self.since = Since::Unknown;
+        }
+    }
+
+    pub(crate) fn restart(
+        &mut self,
+        is_hung: bool,
+        may: bool,
+        takes_over: bool,
+        outlasts_rest: bool,
+    ) {
+        self.is_hung |= is_hung;
+        self.since = match self.since {
+            Since::Nothing if !may && outlasts_rest => Since::ResetInRest,
+            Since::Nothing | Since::Reset if may && takes_over => Since::Reset,
+            Since::ResetInRest => Since::ResetInRest,
+            Since::Reset if takes_over => Since::Reset,
+            _ => Since::Unknown,
+        };
+    }
+}
+
+impl Observer {
+    /// Judges a pulse by the rules and the pulses before it.
+    pub(crate) fn pulse(&mut self, pulse: Pulse) {
+        let at = self.now;
+        let servo = self.servos[pulse.servo];
+        let name = format_args!("A{}", pulse.servo + 1);
+        let (least, most) = self.limits.widths[pulse.servo];
+        let short = pulse.width < least && !pulse.is_cut;
+        // A falling edge that is held up comes late, at worst with the next slot.
+        let long = pulse.width > most && !pulse.is_held_up || pulse.width > 65_000;
+        if short || long {
+            let seen = format!("{name} gets {} cycles", pulse.width);
+            self.fail(Rule::Travel, seen);
+        }
+        let begins = at - servo.at > GONE;
+        if begins {
+            self.begins(pulse);
+        }
+        self.pulse_is_expected(pulse.servo);
+        let leap = pulse.width.abs_diff(servo.width);
+        let is_whole = !pulse.is_cut && !pulse.is_held_up;
+        let is_known = servo.whole_at > NEVER && !(begins && servo.is_calibrated);
+        if is_whole && is_known && leap > self.limits.leap[pulse.servo] {
+            let seen = format!("{name} has {} cycles and then {}", servo.width, pulse.width);
+            match servo.since {
+                Since::Nothing => self.fail(Rule::Leap, seen),
+                Since::Reset => self.fail(Rule::LeapByReset, seen),
+                Since::ResetInRest => self.fail(Rule::RestPose, seen),
+                Since::Unknown => {}
+            }
+        }
+        let servo = &mut self.servos[pulse.servo];
+        servo.at = at;
+        servo.end = at + Time::from(pulse.width);
+        if is_whole {
+            *servo = Servo {
+                width: pulse.width,
+                whole_at: at,
+                since: if servo.held_up > at {
+                    Since::Unknown
+                } else {
+                    Since::Nothing
+                },
+                is_hung: false,
+                is_lost: false,
+                is_calibrated: false,
+                ..*servo
+            };
+        }
+        self.is_silence_judged = false;
+    }
+
+    /// Judges a servo's first pulse after it had none.
+    fn begins(&mut self, pulse: Pulse) {
+        let at = self.now;
+        let servo = self.servos[pulse.servo];
+        let name = format!("A{}", pulse.servo + 1);
+        if !self.permission.may {
+            self.fail(Rule::Begins, format!("{name} begins"));
+        }
+        let is_after_hang = servo.is_hung
+            && !servo.is_lost
+            && servo.whole_at > NEVER
+            && at - servo.whole_at < 1_000 * MS;
+        let is_unordered = self.ordered < servo.whole_at;
+        let leap = pulse.width.abs_diff(servo.width);
+        if is_after_hang && is_unordered && !pulse.is_cut && leap > self.limits.leap[pulse.servo] {
+            let seen = format!(
+                "{name} had {} cycles before and {} after",
+                servo.width, pulse.width
+            );
+            self.fail(Rule::Held, seen);
+        }
+        let (last, last_after_hang) = self.last_begin;
+        if at - last < TOGETHER && !(is_after_hang && last_after_hang) {
+            let ms = (at - last) / MS;
+            self.fail(Rule::OneByOne, format!("{name}, {ms} ms after another"));
+        }
+        self.last_begin = (at, is_after_hang);
+    }
+
+    /// Judges an end of all pulses that has no reason: the program hung, and then a reset
+    /// follows.
+    pub(crate) fn check_silence(&mut self) {
+        let Some(end) = self.servos.iter().map(|servo| servo.end).max() else {
+            return;
+        };
+        if self.is_silence_judged || self.now - end < UNTIL_RESET {
+            return;
+        }
+        self.is_silence_judged = true;
+        let rest = self.limits.levels[2] + self.limits.exact;
+        let has_reason = self.sent_to_rest > end - 400 * MS
+            || self.cut > end - 25 * MS
+            || self.start > end - 25 * MS
+            || self.booted_to_rest > end - 60 * MS
+            || self.supply.low_for(rest, end - 600 * MS, end) > 0;
+        if !has_reason {
+            let ms = (self.now - end) / MS;
+            self.fail(
+                Rule::Silence,
+                format!("no pulses for {ms} ms, and no reset"),
+            );
+        }
+    }
+}

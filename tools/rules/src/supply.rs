@@ -1,0 +1,123 @@
+//! The supply: for how long it has been low, and what that forbids.
+
+use crate::event::{MS, NEVER, Time};
+use crate::observer::Observer;
+use crate::rule::Rule;
+
+/// A supply in good order is so far above its first level, mV.
+pub(crate) const WELL_ABOVE: u32 = 200;
+
+/// Six frames, less one before the first reading and one after the last; a reading stands
+/// for two.
+const SIX_FRAMES: Time = 80 * MS;
+
+/// Readings of a supply that has sunk are all low then: six frames and two readings.
+const SURELY_LOW: Time = 220 * MS;
+
+/// The first reading is complete in the second frame.
+const FIRST_READING: Time = 20 * MS;
+
+/// The supply's history of two seconds.
+#[derive(Clone, Debug)]
+pub(crate) struct Supply {
+    /// Each voltage, mV, from a time on.
+    history: Vec<(Time, u32)>,
+    /// When it was last not in good order.
+    pub poor: Time,
+}
+
+impl Default for Supply {
+    fn default() -> Self {
+        Self {
+            history: Vec::new(),
+            poor: NEVER,
+        }
+    }
+}
+
+impl Supply {
+    pub(crate) fn set(&mut self, at: Time, mv: u32, poor: u32) {
+        if self.now() < poor || mv < poor {
+            self.poor = at;
+        }
+        let is_old = |pair: &[(Time, u32)]| pair[1].0 < at - 2_000 * MS;
+        let old = self.history.windows(2).take_while(|pair| is_old(pair));
+        let old = old.count();
+        self.history.drain(..old);
+        self.history.push((at, mv));
+    }
+
+    fn now(&self) -> u32 {
+        self.history.last().map_or(u32::MAX, |(_, mv)| *mv)
+    }
+
+    /// True if it has been in good order since then.
+    pub(crate) fn is_good_since(&self, since: Time, poor: u32) -> bool {
+        self.now() >= poor && self.poor <= since
+    }
+
+    /// For how long it was below `mv` in `from..to`.
+    pub(crate) fn low_for(&self, mv: u32, from: Time, to: Time) -> Time {
+        let ends = self.history.iter().skip(1).map(|(at, _)| *at);
+        let pieces = self.history.iter().zip(ends.chain([Time::MAX]));
+        let low = pieces.filter(|((_, volts), _)| *volts < mv);
+        low.map(|((at, _), until)| (until.min(to) - (*at).max(from)).max(0))
+            .sum()
+    }
+
+    /// True if it has been below `mv` since then.
+    pub(crate) fn is_low_since(&self, mv: u32, since: Time) -> bool {
+        let begun = self.history.iter().rposition(|(_, volts)| *volts >= mv);
+        let low = self.history.get(begun.map_or(0, |last| last + 1));
+        low.is_some_and(|(at, _)| *at <= since)
+    }
+
+    /// Its levels in steps of 20 ms, for telling states apart.
+    pub(crate) fn ages(&self, levels: [u32; 3], now: Time) -> [Time; 3] {
+        levels.map(|mv| {
+            let is_low = self.now() < mv;
+            let same = |(_, volts): &&(Time, u32)| (*volts < mv) == is_low;
+            let since = self.history.iter().rev().take_while(same).last();
+            let age = since.map_or(0, |(at, _)| now - at);
+            if is_low { age + 1 } else { -age }
+        })
+    }
+}
+
+impl Observer {
+    /// A line about the supply that stops or rests the robot.
+    pub(crate) fn supply_says(&mut self, text: &str) {
+        let [_, stop, rest] = self.limits.levels;
+        let level = match () {
+            () if text.ends_with("pulses ended") => rest,
+            () if text.ends_with("stopped") => stop,
+            () => return,
+        };
+        let (from, level) = (self.now - 500 * MS, level + self.limits.exact);
+        let low = self.supply.low_for(level, from, self.now);
+        if low < SIX_FRAMES {
+            let ms = low / MS;
+            self.fail(Rule::Supply, format!("{text:?}, below for {ms} ms"));
+        }
+    }
+
+    /// A byte of the EEPROM is written.
+    pub(crate) fn written(&mut self) {
+        let at = self.now;
+        if at - self.start < FIRST_READING {
+            let us = (at - self.start) / 16;
+            self.fail(Rule::Written, format!("a byte {us} us after a start"));
+        }
+        let slow = self.limits.levels[0].saturating_sub(self.limits.exact);
+        // A main that is stalled takes no readings.
+        if self
+            .supply
+            .is_low_since(slow, at - SURELY_LOW - self.stalled(at))
+        {
+            self.fail(Rule::Written, "a byte, the supply too low");
+        }
+        if self.pending.unwritten.is_some_and(|until| at < until) {
+            self.fail(Rule::RestAgain, "a byte is written");
+        }
+    }
+}
