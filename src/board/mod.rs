@@ -32,10 +32,10 @@ mod watchdog;
 
 use avr_device::atmega328p::Peripherals;
 use lizard_core::console::answer::Counters;
-use lizard_core::numbers::pose::Pulses;
-use lizard_core::memory::restart::{Restart, Stance};
-use lizard_core::step::Board;
 use lizard_core::control::supply::Reading;
+use lizard_core::memory::restart::{Restart, Stance};
+use lizard_core::numbers::pose::Pulses;
+use lizard_core::step::Board;
 
 /// The started board of an Arduino UNO.
 pub struct Uno {

@@ -1,7 +1,7 @@
 //! A record as the events that the rules judge, and the rules that need the record.
 
-use lizard_core::memory::restart::Cause;
 use lizard_core::console::word::Effect;
+use lizard_core::memory::restart::Cause;
 use lizard_host::sim::lines::Line;
 use lizard_robot::Robot;
 use lizard_rules::{Broken, Event, Limits, Observer, Pulse, Rule, Time, led};

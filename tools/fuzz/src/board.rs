@@ -2,12 +2,12 @@
 
 use lizard_core::console::command::effect;
 use lizard_core::console::line::GARBLED;
+use lizard_core::console::word::Effect;
 use lizard_core::memory::copies::{self, Outcome, RESTED};
 use lizard_core::memory::record::Memory;
 use lizard_core::memory::restart::{Cause, Restart};
 use lizard_core::memory::settings::Settings;
 use lizard_core::virtual_board::{Eeprom, Running};
-use lizard_core::console::word::Effect;
 use lizard_robot::Robot;
 use lizard_rules::{Event, Limits, MS, Observer, Pulse, Rule, Time};
 

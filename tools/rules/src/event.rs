@@ -1,7 +1,7 @@
 //! Observations from outside the robot, and their times.
 
-use lizard_core::memory::restart::Cause;
 use lizard_core::console::word::Effect;
+use lizard_core::memory::restart::Cause;
 
 /// A time in cycles of 1/16 us.
 pub type Time = i64;

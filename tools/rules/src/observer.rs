@@ -1,7 +1,7 @@
 //! An observer who remembers what the rules need, and judges each event by it.
 
-use lizard_core::memory::restart::Cause;
 use lizard_core::console::word::Effect;
+use lizard_core::memory::restart::Cause;
 
 use crate::event::{Event, MS, NEVER, Time};
 use crate::reports::Reports;

@@ -1,7 +1,7 @@
 //! Pulses: when they may begin, and how far each may be from the one before.
 
-use lizard_core::memory::restart::Cause;
 use lizard_core::console::word::Effect;
+use lizard_core::memory::restart::Cause;
 
 use crate::event::{MS, NEVER, Pulse, Time};
 use crate::observer::Observer;

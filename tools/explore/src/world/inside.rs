@@ -1,14 +1,14 @@
 //! Rules that need a look inside the robot, or at its future: a clone of it is left alone.
 
 use lizard_core::console::command::effect;
-use lizard_core::numbers::gaits::GaitId;
+use lizard_core::console::word::Effect;
 use lizard_core::guard::clearance::Clearance;
-use lizard_core::motion::Activity;
-use lizard_core::numbers::pose::Pose;
 use lizard_core::memory::copies;
+use lizard_core::motion::Activity;
+use lizard_core::numbers::gaits::GaitId;
+use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::robot::Robot;
 use lizard_core::virtual_board::Eeprom;
-use lizard_core::console::word::Effect;
 use lizard_rules::{Event, Limits, MS, Pulse, Rule, Time};
 
 use super::{FRAME, Held, World, broken};
