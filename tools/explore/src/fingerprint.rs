@@ -52,7 +52,7 @@ const RULES: &[Field] = &[
     ("Moving", "pace", Coarse(pace)),
     ("PointToPoint", "from", Coarse(|sweep| sweep >> 11)),
     ("PointToPoint", "step", Skip),
-    ("PointToPoint", "gone", Coarse(|gone| gone >> 13)),
+    ("PointToPoint", "elapsed", Coarse(|share| share >> 13)),
     ("Restart", "count", Coarse(|count| count.min(1))),
     ("Control", "restarts", Coarse(|count| count.min(1))),
 ];
