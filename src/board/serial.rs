@@ -208,7 +208,7 @@ fn USART_UDRE() {
     // SAFETY: UDR0 is written here alone; for UCSR0B see `Writer`.
     let usart = unsafe { &*USART0::ptr() };
     match TO_SEND.take() {
-        Some(byte) => _ = usart.udr0.write(|w| w.bits(byte)),
+        Some(byte) => usart.udr0.write(|w| w.bits(byte)),
         None => listen(usart, false),
     }
 }
