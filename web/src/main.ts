@@ -314,7 +314,7 @@ async function start(): Promise<void> {
 /** The sentence that names the board and its robot. */
 function whereOf(name: string, has: Has, hash: string): string {
   if (has === null) return `on a ${name} without this firmware`;
-  if (has === 'unknown') return `on a ${name} that has not begun anew: its reset button makes it say which robot it is`;
+  if (has === 'unknown') return `on a ${name} that has not restarted: press its reset button to see which robot it has`;
   const { robot } = has;
   if (!robot) return `on a ${name} with this firmware and no robot in it: write this one`;
   const known = `robot ${robot.name} ${robot.hash}`;

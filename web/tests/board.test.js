@@ -57,7 +57,7 @@ test('a board that its port does not reset is asked what it does, and followed',
   await opened.waitForFunction(() => window.otherBoard);
   await opened.clock.runFor(5000);
   await opened.locator('#log div', { hasText: 'ok watch 2' }).waitFor();
-  assert.match(await text(opened, '#where'), /^on a board on USB that has not begun anew/);
+  assert.match(await text(opened, '#where'), /^on a board on USB that has not restarted/);
   assert.equal(await text(opened, '#doing'), 'stand');
   assert.equal(await opened.locator('#trouble').isVisible(), false);
 });
@@ -117,7 +117,7 @@ test('after a reset the board is followed again', async () => {
   await until(opened, 'the robot of the page has gone 5 mm', async () => (await place()) - before > 5);
 });
 
-test('a board that begins anew in the middle of an answer is followed again', async () => {
+test('a board that restarts in the middle of an answer is followed again', async () => {
   const opened = await connected('robot', 4000);
   await said(opened, /^ok watch 2$/);
   // Its status is asked twice a second.

@@ -15,7 +15,7 @@ afterEach(tidy);
 after(close);
 
 const text = (page, id) => page.locator(`#${id}`).innerText();
-const predicted = (page) => page.waitForFunction(() => /mm$|undecided/.test(document.querySelector('#gait-way').textContent));
+const predicted = (page) => page.waitForFunction(() => /mm$|undetermined/.test(document.querySelector('#gait-way').textContent));
 
 /** The gait editor with a gait of the robot in it, and a search of so many rounds set. */
 async function opened({ gait = 'walk', rounds = 1, seed = 3, rate = '' } = {}, options = {}) {
@@ -54,15 +54,15 @@ test('it finds the gait that lizard tune finds with the same seed, which is trie
   const way = await text(page, 'gait-way');
   const rows = () => page.locator('#faster-rows tr').allInnerTexts();
   const [, ways] = (await rows()).map((row) => row.split('\t'));
-  assert.deepEqual(ways.slice(0, 2), ['way of a cycle', way]);
-  await page.getByRole('button', { name: 'Take this gait' }).click();
+  assert.deepEqual(ways.slice(0, 2), ['distance per cycle', way]);
+  await page.getByRole('button', { name: 'Use this gait' }).click();
   await page.waitForFunction((before) => document.querySelector('#gait-table').textContent !== before, before);
   assert.equal(await text(page, 'gait-table'), known.fragment);
   assert.equal(await text(page, 'gait-way'), ways[2]);
   // Back, and again.
-  await page.getByRole('button', { name: 'Back to the gait before' }).click();
+  await page.getByRole('button', { name: 'Back to the previous gait' }).click();
   await page.waitForFunction((before) => document.querySelector('#gait-table').textContent === before, before);
-  await page.getByRole('button', { name: 'Take this gait' }).click();
+  await page.getByRole('button', { name: 'Use this gait' }).click();
   await page.waitForFunction((fragment) => document.querySelector('#gait-table').textContent === fragment, known.fragment);
   await page.locator('#gait-try').click();
   await page.waitForFunction(() => window.lizard.toml.includes('[gait.mine]'));
@@ -84,7 +84,7 @@ test('stopped midway it has the best so far, and the page can search again', asy
   const [, done] = /^Stopped after (\d+) of 8040 gaits\. Faster on \d+ of 200 random robots/.exec(said) ?? assert.fail(said);
   assert.ok(Number(done) >= 21 && Number(done) < 8040, said);
   assert.ok(await page.locator('#faster-progress').isHidden());
-  await page.getByRole('button', { name: 'Take this gait' }).click();
+  await page.getByRole('button', { name: 'Use this gait' }).click();
   await page.waitForFunction(() => Number(document.querySelector('#gait-amplitude').value) > 20);
   // From the gait that was taken.
   await start(page);

@@ -17,7 +17,7 @@ async function opened(options) {
 
 const text = (page, id) => page.locator(`#gait-${id}`).innerText();
 /** Waits until what is shown has an answer. */
-const predicted = (page) => page.waitForFunction(() => /mm$|undecided/.test(document.querySelector('#gait-way').textContent));
+const predicted = (page) => page.waitForFunction(() => /mm$|undetermined/.test(document.querySelector('#gait-way').textContent));
 const changes = (page, id, before) => page.waitForFunction(([id, before]) => document.querySelector(`#gait-${id}`).textContent !== before, [id, before]);
 
 /** Drags from a point of the circle to another: ring 0 to 3 from outside, phases 0 to 1. */
@@ -117,13 +117,13 @@ test('a gait that is tried walks as far as was predicted, and stands in robot.to
 test('a gait that walks back can be changed, and any gait is turned round', async () => {
   const page = await opened();
   const ahead = Number.parseFloat(await text(page, 'way'));
-  await page.getByRole('button', { name: 'Turn its time round' }).click();
+  await page.getByRole('button', { name: 'Reverse' }).click();
   await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-way').textContent) < -1);
   assert.ok(Math.abs(ahead + Number.parseFloat(await text(page, 'way'))) < 0.3);
   assert.equal(await page.locator('#gait-circle .bar.against').count(), 4);
   assert.equal(await page.getByLabel('LF share').inputValue(), '-1');
   // `back` of robot.toml is walk in reverse.
-  await page.getByRole('button', { name: 'Turn its time round' }).click();
+  await page.getByRole('button', { name: 'Reverse' }).click();
   await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-way').textContent) > 1);
   await page.locator('#gait-from').selectOption({ label: 'back' });
   await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-way').textContent) < -1);

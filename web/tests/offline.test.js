@@ -78,7 +78,7 @@ test('a newer page is offered, taken as a whole when a person says so, and the o
   await opened.reload();
   await begun(opened);
   assert.equal(await opened.locator('h1').innerText(), 'lizard', 'nothing changes under a person');
-  await opened.getByRole('button', { name: 'Take it now' }).click();
+  await opened.getByRole('button', { name: 'Load it now' }).click();
   await opened.locator('h1', { hasText: 'lizard, newer' }).waitFor();
   await begun(opened);
   await until(opened, async (first) => !(await window.caches.keys()).includes(first), first);

@@ -67,7 +67,7 @@ test('a singular pose shows its refusal', async () => {
   assert.match(answer, /^err 4 type-2 margin of the head/);
 });
 
-test('changed lengths build the gaits anew', async () => {
+test('changed lengths make other gaits', async () => {
   const opened = await standing();
   const before = (await ways(opened, 'walk')).predicted;
   const hash = await opened.evaluate(() => window.lizard.description.hash);

@@ -118,7 +118,7 @@ test('a new UNO becomes a robot that walks, is saved, and has a file that lizard
   await press(opened, 'Keep as a file');
   const file = await (await coming).path();
 
-  // The board, begun anew, has it; and so has the file, as the host's own program reads it.
+  // The board, restarted, has it; and so has the file, as the host's own program reads it.
   await opened.evaluate(() => window.otherBoard.reset('external'));
   await opened.clock.runFor(5000);
   assert.deepEqual(await cal(opened), [
@@ -211,14 +211,14 @@ test('a board that is unplugged while it is written says so, and can be written 
   await does(opened, 'Write firmware and robot', /^written and verified/);
 });
 
-test('a board that begins anew in between is said to have lost what was not saved', async () => {
+test('a board that restarts in between is said to have lost what was not saved', async () => {
   const opened = await connected('robot', 4500);
   await setup(opened).getByText('3 of 9: Fit the horns').waitFor();
   await step(opened, 'Trims');
   await opened.clock.runFor(500);
   await does(opened, '↺ 0.5°', /^The trim of A1 is 0\.50°/);
   await opened.evaluate(() => window.otherBoard.reset('external'));
-  await said(opened, /^The board has begun anew\. What was not saved is lost\.$/);
+  await said(opened, /^The board has restarted\. What was not saved is lost\.$/);
   await does(opened, '↺ 0.5°', /^The trim of A1 is 0\.50°/);
 });
 

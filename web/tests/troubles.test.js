@@ -58,7 +58,7 @@ test('a port that is busy stays said until a person puts it away', async () => {
   await opened.clock.runFor(8000);
   await opened.locator('#health dd', { hasText: 'power' }).waitFor();
   assert.ok(await said.isVisible());
-  await opened.getByRole('button', { name: 'Put away' }).click();
+  await opened.getByRole('button', { name: 'Dismiss' }).click();
   assert.equal(await trouble(opened).isVisible(), false);
 });
 

@@ -52,7 +52,7 @@ test('a gait that was made is written to a board, and the board walks so', async
   await opened.locator('#gait-name').fill('stride');
   await opened.waitForFunction(() => document.querySelector('#gait-table').textContent.startsWith('[gait.stride]'));
   await opened.locator('#gait-write').click();
-  await said(opened, /^written and verified in [\d.]+ s\. The board has begun anew; stride is a button of Drive\.$/, '#gait-said');
+  await said(opened, /^written and verified in [\d.]+ s\. The board has restarted; stride is a button of Drive\.$/, '#gait-said');
   await opened.clock.runFor(3000);
   assert.equal(await text(opened, '#doing'), 'stand', 'a board does not walk by itself');
   await opened.evaluate(() => (window.pulses = {}));
@@ -100,7 +100,7 @@ async function unasked() {
   await opened.getByRole('button', { name: 'Connect a board' }).click();
   await opened.waitForFunction(() => window.otherBoard);
   await opened.clock.runFor(5000);
-  assert.match(await text(opened, '#where'), /that has not begun anew/);
+  assert.match(await text(opened, '#where'), /that has not restarted/);
   await opened.evaluate(() => (window.awake = false));
   return panel(opened);
 }

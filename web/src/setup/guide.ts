@@ -235,7 +235,7 @@ export class Guide {
   }
 
   private tell(line: string): Promise<Answer> {
-    if (!this.isCurrent) throw new Gone('The board has begun anew or is gone; what was not saved is lost.');
+    if (!this.isCurrent) throw new Gone('The board has restarted or is gone; what was not saved is lost.');
     return tell(this.session, line);
   }
 }
@@ -258,7 +258,7 @@ async function settle(session: Session, wanted: Four<number> | null = null): Pro
     const answer = await session.ask(WORDS.status, true);
     const now = answer && status(answer.text);
     const here = now?.pose;
-    if (!now || !here || session.link !== link) throw new Gone('The board has begun anew or is gone; what was not saved is lost.');
+    if (!now || !here || session.link !== link) throw new Gone('The board has restarted or is gone; what was not saved is lost.');
     const pose = here.join();
     if (still?.pose !== pose) still = { frames: now.frames, pose };
     else if (now.frames - still.frames >= session.description.still && isThere(here)) return here;

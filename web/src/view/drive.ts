@@ -13,7 +13,7 @@ const LONGEST = '-999.9 mm, -99.9°';
 export function short(way: Way | null): string {
   if (!way) return '';
   const parts = [
-    way.forward === null ? 'undecided' : Math.abs(way.forward) >= 0.5 ? `${way.forward.toFixed(1)} mm` : '',
+    way.forward === null ? 'undetermined' : Math.abs(way.forward) >= 0.5 ? `${way.forward.toFixed(1)} mm` : '',
     way.turn !== null && Math.abs(way.turn) >= 0.05 ? `${way.turn.toFixed(1)}°` : '',
   ];
   return parts.filter(Boolean).join(', ');

@@ -13,9 +13,9 @@ export interface Edited {
   take(gait: Bars): void;
 }
 
-const WORDS = { start: 'Make it faster', stop: 'Stop the search', take: 'Take this gait', back: 'Back to the gait before' };
+const WORDS = { start: 'Make it faster', stop: 'Stop the search', take: 'Use this gait', back: 'Back to the previous gait' };
 /** The rows of the comparison. */
-const ROWS = { speed: 'speed', way: 'way of a cycle', turn: 'turn of a cycle', least: 'least margin', fastest: 'fastest servo', cycle: 'cycle' } as const;
+const ROWS = { speed: 'speed', way: 'distance per cycle', turn: 'turn per cycle', least: 'least margin', fastest: 'fastest servo', cycle: 'cycle' } as const;
 
 export class FasterView {
   private readonly start = element<HTMLButtonElement>('faster-start');

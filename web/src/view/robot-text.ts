@@ -53,7 +53,7 @@ export class RobotText {
   /** Shows the session's robot. */
   take(): void {
     const { toml, file } = this.session();
-    // While a file of the list is being read it has no name: that begins anew.
+    // While a file of the list is being read it has no name; then there is nothing to undo.
     if (file === '') this.before = [];
     else if (this.shown !== '' && this.shown !== toml) this.before = [...this.before.slice(1 - STEPS), this.shown];
     this.shown = toml;

@@ -126,7 +126,7 @@ export class Setup implements Tools {
     if (this.guide && !this.guide.isCurrent) {
       const { isChanged } = this.guide;
       this.drop(isChanged);
-      this.say(isChanged ? 'The board has begun anew. What was not saved is lost.' : 'The board has begun anew.');
+      this.say(isChanged ? 'The board has restarted. What was not saved is lost.' : 'The board has restarted.');
     }
     if (!this.box.hidden && !this.isBusy) this.show();
   }

@@ -17,7 +17,7 @@ export interface Maker {
   change(what: Instead, value: number): void;
 }
 
-const number = (value: number | null, unit: string) => (value === null ? 'undecided' : `${(Number(value.toFixed(1)) + 0).toFixed(1)}${unit}`);
+const number = (value: number | null, unit: string) => (value === null ? 'undetermined' : `${(Number(value.toFixed(1)) + 0).toFixed(1)}${unit}`);
 
 /** Formats the figures of a trial; the speed is in deg/s for a turn on the spot. */
 export function figures({ forward, turn, period, least, limit, margin, servo, speed }: Trial, unit = 'mm/s') {
@@ -97,7 +97,7 @@ export class TrialView {
   private async tryIt(): Promise<void> {
     const made = this.maker.made();
     if (!made) return;
-    this.say('The robot begins anew with this gait…');
+    this.say('The robot restarts with this gait…');
     const refused = await tryGait(this.session(), made, this.ask);
     this.say(refused?.refused ?? `It does ${made.name.replaceAll('-', ' ')}, which is now a button of Drive and in Download robot.toml.`);
   }
@@ -111,7 +111,7 @@ export class TrialView {
     if (refused) return this.say(refused.refused);
     const said = this.element('said');
     if (!(await this.writer.write('robot', { said, progress: this.element<HTMLProgressElement>('progress') }))) return;
-    this.say(`${said.textContent}. The board has begun anew; ${made.name.replaceAll('-', ' ')} is a button of Drive.`);
+    this.say(`${said.textContent}. The board has restarted; ${made.name.replaceAll('-', ' ')} is a button of Drive.`);
   }
 
   private async copy(): Promise<void> {

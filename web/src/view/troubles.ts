@@ -32,7 +32,7 @@ export class Troubles {
       made.addEventListener('click', act);
     };
     if (remedy) button(remedy.label, remedy.act);
-    button('Put away', () => this.say(cause, null));
+    button('Dismiss', () => this.say(cause, null));
     return line;
   }
 }

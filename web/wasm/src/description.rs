@@ -298,11 +298,11 @@ fn lengths(robot: &Robot) -> Vec<LinkEntry> {
 /// The movement of a cycle as the page reads it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Movement {
-    /// Ahead, mm; none if it is undecided.
+    /// Ahead, mm; none if it is undetermined.
     forward: Option<f64>,
-    /// To the left, mm; none if it is undecided.
+    /// To the left, mm; none if it is undetermined.
     left: Option<f64>,
-    /// Counter-clockwise, deg; none if it is undecided.
+    /// Counter-clockwise, deg; none if it is undetermined.
     turn: Option<f64>,
 }
 
@@ -332,7 +332,7 @@ impl From<Prediction> for Movement {
 }
 
 impl Movement {
-    /// The movement ahead, mm; none if it is undecided.
+    /// The movement ahead, mm; none if it is undetermined.
     #[must_use]
     pub fn forward(&self) -> Option<f64> {
         self.forward

@@ -31,7 +31,7 @@ export const trims: Step = {
       row(button('Stand', stand, true)),
       row(...BY.map((by) => button(`${by > 0 ? '↺' : '↻'} ${Math.abs(by)}°`, turn(by)))),
       words(`Trim: ${trim === undefined ? '–' : `${trim.toFixed(2)}°`}`),
-      note('↺ is counter-clockwise seen from above. A trim above 7.2° would be less on the next tooth: fit that horn anew.'),
+      note('↺ is counter-clockwise seen from above. A trim above 7.2° would be less on the next tooth: fit that horn again.'),
     ];
   },
 };
