@@ -165,6 +165,8 @@ async function start(): Promise<void> {
     found(has) {
       element('where').textContent = whereOf(session.link.name, has, session.description.hash);
       setup.update();
+      // On a slow machine the predictions come before the robot's banner.
+      begin();
     },
     speed: (percent) => pace.show(percent),
     link(link) {
