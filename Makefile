@@ -67,7 +67,7 @@ mutants: ## make mistakes on purpose, report those that no test notices; PART=bo
 	$(call prepared,.mutants)
 other-robots: ## every test of the image on the files of robots/ and on random valid robots; SEED=1 COUNT=10
 	$(call prepared,.other-robots)
-trouble: ## stalls, resets and dips of the supply at random moments; SEED=1, COUNT=10000, ONLY=number
+trouble: ## stalls, resets, dips of the supply and drives by radio at random moments; SEED=1, COUNT=10000, ONLY=number
 	$(call prepared,.trouble)
 explore: ## a model checker: commands, resets, stalls and weak supplies in any order; STATES=10000000
 	$(call prepared,.explore)
@@ -228,7 +228,7 @@ WALKS := target/walks.log
 	@$(LIZARD) draw --wiring --robot robots/paper.toml --output docs/wiring.svg
 	@$(LIZARD) draw --horns --robot robots/paper.toml --output docs/horns.svg
 	@$(LIZARD) charts docs/charts
-	@cd crates && BLESS_PHYSICS=1 cargo test -p lizard-physics --test docs --quiet
+	@cd crates && BLESS_PHYSICS=1 cargo test -p lizard-physics --test docs --test grains --test servos --quiet
 	@BLESS_GAITS=1 $(MAKE) .docs-check
 	@scripts/walk-through $(LIZARD)
 	@scripts/setup-book
@@ -242,7 +242,8 @@ WALKS := target/walks.log
 # Uncommitted changes are packaged, too, so that they can be tried before a commit.
 .package:
 	@rm -f crates/target/package/*.crate
-	@cd crates && cargo package --allow-dirty --quiet -p lizard-time-limit -p simulated-uno -p servo-pulses -p lizard-kinematics -p lizard-avr -p lizard-core
+	@cd crates && cargo package --allow-dirty --quiet -p simulated-uno -p servo-pulses -p lizard-kinematics -p lizard-avr -p lizard-core
+	@scripts/try-packages
 	@cd crates && for package in target/package/*.crate; do echo "$$package"; done
 
 # The code is the same for every robot: see firmware/README.md.
@@ -271,7 +272,7 @@ PLAIN := $(CURDIR)/target/plain
 .plain-test: export LIZARD_ELF := $(PLAIN)/avr-atmega328p/release/lizard.elf
 .plain-test:
 	@RUSTC_BOOTSTRAP=1 $(CARGO) build --release --bins --example sweep
-	@cd host && PROPTEST_RNG_SEED=$${PROPTEST_RNG_SEED:-1} $(CARGO) test -p lizard-host-tests --quiet --test firmware --test trouble --test servo_pulses -- --skip the_largest_section --skip other_robots
+	@cd crates && PROPTEST_RNG_SEED=$${PROPTEST_RNG_SEED:-1} $(CARGO) test -p lizard-host-tests --quiet --test firmware --test trouble --test servo_pulses -- --skip the_largest_section --skip other_robots
 
 .lint:
 	@cargo fmt --check

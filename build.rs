@@ -12,7 +12,8 @@ use lizard_robot::{Report, Robot};
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-env-changed=LIZARD_ROBOT");
-    // Nothing of it is used here, but the image is linked by it.
+    // The linker of the image: this script does not use it, but a change of it needs a
+    // new image.
     println!("cargo::rerun-if-changed=tools/linker/src");
     println!("cargo::rerun-if-env-changed=LIZARD_PLAIN_LINK");
     let given = env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
@@ -30,7 +31,8 @@ fn main() {
     println!("cargo::rustc-link-arg-bins=-Wl,--defsym=__robot_start={START:#x}");
     let end = START + SPACE;
     println!("cargo::rustc-link-arg-bins=-Wl,--defsym=__robot_end={end:#x}");
-    // No instruction names it, the mark of the code, or what simavr reads.
+    // No instruction refers to the robot, to the mark of the code or to simavr's note,
+    // so the linker is told to keep them.
     for name in ["ROBOT", "MARK", "SIMAVR"] {
         println!("cargo::rustc-link-arg-bins=-Wl,--undefined={name}");
     }

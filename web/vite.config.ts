@@ -7,6 +7,6 @@ export default defineConfig({
   // three.js is one chunk, loaded when the robot is shown in space.
   build: { target: 'es2022', outDir: 'dist', emptyOutDir: true, reportCompressedSize: false, chunkSizeWarningLimit: 700 },
   plugins: [offline()],
-  // The simulated chip is the judge's.
+  // Allows imports of the simulated chip from tools/judge.
   server: { fs: { allow: ['..'] } },
 });

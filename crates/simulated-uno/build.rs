@@ -1,8 +1,14 @@
 //! Compiles the C shim against Debian's libsimavr and links both.
 
 use std::path::PathBuf;
+use std::process::Command;
+
+/// The version of libsimavr that the corrections were made for; with another one, tests of the data
+/// sheet fail or hang.
+const TESTED: &str = "1.6";
 
 fn main() {
+    check_version();
     println!("cargo:rerun-if-changed=shim");
     let files = std::fs::read_dir("shim").expect("the folder shim/ is part of the package");
     let files = files.map(|file| file.expect("a file of shim/").path());
@@ -50,4 +56,22 @@ fn folder_of(library: &str) -> Option<PathBuf> {
     let path = PathBuf::from(String::from_utf8(output.stdout).ok()?.trim());
     // A compiler that does not find it prints the bare name.
     Some(path.parent()?.to_owned()).filter(|folder| folder.is_absolute())
+}
+
+/// Ends the build if libsimavr has another version than [`TESTED`], or none that can be asked.
+fn check_version() {
+    let mut ask = Command::new("pkg-config");
+    let output = ask.args(["--modversion", "simavr"]).output();
+    let version = output.map(|output| String::from_utf8_lossy(&output.stdout).trim().to_owned());
+    match version.as_deref() {
+        Ok(TESTED) => {}
+        Ok(other) if !other.is_empty() => panic!(
+            "libsimavr {other} is installed; this package corrects {TESTED} (Debian 12) and would \
+             simulate another chip with {other}: install {TESTED}, from Debian 12 or from source"
+        ),
+        _ => panic!(
+            "pkg-config does not find libsimavr {TESTED}:\n\
+             sudo apt-get install pkg-config libsimavr-dev libelf-dev"
+        ),
+    }
 }

@@ -1,16 +1,16 @@
-//! Little AVR programs, compiled when a test runs: those of `simulated_uno`, and one that
-//! is changed between compiler and linker.
+//! Small AVR programs that tests compile: those of `simulated_uno`, and one that is changed
+//! between compiler and linker.
 
 use simulated_uno::Image;
 pub use simulated_uno::avr_gcc::{assembler, c};
 
-/// C compiled with avr-gcc, a section for each function, then linked; between the two
-/// `change` may replace the object by another one and assembly that is linked before it.
+/// Compiles C with avr-gcc, with a section for each function, and links it. Before linking,
+/// `change` may replace the object, and add assembly that is linked before it.
 ///
 /// # Panics
-/// If avr-gcc is missing or refuses the program, with its words.
+/// If avr-gcc is missing or refuses the program; the message is avr-gcc's.
 #[must_use]
-pub fn c_by_way_of_an_object(
+pub fn compile_c_with_edited_object(
     source: &str,
     change: impl Fn(Vec<u8>) -> (Vec<u8>, &'static str),
 ) -> Image {

@@ -20,7 +20,7 @@ pub struct FirmwareBench(SimulatedBoard);
 impl FirmwareBench {
     /// The firmware that `make firmware` leaves, or what `LIZARD_ELF` names.
     ///
-    /// Whatever robot is in it: see [`FirmwareBench::image`].
+    /// It may have any robot: see [`FirmwareBench::image`].
     #[must_use]
     pub fn elf() -> PathBuf {
         let built = root().join("target/avr-atmega328p/release/lizard.elf");

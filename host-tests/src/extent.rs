@@ -2,25 +2,25 @@
 
 use std::num::NonZeroU64;
 
-/// So many of something, as many times as the environment's `LIZARD_FUZZ` says.
+/// Multiplies a count by the environment's `LIZARD_FUZZ`.
 ///
 /// # Panics
-/// `LIZARD_FUZZ` is no whole number from 1 on.
+/// `LIZARD_FUZZ` is not a whole number from 1 on.
 #[must_use]
 pub fn times(count: u64) -> u64 {
     count * number("LIZARD_FUZZ", 1)
 }
 
-/// Minutes that a robot is talked to: the environment's `LIZARD_MINUTES`, or ten.
+/// Minutes of a test's dialogue: the environment's `LIZARD_MINUTES`, or ten.
 ///
 /// # Panics
-/// `LIZARD_MINUTES` is no whole number from 1 on.
+/// `LIZARD_MINUTES` is not a whole number from 1 on.
 #[must_use]
 pub fn minutes() -> u64 {
     number("LIZARD_MINUTES", 10)
 }
 
-/// Not 0: a test would pass that has tried nothing.
+/// Reads a number from the environment. 0 is refused, since such a test would try nothing.
 fn number(name: &str, otherwise: u64) -> u64 {
     std::env::var(name).map_or(otherwise, |given| match given.parse::<NonZeroU64>() {
         Ok(number) => number.get(),

@@ -17,8 +17,8 @@ use simulated_uno::{Edge, Image, Pin, SerialByte};
 
 use crate::robots::root;
 
-/// The end of a run is not compared: there, one simulator may be through with a
-/// pulse or a byte and the other not yet.
+/// Cycles at the end of a run that are not compared: one simulator may have finished a pulse
+/// or a byte there, and the other not yet.
 const LAST_CYCLES: u64 = 1_000;
 
 /// Cycles by which Timer1 starts later on avr8js, and with it all that the firmware
@@ -57,7 +57,7 @@ pub struct Account {
 }
 
 impl Account {
-    /// From what the simulated UNO has recorded since power-on.
+    /// The account of a simulated UNO's records since power-on.
     #[must_use]
     pub fn new(edges: &[Edge], sent: &[SerialByte], end: u64) -> Self {
         let mut rises = [None; 20];
@@ -82,7 +82,7 @@ impl Account {
     }
 }
 
-/// avr8js's account of a run, and what it cost.
+/// avr8js's account of a run, and its cost.
 #[derive(Debug, Clone, Default)]
 pub struct Verdict {
     /// The firmware's account of the run.
@@ -120,12 +120,13 @@ pub fn judge(
         script += &format!("{} {byte:02x}\n", cycle.saturating_add_signed(LATER));
     }
     script += &format!("end {end}\n");
-    let said = done(
+    let printed = done(
         node()?.arg(judge_folder().join("run.js")).arg(hex),
         "nodejs",
         &script,
     )?;
-    let mut verdict = read(&said).ok_or_else(|| format!("the judge says nonsense:\n{said}"))?;
+    let mut verdict =
+        read(&printed).ok_or_else(|| format!("the judge's output is malformed:\n{printed}"))?;
     verdict.account.end = end;
     Ok(verdict)
 }
@@ -148,7 +149,7 @@ fn judge_folder() -> PathBuf {
     root().join("tools/judge")
 }
 
-/// Node, if all that the judge needs of it is there.
+/// Returns Node, if all its packages that the judge needs are installed.
 fn node() -> Result<Command, String> {
     let package = judge_folder().join("node_modules/avr8js/package.json");
     if !package.exists() {
@@ -168,18 +169,18 @@ fn done(command: &mut Command, debian: &str, input: &str) -> Result<String, Stri
         ),
         _ => format!("{program}: {error}"),
     })?;
-    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
     if output.status.success() {
-        return Ok(said);
+        return Ok(printed);
     }
     let complaint = String::from_utf8_lossy(&output.stderr);
-    Err(format!("{program} fails: {}\n{said}", complaint.trim()))
+    Err(format!("{program} fails: {}\n{printed}", complaint.trim()))
 }
 
 /// Reads what tools/judge/run.js prints; its head explains the lines.
-fn read(said: &str) -> Option<Verdict> {
+fn read(printed: &str) -> Option<Verdict> {
     let mut verdict = Verdict::default();
-    for line in said.lines() {
+    for line in printed.lines() {
         let words: Vec<&str> = line.split(' ').collect();
         match words[..] {
             ["pulse", pin, rise, width] => verdict.account.pulses.push(PinPulse {
@@ -208,13 +209,13 @@ fn read(said: &str) -> Option<Verdict> {
 /// The comparison of two simulators.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Agreement {
-    /// Pulses or bytes.
+    /// The kind of records compared: pulses or bytes.
     pub what: &'static str,
-    /// The number of them.
+    /// The number of records.
     pub count: usize,
     /// Cycles by which avr8js's all come later.
     pub offset: i64,
-    /// The most cycles by which one of them is off that.
+    /// The largest deviation from that offset, cycles.
     pub wander: u64,
 }
 
@@ -233,7 +234,7 @@ impl fmt::Display for Agreement {
     }
 }
 
-/// Compares the servos' pulses: their pins, their order, their rising edges but for
+/// Compares the servos' pulses: their pins, their order, their rising edges except for
 /// a constant, and their widths, all to the cycle. The data sheet does not say in
 /// which of its cycles an instruction reaches a peripheral, hence the constant.
 ///
@@ -261,7 +262,7 @@ pub fn compare_pulses(
         })
         .collect();
     let limit = simavr.end.min(avr8js.end) - LAST_CYCLES;
-    let (pulses, others) = (whole(&pulses, limit), whole(&others, limit));
+    let (pulses, others) = (ended_pulses(&pulses, limit), ended_pulses(&others, limit));
     let both = pulses.iter().zip(&others).enumerate();
     if let Some((n, (a, b))) = both.into_iter().find(|(_, (a, b))| a != b) {
         return Err(format!(
@@ -322,14 +323,14 @@ pub fn compare_console(simavr: &Account, avr8js: &Account) -> Result<Agreement, 
 }
 
 /// The pulses that have ended by a cycle.
-fn whole(pulses: &[PinPulse], limit: u64) -> Vec<PinPulse> {
+fn ended_pulses(pulses: &[PinPulse], limit: u64) -> Vec<PinPulse> {
     let pulses = pulses.iter().copied();
     pulses
         .filter(|pulse| pulse.rise + pulse.width <= limit)
         .collect()
 }
 
-/// The text up to byte `n`, a line's length of it.
+/// The text before byte `n`, at most a line of it.
 fn tail(bytes: &[SerialByte], n: usize) -> String {
     let end = bytes.len().min(n + 1);
     let bytes: Vec<u8> = bytes[end.saturating_sub(60)..end]

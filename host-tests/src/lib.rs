@@ -1,5 +1,5 @@
-//! Shared parts of the tests: the robots that they run over, a bench with the running
-//! firmware on it, and little AVR programs to test the bench itself.
+//! Shared parts of the tests: the robots under test, a bench with the running firmware, and small
+//! AVR programs that test the bench itself.
 
 pub mod avr_gcc;
 mod bench;

@@ -40,7 +40,7 @@ pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
             let mut text = body.text();
             Robot::parse(&text).ok()?;
             for gait in gaits(rng, &body) {
-                text = accepted(text, &gait);
+                text = with_allowed_gait(text, &gait);
             }
             if rng.bool() {
                 line(&mut text, &rail(rng, &body.pins));
@@ -59,7 +59,7 @@ pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
 /// # Panics
 /// If the robot has no gait that moves, or is not valid.
 #[must_use]
-pub fn crowded(text: &str, length: usize) -> Robot {
+pub fn with_many_gaits(text: &str, length: usize) -> Robot {
     let robot = Robot::parse(text).expect("a valid robot");
     let like = robot.gaits().iter().find(|gait| gait.moves());
     let like = like.expect("a gait that moves").name();
@@ -90,7 +90,7 @@ impl Body {
     /// A robot that stands; None where no safe neutral pose was found.
     fn random(rng: &mut Rng) -> Option<Self> {
         let scale = 0.3 * (4.0f64 / 0.3).powf(rng.f64());
-        let mut length = |least: f64, most: f64| round(scale * between(rng, least, most));
+        let mut length = |least: f64, most: f64| round(scale * random_between(rng, least, most));
         let chassis = length(100.0, 170.0);
         // l0 and l5 bases; l1, l4, l6, l9 cranks; l2, l3, l7, l8 couplers; l10 and
         // l15 chassis; l11, l14, l16, l19 arms; l12, l13, l17, l18 slider halves.
@@ -104,11 +104,11 @@ impl Body {
         });
         let (ground, leg) = (length(30.0, 70.0), length(30.0, 60.0));
         let mut limits = Limits {
-            type2: fine(between(rng, 0.1, 0.5)),
-            type1: fine(between(rng, 0.0, 0.4)),
-            leg: fine(between(rng, 0.0, 0.5)),
-            stroke_min: -round(scale * between(rng, 8.0, 30.0)),
-            stroke_max: round(scale * between(rng, 8.0, 50.0)),
+            type2: round_factor(random_between(rng, 0.1, 0.5)),
+            type1: round_factor(random_between(rng, 0.0, 0.4)),
+            leg: round_factor(random_between(rng, 0.0, 0.5)),
+            stroke_min: -round(scale * random_between(rng, 8.0, 30.0)),
+            stroke_max: round(scale * random_between(rng, 8.0, 50.0)),
         };
         let mut lizard = Lizard {
             links: Links::from(links),
@@ -124,8 +124,8 @@ impl Body {
         let solution = lizard.solve(&neutral.into()).ok()?;
         for (side, halves) in [(Side::Left, [12, 13]), (Side::Right, [17, 18])] {
             let room = 0.5 * limits.stroke_max.min(-limits.stroke_min);
-            let nominal = solution.side(side).d + between(rng, -room, room);
-            let first = between(rng, 0.35, 0.65);
+            let nominal = solution.side(side).d + random_between(rng, -room, room);
+            let first = random_between(rng, 0.35, 0.65);
             links[halves[0]] = round(nominal * first);
             links[halves[1]] = round(nominal * (1.0 - first));
             // A slider keeps a length.
@@ -136,13 +136,13 @@ impl Body {
         rng.shuffle(&mut pins);
         let servos = std::array::from_fn(|servo| {
             let sign = if rng.bool() { 1.0 } else { -1.0 };
-            let trim = |rng: &mut Rng, us: f64| (us + between(rng, -60.0, 60.0)).round();
+            let trim = |rng: &mut Rng, us: f64| (us + random_between(rng, -60.0, 60.0)).round();
             format!(
                 "pin = \"{}\"\nneutral = {}\nneutral_us = {}\nus_per_degree = {}\nmin_us = {}\nmax_us = {}\n",
                 pins[servo],
                 neutral[servo],
                 trim(rng, 1500.0),
-                sign * fine(between(rng, 6.0, 14.0)),
+                sign * round_factor(random_between(rng, 6.0, 14.0)),
                 trim(rng, 600.0),
                 trim(rng, 2400.0),
             )
@@ -155,8 +155,8 @@ impl Body {
             servos,
             pins,
             slew: [
-                between(rng, 120.0, 500.0).round(),
-                between(rng, 150.0, 800.0).round(),
+                random_between(rng, 120.0, 500.0).round(),
+                random_between(rng, 150.0, 800.0).round(),
             ],
             lizard,
         })
@@ -211,10 +211,11 @@ impl Body {
 
 /// A safe neutral pose with some room around it, deg; None if there is none near.
 fn neutral(rng: &mut Rng, lizard: &Lizard, limits: &Limits) -> Option<[f64; 4]> {
-    /// Of every margin, to its limit.
+    /// Distance of every margin from its limit.
     const ROOM: f64 = 0.12;
     (0..200).find_map(|_| {
-        let [left, right, rear_left, rear_right] = [(); 4].map(|()| round(between(rng, 8.0, 80.0)));
+        let [left, right, rear_left, rear_right] =
+            [(); 4].map(|()| round(random_between(rng, 8.0, 80.0)));
         let neutral = [180.0 - left, right, 360.0 - rear_right, 180.0 + rear_left];
         let solution = lizard.solve(&neutral.into()).ok()?;
         let roomy = Limits {
@@ -232,15 +233,15 @@ fn neutral(rng: &mut Rng, lizard: &Lizard, limits: &Limits) -> Option<[f64; 4]> 
 fn rail(rng: &mut Rng, pins: &[&'static str]) -> String {
     let free = pins[4..].iter().find(|pin| pin.starts_with('A'));
     let pin = free.expect("six analogue pins and four servos");
-    let ratio = round(between(rng, 1.5, 3.0));
-    // Of what the pin may be led, 5 V.
-    let slow = round(ratio * between(rng, 2.4, 4.0));
-    let stop = round(slow - between(rng, 0.15, 0.4));
-    let rest = round(stop - between(rng, 0.15, 0.4));
+    let ratio = round(random_between(rng, 1.5, 3.0));
+    // The pin allows 5 V.
+    let slow = round(ratio * random_between(rng, 2.4, 4.0));
+    let stop = round(slow - random_between(rng, 0.15, 0.4));
+    let rest = round(stop - random_between(rng, 0.15, 0.4));
     format!(
         "[supply]\nreference = {}\n[supply.rail]\npin = \"{pin}\"\nratio = {ratio}\n\
          slow = {slow}\nstop = {stop}\nrest = {rest}",
-        fine(between(rng, 1.05, 1.15)),
+        round_factor(random_between(rng, 1.05, 1.15)),
     )
 }
 
@@ -250,7 +251,7 @@ type Sized = Box<dyn Fn(f64) -> String>;
 /// Gaits of every kind.
 fn gaits(rng: &mut Rng, body: &Body) -> Vec<Sized> {
     let mut gaits = Vec::new();
-    let period = |rng: &mut Rng| round(between(rng, 0.7, 3.0));
+    let period = |rng: &mut Rng| round(random_between(rng, 0.7, 3.0));
     let legs = |values: [f64; 4]| {
         let pairs: Vec<String> = LEGS
             .iter()
@@ -260,13 +261,13 @@ fn gaits(rng: &mut Rng, body: &Body) -> Vec<Sized> {
         format!("{{ {} }}", pairs.join(", "))
     };
     let mut any = |least: f64, most: f64| -> [f64; 4] {
-        std::array::from_fn(|_| fine(between(rng, least, most)))
+        std::array::from_fn(|_| round_factor(random_between(rng, least, most)))
     };
     let (starts, gains, halves) = (any(0.0, 1.0), any(0.4, 1.0), any(-1.0, 1.0));
     let wave = format!(
         "[gait.wander]\nperiod = {}\nwaveform = \"wave\"\nduty = {}\nstart = {}\ngain = {}",
         period(rng),
-        fine(between(rng, 0.5, 0.85)),
+        round_factor(random_between(rng, 0.5, 0.85)),
         legs(starts),
         legs(gains),
     );
@@ -278,9 +279,9 @@ fn gaits(rng: &mut Rng, body: &Body) -> Vec<Sized> {
         legs(halves),
     );
     for wavy in [wave, held] {
-        gaits.push(
-            Box::new(move |size| format!("{wavy}\namplitude = {}", fine(30.0 * size))) as Sized,
-        );
+        gaits.push(Box::new(move |size| {
+            format!("{wavy}\namplitude = {}", round_factor(30.0 * size))
+        }) as Sized);
     }
     gaits.push(Box::new(|_| "[gait.retreat]\nreverse = \"wander\"".into()));
     gaits.push(Box::new(|_| "[gait.advance]\nreverse = \"retreat\"".into()));
@@ -291,7 +292,7 @@ fn gaits(rng: &mut Rng, body: &Body) -> Vec<Sized> {
     gaits.push(Box::new(move |size| {
         format!(
             "{curve}\ngain = {}",
-            legs([size, 1.0, 0.5 * size, -0.5 * size].map(fine))
+            legs([size, 1.0, 0.5 * size, -0.5 * size].map(round_factor))
         )
     }));
     // Around where the end point stands in the neutral pose.
@@ -300,8 +301,8 @@ fn gaits(rng: &mut Rng, body: &Body) -> Vec<Sized> {
     };
     for (name, end) in [("look", End::Head), ("wag", End::Tail)] {
         let point = solution.end(end).end_point;
-        let (period, reach) = (round(between(rng, 2.0, 5.0)), 12.0 * body.scale);
-        let shift = fine(rng.f64());
+        let (period, reach) = (round(random_between(rng, 2.0, 5.0)), 12.0 * body.scale);
+        let shift = round_factor(rng.f64());
         gaits.push(Box::new(move |size| {
             format!(
                 "[gait.{name}]\nperiod = {period}\n[gait.{name}.{end}]\ncentre = [{}, {}]\n\
@@ -318,7 +319,7 @@ fn gaits(rng: &mut Rng, body: &Body) -> Vec<Sized> {
 
 /// The text of a robot with one more gait, as large as the robot allows; without
 /// the gait if even a small one is refused.
-fn accepted(text: String, gait: &Sized) -> String {
+fn with_allowed_gait(text: String, gait: &Sized) -> String {
     [1.0, 0.6, 0.35, 0.2, 0.1, 0.05]
         .into_iter()
         .map(|size| format!("{text}{}\n", gait(size)))
@@ -327,21 +328,21 @@ fn accepted(text: String, gait: &Sized) -> String {
 }
 
 fn line(text: &mut String, line: &str) {
-    // Into a String nothing fails.
+    // Writing to a String never fails.
     let _ = writeln!(text, "{line}");
 }
 
-fn between(rng: &mut Rng, least: f64, most: f64) -> f64 {
+fn random_between(rng: &mut Rng, least: f64, most: f64) -> f64 {
     least + (most - least) * rng.f64()
 }
 
-/// As a person writes a length or an angle.
+/// Rounds a length or an angle as a person would write it.
 fn round(value: f64) -> f64 {
     (value * 100.0).round() / 100.0
 }
 
-/// As a person writes a factor.
-fn fine(value: f64) -> f64 {
+/// Rounds a factor as a person would write it.
+fn round_factor(value: f64) -> f64 {
     (value * 1e4).round() / 1e4
 }
 

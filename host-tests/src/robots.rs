@@ -1,4 +1,4 @@
-//! The robots that tests run over.
+//! The robots under test.
 
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
@@ -8,10 +8,10 @@ use lizard_robot::Robot;
 
 use crate::random_robot::random_robot;
 
-/// Random robots of a run.
+/// Number of random robots in a run.
 const RANDOM: u64 = 8;
 
-/// A robot and where it comes from.
+/// A robot and its origin.
 #[derive(Debug)]
 pub struct Named {
     /// Its file, or its seed.
@@ -31,7 +31,7 @@ pub fn root() -> PathBuf {
 /// it, and builds the firmware from the same file.
 ///
 /// # Panics
-/// If the file is missing or wrong, with its words.
+/// If the file is missing or wrong.
 #[must_use]
 pub fn robot() -> &'static Robot {
     static ROBOT: LazyLock<Robot> = LazyLock::new(|| {
@@ -55,7 +55,7 @@ pub fn paper() -> &'static Robot {
 /// in every run with the same [`seed`].
 ///
 /// # Panics
-/// If one of the files is wrong, with its words; its name is in them.
+/// If one of the files is wrong; the message names it.
 #[must_use]
 pub fn robots() -> &'static [Named] {
     static ROBOTS: LazyLock<Vec<Named>> = LazyLock::new(|| {
@@ -103,8 +103,8 @@ pub fn seed() -> u64 {
     })
 }
 
-/// Random numbers of their own for each `stream`, the same in every run with the
-/// same [`seed`].
+/// A generator of random numbers for each `stream`, the same in every run with the same
+/// [`seed`].
 #[must_use]
 pub fn rng(stream: u64) -> Rng {
     Rng::with_seed(seed().wrapping_mul(1_000_003).wrapping_add(stream))

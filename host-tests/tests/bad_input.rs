@@ -1,6 +1,6 @@
 //! Two million random bytes, two million lines that are nearly right and two thousand
-//! memories, through the core on this machine: one answer for each line, no pulse outside
-//! the limits, a memory that is always right.
+//! memories, through the core on this machine: each line has one answer, no pulse
+//! is outside the limits, and the memory is always valid.
 //!
 //! `LIZARD_FUZZ=5`, as continuous integration has it, takes five times as many.
 
@@ -15,13 +15,13 @@ use lizard_host_tests::{robot, times};
 #[path = "firmware/lines.rs"]
 mod lines;
 
-/// The number of bytes, of lines, and of a thousand memories each.
+/// The number of bytes and of lines, and a thousand times the number of memories.
 const COUNT: u64 = 2_000_000;
 
-/// Parts that run at once.
+/// Number of parts that run in parallel.
 const PARTS: u64 = 2;
 
-/// Runs parts of a test at once.
+/// Runs the parts of a test in parallel.
 fn in_parts(part: impl Fn(&mut Rng, u64) + Sync) {
     thread::scope(|scope| {
         let run = |n| {

@@ -1,8 +1,7 @@
-//! The code that the program has inside is the code that the source builds.
+//! The code inside the program is the code that the source builds.
 //!
-//! The source says what the firmware is, and `firmware/code.hex` is what users get without a
-//! compiler. A change of the one without the other would be seen by nobody until a board does
-//! something else than its source says.
+//! Users without a compiler get `firmware/code.hex`. If the source changed without it, nobody would
+//! notice until a board behaves differently from its source.
 
 use std::io::Write as _;
 use std::process::Command;
@@ -20,7 +19,7 @@ use simulated_uno::{Fidelity, Image, State, Uno};
 const RENEW: &str =
     "firmware/code.hex is not what the source builds: run `make code-image` and commit it";
 
-/// Code without a robot, from address 0 to where the robot's section begins.
+/// Code without a robot, from address 0 to the robot's section.
 fn code_of(image: &Image) -> Vec<u8> {
     let mut flash = image.flash();
     flash.resize(START.into(), 0xff);
@@ -28,7 +27,7 @@ fn code_of(image: &Image) -> Vec<u8> {
 }
 
 /// The image inside the program, with the robot under test.
-fn inside() -> Image {
+fn embedded_image() -> Image {
     let mut image = Image::parse_hex(CODE).expect("it is Intel HEX");
     let space = u32::from(START)..0x7e00;
     image
@@ -37,7 +36,7 @@ fn inside() -> Image {
     image
 }
 
-/// The compiler and the linker of the firmware that was built, a line each.
+/// The versions of the installed compiler and linker, one per line.
 fn tools_here() -> String {
     let script = root().join("scripts/code-image");
     let output = Command::new(script)
@@ -45,13 +44,13 @@ fn tools_here() -> String {
         .arg(FirmwareBench::elf())
         .output();
     let output = output.expect("scripts/code-image runs");
-    let said = String::from_utf8(output.stdout).expect("it is text");
-    assert!(said.starts_with("rustc version "), "{said}");
-    said
+    let printed = String::from_utf8(output.stdout).expect("it is text");
+    assert!(printed.starts_with("rustc version "), "{printed}");
+    printed
 }
 
-/// A minute of the walk, of other commands and of rest.
-fn minute(image: Image) -> Recording {
+/// A recorded minute of walking, other commands and rest.
+fn record_minute(image: Image) -> Recording {
     let commands = [
         (1000, "status"),
         (2003, "walk"),
@@ -103,7 +102,7 @@ fn the_code_inside_the_program_is_what_the_source_builds() {
     std::io::stderr()
         .write_all(note.as_bytes())
         .expect("it is said");
-    let [inside, built] = [inside(), FirmwareBench::image()].map(minute);
+    let [inside, built] = [embedded_image(), FirmwareBench::image()].map(record_minute);
     assert_eq!(inside.banner, built.banner, "{RENEW} (its banner)");
     assert_eq!(inside.answers, built.answers, "{RENEW} (its answers)");
     assert_eq!(inside.frames.widths.len(), built.frames.widths.len());
@@ -120,9 +119,9 @@ fn the_code_inside_the_program_is_what_the_source_builds() {
 
 #[test]
 fn the_code_inside_the_program_is_code_alone_and_walks_with_a_robot_behind_it() {
-    let recording = minute(inside());
+    let recording = record_minute(embedded_image());
     let banner = recording.banner.expect("a banner");
-    let its = lizard_host::firmware::named(robot().firmware());
+    let its = lizard_host::firmware::label(robot().firmware());
     assert!(banner.contains(&format!(" robot {its}")), "{banner}");
     assert!(recording.frames.widths.len() > 2700);
     let code = Image::parse_hex(CODE).expect("it is Intel HEX").flash();

@@ -1,5 +1,5 @@
-//! The shell of the tests that flash: what they type is read, what is printed is seen,
-//! and Ctrl-C ends it wherever these tests run.
+//! Tests of the shell in which the flash tests run: it takes input, shows output, and ends on
+//! Ctrl-C.
 
 mod shell;
 
@@ -12,15 +12,15 @@ use shell::Shell;
 fn ctrl_c_ends_a_command_that_reads_and_prints() {
     let mut shell = Shell::start("cat", &[], &[]);
     shell.say("a line");
-    LIMIT.until("the line, printed", || shell.screen() == "a line\n");
+    LIMIT.expect("the line, printed", || shell.screen() == "a line\n");
     assert!(!shell.has_ended());
     shell.interrupt();
     assert!(shell.has_ended());
 }
 
 #[test]
-fn ctrl_c_ends_a_command_though_these_tests_ignore_it() {
-    // As what a shell without job control starts with `&` does.
+fn ctrl_c_ends_a_command_even_if_the_tests_ignore_it() {
+    // Like a program that a shell without job control starts with `&`.
     let this = std::env::current_exe().expect("it runs");
     let mut again = Command::new("env");
     again.args(["--ignore-signal=INT"]).arg(this);

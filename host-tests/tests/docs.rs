@@ -1,5 +1,4 @@
-//! Pages name what exists: tests, items of the code, and every crate that is free of
-//! libsimavr.
+//! The pages of docs/ name only tests, items, links and files that exist.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -12,7 +11,7 @@ use lizard_core::numbers::section::{Header, Numbers, SPACE, START};
 use lizard_host_tests::root;
 
 #[test]
-fn every_fault_in_the_documentation_has_a_test_that_exists() {
+fn every_fault_in_the_documentation_names_an_existing_test() {
     let page = fs::read_to_string(root().join("docs/faults.md")).expect("the page");
     let (_, table) = page.split_once("## Each of them").expect("the table");
     let (table, _) = table.split_once("\n## ").expect("what follows it");
@@ -103,7 +102,7 @@ fn the_page_of_the_firmware_has_every_field_of_a_robots_section_at_its_place() {
     let missing: Vec<String> = [&header[..], &numbers[..], &parts[..], &flash[..]]
         .concat()
         .into_iter()
-        .filter(|said| !page.contains(said))
+        .filter(|printed| !page.contains(printed))
         .collect();
     assert!(
         missing.is_empty(),
@@ -113,7 +112,7 @@ fn the_page_of_the_firmware_has_every_field_of_a_robots_section_at_its_place() {
 }
 
 /// The names of crates and items in a text.
-fn words(text: &str) -> BTreeSet<&str> {
+fn identifiers(text: &str) -> BTreeSet<&str> {
     let apart = |c: char| !(c.is_alphanumeric() || "_-/".contains(c));
     text.split(apart).collect()
 }
@@ -121,9 +120,9 @@ fn words(text: &str) -> BTreeSet<&str> {
 #[test]
 fn the_license_names_every_crate_on_the_side_of_libsimavr_where_it_is() {
     let license = fs::read_to_string(root().join("LICENSE")).expect("the file");
-    let (_, said) = license.split_once("therefore licensed").expect("libsimavr");
-    let (with, without) = said.split_once("The firmware").expect("both sides");
-    let (with, without) = (words(with), words(without));
+    let (_, printed) = license.split_once("therefore licensed").expect("libsimavr");
+    let (with, without) = printed.split_once("The firmware").expect("both sides");
+    let (with, without) = (identifiers(with), identifiers(without));
     let workspace = fs::read_to_string(root().join("crates/Cargo.toml")).expect("the workspace");
     let (_, members) = workspace.split_once("members = [").expect("its members");
     let (members, _) = members.split_once(']').expect("their end");
@@ -137,11 +136,11 @@ fn the_license_names_every_crate_on_the_side_of_libsimavr_where_it_is() {
         let manifest = fs::read_to_string(root().join(&name).join("Cargo.toml")).expect(&name);
         let has = name == "crates/simulated-uno" || manifest.contains("\nsimulated-uno = ");
         let word = &*format!("{name}/");
-        let said = [
+        let printed = [
             with.contains(word) || name == "crates/simulated-uno",
             without.contains(word),
         ];
-        assert_eq!(said, [has, !has], "LICENSE and {name}/Cargo.toml");
+        assert_eq!(printed, [has, !has], "LICENSE and {name}/Cargo.toml");
     }
 }
 
@@ -185,11 +184,13 @@ fn sources(folder: &Path) -> String {
 }
 
 /// The files of a folder, or the one file, that have a word by itself.
-fn knowing(path: &Path, word: &str) -> BTreeSet<PathBuf> {
+fn files_with_word(path: &Path, word: &str) -> BTreeSet<PathBuf> {
     if path.is_dir() {
         let entries = fs::read_dir(path).expect("a folder");
         let paths = entries.map(|entry| entry.expect("an entry").path());
-        return paths.flat_map(|path| knowing(&path, word)).collect();
+        return paths
+            .flat_map(|path| files_with_word(&path, word))
+            .collect();
     }
     let text = fs::read_to_string(path).expect("a text");
     let mut words = text.split(|c: char| !c.is_alphanumeric() && c != '_');
@@ -198,8 +199,8 @@ fn knowing(path: &Path, word: &str) -> BTreeSet<PathBuf> {
     knows.then(|| path.to_path_buf()).into_iter().collect()
 }
 
-/// `center` is the example: it is a command and nothing else. It has no arguments, of which
-/// `deadman` in the sentences is one.
+/// `center` serves as the example, since the word means nothing else; `deadman` is also in
+/// sentences.
 #[test]
 fn the_files_of_a_console_command_are_those_that_know_one_and_no_more_than_seven() {
     let page = fs::read_to_string(root().join("CONTRIBUTING.md")).expect("CONTRIBUTING.md");
@@ -218,9 +219,9 @@ fn the_files_of_a_console_command_are_those_that_know_one_and_no_more_than_seven
     ];
     let mut known: BTreeSet<PathBuf> = folders
         .iter()
-        .flat_map(|folder| knowing(&root().join(folder), "center"))
+        .flat_map(|folder| files_with_word(&root().join(folder), "center"))
         .collect();
-    known.extend(knowing(
+    known.extend(files_with_word(
         &root().join("crates/core/src/console/text.rs"),
         "deadman",
     ));
@@ -319,7 +320,7 @@ fn no_picture_is_on_two_pages_of_the_book() {
     let mut seen = BTreeSet::new();
     for (page, text) in pages() {
         let folder = page.parent().expect("a folder");
-        // README is the book's cover outside of it.
+        // README is the book's cover and not a page of it.
         if !folder.ends_with("docs") {
             continue;
         }

@@ -1,6 +1,6 @@
-//! README's `make flash`, as it stands there: cargo, ravedude and avrdude write
-//! the image to a board as it is sold. The board is simulated, with the boot
-//! loader of a stock UNO in flash, behind a pseudo terminal and in real time.
+//! README's `make flash`: cargo, ravedude and avrdude write the image to a new board. The board is
+//! simulated, with the boot loader of a stock UNO in flash, behind a pseudo terminal and in real
+//! time.
 //!
 //! `make flash-test` runs these tests after it has installed the tools.
 
@@ -14,7 +14,7 @@ use lizard_time_limit::LIMIT;
 use shell::Shell;
 use simulated_uno::{Fidelity, Uno};
 
-/// The servos wake one after another; later than this all four are held.
+/// Time after which all servos are awake.
 const AWAKE_FRAMES: u64 = 60;
 
 fn make_flash(desk: &Desk) -> Shell {
@@ -22,7 +22,7 @@ fn make_flash(desk: &Desk) -> Shell {
 }
 
 /// Lets a number of frames pass.
-fn pass(desk: &mut Desk, count: u64) {
+fn run_frames(desk: &mut Desk, count: u64) {
     let end = desk.uno.cycle() + count * FRAME;
     let passed = desk.until(|uno| uno.cycle() > end);
     assert!(passed, "waited {LIMIT} for {count} frames");
@@ -43,11 +43,11 @@ fn make_flash_writes_the_image_and_the_robot_walks() {
     // All four servos awake, then two steps.
     shell.say("stand");
     desk.see(&shell, "ok stand");
-    pass(&mut desk, AWAKE_FRAMES);
+    run_frames(&mut desk, AWAKE_FRAMES);
     shell.say("walk");
     desk.see(&shell, "ok walk");
     desk.edges.clear();
-    pass(&mut desk, 110);
+    run_frames(&mut desk, 110);
     let pins = servo_pins(robot());
     let first = desk
         .edges
@@ -116,7 +116,7 @@ fn a_byte_that_the_flash_does_not_keep_ends_the_upload() {
     let mut desk = Desk::with_a_new_board();
     let shell = make_flash(&desk);
     let mut worn = false;
-    // Once the image's first page is there, one bit of it falls.
+    // Once the image's first page is written, one bit of it changes.
     let ended = desk.until(|uno| {
         if !worn && uno.flash()[0x100] != 0xff {
             uno.set_flash(0x11, &[uno.flash()[0x11] ^ 0x10]);

@@ -1,5 +1,4 @@
-//! `make flash` where it cannot work: what a person reads then. No board is
-//! needed, and one that is connected is left alone.
+//! The error messages of `make flash`. No board is needed, and a connected one is left alone.
 
 use std::fs::{self, File, OpenOptions, Permissions};
 use std::os::unix::fs::{PermissionsExt, symlink};
@@ -67,7 +66,7 @@ fn without_a_board_it_says_what_to_connect() {
 }
 
 #[test]
-fn one_board_is_taken_whatever_its_usb_chip() {
+fn the_only_board_is_used_whichever_usb_chip_it_has() {
     let ports = folder();
     File::create(ports.path().join("ttyUSB0")).expect("a file");
     assert_eq!(check(ports.path()), (String::new(), true));
@@ -123,7 +122,8 @@ fn without_permission_it_says_which_group_to_join() {
     fs::set_permissions(&port, Permissions::from_mode(0o660)).expect("it is ours");
     let as_nobody = ["setpriv", "--reuid=nobody", "--clear-groups"];
     if !is_root() {
-        // Nobody else can be asked, but a port that its owner may not open either will do.
+        // Only root can run it as another user; a port that even its owner may not open
+        // does as well.
         fs::set_permissions(&port, Permissions::from_mode(0o000)).expect("it is ours");
         let (said, goes_on) = check_as(&[], ports.path(), None);
         assert!(!goes_on);

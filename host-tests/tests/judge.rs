@@ -1,6 +1,5 @@
 //! The same image on two simulators: they must agree about every pulse and every byte.
-//!
-//! See docs/judges.md for the two and for what their agreement means.
+//! docs/judges.md describes both, and the meaning of their agreement.
 
 use std::thread;
 
@@ -27,25 +26,24 @@ fn gaits() -> Vec<String> {
 /// The tolerance in time between two consoles with the same output.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Apart {
-    /// By two cycles: two interrupts may hold up main before a byte, and where each comes
-    /// between two instructions the simulators place a cycle apart.
+    /// Two cycles: two interrupts may delay main before a byte, and each may come one
+    /// cycle later in one simulator than in the other.
     Cycles,
-    /// By less than a turn of main: that is when it sees that the EEPROM is ready, or
-    /// that a byte of a flood is there.
+    /// Less than a turn of main, which notices only once in a turn that the EEPROM is
+    /// ready or that a byte of a flood is there.
     Turn,
-    /// They are not compared: which bytes of a flood are lost while long answers are
-    /// sent depends on single cycles, in which two simulators may differ.
+    /// Any: the times are not compared. The bytes of a flood that are lost while long
+    /// answers are sent depend on single cycles, in which two simulators may differ.
     Any,
 }
 
 /// Cycles of the longest turn of main: it computes a frame, 12 000 at the worst, and writes a
-/// piece of a line. Where the EEPROM is ready just before the turn begins in one simulator, it
-/// is just behind in the other, and waits for the next one.
+/// piece of a line. If the EEPROM becomes ready just before a turn in one simulator, it may do
+/// so just after its beginning in the other, and then waits for the next turn.
 const TURN: u64 = 20_000;
 
-/// Gives avr8js the bytes that the bench has received, and holds its account against
-/// the bench's: pulses, console and EEPROM.
-fn agree(bench: &mut FirmwareBench, what: &str, apart: Apart) {
+/// Runs avr8js on the bytes that the bench has received, and compares pulses, console and EEPROM.
+fn check_agreement(bench: &mut FirmwareBench, what: &str, apart: Apart) {
     let end = bench.uno.cycle();
     let edges = bench.uno.edges();
     let simavr = Account::new(&edges, bench.bytes(), end);
@@ -96,11 +94,11 @@ fn two_simulators_agree_about_every_pulse_of_every_gait() {
     }
     bench.say("stop");
     bench.run_ms(500);
-    agree(&mut bench, "all gaits", Apart::Cycles);
+    check_agreement(&mut bench, "all gaits", Apart::Cycles);
 }
 
 #[test]
-fn two_simulators_agree_about_what_is_kept() {
+fn two_simulators_agree_about_saved_settings() {
     let mut bench = awake();
     for line in ["trim 1 3", "save", "trim 2 -2.5", "save", "rest"] {
         bench.say(line);
@@ -116,7 +114,7 @@ fn two_simulators_agree_about_what_is_kept() {
         written > 100,
         "both calibrations and a pose are kept: {written} bytes"
     );
-    agree(&mut bench, "two calibrations and a pose", Apart::Turn);
+    check_agreement(&mut bench, "two calibrations and a pose", Apart::Turn);
 }
 
 #[test]
@@ -143,14 +141,14 @@ fn two_simulators_agree_under_a_saturated_line() {
                 bench.uno.flood(b"");
                 bench.uno.send(b"\nwatch 0\nstatus\n");
                 bench.run_ms(500);
-                agree(&mut bench, &format!("{flood:?}"), apart);
+                check_agreement(&mut bench, &format!("{flood:?}"), apart);
             });
         }
     });
 }
 
 #[test]
-fn the_faults_of_avr8js_are_corrected_and_still_there() {
+fn the_known_faults_of_avr8js_still_exist_and_are_corrected() {
     done(own_tests());
 }
 
@@ -194,8 +192,8 @@ fn the_first_difference_between_two_accounts_is_named() {
         ),
         (&[], "no servo gets a pulse"),
     ] {
-        let said = difference(theirs).expect_err(named);
-        assert!(said.contains(named), "{said}");
+        let printed = difference(theirs).expect_err(named);
+        assert!(printed.contains(named), "{printed}");
     }
     for (text, named) in [
         (
@@ -208,7 +206,7 @@ fn the_first_difference_between_two_accounts_is_named() {
             "byte 7 of the console is on avr8js alone: \"ok walks\"",
         ),
     ] {
-        let said = compare_console(&ours, &account(&pulses, text)).expect_err(named);
-        assert!(said.contains(named), "{said}");
+        let printed = compare_console(&ours, &account(&pulses, text)).expect_err(named);
+        assert!(printed.contains(named), "{printed}");
     }
 }

@@ -1,14 +1,14 @@
-//! Functions in another order leave a program the same.
+//! The linker's order of functions does not change a program.
 
-use lizard_host_tests::avr_gcc::c_by_way_of_an_object;
+use lizard_host_tests::avr_gcc::compile_c_with_edited_object;
 use lizard_linker::{ROUTINES, Savings, shrink};
 use simulated_uno::{Fidelity, Image, Uno};
 
-/// A program as avr-gcc links it and as it is made shorter, and how much that was.
-fn both(program: &str) -> [(Image, Savings); 2] {
+/// A program linked by avr-gcc and by our linker, and the savings.
+fn link_both_ways(program: &str) -> [(Image, Savings); 2] {
     let savings = std::cell::Cell::new(Savings::default());
-    let plain = c_by_way_of_an_object(program, |object| (object, ROUTINES));
-    let short = c_by_way_of_an_object(program, |object| {
+    let plain = compile_c_with_edited_object(program, |object| (object, ROUTINES));
+    let short = compile_c_with_edited_object(program, |object| {
         let (new, saved) = shrink(&object)
             .expect("it is an object")
             .expect("of an AVR");
@@ -95,10 +95,11 @@ fn result(image: &Image) -> u16 {
 
 #[test]
 fn functions_that_lie_in_another_order_compute_the_same_in_fewer_bytes() {
-    let [(plain, _), (short, savings)] = both(&far_calls(""));
+    let [(plain, _), (short, savings)] = link_both_ways(&far_calls(""));
     assert_eq!(result(&plain), far_sum());
     assert_eq!(result(&short), far_sum());
-    // Main cannot be near all ten that it calls, but those near what they call.
+    // Main cannot be near all ten functions that it calls, but those can be near the
+    // ones that they call.
     assert!(savings.calls >= 20, "{savings:?}");
     let end = |image: &Image| image.symbol("_etext").expect("it has one").address;
     let saved = end(&plain) as i64 - end(&short) as i64;
@@ -107,7 +108,8 @@ fn functions_that_lie_in_another_order_compute_the_same_in_fewer_bytes() {
 
 #[test]
 fn functions_stay_where_they_are_if_one_of_them_needs_the_next_behind_it() {
-    // One without an end, one whose end may be skipped, one that reaches so far and no farther.
+    // A function without an end, one whose last instruction may be skipped, and one with a
+    // branch of short reach.
     for end in ["subi r24, 5", "sbrs r24, 0\\n ret", "rjmp lower"] {
         let more = format!(
             r#"asm(
@@ -119,7 +121,7 @@ fn functions_stay_where_they_are_if_one_of_them_needs_the_next_behind_it() {
         );
         let program = far_calls(&more).replace("sum = f9(sum);", "sum = f9(sum) + upper(sum);");
         let mut results = Vec::new();
-        for (image, savings) in both(&program) {
+        for (image, savings) in link_both_ways(&program) {
             assert_eq!(savings.calls, 0, "{end}: {savings:?}");
             let symbol = |name| image.symbol(name).expect("it has one");
             let upper = symbol("upper");

@@ -1,4 +1,4 @@
-//! No module uses another that uses it: each can be read after those that it uses.
+//! Modules do not use each other in circles, and rooms use only rooms below them.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -26,8 +26,8 @@ const CRATES: [&str; 13] = [
 /// The rooms of the core, the top one first. A room may use those below it.
 const ROOMS: [&str; 6] = ["console", "control", "motion", "guard", "memory", "numbers"];
 
-/// Folders whose face, too, may not be used by a module that it uses: its own functions and
-/// types count as one more module.
+/// Folders whose `mod.rs` counts as a module of its own, which must not be part of a circle
+/// either.
 const WITH_FACE: [(&str, &str); 2] = [
     ("crates/host", "crate::"),
     ("crates/host", "crate::commands::"),
@@ -70,7 +70,7 @@ fn a_room_of_the_core_uses_only_rooms_below_it() {
 }
 
 #[test]
-fn a_circle_is_found_and_what_leads_to_it_or_from_it_is_no_part_of_it() {
+fn a_cycle_is_found_without_the_modules_that_lead_to_it_or_from_it() {
     let uses = |lines: &[(&str, &[&str])]| -> Uses {
         let named = |names: &[&str]| names.iter().map(ToString::to_string).collect();
         let line = |&(name, used): &(&str, &[&str])| (name.to_string(), named(used));
@@ -92,15 +92,15 @@ fn a_circle_is_found_and_what_leads_to_it_or_from_it_is_no_part_of_it() {
 fn a_use_of_a_module_above_is_read_as_its_path_and_a_faces_own_items_are_found() {
     let text = "use super::{Link, status};\nuse super::super::recorder::Event;";
     assert_eq!(
-        absolute(text, "crate::drive::console::"),
+        resolve_super(text, "crate::drive::console::"),
         "use crate::drive::console::{Link, status};\nuse crate::drive::recorder::Event;"
     );
     let face = "mod menu;\npub fn run() {}\nconst KNOWN: u8 = 1;\nuse menu::Choice;";
     assert_eq!(items(face).collect::<Vec<_>>(), ["run", "KNOWN"]);
 }
 
-/// The modules that are left when those that use no other, and those that no other
-/// uses, are taken away one after another.
+/// The modules that use each other in circles: those that are left after removing,
+/// again and again, each module that uses no other or that no other uses.
 fn in_circles(mut uses: Uses) -> Vec<String> {
     loop {
         let before = uses.len();
@@ -116,13 +116,13 @@ fn in_circles(mut uses: Uses) -> Vec<String> {
     }
 }
 
-/// A folder of modules: a crate, or a module that has others in it.
+/// A folder of modules: a crate, or a module with submodules.
 struct Folder {
-    /// How a name in it is written: `crate::`, or `crate::measures::`.
+    /// The path prefix of its names: `crate::`, or `crate::measures::`.
     path: String,
     /// The file that declares its modules, without comments and tests.
     face: String,
-    /// Where the modules are.
+    /// The folder of its modules.
     place: PathBuf,
 }
 
@@ -153,8 +153,8 @@ impl Folder {
         self.face.lines().filter_map(module).collect()
     }
 
-    /// The uses among its modules, and its face if `with_face`. A module and those within it
-    /// count as one; tests do not count.
+    /// The uses among its modules, including its `mod.rs` if `with_face`. A module and its
+    /// submodules count as one; tests do not count.
     fn uses(&self, with_face: bool) -> Uses {
         let modules = self.modules();
         // `crate::Name` uses the module that the folder's face has the name from.
@@ -180,7 +180,7 @@ impl Folder {
         }
         for module in &modules {
             let place = self.place.join(module);
-            let mut text = absolute(&read(&place.with_extension("rs")), &self.path);
+            let mut text = resolve_super(&read(&place.with_extension("rs")), &self.path);
             for path in files(&place) {
                 let within = path.strip_prefix(&self.place).expect("it is in the folder");
                 let parents = within.parent().expect("a folder").iter();
@@ -192,9 +192,9 @@ impl Folder {
                     .iter()
                     .map(|name| format!("{name}::"))
                     .collect();
-                text += &absolute(&read(&path), &format!("{}{above}", self.path));
+                text += &resolve_super(&read(&path), &format!("{}{above}", self.path));
             }
-            let used = named(&text, &self.path).into_iter();
+            let used = names_after(&text, &self.path).into_iter();
             let others = used
                 .filter_map(|name| homes.get(name))
                 .filter(|other| *other != module);
@@ -222,7 +222,7 @@ fn items(text: &str) -> impl Iterator<Item = &str> {
 }
 
 /// The text of a file with every `super::` as the path of the module above it.
-fn absolute(text: &str, above: &str) -> String {
+fn resolve_super(text: &str, above: &str) -> String {
     let mut text = text.to_owned();
     let parts: Vec<&str> = above.split_inclusive("::").collect();
     for up in (1..=parts.len()).rev() {
@@ -243,7 +243,7 @@ fn module(line: &str) -> Option<&str> {
 }
 
 /// The names behind each `crate::`, or another path, in a text: one, or those in braces.
-fn named<'a>(text: &'a str, path: &str) -> BTreeSet<&'a str> {
+fn names_after<'a>(text: &'a str, path: &str) -> BTreeSet<&'a str> {
     let after = text.split(path).skip(1);
     after
         .flat_map(|rest| match rest.strip_prefix('{') {
@@ -275,7 +275,7 @@ fn read(path: &Path) -> String {
     kept.map(|i| format!("{}\n", lines[i])).collect()
 }
 
-/// The Rust files of a module's folder and of the folders in it, but for its tests.
+/// The Rust files of a module's folder and of the folders in it, except for its tests.
 fn files(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = fs::read_dir(folder) else {
         return Vec::new();

@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use lizard_host::prove::{Proof, Share};
+use lizard_host::prove::{PairSample, Proof};
 use lizard_host_tests::seed;
 use lizard_robot::Robot;
 
@@ -28,7 +28,7 @@ fn files() -> Vec<PathBuf> {
 fn no_pair_of_positions_outside_the_band_or_in_a_cell_is_decided_wrong_for_any_robot() {
     for (number, file) in (0..).zip(files()) {
         // Another share of the pairs for each robot, and for each seed.
-        let share = Share {
+        let share = PairSample {
             one_in: ONE_IN,
             offset: (seed().wrapping_add(number) % u64::from(ONE_IN)) as u32,
         };
@@ -67,7 +67,7 @@ fn a_guard_with_another_robots_lengths_does_not_pass() {
         .replace("\nl10 = 135.0 ", "\nl10 = 136.0 ")
         .replace("\nl15 = 135.0 ", "\nl15 = 136.0 ");
     let longer = Robot::parse(&longer).expect("it is right, too");
-    let share = Share {
+    let share = PairSample {
         one_in: 4096,
         offset: 1,
     };

@@ -11,9 +11,9 @@ const PINS: [u8; 8] = [2, 3, 7, 8, 9, 12, 14, 19];
 /// Cycles that the example's servo has in its frame, by its description: up from 1000 us
 /// by a step of its own in every frame, to 2000 us and down again.
 fn width(servo: u64, frame: u64) -> u64 {
-    // It counts its way in 16 bits.
-    let way = frame * (16 * servo + 5) % 65_536 % 32_000;
-    32_000 - 16_000u64.abs_diff(way)
+    // It counts its position in 16 bits.
+    let position = frame * (16 * servo + 5) % 65_536 % 32_000;
+    32_000 - 16_000u64.abs_diff(position)
 }
 
 fn sweep(fidelity: Fidelity) -> Uno {
@@ -87,17 +87,17 @@ fn the_led_blinks_every_sixteen_frames() {
 }
 
 #[test]
-fn what_the_readme_says_of_cost_is_what_the_example_costs() {
+fn the_costs_in_the_readme_are_those_of_the_example() {
     let mut uno = sweep(Fidelity::DataSheet);
     uno.run_ms(100);
     let cost = |uno: &Uno| {
         let used = uno.interrupts();
-        let of = |vector| {
+        let cycles_of = |vector| {
             used.iter()
                 .find(|one| one.vector == vector)
                 .map_or(0, |one| one.cycles)
         };
-        of(11) + of(12)
+        cycles_of(11) + cycles_of(12)
     };
     let before = (cost(&uno), uno.cycle());
     uno.run_cycles(100 * u64::from(frame_cycles(8)));
@@ -118,18 +118,18 @@ fn what_the_readme_says_of_cost_is_what_the_example_costs() {
             .unwrap_or_else(|_| panic!("{cell} is a number"))
     };
     // Another compiler may save a byte or two.
-    let same = |name: &str, measured: f64| {
-        let told = number(&row(name)[2]);
-        let off = (measured - told).abs();
-        assert!(off <= told / 50.0, "{name}: {measured}, not {told}");
+    let assert_near = |name: &str, measured: f64| {
+        let stated = number(&row(name)[2]);
+        let off = (measured - stated).abs();
+        assert!(off <= stated / 50.0, "{name}: {measured}, not {stated}");
     };
-    same("cycles of its interrupts in a frame", per_frame);
+    assert_near("cycles of its interrupts in a frame", per_frame);
     let image = uno.image();
-    same(
+    assert_near(
         "flash of the whole example, bytes",
         image.flash_used().into(),
     );
-    same(
+    assert_near(
         "static RAM of the whole example, bytes",
         image.static_ram().into(),
     );

@@ -1,5 +1,5 @@
-//! The depth of the stack worked out from machine code, against programs whose depth
-//! follows by counting, and against how deep they really get.
+//! The stack depth computed from machine code, compared with programs of known depth, and with
+//! measured depths.
 
 use lizard_host::bench::{StackDepth, StackError};
 use lizard_host_tests::avr_gcc::{assembler, c};
@@ -20,7 +20,7 @@ fn refusal(image: &Image) -> StackError {
 }
 
 /// The depth of the stack in a hundredth of a second.
-fn measured(image: &Image) -> u16 {
+fn measure_depth(image: &Image) -> u16 {
     let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
     uno.run_ms(10);
     uno.stack_used()
@@ -47,7 +47,7 @@ fn pushes_calls_and_returns_are_added_up_along_the_deepest_way() {
         ret"
     ));
     assert_eq!(depth(&image).worst(), 2 + 3 + 2 + 1);
-    assert_eq!(measured(&image), 8);
+    assert_eq!(measure_depth(&image), 8);
     // Nothing static, so all of SRAM but these is left.
     assert_eq!(depth(&image).margin(), 2048 - 8);
 }
@@ -79,7 +79,7 @@ fn frames_small_and_large_count_and_so_does_a_jump_at_the_end_of_a_function() {
         leaf: ret"
         ));
         assert_eq!(depth(&image).worst(), 2 + 2 + bytes + 2, "{bytes}");
-        assert_eq!(measured(&image), 2 + 2 + bytes + 2, "{bytes}");
+        assert_eq!(measure_depth(&image), 2 + 2 + bytes + 2, "{bytes}");
     }
 }
 
@@ -103,7 +103,7 @@ fn the_deepest_interrupt_is_on_top_once() {
 }
 
 #[test]
-fn what_the_compiler_makes_of_c_is_followed_and_no_run_gets_deeper() {
+fn compiled_c_is_followed_and_no_run_gets_deeper() {
     let image = c("#include <avr/io.h>
         #include <avr/interrupt.h>
         static volatile unsigned char out;
@@ -123,7 +123,7 @@ fn what_the_compiler_makes_of_c_is_followed_and_no_run_gets_deeper() {
             sei();
             for (;;) out = fill(out);
         }");
-    let (worst, deepest) = (depth(&image).worst(), measured(&image));
+    let (worst, deepest) = (depth(&image).worst(), measure_depth(&image));
     assert!(deepest > 100 && deepest <= worst, "{deepest} of {worst}");
     assert!(worst - deepest < 20, "{deepest} of {worst}");
 }
@@ -164,7 +164,7 @@ fn a_call_of_a_computed_address_is_refused_by_name() {
 }
 
 #[test]
-fn what_cannot_be_bounded_is_refused() {
+fn code_without_a_bound_is_refused() {
     let programs = [
         ("again: push r16 $ rjmp again", "more or less"),
         (
@@ -228,9 +228,10 @@ fn shared_beginnings_and_ends_count_what_they_save_and_make_room_for() {
         leaf: ret
         {ROUTINES}"
         ));
-        // Two return addresses, and below the room a third one for a moment.
+        // Two return addresses, the saved registers, the room, and below it a third
+        // return address for a moment.
         assert_eq!(depth(&image).worst(), 2 + saved + room + 2, "{first}");
-        assert_eq!(measured(&image), 2 + saved + room + 2, "{first}");
+        assert_eq!(measure_depth(&image), 2 + saved + room + 2, "{first}");
     }
 }
 
@@ -248,6 +249,6 @@ fn a_shared_end_that_does_not_fit_its_beginning_is_refused() {
         ));
         let refused = refusal(&image);
         assert_eq!(refused.function, "framed");
-        assert_eq!(refused.what, "restores something else than it saved");
+        assert_eq!(refused.what, "restores other registers than it saved");
     }
 }

@@ -1,5 +1,4 @@
-//! Trouble at random moments of everything that the robot does: a hundredth of what
-//! `make trouble` plays.
+//! Trouble at random moments of all activities: a hundredth of `make trouble`.
 
 use std::collections::BTreeSet;
 use std::thread;
@@ -7,11 +6,11 @@ use std::thread;
 use lizard_host_tests::trouble::{Activity, Scenario, campaign};
 use lizard_host_tests::{FirmwareBench, robot, seed};
 
-/// As many scenarios, an eighth for each activity.
-const COUNT: u64 = 152;
+/// Number of scenarios: a third are drives, and the rest is shared by the other activities.
+const COUNT: u64 = 156;
 
 #[test]
-fn whatever_goes_wrong_at_whatever_moment_the_robot_does_what_a_user_would_sign() {
+fn trouble_at_any_moment_breaks_no_rule() {
     let image = FirmwareBench::image();
     let threads = thread::available_parallelism().map_or(1, |n| n.get());
     let summary = campaign(&image, robot(), seed(), COUNT, threads, |_, _| {});
@@ -26,12 +25,10 @@ fn whatever_goes_wrong_at_whatever_moment_the_robot_does_what_a_user_would_sign(
     let activities: BTreeSet<Activity> = Activity::ALL.into();
     let played: BTreeSet<Activity> = summary.activities.keys().copied().collect();
     assert_eq!(played, activities);
-    assert!(
-        summary
-            .activities
-            .values()
-            .all(|(played, _)| *played == COUNT / 8)
-    );
+    for (activity, (played, _)) in summary.activities {
+        let share = if activity == Activity::Driving { 3 } else { 12 };
+        assert_eq!(played, COUNT / share, "{activity}");
+    }
 }
 
 #[test]

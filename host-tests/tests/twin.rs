@@ -1,4 +1,4 @@
-//! The image walks: from power-on to where the body is on the floor.
+//! The image walks: from power-on to the position of the body on the floor.
 
 use lizard_host::sim::frame::servo_pins;
 use lizard_host::sim::script::{Script, Step};
@@ -30,8 +30,8 @@ fn walk_all(model: ServoModel) -> Replay {
 }
 
 #[test]
-fn the_image_takes_the_body_where_its_gaits_are_predicted_to_go() {
-    let report = Report::of(robot(), &walk_all(ServoModel::IDEAL), false);
+fn the_image_moves_the_body_as_its_gaits_predict() {
+    let report = Report::of(robot(), &walk_all(ServoModel::Ideal), false);
     let cycles: Vec<_> = report
         .rows
         .iter()

@@ -6,6 +6,7 @@ use core::arch::global_asm;
 use avr_device::atmega328p::CPU;
 use lizard_core::memory::kept::{self, CELLS, Cells};
 use lizard_core::memory::restart::{Cause, Restart, Stance};
+use lizard_core::numbers::rate::Rate;
 
 use servo_pulses::cells::Byte;
 
@@ -70,8 +71,13 @@ pub fn restart(cpu: &CPU) -> Restart {
 }
 
 /// Stores the servos' state.
-pub fn keep(stance: &Stance, brown_outs: u8) {
-    kept::keep(&Ram, stance, brown_outs);
+pub fn store_stance(stance: &Stance, brown_outs: u8) {
+    kept::store_stance(&Ram, stance, brown_outs);
+}
+
+/// Stores the rate of the serial line.
+pub fn store_rate(rate: Rate) {
+    kept::store_rate(&Ram, rate);
 }
 
 /// Marks the program as hung; called by the watchdog's interrupt.

@@ -8,6 +8,7 @@
 //!   a tick every 20 ms.
 //! - [`serial`] owns the USART and its two rings.
 //! - [`led`] owns D13.
+//! - [`input`] reads the contacts that routines wait for.
 //! - [`eeprom`] owns the EEPROM, [`supply`] the analogue converter.
 //! - [`watchdog`] restarts the program when it hangs; [`kept`] carries the servos' state from
 //!   the previous run to the next; [`stack`] protects the data from the stack.
@@ -21,6 +22,7 @@
 //! hangs, and does not return to it.
 
 pub mod eeprom;
+mod input;
 mod kept;
 pub mod led;
 pub mod pulses;
@@ -35,6 +37,7 @@ use lizard_core::console::answer::Counters;
 use lizard_core::control::supply::Reading;
 use lizard_core::memory::restart::{Restart, Stance};
 use lizard_core::numbers::pose::Pulses;
+use lizard_core::numbers::rate::Rate;
 use lizard_core::step::Board;
 
 /// The started board of an Arduino UNO.
@@ -69,7 +72,7 @@ impl Uno {
         stack::start();
         led::start();
         sleep::start(board.CPU);
-        serial::start(board.USART0);
+        serial::start(board.USART0, restart.rate);
         // SAFETY: interrupts are off, and nothing else here uses Timer1 or the servos' pins.
         unsafe { pulses::start() };
         watchdog::start();
@@ -119,8 +122,8 @@ impl Board for Uno {
     }
 
     #[inline(always)]
-    fn keep(&mut self, stance: &Stance, brown_outs: u8) {
-        kept::keep(stance, brown_outs);
+    fn store_stance(&mut self, stance: &Stance, brown_outs: u8) {
+        kept::store_stance(stance, brown_outs);
     }
 
     #[inline(always)]
@@ -136,6 +139,11 @@ impl Board for Uno {
     #[inline(always)]
     fn stack_is_intact(&self) -> bool {
         stack::is_intact()
+    }
+
+    #[inline(always)]
+    fn is_closed(&mut self, pin: u8) -> bool {
+        input::is_closed(pin)
     }
 
     #[inline(always)]
@@ -161,6 +169,12 @@ impl Board for Uno {
     #[inline(always)]
     fn receive(&mut self) -> Option<u8> {
         serial::read()
+    }
+
+    #[inline(always)]
+    fn set_rate(&mut self, rate: Rate) {
+        serial::set_rate(rate);
+        kept::store_rate(rate);
     }
 
     #[inline(always)]

@@ -1,6 +1,6 @@
-//! The serial line, 115200 8N1, buffered both ways by interrupts.
+//! The serial line, 8N1, buffered both ways by interrupts.
 //!
-//! A byte takes 1389 cycles on the line and the receiver holds two, while main may be
+//! At 115200 baud a byte takes 1389 cycles on the line and the receiver holds two, while main may be
 //! busy with a frame for 12 000 cycles. So each direction has a ring. One side moves only
 //! the head, the other only the tail; both are single bytes, so neither side has to lock
 //! the other out. The handlers are short, because the servos' edges may have to wait for
@@ -11,6 +11,7 @@ use core::convert::Infallible;
 use avr_device::atmega328p::USART0;
 use avr_device::atmega328p::usart0::RegisterBlock;
 use lizard_core::console::line::GARBLED;
+use lizard_core::numbers::rate::Rate;
 use ufmt::uWrite;
 
 use servo_pulses::cells::{Byte, Counter};
@@ -25,9 +26,12 @@ const SEND: usize = 256;
 /// Bytes that the empty ring takes for sending.
 pub const ROOM: u8 = Ring::<SEND>::CAPACITY;
 
-/// 16 MHz / 8 / (16 + 1) = 117 647 baud, 2.1 % fast; the divisor that the boot
-/// loader uses too.
-const BAUD_DIVISOR: u16 = 16;
+/// The value of UBRR0 for the rate that is nearest: 16 MHz / 8 / (16 + 1) = 117 647 baud,
+/// 2.1 % fast, which the boot loader uses too; 57 143, 0.8 % slow; 38 462 and 9615, 0.2 % fast.
+const fn divisor(rate: Rate) -> u16 {
+    let (most, baud) = (16_000_000 / 8, rate.baud());
+    ((most + baud / 2) / baud - 1) as u16
+}
 
 /// Bytes on their way. `head` is moved by the side that puts, `tail` by the one
 /// that takes; both run freely modulo 256.
@@ -88,11 +92,11 @@ static TO_SEND: Ring<SEND> = Ring::new();
 static LOST: Counter = Counter::new();
 
 /// Sets up the port. With interrupts off, once.
-pub fn start(usart: USART0) {
+pub fn start(usart: USART0, rate: Rate) {
     // Double speed before the divisor: stock simavr takes the baud rate at the
     // moment the divisor is written.
     usart.ucsr0a.write(|w| w.u2x0().set_bit());
-    usart.ubrr0.write(|w| w.bits(BAUD_DIVISOR));
+    set_rate(rate);
     usart.ucsr0c.write(|w| {
         w.umsel0()
             .usart_async()
@@ -104,6 +108,19 @@ pub fn start(usart: USART0) {
             .chr8()
     });
     listen(&usart, false);
+}
+
+/// Changes the rate. Bytes on their way in either direction come garbled.
+pub fn set_rate(rate: Rate) {
+    let divisor = match rate {
+        Rate::Fastest => const { divisor(Rate::Fastest) },
+        Rate::Half => const { divisor(Rate::Half) },
+        Rate::Third => const { divisor(Rate::Third) },
+        Rate::Slowest => const { divisor(Rate::Slowest) },
+    };
+    // SAFETY: main alone writes UBRR0, and no handler uses it.
+    let usart = unsafe { &*USART0::ptr() };
+    usart.ubrr0.write(|w| w.bits(divisor));
 }
 
 /// The next byte received, if any; [`GARBLED`] in place of one without its stop bit.

@@ -20,7 +20,7 @@ const WDTCSR: u8 = 0x60;
 const CHANGE: u8 = 0x18;
 const GUARD: u8 = 0x4b;
 
-/// Starts it. With interrupts off, once; WDRF must have been cleared before.
+/// Starts the watchdog. Call it once, with interrupts off and WDRF cleared.
 pub fn start() {
     // SAFETY: only the watchdog is changed; the second store comes two cycles after
     // the first.
@@ -37,7 +37,7 @@ pub fn start() {
     }
 }
 
-/// Feeds it: it waits another 125 ms.
+/// Feeds the watchdog, which then waits another 125 ms.
 pub fn feed() {
     avr_device::asm::wdr();
 }
@@ -47,8 +47,8 @@ pub fn feed() {
 fn WDT() {
     kept::mark_hung();
     pulses::hush();
-    // SAFETY: every interrupt that is on has its handler. This one does not come again,
-    // for the chip has switched it off by itself, and nothing is returned to.
+    // SAFETY: every enabled interrupt has a handler. This one does not come again, because the
+    // chip has disabled it, and it never returns.
     unsafe { avr_device::interrupt::enable() };
     loop {
         avr_device::asm::nop();

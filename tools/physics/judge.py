@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Walks robots that `lizard mjcf --drive` or `make physics` has written, by MuJoCo.
 
-Prints a line of JSON for each: the file's name, and the displacement by a cycle (mm forward, mm to
+Prints a line of JSON for each: the file's name, and the mean displacement by a cycle (mm forward, mm to
 the left, deg counter-clockwise). Two walks run at a time. Usage: judge.py FOLDER-OR-FILE
 """
 

@@ -8,21 +8,27 @@ import math
 
 import mujoco
 
+from grain import Grain
+
 
 class Walk:
-    """The robot, its keyframes, and the beginning of the cycle that can be repeated."""
+    """The robot, its keyframes, and the beginning of the cycles that can be repeated."""
 
     def __init__(self, path):
         self.model = mujoco.MjModel.from_xml_path(str(path))
         self.data = mujoco.MjData(self.model)
-        self.begin, self.period = None, None
+        ratio = float(self.model.numeric("back over forward").data[0])
+        self.grain = None if ratio == 1 else Grain(self.model, ratio)
+        self.begin, self.period, self.count = None, None, None
         if self.model.nkey > 0:
-            self.begin, self.period = self.model.numeric("cycle").data
+            self.begin, self.period, count = self.model.numeric("cycle").data
+            self.count = int(count)
 
     def frame(self, seconds):
-        """The number of the keyframe at a time; after the last cycle, that cycle's again."""
-        if seconds >= self.begin + self.period:
-            seconds = self.begin + (seconds - self.begin) % self.period
+        """The number of the keyframe at a time; after the last cycle, the cycles' again."""
+        cycles = self.count * self.period
+        if seconds >= self.begin + cycles:
+            seconds = self.begin + (seconds - self.begin) % cycles
         times = self.model.key_time
         frame = int((seconds + 1e-9) / (times[1] - times[0]))
         return min(frame, self.model.nkey - 1)
@@ -31,6 +37,8 @@ class Walk:
         """Makes one step of the engine, with the servos set to the present frame's angles."""
         if self.model.nkey > 0:
             self.data.ctrl[:] = self.model.key_ctrl[self.frame(self.data.time)]
+        if self.grain:
+            self.grain.set(self.data)
         mujoco.mj_step(self.model, self.data)
 
     def place(self):
@@ -40,13 +48,18 @@ class Walk:
         return 1000 * y, -1000 * x, heading
 
     def cycle(self):
-        """Walks to the end of the cycle that the file names. Returns the displacement by that
-        cycle, relative to its beginning: mm forward, mm to the left, deg counter-clockwise."""
+        """Walks to the end of the cycles that the file names. Returns the mean displacement by one,
+        relative to its beginning: mm forward, mm to the left, deg counter-clockwise."""
         step = self.model.opt.timestep
         for _ in range(round(self.begin / step)):
             self.step()
+        ways = [self.displacement(round(self.period / step)) for _ in range(self.count)]
+        return [sum(parts) / self.count for parts in zip(*ways)]
+
+    def displacement(self, steps):
+        """The displacement by some steps of the engine, relative to their beginning."""
         forward, left, heading = self.place()
-        for _ in range(round(self.period / step)):
+        for _ in range(steps):
             self.step()
         end_forward, end_left, end_heading = self.place()
         ahead, aside = end_forward - forward, end_left - left

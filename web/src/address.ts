@@ -22,7 +22,7 @@ export class Address {
     private readonly first: string,
   ) {}
 
-  /** Starts to keep the address in step with the robot; called once the first address has been read. */
+  /** Starts to update the address with each change of the robot; called once the first address has been read. */
   begin(): void {
     this.isRead = true;
     this.follow();

@@ -21,7 +21,7 @@ export function run(advance: (ms: number) => void, draw: () => void): void {
         await Promise.resolve();
       }
     } catch (error) {
-      // The stop is reported once; the page goes on.
+      // The stop is reported once; the page continues.
       failed = true;
       console.error(error);
     }

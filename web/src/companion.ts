@@ -14,7 +14,7 @@ export class Companion {
   ) {}
 
   /** Creates a companion that stands at the start, with the mass and the floor of the page's robot. Throws a sentence. */
-  static async standing(module: WebAssembly.Module, toml: string, floor: Floor, servos: string, volts: number): Promise<Companion> {
+  static async create(module: WebAssembly.Module, toml: string, floor: Floor, servos: string, volts: number): Promise<Companion> {
     const robot = await Robot.load(module);
     const read = robot.read(toml);
     if (isRefused(read)) throw new Error(read.refused);

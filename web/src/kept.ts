@@ -2,7 +2,7 @@
 import type { Floor } from './robot';
 
 /** A robot and the user's changes to it. */
-export interface Kept {
+export interface SavedChanges {
   /** The name of its file. */
   file: string;
   /** The robot.toml of the file at that time: the changes apply only to this text. */
@@ -20,7 +20,7 @@ const KEY = `lizard ${location.pathname}`;
 
 export const kept = {
   /** Stores it; a browser without storage loses it at a reload. */
-  put(state: Kept): void {
+  put(state: SavedChanges): void {
     try {
       localStorage.setItem(KEY, JSON.stringify(state));
     } catch (error) {
@@ -29,9 +29,9 @@ export const kept = {
   },
 
   /** The stored state; null if there is none that can be used. */
-  get(): Kept | null {
+  get(): SavedChanges | null {
     try {
-      const state = JSON.parse(localStorage.getItem(KEY) ?? 'null') as Kept | null;
+      const state = JSON.parse(localStorage.getItem(KEY) ?? 'null') as SavedChanges | null;
       if (!state || typeof state.toml !== 'string' || typeof state.file !== 'string') return null;
       // An earlier page stored springs in another form, which is dropped.
       const isKnown = typeof state.floor?.twist === 'number' && ['rigid', 'strut'].includes(state.floor.kind);

@@ -1,7 +1,7 @@
 // Questions for a worker that arrive faster than it answers, as while the user drags. Of the questions that arrive
 // while it works, only the last is answered, and answers come in the order of their questions.
 
-export class Latest<Question, Answer> {
+export class LatestQuestion<Question, Answer> {
   private readonly worker: Worker;
   private next: Question | null = null;
   private isBusy = false;

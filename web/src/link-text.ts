@@ -1,17 +1,17 @@
 // A robot as a link: its robot.toml, compressed, behind the # of the page's address, where no server sees it.
 
 const KEY = '#robot=';
-/** The longest text that is taken for a robot.toml, which has some kilobytes. */
-const LONGEST = 200_000;
+/** The largest robot.toml that is accepted, in bytes; typical ones have a few thousand. */
+const MAX_BYTES = 200_000;
 
-async function through(bytes: Uint8Array<ArrayBuffer>, stream: CompressionStream | DecompressionStream): Promise<Uint8Array<ArrayBuffer>> {
+async function pipe(bytes: Uint8Array<ArrayBuffer>, stream: CompressionStream | DecompressionStream): Promise<Uint8Array<ArrayBuffer>> {
   const piped = new Blob([bytes]).stream().pipeThrough(stream);
   const reader = piped.getReader();
   const pieces: BlobPart[] = [];
   let length = 0;
   for (let part = await reader.read(); !part.done; part = await reader.read()) {
     length += part.value.length;
-    if (length > LONGEST) throw new Error('the robot in this address is longer than any');
+    if (length > MAX_BYTES) throw new Error('the robot in this address is too large');
     pieces.push(part.value);
   }
   return new Uint8Array(await new Blob(pieces).arrayBuffer());
@@ -19,20 +19,20 @@ async function through(bytes: Uint8Array<ArrayBuffer>, stream: CompressionStream
 
 /** The link to a robot. */
 export async function linkTo(toml: string): Promise<string> {
-  const packed = await through(new TextEncoder().encode(toml), new CompressionStream('deflate-raw'));
+  const packed = await pipe(new TextEncoder().encode(toml), new CompressionStream('deflate-raw'));
   const letters = btoa(String.fromCharCode(...packed));
   // base64url, which needs no escapes in an address.
   return `${location.href.split('#')[0]}${KEY}${letters.replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '')}`;
 }
 
 /** Reads the robot.toml behind the # of an address; null if there is none. Throws a sentence. */
-export async function linked(hash: string): Promise<string | null> {
+export async function robotIn(hash: string): Promise<string | null> {
   if (!hash.startsWith(KEY)) return null;
   try {
     const letters = atob(hash.slice(KEY.length).replaceAll('-', '+').replaceAll('_', '/'));
     const packed = Uint8Array.from(letters, (letter) => letter.charCodeAt(0));
-    return new TextDecoder('utf-8', { fatal: true }).decode(await through(packed, new DecompressionStream('deflate-raw')));
+    return new TextDecoder('utf-8', { fatal: true }).decode(await pipe(packed, new DecompressionStream('deflate-raw')));
   } catch {
-    throw new Error('The address has no whole robot behind its #; was it copied to its end?');
+    throw new Error('The robot in the address is incomplete; was the whole link copied?');
   }
 }

@@ -3,12 +3,15 @@ import { Address, fileIn } from './address';
 import { run } from './clock';
 import { files } from './files';
 import { kept } from './kept';
-import { hasSerial, NO_SERIAL } from './link/port-link';
+import { BluetoothLink, noBluetooth, ON_IPHONE } from './link/bluetooth-link';
+import type { Link } from './link/link';
+import { hasSerial, NO_SERIAL, PortLink } from './link/port-link';
 import { keepOffline } from './offline';
 import { Predictor } from './predictor';
 import { lags, Robot } from './robot';
-import { type Has, Session } from './session';
+import { type BoardBanner, Session } from './session';
 import { sentence } from './trouble';
+import { Alarm } from './view/alarm';
 import { Calibrate } from './view/calibrate';
 import { element } from './view/canvas';
 import { Choice } from './view/choice';
@@ -26,7 +29,9 @@ import { MarginsView } from './view/margins';
 import { Pace } from './view/pace';
 import { PartsView } from './view/parts';
 import { PathView } from './view/path';
+import { Remote } from './view/remote';
 import { RobotText } from './view/robot-text';
+import { RoutinesView } from './view/routines';
 import { ScopeView } from './view/scope';
 import { Steer, gaitFor } from './view/steer';
 import { Setup } from './view/setup';
@@ -58,6 +63,7 @@ async function start(): Promise<void> {
   const address = new Address(now, choice.robot);
 
   const connect = element<HTMLButtonElement>('connect');
+  const radio = element<HTMLButtonElement>('radio');
   const scope = new ScopeView();
   const margins = new MarginsView();
   const maps = new MapsView();
@@ -66,14 +72,16 @@ async function start(): Promise<void> {
     session.home();
     floor.clear();
   });
+  const isBarred = () => setup.isOpen;
   const drive = new Drive((line) => session.ask(line));
   const steer = new Steer(
-    () => drive.ways(),
+    () => drive.choices(),
     (line) => void drive.ask(line),
+    isBarred,
   );
   const pace = new Pace((line) => drive.ask(line));
-  const predictor = new Predictor(module, (gait, outlook) => {
-    drive.predicted(gait, outlook);
+  const predictor = new Predictor(module, (gait, prediction) => {
+    drive.predicted(gait, prediction);
     texts();
     begin();
   });
@@ -81,12 +89,13 @@ async function start(): Promise<void> {
     const { toml, floor, servos, description } = session;
     const first = description.gaits.findIndex(({ command }) => command === session.gait);
     predictor.ask({ toml, floor, servos, gaits: description.gaits.length, first: Math.max(0, first) });
+    routines.predict();
   };
   // The robot walks slowly when the page opens, unless the system asks for reduced motion.
   let begun = matchMedia('(prefers-reduced-motion: reduce)').matches;
   const begin = () => {
-    const gait = gaitFor({ ahead: 1, left: 0 }, drive.ways());
-    if (begun || !gait || session.isReal || session.gait !== session.description.gaits[0]?.command) return;
+    const gait = gaitFor({ ahead: 1, left: 0 }, drive.choices());
+    if (begun || !gait || isBarred() || session.isReal || session.gait !== session.description.gaits[0]?.command) return;
     begun = true;
     void drive.ask(`${WORDS.speed} 50`).then(() => drive.ask(gait));
   };
@@ -105,10 +114,14 @@ async function start(): Promise<void> {
     // The boot loader uses the line, so nothing else may take it.
     choice.enabled = !busy;
     connect.disabled = busy || !hasSerial();
+    radio.disabled = busy;
     flash.update();
     setup.update();
   });
-  const text = new RobotText(now, writer);
+  const alarm = new Alarm();
+  const remote = new Remote();
+  const text: RobotText = new RobotText(now, writer, () => routines.show());
+  const routines = new RoutinesView(module, now, text, () => pace.percent, (line) => drive.ask(line), writer);
   const gaits = new GaitsView(module, now, (line) => drive.ask(line), writer);
   const path = new PathView(module, now, (line) => drive.ask(line), writer);
   const flash = new FlashView(now, writer);
@@ -119,26 +132,27 @@ async function start(): Promise<void> {
       scope.robot(description);
       margins.robot(description);
       maps.robot(robot);
-      drive.take(description);
+      drive.showRobot(description);
       // A board that stays connected goes on with its gait.
       drive.doing(session.gait);
       const strange = unknownWords([...drive.words], description.words);
       if (strange.length > 0) troubles.say('page', `The core does not know these words of the page: ${strange.join(', ')}.`);
-      lengths.take(description.lengths);
-      sketch.take();
+      lengths.showRobot(description.lengths);
+      sketch.showRobot();
       setup.update();
       floor.clear();
-      world.take();
-      parts.take();
-      gaits.take();
-      path.take();
+      world.showRobot();
+      parts.showRobot();
+      gaits.showRobot();
+      path.showRobot();
       address.follow();
-      text.take();
-      keep.take(description);
+      routines.showRobot();
+      text.showRobot();
+      keep.showRobot(description);
       predict();
     },
     frame(frame, widths, seconds) {
-      floor.walked(frame.place);
+      floor.addToTrack(frame.place);
       keep.frame(frame, widths, seconds);
       if (frame.scene) maps.at(frame.scene);
       if (widths) scope.frame(widths);
@@ -151,6 +165,7 @@ async function start(): Promise<void> {
     received(line) {
       log.received(line);
       setup.received(line);
+      if (line.startsWith('# fault')) remote.buzz();
     },
     isUno: (from) =>
       confirm(
@@ -160,6 +175,7 @@ async function start(): Promise<void> {
     doing(gait) {
       drive.doing(gait);
       keep.doing(gait);
+      routines.doing(gait);
       texts();
     },
     found(has) {
@@ -168,22 +184,36 @@ async function start(): Promise<void> {
       // On a slow machine the predictions come before the robot's banner.
       begin();
     },
-    speed: (percent) => pace.show(percent),
+    speed(percent) {
+      pace.show(percent);
+      routines.speed(percent);
+    },
+    state({ phase }) {
+      routines.phase(phase);
+      calibrate.answered();
+    },
+    silent: (isSilent) => alarm.silent(isSilent),
+    stopping: (isStopping) => alarm.stopping(isStopping),
     link(link) {
       latest = 0;
+      element('heard').hidden = !session.isReal;
       scope.link(session.isReal);
       element('where').textContent = `waiting for the ${link.name}`;
       // The line most likely to come, for the row's height.
       const { version, name, hash } = session.description;
       element('where').parentElement!.dataset.room = whereOf(link.name, { version, robot: { name, hash } }, hash);
-      element('connect').textContent = session.isReal ? 'Back to the simulation' : 'Connect a board…';
+      connect.textContent = session.isReal ? 'Back to the simulation' : 'Connect a board…';
+      connect.disabled = !session.isReal && !hasSerial();
+      radio.hidden = session.isReal || noBluetooth() !== null;
+      element<HTMLButtonElement>('reset').disabled = link.kind === 'radio';
       flash.update();
       setup.link();
     },
     trouble(cause, said) {
+      if (cause === 'fault' && said !== null) remote.buzz();
       // Offers this firmware to a board without it.
       const remedy = { label: 'Write firmware and robot to it', act: () => flash.write('all') };
-      troubles.say(cause, said, cause === 'board' ? remedy : null);
+      troubles.say(cause, said, cause === 'board' && session.link.kind !== 'radio' ? remedy : null);
     },
   });
   let latest = 0;
@@ -194,7 +224,9 @@ async function start(): Promise<void> {
       const box = element(id);
       if (box.textContent !== text) box.textContent = text;
     };
+    alarm.write();
     put('doing', gait || '–');
+    put('age', `${session.age.toFixed(1)} s ago`);
     if (last) {
       const { x, y, heading } = last.place;
       // Avoids -0.
@@ -203,14 +235,14 @@ async function start(): Promise<void> {
       put('sideways', `${round(x, 0)} mm`);
       put('heading', `${round(heading, 1)}°`);
     }
-    const [measured, outlook] = [session.measured(), drive.outlook(gait)];
+    const [measured, prediction] = [session.measured(), drive.prediction(gait)];
     put('cycle', short(measured) || '–');
-    put('predicted', short(outlook) || '–');
+    put('predicted', short(prediction) || '–');
     // Rigid legs without play do not lag.
     const sprung = lags(session.floor);
     for (const box of document.querySelectorAll<HTMLElement>('.sprung')) box.hidden = !sprung;
     put('lag', measured ? `${measured.lag.toFixed(1)}°` : '–');
-    put('share', outlook?.share == null ? '–' : `${(100 * outlook.share).toFixed(0)} %`);
+    put('share', prediction?.share == null ? '–' : `${(100 * prediction.share).toFixed(0)} %`);
     const refusal = last?.fault ?? last?.scene?.refusal ?? null;
     element('refusal').hidden = refusal === null;
     put('refusal', refusal ?? '');
@@ -231,19 +263,20 @@ async function start(): Promise<void> {
   element('reset').addEventListener('click', () => void session.reset());
 
   if (!hasSerial()) {
-    connect.disabled = true;
-    element('no-serial').textContent = NO_SERIAL;
+    element('no-serial').textContent = ON_IPHONE ?? NO_SERIAL;
     element('no-serial').hidden = false;
   }
-  async function connectBoard(): Promise<void> {
+  async function connectBoard(open: () => Promise<Link | null> = () => PortLink.open()): Promise<void> {
     try {
       if (session.isReal) await session.disconnect();
-      else if (await session.connect()) setup.met();
+      else if (await session.connect(await open())) setup.openNeededStep();
     } catch (error) {
       troubles.say('port', `No board is connected: ${sentence(error)}`);
     }
   }
   connect.addEventListener('click', () => void connectBoard());
+  radio.addEventListener('click', () => void connectBoard(() => BluetoothLink.open()));
+  document.addEventListener('visibilitychange', () => document.hidden && session.letGo());
   // A board would walk on when its page is closed: it is stopped, and the browser asks. The browser also asks while an
   // image is being written.
   addEventListener('beforeunload', (event) => {
@@ -281,7 +314,6 @@ async function start(): Promise<void> {
     element('fresh').hidden = false;
     element('fresh-take').onclick = take;
   });
-  void calibrate;
   let sinceTexts = 0;
   let pictures = 0;
   run(
@@ -290,7 +322,7 @@ async function start(): Promise<void> {
       session.advance(ms);
     },
     () => {
-      steer.look();
+      steer.readGamepads();
       // Without a robot there is nothing to draw.
       if (!session.description) return;
       floor.draw(session.description.plate, keep.shown(session.last), keep.beside);
@@ -314,7 +346,7 @@ async function start(): Promise<void> {
 }
 
 /** The sentence that names the board and its robot. */
-function whereOf(name: string, has: Has, hash: string): string {
+function whereOf(name: string, has: BoardBanner, hash: string): string {
   if (has === null) return `on a ${name} without this firmware`;
   if (has === 'unknown') return `on a ${name} that has not restarted: press its reset button to see which robot it has`;
   const { robot } = has;

@@ -1,6 +1,6 @@
 // Predicts each gait's displacement in a worker: a prediction takes tenths of a second, and the page
 // has 16 ms for a picture.
-import type { Floor, Outlook } from './robot';
+import type { Floor, GaitPrediction } from './robot';
 
 /** The question: every gait of a robot on a floor. */
 export interface Question {
@@ -17,17 +17,17 @@ export interface Question {
 export interface Answer {
   question: number;
   gait: number;
-  outlook: Outlook | null;
+  prediction: GaitPrediction | null;
 }
 
 export class Predictor {
   private readonly worker = new Worker(new URL('./predictor-worker.ts', import.meta.url), { type: 'module' });
   private question = 0;
 
-  constructor(module: WebAssembly.Module, onOutlook: (gait: number, outlook: Outlook) => void) {
+  constructor(module: WebAssembly.Module, onPrediction: (gait: number, prediction: GaitPrediction) => void) {
     this.worker.postMessage(module);
-    this.worker.addEventListener('message', ({ data: { question, gait, outlook } }: MessageEvent<Answer>) => {
-      if (question === this.question && outlook) onOutlook(gait, outlook);
+    this.worker.addEventListener('message', ({ data: { question, gait, prediction } }: MessageEvent<Answer>) => {
+      if (question === this.question && prediction) onPrediction(gait, prediction);
     });
   }
 

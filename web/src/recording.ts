@@ -2,7 +2,7 @@
 import type { Four, Frame } from './robot';
 
 /** One frame of a recording. */
-export interface Moment {
+export interface RecordedFrame {
   /** Time since the recording began, s. */
   time: number;
   /** The gait or command of this frame. */
@@ -17,7 +17,7 @@ export const LONGEST = 180;
 const CYCLES_PER_US = 16;
 
 export class Recording {
-  readonly moments: Moment[] = [];
+  readonly moments: RecordedFrame[] = [];
 
   /** Adds a frame of some seconds; returns true while there is room for more. */
   note(frame: Frame, widths: Four<number> | null, doing: string, seconds: number): boolean {
@@ -31,7 +31,7 @@ export class Recording {
   }
 
   /** The latest frame at a time, s. */
-  at(time: number): Moment | null {
+  at(time: number): RecordedFrame | null {
     const after = this.moments.findIndex((moment) => moment.time > time + 1e-9);
     return this.moments[after < 0 ? this.moments.length - 1 : Math.max(0, after - 1)] ?? null;
   }

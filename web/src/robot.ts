@@ -2,7 +2,7 @@
 // wasm/src writes as JSON; no formula is repeated in TypeScript.
 
 /** A point in the chassis frame, mm: right, forward. */
-export type Spot = [number, number];
+export type Point = [number, number];
 export type Four<T> = [T, T, T, T];
 
 export interface Gait {
@@ -10,6 +10,8 @@ export interface Gait {
   command: string;
   period: number;
   moves: boolean;
+  /** True if its phase runs backwards. */
+  reversed: boolean;
 }
 
 export interface Servo {
@@ -40,6 +42,8 @@ export interface Description {
   start: number;
   servos: Four<Servo>;
   gaits: Gait[];
+  /** Commands that begin a routine. */
+  routines: string[];
   lengths: Length[];
   plate: Plate;
   margins: { name: string; limit: number }[];
@@ -47,6 +51,8 @@ export interface Description {
   supply: [number, number, number];
   /** The converter's channel of the servos' rail, and the volts there. */
   rail: [number, number] | null;
+  /** Its inputs: name, and Arduino number of the pin. */
+  inputs: [string, number][];
   floor: Floor;
   models: ServoModel[];
   /** Frames without motion after which the robot counts as standing still. */
@@ -58,14 +64,14 @@ export interface Description {
 /** The chassis from above, mm. */
 export interface Plate {
   /** Half the width and half the length, without the arms. */
-  half: Spot;
+  half: Point;
   corner: number;
   /** The arms that the legs are pivoted on, and half their width. */
-  arms: [Spot, Spot][];
+  arms: [Point, Point][];
   arm: number;
   /** The middles of the servos' cases, their width and length. */
-  cases: Four<Spot>;
-  case: Spot;
+  cases: Four<Point>;
+  case: Point;
 }
 
 /** The kind of leg drive, by its name in robot.toml. */
@@ -97,10 +103,8 @@ export const lags = ({ kind, play }: Floor) => kind !== 'rigid' || play > 0;
 /** A model of the servos. */
 export interface ServoModel {
   name: string;
-  /** Rate, deg/s; null for no limit. */
-  rate: number | null;
-  /** Dead band, us. */
-  dead_band: number;
+  /** Torque at a stall, kg cm, and time for 60 deg, s, both at a supply in V; null for ideal servos. */
+  figures: [number, number, number] | null;
 }
 
 export interface Refused {
@@ -111,12 +115,12 @@ export interface Refused {
 
 export interface Scene {
   angles: Four<number>;
-  shafts: Four<Spot>;
-  tips: Four<Spot>;
-  points: [Spot, Spot];
-  sliders: { shafts: [Spot, Spot]; tips: [Spot, Spot]; tube: Spot; travel: number }[];
+  shafts: Four<Point>;
+  tips: Four<Point>;
+  points: [Point, Point];
+  sliders: { shafts: [Point, Point]; tips: [Point, Point]; tube: Point; travel: number }[];
   /** Pivots and joints, the driven one first; the strut goes from the servo's link to the leg's crank. */
-  legs: Four<{ pivots: [Spot, Spot]; joints: [Spot, Spot]; foot: Spot; strut: [Spot, Spot]; sprung: boolean }>;
+  legs: Four<{ pivots: [Point, Point]; joints: [Point, Point]; foot: Point; strut: [Point, Point]; sprung: boolean }>;
   margins: { name: string; value: number }[];
   smallest: { name: string; value: number };
   refusal: string | null;
@@ -142,17 +146,33 @@ export interface Frame {
 }
 
 /** Displacement per cycle, mm and deg; null where the model leaves it undetermined. */
-export interface Way {
+export interface Displacement {
   forward: number | null;
   left: number | null;
   turn: number | null;
 }
 
 /** Prediction for one cycle of a gait; with springs also the lag, and the share of the displacement with rigid legs. */
-export interface Outlook extends Way {
+export interface GaitPrediction extends Displacement {
   /** Largest lag, deg. */
   lag: number | null;
   share: number | null;
+  /** Largest share of a servo's torque-speed line; null with ideal servos. */
+  line: number | null;
+}
+
+/** A routine as it is written, right or wrong. */
+export interface Routine {
+  name: string;
+  steps: string[];
+}
+
+/** The predicted path of one round of a routine. */
+export interface RoundPath {
+  places: Place[];
+  seconds: number;
+  /** True if the round goes on beyond the path. */
+  is_cut: boolean;
 }
 
 export interface SingularityMap {
@@ -165,7 +185,7 @@ export interface SingularityMap {
   curves: { kind: string; points: [number, number][] }[];
 }
 
-export interface Said {
+export interface CoreAnswer {
   widths: Four<number>;
   text: string;
 }
@@ -188,7 +208,7 @@ export interface Bars {
 }
 
 /** Trial of an edited gait on the page's robot. */
-export interface Trial extends Outlook {
+export interface Trial extends GaitPrediction {
   /** The table for robot.toml. */
   table: string;
   margin: string;
@@ -202,7 +222,7 @@ export interface Trial extends Outlook {
 }
 
 /** Goal and limits of a search for a faster gait. */
-export interface Wish {
+export interface SearchTask {
   /** The gait to beat. */
   bars: Bars;
   /** Fastest servo allowed, deg/s; null for that of the gait to beat. */
@@ -224,7 +244,7 @@ export interface Found {
 }
 
 /** A gait whose head or tail follows a drawn line. */
-export interface Drawn {
+export interface DrawnGait {
   name: string;
   end: End;
   /** Period, s. */
@@ -240,10 +260,10 @@ export interface Drawn {
 export type End = 'head' | 'tail';
 
 /** An edited gait. */
-export type Made = Bars | Drawn;
+export type EditedGait = Bars | DrawnGait;
 
-/** Points that the head or tail may reach while the other end stands, in the frame of `Drawn`, mm. */
-export interface Room {
+/** Points that the head or tail may reach while the other end stands, in the frame of `DrawnGait`, mm. */
+export interface ReachArea {
   from: [number, number];
   step: number;
   columns: number;
@@ -254,10 +274,10 @@ export interface Room {
 
 /** Refusal of a gait, with the nearest values each of which alone would be accepted. */
 export interface NoTrial extends Refused {
-  instead: { what: Instead; value: number }[];
+  instead: { what: Alternative; value: number }[];
 }
 
-export type Instead = 'amplitude' | 'size' | 'period';
+export type Alternative = 'amplitude' | 'size' | 'period';
 
 /** The exports of wasm/src/abi.rs. */
 interface Exports {
@@ -338,7 +358,7 @@ export class Robot {
   }
 
   /** Predicts a gait. Takes tenths of a second, so the page asks its Predictor. */
-  predict(gait: number): Outlook | null {
+  predict(gait: number): GaitPrediction | null {
     return this.ask('predict', gait);
   }
 
@@ -358,13 +378,13 @@ export class Robot {
   }
 
   /** Tries a gait on the robot that was read; takes tenths of a second. Null for a line without length. */
-  trial(made: Made): Trial | NoTrial | null {
+  trial(made: EditedGait): Trial | NoTrial | null {
     return this.ask('trial', made);
   }
 
   /** Prepares the search of a faster gait for the robot that was read: the number of gaits to try, and the servos' deg/s. */
-  makeFaster(wish: Wish): { all: number; rate: number } | Refused {
-    return this.ask('faster', wish);
+  makeFaster(task: SearchTask): { all: number; rate: number } | Refused {
+    return this.ask('faster', task);
   }
 
   /** Tries one more gait; `best` is the score of the best so far. */
@@ -378,18 +398,33 @@ export class Robot {
   }
 
   /** Returns the robot.toml with this gait in place of the one of that name. */
-  putGait(toml: string, made: Made): string {
+  putGait(toml: string, made: EditedGait): string {
     return this.ask('put_gait', [toml, made]);
   }
 
+  /** The routines of a robot.toml, also of one with a mistake. */
+  routines(toml: string): Routine[] {
+    return this.ask('routines', toml);
+  }
+
+  /** Returns the robot.toml with a routine of these steps, and its refusal, if any. */
+  putSteps(toml: string, { name, steps }: Routine): { text: string; refusal: Refused | null } {
+    return this.ask('put_steps', [toml, name, steps]);
+  }
+
+  /** Goes through one round of a routine; takes tenths of a second. Null without the routine. */
+  round(routine: string): RoundPath | null {
+    return this.ask('round', routine);
+  }
+
   /** The path that the point really follows; null if the drawn line has no length. */
-  path(drawn: Drawn): [number, number][] | null {
+  path(drawn: DrawnGait): [number, number][] | null {
     return this.ask('path', drawn);
   }
 
   /** The points that an end may reach. */
-  room(end: End): Room | null {
-    return this.ask('room', end === 'head' ? 0 : 1);
+  room(end: End): ReachArea | null {
+    return this.ask('reach_area', end === 'head' ? 0 : 1);
   }
 
   /** Starts the firmware's core with this robot. */
@@ -398,7 +433,7 @@ export class Robot {
   }
 
   /** Runs the core for a frame of 20 ms. */
-  coreFrame(line: string, volts: number): Said | null {
+  coreFrame(line: string, volts: number): CoreAnswer | null {
     return this.ask('core_frame', [line, volts]);
   }
 

@@ -1,10 +1,10 @@
 // The robot that the page shows and the board at the other end of its serial line. Views only read it
 // and ask it to act.
 import { files } from './files';
-import { type Kept, kept } from './kept';
-import { type Answer, Dialogue, Forgotten, GREETING } from './link/dialogue';
+import { type SavedChanges, kept } from './kept';
+import { Deadman } from './link/deadman';
+import { type Answer, Dialogue, DroppedQuestion, GREETING } from './link/dialogue';
 import type { Link, Simulated } from './link/link';
-import { PortLink } from './link/port-link';
 import { flash, identify, imageOf, type Piece, type Progress, Unfit } from './link/stk500';
 import { UnoLink } from './link/uno-link';
 import {
@@ -16,17 +16,23 @@ import {
   type Refused,
   type Robot,
 } from './robot';
-import { type Banner, banner, type Status, status, watched } from './status';
+import { type Banner, banner, type Status, status, reportedPose } from './status';
 import { type Cause, sentence } from './trouble';
 import { SimulatedBoard } from './uno/board';
-import { WORDS } from './words';
+import { GAITS, WORDS } from './words';
 
-/** Frames of 20 ms between two poses of a board on USB. */
-const WATCH = 2;
+/** Frames of 20 ms between two poses of a board; a radio at 9600 baud carries no more. */
+const WATCH = { usb: 2, radio: 10, simulated: 1 };
 /** Time from a reset within which this firmware sends its banner, ms. */
 const GREETS = 2500;
-/** Time within which a board that its port did not reset answers, ms. */
+/**
+ * Time within which a board that its port did not reset answers, ms, and how often it is asked: it finds a port's rate by at most
+ * five lines, and a radio may lose some.
+ */
 const ANSWERS = 500;
+const ASKS = { usb: 5, radio: 12, simulated: 1 };
+/** Time that the answer to `status` may take before it is asked again, ms. */
+const STATUS_ANSWERS = 1000;
 /** Time a board gets to stop before the port is closed, ms. */
 const STOPS = 1000;
 /** Time after a reset within which `boot` has acted (three seconds), ms. */
@@ -34,11 +40,20 @@ const BOOTS = 4000;
 /** The firmware's pace after a reset, percent. */
 const FULL_PACE = 100;
 const FRAME_SECONDS = 0.02;
+/** Longest part of the simulation between two moments of `clock`, ms. */
+const PART = 5;
 /** Seconds of path kept for measuring a cycle. */
 const KEPT_SECONDS = 12;
 
+/** The fault of a robot that has heard nothing for as long as `deadman` says. */
+const LINK_FAULT = 'link';
+/** The line at the end of a gait with a count, and of a routine. */
+const DONE = '# done';
+/** The reason why nothing is written by radio. */
+export const BY_CABLE = 'a radio does not reset a board and is too slow for it: connect its USB cable to write to it';
+
 /** A board's banner; `unknown` if this firmware answers but sent no banner, null if it does not answer. */
-export type Has = Banner | 'unknown' | null;
+export type BoardBanner = Banner | 'unknown' | null;
 
 export interface Listener {
   /** Called for another robot, or the same with other lengths. */
@@ -51,13 +66,19 @@ export interface Listener {
   /** Called when the robot does something else: a gait or a command. */
   doing(gait: string): void;
   /** Called when it is known what the board has. */
-  found(has: Has): void;
+  found(has: BoardBanner): void;
   /** Called with the robot's pace, percent. */
   speed(percent: number): void;
+  /** Called with each answer to `status`. */
+  state(status: Status): void;
   /** Called when another board is connected. */
   link(link: Link): void;
   /** Asks the user to confirm a UNO: on a Nano, writing beyond `from` would overwrite the boot loader. */
   isUno(from: number): boolean;
+  /** Called when the robot leaves a line unanswered, and when it answers again. */
+  silent(isSilent: boolean): void;
+  /** Called when `stop` begins to be sent, and when the robot has answered it. */
+  stopping(isStopping: boolean): void;
   /** Called with the current problem, or null once it is solved. */
   trouble(cause: Cause, sentence: string | null): void;
 }
@@ -73,7 +94,7 @@ export interface Measured {
 /** Start of a Nano's boot section (high fuse 0xDA). A UNO's begins 1.5 KB later. */
 const NANO_BOOT = 0x7800;
 
-const isBanner = (has: Has | undefined): has is Banner => typeof has === 'object' && has !== null;
+const isBanner = (has: BoardBanner | undefined): has is Banner => typeof has === 'object' && has !== null;
 
 export class Session {
   description!: Description;
@@ -88,12 +109,21 @@ export class Session {
   last: Frame | null = null;
   gait = '';
   volts = 5;
+  /** The names of the inputs whose contacts are closed in the simulation. */
+  readonly closed = new Set<string>();
   /** The servo model, by its name in the description. */
-  servos = 'sg90';
+  servos = 'own';
   /** True if the page may send lines of its own. */
   mayAsk = false;
   link!: Link;
   dialogue!: Dialogue;
+  private deadman!: Deadman;
+  /** Lines without an answer that make the robot walk. */
+  private drives = 0;
+  /** Number of stops so far. */
+  private stops = 0;
+  /** When the robot last said something, on the page's clock, ms. */
+  private heard = performance.now();
   /** Banners received: a board that restarts has lost its unsaved settings. */
   beginnings = 0;
   /** The firmware, which is the same for every robot. */
@@ -102,10 +132,12 @@ export class Session {
   private bootLoader: string | null = null;
   private way: { time: number; frame: Frame }[] = [];
   private time = 0;
+  /** Time for which the robot was followed so far, s: simulated, or as a board's poses came. */
+  clock = 0;
   private step = FRAME_SECONDS;
   private onBanner: () => void = () => {};
   /** The board's firmware and robot; undefined until known. */
-  private there: Has | undefined;
+  private there: BoardBanner | undefined;
   /** True if a board without this firmware has the boot loader of a UNO. */
   hasLoader = false;
   /** True while a board on USB sends its poses. */
@@ -154,7 +186,7 @@ export class Session {
   }
 
   /** Restores the changes of before a reload, if the robot's file is still the same; returns true if it did. */
-  async recall({ original, toml, floor, servos, volts }: Kept): Promise<boolean> {
+  async recall({ original, toml, floor, servos, volts }: SavedChanges): Promise<boolean> {
     if (original !== this.original) return false;
     this.setServos(servos);
     this.setSupply(volts);
@@ -212,7 +244,7 @@ export class Session {
   }
 
   /** What the other end has; undefined until that is known. */
-  get has(): Has | undefined {
+  get has(): BoardBanner | undefined {
     return this.there;
   }
 
@@ -221,8 +253,14 @@ export class Session {
     return isBanner(this.there) && this.there.robot?.hash === this.description.hash;
   }
 
+  /** Time since the robot last said something, s. */
+  get age(): number {
+    return (performance.now() - this.heard) / 1000;
+  }
+
   get isReal(): boolean {
-    return this.link instanceof PortLink;
+    // Without a robot there is no link yet.
+    return this.link !== undefined && this.link.kind !== 'simulated';
   }
 
   /** Starts a simulated UNO with this robot at power-on, with the saved EEPROM of another one. */
@@ -230,6 +268,7 @@ export class Session {
     this.bootLoader ??= await files.bootLoader();
     const pins = this.description.servos.map(({ pin }) => pin);
     const board = new SimulatedBoard(this.image, this.bootLoader, this.description.rail, saved);
+    for (const [name, pin] of this.description.inputs) board.contact(pin, this.closed.has(name));
     const events = {
       frame: (widths: Four<number>) => this.widths(widths),
       pulse: (pin: number, rise: number, width: number) => this.listener.pulse(pin, rise, width),
@@ -238,23 +277,47 @@ export class Session {
     this.simulated?.supply(this.volts);
   }
 
-  /** Connects a board on USB and identifies it; returns true if the user picked one and it is still there. Throws a sentence. */
-  async connect(): Promise<boolean> {
-    const link = await PortLink.open();
+  /** Takes a board that the user has picked and identifies it; returns true if it is still there. Throws a sentence. */
+  async connect(link: Link | null): Promise<boolean> {
     if (!link) return false;
     link.onGone = (why) => {
       void this.simulate().then(() => this.listener.trouble('port', `The board is gone: ${why} The simulation goes on.`));
     };
+    link.onReach = (isInReach) => void this.reach(link, isInReach);
     await this.attach(link);
     this.listener.trouble('port', null);
-    // Opening the port has reset the board. Bytes sent before its banner would go to the boot loader.
-    const greeted = await this.greeting();
-    if (this.link !== link) return false;
-    if (!greeted && (await this.replies())) this.found('unknown');
+    // Opening a port on USB has reset the board. Bytes sent before its banner would go to the boot loader.
+    const isRadio = link.kind === 'radio';
+    const greeted = !isRadio && (await this.greeting());
+    for (let n = 0; !greeted && this.there === undefined && n < ASKS[link.kind]; n++) {
+      if (this.link === link && (await this.replies())) this.found('unknown');
+    }
     if (this.link !== link) return false;
     if (this.there) await this.watch();
+    else if (isRadio) this.silentModule(link);
     else await this.identify(link);
     return this.link === link;
+  }
+
+  private silentModule(link: Link): void {
+    this.found(null);
+    this.listener.trouble('board', `The module is connected, but no robot answers from the ${link.name}: is its TXD on D0, and is the robot switched on?`);
+  }
+
+  /** Says that a radio has lost its board, or goes on with it. A robot that walked has stopped by itself meanwhile. */
+  private async reach(link: Link, isInReach: boolean): Promise<void> {
+    if (this.link !== link) return;
+    this.deadman.letGo();
+    this.listener.silent(!isInReach);
+    const said = `The ${link.name} is out of reach. A robot that was driven stops by itself; the page connects again as soon as it can.`;
+    this.listener.trouble('port', isInReach ? null : said);
+    if (!isInReach) return;
+    for (let n = 0; n < ASKS.radio && this.link === link; n++) {
+      if ((await this.status()) === null) continue;
+      if (!this.there) this.found('unknown');
+      this.listener.trouble('board', null);
+      return this.watch();
+    }
   }
 
   /** Waits for the banner of a restarted board; returns true if it came in time. */
@@ -266,9 +329,7 @@ export class Session {
   /** Returns true if this firmware answers a question: not every port resets its board. */
   private async replies(): Promise<boolean> {
     const answer = await this.dialogue.ask(WORDS.status, true, ANSWERS).catch(() => null);
-    const read = answer && status(answer.text);
-    if (read) this.doing(read.gait.replaceAll('-', ' '));
-    return read !== null;
+    return answer?.ok ?? false;
   }
 
   /** Identifies a board without this firmware by its boot loader. */
@@ -292,7 +353,7 @@ export class Session {
   /** Makes a board send its poses. */
   private async watch(): Promise<void> {
     this.watching = true;
-    await this.ask(`${WORDS.watch} ${WATCH}`);
+    await this.ask(`${WORDS.watch} ${WATCH[this.link.kind]}`);
   }
 
   /** Stops a board, disconnects it and returns to the simulation. */
@@ -304,19 +365,42 @@ export class Session {
     }
   }
 
-  /** True if a real board is walking, and would walk on without the page. */
+  /** True if a real board is walking. */
   get walksAlone(): boolean {
-    const { stop, rest, center, pose } = WORDS;
-    // A board with another robot may have gaits that this one does not have.
-    const known = this.description.gaits.find(({ command }) => command === this.gait);
-    return this.isReal && (known ? known.moves : !['', stop, rest, center, pose].includes(this.gait));
+    return this.isReal && this.walks(this.gait);
+  }
+
+  /** True while a routine is under way; a board may have routines that this robot does not have. */
+  private get isRoutine(): boolean {
+    return this.walks(this.gait) && !this.description.gaits.some(({ command }) => command === this.gait);
+  }
+
+  /** True if a line makes the robot walk. */
+  private walks(line: string): boolean {
+    const [word] = line.split(' ');
+    // A board with another robot may have gaits that this one does not have. A count may follow.
+    const known = this.description.gaits.find(({ command }) => command === line.replace(/ \d+$/, ''));
+    return known ? known.moves : !['', '?', GAITS.stand, ...Object.values<string>(WORDS)].includes(word);
+  }
+
+  /** Gives a robot that does not walk, and is not about to, its own `deadman` back. */
+  private rests(): void {
+    if (this.drives === 0 && !this.walksAlone) this.deadman.end();
+  }
+
+  /** Stops a robot that nobody may see any more, and leaves it to `deadman` if it does not hear that. */
+  letGo(): void {
+    if (!this.walksAlone) return;
+    this.deadman.letGo();
+    void this.ask(WORDS.stop);
   }
 
   /** Stops a board that is about to be disconnected; returns true if it confirms, or does not have this firmware. */
   async stop(): Promise<boolean> {
     if (!this.isReal || !this.there) return true;
-    const answer = await this.dialogue.ask(WORDS.stop, false, STOPS).catch(() => null);
-    return answer !== null;
+    const { link, dialogue } = this;
+    const answer = dialogue.ask(WORDS.stop).catch(() => null);
+    return Promise.race([answer, link.wait(STOPS)]).then(Boolean);
   }
 
   private async attach(link: Link): Promise<void> {
@@ -328,7 +412,7 @@ export class Session {
     this.mayAsk = false;
     this.listen();
     this.doing('');
-    for (const cause of ['line', 'board'] as const) this.listener.trouble(cause, null);
+    for (const cause of ['line', 'board', 'fault'] as const) this.listener.trouble(cause, null);
     this.listener.link(link);
   }
 
@@ -336,11 +420,19 @@ export class Session {
     this.dialogue = new Dialogue(this.link, {
       sent: (line) => this.listener.sent(line),
       received: (line) => this.received(line),
+      heard: (line) => {
+        this.heard = performance.now();
+        const read = status(line);
+        if (read) this.state(read);
+      },
+      silent: (isSilent) => this.listener.silent(isSilent),
+      stopping: (isStopping) => this.listener.stopping(isStopping),
     });
+    this.deadman = new Deadman(this.dialogue);
   }
 
   private received(line: string): void {
-    const angles = watched(line);
+    const angles = reportedPose(line);
     if (angles && this.isReal) {
       this.pose(angles);
       return;
@@ -348,13 +440,15 @@ export class Session {
     this.listener.received(line);
     const word = /^ok (.+)$/.exec(line)?.[1] ?? '';
     const { stop, rest, center, pose, speed } = WORDS;
-    const doing = [...this.description.gaits.map(({ command }) => command), stop, rest, center];
-    if (doing.includes(word)) this.doing(word);
+    const doing = [...this.description.gaits.map(({ command }) => command), ...this.description.routines, stop, rest, center];
+    // A count may follow.
+    const command = doing.includes(word) ? word : word.replace(/ \d+$/, '');
+    if (doing.includes(command)) this.doing(command);
     else if (word.startsWith(`${pose} `)) this.doing(pose);
     else if (word.startsWith(`${speed} `)) this.listener.speed(Number(word.slice(speed.length)));
     else if (line.startsWith('# boot: ')) this.doing(line.slice('# boot: '.length).replaceAll('-', ' '));
     else if (line.startsWith(GREETING)) this.greeted(line);
-    else if (line.startsWith('# fault')) this.doing(stop);
+    else if (line.startsWith('# fault') || line === DONE) this.doing(stop);
   }
 
   private greeted(line: string): void {
@@ -363,6 +457,7 @@ export class Session {
     this.doing('stand');
     this.listener.speed(FULL_PACE);
     this.watching = false;
+    this.deadman.forget();
     this.listener.trouble('board', null);
     this.found(banner(line) ?? 'unknown');
     this.onBanner();
@@ -376,40 +471,76 @@ export class Session {
     });
   }
 
-  private found(has: Has): void {
+  private found(has: BoardBanner): void {
     this.there = has;
     this.listener.found(has);
   }
 
   private doing(gait: string): void {
     this.gait = gait;
+    this.rests();
     this.way = [];
     this.listener.doing(gait);
   }
 
   /** Sends a line and returns its answer; shows an error. */
-  async ask(line: string, quiet = false): Promise<Answer | null> {
+  async ask(line: string, quiet = false, timeout?: number): Promise<Answer | null> {
     if (!quiet) this.mayAsk = true;
+    const { deadman } = this;
+    const command = line.trim().toLowerCase();
+    if (command === WORDS.stop) this.stops += 1;
+    const isDrive = this.isReal && this.walks(command);
+    if (isDrive) this.drives += 1;
     try {
-      const answer = await this.dialogue.ask(line, quiet);
-      this.listener.trouble('line', null);
+      if (isDrive) {
+        const { stops } = this;
+        const isSure = await deadman.begin();
+        // Somebody has stopped the robot meanwhile.
+        if (stops !== this.stops) return null;
+        if (!isSure) throw new Error(`"${line}" was not sent, since the robot has not confirmed that it stops when it hears nothing`);
+      }
+      // What the robot prints and keeps is its own setting.
+      const isOwn = deadman.isSet && [WORDS.cal, WORDS.save].some((word) => word === command);
+      if (isOwn) deadman.end();
+      const asked = this.dialogue.ask(line, quiet, timeout);
+      if (isOwn && this.walksAlone) void deadman.begin();
+      const answer = await asked;
+      if (!quiet) this.listener.trouble('line', null);
+      deadman.follow(command, answer.ok);
       return answer;
     } catch (error) {
-      if (!(error instanceof Forgotten)) this.listener.trouble('line', `${sentence(error)}.`);
+      // A quiet line is asked again, and meanwhile the page shows that the robot is silent.
+      if (!quiet && !(error instanceof DroppedQuestion)) this.listener.trouble('line', `${sentence(error)}.`);
       return null;
+    } finally {
+      if (isDrive) {
+        this.drives -= 1;
+        this.rests();
+      }
     }
   }
 
   async status(): Promise<Status | null> {
-    const answer = await this.ask(WORDS.status, true);
-    const read = answer && status(answer.text);
-    if (read && read.speed !== null) this.listener.speed(read.speed);
-    return read;
+    const answer = await this.ask(WORDS.status, true, STATUS_ANSWERS);
+    return answer && status(answer.text);
+  }
+
+  /** Takes the robot's state when its line is read: some turns later it would be older than what the robot said then. */
+  private state(read: Status): void {
+    if (read.speed !== null) this.listener.speed(read.speed);
+    this.listener.trouble('fault', read.fault === LINK_FAULT && this.isReal ? 'The robot has stopped by itself: no line had reached it for too long.' : null);
+    const gait = read.gait.replaceAll('-', ' ');
+    // `center` is a pose for the robot, and a routine that rests is still under way.
+    const isKnown = (gait === WORDS.pose && this.gait === WORDS.center) || (gait === WORDS.rest && this.isRoutine && read.fault === 'none');
+    // What the page has not heard, as when its link was cut.
+    if (gait !== this.gait && !isKnown) this.doing(gait);
+    this.listener.state(read);
   }
 
   /** Presses the reset button of the board. */
   async reset(): Promise<void> {
     this.dialogue.forget();
+    this.deadman.forget();
     this.doing('');
     await this.link.reset();
   }
@@ -436,6 +567,7 @@ export class Session {
 
   private async write(piece: Piece, progress: Progress, under: Piece | null): Promise<void> {
     const { link } = this;
+    if (link.kind === 'radio') throw new Unfit(BY_CABLE);
     if (piece.at + piece.bytes.length > NANO_BOOT && link.mayBeNano && !this.listener.isUno(NANO_BOOT)) {
       throw new Unfit(`a Nano has ${NANO_BOOT} bytes of flash before its boot section, and this takes ${piece.at + piece.bytes.length}; gaits can be left out until it fits`);
     }
@@ -474,7 +606,13 @@ export class Session {
   /** Runs the simulation. */
   advance(ms: number): void {
     try {
-      this.simulated?.advance(ms);
+      const { simulated } = this;
+      // In parts, so that what the robot says meanwhile has its own moment, also where a slow machine has much to catch up with.
+      for (let left = simulated ? ms : 0; left > 0; left -= PART) {
+        const part = Math.min(left, PART);
+        this.clock += part / 1000;
+        simulated?.advance(part);
+      }
     } catch (error) {
       this.listener.trouble('simulation', `The simulated UNO has stopped: ${sentence(error)}`);
       throw error;
@@ -487,8 +625,10 @@ export class Session {
   }
 
   private pose(angles: Four<number>): void {
-    const frame = this.robot.pose(angles, WATCH);
-    if (frame) this.moved(frame, null, FRAME_SECONDS * WATCH);
+    const frames = WATCH[this.link.kind];
+    const frame = this.robot.pose(angles, frames);
+    this.clock += FRAME_SECONDS * frames;
+    if (frame) this.moved(frame, null, FRAME_SECONDS * frames);
   }
 
   private moved(frame: Frame, widths: Four<number> | null, seconds: number): void {
@@ -536,6 +676,14 @@ export class Session {
     this.servos = name;
     this.robot.setServos(name);
     this.keep();
+  }
+
+  /** Closes or opens the contact of an input in the simulation. */
+  setContact(name: string, isClosed: boolean): void {
+    if (isClosed) this.closed.add(name);
+    else this.closed.delete(name);
+    const input = this.description.inputs.find(([other]) => other === name);
+    if (input) this.simulated?.contact(input[1], isClosed);
   }
 
   setSupply(volts: number): void {

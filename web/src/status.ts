@@ -19,6 +19,8 @@ export interface Status {
   gait: string;
   /** Pose, deg; null without a robot in the flash. */
   pose: Four<number> | null;
+  /** Phase of the gait's cycle, 0 to 1; 0 while none is under way. */
+  phase: number;
   /** Frames since the reset. */
   frames: number;
   /** Smallest margin; null without a robot in the flash. */
@@ -48,6 +50,7 @@ export function status(line: string): Status | null {
   return {
     gait: pairs.get('gait') ?? '',
     pose,
+    phase: number('phase') ?? 0,
     frames: number('frames') ?? 0,
     margin: number('margin'),
     guard: pairs.get('guard') ?? '',
@@ -62,7 +65,7 @@ export function status(line: string): Status | null {
 }
 
 /** Reads the pose of a line `# t=<frame> pose=...`. */
-export function watched(line: string): Four<number> | null {
+export function reportedPose(line: string): Four<number> | null {
   const match = /^# t=\d+ pose=(\S+)/.exec(line);
   return match ? four(match[1]) : null;
 }

@@ -2,10 +2,11 @@
 
 /**
  * `robot`: a robot's file. `line`: a line without an answer. `port`: the port of a board, or the board
- * is gone. `board`: a board without this firmware. `simulation`: the simulated UNO has
+ * is gone. `board`: a board without this firmware. `fault`: the robot
+ * has stopped by itself. `simulation`: the simulated UNO has
  * stopped. `page`: the page cannot start.
  */
-export type Cause = 'robot' | 'line' | 'port' | 'board' | 'simulation' | 'page';
+export type Cause = 'robot' | 'line' | 'port' | 'board' | 'fault' | 'simulation' | 'page';
 
 /** The sentence of anything thrown. */
 export function sentence(error: unknown): string {

@@ -22,7 +22,7 @@ export const WORDS = {
   deadman: 'deadman',
 } as const;
 
-/** Gaits that the page asks for by name: the core has `stand` in every robot, and `walk` is looked for first. */
+/** Gaits that the page starts by name: every robot has `stand`, and `walk` is preferred. */
 export const GAITS = { stand: 'stand', walk: 'walk' } as const;
 
 /** The firmware's line after a reset if nothing was ever saved. */

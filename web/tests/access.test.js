@@ -17,6 +17,11 @@ async function opened(options) {
   const page = await standing({ ...options, bypassCSP: true });
   for (const name of ['Keep and compare', 'Make a gait', 'Draw a gesture', 'Lengths', 'Calibrate', 'Flash']) await page.getByText(name, { exact: true }).click();
   await page.locator('#robot-editor summary').click();
+  await page.locator('#routines summary').click();
+  await page.getByRole('button', { name: 'Add a step' }).click();
+  await page.getByLabel('Step 1', { exact: true }).fill('wolk 4');
+  await page.keyboard.press('Enter');
+  await page.locator('#routine-refusal').waitFor();
   await page.locator('#parts summary').click();
   await page.getByText('Click a part for its name').waitFor();
   await advance(page, 500);

@@ -24,7 +24,7 @@ async function walking() {
 }
 
 test('a new UNO is named after some seconds, and is given the firmware by one button', async () => {
-  const opened = await connected(null, 5000);
+  const opened = await connected(null, 8000);
   await opened.locator('#trouble', { hasText: 'The board is an Arduino UNO, an ATmega328P by its boot loader, and this firmware is not on it.' }).waitFor();
   assert.equal(await text(opened, '#where'), 'on a board on USB without this firmware');
   await opened.getByRole('button', { name: 'Write firmware and robot to it' }).click();
@@ -46,7 +46,7 @@ test('a board that nothing answers from is asked about', async () => {
   await opened.getByRole('button', { name: 'Connect a board' }).click();
   await opened.waitForFunction(() => window.otherBoard);
   await opened.evaluate(() => (window.otherBoard.send = () => {}));
-  await opened.clock.runFor(6000);
+  await opened.clock.runFor(9000);
   await opened.locator('#trouble', { hasText: 'Is it the right port, and a UNO?' }).waitFor();
 });
 
@@ -80,7 +80,7 @@ test('a board that is left has been stopped', async () => {
   await opened.getByRole('button', { name: 'Back to the simulation' }).click();
   await opened.clock.runFor(1500);
   await opened.locator('#log div', { hasText: /^ok stop$/ }).waitFor();
-  assert.ok(await opened.evaluate(() => window.heard.endsWith('stop\n')), 'the last line that the board has heard');
+  assert.match(await opened.evaluate(() => window.heard), /\nstop\n(deadman 0\n)?$/, 'the last that the board has heard');
   assert.match(await text(opened, '#where'), /simulated UNO/);
 });
 

@@ -14,6 +14,9 @@ const TYPES = {
   '.css': 'text/css',
   '.wasm': 'application/wasm',
   '.json': 'application/json',
+  '.svg': 'image/svg+xml',
+  '.png': 'image/png',
+  '.webmanifest': 'application/manifest+json',
 };
 /** Debian's; CHROMIUM and FIREFOX name others. */
 const CHROMIUM = { type: chromium, executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args: ['--no-sandbox'] };
@@ -55,6 +58,9 @@ let browser;
 let server;
 const pages = [];
 
+/** The browser's own session of its DevTools protocol. */
+export const devTools = () => browser.newBrowserCDPSession();
+
 /** Closes the pages of a test, which would go on walking. */
 export async function tidy() {
   await within('the pages to close', Promise.all(pages.splice(0).map((opened) => opened.close())));
@@ -85,6 +91,8 @@ async function start({ type, ...options }) {
 }
 
 export const open = () => start(CHROMIUM);
+/** With Web Bluetooth, which Chromium on Linux has behind a flag. */
+export const openWithBluetooth = () => start({ ...CHROMIUM, args: [...CHROMIUM.args, '--enable-features=WebBluetooth'] });
 export const openFirefox = () => start(FIREFOX);
 
 export async function close() {
@@ -138,6 +146,7 @@ export async function page(options = {}, before = undefined) {
     if (message.text() === 'Service Worker registration blocked by Playwright') return;
     // Without a graphics chip the browser's own painter says of itself that it is slow.
     if (message.text().includes('GL Driver Message (OpenGL, Performance')) return;
+    if (message.text().startsWith('Web Bluetooth is experimental on this platform')) return;
     if (['error', 'warning'].includes(message.type())) complaints.push(message.text());
   });
   opened.on('pageerror', (error) => complaints.push(error.stack ?? String(error)));
@@ -178,6 +187,17 @@ export async function standing(options) {
   const opened = await page(options);
   await advance(opened, 2500);
   return opened;
+}
+
+/** After Esc: the robot stays where it stands, but for the last way of its servos to their targets, a hair's width. */
+export async function stops(opened) {
+  const place = () => opened.evaluate(() => window.lizard.last.place);
+  await opened.keyboard.press('Escape');
+  await advance(opened, 500);
+  const stopped = await place();
+  await advance(opened, 1000);
+  const later = await place();
+  for (const key of ['x', 'y']) assert.ok(Math.abs(later[key] - stopped[key]) < 0.05, `${key}: ${stopped[key]} mm, then ${later[key]}`);
 }
 
 /** Types a line and waits for a line of the log that begins so. */

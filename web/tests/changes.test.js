@@ -123,9 +123,12 @@ test('the pace slider has what the robot has, after a typed line and after a res
   assert.match(await type(opened, 'status', 'ok gait=stand'), / speed=100( |$)/);
 });
 
-test('what moves nothing with rigid legs says so and cannot be set', async () => {
+test('what moves nothing with rigid legs and ideal servos says so and cannot be set', async () => {
   const opened = await standing();
-  const note = opened.getByText('The legs are rigid and the feet stand evenly: friction and mass cancel out');
+  const note = opened.getByText('The legs are rigid, the servos ideal, and the feet stand evenly: friction and mass cancel out');
+  assert.equal(await note.isVisible(), false, 'the torque of real servos is not for nothing');
+  assert.ok(await opened.getByLabel('Pad friction').isEnabled());
+  await opened.locator('#servos').selectOption('ideal');
   assert.ok(await note.isVisible());
   for (const label of ['Pad friction', 'Mass', 'Pull in the strut']) assert.ok(await opened.getByLabel(label).isDisabled(), label);
   assert.ok(await opened.getByLabel('Friction back : ahead').isEnabled());

@@ -4,7 +4,8 @@
  * With `window.flashed` set to the name of a robot, or to null for an erased flash, the board has firmware and that one;
  * `window.same` has the port open the board that it had before;
  * `window.awake` has it run for four seconds and not be reset by its port; `window.pick` throws in place of a choice
- * of the port; `window.garbage` has the board say bytes without a meaning. `window.pulses` has the last width of
+ * of the port; `window.garbage` has the board say bytes without a meaning; `window.profile` is the Bluetooth service of a port that is no
+ * cable. `window.pulses` has the last width of
  * each pin, us; `window.vendor` is the USB vendor of its chip.
  */
 export function fakeSerial() {
@@ -55,7 +56,7 @@ export function fakeSerial() {
       board.onReceived = (byte) => (window.heard += String.fromCharCode(byte));
       port.timer = setInterval(() => board.run(16_000 * 2), 2);
     },
-    getInfo: () => ({ usbVendorId: window.vendor ?? 0x2341 }),
+    getInfo: () => (window.profile ? { bluetoothServiceClassId: window.profile } : { usbVendorId: window.vendor ?? 0x2341 }),
     async setSignals({ dataTerminalReady }) {
       if (dataTerminalReady && !window.awake) board.reset('external');
     },
@@ -64,7 +65,8 @@ export function fakeSerial() {
       clearInterval(port.noise);
     },
   };
-  const requestPort = async () => {
+  const requestPort = async (options) => {
+    window.wanted = options;
     window.pick?.();
     return port;
   };

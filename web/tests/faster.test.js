@@ -103,7 +103,7 @@ test('a robot that is changed midway ends the search of the one of before', asyn
   await page.keyboard.press('Enter');
   await page.waitForFunction(() => window.lizard.toml !== window.lizard.original);
   await ended(page);
-  assert.equal(await text(page, 'faster-said'), 'The robot has changed, so the search for the one of before has ended.');
+  assert.equal(await text(page, 'faster-said'), 'The robot has changed, so the search for the previous one has ended.');
   assert.ok((await page.locator('#faster-progress').isHidden()) && (await page.locator('#faster-result').isHidden()));
 });
 

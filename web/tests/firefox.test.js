@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { DIST, address, advance, blank, close, complaints, openFirefox, serve, sideways, standing, tidy, until, within } from './browser.js';
+import { DIST, address, advance, blank, close, complaints, openFirefox, serve, sideways, standing, stops, tidy, until, within } from './browser.js';
 
 before(openFirefox);
 afterEach(tidy);
@@ -24,11 +24,7 @@ test('the image of the board walks the predicted way, and Esc stops it', async (
     return { predicted: robot.predict(walk), measured: window.lizard.measured() };
   });
   assert.ok(Math.abs(measured.forward / predicted.forward - 1) < 0.03, `${measured.forward} of ${predicted.forward} mm`);
-  await opened.keyboard.press('Escape');
-  await advance(opened, 500);
-  const stopped = await place(opened);
-  await advance(opened, 1000);
-  assert.deepEqual(await place(opened), stopped);
+  await stops(opened);
 });
 
 test('it says that no board can be connected exactly where this Firefox has no Web Serial', async () => {

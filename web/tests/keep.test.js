@@ -68,7 +68,7 @@ test('a run is seen again from any moment, while the robot goes on', async () =>
   await button(page, 'Record').click();
   await advance(page, 2000);
   await button(page, 'Stop recording').click();
-  await page.getByText(/s are kept\.$/).waitFor();
+  await page.getByText(/s recorded\.$/).waitFor();
   await advance(page, 4000);
   await page.getByLabel('Moment').fill('1');
   await page.getByText(/^1\.0 of [0-9.]+ s$/).waitFor();

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { after, afterEach, before, test } from 'node:test';
 
-import { advance, close, complaints, open, page, standing, tidy, type } from './browser.js';
+import { advance, close, complaints, open, page, standing, stops, tidy, type } from './browser.js';
 import { fakeSerial } from './fake-serial.js';
 import { hexOf, imageOf } from './image.js';
 
@@ -47,11 +47,53 @@ test('walk moves the body by the predicted way', async () => {
   assert.ok(Math.abs(measured.turn) < 0.3, `it goes straight: ${measured.turn} deg`);
   await opened.waitForFunction(() => / mm$/.test(document.querySelector('#cycle').textContent));
   assert.equal(await gait(opened, 'walk').getAttribute('aria-pressed'), 'true');
-  await opened.keyboard.press('Escape');
+  await stops(opened);
+});
+
+test('a gait that begins while the robot is asked for its state is not taken back', async () => {
+  const opened = await standing();
+  await opened.evaluate(() => {
+    const { lizard } = window;
+    const { listener } = lizard;
+    const doing = listener.doing.bind(listener);
+    window.done = [];
+    listener.doing = (gait) => {
+      window.done.push(gait);
+      doing(gait);
+    };
+    void lizard.status();
+    void lizard.ask('walk');
+  });
   await advance(opened, 500);
-  const stopped = await opened.evaluate(() => window.lizard.last.place);
-  await advance(opened, 1000);
-  assert.deepEqual(await opened.evaluate(() => window.lizard.last.place), stopped, 'Esc stops it');
+  assert.deepEqual(await opened.evaluate(() => window.done), ['walk']);
+});
+
+test('a pace that is set while the robot is asked for its state is not taken back', async () => {
+  const opened = await standing();
+  await opened.evaluate(() => {
+    const { lizard } = window;
+    const { listener } = lizard;
+    const speed = listener.speed.bind(listener);
+    window.paces = [];
+    listener.speed = (percent) => {
+      window.paces.push(percent);
+      speed(percent);
+    };
+    // What comes for the page, it comes for at once, as from a port that was busy.
+    const { link } = lizard;
+    const { onBytes } = link;
+    const came = [];
+    link.onBytes = (bytes) => came.push(...bytes);
+    void lizard.status();
+    lizard.advance(30);
+    link.board.send([...'speed 60\n'].map((letter) => letter.charCodeAt(0)));
+    lizard.advance(60);
+    onBytes(Uint8Array.from(came));
+    link.onBytes = onBytes;
+  });
+  await advance(opened, 100);
+  assert.deepEqual(await opened.evaluate(() => window.paces), [100, 60]);
+  assert.equal(await opened.locator('#speed').inputValue(), '60');
 });
 
 test('left turns left', async () => {
@@ -170,18 +212,18 @@ test('a refused setting shows why and takes the slider back', async () => {
 });
 
 /** Chooses the image of another robot, and waits until it is written and has begun. */
-async function flashes(opened, forward) {
+async function flashes(opened, forward, where = '') {
   await opened.getByText('Flash', { exact: true }).click();
   const buffer = Buffer.from(hexOf(await imageOf('large')));
   await opened.getByLabel('HEX file').setInputFiles({ name: 'large.hex', mimeType: 'text/plain', buffer });
-  await opened.locator('#flash-what', { hasText: /^large\.hex, \d+ bytes\. It is a firmware of a lizard\./ }).waitFor();
+  await opened.locator('#flash-what', { hasText: /^large\.hex, \d+ bytes\. It is lizard firmware\./ }).waitFor();
   await opened.getByRole('button', { name: 'Write it', exact: true }).click();
   const said = opened.locator('#flash-said');
   for (let n = 0; n < 400; n++) {
     await forward(100);
     if (/written/.test(await said.innerText())) break;
   }
-  assert.match(await said.innerText(), /^written and verified in [\d.]+ s$/);
+  assert.match(await said.innerText(), new RegExp(`^written${where} and verified in [\\d.]+ s$`));
   await forward(2500);
   const banners = await opened.locator('#log div', { hasText: '# lizard' }).allInnerTexts();
   return banners.at(-1);
@@ -190,7 +232,7 @@ async function flashes(opened, forward) {
 test('an image is flashed by the real boot loader', async () => {
   const opened = await standing();
   const before = await text(opened, '#log');
-  const banner = await flashes(opened, (ms) => advance(opened, ms));
+  const banner = await flashes(opened, (ms) => advance(opened, ms), ' to the simulated UNO');
   assert.ok(!before.includes(banner), banner);
   assert.match(await text(opened, '#where'), /with another robot, robot large [0-9a-f]{8}:/);
   const image = await imageOf('large');
@@ -337,7 +379,7 @@ test('a foot that is too long costs what the contact model says, and on soft fee
 test('a dead band costs its share of the stroke, as predicted', async () => {
   const opened = await standing();
   const went = [];
-  for (const servos of ['ideal', 'sg90']) {
+  for (const servos of ['ideal', 'own']) {
     await opened.locator('#servos').selectOption(servos);
     const { predicted, measured } = await walks(opened, 'walk');
     near(measured.forward, predicted.forward, 0.01, `mm ahead in a cycle, ${servos}`);

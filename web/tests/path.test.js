@@ -93,12 +93,12 @@ test('by the keyboard a shape is chosen, for the tail as well', async () => {
   }
 });
 
-test('a tap is no line, and that is said', async () => {
+test('a tap is not a line, and that is said', async () => {
   const page = await opened();
   const before = await text(page, 'table');
   await page.locator('#path-plane').evaluate((plane) => plane.scrollIntoView({ block: 'center' }));
   await page.locator('#path-plane').click();
-  assert.equal(await text(page, 'said'), 'A tap is no line: hold and draw it.');
+  assert.equal(await text(page, 'said'), 'A tap is not a line: hold and draw it.');
   assert.equal(await text(page, 'table'), before);
 });
 

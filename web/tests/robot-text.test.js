@@ -77,7 +77,7 @@ test('a file is opened, or dropped anywhere on the page', async () => {
   const picture = join(folder, 'x.toml');
   await writeFile(picture, Buffer.from([0x89, 0x50, 0x4e, 0x47, 0, 0, 0]));
   await page.locator('#robot-open').setInputFiles(picture);
-  await page.getByText('x.toml is no robot.toml.').waitFor();
+  await page.getByText('x.toml is not a robot.toml.').waitFor();
   assert.equal(await toml(page), other);
 });
 
@@ -97,9 +97,9 @@ test('a link is a robot, also over a reload', async () => {
   await takes(other, large);
   await other.reload();
   await takes(other, large);
-  // Half of a link is no robot, and says so.
+  // Half of a link is not a robot, and says so.
   await other.goto(link.slice(0, -200));
-  await other.getByText('The address has no whole robot behind its #').waitFor();
+  await other.getByText('The robot in the address is incomplete').waitFor();
 });
 
 test('the address is the robot that is shown, at every change', async () => {

@@ -171,7 +171,7 @@ test('robots that say that they are for the tests come last, under that name', a
       [...document.querySelectorAll(selector)].map(({ value }) => value),
     ),
   );
-  assert.deepEqual(plain, ['robot', 'large', 'paper']);
+  assert.deepEqual(plain, ['robot', 'grain', 'large', 'paper']);
   assert.deepEqual(tests, ['own-gaits', 'unequal']);
 });
 

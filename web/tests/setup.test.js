@@ -47,7 +47,7 @@ async function cal(opened) {
 }
 
 test('a new UNO becomes a robot that walks, is saved, and has a file that lizard restore takes', async () => {
-  const opened = await connected(null, 5000);
+  const opened = await connected(null, 8000);
   await setup(opened).getByText('2 of 9: Write the firmware').waitFor();
   await setup(opened).getByText('The board on USB is a UNO by its boot loader, and this firmware is not on it.').waitFor();
   await does(opened, 'Write firmware and robot', /^written and verified in [\d.]+ s$/);
@@ -115,7 +115,7 @@ test('a new UNO becomes a robot that walks, is saved, and has a file that lizard
   await setup(opened).getByText('Not saved yet.').waitFor();
   await does(opened, 'Save in the board', /^Saved: the board begins with it/);
   const coming = opened.waitForEvent('download');
-  await press(opened, 'Keep as a file');
+  await press(opened, 'Save as a file');
   const file = await (await coming).path();
 
   // The board, restarted, has it; and so has the file, as the host's own program reads it.
@@ -134,7 +134,7 @@ test('a new UNO becomes a robot that walks, is saved, and has a file that lizard
     const root = new URL('../..', import.meta.url).pathname;
     const robot = ['--sim', '--robot', 'robot.toml'];
     const { stdout } = await promisify(execFile)(process.env.LIZARD, ['restore', kept, ...robot], { cwd: root, timeout: PATIENCE });
-    assert.match(stdout, /has the calibration of .* and has saved it/);
+    assert.match(stdout, /has accepted and saved the calibration of .*/);
   } finally {
     await rm(folder, { recursive: true });
   }
@@ -153,7 +153,7 @@ test('a board that answers nothing is asked about, and no step is a dead end', a
   await opened.getByRole('button', { name: 'Connect a board' }).click();
   await opened.waitForFunction(() => window.otherBoard);
   await opened.evaluate(() => (window.otherBoard.send = () => {}));
-  await opened.clock.runFor(7000);
+  await opened.clock.runFor(10000);
   await setup(opened).getByText('answers neither as this firmware nor as a boot loader').waitFor();
   await does(opened, 'Write firmware and robot', /^not written: the board does not answer/);
   await step(opened, 'Horns');
@@ -198,7 +198,7 @@ test('a board that is unplugged at any step is said to be gone, and the path goe
 });
 
 test('a board that is unplugged while it is written says so, and can be written when it is back', async () => {
-  const opened = await connected(null, 5000);
+  const opened = await connected(null, 8000);
   await press(opened, 'Write firmware and robot');
   await opened.clock.runFor(1500);
   await opened.evaluate(() => window.unplug());
@@ -207,8 +207,47 @@ test('a board that is unplugged while it is written says so, and can be written 
   await until(opened, 'it may be connected', () => opened.locator('#connect').isEnabled());
   await opened.getByRole('button', { name: 'Connect a board' }).click();
   await opened.waitForFunction(() => window.otherBoard);
-  await opened.clock.runFor(5000);
+  await opened.clock.runFor(8000);
   await does(opened, 'Write firmware and robot', /^written and verified/);
+});
+
+test('what began on a board does not go on in the simulation when it is unplugged', async () => {
+  const opened = await connected('robot', 4500);
+  await step(opened, 'Trims');
+  await opened.clock.runFor(500);
+  await opened.evaluate(() => window.unplug());
+  for (const name of ['Trims', 'Keep', 'Firmware']) {
+    await step(opened, name);
+    await opened.clock.runFor(500);
+    await setup(opened).locator('#setup-what').getByText('The board is not connected any more.').waitFor();
+    assert.deepEqual(await setup(opened).locator('#setup-what button').allInnerTexts(), ['Connect it again…', 'Try this step on the simulated UNO'], name);
+  }
+  await press(opened, 'Try this step on the simulated UNO');
+  await setup(opened).getByText('to the simulated UNO').waitFor();
+});
+
+test('the robot does not walk while somebody fits it together', async () => {
+  const opened = await connected('robot', 8000);
+  await until(opened, 'the ways are known', async () => (await text(opened, '#gaits button[data-command="walk"] small')) !== '');
+  await step(opened, 'Trims');
+  await opened.clock.runFor(500);
+  const before = (await opened.evaluate(() => window.heard)).length;
+  await opened.locator('#log').focus();
+  await opened.evaluate(() => {
+    document.activeElement.blur();
+    navigator.getGamepads = () => [{ axes: [0, -1], buttons: [] }];
+  });
+  await opened.keyboard.down('w');
+  await opened.clock.runFor(500);
+  await opened.keyboard.up('w');
+  assert.ok(!(await opened.evaluate(() => window.heard)).slice(before).includes('walk'));
+  await opened.evaluate(() => delete navigator.getGamepads);
+  await press(opened, 'Leave');
+  await until(opened, 'it is left', async () => !(await setup(opened).isVisible()));
+  await opened.locator('#gaits button[data-command="walk"]').click();
+  await until(opened, 'it walks', async () => (await opened.evaluate(() => window.lizard.gait)) === 'walk');
+  await opened.getByRole('button', { name: 'Set up…' }).click();
+  await until(opened, 'it is stopped', async () => (await opened.evaluate(() => window.lizard.gait)) !== 'walk');
 });
 
 test('a board that restarts in between is said to have lost what was not saved', async () => {
@@ -268,7 +307,7 @@ test('a kept file is given to the robot, and one that is none says what is wrong
   await step(opened, 'Keep');
   await opened.clock.runFor(1500);
   const choose = (name, body) =>
-    setup(opened).getByLabel('A file that was kept').setInputFiles({ name, mimeType: 'text/plain', buffer: Buffer.from(body) });
+    setup(opened).getByLabel('Open a saved file').setInputFiles({ name, mimeType: 'text/plain', buffer: Buffer.from(body) });
   await choose('mine.toml', KEPT);
   await said(opened, /^The robot has the calibration of mine\.toml\. It is not saved yet\.$/);
   assert.match((await cal(opened))[2], /^# A3 trim 3\.25 /);
@@ -276,8 +315,8 @@ test('a kept file is given to the robot, and one that is none says what is wrong
   const wrong = [
     ['<img src=x onerror="window.strange=1">.toml', 'hello', /^<img .*>\.toml: line 1: this is not TOML$/],
     ['a.toml', 'format = "lizard calibration 2"', /^a\.toml: the key format = "lizard calibration 1" is missing/],
-    ['b.toml', KEPT.replace('2.25', '400'), /^b\.toml: servo\.A2\.trim: 400 is no number/],
-    ['c.toml', KEPT.replace('"stand"', '"stand\\nsave"'), /^c\.toml: boot: .* is no name of a gait$/],
+    ['b.toml', KEPT.replace('2.25', '400'), /^b\.toml: servo\.A2\.trim: 400 is not a number/],
+    ['c.toml', KEPT.replace('"stand"', '"stand\\nsave"'), /^c\.toml: boot: .* is not the name of a gait$/],
     ['d.toml', KEPT.replace('scale = 10.0', 'scale = 99.0'), /^The robot refuses "scale 1 99\.00": scale must be 5\.\.20/],
   ];
   for (const [name, body, sentence] of wrong) {

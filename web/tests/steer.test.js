@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { close, complaints, open, page, tidy } from './browser.js';
+import { advance, close, complaints, open, page, tidy } from './browser.js';
 
 before(open);
 afterEach(tidy);
@@ -93,12 +93,75 @@ test('a gamepad drives', async () => {
   await doing(opened, 'stop');
 });
 
+test('a button of a gamepad stops the robot, once, and it goes on only when the stick was let go', async () => {
+  const opened = await ready();
+  await opened.evaluate(() => {
+    window.sent = [];
+    const { ask } = window.lizard;
+    window.lizard.ask = (line, ...more) => (window.sent.push(line), ask.call(window.lizard, line, ...more));
+    window.pad = { axes: [0, -1], buttons: [{ pressed: false }] };
+    navigator.getGamepads = () => [null, window.pad];
+  });
+  await doing(opened, 'walk');
+  await opened.evaluate(() => (window.pad.buttons = [{ pressed: true }]));
+  await doing(opened, 'stop');
+  await opened.waitForTimeout(500);
+  assert.deepEqual((await opened.evaluate(() => window.sent)).filter((line) => line !== 'status'), ['walk', 'stop']);
+  await opened.evaluate(() => (window.pad = { axes: [0, 0], buttons: [] }));
+  await opened.waitForTimeout(200);
+  await opened.evaluate(() => (window.pad = { axes: [0, -1], buttons: [] }));
+  await doing(opened, 'walk');
+});
+
+test('a button of a gamepad stops a gait that the page began', async () => {
+  const opened = await ready();
+  await opened.locator('#gaits button[data-command="walk"]').click();
+  await doing(opened, 'walk');
+  await opened.evaluate(() => (navigator.getGamepads = () => [{ axes: [0, 0], buttons: [{ pressed: true }] }]));
+  await doing(opened, 'stop');
+});
+
+test('a second gamepad and the cross of buttons drive, too', async () => {
+  const opened = await ready();
+  await opened.evaluate(() => {
+    const buttons = Array.from({ length: 16 }, (_, n) => ({ pressed: n === 12 }));
+    navigator.getGamepads = () => [{ axes: [0, 0], buttons: [] }, { axes: [0, 0], buttons }];
+  });
+  await doing(opened, 'walk');
+});
+
+test('a gamepad that is held while another window gets the keyboard does not walk on', async () => {
+  const opened = await ready();
+  await opened.evaluate(() => (navigator.getGamepads = () => [{ axes: [0, -1], buttons: [] }]));
+  await doing(opened, 'walk');
+  await opened.evaluate(() => void window.dispatchEvent(new Event('blur')));
+  await doing(opened, 'stop');
+  await opened.waitForTimeout(500);
+  assert.equal(await opened.locator('#doing').textContent(), 'stop');
+});
+
 test('the page opens with the robot walking slowly, but for those who want less motion', async () => {
   const moving = await page({ reducedMotion: 'no-preference' });
   await doing(moving, 'walk');
   await moving.waitForFunction(() => document.querySelector('#speed').value === '50');
   const still = await ready();
   assert.equal(await still.locator('#doing').textContent(), 'stand');
+});
+
+test('it opens with walk, too, where walk and trot are predicted before the robot says what it is', async () => {
+  const opened = await page({ reducedMotion: 'no-preference' }, () => {
+    // The other predictions never come.
+    window.Worker = class extends Worker {
+      addEventListener(kind, then) {
+        super.addEventListener(kind, (event) => (event.data.gait ?? 0) <= 2 && then(event));
+      }
+    };
+  });
+  await opened.waitForFunction(() => document.querySelector('button[data-command="trot"] small').textContent.includes('mm'));
+  assert.equal(await opened.locator('#where').textContent(), 'waiting for the simulated UNO');
+  await advance(opened, 2500);
+  await opened.clock.runFor(1000);
+  await doing(opened, 'walk');
 });
 
 test('a robot of other gaits is driven by its own', async () => {

@@ -77,6 +77,19 @@ test('a person who picks no port is not told of a trouble', async () => {
   assert.match(await text(opened, '#where'), /simulated UNO/);
 });
 
+test('a browser that may not use ports says why, and the simulation goes on', async () => {
+  const opened = await page({}, fakeSerial);
+  const why = 'Access to the feature "serial" is disallowed by permissions policy.';
+  await opened.evaluate((why) => {
+    window.pick = () => {
+      throw new DOMException(why, 'SecurityError');
+    };
+  }, why);
+  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await trouble(opened).getByText(`No board is connected: ${why}`).waitFor();
+  assert.match(await text(opened, '#where'), /simulated UNO/);
+});
+
 test('a browser without Web Serial says so to whoever only reads', async () => {
   const opened = await page({}, () => Object.defineProperty(navigator, 'serial', { value: undefined }));
   await opened.getByText('This browser cannot reach a board on USB').waitFor();

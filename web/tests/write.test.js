@@ -108,7 +108,7 @@ async function unasked() {
 test('where a board has not said its firmware, its code is read and compared', async () => {
   const opened = await unasked();
   await robotAlone(opened);
-  await said(opened, /^looking at the firmware that is there/);
+  await said(opened, /^comparing with the firmware on the board/);
   await said(opened, /^written and verified in [\d.]+ s$/);
   const wanted = await section('robot');
   assert.deepEqual(await flash(opened, START, START + wanted.length), wanted);
@@ -130,7 +130,7 @@ test('a board that is unplugged half way has no robot, says so, moves nothing, a
   await until(opened, 'it is written', async () => (await text(opened, '#flash-said')).startsWith('writing'), 20);
   await opened.clock.runFor(60);
   await opened.evaluate(() => window.unplug());
-  await said(opened, /^not written: .*\. Only a part of the robot is on the board, which moves nothing until it is written again: try again$/);
+  await said(opened, /^not written: .*\. Only a part of the robot is on the board, which moves nothing until it is rewritten: try again$/);
   await until(opened, 'it may be connected', () => opened.locator('#connect').isEnabled());
   await opened.evaluate(() => (window.same = true));
   await opened.getByRole('button', { name: 'Connect a board' }).click();
@@ -160,7 +160,7 @@ test('a board that is unplugged while the firmware is written does nothing, and 
   await said(opened, /^writing/);
   await opened.clock.runFor(1500);
   await opened.evaluate(() => window.unplug());
-  await said(opened, /^not written: .*\. Only a part of it is on the board, which does nothing until it is written again: try again$/);
+  await said(opened, /^not written: .*\. Only a part of it is on the board, which does nothing until it is rewritten: try again$/);
   // Its own behaviour, without the page.
   const pulses = await opened.evaluate(() => {
     window.otherBoard.reset('external');

@@ -37,7 +37,7 @@ unsafe impl<T: ?Sized + Sync> Sync for Flash<'_, T> {}
 unsafe impl<T: ?Sized + Sync> Send for Flash<'_, T> {}
 
 impl<T: ?Sized> Flash<'_, T> {
-    /// Made by [`flash!`](crate::flash!) alone.
+    /// Makes a reference to a constant; only [`flash!`](crate::flash!) calls it.
     ///
     /// # Safety
     /// A value of `T` must be at `at` for the lifetime and never written, aligned or not:
@@ -53,12 +53,12 @@ impl<T: ?Sized> Flash<'_, T> {
     }
 }
 
-/// Tables that are made at run time, which only a host does.
+/// A table made at run time, which only a host does.
 #[cfg(not(target_arch = "avr"))]
 impl<'a, T: ?Sized> From<&'a T> for Flash<'a, T> {
     fn from(value: &'a T) -> Self {
-        // SAFETY: a reference is valid for reads as long as it lives, and
-        // nothing is written behind it.
+        // SAFETY: a reference is valid for reads as long as it lives, and its value
+        // does not change meanwhile.
         unsafe { Self::new(value) }
     }
 }
@@ -125,7 +125,7 @@ impl<'a, T> Flash<'a, [T]> {
         self.at.len()
     }
 
-    /// True if there is no element.
+    /// True if the slice is empty.
     #[inline]
     pub const fn is_empty(self) -> bool {
         self.len() == 0
@@ -167,8 +167,8 @@ impl<'a, T> Flash<'a, [T]> {
 }
 
 impl<'a> Flash<'a, [u8]> {
-    /// The same bytes as values of a type for which any bytes are a value; what is left over
-    /// at the end is not among them.
+    /// Reinterprets the bytes as values of a type that allows any bytes; an incomplete value at
+    /// the end is left out.
     #[inline]
     pub const fn of<T: Plain>(self) -> Flash<'a, [T]> {
         let values = core::ptr::slice_from_raw_parts(
@@ -180,15 +180,16 @@ impl<'a> Flash<'a, [u8]> {
         unsafe { Flash::new(values) }
     }
 
-    /// The value whose bytes begin at `at`; where it is not wholly there, one of zeros.
+    /// Reads the value whose bytes begin at `at`; all zeros if it is not completely inside.
     #[inline]
     pub fn read<T: Plain>(self, at: usize) -> T {
         match self.part(at, size_of::<T>()) {
             Some(part) => {
-                // SAFETY: as many bytes as a value has, and any are one.
+                // SAFETY: the part has as many bytes as a value, and any bytes are a
+                // value.
                 unsafe { Flash::new(part.at.as_ptr().cast_const().cast::<T>()) }.load()
             }
-            // SAFETY: so are zeros.
+            // SAFETY: zeros are a value, too.
             None => unsafe { core::mem::zeroed() },
         }
     }

@@ -8,7 +8,7 @@
 use crate::{Flash, Plain};
 
 /// True in a build whose code is longer, because avr-gcc alone links it. It is for simulators,
-/// so its region may end where the flash does, behind an UNO's boot loader.
+/// so its region may end where the flash does, behind a UNO's boot loader.
 const IS_PLAIN: bool = match option_env!("LIZARD_PLAIN_LINK") {
     Some(set) => matches!(set.as_bytes(), b"1"),
     None => false,

@@ -5,8 +5,8 @@
 //! same up to the pull of its spring; beyond that it yields in one direction. In both cases pins
 //! and gears have play, within which nothing drives the leg.
 
+use crate::lag_energy::{LagEnergy, Side};
 use crate::strut::Strut;
-use crate::yields::{Side, Yield};
 
 /// The drive of the legs; all four are equal.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,7 +63,7 @@ impl Drive {
     }
 
     /// Limits a lag (deg) to the range between the stops while the servo is at this sweep, deg.
-    pub(crate) fn within(&self, leg: usize, sweep: f64, lag: f64) -> f64 {
+    pub(crate) fn limit_lag(&self, leg: usize, sweep: f64, lag: f64) -> f64 {
         let stops = self
             .of_leg(leg, sweep, 1.0, 1.0)
             .stops()
@@ -73,16 +73,17 @@ impl Drive {
 
     /// The energy of this leg's lag while its servo is at this sweep, deg. The unit of forces is
     /// `force` N, and no pad turns its leg with more than `most` of them at a lever of 1 mm.
-    pub(crate) fn of_leg(&self, leg: usize, sweep: f64, force: f64, most: f64) -> Yield {
+    pub(crate) fn of_leg(&self, leg: usize, sweep: f64, force: f64, most: f64) -> LagEnergy {
         let [lower, upper] = match &self.kind {
             Kind::Rigid => [Side::Stop; 2],
             Kind::Strut(strut) => strut.sides(leg, sweep, force),
         };
-        Yield {
+        LagEnergy {
             play: self.play.to_radians(),
             stop: 1.25 * most,
             lower,
             upper,
+            motor: None,
         }
     }
 }

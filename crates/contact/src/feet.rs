@@ -1,14 +1,7 @@
 //! The geometry of the feet, and the body that stands on them.
 
 use crate::friction::Point;
-
-/// The end of each leg, servo order: 1 in front, -1 behind.
-pub const FRONT: [f64; 4] = [1.0, 1.0, -1.0, -1.0];
-/// The side of each leg, servo order: 1 on the left, -1 on the right.
-pub const LEFT: [f64; 4] = [1.0, -1.0, -1.0, 1.0];
-/// The sense in which each leg turns when its foot goes forward, counter-clockwise positive: a
-/// leg on the left turns clockwise.
-pub const FORWARD: [f64; 4] = [-LEFT[0], -LEFT[1], -LEFT[2], -LEFT[3]];
+use crate::legs::{FRONT, LEFT};
 
 /// Standard gravity, m/s^2.
 pub const GRAVITY: f64 = 9.80665;
@@ -44,7 +37,7 @@ impl Feet {
     pub fn at(&self, sweeps: [f64; 4]) -> [Point; 4] {
         let hips = self.hips();
         std::array::from_fn(|i| {
-            let (sin, cos) = self.swept(i, sweeps[i]);
+            let (sin, cos) = self.direction(i, sweeps[i]);
             [
                 hips[i][0] + self.reach * sin,
                 hips[i][1] + LEFT[i] * self.reach * cos,
@@ -55,12 +48,12 @@ impl Feet {
     /// Derivatives of the feet's places by the sweep, mm/rad.
     pub(crate) fn along(&self, sweeps: [f64; 4]) -> [Point; 4] {
         std::array::from_fn(|i| {
-            let (sin, cos) = self.swept(i, sweeps[i]);
+            let (sin, cos) = self.direction(i, sweeps[i]);
             [self.reach * cos, -LEFT[i] * self.reach * sin]
         })
     }
 
-    fn swept(&self, leg: usize, sweep: f64) -> (f64, f64) {
+    fn direction(&self, leg: usize, sweep: f64) -> (f64, f64) {
         (sweep + FRONT[leg] * self.mount).to_radians().sin_cos()
     }
 }
@@ -77,7 +70,7 @@ pub struct Body {
 impl Body {
     /// The default of robot.toml: the weight of the paper's parts.
     pub const DEFAULT: Self = Self {
-        mass: 396.4,
+        mass: 435.0,
         centre: [0.0; 2],
     };
 

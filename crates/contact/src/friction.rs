@@ -11,8 +11,8 @@
 //! rounding favours, which is the symmetric one; [`crate::Ground::predict`] finds the
 //! movements that depend on it.
 
+use crate::lag_energy::LagEnergy;
 use crate::linear::solve;
-use crate::yields::Yield;
 
 /// Position or slide of a pad: forward, left.
 pub type Point = [f64; 2];
@@ -35,6 +35,9 @@ const BALANCED: f64 = 1e-9;
 /// floating point can show.
 const LEAST_GAIN: f64 = 1e-23;
 
+/// A distance that counts as zero, mm.
+const STILL: f64 = 1e-12;
+
 /// The four pads in a small step.
 #[derive(Clone, Copy)]
 pub(crate) struct Pads {
@@ -47,18 +50,29 @@ pub(crate) struct Pads {
     /// Load of each pad, over the mean.
     pub load: [f64; 4],
     /// Drives of the legs that lag; none if legs are rigid.
-    pub give: Option<Give>,
+    pub compliance: Option<Compliance>,
+    /// Inertia of the body; none where time does not count.
+    pub body: Option<Inertia>,
+}
+
+/// A body that goes on as in the step before unless forces change that.
+#[derive(Clone, Copy)]
+pub(crate) struct Inertia {
+    /// Force for each mm of change, and torque for each rad.
+    pub stiffness: Twist,
+    /// Twist of the step before.
+    pub before: Twist,
 }
 
 /// The drives of legs that lag behind their servos.
 #[derive(Clone, Copy)]
-pub(crate) struct Give {
+pub(crate) struct Compliance {
     /// Derivatives of the pads' places by the lag, backward, mm/rad.
     pub along: [Point; 4],
     /// Lags before the step, rad.
     pub before: [f64; 4],
     /// Energies of the legs' lags.
-    pub yields: [Yield; 4],
+    pub lag_energy: [LagEnergy; 4],
 }
 
 /// The movement in a small step.
@@ -100,22 +114,22 @@ struct Scale {
 impl Pads {
     /// Finds the displacement of the body and the legs with the least cost.
     pub fn least(&self) -> Displacement {
-        self.least_from(None)
+        self.least_near(None)
     }
 
     /// Finds the displacement with the least cost, starting at a guess.
-    pub fn least_from(&self, guess: Option<&Displacement>) -> Displacement {
-        let size = largest(&self.swing).max(self.springs_back());
-        if size == 0.0 {
+    pub fn least_near(&self, guess: Option<&Displacement>) -> Displacement {
+        let size = largest(&self.swing).max(self.jump_back());
+        if size < STILL {
             return self.moved([0.0; 3], [0.0; 4]);
         }
         // Turns are counted in mm at the pads' radius, slides in units of the swing.
         let scale = Scale {
             size,
             twist: [size, size, size / largest(&self.at)],
-            lag: self
-                .give
-                .map_or([0.0; 4], |give| give.along.map(|[x, y]| size / x.hypot(y))),
+            lag: self.compliance.map_or([0.0; 4], |compliance| {
+                compliance.along.map(|[x, y]| size / x.hypot(y))
+            }),
         };
         let (mut x, mut z, first) = match guess {
             Some(displacement) => (
@@ -179,7 +193,9 @@ impl Pads {
 
     /// The displacement with this twist and these changes of the lags.
     fn moved(&self, twist: Twist, change: [f64; 4]) -> Displacement {
-        let before = self.give.map_or([0.0; 4], |give| give.before);
+        let before = self
+            .compliance
+            .map_or([0.0; 4], |compliance| compliance.before);
         Displacement {
             twist,
             lag: std::array::from_fn(|i| before[i] + change[i]),
@@ -188,13 +204,19 @@ impl Pads {
     }
 
     /// Largest distance that a leg may jump back, mm, because its spring pulls harder than its pad
-    /// holds: 0 unless pads or springs were changed.
-    fn springs_back(&self) -> f64 {
-        let Some(give) = &self.give else { return 0.0 };
+    /// holds: 0 unless pads or springs were changed. Or the distance that its motor may add.
+    fn jump_back(&self) -> f64 {
+        let Some(compliance) = &self.compliance else {
+            return 0.0;
+        };
         let back = |i: usize| {
-            let ([x, y], lag) = (give.along[i], give.before[i]);
+            if let Some(motor) = &compliance.lag_energy[i].motor {
+                let [x, y] = compliance.along[i];
+                return x.hypot(y) * motor.unloaded_end().abs();
+            }
+            let ([x, y], lag) = (compliance.along[i], compliance.before[i]);
             let holds = self.load[i] * self.ratio.max(1.0) * x.hypot(y);
-            match give.yields[i].pulls(lag) > holds * (1.0 + 1e-6) {
+            match compliance.lag_energy[i].pulls(lag) > holds * (1.0 + 1e-6) {
                 true => x.hypot(y) * lag.abs(),
                 false => 0.0,
             }
@@ -207,7 +229,9 @@ impl Pads {
         let [forward, left, turn] = displacement.twist;
         std::array::from_fn(|i| {
             let ([x, y], [dx, dy]) = (self.at[i], self.swing[i]);
-            let [bx, by] = self.give.map_or([0.0; 2], |give| give.along[i]);
+            let [bx, by] = self
+                .compliance
+                .map_or([0.0; 2], |compliance| compliance.along[i]);
             let back = displacement.change[i];
             [
                 forward - turn * y + dx - back * bx,
@@ -226,6 +250,14 @@ impl Pads {
     fn expand(&self, displacement: &Displacement, eps: f64, scale: &Scale) -> Expansion {
         let (mut cost, mut gradient, mut hessian) = (0.0, [0.0; 3], [[0.0; 3]; 3]);
         let mut legs = [Row::default(); 4];
+        if let Some(Inertia { stiffness, before }) = self.body {
+            for i in 0..3 {
+                let off = displacement.twist[i] - before[i];
+                cost += stiffness[i] * off * off / 2.0;
+                gradient[i] += stiffness[i] * off * scale.twist[i];
+                hessian[i][i] += stiffness[i] * scale.twist[i] * scale.twist[i];
+            }
+        }
         for (i, slide) in self.slides(displacement).into_iter().enumerate() {
             let ([x, y], load) = (self.at[i], self.load[i]);
             let [wx, wy] = self.weight(slide);
@@ -247,13 +279,15 @@ impl Pads {
                     hessian[i][j] += load * (dot - along[i] * along[j]) / length;
                 }
             }
-            let Some(give) = &self.give else { continue };
+            let Some(compliance) = &self.compliance else {
+                continue;
+            };
             let unit = scale.lag[i];
-            let [bx, by] = give.along[i];
+            let [bx, by] = compliance.along[i];
             let row = [-wx * bx * unit, -wy * by * unit];
             let back = slope(row);
             let (energy, torque, stiffness) =
-                give.yields[i].expand(displacement.lag[i], eps / scale.size * unit);
+                compliance.lag_energy[i].expand(displacement.lag[i], eps / scale.size * unit);
             cost += energy;
             let leg = Row {
                 slope: load * back + torque * unit,

@@ -4,7 +4,9 @@
 //! pads can hold, and friction decides which of them slide. The body takes the movement that
 //! loses the least power to friction, which is a small convex problem: the formula is in
 //! `ground.rs`, its solution in `friction.rs`. The shares of the weight (`stance.rs`) and the lag
-//! of a leg behind its servo (`drive.rs`) are part of the same problem.
+//! of a leg behind its servo (`drive.rs`) are part of the same problem. A pad is a point, whatever
+//! its shape: a leg moves its pad without turning it and the body does not tilt, so the lowest
+//! point of a dome stays the same one.
 //!
 //! [`Ground`] is one robot on one floor. [`Ground::predict`] predicts the movement for a series of
 //! sweeps, as far as it can be known; a [`Walker`] follows the sweeps step by step.
@@ -42,19 +44,25 @@ mod drive;
 mod feet;
 mod friction;
 mod ground;
+mod joints;
+mod lag_energy;
+mod legs;
 mod linear;
+mod motor;
 mod place;
 mod prediction;
 mod stance;
 mod strut;
 mod travel;
 mod walker;
-mod yields;
 
 pub use drive::{Drive, Kind};
-pub use feet::{Body, FORWARD, FRONT, Feet, GRAVITY, LEFT};
+pub use feet::{Body, Feet, GRAVITY};
 pub use friction::Point;
 pub use ground::{DEFAULT_FRICTION, Ground};
+pub use joints::Joints;
+pub use legs::{FORWARD, FRONT, LEFT};
+pub use motor::{Motor, Motors};
 pub use place::Place;
 pub use stance::Stance;
 pub use strut::{SLOT, Strut};

@@ -105,10 +105,13 @@ mod tests {
     fn a_movement_is_seen_from_its_start() {
         let begin = Place::START.moved([3.0, 4.0, FRAC_PI_2]);
         let twist = [10.0, -2.0, 0.3];
-        let way = begin.moved(twist).seen_from(begin);
+        let movement = begin.moved(twist).seen_from(begin);
         let same = Place::START.moved(twist).travel();
-        assert!((way.forward - same.forward).abs() < 1e-12 && (way.left - same.left).abs() < 1e-12);
-        assert!((way.turn - same.turn).abs() < 1e-12);
+        assert!(
+            (movement.forward - same.forward).abs() < 1e-12
+                && (movement.left - same.left).abs() < 1e-12
+        );
+        assert!((movement.turn - same.turn).abs() < 1e-12);
     }
 
     #[test]

@@ -29,7 +29,7 @@ impl Uneven {
     /// Makes walks in which each pad in turn is pressed harder, or the friction backward differs.
     fn all(ground: &Ground, sweeps: [f64; 4]) -> [Self; 6] {
         let uneven = |load, ratio| Self {
-            walker: Walker::uneven(*ground, sweeps, load, ratio),
+            walker: Walker::with_unevenness(*ground, sweeps, load, ratio),
             differs: [0.0; 3],
         };
         let even = [1.0; 4];
@@ -60,12 +60,12 @@ impl Ground {
     /// Predicts the movement for these sweeps (deg, foot forward positive, servo order) one after
     /// another, as far as it does not depend on ties.
     ///
-    /// The same sweeps are followed on pads made uneven by a hundredth, each pad in turn and all
-    /// of them backward against forward. If two feet pull against two, the body then goes with one
+    /// The same sweeps are followed on pads made uneven by a hundredth, each pad in turn and all of
+    /// them backward against forward. If two feet pull against two, the body then goes with one
     /// pair or with the other. A part of the movement is undecided if its end differs by more than
     /// 1 mm (0.5 deg) and by more than a twentieth of the length of the path. Ahead and turn are
     /// also compared step by step: a body dragged to and fro by one pair of feet ends at its start,
-    /// as it does with the other pair, but pads that change in between lead it anywhere between.
+    /// whichever pair it is, but if the pairs change on the way it may end anywhere in between.
     /// Sideways only the end counts: legs that swing together always spread and close, and bring
     /// the body back within one swing.
     pub fn predict(&self, sweeps: impl IntoIterator<Item = [f64; 4]>) -> Prediction {
@@ -83,22 +83,22 @@ impl Ground {
                 turned += turn.abs();
                 twists.push(displacement.twist);
             });
-            for way in &mut uneven {
-                way.follow(next, &twists);
+            for movement in &mut uneven {
+                movement.follow(next, &twists);
             }
         }
         let mm = DECIDED_LENGTH.max(DECIDED_SHARE * length);
         let rad = DECIDED_TURN.max(DECIDED_SHARE * turned);
         let place = even.place();
-        let off = |way: &Uneven| {
-            let other = way.walker.place();
+        let off = |movement: &Uneven| {
+            let other = movement.walker.place();
             [other.forward - place.forward, other.left - place.left].map(f64::abs)
         };
         let all = |within: &dyn Fn(&Uneven) -> bool| uneven.iter().all(within);
         let decided = [
-            all(&|way| way.differs[0] <= mm && off(way)[0] <= mm),
-            all(&|way| off(way)[1] <= mm),
-            all(&|way| way.differs[2] <= rad),
+            all(&|movement| movement.differs[0] <= mm && off(movement)[0] <= mm),
+            all(&|movement| off(movement)[1] <= mm),
+            all(&|movement| movement.differs[2] <= rad),
         ];
         let travel = place.travel();
         Prediction {
@@ -182,9 +182,9 @@ mod tests {
         };
         assert_eq!(GROUND.predict([[0.0; 4]; 10]), NOWHERE);
         assert_eq!(GROUND.predict([]), NOWHERE);
-        let way = GROUND.predict([[20.0; 4], [-20.0; 4]]);
-        let forward = way.forward.expect("decided");
-        assert!(way.is_decided() && (forward - 90.0 * 20f64.to_radians().sin()).abs() < 1e-3);
+        let movement = GROUND.predict([[20.0; 4], [-20.0; 4]]);
+        let forward = movement.forward.expect("decided");
+        assert!(movement.is_decided() && (forward - 90.0 * 20f64.to_radians().sin()).abs() < 1e-3);
     }
 
     #[test]
@@ -202,9 +202,9 @@ mod tests {
     }
 
     #[test]
-    fn a_tie_too_small_to_matter_leaves_a_way_decided() {
+    fn a_tie_too_small_to_matter_leaves_a_movement_decided() {
         let small = |sweeps: [f64; 4]| sweeps.map(|sweep| sweep / 500.0);
-        let way = GROUND.predict(cycle(DIAGONAL, sine).into_iter().map(small));
-        assert!(way.is_decided(), "{way:?}");
+        let movement = GROUND.predict(cycle(DIAGONAL, sine).into_iter().map(small));
+        assert!(movement.is_decided(), "{movement:?}");
     }
 }

@@ -1,4 +1,4 @@
-//! The loads of four feet, one of which statics leaves open.
+//! The loads of four feet, which statics alone does not determine.
 //!
 //! The loads of a stiff body on three feet follow from statics. On four feet they do not:
 //! one diagonal may carry more and the other less, and all forces still balance. The
@@ -28,8 +28,8 @@ pub struct Stance {
     pub level: f64,
 }
 
-/// Largest load (over the mean) that counts as zero.
-const NONE: f64 = 1e-9;
+/// Largest load, as a share of the mean, that counts as zero.
+const ZERO_LOAD: f64 = 1e-9;
 
 impl Stance {
     /// The defaults of robot.toml.
@@ -52,8 +52,8 @@ impl Stance {
         self.stiffness * self.twist / 4.0
     }
 
-    /// Computes the load of each foot over the mean, with feet at these places (forward, left in
-    /// mm, servo order); 0 for a foot in the air.
+    /// Computes the load of each foot as a share of the mean, with feet at these places (forward,
+    /// left in mm, servo order); 0 for a foot in the air.
     ///
     /// The feet give, and the chassis does not: it sinks and tilts, so the load has a part of
     /// the foot's own length and a part that is linear in its place. Three equations of balance
@@ -72,16 +72,16 @@ impl Stance {
             let stands = std::array::from_fn(|i| lifted != Some(i));
             (stands, pressures(feet, own, body.centre, stands))
         };
-        let some = [None, Some(0), Some(1), Some(2), Some(3)].map(all_but);
-        let holds = |(stands, pressures): &&([bool; 4], [f64; 4])| {
+        let cases = [None, Some(0), Some(1), Some(2), Some(3)].map(all_but);
+        let is_consistent = |(stands, pressures): &&([bool; 4], [f64; 4])| {
             let mut each = stands.iter().zip(pressures);
             each.all(|(stands, pressure)| match stands {
-                true => *pressure >= -NONE,
-                false => *pressure <= NONE,
+                true => *pressure >= -ZERO_LOAD,
+                false => *pressure <= ZERO_LOAD,
             })
         };
         // A robot that falls over fits none of these cases.
-        let (stands, pressures) = some.iter().find(holds).unwrap_or(&some[0]);
+        let (stands, pressures) = cases.iter().find(is_consistent).unwrap_or(&cases[0]);
         std::array::from_fn(|i| {
             if stands[i] {
                 pressures[i].max(0.0)
@@ -92,8 +92,8 @@ impl Stance {
     }
 }
 
-/// Computes the load of each foot over the mean, if only some of them stand; a foot with a
-/// negative one is above the floor.
+/// Computes the load of each foot as a share of the mean, if only some of them stand; a foot with
+/// a negative load is above the floor.
 fn pressures(feet: [Point; 4], own: [f64; 4], centre: Point, stands: [bool; 4]) -> [f64; 4] {
     let mut matrix = [[0.0; 3]; 3];
     let mut whole = [4.0, 4.0 * centre[0], 4.0 * centre[1]];
@@ -139,8 +139,8 @@ mod tests {
         let stiffness = stance.stiffness / body.mean_load();
         let loads = |sinks: f64, nods: f64, rolls: f64| -> [f64; 4] {
             std::array::from_fn(|i| {
-                let long = if i == 0 { stance.twist } else { 0.0 };
-                let pressed = long + sinks + nods * feet[i][0] + rolls * feet[i][1];
+                let excess = if i == 0 { stance.twist } else { 0.0 };
+                let pressed = excess + sinks + nods * feet[i][0] + rolls * feet[i][1];
                 (stiffness * pressed).max(0.0)
             })
         };
@@ -176,7 +176,7 @@ mod tests {
 
     #[test]
     fn feet_in_a_rectangle_share_by_lever() {
-        // A quarter of the way ahead: the front feet carry half as much again.
+        // The centre is halfway to the front feet, which then carry 1.5 times the mean.
         let loads = Stance::LEVEL.loads(&body([27.5, 0.0]), AT);
         for (load, wanted) in loads.into_iter().zip([1.5, 1.5, 0.5, 0.5]) {
             assert!((load - wanted).abs() < 1e-9, "{loads:?}");

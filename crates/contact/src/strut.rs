@@ -10,8 +10,8 @@
 
 use lizard_kinematics::wrap;
 
-use crate::feet::FORWARD;
-use crate::yields::{Side, Stretch};
+use crate::lag_energy::{Side, Stretch};
+use crate::legs::FORWARD;
 
 /// Length that the leg's screw can run in its slot, mm.
 pub const SLOT: f64 = 5.0;
@@ -58,10 +58,10 @@ impl Strut {
     #[must_use]
     pub fn end(&self, leg: usize, sweep: f64) -> (f64, f64) {
         let stretch = self.stretch(leg, sweep);
-        let way = stretch.way(self.slot);
+        let lag = stretch.lag_at_growth(self.slot);
         let force = self.force + self.rate * self.slot;
-        let torque = force * stretch.lever_after(way);
-        (way.to_degrees(), torque)
+        let torque = force * stretch.lever_after(lag);
+        (lag.to_degrees(), torque)
     }
 
     /// The energy of a lag against the sweep's direction and along it, in units of `force` N.

@@ -11,7 +11,7 @@ pub struct Travel {
     pub turn: f64,
 }
 
-/// A movement as far as it is known in advance. A part that depends on a tie is none.
+/// A predicted movement; a part that depends on a tie is `None`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Prediction {
     /// Distance ahead, mm.
@@ -30,7 +30,7 @@ impl Prediction {
 
     /// Keeps the parts of a movement that are known in this prediction.
     #[must_use]
-    pub fn known_of(&self, travel: Travel) -> Self {
+    pub fn keep_known(&self, travel: Travel) -> Self {
         Self {
             forward: self.forward.and(Some(travel.forward)),
             left: self.left.and(Some(travel.left)),

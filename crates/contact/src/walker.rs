@@ -5,8 +5,10 @@
 //! the floor.
 
 use crate::feet::Feet;
-use crate::friction::{Displacement, Give, Pads, Point};
+use crate::friction::{Compliance, Displacement, Inertia, Pads, Point, Twist};
 use crate::ground::Ground;
+use crate::lag_energy::LagEnergy;
+use crate::motor::{MotorStep, Motors, ServoState};
 use crate::place::Place;
 
 /// Largest sweep of a step, deg. A larger one is divided into equal steps.
@@ -16,6 +18,10 @@ const PART: f64 = 0.5;
 const ROUNDS: usize = 4;
 /// Largest change of a lag in a round that counts as settled, rad.
 const KNOWN: f64 = 1e-4;
+/// A rounding error of a number of steps.
+const EVEN: f64 = 1e-6;
+/// Rounding of kinks after a step, rad.
+const ROUNDED: f64 = 1e-12;
 
 /// A robot that walks on a floor.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,8 +31,12 @@ pub struct Walker {
     uneven: ([f64; 4], f64),
     /// Sweeps of the servos, deg.
     servos: [f64; 4],
+    /// Speeds of the servos that a motor has turned, deg/s.
+    rates: [f64; 4],
     /// Lags of the legs behind their servos, deg.
     lag: [f64; 4],
+    /// Speed of the body, mm/s and rad/s, while motors drive it.
+    speed: Twist,
     place: Place,
 }
 
@@ -39,22 +49,38 @@ pub struct Slip {
     pub loads: [f64; 4],
 }
 
+impl Slip {
+    const NONE: Self = Self {
+        feet: [0.0; 4],
+        loads: [1.0; 4],
+    };
+
+    fn add(&mut self, pads: &Pads, displacement: &Displacement) {
+        self.loads = pads.load;
+        for (sum, [x, y]) in self.feet.iter_mut().zip(pads.slides(displacement)) {
+            *sum += x.hypot(y);
+        }
+    }
+}
+
 impl Walker {
     /// Makes a robot that stands with its servos at these sweeps (deg, foot forward
     /// positive, servo order) and its springs at rest.
     #[must_use]
     pub fn new(ground: Ground, sweeps: [f64; 4]) -> Self {
-        Self::uneven(ground, sweeps, [1.0; 4], 1.0)
+        Self::with_unevenness(ground, sweeps, [1.0; 4], 1.0)
     }
 
     /// Makes such a robot with factors on the loads of the pads and on the friction backward over
     /// forward.
     #[must_use]
-    pub fn uneven(ground: Ground, sweeps: [f64; 4], load: [f64; 4], ratio: f64) -> Self {
+    pub fn with_unevenness(ground: Ground, sweeps: [f64; 4], load: [f64; 4], ratio: f64) -> Self {
         Self {
             ground,
             uneven: (load, ratio),
             servos: sweeps,
+            rates: [0.0; 4],
+            speed: [0.0; 3],
             lag: [0.0; 4],
             place: Place::START,
         }
@@ -82,7 +108,7 @@ impl Walker {
     pub fn set_ground(&mut self, ground: Ground) {
         self.ground = ground;
         let (drive, servos) = (&self.ground.drive, self.servos);
-        self.lag = std::array::from_fn(|i| drive.within(i, servos[i], self.lag[i]));
+        self.lag = std::array::from_fn(|i| drive.limit_lag(i, servos[i], self.lag[i]));
     }
 
     /// Lag of each leg behind its servo, deg.
@@ -97,24 +123,107 @@ impl Walker {
         std::array::from_fn(|i| self.servos[i] - self.lag[i])
     }
 
+    /// Sweeps of the servos, deg.
+    #[must_use]
+    pub fn servos(&self) -> [f64; 4] {
+        self.servos
+    }
+
+    /// Lets motors turn the servos towards these sweeps (deg) for some seconds. A servo without a
+    /// target does not turn, because its gears hold it.
+    pub fn drive(&mut self, targets: [Option<f64>; 4], seconds: f64, motors: &Motors) -> Slip {
+        let mut slip = Slip::NONE;
+        let steps = (seconds / motors.step() - EVEN).ceil().max(1.0);
+        for _ in 0..steps as usize {
+            let (pads, displacement) = self.driven(targets, seconds / steps, motors);
+            self.place = self.place.moved(displacement.twist);
+            slip.add(&pads, &displacement);
+        }
+        slip
+    }
+
+    /// Finds the displacement in a short step of time, and turns servos and legs.
+    fn driven(
+        &mut self,
+        targets: [Option<f64>; 4],
+        seconds: f64,
+        motors: &Motors,
+    ) -> (Pads, Displacement) {
+        let (grip, joints) = (self.ground.grip(), &motors.joints);
+        let (servos, rates) = (self.servos, self.rates.map(f64::to_radians));
+        let slider = joints.torques(servos, rates, motors.fade_speed(seconds));
+        let motor_steps: [Option<MotorStep>; 4] = std::array::from_fn(|i| {
+            let turn = ServoState {
+                target: targets[i]?.to_radians(),
+                servo: servos[i].to_radians(),
+                rate: rates[i],
+            };
+            let friction = [joints.drag, slider[i]];
+            Some(MotorStep::new(
+                &motors.each[i],
+                turn,
+                seconds,
+                friction,
+                grip,
+            ))
+        });
+        // The servos at an unchanged rate, and the legs with them.
+        let reference: [f64; 4] = std::array::from_fn(|i| match targets[i] {
+            Some(_) => servos[i] + self.rates[i] * seconds,
+            None => servos[i],
+        });
+        let from = self.ground.feet.at(self.legs());
+        // With its load a motor gets nearly as far as without it.
+        let near = std::array::from_fn(|i| {
+            self.lag[i].to_radians()
+                + motor_steps[i].map_or(0.0, |motor_step| motor_step.unloaded_end())
+        });
+        let pads = Pads {
+            body: Some(self.inertia(seconds)),
+            ..self.pads(from, reference, near, motor_steps)
+        };
+        let displacement = pads.least();
+        for (i, behind) in displacement.lag.into_iter().enumerate() {
+            let servo = pads.compliance.map_or(0.0, |compliance| {
+                compliance.lag_energy[i].servo(behind, ROUNDED)
+            });
+            self.servos[i] = reference[i] - servo.to_degrees();
+            self.rates[i] = (self.servos[i] - servos[i]) / seconds;
+            self.lag[i] = (behind - servo).to_degrees();
+        }
+        self.speed = displacement.twist.map(|part| part / seconds);
+        (pads, displacement)
+    }
+
+    /// The inertia of the body in a step of time: as if its mass stood at the hips.
+    fn inertia(&self, seconds: f64) -> Inertia {
+        const KG_PER_G: f64 = 1e-3;
+        const M_PER_MM: f64 = 1e-3;
+        let Feet {
+            hip_forward,
+            hip_side: [front, hind],
+            ..
+        } = self.ground.feet;
+        let mass = self.ground.body.mass * KG_PER_G * M_PER_MM;
+        let stiffness = mass / (seconds * seconds * self.ground.grip());
+        let square = hip_forward * hip_forward + (front * front + hind * hind) / 2.0;
+        Inertia {
+            stiffness: [stiffness, stiffness, stiffness * square],
+            before: self.speed.map(|part| part * seconds),
+        }
+    }
+
     /// Moves the servos to these sweeps, deg.
     pub fn step(&mut self, sweeps: [f64; 4]) -> Slip {
-        let mut slip = Slip {
-            feet: [0.0; 4],
-            loads: [1.0; 4],
-        };
-        self.parts(sweeps, |pads, displacement| {
-            slip.loads = pads.load;
-            for (sum, [x, y]) in slip.feet.iter_mut().zip(pads.slides(displacement)) {
-                *sum += x.hypot(y);
-            }
-        });
+        let mut slip = Slip::NONE;
+        self.parts(sweeps, |pads, displacement| slip.add(pads, displacement));
         slip
     }
 
     /// Moves the servos to these sweeps in small steps and calls `visit` after each.
     pub(crate) fn parts(&mut self, sweeps: [f64; 4], mut visit: impl FnMut(&Pads, &Displacement)) {
         let here = self.servos;
+        (self.rates, self.speed) = ([0.0; 4], [0.0; 3]);
         let furthest = (0..4).fold(0.0f64, |most, i| most.max((sweeps[i] - here[i]).abs()));
         let parts = (furthest / PART).ceil().max(1.0) as usize;
         for part in 1..=parts {
@@ -130,10 +239,9 @@ impl Walker {
 
     /// Finds the displacement of a small step of the servos to these sweeps.
     fn part(&self, servos: [f64; 4]) -> (Pads, Displacement) {
-        let feet = &self.ground.feet;
-        let from = feet.at(self.legs());
+        let from = self.ground.feet.at(self.legs());
         let mut lag = self.lag.map(f64::to_radians);
-        let mut pads = self.pads(feet, from, servos, lag);
+        let mut pads = self.pads(from, servos, lag, [None; 4]);
         let mut displacement = pads.least();
         for _ in 1..ROUNDS {
             let off = (0..4).fold(0.0f64, |off, i| {
@@ -143,15 +251,22 @@ impl Walker {
                 break;
             }
             lag = displacement.lag;
-            pads = self.pads(feet, from, servos, lag);
-            displacement = pads.least_from(Some(&displacement));
+            pads = self.pads(from, servos, lag, [None; 4]);
+            displacement = pads.least_near(Some(&displacement));
         }
         (pads, displacement)
     }
 
     /// Sets up the pads of a small step, after which the legs lag about `lag` rad behind their
     /// servos.
-    fn pads(&self, feet: &Feet, from: [Point; 4], servos: [f64; 4], lag: [f64; 4]) -> Pads {
+    fn pads(
+        &self,
+        from: [Point; 4],
+        servos: [f64; 4],
+        lag: [f64; 4],
+        motors: [Option<MotorStep>; 4],
+    ) -> Pads {
+        let feet = &self.ground.feet;
         let ends: [f64; 4] = std::array::from_fn(|i| servos[i] - lag[i].to_degrees());
         let to = feet.at(ends);
         let along = feet.along(ends);
@@ -168,10 +283,14 @@ impl Walker {
             swing: each(&|i, j| to[i][j] - from[i][j] + (lag[i] - before[i]) * along[i][j]),
             ratio: self.ground.ratio * ratio,
             load: std::array::from_fn(|i| loads[i] * load[i]),
-            give: drive.lags().then(|| Give {
+            body: None,
+            compliance: (drive.lags() || motors.iter().any(Option::is_some)).then(|| Compliance {
                 along,
                 before,
-                yields: std::array::from_fn(|i| drive.of_leg(i, servos[i], grip, most)),
+                lag_energy: std::array::from_fn(|i| LagEnergy {
+                    motor: motors[i],
+                    ..drive.of_leg(i, servos[i], grip, most)
+                }),
             }),
         }
     }

@@ -6,6 +6,7 @@
 //! of its own. So a test fails if the code uses one part's number for another part.
 
 pub mod bounds;
+mod end;
 mod measures;
 
 use core::mem::offset_of;
@@ -13,30 +14,29 @@ use core::ops::Deref;
 use std::string::ToString;
 use std::vec::Vec;
 
-use lizard_avr::{Flash, Region};
+use lizard_avr::Region;
 use lizard_kinematics as kinematics;
 use proptest::prelude::*;
 
 use crate::control::safety::Health;
 use crate::control::supply::Reading;
 use crate::guard::clearance::Clearance;
-use crate::guard::five_bar::FiveBar;
-use crate::numbers::bars;
 use crate::numbers::calibration::Reach;
 use crate::numbers::checksum::Checksum;
-use crate::numbers::couplers::{self, Couplers, Coupling};
-use crate::numbers::curve::Table;
-use crate::numbers::gaits::{Channel, Gait, GaitId, SAMPLES, Wave};
+use crate::numbers::gaits::{Channel, Gait, GaitId, Input, SAMPLES, Step, Wave};
 use crate::numbers::limits::Limits;
 use crate::numbers::pose::Pose;
 use crate::numbers::robot::Robot;
-use crate::numbers::section::{self, Content, Header, Map};
+use crate::numbers::section::{Content, Header, Map};
 use crate::numbers::slew::Slew;
 use crate::numbers::slider::{self, Slider};
 use crate::numbers::supplies::{Supplies, Thresholds};
 use crate::numbers::units::{Angle, Scale, Sine, Sweep};
 
+pub use end::{Bars, Loop, per_mm};
 pub use measures::Measures;
+
+use end::steps;
 
 /// Steps of an angle in a degree.
 pub const STEPS_PER_DEGREE: f64 = 65536.0 / 360.0;
@@ -97,94 +97,6 @@ impl Deref for Sample {
     }
 }
 
-/// The bars of one end, with every table that they need.
-#[derive(Clone, Debug)]
-pub struct Loop {
-    /// Half the sum of base and cranks is the farthest that crank tips part.
-    pub bars: [i16; 3],
-    pub scale: Scale,
-    pub couplers: Bars,
-}
-
-/// Two couplers and their tables.
-#[derive(Clone, Debug)]
-pub struct Bars {
-    pub left: i16,
-    pub right: i16,
-    rise: Table,
-    stretched: Table,
-    folded: Option<Table>,
-    skew: Option<Table>,
-}
-
-impl Bars {
-    pub fn new(left: i16, right: i16) -> Self {
-        let unequal = left != right;
-        Self {
-            left,
-            right,
-            rise: couplers::rise(left, right),
-            stretched: couplers::stretched(left, right),
-            folded: Couplers::differ_much(left, right).then(|| couplers::folded(left, right)),
-            skew: unequal.then(|| couplers::skew(left, right)),
-        }
-    }
-
-    pub fn couplers(&self) -> Couplers<'_> {
-        Couplers::new(Coupling::new(self.left, self.right), self.tables())
-    }
-
-    fn tables(&self) -> couplers::Tables<'_> {
-        couplers::Tables {
-            rise: Some(Flash::from(&self.rise)),
-            stretched: Some(Flash::from(&self.stretched)),
-            folded: self.folded.as_ref().map(Flash::from),
-            skew: self.skew.as_ref().map(Flash::from),
-        }
-    }
-}
-
-impl Loop {
-    /// Bars in mm, in the finest step that holds them; none if a coupler is too
-    /// short compared with the rest.
-    pub fn new(bars: &kinematics::FiveBar) -> Option<Self> {
-        let [base, left, right] = [bars.base, bars.crank_left, bars.crank_right];
-        let couplers = [bars.coupler_left, bars.coupler_right];
-        let longest = couplers.iter().copied().fold(base + left + right, f64::max);
-        let scale = (0..=14)
-            .rev()
-            .map(|bits| Scale { bits })
-            .find(|scale| longest * per_mm(*scale) < bars::LONGEST)?;
-        let [a, b] = couplers.map(|mm| steps(mm, scale) as i16);
-        if a.min(b) < bars::SHORTEST_COUPLER {
-            return None;
-        }
-        Some(Self {
-            bars: [base, left, right].map(|mm| steps(mm, scale) as i16),
-            scale,
-            couplers: Bars::new(a, b),
-        })
-    }
-
-    /// The loop in the form that a section has.
-    fn content(&self) -> section::Loop {
-        let [base, left, right] = self.bars;
-        section::Loop {
-            scale: self.scale,
-            base,
-            cranks: [left, right],
-            couplers: [self.couplers.left, self.couplers.right],
-            near_stretched: true,
-        }
-    }
-
-    pub fn five_bar(&self) -> FiveBar<'_> {
-        let Bars { left, right, .. } = self.couplers;
-        let bars = bars::Bars::new(self.bars, [left, right], self.scale);
-        FiveBar::new(bars, self.couplers.tables())
-    }
-}
-
 impl Sample {
     pub fn new(measures: Measures) -> Self {
         let Measures {
@@ -218,6 +130,7 @@ impl Sample {
             neutral: servos.map(|servo| Angle((servo.neutral * STEPS_PER_DEGREE).round() as u16)),
             calibration: servos.map(|servo| servo.calibration()),
             gaits,
+            steps: Vec::new(),
             names,
             waves: waves(),
             reach: core::array::from_fn(|servo| {
@@ -279,14 +192,42 @@ impl Sample {
         Robot::unchecked(Region::new(Vec::leak(section))).expect("a whole section")
     }
 
-    /// With one more gait that stands still, of this name.
+    /// Adds a gait of this name that stands still.
     pub fn with_gait(self, name: &str) -> Self {
         self.with(|content| {
             content.gaits.push(Gait {
                 name_start: content.names.len() as u16,
                 name_length: name.len() as u16,
+                increment: 100_000,
                 ..Gait::STILL
             });
+            content.names.extend(name.bytes());
+        })
+    }
+
+    /// The sample with a routine that repeats its steps, each a kind, a gait or an input, and a
+    /// count; 0 rounds do not end.
+    pub fn with_routine(self, name: &str, rounds: u16, steps: &[(u8, &str, u16)]) -> Self {
+        let steps: Vec<Step> = steps
+            .iter()
+            .map(|(kind, gait, count)| Step {
+                kind: *kind,
+                gait: match *gait {
+                    "button" => BUTTON.byte(),
+                    "nose" => NOSE.byte(),
+                    gait => self.id(gait).index() as u8,
+                },
+                count: *count,
+            })
+            .collect();
+        self.with(|content| {
+            let (first, count) = (content.steps.len() as u16, steps.len() as u16);
+            content.gaits.push(Gait {
+                name_start: content.names.len() as u16,
+                name_length: name.len() as u16,
+                ..Gait::routine(first, count, rounds)
+            });
+            content.steps.extend(steps);
             content.names.extend(name.bytes());
         })
     }
@@ -334,15 +275,6 @@ pub fn sine(sine: Sine) -> f64 {
     f64::from(sine.0) / 32768.0
 }
 
-/// Steps in a millimetre.
-pub fn per_mm(scale: Scale) -> f64 {
-    f64::from(1u32 << scale.bits)
-}
-
-fn steps(mm: f64, scale: Scale) -> i32 {
-    (mm * per_mm(scale)).round() as i32
-}
-
 /// A side in the finest step that holds it, its stroke rounded inwards.
 pub fn side_of(side: &kinematics::Slider, stroke_min: f64, stroke_max: f64) -> Slider {
     let all = side.base + side.front + side.rear + side.offset.abs();
@@ -374,7 +306,12 @@ pub const WELL: Health = Health {
     },
     late: 0,
     stack_is_intact: true,
+    is_closed: false,
 };
+
+/// The inputs of routines.
+pub const BUTTON: Input = Input::button(15);
+pub const NOSE: Input = Input::nose(16);
 
 /// A sine, a slow rise with a quick fall, and a hump, as large as a gain asks.
 fn waves() -> Vec<Wave> {

@@ -5,8 +5,8 @@
 //! while it writes its memory (3.4 ms a byte), or while an answer waits for room in the
 //! serial line; so it never waits for a listener. It computes one frame for a tick. If it
 //! is too late for a tick, it leaves that tick out: several frames at once would be
-//! played as one, and the servos would leap. So it does while a frame that it was late
-//! with still waits to be played.
+//! played as one, and the servos would leap. It also leaves a tick out while a late frame
+//! still waits to be played.
 
 use lizard_avr::Region;
 
@@ -19,6 +19,7 @@ use crate::control::supply::Reading;
 use crate::memory::record::Memory;
 use crate::memory::restart::{Restart, Stance};
 use crate::numbers::pose::Pulses;
+use crate::numbers::rate::Rate;
 use crate::numbers::units::CYCLES_PER_US;
 
 /// The hardware that the main loop needs.
@@ -59,7 +60,7 @@ pub trait Board {
 
     /// Stores the servos' state and the consecutive resets that a weak supply may have
     /// caused, where they survive a reset of the processor.
-    fn keep(&mut self, stance: &Stance, brown_outs: u8);
+    fn store_stance(&mut self, stance: &Stance, brown_outs: u8);
 
     /// The cause of the last reset, and the state from before it.
     fn restart(&self) -> &Restart;
@@ -69,6 +70,10 @@ pub trait Board {
 
     /// True while the stack has not grown into the data.
     fn stack_is_intact(&self) -> bool;
+
+    /// True while the contact between this pin, by its Arduino number, and ground is closed.
+    /// Switches the pin's pull-up on.
+    fn is_closed(&mut self, pin: u8) -> bool;
 
     /// The memory that keeps its bytes without power.
     fn memory(&mut self) -> &mut Self::Memory;
@@ -85,6 +90,9 @@ pub trait Board {
     /// The next byte received, if any; [`crate::console::line::GARBLED`] for one that came
     /// garbled.
     fn receive(&mut self) -> Option<u8>;
+
+    /// Changes the rate of the serial line, and stores it where it survives a reset.
+    fn set_rate(&mut self, rate: Rate);
 
     /// Faults counted so far.
     fn counters(&self) -> Counters;
@@ -137,6 +145,7 @@ impl Main {
         }
         let restart = *board.restart();
         self.control.begin(flash, board.memory(), &restart);
+        self.console.begin(restart.rate);
         let robot = self.control.motion().robot();
         if !robot.is_none() {
             board.connect(robot.pins(), robot.rail_pin());
@@ -169,11 +178,17 @@ impl Main {
                 supply: board.supply(),
                 late: board.counters().late,
                 stack_is_intact: board.stack_is_intact(),
+                is_closed: match self.control.input().pin() {
+                    0 => false,
+                    pin => board.is_closed(pin),
+                },
             };
             board.submit(self.control.frame(&health));
-            self.keep(board);
+            self.store_stance(board);
             board.set_led(self.control.is_lit());
-            self.console.frame();
+            if let Some(rate) = self.console.frame() {
+                board.set_rate(rate);
+            }
         } else if self.console.has_output(&self.control) {
             if board.room() < LONGEST_LINE {
                 return Step::Idle(self.ticks);
@@ -192,7 +207,7 @@ impl Main {
             self.console.receive(byte, &mut self.control);
             // Before the answer: a reset may come right after it.
             if self.control.motion().is_resting() != rested {
-                self.keep(board);
+                self.store_stance(board);
             }
         } else {
             return Step::Idle(self.ticks);
@@ -200,8 +215,8 @@ impl Main {
         Step::Worked
     }
 
-    fn keep<B: Board>(&self, board: &mut B) {
-        board.keep(self.control.motion().stance(), self.control.brown_outs());
+    fn store_stance<B: Board>(&self, board: &mut B) {
+        board.store_stance(self.control.motion().stance(), self.control.brown_outs());
     }
 }
 
@@ -210,6 +225,8 @@ mod tests {
     use std::vec::Vec;
 
     use super::*;
+    use crate::console::line::GARBLED;
+    use crate::memory::restart::Cause;
     use crate::motion::Activity;
     use crate::motion::Motion;
     use crate::sample::Sample;
@@ -238,20 +255,20 @@ mod tests {
         running.board.tick();
         assert!(works(&mut running));
         assert!(running.board.is_fresh());
-        assert_eq!((written(&running), running.board.waiting()), (0, 9));
+        assert_eq!((written(&running), running.board.unread()), (0, 9));
         assert!(works(&mut running));
         assert!(running.board.transmitter.text.starts_with("# lizard "));
         assert_eq!(written(&running), 1, "one line at a time");
         while written(&running) < 2 || running.main.control().is_writing() {
             assert!(works(&mut running));
         }
-        assert_eq!(running.board.waiting(), 9);
+        assert_eq!(running.board.unread(), 9);
         running.board.tick();
         assert!(works(&mut running));
         assert_eq!(running.motion().frames(), 2);
-        assert_eq!(running.board.waiting(), 9);
+        assert_eq!(running.board.unread(), 9);
         assert!(works(&mut running));
-        assert_eq!(running.board.waiting(), 8, "one byte at a time");
+        assert_eq!(running.board.unread(), 8, "one byte at a time");
     }
 
     #[test]
@@ -261,11 +278,11 @@ mod tests {
         let full = 255 - u64::from(LONGEST_LINE) + 1;
         running.board.transmitter.fill(full);
         assert_eq!(running.main.step(&mut running.board), Step::Idle(0));
-        assert_eq!((written(&running), running.board.waiting()), (0, 9));
+        assert_eq!((written(&running), running.board.unread()), (0, 9));
         running.board.tick();
         assert!(works(&mut running));
         assert_eq!(running.main.step(&mut running.board), Step::Idle(1));
-        assert_eq!((written(&running), running.board.waiting()), (0, 9));
+        assert_eq!((written(&running), running.board.unread()), (0, 9));
         running.board.transmitter = Transmitter::default();
         running.settle();
         let text = &running.board.transmitter.text;
@@ -293,24 +310,27 @@ mod tests {
             let mut running = begun(0, "");
             running.run(100);
             // Main is late for a tick: its frame waits until after the next one.
-            running.board.pass(1 + 5);
+            running.board.pass_time(1 + 5);
             running.settle();
             let late = running.board.submitted();
             if rests {
                 running.board.send(b"rest\r");
                 running.settle();
             }
-            running.board.pass(15);
+            running.board.pass_time(15);
             running.settle();
             assert_eq!(running.motion().frames(), 101 + u32::from(rests));
-            assert!(running.board.unfed() >= 15, "nor is the watchdog fed");
-            running.board.pass(19);
+            assert!(
+                running.board.ms_since_fed() >= 15,
+                "nor is the watchdog fed"
+            );
+            running.board.pass_time(19);
             let played = if rests { Pulses::default() } else { late };
-            assert_eq!(running.board.begun(), played);
-            running.board.pass(1);
+            assert_eq!(running.board.started_pulses(), played);
+            running.board.pass_time(1);
             running.settle();
             assert_eq!(running.motion().frames(), 102 + u32::from(rests));
-            assert_eq!(running.board.unfed(), 0);
+            assert_eq!(running.board.ms_since_fed(), 0);
         }
     }
 
@@ -322,7 +342,7 @@ mod tests {
             running.frame();
             assert_eq!(running.board.submitted(), alone.tick());
         }
-        running.board.lose(34);
+        running.board.count_lost(34);
         let status = running.say("status");
         assert!(status.contains(" frames=30 late=0 rx_lost=34 "), "{status}");
     }
@@ -360,11 +380,11 @@ mod tests {
     }
 
     #[test]
-    fn what_the_servos_do_is_kept_with_every_frame_also_that_they_rest() {
+    fn the_servos_state_is_kept_in_every_frame_even_at_rest() {
         let mut running = begun(0, "sway\r");
         for _ in 0..100 {
             let pulses = running.frame();
-            let kept = running.board.kept().expect("a stance");
+            let kept = running.board.stored_stance().expect("a stance");
             assert!(!kept.resting);
             assert_eq!(kept.pose, *running.motion().pose());
             for (sent, pulse) in kept.sent.0.iter().zip(pulses.0) {
@@ -373,7 +393,7 @@ mod tests {
         }
         running.say("rest");
         running.frame();
-        let kept = running.board.kept().expect("a stance");
+        let kept = running.board.stored_stance().expect("a stance");
         assert!(kept.resting);
         assert_eq!(kept.pose, *running.motion().pose());
     }
@@ -402,22 +422,48 @@ mod tests {
     }
 
     #[test]
+    fn of_a_line_that_began_at_another_rate_the_end_is_not_obeyed_and_the_next_line_is() {
+        let mut running = Running::power_on(*Sample::odd());
+        running.run(10);
+        running
+            .board
+            .send(&[GARBLED, 0x80, GARBLED, GARBLED, b'\n']);
+        running.board.send(b"bo");
+        assert_eq!(running.board.rate, Rate::Fastest);
+        running.run(3);
+        assert_eq!(running.board.rate, Rate::Half, "after a pause");
+        let text = running.say("rest");
+        assert_eq!(text, "err 1 the line came garbled, send it again");
+        assert!(!running.motion().is_resting());
+        assert_eq!(running.say("rest"), "ok rest");
+        for (cause, rate) in [
+            (Cause::Watchdog, Rate::Half),
+            (Cause::External, Rate::Fastest),
+        ] {
+            running.reset(cause);
+            assert_eq!(running.board.rate, rate, "{cause:?}");
+        }
+    }
+
+    #[test]
     fn a_late_edge_and_a_stack_in_the_data_reach_the_robot() {
         let mut running = begun(0, "");
         running.run(1);
         running.board.late = 1;
-        let said = running.run(1);
+        let printed = running.run(1);
         assert!(
-            said.iter()
+            printed
+                .iter()
                 .any(|line| line.starts_with("# fault: a pulse came late")),
-            "{said:?}"
+            "{printed:?}"
         );
         running.board.stack_is_intact = false;
-        let said = running.run(1);
+        let printed = running.run(1);
         assert!(
-            said.iter()
+            printed
+                .iter()
                 .any(|line| line.starts_with("# fault: the stack")),
-            "{said:?}"
+            "{printed:?}"
         );
     }
 }

@@ -6,7 +6,7 @@
 //! test the loop that the UNO repeats, and not a similar one. [`Running`] combines the
 //! two, and its methods read like sentences.
 //!
-//! Time is a call, [`VirtualBoard::pass`], by the millisecond. What a frame of 20 ms
+//! Time is a call, [`VirtualBoard::pass_time`], by the millisecond. What a frame of 20 ms
 //! is made of:
 //!
 //! | ms | what |
@@ -31,6 +31,7 @@ use crate::console::answer::Counters;
 use crate::control::supply::Reading;
 use crate::memory::restart::{Cause, Restart, Stance};
 use crate::numbers::pose::Pulses;
+use crate::numbers::rate::Rate;
 use crate::numbers::units::{CYCLES_PER_US, Width};
 use crate::step::Board;
 
@@ -75,6 +76,10 @@ pub struct VirtualBoard {
     pub late: u16,
     /// True while the stack has not grown into the data.
     pub stack_is_intact: bool,
+    /// The pins whose contacts are closed, a bit for each Arduino number.
+    pub closed: u32,
+    /// The pins whose pull-ups are on.
+    pub pulled_up: u32,
     /// The serial line's other direction.
     pub transmitter: Transmitter,
     /// The memory that keeps its bytes without power.
@@ -86,6 +91,8 @@ pub struct VirtualBoard {
     /// True if a boot loader hides the chip's cause of a reset.
     pub boot_loader: bool,
     restart: Restart,
+    /// The rate of the serial line.
+    pub rate: Rate,
     /// Milliseconds since the watchdog was fed.
     unfed: u16,
     hushed: bool,
@@ -115,12 +122,15 @@ impl VirtualBoard {
             lost: 0,
             late: 0,
             stack_is_intact: true,
+            closed: 0,
+            pulled_up: 0,
             transmitter: Transmitter::default(),
             memory,
             converter: Converter::default(),
             ram: Ram::default(),
             boot_loader: false,
             restart: Restart::NONE,
+            rate: Rate::Fastest,
             unfed: 0,
             hushed: false,
             connected: None,
@@ -131,9 +141,14 @@ impl VirtualBoard {
     #[must_use]
     pub fn restarted(self, restart: Restart) -> Self {
         if let Some(stance) = &restart.before {
-            self.ram.keep(stance, restart.brown_outs);
+            self.ram.store_stance(stance, restart.brown_outs);
         }
-        Self { restart, ..self }
+        let rate = restart.rate;
+        Self {
+            restart,
+            rate,
+            ..self
+        }
     }
 
     /// The same board at this tick.
@@ -144,7 +159,7 @@ impl VirtualBoard {
 
     /// Lets time pass, at most until the watchdog resets the processor, since main does not
     /// feed it. Returns true in that case; then [`VirtualBoard::reset`] has to follow.
-    pub fn pass(&mut self, ms: u16) -> bool {
+    pub fn pass_time(&mut self, ms: u16) -> bool {
         for _ in 0..ms {
             self.unfed = self.unfed.saturating_add(1);
             if self.unfed == WATCHDOG_MS {
@@ -160,8 +175,8 @@ impl VirtualBoard {
     }
 
     fn millisecond(&mut self) {
-        self.transmitter.pass(1);
-        self.memory.pass();
+        self.transmitter.pass_time(1);
+        self.memory.pass_time();
         self.ms += 1;
         if self.ms == FRAME_MS {
             self.ms = 0;
@@ -204,12 +219,13 @@ impl VirtualBoard {
         let reported = (!self.boot_loader).then_some(cause);
         let ram = core::mem::take(&mut self.ram);
         let mut memory = core::mem::take(&mut self.memory);
-        // Whoever starts the program takes longer than that.
+        // A start takes longer than a write of the memory.
         memory.settle();
         *self = Self {
             transmitter: core::mem::take(&mut self.transmitter).reset(),
             converter: core::mem::take(&mut self.converter).reset(),
             boot_loader: self.boot_loader,
+            closed: self.closed,
             restart: ram.begin(reported),
             ram,
             ..Self::new(memory)
@@ -218,13 +234,14 @@ impl VirtualBoard {
             self.ram = Ram::default();
             self.restart = Restart::NONE;
         }
+        self.rate = self.restart.rate;
     }
 
     /// Turns the power off and on. A byte that was being written to the memory gets the value
     /// `torn`, since it may hold anything.
     pub fn lose_power(&mut self, torn: Option<u8>) {
         if let Some(byte) = torn {
-            self.memory.tear(byte);
+            self.memory.cut_power(byte);
         }
         self.reset(Cause::Power);
     }
@@ -242,12 +259,12 @@ impl VirtualBoard {
 
     /// The number of bytes that main has not read yet.
     #[must_use]
-    pub fn waiting(&self) -> usize {
+    pub fn unread(&self) -> usize {
         self.received.len()
     }
 
-    /// Counts so many bytes as lost.
-    pub const fn lose(&mut self, bytes: u16) {
+    /// Counts this many bytes as lost.
+    pub const fn count_lost(&mut self, bytes: u16) {
         self.lost = self.lost.saturating_add(bytes);
     }
 
@@ -265,7 +282,7 @@ impl VirtualBoard {
 
     /// The pulses that have begun since the last hand-over.
     #[must_use]
-    pub const fn begun(&self) -> Pulses {
+    pub const fn started_pulses(&self) -> Pulses {
         self.begun
     }
 
@@ -277,13 +294,13 @@ impl VirtualBoard {
 
     /// Milliseconds since the watchdog was fed.
     #[must_use]
-    pub const fn unfed(&self) -> u16 {
+    pub const fn ms_since_fed(&self) -> u16 {
         self.unfed
     }
 
     /// The servos' state that would survive a reset.
     #[must_use]
-    pub fn kept(&self) -> Option<Stance> {
+    pub fn stored_stance(&self) -> Option<Stance> {
         self.ram.found(None).before
     }
 
@@ -322,8 +339,8 @@ impl Board for VirtualBoard {
         self.unfed = 0;
     }
 
-    fn keep(&mut self, stance: &Stance, brown_outs: u8) {
-        self.ram.keep(stance, brown_outs);
+    fn store_stance(&mut self, stance: &Stance, brown_outs: u8) {
+        self.ram.store_stance(stance, brown_outs);
     }
 
     fn restart(&self) -> &Restart {
@@ -336,6 +353,11 @@ impl Board for VirtualBoard {
 
     fn stack_is_intact(&self) -> bool {
         self.stack_is_intact
+    }
+
+    fn is_closed(&mut self, pin: u8) -> bool {
+        self.pulled_up |= 1 << pin;
+        self.closed & 1 << pin != 0
     }
 
     fn memory(&mut self) -> &mut Eeprom {
@@ -356,6 +378,11 @@ impl Board for VirtualBoard {
 
     fn receive(&mut self) -> Option<u8> {
         self.received.pop_front()
+    }
+
+    fn set_rate(&mut self, rate: Rate) {
+        self.rate = rate;
+        self.ram.store_rate(rate);
     }
 
     fn counters(&self) -> Counters {

@@ -21,7 +21,7 @@ pub use shared::robot_file::RobotFile;
 #[cfg(feature = "paper")]
 pub use change::prove;
 #[cfg(feature = "console")]
-pub use drive::flash;
+pub use drive::{console::session, flash};
 pub use make::draw;
 #[cfg(feature = "paper")]
 pub use paper::errata;

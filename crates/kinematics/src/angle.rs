@@ -2,7 +2,7 @@
 //!
 //! Reducing degrees by multiples of 90 is exact, reducing radians is not: so sin 180 is 0
 //! here, and an angle and the same angle a turn later have the same sine, bit for bit
-//! (but for the last bit exactly on a diagonal, where either octant may answer). No
+//! (except for the last bit exactly on a diagonal, where either octant may answer). No
 //! function branches on its argument, so they are several times faster than the general
 //! functions of a mathematics library. Only IEEE additions, multiplications, divisions
 //! and comparisons are used, never fused: the same bits on every host.
@@ -70,14 +70,14 @@ fn horner<const N: usize>(coefficients: &[f64; N], x: f64) -> f64 {
     sum
 }
 
-/// `yes` if the mask is all ones, `no` if it is zero. A comparison of random
+/// Returns `yes` if the mask is all ones, `no` if it is zero. A comparison of random
 /// numbers that became a branch would be mispredicted half the time.
 #[inline(always)]
 fn choose(mask: u64, yes: f64, no: f64) -> f64 {
     f64::from_bits(no.to_bits() ^ ((yes.to_bits() ^ no.to_bits()) & mask))
 }
 
-/// All ones if true.
+/// A mask of all ones if the condition is true.
 #[inline(always)]
 fn mask(condition: bool) -> u64 {
     u64::from(condition).wrapping_neg()
@@ -271,7 +271,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_stays_none() {
+    fn nan_and_infinity_give_nan() {
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             assert!(sin_cos(bad).0.is_nan() && sin_cos(bad).1.is_nan());
         }

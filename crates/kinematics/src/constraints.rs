@@ -76,14 +76,14 @@ impl Solution {
             let ([left, right], pose) = (end.servos(), self.end(end));
             let bars = &pose.bars;
             let crank = end.mirror(pose.left) * bars.crank_left;
-            put(&mut k, row, left, crank.left());
+            put_entry(&mut k, row, left, crank.left());
             let crank = end.mirror(pose.right) * bars.crank_right;
-            put(&mut k, row, right, -crank.left());
+            put_entry(&mut k, row, right, -crank.left());
         }
         for (row, side) in ROWS.into_iter().skip(2).zip(Side::ALL) {
             let ([front, rear], pose) = (side.servos(), self.side(side));
-            put(&mut k, row, front, pose.front_arm().left());
-            put(&mut k, row, rear, -pose.rear_tip.left());
+            put_entry(&mut k, row, front, pose.front_arm().left());
+            put_entry(&mut k, row, rear, -pose.rear_tip.left());
         }
         k
     }
@@ -94,13 +94,13 @@ impl Solution {
         let mut k = [[0.0; 8]; 8];
         for (at, end) in ROWS.into_iter().zip(End::ALL) {
             let ([left, right], bars) = (self.couplers(end), &self.end(end).bars);
-            put(&mut k, at, at, (left * bars.coupler_left).left());
-            put(&mut k, at, at + 1, -(right * bars.coupler_right).left());
+            put_entry(&mut k, at, at, (left * bars.coupler_left).left());
+            put_entry(&mut k, at, at + 1, -(right * bars.coupler_right).left());
         }
         for (at, side) in ROWS.into_iter().skip(2).zip(Side::ALL) {
             let slider = self.side(side);
-            put(&mut k, at, at, -slider.span.left());
-            put(&mut k, at, at + 1, slider.span * (-1.0 / slider.d));
+            put_entry(&mut k, at, at, -slider.span.left());
+            put_entry(&mut k, at, at + 1, slider.span * (-1.0 / slider.d));
         }
         k
     }
@@ -136,7 +136,7 @@ impl Lizard {
             (passive.phi_right, passive.s_right),
         ];
         let mut residual = [0.0; 8];
-        let mut put = |row: usize, gap: Vector| {
+        let mut put_gap = |row: usize, gap: Vector| {
             (residual[row], residual[row + 1]) = (gap.x, gap.y);
         };
         for ((row, end), theta) in ROWS.into_iter().zip(End::ALL).zip(couplers) {
@@ -147,7 +147,7 @@ impl Lizard {
                 - (shafts[right]
                     + cis(active[right]) * bars.crank_right
                     + cis(theta[1]) * bars.coupler_right);
-            put(row, gap);
+            put_gap(row, gap);
         }
         for ((row, side), (phi, s)) in ROWS.into_iter().skip(2).zip(Side::ALL).zip(sliders) {
             let ([front, rear], slider) = (side.servos(), self.side(side));
@@ -155,7 +155,7 @@ impl Lizard {
             let gap = shafts[front] + cis(active[front] + right_angle) * slider.front
                 - (shafts[rear] + cis(active[rear] - right_angle) * slider.rear)
                 - cis(phi) * (slider.nominal + s);
-            put(row, gap);
+            put_gap(row, gap);
         }
         residual
     }
@@ -166,7 +166,7 @@ impl Lizard {
 const ROWS: [usize; 4] = [0, 2, 4, 6];
 
 /// A column pair: the x and y rows of one loop.
-fn put<const N: usize>(matrix: &mut [[f64; N]; 8], row: usize, column: usize, entry: Vector) {
+fn put_entry<const N: usize>(matrix: &mut [[f64; N]; 8], row: usize, column: usize, entry: Vector) {
     matrix[row][column] = entry.x;
     matrix[row + 1][column] = entry.y;
 }
@@ -232,7 +232,7 @@ mod tests {
         }
     }
 
-    /// By Gauss with pivoting.
+    /// The determinant by Gaussian elimination with pivoting.
     fn determinant(mut m: [[f64; 8]; 8]) -> f64 {
         let mut product = 1.0;
         for i in 0..8 {

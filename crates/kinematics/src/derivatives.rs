@@ -146,13 +146,13 @@ fn loop_derivatives(pose: &FiveBarPose, crank_left: Spin, crank_right: Spin) -> 
         right: Spin::new(w3, e3),
         point: Derivative {
             rate: r1.left() * w1 + r2.left() * w2,
-            acceleration: turning(r1, crank_left) + r2.left() * e2 - r2 * (w2 * w2),
+            acceleration: end_acceleration(r1, crank_left) + r2.left() * e2 - r2 * (w2 * w2),
         },
     }
 }
 
 /// Acceleration of the end of a turning link.
-fn turning(link: Vector, spin: Spin) -> Vector {
+fn end_acceleration(link: Vector, spin: Spin) -> Vector {
     link.left() * spin.acceleration - link * (spin.rate * spin.rate)
 }
 
@@ -164,7 +164,7 @@ fn slider_derivatives(
 ) -> (Spin, Derivative<f64>) {
     let along = pose.span * (1.0 / pose.d);
     let v = front.left() * front_spin.rate - rear.left() * rear_spin.rate;
-    let a = turning(front, front_spin) - turning(rear, rear_spin);
+    let a = end_acceleration(front, front_spin) - end_acceleration(rear, rear_spin);
     let (slide, turn) = (v.dot(along), along.cross(v) / pose.d);
     (
         Spin::new(turn, (along.cross(a) - 2.0 * slide * turn) / pose.d),
@@ -226,7 +226,7 @@ mod tests {
     }
 
     /// The robot `t` seconds later, under constant servo accelerations.
-    fn later(robot: &Lizard, pose: [f64; 4], drive: &Drive, t: f64) -> Option<Solution> {
+    fn solve_after(robot: &Lizard, pose: [f64; 4], drive: &Drive, t: f64) -> Option<Solution> {
         let mut there = pose;
         for (i, angle) in there.iter_mut().enumerate() {
             *angle += drive.rate[i] * t + drive.acceleration[i] * t * t / 2.0;
@@ -255,7 +255,7 @@ mod tests {
             let (fast, hard) = (largest(&rates), largest(&accelerations));
             let step = STEP.min(TURN / fast);
             // Five points: error of the fourth order in the step.
-            let at = |steps: f64| later(&robot, pose, &drive, steps * step).map(|s| values(&s));
+            let at = |steps: f64| solve_after(&robot, pose, &drive, steps * step).map(|s| values(&s));
             let here = values(&now);
             let [Some(a), Some(b), Some(d), Some(e)] = [-2.0, -1.0, 1.0, 2.0].map(at) else {
                 return Err(TestCaseError::fail("a neighbour does not close"));

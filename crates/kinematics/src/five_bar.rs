@@ -153,7 +153,7 @@ impl FiveBar {
     /// # Errors
     /// [`Fault::Apart`] and [`Fault::Nested`] where the couplers do not meet,
     /// [`Fault::Coincident`] where the end point is free,
-    /// [`Fault::NotFinite`] for what is no number or overflows.
+    /// [`Fault::NotFinite`] for input that is not finite or that overflows.
     ///
     /// ```
     /// let head = lizard_kinematics::FiveBar::new([20.0, 30.0, 50.0, 50.0, 30.0]);

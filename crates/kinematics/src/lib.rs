@@ -7,7 +7,7 @@
 //! accurate where the paper's half-angle formulas divide zero by zero.
 //!
 //! # When not to use it
-//! - For a mechanism with other loops: this is no general solver. It knows five-bars,
+//! - For a mechanism with other loops: this is not a general solver. It knows five-bars,
 //!   sliders between two arms, and parallelograms.
 //! - For forces, masses or contact with the floor: it knows geometry and rates only.
 //! - On a small chip: it computes in f64. The firmware of this robot has integer forms.

@@ -26,7 +26,7 @@ pub struct Pose {
 }
 
 impl From<[f64; 4]> for Pose {
-    /// From A1, A2, A3, A4.
+    /// Makes a pose from the angles of A1, A2, A3, A4.
     fn from([theta1, theta4, theta8, theta5]: [f64; 4]) -> Self {
         Self {
             theta1,
@@ -38,7 +38,7 @@ impl From<[f64; 4]> for Pose {
 }
 
 impl From<Pose> for [f64; 4] {
-    /// To A1, A2, A3, A4.
+    /// Returns the angles of A1, A2, A3, A4.
     fn from(pose: Pose) -> Self {
         [pose.theta1, pose.theta4, pose.theta8, pose.theta5]
     }

@@ -81,11 +81,11 @@ impl fmt::Display for Check {
 /// robot is built. [`Check`] documents each.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Margins {
-    /// Of head and tail: [`Check::TYPE2`].
+    /// Type-2 margins of head and tail: [`Check::TYPE2`].
     pub type2: [f64; 2],
-    /// Of the four arms, in servo order: [`Check::TYPE1`].
+    /// Type-1 margins of the four arms, in servo order: [`Check::TYPE1`].
     pub type1: [f64; 4],
-    /// Of the four legs, in servo order: [`Check::LEG`].
+    /// Margins of the four legs, in servo order: [`Check::LEG`].
     pub leg: [f64; 4],
 }
 

@@ -59,7 +59,7 @@ impl<const N: usize> Lanes<N> {
     }
 
     #[inline(always)]
-    fn each(self, of: impl Fn(f64) -> f64) -> Self {
+    fn map_lanes(self, of: impl Fn(f64) -> f64) -> Self {
         let mut result = self.0;
         for value in &mut result {
             *value = of(*value);
@@ -86,7 +86,7 @@ impl<const N: usize> Mul<f64> for Lanes<N> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, factor: f64) -> Self {
-        self.each(|a| a * factor)
+        self.map_lanes(|a| a * factor)
     }
 }
 
@@ -94,7 +94,7 @@ impl<const N: usize> Neg for Lanes<N> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        self.each(|a| -a)
+        self.map_lanes(|a| -a)
     }
 }
 
@@ -106,7 +106,7 @@ impl<const N: usize> Real for Lanes<N> {
 
     #[inline(always)]
     fn root(self) -> Self {
-        self.each(Real::root)
+        self.map_lanes(Real::root)
     }
 
     #[inline(always)]

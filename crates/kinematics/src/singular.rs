@@ -59,7 +59,7 @@ impl FiveBar {
         let right_arm = [bars.crank_right + l3, bars.crank_right - l3]
             .into_iter()
             .flat_map(move |reach| {
-                meet(tip, l2, bars.right_shaft(), reach.abs())
+                circle_intersections(tip, l2, bars.right_shaft(), reach.abs())
                     .map(move |point| (point - bars.right_shaft()) * (1.0 / reach))
             })
             .filter(|crank| crank.is_finite())
@@ -80,7 +80,7 @@ impl FiveBar {
     pub fn coinciding_tips(&self) -> impl Iterator<Item = SingularPose> + use<> {
         let (left, right) = (self.left_shaft(), self.right_shaft());
         let equal = self.coupler_left == self.coupler_right;
-        meet(left, self.crank_left, right, self.crank_right)
+        circle_intersections(left, self.crank_left, right, self.crank_right)
             .filter(move |_| equal)
             .map(move |tip| SingularPose {
                 kind: Singularity::Couplers,
@@ -92,7 +92,8 @@ impl FiveBar {
     /// Right crank angles that put the right tip at a distance from a point.
     fn right_cranks_at(&self, point: Vector, reach: f64) -> impl Iterator<Item = f64> + use<> {
         let shaft = self.right_shaft();
-        meet(point, reach, shaft, self.crank_right).map(move |tip| (tip - shaft).angle())
+        circle_intersections(point, reach, shaft, self.crank_right)
+            .map(move |tip| (tip - shaft).angle())
     }
 
     /// A candidate's margin vanishes in the robot's own assembly mode; the
@@ -118,12 +119,12 @@ impl Singularity {
 }
 
 /// The points in which two circles meet: none or two.
-fn meet(a: Vector, r: f64, b: Vector, s: f64) -> impl Iterator<Item = Vector> {
+fn circle_intersections(a: Vector, r: f64, b: Vector, s: f64) -> impl Iterator<Item = Vector> {
     let between = b - a;
     let square = between.square();
     let along = (square + (r - s) * (r + s)) / (2.0 * square);
     let rise = (r * r / square - along * along).sqrt();
-    // No meeting, or equal centres: not a number, which ends here.
+    // Circles that do not meet, or have one centre, give NaN or infinity.
     let points = rise.is_finite().then(|| {
         let foot = a + between * along;
         let up = between.left() * rise;
@@ -175,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_named_is_singular() {
+    fn every_named_position_is_singular() {
         let short = FiveBar::new([20.0, 30.0, 30.0, 25.0, 30.0]);
         let mut kinds = [0; 3];
         for bars in [HEAD, short] {

@@ -65,7 +65,7 @@ impl Slider {
     ///
     /// # Errors
     /// [`Fault::Collapsed`] where the arm tips coincide, [`Fault::NotFinite`] for
-    /// what is no number or overflows.
+    /// input that is not finite or that overflows.
     pub fn forward(&self, theta_rear: f64, theta_front: f64) -> Result<SliderPose, Fault> {
         let [rear, front] = [theta_rear, theta_front].map(Vector::direction);
         self.close(rear, front)

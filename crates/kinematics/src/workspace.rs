@@ -50,7 +50,7 @@ impl Workspace {
         let apart = 2.0 * self.half_base;
         let (r, s) = (self.inner, self.outer);
         // Both rings: both large discs, less either small one.
-        lens(s, s, apart) - 2.0 * lens(r, s, apart) + lens(r, r, apart)
+        lens_area(s, s, apart) - 2.0 * lens_area(r, s, apart) + lens_area(r, r, apart)
     }
 
     /// The largest circle within the workspace; of two that mirror each other,
@@ -60,9 +60,9 @@ impl Workspace {
     /// the middles of both rings meet (l0/2 is at most the larger of l1 and l2),
     /// a circle there has that radius and touches all four circles: the paper's.
     /// With a wider base the outer circles alone bound it: it lies in the middle
-    /// of the base, and the paper's y is not real. Two equal bars leave a ring no
-    /// inner circle, but a shaft in the midst, where the arm is folded and
-    /// singular; it stays outside the circle, too.
+    /// of the base, and the paper's y is not real. Two equal bars give a ring without
+    /// an inner circle, but with a shaft in its middle, where the arm is folded and singular; the
+    /// shaft stays outside the circle, too.
     pub fn inscribed_circle(&self) -> Option<Circle> {
         let middle = (self.outer + self.inner) / 2.0;
         let rise = (middle - self.half_base) * (middle + self.half_base);
@@ -79,7 +79,7 @@ impl Workspace {
 }
 
 /// Area common to two discs of radii `a`, `b` with centres `apart`.
-fn lens(a: f64, b: f64, apart: f64) -> f64 {
+fn lens_area(a: f64, b: f64, apart: f64) -> f64 {
     let small = a.min(b);
     if apart >= a + b {
         return 0.0;

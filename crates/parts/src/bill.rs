@@ -1,27 +1,34 @@
 //! The bill of a robot: parts to print, things to buy, mass and mass centre.
 
+mod loose;
+
 use std::collections::BTreeMap;
 use std::fmt;
 
 use lizard_kinematics::{Solution, Vector};
-use lizard_robot::Coil;
+use lizard_robot::{Coil, Robot};
 use serde::Serialize;
 
 use crate::bodies::assembly::Assembly;
 use crate::decimals;
-use crate::hold::Hold;
+use crate::hold::SpringEffect;
 use crate::layers::body::{Body, Kind, Prism};
+use crate::layers::fitting::Fitting;
 use crate::layers::outline::Outline;
 use crate::part::{Part, volume};
+use crate::price::Price;
+use loose::{ALWAYS, INPUTS, RADIO, Row};
 
 /// A printed part's mass over its volume, g/mm^3: PLA of 1.24, a third of infill within
 /// three lines of wall. PrusaSlicer's parts are within a tenth of it in sum.
 const PRINTED: f64 = 1.0e-3;
+/// The same of a pad, which is nearly all wall: TPU of 1.21.
+const RUBBERY: f64 = 1.15e-3;
 /// Hours of printing in layers of 0.2 mm on an Ender 3, for each piece and each g of it.
 /// PrusaSlicer's are within a tenth of it in sum.
 const HOURS_A_PIECE: f64 = 0.02;
 const HOURS_A_GRAM: f64 = 0.095;
-/// Masses of bought things, g: a servo, its horn, a UNO, a battery per mm^3, a spring's
+/// Masses of bought parts, g: a servo, its horn, a UNO, a battery per mm^3, a spring's
 /// steel per mm^3, screws per mm and per head, standoffs per mm, nuts and so on.
 const SERVO: f64 = 9.5;
 const HORN: f64 = 0.8;
@@ -34,46 +41,6 @@ const STANDOFF_MM: f64 = 0.06;
 const NUT: f64 = 0.4;
 const HORN_SCREW: f64 = 0.1;
 const SERVO_SCREW: f64 = 0.2;
-const PAD: f64 = 0.2;
-
-/// Things to buy that have no place of their own on the robot, such as wires: count, name
-/// and mass of one, g. Their centre is taken to be that of the rest.
-const MORE: [(usize, &str, f64); 12] = [
-    (
-        4,
-        "resistor 10 kOhm, from each servo's signal to ground",
-        0.2,
-    ),
-    (1, "switch for 3 A, in the battery's plus wire", 4.0),
-    (
-        1,
-        "fuse holder for a wire, with a fuse of 5 A, beside the battery",
-        5.0,
-    ),
-    (
-        1,
-        "plug for the battery's own, with two wires of 0.75 mm2, 10 cm long",
-        4.0,
-    ),
-    (1, ROUND_PLUG, 4.0),
-    (2, "wire of 0.5 mm2, one red and one black, 0.5 m long", 3.0),
-    (
-        12,
-        "jumper wire, pin to pin, 20 cm, for the servos' plugs",
-        0.4,
-    ),
-    (8, "cable tie, 2.5 mm wide, 100 mm long", 0.3),
-    (1, "double-sided foam tape, 20 mm wide, 20 cm", 1.0),
-    (1, "USB cable, A to B, that carries data", 0.0),
-    (1, "charger for the battery", 0.0),
-    (
-        1,
-        "drill of 3 mm, kitchen scale, hex key and sockets for M3",
-        0.0,
-    ),
-];
-const ROUND_PLUG: &str =
-    "round plug 5.5 x 2.1 mm with two wires, from the battery's switch to the UNO's socket";
 
 /// A line of the bill.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -85,6 +52,9 @@ pub struct Item {
     /// Mass of one piece, g.
     #[serde(serialize_with = "decimals::one::<10, _>")]
     pub grams: f64,
+    /// Price class of the row; `None` for printed parts.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub price: Option<Price>,
     /// Hours to print one piece; `None` for bought things.
     #[serde(
         serialize_with = "decimals::optional::<100, _>",
@@ -95,20 +65,35 @@ pub struct Item {
 
 impl Item {
     fn printed(part: &Part) -> Self {
-        let grams = PRINTED * part.volume();
+        let density = if part.rubbery { RUBBERY } else { PRINTED };
+        let grams = density * part.volume();
         Self {
             hours: Some(HOURS_A_PIECE + HOURS_A_GRAM * grams),
-            ..Self::bought(part.count(), part.name.clone(), grams)
+            price: None,
+            count: part.count(),
+            what: part.name.clone(),
+            grams,
         }
     }
 
-    fn bought(count: usize, what: String, grams: f64) -> Self {
+    fn bought(count: usize, what: String, grams: f64, price: Price) -> Self {
         Self {
             count,
             what,
             grams,
+            price: Some(price),
             hours: None,
         }
+    }
+
+    /// Mass of all its pieces, g.
+    fn all(&self) -> f64 {
+        self.count as f64 * self.grams
+    }
+
+    /// A line without a place on the robot.
+    fn loose((count, what, grams, price): Row) -> Self {
+        Self::bought(count, what.to_owned(), grams, price)
     }
 }
 
@@ -121,6 +106,12 @@ pub struct Bill {
     pub instead: Vec<Item>,
     /// Things to buy.
     pub bought: Vec<Item>,
+    /// Things to buy for driving without a cable.
+    pub radio: Vec<Item>,
+    /// Things to buy for the inputs that robot.toml names.
+    pub inputs: Vec<Item>,
+    /// The sum of the price classes of all things to buy but options, euros.
+    pub euros: [u32; 2],
     /// The robot's mass, g.
     #[serde(serialize_with = "decimals::one::<10, _>")]
     pub grams: f64,
@@ -128,12 +119,12 @@ pub struct Bill {
     #[serde(serialize_with = "decimals::each::<10, _>")]
     pub centre: [f64; 3],
     /// The effect of the springs on the legs; `None` for rigid struts.
-    pub hold: Option<Hold>,
+    pub hold: Option<SpringEffect>,
 }
 
 /// The line of the bill for a bought body, empty if it is printed or comes with another
 /// one, and the body's mass, g.
-fn bought(body: &Body, assembly: &Assembly, hold: Option<&Hold>) -> (String, f64) {
+fn bought(body: &Body, assembly: &Assembly, hold: Option<&SpringEffect>) -> (String, f64) {
     let parts = assembly.robot().parts();
     let diameter = parts.screw.diameter;
     match body.kind {
@@ -155,12 +146,8 @@ fn bought(body: &Body, assembly: &Assembly, hold: Option<&Hold>) -> (String, f64
             (what, HORN_SCREW)
         }
         Kind::Lead => (String::new(), 0.0),
-        Kind::Fitting(fitting) => (fitting.what(), fitting.grams()),
-        Kind::Pad => {
-            let what =
-                "rubber pad, self-adhesive, 8 mm wide and 1.5 mm thick, all four of one kind";
-            (what.to_owned(), PAD)
-        }
+        Kind::Fitting(fitting) => (fitting.what(), fitting.facts().grams),
+        Kind::Pad => (String::new(), RUBBERY * volume(&body.prisms)),
         Kind::Nut => (format!("lock nut M{diameter} (DIN 985)"), NUT),
         Kind::Standoff(length) => {
             let what = format!("standoff M{diameter}, {length} mm, thread in both ends");
@@ -187,6 +174,16 @@ fn bought(body: &Body, assembly: &Assembly, hold: Option<&Hold>) -> (String, f64
     }
 }
 
+/// The price class of the row of a bought body.
+fn price(kind: Kind) -> Price {
+    match kind {
+        Kind::Fitting(fitting) => fitting.price(),
+        Kind::Servo | Kind::Board | Kind::Battery => Price::D,
+        Kind::Spring => Price::C,
+        _ => Price::B,
+    }
+}
+
 /// Mass of the spring of a strut, g.
 pub(crate) fn spring(coil: &Coil) -> f64 {
     STEEL * coil_volume(coil)
@@ -203,17 +200,24 @@ fn coil_volume(coil: &Coil) -> f64 {
     (coil.coils() + 3.0) * PI * coil.mean() * PI * coil.wire * coil.wire / 4.0
 }
 
+/// The rows for the inputs that a robot has.
+fn inputs(robot: &Robot) -> Vec<Item> {
+    let has = |name: &str| robot.inputs().each().any(|(input, _)| input == name);
+    let rows = INPUTS.into_iter().filter(|(name, _)| has(name));
+    rows.map(|(_, row)| Item::loose(row)).collect()
+}
+
 impl Bill {
     /// The bill of a robot, whose mass centre is taken at a pose.
     #[must_use]
     pub fn of(assembly: &Assembly, parts: &[Part], pose: &Solution) -> Self {
-        let hold = Hold::of(assembly);
-        let mut list: BTreeMap<String, (usize, f64)> = BTreeMap::new();
+        let hold = SpringEffect::of(assembly);
+        let mut list: BTreeMap<String, (usize, f64, Price)> = BTreeMap::new();
         let (mut grams, mut moment) = (0.0, [0.0; 3]);
         for body in assembly.bodies() {
             let (what, mass) = bought(body, assembly, hold.as_ref());
             if !what.is_empty() {
-                list.entry(what).or_insert((0, mass)).0 += 1;
+                list.entry(what).or_insert((0, mass, price(body.kind))).0 += 1;
             }
             let [x, y, z] = middle(&body.prisms);
             let at = assembly.place(body.mount, pose).map(Vector::new(x, y));
@@ -228,19 +232,30 @@ impl Bill {
             some.map(Item::printed).collect()
         };
         let bought = list.into_iter();
-        let bought = bought.map(|(what, (count, grams))| Item::bought(count, what, grams));
-        let more = MORE.map(|(count, what, each)| {
-            grams += count as f64 * each;
-            Item::bought(count, what.to_owned(), each)
-        });
+        let bought =
+            bought.map(|(what, (count, grams, price))| Item::bought(count, what, grams, price));
+        let more = ALWAYS.map(Item::loose);
+        grams += more.iter().map(Item::all).sum::<f64>();
+        let bought: Vec<_> = bought.chain(more).collect();
         Self {
             printed: printed(false),
             instead: printed(true),
-            bought: bought.chain(more).collect(),
+            euros: Price::sum(bought.iter().filter_map(|item| item.price)),
+            bought,
+            radio: RADIO.map(Item::loose).into(),
+            inputs: inputs(assembly.robot()),
             grams,
             centre: moment.map(|sum| sum / grams),
             hold,
         }
+    }
+
+    /// The meaning of the price classes, and their sum.
+    #[must_use]
+    pub fn prices(&self) -> String {
+        let [from, to] = self.euros;
+        let meaning = Price::meaning();
+        format!("{meaning} The sum of all rows, tools included, is {from} to {to} euros.")
     }
 
     /// Hours to print all parts.
@@ -289,6 +304,7 @@ impl fmt::Display for Bill {
             "\nAbout {:.0} hours on a printer like an Ender 3, in layers of 0.2 mm with 30 % infill.",
             self.hours()
         )?;
+        writeln!(f, "\n{PADS}")?;
         let (other, kind) = match self.hold {
             Some(_) => ("without springs", "rigid"),
             None => ("with springs", "strut"),
@@ -301,12 +317,23 @@ impl fmt::Display for Bill {
                  `kind = \"{kind}\"` under `[leg.drive]` in robot.toml this guide is about them."
             )?;
         }
-        writeln!(f, "\nTo buy:\n")?;
-        writeln!(f, "| pieces | what |\n|---|---|")?;
-        for Item { count, what, .. } in &self.bought {
-            writeln!(f, "| {count} | {what} |")?;
+        writeln!(f, "\nTo buy:\n\n{}", to_buy(&self.bought))?;
+        writeln!(f, "{}", self.prices())?;
+        writeln!(
+            f,
+            "\nOnly to drive it without a cable, by radio:\n\n{}",
+            to_buy(&self.radio)
+        )?;
+        if !self.inputs.is_empty() {
+            let rows = to_buy(&self.inputs);
+            writeln!(f, "Only for the inputs of robot.toml:\n\n{rows}")?;
         }
-        let (grams, beside, up) = (self.grams, self.beside(), self.centre[2]);
+        writeln!(
+            f,
+            "Where everything has its place, and what fits there:\n\n{}",
+            places()
+        )?;
+        let (grams, beside, up) = (self.grams, self.centre_in_words(), self.centre[2]);
         writeln!(
             f,
             "\nIn all about {grams:.0} g; the mass centre is {beside} the middle of the plate, {up:.1} mm above its top.\n"
@@ -328,6 +355,41 @@ impl fmt::Display for Bill {
             "\nIn robot.toml:\n\n```toml\n[leg.drive]\n{drive}\n\n{body}```"
         )
     }
+}
+
+/// The guide's words about the pads.
+const PADS: &str = "The pads are of TPU (95A), all four of one roll: the flat side on the bed, 100 % infill, layers of 0.1 mm. An edge \
+                    catches on sharp terraces: smooth each dome with a thin film of flexible glue or silicone, and leave its hole open.";
+
+/// Rows to buy as a table.
+#[must_use]
+pub fn to_buy(items: &[Item]) -> String {
+    let mut text = "| pieces | what | price |\n|---|---|---|\n".to_owned();
+    for item in items {
+        let price = item.price.map(|price| price.to_string());
+        let (count, what, price) = (item.count, &item.what, price.unwrap_or_default());
+        text += &format!("| {count} | {what} | {price} |\n");
+    }
+    text
+}
+
+/// The places of the fittings as a table: room, hold, and two products that fit.
+#[must_use]
+pub fn places() -> String {
+    let size = |[x, y, z]: [f64; 3]| format!("{x} x {y} x {z}");
+    let mut text =
+        "| thing | place | room, mm | held by | for example, mm |\n|---|---|---|---|---|\n"
+            .to_owned();
+    for fitting in Fitting::ALL {
+        let facts = fitting.facts();
+        let examples = facts
+            .examples
+            .map(|(name, mm)| format!("{name}: {}", size(mm)));
+        let (name, place, hold) = (facts.name, facts.place, facts.hold);
+        let (room, examples) = (size(facts.size), examples.join("; "));
+        text += &format!("| {name} | {place} | {room} | {hold} | {examples} |\n");
+    }
+    text
 }
 
 /// The guide's words about rigid struts.

@@ -8,12 +8,9 @@ use serde::Serialize;
 use crate::bodies::assembly::Assembly;
 use crate::decimals;
 
-/// Stall torque of an SG-90 at 4.8 V, N mm: 1.8 kg cm.
-pub const STALL: f64 = 176.0;
-
 /// The effect of a leg's spring in its strut.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Hold {
+pub struct SpringEffect {
     /// Length of the spring inside its hooks in the strut, mm.
     #[serde(serialize_with = "decimals::one::<1000, _>")]
     pub installed: f64,
@@ -39,14 +36,17 @@ pub struct Hold {
     /// Torque that the friction of its pad exerts on a leg, N mm.
     #[serde(serialize_with = "decimals::one::<1000, _>")]
     pub friction: f64,
+    /// Torque at which the leg's servo stalls, N mm.
+    #[serde(serialize_with = "decimals::one::<1000, _>")]
+    pub stall: f64,
 }
 
-impl Hold {
+impl SpringEffect {
     /// True if a servo can go on turning at the slot's end, with less than seven tenths of
     /// its stall torque.
     #[must_use]
-    pub fn spares(&self) -> bool {
-        self.end[1] < 0.7 * STALL
+    pub fn lets_servo_turn(&self) -> bool {
+        self.end[1] < 0.7 * self.stall
     }
 
     /// The effect on the robot's legs, whose struts are equal; `None` if these are rigid.
@@ -79,16 +79,17 @@ impl Hold {
             way,
             end,
             friction: ground.grip() * ground.feet.reach,
+            stall: robot.motors().each[0].stall,
         })
     }
 }
 
-impl fmt::Display for Hold {
+impl fmt::Display for SpringEffect {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let (installed, force, rate) = (self.installed, self.force, self.rate);
-        let (preload, friction) = (self.preload, self.friction);
+        let (preload, friction, stall) = (self.preload, self.friction, self.stall);
         let ([near, far], [least, most], [low, high]) = (self.lever, self.way, self.end);
-        let spared = match self.spares() {
+        let spared = match self.lets_servo_turn() {
             true => "So much less spares it.",
             false => {
                 "So a caught foot can stall its servo as with a rigid strut: switch the servos' supply off."
@@ -100,8 +101,8 @@ impl fmt::Display for Hold {
              {near:.1} to {far:.1} mm in gaits. So a leg follows its servo up to {preload:.0} N mm, and the pad's friction \
              asks for about {friction:.0}: what the spring does is to take up the play of its strut's two screws. With foot \
              and body both held, a front foot on its way forward or a hind foot on its way back, the slot ends after \
-             {least:.0} to {most:.0} deg, at {low:.0} to {high:.0} N mm; the other way the strut is a bar. An SG-90 stalls \
-             at {STALL:.0} N mm. {spared}"
+             {least:.0} to {most:.0} deg, at {low:.0} to {high:.0} N mm; the other way the strut is a bar. Its servo stalls \
+             at {stall:.0} N mm. {spared}"
         )?;
         match preload < friction {
             true => writeln!(

@@ -29,12 +29,12 @@
 //!   union of its shapes less its holes, so its shapes without the holes are a safe hull
 //!   for collision proofs: a body that is clear of the hull is clear of the part.
 //!   [`Shape::distance`] is exact.
-//! - [`Assembly::meet`] is true for pairs that touch by design: bodies that move together,
+//! - [`Assembly::may_touch`] is true for pairs that touch by design: bodies that move together,
 //!   and bodies that name the other in [`Body::meets`], as a screw names the parts that it
 //!   passes through, the rod its sleeve, and the strut the leg's crank that its spring pulls.
 //! - [`Assembly::prove`] proves how close any two bodies come at any pose that the guard
 //!   accepts; [`Assembly::nearest`] only checks some poses.
-//! - [`Assembly::instead`] are bodies that may replace others: struts of the kind that
+//! - [`Assembly::alternatives`] are bodies that may replace others: struts of the kind that
 //!   robot.toml does not choose.
 //! - [`Layout`] is the plan of pivots and anchors from above. Those of the legs are
 //!   [`lizard_robot::LegPlan`], which the drawings use as well.
@@ -49,11 +49,12 @@ mod layers;
 mod mjcf;
 mod order;
 mod part;
+mod price;
 mod proof;
 mod unfit;
 mod weight;
 
-pub use bill::{Bill, Item};
+pub use bill::{Bill, Item, places, to_buy};
 pub use bodies::assembly::Assembly;
 pub use bodies::layout::Layout;
 pub use files::coupon::coupon;
@@ -62,18 +63,18 @@ pub use files::sheet::{Layer, Sheet, sheets};
 pub use files::solid::{Edge, Face, Solid, Surface};
 pub use files::{File, part_files};
 pub use guide::papers::papers;
-pub use hold::{Hold, STALL};
+pub use hold::SpringEffect;
 pub use layers::body::{Body, Kind, Mount, Prism};
-pub use layers::fitting::Fitting;
+pub use layers::fitting::{Facts, Fitting};
 pub use layers::outline::{Loop, Outline, Side};
 pub use layers::placement::Placement;
 pub use layers::shape::Shape;
 pub use layers::stack::{Span, Stack};
-pub use mjcf::{Course, Motor, Pieces, Pull, Scene, mjcf};
-pub use order::reach::{Act, Aside, Blocked};
-pub use order::steps::Near as NearView;
-pub use order::steps::{Stage, Step, Where, steps};
-pub use part::{Lies, Part};
+pub use mjcf::{Block, Course, Floor, Pieces, Pull, Scene, mjcf};
+pub use order::reach::{AccessPose, Blocked, ScrewOperation};
+pub use order::steps::{ExtraView, Stage, Step, TurningPlace, steps};
+pub use part::{Part, PrintToBody};
+pub use price::Price;
 pub use proof::clearance::Clearance;
-pub use proof::{Answer, Clash, ENOUGH, LEAST, Near, Proof, Questions};
+pub use proof::{Answer, Clash, ENOUGH, LEAST, NearestPair, Proof, Questions};
 pub use unfit::Unfit;

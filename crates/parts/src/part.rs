@@ -13,7 +13,7 @@ use crate::layers::placement::Placement;
 use crate::layers::roof;
 use crate::layers::shape::Shape;
 
-/// The word in the names of rings, which are told apart by length, not by place.
+/// The word in the names of rings, which are distinguished by length, not by place.
 const SPACER: &str = "spacer";
 
 /// A printed part.
@@ -27,6 +27,8 @@ pub struct Part {
     pub prisms: Vec<Prism>,
     /// True if it is printed on its back.
     pub turned: bool,
+    /// True if it is printed of a rubbery filament, TPU.
+    pub rubbery: bool,
     /// The part that it may replace; `None` for a part that the robot has.
     pub instead_of: Option<String>,
     /// Numbers of its servos, engraved if the part comes in several kinds: `13` for A1 and
@@ -42,6 +44,7 @@ impl Part {
             bodies: vec![name.to_owned()],
             prisms,
             turned: false,
+            rubbery: false,
             instead_of: None,
             mark: String::new(),
         }
@@ -59,8 +62,8 @@ impl Part {
         self.name.replace(' ', "-")
     }
 
-    /// Its layers as printed, with its mark and with the holes closed that would begin in
-    /// the air, and the number of those holes.
+    /// Its layers as printed, with its mark, and the number of holes that are closed in
+    /// them because they would begin in the air.
     #[must_use]
     pub fn printed(&self) -> (Vec<Prism>, usize) {
         let marked = mark::engraved(&self.prisms, &self.mark);
@@ -75,12 +78,12 @@ impl Part {
 
     /// The motion that takes the printed part to the place of a body, in that body's frame.
     #[must_use]
-    pub fn lies(&self, body: &Body) -> Lies {
+    pub fn print_to_body(&self, body: &Body) -> PrintToBody {
         let [low, high] = body.z();
-        Lies {
+        PrintToBody {
             flipped: self.turned,
             lift: if self.turned { high } else { low },
-            home: home(body),
+            frame: frame(body),
         }
     }
 
@@ -94,13 +97,13 @@ impl Part {
 /// The motion from a printed part's frame to its body's: flip, lift, then turn and shift
 /// in the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lies {
+pub struct PrintToBody {
     /// True if it is turned over first: x, y, z to x, -y, -z.
     pub flipped: bool,
     /// The lift after that, mm.
     pub lift: f64,
     /// The place of the printed part's frame in the body's.
-    pub home: Placement,
+    pub frame: Placement,
 }
 
 /// The volume of some layers, mm^3.
@@ -113,21 +116,21 @@ impl Assembly {
     /// Every printed part, each kind once. Parts that may replace others come last.
     #[must_use]
     pub fn parts(&self) -> Vec<Part> {
-        let mut parts = kinds(self.bodies());
+        let mut parts = distinct_parts(self.bodies());
         let is_strut = |part: &&Part| {
             let first = self.body(&part.bodies[0]);
             first.is_some_and(|body| matches!(body.mount, Mount::Strut(_)))
         };
         let strut = parts.iter().find(is_strut).map(|part| part.name.clone());
-        for mut part in kinds(self.instead()) {
+        for mut part in distinct_parts(self.alternatives()) {
             part.instead_of.clone_from(&strut);
             parts.push(part);
         }
-        let first = |part: &Part| split(&part.bodies[0]).0.to_owned();
+        let first = |part: &Part| noun_and_owner(&part.bodies[0]).0.to_owned();
         let nouns: Vec<_> = parts.iter().map(first).collect();
         for (part, noun) in parts.iter_mut().zip(&nouns) {
             if nouns.iter().filter(|other| *other == noun).count() > 1 {
-                part.mark = numbers(&part.bodies);
+                part.mark = servo_digits(&part.bodies);
             }
         }
         parts
@@ -135,15 +138,15 @@ impl Assembly {
 }
 
 /// A body's name as noun and owner: `link` and `A1`. A name of one word has no owner.
-fn split(name: &str) -> (&str, &str) {
+fn noun_and_owner(name: &str) -> (&str, &str) {
     name.rsplit_once(' ').unwrap_or((name, ""))
 }
 
 /// The numbers of the servos that own some bodies.
-fn numbers(names: &[String]) -> String {
+fn servo_digits(names: &[String]) -> String {
     let mut numbers: Vec<usize> = Vec::new();
     for name in names {
-        let (_, of) = split(name);
+        let (_, of) = noun_and_owner(name);
         let servo = |list: [&str; 4]| list.iter().position(|known| *known == of);
         let side = Side::ALL.into_iter().find(|side| side.name() == of);
         numbers.extend(servo(NAMES).or(servo(LEGS)));
@@ -155,14 +158,18 @@ fn numbers(names: &[String]) -> String {
 }
 
 /// The printed parts from which some bodies are made.
-fn kinds(bodies: &[Body]) -> Vec<Part> {
+fn distinct_parts(bodies: &[Body]) -> Vec<Part> {
     let mut parts: Vec<Part> = Vec::new();
-    for body in bodies.iter().filter(|body| body.kind == Kind::Printed) {
-        let (prisms, turned) = lying(body);
-        match parts.iter_mut().find(|part| alike(&part.prisms, &prisms)) {
+    for body in bodies.iter().filter(|body| body.kind.is_printed()) {
+        let (prisms, turned) = as_printed(body);
+        match parts
+            .iter_mut()
+            .find(|part| are_equal(&part.prisms, &prisms))
+        {
             Some(part) => part.bodies.push(body.name.clone()),
             None => parts.push(Part {
                 turned,
+                rubbery: body.kind == Kind::Pad,
                 ..Part::single(&body.name, prisms)
             }),
         }
@@ -174,7 +181,7 @@ fn kinds(bodies: &[Body]) -> Vec<Part> {
             .filter(|_| part.bodies[0].contains(SPACER));
         part.name = match ring {
             Some(top) => format!("{SPACER} {:.1}", top.z[1]),
-            None => together(&part.bodies),
+            None => shared_name(&part.bodies),
         };
     }
     parts
@@ -183,13 +190,13 @@ fn kinds(bodies: &[Body]) -> Vec<Part> {
 /// A body's layers as printed, and true if they lie on their back. The first shape is at
 /// the origin and the first bar along x, so equal parts have equal layers wherever they
 /// are used.
-fn lying(body: &Body) -> (Vec<Prism>, bool) {
+fn as_printed(body: &Body) -> (Vec<Prism>, bool) {
     let area = |prism: Option<&Prism>| prism.map_or(0.0, |prism| Outline::of(prism).area());
     let turned = area(body.prisms.first()) < 0.7 * area(body.prisms.last());
     let [low, high] = body.z();
-    let home = home(body);
+    let frame = frame(body);
     let lay = |shape: &Shape| {
-        let points = shape.points.iter().map(|&point| home.unmap(point));
+        let points = shape.points.iter().map(|&point| frame.unmap(point));
         let shape = Shape {
             points: points.collect(),
             radius: shape.radius,
@@ -210,7 +217,7 @@ fn lying(body: &Body) -> (Vec<Prism>, bool) {
 }
 
 /// The frame in which a body's part is printed.
-fn home(body: &Body) -> Placement {
+fn frame(body: &Body) -> Placement {
     if body.mount == Mount::Chassis {
         return Placement::CHASSIS;
     }
@@ -227,8 +234,8 @@ fn home(body: &Body) -> Placement {
     }
 }
 
-/// True if two parts are equal but for rounding.
-fn alike(a: &[Prism], b: &[Prism]) -> bool {
+/// True if two parts are equal except for rounding.
+fn are_equal(a: &[Prism], b: &[Prism]) -> bool {
     let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
     let points = |a: &Shape, b: &Shape| {
         a.points.len() == b.points.len()
@@ -245,8 +252,8 @@ fn alike(a: &[Prism], b: &[Prism]) -> bool {
 }
 
 /// One name for several bodies: the noun that they share, then their owners.
-fn together(names: &[String]) -> String {
-    let (nouns, owners): (Vec<_>, Vec<_>) = names.iter().map(|name| split(name)).unzip();
+fn shared_name(names: &[String]) -> String {
+    let (nouns, owners): (Vec<_>, Vec<_>) = names.iter().map(|name| noun_and_owner(name)).unzip();
     match names.len() {
         2.. if nouns.iter().any(|noun| *noun != nouns[0]) => names[0].clone(),
         4 => nouns[0].to_owned(),

@@ -3,6 +3,7 @@
 use lizard_kinematics::Vector;
 
 use crate::bodies::assembly::Assembly;
+use crate::bodies::pads;
 use crate::bodies::sliders::{SliderLengths, slider_range};
 use crate::layers::body::{Body, Kind, Prism};
 use crate::layers::shape::Shape;
@@ -50,7 +51,7 @@ impl Assembly {
     pub fn fits(&self) -> Result<(), Unfit> {
         self.measures_fit()?;
         self.prove(|_, _| ()).judge()?;
-        self.asides(&steps(self.robot().drive().strut().is_some()))?;
+        self.access_poses(&steps(self.robot().drive().strut().is_some()))?;
         Ok(())
     }
 
@@ -71,6 +72,23 @@ impl Assembly {
         }
         if !stack.holds_nut(parts) {
             return refuse(NUT.to_owned());
+        }
+        for (what, is, least) in [
+            ("height", parts.pad.height, pads::least_height(parts)),
+            ("width", parts.pad.width, pads::least_width(parts)),
+        ] {
+            if is < least {
+                return refuse(format!(
+                    "parts.pad.{what} is {is} mm; a pad with a screw's head in it needs {least:.1} mm"
+                ));
+            }
+        }
+        if parts.pad.dome().is_none_or(|dome| dome > parts.pad.height) {
+            return refuse(format!(
+                "a dome of parts.pad.radius {} mm is narrower or higher than parts.pad.width {} mm and height {} mm \
+                 allow; raise the radius",
+                parts.pad.radius, parts.pad.width, parts.pad.height
+            ));
         }
         let least = OFF_FLOOR - stack.servo;
         if parts.height < least {

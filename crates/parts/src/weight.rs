@@ -7,8 +7,8 @@ use crate::bill::Bill;
 /// Distance from the plate's middle below which a mass centre counts as in the middle, mm.
 const MIDDLE: f64 = 1.0;
 /// Tolerances within which robot.toml agrees with the bill: a share of the mass, and mm.
-const SHARE: f64 = 0.05;
-const OFF: f64 = 3.0;
+const MASS_TOLERANCE: f64 = 0.05;
+const CENTRE_TOLERANCE: f64 = 3.0;
 
 impl Bill {
     /// The values for `[body]` of robot.toml: whole grams, and the mass centre to 0.1 mm
@@ -43,13 +43,13 @@ impl Bill {
     pub fn differs(&self, body: &Body) -> bool {
         let [ahead, left, _] = self.centre;
         let off = libm::hypot(body.centre[0] - ahead, body.centre[1] - left);
-        (body.mass - self.grams).abs() > SHARE * self.grams || off > OFF
+        (body.mass - self.grams).abs() > MASS_TOLERANCE * self.grams || off > CENTRE_TOLERANCE
     }
 
     /// The place of the mass centre relative to the plate's middle, such as "0.1 mm behind
     /// and 0.1 mm to the right of".
     #[must_use]
-    pub fn beside(&self) -> String {
+    pub fn centre_in_words(&self) -> String {
         let [ahead, left, _] = self.centre;
         let way = |value: f64, [positive, negative]: [&str; 2]| {
             let word = if value < 0.0 { negative } else { positive };

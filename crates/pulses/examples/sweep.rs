@@ -1,4 +1,4 @@
-//! Eight servos sweep, each with a pace of its own, while the LED blinks and every byte of
+//! Eight servos sweep, each at its own pace, while the LED blinks and every byte of
 //! the serial line, 115 200 baud, is echoed. The whole program of an Arduino UNO.
 //!
 //! Built by `make sweep`, run by the tests in the simulated UNO, which measures every
@@ -29,7 +29,7 @@ const PINS: [Pin; 8] = [
 const fn pin(number: u8) -> Pin {
     match Pin::arduino(number) {
         Some(pin) => pin,
-        None => panic!("an UNO has no such pin"),
+        None => panic!("a UNO has no such pin"),
     }
 }
 
@@ -39,8 +39,8 @@ mod servos {
     servo_pulses::engine!(later: 8);
 }
 
-/// The bytes that have come last, and how many have, modulo 256: the handler moves the
-/// count, main follows it.
+/// The last received bytes, and their number modulo 256: the handler advances the count, and
+/// main follows it.
 static RING: [Byte; 16] = [const { Byte::new(0) }; 16];
 static CAME: Byte = Byte::new(0);
 

@@ -10,7 +10,7 @@ use crate::timing::{LEAD, most_width};
 #[derive(Clone, Copy)]
 pub struct Engine<'a, const SERVOS: usize, const SIZE: usize> {
     #[doc(hidden)]
-    /// Ports and masks of the pins, by slot. Zero, which is no pin, until
+    /// Ports and masks of the pins, by slot. Zero, which is not a pin, until
     /// [`Engine::connect`].
     pub pins: &'a [[Byte; 2]; SIZE],
     #[doc(hidden)]
@@ -92,10 +92,10 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         self.fresh.get() == 0
     }
 
-    /// Lets no further pulse begin; one that is under way ends as planned, within a
-    /// slot. Call it before you reset the board, which would cut the pulse short and so
-    /// send the servo to its end stop. The tick continues. One store, right in an
-    /// interrupt and anywhere else; only a reset ends it.
+    /// Prevents all further pulses; one in progress ends as planned, within a slot. Call it before
+    /// you reset the board, which would cut the pulse short and so send the servo to its end stop.
+    /// The tick continues. It is a single store, so it may be called anywhere, also in an
+    /// interrupt; only a reset ends its effect.
     #[inline(always)]
     pub fn hush(&self) {
         self.allowed.set(0);
@@ -108,13 +108,13 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         self.ticks.get()
     }
 
-    /// The width that a slot plays, or `None` where it plays none.
+    /// The width of the pulse in a slot; `None` without a pulse.
     #[cfg(any(test, target_arch = "avr"))]
     #[inline(always)]
-    fn planned(&self, slot: u8) -> Option<(usize, u16)> {
+    fn planned_pulse(&self, slot: u8) -> Option<(usize, u16)> {
         let servo = usize::from(slot) & (SIZE - 1);
         let width = self.frames[usize::from(self.playing.get() & 1)][servo].get();
-        // Checked here, last thing before it is used.
+        // Checked here, immediately before it is used.
         let fits = LEAST_WIDTH <= width && width <= Self::CLOSE;
         (slot != Self::TICK_SLOT && fits).then_some((servo, width))
     }
@@ -134,7 +134,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
             slot => slot + 1,
         };
         self.slot.set(slot);
-        match self.planned(slot) {
+        match self.planned_pulse(slot) {
             None => {
                 self.mask.set(0);
                 self.fall.set(Self::NO_PULSE);
@@ -149,186 +149,15 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     }
 }
 
-/// The part of the engine that accesses registers.
 #[cfg(any(doc, target_arch = "avr"))]
-mod registers {
-    use core::ptr::with_exposed_provenance_mut;
-
-    use super::{Engine, LEAD};
-    use crate::pin::Pin;
-    use crate::store::store_at;
-    use crate::timing::slot_cycles;
-
-    // Timer1 of an ATmega328P (data sheet, register summary).
-    const TIFR1: usize = 0x36;
-    const TIMSK1: usize = 0x6f;
-    const TCCR1A: usize = 0x80;
-    const TCCR1B: usize = 0x81;
-    const TCNT1: usize = 0x84;
-    const OCR1A: usize = 0x88;
-    const OCR1B: usize = 0x8a;
-    /// OCF1B in TIFR1, OCIE1B in TIMSK1.
-    const B: u8 = 1 << 2;
-    /// OCF1A in TIFR1, OCIE1A in TIMSK1.
-    const A: u8 = 1 << 1;
-    /// WGM12 and CS10 in TCCR1B: CTC up to OCR1A, every cycle is counted.
-    const RUN: u8 = 1 << 3 | 1;
-
-    /// A compare value that the timer never reaches.
-    const NEVER: u16 = u16::MAX;
-
-    #[inline(always)]
-    fn port(address: u8) -> *mut u8 {
-        with_exposed_provenance_mut(usize::from(address))
-    }
-
-    /// Stores to a register.
-    ///
-    /// # Safety
-    /// It is one of Timer1's.
-    #[inline(always)]
-    unsafe fn set<T>(register: usize, value: T) {
-        // SAFETY: as the caller says.
-        unsafe { with_exposed_provenance_mut::<T>(register).write_volatile(value) }
-    }
-
-    impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
-        /// Puts the pins low and makes them outputs, in the order of the widths. Once,
-        /// before the first [`Engine::submit`]; with interrupts off, if any handler changes
-        /// other pins of these ports.
-        #[inline(always)]
-        pub fn connect(&self, pins: [Pin; SERVOS]) {
-            for (slot, pin) in self.pins.iter().zip(&pins) {
-                slot[0].set(pin.port);
-                slot[1].set(pin.mask);
-            }
-            self.lower();
-        }
-
-        /// [`Engine::start`], with the pins of a constant, which are put low first.
-        ///
-        /// # Safety
-        /// See [`Engine::start`].
-        #[doc(hidden)]
-        #[inline(always)]
-        pub unsafe fn start_all(&self) {
-            self.lower();
-            // SAFETY: as the caller says.
-            unsafe { self.start() }
-        }
-
-        /// Puts the pins low and makes them outputs.
-        #[inline(always)]
-        fn lower(&self) {
-            for [address, mask] in &self.pins[..SERVOS] {
-                let port = port(address.get());
-                let mask = mask.get();
-                // SAFETY: PORT is an I/O register, and DDR the one just below it, for a
-                // `Pin` knows no other addresses. No handler writes one of them before a
-                // width has been submitted.
-                unsafe {
-                    let ddr = port.sub(1);
-                    port.write_volatile(port.read_volatile() & !mask);
-                    ddr.write_volatile(ddr.read_volatile() | mask);
-                }
-            }
-        }
-
-        /// Starts the timer; the first tick comes a slot later. Once.
-        ///
-        /// # Safety
-        /// Interrupts are off, and nothing else uses Timer1 from now on.
-        #[inline(always)]
-        pub unsafe fn start(&self) {
-            self.slot.set(Self::TICK_SLOT);
-            self.fall.set(Self::NO_PULSE);
-            self.allowed.set(u8::MAX);
-            // SAFETY: these registers are Timer1's, which is ours.
-            unsafe {
-                // A boot loader leaves the timer running for its LED: stop it first.
-                set(TCCR1B, 0u8);
-                set(TCCR1A, 0u8);
-                set(TCNT1, 0u16);
-                set(OCR1A, const { slot_cycles(SERVOS) - 1 });
-                set(OCR1B, NEVER);
-                set(TIFR1, A | B);
-                set(TIMSK1, A | B);
-                set(TCCR1B, RUN);
-            }
-        }
-
-        /// Edges that came late because an interrupt was held up for longer than the
-        /// lead allows. Stays at 65535.
-        #[inline(always)]
-        pub fn late(&self) -> u16 {
-            self.late.read()
-        }
-
-        /// A slot opens: its pin goes up, or the tick is given.
-        ///
-        /// # Safety
-        /// Only in the handler of Timer1's compare match A.
-        #[doc(hidden)]
-        #[inline(always)]
-        pub unsafe fn open(&self) {
-            let mask = self.mask.get() & self.allowed.get();
-            if mask != 0 {
-                let port = port(self.port.get());
-                // SAFETY: the port of a servo pin, in a handler, LEAD after the match.
-                unsafe {
-                    let before = port.read_volatile();
-                    // A pin that is still high has missed its falling edge: it only goes
-                    // down.
-                    let change = mask & !before;
-                    let on_time = store_at([LEAD, 0], port, before & !mask, change);
-                    if on_time & change == 0 {
-                        self.late.count();
-                        self.mask.set(0);
-                        self.fall.set(Self::NO_PULSE);
-                    }
-                }
-            } else if self.slot.get() == Self::TICK_SLOT {
-                self.ticks.set(self.ticks.get().wrapping_add(1));
-            }
-            // SAFETY: after `start` only the two handlers use Timer1, and they cannot
-            // interrupt each other.
-            unsafe {
-                set(OCR1B, self.fall.get() - u16::from(LEAD));
-                // Had interrupts been off for very long, the match of the slot before, or
-                // of this one with the old count, would wait here and close this slot at
-                // once.
-                set(TIFR1, B);
-            }
-        }
-
-        /// A slot closes: its pin goes down, and the next slot is planned.
-        ///
-        /// # Safety
-        /// Only in the handler of Timer1's compare match B.
-        #[doc(hidden)]
-        #[inline(always)]
-        pub unsafe fn close(&self) {
-            let mask = self.mask.get();
-            if mask != 0 {
-                let port = port(self.port.get());
-                // SAFETY: the port of a servo pin, in a handler, LEAD after the match.
-                let on_time =
-                    unsafe { store_at(self.fall.bytes(), port, port.read_volatile() & !mask, 0) };
-                if on_time == 0 {
-                    self.late.count();
-                }
-            }
-            self.plan();
-        }
-    }
-}
+mod registers;
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::timing::slot_cycles;
 
-    /// The engine's variables, as `engine!` has them.
+    /// The engine's variables, as `engine!` defines them.
     struct Variables<const SIZE: usize> {
         pins: [[Byte; 2]; SIZE],
         frames: [[Word; SIZE]; 2],
@@ -424,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn a_width_that_a_slot_has_no_room_for_is_no_pulse() {
+    fn a_width_too_long_for_a_slot_makes_no_pulse() {
         let variables = Variables::<8>::of::<6>();
         let engine = variables.engine::<6>();
         let most = most_width(6);
@@ -434,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_is_taken_over_whole_and_only_at_its_begin() {
+    fn a_frame_is_taken_over_complete_and_only_at_its_beginning() {
         let variables = Variables::<4>::of::<4>();
         let engine = variables.engine::<4>();
         engine.submit([20_000u16; 4]);

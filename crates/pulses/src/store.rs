@@ -6,8 +6,8 @@ use core::arch::asm;
 /// a fixed number of cycles after Timer1 counts `count`, given low byte first; at
 /// once if it is too late. Returns 0xff if it was on time, else 0.
 ///
-/// A falling edge goes through this with a `change` of nothing: the same
-/// instructions, so that all that they cost falls out of the width.
+/// A falling edge uses this with a `change` of 0: the instructions are the same, so
+/// their cost cancels out of the width.
 ///
 /// # Safety
 /// `port` is the PORT register of a servo pin and `low` is right for its other

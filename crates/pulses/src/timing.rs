@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slot_has_room_for_2_4_ms_whatever_the_number_of_servos() {
+    fn a_slot_has_room_for_2_4_ms_for_any_number_of_servos() {
         for servos in 1..=8 {
             assert!(
                 most_width(servos) >= 2_400 * CYCLES_PER_US,

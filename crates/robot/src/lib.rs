@@ -33,19 +33,22 @@ mod tables;
 mod testing;
 mod units;
 
-pub use checks::{Audit, CheckedGait, Least, Peak, TableError, Walked};
+pub use checks::{Audit, CheckedGait, Effort, LeastMargin, Peak, TIGHT, TableError, Walked};
 pub use file::{Error, LONGEST, edit, mistake};
-pub use gaits::{Bars, Harmonic, Path, PathLeg, Stride, Waveform};
+pub use gaits::{Bars, Harmonic, Path, PathLeg, Routine, Stride, Waveform};
 pub use lizard_contact::{
-    Body, DEFAULT_FRICTION, Drive, Feet, GRAVITY, Ground, Kind, Place, Prediction, SLOT, Slip,
-    Stance, Strut, Travel, Walker,
+    Body, DEFAULT_FRICTION, Drive, Feet, GRAVITY, Ground, Joints, Kind, Motor, Motors, Place,
+    Prediction, SLOT, Slip, Stance, Strut, Travel, Walker,
 };
 pub use measures::servo;
 pub use measures::{
-    Coil, Horn, LegPlace, LegPlan, Pace, Parts, Plate, Rail, Screw, Servo, ServoBody, Supplies,
-    healthy_rail_mv,
+    Coil, FUSE, Horn, INPUTS, Inputs, LegPlace, LegPlan, Pad, Parts, Plate, Rail, SWITCH, Screw,
+    Servo, ServoBody, ServoType, SpeedLimits, Supplies, healthy_rail_mv,
 };
-pub use reports::{Report, Row, Sensitivity, Sprung, UNDECIDED};
+pub use reports::{
+    Assumptions, Report, Round, Row, Sensitivity, ServoTable, SpringCost, UNDECIDED,
+    WITHOUT_CONTACTS,
+};
 pub use robot::Robot;
 pub use tables::{CellMaps, CoreRobot, flash};
 pub use units::{FRAMES_PER_SECOND, STEPS_PER_DEGREE, STILL_FRAMES};

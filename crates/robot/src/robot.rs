@@ -4,17 +4,19 @@ use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
 use lizard_avr::Region;
-use lizard_contact::{Drive, Ground, Prediction, Strut, Travel};
-use lizard_core::numbers::gaits::Gait;
+use lizard_contact::{Drive, Ground, Motors, Prediction, Strut, Travel};
+use lizard_core::numbers::gaits::{Gait, Step};
 use lizard_core::numbers::section::{Content, LONGEST_NAME, SPACE};
 use lizard_kinematics::{Limits, Lizard, Pose, Solution, wrap};
 use toml::de::DeTable;
 
-use crate::checks::CheckedGait;
+use crate::checks::{CheckedGait, Effort, TIGHT};
 use crate::file::{self, Checked, Error, Fault, Section};
-use crate::gaits::define;
+use crate::gaits::{Routine, define, routine};
 use crate::measures::servo::FORWARD;
-use crate::measures::{self, Coil, LegPlan, Measures, Pace, Parts, Plate, Servo, Supplies};
+use crate::measures::{
+    self, Coil, Inputs, LegPlan, Measures, Parts, Plate, Servo, ServoType, SpeedLimits, Supplies,
+};
 use crate::tables::{CellMaps, CoreRobot, Tables, flash, numbers};
 
 /// A robot whose every value and gait has been checked.
@@ -22,6 +24,7 @@ use crate::tables::{CellMaps, CoreRobot, Tables, flash, numbers};
 pub struct Robot {
     measures: Measures,
     gaits: Vec<CheckedGait>,
+    routines: Vec<Routine>,
     content: Content,
     /// The section without the maps of certified cells, as the core on a host reads it.
     section: Arc<[u8]>,
@@ -33,6 +36,7 @@ impl PartialEq for Robot {
     fn eq(&self, other: &Self) -> bool {
         self.measures == other.measures
             && self.gaits == other.gaits
+            && self.routines == other.routines
             && self.content == other.content
     }
 }
@@ -77,19 +81,35 @@ impl Robot {
         let root = Section::root(
             table,
             &[
-                "name", "links", "leg", "servo", "limits", "supply", "body", "feet", "ground",
-                "parts", "gait",
+                "name", "links", "leg", "servo", "joints", "limits", "supply", "input", "body",
+                "feet", "ground", "parts", "gait", "routine",
             ],
         )?;
         let name = name(&root)?;
-        Self::with_measures(name, Measures::read(&root)?, &root)
+        let mut measures = Measures::read(&root)?;
+        let robot = Self::with_measures(name, measures.clone(), &root)?;
+        let Some(rail) = measures
+            .supplies
+            .rail
+            .as_mut()
+            .filter(|rail| rail.by_servos)
+        else {
+            return Ok(robot);
+        };
+        let (ground, motors) = (robot.ground(), robot.motors());
+        let used = |gait: &CheckedGait| Effort::of(gait, ground, &motors).line_share(1.0, 1.0);
+        let hardest = robot.gaits().iter().map(used).fold(0.0, f64::max);
+        rail.slowed(hardest, TIGHT, robot.servo_type().volts);
+        Self::with_measures(name, measures, &root)
     }
 
     /// Reads and checks the gaits of a body, and makes its tables.
     fn with_measures(name: &str, measures: Measures, root: &Section) -> Checked<Self> {
         let gaits = define::gaits(root, &measures)?;
+        let names: Vec<&str> = gaits.iter().map(|gait| gait.name.as_str()).collect();
+        let routines = routine::routines(root, &names, &measures.inputs)?;
         let tables = Tables::new(&gaits)?;
-        let content = numbers::content(name, &measures, &tables);
+        let content = numbers::content(name, &measures, &tables, &routines);
         let tables = Arc::new(tables);
         let length = content.length();
         if length > usize::from(SPACE) {
@@ -110,6 +130,7 @@ impl Robot {
         lizard_core::numbers::robot::Robot::open(flash).map_err(|_| impossible())?;
         Ok(Self {
             gaits,
+            routines,
             measures,
             content,
             section,
@@ -138,8 +159,9 @@ impl Robot {
     /// compares it with the simulated UNO.
     #[must_use]
     pub fn longest_search(&self) -> usize {
-        let of_gait = |gait: &CheckedGait| 1_400 + 92 * gait.name().len();
-        6_000 + self.gaits().iter().map(of_gait).sum::<usize>()
+        let names = self.gaits.iter().map(CheckedGait::name);
+        let names = names.chain(self.routines.iter().map(Routine::name));
+        6_000 + names.map(|name| 1_400 + 92 * name.len()).sum::<usize>()
     }
 
     /// Makes the section with the maps, unless that is too long.
@@ -172,19 +194,48 @@ impl Robot {
         &self.measures.servos
     }
 
+    /// The type of the servos, and their supply.
+    pub fn servo_type(&self) -> &ServoType {
+        &self.measures.servo_type
+    }
+
+    /// The servos' motors and the friction of the joints, at the servos' own supply.
+    pub fn motors(&self) -> Motors {
+        self.motors_at(self.servo_type().volts)
+    }
+
+    /// The servos' motors and the friction of the joints, at a supply in V.
+    pub fn motors_at(&self, volts: f64) -> Motors {
+        self.motors_of(self.servo_type(), volts)
+    }
+
+    /// The motors of servos of another type, at a supply in V, and the friction of the joints.
+    pub fn motors_of(&self, servo: &ServoType, volts: f64) -> Motors {
+        let of = |own: &Servo| servo.motor(volts, own.us_per_degree);
+        Motors {
+            each: self.servos().each_ref().map(of),
+            joints: self.measures.joints,
+        }
+    }
+
     /// Limits of margins and sliders for every pose.
     pub fn limits(&self) -> &Limits {
         &self.measures.limits
     }
 
     /// Limits of the servos' speed.
-    pub fn pace(&self) -> &Pace {
+    pub fn pace(&self) -> &SpeedLimits {
         &self.measures.pace
     }
 
     /// Thresholds of the board's supply and of the servos' rail.
     pub fn supplies(&self) -> &Supplies {
         &self.measures.supplies
+    }
+
+    /// The pins of the inputs.
+    pub fn inputs(&self) -> &Inputs {
+        &self.measures.inputs
     }
 
     /// Measures of the parts to print and to buy.
@@ -236,10 +287,28 @@ impl Robot {
         &self.gaits
     }
 
+    /// The routines in the order of the file.
+    pub fn routines(&self) -> &[Routine] {
+        &self.routines
+    }
+
+    /// Finds a routine by its name, with dashes or blanks between its words.
+    pub fn routine(&self, name: &str) -> Option<&Routine> {
+        let name = name.replace(' ', "-");
+        self.routines.iter().find(|routine| routine.name() == name)
+    }
+
     /// Finds a gait by its name, with dashes or blanks between its words.
     pub fn gait(&self, name: &str) -> Option<&CheckedGait> {
         let name = name.replace(' ', "-");
         self.gaits.iter().find(|gait| gait.name() == name)
+    }
+
+    /// Finds the gait of a line of the console, which may have a number of cycles behind the name.
+    pub fn gait_of_line(&self, line: &str) -> Option<&CheckedGait> {
+        let name = line.trim_end_matches(|c: char| c.is_ascii_digit());
+        let counted = || name.ends_with(' ').then(|| self.gait(name.trim_end()))?;
+        self.gait(line).or_else(counted)
     }
 
     /// The core's view of this robot, on a host: without the maps of certified cells, which
@@ -255,6 +324,27 @@ impl Robot {
     pub fn firmware(&self) -> &CoreRobot {
         self.firmware
             .get_or_init(|| CoreRobot::unchecked(flash(&self.section)).unwrap_or(CoreRobot::NONE))
+    }
+
+    /// The robot with routines for a floor without walls, and without anybody who presses: a wait
+    /// takes a frame, a gait that only a contact ends one cycle, and every other step its count or time.
+    #[must_use]
+    pub fn without_contacts(&self) -> Self {
+        let mut content = self.content.clone();
+        for step in &mut content.steps {
+            if step.count == Step::ENDLESS {
+                step.count = 1;
+                if step.kind == Step::FRAMES {
+                    step.kind = Step::CYCLES;
+                }
+            }
+        }
+        Self {
+            section: content.section().into(),
+            content,
+            firmware: OnceLock::new(),
+            ..self.clone()
+        }
     }
 
     /// Computes the cells in which the guard is proved to accept every pose.
@@ -322,8 +412,18 @@ fn too_large(content: &Content, bytes: usize) -> Fault {
     let of_waves = std::mem::size_of_val(content.waves.as_slice());
     let gaits = content.gaits.len();
     let of_gaits = gaits * size_of::<Gait>() + content.names.len();
+    let routines = content
+        .gaits
+        .iter()
+        .filter(|gait| gait.is_routine())
+        .count();
+    let of_steps = std::mem::size_of_val(content.steps.as_slice());
+    let and_routines = match routines {
+        0 => String::new(),
+        _ => format!(", {routines} of them routines, whose steps take {of_steps}"),
+    };
     let sentence = format!(
-        "the robot takes {over} bytes more than the {SPACE} that the board has for it; {waves} waveforms take {of_waves}, {gaits} gaits and their names {of_gaits}: leave out gaits, first those whose waveform no other has"
+        "the robot takes {over} bytes more than the {SPACE} that the board has for it; {waves} waveforms take {of_waves}, {gaits} gaits and their names {of_gaits}{and_routines}: leave out gaits, first those whose waveform no other has"
     );
     Fault::new("gait", sentence)
 }

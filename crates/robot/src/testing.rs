@@ -3,7 +3,7 @@
 use crate::{Error, Robot};
 
 /// Names of the files in robots/.
-pub const NAMES: [&str; 4] = ["paper", "large", "unequal", "own-gaits"];
+pub const NAMES: [&str; 5] = ["paper", "large", "unequal", "own-gaits", "grain"];
 
 /// Reads the text of a robot's file.
 pub fn text(name: &str) -> String {

@@ -6,6 +6,7 @@
 
 #include "adc.h"
 #include "call_timer.h"
+#include "contacts.h"
 #include "disturbance.h"
 #include "eeprom.h"
 #include "instruction.h"
@@ -46,6 +47,7 @@ struct uno {
 	struct supply supply;   /* the stock fidelity keeps VCC here */
 	struct eeprom eeprom;   /* and the list of no operations */
 	struct adc adc;
+	struct contacts contacts;
 
 	/* Corrections by the data sheet; idle in the stock fidelity. */
 	struct interrupts interrupts;

@@ -1,4 +1,4 @@
-/* EEPROM, supply, ADC, resets, boot loader and flash, as src/ uses them.
+/* EEPROM, supply, ADC, contacts, resets, boot loader and flash, as src/ uses them.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -81,6 +81,11 @@ void uno_set_bandgap(struct uno *uno, double mv) { uno->adc.bandgap = mv; }
 void uno_set_analog(struct uno *uno, uint8_t channel, uint16_t mv)
 {
 	adc_set_pin(&uno->adc, channel, mv);
+}
+
+void uno_set_contact(struct uno *uno, uint16_t address, uint8_t bit, bool closed)
+{
+	contacts_set(&uno->contacts, address, bit, closed);
 }
 
 void uno_boot_at(struct uno *uno, uint32_t address)

@@ -30,8 +30,9 @@ static avr_cycle_count_t end_byte(avr_t *avr, avr_cycle_count_t when, void *para
 {
 	struct sender *sender = param;
 	sender->busy = false;
-	serial_bytes_push(&sender->delivered, avr->cycle, sender->byte.value);
-	sender->receiver.byte(sender->receiver.param, sender->byte, sender->cycles_per_bit);
+	const struct receiver *receiver = &sender->receiver;
+	uint8_t received = receiver->byte(receiver->param, sender->byte, sender->cycles_per_bit);
+	serial_bytes_push(&sender->delivered, avr->cycle, received);
 	/* Always check again when the line is free: a byte queued meanwhile starts
 	 * then. */
 	uint64_t wait = chip_cycles_until(avr, ceil(sender->line_free));

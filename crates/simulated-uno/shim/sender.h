@@ -20,7 +20,8 @@ struct receiver {
 	/* Cycles from one start bit to the next, given the sender's own. */
 	double (*frame_cycles)(void *param, double frame);
 	void (*start_bit)(void *param);
-	void (*byte)(void *param, struct line_byte byte, double cycles_per_bit);
+	/* Returns what is received: 0xff in place of a byte with a framing error. */
+	uint8_t (*byte)(void *param, struct line_byte byte, double cycles_per_bit);
 };
 
 struct sender {

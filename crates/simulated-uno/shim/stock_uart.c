@@ -21,11 +21,12 @@ static void start_bit(void *param)
 {
 }
 
-static void receive(void *param, struct line_byte byte, double cycles_per_bit)
+static uint8_t receive(void *param, struct line_byte byte, double cycles_per_bit)
 {
 	const struct stock_uart *stock = param;
 	uint32_t input = byte.value | (byte.stop_low ? UART_INPUT_FE : 0);
 	avr_raise_irq(stock->uart->io.irq + UART_IRQ_INPUT, input);
+	return byte.stop_low ? 0xff : byte.value;
 }
 
 void stock_uart_attach(struct stock_uart *stock, const struct instruction *instruction,

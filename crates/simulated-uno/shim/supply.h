@@ -1,4 +1,4 @@
-/* The supply voltage, VCC and AVCC in one as on an UNO, and the resets by it: brown-out
+/* The supply voltage, VCC and AVCC in one as on a UNO, and the resets by it: brown-out
  * (data sheet 11.5) and power-on (11.3).
  *
  * SPDX-License-Identifier: GPL-3.0-or-later

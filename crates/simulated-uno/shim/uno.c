@@ -107,6 +107,7 @@ struct uno *uno_new(bool data_sheet, uint32_t pins, double baud)
 	reset_attach(&uno->reset, avr, data_sheet);
 	eeprom_attach(&uno->eeprom, avr);
 	adc_attach(&uno->adc, avr);
+	contacts_attach(&uno->contacts, avr);
 	supply_attach(&uno->supply, avr, &uno->reset, &uno->eeprom, data_sheet);
 	if (data_sheet) {
 		interrupts_attach(&uno->interrupts, &uno->instruction);

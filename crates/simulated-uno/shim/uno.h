@@ -59,7 +59,7 @@ struct list *uno_transmitted(struct uno *uno);       /* struct serial_byte */
 struct list *uno_received(struct uno *uno);          /* struct serial_byte */
 struct list *uno_calls(struct uno *uno);             /* struct call */
 
-/* EEPROM, supply, ADC and resets: chip_access.c. */
+/* EEPROM, supply, ADC, contacts and resets: chip_access.c. */
 void uno_reset(struct uno *uno); /* the RESET pin */
 void uno_power_cycle(struct uno *uno);
 void uno_set_boot_loader(struct uno *uno, bool on);
@@ -81,6 +81,8 @@ void uno_ramp_supply(struct uno *uno, double mv, uint64_t cycles);
 void uno_set_brown_out(struct uno *uno, double mv);
 void uno_set_bandgap(struct uno *uno, double mv);
 void uno_set_analog(struct uno *uno, uint8_t channel, uint16_t mv);
+/* A contact between ground and the pin of this bit of the port whose PIN register this is. */
+void uno_set_contact(struct uno *uno, uint16_t address, uint8_t bit, bool closed);
 
 /* Boot loader and flash: boot.c. */
 /* From now on a reset starts the program at this byte address (BOOTRST). */

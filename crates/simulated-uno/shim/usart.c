@@ -60,17 +60,18 @@ static void start_bit(void *param)
 	show_receiver(usart);
 }
 
-static void receive(void *param, struct line_byte byte, double sender_cycles_per_bit)
+static uint8_t receive(void *param, struct line_byte byte, double sender_cycles_per_bit)
 {
 	struct usart *usart = param;
 	const avr_t *avr = usart->avr;
 	if (!(avr->data[REG_UCSR0B] & RXEN))
-		return;
+		return byte.value;
 	double ratio = usart_cycles_per_bit(avr) / sender_cycles_per_bit;
 	bool frame_error = byte.stop_low || fabs(ratio - 1.0) > BAUD_TOLERANCE;
-	usart->received[usart->count++] =
-		(struct received){ usart_sampled(byte.value, ratio), frame_error };
+	uint8_t value = usart_sampled(byte.value, ratio);
+	usart->received[usart->count++] = (struct received){ value, frame_error };
 	show_receiver(usart);
+	return frame_error ? 0xff : value;
 }
 
 static uint8_t read_data(avr_t *avr, avr_io_addr_t addr, void *param)

@@ -9,9 +9,7 @@
 
 use std::ffi::OsStr;
 use std::path::Path;
-use std::process::Command;
-
-use lizard_time_limit::LIMIT;
+use std::process::{Command, Stdio};
 
 use crate::Image;
 
@@ -57,7 +55,7 @@ pub fn run(flags: &[&str], inputs: &[&OsStr], output: &Path) {
         .arg("-o")
         .arg(output)
         .args(inputs);
-    let result = LIMIT.output(&mut gcc, b"");
+    let result = gcc.stdin(Stdio::null()).output();
     let result = result.expect("avr-gcc runs (Debian package gcc-avr)");
     let errors = String::from_utf8_lossy(&result.stderr);
     assert!(

@@ -95,5 +95,6 @@ unsafe extern "C" {
     pub fn uno_ramp_supply(uno: *mut RawUno, mv: f64, cycles: u64);
     pub fn uno_set_brown_out(uno: *mut RawUno, mv: f64);
     pub fn uno_set_bandgap(uno: *mut RawUno, mv: f64);
+    pub fn uno_set_contact(uno: *mut RawUno, address: u16, bit: u8, closed: bool);
     pub fn uno_set_analog(uno: *mut RawUno, channel: u8, mv: u16);
 }

@@ -22,7 +22,7 @@ const DATA_SPACE: u64 = 0x80_0000;
 /// The address of the EEPROM there.
 const EEPROM_SPACE: u64 = 0x81_0000;
 
-/// The reason for which an image cannot be loaded.
+/// The reason why an image cannot be loaded.
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
     /// The file cannot be read.
@@ -103,7 +103,7 @@ impl Symbol {
         path.trim_end_matches("::").to_owned()
     }
 
-    fn is(&self, path: &str) -> bool {
+    fn matches_path(&self, path: &str) -> bool {
         let own = self.path();
         let outer = own.strip_suffix(path);
         outer.is_some_and(|outer| outer.is_empty() || outer.ends_with("::"))
@@ -254,7 +254,7 @@ impl Image {
     /// it) or more than one.
     #[must_use]
     pub fn function(&self, path: &str) -> Option<&Symbol> {
-        self.only(path, |symbol| symbol.function)
+        self.unique_symbol(path, |symbol| symbol.function)
     }
 
     /// The data address of the one variable whose path ends with `path`, such as
@@ -262,14 +262,14 @@ impl Image {
     #[must_use]
     pub fn variable(&self, path: &str) -> Option<u16> {
         let in_data = |symbol: &Symbol| (DATA_SPACE..EEPROM_SPACE).contains(&symbol.address);
-        let symbol = self.only(path, in_data)?;
+        let symbol = self.unique_symbol(path, in_data)?;
         Some((symbol.address - DATA_SPACE) as u16)
     }
 
     /// The symbol whose path ends with `path`, among those of a kind; `None` unless all that match
     /// have one address.
-    fn only(&self, path: &str, is_of_kind: impl Fn(&Symbol) -> bool) -> Option<&Symbol> {
-        let matches = |symbol: &&Symbol| is_of_kind(symbol) && symbol.is(path);
+    fn unique_symbol(&self, path: &str, is_of_kind: impl Fn(&Symbol) -> bool) -> Option<&Symbol> {
+        let matches = |symbol: &&Symbol| is_of_kind(symbol) && symbol.matches_path(path);
         let mut found = self.symbols.iter().filter(matches);
         let first = found.next()?;
         found

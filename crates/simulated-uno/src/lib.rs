@@ -38,6 +38,7 @@ mod adc;
 #[cfg(feature = "avr-gcc")]
 pub mod avr_gcc;
 mod boot;
+mod contact;
 mod disturb;
 mod eeprom;
 mod ffi;
@@ -49,19 +50,28 @@ mod pin;
 mod port;
 #[cfg(target_os = "linux")]
 mod pty;
+#[cfg(target_os = "linux")]
+mod radio;
 mod reset;
+mod serial;
 mod supply;
 mod traces;
 mod uno;
+#[cfg(target_os = "linux")]
+mod wire;
 
 pub use eeprom::{EEPROM_SIZE, EepromMode, EepromOperation, PowerCut};
 pub use image::{FLASH_SIZE, Image, LoadError, SRAM_END, SRAM_START, Symbol};
 pub use pin::{Edge, Pin, Pulse, most_pins_high, pulses};
 #[cfg(target_os = "linux")]
 pub use port::{Background, Port};
+#[cfg(target_os = "linux")]
+pub use radio::{Air, Radio};
 pub use reset::{Reset, ResetCause};
 pub use traces::{Call, Mark, SerialByte, VectorUse, vector_name};
 pub use uno::{Fidelity, State, Uno};
+#[cfg(target_os = "linux")]
+pub use wire::Wire;
 
 /// The examples of README.md, as tests.
 #[cfg(all(doctest, feature = "avr-gcc"))]

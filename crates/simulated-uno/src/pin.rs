@@ -15,7 +15,7 @@ impl Pin {
     /// If the UNO has no such pin (`n` > 13).
     #[must_use]
     pub const fn d(n: u8) -> Self {
-        assert!(n <= 13, "an UNO has D0 to D13");
+        assert!(n <= 13, "a UNO has D0 to D13");
         Self(n)
     }
 
@@ -25,7 +25,7 @@ impl Pin {
     /// If the UNO has no such pin (`n` > 5).
     #[must_use]
     pub const fn a(n: u8) -> Self {
-        assert!(n <= 5, "an UNO has A0 to A5");
+        assert!(n <= 5, "a UNO has A0 to A5");
         Self(A0 + n)
     }
 
@@ -36,7 +36,7 @@ impl Pin {
     /// If the UNO has no such pin (`n` > 19).
     #[must_use]
     pub const fn arduino(n: u8) -> Self {
-        assert!(n <= 19, "an UNO's pins are 0 to 19");
+        assert!(n <= 19, "a UNO's pins are 0 to 19");
         Self(n)
     }
 

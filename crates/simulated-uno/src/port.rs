@@ -4,7 +4,7 @@
 //! avrdude, a terminal program or a host tool cannot wait for a simulation that knows
 //! cycles only. Here the chip's time follows real time, bytes go through a pseudo
 //! terminal such as /dev/pts/3, and opening it resets the chip, as the DTR line of a USB
-//! cable does on an UNO.
+//! cable does on a UNO.
 //!
 //! The speed that a program sets at the port is that of the line: at another speed than the
 //! chip's, both read other bytes than were sent. It is 115200 baud until a program sets it.
@@ -18,7 +18,7 @@
 //! use simulated_uno::{Fidelity, Port, Uno};
 //! let mut uno = Uno::load("firmware.elf", Fidelity::DataSheet)?;
 //! let mut port = Port::new()?;
-//! println!("an UNO is at {}", port.path().display());
+//! println!("a UNO is at {}", port.path().display());
 //! port.serve(&mut uno, Duration::from_secs(60))?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -33,7 +33,8 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use crate::pty::Pty;
-use crate::{FREQUENCY, State, Uno, ffi};
+use crate::serial::sample_byte;
+use crate::{FREQUENCY, Radio, State, Uno};
 
 /// The time between two checks of the port; the USB chip of a UNO has the same.
 const TICK: Duration = Duration::from_millis(1);
@@ -54,6 +55,8 @@ pub struct Port {
     /// The chip's bytes that wait for room in the pseudo terminal.
     unread: Vec<u8>,
     open: bool,
+    /// The module between the port and the chip, in place of a cable.
+    radio: Option<Radio>,
     /// The wall clock's time and the chip's cycle at the same moment.
     anchor: Option<(Instant, u64)>,
 }
@@ -68,8 +71,16 @@ impl Port {
             pty: Pty::new()?,
             unread: Vec::new(),
             open: false,
+            radio: None,
             anchor: None,
         })
+    }
+
+    /// The same port behind a radio module: opening it resets nothing, and its speed is the module's.
+    #[must_use]
+    pub fn by_radio(mut self, radio: Radio) -> Self {
+        self.radio = Some(radio);
+        self
     }
 
     /// The file that other programs open, such as /dev/pts/3.
@@ -133,25 +144,38 @@ impl Port {
         self.open = look.open;
         if look.opened {
             self.unread.clear();
-            uno.take_transmitted();
-            uno.reset();
+            if self.radio.is_none() {
+                uno.take_transmitted();
+                uno.reset();
+            }
         }
-        let baud = self.pty.baud()?;
+        let baud = match &self.radio {
+            Some(radio) => radio.baud(),
+            None => self.pty.baud()?,
+        };
         uno.set_baud(baud);
         let room = MOST_UNSENT.saturating_sub(uno.unsent());
         let mut bytes = [0; MOST_UNSENT];
         let read = self.pty.read(&mut bytes[..room])?;
-        uno.send(&bytes[..read]);
+        match &mut self.radio {
+            Some(radio) => radio.write(&bytes[..read], uno.cycle()),
+            None => uno.send(&bytes[..read]),
+        }
         if *uno.state() == State::Alive {
             uno.run_until_cycle(self.due(uno.cycle()));
         }
         uno.forget_received();
-        let sent = uno.take_transmitted();
-        let ratio = uno.chip_baud() / baud;
+        let arrived = match &mut self.radio {
+            Some(radio) => radio.exchange(uno),
+            None => {
+                let ratio = uno.chip_baud() / baud;
+                let sent = uno.take_transmitted();
+                sent.iter().map(|it| sample_byte(it.byte, ratio)).collect()
+            }
+        };
         // Checked again, since this program may have been held up meanwhile.
         if self.open && self.pty.is_open()? {
-            self.unread
-                .extend(sent.iter().map(|sent| sampled(sent.byte, ratio)));
+            self.unread.extend(arrived);
             self.unread.truncate(MOST_UNREAD);
             let written = self.pty.write(&self.unread)?;
             self.unread.drain(..written);
@@ -170,12 +194,6 @@ impl Port {
         }
         due.min(most)
     }
-}
-
-/// The byte that a receiver reads if its bits are `ratio` times as long as the sender's.
-fn sampled(byte: u8, ratio: f64) -> u8 {
-    // SAFETY: the shim computes with two numbers.
-    unsafe { ffi::uno_sampled(byte, ratio) }
 }
 
 fn cycles(time: Duration) -> u64 {

@@ -36,7 +36,7 @@ impl Uno {
     /// recorded as low. A halted or crashed firmware runs again. It has no effect without
     /// power, or while the supply is too low.
     ///
-    /// The chip's start-up delay (65 ms on an UNO) is not simulated.
+    /// The chip's start-up delay (65 ms on a UNO) is not simulated.
     pub fn reset(&mut self) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim resets the chip at
         // any moment between two runs, and this is one.

@@ -6,7 +6,7 @@ use std::sync::Once;
 
 use crate::ffi::{self, RawList, RawUno};
 use crate::image::{Image, LoadError, SRAM_END};
-use crate::traces::{Call, Mark, SerialByte, VectorUse};
+use crate::traces::{Call, Mark, VectorUse};
 use crate::{CYCLES_PER_MS, Edge, FREQUENCY, Pin, Pulse};
 
 /// The fidelity of the simulation.
@@ -60,9 +60,6 @@ pub struct Uno {
 unsafe impl Send for Uno {}
 
 impl Uno {
-    /// The sender's baud rate unless [`Uno::set_baud`] changes it.
-    pub const BAUD: f64 = 115_200.0;
-
     /// A board with this ELF file in flash, at the moment of power-on.
     ///
     /// # Errors
@@ -160,13 +157,7 @@ impl Uno {
         }
     }
 
-    /// Runs until the UNO has sent a complete line, for at most `limit` cycles.
-    /// True if it has sent one.
-    pub fn run_until_line(&mut self, limit: u64) -> bool {
-        self.run_to(self.cycle() + limit, true)
-    }
-
-    fn run_to(&mut self, until: u64, stop_at_line: bool) -> bool {
+    pub(crate) fn run_to(&mut self, until: u64, stop_at_line: bool) -> bool {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim stops at any cycle,
         // and every value that it returns is one of `Stop`.
         let stop = unsafe {
@@ -189,113 +180,6 @@ impl Uno {
             }
         }
         false
-    }
-
-    /// Queues bytes for the serial line. They are sent back to back at the baud rate,
-    /// whether or not the firmware keeps up.
-    pub fn send(&mut self, bytes: &[u8]) {
-        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim copies `len` bytes from
-        // a slice that has them.
-        unsafe { ffi::uno_send(self.raw, bytes.as_ptr(), bytes.len(), false) }
-    }
-
-    /// Sends a line with its end, `\n`, and returns the next complete line that the UNO sends,
-    /// without its end. `None` if it sends none within a second of the chip's time, or if
-    /// the firmware runs no more.
-    ///
-    /// Takes all that the UNO has transmitted, before and meanwhile, as
-    /// [`Uno::take_transmitted`] does. A line that the UNO began earlier counts as the
-    /// answer: with a firmware that sends lines of its own accord, use [`Uno::send`] and
-    /// [`Uno::run_until_line`].
-    pub fn say(&mut self, line: &str) -> Option<String> {
-        self.take_transmitted();
-        self.send(line.as_bytes());
-        self.send(b"\n");
-        if !self.run_until_line(FREQUENCY) {
-            return None;
-        }
-        let bytes = self.take_transmitted();
-        let bytes: Vec<u8> = bytes.iter().map(|byte| byte.byte).collect();
-        let text = String::from_utf8_lossy(&bytes);
-        Some(text.trim_end_matches(['\r', '\n']).to_owned())
-    }
-
-    /// Sends bytes as [`Uno::send`] does, but with the line low in place of each stop bit, as after
-    /// noise or a missed start bit: the byte arrives with a framing error, FE0 in
-    /// UCSR0A. The next byte begins as usual.
-    pub fn send_with_framing_error(&mut self, bytes: &[u8]) {
-        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim copies `len` bytes from
-        // a slice that has them.
-        unsafe { ffi::uno_send(self.raw, bytes.as_ptr(), bytes.len(), true) }
-    }
-
-    /// Saturates the serial line: repeats `bytes` forever once the queue is
-    /// empty. An empty slice ends the flood.
-    pub fn flood(&mut self, bytes: &[u8]) {
-        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim copies `len` bytes from
-        // a slice that has them.
-        unsafe { ffi::uno_flood(self.raw, bytes.as_ptr(), bytes.len()) }
-    }
-
-    /// Changes the sender's baud rate, from the next byte on.
-    ///
-    /// # Panics
-    /// Beyond 1 to 10 million.
-    pub fn set_baud(&mut self, baud: f64) {
-        assert!(
-            (1.0..=1e7).contains(&baud),
-            "a sender has 1 to 10 million baud, not {baud}"
-        );
-        // SAFETY: `raw` is valid and ours alone, see `Uno`; with such a rate a bit's cycles
-        // are a number that C can convert.
-        unsafe { ffi::uno_set_baud(self.raw, baud) }
-    }
-
-    /// The present baud rate of the chip's USART, by its registers.
-    #[must_use]
-    pub fn chip_baud(&self) -> f64 {
-        // SAFETY: `raw` is valid, see `Uno`; the shim reads registers.
-        FREQUENCY as f64 / f64::from(unsafe { ffi::uno_cycles_per_bit(self.raw) })
-    }
-
-    /// The number of queued bytes that have not arrived yet.
-    #[must_use]
-    pub fn unsent(&self) -> usize {
-        // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
-        unsafe { ffi::uno_unsent(self.raw) }
-    }
-
-    /// The number of bytes sent so far, a flood's included.
-    #[must_use]
-    pub fn bytes_sent(&self) -> u64 {
-        // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
-        unsafe { ffi::uno_sent(self.raw) }
-    }
-
-    /// The number of bytes lost because the firmware read UDR0 too late. Always 0 in
-    /// [`Fidelity::Stock`].
-    #[must_use]
-    pub fn overruns(&self) -> u64 {
-        // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
-        unsafe { ffi::uno_overruns(self.raw) }
-    }
-
-    /// The bytes transmitted by the UNO since the last [`Uno::take_transmitted`].
-    #[must_use]
-    pub fn transmitted(&self) -> Vec<SerialByte> {
-        self.list(ffi::uno_transmitted)
-    }
-
-    /// Takes the bytes transmitted since the last call.
-    pub fn take_transmitted(&mut self) -> Vec<SerialByte> {
-        self.take(ffi::uno_transmitted)
-    }
-
-    /// All bytes that have arrived at the UNO, lost bytes included, each with the cycle at
-    /// which it was complete.
-    #[must_use]
-    pub fn received_by_uno(&self) -> Vec<SerialByte> {
-        self.list(ffi::uno_received)
     }
 
     /// Edges of D2 to D13 and A0 to A5 since power-on or the last [`Uno::take_edges`].
@@ -447,7 +331,7 @@ impl Uno {
     }
 
     /// The items of one of the shim's lists, which is empty afterwards.
-    fn take<Item: Copy>(&mut self, of: ListOf) -> Vec<Item> {
+    pub(crate) fn take<Item: Copy>(&mut self, of: ListOf) -> Vec<Item> {
         let items = self.list(of);
         self.clear(of);
         items

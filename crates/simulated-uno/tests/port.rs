@@ -46,14 +46,14 @@ fn echo() -> Uno {
     Uno::with_image(IMAGE.clone(), Fidelity::DataSheet)
 }
 
-fn served() -> Background {
+fn serve_board() -> Background {
     let mut uno = echo();
     uno.run_ms(1);
     let port = Port::new().expect("a pseudo terminal");
     port.in_background(uno, |_| {}).expect("a thread")
 }
 
-fn stopped(board: Background) -> Uno {
+fn stop_board(board: Background) -> Uno {
     let uno = LIMIT.within("the end of the port's thread", || board.stop());
     uno.expect("the port was well")
 }
@@ -80,7 +80,7 @@ fn bytes(port: &File, count: usize) -> Vec<u8> {
 /// Lets the chip live for so long by its own time, however slow the machine.
 fn serve(port: &mut Port, uno: &mut Uno, ms: u64) {
     let end = uno.cycle() + ms * CYCLES_PER_MS;
-    LIMIT.until("the chip's time to pass", || {
+    LIMIT.expect("the chip's time to pass", || {
         let step = Duration::from_millis(5);
         port.serve(uno, step).expect("it is served");
         uno.cycle() >= end
@@ -93,19 +93,19 @@ fn marks(uno: &Uno) -> Vec<u8> {
 
 #[test]
 fn bytes_pass_both_ways_as_they_are() {
-    let board = served();
+    let board = serve_board();
     let mut port = open(board.path());
     assert_eq!(read(&port, 2), "<r");
     // What a terminal would swallow or change: CR, LF, interrupt, end of file.
     port.write_all(b"\r\n\x03\x04\x7f").expect("it takes bytes");
     assert_eq!(read(&port, 5), "\x0e\x0b\x04\x05\u{fffd}");
     drop(port);
-    stopped(board);
+    stop_board(board);
 }
 
 #[test]
 fn a_program_at_another_speed_than_the_chip_reads_other_bytes() {
-    let board = served();
+    let board = serve_board();
     let mut port = open(board.path());
     assert_eq!(read(&port, 2), "<r");
     let mut settings = tcgetattr(&port).expect("its settings");
@@ -116,24 +116,24 @@ fn a_program_at_another_speed_than_the_chip_reads_other_bytes() {
     // at its bits 3.1, 5.1 and 7.1, which are 0, at its stop bit and in the silence.
     assert_eq!(bytes(&port, 1), [0b1111_1000]);
     drop(port);
-    stopped(board);
+    stop_board(board);
 }
 
 #[test]
 fn every_opening_resets_the_chip_however_short_the_pause_before() {
-    let board = served();
+    let board = serve_board();
     for _ in 0..5 {
         let port = open(board.path());
         assert_eq!(read(&port, 2), "<r");
         drop(port);
     }
-    let uno = stopped(board);
+    let uno = stop_board(board);
     assert_eq!(marks(&uno), [1, 2, 3, 4, 5, 6], "power-on and five resets");
 }
 
 #[test]
 fn a_second_program_does_not_reset_the_chip() {
-    let board = served();
+    let board = serve_board();
     let mut port = open(board.path());
     assert_eq!(read(&port, 2), "<r");
     let second = open(board.path());
@@ -141,12 +141,12 @@ fn a_second_program_does_not_reset_the_chip() {
     drop(second);
     port.write_all(b"a").expect("it takes bytes");
     assert_eq!(read(&port, 1), "b");
-    let uno = stopped(board);
+    let uno = stop_board(board);
     assert_eq!(marks(&uno), [1, 2]);
 }
 
 #[test]
-fn what_the_chip_says_while_the_port_is_closed_is_lost() {
+fn output_while_the_port_is_closed_is_lost() {
     let mut uno = echo();
     let mut port = Port::new().expect("a pseudo terminal");
     serve(&mut port, &mut uno, 20);
@@ -163,7 +163,7 @@ fn what_the_chip_says_while_the_port_is_closed_is_lost() {
 }
 
 #[test]
-fn what_a_program_leaves_unread_is_not_there_for_the_next() {
+fn unread_output_is_dropped_before_the_next_program_opens_the_port() {
     let mut uno = echo();
     let mut port = Port::new().expect("a pseudo terminal");
     serve(&mut port, &mut uno, 20);

@@ -52,9 +52,9 @@ fn every_opening_by_another_program_resets_the_chip_once() {
         openings += 1;
         let mut reader = Command::new("bash");
         reader.args(["-c", READER]).arg(board.path());
-        let said = LIMIT.output(&mut reader, b"").expect("the chip answers");
-        let said = String::from_utf8_lossy(&said.stdout);
-        assert_eq!(said, "<r", "opening {openings}");
+        let printed = LIMIT.output(&mut reader, b"").expect("the chip answers");
+        let printed = String::from_utf8_lossy(&printed.stdout);
+        assert_eq!(printed, "<r", "opening {openings}");
     }
     OVER.store(true, Ordering::Relaxed);
     for other in others {

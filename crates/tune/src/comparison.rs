@@ -4,7 +4,7 @@ use lizard_kinematics::Check;
 use lizard_robot::CheckedGait;
 use serde::Serialize;
 
-use crate::judge::{Built, Judge};
+use crate::judge::{BuiltGait, Judge};
 use crate::variation::quantiles;
 
 /// Two gaits on the same random robots.
@@ -47,8 +47,8 @@ pub struct Figures {
 
 impl Comparison {
     /// Walks both gaits on the judge's robots.
-    pub(crate) fn of(judge: &Judge, rate: f64, gait: &CheckedGait, found: &Built) -> Self {
-        // At another pace it goes the same distance in another time.
+    pub(crate) fn of(judge: &Judge, rate: f64, gait: &CheckedGait, found: &BuiltGait) -> Self {
+        // At another pace the gait covers the same distance in another time.
         let paced = gait.audit().peak.speed / rate;
         let (before, all_before) = Figures::of(judge, gait, paced);
         let (tuned, all_tuned) = Figures::of(judge, found.gait(), 1.0);
@@ -80,7 +80,7 @@ impl Comparison {
 }
 
 impl Figures {
-    /// Walks a gait whose cycle is made `paced` times as long; also returns its speed on each robot.
+    /// Walks a gait whose period is multiplied by `paced`; also returns its speed on each robot.
     fn of(judge: &Judge, gait: &CheckedGait, paced: f64) -> (Self, Vec<f64>) {
         let period = gait.period() * paced;
         let audit = gait.audit();
@@ -94,8 +94,8 @@ impl Figures {
             period,
             rate: audit.peak.speed / paced,
             margin: (Check::name(least.what), least.value),
-            predicted: judge.goal().reached(&judge.cycle(gait)) / period,
-            sg90: judge.exact(gait, period),
+            predicted: judge.goal().progress(&judge.cycle(gait)) / period,
+            sg90: judge.speed_on_robot(gait, period),
             speeds: quantiles(speeds.clone(), [0.05, 0.5, 0.95]),
         };
         (figures, speeds)

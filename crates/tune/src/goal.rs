@@ -5,7 +5,7 @@ use lizard_robot::{CheckedGait, Ground, Travel};
 use thiserror::Error;
 
 /// Smallest movement of a cycle that counts: mm, deg.
-const NOWHERE: (f64, f64) = (1.0, 0.5);
+const LEAST_MOVEMENT: (f64, f64) = (1.0, 0.5);
 
 fn is_left(servo: usize) -> bool {
     LEGS[servo].starts_with('L')
@@ -48,12 +48,15 @@ impl Goal {
     /// For a gait that stands, goes along a curve, or depends on ties.
     pub fn of(gait: &CheckedGait, ground: &Ground) -> Result<Self, NoGoal> {
         let name = || gait.name().to_owned();
-        let way = gait.predict(&ground.rigid());
-        let (Some(forward), Some(turn)) = (way.forward, way.turn) else {
+        let movement = gait.predict(&ground.rigid());
+        let (Some(forward), Some(turn)) = (movement.forward, movement.turn) else {
             return Err(NoGoal::Undecided(name()));
         };
         let goes = |value: f64, least: f64| value.abs() >= least;
-        match (goes(forward, NOWHERE.0), goes(turn, NOWHERE.1)) {
+        match (
+            goes(forward, LEAST_MOVEMENT.0),
+            goes(turn, LEAST_MOVEMENT.1),
+        ) {
             (true, false) => Ok(Self::Ahead(forward.signum())),
             (false, true) => Ok(Self::Turn(turn.signum())),
             (false, false) => Err(NoGoal::Nowhere(name())),
@@ -62,18 +65,20 @@ impl Goal {
     }
 
     /// The part of a movement towards this goal, mm or deg.
-    pub fn reached(self, way: &Travel) -> f64 {
+    pub fn progress(self, movement: &Travel) -> f64 {
         match self {
-            Self::Ahead(sign) => sign * way.forward,
-            Self::Turn(sign) => sign * way.turn,
+            Self::Ahead(sign) => sign * movement.forward,
+            Self::Turn(sign) => sign * movement.turn,
         }
     }
 
     /// True if a movement has no part in other directions.
-    pub fn is_true_to(self, way: &Travel) -> bool {
+    pub fn is_true_to(self, movement: &Travel) -> bool {
         match self {
-            Self::Ahead(_) => way.turn.abs() < NOWHERE.1 && way.left.abs() < NOWHERE.0,
-            Self::Turn(_) => way.forward.hypot(way.left) < NOWHERE.0,
+            Self::Ahead(_) => {
+                movement.turn.abs() < LEAST_MOVEMENT.1 && movement.left.abs() < LEAST_MOVEMENT.0
+            }
+            Self::Turn(_) => movement.forward.hypot(movement.left) < LEAST_MOVEMENT.0,
         }
     }
 

@@ -21,13 +21,13 @@ const SLOWEST: f64 = 0.05;
 
 /// A gait with its period and its table for robot.toml.
 #[derive(Debug, Clone)]
-pub struct Built {
+pub struct BuiltGait {
     /// The robot with this gait and `stand` alone.
     robot: Robot,
     table: String,
 }
 
-impl Built {
+impl BuiltGait {
     /// Builds a gait with the shortest period at which no servo is faster than `rate` (deg/s);
     /// none if a limit of the robot forbids it.
     pub(crate) fn of(robot: &Robot, bars: &Bars, rate: f64) -> Option<Self> {
@@ -43,7 +43,7 @@ impl Built {
         let mut fits: Option<Self> = None;
         let mut built = build(SLOW)?;
         for _ in 0..FITS {
-            let period = fitted(built.gait().period() * built.peak() / rate);
+            let period = round_period(built.gait().period() * built.peak() / rate);
             if period > LONGEST {
                 return None;
             }
@@ -95,7 +95,7 @@ impl Built {
 }
 
 /// Rounds a period up to hundredths of a second, at least 0.2.
-fn fitted(period: f64) -> f64 {
+fn round_period(period: f64) -> f64 {
     // A rounding error must not lead to the next hundredth.
     ((period * 100.0 - 1e-6).ceil() / 100.0).max(0.2)
 }
@@ -123,14 +123,14 @@ impl Judge {
 
     /// Computes the speed of a gait on each random robot, mm/s or deg/s.
     pub fn speeds(&self, gait: &CheckedGait, period: f64) -> Vec<f64> {
-        let way = |varied: &Variation| varied.walked(&self.robot, gait, SERVOS);
-        let speed = |varied: &Variation| self.goal.reached(&way(varied)) / period;
+        let movement = |varied: &Variation| varied.walked(&self.robot, gait, SERVOS);
+        let speed = |varied: &Variation| self.goal.progress(&movement(varied)) / period;
         self.robots.iter().map(speed).collect()
     }
 
     /// Computes the speed of a gait on the robot itself, mm/s or deg/s.
-    pub fn exact(&self, gait: &CheckedGait, period: f64) -> f64 {
-        self.goal.reached(&self.way(gait)) / period
+    pub fn speed_on_robot(&self, gait: &CheckedGait, period: f64) -> f64 {
+        self.goal.progress(&self.cycle_by_frames(gait)) / period
     }
 
     /// The goal of the gaits.
@@ -144,7 +144,7 @@ impl Judge {
     }
 
     /// Follows a cycle frame by frame on the robot itself.
-    fn way(&self, gait: &CheckedGait) -> Travel {
+    fn cycle_by_frames(&self, gait: &CheckedGait) -> Travel {
         Variation::none(&self.ground).walked(&self.robot, gait, SERVOS)
     }
 
@@ -179,7 +179,7 @@ mod tests {
     #[test]
     fn the_papers_legs_swing_as_wide_as_their_margin_allows() {
         // sin(41.41 deg - amplitude) = 0.3.
-        let widest = Built::widest(&paper(), Goal::Ahead(1.0), 262.0);
+        let widest = BuiltGait::widest(&paper(), Goal::Ahead(1.0), 262.0);
         assert!(
             (widest - (41.41 - 0.3f64.asin().to_degrees())).abs() < 0.4,
             "{widest}"
@@ -191,7 +191,7 @@ mod tests {
         let robot = paper();
         let plan = plan(45.0, 0.375);
         for rate in [150.0, 262.2, 300.0] {
-            let built = Built::of(&robot, &plan, rate).expect("it walks");
+            let built = BuiltGait::of(&robot, &plan, rate).expect("it walks");
             assert!(
                 built.peak() <= rate && built.peak() > 0.97 * rate,
                 "{rate} {}",
@@ -204,7 +204,7 @@ mod tests {
     fn a_gait_beyond_a_limit_is_not_built() {
         // 45 deg to either side take the legs beyond their margin.
         let wide = plan(45.0, 1.0);
-        assert!(Built::of(&paper(), &wide, 250.0).is_none());
+        assert!(BuiltGait::of(&paper(), &wide, 250.0).is_none());
     }
 
     #[test]
@@ -217,7 +217,7 @@ mod tests {
             let gait = robot.gait(name).expect(name);
             let judge = Judge::new(&robot, robot.ground(), goal, 20, 0);
             let score = judge.score(gait).expect("it leads there");
-            let exact = judge.exact(gait, gait.period());
+            let exact = judge.speed_on_robot(gait, gait.period());
             assert!(least < score && score < exact, "{name} {score} {exact}");
         }
         let walk = robot.gait("walk").expect("walk");

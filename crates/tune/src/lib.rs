@@ -31,8 +31,8 @@ mod variation;
 
 pub use comparison::{Comparison, Figures};
 pub use goal::Goal;
-pub use judge::Built;
+pub use judge::BuiltGait;
 pub use plan::Kind;
 pub use search::{Search, trials};
-pub use tuning::{NoTuning, Scored, Tuning};
-pub use variation::{PLAYED, SPREAD, Variation, quantiles};
+pub use tuning::{NoTuning, ScoredParameters, Tuning};
+pub use variation::{FRICTION, PLAY_SPREAD, SPREAD, Variation, quantiles};

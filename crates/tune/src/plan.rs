@@ -84,7 +84,11 @@ pub fn planned(kind: Kind, space: Space, name: &str, parameters: &[f64]) -> Bars
             let starts = starts.map(|start| rounded(start, 2));
             (rounded(between(0, DUTIES), 2), starts, 2)
         }
-        Kind::Held => (DUTIES.0, turns(at(0)).map(|turn| turn as f64 / 4.0), 1),
+        Kind::Held => (
+            DUTIES.0,
+            order_of_turns(at(0)).map(|turn| turn as f64 / 4.0),
+            1,
+        ),
     };
     let balance = BALANCE * (2.0 * at(amplitude + 1) - 1.0);
     let pairs = [1.0 + balance.min(0.0), 1.0 - balance.max(0.0)].map(|gain| rounded(gain, 2));
@@ -106,7 +110,7 @@ fn rounded(value: f64, digits: i32) -> f64 {
 }
 
 /// One of the 24 orders of four legs: each leg's turn, in servo order.
-fn turns(at: f64) -> [usize; 4] {
+fn order_of_turns(at: f64) -> [usize; 4] {
     let mut left = vec![3, 0, 2, 1];
     let mut number = ((at * 24.0) as usize).min(23);
     let mut turns = [0; 4];
@@ -128,10 +132,10 @@ mod tests {
     #[test]
     fn every_order_comes_up_once() {
         let mut orders: Vec<[usize; 4]> = (0..24)
-            .map(|n| turns((f64::from(n) + 0.5) / 24.0))
+            .map(|n| order_of_turns((f64::from(n) + 0.5) / 24.0))
             .collect();
         assert_eq!(orders[0], [1, 3, 2, 0]);
-        assert_eq!(turns(1.0), orders[23]);
+        assert_eq!(order_of_turns(1.0), orders[23]);
         orders.sort_unstable();
         orders.dedup();
         assert_eq!(orders.len(), 24);

@@ -5,7 +5,7 @@ use thiserror::Error;
 
 use crate::comparison::Comparison;
 use crate::goal::{Goal, NoGoal};
-use crate::judge::{Built, Judge};
+use crate::judge::{BuiltGait, Judge};
 use crate::plan::{Kind, Space, planned};
 use crate::search::Search;
 
@@ -37,7 +37,7 @@ pub enum NoTuning {
 
 /// Parameters of a gait and their score.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Scored {
+pub struct ScoredParameters {
     /// Kind of the gait.
     pub kind: Kind,
     /// Score of the gait by [`Tuning::score`], mm/s or deg/s.
@@ -78,7 +78,7 @@ impl Tuning {
     ) -> Result<Self, NoTuning> {
         let goal = Goal::of(gait, ground)?;
         let rate = allowed(robot, gait, rate)?;
-        let widest = Built::widest(robot, goal, rate);
+        let widest = BuiltGait::widest(robot, goal, rate);
         Ok(Self {
             robot: robot.clone(),
             ground: *ground,
@@ -114,7 +114,7 @@ impl Tuning {
     }
 
     /// Builds the gait with the best score whose movement does not depend on ties.
-    pub fn best(&self, mut scored: Vec<Scored>) -> Option<Built> {
+    pub fn best(&self, mut scored: Vec<ScoredParameters>) -> Option<BuiltGait> {
         scored.sort_by(|a, b| b.score.total_cmp(&a.score));
         scored
             .iter()
@@ -124,15 +124,15 @@ impl Tuning {
 
     /// Compares the gait that was found with the given one, on this number of random robots that
     /// the search has not used.
-    pub fn compare(&self, found: &Built, robots: usize) -> Comparison {
+    pub fn compare(&self, found: &BuiltGait, robots: usize) -> Comparison {
         let seed = self.seed.wrapping_add(FRESH);
         let judge = Judge::new(&self.robot, &self.ground, self.goal(), robots, seed);
         Comparison::of(&judge, self.rate, &self.gait, found)
     }
 
-    fn build(&self, kind: Kind, parameters: &[f64]) -> Option<Built> {
+    fn build(&self, kind: Kind, parameters: &[f64]) -> Option<BuiltGait> {
         let bars = planned(kind, self.space, &self.name, parameters);
-        Built::of(&self.robot, &bars, self.rate)
+        BuiltGait::of(&self.robot, &bars, self.rate)
     }
 }
 

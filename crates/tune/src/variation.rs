@@ -5,14 +5,14 @@ use fastrand::Rng;
 use lizard_robot::{
     Body, CheckedGait, Drive, Feet, Ground, Kind, Robot, Stance, Strut, Travel, Walker,
 };
-use lizard_twin::ServoModel;
+use lizard_twin::{FRAME, ServoModel};
 
 /// Phases of a cycle.
 const PHASES: f64 = 65536.0;
 
 /// Spread of friction: a factor on robot.toml's value, uniform within these bounds. The other
 /// constants are likewise factors, or mm and deg to either side.
-const FRICTION: (f64, f64) = (0.5, 1.5);
+pub const FRICTION: (f64, f64) = (0.5, 1.5);
 const PADS: (f64, f64) = (0.9, 1.1);
 const CENTRE: f64 = 8.0;
 const MOUNT: f64 = 4.0;
@@ -29,7 +29,7 @@ mounting +-4 deg, hips +-2 mm, springs x 0.8 to 1.2, leaves of feet x 0.8 to 1.2
 -1 to 1 times what [feet] level says";
 
 /// The addition of [`Variation::with_play`] in words.
-pub const PLAYED: &str = "play of the legs 0 to 1 deg more";
+pub const PLAY_SPREAD: &str = "play of the legs 0 to 1 deg more";
 
 /// A robot and a floor that differ at random from those of robot.toml.
 #[derive(Debug, Clone, Copy)]
@@ -113,10 +113,26 @@ impl Variation {
     #[must_use]
     pub fn walked(&self, robot: &Robot, gait: &CheckedGait, model: ServoModel) -> Travel {
         let mut sweeps = gait.sweeps(gait.phase(0.0));
+        let targets = |phase: u16| gait.sweeps(f64::from(phase) / PHASES);
+        if let ServoModel::Motors(motors) = model {
+            let mut walker = Walker::with_unevenness(self.ground, sweeps, self.pads, self.ratio);
+            let mut cycle = || {
+                let begin = walker.place();
+                for (_, phase) in gait.frames().skip(1) {
+                    walker.drive(targets(phase).map(Some), FRAME, &motors);
+                }
+                walker.place().seen_from(begin)
+            };
+            cycle();
+            return cycle();
+        }
         let mut next = |phase: u16| {
-            let targets = gait.sweeps(f64::from(phase) / PHASES);
-            sweeps = std::array::from_fn(|i| {
-                model.turned(sweeps[i], targets[i], robot.servos()[i].us_per_degree)
+            let targets = targets(phase);
+            sweeps = std::array::from_fn(|i| match model {
+                ServoModel::Unloaded(servo) => {
+                    servo.sweep_after_frame(sweeps[i], targets[i], robot.servos()[i].us_per_degree)
+                }
+                _ => targets[i],
             });
             sweeps
         };
@@ -125,7 +141,7 @@ impl Variation {
         // With rigid legs the first cycle changes only the servos.
         let sprung = self.ground.drive.lags();
         let from = if sprung { begin } else { end };
-        let mut walker = Walker::uneven(self.ground, from, self.pads, self.ratio);
+        let mut walker = Walker::with_unevenness(self.ground, from, self.pads, self.ratio);
         if sprung {
             first.into_iter().for_each(|sweeps| {
                 walker.step(sweeps);
@@ -160,15 +176,15 @@ mod tests {
     fn walk_goes_ahead_on_nearly_every_robot_and_floor() {
         let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
         let walk = robot.gait("walk").expect("walk");
-        let ways: Vec<Travel> = (0..40)
+        let movements: Vec<Travel> = (0..40)
             .map(|seed| Variation::of(robot.ground(), seed).walked(&robot, walk, ServoModel::SG90))
             .collect();
         let of = |part: fn(&Travel) -> f64| {
-            quantiles(ways.iter().map(part).collect(), [0.05, 0.5, 0.95])
+            quantiles(movements.iter().map(part).collect(), [0.05, 0.5, 0.95])
         };
-        let [low, middle, high] = of(|way| way.forward);
+        let [low, middle, high] = of(|movement| movement.forward);
         assert!(25.0 < low && low < middle && middle < high && high < 40.0);
-        let turn = of(|way| way.turn);
+        let turn = of(|movement| movement.turn);
         assert!(turn[0] < 0.0 && turn[2] > 0.0, "{turn:?}");
     }
 
@@ -178,10 +194,10 @@ mod tests {
         let least = |feet: &str| {
             let robot = Robot::parse(&format!("{text}\n{feet}")).expect("right");
             let walk = robot.gait("walk").expect("walk");
-            let ways = (0..60).map(|seed| {
+            let movements = (0..60).map(|seed| {
                 Variation::of(robot.ground(), seed).walked(&robot, walk, ServoModel::SG90)
             });
-            let [least] = quantiles(ways.map(|way| way.forward).collect(), [0.05]);
+            let [least] = quantiles(movements.map(|movement| movement.forward).collect(), [0.05]);
             least
         };
         let level = least("[feet]\nlevel = 0.0");
@@ -213,12 +229,12 @@ mod tests {
             let robot = Robot::parse(text).expect("right");
             for name in ["walk", "left"] {
                 let gait = robot.gait(name).expect(name);
-                for model in [ServoModel::IDEAL, ServoModel::SG90] {
-                    let way = Variation::none(robot.ground()).walked(&robot, gait, model);
+                for model in [ServoModel::Ideal, ServoModel::SG90] {
+                    let movement = Variation::none(robot.ground()).walked(&robot, gait, model);
                     let twin = Twin::new(&robot, model).cycle(gait).travel();
-                    let off = (way.forward - twin.forward).hypot(way.turn - twin.turn);
+                    let off = (movement.forward - twin.forward).hypot(movement.turn - twin.turn);
                     // The twin reads waveforms of 64 samples, a search the gait itself.
-                    assert!(off < 0.4, "{name} {way:?} {twin:?}");
+                    assert!(off < 0.4, "{name} {movement:?} {twin:?}");
                 }
             }
         }

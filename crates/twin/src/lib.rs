@@ -1,14 +1,14 @@
 //! The robot behind its pulses: the movement of body, legs and feet that a board's pulses cause.
 //!
-//! A frame's four pulses go to the servos ([`ServoModel`]: their speed and their dead band), the
+//! A frame's four pulses go to the servos ([`ServoModel`]: their motors), the
 //! servos turn the linkage, struts or springs pull the legs along, and the contact model
 //! (`lizard_contact`) computes the movement of the body over the floor. [`Twin::push`] takes one
 //! frame and returns the result as a [`State`]. The crate reads, stores and prints nothing, so a
 //! program, a test and a web page can use it.
 //!
 //! # When not to use it
-//! The model is planar and quasi-static: feet do not lift, and nothing has inertia. Where these
-//! matter, `lizard mjcf` writes the robot for a physics engine. For the movement of a gait
+//! The model is planar: feet do not lift or tilt, and links do not bend. Where this
+//! matters, `lizard mjcf` writes the robot for a physics engine. For the movement of a gait
 //! without pulses and servos, `lizard_robot::CheckedGait::predict` is enough.
 //!
 //! # Units
@@ -23,7 +23,7 @@ mod state;
 mod tally;
 mod twin;
 
-pub use servo::ServoModel;
+pub use servo::{ServoModel, Unloaded};
 pub use shape::Shape;
 pub use state::State;
 pub use tally::Tally;

@@ -25,12 +25,12 @@ impl Shape {
     #[must_use]
     pub fn of(robot: &Robot, angles: [f64; 4], legs: [f64; 4]) -> Option<Self> {
         let solved = robot.lizard().solve(&angles.into()).ok()?;
-        Some(Self::of_solved(robot, &solved, legs))
+        Some(Self::at_solution(robot, &solved, legs))
     }
 
     /// Computes the joints of a pose that is solved already.
     #[must_use]
-    pub fn of_solved(robot: &Robot, solved: &Solution, legs: [f64; 4]) -> Self {
+    pub fn at_solution(robot: &Robot, solved: &Solution, legs: [f64; 4]) -> Self {
         let shafts = robot.lizard().shafts();
         let tips = solved.crank_tips();
         let angles: [f64; 4] = solved.pose.into();

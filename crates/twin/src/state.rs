@@ -39,7 +39,7 @@ const HOLDS: f64 = 0.01;
 impl State {
     /// True for each foot that did not slide in this frame.
     #[must_use]
-    pub fn holds(&self) -> [bool; 4] {
+    pub fn holding_feet(&self) -> [bool; 4] {
         self.slip.map(|slip| slip < HOLDS)
     }
 

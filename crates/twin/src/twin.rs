@@ -42,7 +42,7 @@ impl Twin {
         self.turn(targets)
     }
 
-    /// Follows a frame of 20 ms whose pulses are those of these servo angles: deg, chassis
+    /// Follows a frame of 20 ms with the pulses for these servo angles: deg, chassis
     /// frame.
     pub fn push_angles(&mut self, angles: [f64; 4]) -> State {
         let servos = self.robot.servos();
@@ -54,16 +54,33 @@ impl Twin {
     /// counter-clockwise positive.
     fn turn(&mut self, targets: [Option<f64>; 4]) -> State {
         let before = self.sweeps;
-        let mut errors = [0.0; 4];
-        for i in 0..4 {
-            let Some(target) = targets[i] else { continue };
-            let servo = &self.robot.servos()[i];
-            let (least, most) = servo.travel();
-            let target = target.clamp(least, most);
-            self.sweeps[i] = self.model.turned(before[i], target, servo.us_per_degree);
-            errors[i] = target - self.sweeps[i];
-        }
-        let slip = self.walker.step(self.leg_sweeps());
+        let servos = self.robot.servos();
+        let targets: [Option<f64>; 4] = std::array::from_fn(|i| {
+            let (least, most) = servos[i].travel();
+            targets[i].map(|target| target.clamp(least, most))
+        });
+        let slip = match self.model {
+            ServoModel::Motors(motors) => {
+                let forward = std::array::from_fn(|i| targets[i].map(|target| FORWARD[i] * target));
+                let slip = self.walker.drive(forward, FRAME, &motors);
+                let turned = self.walker.servos();
+                self.sweeps = std::array::from_fn(|i| FORWARD[i] * turned[i]);
+                slip
+            }
+            ServoModel::Ideal | ServoModel::Unloaded(_) => {
+                for i in 0..4 {
+                    let Some(target) = targets[i] else { continue };
+                    self.sweeps[i] = match self.model {
+                        ServoModel::Unloaded(model) => {
+                            model.sweep_after_frame(before[i], target, servos[i].us_per_degree)
+                        }
+                        _ => target,
+                    };
+                }
+                self.walker.step(self.leg_sweeps())
+            }
+        };
+        let errors = std::array::from_fn(|i| targets[i].map_or(0.0, |at| at - self.sweeps[i]));
         self.frame += 1;
         let angles = self.angles();
         let solved = self.robot.lizard().solve(&angles.into()).ok();

@@ -1,7 +1,7 @@
 //! Frames pushed one by one, compared with the prediction for the gait.
 
 use lizard_robot::{CheckedGait, Drive, Ground, Kind, Place, Robot};
-use lizard_twin::{ServoModel, Tally, Twin};
+use lizard_twin::{ServoModel, Tally, Twin, Unloaded};
 
 fn paper() -> Robot {
     Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is right")
@@ -45,7 +45,7 @@ fn ideal_servos_go_where_the_gait_is_predicted_to_go() {
     };
     for ground in [*robot.ground(), springs] {
         for gait in robot.gaits().iter().filter(|gait| gait.name() != "look") {
-            let tally = cycle(&robot, gait.name(), ServoModel::IDEAL, &ground);
+            let tally = cycle(&robot, gait.name(), ServoModel::Ideal, &ground);
             let (travel, wanted) = (tally.travel(), gait.walked(&ground).travel);
             let name = gait.name();
             assert!(
@@ -69,7 +69,7 @@ fn a_dead_band_costs_its_share_of_the_stroke() {
             .travel()
             .forward
     };
-    let (ideal, sg90) = (walk(ServoModel::IDEAL), walk(ServoModel::SG90));
+    let (ideal, sg90) = (walk(ServoModel::Ideal), walk(ServoModel::SG90));
     // A degree of 40 is lost where a leg turns round.
     assert!((sg90 / ideal - 39.0 / 40.0).abs() < 0.01, "{sg90} {ideal}");
 }
@@ -77,10 +77,10 @@ fn a_dead_band_costs_its_share_of_the_stroke() {
 #[test]
 fn servos_too_slow_for_a_gait_cut_its_stroke() {
     let robot = paper();
-    let slow = ServoModel {
+    let slow = ServoModel::Unloaded(Unloaded {
         rate: 120.0,
-        ..ServoModel::IDEAL
-    };
+        dead_band: 0.0,
+    });
     let tally = cycle(&robot, "walk", slow, robot.ground());
     assert!(tally.rate <= 120.0 + 1e-9 && tally.error > 5.0, "{tally:?}");
     assert!(tally.travel().forward < 25.0, "{tally:?}");
@@ -90,12 +90,16 @@ fn servos_too_slow_for_a_gait_cut_its_stroke() {
 fn three_feet_hold_while_one_returns() {
     let robot = paper();
     let crawl = robot.gait("crawl").expect("crawl");
-    let mut twin = Twin::new(&robot, ServoModel::IDEAL);
+    let mut twin = Twin::new(&robot, ServoModel::Ideal);
     for (seconds, phase) in crawl.frames() {
         let state = twin.push(widths(&robot, crawl, phase));
         // In the middle of the second fifth only the left hind leg moves.
         if (0.24..0.36).contains(&seconds) {
-            assert_eq!(state.holds(), [true, true, true, false], "at {seconds}");
+            assert_eq!(
+                state.holding_feet(),
+                [true, true, true, false],
+                "at {seconds}"
+            );
         }
     }
 }
@@ -153,9 +157,9 @@ fn a_cycle_is_what_its_frames_come_to() {
 }
 
 #[test]
-fn a_pulse_beyond_a_servos_travel_is_taken_for_its_end() {
+fn a_pulse_beyond_a_servos_travel_is_clamped_to_its_end() {
     let robot = paper();
-    let mut twin = Twin::new(&robot, ServoModel::IDEAL);
+    let mut twin = Twin::new(&robot, ServoModel::Ideal);
     let state = twin.push([Some(9000.0), None, None, None]);
     assert_eq!(state.angles[0], robot.servos()[0].neutral + 90.0);
 }

@@ -21,11 +21,13 @@ pub enum Activity {
     Starting,
     /// It answers a question.
     Talking,
+    /// A person drives it by radio.
+    Driving,
 }
 
 impl Activity {
     /// All of them.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Resting,
         Self::Waking,
         Self::Holding,
@@ -34,7 +36,15 @@ impl Activity {
         Self::Saving,
         Self::Starting,
         Self::Talking,
+        Self::Driving,
     ];
+
+    /// The activity of a scenario by its number: one in three is a drive.
+    #[must_use]
+    pub fn of(number: u64) -> Self {
+        let place = (number % 12) as usize;
+        Self::ALL.get(place).copied().unwrap_or(Self::Driving)
+    }
 }
 
 impl fmt::Display for Activity {

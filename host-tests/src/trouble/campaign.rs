@@ -1,4 +1,4 @@
-//! Many scenarios on all cores, and what came of them.
+//! Many scenarios on all cores, and their results.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -7,11 +7,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
 
 use lizard_robot::Robot;
-use lizard_rules::{Broken, Rule};
+use lizard_rules::{BrokenRule, Rule};
 use simulated_uno::Image;
 
 use super::activity::Activity;
-use super::judge::broken;
+use super::judge::broken_rules;
 use super::scenario::Scenario;
 use super::stage::play;
 
@@ -21,13 +21,13 @@ pub struct Failure {
     /// The scenario.
     pub scenario: Scenario,
     /// The broken rules.
-    pub broken: Vec<Broken>,
+    pub broken: Vec<BrokenRule>,
 }
 
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.scenario)?;
-        for Broken { rule, seen } in &self.broken {
+        for BrokenRule { rule, seen } in &self.broken {
             writeln!(f, "  does not hold: {}\n    {seen}", rule.sentence())?;
         }
         Ok(())
@@ -57,7 +57,7 @@ impl fmt::Display for Summary {
                 let (count, number) = (failures.len(), first.scenario.number);
                 writeln!(
                     f,
-                    "{count:6} times not so: {} (first in scenario {number})",
+                    "{count:6} times broken: {} (first in scenario {number})",
                     rule.sentence()
                 )?;
             }
@@ -66,11 +66,11 @@ impl fmt::Display for Summary {
     }
 }
 
-/// Plays one scenario and judges it; how many cycles it took, and what is broken.
+/// Plays and judges one scenario; returns its cycles, and the failure if a rule is broken.
 #[must_use]
 pub fn judge(image: &Image, robot: &Robot, scenario: &Scenario) -> (u64, Option<Failure>) {
     let record = play(image, robot, scenario);
-    let broken = broken(&record, robot, scenario);
+    let broken = broken_rules(&record, robot, scenario);
     let failure = (!broken.is_empty()).then(|| Failure {
         scenario: scenario.clone(),
         broken,

@@ -1,13 +1,13 @@
-//! A record as the events that the rules judge, and the rules that need the record.
+//! Converts a record to events for the observer, and checks the rules that need the record.
 
 use lizard_core::console::word::Effect;
 use lizard_core::memory::restart::Cause;
 use lizard_host::sim::lines::Line;
 use lizard_robot::Robot;
-use lizard_rules::{Broken, Event, Limits, Observer, Pulse, Rule, Time, led};
+use lizard_rules::{BrokenRule, Event, Limits, Observer, Pulse, Rule, Time, led};
 use simulated_uno::{Pin, ResetCause, State};
 
-use super::record::{Exchange, MS, Record};
+use super::record::{Exchange, MS, Record, Span};
 use super::scenario::Scenario;
 use super::setup::WIDE;
 
@@ -22,12 +22,12 @@ fn limits(robot: &Robot, scenario: &Scenario) -> Limits {
     let cycles = |us: f64| (us * 16.0).round() as u32;
     let pace = robot.pace();
     let fastest = pace.slew.max(pace.gait_slew);
-    let says = |text: &str| {
+    let mentions = |text: &str| {
         let mut steps = scenario.steps.iter();
         steps.any(|step| step.to_string().contains(text))
     };
     // With other numbers of a servo: the largest of both.
-    let wide = if says("scale ") { WIDE } else { "0" };
+    let wide = if mentions("scale ") { WIDE } else { "0" };
     let wide: f64 = wide.parse().expect("a number");
     let servos = robot.servos().each_ref();
     Limits {
@@ -36,19 +36,20 @@ fn limits(robot: &Robot, scenario: &Scenario) -> Limits {
         widths: servos.map(|servo| (cycles(servo.min_us) - 1, cycles(servo.max_us) + 1)),
         levels: robot.supplies().board.map(|volts| (1_000.0 * volts) as u32),
         frame_left: 25 * lizard_rules::MS,
-        until_told: 300 * lizard_rules::MS,
-        boots_to_rest: says("boot rest"),
-        brown_outs_forget: true,
-        is_narrowed: says("say limit ") && says("say factory"),
+        report_time: 300 * lizard_rules::MS,
+        queued: 150 * lizard_rules::MS,
+        boots_to_rest: mentions("boot rest"),
+        brown_outs_clear_ram: true,
+        is_narrowed: mentions("say limit ") && mentions("say factory"),
         ..Limits::default()
     }
 }
 
 /// Judges a record: each rule that is broken, once.
 #[must_use]
-pub fn broken(record: &Record, robot: &Robot, scenario: &Scenario) -> Vec<Broken> {
+pub fn broken_rules(record: &Record, robot: &Robot, scenario: &Scenario) -> Vec<BrokenRule> {
     let mut observer = Observer::new(limits(robot, scenario));
-    let mut all: Vec<Broken> = Vec::new();
+    let mut all: Vec<BrokenRule> = Vec::new();
     for (at, event) in events(record) {
         observer.observe(at, event);
         for mut broken in observer.take_broken() {
@@ -56,14 +57,17 @@ pub fn broken(record: &Record, robot: &Robot, scenario: &Scenario) -> Vec<Broken
             all.push(broken);
         }
     }
-    let checks: [(Rule, Result<(), String>); 4] = [
-        (Rule::Lives, lives(record)),
+    let checks: [(Rule, Result<(), String>); 7] = [
+        (Rule::Lives, check_alive(record)),
         (Rule::Stands, stands(record)),
         (Rule::Refused, refused_changes_nothing(record)),
         (Rule::Led, led_shows_the_fault(record)),
+        (Rule::OnTime, pulses_are_on_time(record)),
+        (Rule::Sent, nothing_is_done_that_nobody_sent(record)),
+        (Rule::Stopped, stop_is_insisted_on(record)),
     ];
     for (rule, held) in checks {
-        all.extend(held.err().map(|seen| Broken::new(rule, seen)));
+        all.extend(held.err().map(|seen| BrokenRule::new(rule, seen)));
     }
     all.sort_by_key(|broken| broken.rule);
     all.dedup_by_key(|broken| broken.rule);
@@ -106,9 +110,10 @@ pub fn events(record: &Record) -> Vec<(Time, Event<'_>)> {
     for received in record
         .received
         .iter()
-        .filter(|received| !received.text.trim().is_empty())
+        .filter(|received| !received.text.is_empty())
     {
-        add(received.cycle, Event::Line);
+        let is_command = received.is_command;
+        add(received.cycle, Event::Line { is_command });
         let saved = received.text == "save" && record.is_saved(received.cycle);
         if saved || received.text == "save" || received.effect == Effect::Calibrates {
             add(received.cycle, Event::Calibrated { saved });
@@ -121,7 +126,7 @@ pub fn events(record: &Record) -> Vec<(Time, Event<'_>)> {
     for line in &record.lines {
         let length = BYTE * line.text.len() as u64;
         let begun = time(line.cycle.saturating_sub(length));
-        add(line.cycle, Event::Said(begun, &line.text));
+        add(line.cycle, Event::Printed(begun, &line.text));
     }
     for exchange in &record.exchanges {
         let (asked, line) = (time(exchange.asked), exchange.line.as_str());
@@ -145,20 +150,23 @@ pub fn events(record: &Record) -> Vec<(Time, Event<'_>)> {
     for write in &record.written {
         events.push((time(write.cycle), Event::Written));
     }
+    // Some rules count from a moment at which nothing is seen.
+    let often = (0..record.end).step_by(100 * MS as usize);
+    events.extend(often.map(|at| (time(at), Event::Pass)));
     events.push((time(record.end), Event::Pass));
     events.sort_by_key(|(at, _)| *at);
     events
 }
 
-/// Neither crashed nor halted.
-fn lives(record: &Record) -> Result<(), String> {
+/// Checks that the firmware has neither crashed nor halted.
+fn check_alive(record: &Record) -> Result<(), String> {
     match &record.state {
         Some(State::Alive) => Ok(()),
         other => Err(format!("{other:?}")),
     }
 }
 
-/// The last `stand` of the scenario, long after all trouble.
+/// Checks the last `stand` of the scenario, long after all trouble.
 fn stands(record: &Record) -> Result<(), String> {
     let mut exchanges = record.exchanges.iter().rev();
     let status = exchanges.next().ok_or("nothing was asked")?;
@@ -184,7 +192,7 @@ fn stands(record: &Record) -> Result<(), String> {
     Ok(())
 }
 
-/// A command with an `err` between two questions: what they tell is the same.
+/// Checks that `status` is the same before and after a refused command.
 fn refused_changes_nothing(record: &Record) -> Result<(), String> {
     for three in record.exchanges.windows(3) {
         let [before, refused, after] = three else {
@@ -195,8 +203,8 @@ fn refused_changes_nothing(record: &Record) -> Result<(), String> {
         let (Some(from), Some(to)) = (&before.answer, &after.answer) else {
             continue;
         };
-        let are_told = before.status("gait").is_some() && after.status("gait").is_some();
-        if !is_refused || !are_told || record.is_troubled(from.cycle, to.cycle) {
+        let have_status = before.status("gait").is_some() && after.status("gait").is_some();
+        if !is_refused || !have_status || record.is_troubled(from.cycle, to.cycle) {
             continue;
         }
         for key in ["gait", "speed", "guard", "fault", "reset", "resets"] {
@@ -209,11 +217,91 @@ fn refused_changes_nothing(record: &Record) -> Result<(), String> {
     Ok(())
 }
 
-/// The LED from the report of what `status` tells, or the last order, to `status`.
+/// Checks the distance of each pulse from the one before, unless a reset or blocked interrupts
+/// came between.
+fn pulses_are_on_time(record: &Record) -> Result<(), String> {
+    const FRAME: u64 = 20 * MS;
+    for servo in 0..4 {
+        let pulses = record
+            .pulses
+            .iter()
+            .filter(|(_, pulse)| pulse.servo == servo);
+        let begins: Vec<u64> = pulses.map(|(at, _)| *at).collect();
+        for pair in begins.windows(2) {
+            let (from, to) = (pair[0], pair[1]);
+            // A frame that is left out is judged elsewhere.
+            let is_next = to - from < FRAME + FRAME / 2;
+            let is_held = record.holds.iter().any(|hold| hold.overlaps(from, to));
+            let is_new = record
+                .starts
+                .iter()
+                .any(|start| (from..to).contains(&start.cycle));
+            if is_next && to - from != FRAME && !is_held && !is_new {
+                let late = to as i64 - (from + FRAME) as i64;
+                let seen = format!("A{}, {late} cycles late at {} ms", servo + 1, to / MS);
+                return Err(seen);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Checks that each line which the board has carried out is one that somebody had sent.
+fn nothing_is_done_that_nobody_sent(record: &Record) -> Result<(), String> {
+    for line in &record.lines {
+        // A banner follows what a reset has cut off.
+        let Some(done) = line.text.strip_prefix("ok ").filter(|it| !it.contains('#')) else {
+            continue;
+        };
+        let asked = if done.starts_with("gait=") {
+            "status"
+        } else {
+            done
+        };
+        // A reset within a line lets the program see only its end.
+        let recent = line.cycle.saturating_sub(200 * MS)..line.cycle;
+        let mut starts = record.starts.iter();
+        let is_new = starts.any(|start| recent.contains(&start.cycle));
+        let mut sent = record.sent.iter();
+        let is_it = |(at, sent): &(u64, String)| {
+            *at < line.cycle && (sent == asked || is_new && sent.ends_with(asked))
+        };
+        if !sent.any(is_it) {
+            return Err(format!("{}, at {} ms", line.text, line.cycle / MS));
+        }
+    }
+    Ok(())
+}
+
+/// Checks that each `stop` of the person at the phone is answered, once the link holds for a while.
+fn stop_is_insisted_on(record: &Record) -> Result<(), String> {
+    const HOLDS: u64 = 2_000 * MS;
+    // Meanwhile the answer to an earlier one may be on its way.
+    const UNDER_WAY: u64 = 300 * MS;
+    for stop in &record.stops {
+        let ends = |line: &&Line| {
+            let is_end = line.text.ends_with("ok stop") || line.text.starts_with("err 7");
+            line.cycle + UNDER_WAY > *stop && is_end
+        };
+        let answered = record.lines.iter().find(ends).map(|line| line.cycle);
+        let within = |link: &Span| {
+            let from = link.start.max(*stop);
+            let is_calm = !record.is_troubled(from.saturating_sub(300 * MS), from + HOLDS);
+            (link.end >= from + HOLDS && is_calm).then_some(from + HOLDS)
+        };
+        let due = record.reached.iter().find_map(within);
+        if due.is_some_and(|due| answered.is_none_or(|at| at > due)) {
+            return Err(format!("stop, sent first at {} ms", stop / MS));
+        }
+    }
+    Ok(())
+}
+
+/// Checks the LED from the report of a fault, or from the last order, to the last `status`.
 fn led_shows_the_fault(record: &Record) -> Result<(), String> {
     let led = record.edges.iter().filter(|edge| edge.pin == LED);
     let led: Vec<(Time, bool)> = led.map(|edge| (edge.cycle as Time, edge.high)).collect();
-    let told = |exchange: &'_ Exchange| {
+    let shown_code = |exchange: &'_ Exchange| {
         let at = exchange.answer.as_ref()?.cycle;
         Some((at, led::code(exchange.status("fault")?)))
     };
@@ -226,12 +314,12 @@ fn led_shows_the_fault(record: &Record) -> Result<(), String> {
     let changes: Vec<u64> = changes
         .chain(record.starts.iter().map(|start| start.cycle))
         .collect();
-    for (at, code) in record.exchanges.iter().filter_map(told) {
-        // What is lit from before is no flash of this pattern.
+    for (at, code) in record.exchanges.iter().filter_map(shown_code) {
+        // Light from before is not a flash of this pattern.
         let since = changes.iter().filter(|change| **change < at).max();
         let from = since.unwrap_or(&0) + 60 * MS;
         if !record.is_disturbed(from.saturating_sub(100 * MS), at) {
-            led::shows(&led, from as Time, at as Time, code?)?;
+            led::check_pattern(&led, from as Time, at as Time, code?)?;
         }
     }
     Ok(())

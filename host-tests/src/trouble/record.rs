@@ -12,14 +12,14 @@ pub const MS: u64 = CYCLES_PER_MS;
 /// A range of cycles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Span {
-    /// Its first cycle.
+    /// The first cycle.
     pub start: u64,
-    /// The cycle after its last.
+    /// The cycle after the last.
     pub end: u64,
 }
 
 impl Span {
-    /// True if it has a cycle of `start..end`.
+    /// True if it has a cycle in common with `start..end`.
     #[must_use]
     pub fn overlaps(&self, start: u64, end: u64) -> bool {
         self.start < end && start < self.end
@@ -33,9 +33,9 @@ pub struct Exchange {
     pub asked: u64,
     /// The line.
     pub line: String,
-    /// Its effect on the servos, if it is done.
+    /// Its effect on the servos, if it is carried out.
     pub effect: Effect,
-    /// The first line that came back and was no information, if one came.
+    /// The answer: the first line after it that is not information, if there is one.
     pub answer: Option<Line>,
 }
 
@@ -47,7 +47,7 @@ impl Exchange {
         answer.is_some_and(|line| line.text.starts_with("ok"))
     }
 
-    /// A value of `status`, if that was asked and answered.
+    /// A value of `status`, if this was an answered `status`.
     #[must_use]
     pub fn status(&self, key: &str) -> Option<&str> {
         let text = self.answer.as_ref()?.text.strip_prefix("ok ")?;
@@ -60,12 +60,14 @@ impl Exchange {
 /// A line that arrived at the board.
 #[derive(Debug, Clone)]
 pub struct Received {
-    /// The cycle at which its end was there.
+    /// The cycle at which its end had arrived.
     pub cycle: u64,
     /// The line.
     pub text: String,
-    /// Its effect on the servos, if it is done.
+    /// Its effect on the servos, if it is carried out.
     pub effect: Effect,
+    /// True if it is a command, and arrived undamaged.
+    pub is_command: bool,
 }
 
 impl Received {
@@ -89,20 +91,26 @@ pub struct Record {
     pub exchanges: Vec<Exchange>,
     /// The lines that arrived, waited for or not.
     pub received: Vec<Received>,
+    /// The lines that anybody sent, each with its cycle.
+    pub sent: Vec<(u64, String)>,
+    /// The cycles at which the person at the phone stopped the robot.
+    pub stops: Vec<u64>,
+    /// The spans in which the person's lines could reach the board.
+    pub reached: Vec<Span>,
     /// The cycles at which bytes arrived.
     pub bytes: Vec<u64>,
     /// Every start of the program.
     pub starts: Vec<Reset>,
     /// Every write of the EEPROM.
     pub written: Vec<EepromOperation>,
-    /// The supply in mV, from a cycle on.
+    /// The supply in mV, each with the cycle from which it applied.
     pub supply: Vec<(u64, f64)>,
-    /// When main was stalled.
+    /// The spans in which main was stalled.
     pub stalls: Vec<Span>,
-    /// When interrupts were held up.
+    /// The spans in which interrupts were blocked.
     pub holds: Vec<Span>,
-    /// When RESET was pulled, or the supply fell below the brown-out level or was taken
-    /// away.
+    /// The times at which RESET was pulled, or the supply fell below the brown-out level or was
+    /// cut.
     pub cuts: Vec<u64>,
     /// The last cycle.
     pub end: u64,
@@ -139,8 +147,8 @@ impl Record {
         all.any(|span| span.overlaps(start, end))
     }
 
-    /// The lines to the board that tell it to move or to rest, with what became of
-    /// each: `Some(true)` it was done, `Some(false)` refused, `None` unknown.
+    /// The lines that tell the board to move or to rest, each with its outcome: `Some(true)`
+    /// done, `Some(false)` refused, `None` unknown.
     pub fn orders(&self) -> impl Iterator<Item = (&Received, Option<bool>)> {
         self.received
             .iter()
@@ -162,13 +170,22 @@ impl Record {
             })
     }
 
-    /// `Some(true)` if the `ok` to a line that nobody waited for came soon.
+    /// The outcome of a line that nobody waited for, by what the board says soon.
     fn is_confirmed(&self, received: &Received) -> Option<bool> {
-        let soon = received.cycle..received.cycle + 300 * MS;
+        let (from, to) = (received.cycle, received.cycle + 300 * MS);
         let ok = format!("ok {}", received.text);
-        let mut lines = self.lines.iter();
-        let said = lines.any(|line| soon.contains(&line.cycle) && line.text == ok);
-        said.then_some(true)
+        let soon = self
+            .lines
+            .iter()
+            .filter(|line| (from..to).contains(&line.cycle));
+        if soon.clone().any(|line| line.text == ok) {
+            return Some(true);
+        }
+        // In this state any order is refused.
+        let refuses = |text: &str| text.starts_with("err 7 ") || text.starts_with("err 8 ");
+        let is_refused =
+            !self.is_troubled(from, to) && soon.clone().any(|line| refuses(&line.text));
+        is_refused.then_some(false)
     }
 
     /// True if a `save` that arrived at this cycle was answered by `ok`.

@@ -1,12 +1,12 @@
-//! Scenarios of seeded random numbers: an activity, trouble that begins at a random
-//! cycle of it, and what is asked and ordered afterwards.
+//! Random scenarios: an activity, trouble that begins at a random cycle of it, and questions and
+//! orders afterwards.
 
 use std::fmt;
 
 use fastrand::Rng;
 use lizard_host::sim::tour;
 use lizard_robot::Robot;
-use simulated_uno::CYCLES_PER_MS;
+use simulated_uno::{Air, CYCLES_PER_MS};
 
 use super::activity::Activity;
 use super::setup;
@@ -17,7 +17,7 @@ const MS: u64 = CYCLES_PER_MS;
 /// A pose beyond every servo's travel, which is always refused.
 pub(super) const NOWHERE: &str = "pose 0 0 0 0";
 
-/// A scenario.
+/// A random scenario.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {
     /// The seed of its random numbers.
@@ -52,11 +52,12 @@ impl Scenario {
     #[must_use]
     pub fn of(seed: u64, number: u64, robot: &Robot) -> Self {
         let mut rng = Rng::with_seed(seed.wrapping_mul(1_000_003).wrapping_add(number));
-        let activity = Activity::ALL[(number % 8) as usize];
+        let activity = Activity::of(number);
         let mut script = Script::new(&mut rng, robot);
         script.activity(activity);
-        script.trouble(activity);
-        script.aftermath();
+        script.add_trouble(activity);
+        script.end_drive();
+        script.add_aftermath();
         let steps = script.steps;
         Self {
             seed,
@@ -73,6 +74,8 @@ struct Script<'a> {
     rng: &'a mut Rng,
     robot: &'a Robot,
     steps: Vec<Step>,
+    /// True while a person drives by radio, so that answers are not for the cable alone.
+    is_driven: bool,
 }
 
 impl<'a> Script<'a> {
@@ -81,11 +84,17 @@ impl<'a> Script<'a> {
             rng,
             robot,
             steps: Vec::new(),
+            is_driven: false,
         }
     }
 
     fn say(&mut self, line: impl Into<String>) {
-        self.steps.push(Step::Say(line.into()));
+        let step = if self.is_driven {
+            Step::Send
+        } else {
+            Step::Say
+        };
+        self.steps.push(step(line.into()));
     }
 
     fn send(&mut self, line: impl Into<String>) {
@@ -112,7 +121,7 @@ impl<'a> Script<'a> {
         name.map_or("stand".into(), |name| name.replace('-', " "))
     }
 
-    /// Brings the robot into an activity, up to a random cycle of it.
+    /// Starts an activity and waits until a random cycle of it.
     fn activity(&mut self, activity: Activity) {
         let at_power_on = activity == Activity::Starting && self.rng.u8(0..3) == 0;
         if !at_power_on {
@@ -159,13 +168,14 @@ impl<'a> Script<'a> {
                 self.say(gait);
                 self.wait_up_to(2_000);
             }
-            Activity::Saving => self.saves(),
-            Activity::Starting => self.starts(at_power_on),
-            Activity::Talking => self.talks(),
+            Activity::Saving => self.start_saving(),
+            Activity::Starting => self.start_program(at_power_on),
+            Activity::Talking => self.start_talking(),
+            Activity::Driving => self.start_drive(),
         }
     }
 
-    fn saves(&mut self) {
+    fn start_saving(&mut self) {
         match self.rng.u8(0..3) {
             0 => {
                 self.send("rest");
@@ -186,7 +196,7 @@ impl<'a> Script<'a> {
         self.wait_up_to(250);
     }
 
-    fn starts(&mut self, at_power_on: bool) {
+    fn start_program(&mut self, at_power_on: bool) {
         if !at_power_on {
             match self.rng.u8(0..4) {
                 0 => self.say("rest"),
@@ -208,7 +218,7 @@ impl<'a> Script<'a> {
         self.wait_up_to(ms);
     }
 
-    fn talks(&mut self) {
+    fn start_talking(&mut self) {
         match self.rng.u8(0..3) {
             0 => self.say("rest"),
             1 => {
@@ -225,14 +235,67 @@ impl<'a> Script<'a> {
         self.wait_up_to(120);
     }
 
+    /// Has a person drive by radio, perhaps after noise at a module without a phone.
+    fn start_drive(&mut self) {
+        if self.rng.u8(0..4) == 0 {
+            self.add_noise();
+        }
+        let air = Air {
+            loss: *self.rng.choice(&[0.0, 0.01, 0.1]).unwrap_or(&0.0),
+            holds: *self.rng.choice(&[0, 1_000, 4_000]).unwrap_or(&0),
+            says: self.rng.bool(),
+            seed: self.rng.u64(..),
+            ..Air::default()
+        };
+        self.steps.push(Step::Drive(air));
+        self.is_driven = true;
+        self.drive_on();
+    }
+
+    /// Lets the person drive on, while others talk by the cable.
+    fn drive_on(&mut self) {
+        for _ in 0..self.rng.u8(1..4) {
+            self.wait_up_to(3_000);
+            let gait = self.gait();
+            let lines = [
+                "status", "help", "cal", "speed 70", "nonsense", "stop", &gait,
+            ];
+            let line = *self.rng.choice(&lines).unwrap_or(&"status");
+            self.send(line);
+        }
+    }
+
+    fn end_drive(&mut self) {
+        if !self.is_driven {
+            return;
+        }
+        self.drive_on();
+        self.wait_up_to(2_000);
+        self.steps.push(Step::Leave);
+        self.is_driven = false;
+        self.wait(300);
+        if self.rng.u8(0..4) == 0 {
+            self.add_noise();
+        }
+    }
+
+    /// Adds noise on the line, until a computer opens the port, which resets the board.
+    fn add_noise(&mut self) {
+        let cycles = self.rng.u64(MS..3_000 * MS);
+        self.steps.push(Step::Noise(cycles));
+        self.steps.push(Step::Wait(cycles));
+        self.steps.push(Step::Reset);
+        self.wait(600);
+    }
+
     /// Adds a trouble of a random kind, until it is over.
-    fn trouble(&mut self, activity: Activity) {
+    fn add_trouble(&mut self, activity: Activity) {
         match self.rng.u8(0..100) {
-            0..50 => self.stall(),
+            0..50 => self.add_stall(),
             50..54 => {
-                self.stall();
+                self.add_stall();
                 self.wait_up_to(60);
-                self.stall();
+                self.add_stall();
             }
             54..64 => self.steps.push(Step::Reset),
             64..72 => {
@@ -240,31 +303,31 @@ impl<'a> Script<'a> {
                 self.wait_up_to(5);
                 self.steps.push(Step::Reset);
             }
-            72..80 => self.dip(),
-            80..84 => self.sag(),
-            84 | 85 => self.low(),
-            86..92 => self.stall_and_more(),
-            92 => self.adjust(),
+            72..80 => self.add_dip(),
+            80..84 => self.add_sag(),
+            84 | 85 => self.add_low_supply(),
+            86..92 => self.add_stall_with_trouble(),
+            92 => self.add_adjustment(),
             93 => {
                 let cycles = self.rng.u64(100..20_000);
                 self.steps.push(Step::Hold(cycles));
                 self.wait(40);
             }
             94 => self.steps.push(Step::PowerCycle),
-            95 => self.two_faults(),
-            _ => self.weak(activity),
+            95 => self.add_two_faults(),
+            _ => self.add_weak_supply(activity),
         }
     }
 
-    /// 1 to 300 ms, and what follows of it: a hang may end 250 ms after it began.
-    fn stall(&mut self) {
+    /// Stalls main for 1 to 300 ms, and waits: a hang may end 250 ms after it began.
+    fn add_stall(&mut self) {
         let cycles = self.rng.u64(MS..300 * MS);
         self.steps.push(Step::Stall(cycles));
         self.steps.push(Step::Wait(cycles));
     }
 
-    /// The supply falls for a while, perhaps below what the chip needs, or its RAM.
-    fn dip(&mut self) {
+    /// Lowers the supply for a while, perhaps below the minimum of the chip, or of its RAM.
+    fn add_dip(&mut self) {
         let mv = match self.rng.u8(0..8) {
             0 => self.rng.u16(500..1_250),
             1..4 => self.rng.u16(1_900..2_650),
@@ -282,8 +345,8 @@ impl<'a> Script<'a> {
         board.map(|volts| (1_000.0 * volts) as u16)
     }
 
-    /// The supply sinks, and for a moment more.
-    fn sag(&mut self) {
+    /// Lowers the supply, and for a moment even more.
+    fn add_sag(&mut self) {
         let [slow, stop, rest] = self.levels();
         let first = self.rng.u16(stop - 50..slow + 50);
         let second = self.rng.u16(rest - 400..stop);
@@ -296,8 +359,8 @@ impl<'a> Script<'a> {
         self.steps.push(Step::Supply(5_000));
     }
 
-    /// The supply allows to move and not to write, for long, and is asked for both.
-    fn low(&mut self) {
+    /// Lowers the supply for long to a level that allows moving and not writing, and orders both.
+    fn add_low_supply(&mut self) {
         let [slow, stop, _] = self.levels();
         let mv = self.rng.u16(stop + 50..slow - 50);
         self.steps.push(Step::Supply(mv));
@@ -310,21 +373,21 @@ impl<'a> Script<'a> {
         self.steps.push(Step::Supply(5_000));
     }
 
-    /// Something else happens while main is stalled.
-    fn stall_and_more(&mut self) {
+    /// Adds another trouble while main is stalled.
+    fn add_stall_with_trouble(&mut self) {
         let ms = self.rng.u64(20..300);
         self.steps.push(Step::Stall(ms * MS));
         self.wait_up_to(ms);
         match self.rng.u8(0..3) {
             0 => self.steps.push(Step::Reset),
-            1 => self.dip(),
-            _ => self.sag(),
+            1 => self.add_dip(),
+            _ => self.add_sag(),
         }
         self.wait(ms);
     }
 
-    /// Other settings while it moves.
-    fn adjust(&mut self) {
+    /// Changes settings while the robot moves.
+    fn add_adjustment(&mut self) {
         let gait = self.gait();
         self.send(gait);
         for _ in 0..6 {
@@ -335,8 +398,8 @@ impl<'a> Script<'a> {
         self.wait(700);
     }
 
-    /// A hang, and then a supply that is low for long.
-    fn two_faults(&mut self) {
+    /// Adds a hang, and then a supply that is low for long.
+    fn add_two_faults(&mut self) {
         self.steps.push(Step::Stall(300 * MS));
         self.wait(300);
         self.wait_up_to(2_000);
@@ -347,9 +410,9 @@ impl<'a> Script<'a> {
         self.steps.push(Step::Supply(5_000));
     }
 
-    /// A supply that three servos pull down, for so long that a robot which never gives
-    /// up is found out. What pulls it down is an order, a start, or both.
-    fn weak(&mut self, activity: Activity) {
+    /// Adds a supply that three servos pull down, for so long that a robot which never gives up
+    /// shows it. The servos wake by an order, a start, or both.
+    fn add_weak_supply(&mut self, activity: Activity) {
         self.steps.push(Step::Weak(true));
         match activity {
             Activity::Resting => self.send("stand"),
@@ -361,8 +424,8 @@ impl<'a> Script<'a> {
         self.steps.push(Step::Weak(false));
     }
 
-    /// Looks on, asks, orders, and asks again.
-    fn aftermath(&mut self) {
+    /// Waits, asks for the status, orders, and asks again.
+    fn add_aftermath(&mut self) {
         // The LED's pattern of a fault, and `boot`, take some seconds.
         let linger = if self.rng.u8(0..4) == 0 {
             5_500
@@ -370,8 +433,8 @@ impl<'a> Script<'a> {
             self.rng.u64(350..800)
         };
         self.wait(linger);
-        // Whatever was left of a line that a reset has cut.
-        self.send("");
+        // Ends the rest of a line that a reset, or the end of a link, has cut off, and spoils it.
+        self.send("!");
         self.wait(150);
         self.say("status");
         let refused = [NOWHERE, "trim 1 90", "speed 5", "nonsense", "limit 2 1 2"];

@@ -61,10 +61,10 @@ pub fn adjustment(rng: &mut Rng) -> String {
 pub fn settings(rng: &mut Rng, robot: &Robot) -> Vec<Step> {
     let wait = |ms: u64| Step::Wait(ms * MS);
     match rng.u8(0..16) {
-        // Not saved: a reset takes them away.
+        // Unsaved settings, which a reset discards.
         0 | 1 => vec![say(trim(rng)), wait(150)],
         2 => vec![say(format!("dir {} -", rng.u8(1..=4))), wait(150)],
-        // Saved.
+        // Saved settings.
         3 => vec![say(trim(rng)), wait(150), say("save")],
         4 => vec![say("boot walk"), say("save")],
         5 => vec![say("boot rest"), say("save")],
@@ -88,7 +88,7 @@ pub fn settings(rng: &mut Rng, robot: &Robot) -> Vec<Step> {
                 wait(400),
             ]
         }
-        // Every number of every servo is another.
+        // Every number of every servo changes.
         8 => {
             let scales = (1..=4).map(|servo| say(format!("scale {servo} {WIDE}")));
             let trims = (1..=4).map(|servo| say(format!("trim {servo} 3.3")));

@@ -1,6 +1,8 @@
-//! Plays a scenario on a simulated UNO and records all that can be seen of it.
+//! Plays a scenario on a simulated UNO and records everything observable.
 
+use fastrand::Rng;
 use lizard_core::console::command::{effect, parse};
+use lizard_core::console::line::{GARBLED, LONGEST};
 use lizard_core::console::word::Effect;
 use lizard_host::sim::frame::servo_pins;
 use lizard_host::sim::lines::LineReader;
@@ -8,33 +10,39 @@ use lizard_host::sim::supplies;
 use lizard_robot::Robot;
 use simulated_uno::{CYCLES_PER_MS, Edge, Fidelity, Image, Pin, State, Uno};
 
+use super::drive::Drive;
 use super::record::{Exchange, Received, Record, Span};
 use super::scenario::Scenario;
 use super::step::Step;
 
 /// The longest wait for an answer, ms.
-const PATIENCE_MS: u64 = 400;
+const TIMEOUT_MS: u64 = 400;
 
-/// The supply of a board in good order, and what is left of a weak one, mV.
+/// The voltages of a good supply and of a weak one under load, mV.
 const GOOD: f64 = 5_000.0;
 const FALLEN: f64 = 2_400.0;
 
-/// Below: the chip is held in reset, mV, with the most that its hysteresis adds.
+/// The voltage below which the chip is held in reset, mV, with its largest hysteresis.
 const BROWN_OUT: f64 = 2_725.0;
 
-/// A servo has pulses if one began in the last of these cycles.
+/// Cycles of a byte on the line.
+const BYTE: u64 = 1_389;
+
+/// Cycles since the last pulse within which a servo counts as having pulses.
 const RECENT: u64 = 25 * CYCLES_PER_MS;
 
-/// A board, and what has been seen of it.
+/// A board and its record.
 struct Stage<'a> {
     robot: &'a Robot,
     uno: Uno,
     pins: [Pin; 4],
     reader: LineReader,
+    drive: Option<Drive<'a>>,
+    noise: Rng,
     record: Record,
     starts: usize,
     weak: bool,
-    /// When each servo's latest pulse began.
+    /// The cycle at which each servo's latest pulse began.
     latest: [Option<u64>; 4],
 }
 
@@ -50,6 +58,8 @@ pub fn play(image: &Image, robot: &Robot, scenario: &Scenario) -> Record {
         uno,
         pins: servo_pins(robot),
         reader: LineReader::default(),
+        drive: None,
+        noise: Rng::with_seed(scenario.number),
         record: Record::default(),
         starts: 1,
         weak: false,
@@ -93,14 +103,21 @@ impl Stage<'_> {
             Step::Reset => {
                 self.record.cuts.push(now);
                 self.uno.reset();
-                self.look();
+                self.record_events();
             }
             Step::PowerCycle => {
                 self.record.cuts.push(now);
                 self.uno.power_cycle();
-                self.look();
+                self.record_events();
             }
             Step::Supply(mv) => self.set_supply(f64::from(*mv)),
+            Step::Drive(air) => self.drive = Some(Drive::new(*air, self.robot)),
+            Step::Leave => {
+                if let Some(drive) = &mut self.drive {
+                    drive.leave(now);
+                }
+            }
+            Step::Noise(cycles) => self.add_noise(*cycles),
             Step::Weak(on) => {
                 self.weak = *on;
                 if !on {
@@ -111,17 +128,45 @@ impl Stage<'_> {
     }
 
     fn send(&mut self, line: &str) {
-        self.uno.send(line.as_bytes());
-        self.uno.send(b"\n");
+        let now = self.uno.cycle();
+        let bytes = [line.as_bytes(), b"\n"].concat();
+        match &mut self.drive {
+            Some(drive) => drive.send_by_cable(&bytes, now),
+            None => self.uno.send(&bytes),
+        }
+        self.record.sent.push((now, line.to_owned()));
+    }
+
+    /// Puts bytes on the line that nobody has sent, half of the time without pause.
+    fn add_noise(&mut self, cycles: u64) {
+        let most = cycles / BYTE;
+        let count = if self.noise.bool() {
+            most
+        } else {
+            self.noise.u64(..=most / 20)
+        };
+        for _ in 0..count {
+            let byte = match self.noise.u8(..4) {
+                0 => b'\n',
+                1 => self.noise.u8(b' '..0x7f),
+                _ => self.noise.u8(..),
+            };
+            // Alone in a line it asks for help.
+            let byte = if byte == b'?' { b'!' } else { byte };
+            match self.noise.u8(..8) {
+                0 => self.uno.send_with_framing_error(&[byte]),
+                _ => self.uno.send(&[byte]),
+            }
+        }
     }
 
     fn say(&mut self, line: &str) -> Option<String> {
         let asked = self.uno.cycle();
-        self.look();
+        self.record_events();
         let from = self.record.lines.len();
         self.send(line);
         let mut answer = None;
-        let end = asked + PATIENCE_MS * CYCLES_PER_MS;
+        let end = asked + TIMEOUT_MS * CYCLES_PER_MS;
         while answer.is_none() && self.uno.cycle() < end && self.is_alive() {
             self.run_to(self.uno.cycle() + CYCLES_PER_MS);
             let new = &self.record.lines[from..];
@@ -168,20 +213,24 @@ impl Stage<'_> {
                 .stalls
                 .last()
                 .is_some_and(|stall| stall.end > now);
-            let piece = if stalled || self.weak {
+            let piece = if stalled || self.weak || self.drive.is_some() {
                 CYCLES_PER_MS
             } else {
                 until - now
             };
             self.uno.run_until_cycle(until.min(now + piece));
-            self.look();
+            self.record_events();
         }
     }
 
-    /// Takes over what the board has done since the last look.
-    fn look(&mut self) {
+    /// Records what the board has done since the last call.
+    fn record_events(&mut self) {
         let bytes = self.uno.take_transmitted();
         self.record.lines.extend(self.reader.read(&bytes));
+        if let Some(drive) = &mut self.drive {
+            let bytes: Vec<u8> = bytes.iter().map(|sent| sent.byte).collect();
+            drive.pass(&bytes, &mut self.uno, &mut self.record);
+        }
         let edges = self.uno.take_edges();
         for (latest, pin) in self.latest.iter_mut().zip(self.pins) {
             let rises = |edge: &&Edge| edge.high && edge.pin == pin;
@@ -215,7 +264,7 @@ impl Stage<'_> {
     }
 
     fn finish(mut self) -> Record {
-        self.look();
+        self.record_events();
         let mut record = self.record;
         record.end = self.uno.cycle();
         record.starts = self.uno.reset_events();
@@ -224,25 +273,37 @@ impl Stage<'_> {
         let mut text = Vec::new();
         for byte in self.uno.received_by_uno() {
             record.bytes.push(byte.cycle);
-            if byte.byte != b'\n' {
-                text.push(byte.byte);
-                continue;
+            match byte.byte {
+                b'\r' | b'\n' => {
+                    record
+                        .received
+                        .push(received(&text, byte.cycle, self.robot));
+                    text.clear();
+                }
+                0x08 | 0x7f => _ = text.pop_if(|last| *last != GARBLED),
+                other => text.push(other),
             }
-            let line = String::from_utf8_lossy(&text).into_owned();
-            record.received.push(Received {
-                cycle: byte.cycle,
-                effect: effect_of_an_end(&line, self.robot),
-                text: line,
-            });
-            text.clear();
         }
         record.find_pulses(self.pins);
         record
     }
 }
 
-/// The effect of a line, or of its longest end that has one: a reset may have cut off what
-/// came before.
+/// A line by its bytes, and the cycle at which its end arrived.
+fn received(bytes: &[u8], cycle: u64, robot: &Robot) -> Received {
+    let is_whole = bytes.len() <= LONGEST && !bytes.contains(&GARBLED);
+    let text = String::from_utf8_lossy(bytes.trim_ascii()).to_ascii_lowercase();
+    let is_known = parse(text.as_bytes(), robot.firmware()).is_ok();
+    Received {
+        cycle,
+        effect: effect_of_an_end(&text, robot),
+        is_command: is_whole && is_known,
+        text,
+    }
+}
+
+/// The effect of a line, or of its longest tail that has one: a reset may have cut off the
+/// beginning.
 fn effect_of_an_end(line: &str, robot: &Robot) -> Effect {
     let robot = robot.firmware();
     if parse(line.as_bytes(), robot).is_ok() {

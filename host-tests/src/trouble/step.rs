@@ -2,54 +2,68 @@
 
 use std::fmt;
 
-use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US};
+use simulated_uno::{Air, CYCLES_PER_MS, CYCLES_PER_US};
 
 /// One step of a scenario.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Step {
     /// Sends a line and waits for its answer, for some time.
     Say(String),
-    /// Sends a line and does not wait.
+    /// Sends a line without waiting for its answer.
     Send(String),
-    /// `walk`, and `stand` where `walk` is refused because the servos rest.
+    /// Sends `walk`, or `stand` if `walk` is refused because the servos rest.
     Order(String),
     /// Lets this many cycles pass.
     Wait(u64),
-    /// Main executes nothing for this many cycles, or until a reset.
+    /// Stalls main for this many cycles, or until a reset.
     Stall(u64),
-    /// Interrupts are held up for this many cycles.
+    /// Blocks interrupts for this many cycles.
     Hold(u64),
-    /// The RESET pin is pulled.
+    /// Pulls the RESET pin.
     Reset,
-    /// Power goes and comes back.
+    /// Cuts the power and restores it.
     PowerCycle,
-    /// The supply has this many mV from now on.
+    /// Sets the supply, mV.
     Supply(u16),
-    /// The supply falls to 2.4 V whenever three servos have pulses, from now on; or no
+    /// If true, makes the supply fall to 2.4 V whenever three servos have pulses; if false, no
     /// longer.
     Weak(bool),
+    /// A person begins to drive by radio, beside whom lines are sent by the cable.
+    Drive(Air),
+    /// That person goes away with the phone.
+    Leave,
+    /// Puts noise on the serial line for this many cycles.
+    Noise(u64),
 }
 
 impl fmt::Display for Step {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Say(line) => write!(f, "say {line}"),
-            Self::Send(line) if line.is_empty() => write!(f, "send an empty line"),
             Self::Send(line) => write!(f, "send {line} and do not wait"),
             Self::Order(line) => write!(f, "say {line}; if it rests, say stand"),
             Self::Wait(cycles) => write!(f, "wait {}", Time(*cycles)),
             Self::Stall(cycles) => write!(f, "stall main for {}", Time(*cycles)),
-            Self::Hold(cycles) => write!(f, "hold interrupts up for {}", Time(*cycles)),
+            Self::Hold(cycles) => write!(f, "block interrupts for {}", Time(*cycles)),
             Self::Reset => write!(f, "pull RESET"),
-            Self::PowerCycle => write!(f, "take the power away and give it back"),
+            Self::PowerCycle => write!(f, "cut the power and restore it"),
             Self::Supply(mv) => write!(f, "supply {mv} mV"),
             Self::Weak(true) => write!(f, "supply 2400 mV whenever three servos have pulses"),
+            Self::Drive(air) => write!(
+                f,
+                "a person drives by radio: {:.0} % of the packets are lost, the link holds for {} ms{}",
+                100.0 * air.loss,
+                air.holds,
+                if air.says { ", and says so" } else { "" }
+            ),
+            Self::Leave => write!(f, "the person goes away"),
+            Self::Noise(cycles) => write!(f, "noise on the serial line for {}", Time(*cycles)),
             Self::Weak(false) => write!(f, "a strong supply again"),
         }
     }
 }
 
-/// Cycles, to be read by a person and to be typed again exactly.
+/// A number of cycles, printed for people, and exactly.
 pub struct Time(pub u64);
 
 impl fmt::Display for Time {

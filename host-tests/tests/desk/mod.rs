@@ -1,4 +1,4 @@
-//! A board as it is sold, at a port of this machine, for the programs that write one: a
+//! A new board at a serial port of this machine, for programs that write boards: a
 //! simulated UNO, with the boot loader of a stock UNO or of an old Nano in flash, behind a pseudo
 //! terminal and in real time.
 
@@ -24,7 +24,7 @@ pub fn loader(name: &str) -> Image {
     Image::read(path).expect("`make flash-test` makes the boot loaders")
 }
 
-/// A board at a port of this machine, and what its pins have done.
+/// A board at a serial port of this machine.
 pub struct Desk {
     pub uno: Uno,
     pub port: Port,
@@ -49,13 +49,13 @@ impl Desk {
         self.port.path().display().to_string()
     }
 
-    /// Lets the board live until the condition holds. False if it never does.
+    /// Runs the board until the condition holds; false if it never does.
     pub fn until(&mut self, mut done: impl FnMut(&mut Uno) -> bool) -> bool {
-        LIMIT.comes(|| {
+        LIMIT.wait_for(|| {
             let step = Duration::from_millis(10);
             self.port
                 .serve(&mut self.uno, step)
-                .expect("the port is well");
+                .expect("the port works");
             self.edges.extend(self.uno.take_edges());
             done(&mut self.uno)
         })
@@ -71,7 +71,7 @@ impl Desk {
         );
     }
 
-    /// Lets the board live until the program has ended. Returns the screen.
+    /// Runs the board until the program has ended. Returns the screen.
     pub fn end(&mut self, shell: &Shell) -> String {
         let ended = self.until(|_| shell.has_ended());
         let screen = shell.screen();

@@ -45,7 +45,7 @@ fn bench() -> FirmwareBench {
 }
 
 #[test]
-fn a_line_is_answered_and_information_before_it_is_told_apart() {
+fn a_lines_answer_is_told_apart_from_the_information_before_it() {
     let mut bench = bench();
     assert_eq!(bench.next_line(500).as_deref(), Some("# lizard test"));
     let (notes, answer) = bench.ask("?");

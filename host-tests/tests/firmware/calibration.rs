@@ -5,11 +5,11 @@ use lizard_host_tests::robot;
 use simulated_uno::{Fidelity, PowerCut, State};
 
 use crate::kept::{
-    MS, assert_no_leap, assert_no_leap_at, calibration, power_cycle, pulses, pulses_in, way,
+    MS, assert_no_leap, assert_no_leap_at, calibration, power_cycle, pulses, pulses_in, slew_limit,
     widths_now,
 };
 use crate::walk::{SLOT, Walk};
-use crate::{Status, awake, in_both, moving, neutral_widths, pose_at};
+use crate::{Status, awake, first_moving_gait, in_both, neutral_widths, pose_at};
 
 /// A1's width at a sweep in degrees with a trim and a gain (us per degree), cycles.
 fn width(trim: f64, gain: f64, sweep: f64) -> u64 {
@@ -45,7 +45,7 @@ fn a_trim_turns_its_servo_alone_and_no_faster_than_the_slew_limit() {
         assert!(
             pulses[0]
                 .windows(2)
-                .any(|p| p[0].width.abs_diff(p[1].width) + 6 > way(0))
+                .any(|p| p[0].width.abs_diff(p[1].width) + 6 > slew_limit(0))
                 || trim < 10,
             "as fast as it may"
         );
@@ -108,7 +108,7 @@ fn a_limit_ends_the_travel_of_poses_and_may_not_cut_off_a_gait() {
 }
 
 #[test]
-fn what_was_saved_is_what_the_pulses_are_after_the_next_power_on() {
+fn saved_settings_shape_the_pulses_after_the_next_power_on() {
     in_both(|fidelity| {
         let mut bench = awake(fidelity);
         bench.say("trim 1 1.5");
@@ -131,13 +131,13 @@ fn what_was_saved_is_what_the_pulses_are_after_the_next_power_on() {
             !notes[notes.len() - 12..]
                 .iter()
                 .any(|line| line.text.contains("calibration:")),
-            "nothing to be said of a memory that is right"
+            "a valid memory causes no notice"
         );
     });
 }
 
 #[test]
-fn what_is_not_saved_is_gone_and_load_and_factory_take_it_back() {
+fn unsaved_settings_are_lost_and_load_and_factory_discard_them() {
     let mut bench = awake(Fidelity::DataSheet);
     let factory = calibration(&mut bench);
     let refused = bench.say("load");
@@ -224,7 +224,7 @@ fn every_pulse_of_a_walk_is_exact_while_the_memory_is_written() {
 fn boot_begins_its_gait_three_seconds_after_power_on_unless_a_byte_comes_before() {
     in_both(|fidelity| {
         let mut bench = awake(fidelity);
-        let gait = moving();
+        let gait = first_moving_gait();
         assert_eq!(
             bench.say(&format!("boot {gait}")),
             format!("ok boot {gait}")
@@ -237,8 +237,8 @@ fn boot_begins_its_gait_three_seconds_after_power_on_unless_a_byte_comes_before(
             assert!(!pulses.is_empty() && pulses.iter().all(|pulse| pulse.width == width));
         }
         bench.run_ms(300);
-        let said = bench.lines().last().expect("a note").text.clone();
-        assert_eq!(said, format!("# boot: {gait}"));
+        let printed = bench.lines().last().expect("a note").text.clone();
+        assert_eq!(printed, format!("# boot: {gait}"));
         assert_eq!(Status::of(&mut bench).text("gait"), gait.replace(' ', "-"));
         power_cycle(&mut bench);
         bench.run_ms(2000);
@@ -250,7 +250,7 @@ fn boot_begins_its_gait_three_seconds_after_power_on_unless_a_byte_comes_before(
 }
 
 /// A pose near the neutral one, and the widths that it has.
-fn elsewhere(bench: &mut lizard_host_tests::FirmwareBench) -> [u64; 4] {
+fn order_nearby_pose(bench: &mut lizard_host_tests::FirmwareBench) -> [u64; 4] {
     bench.say(&pose_at([6.0, -6.0, 6.0, -6.0]));
     bench.run_ms(1000);
     let widths = widths_now(bench);
@@ -262,7 +262,7 @@ fn elsewhere(bench: &mut lizard_host_tests::FirmwareBench) -> [u64; 4] {
 fn power_on_begins_where_the_robot_rested_one_servo_after_another_without_a_leap() {
     in_both(|fidelity| {
         let mut bench = awake(fidelity);
-        let rested = elsewhere(&mut bench);
+        let rested = order_nearby_pose(&mut bench);
         assert_eq!(bench.say("rest"), "ok rest");
         bench.run_ms(400);
         power_cycle(&mut bench);
@@ -289,7 +289,7 @@ fn power_on_begins_where_the_robot_rested_one_servo_after_another_without_a_leap
 fn a_power_cut_while_the_pose_of_a_rest_is_written_gives_that_pose_or_the_neutral_one() {
     let mut bench = awake(Fidelity::DataSheet);
     let blank = bench.uno.eeprom();
-    let rested = elsewhere(&mut bench);
+    let rested = order_nearby_pose(&mut bench);
     let before = bench.uno.eeprom_operations().len();
     bench.say("rest");
     bench.run_ms(400);
@@ -301,7 +301,7 @@ fn a_power_cut_while_the_pose_of_a_rest_is_written_gives_that_pose_or_the_neutra
             bench.uno.set_eeprom(&blank);
             power_cycle(&mut bench);
             bench.run_ms(500);
-            elsewhere(&mut bench);
+            order_nearby_pose(&mut bench);
             let cut = if in_write {
                 PowerCut::InWrite(operation)
             } else {

@@ -6,10 +6,12 @@ use lizard_host_tests::{FirmwareBench, robot};
 use lizard_kinematics::{Check, Limits, Solution};
 use simulated_uno::{FREQUENCY, Fidelity};
 
-use crate::{SECOND, Status, angles, awake, doing, gaits, in_both, moving, pose_at, widths};
+use crate::{
+    SECOND, Status, angles, awake, first_moving_gait, gaits, in_both, pose_at, robot_after, widths,
+};
 
-/// Half a step of the console's two decimals, of a pulse and of the firmware's
-/// neutral angle, deg.
+/// Largest rounding of a printed angle, deg: half a step of two decimals, of a pulse and of the
+/// neutral angle.
 const PRINTED: f64 = 0.005 + 0.0032 + 0.0028;
 
 #[test]
@@ -52,7 +54,7 @@ fn cr_and_lf_and_crlf_each_end_one_line() {
 fn case_and_blanks_do_not_matter() {
     let mut bench = awake(Fidelity::DataSheet);
     assert_eq!(bench.say("  StaNd\t "), "ok stand");
-    // The one with the most words.
+    // The gait with the most words in its name.
     let mut gaits = gaits();
     gaits.sort_by_key(|gait| gait.split(' ').count());
     let gait = gaits.pop().expect("stand at least");
@@ -123,8 +125,8 @@ fn refused_poses() -> Vec<(String, u8)> {
         .collect()
 }
 
-/// The code with which a pose within the travel is refused, where there is no doubt. The
-/// guard looks at the margins of both ends first, where crossed crank tips are a type-2
+/// The code with which a pose within the travel is refused, if it is certain. The
+/// guard checks the margins of both ends first, where crossed crank tips are a type-2
 /// margin below 0, and at the strokes after all of them.
 fn code(solution: &Solution) -> Option<u8> {
     let broken = |by: f64, stroke: bool| {
@@ -142,7 +144,7 @@ fn code(solution: &Solution) -> Option<u8> {
     }
 }
 
-/// The robot's limits, stricter by so much: sines, and ten times that in mm for a robot of
+/// The robot's limits, stricter by `by`: sines, and ten times that in mm for a robot of
 /// the paper's size.
 fn limits(by: f64) -> Limits {
     let limits = robot().limits();
@@ -184,8 +186,8 @@ fn every_refusal_has_its_code_and_changes_nothing() {
     let poses = poses.iter().map(|(line, code)| (line.as_str(), *code));
     let refused: Vec<(&str, u8)> = refused.into_iter().chain(poses).collect();
     in_both(|fidelity| {
-        let mut bench = doing(&moving(), fidelity);
-        let mut quiet = doing(&moving(), fidelity);
+        let mut bench = robot_after(&first_moving_gait(), fidelity);
+        let mut quiet = robot_after(&first_moving_gait(), fidelity);
         for &(line, code) in &refused {
             let answer = bench.say(line);
             let expected = format!("err {code} ");
@@ -229,7 +231,10 @@ fn while_the_servos_rest_only_stand_moves_them() {
         );
         assert_eq!(bench.say("stand"), "ok stand");
         bench.run_ms(1000);
-        assert_eq!(bench.say(&moving()), format!("ok {}", moving()));
+        assert_eq!(
+            bench.say(&first_moving_gait()),
+            format!("ok {}", first_moving_gait())
+        );
     });
 }
 
@@ -256,7 +261,7 @@ fn help_names_every_gait_and_every_command() {
 #[test]
 fn status_tells_what_the_pulses_show() {
     in_both(|fidelity| {
-        let mut bench = doing(&moving(), fidelity);
+        let mut bench = robot_after(&first_moving_gait(), fidelity);
         bench.say("stop");
         bench.run_ms(100);
         let status = Status::of(&mut bench);
@@ -278,9 +283,9 @@ fn status_tells_what_the_pulses_show() {
 
 #[test]
 fn status_counts_fifty_frames_a_second_and_follows_the_phase() {
-    let mut bench = doing(&moving(), Fidelity::DataSheet);
-    bench.run_ms(3000); // the way to its first pose
-    let moving = moving();
+    let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
+    bench.run_ms(3000); // the move to its first pose
+    let moving = first_moving_gait();
     let gait = robot().gait(&moving).expect("a gait");
     let mut last: Option<(u64, Status)> = None;
     for _ in 0..20 {
@@ -294,7 +299,7 @@ fn status_counts_fifty_frames_a_second_and_follows_the_phase() {
             let gone = frames.round() / 50.0 / gait.period();
             let gone = if gait.is_reversed() { -gone } else { gone };
             let off = (turned - gone).rem_euclid(1.0);
-            // A phase is told to a thousandth.
+            // A phase is printed to a thousandth.
             assert!(off.min(1.0 - off) <= 0.0021, "{turned} in {frames} frames");
         }
         last = Some(now);
@@ -305,12 +310,12 @@ fn status_counts_fifty_frames_a_second_and_follows_the_phase() {
 #[test]
 fn watch_reports_the_pose_of_every_nth_frame_until_it_is_told_not_to() {
     in_both(|fidelity| {
-        let mut bench = doing(&moving(), fidelity);
+        let mut bench = robot_after(&first_moving_gait(), fidelity);
         assert_eq!(bench.say("watch 7"), "ok watch 7");
         let received = bench.lines().len();
         let frames = bench.run_for_frames(75);
         let sent = instants(robot(), &frames);
-        // What is told after the last frame has begun may be about the next.
+        // A report after the beginning of the last frame may be about the next one.
         let end = frames[74].start;
         let lines: Vec<String> = bench.lines()[received..]
             .iter()
@@ -342,12 +347,12 @@ fn watch_reports_the_pose_of_every_nth_frame_until_it_is_told_not_to() {
 #[test]
 fn half_speed_takes_twice_the_time() {
     in_both(|fidelity| {
-        let mut bench = doing(&moving(), fidelity);
-        bench.run_ms(3000); // the way to its first pose
-        let moving = moving();
+        let mut bench = robot_after(&first_moving_gait(), fidelity);
+        bench.run_ms(3000); // the move to its first pose
+        let moving = first_moving_gait();
         let gait = robot().gait(&moving).expect("a gait");
-        // The pace is a whole number of 1/1024, so that 10 % is within half a percent
-        // of itself.
+        // The pace is a whole number of 1/1024, so a pace of 10 % has an error of up to
+        // half a percent.
         let frames = (gait.period() * SECOND as f64).ceil() as u64;
         let fastest = robot().pace().gait_slew / SECOND as f64;
         let mut spans: Vec<u64> = Vec::new();
@@ -359,7 +364,8 @@ fn half_speed_takes_twice_the_time() {
             let sent = widths(&bench.run_for_frames(2 * cycle));
             let (once, again) = sent.split_at(cycle as usize);
             for (i, servo) in robot().servos().iter().enumerate() {
-                // Half a percent of a cycle, and the part of a frame that it ends with.
+                // Half a percent of a cycle, and the part of a frame at the cycle's
+                // end.
                 let frame = 16.0 * servo.us_per_degree.abs() * fastest;
                 let most = 0.005 * gait.period() * SECOND as f64 * frame + frame + 2.0;
                 for (here, later) in once.iter().zip(again) {
@@ -367,7 +373,7 @@ fn half_speed_takes_twice_the_time() {
                     assert!(off <= most, "{percent} %: {off} cycles after a cycle");
                 }
             }
-            // In that time each leg goes all of its way, at whatever speed.
+            // In a cycle each leg makes its whole sweep, at any speed.
             let column = || once.iter().map(|widths| widths[0]);
             spans.push(column().max().unwrap_or(0) - column().min().unwrap_or(0));
         }

@@ -3,11 +3,11 @@
 
 use fastrand::Rng;
 use lizard_host::sim::core_run;
-use lizard_host::sim::frame::{FRAME, frames, opens, servo_pins};
+use lizard_host::sim::frame::{FRAME, first_cycle, frames, servo_pins};
 use lizard_host_tests::{FirmwareBench, minutes, robot};
 use simulated_uno::{CYCLES_PER_MS, FREQUENCY, Fidelity};
 
-use crate::{Status, awake, comparable, for_each};
+use crate::{Status, awake, comparable_line, for_each};
 
 /// Cycles of a sender's byte, rounded up.
 const BYTE: u64 = 1400;
@@ -17,7 +17,7 @@ fn end() -> u64 {
     60 * minutes() * FREQUENCY
 }
 
-/// Any line that there is, of every command, good and bad.
+/// A random line: any command, valid or not.
 fn line(rng: &mut Rng) -> String {
     let near = |rng: &mut Rng, within: f64| {
         let angles: Vec<String> = robot()
@@ -53,11 +53,11 @@ fn line(rng: &mut Rng) -> String {
     }
 }
 
-/// Says lines until a second before the end. Each is complete at a random moment of a frame, a
+/// Sends lines until a second before the end. Each is complete at a random moment of a frame, a
 /// millisecond or more from the ticks, so that there is no doubt about the frame
 /// that it is received before; and each waits for the answer to the one before.
 fn talk(bench: &mut FirmwareBench, first: u64, rng: &mut Rng) -> u32 {
-    let mut said = 0;
+    let mut count = 0;
     let mut written = 0;
     // The tick of a frame comes a slot before A1's pulse.
     let tick = first - FRAME / 5;
@@ -72,12 +72,12 @@ fn talk(bench: &mut FirmwareBench, first: u64, rng: &mut Rng) -> u32 {
             .uno
             .run_until_cycle(tick + frame * FRAME + within - sending);
         bench.say(&line);
-        said += 1;
+        count += 1;
         // Main takes no input while it keeps the pose of a rest, or forgets it.
         written = if line == "rest" { 250 } else { 10 } * CYCLES_PER_MS;
     }
     bench.run_ms(250);
-    said
+    count
 }
 
 #[test]
@@ -98,7 +98,7 @@ fn random_commands_give_the_same_widths_on_the_avr_and_here() {
             .find(up)
             .expect("the robot stands")
             .cycle;
-        let said = talk(&mut bench, first, &mut Rng::with_seed(seed));
+        let sent_lines = talk(&mut bench, first, &mut Rng::with_seed(seed));
         let status = Status::of(&mut bench);
         assert_eq!(
             (status.number("late"), status.number("rx_lost")),
@@ -106,7 +106,7 @@ fn random_commands_give_the_same_widths_on_the_avr_and_here() {
         );
 
         bench.uno.run_until_cycle(end());
-        let count = (bench.uno.cycle() - opens(first)) / FRAME;
+        let count = (bench.uno.cycle() - first_cycle(first)) / FRAME;
         let sent = frames(&bench.uno.edges(), pins, first, count);
         let commands = core_run::play(
             *robot().firmware(),
@@ -121,17 +121,17 @@ fn random_commands_give_the_same_widths_on_the_avr_and_here() {
             poses.insert(widths);
         }
         println!(
-            "{fidelity:?}: {said} lines, {count} frames, {} poses",
+            "{fidelity:?}: {sent_lines} lines, {count} frames, {} poses",
             poses.len()
         );
-        let (count, said, poses) = (count, u64::from(said), poses.len() as u64);
+        let (count, sent_lines, poses) = (count, u64::from(sent_lines), poses.len() as u64);
         let enough = [2_900, 100, 500].map(|each| each * minutes());
-        assert!(count > enough[0] && said > enough[1] && poses > enough[2]);
+        assert!(count > enough[0] && sent_lines > enough[1] && poses > enough[2]);
 
-        // And the same answers, but for the counters of faults, which are 0 here.
+        // And the same answers, except for the counters of faults, which are 0 here.
         // Which frame a report is told in also depends on the room in the line.
         let is_answer = |line: &&str| !line.starts_with('#');
-        let told = |line: &'_ str| comparable(line, fidelity);
+        let told = |line: &'_ str| comparable_line(line, fidelity);
         let asked = commands.written.lines().filter(is_answer).map(told);
         let asked: Vec<String> = asked.collect();
         let lines = bench.lines().iter().map(|line| line.text.as_str());

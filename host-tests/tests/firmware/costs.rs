@@ -5,7 +5,7 @@ use lizard_host::bench::{Figures, rows};
 use lizard_host_tests::{FRAME, FirmwareBench, robot};
 use simulated_uno::Fidelity;
 
-use crate::{SECOND, doing, moving};
+use crate::{SECOND, first_moving_gait, robot_after};
 
 #[test]
 fn every_budget_is_met() {
@@ -41,7 +41,7 @@ fn every_budget_is_met() {
 fn the_processor_is_awake_for_less_than_a_tenth_of_any_motion() {
     for fidelity in [Fidelity::Stock, Fidelity::DataSheet] {
         for gait in robot().gaits() {
-            let mut bench = doing(&gait.name().replace('-', " "), fidelity);
+            let mut bench = robot_after(&gait.name().replace('-', " "), fidelity);
             let awake = bench.uno.awake_cycles();
             bench.run_ms(4000);
             let awake = (bench.uno.awake_cycles() - awake) / (4 * SECOND);
@@ -56,12 +56,12 @@ fn the_processor_is_awake_for_less_than_a_tenth_of_any_motion() {
 
 #[test]
 fn every_tick_computes_one_frame() {
-    let mut bench = doing(&moving(), Fidelity::DataSheet);
+    let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
     bench.run_for_frames(0);
     let calls = bench.time_calls("Control::frame", 2000);
     assert_eq!(calls.len() as u64, 2 * SECOND);
     for pair in calls.windows(2) {
-        // The same distance after each tick, but for an instruction that ends and
+        // The same distance after each tick, except for an instruction that ends and
         // the branches in between.
         let apart = pair[1].enter - pair[0].enter;
         assert!(apart.abs_diff(FRAME) < 100, "{apart}");

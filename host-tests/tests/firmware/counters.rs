@@ -29,15 +29,15 @@ fn a_count_that_carries_while_main_reads_it_is_read_as_before_or_after() {
     in_both(|fidelity| {
         let mut walk = Walk::stand(fidelity);
         let late = walk.address("pulses::LATE");
-        // From here to the end the robot has stopped for a late pulse, and the count of frames
-        // has four digits, so that every answer is as long.
+        // From here on the robot is stopped by a late pulse, and the count of frames has four
+        // digits, so that all answers are equally long.
         walk.bench.uno.poke(late, 255);
         walk.bench.run_ms(20_000);
         let begin = walk.next_frame();
         let mut seen = [0, 0];
-        // Main reads the count shortly before it writes the answer's last part, for which it
-        // waits until most of those before are sent. Ticks and edges that come meanwhile take
-        // time, so that is measured at the place where it will be.
+        // Main reads the count shortly before it writes the answer's last part, once most of
+        // the earlier parts are sent. Ticks and edges delay that, so the delay is measured at
+        // the place in the frame where the read is to happen.
         let rise = |n: u64| begin + 3 * n * FRAME + SLOT;
         let (mut written, mut early, mut frame) = (150_000, 2_800, 0);
         loop {
@@ -46,19 +46,20 @@ fn a_count_that_carries_while_main_reads_it_is_read_as_before_or_after() {
             if again == written {
                 break;
             }
-            // A tick that is met only sometimes: somewhat earlier it always is, or never.
+            // A tick that comes in between only sometimes: a little earlier it always
+            // does, or never.
             early += 200 * u64::from(frame > 4);
             written = again;
             assert!(frame < 40, "the answer takes as long each time");
         }
-        // It stops anywhere around there, and meanwhile A2's rise is late.
+        // Main is stalled anywhere around that read, and meanwhile A2's rise is late.
         for n in 0..500 {
             // The answer takes most of a frame to send, and a note may come before it.
             let rise = rise(frame + n + 2);
             walk.run_to(rise - early - written - 15_000);
             walk.bench.uno.poke(late, 255);
             walk.bench.uno.poke(late + 1, 0);
-            let said = walk.bench.lines().len();
+            let lines_before = walk.bench.lines().len();
             ask_at(&mut walk, rise - early - written);
             walk.run_to(rise - early - 500 + 2 * n);
             let now = walk.bench.uno.cycle();
@@ -67,7 +68,7 @@ fn a_count_that_carries_while_main_reads_it_is_read_as_before_or_after() {
             walk.bench.uno.hold(700);
             walk.run_to(rise + 550_000);
             assert_eq!(walk.word("pulses::LATE"), 256);
-            let lines = &walk.bench.lines()[said..];
+            let lines = &walk.bench.lines()[lines_before..];
             let answer = lines.iter().find(|line| line.is_answer());
             let answer = answer.expect("it answers").text.clone();
             let count = answer
@@ -86,7 +87,7 @@ fn a_count_that_carries_while_main_reads_it_is_read_as_before_or_after() {
     });
 }
 
-/// Asks for the status; its last byte has come at cycle `comes`.
+/// Asks for the status so that the line's last byte has arrived at cycle `comes`.
 fn ask_at(walk: &mut Walk, comes: u64) {
     walk.run_to(comes - 12_000);
     walk.bench.uno.send(b"status");

@@ -1,5 +1,5 @@
-//! Whatever is in the flash where the robot's section should be: no pulse ever, and all
-//! else alive. The core's own tests try every bit (`section/damaged.rs`); here the image
+//! Without a valid section in the flash, whatever is there, the robot sends no pulse, and
+//! everything else works. The core's own tests try every bit (`section/damaged.rs`); here the image
 //! does what they say, on the chip's own flash, in which there is no end of a slice.
 
 use std::mem::offset_of;
@@ -13,7 +13,7 @@ use lizard_host_tests::{FRAME, FirmwareBench, rng, robot, root};
 use lizard_robot::Robot;
 use simulated_uno::{Edge, Fidelity, Image, Pin};
 
-use crate::{for_each, in_both, moving, pose_at};
+use crate::{first_moving_gait, for_each, in_both, pose_at};
 
 const MISSING: &str = "# fault: no robot in the flash, write one";
 const FORMAT: &str = "# fault: the robot in the flash is for another version, write it again";
@@ -25,8 +25,8 @@ const LED: Pin = Pin::d(13);
 struct Damage {
     what: String,
     section: Vec<u8>,
-    /// The one line that says so.
-    said: &'static str,
+    /// The one line that reports it.
+    printed: &'static str,
 }
 
 impl std::fmt::Debug for Damage {
@@ -36,9 +36,9 @@ impl std::fmt::Debug for Damage {
 }
 
 /// The robot's section, changed.
-fn changed(
+fn damage_section(
     what: impl Into<String>,
-    said: &'static str,
+    printed: &'static str,
     change: impl FnOnce(&mut Vec<u8>),
 ) -> Damage {
     let mut section = robot().section();
@@ -46,39 +46,39 @@ fn changed(
     Damage {
         what: what.into(),
         section,
-        said,
+        printed,
     }
 }
 
-/// The same under a checksum that is right: somebody wrote it so.
-fn impossible(what: &str, change: impl FnOnce(&mut Vec<u8>)) -> Damage {
-    changed(what, DAMAGED, |section| {
+/// The same with a correct checksum, as if somebody had written it so.
+fn damage_with_checksum(what: &str, change: impl FnOnce(&mut Vec<u8>)) -> Damage {
+    damage_section(what, DAMAGED, |section| {
         change(section);
         seal(section);
     })
 }
 
 /// The word of the numbers at a field's offset.
-fn put(section: &mut [u8], offset: usize, word: u16) {
+fn put_word(section: &mut [u8], offset: usize, word: u16) {
     let at = size_of::<Header>() + offset;
     section[at..at + 2].copy_from_slice(&word.to_le_bytes());
 }
 
-/// Nothing, a part, a section for another version.
-fn missing() -> Vec<Damage> {
+/// No section, a part of one, and a section for another version.
+fn missing_sections() -> Vec<Damage> {
     let mut all = vec![
-        changed("erased flash", MISSING, Vec::clear),
-        changed("zeros", MISSING, |section| {
+        damage_section("erased flash", MISSING, Vec::clear),
+        damage_section("zeros", MISSING, |section| {
             *section = vec![0; SPACE.into()];
         }),
-        changed("a program's noise", MISSING, |section| {
+        damage_section("a program's noise", MISSING, |section| {
             *section = vec![0; SPACE.into()];
             rng(160).fill(section);
         }),
     ];
     let length = robot().section().len();
     let header = size_of::<Header>();
-    for (end, said) in [
+    for (end, printed) in [
         (3, MISSING),
         (5, FORMAT),
         (7, DAMAGED),
@@ -88,7 +88,9 @@ fn missing() -> Vec<Damage> {
         (length - 30, DAMAGED),
     ] {
         let what = format!("cut at byte {end}");
-        all.push(changed(what, said, |section| section.truncate(end)));
+        all.push(damage_section(what, printed, |section| {
+            section.truncate(end)
+        }));
     }
     for format in [
         0u16,
@@ -96,15 +98,19 @@ fn missing() -> Vec<Damage> {
         lizard_core::numbers::section::FORMAT + 1,
         0xffff,
     ] {
-        all.push(changed(format!("version {format}"), FORMAT, |section| {
-            section[4..6].copy_from_slice(&format.to_le_bytes());
-        }));
+        all.push(damage_section(
+            format!("version {format}"),
+            FORMAT,
+            |section| {
+                section[4..6].copy_from_slice(&format.to_le_bytes());
+            },
+        ));
     }
     all
 }
 
 /// A flipped bit in each field of the header, and in forty stretches of the rest.
-fn flipped() -> Vec<Damage> {
+fn flipped_bits() -> Vec<Damage> {
     let rng = &mut rng(161);
     let header = size_of::<Header>();
     let rest = robot().section().len() - header;
@@ -118,55 +124,55 @@ fn flipped() -> Vec<Damage> {
         offset_of!(Header, hash)..offset_of!(Header, servo_hash),
         offset_of!(Header, servo_hash)..header,
     ];
-    let mut flip = |bytes: Range<usize>, said| {
+    let mut flip = |bytes: Range<usize>, printed| {
         let (byte, bit) = (rng.usize(bytes), rng.u8(..8));
-        changed(format!("bit {bit} of byte {byte}"), said, |section| {
+        damage_section(format!("bit {bit} of byte {byte}"), printed, |section| {
             section[byte] ^= 1 << bit;
         })
     };
-    let said = [MISSING, FORMAT].into_iter().chain([DAMAGED; 5]);
+    let printed = [MISSING, FORMAT].into_iter().chain([DAMAGED; 5]);
     let mut all: Vec<Damage> = fields
         .into_iter()
-        .zip(said)
-        .map(|(at, said)| flip(at, said))
+        .zip(printed)
+        .map(|(at, printed)| flip(at, printed))
         .collect();
     all.extend(stretches.map(|at| flip(at, DAMAGED)));
     all
 }
 
 /// Sections whose checksum is right and nothing else.
-fn wrong() -> Vec<Damage> {
+fn wrong_sections() -> Vec<Damage> {
     vec![
-        impossible("a servo on the serial line", |section| {
+        damage_with_checksum("a servo on the serial line", |section| {
             section[size_of::<Header>() + offset_of!(Numbers, pins)] = 1;
         }),
-        impossible("two servos on one pin", |section| {
+        damage_with_checksum("two servos on one pin", |section| {
             let at = size_of::<Header>() + offset_of!(Numbers, pins);
             section[at] = section[at + 1];
         }),
-        impossible("a rail on a pin that measures nothing", |section| {
-            put(section, offset_of!(Numbers, rail), 20);
+        damage_with_checksum("a rail on a pin that measures nothing", |section| {
+            put_word(section, offset_of!(Numbers, rail), 20);
         }),
-        impossible("a neutral pulse that no servo bears", |section| {
-            put(section, offset_of!(Numbers, calibration), 60_000);
+        damage_with_checksum("a neutral pulse that no servo bears", |section| {
+            put_word(section, offset_of!(Numbers, calibration), 60_000);
         }),
-        impossible("a travel on one side of neutral", |section| {
-            put(section, offset_of!(Numbers, calibration) + 4, 5);
+        damage_with_checksum("a travel on one side of neutral", |section| {
+            put_word(section, offset_of!(Numbers, calibration) + 4, 5);
         }),
-        impossible("no cranks", |section| {
+        damage_with_checksum("no cranks", |section| {
             let at = size_of::<Header>() + offset_of!(Numbers, ends);
             section[at..at + 20].fill(0);
         }),
-        impossible("ones for numbers", |section| {
+        damage_with_checksum("ones for numbers", |section| {
             section[size_of::<Header>()..].fill(0xff);
         }),
-        impossible("zeros for numbers", |section| {
+        damage_with_checksum("zeros for numbers", |section| {
             section[size_of::<Header>()..].fill(0);
         }),
     ]
 }
 
-/// A board with that in its flash, just powered on.
+/// A board with this damage in its flash, just powered on.
 fn board(damage: &Damage, fidelity: Fidelity) -> FirmwareBench {
     let mut image: Image = FirmwareBench::image();
     let space = u32::from(START)..u32::from(START) + u32::from(SPACE);
@@ -175,18 +181,18 @@ fn board(damage: &Damage, fidelity: Fidelity) -> FirmwareBench {
 }
 
 /// Checks that the firmware finds no robot, keeps the servos still and says so.
-fn is_no_robot(damage: &Damage) {
+fn assert_finds_no_robot(damage: &Damage) {
     let bench = &mut board(damage, Fidelity::DataSheet);
     bench.run_ms(300);
     let banner = format!("# lizard {} without a robot", env!("CARGO_PKG_VERSION"));
     let lines: Vec<String> = bench.lines().iter().map(|line| line.text.clone()).collect();
     assert!(lines[0].starts_with(&banner), "{lines:?}");
-    assert_eq!(lines[1..], [damage.said]);
+    assert_eq!(lines[1..], [damage.printed]);
     // Only questions are answered.
     let questions = [Word::Help, Word::QuestionMark, Word::Status, Word::Watch];
     let others = Word::ALL.iter().filter(|word| !questions.contains(word));
     let examples = others.map(|word| word.example().to_owned());
-    for line in [moving(), "stand".to_owned(), pose_at([1.0; 4])]
+    for line in [first_moving_gait(), "stand".to_owned(), pose_at([1.0; 4])]
         .into_iter()
         .chain(examples)
     {
@@ -224,48 +230,51 @@ fn is_no_robot(damage: &Damage) {
 }
 
 #[test]
-fn without_a_whole_robot_there_is_no_pulse_and_the_console_says_why() {
-    for_each(&missing(), is_no_robot);
+fn without_a_complete_robot_there_is_no_pulse_and_the_console_says_why() {
+    for_each(&missing_sections(), assert_finds_no_robot);
 }
 
 #[test]
 fn a_bit_that_is_flipped_in_any_part_of_the_robot_ends_all_pulses() {
-    for_each(&flipped(), is_no_robot);
+    for_each(&flipped_bits(), assert_finds_no_robot);
 }
 
 #[test]
-fn numbers_that_no_robot_can_have_move_no_servo_whatever_their_checksum() {
-    for_each(&wrong(), is_no_robot);
+fn impossible_numbers_move_no_servo_even_with_a_valid_checksum() {
+    for_each(&wrong_sections(), assert_finds_no_robot);
 }
 
-/// All that the program does longer at its start than one into which its robot is compiled.
+/// The check of the section is the only cost at the start, compared with a compiled-in robot.
 #[test]
 fn the_largest_section_is_checked_within_a_frame() {
-    for_each(&["large", "own-gaits", "paper", "unequal"], |name| {
-        let robot = Robot::load(root().join(format!("robots/{name}.toml"))).expect("a robot");
-        let image = with_robot(&FirmwareBench::elf(), &robot).expect("make firmware");
-        let board = SimulatedBoard::with_image(image, Fidelity::DataSheet, &robot);
-        let calls = FirmwareBench::with_board(board).time_calls("Robot::open", 200);
-        let [call] = calls[..] else {
-            panic!("{name}: {calls:?}");
-        };
-        let bytes = robot.section().len();
-        println!(
-            "{name}: {bytes} bytes in {:.1} ms",
-            call.cycles() as f64 / 16_000.0
-        );
-        assert!(call.cycles() < FRAME, "{name}: {call:?}");
-    });
+    for_each(
+        &["grain", "large", "own-gaits", "paper", "unequal"],
+        |name| {
+            let robot = Robot::load(root().join(format!("robots/{name}.toml"))).expect("a robot");
+            let image = with_robot(&FirmwareBench::elf(), &robot).expect("make firmware");
+            let board = SimulatedBoard::with_image(image, Fidelity::DataSheet, &robot);
+            let calls = FirmwareBench::with_board(board).time_calls("Robot::open", 200);
+            let [call] = calls[..] else {
+                panic!("{name}: {calls:?}");
+            };
+            let bytes = robot.section().len();
+            println!(
+                "{name}: {bytes} bytes in {:.1} ms",
+                call.cycles() as f64 / 16_000.0
+            );
+            assert!(call.cycles() < FRAME, "{name}: {call:?}");
+        },
+    );
 }
 
 #[test]
 fn without_a_robot_the_led_flashes_eight_times_and_pauses() {
     in_both(|fidelity| {
-        let bench = &mut board(&missing()[0], fidelity);
+        let bench = &mut board(&missing_sections()[0], fidelity);
         bench.run_ms(8_000);
         let edges = bench.uno.edges();
         let led: Vec<Edge> = edges.into_iter().filter(|edge| edge.pin == LED).collect();
-        // Frames that it is lit or dark, in turn.
+        // Lengths of light and dark, in frames.
         let frames = led.windows(2).map(|pair| {
             let frames = (pair[1].cycle - pair[0].cycle) as f64 / FRAME as f64;
             (pair[0].high, frames.round() as u64)

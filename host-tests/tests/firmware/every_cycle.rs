@@ -1,4 +1,4 @@
-//! A byte at every cycle of a frame: none moves an edge, none is lost.
+//! A byte at every cycle of a frame moves no edge and is not lost.
 
 use lizard_host::sim::frame::FRAME;
 use simulated_uno::Fidelity;
@@ -6,9 +6,10 @@ use simulated_uno::Fidelity;
 use crate::in_both;
 use crate::walk::Walk;
 
-/// Bytes and the cycles between two of them, which leave main time to fall asleep. By
-/// the data sheet at every cycle of a frame: the distance shares no factor with a
-/// frame. In stock simavr at every fifth: it shares five.
+/// The number of bytes, and the cycles from one to the next, in which main has time to
+/// fall asleep. By the data sheet a byte comes at every cycle of a frame, since this
+/// distance and a frame have no common factor; in stock simavr at every fifth cycle,
+/// since they have the factor five.
 const fn sweep(fidelity: Fidelity) -> (u64, u64) {
     match fidelity {
         Fidelity::DataSheet => (FRAME, 3_001),
@@ -18,8 +19,8 @@ const fn sweep(fidelity: Fidelity) -> (u64, u64) {
 
 #[test]
 fn a_byte_at_any_cycle_of_a_frame_moves_no_edge_and_is_not_lost() {
-    // Not a command, so that answers go out, too, and take a third of the time that
-    // the lines do: main takes no byte until an answer is nearly sent.
+    // Not a command: so answers are sent, too. They take a third of the lines' time,
+    // and main takes no byte until an answer is nearly sent.
     let line = format!("{}\n", "z".repeat(59));
     in_both(|fidelity| {
         let (bytes, apart) = sweep(fidelity);

@@ -6,7 +6,7 @@ use simulated_uno::Fidelity;
 
 use crate::kept::{flashes, pulses, pulses_in, widths_now};
 use crate::walk::Walk;
-use crate::{Status, doing, moving};
+use crate::{Status, first_moving_gait, robot_after};
 
 /// Checks a fault's effects: nothing moves, `status` and one line name it, the LED flashes so
 /// many times.
@@ -18,8 +18,8 @@ fn assert_stopped(bench: &mut FirmwareBench, word: &str, sentence: &str, code: u
         assert!(pulses.len() >= 49 && pulses.iter().all(|pulse| pulse.width == width));
     }
     let line = format!("# fault: {sentence}");
-    let said = bench.lines().iter().filter(|said| said.text == line);
-    assert_eq!(said.count(), 1, "{line}");
+    let printed = bench.lines().iter().filter(|printed| printed.text == line);
+    assert_eq!(printed.count(), 1, "{line}");
     let flashes = flashes(bench, 12);
     assert!(flashes.len() >= 3, "{flashes:?}");
     assert!(flashes.iter().all(|count| *count == code), "{flashes:?}");
@@ -27,7 +27,7 @@ fn assert_stopped(bench: &mut FirmwareBench, word: &str, sentence: &str, code: u
 
 #[test]
 fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says() {
-    let mut bench = doing(&moving(), Fidelity::DataSheet);
+    let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
     bench.say("deadman 800");
     let begin = bench.uno.cycle();
     bench.run_ms(700);
@@ -49,13 +49,16 @@ fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says() {
     );
     let sentence = "no line for as long as deadman says, stopped";
     assert_stopped(&mut bench, "link", sentence, 3);
-    assert_eq!(bench.say(&moving()), format!("ok {}", moving()));
+    assert_eq!(
+        bench.say(&first_moving_gait()),
+        format!("ok {}", first_moving_gait())
+    );
     assert_eq!(Status::of(&mut bench).text("fault"), "none");
 }
 
 #[test]
 fn deadman_is_off_unless_set_and_leaves_a_robot_that_stands_alone() {
-    let mut bench = doing(&moving(), Fidelity::DataSheet);
+    let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
     bench.run_ms(70_000);
     assert_eq!(Status::of(&mut bench).text("fault"), "none");
     bench.say("stand");
@@ -99,7 +102,7 @@ fn a_stack_that_has_reached_the_data_stops_the_motion_for_good() {
         let sentence = "the stack has grown into the data, stopped";
         assert_stopped(&mut walk.bench, "stack", sentence, 6);
         // Whatever the data says now is not to be trusted: it does not move again.
-        walk.bench.say(&moving());
+        walk.bench.say(&first_moving_gait());
         walk.bench.run_ms(100);
         let held = widths_now(&mut walk.bench);
         walk.bench.run_ms(1000);

@@ -10,25 +10,25 @@ use simulated_uno::Fidelity;
 
 use crate::{SECOND, awake, for_each};
 
-/// Between the tables and floating point, deg: the project's promise.
+/// Largest deviation of the tables from floating point, deg: the project's promise.
 const TABLES: f64 = 0.50;
-/// A cycle of 62.5 ns, deg: half of it for the width, half for the neutral one.
+/// Rounding by a cycle of 62.5 ns, deg: half a cycle each for the width and for the neutral width.
 fn cycle() -> f64 {
     let finest = robot().servos().map(|servo| servo.us_per_degree.abs());
     1.0 / 16.0 / finest.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// A gait gathers its pace in seven frames, by this share of it in each.
+/// Share of its pace by which a starting gait accelerates in each of seven frames.
 const GATHERS: (usize, f64) = (7, 147.0 / 1024.0);
 
 /// Servo angles frame by frame, deg, from a second after power-on, when the gait
 /// is asked for.
-fn decoded(gait: &CheckedGait, fidelity: Fidelity) -> Vec<[f64; 4]> {
+fn decode_angles(gait: &CheckedGait, fidelity: Fidelity) -> Vec<[f64; 4]> {
     let mut bench = awake(fidelity);
     let line = gait.name().replace('-', " ");
     assert_eq!(bench.say(&line), format!("ok {line}"));
     let frames = bench.run_for_frames((3.5 * gait.period() * SECOND as f64) as u64 + 3 * SECOND);
-    let angles = |at: lizard_host::sim::analysis::Instant| at.angles.expect("four pulses");
+    let angles = |at: lizard_host::sim::analysis::ServoFrame| at.angles.expect("four pulses");
     instants(robot(), &frames).into_iter().map(angles).collect()
 }
 
@@ -51,7 +51,7 @@ fn worst(float: &[[f64; 4]], frames: &[[f64; 4]], begin: usize) -> f64 {
 }
 
 /// The frame at which the gait begins: the one unknown of the comparison.
-fn begins(gait: &CheckedGait, float: &[[f64; 4]], frames: &[[f64; 4]]) -> usize {
+fn first_frame(gait: &CheckedGait, float: &[[f64; 4]], frames: &[[f64; 4]]) -> usize {
     let by_worst =
         |a: &usize, b: &usize| worst(float, frames, *a).total_cmp(&worst(float, frames, *b));
     // The move to the first pose takes its time, and a cycle must follow.
@@ -64,9 +64,9 @@ fn begins(gait: &CheckedGait, float: &[[f64; 4]], frames: &[[f64; 4]]) -> usize 
 fn the_pulses_of_every_gait_follow_it_frame_by_frame() {
     for_each(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
         for gait in robot().gaits() {
-            let frames = decoded(gait, *fidelity);
+            let frames = decode_angles(gait, *fidelity);
             let float = floating(gait, frames.len());
-            let begin = begins(gait, &float, &frames);
+            let begin = first_frame(gait, &float, &frames);
             let off = worst(&float, &frames, begin);
             println!(
                 "{:<10} {} frames, max {off:.4} deg",
@@ -74,10 +74,11 @@ fn the_pulses_of_every_gait_follow_it_frame_by_frame() {
                 frames.len() - begin
             );
             assert!(off <= TABLES + cycle(), "{}: {off} deg", gait.name());
-            // A frame sooner or later would not do, so frames are told apart.
+            // One frame earlier or later would exceed the bound, so the comparison can tell frames
+            // apart.
             if gait.moves() {
                 assert!(off > 0.0, "{}: tables are rounded", gait.name());
-                // The first frame of all has none before it.
+                // The very first frame has no earlier one.
                 let others = [Some(begin + 1), begin.checked_sub(1)];
                 for other in others.into_iter().flatten() {
                     assert!(worst(&float, &frames, other) > off, "{}", gait.name());
@@ -99,9 +100,9 @@ fn the_pulses_of_every_gait_lead_where_the_contact_model_says() {
             return;
         };
         compared.fetch_add(usize::from(gait.moves()), Ordering::Relaxed);
-        let frames = decoded(gait, Fidelity::DataSheet);
+        let frames = decode_angles(gait, Fidelity::DataSheet);
         let float = floating(gait, frames.len());
-        let begin = begins(gait, &float, &frames);
+        let begin = first_frame(gait, &float, &frames);
         // From the first frame at full pace that begins a cycle, whole cycles: two
         // of those that are no whole number of frames.
         let cycles = if (gait.period() * SECOND as f64).fract() == 0.0 {
@@ -109,7 +110,7 @@ fn the_pulses_of_every_gait_lead_where_the_contact_model_says() {
         } else {
             2
         };
-        // Of other periods the part of a frame that is missing weighs little.
+        // In other periods the missing part of a frame matters little.
         let length = (f64::from(cycles) * gait.period() * SECOND as f64) as usize;
         let step = 1.0 / (gait.period() * SECOND as f64);
         let from = (begin + GATHERS.0..frames.len())

@@ -19,7 +19,7 @@ fn stroke_band() -> f64 {
     STEPS_BAND / f64::from(1 << scales[0].min(scales[1]))
 }
 
-/// In a margin, where type-2 margins are at least `type2`.
+/// The largest error of the guard in a margin, if type-2 margins are at least `type2`.
 fn margin_error(type2: f64) -> f64 {
     let ends = [
         (End::Head, kinematics::End::Head),
@@ -68,8 +68,8 @@ fn near_pose(rng: &mut Rng, within: f64) -> [f64; 4] {
     })
 }
 
-/// A safe pose far from neutral, so that the way there may not be safe.
-fn far(rng: &mut Rng) -> [f64; 4] {
+/// A safe pose far from neutral; the path to it may be unsafe.
+fn random_far_pose(rng: &mut Rng) -> [f64; 4] {
     loop {
         let angles = near_pose(rng, 80.0);
         if is_safe(angles, &limits(1.0)) && is_within_travel(angles) {
@@ -78,7 +78,7 @@ fn far(rng: &mut Rng) -> [f64; 4] {
     }
 }
 
-fn typed(angles: [f64; 4]) -> String {
+fn pose_line(angles: [f64; 4]) -> String {
     let [a1, a2, a3, a4] = angles;
     format!("pose {a1} {a2} {a3} {a4}")
 }
@@ -91,7 +91,7 @@ fn a_pose_is_accepted_exactly_where_floating_point_finds_it_safe() {
         let (mut accepted, mut refused) = (0, [0; 2]);
         for _ in 0..400 {
             let angles = near_pose(&mut rng, within);
-            let answer = bench.say(&typed(angles));
+            let answer = bench.say(&pose_line(angles));
             if is_safe(angles, &limits(1.0)) && is_within_travel(angles) {
                 assert!(answer.starts_with("ok pose"), "{angles:?}: {answer}");
                 accepted += 1;
@@ -115,7 +115,7 @@ fn a_pose_is_accepted_exactly_where_floating_point_finds_it_safe() {
 /// Reads the condition that a refusal names, and its value, if the guard knows one:
 /// `err 4 leg margin of A1 is 0.259, ...`, `err 4 type-2 margin of the head is below 0.1,
 /// ...`, `err 5 left slider is at 55.35 mm, ...`.
-fn told(answer: &str) -> (&str, Option<f64>) {
+fn parse_refusal(answer: &str) -> (&str, Option<f64>) {
     let (name, rest) = answer.split_once(" is ").expect("a name and a value");
     if rest.starts_with("below 0.1, ") {
         return (&name[4..], None);
@@ -166,11 +166,11 @@ fn a_refusal_names_the_margin_and_its_value_or_says_that_it_knows_none() {
     let (mut named, mut unknown) = (0, 0);
     for _ in 0..400 {
         let angles = near_pose(&mut rng, 70.0);
-        let answer = bench.say(&typed(angles));
+        let answer = bench.say(&pose_line(angles));
         if answer.starts_with("ok") || answer.starts_with("err 3") {
             continue;
         }
-        let (name, said) = told(&answer);
+        let (name, said) = parse_refusal(&answer);
         let solution = match robot().lizard().solve(&Pose::from(angles)) {
             Ok(solution) => solution,
             Err(open) => {
@@ -213,7 +213,7 @@ fn a_refusal_names_the_margin_and_its_value_or_says_that_it_knows_none() {
 }
 
 #[test]
-fn no_frame_that_is_sent_breaks_a_limit_whatever_is_asked() {
+fn no_frame_breaks_a_limit_for_any_commands() {
     let cases = [
         (Fidelity::Stock, 21),
         (Fidelity::DataSheet, 22),
@@ -232,7 +232,7 @@ fn no_frame_that_is_sent_breaks_a_limit_whatever_is_asked() {
             let line = if rng.u64(..3) == 0 {
                 rng.choice(&lines).expect("there are some").clone()
             } else {
-                typed(far(&mut rng))
+                pose_line(random_far_pose(&mut rng))
             };
             assert!(bench.say(&line).starts_with("ok "), "{line}");
             frames.extend(bench.run_for_frames(rng.u64(..2 * SECOND)));
@@ -260,9 +260,9 @@ fn no_frame_that_is_sent_breaks_a_limit_whatever_is_asked() {
     });
 }
 
-/// Two safe poses, each with a safe way from neutral, between which the straight way
-/// is barred by more than a frame can leap over.
-fn barred_way() -> Option<[[f64; 4]; 2]> {
+/// Two safe poses, each with a safe path from neutral; the straight path between them is unsafe for
+/// longer than a frame.
+fn poses_with_unsafe_path_between() -> Option<[[f64; 4]; 2]> {
     let mut rng = Rng::with_seed(4);
     let firmware = robot().firmware();
     let steps = |angles: [f64; 4]| -> [f64; 4] {
@@ -282,14 +282,13 @@ fn barred_way() -> Option<[[f64; 4]; 2]> {
     let neutral = robot().servos().map(|servo| servo.neutral);
     let mut edges: Vec<[f64; 4]> = Vec::new();
     for _ in 0..2000 {
-        let pose = far(&mut rng);
+        let pose = random_far_pose(&mut rng);
         if barred(neutral, pose) == 0 && barred(pose, neutral) == 0 {
             let found = edges.iter().find(|edge| barred(**edge, pose) > 20);
             if let Some(edge) = found {
                 return Some([*edge, pose]);
             }
-            // A few, in all directions: of a robot without such a way each is tried with
-            // each.
+            // Few enough to try each with each: a robot may have no such path.
             if edges.len() < 40 {
                 edges.push(pose);
             }
@@ -298,14 +297,13 @@ fn barred_way() -> Option<[[f64; 4]; 2]> {
     None
 }
 
-/// For a robot of which no such way was found: it goes from safe pose to safe pose and is
-/// never held.
+/// Checks, for a robot without such a path, that it reaches every safe pose and is never held.
 fn every_safe_pose_is_reached() {
     let mut rng = Rng::with_seed(4);
     let mut bench = awake(Fidelity::DataSheet);
     for _ in 0..20 {
-        let pose = far(&mut rng);
-        assert!(bench.say(&typed(pose)).starts_with("ok pose"));
+        let pose = random_far_pose(&mut rng);
+        assert!(bench.say(&pose_line(pose)).starts_with("ok pose"));
         bench.run_ms(5000);
         let status = Status::of(&mut bench);
         assert_eq!(status.text("guard"), "clear", "the way to {pose:?}");
@@ -316,16 +314,16 @@ fn every_safe_pose_is_reached() {
 }
 
 #[test]
-fn a_way_that_breaks_a_limit_ends_before_it_does() {
-    let Some([from, to]) = barred_way() else {
+fn a_path_that_breaks_a_limit_ends_before_that() {
+    let Some([from, to]) = poses_with_unsafe_path_between() else {
         every_safe_pose_is_reached();
         return;
     };
     for_each(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
         let mut bench = awake(*fidelity);
-        assert!(bench.say(&typed(from)).starts_with("ok pose"));
+        assert!(bench.say(&pose_line(from)).starts_with("ok pose"));
         bench.run_ms(5000);
-        assert!(bench.say(&typed(to)).starts_with("ok pose"));
+        assert!(bench.say(&pose_line(to)).starts_with("ok pose"));
         let note = bench.next_line(5000).expect("the robot tells");
         assert!(note.starts_with("# held in the last safe pose: "), "{note}");
         assert_eq!(Status::of(&mut bench).text("guard"), "held");
@@ -333,7 +331,7 @@ fn a_way_that_breaks_a_limit_ends_before_it_does() {
         assert!(frames.iter().all(|frame| frame.widths == frames[0].widths));
         let held = instants(robot(), &frames)[0].angles.expect("four pulses");
         assert!(is_safe(held, &limits(-1.0)) && held != from);
-        // It is not stuck: the way home is safe.
+        // It is not stuck: the path back to neutral is safe.
         assert_eq!(bench.say("stand"), "ok stand");
         bench.run_ms(5000);
         assert_eq!(bench.run_for_frames(1)[0].widths(), neutral_widths());

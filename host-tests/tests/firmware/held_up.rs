@@ -1,4 +1,4 @@
-//! Interrupts held up: by no more than the rules of the pulses allow, and by more.
+//! Blocked interrupts: within the time that the rules of the pulses allow, and beyond it.
 
 use fastrand::Rng;
 use lizard_host::sim::frame::{FRAME, Frame};
@@ -11,14 +11,14 @@ use crate::{in_both, neutral_widths};
 /// The most that other handlers and stretches with interrupts off may take, cycles.
 const MAY_TAKE: u64 = 160;
 
-/// Something that keeps interrupts off for `length` cycles, this many before an edge.
+/// A stretch with interrupts off for `length` cycles, this many before an edge.
 #[derive(Clone, Copy, Debug)]
 struct Hold {
     before: u64,
     length: u64,
 }
 
-/// The edges that are held up.
+/// The edges that the holds delay.
 #[derive(Clone, Copy, PartialEq)]
 enum Edges {
     Rising,
@@ -26,7 +26,7 @@ enum Edges {
     Both,
 }
 
-/// A frame for each hold, in which the edges of all servos meet it.
+/// Runs a frame for each hold, which delays the edges of all servos.
 fn sweep(walk: &mut Walk, edges: Edges, holds: &[Hold]) -> Vec<(Frame, [u64; 4])> {
     let start = walk.next_frame();
     let commands = walk.commands(start, holds.len() as u64);
@@ -46,8 +46,8 @@ fn sweep(walk: &mut Walk, edges: Edges, holds: &[Hold]) -> Vec<(Frame, [u64; 4])
     walk.frames_since(start)
 }
 
-/// Holds of several lengths that are longer than allowed, at every few cycles from
-/// too early to matter to the edge itself.
+/// Holds of several lengths beyond the allowed one, every few cycles, from one that ends
+/// before the edge to one that begins at it.
 fn too_long() -> Vec<Hold> {
     [200, 230, 300, 500, 900]
         .into_iter()
@@ -59,7 +59,7 @@ fn too_long() -> Vec<Hold> {
 }
 
 #[test]
-fn what_takes_no_longer_than_the_rules_allow_moves_no_edge_wherever_it_begins() {
+fn a_stretch_that_the_rules_allow_moves_no_edge_wherever_it_begins() {
     in_both(|fidelity| {
         let mut walk = Walk::begin(fidelity);
         let length = MAY_TAKE;
@@ -108,7 +108,7 @@ fn a_late_falling_edge_is_made_at_once_and_counted() {
             let Hold { before, length } = holds[n];
             for (sent, asked) in frame.widths().into_iter().zip(asked) {
                 late += u64::from(sent != *asked);
-                // From the end of the hold on it takes a handler's beginning.
+                // After the hold, the handler's prologue still takes its time.
                 let latest = (asked + length + 90).saturating_sub(before).max(*asked);
                 assert!(
                     (*asked..=latest).contains(&sent),
@@ -142,7 +142,7 @@ fn interrupts_off_for_most_of_a_slot_cost_its_pulse_and_nothing_else() {
                     expected[servo as usize] = None;
                 }
                 assert_eq!(frame.widths, expected, "A{} and {length}", servo + 1);
-                // Each where it belongs, to the cycle.
+                // Each starts exactly on the grid.
                 let starts = [0, 1, 2, 3].map(|n| frame.start + n * SLOT);
                 let on_grid = |(got, due): (Option<u64>, u64)| got.is_none_or(|got| got == due);
                 assert!(
@@ -161,7 +161,8 @@ fn a_falling_edge_that_is_missed_is_made_when_the_next_slot_begins() {
         let mut walk = Walk::stand(fidelity);
         let pins = walk.bench.pins();
         let neutral = neutral_widths();
-        // Until this many cycles after the next slot has begun, 220 before its edge.
+        // The hold ends `beyond` cycles after a point 220 cycles before the next slot's
+        // edge.
         for beyond in (0..600).step_by(20) {
             for servo in 0..4 {
                 walk.bench.run_for_frames(1);

@@ -40,7 +40,7 @@ fn nothing_in_it_can_panic() {
 }
 
 #[test]
-fn nothing_in_it_formats_the_way_of_core() {
+fn nothing_in_it_uses_core_fmt() {
     let found = functions_with(&["core::fmt", "Formatter", "Display", "Debug"]);
     assert!(found.is_empty(), "{found:?}");
 }
@@ -86,7 +86,7 @@ fn tables_and_sentences_stay_in_flash() {
     for n in 0..waves.len() {
         let wave = waves.get(n).expect("a waveform").load();
         for samples in wave.windows(6) {
-            // A held leg gives runs of one value, which RAM may well hold.
+            // A held leg gives runs of one value, which RAM may contain by chance.
             if samples.iter().all(|sample| *sample == samples[0]) {
                 continue;
             }
@@ -141,7 +141,7 @@ fn an_image_without_room_is_refused_with_the_excess_and_what_is_largest() {
         .expect("it is in the ELF")
         .address;
     // Whether it fits is judged by where the robot begins and ends.
-    let said = |symbol: &str, address: u64| {
+    let printed = |symbol: &str, address: u64| {
         let done = Command::new("avr-objcopy")
             .arg(format!("--strip-symbol={symbol}"))
             .args(["--add-symbol", &format!("{symbol}={address:#x}")])
@@ -154,11 +154,11 @@ fn an_image_without_room_is_refused_with_the_excess_and_what_is_largest() {
             .output()
             .expect("a shell");
         assert!(run.stdout.is_empty());
-        let said = String::from_utf8(run.stderr).expect("a text");
-        (run.status.success(), said)
+        let printed = String::from_utf8(run.stderr).expect("a text");
+        (run.status.success(), printed)
     };
-    assert_eq!(said("unused", 0), (true, String::new()));
-    let (fits, sentence) = said("__robot_start", code - 300);
+    assert_eq!(printed("unused", 0), (true, String::new()));
+    let (fits, sentence) = printed("__robot_start", code - 300);
     assert!(!fits);
     let lines: Vec<&str> = sentence.lines().collect();
     let excess = format!(
@@ -172,7 +172,7 @@ fn an_image_without_room_is_refused_with_the_excess_and_what_is_largest() {
         .symbol("__robot_start")
         .expect("it is in the ELF")
         .address;
-    let (fits, sentence) = said("__robot_end", start + 300);
+    let (fits, sentence) = printed("__robot_end", start + 300);
     assert!(!fits);
     assert!(
         sentence.starts_with("the robot does not fit: "),

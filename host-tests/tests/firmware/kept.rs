@@ -30,21 +30,23 @@ pub fn widths_now(bench: &mut FirmwareBench) -> [u64; 4] {
     pulses_in(bench, 50).map(|pulses| pulses.last().map_or(0, |pulse| pulse.width))
 }
 
-/// Takes power away and gives it back, and waits for the banner. Edges so far are
-/// dropped.
+/// Switches the power off and on, and waits for the banner. Edges so far are dropped.
 pub fn power_cycle(bench: &mut FirmwareBench) {
-    let said = bench.lines().len();
+    let lines_before = bench.lines().len();
     bench.uno.power_cycle();
     bench.uno.take_edges();
     for _ in 0..500 {
         bench.uno.run_ms(1);
-        // What the power cut off of the line before may come first.
-        let lines = &bench.lines()[said..];
+        // The rest of a line that the power cut off may come first.
+        let lines = &bench.lines()[lines_before..];
         if lines.iter().any(|line| line.text.contains("# lizard ")) {
             return;
         }
     }
-    panic!("no banner after power-on: {:?}", &bench.lines()[said..]);
+    panic!(
+        "no banner after power-on: {:?}",
+        &bench.lines()[lines_before..]
+    );
 }
 
 /// The lines that `cal` prints.
@@ -59,13 +61,13 @@ pub fn calibration(bench: &mut FirmwareBench) -> Vec<String> {
     lines.into_iter().filter(is_set).collect()
 }
 
-/// By how many cycles a pulse may change from frame to frame: the slew limit.
-pub fn way(servo: usize) -> u64 {
-    way_at(robot().servos()[servo].us_per_degree, robot().pace().slew)
+/// The slew limit: cycles by which a pulse may change from frame to frame.
+pub fn slew_limit(servo: usize) -> u64 {
+    slew_limit_at(robot().servos()[servo].us_per_degree, robot().pace().slew)
 }
 
-/// The same for a servo with this many us per degree, at so many degrees a second.
-fn way_at(gain: f64, slew: f64) -> u64 {
+/// The same for a servo with this many us per degree, at a slew limit in deg/s.
+fn slew_limit_at(gain: f64, slew: f64) -> u64 {
     // A cycle of rounding at each end, and the limit's own, half a step of an angle.
     (slew / 50.0 * gain.abs() * 16.0) as u64 + 3
 }
@@ -74,7 +76,7 @@ fn way_at(gain: f64, slew: f64) -> u64 {
 pub fn assert_no_leap_in_a_gait(pulses: &[Vec<Pulse>; 4]) {
     let pace = robot().pace();
     for (servo, pulses) in robot().servos().iter().zip(pulses) {
-        let most = way_at(servo.us_per_degree, pace.slew.max(pace.gait_slew));
+        let most = slew_limit_at(servo.us_per_degree, pace.slew.max(pace.gait_slew));
         for pair in pulses.windows(2) {
             let leap = pair[0].width.abs_diff(pair[1].width);
             assert!(leap <= most, "{leap} cycles of {most}: {pair:?}");
@@ -94,7 +96,7 @@ pub fn assert_no_leap_at(pulses: &[Vec<Pulse>; 4], gains: [f64; 4]) {
         for pair in pulses.windows(2) {
             let leap = pair[0].width.abs_diff(pair[1].width);
             assert!(
-                leap <= way_at(gain, robot().pace().slew),
+                leap <= slew_limit_at(gain, robot().pace().slew),
                 "A{}: {pair:?}",
                 servo + 1
             );

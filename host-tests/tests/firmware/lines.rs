@@ -1,5 +1,5 @@
-//! Lines that are nearly right: every command with arguments near what it takes, and
-//! then perhaps a byte or two changed.
+//! Nearly valid lines: every command with arguments near its ranges, sometimes with a byte or two
+//! changed.
 
 use fastrand::Rng;
 use lizard_core::console::word::Word;
@@ -23,7 +23,7 @@ fn angle(rng: &mut Rng, servo: usize) -> String {
     number(rng, neutral - within, neutral + within)
 }
 
-/// A valid line, but for numbers out of their range.
+/// A valid line, except that numbers may be out of range.
 fn line(rng: &mut Rng) -> String {
     let gait = |rng: &mut Rng| {
         let gait = &robot().gaits()[rng.usize(..robot().gaits().len())];

@@ -1,5 +1,5 @@
-//! The firmware's own ELF on a simulated UNO: what it says, what it sends to the
-//! servos, what it is made of and what it costs.
+//! The firmware's own ELF on a simulated UNO: its answers, its pulses, its contents and its
+//! costs.
 //!
 //! Every claim about pulses and the serial line is tested twice, on stock simavr
 //! and on one corrected by the data sheet: they differ in interrupt latency and
@@ -29,6 +29,7 @@ mod gaits;
 mod guard;
 mod held_up;
 mod image;
+mod inputs;
 mod kept;
 mod led;
 mod line;
@@ -38,6 +39,7 @@ mod other_robots;
 mod power_cut;
 mod power_up;
 mod pulses;
+mod rate;
 mod same_pulses;
 mod serial;
 mod slow_main;
@@ -54,7 +56,7 @@ const SECOND: u64 = 50;
 /// A line without the parts that the core on the host cannot know. A status is written in
 /// three parts, each in the frame in which the serial line has room for it; and stock simavr has
 /// a reference of 1.1 V, whatever the robot's own is.
-fn comparable(line: &str, fidelity: Fidelity) -> String {
+fn comparable_line(line: &str, fidelity: Fidelity) -> String {
     let mut unknown = vec!["phase=", "pose=", "margin=", "frames="];
     if fidelity == Fidelity::Stock {
         unknown.extend(["vcc=", "rail="]);
@@ -84,8 +86,8 @@ fn for_each<T: Sync + std::fmt::Debug>(cases: &[T], test: impl Fn(&T) + Sync) {
     });
 }
 
-/// A robot that has been told to do something and has had a second for it.
-fn doing(line: &str, fidelity: Fidelity) -> FirmwareBench {
+/// A robot a second after a command.
+fn robot_after(line: &str, fidelity: Fidelity) -> FirmwareBench {
     let mut bench = awake(fidelity);
     assert_eq!(bench.say(line), format!("ok {line}"));
     bench.run_ms(1000);
@@ -101,7 +103,7 @@ fn awake(fidelity: Fidelity) -> FirmwareBench {
 
 /// The command of the robot's first gait that moves. The image is tested on robots that
 /// have one: with none, most of these tests would see a robot that stands.
-fn moving() -> String {
+fn first_moving_gait() -> String {
     let moving = tour::moving(robot());
     let first = moving
         .first()
@@ -131,7 +133,7 @@ fn neutral_widths() -> [u64; 4] {
         .map(|servo| (servo.neutral_us * 16.0).round() as u64)
 }
 
-/// Ends a flood and lets the robot answer what is left of it.
+/// Ends a flood and waits until the robot has answered the rest of it.
 fn end_flood(bench: &mut FirmwareBench) {
     bench.uno.flood(b"");
     // 32 times `?` may wait, and each has an answer of a kilobyte.

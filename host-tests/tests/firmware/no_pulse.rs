@@ -1,5 +1,5 @@
-//! Pulses that must not be: of a width that no slot has room for, and any after the
-//! switch that ends them for good.
+//! Pulses that must not occur: those too wide or too narrow for a slot, and any after the
+//! switch that ends pulses for good.
 
 use lizard_host::sim::frame::FRAME;
 

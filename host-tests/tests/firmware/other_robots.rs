@@ -1,5 +1,4 @@
-//! Robots that nobody has measured: whatever their pins, directions and gaits, no frame of
-//! theirs is late.
+//! Random robots: with any pins, directions and gaits, no frame is late.
 
 use lizard_core::numbers::gaits::LONGEST_NAME;
 use lizard_host::bench::longest_step;
@@ -7,14 +6,14 @@ use lizard_host::board::SimulatedBoard;
 use lizard_host::sim::core_run;
 use lizard_host::sim::frame::FRAME;
 use lizard_host::sim::tour;
-use lizard_host_tests::random_robot::{crowded, random_robot};
+use lizard_host_tests::random_robot::{random_robot, with_many_gaits};
 use lizard_host_tests::{FirmwareBench, rng};
 use lizard_robot::Robot;
 use simulated_uno::Fidelity;
 
 use crate::{SECOND, for_each};
 
-/// Lines that move nothing, each as fast as the line carries it.
+/// Lines that move nothing, each sent at the full rate of the line.
 const FLOODS: [&str; 5] = ["status\n", "help\n", "cal\n", "?\r", "x"];
 
 /// The number of robots; `make other-robots` tries 100.
@@ -51,8 +50,8 @@ fn no_frame_is_late_for_any_robot_in_any_gait_under_any_flood() {
             let (text, mut robot) = random_robot(&mut rng);
             // Of three, one as it is, one with many gaits and one with long names.
             match n % 3 {
-                1 => robot = crowded(&text, 10),
-                2 => robot = crowded(&text, LONGEST_NAME),
+                1 => robot = with_many_gaits(&text, 10),
+                2 => robot = with_many_gaits(&text, LONGEST_NAME),
                 _ => {}
             }
             let what = format!("robot {n}");
@@ -72,7 +71,7 @@ fn no_step_of_main_keeps_a_frame_waiting_for_too_long_however_many_gaits_there_a
     let (text, robot) = random_robot(&mut rng(2_000));
     let lengths = [10, 24, LONGEST_NAME];
     for robot in lengths
-        .map(|length| crowded(&text, length))
+        .map(|length| with_many_gaits(&text, length))
         .iter()
         .chain([&robot])
     {
@@ -80,7 +79,7 @@ fn no_step_of_main_keeps_a_frame_waiting_for_too_long_however_many_gaits_there_a
         let most = robot.longest_search();
         println!("{} gaits: {took} cycles of {most}", robot.gaits().len());
         assert!(took as usize <= most.max(OTHERS), "{took} of {most}");
-        // Nor is that far away, where the search is the longest.
+        // Where the search takes longest, the bound is not far above it.
         assert!(
             most < OTHERS || took as usize > most / 2,
             "{took} of {most}"

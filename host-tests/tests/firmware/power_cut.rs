@@ -1,5 +1,5 @@
-//! Power that fails while settings are saved, at every byte and with every way that
-//! a byte may be torn; and bits that change in the years.
+//! Power cuts while settings are saved, at every byte and with every way to tear a byte; and
+//! bits that change over the years.
 
 use lizard_core::memory::copies::{self, Outcome};
 use lizard_core::memory::settings::Settings;
@@ -10,7 +10,7 @@ use simulated_uno::{EEPROM_SIZE, EepromOperation, Fidelity, PowerCut};
 use crate::awake;
 use crate::kept::{calibration, power_cycle};
 
-/// Loads the settings of an EEPROM as the core does, without their turn.
+/// Loads the settings of an EEPROM as the core does.
 fn loaded(contents: &[u8; EEPROM_SIZE]) -> (Settings, Outcome) {
     let mut settings = Settings::of(robot().firmware());
     let outcome = copies::load(robot().firmware(), &Eeprom::with(*contents), &mut settings);
@@ -45,14 +45,14 @@ impl Saved {
         }
     }
 
-    /// Saves the others, and tells the operations of that.
+    /// Saves the other settings, and returns the EEPROM operations.
     fn save(&mut self) -> Vec<EepromOperation> {
         let before = self.bench.uno.eeprom_operations().len();
         assert_eq!(self.bench.say("save"), "ok save");
         self.bench.uno.eeprom_operations()[before..].to_vec()
     }
 
-    /// Powers the board on with these contents; what `cal` prints then.
+    /// Powers the board on with these contents, and returns the output of `cal`.
     fn powered_on_with(&mut self, contents: &[u8; EEPROM_SIZE]) -> Vec<String> {
         self.bench.uno.set_eeprom(contents);
         power_cycle(&mut self.bench);

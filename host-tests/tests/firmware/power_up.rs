@@ -1,5 +1,5 @@
-//! Whatever the boot loader or a crash has left in the registers, the pulses are
-//! those of a cold start.
+//! The pulses are those of a cold start, whatever a boot loader or a crash has left in the
+//! registers.
 
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::{CYCLES_PER_MS, Edge, Fidelity, Uno};
@@ -15,8 +15,8 @@ const OCR1A: u16 = 0x88;
 const SMCR: u16 = 0x53;
 const PORTS: [u16; 3] = [0x25, 0x28, 0x2b];
 
-/// The servos' edges in the first second after registers were left so; the robot is
-/// told to stand.
+/// The servos' edges in the first second after a start with these registers; the robot is told
+/// to stand.
 fn edges_after(left: &[(u16, u8)], fidelity: Fidelity) -> Vec<Edge> {
     let mut bench = FirmwareBench::power_on(fidelity);
     for (register, value) in left {
@@ -45,8 +45,8 @@ fn a_timer_that_was_left_running_changes_no_edge() {
 
 #[test]
 fn the_timer_stands_still_while_it_is_set_up_and_starts_at_zero() {
-    // The simulation begins to count anew with every change of the mode, the chip
-    // counts on: so the registers are looked at.
+    // With every change of the mode the simulation starts to count again, while the
+    // chip goes on counting: so the test reads the registers.
     in_both(|fidelity| {
         let mut bench = FirmwareBench::power_on(fidelity);
         for (register, value) in [(TCCR1B, 1), (TCNT1 + 1, 0x12), (TCNT1, 0x34)] {
@@ -69,8 +69,8 @@ fn the_timer_stands_still_while_it_is_set_up_and_starts_at_zero() {
 
 #[test]
 fn main_sleeps_in_the_mode_in_which_timer_and_line_run_on() {
-    // The simulation knows one sleep only. Idle is 000, data sheet 10.2; the last
-    // bit enables it.
+    // The simulation has only one sleep mode, so the test reads the register. Idle is
+    // 000, data sheet 10.2; the last bit enables sleep.
     let bench = FirmwareBench::boot();
     assert_eq!(bench.uno.peek(SMCR), 0b0001);
 }
@@ -81,9 +81,9 @@ fn pins_that_were_left_high_go_low_and_make_no_pulse() {
         let cold = edges_after(&[], fidelity);
         let ports = PORTS.map(|port| (port, 0xff));
         let left = edges_after(&ports, fidelity);
-        // What the pull-ups lift before main has begun ends long before a servo sees
-        // a pulse of it. From then on nothing drives the pins until the robot is known;
-        // the simulation keeps the level that a pin had.
+        // The pull-ups may raise pins before main begins, for far less than a servo's
+        // pulse. Then nothing drives the pins until the robot is known; the simulation
+        // keeps a pin's last level.
         let first = cold[0].cycle;
         let mut early = left.iter().take_while(|edge| edge.cycle < first);
         let raised = early.find(|edge| edge.high && edge.cycle >= CYCLES_PER_MS);

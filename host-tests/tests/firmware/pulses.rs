@@ -5,7 +5,7 @@ use lizard_host::sim::frame::{FRAME, Frame, servo_pins};
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::{Edge, Fidelity, Uno, most_pins_high};
 
-use crate::{SECOND, Status, awake, end_flood, for_each, in_both, moving};
+use crate::{SECOND, Status, awake, end_flood, first_moving_gait, for_each, in_both};
 
 /// The servos' edges among those of the last frames.
 pub fn servo_edges(uno: &Uno) -> Vec<Edge> {
@@ -35,8 +35,7 @@ pub fn first_pulse(bench: &FirmwareBench) -> u64 {
     edges.first().expect("the robot stands").cycle
 }
 
-/// The widths that the core asks for when it receives no more than the first `received`
-/// bytes.
+/// The widths that the core commands when it receives only the first `received` bytes.
 pub fn commanded(
     bench: &FirmwareBench,
     first: u64,
@@ -60,8 +59,8 @@ pub fn commanded(
 fn every_width_is_the_one_that_was_asked_for() {
     for_each(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
         for gait in robot().gaits() {
-            // When nothing is being written any more; and a line that ends just before a tick is
-            // read before it or after it.
+            // Asked when nothing is being written any more, and again if the line ends so
+            // shortly before a tick that main may read it before or after.
             let asked_in = |ms| {
                 let mut bench = awake(*fidelity);
                 let first = first_pulse(&bench);
@@ -97,7 +96,7 @@ fn a_saturated_line_both_ways_moves_no_edge() {
             let mut bench = awake(fidelity);
             let first = first_pulse(&bench);
             bench.say("watch 1");
-            bench.say(&moving());
+            bench.say(&first_moving_gait());
             let received = bench.uno.received_by_uno().len();
             bench.uno.flood(flood.as_bytes());
             let sent = bench.bytes().len();

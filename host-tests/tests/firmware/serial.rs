@@ -5,9 +5,9 @@ use fastrand::Rng;
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::Fidelity;
 
-use crate::{Status, awake, end_flood, in_both, moving, pose_at};
+use crate::{Status, awake, end_flood, first_moving_gait, in_both, pose_at};
 
-/// Says a line; the answer must be there.
+/// Sends a line and requires an answer.
 fn wait_for(bench: &mut FirmwareBench, line: &str) {
     let answer = bench.say(line);
     assert!(answer.starts_with("ok "), "{line}: {answer}");
@@ -20,7 +20,7 @@ fn a_sender_that_waits_for_answers_loses_nothing_at_full_line_rate() {
         let mut rng = Rng::with_seed(7);
         wait_for(&mut bench, "watch 1");
         let padded = format!("status{}", " ".repeat(57));
-        let (gait, pose) = (moving(), pose_at([0.0; 4]));
+        let (gait, pose) = (first_moving_gait(), pose_at([0.0; 4]));
         let lines = ["status", "help", &gait, "stop", "speed 70", &pose, &padded];
         for _ in 0..600 {
             wait_for(&mut bench, rng.choice(&lines).expect("there are some"));
@@ -58,19 +58,19 @@ fn a_long_answer_comes_as_fast_as_the_line_carries_it() {
     in_both(|fidelity| {
         let mut bench = awake(fidelity);
         wait_for(&mut bench, "stand");
-        let said = bench.bytes().len();
+        let before = bench.bytes().len();
         wait_for(&mut bench, "help");
-        let bytes = &bench.bytes()[said..];
+        let bytes = &bench.bytes()[before..];
         let took = bytes[bytes.len() - 1].cycle - bytes[0].cycle;
-        // A byte takes 1360 cycles, in stock simavr 1496; a frame now and then, and a
-        // line to be put together.
+        // A byte takes 1360 cycles, in stock simavr 1496. To that come some frames, and
+        // the making of each line.
         let rate = took / bytes.len() as u64;
         assert!(bytes.len() > 200 && rate < 2_000, "{rate} cycles a byte");
     });
 }
 
 #[test]
-fn what_a_flood_loses_is_counted() {
+fn bytes_lost_in_a_flood_are_counted() {
     in_both(|fidelity| {
         let mut bench = awake(fidelity);
         let (before, lines) = (bench.uno.received_by_uno().len(), bench.lines().len());
@@ -90,7 +90,7 @@ fn what_a_flood_loses_is_counted() {
             "{kept} for {answers} answers"
         );
         // A flood ends, and nothing of it stays.
-        wait_for(&mut bench, &moving());
+        wait_for(&mut bench, &first_moving_gait());
         assert_eq!(Status::of(&mut bench).number("rx_lost"), lost);
     });
 }
@@ -113,8 +113,8 @@ fn a_burst_that_overruns_the_buffer_is_counted_to_the_byte() {
 
 #[test]
 fn of_an_overrun_the_bytes_that_are_kept_come_once_and_in_their_order() {
-    // The receiver has room for two bytes and one on its way; the answer tells the number
-    // that is left of five digits.
+    // The receiver has room for two bytes and the one being received. The answer shows
+    // which of the five digits are left.
     let byte = 1_400;
     let mut bench = awake(Fidelity::DataSheet);
     let (mut lost_before, mut overrun) = (0.0, 0);
@@ -156,11 +156,11 @@ fn any_bytes_at_all_get_at_most_one_answer_for_a_line() {
             .map(|_| rng.u8(..).max(32))
             .filter(|byte| *byte != 0x7f)
             .collect();
-        let said = bench.lines().iter().filter(|line| line.is_answer()).count();
+        let answers_before = bench.lines().iter().filter(|line| line.is_answer()).count();
         bench.uno.send(&bytes);
         bench.uno.send(b"\n");
         bench.run_ms(20);
-        let answers = bench.lines().iter().filter(|line| line.is_answer()).count() - said;
+        let answers = bench.lines().iter().filter(|line| line.is_answer()).count() - answers_before;
         let blank = bytes.iter().all(|byte| *byte == b' ');
         assert_eq!(answers, usize::from(!blank), "{bytes:?}");
     }
@@ -178,9 +178,9 @@ fn a_line_with_a_garbled_byte_is_refused_wherever_it_is_and_the_byte_is_counted(
             bench.uno.send(&line[place + 1..]);
             bench.uno.send(b"\n");
             bench.run_ms(20);
-            let said = bench.lines().last().map(|line| line.text.clone());
+            let printed = bench.lines().last().map(|line| line.text.clone());
             let refused = "err 1 the line came garbled, send it again";
-            assert_eq!(said.as_deref(), Some(refused), "byte {place}");
+            assert_eq!(printed.as_deref(), Some(refused), "byte {place}");
         }
         let status = Status::of(&mut bench);
         assert_eq!(

@@ -1,5 +1,5 @@
-//! Main held up at every instruction where it meets an interrupt: at the hand-over
-//! of a frame, at the LED, in an answer, before it falls asleep.
+//! Main stopped at every instruction that shares data with an interrupt: at the hand-over of a
+//! frame, at the LED, in an answer, before it sleeps.
 
 use lizard_host::sim::frame::{FRAME, frames, servo_pins};
 use lizard_host_tests::{FirmwareBench, robot};
@@ -7,11 +7,12 @@ use simulated_uno::Fidelity;
 
 use crate::kept::{MS, assert_no_leap_in_a_gait, pulses};
 use crate::walk::{SLOT, Walk};
-use crate::{Status, awake, doing, for_each, gaits, in_both};
+use crate::{Status, awake, for_each, gaits, in_both, robot_after};
 
-/// Cycles from the return of the function that computes a frame in which main
-/// hands it over and sets the LED, and more. Three frames for each are an odd number
-/// of the LED's beats, of 32: a second sweep finds it lit where the first did not.
+/// More cycles than main takes, after the function that computes a frame, to hand the
+/// frame over and to set the LED. Three frames for each of these cycles are an odd
+/// number of the LED's beats of 32 frames, so a second sweep finds the LED lit where it
+/// was dark in the first.
 const HAND_OVER: u64 = 608;
 
 /// Runs main into its next frame and to the return of the function that computes it.
@@ -28,9 +29,10 @@ fn run_to_hand_over(bench: &mut FirmwareBench) {
 
 #[test]
 fn a_frame_is_played_whole_or_not_at_all_wherever_main_stops_in_the_hand_over() {
-    // Main stops until A1's pulse has begun: the next frame is taken over in
-    // between, and the pin of A1 rises, which may share its port with the LED. Every third
-    // frame: one that comes too late is played next, and gets the tick after it, too.
+    // Main stops until A1's pulse has begun: meanwhile the next frame is taken over, and
+    // the pin of A1, which may share its port with the LED, rises. This is done in every
+    // third frame, because a frame that comes too late is played next and also uses the
+    // tick after it.
     in_both(|fidelity| {
         let mut walk = Walk::begin(fidelity);
         let start = walk.next_frame();
@@ -47,7 +49,7 @@ fn a_frame_is_played_whole_or_not_at_all_wherever_main_stops_in_the_hand_over() 
         walk.run_to(start + count * FRAME - SLOT / 2);
         let frames = walk.frames_since(start);
         assert_eq!(frames.len() as u64, count);
-        // None is left out: each is the one before it again, or the next that was computed.
+        // No frame is left out: each repeats the previous one, or is the next one computed.
         let asked: Vec<_> = frames.iter().map(|(_, asked)| Some(*asked)).collect();
         let mut next = 0;
         for (n, (sent, _)) in frames.iter().enumerate() {
@@ -56,7 +58,8 @@ fn a_frame_is_played_whole_or_not_at_all_wherever_main_stops_in_the_hand_over() 
             assert!(is_next || is_old, "{} cycles in: {sent:?}", n / 3);
             next += usize::from(is_next);
         }
-        // Most: at the end of the sweep main has handed over before it stops.
+        // Not all are repeated: at the end of the sweep main has handed over before it
+        // stops.
         let repeated = frames.len() - next;
         assert!(
             (40..frames.len() / 3 - 40).contains(&repeated),
@@ -95,11 +98,11 @@ fn a_rest_in_place_of_a_frame_that_waits_ends_all_pulses_or_none_wherever_main_s
 
 #[test]
 fn an_answer_is_the_same_wherever_main_stops_in_writing_it() {
-    // For two bytes' time, so that the line takes all that it is given meanwhile.
+    // The time of two bytes, in which the line sends all that it was given.
     const STOP: u64 = 3_000;
     in_both(|fidelity| {
         let mut bench = awake(fidelity);
-        // What else there was to say is said before.
+        // Everything else has been printed before.
         assert_eq!(bench.say("stop"), "ok stop");
         for cycles in 0..4_500 {
             bench.send("stop");
@@ -127,13 +130,13 @@ fn a_byte_at_any_cycle_of_falling_asleep_wakes_main_at_once() {
             let rise = begin + n / 4 * FRAME + n % 4 * SLOT;
             walk.run_to(rise - 20_000);
             walk.bench.uno.send(b"stop");
-            let said = walk.bench.bytes().len();
-            // The receiver has the byte 9.5 bits after its start.
+            let bytes_before = walk.bench.bytes().len();
+            // The receiver has a byte 9.5 bits after the byte's start.
             let comes = rise - 200 + n;
             walk.run_to(comes - 1_320);
             walk.bench.uno.send(b"\n");
             walk.run_to(comes + 20_000);
-            let answer = walk.bench.bytes()[said].cycle - comes;
+            let answer = walk.bench.bytes()[bytes_before].cycle - comes;
             assert!(answer < 12_000, "answered {answer} cycles after {n}");
         }
     });
@@ -147,7 +150,7 @@ fn ticks_that_main_misses_are_left_out_and_no_servo_leaps_for_them() {
         let before = Status::of(&mut walk.bench).number("frames");
         let cycle = walk.bench.uno.cycle();
         walk.bench.uno.take_edges();
-        // Shorter than the watchdog's patience.
+        // Shorter than the watchdog's time.
         for _ in 0..20 {
             walk.bench.uno.stall_main(5 * FRAME);
             walk.bench.run_ms(300);
@@ -184,8 +187,9 @@ fn no_pulse_leaps_after_a_stall_of_any_length_at_any_moment_of_any_gait() {
     const HARMLESS: u64 = 105;
     const SURELY_RESET: u64 = 250;
     for_each(&gaits(), |gait| {
-        let mut bench = doing(gait, Fidelity::DataSheet);
-        // The shorter ones at more moments: beside the next tick, only these matter.
+        let mut bench = robot_after(gait, Fidelity::DataSheet);
+        // Short stalls are tried at more moments, because only they end near the next
+        // tick.
         let lengths = (0..6).flat_map(|_| 1..=25).chain(1..=300);
         for (n, length) in lengths.enumerate() {
             // Spread over the frame: 7 919 is a prime.

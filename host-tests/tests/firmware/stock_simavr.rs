@@ -13,7 +13,7 @@ use lizard_core::virtual_board::Running;
 use lizard_host_tests::{FirmwareBench, robot};
 
 /// The longest that simavr runs. It sleeps as long as the chip does, and a busy machine is slower.
-const PATIENCE: Duration = Duration::from_secs(200);
+const TIMEOUT: Duration = Duration::from_secs(200);
 
 /// The gait that the robot walks: its first behind `stand`.
 fn gait() -> String {
@@ -28,8 +28,11 @@ fn eeprom(folder: &Path) {
     assert_eq!(running.say(&boot), format!("ok {boot}"));
     running.board.send(b"save\r");
     running.run(200);
-    let said = running.lines().join("\n");
-    assert!(said.is_empty() || said.contains("ok save"), "{said}");
+    let printed = running.lines().join("\n");
+    assert!(
+        printed.is_empty() || printed.contains("ok save"),
+        "{printed}"
+    );
     let bytes = *running.board.memory.bytes();
     assert_eq!(bytes[0], 0xa5, "the first copy of the settings is whole");
     fs::write(folder.join("eeprom.bin"), bytes).expect("a folder");
@@ -69,15 +72,15 @@ fn simavr(arguments: &[&str], folder: &Path, enough: impl Fn(&str) -> bool) -> S
         .stderr(file)
         .spawn()
         .expect("simavr, which scripts/setup installs");
-    let said = || String::from_utf8_lossy(&fs::read(&output).expect("it was made")).into_owned();
-    let end = Instant::now() + PATIENCE;
-    while !enough(&said()) && Instant::now() < end {
+    let printed = || String::from_utf8_lossy(&fs::read(&output).expect("it was made")).into_owned();
+    let end = Instant::now() + TIMEOUT;
+    while !enough(&printed()) && Instant::now() < end {
         sleep(Duration::from_millis(100));
     }
     let pid = rustix::process::Pid::from_child(&child);
     rustix::process::kill_process(pid, rustix::process::Signal::TERM).expect("it runs");
     child.wait().expect("it ends");
-    said()
+    printed()
 }
 
 /// Tags of simavr's `avr_mcu_section.h`: a file of traces, and a pin to be traced.
@@ -155,7 +158,7 @@ fn the_elf_file_walks_in_debians_simavr() {
         ],
         folder,
     );
-    let said = simavr(
+    let printed = simavr(
         &[
             "-m",
             "atmega328p",
@@ -169,10 +172,13 @@ fn the_elf_file_walks_in_debians_simavr() {
         // Some 20 bytes for each edge: three seconds until `boot`, and two cycles of a gait.
         |_| fs::metadata(folder.join("pins.vcd")).is_ok_and(|file| file.len() > 30_000),
     );
-    assert!(said.contains(&format!("# boot: {}", gait())), "{said}");
     assert!(
-        !said.contains("fault") && !said.contains("supply"),
-        "{said}"
+        printed.contains(&format!("# boot: {}", gait())),
+        "{printed}"
+    );
+    assert!(
+        !printed.contains("fault") && !printed.contains("supply"),
+        "{printed}"
     );
     let vcd = fs::read_to_string(folder.join("pins.vcd")).expect("traces");
     assert!(vcd.contains("$timescale 10ns $end"), "{}", &vcd[..80]);
@@ -210,13 +216,16 @@ fn the_hex_files_start_with_their_robot_in_debians_simavr_and_say_that_it_has_to
     let image = lizard_host::flash::image::Image::new(image.flash()).expect("an image");
     fs::write(folder.join("image.hex"), image.to_hex()).expect("a folder");
     for file in ["made.hex", "image.hex"] {
-        let said = simavr(
+        let printed = simavr(
             &["-m", "atmega328p", "-f", "16000000", file],
             folder,
-            |said| said.contains("3.30 V"),
+            |printed| printed.contains("3.30 V"),
         );
-        let name = lizard_host::firmware::named(robot().firmware());
-        assert!(said.contains(&format!("robot {name},")), "{file}: {said}");
-        assert!(said.contains("3.30 V"), "{file}: {said}");
+        let name = lizard_host::firmware::label(robot().firmware());
+        assert!(
+            printed.contains(&format!("robot {name},")),
+            "{file}: {printed}"
+        );
+        assert!(printed.contains("3.30 V"), "{file}: {printed}");
     }
 }

@@ -1,20 +1,23 @@
-//! `stop`, `rest` and waking: what must be right at any moment, to the frame.
+//! `stop`, `rest` and waking at any moment, checked to the frame.
 
 use lizard_host::sim::frame::{FRAME, Frame, frames as frames_of, servo_pins};
 use lizard_host_tests::{FirmwareBench, robot};
 use lizard_robot::Servo;
 use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US, Fidelity};
 
-use crate::{awake, doing, for_each, gaits, in_both, moving, neutral_widths, pose_at, widths};
+use crate::{
+    awake, first_moving_gait, for_each, gaits, in_both, neutral_widths, pose_at, robot_after,
+    widths,
+};
 
-/// Every how many cycles gaits are interrupted: not a multiple of a frame's
-/// fraction, so that many phases of gait and frame are met.
+/// Cycles between interruptions of a gait: not a fraction of a frame, so that many phases of gait
+/// and frame are covered.
 const APART: u64 = 1_237_331;
 
-/// Says a line at cycle `at` after a second of `gait`, and returns the bench and
+/// Sends a line at cycle `at` after a second of `gait`, and returns the bench and
 /// the cycle at which the last byte of the line has arrived.
 fn interrupt(gait: &str, line: &str, at: u64, fidelity: Fidelity) -> (FirmwareBench, u64) {
-    let mut bench = doing(gait, fidelity);
+    let mut bench = robot_after(gait, fidelity);
     bench.uno.run_cycles(at);
     bench.send(line);
     while bench.uno.unsent() > 0 {
@@ -47,7 +50,7 @@ fn rest_ends_the_pulses_within_two_frames_and_cuts_none_short() {
         .flat_map(|fidelity| (0..12).map(move |n| (fidelity, n * APART)))
         .collect();
     for_each(&cases, |&(fidelity, at)| {
-        let mut bench = doing(&moving(), fidelity);
+        let mut bench = robot_after(&first_moving_gait(), fidelity);
         bench.uno.run_cycles(at);
         let first = bench.run_for_frames(1)[0];
         // The frame before is still in `edges`; those from now on come after it.
@@ -110,7 +113,7 @@ fn servos_wake_one_after_another_a_tenth_of_a_second_apart() {
         let frames = frames_of(&bench.uno.edges(), pins, first, 40);
         assert_eq!(woken(&frames), [0, 5, 10, 15]);
 
-        let mut bench = doing(&moving(), fidelity);
+        let mut bench = robot_after(&first_moving_gait(), fidelity);
         bench.say("stop");
         bench.run_ms(100);
         let pose = widths(&bench.run_for_frames(1))[0];
@@ -128,13 +131,13 @@ fn servos_wake_one_after_another_a_tenth_of_a_second_apart() {
     });
 }
 
-/// Ways from neutral of different lengths, the longest `size` deg.
+/// Sweeps from neutral of different sizes, the largest `size` deg.
 fn sweeps(size: f64) -> [f64; 4] {
     [-1.0, 0.25, 0.8, -0.6].map(|share| size * share)
 }
 
 /// The width at this many degrees from neutral, cycles.
-fn goal(servo: usize, sweep: f64) -> u64 {
+fn width_at(servo: usize, sweep: f64) -> u64 {
     let servo = robot().servos()[servo];
     (servo.pulse(servo.neutral + sweep) * 16.0).round() as u64
 }
@@ -143,7 +146,7 @@ fn goal(servo: usize, sweep: f64) -> u64 {
 fn a_pose_is_reached_by_all_servos_together_and_not_too_fast() {
     in_both(|fidelity| {
         let mut bench = awake(fidelity);
-        // As far from neutral as the robot allows, by unequal ways.
+        // As far from neutral as the robot allows, a different angle for each servo.
         let (size, _) = [24.0, 16.0, 8.0, 4.0, 2.0]
             .map(|size| (size, bench.say(&pose_at(sweeps(size)))))
             .into_iter()
@@ -153,13 +156,13 @@ fn a_pose_is_reached_by_all_servos_together_and_not_too_fast() {
         bench.run_ms(3000);
         assert!(bench.say(&pose_at(sweeps(size))).starts_with("ok pose"));
         let sent = widths(&bench.run_for_frames(150));
-        let goal: [u64; 4] = std::array::from_fn(|i| goal(i, sweeps(size)[i]));
+        let goal: [u64; 4] = std::array::from_fn(|i| width_at(i, sweeps(size)[i]));
         let end = sent[149];
         for (end, goal) in end.into_iter().zip(goal) {
             // Hundredths of a degree, then steps of 1/65536 turn: a cycle or two each.
             assert!(end.abs_diff(goal) <= 4, "{end}, not {goal}");
         }
-        // Along a straight line: each servo has done the same share of its way.
+        // Along a straight line: each servo has covered the same share of its distance.
         let way = |widths: [u64; 4]| -> [f64; 4] {
             std::array::from_fn(|i| widths[i] as f64 - neutral_widths()[i] as f64)
         };

@@ -1,11 +1,11 @@
-//! The chip's supply swept down and up: what is measured, and what the robot does.
+//! The chip's supply swept down and up: the measured voltage and the robot's reactions.
 
 use lizard_host_tests::{FirmwareBench, robot};
 use lizard_robot::Rail;
 use simulated_uno::{Fidelity, Pin};
 
 use crate::kept::{flashes, pulses_in, widths_now};
-use crate::{Status, awake, doing, moving};
+use crate::{Status, awake, first_moving_gait, robot_after};
 
 /// The largest error of a reading, V: a step of the converter at 5.5 V, and two decimals.
 const STEP: f64 = 0.04;
@@ -39,8 +39,8 @@ fn status_tells_the_supply_within_thirty_millivolts() {
     assert!(farthest <= 0.030, "{farthest} V");
 }
 
-/// Lets a supply sink through its thresholds, V, which is measured to a `step`: at each of them the robot says what it
-/// does then, and what it has measured.
+/// Lowers a supply through its thresholds, V: at each, the robot must report its reaction, and the
+/// voltage to within `step`.
 fn assert_sinks(
     bench: &mut FirmwareBench,
     thresholds: [f64; 3],
@@ -76,7 +76,7 @@ fn assert_sinks(
 
 #[test]
 fn a_sinking_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
-    let mut bench = doing(&moving(), Fidelity::DataSheet);
+    let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
     assert_sinks(
         &mut bench,
         robot().supplies().board,
@@ -100,7 +100,7 @@ fn a_sinking_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
 
 #[test]
 fn a_low_supply_halves_the_pace_and_refuses_to_write_the_memory() {
-    let mut bench = doing(&moving(), Fidelity::DataSheet);
+    let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
     let pace = |bench: &mut FirmwareBench| {
         let before = Status::of(bench).number("phase");
         bench.run_ms(200);
@@ -130,12 +130,12 @@ fn a_low_supply_halves_the_pace_and_refuses_to_write_the_memory() {
 
 #[test]
 fn a_supply_that_has_recovered_allows_everything_and_begins_nothing() {
-    let mut bench = doing(&moving(), Fidelity::DataSheet);
+    let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
     let [slow, stop, _] = robot().supplies().board;
     bench.uno.set_supply_mv(stop * 1000.0 - 60.0);
     bench.run_ms(500);
     assert_eq!(Status::of(&mut bench).text("gait"), "stop");
-    let refused = bench.say(&moving());
+    let refused = bench.say(&first_moving_gait());
     assert!(refused.starts_with("err 8 "), "{refused}");
     let held = widths_now(&mut bench);
     let from = bench.lines().len();
@@ -162,7 +162,10 @@ fn a_supply_that_has_recovered_allows_everything_and_begins_nothing() {
         "supply",
         "until it moves"
     );
-    assert_eq!(bench.say(&moving()), format!("ok {}", moving()));
+    assert_eq!(
+        bench.say(&first_moving_gait()),
+        format!("ok {}", first_moving_gait())
+    );
     bench.run_ms(500);
     assert_eq!(Status::of(&mut bench).text("fault"), "none");
     assert_eq!(bench.say("save"), "ok save");
@@ -170,7 +173,7 @@ fn a_supply_that_has_recovered_allows_everything_and_begins_nothing() {
 
 #[test]
 fn a_short_dip_and_a_supply_that_wavers_change_little() {
-    let mut bench = doing(&moving(), Fidelity::DataSheet);
+    let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
     let from = bench.lines().len();
     // A servo's start takes a few milliseconds of it.
     for n in 0..200u64 {
@@ -188,8 +191,8 @@ fn a_short_dip_and_a_supply_that_wavers_change_little() {
             .set_supply_mv(slow + if n % 2 == 0 { -40.0 } else { 90.0 });
         bench.run_ms(300);
     }
-    let said = notes(&mut bench, from);
-    assert_eq!(said.len(), 1, "{said:?}");
+    let printed = notes(&mut bench, from);
+    assert_eq!(printed.len(), 1, "{printed:?}");
 }
 
 /// A robot whose rail has this many volts.
@@ -198,10 +201,10 @@ fn set_rail(bench: &mut FirmwareBench, rail: &Rail, volts: f64) {
     bench.uno.set_analog_mv(Pin::arduino(rail.pin), mv);
 }
 
-/// A robot whose robot.toml names no pin for a rail says nothing of one, and whatever is
-/// on the pins that could measure it does nothing.
+/// Checks that a robot without a rail pin in robot.toml reports no rail, and that the voltage of a
+/// free pin has no effect.
 fn assert_no_rail() {
-    let mut bench = doing(&moving(), Fidelity::DataSheet);
+    let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
     let servos = robot().servos().each_ref().map(|servo| servo.pin);
     let free: Vec<u8> = (ANALOGUE..ANALOGUE + 6)
         .filter(|pin| !servos.contains(pin))
@@ -217,7 +220,7 @@ fn assert_no_rail() {
         assert!(answer.contains(" fault=none "), "{answer}");
         assert!(notes(&mut bench, 0).is_empty());
     }
-    let gait = moving().replace(' ', "-");
+    let gait = first_moving_gait().replace(' ', "-");
     assert_eq!(Status::of(&mut bench).text("gait"), gait);
 }
 
@@ -226,7 +229,7 @@ fn status_tells_the_servos_rail_where_robot_toml_names_its_pin() {
     let Some(rail) = robot().supplies().rail else {
         return assert_no_rail();
     };
-    let mut bench = doing(&moving(), Fidelity::DataSheet);
+    let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
     let highest = 5.0 * rail.ratio;
     for step in 1..=40 {
         let volts = highest * f64::from(step) / 41.0;
@@ -245,11 +248,11 @@ fn rail_step(rail: &Rail, volts: f64) -> f64 {
 }
 
 #[test]
-fn a_sinking_rail_slows_stops_and_rests_whatever_the_boards_supply() {
+fn a_sinking_rail_slows_stops_and_rests_the_robot_with_any_board_supply() {
     let Some(rail) = robot().supplies().rail else {
         return assert_no_rail();
     };
-    let mut bench = doing(&moving(), Fidelity::DataSheet);
+    let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
     let step = rail_step(&rail, rail.thresholds[0]);
     assert_sinks(&mut bench, rail.thresholds, step, |bench, volts| {
         set_rail(bench, &rail, volts);

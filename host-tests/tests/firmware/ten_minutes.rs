@@ -1,6 +1,6 @@
 //! AVR against host: the same core, the same commands, the same bits.
 
-use crate::comparable;
+use crate::comparable_line;
 use lizard_host::sim::core_run;
 use lizard_host::sim::frame::servo_pins;
 use lizard_host::sim::script::{Script, Step};
@@ -9,9 +9,8 @@ use lizard_host::sim::supplies;
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::{Fidelity, State, Uno};
 
-/// Everything one can say to the robot, refused and accepted, `apart` ms from
-/// each other, for ten minutes.
-fn everything(apart: u64) -> Script {
+/// Every kind of line, accepted or refused, one every `apart` ms, for ten minutes.
+fn script_of_all_lines(apart: u64) -> Script {
     let gaits = robot()
         .gaits()
         .iter()
@@ -69,7 +68,7 @@ fn run(script: &Script, fidelity: Fidelity) -> (Recording, Vec<String>) {
 #[test]
 fn ten_minutes_of_commands_give_the_same_widths_and_words_on_the_avr_and_here() {
     for (fidelity, apart) in [(Fidelity::DataSheet, 707), (Fidelity::Stock, 1307)] {
-        let mut script = everything(apart);
+        let mut script = script_of_all_lines(apart);
         let (mut recording, mut lines) = run(&script, fidelity);
         let first = recording.frames.first;
         let undecided: Vec<usize> =
@@ -102,7 +101,7 @@ fn ten_minutes_of_commands_give_the_same_widths_and_words_on_the_avr_and_here() 
         let lines = lines.iter().map(String::as_str);
         let lines: Vec<&str> = lines.filter(|line| !is_report(line)).collect();
         // Stock simavr has a reference of its own, whatever robot.toml says.
-        let told = |line: &str| comparable(line, fidelity);
+        let told = |line: &str| comparable_line(line, fidelity);
         for (n, (here, there)) in here.iter().zip(&lines).enumerate() {
             assert_eq!(told(here), told(there), "{fidelity:?}, line {n}");
         }

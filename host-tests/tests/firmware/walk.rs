@@ -1,17 +1,16 @@
-//! A robot in a gait and the widths that it should send: what the sweeps over every
-//! cycle are compared with.
+//! A robot in a gait, and the widths that it should send, for sweeps over every cycle.
 
 use lizard_host::sim::frame::{FRAME, Frame, frames, servo_pins};
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::Fidelity;
 
 use crate::pulses::{commanded, first_pulse};
-use crate::{awake, moving};
+use crate::{awake, first_moving_gait};
 
 /// Cycles from one servo's pulse to the next one's.
 pub const SLOT: u64 = FRAME / 5;
 
-/// A robot that has been told a gait and then nothing else that moves.
+/// A robot that walks one gait.
 pub struct Walk {
     pub bench: FirmwareBench,
     fidelity: Fidelity,
@@ -20,17 +19,17 @@ pub struct Walk {
 }
 
 impl Walk {
-    /// In the robot's first gait, a second after it was told to.
+    /// Starts the robot's first gait and runs it for a second.
     pub fn begin(fidelity: Fidelity) -> Self {
-        Self::doing(&moving(), fidelity)
+        Self::robot_after(&first_moving_gait(), fidelity)
     }
 
-    /// In the neutral pose.
+    /// Lets the robot stand in its neutral pose.
     pub fn stand(fidelity: Fidelity) -> Self {
-        Self::doing("stand", fidelity)
+        Self::robot_after("stand", fidelity)
     }
 
-    fn doing(line: &str, fidelity: Fidelity) -> Self {
+    fn robot_after(line: &str, fidelity: Fidelity) -> Self {
         let mut bench = awake(fidelity);
         let first = first_pulse(&bench);
         bench.say(line);

@@ -1,21 +1,22 @@
-//! A program that hangs is restarted, and no servo notices; and every cause of a
-//! reset is told right.
+//! A program that hangs is restarted without a wrong pulse, and every cause of a reset is reported
+//! correctly.
 
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::{Fidelity, ResetCause};
 
-use crate::kept::{MS, flashes, power_cycle, pulses, pulses_in, way, widths_now};
-use crate::{Status, awake, doing, moving, neutral_widths, pose_at};
+use crate::kept::{MS, flashes, power_cycle, pulses, pulses_in, slew_limit, widths_now};
+use crate::{Status, awake, first_moving_gait, neutral_widths, pose_at, robot_after};
 
 /// Timer1's registers, by data address.
 const TCCR1B: u16 = 0x81;
 const TIMSK1: u16 = 0x6f;
 
-/// The patience of the watchdog, twice 125 ms, and the frame in which it was fed last.
-const PATIENCE_MS: u64 = 250 + 20;
+/// The longest time until the watchdog resets a program that hangs: twice 125 ms, and the frame
+/// in which it was fed last.
+const TIMEOUT_MS: u64 = 250 + 20;
 
 /// A robot that is held in a pose apart from the neutral one, and its widths.
-fn posed() -> (FirmwareBench, [u64; 4]) {
+fn hold_pose() -> (FirmwareBench, [u64; 4]) {
     let mut bench = awake(Fidelity::DataSheet);
     bench.say(&pose_at([5.0, -4.0, 3.0, -2.0]));
     bench.run_ms(1000);
@@ -24,30 +25,30 @@ fn posed() -> (FirmwareBench, [u64; 4]) {
     (bench, widths)
 }
 
-/// Runs until the watchdog has reset the chip, and how many cycles that takes.
-fn until_reset(bench: &mut FirmwareBench) -> u64 {
+/// Runs until the watchdog has reset the chip; returns the cycles that it took.
+fn run_until_reset(bench: &mut FirmwareBench) -> u64 {
     let (begin, resets) = (bench.uno.cycle(), bench.uno.resets());
-    let limit = PATIENCE_MS * MS;
+    let limit = TIMEOUT_MS * MS;
     assert!(
         bench
             .uno
             .run_until(limit, 1_000, |uno| uno.resets() > resets),
         "no reset"
     );
-    // The new program is not held up.
+    // The restarted program is not stalled.
     bench.uno.stall_main(0);
     bench.uno.cycle() - begin
 }
 
 #[test]
 fn main_that_hangs_is_reset_and_the_robot_is_held_in_its_pose_without_a_wrong_pulse() {
-    let (mut bench, widths) = posed();
+    let (mut bench, widths) = hold_pose();
     for n in 0..40u64 {
-        // Anywhere in a frame.
+        // At any place in a frame.
         bench.uno.run_cycles(n * 7_919);
         bench.uno.take_edges();
         bench.uno.stall_main(2_000 * MS);
-        let took = until_reset(&mut bench);
+        let took = run_until_reset(&mut bench);
         assert!(took > 200 * MS, "{took}: not without need");
         bench.uno.run_ms(300);
         for (servo, pulses) in pulses(&bench).iter().enumerate() {
@@ -70,29 +71,29 @@ fn main_that_hangs_is_reset_and_the_robot_is_held_in_its_pose_without_a_wrong_pu
         );
         assert_eq!(status.number("resets"), (n + 1) as f64);
     }
-    let said = bench
+    let printed = bench
         .lines()
         .iter()
         .any(|line| line.text == "# fault: the program hung and began anew");
-    assert!(said);
+    assert!(printed);
 }
 
 #[test]
 fn a_hang_in_a_walk_ends_in_the_pose_of_the_last_frame_and_nothing_moves_until_told_to() {
     for hang_ms in [3, 137, 411, 893] {
-        let mut bench = doing(&moving(), Fidelity::DataSheet);
+        let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
         bench.run_ms(hang_ms);
         let before = widths_now(&mut bench);
         bench.uno.stall_main(2_000 * MS);
-        until_reset(&mut bench);
+        run_until_reset(&mut bench);
         bench.uno.run_ms(60);
         let after = pulses_in(&mut bench, 5000);
         for servo in 0..4 {
             let first = after[servo][0].width;
             assert!(after[servo].iter().all(|pulse| pulse.width == first));
-            // The last frame may have been computed and not yet played.
+            // The last frame may have been computed without being played.
             assert!(
-                first.abs_diff(before[servo]) <= 2 * way(servo),
+                first.abs_diff(before[servo]) <= 2 * slew_limit(servo),
                 "A{}",
                 servo + 1
             );
@@ -113,13 +114,13 @@ fn a_hang_in_a_walk_ends_in_the_pose_of_the_last_frame_and_nothing_moves_until_t
 #[test]
 fn a_timer_that_stands_still_or_interrupts_that_are_off_are_found_out() {
     for (register, value) in [(TCCR1B, 0), (TIMSK1, 0), (TIMSK1, 0x02), (TIMSK1, 0x04)] {
-        let (mut bench, widths) = posed();
+        let (mut bench, widths) = hold_pose();
         // In the tick's slot, where no pin is high.
         bench.run_for_frames(1);
         let pins = bench.pins();
         assert!(pins.iter().all(|pin| !bench.uno.is_high(*pin)));
         bench.uno.poke(register, value);
-        until_reset(&mut bench);
+        run_until_reset(&mut bench);
         bench.uno.run_ms(100);
         assert_eq!(widths_now(&mut bench), widths, "{register:02x}={value}");
         let status = Status::of(&mut bench);
@@ -129,12 +130,12 @@ fn a_timer_that_stands_still_or_interrupts_that_are_off_are_found_out() {
 
 #[test]
 fn interrupts_that_stay_off_are_found_out_and_the_cause_is_known_from_the_chip() {
-    let (mut bench, widths) = posed();
+    let (mut bench, widths) = hold_pose();
     // SREG's I bit.
     let sreg = 0x5f;
     assert!(bench.uno.run_until(MS, 1, |uno| uno.peek(sreg) & 0x80 == 0));
     bench.uno.hold(1_000 * MS);
-    until_reset(&mut bench);
+    run_until_reset(&mut bench);
     bench.uno.run_ms(100);
     assert_eq!(Status::of(&mut bench).text("reset"), "watchdog");
     assert_eq!(widths_now(&mut bench), widths);
@@ -142,14 +143,14 @@ fn interrupts_that_stay_off_are_found_out_and_the_cause_is_known_from_the_chip()
 
 #[test]
 fn a_robot_that_works_is_never_reset() {
-    let mut bench = doing(&moving(), Fidelity::DataSheet);
+    let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
     bench.uno.flood(b"status\nhelp\ncal\nsave\nx");
     bench.run_ms(20_000);
     assert_eq!(bench.uno.reset_events().len(), 1);
 }
 
 /// A board that has just begun, with or without a boot loader.
-fn begun(boot_loader: bool) -> FirmwareBench {
+fn fresh_board(boot_loader: bool) -> FirmwareBench {
     let mut bench = FirmwareBench::power_on(Fidelity::DataSheet);
     bench.uno.set_boot_loader(boot_loader);
     bench.run_ms(700);
@@ -157,25 +158,25 @@ fn begun(boot_loader: bool) -> FirmwareBench {
 }
 
 #[test]
-fn every_cause_of_a_reset_is_told_right_and_resets_are_counted() {
+fn every_cause_of_a_reset_is_reported_and_resets_are_counted() {
     for boot_loader in [false, true] {
-        let mut bench = begun(boot_loader);
+        let mut bench = fresh_board(boot_loader);
         let expect = |bench: &mut FirmwareBench, cause: &str, resets: f64| {
             bench.uno.run_ms(700);
             let status = Status::of(bench);
-            let told = (status.text("reset"), status.number("resets"));
-            assert_eq!(told, (cause, resets), "boot loader: {boot_loader}");
+            let reported = (status.text("reset"), status.number("resets"));
+            assert_eq!(reported, (cause, resets), "boot loader: {boot_loader}");
         };
         expect(&mut bench, "power", 0.0);
         bench.uno.reset();
         expect(&mut bench, "external", 1.0);
         bench.uno.stall_main(1_000 * MS);
-        until_reset(&mut bench);
+        run_until_reset(&mut bench);
         expect(&mut bench, "watchdog", 2.0);
         bench.uno.set_supply_mv(2_400.0);
         bench.uno.run_ms(5);
         bench.uno.set_supply_mv(5_000.0);
-        // The boot loader clears what the chip knows of it; RAM was kept.
+        // The boot loader clears the chip's record of the cause; the RAM was kept.
         let dip = if boot_loader { "external" } else { "brownout" };
         expect(&mut bench, dip, 3.0);
         bench.uno.reset();
@@ -199,21 +200,21 @@ fn every_cause_of_a_reset_is_told_right_and_resets_are_counted() {
 
 #[test]
 fn resets_are_counted_up_to_255_and_no_farther() {
-    let mut bench = begun(true);
+    let mut bench = fresh_board(true);
     for reset in 1..=260u32 {
         bench.uno.reset();
         bench.run_ms(5);
         if reset >= 253 {
             bench.run_ms(700);
-            let told = Status::of(&mut bench).number("resets");
-            assert_eq!(told, f64::from(reset.min(255)), "{reset} resets");
+            let reported = Status::of(&mut bench).number("resets");
+            assert_eq!(reported, f64::from(reset.min(255)), "{reset} resets");
         }
     }
 }
 
 #[test]
 fn power_on_is_known_from_any_noise_in_the_memory() {
-    let mut bench = begun(true);
+    let mut bench = fresh_board(true);
     for seed in 0..300 {
         bench.uno.set_noise_seed(seed);
         power_cycle(&mut bench);
@@ -234,8 +235,8 @@ fn robot_neutral() -> [f64; 4] {
 
 #[test]
 fn a_hang_that_ends_by_itself_is_reset_like_any_other() {
-    let (mut bench, widths) = posed();
-    // From shorter than the watchdog's first patience to longer than both.
+    let (mut bench, widths) = hold_pose();
+    // From shorter than the watchdog's first 125 ms to longer than both.
     for ms in (90..300).step_by(10) {
         let resets = bench.uno.resets();
         bench.uno.stall_main(ms * MS);
@@ -256,11 +257,11 @@ fn a_hang_that_ends_by_itself_is_reset_like_any_other() {
 }
 
 #[test]
-fn a_robot_that_rests_and_hangs_comes_back_without_a_pulse_whatever_was_kept() {
+fn a_resting_robot_that_hangs_restarts_without_a_pulse() {
     // The pose of the rest is in the memory, or the memory holds nothing.
     for blank in [false, true] {
         for ms in [140, 200, 400] {
-            let (mut bench, _) = posed();
+            let (mut bench, _) = hold_pose();
             assert_eq!(bench.say("rest"), "ok rest");
             bench.run_ms(500);
             if blank {
@@ -274,9 +275,9 @@ fn a_robot_that_rests_and_hangs_comes_back_without_a_pulse_whatever_was_kept() {
             let after = pulses_in(&mut bench, 6000);
             assert!(after.iter().all(Vec::is_empty), "{ms} ms: {after:?}");
             let status = Status::of(&mut bench);
-            let told = [status.text("gait"), status.text("fault")];
-            assert_eq!(told, ["rest", "watchdog"]);
-            let walk = bench.say(&moving());
+            let reported = [status.text("gait"), status.text("fault")];
+            assert_eq!(reported, ["rest", "watchdog"]);
+            let walk = bench.say(&first_moving_gait());
             assert_eq!(walk, "err 7 servos are resting, send stand first");
             assert_eq!(bench.say("stand"), "ok stand");
             bench.run_ms(2000);
@@ -287,7 +288,7 @@ fn a_robot_that_rests_and_hangs_comes_back_without_a_pulse_whatever_was_kept() {
 
 #[test]
 fn a_robot_that_rests_and_is_reset_rests_until_boot_or_an_order() {
-    let (mut bench, _) = posed();
+    let (mut bench, _) = hold_pose();
     bench.say("rest");
     bench.run_ms(300);
     bench.uno.reset();
@@ -296,11 +297,11 @@ fn a_robot_that_rests_and_is_reset_rests_until_boot_or_an_order() {
     assert!(before.iter().all(Vec::is_empty), "{before:?}");
     bench.uno.run_ms(2_500);
     assert_eq!(widths_now(&mut bench), neutral_widths());
-    let said = bench
+    let printed = bench
         .lines()
         .iter()
         .any(|line| line.text == "# boot: stand");
-    assert!(said);
+    assert!(printed);
     bench.say("rest");
     bench.run_ms(300);
     bench.uno.reset();

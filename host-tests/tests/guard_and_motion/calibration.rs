@@ -1,4 +1,4 @@
-//! Each servo by its own numbers: neutral, gain, travel and pin.
+//! The numbers of each servo: neutral, gain, travel and pin.
 
 use lizard_core::numbers::units::Sweep;
 use lizard_host_tests::{Named, robots};

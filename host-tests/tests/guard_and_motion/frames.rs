@@ -1,5 +1,4 @@
-//! A robot at its console: lines go in, and every frame that comes is checked for
-//! all that no frame may do.
+//! A robot at its console, every frame of which is checked against the rules for frames.
 
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -21,21 +20,21 @@ pub const WAKING: u32 = 20;
 /// A step of angle in a frame, as deg/s.
 pub const STEP_PER_FRAME: f64 = 50.0 * 360.0 / 65536.0;
 
-/// Frames in which a motion gathers or loses all its pace.
+/// Number of frames in which a motion accelerates to its pace, or brakes.
 const GATHERING: f64 = 7.0;
 
 /// The most that rounding may add to a change of speed, in steps of angle a frame.
 const ROUNDING: f64 = 4.0;
 
-/// The most that a servo's speed may change from one frame to the next, deg/s, but
-/// for `stop`, `rest` and the guard, which freeze it.
+/// The most that a servo's speed may change from one frame to the next, deg/s, except
+/// for `stop`, `rest` and the guard, which stop it at once.
 ///
 /// A point-to-point move changes speed the most where its shortest, of eight frames,
-/// begins or ends: `6 way / 8^2` a frame, with a mean pace of 2/3 of the slew limit.
+/// begins or ends: `6 distance / 8^2` a frame, with a mean pace of 2/3 of the slew limit.
 /// It is half the slew limit, also where one move ends and the next leads straight
 /// back. A gait has its own changes, and gathers or loses its pace on top of them.
 ///
-/// Computed once for each robot, by the hash of its numbers: a walker asks for it.
+/// It is computed once for each robot, by the hash of its numbers.
 pub fn jerk(robot: &Robot) -> f64 {
     static KNOWN: Mutex<BTreeMap<u32, f64>> = Mutex::new(BTreeMap::new());
     let mut known = KNOWN.lock().expect("no test fails in here");
@@ -75,12 +74,12 @@ fn fastest(robot: &Robot, id: GaitId) -> (f64, f64) {
     (speed * STEP_PER_FRAME, change * STEP_PER_FRAME)
 }
 
-/// Frames in which any command comes to its end: waking, braking, the longest move
+/// Number of frames within which any command ends: waking, braking, the longest move
 /// at the slew limit, gathering pace.
 pub fn long_enough(robot: &Robot) -> u32 {
     let travels = robot.firmware().calibration();
-    let ways = travels.map(|servo| f64::from(servo.max.0) - f64::from(servo.min.0));
-    let farthest = ways.into_iter().fold(0.0, f64::max);
+    let ranges = travels.map(|servo| f64::from(servo.max.0) - f64::from(servo.min.0));
+    let farthest = ranges.into_iter().fold(0.0, f64::max);
     let frames = 1.5 * farthest * STEP_PER_FRAME / robot.pace().slew;
     WAKING + 30 + (1.05 * frames) as u32
 }
@@ -92,7 +91,7 @@ pub struct Walker<'a> {
     running: Running,
     /// Degrees a second of each servo in the last frame.
     speeds: [f64; 4],
-    /// True if the next frame may stop dead.
+    /// True if the servos may stop at once in the next frame.
     may_stop: bool,
     most_jerk: f64,
     /// The largest change of speed so far, deg/s.
@@ -130,7 +129,7 @@ impl<'a> Walker<'a> {
         *self.motion().pose()
     }
 
-    /// Everything that the console has to write.
+    /// Reads all output of the console.
     pub fn read(&mut self) -> Vec<String> {
         self.running.lines()
     }
@@ -144,23 +143,23 @@ impl<'a> Walker<'a> {
         answer
     }
 
-    /// Types a line that must be understood and done.
-    pub fn does(&mut self, line: &str) {
+    /// Types a line that must be accepted.
+    pub fn expect_ok(&mut self, line: &str) {
         let answer = self.say(line);
         assert!(answer.starts_with("ok"), "{}: {line}: {answer}", self.name);
     }
 
-    /// Goes to a pose and waits until it is there; false where the guard stops it.
-    pub fn arrives(&mut self, pose: &Pose) -> bool {
-        self.does(&self.typed(pose));
+    /// Moves to a pose; false if the guard stops the robot on the path.
+    pub fn move_to(&mut self, pose: &Pose) -> bool {
+        self.expect_ok(&self.pose_command(pose));
         self.run(long_enough(self.robot));
         self.motion().hazard().is_none()
     }
 
     /// The command for a pose. Hundredths of a degree name the angle of the nearest
     /// step of 1/65536 turn, or its neighbour.
-    pub fn typed(&self, pose: &Pose) -> String {
-        typed(angles(self.robot.firmware(), pose))
+    pub fn pose_command(&self, pose: &Pose) -> String {
+        pose_command(angles(self.robot.firmware(), pose))
     }
 
     /// Lets some frames pass.
@@ -170,7 +169,7 @@ impl<'a> Walker<'a> {
         }
     }
 
-    /// A frame that may do nothing that a frame must not.
+    /// Runs a frame and checks it against all rules.
     pub fn frame(&mut self) -> Pulses {
         let (name, robot) = (self.name, self.robot);
         let before = self.pose();
@@ -221,7 +220,7 @@ impl<'a> Walker<'a> {
         pulses
     }
 
-    /// Pulses are those of the pose by robot.toml, within each servo's own travel.
+    /// Checks that the pulses are those of the pose by robot.toml, within each servo's travel.
     fn check_pulses(&self, pose: &Pose, pulses: Pulses) {
         for (n, (servo, width)) in self.robot.servos().iter().zip(pulses.0).enumerate() {
             if width.0 == 0 {
@@ -251,13 +250,13 @@ impl<'a> Walker<'a> {
 }
 
 /// The command for chassis angles, deg.
-pub fn typed(angles: [f64; 4]) -> String {
+pub fn pose_command(angles: [f64; 4]) -> String {
     let [a1, a2, a3, a4] = angles;
     format!("pose {a1:.2} {a2:.2} {a3:.2} {a4:.2}")
 }
 
 /// The command that begins a gait.
-pub fn words(gait: &CheckedGait) -> String {
+pub fn gait_command(gait: &CheckedGait) -> String {
     gait.name().replace('-', " ")
 }
 
@@ -266,10 +265,10 @@ pub fn any_command(rng: &mut Rng, robot: &Robot) -> String {
     let pose = |rng: &mut Rng, share: f64| {
         let firmware = robot.firmware();
         let pose = pose_within(rng, &firmware.calibration(), share);
-        typed(angles(firmware, &pose))
+        pose_command(angles(firmware, &pose))
     };
     match rng.u8(..20) {
-        0..9 => words(&robot.gaits()[rng.usize(..robot.gaits().len())]),
+        0..9 => gait_command(&robot.gaits()[rng.usize(..robot.gaits().len())]),
         9..13 => pose(rng, 0.25),
         13..15 => pose(rng, 0.8),
         15 => "stop".into(),
@@ -280,8 +279,11 @@ pub fn any_command(rng: &mut Rng, robot: &Robot) -> String {
 }
 
 /// The robot's activity once a command is complete.
-pub fn meant(robot: &Robot, command: &str) -> Option<Activity> {
-    let gait = robot.gaits().iter().position(|gait| words(gait) == command);
+pub fn final_activity(robot: &Robot, command: &str) -> Option<Activity> {
+    let gait = robot
+        .gaits()
+        .iter()
+        .position(|gait| gait_command(gait) == command);
     let id = |place: usize| {
         GaitId::all(robot.gaits().len())
             .nth(place)

@@ -9,7 +9,7 @@ use lizard_kinematics::End;
 use lizard_robot::servo::{FORWARD, LEGS, OPPOSITE};
 use lizard_robot::{CheckedGait, Robot, STEPS_PER_DEGREE, Waveform};
 
-use crate::frames::words;
+use crate::frames::gait_command;
 use crate::truth::is_safe;
 
 /// Phases that the tables tell apart.
@@ -29,7 +29,7 @@ pub fn gaits() -> impl Iterator<Item = (&'static Named, &'static CheckedGait, Ga
 }
 
 /// The gait of a robot by its name, as the core has it.
-fn named(robot: &Robot, name: &str) -> Option<Gait> {
+fn gait_named(robot: &Robot, name: &str) -> Option<Gait> {
     let index = robot.gait(name)?.index();
     let id = GaitId::all(robot.gaits().len()).nth(index)?;
     Some(robot.firmware().gait(id))
@@ -41,7 +41,7 @@ fn phases() -> impl Iterator<Item = u32> {
 }
 
 /// The pose in the mirror: left and right exchanged, turns the other way.
-fn mirrored(pose: Pose) -> Pose {
+fn mirror(pose: Pose) -> Pose {
     Pose(OPPOSITE.map(|servo| Sweep(-pose.0[servo].0)))
 }
 
@@ -52,7 +52,7 @@ fn the_core_has_the_gaits_of_the_file_in_its_order() {
         let names: Vec<String> = GaitId::all(firmware.gait_count())
             .map(|id| firmware.name(id).map(char::from).collect())
             .collect();
-        let expected: Vec<String> = robot.gaits().iter().map(words).collect();
+        let expected: Vec<String> = robot.gaits().iter().map(gait_command).collect();
         assert_eq!(names, expected, "{name}");
     }
 }
@@ -188,7 +188,7 @@ fn a_path_moves_only_its_own_end_around_its_centre() {
             let Some(float) = robot.gait(gait) else {
                 continue;
             };
-            let core = named(robot, gait).expect("it is there");
+            let core = gait_named(robot, gait).expect("it is there");
             paths += 1;
             let point = |phase: u32, end: End| {
                 let sweeps = core.pose(robot.firmware().waves(), phase << 16).0;
@@ -232,7 +232,8 @@ fn a_reversed_gait_runs_backwards_and_reversed_again_forwards() {
             ("wander", "advance", 1),
             ("walk", "back", -1),
         ] {
-            let (Some(forth), Some(back)) = (named(robot, forth), named(robot, back)) else {
+            let (Some(forth), Some(back)) = (gait_named(robot, forth), gait_named(robot, back))
+            else {
                 continue;
             };
             seen += 1;
@@ -256,13 +257,14 @@ fn a_mirrored_gait_is_the_other_one_with_left_and_right_exchanged() {
             ("left", "right"),
             ("arc-left", "arc-right"),
         ] {
-            let (Some(one), Some(other)) = (named(robot, one), named(robot, other)) else {
+            let (Some(one), Some(other)) = (gait_named(robot, one), gait_named(robot, other))
+            else {
                 continue;
             };
             seen += 1;
             assert_eq!(one.increment, other.increment, "{name}");
             for phase in phases() {
-                let pose = mirrored(one.pose(robot.firmware().waves(), phase));
+                let pose = mirror(one.pose(robot.firmware().waves(), phase));
                 // Halves are rounded up on either side, gains are rounded.
                 let off = pose.farthest(&other.pose(robot.firmware().waves(), phase));
                 assert!(off <= 1, "{name}: {off} steps");
@@ -291,11 +293,11 @@ fn the_wrap_of_the_phase_is_as_smooth_as_the_rest_of_the_cycle() {
 #[test]
 fn gaits_of_the_paper_that_look_the_same_from_both_sides_half_a_cycle_apart_are_so() {
     for name in ["walk", "trot"] {
-        let gait = named(paper(), name).expect("a gait of the paper's robot");
+        let gait = gait_named(paper(), name).expect("a gait of the paper's robot");
         for phase in phases() {
             let across = gait.pose(paper().firmware().waves(), (phase + CYCLE / 2) % CYCLE);
             assert_eq!(
-                mirrored(gait.pose(paper().firmware().waves(), phase)),
+                mirror(gait.pose(paper().firmware().waves(), phase)),
                 across,
                 "{name}"
             );
@@ -305,7 +307,7 @@ fn gaits_of_the_paper_that_look_the_same_from_both_sides_half_a_cycle_apart_are_
 
 #[test]
 fn the_head_of_the_papers_look_follows_its_figure_of_eight() {
-    let gait = named(paper(), "look").expect("a gait of the paper's robot");
+    let gait = gait_named(paper(), "look").expect("a gait of the paper's robot");
     let neutral = paper().servos().map(|servo| servo.neutral);
     for phase in (0..PHASES).step_by(16) {
         let sweeps = gait.pose(paper().firmware().waves(), phase << 8).0;

@@ -1,12 +1,11 @@
-//! Pulses in, floor under: what the core sends, turned back into angles by the
-//! servos of robot.toml and put on the ground of the contact model, must lead where
-//! the gait was meant to.
+//! The core's pulses, converted back to angles and walked on the floor of the contact model, must
+//! move the robot as the gait in floating point does.
 
 use lizard_core::numbers::pose::Pulses;
 use lizard_host_tests::{Named, paper, robots};
 use lizard_robot::{CheckedGait, Robot, Travel};
 
-use crate::frames::{Walker, long_enough, words};
+use crate::frames::{Walker, gait_command, long_enough};
 
 /// Servo angles in the chassis frame, deg, from widths in cycles of 62.5 ns.
 fn angles(robot: &Robot, pulses: Pulses) -> [f64; 4] {
@@ -22,8 +21,8 @@ fn angles(robot: &Robot, pulses: Pulses) -> [f64; 4] {
 fn travel(named: &Named, gait: &CheckedGait, percent: f64) -> Option<Travel> {
     let robot = &named.robot;
     let mut walker = Walker::standing(named);
-    walker.does(&format!("speed {percent}"));
-    walker.does(&words(gait));
+    walker.expect_ok(&format!("speed {percent}"));
+    walker.expect_ok(&gait_command(gait));
     walker.run(long_enough(robot));
     if walker.motion().hazard().is_some() {
         return None;
@@ -53,8 +52,8 @@ fn travel(named: &Named, gait: &CheckedGait, percent: f64) -> Option<Travel> {
     Some(robot.travel(path))
 }
 
-/// Holds a travel to what was meant, where that is known, within `most` mm or a
-/// hundredth of it.
+/// Compares a travel with the expected one, where that is known, within `most` mm or a hundredth
+/// of it.
 fn check(whom: &str, travel: Travel, most: f64, forward: Option<f64>, turn: Option<f64>) {
     println!(
         "{whom}: {:+.2} mm, {:+.2} deg, meant {forward:?} {turn:?}",
@@ -78,11 +77,11 @@ fn check(whom: &str, travel: Travel, most: f64, forward: Option<f64>, turn: Opti
 #[test]
 fn the_pulses_of_every_gait_lead_where_the_same_gait_in_floating_point_does() {
     let mut seen = 0;
-    // Of the random robots a few: the contact model takes its time.
+    // Only some of the random robots, since the contact model is slow.
     for named in &robots()[..robots().len() - 5] {
         for gait in named.robot.gaits() {
             for percent in [100.0, 20.0] {
-                // A pace is no different for one random robot than for the next.
+                // One robot is enough for the lower pace.
                 if percent < 100.0 && named.name.starts_with("random") {
                     continue;
                 }
@@ -101,8 +100,8 @@ fn the_pulses_of_every_gait_lead_where_the_same_gait_in_floating_point_does() {
     assert!(seen > 100);
 }
 
-// What floating point says of them is held to figures from elsewhere in the tests of
-// crates/robot/.
+// The predictions in floating point are compared with independent figures in the tests
+// of crates/robot/.
 #[test]
 fn the_pulses_of_the_papers_gaits_lead_there_within_a_third_of_a_millimetre_at_any_pace() {
     let named = Named {

@@ -1,4 +1,4 @@
-//! Each limit at its own place, to the last bit.
+//! The guard's limits, each to the last bit.
 
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::guard::hazard::Hazard;

@@ -84,20 +84,20 @@ impl Findings {
         let Some(named) = named else {
             return;
         };
-        // What is named is broken, and nothing before it is.
+        // The condition that is named is broken, and none before it.
         assert!(clear_by[named] <= 1.0, "{pose:?}: {hazard:?}, {truth:?}");
         let earlier = clear_by[..named].iter().all(|by| *by >= -1.0);
         assert!(earlier, "{pose:?}: {hazard:?} comes too early, {truth:?}");
     }
 
-    /// Every value against the truth's.
+    /// Compares every value with the truth.
     fn compare(&mut self, robot: &Robot, core: &Clearance, truth: &Truth) {
         for (place, (value, meant)) in core.margins.iter().zip(truth.margins).enumerate() {
             let end = ENDS.get(place).copied();
             if let Some(end) = end
                 && (truth.margins[end] < LEAST_TYPE2 || truth.is_at_crossing(end))
             {
-                // The guard only has to know that it is so.
+                // The guard only has to detect that case.
                 let most = LEAST_TYPE2 + truth.bands[end];
                 assert!(
                     truth.is_at_crossing(end) || sine(core.margins[end]) < most,
@@ -187,7 +187,7 @@ fn of_every_robot_the_guard_measures_every_margin_and_decides_every_pose_as_floa
 }
 
 #[test]
-fn of_every_robot_the_guard_changes_its_mind_where_floating_point_has_the_limit() {
+fn of_every_robot_the_guards_decision_changes_at_the_limit_of_floating_point() {
     for (n, Named { name, robot }) in robots().iter().enumerate() {
         let mut rng = rng(200 + n as u64);
         let firmware = robot.firmware();
@@ -197,7 +197,7 @@ fn of_every_robot_the_guard_changes_its_mind_where_floating_point_has_the_limit(
             if is_safe(firmware, &far) {
                 continue;
             }
-            for pose in straddling(robot, far) {
+            for pose in straddling_poses(robot, far) {
                 findings.add(robot, &pose);
             }
         }
@@ -207,7 +207,7 @@ fn of_every_robot_the_guard_changes_its_mind_where_floating_point_has_the_limit(
 
 /// Two neighbours on the way from neutral to an unsafe pose, the first of them safe
 /// and the second not.
-fn straddling(robot: &Robot, far: Pose) -> [Pose; 2] {
+fn straddling_poses(robot: &Robot, far: Pose) -> [Pose; 2] {
     let at = |share: u32| {
         Pose(
             far.0
@@ -271,7 +271,7 @@ fn the_smallest_margin_is_the_one_of_kinematics() {
 }
 
 #[test]
-fn no_pose_whatever_is_too_much_for_the_guard() {
+fn the_guard_overflows_at_no_pose() {
     // Also poses that no servo reaches: the arithmetic must not overflow in any.
     for (n, Named { robot, .. }) in robots().iter().enumerate() {
         let mut rng = rng(500 + n as u64);

@@ -1,18 +1,18 @@
-//! From any motion to any other, of every robot: limits that every frame keeps, and
-//! the end that every command comes to.
+//! Transitions from any motion to any other, for every robot: every frame keeps the limits, and
+//! every command completes.
 
 use lizard_core::motion::Activity;
 use lizard_core::numbers::pose::Pose;
 use lizard_host_tests::{Named, rng, robots};
 
-use crate::frames::{WAKING, Walker, any_command, jerk, long_enough, meant};
+use crate::frames::{WAKING, Walker, any_command, final_activity, jerk, long_enough};
 use crate::truth::safe_pose;
 
-/// Random dialogues with each robot.
+/// Number of random dialogues with each robot.
 const DIALOGUES: u64 = 30;
 
 #[test]
-fn no_frame_is_too_fast_too_sudden_or_unsafe_whatever_is_asked() {
+fn no_frame_is_too_fast_too_sudden_or_unsafe_for_any_commands() {
     for (n, named) in robots().iter().enumerate() {
         let mut rng = rng(1000 + n as u64);
         let (mut done, mut refused, mut most) = (0, 0, 0.0f64);
@@ -59,11 +59,11 @@ fn every_command_comes_to_its_end_or_the_guard_says_why_not() {
                 continue;
             }
             let activity = walker.motion().activity();
-            match meant(robot, &last) {
+            match final_activity(robot, &last) {
                 Some(meant) if answer.starts_with("ok") => {
                     assert_eq!(activity, meant, "{name}: {last}")
                 }
-                // A speed, or a pose that was refused.
+                // After a speed, or a pose that was refused, the gait goes on.
                 _ => assert!(matches!(activity, Activity::Gait(_)), "{name}: {last}"),
             }
             if let Activity::Gait(id) = activity {
@@ -113,7 +113,7 @@ fn in_a_move_all_servos_do_the_same_share_of_their_ways_and_arrive_together() {
         for _ in 0..DIALOGUES {
             let goal = safe_pose(&mut rng, named.robot.firmware());
             let mut walker = Walker::standing(named);
-            if !walker.say(&walker.typed(&goal)).starts_with("ok") {
+            if !walker.say(&walker.pose_command(&goal)).starts_with("ok") {
                 continue; // a hundredth of a degree beyond a limit
             }
             let mut poses = vec![walker.pose()];
@@ -153,11 +153,11 @@ fn servos_wake_one_after_another_where_they_were_left() {
             safe_pose(&mut rng(5000 + n as u64), named.robot.firmware()),
         ] {
             if held != Pose::NEUTRAL {
-                walker.say(&walker.typed(&held));
+                walker.say(&walker.pose_command(&held));
                 walker.run(long_enough(&named.robot));
-                walker.does("rest");
+                walker.expect_ok("rest");
                 walker.run(10);
-                walker.does("stand");
+                walker.expect_ok("stand");
             }
             let held = walker.pose();
             let mut awake_since = [0; 4];
@@ -186,19 +186,19 @@ fn stop_freezes_and_rest_silences_the_very_next_frame_and_a_gait_begins_anew() {
         for _ in 0..DIALOGUES {
             let mut walker = Walker::standing(named);
             let gait = rng.usize(..robot.gaits().len());
-            walker.does(&crate::frames::words(&robot.gaits()[gait]));
+            walker.expect_ok(&crate::frames::gait_command(&robot.gaits()[gait]));
             walker.run(rng.u32(..200));
             let pose = walker.pose();
             let end = ["stop", "rest"][rng.usize(..2)];
-            walker.does(end);
+            walker.expect_ok(end);
             for _ in 0..5 {
                 let silent = walker.frame().0.iter().all(|width| width.0 == 0);
                 assert_eq!(silent, end == "rest", "{}", named.name);
                 assert_eq!(walker.pose(), pose, "{}", named.name);
                 assert_eq!(walker.motion().phase(), 0, "{}", named.name);
             }
-            walker.does("stand");
-            walker.does(&crate::frames::words(&robot.gaits()[gait]));
+            walker.expect_ok("stand");
+            walker.expect_ok(&crate::frames::gait_command(&robot.gaits()[gait]));
             let firmware = robot.firmware();
             let id = lizard_core::numbers::gaits::GaitId::all(firmware.gait_count())
                 .nth(gait)

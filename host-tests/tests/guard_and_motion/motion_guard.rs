@@ -1,5 +1,4 @@
-//! Motions whose way leads through a pose that is not safe: between two
-//! safe poses there may be one that is not.
+//! Moves between two safe poses whose path leads through an unsafe one.
 
 use fastrand::Rng;
 use lizard_core::guard::clearance::Clearance;
@@ -9,12 +8,12 @@ use lizard_core::numbers::units::Sweep;
 use lizard_host_tests::{Named, rng, robots};
 use lizard_robot::{CoreRobot, Robot};
 
-use crate::frames::{Walker, long_enough, words};
+use crate::frames::{Walker, gait_command, long_enough};
 use crate::truth::{Verdict, angles, is_safe, pose_within};
 
-/// Tries for each robot; some robots have no such ways.
+/// Number of tries for each robot; some robots have no such paths.
 const TRIES: usize = 6000;
-/// Ways followed of each robot.
+/// Number of paths followed for each robot.
 const WAYS: usize = 12;
 
 /// Pairs of safe poses whose straight connection is unsafe, by floating point.
@@ -27,10 +26,10 @@ fn crossings(rng: &mut Rng, robot: &Robot) -> Vec<[Pose; 2]> {
         let mut pose = Pose::NEUTRAL;
         (pose.0[a], pose.0[b]) = (any.0[a], any.0[b]);
         let mut share = 256;
-        while !is_safe(robot.firmware(), &shrunk(&pose, share)) {
+        while !is_safe(robot.firmware(), &shrink(&pose, share)) {
             share -= 4;
         }
-        shrunk(&pose, share)
+        shrink(&pose, share)
     };
     let mut found = Vec::new();
     for _ in 0..TRIES {
@@ -53,7 +52,7 @@ fn crossings(rng: &mut Rng, robot: &Robot) -> Vec<[Pose; 2]> {
     found
 }
 
-fn shrunk(pose: &Pose, share: i32) -> Pose {
+fn shrink(pose: &Pose, share: i32) -> Pose {
     Pose(
         pose.0
             .map(|sweep| Sweep((i32::from(sweep.0) * share / 256) as i16)),
@@ -61,19 +60,19 @@ fn shrunk(pose: &Pose, share: i32) -> Pose {
 }
 
 #[test]
-fn the_last_safe_pose_is_held_and_the_reason_is_told_once() {
+fn the_last_safe_pose_is_held_and_the_reason_is_reported_once() {
     let mut held = 0;
     for (n, named) in robots().iter().enumerate() {
         let Named { name, robot } = named;
         for [from, to] in crossings(&mut rng(7000 + n as u64), robot) {
             let mut walker = Walker::standing(named);
             // A hundredth of a degree may be beyond the limit.
-            if !walker.say(&walker.typed(&from)).starts_with("ok") {
+            if !walker.say(&walker.pose_command(&from)).starts_with("ok") {
                 continue;
             }
             walker.run(long_enough(robot));
             if walker.motion().hazard().is_some()
-                || !walker.say(&walker.typed(&to)).starts_with("ok")
+                || !walker.say(&walker.pose_command(&to)).starts_with("ok")
             {
                 continue;
             }
@@ -92,7 +91,7 @@ fn the_last_safe_pose_is_held_and_the_reason_is_told_once() {
                 told[0].starts_with("# held in the last safe pose: "),
                 "{told:?}"
             );
-            // The reason lies on the way that is left.
+            // The reason lies on the rest of the path.
             assert!(
                 lies_ahead(robot.firmware(), from, to, walker.pose(), hazard),
                 "{name}: {hazard:?}"
@@ -102,9 +101,9 @@ fn the_last_safe_pose_is_held_and_the_reason_is_told_once() {
             assert_eq!(walker.pose(), pose, "{name}");
             assert!(walker.read().is_empty(), "{name}: told once");
             assert!(walker.say("status").contains(" guard=held "), "{name}");
-            // And from there it may be told to go back.
+            // And from there it can go back.
             assert!(
-                walker.arrives(&from) || walker.motion().hazard().is_some(),
+                walker.move_to(&from) || walker.motion().hazard().is_some(),
                 "{name}"
             );
             if walker.motion().hazard().is_none() {
@@ -116,7 +115,7 @@ fn the_last_safe_pose_is_held_and_the_reason_is_told_once() {
     assert!(held >= 10);
 }
 
-/// True if the condition that a hazard names is broken on the way that is left.
+/// True if the rest of the path breaks the condition that a hazard names.
 fn lies_ahead(
     firmware: &CoreRobot,
     from: Pose,
@@ -150,7 +149,7 @@ fn a_gait_that_is_under_way_never_meets_the_guard() {
     for named in robots() {
         for gait in named.robot.gaits() {
             let mut walker = Walker::standing(named);
-            walker.does(&words(gait));
+            walker.expect_ok(&gait_command(gait));
             // The way to its first pose may lead through an unsafe one.
             walker.run(long_enough(&named.robot));
             if walker.motion().hazard().is_some() {

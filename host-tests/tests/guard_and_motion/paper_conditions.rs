@@ -1,5 +1,5 @@
-//! Reasons not to build the guard on the conditions that the paper prints,
-//! sin(theta2 + theta3) = 0 (and its kin of the tail) and sin(2 theta11) = 0.
+//! Reasons not to build the guard on the paper's printed conditions: sin(theta2 + theta3) = 0, the
+//! same for the tail, and sin(2 theta11) = 0.
 
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::guard::hazard::{Hazard, Margin};
@@ -97,23 +97,23 @@ fn the_condition_printed_in_the_paper_is_blind_to_the_real_singularity_and_the_g
         let pose = head_at(MEET[0] + dx, MEET[1] + dy);
         best = best.max(Printed::of(&pose).head);
         assert_eq!(
-            named(&pose),
+            refused_margin(&pose),
             Some(Margin::Type2(End::Head)),
             "a degree beside it"
         );
     }
     println!("a degree beside the singularity, |sin(theta2 + theta3)| is up to {best:.3}");
     assert!(best > 0.95);
-    // On the spot, too, and at its mirror image in the tail.
+    // Exactly at the singularity, too, and at its mirror image in the tail.
     let head = head_at(MEET[0], MEET[1]);
-    assert_eq!(named(&head), Some(Margin::Type2(End::Head)));
+    assert_eq!(refused_margin(&head), Some(Margin::Type2(End::Head)));
     let Pose([a1, a2, ..]) = head;
     let tail = Pose([Sweep(0), Sweep(0), Sweep(-a2.0), Sweep(-a1.0)]);
-    assert_eq!(named(&tail), Some(Margin::Type2(End::Tail)));
+    assert_eq!(refused_margin(&tail), Some(Margin::Type2(End::Tail)));
 }
 
 /// The margin that the guard finds too small.
-fn named(pose: &Pose) -> Option<Margin> {
+fn refused_margin(pose: &Pose) -> Option<Margin> {
     let firmware = paper().firmware();
     match Clearance::of(firmware, pose).hazard(firmware) {
         Some(Hazard::Margin { margin, .. }) => Some(margin),

@@ -14,8 +14,8 @@ use lizard_host::prove::STEPS_BAND;
 use lizard_kinematics::{Check, Infeasible, Limits, Part};
 use lizard_robot::{CoreRobot, Robot};
 
-/// The most that the guard's arithmetic may add to a margin, a sine; the rounding of lengths
-/// comes on top.
+/// Largest error of the guard's arithmetic in a margin, a sine; the rounding of lengths adds to
+/// it.
 pub const MARGIN_BAND: f64 = 0.002;
 /// The least type-2 limit that robot.toml may set; below it the guard only has to
 /// know that it is below.

@@ -1,10 +1,10 @@
-//! Gaits under way: how long their cycles take, at every pace, and which poses their frames are.
+//! Running gaits: the duration of their cycles at every pace, and the poses of their frames.
 
 use lizard_core::numbers::gaits::GaitId;
 use lizard_core::numbers::units::CYCLE;
 use lizard_host_tests::{Named, rng, robots};
 
-use crate::frames::{Walker, long_enough, words};
+use crate::frames::{Walker, gait_command, long_enough};
 use crate::gaits::{FULL_PACE, gaits};
 
 #[test]
@@ -35,15 +35,15 @@ fn every_speed_gives_its_share_of_every_gaits_pace() {
     for named in robots() {
         for float in named.robot.gaits().iter().skip(1) {
             let mut walker = Walker::standing(named);
-            walker.does(&words(float));
+            walker.expect_ok(&gait_command(float));
             walker.run(long_enough(&named.robot));
             if walker.motion().hazard().is_some() {
-                barred += 1; // the way to its first pose
+                barred += 1; // the path to its first pose is unsafe
                 continue;
             }
             walked += 1;
             for percent in [10, 100, rng.u8(11..100)] {
-                walker.does(&format!("speed {percent}"));
+                walker.expect_ok(&format!("speed {percent}"));
                 walker.run(10);
                 let mut gone = 0i64;
                 for _ in 0..FRAMES {
@@ -75,16 +75,16 @@ fn every_speed_gives_its_share_of_every_gaits_pace() {
 }
 
 #[test]
-fn a_gait_asked_for_again_just_goes_on() {
+fn a_gait_that_is_ordered_again_continues() {
     for named in robots() {
         for gait in named.robot.gaits() {
             let (mut asked, mut spared) = (Walker::standing(named), Walker::standing(named));
             for frame in 0..150 {
                 if frame % 7 == 0 {
-                    asked.does(&words(gait));
+                    asked.expect_ok(&gait_command(gait));
                 }
                 if frame == 0 {
-                    spared.does(&words(gait));
+                    spared.expect_ok(&gait_command(gait));
                 }
                 assert_eq!(
                     asked.frame(),
@@ -109,12 +109,12 @@ fn every_frame_of_a_gait_under_way_is_a_pose_of_it() {
             .zip(GaitId::all(named.robot.gaits().len()))
         {
             let mut walker = Walker::standing(named);
-            walker.does(&words(gait));
+            walker.expect_ok(&gait_command(gait));
             let firmware = named.robot.firmware();
             let table = firmware.gait(id);
             walker.run(long_enough(&named.robot));
             if walker.motion().hazard().is_some() {
-                barred += 1; // the way to its first pose
+                barred += 1; // the path to its first pose is unsafe
                 continue;
             }
             walked += 1;

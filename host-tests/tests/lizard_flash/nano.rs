@@ -58,8 +58,8 @@ fn after_a_hang_an_old_nano_moves_no_servo_until_its_power_is_cut() {
         let bytes = uno.take_transmitted();
         bytes.iter().map(|byte| char::from(byte.byte)).collect()
     };
-    let said = text(&mut desk.uno);
-    assert!(said.contains("# lizard "), "{said}");
+    let printed = text(&mut desk.uno);
+    assert!(printed.contains("# lizard "), "{printed}");
     desk.uno.send(b"stand\n");
     desk.uno.run_ms(500);
     text(&mut desk.uno);
@@ -82,6 +82,6 @@ fn after_a_hang_an_old_nano_moves_no_servo_until_its_power_is_cut() {
     assert!(!edges.iter().any(|edge| pins.contains(&edge.pin)));
     desk.uno.power_cycle();
     desk.uno.run_ms(2500);
-    let said = text(&mut desk.uno);
-    assert!(said.contains("# lizard "), "{said}");
+    let printed = text(&mut desk.uno);
+    assert!(printed.contains("# lizard "), "{printed}");
 }

@@ -25,12 +25,9 @@ fn a_robot_alone_is_written_behind_the_firmware_and_the_trims_are_kept() {
 
     let shell = lizard_flash(&desk, &["--only-robot", "--robot", name]);
     desk.see(&shell, "written and verified");
-    assert!(
-        desk.uno.eeprom() == kept,
-        "the upload has changed the EEPROM"
-    );
+    assert_kept(&desk, &kept);
     let screen = end(&mut desk, &shell);
-    let [its, now] = [robot(), &other].map(|robot| named(robot.firmware()));
+    let [its, now] = [robot(), &other].map(|robot| label(robot.firmware()));
     assert!(screen.contains(&format!(" robot {its}\n")), "{screen}");
     let banner = screen.lines().find(|line| line.starts_with("# lizard "));
     assert!(
@@ -43,13 +40,13 @@ fn a_robot_alone_is_written_behind_the_firmware_and_the_trims_are_kept() {
     // And the first robot again: its trims are there as they were.
     let shell = lizard_flash(&desk, &["--only-robot"]);
     self::end(&mut desk, &shell);
-    assert!(desk.uno.eeprom() == kept);
+    assert_kept(&desk, &kept);
     let answer = says(&mut desk, "cal\n", 500);
     assert!(answer.contains("3.5"), "{answer}");
 }
 
 #[test]
-fn a_board_unplugged_while_a_robot_is_written_has_no_robot_and_is_mended() {
+fn a_board_unplugged_while_a_robot_is_written_has_no_robot_until_the_next_upload() {
     let (name, other) = another();
     let mut desk = with_firmware();
     let words = ["--only-robot", "--robot", name];
@@ -70,10 +67,10 @@ fn a_board_unplugged_while_a_robot_is_written_has_no_robot_and_is_mended() {
     // Plugged in again: the firmware says so, and no servo moves.
     desk.uno.power_cycle();
     desk.uno.take_edges();
-    let said = says(&mut desk, "", 2500);
-    assert!(said.contains("no robot in the flash"), "{said}");
-    let said = says(&mut desk, "walk\n", 300);
-    assert!(said.contains("err "), "{said}");
+    let printed = says(&mut desk, "", 2500);
+    assert!(printed.contains("no robot in the flash"), "{printed}");
+    let printed = says(&mut desk, "walk\n", 300);
+    assert!(printed.contains("err "), "{printed}");
     assert!(says(&mut desk, "status\n", 300).contains("fault=robot"));
     let edges = desk.uno.take_edges();
     let pins = servo_pins(&other);
@@ -87,7 +84,7 @@ fn a_board_unplugged_while_a_robot_is_written_has_no_robot_and_is_mended() {
     let screen = end(&mut desk, &shell);
     assert!(screen.contains(" without a robot\n"), "{screen}");
     assert!(
-        screen.contains(&format!(" robot {}", named(other.firmware()))),
+        screen.contains(&format!(" robot {}", label(other.firmware()))),
         "{screen}"
     );
     let end = usize::from(START) + section.len();
@@ -97,7 +94,7 @@ fn a_board_unplugged_while_a_robot_is_written_has_no_robot_and_is_mended() {
 #[test]
 fn a_robot_alone_is_not_written_behind_another_program() {
     let mut desk = with_firmware();
-    // As avrdude leaves it: only the pages of the sketch are others.
+    // As avrdude leaves it: only the pages of the sketch differ.
     desk.uno.set_flash(0, &TALKER.flash());
     let before = desk.uno.flash().to_vec();
     let shell = lizard_flash(&desk, &["--only-robot"]);

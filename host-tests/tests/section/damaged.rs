@@ -1,4 +1,4 @@
-//! A section that is damaged is no robot, and one whose checksum is right can harm no servo. The
+//! A damaged section is not a robot, and one with a valid checksum can harm no servo. The
 //! core runs here with checks that the chip has no room for: a number that overflows, or a byte
 //! that is read behind the section's end, ends the test.
 
@@ -27,7 +27,7 @@ fn damage(section: &[u8]) -> Option<Damage> {
     Robot::open(Region::new(section)).err()
 }
 
-/// The flash of a chip whose section was written no farther than this.
+/// The flash of a chip whose section was written only up to here.
 fn erased_behind(section: &[u8]) -> Vec<u8> {
     let mut flash = section.to_vec();
     flash.resize(SPACE.into(), 0xff);
@@ -47,7 +47,7 @@ fn every_robot_is_read_with_anything_behind_its_section() {
 }
 
 #[test]
-fn a_section_of_any_file_with_any_one_bit_flipped_is_no_robot() {
+fn a_section_with_any_one_bit_flipped_is_refused() {
     let files = sections()
         .iter()
         .filter(|(named, _)| named.name.ends_with(".toml"));
@@ -71,7 +71,7 @@ fn a_section_of_any_file_with_any_one_bit_flipped_is_no_robot() {
 }
 
 #[test]
-fn a_section_that_ends_at_any_byte_is_no_robot() {
+fn a_section_that_ends_at_any_byte_is_refused() {
     for (named, section) in sections() {
         for length in 0..section.len() {
             let cut = &section[..length];
@@ -86,7 +86,7 @@ fn a_section_that_ends_at_any_byte_is_no_robot() {
 }
 
 #[test]
-fn a_section_of_any_other_version_is_told_to_be_that() {
+fn a_section_of_any_other_version_is_reported_as_such() {
     let (_, section) = &sections()[0];
     let mut section = section.clone();
     let own = u16::from_le_bytes([section[FORMAT.start], section[FORMAT.start + 1]]);
@@ -97,7 +97,7 @@ fn a_section_of_any_other_version_is_told_to_be_that() {
 }
 
 #[test]
-fn erased_flash_and_flash_of_one_byte_is_no_robot() {
+fn erased_flash_and_flash_filled_with_one_byte_is_refused() {
     for byte in 0..=u8::MAX {
         let flash = [byte; SPACE as usize];
         assert_eq!(damage(&flash), Some(Damage::Missing), "{byte}");
@@ -106,17 +106,17 @@ fn erased_flash_and_flash_of_one_byte_is_no_robot() {
 }
 
 #[test]
-fn a_hundred_thousand_random_sections_are_no_robot() {
+fn a_hundred_thousand_random_sections_are_refused() {
     let rng = &mut rng(150);
     for n in 0..100_000 {
         let mut section = vec![0; rng.usize(..=usize::from(SPACE))];
         rng.fill(&mut section);
-        // Each part of the header on its own lets the next one be looked at.
+        // Each valid part of the header lets the check reach the next part.
         if n % 4 > 0 {
-            put(&mut section, 0, &MAGIC.to_le_bytes());
+            put_bytes(&mut section, 0, &MAGIC.to_le_bytes());
         }
         if n % 4 > 1 {
-            put(
+            put_bytes(
                 &mut section,
                 FORMAT.start,
                 &lizard_core::numbers::section::FORMAT.to_le_bytes(),
@@ -124,39 +124,39 @@ fn a_hundred_thousand_random_sections_are_no_robot() {
         }
         if n % 4 > 2 {
             let length = section.len() as u16;
-            put(&mut section, LENGTH.start, &length.to_le_bytes());
+            put_bytes(&mut section, LENGTH.start, &length.to_le_bytes());
         }
-        // One in 65 536 has the right checksum, and then still is none.
+        // One in 65 536 has the right checksum, but its numbers are refused.
         assert!(damage(&section).is_some(), "section {n}");
     }
 }
 
-fn put(section: &mut [u8], at: usize, bytes: &[u8]) {
+fn put_bytes(section: &mut [u8], at: usize, bytes: &[u8]) {
     if let Some(place) = section.get_mut(at..at + bytes.len()) {
         place.copy_from_slice(bytes);
     }
 }
 
 #[test]
-fn random_sections_with_a_right_header_and_checksum_are_no_robot_or_a_harmless_one() {
+fn random_sections_with_a_valid_header_and_checksum_are_refused_or_harmless() {
     let rng = &mut rng(151);
     for _ in 0..20_000 {
         let least = size_of::<Header>() + size_of::<Numbers>();
         let mut section = vec![0; rng.usize(least..=usize::from(SPACE))];
         rng.fill(&mut section);
         let (_, valid) = rng.choice(sections()).expect("sections");
-        put(&mut section, 0, &valid[..LENGTH.start]);
+        put_bytes(&mut section, 0, &valid[..LENGTH.start]);
         let length = section.len() as u16;
-        put(&mut section, LENGTH.start, &length.to_le_bytes());
+        put_bytes(&mut section, LENGTH.start, &length.to_le_bytes());
         seal(&mut section);
         if damage(&section).is_none() {
-            live(rng, &section);
+            check_motion(rng, &section);
         }
     }
 }
 
 #[test]
-fn robots_whose_numbers_were_changed_are_no_robots_or_harmless_ones() {
+fn robots_with_changed_numbers_are_refused_or_harmless() {
     let rng = &mut rng(152);
     let (mut refused, mut lived) = (0, 0);
     for n in 0..100_000 {
@@ -172,7 +172,7 @@ fn robots_whose_numbers_were_changed_are_no_robots_or_harmless_ones() {
             None => {
                 lived += 1;
                 if lived % 20 == 0 {
-                    live(rng, &section);
+                    check_motion(rng, &section);
                 }
             }
         }
@@ -181,8 +181,8 @@ fn robots_whose_numbers_were_changed_are_no_robots_or_harmless_ones() {
     assert!(refused > 10_000 && lived > 5_000, "{refused} {lived}");
 }
 
-/// A gait that goes beyond what its section says that gaits need of the servos, where no
-/// limit of the guard is in its way.
+/// A gait that exceeds the servo range which its section claims for gaits, where no
+/// limit of the guard stops it.
 #[test]
 fn a_gait_that_would_leave_the_travel_is_held_within_it() {
     let rng = &mut rng(154);
@@ -226,7 +226,7 @@ fn a_gait_that_would_leave_the_travel_is_held_within_it() {
 
 /// Neutral angles beyond the travel, in which the robot would stand.
 #[test]
-fn a_servo_whose_travel_has_no_neutral_angle_is_no_robots() {
+fn a_robot_whose_servo_cannot_reach_its_neutral_angle_is_refused() {
     for (named, _) in sections() {
         for servo in 0..4 {
             for [min, max] in [[1, 9000], [-9000, -1], [1, -1], [100, 50]] {
@@ -247,8 +247,8 @@ fn a_servo_whose_travel_has_no_neutral_angle_is_no_robots() {
     }
 }
 
-/// Changes a number somewhere: of those that reach servos, pins and limits, or behind all
-/// numbers, in curves, gaits, waveforms and maps. The device trusts the bars and the places
+/// Changes a number at random: one for servos, pins or limits, or one behind all
+/// these, in curves, gaits, waveforms or maps. The device trusts the bars and the places
 /// of the parts, which the host that made the section has checked.
 fn change(rng: &mut Rng, section: &mut [u8]) {
     let numbers = size_of::<Header>();
@@ -272,9 +272,9 @@ fn change(rng: &mut Rng, section: &mut [u8]) {
     section[at..at + 2].copy_from_slice(&word.to_le_bytes());
 }
 
-/// Runs a robot whose section was accepted, whatever its numbers are: it obeys or
-/// refuses, comes to an end with every frame, and turns no servo beyond its travel.
-fn live(rng: &mut Rng, section: &[u8]) {
+/// Runs a robot whose section was accepted, with any numbers: it obeys or refuses, completes
+/// every frame, and turns no servo beyond its travel.
+fn check_motion(rng: &mut Rng, section: &[u8]) {
     let robot = Robot::open(flash(section)).expect("it was accepted");
     let mut running = Running::power_on(robot);
     frames(&mut running, 30);
@@ -305,19 +305,19 @@ fn live(rng: &mut Rng, section: &[u8]) {
     }
 }
 
-/// Frames in which no servo is turned beyond its travel.
+/// Runs frames and checks that no servo turns beyond its travel.
 fn frames(running: &mut Running, count: u32) {
     for _ in 0..count {
         let pulses = running.frame();
         running.board.transmitter.text.clear();
         for (pulse, servo) in pulses.0.into_iter().zip(running.motion().calibration()) {
-            within(pulse, servo);
+            check_pulse(pulse, servo);
         }
     }
 }
 
-/// A pulse is none, or one within the travel and within what a hobby servo bears.
-fn within(pulse: Width, servo: &Calibration) {
+/// Checks that there is no pulse, or one within the travel and the range of a hobby servo.
+fn check_pulse(pulse: Width, servo: &Calibration) {
     let ends = [servo.pulse(servo.min), servo.pulse(servo.max)];
     let travel = ends[0].min(ends[1])..=ends[0].max(ends[1]);
     let bearable = 500 * 16 - 1..=2500 * 16 + 1;

@@ -1,5 +1,5 @@
-//! The robot's section of flash, from the outside: what is written is what the core
-//! reads, and what nobody wrote for a robot moves no servo.
+//! The robot's section of flash: the core reads what was written, and a section that is not a
+//! robot moves no servo.
 
 use std::sync::LazyLock;
 

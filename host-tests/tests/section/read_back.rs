@@ -16,8 +16,8 @@ use lizard_robot::{Robot as Toml, STEPS_PER_DEGREE};
 
 use crate::sections;
 
-/// Every robot as the core reads it, beside the robot that was written.
-fn each(test: impl Fn(&str, &Robot, &Toml, Region<'_>)) {
+/// Runs a test on every robot as the core reads it, and on the robot that was written.
+fn for_each_robot(test: impl Fn(&str, &Robot, &Toml, Region<'_>)) {
     for (named, section) in sections() {
         let flash = Region::new(section);
         let robot = Robot::open(flash).unwrap_or_else(|why| panic!("{}: {why:?}", named.name));
@@ -40,7 +40,7 @@ fn degrees(sweep: i32) -> f64 {
 
 #[test]
 fn the_name_the_pins_and_the_supplies() {
-    each(|name, robot, toml, _| {
+    for_each_robot(|name, robot, toml, _| {
         let label: String = robot.label().map(char::from).collect();
         assert_eq!(label, toml.name(), "{name}");
         assert_eq!(robot.pins(), toml.servos().map(|servo| servo.pin), "{name}");
@@ -70,7 +70,7 @@ fn the_name_the_pins_and_the_supplies() {
 
 #[test]
 fn the_servos() {
-    each(|name, robot, toml, _| {
+    for_each_robot(|name, robot, toml, _| {
         for (place, servo) in toml.servos().iter().enumerate() {
             let one = Servo::ALL[place];
             let neutral = f64::from(robot.neutral_of(one).0) / STEPS_PER_DEGREE;
@@ -101,7 +101,7 @@ fn the_servos() {
 
 #[test]
 fn the_limits_the_slew_limit_and_what_the_gaits_need() {
-    each(|name, robot, toml, _| {
+    for_each_robot(|name, robot, toml, _| {
         let (read, limits) = (robot.limits(), toml.limits());
         for (read, exact) in [
             (read.type2, limits.type2),
@@ -144,7 +144,7 @@ fn the_limits_the_slew_limit_and_what_the_gaits_need() {
 
 #[test]
 fn the_bars_and_the_sliders() {
-    each(|name, robot, toml, _| {
+    for_each_robot(|name, robot, toml, _| {
         let l = toml.lizard().links;
         for (end, [base, left, right, a, b]) in [
             (End::Head, [l.l0, l.l1, l.l4, l.l2, l.l3]),
@@ -201,7 +201,7 @@ enum Shape {
 
 #[test]
 fn the_curves_at_every_point_of_their_tables() {
-    each(|name, robot, toml, flash| {
+    for_each_robot(|name, robot, toml, flash| {
         let l = toml.lizard().links;
         for (end, [a, b], curves) in [
             (End::Head, [l.l2, l.l3], numbers(flash).curves[0]),
@@ -254,7 +254,7 @@ fn the_curves_at_every_point_of_their_tables() {
 
 #[test]
 fn the_gaits_their_names_and_their_waveforms_at_every_phase() {
-    each(|name, robot, toml, _| {
+    for_each_robot(|name, robot, toml, _| {
         assert_eq!(robot.gait_count(), toml.gaits().len(), "{name}");
         for (id, gait) in GaitId::all(robot.gait_count()).zip(toml.gaits()) {
             let what = format!("{name} {}", gait.name());
@@ -275,7 +275,7 @@ fn the_gaits_their_names_and_their_waveforms_at_every_phase() {
                 for (place, angle) in pose.angles(&robot.neutral()).into_iter().enumerate() {
                     let angle = f64::from(angle.0) / STEPS_PER_DEGREE;
                     let off = (angle - exact[place] + 180.0).rem_euclid(360.0) - 180.0;
-                    // What a table may be off by, and the neutral angle's half a step.
+                    // The error of a table, and half a step of the neutral angle.
                     assert!(off.abs() <= 0.504, "{what} A{} at {step}: {off}", place + 1);
                 }
             }
@@ -396,7 +396,7 @@ fn a_pose_is_certified_where_all_four_maps_hold_it_and_then_the_guard_accepts_it
 #[test]
 fn another_robot_has_another_hash_and_the_maps_change_nothing_in_it() {
     let mut hashes = std::collections::HashMap::new();
-    each(|name, robot, toml, _| {
+    for_each_robot(|name, robot, toml, _| {
         assert_eq!(robot.hash(), toml.firmware().hash(), "{name}");
     });
     for (named, section) in sections() {

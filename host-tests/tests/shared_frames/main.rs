@@ -1,8 +1,8 @@
-//! Functions that share their beginnings and ends do what they did with their own.
+//! Functions with shared prologues and epilogues behave as with their own.
 
 use std::fs;
 
-use lizard_host_tests::avr_gcc::{assembler, c_by_way_of_an_object};
+use lizard_host_tests::avr_gcc::{assembler, compile_c_with_edited_object};
 use lizard_host_tests::root;
 use lizard_linker::frame::FIRST;
 use lizard_linker::{ROUTINES, shrink};
@@ -96,13 +96,13 @@ fn results(image: &Image) -> (Vec<u8>, u16) {
 
 #[test]
 fn a_program_computes_the_same_with_shared_beginnings_and_ends() {
-    let plain = c_by_way_of_an_object(PROGRAM, |object| (object, ""));
-    let short = c_by_way_of_an_object(PROGRAM, |object| {
+    let plain = compile_c_with_edited_object(PROGRAM, |object| (object, ""));
+    let short = compile_c_with_edited_object(PROGRAM, |object| {
         let (new, savings) = shrink(&object)
             .expect("it is an object")
             .expect("of an AVR");
         assert!(savings.frames > 100, "{savings:?}");
-        // Of the three in `jumps` one.
+        // One of the three in `jumps` stays.
         assert_eq!(savings.branches, 2, "{savings:?}");
         (new, ROUTINES)
     });
@@ -135,7 +135,7 @@ int main(void) { result = last(1, 2, 3, 4, 5, 0x1234); done = 1; for (;;) {} }
 
 #[test]
 fn an_argument_on_the_stack_is_read_where_the_caller_put_it() {
-    let image = c_by_way_of_an_object(STACK_ARGUMENT, |object| {
+    let image = compile_c_with_edited_object(STACK_ARGUMENT, |object| {
         let short = shrink(&object).expect("it is an object");
         (short.expect("of an AVR").0, ROUTINES)
     });

@@ -7,20 +7,20 @@ use std::cell::Cell;
 use std::panic::catch_unwind;
 
 use fastrand::Rng;
-use lizard_host_tests::avr_gcc::c_by_way_of_an_object;
+use lizard_host_tests::avr_gcc::compile_c_with_edited_object;
 use lizard_host_tests::times;
 use lizard_linker::{ROUTINES, shrink};
 use simulated_uno::{Fidelity, Image, Uno};
 
 use crate::address;
 
-/// Functions of one program: what 32 KB hold.
+/// Functions of one program, as many as 32 KB hold.
 const FUNCTIONS: usize = 40;
 
 /// A function calls another of its own group only, so that the stack has room.
 const GROUP: usize = 5;
 
-/// Programs at a desk. Five times as many have 10 000 functions.
+/// Number of programs in an ordinary run. Five times as many have 10 000 functions.
 const PROGRAMS: u64 = 50;
 
 /// Types of arguments and the bytes that each takes of the 18 in registers.
@@ -160,11 +160,12 @@ fn random_functions_with_arguments_on_the_stack_compute_the_same() {
     for seed in 0..times(PROGRAMS) {
         let source = program(&mut Rng::with_seed(seed));
         // avr-gcc fails on a few: no register is left, or a branch is too far.
-        let Ok(plain) = catch_unwind(|| c_by_way_of_an_object(&source, |object| (object, "")))
+        let Ok(plain) =
+            catch_unwind(|| compile_c_with_edited_object(&source, |object| (object, "")))
         else {
             continue;
         };
-        let short = c_by_way_of_an_object(&source, |object| {
+        let short = compile_c_with_edited_object(&source, |object| {
             let (new, savings) = shrink(&object)
                 .expect("it is an object")
                 .expect("of an AVR");

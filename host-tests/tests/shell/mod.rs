@@ -62,16 +62,16 @@ impl Shell {
         }
     }
 
-    /// All that has been printed so far.
+    /// Everything printed so far.
     pub fn screen(&self) -> String {
         let screen = self.screen.lock().expect("nobody panics with it");
         String::from_utf8_lossy(&screen).into_owned()
     }
 
-    /// All that a command that has ended, and nothing of which goes on, has printed: its last
-    /// words may still be in a pipe.
+    /// Everything printed by a command that has ended completely; its last output may still be in a
+    /// pipe.
     pub fn last_screen(&self) -> String {
-        let read = LIMIT.comes(|| self.readers.iter().all(JoinHandle::is_finished));
+        let read = LIMIT.wait_for(|| self.readers.iter().all(JoinHandle::is_finished));
         let screen = self.screen();
         assert!(read, "waited {LIMIT} for the rest of\n{screen}");
         screen
@@ -90,7 +90,7 @@ impl Shell {
     /// never does.
     pub fn interrupt(&mut self) {
         let mut pressed: Option<Instant> = None;
-        let ended = LIMIT.comes(|| {
+        let ended = LIMIT.wait_for(|| {
             if self.has_ended() {
                 return true;
             }
@@ -107,10 +107,10 @@ impl Shell {
         );
     }
 
-    /// To the command and all that it has started.
+    /// Sends a signal to the command and all its children.
     fn signal(&self, signal: Signal) {
         let child = self.child.lock().expect("nobody panics with it");
-        // What has ended meanwhile needs none.
+        // A command that has ended meanwhile needs no signal.
         let _ = kill_process_group(Pid::from_child(&child), signal);
     }
 }

@@ -1,17 +1,20 @@
-//! Actions that may happen to a robot, in the words of a person.
+//! The commands and faults that the search applies, and their names in reports.
 
 use std::fmt;
 
 use lizard_core::console::word::Word;
 use lizard_core::memory::restart::Cause;
+use lizard_core::numbers::rate::Rate;
 
-/// An action: something that happens to the robot.
+/// An event that the search applies to the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
     /// A line is sent and executed; its output and its writes to the memory are still to do.
     Say(&'static str),
-    /// A line comes in which noise has changed a byte.
+    /// A line arrives in which noise has changed a byte.
     Noise,
+    /// Lines are sent at this rate from now on.
+    SendAt(Rate),
     /// Main does its most urgent task.
     Step,
     /// Frames pass.
@@ -20,7 +23,8 @@ pub enum Action {
     Stall(u16),
     /// The supply falls or rises to this many millivolts.
     Supply(u16),
-    /// From now on three servos that wake pull the supply down to 2.4 V if true, or no longer.
+    /// If true, three servos that wake pull the supply down to 2.4 V from now on; if false, no
+    /// longer.
     Weak(bool),
     /// A pulse's edge comes late.
     Late,
@@ -28,17 +32,24 @@ pub enum Action {
     Stack,
     /// The processor is reset.
     Reset(Cause),
-    /// Power is lost and comes back; a byte that was being written holds this.
+    /// Power is lost and comes back; a byte that was being written has this value.
     LosePower(Option<u8>),
-    /// The listener stops reading the output if true, or reads it again.
-    Deaf(bool),
+    /// If true, every contact closes; if false, every contact opens.
+    Contacts(bool),
+    /// If true, nobody reads the robot's output from now on; if false, somebody reads it again.
+    StopReading(bool),
 }
 
-/// Lines that are tried, beside an example of each other word.
-const LINES: [&str; 24] = [
+/// Lines that are tried, besides an example of each other word.
+const LINES: [&str; 30] = [
     "stand",
     "walk",
     "trot",
+    "walk 1",
+    "trot 2",
+    "round",
+    "round 1",
+    "patrol",
     "stray",
     "stop",
     "rest",
@@ -53,6 +64,7 @@ const LINES: [&str; 24] = [
     "load",
     "factory",
     "boot walk",
+    "boot round",
     "boot rest",
     "deadman 100",
     "deadman 20",
@@ -80,17 +92,19 @@ impl Action {
         };
         let others = Word::ALL.iter().filter(|word| !is_tried(word));
         all.extend(LINES.map(Self::Say));
+        all.extend([Rate::Fastest, Rate::Slowest].map(Self::SendAt));
         all.extend(others.map(|word| Self::Say(word.example())));
-        // After the frame before, whose hand-over was 16 ms ago: main is late for
-        // nothing, for a hand-over, for three, for five; it is interrupted by the
-        // watchdog and continues; it is reset.
+        // The last hand-over was 16 ms ago. With these lengths main is late for
+        // nothing, for one hand-over, for three, for five; or the watchdog interrupts
+        // it and it continues; or it is reset.
         all.extend([3, 15, 60, 100, 120, 130, 200, 229, 240].map(Self::Stall));
         all.extend([5_000, 4_100, 3_900, 3_500].map(Self::Supply));
         all.extend([Self::Weak(true), Self::Weak(false)]);
         all.extend([Self::Late, Self::Stack]);
         all.extend([Cause::External, Cause::BrownOut].map(Self::Reset));
         all.extend([None, Some(0x00), Some(0x5a), Some(0xff)].map(Self::LosePower));
-        all.extend([Self::Deaf(true), Self::Deaf(false)]);
+        all.extend([Self::Contacts(true), Self::Contacts(false)]);
+        all.extend([Self::StopReading(true), Self::StopReading(false)]);
         all
     }
 }
@@ -100,6 +114,7 @@ impl fmt::Display for Action {
         match self {
             Self::Say(line) => write!(f, "say `{line}`"),
             Self::Step => f.write_str("one step of main"),
+            Self::SendAt(rate) => write!(f, "lines come at {} baud from now on", rate.baud()),
             Self::Noise => f.write_str("noise within `walk`"),
             Self::Frames(1) => f.write_str("a frame"),
             Self::Frames(count) => write!(f, "{count} frames"),
@@ -114,8 +129,10 @@ impl fmt::Display for Action {
             Self::LosePower(Some(byte)) => {
                 write!(f, "power is lost in a write, the byte is {byte:#04x}")
             }
-            Self::Deaf(true) => f.write_str("nobody listens any more"),
-            Self::Deaf(false) => f.write_str("somebody listens again"),
+            Self::Contacts(true) => f.write_str("every contact closes"),
+            Self::Contacts(false) => f.write_str("every contact opens"),
+            Self::StopReading(true) => f.write_str("nobody listens any more"),
+            Self::StopReading(false) => f.write_str("somebody listens again"),
         }
     }
 }

@@ -13,7 +13,7 @@ use crate::action::Action::{self, Frames, LosePower, Reset, Say, Stall, Supply};
 use crate::world::World;
 
 /// An initial state and its origin.
-pub struct Beginning {
+pub struct InitialState {
     /// The special condition at power-on.
     pub with: &'static str,
     /// The actions since then.
@@ -22,7 +22,7 @@ pub struct Beginning {
     pub world: World,
 }
 
-/// Memories, by what made them: lines that were said to a robot that stood.
+/// Memories, each with the lines that made it, sent to a robot that stood.
 const MEMORIES: [(&str, &[Action]); 5] = [
     ("a blank memory", &[]),
     (
@@ -72,14 +72,16 @@ const MEMORIES: [(&str, &[Action]); 5] = [
     ),
 ];
 
-/// A boot loader hides what the chip knows of a reset.
+/// A power-on behind a boot loader, which hides the cause of the reset.
 const BEHIND_A_BOOT_LOADER: &str = "a boot loader and a blank memory";
 
 /// The robot's actions before the search begins.
-const DOES: [&[Action]; 9] = [
+const DOES: [&[Action]; 11] = [
     &[],
     &[Frames(160)],
     &[Frames(160), Say("walk"), Frames(25)],
+    &[Frames(160), Say("round"), Frames(25)],
+    &[Frames(160), Say("patrol"), Frames(5)],
     // The guard holds it.
     &[Frames(160), Say("stray"), Frames(160)],
     &[Frames(160), Say("rest"), Frames(25)],
@@ -94,7 +96,7 @@ const DOES: [&[Action]; 9] = [
     &[Frames(25), Stall(240), Frames(5)],
 ];
 
-/// A record that is whole, whose travel ends before the gaits do.
+/// A valid record whose travel is too short for the gaits.
 fn cut_off(robot: &Robot) -> Eeprom {
     let mut settings = Settings::of(robot);
     let mut set = settings.servo(Servo::ALL[2]);
@@ -111,7 +113,7 @@ fn cut_off(robot: &Robot) -> Eeprom {
 /// # Panics
 /// If a memory cannot be made.
 #[must_use]
-pub fn all(robot: Robot<'static>) -> Vec<Beginning> {
+pub fn all(robot: Robot<'static>) -> Vec<InitialState> {
     let mut memories: Vec<(&'static str, Eeprom)> = MEMORIES
         .iter()
         .map(|(name, actions)| {
@@ -142,7 +144,7 @@ pub fn all(robot: Robot<'static>) -> Vec<Beginning> {
             world.running.board.boot_loader = with == BEHIND_A_BOOT_LOADER;
             if actions.iter().all(|action| world.apply(*action).is_ok()) {
                 let actions = actions.to_vec();
-                all.push(Beginning {
+                all.push(InitialState {
                     with,
                     actions,
                     world,

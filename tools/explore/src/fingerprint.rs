@@ -10,38 +10,43 @@
 use std::fmt::{self, Write};
 
 /// A function that rounds a number.
-type Coarser = fn(u64) -> u64;
+type Rounding = fn(u64) -> u64;
 
 /// The treatment of a field.
 #[derive(Clone, Copy)]
-enum Rule {
+enum Treatment {
     Skip,
-    Coarse(Coarser),
+    Coarse(Rounding),
 }
 
-use Rule::{Coarse, Skip};
+use Treatment::{Coarse, Skip};
 
 /// A struct, its field, and the treatment of that field.
-type Field = (&'static str, &'static str, Rule);
+type Field = (&'static str, &'static str, Treatment);
 
 /// The treatment of fields, by the name of their struct.
 const RULES: &[Field] = &[
     ("Main", "ticks", Skip),
     // The last line; the next byte begins a new one.
     ("Console", "line", Skip),
+    // A line at another rate has enough wrong bytes, whatever was before.
+    ("Finder", "wrong_bytes", Skip),
     (
         "Motion",
         "frames",
         Coarse(|frames| u64::from(frames >= 1_500)),
     ),
     ("Motion", "calibration", Skip),
+    ("Count", "covered", Coarse(|phase| phase >> 14)),
+    ("Count", "phase", Skip),
+    ("Routine", "wait", Coarse(countdown)),
     ("Stance", "sent", Coarse(|width| width >> 11)),
     ("Stance", "pose", Coarse(|sweep| sweep >> 10)),
     ("Stance", "awake", Coarse(|frames| frames.div_ceil(5))),
     ("Led", "frames", Skip),
     ("Safety", "lit", Skip),
     ("Safety", "late", Skip),
-    // The bystander counts that, too, where it matters.
+    // The observer also counts this, where it matters.
     ("Safety", "silence", Skip),
     ("Safety", "boot", Coarse(countdown)),
     ("Supply", "reading", Skip),
@@ -62,12 +67,15 @@ const A_LINE_CAME: &[Field] = &[
     ("Main", "ticks", Skip),
     ("Console", "line", Skip),
     ("Console", "answer", Skip),
+    ("Finder", "wrong_bytes", Skip),
+    ("Finder", "has_received", Skip),
     ("Console", "greeted", Skip),
     ("Safety", "silence", Skip),
     ("Safety", "boot", Skip),
-    // Any line shows that a program opened the port, which resets the board.
-    ("Control", "may_be_supply", Skip),
-    ("Control", "brown_outs", Skip),
+    // A command shows that a program opened the port, which resets the board.
+    ("Control", "is_heard", Skip),
+    // Nor does what `boot` began go on without anybody from then on.
+    ("Control", "is_alone", Skip),
 ];
 
 fn countdown(frames: u64) -> u64 {
@@ -90,9 +98,9 @@ pub fn coarse(value: &impl fmt::Debug) -> u64 {
     print(value, RULES)
 }
 
-/// The same with every field, but for those that say that a line came.
+/// The same with every field except those that record that a line came.
 #[must_use]
-pub fn but_for_the_line(value: &impl fmt::Debug) -> u64 {
+pub fn without_line_counters(value: &impl fmt::Debug) -> u64 {
     print(value, A_LINE_CAME)
 }
 
@@ -110,7 +118,7 @@ fn print(value: &impl fmt::Debug, rules: &'static [Field]) -> u64 {
     reader.print.0
 }
 
-/// A number made of numbers.
+/// A hash of numbers.
 #[derive(Clone, Copy)]
 pub struct Print(pub u64);
 
@@ -121,7 +129,7 @@ impl Default for Print {
 }
 
 impl Print {
-    /// Mixes in one more number.
+    /// Adds a number to the hash.
     pub fn add(&mut self, value: u64) {
         let mixed = (self.0 ^ value).wrapping_mul(0xff51_afd7_ed55_8ccd);
         self.0 = (mixed ^ (mixed >> 32)).wrapping_mul(0xc4ce_b9fe_1a85_ec53) ^ (mixed >> 29);
@@ -135,17 +143,17 @@ struct Reader {
     print: Print,
     /// The structs around the value: hashes of their names, 0 for a value without fields.
     within: Vec<u64>,
-    /// The hash of the piece before.
+    /// The hash of the previous piece.
     last: u64,
     /// True if the next piece is a field's name.
     names_field: bool,
     /// The rounding of numbers in the field at this depth.
-    number: Option<(Coarser, usize)>,
+    number: Option<(Rounding, usize)>,
     /// The depth of the value that is left out.
     skipped: Option<usize>,
 }
 
-/// Of a short text, at compile time, too.
+/// The hash of a short text, also at compile time.
 const fn hash(text: &str) -> u64 {
     let bytes = text.as_bytes();
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
@@ -260,27 +268,36 @@ mod tests {
     };
 
     /// The motion with one change.
-    fn with(change: impl Fn(&mut Motion)) -> Motion {
+    fn motion_with(change: impl Fn(&mut Motion)) -> Motion {
         let mut motion = MOTION;
         change(&mut motion);
         motion
     }
 
     #[test]
-    fn what_only_counts_is_left_out_what_is_coarse_is_coarse_and_all_else_tells() {
+    fn counters_are_left_out_coarse_fields_are_rounded_and_all_others_count() {
         let print = coarse(&MOTION);
-        assert_eq!(coarse(&with(|motion| motion.frames = 1_499)), print);
-        assert_eq!(coarse(&with(|motion| motion.stance.awake = 5)), print);
-        assert_ne!(coarse(&with(|motion| motion.frames = 1_500)), print);
-        assert_ne!(coarse(&with(|motion| motion.stance.awake = 6)), print);
-        assert_ne!(coarse(&with(|motion| motion.speed = 5)), print);
-        assert_ne!(coarse(&with(|motion| motion.list[2] = 4)), print);
-        let exact = but_for_the_line(&MOTION);
-        assert_ne!(but_for_the_line(&with(|motion| motion.frames = 8)), exact);
+        assert_eq!(coarse(&motion_with(|motion| motion.frames = 1_499)), print);
+        assert_eq!(
+            coarse(&motion_with(|motion| motion.stance.awake = 5)),
+            print
+        );
+        assert_ne!(coarse(&motion_with(|motion| motion.frames = 1_500)), print);
+        assert_ne!(
+            coarse(&motion_with(|motion| motion.stance.awake = 6)),
+            print
+        );
+        assert_ne!(coarse(&motion_with(|motion| motion.speed = 5)), print);
+        assert_ne!(coarse(&motion_with(|motion| motion.list[2] = 4)), print);
+        let exact = without_line_counters(&MOTION);
+        assert_ne!(
+            without_line_counters(&motion_with(|motion| motion.frames = 8)),
+            exact
+        );
     }
 
     #[test]
-    fn every_rule_is_about_a_field_that_there_is() {
+    fn every_rule_names_an_existing_field() {
         let robot = small();
         let mut text = String::new();
         for beginning in beginnings::all(robot) {

@@ -13,20 +13,20 @@ use std::thread;
 use std::vec;
 
 use lizard_core::numbers::robot::Robot;
-use lizard_rules::{Broken, Rule};
+use lizard_rules::{BrokenRule, Rule};
 
 use crate::action::Action;
-use crate::beginnings::{self, Beginning};
-use crate::world::{Held, World};
+use crate::beginnings::{self, InitialState};
+use crate::world::{Verdict, World};
 
 /// States that a thread takes at once.
 const CHUNK: usize = 256;
 
-type Known = HashSet<u64>;
+type SeenStates = HashSet<u64>;
 
 /// The results of a search.
 #[derive(Debug, Default)]
-pub struct Found {
+pub struct SearchResult {
     /// Distinct states.
     pub states: usize,
     /// Actions tried.
@@ -46,14 +46,14 @@ struct Step {
     action: u8,
 }
 
-/// From all beginnings, until that many distinct states are reached or none is left.
+/// Searches from all beginnings, until this many distinct states are reached or none is left.
 #[must_use]
-pub fn search(robot: Robot<'static>, most: usize) -> Found {
+pub fn search(robot: Robot<'static>, most: usize) -> SearchResult {
     let actions = Action::all();
     let begun = beginnings::all(robot);
-    let known: Vec<Mutex<Known>> = (0..64).map(|_| Mutex::default()).collect();
+    let known: Vec<Mutex<SeenStates>> = (0..64).map(|_| Mutex::default()).collect();
     let mut steps: Vec<Step> = Vec::new();
-    let mut found = Found::default();
+    let mut found = SearchResult::default();
     let mut now: Vec<(World, u32)> = Vec::new();
     for (place, beginning) in begun.iter().enumerate() {
         steps.push(Step {
@@ -87,11 +87,11 @@ pub fn search(robot: Robot<'static>, most: usize) -> Found {
             broken.extend(part.broken);
             next.extend(part.reached);
         }
-        // The same whichever thread was quicker.
+        // So the result does not depend on which thread was quicker.
         broken.sort_by_key(|(from, action, _)| (*from, *action));
         for (from, action, fault) in broken {
             let entry = found.broken.entry(fault.rule).or_insert_with(|| {
-                let told = tell(&begun, &steps, &actions, Step { from, action });
+                let told = describe(&begun, &steps, &actions, Step { from, action });
                 (0, format!("{told}\n  {}", fault.seen))
             });
             entry.0 += 1;
@@ -115,10 +115,10 @@ pub fn search(robot: Robot<'static>, most: usize) -> Found {
 struct Part {
     tried: usize,
     reached: Vec<(World, Step)>,
-    broken: Vec<(u32, u8, Broken)>,
+    broken: Vec<(u32, u8, BrokenRule)>,
 }
 
-fn is_new(known: &[Mutex<Known>], print: u64) -> bool {
+fn is_new(known: &[Mutex<SeenStates>], print: u64) -> bool {
     let shard = &known[(print >> 58) as usize];
     shard.lock().expect("no thread has failed").insert(print)
 }
@@ -126,7 +126,7 @@ fn is_new(known: &[Mutex<Known>], print: u64) -> bool {
 fn walk(
     queue: &Mutex<vec::IntoIter<(World, u32)>>,
     actions: &[Action],
-    known: &[Mutex<Known>],
+    known: &[Mutex<SeenStates>],
     states: &AtomicUsize,
     most: usize,
 ) -> Part {
@@ -147,17 +147,17 @@ fn walk(
 }
 
 impl Part {
-    /// All that may happen to a state.
+    /// Applies every possible action to a state.
     fn expand(
         &mut self,
         world: &World,
         from: u32,
         actions: &[Action],
-        known: &[Mutex<Known>],
+        known: &[Mutex<SeenStates>],
         states: &AtomicUsize,
     ) {
         for (number, action) in actions.iter().enumerate() {
-            if !world.can(*action) {
+            if !world.is_possible(*action) {
                 continue;
             }
             self.tried += 1;
@@ -166,7 +166,7 @@ impl Part {
                 from,
                 action: number as u8,
             };
-            match happens(&mut next, *action) {
+            match apply_catching_panics(&mut next, *action) {
                 Err(broken) => self.broken.push((step.from, step.action, broken)),
                 Ok(()) if is_new(known, next.print()) => {
                     states.fetch_add(1, Ordering::Relaxed);
@@ -179,17 +179,17 @@ impl Part {
 }
 
 /// Applies an action; a panic breaks a rule, too.
-fn happens(world: &mut World, action: Action) -> Held {
+fn apply_catching_panics(world: &mut World, action: Action) -> Verdict {
     let applied = panic::catch_unwind(AssertUnwindSafe(|| world.apply(action)));
     applied.unwrap_or_else(|why| {
         let said = why.downcast_ref::<String>().cloned();
         let said = said.or_else(|| why.downcast_ref::<&str>().map(ToString::to_string));
-        Err(Broken::new(Rule::Lives, said.unwrap_or_default()))
+        Err(BrokenRule::new(Rule::Lives, said.unwrap_or_default()))
     })
 }
 
-/// A sequence, in words.
-fn tell(begun: &[Beginning], steps: &[Step], actions: &[Action], last: Step) -> String {
+/// Describes a sequence in words.
+fn describe(begun: &[InitialState], steps: &[Step], actions: &[Action], last: Step) -> String {
     let mut sequence = vec![actions[usize::from(last.action)]];
     let mut at = last.from;
     while steps[at as usize].from != u32::MAX {

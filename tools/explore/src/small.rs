@@ -2,24 +2,26 @@
 //! soon repeat. One of its gaits is unsafe, which would be refused in a robot.toml.
 
 use lizard_core::numbers::calibration::Reach;
-use lizard_core::numbers::gaits::{Channel, Gait, SAMPLES, Wave};
+use lizard_core::numbers::gaits::{Channel, Gait, Input, SAMPLES, Step, Wave};
 use lizard_core::numbers::robot::Robot;
 use lizard_core::numbers::section::Content;
 use lizard_core::numbers::slew::Slew;
 use lizard_core::numbers::units::Sweep;
 use lizard_robot::flash;
 
-/// A third of the paper's speed, 1/65536 turn in a frame: servos that begin elsewhere than
-/// they are leap by more than that.
+/// A third of the paper's speed, 1/65536 turn in a frame: a servo whose first pulse is not
+/// the one for its position leaps by more than that.
 const PER_FRAME: u16 = 364;
 
-/// Every gait needs no more than this of a servo.
+/// The travel that every gait stays within.
 const NEED: i16 = 1_000;
 
-/// The paper's robot with `stand`, `walk`, `trot` and `stray`, which leaves safe ground.
+/// The paper's robot with `stand`, `walk`, `trot` and `stray`, which leaves safe ground, and
+/// two routines without an end: `round` walks and stands, `patrol` waits for a button, walks up to a
+/// wall, and turns away.
 ///
 /// # Panics
-/// If robots/paper.toml is no robot.
+/// If robots/paper.toml is not a robot.
 #[must_use]
 pub fn small() -> Robot<'static> {
     let text = include_str!("../../../robots/paper.toml");
@@ -60,6 +62,21 @@ pub fn small() -> Robot<'static> {
         [-5_000, 6_000, 4_000, 7_000],
     );
     add(&mut small, "stray", increment / 12, 1, [16_384, 0, 0, 0]);
+    let (walk, trot) = (1, 2);
+    add_routine(
+        &mut small,
+        "round",
+        &[(Step::CYCLES, walk, 1), (Step::FRAMES, 0, 10)],
+    );
+    let (button, nose) = (Input::button(15).byte(), Input::nose(16).byte());
+    let patrol = [
+        (Step::UNTIL, button, 0),
+        (Step::WAIT, 0, Step::ENDLESS),
+        (Step::UNTIL, nose, 0),
+        (Step::FRAMES, walk, Step::ENDLESS),
+        (Step::CYCLES, trot, 1),
+    ];
+    add_routine(&mut small, "patrol", &patrol);
     Robot::open(flash(&small.section())).expect("whole")
 }
 
@@ -75,4 +92,20 @@ fn add(to: &mut Content, name: &str, increment: i32, wave: u16, gains: [i16; 4])
         }),
     });
     to.names.extend(name.bytes());
+}
+
+/// Adds a routine without an end.
+fn add_routine(to: &mut Content, name: &str, steps: &[(u8, u8, u16)]) {
+    to.gaits.push(Gait {
+        name_start: to.names.len() as u16,
+        name_length: name.len() as u16,
+        ..Gait::routine(to.steps.len() as u16, steps.len() as u16, 0)
+    });
+    to.names.extend(name.bytes());
+    let step = |(kind, gait, count): &(u8, u8, u16)| Step {
+        kind: *kind,
+        gait: *gait,
+        count: *count,
+    };
+    to.steps.extend(steps.iter().map(step));
 }

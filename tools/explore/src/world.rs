@@ -2,26 +2,33 @@
 
 mod inside;
 
-use lizard_core::console::command::effect;
+use lizard_core::console::command::{effect, parse};
 use lizard_core::console::line::GARBLED;
 use lizard_core::control::fault::Fault;
 use lizard_core::memory::copies::{COPIES, RESTED};
 use lizard_core::memory::record::{LENGTH, WHOLE};
 use lizard_core::memory::restart::{Cause, Restart};
+use lizard_core::numbers::rate::Rate;
 use lizard_core::numbers::robot::Robot;
 use lizard_core::step::{Board, Step};
 use lizard_core::virtual_board::{Eeprom, Running, is_final, reading};
-use lizard_rules::{Broken, Event, MS, Observer, Rule, Time, led};
+use lizard_rules::{BrokenRule, Event, MS, Observer, Rule, Time, led};
 
 use crate::action::Action;
 use crate::fingerprint::{self, Print};
 
 /// The verdict of the rules.
-pub type Held = Result<(), Broken>;
+pub type Verdict = Result<(), BrokenRule>;
 
-fn broken(rule: Rule, seen: impl Into<String>) -> Held {
-    Err(Broken::new(rule, seen))
+fn broken(rule: Rule, seen: impl Into<String>) -> Verdict {
+    Err(BrokenRule::new(rule, seen))
 }
+
+/// A line as a receiver of another rate reads it: wrong bytes, enough for any rate to be left.
+const UNREADABLE: [u8; 40] = [GARBLED; 40];
+
+/// Lines after which a robot has found the rate of who asks.
+const FOUND_AFTER: usize = 12;
 
 /// The cycles of a frame.
 const FRAME: Time = 20 * MS;
@@ -40,6 +47,8 @@ pub struct World {
     is_late: bool,
     /// The last line that was sent, until its answer is known.
     unread: Option<&'static str>,
+    /// The rate at which lines are sent.
+    sender: Rate,
     /// Lines whose answer is judged already and not printed yet.
     known: u8,
 }
@@ -57,6 +66,7 @@ impl World {
             is_weak: false,
             is_late: false,
             unread: None,
+            sender: Rate::Fastest,
             known: 0,
         };
         world.observe(Event::Supply(5_000));
@@ -84,6 +94,7 @@ impl World {
             }
         }
         print.add(fingerprint::coarse(&board.ram.found(None)));
+        print.add(u64::from(board.rate as u8) << 2 | u64::from(self.sender as u8));
         let truth = board.converter.truth();
         let flags = [
             board.memory.worn,
@@ -94,8 +105,9 @@ impl World {
             board.converter.is_complete(),
             board.transmitter.held,
             board.restart().before.is_some(),
-            board.waiting() > 0,
+            board.unread() > 0,
             board.is_fresh(),
+            board.closed != 0,
             self.is_weak,
             self.is_late,
             self.known > 0,
@@ -106,13 +118,13 @@ impl World {
         print.0
     }
 
-    /// True if this may happen now.
+    /// True if the action is possible now.
     #[must_use]
-    pub fn can(&self, action: Action) -> bool {
+    pub fn is_possible(&self, action: Action) -> bool {
         let board = &self.running.board;
         match action {
             Action::Say(_) | Action::Noise => {
-                board.waiting() == 0 && !board.transmitter.held && !self.running.is_over()
+                board.unread() == 0 && !board.transmitter.held && !self.running.is_over()
             }
             Action::Step => self.running.has_output() || self.running.main.control().is_writing(),
             Action::Frames(_)
@@ -121,21 +133,30 @@ impl World {
             | Action::LosePower(None)
             | Action::Supply(_) => true,
             Action::LosePower(Some(_)) => board.memory.under_way().is_some(),
+            Action::SendAt(rate) => rate != self.sender,
             Action::Weak(weak) => weak != self.is_weak,
             Action::Late => board.late < 3,
             Action::Stack => board.stack_is_intact,
-            Action::Deaf(deaf) => deaf != board.transmitter.held,
+            Action::Contacts(closed) => closed != (board.closed != 0),
+            Action::StopReading(deaf) => deaf != board.transmitter.held,
         }
     }
 
-    /// Lets an action happen.
+    /// Applies an action.
     ///
     /// # Errors
     /// The first rule that is broken by it.
-    pub fn apply(&mut self, action: Action) -> Held {
+    pub fn apply(&mut self, action: Action) -> Verdict {
         let was_kept = self.observer.rests() && self.rest_is_kept();
         match action {
+            Action::Say(_) | Action::Noise if self.sender != self.running.board.rate => {
+                self.say_at_another_rate()?;
+            }
             Action::Say(line) => self.say(line, line.as_bytes())?,
+            Action::SendAt(rate) => {
+                self.sender = rate;
+                self.is_found()?;
+            }
             Action::Noise => self.say("", &[b'w', b'a', GARBLED, b'k'])?,
             Action::Step => {
                 self.running.main.step(&mut self.running.board);
@@ -163,15 +184,16 @@ impl World {
             Action::Reset(cause) => self.reset(cause),
             Action::LosePower(torn) => {
                 self.running.lose_power(torn);
-                self.restarted(Cause::Power);
+                self.note_restart(Cause::Power);
             }
-            Action::Deaf(deaf) => self.running.board.transmitter.held = deaf,
+            Action::Contacts(closed) => self.contacts(closed)?,
+            Action::StopReading(deaf) => self.running.board.transmitter.held = deaf,
         }
         let robot_rests = self.running.motion().is_resting();
         if was_kept && robot_rests && !self.rest_is_kept() {
             return broken(Rule::RestKept, action.to_string());
         }
-        self.written()?;
+        self.judge_writes()?;
         self.observer.drop_pending();
         self.observer.verdict()
     }
@@ -186,36 +208,37 @@ impl World {
 
     fn reset(&mut self, cause: Cause) {
         self.running.reset(cause);
-        self.restarted(cause);
+        self.note_restart(cause);
     }
 
     /// The program has restarted, and its output is cut off.
-    fn restarted(&mut self, cause: Cause) {
+    fn note_restart(&mut self, cause: Cause) {
         self.running.board.transmitter.text.clear();
         self.unread = None;
         self.known = 0;
         self.observe(Event::Start(cause));
     }
 
-    /// A line, up to its immediate effect.
-    fn say(&mut self, line: &'static str, bytes: &[u8]) -> Held {
+    /// Sends a line and runs main up to the line's immediate effect.
+    fn say(&mut self, line: &'static str, bytes: &[u8]) -> Verdict {
         let before = self.settled();
         self.running.board.send(bytes);
         self.running.board.send(b"\n");
         self.observe(Event::Byte);
-        self.observe(Event::Line);
+        let is_command = bytes == line.as_bytes() && parse(bytes, &self.robot()).is_ok();
+        self.observe(Event::Line { is_command });
         self.unread = Some(line);
         for _ in 0..10_000 {
-            if self.running.board.waiting() == 0 {
+            if self.running.board.unread() == 0 {
                 break;
             }
             let step = self.running.main.step(&mut self.running.board);
             if step != Step::Worked || self.running.board.memory.was_polled_busy() {
-                // It is read when there is time for it.
+                // It is read when main has time.
                 break;
             }
         }
-        if self.running.board.waiting() == 0 {
+        if self.running.board.unread() == 0 {
             self.predict(line, &before)?;
         }
         if self.unread.is_some() {
@@ -225,7 +248,44 @@ impl World {
         self.listen(self.now)
     }
 
-    /// The same robot with nothing left to say.
+    /// Sends a line that the robot's receiver reads at another rate.
+    fn say_at_another_rate(&mut self) -> Verdict {
+        let before = self.settled();
+        self.running.board.send(&UNREADABLE);
+        self.observe(Event::Byte);
+        let after = self.settled();
+        let print = |running: &Running| fingerprint::without_line_counters(&running.main);
+        if print(&after) != print(&before) {
+            return broken(Rule::OtherRate, after.board.transmitter.text);
+        }
+        Ok(())
+    }
+
+    /// Checks that a robot that is asked at one rate answers in the end.
+    fn is_found(&self) -> Verdict {
+        let mut asked = self.running.clone();
+        asked.board.transmitter.held = false;
+        for _ in 0..FOUND_AFTER {
+            if asked.is_over() {
+                return Ok(());
+            }
+            let line: &[u8] = if asked.board.rate == self.sender {
+                b"status\n"
+            } else {
+                &UNREADABLE
+            };
+            asked.board.send(line);
+            for _ in 0..4 {
+                asked.frame();
+            }
+            if asked.board.transmitter.text.contains("ok gait=") {
+                return Ok(());
+            }
+        }
+        broken(Rule::Found, format!("at {} baud", self.sender.baud()))
+    }
+
+    /// A clone of the robot that has printed all its output.
     fn settled(&self) -> Running {
         let mut settled = self.running.clone();
         settled.board.transmitter.text.clear();
@@ -233,15 +293,15 @@ impl World {
         settled
     }
 
-    /// Judges the answer that the robot is about to give, if it gives one at once: it has
-    /// done by now what it answers.
-    fn predict(&mut self, line: &'static str, before: &Running) -> Held {
+    /// Judges the answer that the robot is about to print, if it prints one at once: its state
+    /// must already match that answer.
+    fn predict(&mut self, line: &'static str, before: &Running) -> Verdict {
         let after = self.settled();
         let text = &after.board.transmitter.text;
         let Some(answer) = text.lines().find(|line| is_final(line)) else {
             return Ok(());
         };
-        let print = |running: &Running| fingerprint::but_for_the_line(&running.main);
+        let print = |running: &Running| fingerprint::without_line_counters(&running.main);
         if answer.starts_with("err ")
             && (print(&after) != print(before)
                 || after.board.memory.bytes() != before.board.memory.bytes())
@@ -249,7 +309,7 @@ impl World {
             return broken(Rule::Refused, text.clone());
         }
         if answer.starts_with("ok gait=") {
-            // It is judged as it is printed.
+            // This answer is judged when it is printed.
             return Ok(());
         }
         self.known += 1;
@@ -258,14 +318,14 @@ impl World {
         self.look_ahead()
     }
 
-    /// Passes on the lines of the robot, decided no earlier than at `since`.
-    fn listen(&mut self, since: Time) -> Held {
+    /// Passes the robot's lines to the observer; they were decided at `since` or later.
+    fn listen(&mut self, since: Time) -> Verdict {
         let text = std::mem::take(&mut self.running.board.transmitter.text);
-        // Of the longest line the first part may be there alone.
+        // Of the longest line only the first part may have been printed.
         let (whole, rest) = text.rsplit_once("\r\n").unwrap_or(("", &text));
         rest.clone_into(&mut self.running.board.transmitter.text);
         for line in whole.split("\r\n").filter(|line| !line.is_empty()) {
-            self.observe(Event::Said(since, line));
+            self.observe(Event::Printed(since, line));
             if is_final(line) {
                 if self.known > 0 && !line.starts_with("ok gait=") {
                     self.known -= 1;
@@ -277,19 +337,19 @@ impl World {
         self.look_ahead()
     }
 
-    /// Tells the observer what `boot` does although nobody listens.
+    /// Tells the observer about `boot` although nobody reads the output.
     fn predict_boot(&mut self) {
         let mut heard = self.running.clone();
         heard.board.transmitter.held = false;
         heard.settle();
         let lines = heard.board.transmitter.text.lines();
         for line in lines.filter(|line| line.starts_with("# boot: ")) {
-            self.observe(Event::Said(self.now, line));
+            self.observe(Event::Printed(self.now, line));
         }
     }
 
     /// Lets frames pass, main running.
-    fn frames(&mut self, count: u8) -> Held {
+    fn frames(&mut self, count: u8) -> Verdict {
         let begun = self.now;
         let fault = (self.fault(), self.observer.stopped_since());
         let mut edges = Vec::new();
@@ -304,13 +364,13 @@ impl World {
         if count < 100 || self.running.board.transmitter.held {
             return Ok(());
         }
-        if self.observer.owes_answers() {
+        if self.observer.has_unanswered_lines() {
             return broken(Rule::Answered, "frames went by");
         }
         let is_same = (self.fault(), self.observer.stopped_since()) == fault;
         if is_same && self.observer.runs_for() > self.now - begun {
-            led::shows(&edges, begun + 3 * FRAME, self.now, fault.0)
-                .map_err(|seen| Broken::new(Rule::Led, seen))?;
+            led::check_pattern(&edges, begun + 3 * FRAME, self.now, fault.0)
+                .map_err(|seen| BrokenRule::new(Rule::Led, seen))?;
         }
         Ok(())
     }
@@ -321,7 +381,7 @@ impl World {
         fault.map_or(0, Fault::code)
     }
 
-    fn frame(&mut self) -> Held {
+    fn frame(&mut self) -> Verdict {
         if self.running.is_over() {
             // Main no longer runs; the watchdog is about to restart it.
             return self.stall(20);
@@ -340,17 +400,17 @@ impl World {
         }
         // It was decided at the beginning of the frame.
         self.listen(since + MS)?;
-        self.written()?;
+        self.judge_writes()?;
         let is_heard = !self.running.board.transmitter.held && !self.running.is_over();
         if is_heard && !self.is_late {
-            self.observer.check_told();
+            self.observer.check_reported();
         }
         self.is_late = false;
         if self.is_weak
             && self
                 .running
                 .board
-                .begun()
+                .started_pulses()
                 .0
                 .iter()
                 .filter(|one| one.0 > 0)
@@ -362,23 +422,22 @@ impl World {
         self.observer.verdict()
     }
 
-    /// Main does nothing; then it does what it missed, to the end of that frame. Or the
-    /// watchdog restarts it.
-    fn stall(&mut self, ms: u16) -> Held {
+    /// Stalls main. It then catches up to the end of that frame, or the watchdog restarts it.
+    fn stall(&mut self, ms: u16) -> Verdict {
         self.observe(Event::Stalled(self.now + Time::from(ms) * MS));
         for _ in 0..ms / 20 {
-            if self.lapse(20) {
+            if self.pass_time(20) {
                 return self.listen(self.now);
             }
             self.pulses(false)?;
         }
         let left = ms % 20;
         if left > 0 {
-            if self.lapse(left) {
+            if self.pass_time(left) {
                 return self.listen(self.now);
             }
             self.running.settle();
-            if self.lapse(20 - left) {
+            if self.pass_time(20 - left) {
                 return self.listen(self.now);
             }
             self.pulses(false)?;
@@ -386,17 +445,17 @@ impl World {
         self.listen(self.now - FRAME)
     }
 
-    /// Time passes without main; true if the watchdog has restarted it.
-    fn lapse(&mut self, ms: u16) -> bool {
-        let bites = self.running.board.pass(ms);
+    /// Lets time pass without main; true if the watchdog has restarted it.
+    fn pass_time(&mut self, ms: u16) -> bool {
+        let bites = self.running.board.pass_time(ms);
         if bites {
             self.reset(Cause::Watchdog);
         }
         bites
     }
 
-    /// The bytes that were written to the memory.
-    fn written(&mut self) -> Held {
+    /// Judges the bytes that were written to the memory.
+    fn judge_writes(&mut self) -> Verdict {
         let log = &mut self.running.board.memory.log;
         if !log.is_empty() {
             log.clear();

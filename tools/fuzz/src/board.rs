@@ -1,7 +1,6 @@
 //! The core on a board whose time is a call: an observer judges each byte and each frame.
 
-use lizard_core::console::command::effect;
-use lizard_core::console::line::GARBLED;
+use lizard_core::console::command::{effect, parse};
 use lizard_core::console::word::Effect;
 use lizard_core::memory::copies::{self, Outcome, RESTED};
 use lizard_core::memory::record::Memory;
@@ -18,7 +17,7 @@ pub struct Board {
     observer: Observer,
     now: Time,
     said: String,
-    /// The line so far, as an independent reader of lines has it.
+    /// The line so far, by an independent reader of lines.
     line: Vec<u8>,
     is_overlong: bool,
 }
@@ -34,10 +33,10 @@ fn limits(robot: &Robot) -> Limits {
 }
 
 impl Board {
-    /// A robot that has started with this memory.
+    /// Starts a robot with this memory.
     ///
     /// # Panics
-    /// If it breaks a rule.
+    /// If the robot breaks a rule.
     #[must_use]
     pub fn new(robot: &'static Robot, memory: Eeprom) -> Self {
         let mut board = Self {
@@ -61,12 +60,12 @@ impl Board {
         self.observer.observe(self.now, event);
     }
 
-    /// Lets the robot write all that it has to write.
+    /// Runs the robot until it has printed all its output.
     fn settle(&mut self) {
         self.running.settle();
         let text = std::mem::take(&mut self.running.board.transmitter.text);
         for line in text.lines() {
-            self.observe(Event::Said(self.now, line));
+            self.observe(Event::Printed(self.now, line));
         }
         self.said.push_str(&text);
         self.running.board.memory.log.clear();
@@ -89,10 +88,10 @@ impl Board {
         &self.running.board.memory
     }
 
-    /// Sends a byte. A line that it ends has exactly one answer.
+    /// Sends a byte. If it ends a line, checks that the line gets exactly one answer.
     ///
     /// # Panics
-    /// If it breaks a rule.
+    /// If the robot breaks a rule.
     pub fn take(&mut self, byte: u8) {
         self.said.clear();
         let mut ended = None;
@@ -103,13 +102,15 @@ impl Board {
                 let text = String::from_utf8_lossy(&line).to_ascii_lowercase();
                 let text = text.trim().replace('\t', " ");
                 if overlong || !line.trim_ascii().is_empty() {
-                    self.observe(Event::Line);
+                    let is_known = parse(text.as_bytes(), self.robot.firmware()).is_ok();
+                    let is_command = !overlong && is_known;
+                    self.observe(Event::Line { is_command });
                     ended = Some(if overlong { String::new() } else { text });
                 }
             }
             0x08 | 0x7f => _ = self.line.pop(),
             // A garbled byte: its line is answered, whatever else it contains.
-            GARBLED => self.is_overlong = true,
+            0x80.. => self.is_overlong = true,
             _ if self.line.len() == 63 => self.is_overlong = true,
             _ => self.line.push(byte),
         }
@@ -117,15 +118,15 @@ impl Board {
         self.running.board.send(&[byte]);
         self.settle();
         if let Some(line) = ended {
-            self.answered(&line);
+            self.observe_answer(&line);
         }
         self.assert_rules_hold();
     }
 
     /// Tells the observer of the answer to a line.
-    fn answered(&mut self, line: &str) {
+    fn observe_answer(&mut self, line: &str) {
         assert!(
-            !self.observer.owes_answers(),
+            !self.observer.has_unanswered_lines(),
             "{}: {line:?}",
             Rule::OneAnswer.sentence()
         );
@@ -156,7 +157,7 @@ impl Board {
     /// If its pulses break a rule.
     pub fn frame(&mut self) {
         self.running.frame();
-        let widths = self.running.board.begun().0.map(|width| width.0);
+        let widths = self.running.board.started_pulses().0.map(|width| width.0);
         for (servo, width) in widths
             .into_iter()
             .enumerate()
@@ -177,7 +178,7 @@ impl Board {
         self.assert_rules_hold();
     }
 
-    /// Checks that the memory holds whole settings, or none; and the same for the pose.
+    /// Checks that the memory holds complete settings or none, and a complete pose or none.
     ///
     /// # Panics
     /// If not.
@@ -189,7 +190,7 @@ impl Board {
         let is_whole = matches!(outcome, Outcome::Latest | Outcome::Blank);
         assert!(is_whole, "{rule}: {outcome:?}");
         let is_forgotten = self.memory().read(RESTED.0) == 0xff;
-        let is_rest = copies::rested(robot, self.memory()).is_some();
+        let is_rest = copies::last_rest_pose(robot, self.memory()).is_some();
         assert!(is_forgotten || is_rest, "{rule}: a pose");
         assert!(
             (192..1024).all(|at| self.memory().read(at) == 0xff),

@@ -23,7 +23,7 @@ use lizard_robot::Robot;
 /// The robot that `LIZARD_ROBOT` names, else the source tree's robot.toml.
 ///
 /// # Panics
-/// If that is no robot.
+/// If the file is not a valid robot.
 pub fn robot() -> &'static Robot {
     static ROBOT: LazyLock<Robot> = LazyLock::new(|| {
         let built_in = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robot.toml").into();
@@ -33,10 +33,10 @@ pub fn robot() -> &'static Robot {
     &ROBOT
 }
 
-/// Bytes at the console, a frame after each eight of them.
+/// Sends bytes to the console, with a frame after every eight.
 ///
 /// # Panics
-/// If they do harm.
+/// If they break a rule.
 pub fn console(data: &[u8]) {
     let mut board = Board::new(robot(), Eeprom::blank());
     for eight in data.chunks(8) {
@@ -49,12 +49,12 @@ pub fn console(data: &[u8]) {
     board.assert_memory_is_right();
 }
 
-/// An EEPROM: the first bytes are put over the contents of its three records, which
-/// are whole then; of the others each three set a byte somewhere, so that a record may
-/// be damaged, too.
+/// Starts a robot with an EEPROM made of these bytes. The first ones replace the contents of its
+/// three records, which stay valid; each further three change a byte anywhere, so that a record
+/// may be damaged, too.
 ///
 /// # Panics
-/// If it does harm.
+/// If it breaks a rule.
 pub fn memory(data: &[u8]) {
     let robot = robot();
     let mut memory = Eeprom::blank();
@@ -73,7 +73,7 @@ pub fn memory(data: &[u8]) {
     }
     let before = memory.clone();
     let mut board = Board::new(robot, memory);
-    // Three seconds and a half: what `boot` says is done, too.
+    // Three and a half seconds, so that the `boot` action runs, too.
     for _ in 0..175 {
         board.frame();
     }

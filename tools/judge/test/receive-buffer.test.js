@@ -23,9 +23,21 @@ test('three bytes wait until they are read, in order, and a fourth is lost', () 
   const board = uno([receiveBuffer], PROGRAM);
   assert.equal(board.receive(1), false, 'the receiver is off');
   board.run(20);
-  assert.deepEqual([11, 12, 13, 14].map(board.receive), [true, true, true, false]);
+  assert.deepEqual([11, 12, 13, 14].map((byte) => board.receive(byte)), [true, true, true, false]);
   board.run(1000);
   const { data } = board.cpu;
   assert.deepEqual([...data.subarray(20, 23)], [11, 12, 13]);
   assert.equal(data[24] & 0x80, 0, 'RXC has fallen');
+});
+
+test('the status of a byte says that it came garbled, and no other byte\'s does', () => {
+  const FE = 0x10;
+  const board = uno([receiveBuffer], PROGRAM.replaceAll('0xc6     ; UDR0', '0xc0').replace('lds r22, 0xc6', 'lds r22, 0xc6\n    lds r23, 0xc0'));
+  board.run(20);
+  board.receive(11, true);
+  board.receive(12);
+  board.run(1000);
+  const { data } = board.cpu;
+  assert.equal(data[20] & FE, FE);
+  assert.equal(data[23] & FE, 0);
 });

@@ -5,7 +5,7 @@ use crate::instruction::{is_long, is_relative};
 
 /// An instruction and its offset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct At {
+pub struct PlacedInstruction {
     /// Bytes from the beginning of the code.
     pub offset: u64,
     /// The first word of the instruction.
@@ -16,7 +16,7 @@ pub struct At {
 #[derive(Debug, Clone)]
 pub struct Code {
     /// The instructions in the order of their offsets.
-    pub instructions: Vec<At>,
+    pub instructions: Vec<PlacedInstruction>,
     /// The references in the order of their offsets.
     pub references: Vec<Reference>,
     /// The size in bytes.
@@ -32,7 +32,7 @@ impl Code {
         let mut at = 0;
         while at < bytes.len() {
             let code = word(at)?;
-            instructions.push(At {
+            instructions.push(PlacedInstruction {
                 offset: at as u64,
                 code,
             });
@@ -43,7 +43,8 @@ impl Code {
             references,
             size: bytes.len() as u64,
         };
-        let known = |at: &At| !is_relative(at.code) || code.reference(at.offset).is_some();
+        let known =
+            |at: &PlacedInstruction| !is_relative(at.code) || code.reference(at.offset).is_some();
         let is_valid = at == bytes.len() && code.instructions.iter().all(known);
         is_valid.then_some(code)
     }

@@ -70,7 +70,7 @@ impl Edits {
     }
 
     /// The new offset of what was at an offset.
-    pub fn moved(&self, offset: u64) -> u64 {
+    pub fn new_offset(&self, offset: u64) -> u64 {
         let before = self
             .0
             .iter()
@@ -99,11 +99,11 @@ impl Edits {
         };
         let kept = old.iter().filter(|reference| !inside(reference.offset));
         let kept = kept.map(|reference| Reference {
-            offset: self.moved(reference.offset),
+            offset: self.new_offset(reference.offset),
             ..*reference
         });
         let new = self.0.iter().flat_map(|edit| {
-            let begin = self.moved(edit.at);
+            let begin = self.new_offset(edit.at);
             let at_its_place = move |reference: &Reference| Reference {
                 offset: begin + reference.offset,
                 ..*reference

@@ -23,7 +23,7 @@ fn run() -> Result<ExitCode, String> {
     let mut arguments = Vec::new();
     let mut written = Vec::new();
     for argument in std::env::args_os().skip(1) {
-        if let Some(short) = shortened(Path::new(&argument))? {
+        if let Some(short) = write_shortened(Path::new(&argument))? {
             arguments.extend(short.iter().map(|path| path.clone().into_os_string()));
             written.extend(short);
         } else {
@@ -45,7 +45,7 @@ fn run() -> Result<ExitCode, String> {
 
 /// Writes the shorter form of an object next to it, and the routines that it calls; returns the
 /// names of both. `None` for an argument that is not an object.
-fn shortened(path: &Path) -> Result<Option<[PathBuf; 2]>, String> {
+fn write_shortened(path: &Path) -> Result<Option<[PathBuf; 2]>, String> {
     // If a file cannot be read, avr-gcc reports that.
     let (true, Ok(file)) = (path.extension() == Some(OsStr::new("o")), fs::read(path)) else {
         return Ok(None);

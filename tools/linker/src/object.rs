@@ -12,7 +12,7 @@ use crate::frame::{FIRST, Frame, Routines};
 
 mod layout;
 
-/// The reason for which an object cannot be read or written.
+/// The reason why an object cannot be read or written.
 #[derive(Debug)]
 pub struct ShrinkError(object::build::Error);
 
@@ -227,7 +227,9 @@ impl Object<'_> {
             let value = values.iter().find(|(id, _)| *id == symbol);
             value.map_or(addend, |(_, value)| {
                 let place = value.wrapping_add_signed(addend);
-                edits.moved(place).wrapping_sub(edits.moved(*value)) as i64
+                edits
+                    .new_offset(place)
+                    .wrapping_sub(edits.new_offset(*value)) as i64
             })
         };
         for reference in &mut references {
@@ -251,8 +253,8 @@ impl Object<'_> {
         }
         for (id, value) in &values {
             let symbol = self.0.symbols.get_mut(*id);
-            let end = edits.moved(value + symbol.st_size);
-            symbol.st_value = edits.moved(*value);
+            let end = edits.new_offset(value + symbol.st_size);
+            symbol.st_value = edits.new_offset(*value);
             symbol.st_size = end - symbol.st_value;
         }
         let code = self.0.sections.get_mut(section);

@@ -77,17 +77,19 @@ impl Pieces {
 
     /// The number of calls out of reach in an order.
     pub fn far(&self, order: &[usize]) -> usize {
-        self.beyond(order).filter(|beyond| *beyond > 0).count()
+        self.bytes_beyond_reach(order)
+            .filter(|beyond| *beyond > 0)
+            .count()
     }
 
     /// The cost of an order.
     fn cost(&self, order: &[usize]) -> u64 {
-        let far = self.beyond(order).filter(|beyond| *beyond > 0);
+        let far = self.bytes_beyond_reach(order).filter(|beyond| *beyond > 0);
         far.map(|beyond| u64::from(FAR + beyond)).sum()
     }
 
     /// The number of bytes by which each call is out of reach; 0 within reach.
-    fn beyond(&self, order: &[usize]) -> impl Iterator<Item = u32> {
+    fn bytes_beyond_reach(&self, order: &[usize]) -> impl Iterator<Item = u32> {
         let mut places = vec![0; self.sizes.len()];
         let mut place = 0;
         for piece in order {

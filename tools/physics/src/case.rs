@@ -7,25 +7,25 @@ use lizard_robot::{Drive, Ground, Kind, Robot, Stance};
 /// The drive of the legs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Legs {
-    /// By bars with two holes.
+    /// Bars with two holes.
     Rigid,
-    /// By struts with a slot, and the spring of `[parts.spring]` in it.
+    /// Struts with a slot and the spring of `[parts.spring]` in it.
     Strut,
 }
 
 /// The length of the feet, and the stiffness of their leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Feet {
-    /// All of one length, on leaves as in robot.toml.
+    /// All feet equally long, on leaves as in robot.toml.
     Level,
-    /// The front left one 0.6 mm too long, on stiff leaves of 2 N/mm.
+    /// The front left foot 0.6 mm too long, on stiff leaves of 2 N/mm.
     Stiff,
-    /// The front left one 1.0 mm too long, on leaves as in robot.toml.
+    /// The front left foot 1.0 mm too long, on leaves as in robot.toml.
     Soft,
 }
 
 impl Feet {
-    /// All of them, in the order of the tables.
+    /// All variants, in the order of the tables.
     pub const ALL: [Self; 3] = [Self::Level, Self::Stiff, Self::Soft];
 
     /// The excess length of the front left foot, mm.

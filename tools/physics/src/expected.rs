@@ -3,8 +3,7 @@
 
 use std::fmt::Write as _;
 
-use lizard_robot::{GRAVITY, Robot};
-use lizard_twin::ServoModel;
+use lizard_robot::{CheckedGait, Effort, GRAVITY, Robot, ServoType, TIGHT};
 
 /// The table of `docs/measure.md`.
 #[must_use]
@@ -15,6 +14,7 @@ pub fn expected(robot: &Robot) -> String {
     let stiffness = ground.stance.stiffness;
     let reach = ground.feet.reach;
     let strut = robot.strut_of(&robot.parts().spring);
+    let (servo, need) = (*robot.servo_type(), HardestGait::of(robot));
     let rows = [
         (
             "1",
@@ -36,7 +36,10 @@ pub fn expected(robot: &Robot) -> String {
         (
             "1",
             "the same pull backward over the pull forward",
-            format!("{:.1}; 0.9 to 1.1 will do", ground.ratio),
+            format!(
+                "{:.1}; 0.9 to 1.1 will do; above it, `robots/grain.toml`",
+                ground.ratio
+            ),
             "[ground] friction_back_over_forward",
         ),
         (
@@ -73,21 +76,43 @@ pub fn expected(robot: &Robot) -> String {
             "3",
             "time for a turn of 60 deg, with the foot in the air",
             format!(
-                "{:.2} s; up to {:.2} s will do",
-                60.0 / ServoModel::SG90.rate,
-                0.8 * 60.0 / robot.pace().gait_slew
+                "{} s; up to {:.2} s will do with the torque of the next line",
+                servo.s_per_60_deg,
+                need.limit(servo.s_per_60_deg, |s_per_60_deg| ServoType {
+                    s_per_60_deg,
+                    ..servo
+                })
             ),
-            "[limits] gait_slew",
+            "[servo] s_per_60_deg",
         ),
         (
             "3",
-            "torque that the servo needs on the floor, from load and friction",
+            "torque at which the servo stalls",
             format!(
-                "{:.0} N mm of the {:.0} N mm at which an SG-90 stalls",
-                ground.grip() * reach,
-                lizard_parts::STALL
+                "{} kg cm; {:.1} or more will do with the time of the line above",
+                servo.stall_kg_cm,
+                need.limit(servo.stall_kg_cm, |stall_kg_cm| ServoType {
+                    stall_kg_cm,
+                    ..servo
+                })
             ),
-            "[body] mass, [ground] friction",
+            "[servo] stall_kg_cm",
+        ),
+        (
+            "3",
+            "voltage at the servo while it moves",
+            format!(
+                "{} V; {:.1} V or more will do",
+                servo.volts,
+                servo.volts * need.line / TIGHT
+            ),
+            "[servo] volts",
+        ),
+        (
+            "3",
+            "pull at the foot, in the air, that turns a leg whose link is off its servo",
+            format!("0 g; up to {:.0} g will do", grams(20.0 / reach)),
+            "[joints] drag",
         ),
         (
             "built",
@@ -113,4 +138,47 @@ pub fn expected(robot: &Robot) -> String {
         _ = writeln!(text, "| {trial} | {what} | {value} | {} |", keys.join(", "));
     }
     text
+}
+
+/// The gait that asks most of the servos.
+struct HardestGait<'a> {
+    robot: &'a Robot,
+    gait: &'a CheckedGait,
+    /// Share of its servos' line.
+    line: f64,
+}
+
+impl<'a> HardestGait<'a> {
+    fn of(robot: &'a Robot) -> Self {
+        let line = |gait| Self::line(robot, gait, robot.servo_type());
+        let lines = robot.gaits().iter().map(|gait| (gait, line(gait)));
+        let hardest = lines.max_by(|(_, a), (_, b)| a.total_cmp(b));
+        let (gait, line) = hardest.expect("every robot stands");
+        Self { robot, gait, line }
+    }
+
+    fn line(robot: &Robot, gait: &CheckedGait, servo: &ServoType) -> f64 {
+        let motors = robot.motors_of(servo, servo.volts);
+        Effort::of(gait, robot.ground(), &motors).line_share(1.0, 1.0)
+    }
+
+    /// The value of a servo at which its line is nearly used up, between this one and four times
+    /// as much or as little.
+    fn limit(&self, own: f64, servo: impl Fn(f64) -> ServoType) -> f64 {
+        let does = |value: f64| Self::line(self.robot, self.gait, &servo(value)) <= TIGHT;
+        let mut good = own;
+        let mut bad = if does(2.0 * own) {
+            own / 4.0
+        } else {
+            4.0 * own
+        };
+        for _ in 0..10 {
+            let middle = f64::midpoint(good, bad);
+            match does(middle) {
+                true => good = middle,
+                false => bad = middle,
+            }
+        }
+        good
+    }
 }

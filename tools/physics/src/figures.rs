@@ -21,15 +21,15 @@ impl Displacement {
 }
 
 impl From<[f64; 3]> for Displacement {
-    fn from(way: [f64; 3]) -> Self {
+    fn from(displacement: [f64; 3]) -> Self {
         // The sum with 0 has no negative zero.
-        Self(way.map(|part| (100.0 * part).round() / 100.0 + 0.0))
+        Self(displacement.map(|part| (100.0 * part).round() / 100.0 + 0.0))
     }
 }
 
 impl From<Travel> for Displacement {
-    fn from(way: Travel) -> Self {
-        Self::from([way.forward, way.left, way.turn])
+    fn from(displacement: Travel) -> Self {
+        Self::from([displacement.forward, displacement.left, displacement.turn])
     }
 }
 
@@ -64,10 +64,10 @@ impl Answers {
             Feet::Stiff => STIFF,
         };
         let [ahead, left, turn] = self.model.unwrap_or_default().0;
-        let way = ahead.hypot(left);
-        match way < NOWHERE.0 && turn.abs() < NOWHERE.1 {
+        let displacement = ahead.hypot(left);
+        match displacement < NOWHERE.0 && turn.abs() < NOWHERE.1 {
             true => (mm.max(CREEPS), deg),
-            false => (mm.max(share * way), deg),
+            false => (mm.max(share * displacement), deg),
         }
     }
 
@@ -95,7 +95,7 @@ impl Figures {
     /// # Panics
     /// If `figures.json` is not as [`Figures::text`] makes it.
     #[must_use]
-    pub fn kept() -> Self {
+    pub fn stored() -> Self {
         serde_json::from_str(include_str!("../figures.json")).expect("figures.json")
     }
 
@@ -126,7 +126,7 @@ impl Figures {
     }
 
     /// Stores the answers for a robot's gait in a case.
-    pub fn put(&mut self, robot: &str, gait: &str, case: Case, answers: Answers) {
+    pub fn store(&mut self, robot: &str, gait: &str, case: Case, answers: Answers) {
         let gaits = self.0.entry(robot.to_owned()).or_default();
         let cases = gaits.entry(gait.to_owned()).or_default();
         cases.insert(case.to_string(), answers);

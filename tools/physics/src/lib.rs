@@ -12,8 +12,11 @@
 mod case;
 mod expected;
 mod figures;
+pub mod grains;
 pub mod mujoco;
 mod row;
+pub mod servos;
+pub mod surface;
 mod table;
 
 pub use case::{Case, Feet, Legs};

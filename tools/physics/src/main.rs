@@ -1,16 +1,26 @@
-//! `make physics`: walks every gait of every file of robots/ by the contact model and by MuJoCo.
+//! `make physics`: walks every gait of every file of robots/ by the contact model and by MuJoCo,
+//! and the paper's gaits on floors with edges, blocks, slopes and uneven friction by MuJoCo.
 //! With `--write` the new results replace the stored ones; with `--one-in N` only every N-th gait
 //! is walked.
 
 use std::process::ExitCode;
 
+use lizard_parts::Assembly;
+use lizard_physics::grains::{self, Grains};
 use lizard_physics::mujoco::{Jobs, MujocoError};
-use lizard_physics::{Answers, Figures, ROBOTS, Row, here, robot, rows, table};
+use lizard_physics::servos::{self, Servos, Variant, servos_table};
+use lizard_physics::surface::{self, GAITS, Surface, Surfaces, surfaces_table};
+use lizard_physics::{Answers, Displacement, Figures, Legs, ROBOTS, Row, here, robot, rows, table};
 use lizard_robot::Robot;
 
 /// A difference from the stored answer, mm and deg, beyond which the model, the engine or the robot
 /// must have changed.
 const SAME: (f64, f64) = (0.6, 0.4);
+/// The sentence for an answer of which no other is stored.
+const NOT_KEPT: &str = "no figures are kept; `make physics WRITE=1` keeps these";
+/// The beginnings of the files' names of walks on other floors and with other servos.
+const SURFACE: &str = "surface";
+const SERVOS: &str = "servos";
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -47,7 +57,8 @@ fn name(robot: &str, place: usize) -> String {
     format!("{robot}-{place}")
 }
 
-/// Walks one of so many gaits, or all, whose answers are stored, for `None`. Returns the faults.
+/// Walks every `one_in`-th gait, or with `None` all gaits, and stores their answers. Returns the
+/// faults.
 fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     let (write, one_in) = (one_in.is_none(), one_in.unwrap_or(1));
     let robots: Vec<(&str, Robot)> = ROBOTS.map(|name| (name, robot(name))).into();
@@ -61,10 +72,29 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         .iter()
         .map(|(_, robot)| rows(robot).into_iter().filter(|_| is_one()).collect())
         .collect();
+    let uneven = GAITS.map(|gait| Surface::ALL.map(|surface| (gait, surface)));
+    let uneven: Vec<(&str, Surface)> = uneven.concat().into_iter().filter(|_| is_one()).collect();
     let mut jobs = Jobs::new()?;
     for ((of, robot), rows) in robots.iter().zip(&all) {
+        let assembly = Assembly::new(robot);
         let named = rows.iter().enumerate();
-        jobs.add(robot, named.map(|(place, row)| (name(of, place), row)))?;
+        let walks = named.map(|(place, row)| row.scene(&name(of, place), &assembly));
+        jobs.add(&assembly, walks)?;
+    }
+    let kept = Figures::stored();
+    let paper = Assembly::new(&robot("paper"));
+    let walks = uneven.iter().enumerate().map(|(place, (gait, surface))| {
+        let level = surface::level(&kept, gait);
+        let scene = surface.scene(&name(SURFACE, place), &paper, gait, level);
+        (Legs::Rigid, scene)
+    });
+    jobs.add(&paper, walks)?;
+    let driven = Variant::ALL.map(|variant| servos::GAITS.map(|(gait, _)| (variant, gait)));
+    let driven: Vec<(Variant, &str)> = driven.concat().into_iter().filter(|_| is_one()).collect();
+    for (place, (variant, gait)) in driven.iter().enumerate() {
+        let assembly = Assembly::new(&variant.robot());
+        let scene = variant.scene(&name(SERVOS, place), &assembly, gait);
+        jobs.add(&assembly, std::iter::once((Legs::Rigid, scene)))?;
     }
     println!(
         "physics: {} walks by MuJoCo take some minutes",
@@ -72,7 +102,7 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     );
     let by_mujoco = jobs.start()?.done()?;
 
-    let (kept, mut found, mut faults) = (Figures::kept(), Figures::default(), Vec::new());
+    let (mut found, mut faults) = (Figures::default(), Vec::new());
     for ((of, robot), rows) in robots.iter().zip(&all) {
         for (place, row) in rows.iter().enumerate() {
             let answers = Answers {
@@ -81,19 +111,74 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
             };
             let mut words: Vec<String> = answers.disagreement(row.case).into_iter().collect();
             if !write {
-                words.extend(changed(kept.get(of, &row.gait, row.case), &answers));
+                words.extend(describe_changes(
+                    kept.get(of, &row.gait, row.case),
+                    &answers,
+                ));
             }
             let what = |words| format!("{of}: {} ({}): {words}", row.gait, row.case);
             faults.extend(words.into_iter().map(what));
-            found.put(of, &row.gait, row.case, answers);
+            found.store(of, &row.gait, row.case, answers);
         }
         println!("\n{}", table(of, robot, &found));
     }
+    let (before, mut surfaces) = (surface::stored(), Surfaces::new());
+    for (place, (gait, surface)) in uneven.iter().enumerate() {
+        let displacement = by_mujoco[&name(SURFACE, place)];
+        let mut words = Vec::new();
+        words.extend(surface::excess_loss(
+            *surface,
+            surface::level(&kept, gait),
+            displacement,
+        ));
+        if !write {
+            let was = before
+                .get(*gait)
+                .and_then(|of| of.get(&surface.to_string()));
+            words.extend(match was {
+                Some(was) => differs("MuJoCo", *was, displacement),
+                None => Some(NOT_KEPT.to_owned()),
+            });
+        }
+        let what = |words| format!("paper: {gait} ({surface}): {words}");
+        faults.extend(words.into_iter().map(what));
+        let of = surfaces.entry((*gait).to_owned()).or_default();
+        of.insert(surface.to_string(), displacement);
+    }
+    println!("\n{}", surfaces_table(&kept, &surfaces));
+    let (before, mut by_servos) = (servos::kept(), Servos::new());
+    for (place, (variant, gait)) in driven.iter().enumerate() {
+        let answers = Answers {
+            model: Some(variant.model(gait)),
+            mujoco: by_mujoco[&name(SERVOS, place)],
+        };
+        let mut words: Vec<String> = variant.disagreement(gait, &answers).into_iter().collect();
+        if !write {
+            let was = before.get(variant.name).and_then(|of| of.get(*gait));
+            words.extend(describe_changes(was, &answers));
+        }
+        let what = |words| format!("paper, {}: {gait}: {words}", variant.name);
+        faults.extend(words.into_iter().map(what));
+        let of = by_servos.entry(variant.name.to_owned()).or_default();
+        of.insert((*gait).to_owned(), answers);
+    }
+    println!("\n{}", servos_table(&by_servos));
+    let pads = robot(grains::ROBOT);
+    // With `--one-in` only some rows are walked, to save time: then these are left out.
+    if one_in == 1 {
+        let walked = grains::measure(&pads)?;
+        println!("\nrobots/grain.toml\n{}", grains::table(&pads, &walked));
+        faults.extend(grains::disagreements(&walked));
+        match write {
+            true => grains::store(&walked)?,
+            false => faults.extend(other(&grains::stored(), &walked)),
+        }
+    }
     if write {
         std::fs::write(here().join("figures.json"), found.text())?;
-        println!(
-            "physics: written to tools/physics/figures.json; `make docs` puts it into the pages"
-        );
+        std::fs::write(here().join("surfaces.json"), surface::text(&surfaces))?;
+        std::fs::write(here().join("servos.json"), servos::text(&by_servos))?;
+        println!("physics: written to tools/physics; `make docs` puts it into the pages");
     } else if one_in == 1 && kept.count() != found.count() {
         faults.push(format!(
             "{} figures are kept, and there are {}; `make physics WRITE=1` keeps these",
@@ -104,10 +189,24 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     Ok(faults)
 }
 
+/// The sentences for answers on pads with a grain that differ from the stored ones.
+fn other(kept: &Grains, now: &Grains) -> Vec<String> {
+    let each = now.iter().flat_map(|(gait, answers)| {
+        let kept = kept.get(gait).map_or(&[][..], Vec::as_slice);
+        let pairs = answers.iter().zip(grains::RATIOS).enumerate();
+        pairs.flat_map(move |(place, (answers, ratio))| {
+            let words = describe_changes(kept.get(place), answers);
+            let what = move |words| format!("grain: {gait} (r {ratio}): {words}");
+            words.into_iter().map(what)
+        })
+    });
+    each.collect()
+}
+
 /// The sentences for answers that differ from the stored ones.
-fn changed(kept: Option<&Answers>, now: &Answers) -> Vec<String> {
+fn describe_changes(kept: Option<&Answers>, now: &Answers) -> Vec<String> {
     let Some(before) = kept else {
-        return vec!["no figures are kept; `make physics WRITE=1` keeps these".to_owned()];
+        return vec![NOT_KEPT.to_owned()];
     };
     // Results that depend on ties differ between machines.
     let (Some(was), Some(is)) = (before.model, now.model) else {
@@ -117,11 +216,16 @@ fn changed(kept: Option<&Answers>, now: &Answers) -> Vec<String> {
         ("the model", was, is),
         ("MuJoCo", before.mujoco, now.mujoco),
     ];
-    let changed = all.into_iter().filter_map(|(who, before, now)| {
-        let (mm, deg) = before.distance_to(&now);
-        (mm > SAME.0 || deg > SAME.1).then(|| {
-            format!("{who} differs by {mm:.1} mm and {deg:.1} deg from what is kept; if that is meant, `make physics WRITE=1`")
-        })
-    });
-    changed.collect()
+    let changed = all.into_iter();
+    changed
+        .filter_map(|(who, before, now)| differs(who, before, now))
+        .collect()
+}
+
+/// The sentence for an answer that differs from the stored one.
+fn differs(who: &str, before: Displacement, now: Displacement) -> Option<String> {
+    let (mm, deg) = before.distance_to(&now);
+    (mm > SAME.0 || deg > SAME.1).then(|| {
+        format!("{who} differs by {mm:.1} mm and {deg:.1} deg from what is kept; if that is meant, `make physics WRITE=1`")
+    })
 }

@@ -5,18 +5,15 @@ use std::collections::BTreeMap;
 use std::io;
 use std::process::{Child, Command, Stdio};
 
-use lizard_parts::{Assembly, Course, Motor, Pieces, Pull, STALL, Scene};
-use lizard_robot::Robot;
-use lizard_twin::ServoModel;
+use lizard_parts::{Assembly, Course, Pieces, Pull, Scene};
 use serde::Deserialize;
 use tempfile::TempDir;
 
-use crate::case::Legs;
+use crate::case::{Case, Legs};
 use crate::figures::Displacement;
 use crate::here;
-use crate::row::Row;
 
-/// The reason for which MuJoCo gives no answer.
+/// The reason why MuJoCo gives no answer.
 #[derive(Debug, thiserror::Error)]
 pub enum MujocoError {
     /// Python does not start.
@@ -59,13 +56,13 @@ pub struct Jobs {
 }
 
 /// A running judge.
-pub struct Walking {
+pub struct RunningJudge {
     judge: Child,
     _folder: TempDir,
 }
 
 impl Jobs {
-    /// Starts without a walk.
+    /// Makes an empty list of walks.
     ///
     /// # Errors
     /// The folder for the files cannot be made.
@@ -82,27 +79,25 @@ impl Jobs {
         self.count
     }
 
-    /// Adds the second cycle of each of a robot's gaits, each under a name.
+    /// Adds a robot's walks, each with its legs and a scene under a name of its own.
     ///
     /// # Errors
     /// A file cannot be made or written.
-    pub fn add<'a>(
+    pub fn add(
         &mut self,
-        robot: &Robot,
-        rows: impl Iterator<Item = (String, &'a Row)>,
+        assembly: &Assembly,
+        walks: impl Iterator<Item = (Legs, Scene)>,
     ) -> Result<(), MujocoError> {
-        let assembly = Assembly::new(robot);
+        let robot = assembly.robot();
         let neutral = robot.lizard().solve(&robot.neutral());
         let neutral = neutral.expect("every robot closes at neutral");
         let mut known: Vec<(Legs, Pieces)> = Vec::new();
-        for (name, row) in rows {
-            let scene = scene(&name, &assembly, row);
-            let legs = row.case.legs;
+        for (legs, scene) in walks {
             if known.iter().all(|(of, _)| *of != legs) {
-                known.push((legs, Pieces::of(&assembly, &scene)?));
+                known.push((legs, Pieces::of(assembly, &scene)?));
             }
             for (_, pieces) in known.iter().filter(|(of, _)| *of == legs) {
-                let file = self.folder.path().join(format!("{name}.xml"));
+                let file = self.folder.path().join(format!("{}.xml", scene.name));
                 std::fs::write(file, pieces.mjcf(&neutral, &scene))?;
                 self.count += 1;
             }
@@ -114,45 +109,44 @@ impl Jobs {
     ///
     /// # Errors
     /// Python does not start.
-    pub fn start(self) -> Result<Walking, MujocoError> {
+    pub fn start(self) -> Result<RunningJudge, MujocoError> {
         let judge = Command::new(here().join("../../target/physics/bin/python"))
             .arg(here().join("judge.py"))
             .arg(self.folder.path())
             .stdout(Stdio::piped())
             .spawn()
             .map_err(MujocoError::Start)?;
-        Ok(Walking {
+        Ok(RunningJudge {
             judge,
             _folder: self.folder,
         })
     }
 }
 
-fn scene(name: &str, assembly: &Assembly, row: &Row) -> Scene {
-    let (robot, case) = (assembly.robot(), row.case);
-    let motor = Motor {
-        rate: ServoModel::SG90.rate,
-        stall: STALL,
-    };
-    let gait = robot.gait(&row.gait).expect("it is the robot's");
+/// The scene of the second cycle of a gait.
+pub(crate) fn scene_of(name: &str, assembly: &Assembly, gait: &str, case: Case) -> Scene {
+    let robot = assembly.robot();
+    let gait = robot.gait(gait).expect("it is the robot's");
     let strut = robot.strut_of(&robot.parts().spring);
     Scene {
         name: name.to_owned(),
         long: [case.feet.long(), 0.0, 0.0, 0.0],
         stiffness: case.feet.stiffness(robot),
+        // As in `Case::ground`; `grains.rs` is for other pads.
+        ratio: 1.0,
         pull: (case.legs == Legs::Strut).then_some(Pull {
             force: strut.force,
             rate: strut.rate,
         }),
-        course: Some(Course::of(robot, gait, 2)),
+        course: Some(Course::of(robot, gait, 2, 1)),
         // They are only for pictures, and MuJoCo reads the file ten times as fast without them.
         shapes: false,
-        ..Scene::of(assembly, motor)
+        ..Scene::of(assembly)
     }
 }
 
-impl Walking {
-    /// Waits for all walks; returns their displacements by name.
+impl RunningJudge {
+    /// Waits for all walks and returns their displacements by name.
     ///
     /// # Errors
     /// The judge ended early, or MuJoCo warned of a walk.

@@ -1,9 +1,11 @@
 //! The gaits that are walked, each in its cases.
 
+use lizard_parts::{Assembly, Scene};
 use lizard_robot::{CheckedGait, Robot};
 
-use crate::case::Case;
+use crate::case::{Case, Legs};
 use crate::figures::Displacement;
+use crate::mujoco::scene_of;
 
 /// A gait to be walked in a case.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +19,13 @@ pub struct Row {
 }
 
 impl Row {
+    /// Its scene for MuJoCo under a name, and its legs.
+    #[must_use]
+    pub fn scene(&self, name: &str, assembly: &Assembly) -> (Legs, Scene) {
+        let scene = scene_of(name, assembly, &self.gait, self.case);
+        (self.case.legs, scene)
+    }
+
     /// The contact model's answer.
     ///
     /// # Panics

@@ -12,15 +12,15 @@ const NONE: (f64, f64) = (1.0, 0.5);
 
 /// The part of a displacement that a gait is for.
 #[derive(Clone, Copy)]
-enum Part {
+pub(crate) enum Part {
     Ahead,
     Turn,
 }
 
 impl Part {
     /// The parts of a displacement that are not negligible.
-    fn of(way: Displacement) -> Vec<Self> {
-        let [ahead, _, turn] = way.0.map(f64::abs);
+    pub(crate) fn of(displacement: Displacement) -> Vec<Self> {
+        let [ahead, _, turn] = displacement.0.map(f64::abs);
         let mut parts = Vec::new();
         if ahead > NONE.0 || turn <= NONE.1 {
             parts.push(Self::Ahead);
@@ -31,17 +31,17 @@ impl Part {
         parts
     }
 
-    fn unit(self) -> &'static str {
+    pub(crate) fn unit(self) -> &'static str {
         match self {
             Self::Ahead => "mm",
             Self::Turn => "deg",
         }
     }
 
-    fn value(self, way: Displacement) -> f64 {
+    pub(crate) fn value(self, displacement: Displacement) -> f64 {
         match self {
-            Self::Ahead => way.0[0],
-            Self::Turn => way.0[2],
+            Self::Ahead => displacement.0[0],
+            Self::Turn => displacement.0[2],
         }
     }
 }
@@ -88,9 +88,11 @@ pub fn table(name: &str, robot: &Robot, figures: &Figures) -> String {
                     .iter()
                     .filter_map(|case| figures.get(name, gait, *case))
                 {
-                    for way in [answers.model, Some(answers.mujoco)] {
-                        _ = match way {
-                            Some(way) => write!(text, "  {:>+6.1}", part.value(way)),
+                    for displacement in [answers.model, Some(answers.mujoco)] {
+                        _ = match displacement {
+                            Some(displacement) => {
+                                write!(text, "  {:>+6.1}", part.value(displacement))
+                            }
                             None => write!(text, "  {:>6}", "-"),
                         };
                     }
@@ -126,8 +128,10 @@ pub fn spread(name: &str, robot: &Robot, figures: &Figures) -> String {
         let (Some(model), Some(rocks)) = (level.model, long.model) else {
             continue;
         };
-        let cell = |ways: &[Displacement]| {
-            let parts = Part::of(model).into_iter().map(|part| range(part, ways));
+        let cell = |displacements: &[Displacement]| {
+            let parts = Part::of(model)
+                .into_iter()
+                .map(|part| range(part, displacements));
             parts.collect::<Vec<_>>().join(", ")
         };
         _ = writeln!(
@@ -143,8 +147,10 @@ pub fn spread(name: &str, robot: &Robot, figures: &Figures) -> String {
     text
 }
 
-fn range(part: Part, ways: &[Displacement]) -> String {
-    let values = ways.iter().map(|way| part.value(*way));
+fn range(part: Part, displacements: &[Displacement]) -> String {
+    let values = displacements
+        .iter()
+        .map(|displacement| part.value(*displacement));
     let least = values.clone().fold(f64::INFINITY, f64::min);
     let most = values.fold(f64::NEG_INFINITY, f64::max);
     let ([least, most], unit) = (

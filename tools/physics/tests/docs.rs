@@ -4,12 +4,13 @@
 
 use lizard_robot::Robot;
 
+use lizard_physics::surface::{self, GAITS, Surface, surfaces_table};
 use lizard_physics::{
     Case, Displacement, Feet, Figures, Legs, ROBOTS, expected, here, robot, rows, spread, table,
 };
 
 /// Replaces or compares the text between a marker and the next end.
-fn block(page: &str, marker: &str, wanted: &str) {
+fn check_block(page: &str, marker: &str, wanted: &str) {
     let file = here().join("../..").join(page);
     let text = std::fs::read_to_string(&file).expect(page);
     let begin = format!("<!-- {marker} -->\n");
@@ -25,24 +26,26 @@ fn block(page: &str, marker: &str, wanted: &str) {
 
 #[test]
 fn the_pages_have_the_displacements_of_model_and_engine() {
-    let kept = Figures::kept();
+    let kept = Figures::stored();
     for name in ROBOTS {
         let robot = robot(name);
         let all = format!("```text\n{}```\n", table(name, &robot, &kept));
-        block(
+        check_block(
             "docs/judges.md",
             &format!("physics of robots/{name}.toml"),
             &all,
         );
         if name == "paper" {
-            let ways = spread(name, &robot, &kept);
+            let displacements = spread(name, &robot, &kept);
             for page in ["README.md", "docs/gaits.md", "docs/twin.md"] {
-                block(page, "ways of robots/paper.toml", &ways);
+                check_block(page, "ways of robots/paper.toml", &displacements);
             }
         }
     }
+    let surfaces = surfaces_table(&kept, &surface::stored());
+    check_block("docs/judges.md", "surfaces of robots/paper.toml", &surfaces);
     let robot = robot("paper");
-    block(
+    check_block(
         "docs/measure.md",
         "expected of robots/paper.toml",
         &expected(&robot),
@@ -53,7 +56,7 @@ fn the_pages_have_the_displacements_of_model_and_engine() {
 fn the_stored_figures_are_written_as_they_are_read() {
     let file = here().join("figures.json");
     let text = std::fs::read_to_string(&file).expect("figures.json");
-    let now = Figures::kept().text();
+    let now = Figures::stored().text();
     if std::env::var_os("BLESS_PHYSICS").is_some() {
         std::fs::write(&file, now).expect("figures.json");
     } else {
@@ -62,8 +65,35 @@ fn the_stored_figures_are_written_as_they_are_read() {
 }
 
 #[test]
+fn every_gait_that_walks_keeps_its_way_over_edges_and_blocks() {
+    let (figures, kept) = (Figures::stored(), surface::stored());
+    let mut count = 0;
+    for gait in GAITS {
+        let level = surface::level(&figures, gait);
+        for surface in Surface::ALL {
+            let displacement = kept[gait][&surface.to_string()];
+            assert_eq!(
+                surface::excess_loss(surface, level, displacement),
+                None,
+                "{gait}"
+            );
+            count += 1;
+        }
+    }
+    let all = kept.values().map(std::collections::BTreeMap::len);
+    assert_eq!(all.sum::<usize>(), count, "and no others are kept");
+    // The rule refuses a robot that an edge stops.
+    let stopped = Displacement([0.0; 3]);
+    for (gait, refused) in [("walk", true), ("back", true), ("left", false)] {
+        let level = surface::level(&figures, gait);
+        let words = surface::excess_loss(Surface::Edge(20), level, stopped);
+        assert_eq!(words.is_some(), refused, "{gait}");
+    }
+}
+
+#[test]
 fn every_walk_is_stored_and_close_to_the_model() {
-    let kept = Figures::kept();
+    let kept = Figures::stored();
     let mut count = 0;
     for name in ROBOTS {
         let robot = robot(name);
@@ -85,8 +115,8 @@ fn every_walk_is_stored_and_close_to_the_model() {
 }
 
 #[test]
-fn the_stored_answers_of_the_model_are_its_present_ones() {
-    let (kept, robot) = (Figures::kept(), robot("paper"));
+fn the_stored_answers_of_the_model_are_up_to_date() {
+    let (kept, robot) = (Figures::stored(), robot("paper"));
     let mut count = 0;
     for row in rows(&robot) {
         let answers = kept.get("paper", &row.gait, row.case).expect("it is kept");
@@ -102,8 +132,8 @@ fn the_stored_answers_of_the_model_are_its_present_ones() {
 }
 
 #[test]
-fn a_foot_that_is_a_millimetre_too_long_costs_no_gait_a_tenth_of_its_distance() {
-    let kept = Figures::kept();
+fn a_foot_a_millimetre_too_long_costs_every_gait_less_than_a_tenth_of_its_distance() {
+    let kept = Figures::stored();
     let case = |feet| Case {
         legs: Legs::Rigid,
         feet,
@@ -117,8 +147,8 @@ fn a_foot_that_is_a_millimetre_too_long_costs_no_gait_a_tenth_of_its_distance() 
             };
             let model = level.model.zip(long.model);
             for (before, after) in model.into_iter().chain([(level.mujoco, long.mujoco)]) {
-                let ahead = |way: Displacement| way.0[0].hypot(way.0[1]);
-                let turn = |way: Displacement| way.0[2].abs();
+                let ahead = |displacement: Displacement| displacement.0[0].hypot(displacement.0[1]);
+                let turn = |displacement: Displacement| displacement.0[2].abs();
                 // The gait is for a distance, for a turn, or for neither.
                 let (was, is) = match (ahead(before) > 4.0, turn(before) > 1.0) {
                     (true, _) => (ahead(before), ahead(after)),
@@ -138,7 +168,7 @@ fn a_foot_that_is_a_millimetre_too_long_costs_no_gait_a_tenth_of_its_distance() 
 }
 
 #[test]
-fn every_key_that_a_trial_sets_is_one_that_robot_toml_takes() {
+fn every_key_that_a_trial_sets_is_valid_in_robot_toml() {
     let text = std::fs::read_to_string(here().join("../../robots/paper.toml")).expect("paper");
     let table = expected(&robot("paper"));
     let keys = table.lines().skip(2).flat_map(|line| {
@@ -151,7 +181,7 @@ fn every_key_that_a_trial_sets_is_one_that_robot_toml_takes() {
     for key in keys {
         let (section, name) = key.split_once("] ").expect(key);
         let header = format!("\n{section}]");
-        // An array is no value of any of them, and a key that is not known is told apart.
+        // An array is not a valid value of any key; the error for an unknown key is another one.
         let wrong = match text.contains(&header) {
             true => {
                 let at = text.find(&header).expect("it is there") + 1;

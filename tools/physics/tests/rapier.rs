@@ -26,15 +26,15 @@ fn ground() -> Ground {
     }
 }
 
-/// Asserts that the model differs from the engine by at most so many mm and deg.
-fn agree(ground: &Ground, theirs: &Ways, mm: f64, deg: f64) {
+/// Asserts that the model differs from the engine by at most this many mm and deg.
+fn assert_agreement(ground: &Ground, theirs: &Ways, mm: f64, deg: f64) {
     let paper = robot("paper");
-    for (name, way) in KINDS.into_iter().zip(theirs) {
+    for (name, displacement) in KINDS.into_iter().zip(theirs) {
         let ours = Displacement::from(paper.gait(name).expect(name).walked(ground).travel);
-        let (off, turned) = ours.distance_to(&Displacement(*way));
+        let (off, turned) = ours.distance_to(&Displacement(*displacement));
         assert!(
             off <= mm && turned <= deg,
-            "{name} goes {way:?} by the engine, {ours:?} by the model, with {:?}",
+            "{name} goes {displacement:?} by the engine, {ours:?} by the model, with {:?}",
             ground.drive
         );
     }
@@ -42,12 +42,12 @@ fn agree(ground: &Ground, theirs: &Ways, mm: f64, deg: f64) {
 
 #[test]
 fn rigid_legs_go_where_the_engine_went_on_a_slippery_and_on_a_rough_floor() {
-    for (friction, ways) in [(0.4, SLIPPERY), (1.0, ROUGH)] {
+    for (friction, displacements) in [(0.4, SLIPPERY), (1.0, ROUGH)] {
         let ground = Ground {
             friction,
             ..ground()
         };
-        agree(&ground, &ways, 0.5, 0.3);
+        assert_agreement(&ground, &displacements, 0.5, 0.3);
     }
 }
 
@@ -58,7 +58,7 @@ fn legs_mounted_outward_lose_what_they_lost_in_the_engine() {
         mount: 45.0,
         ..ground.feet
     };
-    agree(&Ground { feet, ..ground }, &MOUNTED, 0.5, 0.3);
+    assert_agreement(&Ground { feet, ..ground }, &MOUNTED, 0.5, 0.3);
 }
 
 #[test]
@@ -69,7 +69,7 @@ fn the_tuned_gait_is_faster_than_walk_in_the_engine_too() {
     let ours = Displacement::from(stride.walked(&ground()).travel);
     let (off, turned) = ours.distance_to(&Displacement([40.95, -0.44, 0.0]));
     assert!(off <= 0.5 && turned <= 0.3, "{ours:?}");
-    let kept = lizard_physics::Figures::kept();
+    let kept = lizard_physics::Figures::stored();
     let speed = |robot: &str, gait: &str, period: f64| {
         let level = lizard_physics::Case::ALL[0];
         kept.get(robot, gait, level).expect(gait).mujoco.0[0] / period

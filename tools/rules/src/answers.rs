@@ -6,17 +6,18 @@ use crate::event::{MS, Time};
 use crate::observer::Observer;
 use crate::rule::Rule;
 
-/// From an order to the pulses of all four servos.
+/// Longest time from an order to the pulses of all four servos.
 const UNTIL_AWAKE: Time = 600 * MS;
 
-/// From an answer that there are no pulses, to the end of their watch.
-const WATCHED: Time = 140 * MS;
+/// Time without a pulse after an answer that promises none.
+const QUIET_TIME: Time = 140 * MS;
 
-/// A pose is in the EEPROM so long after `rest`: the bytes of a record.
-const KEPT_AFTER: Time = 400 * MS;
+/// Longest time from `rest` to its pose in the EEPROM: the bytes of a record.
+const SAVING_TIME: Time = 400 * MS;
 
 /// Lines that no robot may accept.
-const WRONG: [&str; 6] = [
+const WRONG: [&str; 7] = [
+    "walk 0",
     "nonsense",
     "trim 1 90",
     "speed 5",
@@ -26,7 +27,7 @@ const WRONG: [&str; 6] = [
 ];
 
 impl Observer {
-    /// Judges the answer to a line, and notes what it promises.
+    /// Judges the answer to a line, and records the promises in it.
     pub(crate) fn answer(&mut self, line: &str, effect: Effect, asked: Time, text: &str) {
         let at = self.now;
         if text.starts_with("ok gait=") {
@@ -38,13 +39,7 @@ impl Observer {
         if WRONG.contains(&line) {
             self.fail(Rule::Wrong, format!("{line}: {text}"));
         }
-        // Another time may have been saved.
-        if matches!(text, "ok load" | "ok factory") {
-            self.deadman = 0;
-        }
-        if let Some(ms) = text.strip_prefix("ok deadman ") {
-            self.deadman = ms.parse().unwrap_or(0) * MS;
-        }
+        self.note_done(text);
         match effect {
             Effect::Moves if !self.is_troubled(at) => {
                 self.pending.moves = Some((at, at + UNTIL_AWAKE, [false; 4]));
@@ -52,11 +47,11 @@ impl Observer {
             Effect::Rests => {
                 if self.disturbed <= asked {
                     self.pending.quiet =
-                        Some((at + self.limits.frame_left, at + WATCHED, Rule::RestEnds));
+                        Some((at + self.limits.frame_left, at + QUIET_TIME, Rule::RestEnds));
                 }
-                let poor = self.limits.levels[0] + crate::supply::WELL_ABOVE;
-                let good = self.supply.is_good_since(self.rested, poor);
-                let again = self.rested > self.start && asked > self.rested + KEPT_AFTER;
+                let least_good = self.limits.levels[0] + crate::supply::GOOD_ABOVE;
+                let good = self.supply.is_good_since(self.rested, least_good);
+                let again = self.rested > self.start && asked > self.rested + SAVING_TIME;
                 if again && good && self.limits.keeps_memory {
                     self.pending.unwritten = Some(asked + 500 * MS);
                 } else if self.rested < self.start {
@@ -67,7 +62,7 @@ impl Observer {
         }
     }
 
-    /// Judges the promises whose time has come.
+    /// Judges the promises that are due.
     pub(crate) fn check_pending(&mut self) {
         if let Some((from, until, has_pulses)) = self.pending.moves
             && self.now > until
@@ -88,8 +83,8 @@ impl Observer {
         self.pending.unwritten.take_if(|until| self.now > *until);
     }
 
-    /// A pulse begins: promises about pulses are judged by it.
-    pub(crate) fn pulse_is_expected(&mut self, servo: usize) {
+    /// Judges the promises about pulses when a pulse begins.
+    pub(crate) fn judge_expected_pulse(&mut self, servo: usize) {
         let at = self.now;
         if let Some((_, _, has_pulses)) = &mut self.pending.moves {
             has_pulses[servo] = true;
@@ -105,13 +100,13 @@ impl Observer {
         }
     }
 
-    /// True if a servo of a robot that restarts now must wake where it rests.
-    pub(crate) fn outlasts_a_rest(&self, servo: usize) -> bool {
+    /// True if a servo must wake in its rest pose after a restart at this moment.
+    pub(crate) fn must_keep_rest_pose(&self, servo: usize) -> bool {
         let since = self.servos[servo].whole_at;
-        let poor = self.limits.levels[0] + crate::supply::WELL_ABOVE;
+        let least_good = self.limits.levels[0] + crate::supply::GOOD_ABOVE;
         self.limits.keeps_memory
-            && self.now - since > KEPT_AFTER
-            && self.supply.is_good_since(since, poor)
+            && self.now - since > SAVING_TIME
+            && self.supply.is_good_since(since, least_good)
             && self.disturbed <= since
             && !self.is_unsaved
     }

@@ -21,7 +21,7 @@ pub struct Pulse {
     pub width: u32,
     /// True if a reset or the supply cut it short.
     pub is_cut: bool,
-    /// True if interrupts were held up when it ought to have ended.
+    /// True if interrupts were blocked when it should have ended.
     pub is_held_up: bool,
 }
 
@@ -32,19 +32,22 @@ pub enum Event<'a> {
     Pass,
     /// The program starts.
     Start(Cause),
-    /// RESET is pulled, or power goes.
+    /// RESET is pulled, or power is lost.
     Cut,
-    /// Main executes nothing until then.
+    /// Main is stalled until this time.
     Stalled(Time),
-    /// Interrupts are held up until then.
+    /// Interrupts are blocked until this time.
     HeldUp(Time),
     /// The supply has this many mV from now on.
     Supply(u32),
     /// A byte arrives at the robot.
     Byte,
     /// The end of a line arrives that needs an answer.
-    Line,
-    /// A command that moves, freezes or rests the robot; true in `done` if it was accepted,
+    Line {
+        /// True if it is a command, accepted or not: no other line counts for `deadman`.
+        is_command: bool,
+    },
+    /// A command that moves, freezes or rests the robot; `done` is true if it was accepted,
     /// false if refused, `None` if unknown.
     Order {
         /// Its effect on the servos.
@@ -52,7 +55,7 @@ pub enum Event<'a> {
         /// Its outcome.
         done: Option<bool>,
     },
-    /// Settings of the servos change; true if the memory has them.
+    /// Settings of the servos change.
     Calibrated {
         /// True if the settings in use are saved.
         saved: bool,
@@ -68,10 +71,10 @@ pub enum Event<'a> {
         /// The answer.
         text: &'a str,
     },
-    /// A line that was sent at this time got no answer.
+    /// A line that was sent at this time has got no answer.
     Unanswered(Time, &'a str),
-    /// A line of the robot, answers included; its first byte was written at this time.
-    Said(Time, &'a str),
+    /// A line of the robot, answers included, and the time at which its first byte was written.
+    Printed(Time, &'a str),
     /// A pulse begins.
     Pulse(Pulse),
     /// A byte of the EEPROM is written.

@@ -11,7 +11,7 @@ const FAULTS: [&str; 8] = [
 /// The code of a fault, by its word in `status`.
 ///
 /// # Errors
-/// A word that is no fault's.
+/// The word names no fault.
 pub fn code(fault: &str) -> Result<u8, String> {
     let code = FAULTS.iter().position(|word| *word == fault);
     code.map(|code| code as u8)
@@ -23,7 +23,7 @@ pub fn code(fault: &str) -> Result<u8, String> {
 ///
 /// # Errors
 /// The first part of a pattern that belongs to no fault or to another one.
-pub fn shows(edges: &[(Time, bool)], from: Time, to: Time, code: u8) -> Result<(), String> {
+pub fn check_pattern(edges: &[(Time, bool)], from: Time, to: Time, code: u8) -> Result<(), String> {
     let mut flashes = None;
     for pair in edges.windows(2) {
         if pair[0].0 < from || pair[1].0 > to {

@@ -23,4 +23,4 @@ mod supply;
 pub use event::{Event, MS, Pulse, Time};
 pub use observer::{Limits, Observer};
 pub use print::frames_class;
-pub use rule::{Broken, Rule};
+pub use rule::{BrokenRule, Rule};

@@ -1,42 +1,44 @@
-//! An observer who remembers what the rules need, and judges each event by it.
+//! The observer: records the history that the rules need, and judges each event.
 
 use lizard_core::console::word::Effect;
 use lizard_core::memory::restart::Cause;
 
 use crate::event::{Event, MS, NEVER, Time};
 use crate::reports::Reports;
-use crate::rule::{Broken, Rule};
+use crate::rule::{BrokenRule, Rule};
 use crate::servos::{Permission, Servo};
 use crate::supply::Supply;
 
-/// Numbers of the robot, and how exactly the apparatus sees it.
+/// Numbers of the robot, and the precision with which the test apparatus observes it.
 #[derive(Clone, Debug)]
 pub struct Limits {
     /// The most cycles that a servo's pulse may change in a frame.
     pub leap: [u32; 4],
     /// The shortest and the longest pulse of each servo, cycles.
     pub widths: [(u32, u32); 4],
-    /// Below these the supply forbids writing, moving and pulses, mV.
+    /// Levels below which the supply forbids writing, moving and pulses, mV.
     pub levels: [u32; 3],
     /// The error of the robot's own measurement of the supply, mV: a step of the converter and
     /// two decimals.
     pub exact: u32,
-    /// The rest of the frame under way when a line is answered.
+    /// Time from the answer to a line to the end of the current frame.
     pub frame_left: Time,
     /// The longest time from a fault to its report on the console.
-    pub until_told: Time,
+    pub report_time: Time,
+    /// The longest time for which a line of the robot waits behind others before it is said.
+    pub queued: Time,
     /// True if `boot` ends the pulses.
     pub boots_to_rest: bool,
     /// True if the memory keeps what is written to it.
     pub keeps_memory: bool,
     /// True if a brown-out may clear RAM.
-    pub brown_outs_forget: bool,
+    pub brown_outs_clear_ram: bool,
     /// True if the saved travel is narrower than the one in use.
     pub is_narrowed: bool,
 }
 
 impl Default for Limits {
-    /// The limits of a robot that is seen exactly, between its frames.
+    /// The limits of a robot that is observed exactly, between its frames.
     fn default() -> Self {
         Self {
             leap: [u32::MAX; 4],
@@ -44,10 +46,11 @@ impl Default for Limits {
             levels: [0; 3],
             exact: 40,
             frame_left: MS,
-            until_told: 60 * MS - 1,
+            report_time: 60 * MS - 1,
+            queued: 0,
             boots_to_rest: false,
             keeps_memory: true,
-            brown_outs_forget: false,
+            brown_outs_clear_ram: false,
             is_narrowed: false,
         }
     }
@@ -58,7 +61,7 @@ impl Default for Limits {
 pub struct Observer {
     /// Numbers of the robot.
     pub limits: Limits,
-    pub(crate) broken: Vec<Broken>,
+    pub(crate) broken: Vec<BrokenRule>,
     pub(crate) now: Time,
     pub(crate) start: Time,
     pub(crate) cause: Cause,
@@ -66,17 +69,23 @@ pub struct Observer {
     /// The end of the last disturbance.
     pub(crate) disturbed: Time,
     pub(crate) stalls: Vec<(Time, Time)>,
-    /// When the last order came that was not refused.
+    /// Time of the last order that was not refused.
     pub(crate) ordered: Time,
-    /// When the last `rest` came that was not refused.
+    /// Time of the last `rest` that was not refused.
     pub(crate) sent_to_rest: Time,
-    /// When `boot` said that the robot rests.
+    /// Time at which `boot` reported that the robot rests.
     pub(crate) booted_to_rest: Time,
     pub(crate) lines: i32,
     pub(crate) last_line: Time,
     pub(crate) last_byte: Time,
     pub(crate) deadman: Time,
+    /// The latest time at which the last command may have been read.
+    pub(crate) heard: Time,
+    /// True from the answer to a gait until a motion that `deadman` does not end.
+    pub(crate) is_driven: bool,
     pub(crate) is_unsaved: bool,
+    /// Motions since the start that may still be done.
+    pub(crate) begun: i32,
     pub(crate) permission: Permission,
     pub(crate) servos: [Servo; 4],
     pub(crate) last_begin: (Time, bool),
@@ -84,21 +93,21 @@ pub struct Observer {
     pub(crate) supply: Supply,
     pub(crate) reports: Reports,
     pub(crate) pending: Pending,
-    /// The first of several `rest`.
+    /// Time of the first of several `rest` in a row.
     pub(crate) rested: Time,
     pub(crate) brown_outs: [Time; 5],
 }
 
-/// Promises of answers that are to be kept soon.
+/// Promises that are not due yet.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pending {
-    /// All servos have pulses by then.
+    /// The time by which all servos have pulses.
     pub moves: Option<(Time, Time, [bool; 4])>,
-    /// No servo has pulses in this time.
+    /// The time in which no servo has pulses.
     pub quiet: Option<(Time, Time, Rule)>,
-    /// Pulses by then, or status ought to have told why not.
+    /// The time by which there are pulses; if not, `status` should have given a reason.
     pub status: Option<(Time, String)>,
-    /// Nothing is written to the memory until then.
+    /// The time until which nothing is written to the memory.
     pub unwritten: Option<Time>,
 }
 
@@ -122,7 +131,10 @@ impl Observer {
             last_line: NEVER,
             last_byte: NEVER,
             deadman: 0,
+            heard: NEVER,
+            is_driven: false,
             is_unsaved: false,
+            begun: 0,
             permission: Permission::default(),
             servos: [Servo::UNKNOWN; 4],
             last_begin: (NEVER, false),
@@ -139,7 +151,7 @@ impl Observer {
     ///
     /// # Errors
     /// The broken rule.
-    pub fn verdict(&mut self) -> Result<(), Broken> {
+    pub fn verdict(&mut self) -> Result<(), BrokenRule> {
         let mut broken = std::mem::take(&mut self.broken);
         if broken.is_empty() {
             Ok(())
@@ -149,17 +161,17 @@ impl Observer {
     }
 
     /// Takes every broken rule.
-    pub fn take_broken(&mut self) -> Vec<Broken> {
+    pub fn take_broken(&mut self) -> Vec<BrokenRule> {
         std::mem::take(&mut self.broken)
     }
 
     pub(crate) fn fail(&mut self, rule: Rule, seen: impl Into<String>) {
-        self.broken.push(Broken::new(rule, seen));
+        self.broken.push(BrokenRule::new(rule, seen));
     }
 
     /// True while lines wait for their answers.
     #[must_use]
-    pub const fn owes_answers(&self) -> bool {
+    pub const fn has_unanswered_lines(&self) -> bool {
         self.lines > 0
     }
 
@@ -169,26 +181,26 @@ impl Observer {
         !self.permission.may
     }
 
-    /// Since when a fault stops the robot.
+    /// The time since which a fault has stopped the robot.
     #[must_use]
     pub const fn stopped_since(&self) -> Option<Time> {
         self.reports.stopped
     }
 
-    /// True while a stop is not on the console.
+    /// True while the console has not reported a stop.
     #[must_use]
-    pub const fn is_untold(&self) -> bool {
-        self.reports.stopped.is_some() && !self.reports.is_told
+    pub const fn is_unreported(&self) -> bool {
+        self.reports.stopped.is_some() && !self.reports.is_reported
     }
 
-    /// True if the supply was below a level, 0 for writing to 2 for pulses, within this time.
+    /// True if the supply was below a level (0: writing, 1: moving, 2: pulses) within this time.
     #[must_use]
     pub fn was_low(&self, level: usize, within: Time) -> bool {
         let mv = self.limits.levels[level];
-        self.supply.low_for(mv, self.now - within, self.now + 1) > 0
+        self.supply.time_below(mv, self.now - within, self.now + 1) > 0
     }
 
-    /// The time in which the last promise of an answer is to be kept.
+    /// The time until the last promise is due.
     #[must_use]
     pub fn due_in(&self) -> Option<Time> {
         let pending = &self.pending;
@@ -201,24 +213,24 @@ impl Observer {
         ends.into_iter().flatten().max().map(|end| end - self.now)
     }
 
-    /// Forgets promises of answers whose time has not come.
+    /// Drops the promises that are not due yet.
     pub fn drop_pending(&mut self) {
         self.pending = Pending::default();
     }
 
-    /// True since this long without a reset.
+    /// The time since the last reset.
     #[must_use]
     pub const fn runs_for(&self) -> Time {
         self.now - self.start
     }
 
-    /// True if anything but the robot itself may have ended pulses since then.
+    /// True if something outside the robot may have ended the pulses since then.
     pub(crate) fn is_troubled(&self, since: Time) -> bool {
         let rest = self.limits.levels[2] + self.limits.exact;
         self.start >= since
             || self.cut >= since
             || self.disturbed > since
-            || self.supply.low_for(rest, since - 400 * MS, self.now) > 0
+            || self.supply.time_below(rest, since - 400 * MS, self.now) > 0
     }
 
     /// Judges an event.
@@ -242,16 +254,19 @@ impl Observer {
                 }
             }
             Event::Supply(mv) => {
-                let poor = self.limits.levels[0] + crate::supply::WELL_ABOVE;
+                let poor = self.limits.levels[0] + crate::supply::GOOD_ABOVE;
                 self.supply.set(at, mv, poor);
             }
             Event::Byte => {
                 self.last_byte = at;
                 self.permission.boot = None;
             }
-            Event::Line => {
+            Event::Line { is_command } => {
                 self.lines += 1;
-                self.last_line = at;
+                if is_command {
+                    self.last_line = at;
+                    self.heard = at;
+                }
             }
             Event::Order { effect, done } => self.order(effect, done),
             Event::Calibrated { saved } => {
@@ -273,14 +288,14 @@ impl Observer {
                     self.fail(Rule::Answered, format!("no answer to {line}"));
                 }
             }
-            Event::Said(since, line) => self.said(since, line),
+            Event::Printed(since, line) => self.judge_line(since, line),
             Event::Pulse(pulse) => self.pulse(pulse),
-            Event::Written => self.written(),
+            Event::Written => self.judge_write(),
             Event::Fault => self.reports.stop(at),
         }
     }
 
-    /// Time passes: what was due by now is judged.
+    /// Advances the time, and judges everything that was due by now.
     fn advance(&mut self, at: Time) {
         self.now = self.now.max(at);
         self.permission.advance(self.now);
@@ -306,10 +321,10 @@ impl Observer {
         let is_hung = cause == Cause::Watchdog || self.disturbed > at - 300 * MS;
         self.check_reset(cause);
         for servo in 0..4 {
-            let rests = self.outlasts_a_rest(servo);
+            let rests = self.must_keep_rest_pose(servo);
             let takes_over = cause != Cause::Power && !self.limits.is_narrowed;
             let is_lost = match cause {
-                Cause::BrownOut => self.limits.brown_outs_forget && !is_hung,
+                Cause::BrownOut => self.limits.brown_outs_clear_ram && !is_hung,
                 cause => cause == Cause::Power,
             };
             self.servos[servo].is_lost |= is_lost;
@@ -320,7 +335,9 @@ impl Observer {
         self.lines = 0;
         self.last_line = at;
         self.deadman = 0;
+        self.is_driven = false;
         self.rested = NEVER;
+        self.begun = 0;
         self.permission.start(cause, at, self.limits.boots_to_rest);
         let keeps = matches!(self.pending.quiet, Some((.., Rule::RestEnds)));
         let quiet = self
@@ -334,7 +351,7 @@ impl Observer {
         self.reports.start(cause, at);
     }
 
-    /// For how long main was stalled in the last 300 ms; several short stalls may add up.
+    /// The time for which main was stalled in the last 300 ms; several short stalls may add up.
     pub(crate) fn stalled(&self, at: Time) -> Time {
         let recent = self.stalls.iter().filter(|(_, end)| *end > at - 300 * MS);
         recent.map(|(start, end)| end.min(&at) - start).sum()
@@ -373,13 +390,14 @@ impl Observer {
         if is_rest {
             self.sent_to_rest = self.now;
             for servo in &mut self.servos {
-                servo.released();
+                servo.forget_pulse();
             }
         } else {
             self.rested = NEVER;
         }
         if effect == Effect::Moves {
             self.reports.order();
+            self.begun += 1;
         }
         let calm = self.disturbed <= self.now;
         self.permission

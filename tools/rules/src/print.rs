@@ -1,11 +1,11 @@
-//! The observer's memory, as coarse as tells states apart.
+//! The observer's memory, rounded so that equivalent states are equal.
 
 use std::fmt;
 
 use crate::event::{MS, Time};
 use crate::observer::Observer;
 
-/// Frames of 20 ms in few classes.
+/// Sorts an age in frames of 20 ms into a few classes.
 #[must_use]
 pub const fn frames_class(age: Time) -> u8 {
     match age / (20 * MS) {
@@ -18,7 +18,7 @@ pub const fn frames_class(age: Time) -> u8 {
 }
 
 impl Observer {
-    /// A value whose `Debug` is the same for states that need no telling apart.
+    /// A value whose `Debug` output is the same for equivalent states.
     #[must_use]
     pub fn coarse(&self) -> impl fmt::Debug + use<> {
         let age = |at: Time| frames_class(self.now.saturating_sub(at));
@@ -52,7 +52,13 @@ impl Observer {
             .iter()
             .filter(|at| recent(**at, 4_000) && **at > self.ordered);
         (
-            (servos, silent, since_line, self.deadman, self.lines),
+            (
+                servos,
+                silent,
+                (since_line, self.is_driven),
+                self.deadman,
+                self.lines,
+            ),
             (
                 self.permission.may,
                 self.permission.ends(),
@@ -63,10 +69,12 @@ impl Observer {
                 recent(self.ordered, 45),
                 recent(self.disturbed, 300),
             ),
-            self.supply.ages(self.limits.levels, self.now).map(signed),
+            self.supply
+                .times_since_crossed(self.limits.levels, self.now)
+                .map(signed),
             (
                 self.reports.stopped.map(age),
-                self.reports.is_told,
+                self.reports.is_reported,
                 recent(self.reports.told, 400),
             ),
             (brown_outs.count(), self.cause),

@@ -1,5 +1,6 @@
 //! Reports of a stop: by `status` and on the console.
 
+use lizard_core::console::word::{Effect, Word};
 use lizard_core::memory::restart::Cause;
 use lizard_core::virtual_board::is_final;
 
@@ -7,14 +8,14 @@ use crate::event::{MS, NEVER, Time};
 use crate::observer::Observer;
 use crate::rule::Rule;
 
-/// A stop, and its report.
+/// The last stop, and whether it was reported.
 #[derive(Clone, Debug)]
 pub(crate) struct Reports {
-    /// Since when the robot is stopped by a fault, until a person acts.
+    /// Time at which a fault stopped the robot, until a person acts.
     pub stopped: Option<Time>,
-    /// True once the console has said why.
-    pub is_told: bool,
-    /// When the console last told of a fault.
+    /// True once the console has reported the reason.
+    pub is_reported: bool,
+    /// Time of the last report of a fault on the console.
     pub told: Time,
 }
 
@@ -22,18 +23,18 @@ impl Default for Reports {
     fn default() -> Self {
         Self {
             stopped: None,
-            is_told: false,
+            is_reported: false,
             told: NEVER,
         }
     }
 }
 
 impl Reports {
-    /// A fault stops the robot.
+    /// Records that a fault stops the robot.
     pub(crate) fn stop(&mut self, at: Time) {
         if self.stopped.is_none() {
             self.stopped = Some(at);
-            self.is_told = at - self.told < 400 * MS;
+            self.is_reported = at - self.told < 400 * MS;
         }
     }
 
@@ -51,46 +52,78 @@ impl Reports {
 
 impl Observer {
     /// A line of the robot.
-    pub(crate) fn said(&mut self, since: Time, line: &str) {
+    pub(crate) fn judge_line(&mut self, since: Time, line: &str) {
         // After a reset the banner follows the part of a line that was cut off.
         if is_final(line) && !line.contains("# lizard ") {
             self.lines -= 1;
             if self.lines < 0 {
                 self.fail(Rule::OneAnswer, format!("unasked: {line}"));
             }
+            if self.lines > 0 {
+                // The next one may have waited until this answer was written.
+                self.heard = self.now;
+            }
         }
+        self.note_done(line);
         if line.starts_with("# fault: ") || line.starts_with("# held") {
-            self.reports.is_told = true;
+            self.reports.is_reported = true;
             self.reports.told = self.now;
             if line.contains("no line for") {
                 self.reports.stop(self.now);
                 let silence = since - self.last_line;
-                if self.deadman > 0 && silence < self.deadman {
+                if (self.limits.queued..self.deadman).contains(&silence) {
                     let (ms, says) = (silence / MS, self.deadman / MS);
                     self.fail(Rule::Deadman, format!("deadman {says}, after {ms} ms"));
                 }
             }
         }
+        if line == "# done" {
+            self.begun -= 1;
+            if self.begun < 0 {
+                self.fail(Rule::Done, "once too often");
+            }
+        }
         if let Some(text) = line.strip_prefix("# supply: ") {
-            self.supply_says(text);
+            self.judge_supply_line(text);
         }
         if let Some(boot) = line.strip_prefix("# boot: ") {
             if boot == "rest" {
                 self.booted_to_rest = self.now;
             }
-            self.permission.booted(self.now, boot);
+            self.begun += 1;
+            self.permission.note_boot(self.now, boot);
         }
         if line.ends_with("pulses ended") || line.contains("several times in a row") {
             self.permission.end(self.now);
         }
     }
 
-    /// Judges that a stop has been reported on the console by now; the apparatus asks when
-    /// somebody listens.
-    pub fn check_told(&mut self) {
+    /// Notes what the answer to a line that was carried out means for `deadman`.
+    pub(crate) fn note_done(&mut self, answer: &str) {
+        let Some(done) = answer.strip_prefix("ok ") else {
+            return;
+        };
+        let (word, arguments) = done.split_once(' ').unwrap_or((done, ""));
+        match Word::find(word.as_bytes()) {
+            Some(Word::Deadman) => self.deadman = arguments.parse().unwrap_or(0) * MS,
+            // Another `deadman` time may have been saved.
+            Some(Word::Load | Word::Factory) => self.deadman = 0,
+            _ => {}
+        }
+        match Word::find(word.as_bytes()).map(Word::effect) {
+            // A gait or a routine.
+            None if !word.starts_with("gait=") => self.is_driven = word != "stand",
+            Some(Effect::Moves | Effect::Calibrates) => self.is_driven = false,
+            _ => {}
+        }
+    }
+
+    /// Checks that a stop has been reported on the console by now. Called only while somebody
+    /// reads the console.
+    pub fn check_reported(&mut self) {
         let stopped = self.reports.stopped;
-        let is_due = |at| self.now - at > self.limits.until_told;
-        if stopped.is_some_and(is_due) && !self.reports.is_told {
+        let is_due = |at| self.now - at > self.limits.report_time;
+        if stopped.is_some_and(is_due) && !self.reports.is_reported {
             self.fail(Rule::Told, "nothing on the console");
         }
     }
@@ -107,8 +140,8 @@ impl Observer {
         if !has_fault && value("guard") == Some("held") {
             self.fail(Rule::GuardNamed, text);
         }
-        let until_told = self.limits.until_told;
-        let is_due = |since| at - since > until_told;
+        let report_time = self.limits.report_time;
+        let is_due = |since| at - since > report_time;
         if !has_fault && self.reports.stopped.is_some_and(is_due) {
             self.fail(Rule::Told, text);
         }
@@ -121,10 +154,10 @@ impl Observer {
         if !has_fault && low > self.start && self.supply.is_low_since(stop, low) {
             self.fail(Rule::Told, format!("the supply is low: {text}"));
         }
-        self.check_told();
+        self.check_reported();
         if has_fault && self.reports.stopped.is_none() {
             self.reports.stopped = Some(at);
-            self.reports.is_told = true;
+            self.reports.is_reported = true;
         }
         if gait == Some("rest") {
             self.pending.quiet =

@@ -1,4 +1,4 @@
-//! Pulses: when they may begin, and how far each may be from the one before.
+//! The rules for pulses: the permission to begin, and the distance from one pulse to the next.
 
 use lizard_core::console::word::Effect;
 use lizard_core::memory::restart::Cause;
@@ -7,14 +7,20 @@ use crate::event::{MS, NEVER, Pulse, Time};
 use crate::observer::Observer;
 use crate::rule::Rule;
 
-/// A servo without a pulse for longer has none: a frame was left out.
+/// Longest time between two pulses; beyond it a frame was left out.
 const GONE: Time = 30 * MS;
 
-/// From an order to rest, to the end of the last pulse.
+/// The most that a gait outlasts the time of `deadman`.
+const LATE: Time = 40 * MS;
+
+/// Cycles by which the pulses of a servo that stands may differ.
+const STEADY: u32 = 16;
+
+/// Longest time from an order to rest to the end of the last pulse.
 const UNTIL_REST: Time = 45 * MS;
 
-/// From a start to what `boot` says, somewhat early: the first tick comes before a frame
-/// has passed.
+/// Shortest time from a start to `boot`, since the first tick comes before a frame has
+/// passed.
 const BOOT: Time = 2_975 * MS;
 
 /// Pulses that begin so close to each other begin in one frame, or in two that follow:
@@ -30,9 +36,9 @@ const UNTIL_RESET: Time = 160 * MS;
 pub(crate) struct Permission {
     /// True while pulses may begin.
     pub may: bool,
-    /// When it ends, and true if an order ends it.
+    /// The time at which it ends, and true if an order ends it.
     end: Option<(Time, bool)>,
-    /// When `boot` grants it.
+    /// The time at which `boot` grants it.
     pub boot: Option<Time>,
 }
 
@@ -46,7 +52,7 @@ impl Permission {
         }
     }
 
-    /// An order that something else comes before is perhaps not obeyed.
+    /// Cancels the permission by an order: another event came first, so the order may be ignored.
     pub(crate) fn cancel_order(&mut self) {
         self.end.take_if(|(_, is_order)| *is_order);
     }
@@ -70,7 +76,7 @@ impl Permission {
         }
     }
 
-    pub(crate) fn booted(&mut self, at: Time, boot: &str) {
+    pub(crate) fn note_boot(&mut self, at: Time, boot: &str) {
         if boot == "rest" {
             self.end(at);
         } else {
@@ -87,16 +93,16 @@ impl Permission {
     }
 }
 
-/// The events since a servo's last whole pulse, as far as they matter for the next one.
+/// The event since a servo's last whole pulse that matters for the next one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Since {
-    /// Nothing that a servo may leap by.
+    /// No event that allows a leap.
     Nothing,
     /// A reset that left RAM alone, of a robot that had pulses.
     Reset,
     /// A reset of a robot that rested.
     ResetInRest,
-    /// The servo's place is not known.
+    /// The servo's position is unknown.
     Unknown,
 }
 
@@ -134,7 +140,7 @@ impl Servo {
         held_up: NEVER,
     };
 
-    /// Interrupts are held up: frames go by without a pulse.
+    /// Skips frames without a pulse, since interrupts are blocked.
     pub(crate) fn miss_pulses(&mut self, until: Time) {
         self.held_up = until;
         if self.since == Since::Nothing {
@@ -142,8 +148,8 @@ impl Servo {
         }
     }
 
-    /// A servo that is told to rest before it woke has no pulse to start from.
-    pub(crate) fn released(&mut self) {
+    /// Forgets the last pulse, since the servo was told to rest before it woke.
+    pub(crate) fn forget_pulse(&mut self) {
         self.is_hung = false;
         if self.since == Since::Reset {
             self.since = Since::Unknown;
@@ -184,9 +190,9 @@ impl Observer {
         }
         let begins = at - servo.at > GONE;
         if begins {
-            self.begins(pulse);
+            self.judge_first_pulse(pulse);
         }
-        self.pulse_is_expected(pulse.servo);
+        self.judge_expected_pulse(pulse.servo);
         let leap = pulse.width.abs_diff(servo.width);
         let is_whole = !pulse.is_cut && !pulse.is_held_up;
         let is_known = servo.whole_at > NEVER && !(begins && servo.is_calibrated);
@@ -198,6 +204,9 @@ impl Observer {
                 Since::ResetInRest => self.fail(Rule::RestPose, seen),
                 Since::Unknown => {}
             }
+        }
+        if is_whole && !begins && leap > STEADY {
+            self.judge_silence(pulse.servo);
         }
         let servo = &mut self.servos[pulse.servo];
         servo.at = at;
@@ -220,8 +229,20 @@ impl Observer {
         self.is_silence_judged = false;
     }
 
-    /// Judges a servo's first pulse after it had none.
-    fn begins(&mut self, pulse: Pulse) {
+    /// Judges a pulse that differs from the one before by the time since the last command.
+    fn judge_silence(&mut self, servo: usize) {
+        let silence = self.now - self.heard;
+        // After a stall main is late for a frame.
+        let is_calm = self.disturbed + 25 * MS <= self.heard;
+        if self.is_driven && self.deadman > 0 && is_calm && silence > self.deadman + LATE {
+            let (ms, says) = (silence / MS, self.deadman / MS);
+            let seen = format!("deadman {says}, A{} moves after {ms} ms", servo + 1);
+            self.fail(Rule::Silenced, seen);
+        }
+    }
+
+    /// Judges a servo's first pulse after a pause.
+    fn judge_first_pulse(&mut self, pulse: Pulse) {
         let at = self.now;
         let servo = self.servos[pulse.servo];
         let name = format!("A{}", pulse.servo + 1);
@@ -249,8 +270,7 @@ impl Observer {
         self.last_begin = (at, is_after_hang);
     }
 
-    /// Judges an end of all pulses that has no reason: the program hung, and then a reset
-    /// follows.
+    /// Judges an unexplained end of all pulses: the program hung, so a reset must follow.
     pub(crate) fn check_silence(&mut self) {
         let Some(end) = self.servos.iter().map(|servo| servo.end).max() else {
             return;
@@ -264,7 +284,7 @@ impl Observer {
             || self.cut > end - 25 * MS
             || self.start > end - 25 * MS
             || self.booted_to_rest > end - 60 * MS
-            || self.supply.low_for(rest, end - 600 * MS, end) > 0;
+            || self.supply.time_below(rest, end - 600 * MS, end) > 0;
         if !has_reason {
             let ms = (self.now - end) / MS;
             self.fail(

@@ -1,28 +1,28 @@
-//! The supply: for how long it has been low, and what that forbids.
+//! The history of the supply's voltage, and the rules that depend on it.
 
 use crate::event::{MS, NEVER, Time};
 use crate::observer::Observer;
 use crate::rule::Rule;
 
-/// A supply in good order is so far above its first level, mV.
-pub(crate) const WELL_ABOVE: u32 = 200;
+/// Distance of a good supply from its first level, mV.
+pub(crate) const GOOD_ABOVE: u32 = 200;
 
-/// Six frames, less one before the first reading and one after the last; a reading stands
-/// for two.
+/// Time for which a supply must be low before the robot may report it: six frames, less one before
+/// the first reading and one after the last.
 const SIX_FRAMES: Time = 80 * MS;
 
-/// Readings of a supply that has sunk are all low then: six frames and two readings.
-const SURELY_LOW: Time = 220 * MS;
+/// Time after which the robot must know that a supply is low: six frames and two readings.
+const KNOWN_LOW: Time = 220 * MS;
 
-/// The first reading is complete in the second frame.
+/// Time of the first reading after a start: in the second frame.
 const FIRST_READING: Time = 20 * MS;
 
-/// The supply's history of two seconds.
+/// The supply's history over two seconds.
 #[derive(Clone, Debug)]
 pub(crate) struct Supply {
-    /// Each voltage, mV, from a time on.
+    /// Each voltage, mV, with the time from which it applied.
     history: Vec<(Time, u32)>,
-    /// When it was last not in good order.
+    /// The last time at which the supply was not good.
     pub poor: Time,
 }
 
@@ -51,13 +51,13 @@ impl Supply {
         self.history.last().map_or(u32::MAX, |(_, mv)| *mv)
     }
 
-    /// True if it has been in good order since then.
+    /// True if the supply has been good since this time.
     pub(crate) fn is_good_since(&self, since: Time, poor: u32) -> bool {
         self.now() >= poor && self.poor <= since
     }
 
-    /// For how long it was below `mv` in `from..to`.
-    pub(crate) fn low_for(&self, mv: u32, from: Time, to: Time) -> Time {
+    /// The time for which the supply was below `mv` in `from..to`.
+    pub(crate) fn time_below(&self, mv: u32, from: Time, to: Time) -> Time {
         let ends = self.history.iter().skip(1).map(|(at, _)| *at);
         let pieces = self.history.iter().zip(ends.chain([Time::MAX]));
         let low = pieces.filter(|((_, volts), _)| *volts < mv);
@@ -65,15 +65,15 @@ impl Supply {
             .sum()
     }
 
-    /// True if it has been below `mv` since then.
+    /// True if the supply has been below `mv` since this time.
     pub(crate) fn is_low_since(&self, mv: u32, since: Time) -> bool {
         let begun = self.history.iter().rposition(|(_, volts)| *volts >= mv);
         let low = self.history.get(begun.map_or(0, |last| last + 1));
         low.is_some_and(|(at, _)| *at <= since)
     }
 
-    /// Its levels in steps of 20 ms, for telling states apart.
-    pub(crate) fn ages(&self, levels: [u32; 3], now: Time) -> [Time; 3] {
+    /// The time since each level was last crossed, negative while above it.
+    pub(crate) fn times_since_crossed(&self, levels: [u32; 3], now: Time) -> [Time; 3] {
         levels.map(|mv| {
             let is_low = self.now() < mv;
             let same = |(_, volts): &&(Time, u32)| (*volts < mv) == is_low;
@@ -85,8 +85,8 @@ impl Supply {
 }
 
 impl Observer {
-    /// A line about the supply that stops or rests the robot.
-    pub(crate) fn supply_says(&mut self, text: &str) {
+    /// Judges a console line that says that the supply stops or rests the robot.
+    pub(crate) fn judge_supply_line(&mut self, text: &str) {
         let [_, stop, rest] = self.limits.levels;
         let level = match () {
             () if text.ends_with("pulses ended") => rest,
@@ -94,25 +94,25 @@ impl Observer {
             () => return,
         };
         let (from, level) = (self.now - 500 * MS, level + self.limits.exact);
-        let low = self.supply.low_for(level, from, self.now);
+        let low = self.supply.time_below(level, from, self.now);
         if low < SIX_FRAMES {
             let ms = low / MS;
             self.fail(Rule::Supply, format!("{text:?}, below for {ms} ms"));
         }
     }
 
-    /// A byte of the EEPROM is written.
-    pub(crate) fn written(&mut self) {
+    /// Judges the write of a byte of the EEPROM.
+    pub(crate) fn judge_write(&mut self) {
         let at = self.now;
         if at - self.start < FIRST_READING {
             let us = (at - self.start) / 16;
             self.fail(Rule::Written, format!("a byte {us} us after a start"));
         }
         let slow = self.limits.levels[0].saturating_sub(self.limits.exact);
-        // A main that is stalled takes no readings.
+        // While main is stalled it takes no readings.
         if self
             .supply
-            .is_low_since(slow, at - SURELY_LOW - self.stalled(at))
+            .is_low_since(slow, at - KNOWN_LOW - self.stalled(at))
         {
             self.fail(Rule::Written, "a byte, the supply too low");
         }

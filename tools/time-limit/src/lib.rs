@@ -22,7 +22,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 /// The time between two checks of a condition.
-const LOOK: Duration = Duration::from_millis(1);
+const POLL: Duration = Duration::from_millis(1);
 
 /// The limit of all tests: much longer than anything takes on a busy machine.
 pub const LIMIT: TimeLimit = TimeLimit::new(Duration::from_secs(300));
@@ -44,9 +44,9 @@ impl TimeLimit {
         Self(time)
     }
 
-    /// Waits until the condition holds: true; or until the limit: false. For a test with a longer
-    /// message than that of [`TimeLimit::until`].
-    pub fn comes(self, mut condition: impl FnMut() -> bool) -> bool {
+    /// Waits for a condition; returns false if the limit comes first. For a test with a longer
+    /// message than that of [`TimeLimit::expect`].
+    pub fn wait_for(self, mut condition: impl FnMut() -> bool) -> bool {
         let end = Instant::now() + self.0;
         loop {
             if condition() {
@@ -55,7 +55,7 @@ impl TimeLimit {
             if Instant::now() > end {
                 return false;
             }
-            thread::sleep(LOOK);
+            thread::sleep(POLL);
         }
     }
 
@@ -64,15 +64,15 @@ impl TimeLimit {
     /// # Panics
     /// It does not hold within the limit; `what` completes the message `waited 300s for`.
     #[track_caller]
-    pub fn until(self, what: &str, condition: impl FnMut() -> bool) {
-        assert!(self.comes(condition), "waited {self} for {what}");
+    pub fn expect(self, what: &str, condition: impl FnMut() -> bool) {
+        assert!(self.wait_for(condition), "waited {self} for {what}");
     }
 
     /// Runs `work`, which may block as a read or a join does, and returns its result. It runs on a
     /// thread of its own, which continues until the test program ends if the limit is reached first.
     ///
     /// # Panics
-    /// It does not return within the limit, see [`TimeLimit::until`]; or it panics.
+    /// It does not return within the limit, see [`TimeLimit::expect`]; or it panics.
     #[track_caller]
     pub fn within<T: Send + 'static>(
         self,
@@ -102,7 +102,7 @@ impl TimeLimit {
     /// within the limit, when it is killed.
     pub fn end_of(self, child: &mut Child) -> io::Result<ExitStatus> {
         let mut ended = Ok(None);
-        self.comes(|| {
+        self.wait_for(|| {
             ended = child.try_wait();
             !matches!(ended, Ok(None))
         });
@@ -137,8 +137,8 @@ impl TimeLimit {
             thread::spawn(move || stdin.write_all(&input));
         }
         let printed = [
-            child.stdout.take().map(all_of),
-            child.stderr.take().map(all_of),
+            child.stdout.take().map(read_all),
+            child.stderr.take().map(read_all),
         ];
         let status = self
             .end_of(&mut child)
@@ -162,7 +162,7 @@ impl TimeLimit {
 }
 
 /// Reads a pipe to its end on a thread of its own, since a full pipe would block its program.
-fn all_of(mut pipe: impl Read + Send + 'static) -> mpsc::Receiver<io::Result<Vec<u8>>> {
+fn read_all(mut pipe: impl Read + Send + 'static) -> mpsc::Receiver<io::Result<Vec<u8>>> {
     let (done, bytes) = mpsc::channel();
     thread::spawn(move || {
         let mut all = Vec::new();

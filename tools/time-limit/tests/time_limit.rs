@@ -1,4 +1,4 @@
-//! Waits that hang must fail, with their sentence; those that do not must not.
+//! Waits that hang fail with a sentence, and all other waits succeed.
 #![cfg(unix)] // by the programs that are everywhere there
 
 use std::io::ErrorKind;
@@ -30,21 +30,21 @@ fn shell(script: &str) -> Command {
 
 #[test]
 fn a_condition_that_never_holds_fails_with_what_was_waited_for() {
-    let words = sentence(|| SHORT.until("the cows", || false));
+    let words = sentence(|| SHORT.expect("the cows", || false));
     assert_eq!(words, "waited 100ms for the cows");
-    assert!(!SHORT.comes(|| false));
+    assert!(!SHORT.wait_for(|| false));
 }
 
 #[test]
-fn a_condition_is_asked_until_it_holds() {
+fn a_condition_is_checked_until_it_holds() {
     let begin = Instant::now();
     let mut asked = 0;
-    LIMIT.until("the third time", || {
+    LIMIT.expect("the third time", || {
         asked += 1;
         asked == 3
     });
     assert_eq!(asked, 3);
-    assert!(LIMIT.comes(|| begin.elapsed() > Duration::from_millis(20)));
+    assert!(LIMIT.wait_for(|| begin.elapsed() > Duration::from_millis(20)));
 }
 
 #[test]
@@ -76,7 +76,7 @@ fn a_program_that_does_not_end_is_killed() {
 }
 
 #[test]
-fn a_program_that_ends_tells_how() {
+fn the_status_of_a_program_that_ends_is_returned() {
     let mut child = shell("exit 3").spawn().expect("it starts");
     let status = LIMIT.end_of(&mut child).expect("it ends");
     assert_eq!(status.code(), Some(3));
@@ -102,7 +102,7 @@ fn a_program_that_prints_for_ever_fails_with_its_name() {
 }
 
 #[test]
-fn what_a_program_has_left_running_is_not_waited_for_without_end() {
+fn processes_that_a_program_leaves_running_are_not_waited_for() {
     let error = SHORT.output(&mut shell("sleep 2 &"), b"");
     let words = error.expect_err("it may still print").to_string();
     assert_eq!(

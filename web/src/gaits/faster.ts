@@ -1,5 +1,5 @@
 // A search for a gait that walks faster than the edited one, in a worker of its own that ends with the search.
-import type { Bars, Floor, Found, Trial, Wish } from '../robot';
+import type { Bars, Floor, Found, Trial, SearchTask } from '../robot';
 import { sentence } from '../trouble';
 
 export interface Question {
@@ -7,7 +7,7 @@ export interface Question {
   toml: string;
   floor: Floor;
   servos: string;
-  wish: Wish;
+  wish: SearchTask;
 }
 
 /** A gait that the search found, with its trial on the page's floor and servos. */

@@ -1,12 +1,12 @@
 // Gives an edited gait to the robot, simulated or on a board.
-import type { Made, Refused } from '../robot';
+import type { EditedGait, Refused } from '../robot';
 import type { Session } from '../session';
 
 /** Time from a restart until the robot stands, ms of the simulation. */
 const WAKES = 2500;
 
 /** Puts the gait into the session's robot. A board on USB gets it when its robot is written. */
-export async function takeGait(session: Session, made: Made): Promise<Refused | null> {
+export async function takeGait(session: Session, made: EditedGait): Promise<Refused | null> {
   return session.change(session.robot.putGait(session.toml, made));
 }
 
@@ -14,7 +14,7 @@ export async function takeGait(session: Session, made: Made): Promise<Refused | 
  * Puts the gait into the session's robot and starts it on the simulated board, which restarts. A board on USB
  * has only the gaits that are written on it, so there it is refused.
  */
-export async function tryGait(session: Session, made: Made, ask: (line: string) => Promise<unknown>): Promise<Refused | null> {
+export async function tryGait(session: Session, made: EditedGait, ask: (line: string) => Promise<unknown>): Promise<Refused | null> {
   if (session.isReal) {
     return { refused: 'A board on USB has only the gaits that are written on it: write this one, or go back to the simulation to try it.', line: null, key: '' };
   }

@@ -1,5 +1,7 @@
-// The console's rule: every line gets exactly one answer, `ok ...` or `err ...`; lines that begin
-// with # come before it, or unasked. One line is sent at a time.
+// The console's rule: every line gets exactly one answer, in order, `ok ...` or `err ...`; lines that begin
+// with # come before it, or unasked. One line is sent at a time, but `stop` waits for none: it goes out at once, and
+// again until the robot answers it, since a link may lose a line or its answer.
+import { WORDS } from '../words';
 import type { Link } from './link';
 
 /** The beginning of the firmware's first line. */
@@ -9,7 +11,19 @@ export const LONGEST_LINE = 63;
 /** The robot's lines are shorter than this; longer ones are noise and are cut. */
 const LONGEST = 500;
 /** Time within which an answer must come, ms. */
-const PATIENCE = 3000;
+const TIMEOUT = 3000;
+/** Time from one `stop` to the next while none is answered, ms. */
+const AGAIN = 250;
+/** Time within which the answers to the other ones have come, ms. */
+const ECHOES = 500;
+/** Time without the answer that is due after which a robot counts as silent, ms. */
+export const SILENCE = 800;
+/** What a Bluetooth module says into the line when its link begins and ends. */
+const MODULE = /OK\+(CONN|LOST)/g;
+/** What a robot without pulses answers to `stop`: it rests, or its flash has no robot. */
+const CANNOT_MOVE = /^err (7|10) /;
+/** A line of the answer to `cal`. */
+const SETTING = /^# (A[1-4]|boot|deadman) /;
 
 export interface Answer {
   ok: boolean;
@@ -22,19 +36,43 @@ export interface Answer {
 export interface DialogueListener {
   /** Called with each line that is sent. */
   sent(line: string): void;
-  /** Called with each line that is received. */
+  /** Called with each line that is received and is to be shown. */
   received(line: string): void;
+  /** Called with each line of the robot, also with one that is not shown. */
+  heard(line: string): void;
+  /** Called when the robot has left a line unanswered for `SILENCE`, and when it answers again. */
+  silent(isSilent: boolean): void;
+  /** Called when `stop` begins to be sent, and when the robot has answered it. */
+  stopping(isStopping: boolean): void;
 }
 
 /** Thrown for a question that was dropped before its answer. */
-export class Forgotten extends Error {}
+export class DroppedQuestion extends Error {}
 
-interface Question {
-  line: string;
-  quiet: boolean;
-  patience: number;
+interface Ends {
   answered: (answer: Answer) => void;
   failed: (error: Error) => void;
+}
+
+interface Question extends Ends {
+  line: string;
+  quiet: boolean;
+  timeout: number;
+}
+
+/** A `stop` that has no answer yet, and how often it was sent. */
+interface Stop {
+  ends: Ends[];
+  times: number;
+}
+
+const wordOf = (line: string) => line.trim().toLowerCase().split(/\s/)[0];
+
+/** True if a line that begins with `ok` or `err` can be the answer to this one; one that came too late is not. */
+function fits(answer: string, line: string): boolean {
+  const word = wordOf(line);
+  const said = { [WORDS.status]: 'gait=', '?': WORDS.help }[word] ?? word;
+  return answer.startsWith('err') || answer.startsWith(`ok ${said}`);
 }
 
 export class Dialogue {
@@ -43,6 +81,14 @@ export class Dialogue {
   private text = '';
   private readonly waiting: Question[] = [];
   private asked: Question | null = null;
+  private stop: Stop | null = null;
+  /** There while answers to repeated `stop` lines may come, which belong to no other line. */
+  private echoes: Promise<void> | null = null;
+  private isSilent = false;
+  /** The line that is sent beside all others. */
+  private beat: { line: string } | null = null;
+  /** The answer to the last such line. */
+  private beaten = '';
   private notes: string[] = [];
   /** Whether the line serves another purpose. */
   over = false;
@@ -54,23 +100,94 @@ export class Dialogue {
     link.onBytes = (bytes) => this.bytes(bytes);
   }
 
-  /** Sends a line and waits at most `patience` ms for its answer. A quiet line is not shown in the console. */
-  ask(line: string, quiet = false, patience = PATIENCE): Promise<Answer> {
+  /**
+   * Sends a line and waits at most `timeout` ms for its answer; `stop` is sent at once, and its answer is waited for
+   * as long as the link is there. A quiet line is not shown in the console.
+   */
+  ask(line: string, quiet = false, timeout = TIMEOUT): Promise<Answer> {
     return new Promise((answered, failed) => {
       if (this.over) throw new Error(`"${line}" was not sent: the boot loader has the line`);
-      this.waiting.push({ line, quiet, patience, answered, failed });
+      if (line.trim().toLowerCase() === WORDS.stop) return this.halt({ answered, failed });
+      this.waiting.push({ line, quiet, timeout, answered, failed });
       void this.next();
     });
   }
 
   /** Drops all questions: the board restarts, or the line is used by something else. */
   forget(): void {
-    const questions = [...(this.asked ? [this.asked] : []), ...this.waiting];
+    const dropped = [...(this.asked ? [this.asked] : []), ...(this.stop?.ends ?? [])];
     this.asked = null;
-    this.waiting.length = 0;
     this.text = '';
     this.notes = [];
-    for (const { failed } of questions) failed(new Forgotten());
+    if (this.stop) this.listener.stopping(false);
+    this.stop = null;
+    this.hears();
+    for (const { failed } of dropped) failed(new DroppedQuestion());
+    this.forgetWaiting();
+  }
+
+  private forgetWaiting(): void {
+    for (const { failed } of this.waiting.splice(0)) failed(new DroppedQuestion());
+  }
+
+  /** Stops the robot. A line that waits would have it walk on, so it is dropped. */
+  private halt(ends: Ends): void {
+    this.forgetWaiting();
+    if (this.stop) {
+      this.stop.ends.push(ends);
+      return;
+    }
+    const stop = (this.stop = { ends: [ends], times: 0 });
+    this.listener.sent(WORDS.stop);
+    this.listener.stopping(true);
+    void this.insist(stop);
+    void this.link.wait(SILENCE).then(() => this.stop === stop && this.hears(false));
+  }
+
+  private async insist(stop: Stop): Promise<void> {
+    while (this.stop === stop) {
+      stop.times += 1;
+      // A port that takes nothing more is reported by the link itself.
+      this.link.write(this.encoder.encode(`${WORDS.stop}\n`)).catch(() => {});
+      await this.link.wait(AGAIN);
+    }
+  }
+
+  /** Sends a line every so many ms, beside all others and without waiting for its answer; null ends that. */
+  keepAlive(line: string | null, every = 0): void {
+    const beat = (this.beat = line === null ? null : { line });
+    if (!beat) return;
+    this.beaten = `ok ${beat.line}`;
+    const go = async () => {
+      while (this.beat === beat && !this.over) {
+        this.link.write(this.encoder.encode(`${beat.line}\n`)).catch(() => {});
+        await this.link.wait(every);
+      }
+    };
+    void go();
+  }
+
+  private stopped(stop: Stop, answer: Answer): void {
+    this.stop = null;
+    this.listener.stopping(false);
+    this.hears();
+    // Answers come in order: that of the line before has been lost.
+    const { asked } = this;
+    this.asked = null;
+    asked?.failed(new DroppedQuestion());
+    for (const { answered } of stop.ends) answered(answer);
+    const echoes = (this.echoes = stop.times > 1 ? this.link.wait(ECHOES) : null);
+    void echoes?.then(() => {
+      if (this.echoes === echoes) this.echoes = null;
+      void this.next();
+    });
+    void this.next();
+  }
+
+  private hears(does = true): void {
+    if (this.isSilent === !does) return;
+    this.isSilent = !does;
+    this.listener.silent(!does);
   }
 
   /** Ends the dialogue; the link may then have another listener. */
@@ -80,7 +197,7 @@ export class Dialogue {
   }
 
   private async next(): Promise<void> {
-    if (this.asked || this.over) return;
+    if (this.asked || this.stop || this.echoes || this.over) return;
     const question = this.waiting.shift();
     if (!question) return;
     this.asked = question;
@@ -88,7 +205,8 @@ export class Dialogue {
     if (!question.quiet) this.listener.sent(question.line);
     try {
       await this.link.write(this.encoder.encode(`${question.line}\n`));
-      await this.link.wait(question.patience);
+      void this.link.wait(SILENCE).then(() => this.asked === question && this.hears(false));
+      await this.link.wait(question.timeout);
       if (this.asked === question) throw new Error(`no answer to "${question.line}"`);
     } catch (error) {
       if (this.asked !== question) return;
@@ -108,18 +226,32 @@ export class Dialogue {
 
   private line(received: string): void {
     // A reset cuts off the board's line, perhaps an answer, and the banner follows on the same line.
-    const line = received.slice(Math.max(0, received.indexOf(GREETING)));
-    const question = this.asked;
+    const line = received.slice(Math.max(0, received.indexOf(GREETING))).replace(MODULE, '');
+    if (line === '') return;
+    this.listener.heard(line);
+    const { asked: question, stop } = this;
     const answers = /^(ok|err)\b/.test(line);
-    if (!(question?.quiet && answers)) this.listener.received(line);
     if (!answers) {
+      // The settings that the page asks for by itself are not shown.
+      if (!(question?.quiet && wordOf(question.line) === WORDS.cal && SETTING.test(line))) this.listener.received(line);
       this.notes.push(line);
-    } else if (question) {
-      this.asked = null;
-      const { notes } = this;
-      this.notes = [];
-      question.answered({ ok: line.startsWith('ok'), text: line, notes });
-      void this.next();
+      return;
     }
+    if (line === `ok ${WORDS.stop}` || (stop && CANNOT_MOVE.test(line))) {
+      if (!stop) return;
+      this.listener.received(line);
+      this.stopped(stop, { ok: line.startsWith('ok'), text: line, notes: [] });
+      return;
+    }
+    const isFit = question !== null && fits(line, question.line);
+    const isQuiet = isFit ? question.quiet : line === this.beaten;
+    if (!isQuiet) this.listener.received(line);
+    if (!isFit) return;
+    this.asked = null;
+    this.hears();
+    const { notes } = this;
+    this.notes = [];
+    question.answered({ ok: line.startsWith('ok'), text: line, notes });
+    void this.next();
   }
 }

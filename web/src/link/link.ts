@@ -1,6 +1,10 @@
-// The serial link to a simulated UNO or to a board on USB.
+// The serial link to a simulated UNO, or to a board by USB or radio.
+
+export const sleep = (ms: number): Promise<void> => new Promise((done) => setTimeout(done, ms));
 
 export interface Link {
+  /** USB resets a board when its port is opened, and writes it; a radio does neither, and is slower. */
+  readonly kind: 'simulated' | 'usb' | 'radio';
   /** The board's name in messages. */
   readonly name: string;
   /** True if the board's USB chip is also used on the Arduino Nano. */
@@ -9,6 +13,8 @@ export interface Link {
   onBytes: (bytes: Uint8Array) => void;
   /** Called when the board is gone. */
   onGone: (why: string) => void;
+  /** Called when a radio loses its board for a while, and when it has it again. */
+  onReach?: (isInReach: boolean) => void;
   /** Sends bytes. */
   write(bytes: Uint8Array): Promise<void>;
   /** Resets the board, as opening a port does. */
@@ -24,6 +30,8 @@ export interface Simulated extends Link {
   advance(ms: number): void;
   /** Sets the voltage of the board's supply. */
   supply(volts: number): void;
+  /** Opens or closes a contact between a pin, by its Arduino number, and ground. */
+  contact(pin: number, isClosed: boolean): void;
 }
 
 /** Waits in simulated time. */

@@ -1,6 +1,7 @@
-// The link to a board on USB by Web Serial, which Chromium browsers and newer Firefox have, over https or on localhost.
+// The link to a board by Web Serial, which Chromium browsers and newer Firefox have, over https or on localhost: on USB,
+// or behind an HC-05, a Bluetooth module that the system knows as a serial port.
 import { sentence } from '../trouble';
-import type { Link } from './link';
+import { sleep, type Link } from './link';
 
 /** The parts of Web Serial that the page uses; TypeScript's library does not declare them. */
 interface SerialPort {
@@ -8,15 +9,17 @@ interface SerialPort {
   readonly writable: WritableStream<Uint8Array> | null;
   open(options: { baudRate: number; bufferSize?: number }): Promise<void>;
   close(): Promise<void>;
-  getInfo(): { usbVendorId?: number };
+  getInfo(): { usbVendorId?: number; bluetoothServiceClassId?: number | string };
   setSignals(signals: { dataTerminalReady?: boolean; requestToSend?: boolean }): Promise<void>;
 }
 
 interface Serial {
-  requestPort(): Promise<SerialPort>;
+  requestPort(options: { allowedBluetoothServiceClassIds: string[] }): Promise<SerialPort>;
 }
 
 const BAUD = 115_200;
+/** Bluetooth's serial port profile, which an HC-05 has. */
+const SERIAL_PROFILE = '00001101-0000-1000-8000-00805f9b34fb';
 /** The USB vendors arduino.cc and arduino.org, whose chips are on UNOs and on no Nano. */
 const ARDUINO = [0x2341, 0x2a03];
 /** The message of a browser that cannot connect a board. */
@@ -33,10 +36,7 @@ export function hasSerial(): boolean {
   return serial() !== undefined;
 }
 
-const sleep = (ms: number): Promise<void> => new Promise((done) => setTimeout(done, ms));
-
 export class PortLink implements Link {
-  readonly name = 'board on USB';
   onBytes: (bytes: Uint8Array) => void = () => {};
   onGone: (why: string) => void = () => {};
   private reader: ReadableStreamDefaultReader<Uint8Array> | null = null;
@@ -44,6 +44,14 @@ export class PortLink implements Link {
   private closing = false;
 
   private constructor(private readonly port: SerialPort) {}
+
+  get kind(): 'usb' | 'radio' {
+    return this.port.getInfo().bluetoothServiceClassId === undefined ? 'usb' : 'radio';
+  }
+
+  get name(): string {
+    return this.kind === 'usb' ? 'board on USB' : 'board on Bluetooth';
+  }
 
   get mayBeNano(): boolean {
     const { usbVendorId } = this.port.getInfo();
@@ -56,7 +64,7 @@ export class PortLink implements Link {
     if (!ports) throw new Error(NO_SERIAL);
     let port: SerialPort;
     try {
-      port = await ports.requestPort();
+      port = await ports.requestPort({ allowedBluetoothServiceClassIds: [SERIAL_PROFILE] });
     } catch (error) {
       // The error of a chooser that was closed without a choice.
       if (error instanceof DOMException && error.name === 'NotFoundError') return null;
@@ -79,6 +87,7 @@ export class PortLink implements Link {
   }
 
   async reset(): Promise<void> {
+    if (this.kind === 'radio') return;
     await this.port.setSignals({ dataTerminalReady: false, requestToSend: false });
     await sleep(RESET);
     await this.port.setSignals({ dataTerminalReady: true, requestToSend: true });

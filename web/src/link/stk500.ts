@@ -23,14 +23,14 @@ const SIGNATURE = [0x1e, 0x95, 0x0f];
 const FLASH_SIZE = 32 * 1024;
 
 /** Time within which an answer must come, ms. */
-const PATIENCE = 500;
+const TIMEOUT = 500;
 /** Time after a reset in which the boot loader blinks and does not listen, ms. */
-const BLINKS = 400;
-/** Calls in the rest of its second, in which it listens, and the time between two of them, ms. */
-const CALLS = 5;
-const CALL = 110;
+const BLINKING_TIME = 400;
+/** Attempts to reach it in the rest of its second, in which it listens, and the time for each, ms. */
+const ATTEMPTS = 5;
+const ATTEMPT_TIME = 110;
 /** Time within which a late answer has arrived, ms. */
-const QUIET = 40;
+const LATE_TIME = 40;
 
 export type Progress = (done: number, of: number, what: 'comparing' | 'writing' | 'verifying') => void;
 
@@ -72,9 +72,9 @@ class Loader {
   }
 
   /** Receives `count` bytes. Throws a sentence. */
-  async take(count: number, patience: number): Promise<number[]> {
+  async take(count: number, timeout: number): Promise<number[]> {
     let late = false;
-    void this.link.wait(patience).then(() => {
+    void this.link.wait(timeout).then(() => {
       late = true;
       this.arrived();
     });
@@ -86,25 +86,25 @@ class Loader {
   }
 
   /** Sends a command and returns its answer of `answer` bytes. */
-  async command(bytes: number[], answer = 0, patience = PATIENCE): Promise<number[]> {
+  async command(bytes: number[], answer = 0, timeout = TIMEOUT): Promise<number[]> {
     await this.link.write(Uint8Array.from([...bytes, END]));
-    const got = await this.take(answer + 2, patience);
+    const got = await this.take(answer + 2, timeout);
     if (got[0] !== IN_SYNC || got[got.length - 1] !== OK) throw new Error('the board answers out of step');
     return got.slice(1, -1);
   }
 }
 
 async function call(link: Link, loader: Loader): Promise<void> {
-  await link.wait(BLINKS);
+  await link.wait(BLINKING_TIME);
   for (let n = 1; ; n++) {
     loader.forget();
     try {
-      await loader.command([GET_SYNC], 0, CALL);
-      await link.wait(QUIET);
+      await loader.command([GET_SYNC], 0, ATTEMPT_TIME);
+      await link.wait(LATE_TIME);
       loader.forget();
       return;
     } catch (error) {
-      if (n === CALLS) throw error;
+      if (n === ATTEMPTS) throw error;
     }
   }
 }
@@ -145,14 +145,14 @@ function inPages({ bytes }: Piece): Uint8Array {
 }
 
 /**
- * Resets the board, writes a piece of its flash, reads it back and starts the board. If `under` is given and the board
- * does not have it, nothing is written. No other code may use the link meanwhile. Throws a sentence.
+ * Resets the board, writes a piece of its flash, reads it back and starts the board. If `required` is given and the
+ * board does not have it, nothing is written. No other code may use the link meanwhile. Throws a sentence.
  */
-export async function flash(link: Link, piece: Piece, progress: Progress, under: Piece | null = null): Promise<void> {
+export async function flash(link: Link, piece: Piece, progress: Progress, required: Piece | null = null): Promise<void> {
   const loader = await begin(link);
   const goTo = (address: number) => loader.command([LOAD_ADDRESS, (address >> 1) & 0xff, address >> 9]);
   /** The address of the first byte that differs; -1 if none does. */
-  const differs = async (wanted: Piece, what: 'comparing' | 'verifying') => {
+  const firstDifference = async (wanted: Piece, what: 'comparing' | 'verifying') => {
     const bytes = inPages(wanted);
     for (let at = 0; at < bytes.length; at += PAGE) {
       await goTo(wanted.at + at);
@@ -164,7 +164,7 @@ export async function flash(link: Link, piece: Piece, progress: Progress, under:
     }
     return -1;
   };
-  if (under && (await differs(under, 'comparing')) >= 0) {
+  if (required && (await firstDifference(required, 'comparing')) >= 0) {
     await loader.command([LEAVE]);
     throw new Unfit('the firmware of the board is another one, in which this robot may not fit: write firmware and robot');
   }
@@ -174,7 +174,7 @@ export async function flash(link: Link, piece: Piece, progress: Progress, under:
     await loader.command([PROGRAM_PAGE, 0, PAGE, FLASH, ...page]);
   };
   const verify = async (part: Piece) => {
-    const wrong = await differs(part, 'verifying');
+    const wrong = await firstDifference(part, 'verifying');
     if (wrong >= 0) throw new Error(`the flash does not keep byte ${wrong}: try another board`);
   };
   // A half-written program might move the servos. So the page where the chip starts is an empty loop meanwhile, and

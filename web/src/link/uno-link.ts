@@ -14,6 +14,7 @@ export interface UnoEvents {
 }
 
 export class UnoLink implements Simulated {
+  readonly kind = 'simulated';
   readonly name = 'simulated UNO';
   onBytes: (bytes: Uint8Array) => void = () => {};
   onGone: (why: string) => void = () => {};
@@ -65,6 +66,10 @@ export class UnoLink implements Simulated {
 
   supply(volts: number): void {
     this.board.supply(volts);
+  }
+
+  contact(pin: number, isClosed: boolean): void {
+    this.board.contact(pin, isClosed);
   }
 
   wait(ms: number): Promise<void> {

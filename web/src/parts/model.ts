@@ -40,7 +40,7 @@ export interface Model {
   files: number;
 }
 
-/** Triangles: corners in mm, and three of them each. */
+/** Triangles: corners in mm, and three corner indices for each triangle. */
 export interface Solid {
   corners: Float32Array;
   triangles: Uint32Array;

@@ -22,7 +22,7 @@ import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import type { Place } from '../robot';
 import { palette, servoColour } from '../view/palette';
 import type { Body, Model, Solid } from './model';
-import { Thrift } from './thrift';
+import { PaintBudget } from './paint-budget';
 
 /** Lift of a body of lift 1 in the exploded view, mm, as in the guide's pictures. */
 const LIFT = 45;
@@ -39,7 +39,7 @@ const STILL = 400;
 const PALE = 0.65;
 
 /** The view's settings. */
-export interface Look {
+export interface ViewSettings {
   /** Spread of the exploded view, 0 to 1. */
   apart: number;
   /** The step of the guide, from 1; null for the whole robot. */
@@ -54,12 +54,12 @@ export class Space {
   private readonly camera = new PerspectiveCamera(35, 1, 10, 4000);
   private readonly controls: OrbitControls;
   private readonly sun = new DirectionalLight(0xffffff, 2.2);
-  private readonly thrift: Thrift;
+  private readonly paintBudget: PaintBudget;
   private grid: GridHelper | null = null;
   private model: Model | null = null;
   private mounts: Group[] = [];
   private meshes: Mesh<BufferGeometry, MeshLambertMaterial>[] = [];
-  private look: Look = { apart: 0, step: null, picked: null };
+  private settings: ViewSettings = { apart: 0, step: null, picked: null };
   private dirty = true;
   /** Time of the last change, ms. */
   private changed = 0;
@@ -70,7 +70,7 @@ export class Space {
     onPick: (body: number | null) => void,
   ) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: 'low-power' });
-    this.thrift = new Thrift(this.renderer.getContext() as WebGL2RenderingContext);
+    this.paintBudget = new PaintBudget(this.renderer.getContext() as WebGL2RenderingContext);
     this.camera.up.set(0, 0, 1);
     // The sun is behind the viewer, a little to the side.
     this.sun.position.set(-0.6, 0.9, 1.2);
@@ -146,7 +146,7 @@ export class Space {
   }
 
   /** Takes another robot's solids. */
-  take(model: Model, solids: Solid[]): void {
+  showModel(model: Model, solids: Solid[]): void {
     for (const mount of this.mounts) this.scene.remove(mount);
     for (const mesh of this.meshes) mesh.material.dispose();
     for (const geometry of new Set(this.meshes.map((mesh) => mesh.geometry))) geometry.dispose();
@@ -170,13 +170,13 @@ export class Space {
       this.mounts[body.mount]?.add(mesh);
       return mesh;
     });
-    this.show(this.look);
+    this.show(this.settings);
   }
 
   /** Applies the view's settings, and the colours of light or dark mode. */
-  show(look: Look): void {
-    this.look = look;
-    const { step, apart, picked } = look;
+  show(settings: ViewSettings): void {
+    this.settings = settings;
+    const { step, apart, picked } = settings;
     const colours = palette();
     const floor = new Color(colours.floor);
     this.scene.background = floor;
@@ -212,7 +212,7 @@ export class Space {
 
   /** Returns true if a picture may be painted now; must be called in every frame of the page. */
   mayDraw(): boolean {
-    return this.thrift.may();
+    return this.paintBudget.mayPaint();
   }
 
   /** Draws a picture if something has changed and `mayDraw`. `place` is that of the body on the floor. */
@@ -223,7 +223,7 @@ export class Space {
     if (this.dirty) this.changed = now;
     // A still view is painted once more at full resolution.
     const still = now - this.changed > STILL;
-    const ratio = Math.min(2, devicePixelRatio) * (still ? 1 : this.thrift.sharpness);
+    const ratio = Math.min(2, devicePixelRatio) * (still ? 1 : this.paintBudget.sharpness);
     const size = this.renderer.getSize(new Vector2());
     if (size.x !== width || size.y !== height || this.renderer.getPixelRatio() !== ratio) {
       this.renderer.setPixelRatio(ratio);
@@ -236,7 +236,7 @@ export class Space {
     this.dirty = false;
     this.ground(place);
     this.renderer.render(this.scene, this.camera);
-    this.thrift.drawn(still);
+    this.paintBudget.drawn(still);
   }
 
   /** Moves the floor below the robot, which stays in the middle. */
@@ -244,7 +244,7 @@ export class Space {
     if (!this.grid) return;
     const turn = new Matrix4().makeRotationZ((-heading * Math.PI) / 180);
     const rest = (value: number) => value - CELL * Math.round(value / CELL);
-    const depth = this.look.step === null ? -(this.model?.floor ?? 0) : -2 * (this.model?.floor ?? 0);
+    const depth = this.settings.step === null ? -(this.model?.floor ?? 0) : -2 * (this.model?.floor ?? 0);
     const shift = new Matrix4().makeTranslation(-rest(x), -rest(y), depth);
     this.grid.matrix.copy(turn.multiply(shift));
     this.grid.matrixWorldNeedsUpdate = true;

@@ -40,9 +40,9 @@ export async function calibrationIn(text: string): Promise<Calibration> {
     if (error instanceof TomlError) throw new Error(`line ${error.line}: this is not TOML`);
     throw error;
   }
-  if (table.format !== FORMAT) throw new Error(`the key format = "${FORMAT}" is missing: this is no calibration`);
+  if (table.format !== FORMAT) throw new Error(`the key format = "${FORMAT}" is missing: this is not a calibration`);
   const { boot, deadman } = table;
-  if (typeof boot !== 'string' || !NAME.test(boot)) throw new Error(`boot: ${JSON.stringify(boot)} is no name of a gait`);
+  if (typeof boot !== 'string' || !NAME.test(boot)) throw new Error(`boot: ${JSON.stringify(boot)} is not the name of a gait`);
   if (typeof deadman !== 'number' || !Number.isInteger(deadman) || deadman < 0 || deadman > 60_000) {
     throw new Error(`deadman: ${JSON.stringify(deadman)} is no whole number from 0 to 60000`);
   }
@@ -57,7 +57,7 @@ function servoIn(name: string, value: unknown): ServoSettings {
     // The console accepts hundredths, up to a turn.
     const hundredths = Number(given) * 100;
     const isGood = typeof given === 'number' && Math.abs(given) <= 360 && Math.abs(hundredths - Math.round(hundredths)) < 1e-6;
-    if (!isGood) throw new Error(`servo.${name}.${key}: ${JSON.stringify(given)} is no number of at most two decimals, -360..360`);
+    if (!isGood) throw new Error(`servo.${name}.${key}: ${JSON.stringify(given)} is not a number of at most two decimals, -360..360`);
     return given as number;
   };
   const { limit, dir } = servo;

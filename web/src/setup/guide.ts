@@ -22,7 +22,7 @@ const NEAR = 0.02;
 export class Refusal extends Error {}
 
 /** Thrown if the board is not the one that this guide began with. */
-export class Gone extends Error {}
+export class BoardChanged extends Error {}
 
 export class Guide {
   /** The calibration at the beginning, or the one saved since. */
@@ -31,7 +31,7 @@ export class Guide {
   private now: Calibration;
   private readonly link: Link;
   private readonly beginnings: number;
-  /** Its neutral angles, deg, once it has stood. */
+  /** The robot's neutral angles, deg, known once it has stood. */
   private neutral: Four<number> | null = null;
 
   private constructor(
@@ -46,7 +46,7 @@ export class Guide {
 
   /** Reads the robot's calibration; nothing moves. Throws a sentence. */
   static async begin(session: Session): Promise<Guide> {
-    const has = calibrationOf((await tell(session, WORDS.cal)).notes);
+    const has = calibrationOf((await sendLine(session, WORDS.cal)).notes);
     if (!has) throw new Error('The robot does not say its calibration as this page knows it: write this firmware first.');
     return new Guide(session, has);
   }
@@ -68,19 +68,19 @@ export class Guide {
 
   /** Makes the robot stand; returns its neutral angles, deg. */
   async stand(): Promise<Four<number>> {
-    await this.tell(GAITS.stand);
+    await this.sendLine(GAITS.stand);
     return (this.neutral = await settle(this.session));
   }
 
   /** Ends the pulses, so that servos do not start all at once when they get power. */
   async rest(): Promise<void> {
-    await this.tell(WORDS.rest);
+    await this.sendLine(WORDS.rest);
   }
 
   /** Moves every servo to its middle without trim, for fitting the horns. */
   async center(): Promise<void> {
     await this.stand();
-    await this.tell(WORDS.center);
+    await this.sendLine(WORDS.center);
     await settle(this.session);
   }
 
@@ -106,14 +106,14 @@ export class Guide {
         refusal ??= error;
       }
     }
-    throw refusal ?? new Refusal('no way to turn it is known');
+    throw refusal ?? new Refusal('there is no pose to turn it to');
   }
 
   /** Points one servo to an angle, the others to neutral. */
   async point(servo: number, degrees: number): Promise<void> {
     const others = this.neutral ?? (await this.stand());
     const pose = others.map((neutral, place) => (place === servo ? degrees : neutral));
-    await this.tell(`${WORDS.pose} ${pose.map((each) => angle(each).toFixed(2)).join(' ')}`);
+    await this.sendLine(`${WORDS.pose} ${pose.map((each) => angle(each).toFixed(2)).join(' ')}`);
     await settle(this.session, pose as Four<number>);
   }
 
@@ -125,8 +125,8 @@ export class Guide {
     set.dir = set.dir === '+' ? '-' : '+';
     // The horn stays where it is: the same pulse is now the opposite trim.
     set.trim = 0 - set.trim;
-    await this.tell(`${WORDS.dir} ${servo + 1} ${set.dir}`);
-    if (set.trim !== 0) await this.tell(`${WORDS.trim} ${servo + 1} ${set.trim.toFixed(2)}`);
+    await this.sendLine(`${WORDS.dir} ${servo + 1} ${set.dir}`);
+    if (set.trim !== 0) await this.sendLine(`${WORDS.trim} ${servo + 1} ${set.trim.toFixed(2)}`);
     this.now = next;
     await settle(this.session);
   }
@@ -136,7 +136,7 @@ export class Guide {
     const next = copyOf(this.now);
     const trim = Math.round((next.servos[servo].trim + by) * 100) / 100 + 0;
     next.servos[servo].trim = trim;
-    await this.tell(`${WORDS.trim} ${servo + 1} ${trim.toFixed(2)}`);
+    await this.sendLine(`${WORDS.trim} ${servo + 1} ${trim.toFixed(2)}`);
     this.now = next;
   }
 
@@ -146,7 +146,7 @@ export class Guide {
     const next = copyOf(this.now);
     const scale = Math.round((next.servos[servo].scale * Math.abs(asked) * 100) / Math.abs(measured)) / 100;
     next.servos[servo].scale = scale;
-    await this.tell(`${WORDS.scale} ${servo + 1} ${scale.toFixed(2)}`);
+    await this.sendLine(`${WORDS.scale} ${servo + 1} ${scale.toFixed(2)}`);
     this.now = next;
     return scale;
   }
@@ -156,23 +156,23 @@ export class Guide {
     const next = copyOf(this.now);
     const limit: [number, number] = [angle(from), angle(to)];
     next.servos[servo].limit = limit;
-    await this.tell(`${WORDS.limit} ${servo + 1} ${limit[0].toFixed(2)} ${limit[1].toFixed(2)}`);
+    await this.sendLine(`${WORDS.limit} ${servo + 1} ${limit[0].toFixed(2)} ${limit[1].toFixed(2)}`);
     this.now = next;
   }
 
   /** Starts `walk`, or the first gait that moves; returns its command. */
   async walk(): Promise<string> {
-    const { notes } = await this.tell(WORDS.help);
+    const { notes } = await this.sendLine(WORDS.help);
     const list = notes.find((line) => line.startsWith('# gaits: '))?.slice('# gaits: '.length) ?? '';
     const gaits = list.split('|').filter((name) => name !== '' && name !== GAITS.stand);
     const gait = gaits.includes(GAITS.walk) ? GAITS.walk : gaits[0];
     if (!gait) throw new Refusal('this robot has no gait');
-    await this.tell(gait);
+    await this.sendLine(gait);
     return gait;
   }
 
   async save(): Promise<void> {
-    await this.tell(WORDS.save);
+    await this.sendLine(WORDS.save);
     this.before = copyOf(this.now);
   }
 
@@ -190,12 +190,12 @@ export class Guide {
   }
 
   /** Sets another calibration, unsaved; a refused one changes nothing. Throws the robot's reason. */
-  async give(set: Calibration): Promise<void> {
+  async setCalibration(set: Calibration): Promise<void> {
     const had = copyOf(this.now);
     try {
       await this.apply(set);
-      const read = calibrationOf((await this.tell(WORDS.cal)).notes);
-      if (!read || !isSame(read, set)) throw new Refusal('the robot has not taken all of it');
+      const read = calibrationOf((await this.sendLine(WORDS.cal)).notes);
+      if (!read || !isSame(read, set)) throw new Refusal('the robot did not accept all of it');
     } catch (error) {
       if (error instanceof Refusal) await this.apply(had);
       throw error;
@@ -215,7 +215,7 @@ export class Guide {
       const left: string[] = [];
       for (const line of lines) {
         try {
-          await this.tell(line);
+          await this.sendLine(line);
         } catch (error) {
           if (!(error instanceof Refusal)) throw error;
           refusal ??= error;
@@ -227,24 +227,24 @@ export class Guide {
       else if (fromFactory) throw refusal;
       else {
         fromFactory = true;
-        await this.tell(WORDS.factory);
+        await this.sendLine(WORDS.factory);
         lines = linesOf(set);
       }
     }
     this.now = copyOf(set);
   }
 
-  private tell(line: string): Promise<Answer> {
-    if (!this.isCurrent) throw new Gone('The board has restarted or is gone; what was not saved is lost.');
-    return tell(this.session, line);
+  private sendLine(line: string): Promise<Answer> {
+    if (!this.isCurrent) throw new BoardChanged('The board has restarted or is gone; what was not saved is lost.');
+    return sendLine(this.session, line);
   }
 }
 
 /** Sends a line. Throws the reason of a refusal. */
-async function tell(session: Session, line: string): Promise<Answer> {
+async function sendLine(session: Session, line: string): Promise<Answer> {
   const { link } = session;
   const answer = await session.ask(line);
-  if (!answer) throw new Gone(session.link === link ? `The robot has not answered "${line}".` : 'The board is gone; what was not saved is lost.');
+  if (!answer) throw new BoardChanged(session.link === link ? `The robot has not answered "${line}".` : 'The board is gone; what was not saved is lost.');
   if (!answer.ok) throw new Refusal(`The robot refuses "${line}": ${answer.text.replace(/^err \d+ /, '')}.`);
   return answer;
 }
@@ -258,7 +258,7 @@ async function settle(session: Session, wanted: Four<number> | null = null): Pro
     const answer = await session.ask(WORDS.status, true);
     const now = answer && status(answer.text);
     const here = now?.pose;
-    if (!now || !here || session.link !== link) throw new Gone('The board has restarted or is gone; what was not saved is lost.');
+    if (!now || !here || session.link !== link) throw new BoardChanged('The board has restarted or is gone; what was not saved is lost.');
     const pose = here.join();
     if (still?.pose !== pose) still = { frames: now.frames, pose };
     else if (now.frames - still.frames >= session.description.still && isThere(here)) return here;

@@ -1,32 +1,32 @@
 // The bars and joints of a robot in its neutral pose, and the lengths that follow when a joint is dragged. Servos
 // keep their neutral angles, so the end of a crank moves along its crank.
-import type { Scene, Spot } from '../robot';
+import type { Scene, Point } from '../robot';
 import type { Edits } from './question';
 
 /** A bar between two points: its key in robot.toml. */
 export interface Bar {
   key: string;
-  from: Spot;
-  to: Spot;
+  from: Point;
+  to: Point;
 }
 
 /** A joint that can be dragged. */
 export interface Joint {
   name: string;
-  at: Spot;
-  /** The lengths with it there; `alike` keeps left and right alike. */
-  moved(to: Spot, alike: boolean): Edits;
+  at: Point;
+  /** The lengths with the joint at a point; `alike` keeps left and right equal. */
+  moved(to: Point, alike: boolean): Edits;
 }
 
 const links = (n: number) => `links.l${n}`;
 /** Lengths are whole halves of a mm. */
 const round = (mm: number) => Math.round(mm * 2) / 2;
-const far = ([x, y]: Spot, [u, v]: Spot) => Math.hypot(x - u, y - v);
+const distance = ([x, y]: Point, [u, v]: Point) => Math.hypot(x - u, y - v);
 
 /** Distance of a point from another along the direction to a third. */
-function along(from: Spot, towards: Spot, to: Spot): number {
-  const long = far(from, towards) || 1;
-  return ((towards[0] - from[0]) * (to[0] - from[0]) + (towards[1] - from[1]) * (to[1] - from[1])) / long;
+function along(from: Point, towards: Point, to: Point): number {
+  const length = distance(from, towards) || 1;
+  return ((towards[0] - from[0]) * (to[0] - from[0]) + (towards[1] - from[1]) * (to[1] - from[1])) / length;
 }
 
 /** Each side's front and rear servo and the numbers of its lengths. */
@@ -42,7 +42,7 @@ const ENDS = [
 ] as const;
 
 export function bars({ shafts, tips, points, sliders, legs }: Scene): Bar[] {
-  const bar = (key: string, from: Spot, to: Spot): Bar => ({ key, from, to });
+  const bar = (key: string, from: Point, to: Point): Bar => ({ key, from, to });
   return [
     ...SIDES.flatMap((side, n) => {
       const { tips: [front, rear], tube } = sliders[n];
@@ -71,7 +71,7 @@ export function bars({ shafts, tips, points, sliders, legs }: Scene): Bar[] {
 }
 
 export function joints({ shafts, tips, points, sliders, legs }: Scene, value: (key: string) => number): Joint[] {
-  /** Changes both halves of a slider with the distance of their ends, so that its travel stays. */
+  /** Changes both halves of a slider with the distance of its ends, so that its travel is unchanged. */
   const halves = (side: (typeof SIDES)[number], longer: number): Edits => [
     [links(side.rearHalf), round(value(links(side.rearHalf)) + longer / 2)],
     [links(side.frontHalf), round(value(links(side.frontHalf)) + longer / 2)],
@@ -92,8 +92,8 @@ export function joints({ shafts, tips, points, sliders, legs }: Scene, value: (k
     at: points[n],
     moved(to, alike) {
       const middle = (tips[end.left][0] + tips[end.right][0]) / 2;
-      const at: Spot = alike ? [middle, to[1]] : to;
-      return [[links(end.leftCoupler), round(far(tips[end.left], at))], [links(end.rightCoupler), round(far(tips[end.right], at))]];
+      const at: Point = alike ? [middle, to[1]] : to;
+      return [[links(end.leftCoupler), round(distance(tips[end.left], at))], [links(end.rightCoupler), round(distance(tips[end.right], at))]];
     },
   }));
   const arms = SIDES.flatMap((side, n): Joint[] =>
@@ -104,11 +104,11 @@ export function joints({ shafts, tips, points, sliders, legs }: Scene, value: (k
         name: `end of the ${place} ${side.name} arm`,
         at: [front, rear][which],
         moved(to, alike) {
-          const long = round(along(shaft, tip, to));
-          const share = long / far(shaft, tip);
-          const moved: Spot = [shaft[0] + share * (tip[0] - shaft[0]), shaft[1] + share * (tip[1] - shaft[1])];
-          const longer = place === 'front' ? far(moved, rear) - far(front, rear) : far(front, moved) - far(front, rear);
-          return (alike ? SIDES : [side]).flatMap((each): Edits => [[links(each[key]), long], ...halves(each, longer)]);
+          const length = round(along(shaft, tip, to));
+          const share = length / distance(shaft, tip);
+          const moved: Point = [shaft[0] + share * (tip[0] - shaft[0]), shaft[1] + share * (tip[1] - shaft[1])];
+          const longer = place === 'front' ? distance(moved, rear) - distance(front, rear) : distance(front, moved) - distance(front, rear);
+          return (alike ? SIDES : [side]).flatMap((each): Edits => [[links(each[key]), length], ...halves(each, longer)]);
         },
       };
     }),

@@ -42,9 +42,9 @@ function nearest(page: Robot, toml: string, edits: Edits): Answer['nearest'] {
   const read = page.read(toml);
   if (isRefused(read)) return null;
   const now = new Map(read.lengths.map(({ key, value }) => [key, value]));
-  const way = edits.map(([key, value]): [string, number, number] => [key, now.get(key) ?? value, value]);
-  const steps = Math.ceil(Math.max(0, ...way.map(([, from, to]) => Math.abs(to - from))) / HALF);
-  const at = (step: number): Edits => way.map(([key, from, to]) => [key, Math.round((from + ((to - from) * step) / steps) / HALF) * HALF]);
+  const path = edits.map(([key, value]): [string, number, number] => [key, now.get(key) ?? value, value]);
+  const steps = Math.ceil(Math.max(0, ...path.map(([, from, to]) => Math.abs(to - from))) / HALF);
+  const at = (step: number): Edits => path.map(([key, from, to]) => [key, Math.round((from + ((to - from) * step) / steps) / HALF) * HALF]);
   let best: Answer['nearest'] = null;
   let [does, not] = [0, steps];
   while (not - does > 1) {

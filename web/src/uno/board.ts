@@ -9,8 +9,12 @@ import { Uno } from '../../../tools/judge/src/uno.js';
 
 export const FREQUENCY = 16_000_000;
 
-/** Duration of a byte at 115200 baud, ten bits, cycles. */
-const BYTE_CYCLES = Math.round((10 * FREQUENCY) / 115_200);
+/** Bits of a byte on the line. */
+const BYTE_BITS = 10;
+/** A rate that differs by more than this share from the chip's garbles every byte. */
+const RATE_ERROR = 0.045;
+/** A byte that is read at another rate than it was sent at: no text has it. */
+const UNREADABLE = 0xfe;
 const MCUSR = 0x54;
 /** Address of the RAM, after the registers. */
 const RAM = 0x100;
@@ -30,15 +34,19 @@ export class SimulatedBoard {
   onPulse: (pin: number, rise: number, width: number) => void = () => {};
   /** Called with each byte when the UNO has received it. */
   onReceived: (byte: number, cycle: number) => void = () => {};
+  /** The rate at which the other end sends and reads, baud. */
+  baud = 115_200;
   /** Number of bytes that the UNO's receiver lost. */
   lost = 0;
 
-  private uno!: Uno & { receive?(byte: number): boolean };
+  private uno!: Uno & { receive?(byte: number, isGarbled: boolean): boolean };
   /** Cycles of the chips before the last reset. */
   private before = 0;
   private readonly line: number[] = [];
   private lineIsBusy = false;
   private volts = 5;
+  /** The contacts between pins and ground, by Arduino number: true if closed. */
+  private readonly contacts = new Map<number, boolean>();
 
   /**
    * Starts a UNO at power-on. `image` is the beginning of flash, `bootLoader` a HEX file, `rail` a channel of the
@@ -96,6 +104,19 @@ export class SimulatedBoard {
     this.uno.adc.avcc = volts;
   }
 
+  /** Opens or closes a contact between a pin and ground; while it is open, the pin's pull-up makes it high. */
+  contact(pin: number, isClosed: boolean): void {
+    this.contacts.set(pin, isClosed);
+    this.level(pin, isClosed);
+  }
+
+  private level(pin: number, isClosed: boolean): void {
+    const { B, C, D } = this.uno.ports;
+    if (pin < 8) D.setPin(pin, !isClosed);
+    else if (pin < 14) B.setPin(pin - 8, !isClosed);
+    else C.setPin(pin - 14, !isClosed);
+  }
+
   /** Resets the chip; flash, EEPROM and RAM keep their content. */
   reset(cause: Cause): void {
     const { cpu, flash, memory } = this.uno;
@@ -119,9 +140,15 @@ export class SimulatedBoard {
     };
     uno.adc.avcc = this.volts;
     if (this.rail) uno.adc.channelValues[this.rail[0]] = this.rail[1];
-    uno.usart.onByteTransmit = (byte: number) => this.onByte(byte);
+    for (const [pin, isClosed] of this.contacts) this.level(pin, isClosed);
+    uno.usart.onByteTransmit = (byte: number) => this.onByte(this.isGarbled ? UNREADABLE : byte);
     const before = this.before;
     new Scope(uno, (pin: number, rise: number, width: number) => this.onPulse(pin, before + rise, width));
+  }
+
+  /** True while chip and other end have different rates. */
+  private get isGarbled(): boolean {
+    return Math.abs(this.uno.usart.baudRate / this.baud - 1) > RATE_ERROR;
   }
 
   private carry(): void {
@@ -132,9 +159,9 @@ export class SimulatedBoard {
       this.lineIsBusy = false;
       const byte = this.line.shift();
       if (uno !== this.uno || byte === undefined) return;
-      if (!uno.receive?.(byte)) this.lost += 1;
+      if (!uno.receive?.(byte, this.isGarbled)) this.lost += 1;
       this.onReceived(byte, this.cycle);
       this.carry();
-    }, BYTE_CYCLES);
+    }, Math.round((BYTE_BITS * FREQUENCY) / this.baud));
   }
 }

@@ -16,6 +16,8 @@ export class Calibrate {
   private readonly box = element('calibration');
   private readonly said = element('cal-said');
   private rows: Row[] = [];
+  /** True from a line without an answer on: what is shown may not be what the robot has. */
+  private isUnsure = false;
 
   constructor(private readonly session: () => Session) {
     element('cal-read').addEventListener('click', () => void this.read());
@@ -33,8 +35,14 @@ export class Calibrate {
     const answer = await this.session().ask(WORDS.cal, true);
     const settings = answer && calibration(answer.notes);
     if (!settings) return;
+    this.isUnsure = false;
     if (this.rows.length === 0) this.build();
     settings.forEach((servo, n) => this.show(n, servo));
+  }
+
+  /** Reads the settings again, since the robot answers, if it left a line unanswered. */
+  answered(): void {
+    if (this.isUnsure) void this.read();
   }
 
   private show(servo: number, { trim, limit, dir, scale }: ServoSettings): void {
@@ -49,6 +57,7 @@ export class Calibrate {
   private async set(line: string): Promise<void> {
     const answer = await this.session().ask(line);
     this.said.textContent = answer?.text ?? '';
+    this.isUnsure ||= answer === null;
     if (answer && !answer.ok) await this.read();
   }
 

@@ -1,20 +1,22 @@
-// A button for each gait, with its predicted displacement per cycle.
-import type { Description, Outlook, Way } from '../robot';
+// A button for each gait, with its predicted displacement per cycle, and one for each routine.
+import type { Description, GaitPrediction, Displacement } from '../robot';
 import type { Answer } from '../link/dialogue';
 import { WORDS } from '../words';
 import { element } from './canvas';
 
 /** Letters that fit on a button of the usual width. */
 const LONG = 13;
+/** Share of their torque-speed line from which the servos have little left. */
+const TIGHT = 0.9;
 /** The longest text of a prediction; a button reserves room for it. */
 const LONGEST = '-999.9 mm, -99.9°';
 
 /** A displacement in few letters: mm forward, and deg if it turns. */
-export function short(way: Way | null): string {
-  if (!way) return '';
+export function short(displacement: Displacement | null): string {
+  if (!displacement) return '';
   const parts = [
-    way.forward === null ? 'undetermined' : Math.abs(way.forward) >= 0.5 ? `${way.forward.toFixed(1)} mm` : '',
-    way.turn !== null && Math.abs(way.turn) >= 0.05 ? `${way.turn.toFixed(1)}°` : '',
+    displacement.forward === null ? 'undetermined' : Math.abs(displacement.forward) >= 0.5 ? `${displacement.forward.toFixed(1)} mm` : '',
+    displacement.turn !== null && Math.abs(displacement.turn) >= 0.05 ? `${displacement.turn.toFixed(1)}°` : '',
   ];
   return parts.filter(Boolean).join(', ');
 }
@@ -22,7 +24,7 @@ export function short(way: Way | null): string {
 export class Drive {
   private readonly list = element('gaits');
   private buttons: { command: string; button: HTMLButtonElement; note: HTMLElement }[] = [];
-  private readonly outlooks = new Map<string, Outlook>();
+  private readonly predictions = new Map<string, GaitPrediction>();
 
   private readonly said = element('drive-said');
   /** The commands of the buttons in index.html, which every robot has. */
@@ -49,9 +51,10 @@ export class Drive {
   }
 
   /** Takes another robot. */
-  take({ gaits }: Description): void {
+  showRobot({ gaits, routines }: Description): void {
     this.list.replaceChildren();
-    this.buttons = gaits.map(({ command, moves }) => {
+    // The predictions count the gaits, which are the first.
+    this.buttons = [...gaits, ...routines.map((command) => ({ command, moves: false }))].map(({ command, moves }) => {
       const button = this.list.appendChild(document.createElement('button'));
       button.type = 'button';
       button.dataset.command = command;
@@ -64,28 +67,41 @@ export class Drive {
       button.setAttribute('aria-pressed', 'false');
       return { command, button, note };
     });
-    this.outlooks.clear();
+    this.predictions.clear();
     this.said.hidden = true;
   }
 
   /** Shows the prediction of a gait; the old one stays until then. */
-  predicted(gait: number, outlook: Outlook): void {
+  predicted(gait: number, prediction: GaitPrediction): void {
     const entry = this.buttons[gait];
     if (!entry) return;
-    this.outlooks.set(entry.command, outlook);
-    entry.note.textContent = short(outlook);
+    this.predictions.set(entry.command, prediction);
+    entry.note.textContent = short(prediction);
+    this.showLine();
+  }
+
+  /** Shows the gait that asks most of the servos. */
+  private showLine(): void {
+    let [hardest, most] = ['', 0];
+    for (const [command, { line }] of this.predictions) {
+      if (line !== null && line > most) [hardest, most] = [command, line];
+    }
+    const note = element('line-note');
+    note.classList.toggle('warning', most >= TIGHT);
+    const meaning = most >= 1 ? ': they fall behind their pulses; send speed 50' : most >= TIGHT ? ': little is left' : '';
+    note.textContent = hardest === '' ? '' : `${hardest} asks most of its servos, ${most.toFixed(2)} of their torque-speed line${meaning}.`;
   }
 
   /** The prediction for a command; null until it is known. */
-  outlook(command: string): Outlook | null {
-    return this.outlooks.get(command) ?? null;
+  prediction(command: string): GaitPrediction | null {
+    return this.predictions.get(command) ?? null;
   }
 
   /** The gaits with a known prediction. */
-  ways(): { command: string; way: Outlook }[] {
+  choices(): { command: string; displacement: GaitPrediction }[] {
     return this.buttons.flatMap(({ command }) => {
-      const way = this.outlooks.get(command);
-      return way ? [{ command, way }] : [];
+      const displacement = this.predictions.get(command);
+      return displacement ? [{ command, displacement }] : [];
     });
   }
 

@@ -10,7 +10,7 @@ import { figures } from './trial';
 /** Access to the edited gait. */
 export interface Edited {
   gait(): Bars | null;
-  take(gait: Bars): void;
+  setGait(gait: Bars): void;
 }
 
 const WORDS = { start: 'Make it faster', stop: 'Stop the search', take: 'Use this gait', back: 'Back to the previous gait' };
@@ -43,7 +43,7 @@ export class FasterView {
     numberInput(element('faster-rounds'), { min: 1, max: 200, step: 1 }, (value) => (numbers.rounds = Math.round(value ?? 5)));
     numberInput(element('faster-seed'), { min: 0, max: 1e9, step: 1 }, (value) => (numbers.seed = Math.round(value ?? 1)));
     this.start.addEventListener('click', () => (this.search ? this.search.stop() : this.begin()));
-    this.takeIt.addEventListener('click', () => this.take());
+    this.takeIt.addEventListener('click', () => this.takeOver());
   }
 
   /** Ends the search if the robot has changed, since its result would not fit. */
@@ -53,13 +53,13 @@ export class FasterView {
     this.result.hidden = true;
     if (!this.search) return this.say('');
     this.search.drop();
-    this.over();
-    this.say('The robot has changed, so the search for the one of before has ended.');
+    this.reset();
+    this.say('The robot has changed, so the search for the previous one has ended.');
   }
 
   private begin(): void {
     const bars = this.edited.gait();
-    if (!bars) return this.say('There is no gait to begin with.');
+    if (!bars) return this.say('There is no gait to start from.');
     const { toml, floor, servos } = this.session();
     this.toml = toml;
     this.before = this.best = null;
@@ -88,12 +88,12 @@ export class FasterView {
         if (answer.best.better) this.show(answer.best);
         return this.say(answer.best.better ? `So far ${percent(answer.best)} faster.` : 'None of the gaits so far is faster.');
       case 'end':
-        this.ended(answer);
+        this.showEnd(answer);
     }
   }
 
-  private ended(answer: Answer & { of: 'end' }): void {
-    this.over();
+  private showEnd(answer: Answer & { of: 'end' }): void {
+    this.reset();
     if ('refused' in answer) return this.say(`This gait cannot be made faster: ${answer.refused}.`);
     const { best, done } = answer;
     const tried = done < this.all ? `Stopped after ${done} of ${this.all} gaits. ` : '';
@@ -108,7 +108,7 @@ export class FasterView {
   }
 
   /** Ends the search; the button starts a new one. */
-  private over(): void {
+  private reset(): void {
     this.search = null;
     this.bar.hidden = true;
     this.start.textContent = WORDS.start;
@@ -135,13 +135,13 @@ export class FasterView {
   }
 
   /** Takes the found gait into the editor, or restores the previous one. */
-  private take(): void {
+  private takeOver(): void {
     const now = this.edited.gait();
     if (!now || !this.best) return;
     const next = this.replaced ?? this.best.bars;
     this.replaced = this.replaced ? null : now;
     this.takeIt.textContent = this.replaced ? WORDS.back : WORDS.take;
-    this.edited.take({ ...next, name: now.name });
+    this.edited.setGait({ ...next, name: now.name });
   }
 
   private say(text: string): void {

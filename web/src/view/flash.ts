@@ -1,9 +1,9 @@
 // The panel that writes firmware and robot through the board's boot loader.
 import { hasConsole, imageOf } from '../link/stk500';
-import type { Session } from '../session';
+import { BY_CABLE, type Session } from '../session';
 import { sentence } from '../trouble';
 import { element } from './canvas';
-import type { What, Writer } from './writer';
+import type { WriteContent, Writer } from './writer';
 
 export class FlashView {
   private readonly note = element('flash-note');
@@ -38,14 +38,16 @@ export class FlashView {
   update(): void {
     const { link, section, description } = this.session();
     this.forget();
-    for (const control of [this.file, this.all, this.robot]) control.disabled = this.writer.isBusy;
-    this.note.textContent =
+    for (const control of [this.file, this.all, this.robot]) control.disabled = this.writer.isBusy || link.kind === 'radio';
+    const byRadio = `Nothing can be written to the ${link.name}: ${BY_CABLE}.`;
+    const byCable =
       `Writes to the ${link.name} by its boot loader, verifies, and starts it. The firmware is the same for every robot; what is saved in the board stays. ` +
       `The robot alone is ${section.length} bytes for firmware ${description.version} that is there already, and takes about a second.`;
+    this.note.textContent = link.kind === 'radio' ? byRadio : byCable;
   }
 
   /** Scrolls to the panel and writes the page's robot. */
-  write(what: What): void {
+  write(what: WriteContent): void {
     const panel = this.note.closest('details');
     if (panel) panel.open = true;
     this.said.scrollIntoView({ block: 'nearest' });
@@ -64,8 +66,8 @@ export class FlashView {
       return;
     }
     const what = hasConsole(this.chosen)
-      ? 'It is a firmware of a lizard.'
-      : 'It is not this firmware: with it the board no longer is a lizard, until firmware and robot are written again.';
+      ? 'It is lizard firmware.'
+      : 'It is not this firmware: with it the board is no longer a lizard, until firmware and robot are written again.';
     element('flash-what').textContent =
       `${file.name}, ${this.chosen.length} bytes. ${what} Write it to the ${this.session().link.name}?`;
     this.question.hidden = false;

@@ -15,10 +15,10 @@ const LONGEST_TRACK = 6000;
 const TRACK_STEP = 0.5;
 
 /** Distance of a second robot's start to the right, mm. */
-const BESIDE = 280;
+const SECOND_OFFSET = 280;
 
 /** Sideways movement after which a finger drags the floor, CSS pixels. */
-const SLOP = 12;
+const DRAG_THRESHOLD = 12;
 
 /** The label of the scale and its place, CSS pixels. */
 interface Label {
@@ -91,23 +91,24 @@ export class Floor {
   }
 
   /** Adds a point to the track of the robot, or of the second one. */
-  walked({ x, y }: Place, beside = false): void {
-    const track = this.tracks[beside ? 1 : 0] ?? [];
+  addToTrack({ x, y }: Place, second = false): void {
+    const track = this.tracks[second ? 1 : 0] ?? [];
     const last = track[track.length - 1];
     if (last && Math.hypot(x - last.x, y - last.y) < TRACK_STEP) return;
     track.push({ x, y });
     if (track.length > LONGEST_TRACK) track.splice(0, LONGEST_TRACK / 4);
   }
 
-  draw(plate: Plate, frame: Frame | null, beside: Frame | null): void {
+  /** Draws the floor and the robots. */
+  draw(plate: Plate, frame: Frame | null, second: Frame | null): void {
     const area = surface(this.canvas, true, this.unseen);
     if (!area) return;
     const { pen, width, height } = area;
-    this.shown = [plate, frame, beside];
-    if (this.fits) this.zoom = Math.min(width / (VIEW + (beside ? BESIDE : 0)), height / VIEW);
+    this.shown = [plate, frame, second];
+    if (this.fits) this.zoom = Math.min(width / (VIEW + (second ? SECOND_OFFSET : 0)), height / VIEW);
     if (this.following && frame) {
       // Smoothed, so that a step does not shake the view.
-      const middle = beside ? [(frame.place.x + beside.place.x + BESIDE) / 2, (frame.place.y + beside.place.y) / 2] : [frame.place.x, frame.place.y];
+      const middle = second ? [(frame.place.x + second.place.x + SECOND_OFFSET) / 2, (frame.place.y + second.place.y) / 2] : [frame.place.x, frame.place.y];
       this.centre.x += ((middle[0] ?? 0) - this.centre.x) * 0.08;
       this.centre.y += ((middle[1] ?? 0) - this.centre.y) * 0.08;
     }
@@ -121,24 +122,24 @@ export class Floor {
   }
 
   /** Widens the view to two robots. */
-  widen(): void {
+  fitTwoRobots(): void {
     this.fits = true;
     this.follow(true);
   }
 
-  /** Draws the floor and the robots. */
+  /** Scrolls to the floor. */
   show(): void {
     this.canvas.scrollIntoView({ block: 'nearest' });
   }
 
   /** Draws the last picture with another context in CSS pixels, for SVG; the caller adds the label of the scale. */
-  again(pen: CanvasRenderingContext2D): Label {
+  redraw(pen: CanvasRenderingContext2D): Label {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     return this.paint(pen, width, height);
   }
 
   private paint(pen: CanvasRenderingContext2D, width: number, height: number): Label {
-    const [plate, frame, beside] = this.shown ?? [null, null, null];
+    const [plate, frame, second] = this.shown ?? [null, null, null];
     pen.fillStyle = palette().floor;
     pen.fillRect(0, 0, width, height);
     pen.save();
@@ -146,11 +147,11 @@ export class Floor {
     pen.scale(this.zoom, -this.zoom);
     pen.translate(-this.centre.x, -this.centre.y);
     this.grid(pen, width, height);
-    const robots: [number, Frame | null][] = beside ? [[0, frame], [BESIDE, beside]] : [[0, frame]];
-    robots.forEach(([aside, robot], n) => {
+    const robots: [number, Frame | null][] = second ? [[0, frame], [SECOND_OFFSET, second]] : [[0, frame]];
+    robots.forEach(([shift, robot], n) => {
       pen.save();
-      pen.translate(aside, 0);
-      this.way(pen, this.tracks[n] ?? []);
+      pen.translate(shift, 0);
+      this.drawTrack(pen, this.tracks[n] ?? []);
       if (plate && robot?.scene) {
         const { x, y, heading } = robot.place;
         pen.translate(x, y);
@@ -182,7 +183,7 @@ export class Floor {
     pen.stroke();
   }
 
-  private way(pen: CanvasRenderingContext2D, track: { x: number; y: number }[]): void {
+  private drawTrack(pen: CanvasRenderingContext2D, track: { x: number; y: number }[]): void {
     pen.strokeStyle = palette().track;
     pen.lineWidth = 2.5 / this.zoom;
     pen.lineJoin = 'round';
@@ -245,7 +246,7 @@ export class Floor {
       this.zoomBy(apart(now) / Math.max(1, apart(before)), (now.x + other.x) / 2, (now.y + other.y) / 2);
     } else {
       // A finger that scrolls the page moves a little before the browser takes over.
-      this.dragging ||= event.pointerType !== 'touch' || Math.abs(now.x - before.x) > SLOP;
+      this.dragging ||= event.pointerType !== 'touch' || Math.abs(now.x - before.x) > DRAG_THRESHOLD;
       if (!this.dragging) return;
       this.pan(now.x - before.x, now.y - before.y);
     }

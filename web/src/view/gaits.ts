@@ -53,8 +53,8 @@ export class GaitsView {
     writer: Writer,
   ) {
     this.trial = new TrialView(module, session, ask, writer, { prefix: 'gait', made: () => this.gait, change: (what, value) => this.change({ [what]: value }) });
-    this.faster = new FasterView(session, { gait: () => this.gait, take: (gait) => this.change(gait) });
-    this.panel.addEventListener('toggle', () => this.take());
+    this.faster = new FasterView(session, { gait: () => this.gait, setGait: (gait) => this.change(gait) });
+    this.panel.addEventListener('toggle', () => this.showRobot());
     this.from.addEventListener('change', () => this.choose());
     this.name.addEventListener('input', () => this.change({ name: this.name.value.trim().replaceAll(' ', '-') }));
     this.held.addEventListener('change', () => this.change({ held: this.held.value === 'held' }));
@@ -67,7 +67,7 @@ export class GaitsView {
   }
 
   /** Shows the session's robot if the panel is open; an edited gait stays. */
-  take(): void {
+  showRobot(): void {
     this.faster.follow();
     if (!this.panel.open) return;
     const { description, toml } = this.session();
@@ -96,7 +96,7 @@ export class GaitsView {
   /** Starts to edit the chosen gait of the robot. */
   private choose(): void {
     const bars = this.from.value === '' ? null : this.session().robot.bars(Number(this.from.value));
-    if (!bars) return this.trial.say('This robot has no gait of four bars to begin with.');
+    if (!bars) return this.trial.say('This robot has no gait of four bars to start from.');
     this.gait = { ...bars, name: this.name.value || 'mine' };
     this.show();
     this.trial.predict();

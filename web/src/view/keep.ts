@@ -50,26 +50,26 @@ export class Keep {
     on('record', () => this.record(!this.isRecording));
     on('replay', () => this.play(!this.isSeen));
     on('csv', () => this.recording && save('run.csv', [this.recording.csv()], 'text/csv'));
-    on('png', () => this.picture(() => void this.png()));
-    on('svg', () => this.picture(() => void this.svg()));
+    on('png', () => this.takePicture(() => void this.savePng()));
+    on('svg', () => this.takePicture(() => void this.saveSvg()));
     on('film', () => this.toggleFilm());
-    on('both', () => void this.both());
-    on('alone', () => this.alone());
+    on('both', () => void this.startBoth());
+    on('alone', () => this.removeCompanion());
     this.moment.addEventListener('input', () => {
       this.isSeen = true;
       this.playing = null;
-      this.buttons();
+      this.updateButtons();
     });
     element<HTMLButtonElement>('film').disabled = !this.format;
-    this.buttons();
+    this.updateButtons();
   }
 
   /** Shows another robot; the recording of the previous one is dropped. */
-  take({ gaits }: Description): void {
+  showRobot({ gaits }: Description): void {
     this.record(false);
     this.recording = null;
     this.isSeen = false;
-    this.alone();
+    this.removeCompanion();
     const chosen = [this.mine.value, this.other.value];
     for (const list of [this.mine, this.other]) {
       list.replaceChildren(
@@ -85,7 +85,7 @@ export class Keep {
     this.mine.value = known.find((gait) => gait === chosen[0]) ?? moving[moving.length > 1 ? 1 : 0] ?? '';
     this.other.value = known.find((gait) => gait === chosen[1]) ?? moving[0] ?? '';
     this.say('');
-    this.buttons();
+    this.updateButtons();
   }
 
   /** Adds a frame to the recording and advances the companion. */
@@ -97,7 +97,7 @@ export class Keep {
     if (!this.companion || this.waiting) return;
     for (this.owed += seconds; this.owed > FRAME / 2; this.owed -= FRAME) this.companion.step();
     const place = this.companion.frame?.place;
-    if (place) this.floor.walked(place, true);
+    if (place) this.floor.addToTrack(place, true);
   }
 
   /** Starts the companion when the robot starts its gait. */
@@ -146,8 +146,8 @@ export class Keep {
     if (!companion?.frame || this.waiting) return;
     const { last, robot } = this.session();
     const start = { x: 0, y: 0, heading: 0 };
-    const way = (frame: Frame | null) => (frame ? short(robot.between(start, frame.place)) : '');
-    this.say(`${this.mine.value}: ${way(last)}. Beside it, ${this.other.value}: ${way(companion.frame)}.`);
+    const displacement = (frame: Frame | null) => (frame ? short(robot.between(start, frame.place)) : '');
+    this.say(`${this.mine.value}: ${displacement(last)}. Beside it, ${this.other.value}: ${displacement(companion.frame)}.`);
   }
 
   private record(on: boolean): void {
@@ -160,9 +160,9 @@ export class Keep {
     } else if (this.recording) {
       this.moment.max = String(this.recording.seconds);
       this.moment.value = '0';
-      this.say(`${this.recording.seconds.toFixed(1)} s are kept.`);
+      this.say(`${this.recording.seconds.toFixed(1)} s recorded.`);
     }
-    this.buttons();
+    this.updateButtons();
   }
 
   private play(on: boolean): void {
@@ -171,11 +171,11 @@ export class Keep {
     const from = recording && this.moment.valueAsNumber < recording.seconds - FRAME ? this.moment.valueAsNumber : 0;
     this.playing = on ? { since: performance.now(), from } : null;
     if (on) this.floor.show();
-    this.buttons();
+    this.updateButtons();
   }
 
   /** Takes a picture of the next drawing, even out of sight. */
-  private picture(take: () => void): void {
+  private takePicture(take: () => void): void {
     this.onDrawn = take;
     this.floor.unseen = true;
   }
@@ -194,7 +194,7 @@ export class Keep {
       film.addEventListener('dataavailable', ({ data }) => pieces.push(data));
       film.addEventListener('stop', () => {
         this.film = null;
-        this.buttons();
+        this.updateButtons();
         for (const track of film.stream.getTracks()) track.stop();
         save(`run.${ending}`, pieces, type);
       });
@@ -202,22 +202,22 @@ export class Keep {
       film.start(1000);
       this.film = film;
     }
-    this.buttons();
+    this.updateButtons();
   }
 
-  private async png(): Promise<void> {
+  private async savePng(): Promise<void> {
     const canvas = element<HTMLCanvasElement>('floor');
     const blob = await new Promise<Blob | null>((made) => canvas.toBlob(made));
     if (blob) save('floor.png', [blob], 'image/png');
     else this.say('The browser could not write the picture.');
   }
 
-  private async svg(): Promise<void> {
+  private async saveSvg(): Promise<void> {
     try {
       const { Context } = await import('svgcanvas');
       const { clientWidth, clientHeight } = element('floor');
       const pen = new Context(clientWidth, clientHeight);
-      const label = this.floor.again(pen as unknown as CanvasRenderingContext2D);
+      const label = this.floor.redraw(pen as unknown as CanvasRenderingContext2D);
       // The package would measure text with an inline style, which the page's policy forbids.
       const text = pen.getSvg().appendChild(document.createElementNS('http://www.w3.org/2000/svg', 'text'));
       const { ink } = palette();
@@ -226,18 +226,18 @@ export class Keep {
       text.textContent = label.text;
       save('floor.svg', [pen.getSerializedSvg()], 'image/svg+xml');
     } catch (error) {
-      this.say(`No picture is made: ${sentence(error)}`);
+      this.say(`The picture cannot be made: ${sentence(error)}`);
     }
   }
 
   /** Starts both robots in the same frame, each from its own start. */
-  private async both(): Promise<void> {
+  private async startBoth(): Promise<void> {
     const session = this.session();
     const { toml, floor, servos, volts } = session;
-    this.alone();
-    this.say('The second robot is switched on…');
+    this.removeCompanion();
+    this.say('Switching on the second robot…');
     try {
-      const companion = await Companion.standing(this.module, toml, floor, servos, volts);
+      const companion = await Companion.create(this.module, toml, floor, servos, volts);
       if (toml !== this.session().toml) return;
       await this.ask(WORDS.stop);
       session.home();
@@ -247,23 +247,23 @@ export class Keep {
       this.companion = companion;
       this.owed = 0;
       this.waiting = { mine: this.mine.value, other: this.other.value };
-      this.buttons();
-      this.floor.widen();
+      this.updateButtons();
+      this.floor.fitTwoRobots();
       this.floor.show();
       await this.ask(this.mine.value);
     } catch (error) {
-      this.say(`There is no second robot: ${sentence(error)}`);
+      this.say(`The second robot cannot start: ${sentence(error)}`);
     }
   }
 
-  private alone(): void {
+  private removeCompanion(): void {
     if (this.companion) this.say('');
     this.companion = null;
     this.waiting = null;
-    this.buttons();
+    this.updateButtons();
   }
 
-  private buttons(): void {
+  private updateButtons(): void {
     const { recording, isRecording, isSeen, film } = this;
     const has = recording !== null && recording.moments.length > 0 && !isRecording;
     const set = (id: string, text: string, pressed: boolean, enabled = true) => {

@@ -16,7 +16,7 @@ export class Lengths {
   }
 
   /** Shows the lengths of the session's robot. */
-  take(lengths: Length[]): void {
+  showRobot(lengths: Length[]): void {
     if (lengths.length !== this.inputs.size) this.build(lengths);
     for (const { key, value } of lengths) {
       const input = this.inputs.get(key);

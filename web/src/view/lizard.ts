@@ -1,5 +1,5 @@
 // Draws the lizard from above in mm of its own frame: x to the right, y forward.
-import type { Plate, Scene, Spot } from '../robot';
+import type { Plate, Scene, Point } from '../robot';
 import { circle } from './canvas';
 import { palette, servoColour } from './palette';
 
@@ -11,7 +11,7 @@ const SLIPS = 0.3;
 
 type Pen = CanvasRenderingContext2D;
 
-function bar(pen: Pen, [x1, y1]: Spot, [x2, y2]: Spot, colour: string, mm: number): void {
+function bar(pen: Pen, [x1, y1]: Point, [x2, y2]: Point, colour: string, mm: number): void {
   pen.strokeStyle = colour;
   pen.lineWidth = mm;
   pen.lineCap = 'round';
@@ -21,7 +21,7 @@ function bar(pen: Pen, [x1, y1]: Spot, [x2, y2]: Spot, colour: string, mm: numbe
   pen.stroke();
 }
 
-function disc(pen: Pen, [x, y]: Spot, mm: number, fill: string, edge?: string): void {
+function disc(pen: Pen, [x, y]: Point, mm: number, fill: string, edge?: string): void {
   pen.fillStyle = fill;
   pen.beginPath();
   circle(pen, x, y, mm);
@@ -37,11 +37,11 @@ const TURNS = 5;
 const COIL = 2.4;
 
 /** Draws a spring between two hooks. */
-function coil(pen: Pen, [x1, y1]: Spot, [x2, y2]: Spot): void {
+function coil(pen: Pen, [x1, y1]: Point, [x2, y2]: Point): void {
   const length = Math.hypot(x2 - x1, y2 - y1);
   if (length < 1) return;
   const [along, across] = [[(x2 - x1) / length, (y2 - y1) / length], [(y1 - y2) / length, (x2 - x1) / length]];
-  const at = (share: number, side: number): Spot => [
+  const at = (share: number, side: number): Point => [
     x1 + along[0] * share * length + across[0] * side,
     y1 + along[1] * share * length + across[1] * side,
   ];

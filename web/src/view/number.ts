@@ -1,4 +1,4 @@
-// A number that is typed: what is out of its range is marked and not taken.
+// A number input that marks values out of range and ignores them.
 
 export interface Range {
   min: number;
@@ -7,8 +7,8 @@ export interface Range {
 }
 
 /**
- * Gives an input its range, and calls back with each number in it that is typed; null of one that is emptied. Whoever
- * leaves an input with another number finds the last one that was taken.
+ * Sets an input's range, and calls back with each valid number that is typed, or null when the input is emptied. Leaving
+ * the input restores the last valid number.
  */
 export function numberInput(input: HTMLInputElement, { min, max, step }: Range, take: (value: number | null) => void): void {
   Object.assign(input, { type: 'number', min: String(min), max: String(max), step: String(step), title: `from ${min} to ${max}` });
@@ -27,7 +27,7 @@ export function numberInput(input: HTMLInputElement, { min, max, step }: Range, 
   });
 }
 
-/** Shows a number in an input; what is being typed there is not written over. */
+/** Shows a number in an input, unless the user is typing there. */
 export function putNumber(input: HTMLInputElement, value: number): void {
   input.defaultValue = String(value);
   if (document.activeElement === input) return;

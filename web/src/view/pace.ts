@@ -1,4 +1,4 @@
-// The pace of all gaits: what a person asks for, and what the robot says that it has.
+// The pace of all gaits: the slider's value, and the pace that the robot reports.
 import { WORDS } from '../words';
 import { element } from './canvas';
 
@@ -8,7 +8,7 @@ export class Pace {
   /** True while the user holds the slider, or its line has no answer. */
   private held = false;
 
-  /** `ask` sends a line and ends with its answer. */
+  /** `ask` sends a line and resolves with its answer. */
   constructor(ask: (line: string) => Promise<unknown>) {
     this.slider.addEventListener('input', () => {
       this.held = true;
@@ -21,7 +21,7 @@ export class Pace {
     this.write(this.slider.valueAsNumber);
   }
 
-  /** Shows what the robot has, percent. */
+  /** Shows the robot's pace, percent. */
   show(percent: number): void {
     if (this.held) return;
     this.slider.value = String(percent);

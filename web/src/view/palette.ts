@@ -18,7 +18,7 @@ export function palette(): Palette {
   return known;
 }
 
-/** Calls back when light has become dark, or dark light. */
+/** Calls back when the colour scheme changes between light and dark. */
 export function onPaletteChange(callback: () => void): void {
   changed.push(callback);
 }

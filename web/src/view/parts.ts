@@ -12,7 +12,7 @@ import { onPaletteChange } from './palette';
 
 const ORIGIN: Place = { x: 0, y: 0, heading: 0 };
 
-/** The guide's words as plain text: of Markdown it has bold and code alone. */
+/** Converts the guide's Markdown, which uses only bold and code, to plain text. */
 const plain = (words: string) => words.replaceAll('**', '').replaceAll('`', '');
 
 export class PartsView {
@@ -24,7 +24,7 @@ export class PartsView {
   private space: Space | null = null;
   private solids: Solids | null = null;
   private model: Model | null = null;
-  /** The robot.toml that is shown, or is being taken. */
+  /** The robot.toml that is shown or being loaded. */
   private toml = '';
   private step: number | null = null;
   private picked: number | null = null;
@@ -35,12 +35,12 @@ export class PartsView {
   private isVisible = false;
 
   constructor(private readonly session: () => Session) {
-    this.panel.addEventListener('toggle', () => this.take());
+    this.panel.addEventListener('toggle', () => this.showRobot());
     new IntersectionObserver(([entry]) => (this.isVisible = entry?.isIntersecting ?? false)).observe(this.canvas);
     this.apart.addEventListener('input', () => this.show());
     this.list.addEventListener('change', () => this.pick(this.list.value === '' ? null : Number(this.list.value)));
-    element('step-back').addEventListener('click', () => this.go(-1));
-    element('step-on').addEventListener('click', () => this.go(1));
+    element('step-back').addEventListener('click', () => this.stepBy(-1));
+    element('step-on').addEventListener('click', () => this.stepBy(1));
     element('step-all').addEventListener('click', () => this.toStep(null));
     element('space-home').addEventListener('click', () => this.space?.home());
     this.button.addEventListener('click', () => void this.files());
@@ -48,7 +48,7 @@ export class PartsView {
   }
 
   /** Takes the session's robot, if the panel is open. */
-  take(): void {
+  showRobot(): void {
     const { toml } = this.session();
     if (!this.panel.open || toml === this.toml) return;
     this.toml = toml;
@@ -70,7 +70,7 @@ export class PartsView {
       this.asked = '';
       this.fill(model);
       this.space ??= this.open(Space);
-      this.space?.take(model, meshes);
+      this.space?.showModel(model, meshes);
       this.toStep(this.step !== null && this.step <= model.steps.length ? this.step : null);
       this.pick(null);
     } catch (error) {
@@ -103,13 +103,13 @@ export class PartsView {
     this.list.replaceChildren(option('', 'none'), ...bodies.map(({ name, number }) => option(String(number), name)));
   }
 
-  private go(by: number): void {
+  private stepBy(by: number): void {
     if (!this.model) return;
     const last = this.model.steps.length;
     this.toStep(this.step === null ? (by > 0 ? 1 : last) : Math.max(1, Math.min(last, this.step + by)));
   }
 
-  /** A step of the guide shows its new parts apart, as the guide's picture does; without one all is together. */
+  /** Shows a step's new parts apart, as the guide's picture does; without a step, all parts together. */
   private toStep(step: number | null): void {
     if (!this.model) return;
     if ((step === null) !== (this.step === null)) this.apart.value = step === null ? '0' : '100';
@@ -144,7 +144,7 @@ export class PartsView {
     this.space?.show({ apart: Number(this.apart.value) / 100, step: this.step, picked: this.picked });
   }
 
-  /** In every picture of the page. */
+  /** Called in every frame of the page. */
   draw(frame: Frame | null): void {
     const { space, solids } = this;
     if (!space || !solids || !space.mayDraw() || !this.panel.open || !this.isVisible) return;
@@ -158,7 +158,7 @@ export class PartsView {
       void solids.pose(angles, lags).then((places) => {
         if (solids !== this.solids) return;
         if (places) space.pose(places);
-        // Another pose was on its way: this one is asked for again.
+        // Another pose was in progress, so this one is requested again.
         else if (this.asked === asked) this.asked = '';
       });
     }
@@ -205,7 +205,7 @@ export class PartsView {
     }
   }
 
-  /** Stops what is being made. */
+  /** Stops the making of the files. */
   private halt(): void {
     this.stop?.();
   }

@@ -1,5 +1,5 @@
 // The panel in which a gesture is drawn: the point of head or tail goes round a closed line.
-import type { Drawn, End, Instead, Room } from '../robot';
+import type { DrawnGait, End, Alternative, ReachArea } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
 import { numberInput, putNumber, type Range } from './number';
@@ -7,19 +7,19 @@ import { TrialView } from './trial';
 import type { Writer } from './writer';
 
 const SVG = 'http://www.w3.org/2000/svg';
-/** A point that is nearer to the one before is not taken, mm. */
-const NEAR = 0.3;
-/** A line with fewer points was a tap. */
-const FEW = 8;
+/** Least distance of two recorded points, mm. */
+const LEAST_DISTANCE = 0.3;
+/** Least number of points of a line; with fewer it is a tap. */
+const LEAST_POINTS = 8;
 /** Points of a shape. */
 const POINTS = 96;
-/** mm around what is shown. */
-const RIM = 4;
+/** Margin around the picture, mm. */
+const MARGIN = 4;
 
-type Spot = [number, number];
+type Point = [number, number];
 
-/** Lines to begin with, by the share of a round, in tenths of the way from the base to the neutral point. */
-const SHAPES: Record<string, (turn: number) => Spot> = {
+/** Predefined lines: points by the share of a round, in tenths of the distance from the base to the neutral point. */
+const SHAPES: Record<string, (turn: number) => Point> = {
   circle: (turn) => [Math.sin(turn), Math.cos(turn) - 1],
   eight: (turn) => [1.4 * Math.sin(turn), 0.6 * Math.sin(2 * turn)],
   side: (turn) => [1.4 * Math.sin(turn), 0],
@@ -45,8 +45,8 @@ export class PathView {
   private readonly line = this.part('path', 'line');
   private readonly rounded = this.part('path', 'rounded');
   private readonly neutral = this.part('circle', 'neutral');
-  private drawn: Drawn = { name: 'gesture', end: 'head', period: 4, size: 1, terms: 4, points: [] };
-  private room: Room | null = null;
+  private drawn: DrawnGait = { name: 'gesture', end: 'head', period: 4, size: 1, terms: 4, points: [] };
+  private room: ReachArea | null = null;
   private toml = '';
 
   constructor(
@@ -56,8 +56,8 @@ export class PathView {
     writer: Writer,
   ) {
     const made = () => (this.drawn.points.length === 0 ? null : this.drawn);
-    this.trial = new TrialView(module, session, ask, writer, { prefix: 'path', made, change: (what, value) => this.instead(what, value) });
-    this.panel.addEventListener('toggle', () => this.take());
+    this.trial = new TrialView(module, session, ask, writer, { prefix: 'path', made, change: (what, value) => this.applyAlternative(what, value) });
+    this.panel.addEventListener('toggle', () => this.showRobot());
     this.end.addEventListener('change', () => {
       this.drawn = { ...this.drawn, end: this.end.value as End };
       this.begin();
@@ -70,11 +70,11 @@ export class PathView {
         this.change({ [plain]: plain === 'size' ? value / 100 : plain === 'terms' ? Math.round(value) : value });
       });
     }
-    this.draws();
+    this.recordLines();
   }
 
-  /** Takes the session's robot, if the panel is open; a line that was drawn stays. */
-  take(): void {
+  /** Shows the session's robot, if the panel is open; a drawn line stays. */
+  showRobot(): void {
     if (!this.panel.open) return;
     const { toml } = this.session();
     if (toml === this.toml) return;
@@ -82,16 +82,16 @@ export class PathView {
     this.begin(this.drawn.points.length > 0);
   }
 
-  /** The plane of the end that is chosen, with the shape that is chosen unless a line is kept. */
+  /** Shows the plane of the chosen end, with the chosen shape unless a drawn line is kept. */
   private begin(isKept = false): void {
     this.room = this.session().robot.room(this.drawn.end);
     if (!this.room) return;
-    this.ground(this.room);
+    this.drawBackground(this.room);
     const shape = SHAPES[this.shape.value];
     if (!isKept && shape) {
       const [x, y] = this.room.neutral;
       const tenth = Math.hypot(x, y) / 10;
-      const points = Array.from({ length: POINTS }, (_, n): Spot => {
+      const points = Array.from({ length: POINTS }, (_, n): Point => {
         const [across, out] = shape((2 * Math.PI * n) / POINTS);
         return [x + tenth * across, y + tenth * out];
       });
@@ -100,36 +100,36 @@ export class PathView {
     else this.change({});
   }
 
-  private instead(what: Instead, value: number): void {
+  private applyAlternative(what: Alternative, value: number): void {
     if (what !== 'amplitude') this.change({ [what]: value });
   }
 
-  private change(part: Partial<Drawn>): void {
+  private change(part: Partial<DrawnGait>): void {
     this.drawn = { ...this.drawn, ...part };
     this.show();
     this.trial.predict();
   }
 
-  /** A part of the picture. */
+  /** Makes an element of the picture. */
   private part<K extends 'path' | 'circle'>(kind: K, name: string): SVGElementTagNameMap[K] {
     const part = this.plane.appendChild(document.createElementNS(SVG, kind));
     part.classList.add(name);
     return part;
   }
 
-  /** Outward is up for the head and down for the tail, as the robot is seen from above. */
-  private at([x, y]: Spot): Spot {
+  /** Converts a point to the picture: outward is up for the head and down for the tail. */
+  private at([x, y]: Point): Point {
     return [x, this.drawn.end === 'head' ? -y : y];
   }
 
-  private path(points: Spot[], end = 'Z'): string {
+  private path(points: Point[], end = 'Z'): string {
     return points.length === 0 ? '' : `M ${points.map((point) => this.at(point).map((value) => value.toFixed(2)).join(' ')).join(' L ')} ${end}`;
   }
 
-  /** Draws the background: the reachable area, the base, the neutral point. */
-  private ground({ from, step, columns, allowed, neutral, shafts }: Room): void {
+  /** The background: the reachable area, the base, the neutral point. */
+  private drawBackground({ from, step, columns, allowed, neutral, shafts }: ReachArea): void {
     const rows = allowed.length / columns;
-    const corner = (column: number, row: number): Spot => [from[0] + (column - 0.5) * step, from[1] + (row - 0.5) * step];
+    const corner = (column: number, row: number): Point => [from[0] + (column - 0.5) * step, from[1] + (row - 0.5) * step];
     const cells: string[] = [];
     for (let row = 0; row < rows; row++) {
       for (let column = 0; column < columns; column++) {
@@ -147,9 +147,9 @@ export class PathView {
     this.neutral.setAttribute('cy', String(y));
     this.neutral.setAttribute('r', '1.5');
     const far = from[1] + rows * step;
-    const [left, wide] = [Math.min(from[0], shafts[0][0]) - RIM, Math.max(columns * step, shafts[1][0] - shafts[0][0]) + 2 * RIM];
-    const high = far + 2 * RIM;
-    this.plane.setAttribute('viewBox', `${left} ${this.drawn.end === 'head' ? -far - RIM : -RIM} ${wide} ${high}`);
+    const [left, wide] = [Math.min(from[0], shafts[0][0]) - MARGIN, Math.max(columns * step, shafts[1][0] - shafts[0][0]) + 2 * MARGIN];
+    const high = far + 2 * MARGIN;
+    this.plane.setAttribute('viewBox', `${left} ${this.drawn.end === 'head' ? -far - MARGIN : -MARGIN} ${wide} ${high}`);
   }
 
   private show(): void {
@@ -164,19 +164,19 @@ export class PathView {
     this.rounded.setAttribute('d', this.path((drawn.points.length > 0 && this.session().robot.path(drawn)) || []));
   }
 
-  /** A finger or a mouse draws. */
-  private draws(): void {
-    let points: Spot[] | null = null;
-    const spot = ({ clientX, clientY }: PointerEvent): Spot | null => {
+  /** Records the lines that a finger or a mouse draws. */
+  private recordLines(): void {
+    let points: Point[] | null = null;
+    const pointOf = ({ clientX, clientY }: PointerEvent): Point | null => {
       const place = this.plane.getScreenCTM();
       if (!place) return null;
       const { x, y } = new DOMPoint(clientX, clientY).matrixTransform(place.inverse());
       return this.at([x, y]);
     };
     const add = (event: PointerEvent) => {
-      const next = spot(event);
+      const next = pointOf(event);
       const last = points?.at(-1);
-      if (!points || !next || (last && Math.hypot(next[0] - last[0], next[1] - last[1]) < NEAR)) return;
+      if (!points || !next || (last && Math.hypot(next[0] - last[0], next[1] - last[1]) < LEAST_DISTANCE)) return;
       points.push(next);
       this.line.setAttribute('d', this.path(points, ''));
     };
@@ -193,9 +193,9 @@ export class PathView {
       const line = points;
       points = null;
       if (!line) return;
-      if (line.length < FEW) {
+      if (line.length < LEAST_POINTS) {
         this.show();
-        return this.trial.say('A tap is no line: hold and draw it.');
+        return this.trial.say('A tap is not a line: hold and draw it.');
       }
       this.shape.value = 'own';
       this.change({ points: line, size: 1 });

@@ -1,34 +1,38 @@
-// The robot.toml behind everything, as text: edited, opened, dropped, undone, and given away as a link.
-import { linkTo, linked } from '../link-text';
+// The robot.toml as text: edited, opened, dropped into the box, undone, and shared as a link.
+import { linkTo, robotIn } from '../link-text';
 import type { Refused } from '../robot';
 import type { Session } from '../session';
 import { sentence } from '../trouble';
 import { element } from './canvas';
 import { NO_BOARD, type Writer } from './writer';
 
-/** So many robots can be gone back to. */
+/** Number of robots that undo can restore. */
 const STEPS = 50;
 
 export class RobotText {
   private readonly panel = element<HTMLDetailsElement>('robot-editor');
   private readonly box = element<HTMLTextAreaElement>('robot-text');
   private readonly undo = element<HTMLButtonElement>('robot-undo');
-  /** The robots of before, the last one at the end. */
+  /** The previous robots, the latest at the end. */
   private before: string[] = [];
   private shown = '';
-  private faulty: number | null = null;
+  /** The mistake of the text; null while it is the session's robot. */
+  refused: Refused | null = null;
 
+  /** `onText` is called when the text or its refusal has changed. */
   constructor(
     private readonly session: () => Session,
     private readonly writer: Writer,
+    private readonly onText: () => void,
   ) {
     element('robot-write').addEventListener('click', () => void this.write());
-    element('robot-take').addEventListener('click', () => void this.give(this.box.value));
+    element('robot-take').addEventListener('click', () => void this.loadAndShow(this.box.value));
     this.box.addEventListener('keydown', (event) => {
       if (event.key !== 'Enter' || !(event.ctrlKey || event.metaKey)) return;
       event.preventDefault();
-      void this.give(this.box.value);
+      void this.loadAndShow(this.box.value);
     });
+    this.box.addEventListener('input', onText);
     this.undo.addEventListener('click', () => void this.back());
     element('robot-line').addEventListener('click', () => this.toLine());
     element('robot-link').addEventListener('click', () => void this.link());
@@ -51,22 +55,31 @@ export class RobotText {
   }
 
   /** Shows the session's robot. */
-  take(): void {
+  showRobot(): void {
     const { toml, file } = this.session();
     // While a file of the list is being read it has no name; then there is nothing to undo.
     if (file === '') this.before = [];
     else if (this.shown !== '' && this.shown !== toml) this.before = [...this.before.slice(1 - STEPS), this.shown];
     this.shown = toml;
     this.box.value = toml;
-    this.undo.disabled = this.before.length === 0;
     this.say(null);
   }
 
-  /** Takes the robot that the page's address has, if any; whether nothing was wrong with that. */
+  /** The text as it is shown: the session's robot, or one that is being written or has a mistake. */
+  get draft(): string {
+    return this.box.value;
+  }
+
+  /** True if there is a step to undo. */
+  get canUndo(): boolean {
+    return this.before.length > 0 || this.refused !== null;
+  }
+
+  /** Loads the robot in the page's address, if there is one; returns false if it is invalid. */
   async fromAddress(hash = location.hash): Promise<boolean> {
     try {
-      const toml = await linked(hash);
-      return toml === null || toml === this.session().toml || (await this.give(toml));
+      const toml = await robotIn(hash);
+      return toml === null || toml === this.session().toml || (await this.loadAndShow(toml));
     } catch (error) {
       this.panel.open = true;
       this.say({ refused: sentence(error), line: null, key: '' });
@@ -76,71 +89,82 @@ export class RobotText {
 
   private async open(file: File): Promise<void> {
     this.panel.open = true;
-    // A file that is not text does not belong into the box.
+    // A binary file is not shown in the box.
     const toml = file.size > 1_000_000 ? '' : await file.text();
-    if (toml === '' || toml.includes('\0')) return this.say({ refused: `${file.name} is no robot.toml.`, line: null, key: '' });
-    await this.give(toml);
+    if (toml === '' || toml.includes('\0')) return this.say({ refused: `${file.name} is not a robot.toml.`, line: null, key: '' });
+    await this.loadAndShow(toml);
   }
 
-  /** Makes the text the robot, or shows its mistakes; returns true if it became the robot. */
-  private async give(toml: string): Promise<boolean> {
+  /** Loads a text as the robot, or shows it with its mistake; returns true if it was accepted. */
+  async loadText(toml: string): Promise<boolean> {
     const refused = await this.session().change(toml);
     if (!refused) return true;
-    this.panel.open = true;
     this.box.value = toml;
     this.say(refused);
     return false;
   }
 
-  /** Makes the text the robot and writes it to the board on USB. */
+  /** Loads a text, and shows its mistake where it stands. */
+  private async loadAndShow(toml: string): Promise<boolean> {
+    if (await this.loadText(toml)) return true;
+    this.panel.open = true;
+    this.toLine();
+    return false;
+  }
+
+  /** Loads the text as the robot and writes it to the board on USB. */
   private async write(): Promise<void> {
     const session = this.session();
-    if (this.box.value !== session.toml) await this.give(this.box.value);
+    if (this.box.value !== session.toml) await this.loadAndShow(this.box.value);
     if (this.box.value !== session.toml) return;
     const said = element('robot-said');
     if (!session.isReal) said.textContent = NO_BOARD;
     else await this.writer.write('robot', { said, progress: element<HTMLProgressElement>('robot-progress') });
   }
 
-  private async back(): Promise<void> {
+  /** Restores the robot before the last change; a text with a mistake never was one. */
+  async back(): Promise<void> {
+    if (this.refused) return this.showRobot();
     const last = this.before.at(-1);
     if (last === undefined) return;
     const kept = this.before.slice(0, -1);
     const refused = await this.session().change(last);
     if (refused) return this.say(refused);
-    // An undo adds no step of its own.
+    // An undo is not recorded as a step.
     this.before = kept;
-    this.undo.disabled = kept.length === 0;
+    this.say(null);
   }
 
   private async link(): Promise<void> {
     try {
       const { toml } = this.session();
       await navigator.clipboard.writeText(await linkTo(toml));
-      element('robot-said').textContent = 'The link is copied: whoever opens it has this robot.';
+      element('robot-said').textContent = 'The link is copied: it opens this robot.';
     } catch (error) {
       element('robot-said').textContent = `The link could not be copied: ${sentence(error)}`;
     }
   }
 
   private toLine(): void {
-    if (this.faulty === null) return;
+    const line = this.refused?.line;
+    if (line == null) return;
     const lines = this.box.value.split('\n');
-    const begin = lines.slice(0, this.faulty - 1).reduce((sum, line) => sum + line.length + 1, 0);
+    const begin = lines.slice(0, line - 1).reduce((sum, text) => sum + text.length + 1, 0);
     this.box.focus();
-    this.box.setSelectionRange(begin, begin + (lines[this.faulty - 1]?.length ?? 0));
-    this.box.scrollTop = ((this.faulty - 4) / lines.length) * this.box.scrollHeight;
+    this.box.setSelectionRange(begin, begin + (lines[line - 1]?.length ?? 0));
+    this.box.scrollTop = ((line - 4) / lines.length) * this.box.scrollHeight;
   }
 
   private say(refused: Refused | null): void {
-    this.faulty = refused?.line ?? null;
+    this.refused = refused;
     element('robot-refusal').hidden = refused === null;
     element('robot-refusal').textContent = refused?.refused ?? '';
     const button = element('robot-line');
-    button.hidden = this.faulty === null;
-    button.textContent = `Go to line ${this.faulty}`;
+    button.hidden = refused?.line == null;
+    button.textContent = `Go to line ${refused?.line}`;
     element('robot-said').textContent = '';
     this.box.setAttribute('aria-invalid', String(refused !== null));
-    if (this.faulty !== null) this.toLine();
+    this.undo.disabled = !this.canUndo;
+    this.onText();
   }
 }

@@ -12,15 +12,16 @@ import { firmware } from './setup/firmware';
 import { horns } from './setup/horns';
 import { keep } from './setup/keep';
 import { Limits } from './setup/limits';
-import { button } from './setup/parts';
+import { button, row, words } from './setup/parts';
 import { Scale } from './setup/scale';
 import { Signs } from './setup/signs';
 import type { Step, Tools } from './setup/step';
 import { trims } from './setup/trims';
 import { walk } from './setup/walk';
-import type { What, Writer } from './writer';
+import type { WriteContent, Writer } from './writer';
 
 const STEPS: readonly Step[] = [board, firmware, horns, new Signs(), trims, new Scale(), new Limits(), walk, keep];
+const LOST = 'The board is not connected any more. What was not saved is lost. Connect it again and go on here.';
 const NO_ROBOT = 'No robot with this firmware answers: connect the board and write the firmware first.';
 
 /** The dialog. Steps call its methods detached, so these are bound. */
@@ -46,6 +47,8 @@ export class Setup implements Tools {
   private under: Promise<void> = Promise.resolve();
   private lastLink: Link | null = null;
   private wasReal = false;
+  /** True from the loss of a board until it is there again: what began on it does not go on elsewhere. */
+  private isLost = false;
   /** True if the board said that it has never saved a calibration. */
   private isNew = false;
 
@@ -56,8 +59,8 @@ export class Setup implements Tools {
   ) {
     element('setup-open').addEventListener('click', () => this.begin());
     element('setup-leave').addEventListener('click', () => void this.leave());
-    element('setup-back').addEventListener('click', () => this.by(-1));
-    element('setup-next').addEventListener('click', () => this.by(1));
+    element('setup-back').addEventListener('click', () => this.moveBy(-1));
+    element('setup-next').addEventListener('click', () => this.moveBy(1));
     for (const { name } of STEPS) {
       const item = document.createElement('li');
       item.append(button(name, () => this.go(name)));
@@ -84,15 +87,23 @@ export class Setup implements Tools {
     this.box.scrollIntoView({ block: 'start' });
   }
 
+  /** True while hands may be in the robot. */
+  get isOpen(): boolean {
+    return !this.box.hidden;
+  }
+
   private reveal(): void {
+    this.session.letGo();
     this.box.hidden = false;
     element('setup-open').setAttribute('aria-expanded', 'true');
     element('setup-left').hidden = true;
   }
 
   /** Opens the step that a newly connected board needs first. */
-  met(): void {
-    const { has, hasThis } = this.session;
+  openNeededStep(): void {
+    const { has, hasThis, link } = this.session;
+    // A radio writes nothing, and who has a module has had a first walk.
+    if (link.kind === 'radio' && this.box.hidden) return;
     const step = has === null || (has !== 'unknown' && !hasThis) ? firmware : this.isNew ? horns : null;
     if (this.box.hidden) {
       if (!step) return;
@@ -116,8 +127,9 @@ export class Setup implements Tools {
     this.lastLink = link;
     this.wasReal = isReal;
     this.isNew = false;
+    this.isLost = isGone && !this.box.hidden;
     this.drop();
-    if (isGone && !this.box.hidden) this.say('The board is not connected any more. What was not saved is lost. Connect it again and go on here.');
+    if (this.isLost) this.say(LOST);
     this.update();
   }
 
@@ -154,6 +166,7 @@ export class Setup implements Tools {
       }
     }
     this.box.hidden = true;
+    this.isLost = false;
     const opener = element('setup-open');
     opener.setAttribute('aria-expanded', 'false');
     opener.focus();
@@ -175,7 +188,7 @@ export class Setup implements Tools {
     void this.connectBoard();
   };
 
-  readonly write = (what: What): void => {
+  readonly write = (what: WriteContent): void => {
     this.guide = null;
     this.act(async () => {
       const { said, progress } = this;
@@ -184,13 +197,13 @@ export class Setup implements Tools {
     });
   };
 
-  readonly give = (text: string, name: string): void => {
+  readonly setCalibration = (text: string, name: string): void => {
     this.act(async () => {
       const set = await calibrationIn(text).catch((error: unknown) => {
         throw new Error(`${name}: ${sentence(error)}`);
       });
       const guide = await this.asked();
-      await guide.give(set);
+      await guide.setCalibration(set);
       return `The robot has the calibration of ${name}. It is not saved yet.`;
     });
   };
@@ -201,6 +214,7 @@ export class Setup implements Tools {
 
   /** The guide of the connected robot. */
   private async asked(): Promise<Guide> {
+    if (this.isLost) throw new Error(LOST);
     if (!this.session.answers) throw new Error(NO_ROBOT);
     this.guide ??= await Guide.begin(this.session);
     return this.guide;
@@ -243,7 +257,7 @@ export class Setup implements Tools {
     if (step) this.enter(step);
   };
 
-  private by(steps: number): void {
+  private moveBy(steps: number): void {
     const step = STEPS[STEPS.indexOf(this.step) + steps];
     if (step) this.enter(step);
   }
@@ -257,7 +271,7 @@ export class Setup implements Tools {
     if (!this.isBusy) this.say('');
     this.show();
     this.title.focus({ preventScroll: true });
-    if (!step.needsRobot || !this.session.answers) return;
+    if (!step.needsRobot || !this.session.answers || this.isLost) return;
     // Servos that a step has turned go back before the next step.
     const { guide } = this;
     if (!guide) this.act(async () => this.asked().then(() => ''), true);
@@ -276,14 +290,27 @@ export class Setup implements Tools {
     this.title.textContent = `${at + 1} of ${STEPS.length}: ${step.title}`;
     element<HTMLButtonElement>('setup-back').disabled = at === 0;
     element<HTMLButtonElement>('setup-next').disabled = at === STEPS.length - 1;
-    const can = !step.needsRobot || session.answers;
+    const isLost = this.isLost && step !== board;
+    const can = !isLost && (!step.needsRobot || session.answers);
     this.servos.hidden = !can || !step.isByServo;
     this.servos.querySelectorAll('button').forEach((each, servo) => each.setAttribute('aria-pressed', String(servo === this.servo)));
     const scene = session.last?.scene ?? null;
     const shown = can && step.drawing && scene ? drawing(session.description, scene, step.drawing(this)) : null;
     this.picture.replaceChildren(...(shown ? [shown] : []));
     this.picture.hidden = !shown;
-    const parts = can ? step.parts(this) : [Object.assign(document.createElement('p'), { textContent: NO_ROBOT }), button('To the board', () => this.go(board.name), true)];
+    const elsewhere = () => {
+      this.isLost = false;
+      this.enter(step);
+    };
+    const parts = can
+      ? step.parts(this)
+      : [
+          words(isLost ? LOST : NO_ROBOT),
+          row(
+            button(isLost ? 'Connect it again…' : 'To the board', isLost ? this.connect : () => this.go(board.name), true),
+            ...(isLost ? [button('Try this step on the simulated UNO', elsewhere)] : []),
+          ),
+        ];
     // The keyboard's focus stays on the same button, or goes to the next one.
     const focused = this.what.contains(document.activeElement) ? document.activeElement?.textContent : null;
     this.what.replaceChildren(...parts);

@@ -1,6 +1,6 @@
 // The drawing whose joints can be dragged: lengths follow, and invalid ones are refused during the drag.
-import { Latest } from '../latest';
-import type { Length, Scene, Spot } from '../robot';
+import { LatestQuestion } from '../latest';
+import type { Length, Scene, Point } from '../robot';
 import type { Session } from '../session';
 import { bars, type Joint, joints } from '../sketch/joints';
 import type { Answer, Edits, Question } from '../sketch/question';
@@ -19,7 +19,7 @@ export class Sketch {
   private readonly alike = element<HTMLInputElement>('alike');
   private readonly drawnBars = this.picture.appendChild(document.createElementNS(SVG, 'g'));
   private readonly drawnJoints = this.picture.appendChild(document.createElementNS(SVG, 'g'));
-  private sketches: Latest<Question, Answer> | null = null;
+  private sketches: LatestQuestion<Question, Answer> | null = null;
   private toml = '';
   /** The dragged joint, as it was at the start of the drag. */
   private held: Joint | null = null;
@@ -30,17 +30,17 @@ export class Sketch {
     private readonly module: WebAssembly.Module,
     private readonly session: () => Session,
   ) {
-    this.panel.addEventListener('toggle', () => this.take());
+    this.panel.addEventListener('toggle', () => this.showRobot());
   }
 
   /** Draws the session's robot in its neutral pose, if the panel is open. */
-  take(): void {
+  showRobot(): void {
     if (!this.panel.open) return;
     const { toml } = this.session();
     if (toml === this.toml) return;
     this.toml = toml;
     this.held = null;
-    this.sketches ??= new Latest(new Worker(new URL('../sketch/worker.ts', import.meta.url), { type: 'module' }), this.module, (answer) => this.answered(answer));
+    this.sketches ??= new LatestQuestion(new Worker(new URL('../sketch/worker.ts', import.meta.url), { type: 'module' }), this.module, (answer) => this.answered(answer));
     this.sketches.ask({ toml, edits: [], isLast: false });
   }
 
@@ -68,7 +68,7 @@ export class Sketch {
 
   /** Draws the robot; with `isWhole` also the joints, which stay during a drag. */
   private draw(scene: Scene, isWhole: boolean): void {
-    const at = ([x, y]: Spot): Spot => [x, -y];
+    const at = ([x, y]: Point): Point => [x, -y];
     const lengths = this.lengths();
     this.drawnBars.replaceChildren(
       ...bars(scene).map(({ key, from, to }) => {
@@ -98,12 +98,12 @@ export class Sketch {
     this.drawnJoints.replaceChildren(...joints(scene, value).map((joint) => this.joint(joint, at(joint.at))));
   }
 
-  private place(mark: Element | undefined, [x, y]: Spot): void {
+  private place(mark: Element | undefined, [x, y]: Point): void {
     mark?.setAttribute('cx', String(x));
     mark?.setAttribute('cy', String(y));
   }
 
-  private joint(joint: Joint, at: Spot): SVGCircleElement {
+  private joint(joint: Joint, at: Point): SVGCircleElement {
     let begun: [number, number] | null = null;
     const isDragged = ({ clientX, clientY }: PointerEvent) => {
       if (begun && Math.hypot(clientX - begun[0], clientY - begun[1]) > STILL) begun = null;

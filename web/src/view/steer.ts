@@ -1,11 +1,11 @@
 // Drives by hand: keys, a stick on the screen or a gamepad give a direction, and the gait for it walks as long as
 // they are held.
-import type { Way } from '../robot';
+import type { Displacement } from '../robot';
 import { WORDS } from '../words';
 import { element } from './canvas';
 
 /** A direction: forward and left, each from -1 to 1. */
-export interface Wish {
+export interface Direction {
   ahead: number;
   left: number;
 }
@@ -13,11 +13,18 @@ export interface Wish {
 /** A gait and its displacement per cycle. */
 export interface Choice {
   command: string;
-  way: Way;
+  displacement: Displacement;
 }
 
 /** Dead zone of a stick. */
 const DEAD = 0.35;
+/** The buttons of a gamepad's cross, in the browser's order; any other button stops the robot. */
+const CROSS: Record<number, Direction> = {
+  12: { ahead: 1, left: 0 },
+  13: { ahead: -1, left: 0 },
+  14: { ahead: 0, left: 1 },
+  15: { ahead: 0, left: -1 },
+};
 
 /** Least cosine of the angle between a gait's displacement and the direction. */
 const NEAR = 0.8;
@@ -26,7 +33,7 @@ const NEAR = 0.8;
 const LEAST = { ahead: 2, turn: 1 };
 
 /** The direction of each key. */
-const KEYS: Record<string, Wish> = {
+const KEYS: Record<string, Direction> = {
   ArrowUp: { ahead: 1, left: 0 },
   ArrowDown: { ahead: -1, left: 0 },
   ArrowLeft: { ahead: 0, left: 1 },
@@ -41,17 +48,18 @@ const KEYS: Record<string, Wish> = {
  * Returns the gait for a direction, of those with a known prediction; null if there is none. Displacement and turn
  * are scaled by the robot's largest, and of gaits with the same direction the farthest is taken.
  */
-export function gaitFor({ ahead, left }: Wish, choices: Choice[]): string | null {
+export function gaitFor({ ahead, left }: Direction, choices: Choice[]): string | null {
   const size = Math.hypot(ahead, left);
   if (size < DEAD) return null;
-  const most = (of: (way: Way) => number | null) => Math.max(...choices.map(({ way }) => Math.abs(of(way) ?? 0)), 0);
+  const most = (of: (displacement: Displacement) => number | null) => Math.max(...choices.map(({ displacement }) => Math.abs(of(displacement) ?? 0)), 0);
   const [farthest, widest] = [most(({ forward }) => forward), most(({ turn }) => turn)];
+  // A drift counts as none, also where no gait that turns is predicted yet.
+  const share = (value: number | null, least: number, most: number) => (value !== null && Math.abs(value) >= least ? value / most : 0);
   let best: { command: string; value: number } | null = null;
-  for (const { command, way } of choices) {
-    const small = (value: number | null, least: number) => value === null || Math.abs(value) < least;
-    if (small(way.forward, LEAST.ahead) && small(way.turn, LEAST.turn)) continue;
-    const x = farthest > 0 ? (way.forward ?? 0) / farthest : 0;
-    const y = widest > 0 ? (way.turn ?? 0) / widest : 0;
+  for (const { command, displacement } of choices) {
+    const x = share(displacement.forward, LEAST.ahead, farthest);
+    const y = share(displacement.turn, LEAST.turn, widest);
+    if (x === 0 && y === 0) continue;
     const long = Math.hypot(x, y);
     const cosine = (x * ahead + y * left) / (long * size);
     if (cosine < NEAR) continue;
@@ -66,20 +74,30 @@ export class Steer {
   private readonly held = new Set<string>();
   private readonly stick = element('stick');
   private readonly knob = element('knob');
-  private atStick: Wish = { ahead: 0, left: 0 };
-  private atPad: Wish = { ahead: 0, left: 0 };
+  private atStick: Direction = { ahead: 0, left: 0 };
+  private atPad: Direction = { ahead: 0, left: 0 };
+  /** False from a release until the gamepads' sticks are let go, so that a stick still held no longer drives. */
+  private padCounts = true;
+  private isPressed = false;
+  /** True while another window has the keyboard. */
+  private isAway = false;
   /** The gait that was sent last; null while nothing is held. */
   private walking: string | null = null;
 
-  /** Takes functions that list the robot's gaits and that send a line. */
+  /** Takes functions that list the robot's gaits, that send a line, and that say when nobody may drive. */
   constructor(
     private readonly choices: () => Choice[],
     private readonly send: (line: string) => void,
+    private readonly isBarred: () => boolean,
   ) {
     document.addEventListener('keydown', (event) => this.key(event, true));
     document.addEventListener('keyup', (event) => this.key(event, false));
     // A user in another window does not see the robot.
-    addEventListener('blur', () => this.release());
+    addEventListener('blur', () => {
+      this.isAway = true;
+      this.release();
+    });
+    for (const back of ['focus', 'pointerdown', 'keydown']) addEventListener(back, () => (this.isAway = false), true);
     document.addEventListener('visibilitychange', () => document.hidden && this.release());
     this.stick.addEventListener('pointerdown', (event) => {
       this.stick.setPointerCapture(event.pointerId);
@@ -90,21 +108,38 @@ export class Steer {
   }
 
   /** Reads the gamepads; called in every picture. */
-  look(): void {
+  readGamepads(): void {
     const pads = (navigator.getGamepads?.() ?? []).filter((pad) => pad !== null);
-    const pad = pads[0];
-    const [x, y] = pad?.axes ?? [];
-    const wish = { ahead: -(y ?? 0), left: -(x ?? 0) };
-    if (pad?.buttons.some(({ pressed }) => pressed) && this.walking) this.release();
-    if (wish.ahead === this.atPad.ahead && wish.left === this.atPad.left) return;
-    this.atPad = wish;
+    const direction = { ahead: 0, left: 0 };
+    let isPressed = false;
+    for (const { axes, buttons } of pads) {
+      direction.ahead -= axes[1] ?? 0;
+      direction.left -= axes[0] ?? 0;
+      buttons.forEach(({ pressed }, n) => {
+        if (!pressed) return;
+        isPressed ||= !(n in CROSS);
+        direction.ahead += CROSS[n]?.ahead ?? 0;
+        direction.left += CROSS[n]?.left ?? 0;
+      });
+    }
+    if (isPressed && !this.isPressed) {
+      this.release(false);
+      this.send(WORDS.stop);
+    }
+    this.isPressed = isPressed;
+    if (this.walking && this.isBarred()) this.release();
+    this.padCounts ||= Math.hypot(direction.ahead, direction.left) < DEAD;
+    if (!this.padCounts || this.isAway || (direction.ahead === this.atPad.ahead && direction.left === this.atPad.left)) return;
+    this.atPad = direction;
     this.follow();
   }
 
-  /** Releases everything that is held. */
-  release(): void {
+  /** Releases everything that is held; `stops` sends what follows from that. */
+  release(stops = true): void {
     this.held.clear();
     this.atPad = { ahead: 0, left: 0 };
+    this.padCounts = false;
+    if (!stops) this.walking = null;
     this.drag(null);
   }
 
@@ -136,13 +171,13 @@ export class Steer {
   }
 
   private follow(): void {
-    const wish = { ahead: this.atStick.ahead + this.atPad.ahead, left: this.atStick.left + this.atPad.left };
+    const direction = { ahead: this.atStick.ahead + this.atPad.ahead, left: this.atStick.left + this.atPad.left };
     for (const code of this.held) {
-      wish.ahead += KEYS[code]?.ahead ?? 0;
-      wish.left += KEYS[code]?.left ?? 0;
+      direction.ahead += KEYS[code]?.ahead ?? 0;
+      direction.left += KEYS[code]?.left ?? 0;
     }
-    const nothing = Math.hypot(wish.ahead, wish.left) < DEAD;
-    const gait = nothing ? null : gaitFor(wish, this.choices());
+    const nothing = this.isBarred() || Math.hypot(direction.ahead, direction.left) < DEAD;
+    const gait = nothing ? null : gaitFor(direction, this.choices());
     // No gait for this direction: the current one goes on.
     if (gait === this.walking || (!nothing && gait === null)) return;
     if (gait === null && this.walking === null) return;

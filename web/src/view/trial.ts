@@ -1,30 +1,30 @@
 // The trial of an edited gait: its figures, the nearest valid values, and the buttons that use it.
 import type { Answer, Question } from '../gaits/question';
 import { takeGait, tryGait } from '../gaits/try';
-import { Latest } from '../latest';
-import { type Instead, isRefused, type Made, type NoTrial, type Trial } from '../robot';
+import { LatestQuestion } from '../latest';
+import { type Alternative, isRefused, type EditedGait, type NoTrial, type Trial } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
 import { NO_BOARD, type Writer } from './writer';
 
 /** An editor of gaits, as its trial sees it. */
-export interface Maker {
+export interface GaitEditor {
   /** The prefix of its elements' ids. */
   prefix: 'gait' | 'path';
   /** The edited gait; null if there is none. */
-  made(): Made | null;
+  made(): EditedGait | null;
   /** Sets a value that would be accepted. */
-  change(what: Instead, value: number): void;
+  change(what: Alternative, value: number): void;
 }
 
 const number = (value: number | null, unit: string) => (value === null ? 'undetermined' : `${(Number(value.toFixed(1)) + 0).toFixed(1)}${unit}`);
 
 /** Formats the figures of a trial; the speed is in deg/s for a turn on the spot. */
 export function figures({ forward, turn, period, least, limit, margin, servo, speed }: Trial, unit = 'mm/s') {
-  const [way, sign] = unit === 'mm/s' ? [forward, ' mm/s'] : [turn, ' °/s'];
+  const [displacement, sign] = unit === 'mm/s' ? [forward, ' mm/s'] : [turn, ' °/s'];
   return {
     way: number(forward, ' mm'),
-    speed: way === null ? '–' : number(way / period, sign),
+    speed: displacement === null ? '–' : number(displacement / period, sign),
     turn: number(turn, '°'),
     least: `${least.toFixed(3)} of ${limit} (${margin.replaceAll('_', ' ')})`,
     fastest: `${servo}, ${speed.toFixed(0)} °/s`,
@@ -32,14 +32,14 @@ export function figures({ forward, turn, period, least, limit, margin, servo, sp
   };
 }
 
-const OFFERS: Record<Instead, (value: number) => string> = {
+const OFFERS: Record<Alternative, (value: number) => string> = {
   amplitude: (value) => `Amplitude ${value}° would do`,
   size: (value) => `A size of ${(100 * value).toFixed(0)} % would do`,
   period: (value) => `A cycle of ${value} s would do`,
 };
 
 export class TrialView {
-  private trials: Latest<Question, Answer> | null = null;
+  private trials: LatestQuestion<Question, Answer> | null = null;
   private trial: Trial | null = null;
 
   constructor(
@@ -47,7 +47,7 @@ export class TrialView {
     private readonly session: () => Session,
     private readonly ask: (line: string) => Promise<unknown>,
     private readonly writer: Writer,
-    private readonly maker: Maker,
+    private readonly maker: GaitEditor,
   ) {
     this.element('try').addEventListener('click', () => void this.tryIt());
     this.element('write').addEventListener('click', () => void this.write());
@@ -59,7 +59,7 @@ export class TrialView {
     const { toml, floor, servos } = this.session();
     const made = this.maker.made();
     if (!made || toml === '') return;
-    this.trials ??= new Latest(new Worker(new URL('../gaits/worker.ts', import.meta.url), { type: 'module' }), this.module, ({ trial }: Answer) => this.answered(trial));
+    this.trials ??= new LatestQuestion(new Worker(new URL('../gaits/worker.ts', import.meta.url), { type: 'module' }), this.module, ({ trial }: Answer) => this.answered(trial));
     this.trials.ask({ toml, floor, servos, made });
   }
 

@@ -1,4 +1,4 @@
-// The sliders of leg drive, feet, floor, mass, servos and supply.
+// The sliders of leg drive, feet, floor, mass, servos and supply, and the inputs.
 import { type Floor, type Kind, lags, type ServoModel } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
@@ -6,7 +6,7 @@ import { element } from './canvas';
 const round = (value: number, digits: number) => Number(value.toFixed(digits)).toString();
 
 /** The number format of each slider; the unit is in its label. */
-const SHOWN = {
+const FORMATS = {
   force: (value: number) => value.toFixed(1),
   play: (value: number) => value.toFixed(1),
   leaf: (value: number) => value.toFixed(1),
@@ -15,76 +15,96 @@ const SHOWN = {
   ratio: (value: number) => value.toFixed(2),
   mass: (value: number) => round(value, 0),
 };
-type Plain = keyof typeof SHOWN;
-const PLAIN = Object.keys(SHOWN) as Plain[];
+type SliderName = keyof typeof FORMATS;
+const SLIDERS = Object.keys(FORMATS) as SliderName[];
+
+/** What closes the contact of an input. */
+const CONTACTS: Record<string, string> = { button: 'button pressed', nose: 'wall at the nose' };
 
 export class World {
   private readonly drive = element<HTMLSelectElement>('drive');
   private readonly servos = element<HTMLSelectElement>('servos');
   private readonly supply = element<HTMLInputElement>('supply');
 
-  /** Calls `onFloor` when the predictions have changed. */
+  /** Calls `onChange` when the predictions have changed. */
   constructor(
     private readonly session: () => Session,
-    private readonly onFloor: () => void,
+    private readonly onChange: () => void,
   ) {
-    this.drive.addEventListener('change', () => this.use());
-    for (const name of PLAIN) {
+    this.drive.addEventListener('change', () => this.applyFloor());
+    for (const name of SLIDERS) {
       const input = this.input(name);
-      input.addEventListener('input', () => this.show(input, SHOWN[name](input.valueAsNumber)));
-      input.addEventListener('change', () => this.use());
+      input.addEventListener('input', () => this.show(input, FORMATS[name](input.valueAsNumber)));
+      input.addEventListener('change', () => this.applyFloor());
     }
     element('floor-reset').addEventListener('click', () => {
       this.session().setFloor(null);
-      this.take();
-      this.onFloor();
+      this.showRobot();
+      this.onChange();
     });
     const { supply } = this;
     supply.addEventListener('input', () => this.show(supply, supply.valueAsNumber.toFixed(2)));
     supply.addEventListener('change', () => this.session().setSupply(supply.valueAsNumber));
     this.servos.addEventListener('change', () => {
       this.session().setServos(this.servos.value);
-      this.onFloor();
+      this.enableSliders(this.session().floor);
+      this.onChange();
     });
   }
 
   /** Shows the values of the session's robot. */
-  take(): void {
+  showRobot(): void {
     const { floor, description } = this.session();
     this.drive.value = floor.kind;
-    for (const name of PLAIN) {
+    for (const name of SLIDERS) {
       const input = this.input(name);
       // The slider widens for a value beyond its range.
       if (floor[name] > Number(input.max)) input.max = String(floor[name]);
       if (floor[name] < Number(input.min)) input.min = String(floor[name]);
       input.value = String(floor[name]);
-      this.show(input, SHOWN[name](floor[name]));
+      this.show(input, FORMATS[name](floor[name]));
     }
-    this.enable(floor);
-    if (this.servos.length === 0) {
-      for (const model of description.models) this.servos.add(new Option(describe(model), model.name));
-    }
+    this.enableSliders(floor);
+    this.servos.replaceChildren(...description.models.map((model) => new Option(describe(model), model.name)));
     this.servos.value = this.session().servos;
     this.supply.value = String(this.session().volts);
     this.show(this.supply, this.supply.valueAsNumber.toFixed(2));
     const [slow, stop, rest] = description.supply;
+    this.showInputs();
     element('supply-note').textContent =
       `Below ${slow} V gaits go at half their pace, below ${stop} V the robot stops, below ${rest} V the pulses end.`;
   }
 
-  private input(name: Plain): HTMLInputElement {
+  /** A box to tick for each input of the robot: in the simulation its contact is closed as long as the box is ticked. */
+  private showInputs(): void {
+    const { description, closed } = this.session();
+    const boxes = description.inputs.map(([name]) => {
+      const label = document.createElement('label');
+      const box = document.createElement('input');
+      box.type = 'checkbox';
+      box.checked = closed.has(name);
+      box.addEventListener('change', () => this.session().setContact(name, box.checked));
+      label.append(box, ` ${CONTACTS[name] ?? name}`);
+      return label;
+    });
+    element('inputs').replaceChildren(...boxes);
+    element('inputs').hidden = boxes.length === 0;
+  }
+
+  private input(name: SliderName): HTMLInputElement {
     return element<HTMLInputElement>(name);
   }
 
-  /** Disables the sliders that have no effect. */
-  private enable(floor: Floor): void {
+  /** Enables the sliders that have an effect, and disables the others. */
+  private enableSliders(floor: Floor): void {
     const springs = floor.kind !== 'rigid';
+    const isElastic = springs || this.session().servos !== 'ideal';
     this.input('force').disabled = !springs;
-    // Friction cancels out without springs, and so does mass without a long foot.
-    this.input('friction').disabled = !springs;
-    this.input('mass').disabled = !springs && floor.twist === 0;
+    // Friction cancels out if neither springs nor servos yield, and so does mass without a long foot.
+    this.input('friction').disabled = !isElastic;
+    this.input('mass').disabled = !isElastic && floor.twist === 0;
     this.input('leaf').disabled = floor.twist === 0;
-    element('rigid-note').hidden = lags(floor) || floor.twist !== 0;
+    element('rigid-note').hidden = isElastic || lags(floor) || floor.twist !== 0;
   }
 
   private show(input: HTMLInputElement, text: string): void {
@@ -92,12 +112,12 @@ export class World {
     input.setAttribute('aria-valuetext', text);
   }
 
-  private use(): void {
+  private applyFloor(): void {
     // A slider that was not moved keeps its exact value.
     const own = this.session().floor;
-    const number = (name: Plain) => {
+    const number = (name: SliderName) => {
       const input = this.input(name);
-      return SHOWN[name](own[name]) === SHOWN[name](input.valueAsNumber) ? own[name] : input.valueAsNumber;
+      return FORMATS[name](own[name]) === FORMATS[name](input.valueAsNumber) ? own[name] : input.valueAsNumber;
     };
     const floor: Floor = {
       friction: number('friction'),
@@ -110,12 +130,14 @@ export class World {
       leaf: number('leaf'),
       twist: number('twist'),
     };
-    this.enable(floor);
+    this.enableSliders(floor);
     this.session().setFloor(floor);
-    this.onFloor();
+    this.onChange();
   }
 }
 
-function describe({ name, rate, dead_band }: ServoModel): string {
-  return rate === null ? 'ideal: where the pulse says, at once' : `${name.toUpperCase().replace('SG', 'SG-')}: ${rate}°/s, dead band ${dead_band} µs`;
+function describe({ name, figures }: ServoModel): string {
+  if (!figures) return 'ideal: where the pulse says, at once';
+  const [torque, seconds, volts] = figures;
+  return `${name === 'own' ? 'as in robot.toml' : name}: ${torque} kg cm, ${seconds} s for 60° at ${volts} V`;
 }

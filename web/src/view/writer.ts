@@ -1,26 +1,26 @@
-// Firmware or robot on their way to a board: how far that is, and what became of it, wherever it is shown.
+// Writes firmware or robot to a board, and shows progress and result in every display.
 import { Unfit } from '../link/stk500';
 import type { Session } from '../session';
 import { sentence } from '../trouble';
 
-/** The elements that show it. */
+/** The elements that show the progress. */
 export interface Display {
   progress: HTMLProgressElement;
   said: HTMLElement;
 }
 
-/** The page's robot alone, the firmware with it, or an image of somebody's own. */
-export type What = 'robot' | 'all' | Uint8Array;
+/** The page's robot alone, the firmware with it, or the image of a chosen file. */
+export type WriteContent = 'robot' | 'all' | Uint8Array;
 
 /** The message when no board is connected. */
 export const NO_BOARD = 'No board is connected: Connect a board… is at the top of the page. The simulated board has this robot already.';
 
-const DOES = { comparing: 'looking at the firmware that is there…', writing: 'writing…', verifying: 'verifying…' };
+const DOES = { comparing: 'comparing with the firmware on the board…', writing: 'writing…', verifying: 'verifying…' };
 
 export class Writer {
   private isWriting = false;
 
-  /** `busy` is told when the line belongs to the boot loader, and when it is free again. */
+  /** `busy` is called when the boot loader takes the line, and when the line is free again. */
   constructor(
     private readonly session: () => Session,
     private readonly busy: (busy: boolean) => void,
@@ -31,10 +31,12 @@ export class Writer {
     return this.isWriting;
   }
 
-  /** Writes and verifies it and waits for the board to greet; whether all of that went well. */
-  async write(what: What, { progress, said }: Display): Promise<boolean> {
+  /** Writes and verifies, then waits for the board's banner; returns true if all of it succeeded. */
+  async write(what: WriteContent, { progress, said }: Display): Promise<boolean> {
     if (this.isWriting) return false;
     const session = this.session();
+    const { isReal } = session;
+    const { name } = session.link;
     const begun = performance.now();
     const hash = typeof what === 'string' ? session.description.hash : null;
     this.isWriting = true;
@@ -52,7 +54,9 @@ export class Writer {
     try {
       await (what === 'robot' ? session.flashRobot(show) : session.flash(what === 'all' ? session.image : what, show));
       isWritten = true;
-      said.textContent = `written and verified in ${written(performance.now() - begun)}`;
+      // Nobody is to take the simulation for a board.
+      const where = isReal ? '' : ` to the ${name}`;
+      said.textContent = `written${where} and verified in ${written(performance.now() - begun)}`;
     } catch (error) {
       said.textContent = `not written: ${sentence(error)}${isTouched && !(error instanceof Unfit) ? TORN[what === 'robot' ? 'robot' : 'all'] : ''}`;
     }
@@ -69,9 +73,9 @@ export class Writer {
 
 /** The consequence of an interrupted write. */
 const TORN = {
-  robot: '. Only a part of the robot is on the board, which moves nothing until it is written again: try again',
-  all: '. Only a part of it is on the board, which does nothing until it is written again: try again',
+  robot: '. Only a part of the robot is on the board, which moves nothing until it is rewritten: try again',
+  all: '. Only a part of it is on the board, which does nothing until it is rewritten: try again',
 };
 
-/** A time in seconds; a second and a half is not two. */
+/** Formats a time in seconds, with a decimal below 9.5 s. */
 const written = (ms: number) => `${(ms / 1000).toFixed(ms < 9500 ? 1 : 0)} s`;

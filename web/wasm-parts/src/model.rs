@@ -2,7 +2,8 @@
 
 use lizard_kinematics::Vector;
 use lizard_parts::{
-    Assembly, Bill, File, Lies, Mount, Part, Placement, Step, coupon, papers, part_files, steps,
+    Assembly, Bill, File, Mount, Part, Placement, PrintToBody, Step, coupon, papers, part_files,
+    steps,
 };
 use lizard_robot::Robot;
 use lizard_robot::servo::FORWARD;
@@ -123,7 +124,7 @@ impl Model {
             soles = soles.min(body.z()[0]);
             let of_body = |part: &Part| part.bodies.contains(&body.name);
             let part = self.needed().position(of_body);
-            let lies = part.map(|part| self.parts[part].lies(body));
+            let motion = part.map(|part| self.parts[part].print_to_body(body));
             let step = self.steps.iter().position(|step| step.adds(body));
             let solid = part.unwrap_or_else(|| {
                 bought += 1;
@@ -137,7 +138,7 @@ impl Model {
                 step: step.map_or(0, |step| step + 1),
                 lift: step.map_or(0.0, |step| (self.steps[step].lift)(body)),
                 part,
-                place: matrix(lies),
+                place: matrix(motion),
                 solid,
             }
         });
@@ -264,18 +265,18 @@ pub struct Proved {
 }
 
 /// A place in a mount's frame as the columns of a matrix.
-fn matrix(lies: Option<Lies>) -> [f64; 16] {
-    let as_it_lies = Lies {
+fn matrix(motion: Option<PrintToBody>) -> [f64; 16] {
+    let as_it_lies = PrintToBody {
         flipped: false,
         lift: 0.0,
-        home: Placement::CHASSIS,
+        frame: Placement::CHASSIS,
     };
-    let Lies {
+    let PrintToBody {
         flipped,
         lift,
-        home,
-    } = lies.unwrap_or(as_it_lies);
-    let Placement { at, turn } = home;
+        frame,
+    } = motion.unwrap_or(as_it_lies);
+    let Placement { at, turn } = frame;
     let over = if flipped { -1.0 } else { 1.0 };
     let across = turn.left() * over;
     [

@@ -8,18 +8,18 @@
 
 use std::cell::RefCell;
 
-use lizard_robot::Bars;
+use lizard_robot::{Bars, edit};
 use serde::{Deserialize, Serialize};
 use serde_json::Result;
 
 use crate::description::Movement;
-use crate::drawn::Drawn;
+use crate::drawn::DrawnGait;
 #[cfg(feature = "tune")]
-use crate::faster::Wish;
+use crate::faster::SearchTask;
 use crate::floor::Floor;
 use crate::page::Page;
 use crate::place::Place;
-use crate::trial::Made;
+use crate::trial::EditedGait;
 
 /// A question of the page, with its arguments.
 #[derive(Deserialize)]
@@ -52,12 +52,18 @@ enum Question {
     /// [`Bars::reversed`].
     Reversed(Bars),
     /// [`Page::put_gait`].
-    PutGait(String, Made),
+    PutGait(String, EditedGait),
+    /// [`edit::routines`] of a robot.toml.
+    Routines(String),
+    /// [`Page::put_steps`].
+    PutSteps(String, String, Vec<String>),
+    /// [`Page::round`].
+    Round(String),
     /// [`Page::trial`].
-    Trial(Made),
+    Trial(EditedGait),
     /// [`Page::make_faster`].
     #[cfg(feature = "tune")]
-    Faster(Wish),
+    Faster(SearchTask),
     /// [`Faster::step`](crate::Faster::step) of the search that was started.
     #[cfg(feature = "tune")]
     FasterStep,
@@ -65,9 +71,9 @@ enum Question {
     #[cfg(feature = "tune")]
     FasterFound(usize),
     /// [`Page::path`].
-    Path(Drawn),
+    Path(DrawnGait),
     /// [`Page::room`].
-    Room(usize),
+    ReachArea(usize),
     /// [`Page::map`].
     Map(usize),
     /// [`Page::run_core`].
@@ -102,6 +108,9 @@ impl Question {
             Self::Bars(gait) => json(page.bars(gait)),
             Self::Reversed(bars) => json(bars.reversed()),
             Self::PutGait(toml, made) => json(page.put_gait(&toml, &made)),
+            Self::Routines(text) => json(edit::routines(&text)),
+            Self::PutSteps(text, name, steps) => json(Page::put_steps(&text, &name, &steps)),
+            Self::Round(routine) => json(page.round(&routine)),
             Self::Trial(made) => json(page.trial(&made).map(either)),
             #[cfg(feature = "tune")]
             Self::Faster(wish) => json(page.make_faster(&wish).map(either)),
@@ -112,7 +121,7 @@ impl Question {
                 json(page.faster().and_then(|search| search.found(robots)))
             }
             Self::Path(drawn) => json(page.path(&drawn)),
-            Self::Room(end) => json(page.room(end)),
+            Self::ReachArea(end) => json(page.room(end)),
             Self::Map(end) => json(page.map(end)),
             Self::RunCore => {
                 page.run_core();

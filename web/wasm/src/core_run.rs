@@ -1,7 +1,7 @@
 //! The firmware's core running in the page without a chip, for a second robot.
 //!
 //! Simulating another chip would double the time. The core is plain integer Rust, so its answers
-//! and pulses are those of an UNO to the bit; only the cycles of the chip are missing.
+//! and pulses are those of a UNO to the bit; only the cycles of the chip are missing.
 
 use lizard_core::control::supply::Reading;
 use lizard_core::memory::restart::Restart;

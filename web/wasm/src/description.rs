@@ -7,7 +7,8 @@ use lizard_kinematics::Check;
 use lizard_robot::edit::HIPS;
 use lizard_robot::servo::{LEGS, NAMES};
 use lizard_robot::{
-    CheckedGait, Ground, Plate, Prediction, Robot, STILL_FRAMES, Sprung, Travel, healthy_rail_mv,
+    CheckedGait, Effort, Ground, Plate, Prediction, Robot, STILL_FRAMES, ServoType, SpringCost,
+    Travel, healthy_rail_mv,
 };
 use lizard_twin::{ServoModel, Twin};
 use serde::Serialize;
@@ -26,6 +27,8 @@ pub struct GaitEntry {
     pub period: f64,
     /// True if a servo moves in the course of a cycle.
     pub moves: bool,
+    /// True if its phase runs backwards.
+    pub reversed: bool,
 }
 
 /// A length of the robot that may be changed.
@@ -67,27 +70,45 @@ pub struct ServoEntry {
     pub travel: (f64, f64),
 }
 
-/// The models of a servo by name; the first is the default.
-pub(crate) const SERVO_MODELS: [(&str, ServoModel); 2] =
-    [("sg90", ServoModel::SG90), ("ideal", ServoModel::IDEAL)];
+/// The name of the servos of robot.toml, and of servos that follow their pulses exactly.
+const OWN: &str = "own";
+const IDEAL: &str = "ideal";
 
-/// The model of a servo.
+/// A model of the servos.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ModelEntry {
     /// Name of the model.
     pub name: &'static str,
-    /// Fastest turn, deg/s; infinite is `null` in JSON.
-    pub rate: f64,
-    /// Width of the dead band, us.
-    pub dead_band: f64,
+    /// Torque at a stall, kg cm, and time for 60 deg, s, both at a supply in V; none for ideal
+    /// servos.
+    pub figures: Option<[f64; 3]>,
 }
 
-impl From<(&'static str, ServoModel)> for ModelEntry {
-    fn from((name, model): (&'static str, ServoModel)) -> Self {
-        Self {
+impl ModelEntry {
+    /// The models between which the page can choose; the first is the default.
+    fn all(robot: &Robot) -> Vec<Self> {
+        let entry = |name, servo: &ServoType| Self {
             name,
-            rate: model.rate,
-            dead_band: model.dead_band,
+            figures: Some([servo.stall_kg_cm, servo.s_per_60_deg, servo.at_volts]),
+        };
+        let mut all = vec![entry(OWN, robot.servo_type())];
+        all.extend(ServoType::ALL.iter().map(|servo| entry(servo.model, servo)));
+        all.push(Self {
+            name: IDEAL,
+            figures: None,
+        });
+        all
+    }
+}
+
+/// The servos of this name on a robot; none for an unknown name.
+pub(crate) fn servo_model(robot: &Robot, name: &str) -> Option<ServoModel> {
+    match name {
+        OWN => Some(ServoModel::of(robot)),
+        IDEAL => Some(ServoModel::Ideal),
+        _ => {
+            let servo = ServoType::ALL.iter().find(|servo| servo.model == name)?;
+            Some(ServoModel::Motors(robot.motors_of(servo, servo.volts)))
         }
     }
 }
@@ -138,6 +159,8 @@ pub struct Description {
     pub servos: Vec<ServoEntry>,
     /// The gaits in the order of the file.
     pub gaits: Vec<GaitEntry>,
+    /// Commands of the console that begin a routine, in the order of the file.
+    pub routines: Vec<String>,
     /// The lengths that may be changed.
     pub lengths: Vec<LinkEntry>,
     /// The chassis seen from above.
@@ -151,6 +174,8 @@ pub struct Description {
     /// Channel of the converter that measures the servos' rail, and the volts there; none if it is
     /// not measured.
     pub rail: Option<(u8, f64)>,
+    /// The inputs: name, and Arduino number of the pin.
+    pub inputs: Vec<(&'static str, u8)>,
     /// Floor, mass, feet, and the drive of the legs.
     pub floor: Floor,
     /// The models of a servo.
@@ -181,7 +206,9 @@ impl Description {
             command: gait.name().replace('-', " "),
             period: gait.period(),
             moves: gait.moves(),
+            reversed: gait.is_reversed(),
         });
+        let routines = robot.routines().iter();
         let limits = robot.limits();
         let of = |checks: &[Check], limit: f64| {
             let entry = |check: &Check| MarginEntry {
@@ -199,6 +226,9 @@ impl Description {
             start: START,
             servos: servos.collect(),
             gaits: gaits.collect(),
+            routines: routines
+                .map(|routine| routine.name().replace('-', " "))
+                .collect(),
             lengths: lengths(robot),
             plate: robot.plate().into(),
             margins: [
@@ -211,9 +241,10 @@ impl Description {
             rail: healthy_rail_mv(&core.supplies())
                 .zip(core.rail_pin())
                 .map(|(mv, pin)| (pin - 14, mv / 1000.0)),
+            inputs: robot.inputs().each().collect(),
             supply: [board.slow, board.stop, board.rest].map(|mv| f64::from(mv) / 1000.0),
             floor: Floor::of(robot),
-            models: SERVO_MODELS.map(ModelEntry::from).into(),
+            models: ModelEntry::all(robot),
             still: STILL_FRAMES,
             words: words(),
         }
@@ -307,22 +338,22 @@ pub struct Movement {
 }
 
 impl From<Travel> for Movement {
-    fn from(way: Travel) -> Self {
+    fn from(movement: Travel) -> Self {
         Self {
-            forward: Some(way.forward),
-            left: Some(way.left),
-            turn: Some(way.turn),
+            forward: Some(movement.forward),
+            left: Some(movement.left),
+            turn: Some(movement.turn),
         }
     }
 }
 
 impl From<Prediction> for Movement {
-    fn from(way: Prediction) -> Self {
+    fn from(movement: Prediction) -> Self {
         let Prediction {
             forward,
             left,
             turn,
-        } = way;
+        } = movement;
         Self {
             forward,
             left,
@@ -341,48 +372,57 @@ impl Movement {
 
 /// The prediction of a cycle of a gait.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Outlook {
+pub struct GaitPrediction {
     /// Movement of the body.
     #[serde(flatten)]
-    pub way: Movement,
+    pub movement: Movement,
     /// Largest lag of a leg, deg; none if legs are rigid.
     pub lag: Option<f64>,
     /// Its movement over that of rigid legs; none if legs are rigid, or rigid legs go nowhere.
     pub share: Option<f64>,
+    /// Largest share of a servo's torque-speed line; none with ideal servos.
+    pub line: Option<f64>,
 }
 
-impl Outlook {
+impl GaitPrediction {
     /// Predicts a gait with the present floor and servos of a twin.
     #[must_use]
     pub fn of(twin: &Twin, gait: &CheckedGait) -> Self {
-        let outlook = Self::ideal(gait, twin.ground());
-        if twin.servos() == ServoModel::IDEAL {
-            return outlook;
-        }
-        let way = outlook.way;
+        let prediction = Self::ideal(gait, twin.ground());
+        let ServoModel::Motors(motors) = twin.servos() else {
+            return prediction;
+        };
+        let movement = prediction.movement;
         let went = twin.cycle(gait).travel();
         Self {
-            way: Movement {
-                forward: way.forward.and(Some(went.forward)),
-                left: way.left.and(Some(went.left)),
-                turn: way.turn.and(Some(went.turn)),
+            movement: Movement {
+                forward: movement.forward.and(Some(went.forward)),
+                left: movement.left.and(Some(went.left)),
+                turn: movement.turn.and(Some(went.turn)),
             },
-            ..outlook
+            line: Some(Effort::of(gait, twin.ground(), &motors).line_share(1.0, 1.0)),
+            ..prediction
         }
     }
 
     /// Predicts a gait with ideal servos.
     fn ideal(gait: &CheckedGait, ground: &Ground) -> Self {
-        match Sprung::of(gait, ground) {
-            Some(Sprung { way, lag, share }) => Self {
-                way: way.into(),
+        match SpringCost::of(gait, ground) {
+            Some(SpringCost {
+                movement,
+                lag,
+                share,
+            }) => Self {
+                movement: movement.into(),
                 lag: Some(lag),
                 share,
+                line: None,
             },
             None => Self {
-                way: gait.predict(ground).into(),
+                movement: gait.predict(ground).into(),
                 lag: None,
                 share: None,
+                line: None,
             },
         }
     }

@@ -23,7 +23,7 @@ const MOST_TERMS: usize = 16;
 
 /// A gait along a line that was drawn.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Drawn {
+pub struct DrawnGait {
     /// Name of the gait in robot.toml.
     pub name: String,
     /// End whose point follows the line: `head` or `tail`.
@@ -38,12 +38,12 @@ pub struct Drawn {
     pub points: Vec<[f64; 2]>,
 }
 
-impl Drawn {
+impl DrawnGait {
     fn end(&self) -> Option<End> {
         End::ALL.into_iter().find(|end| end.name() == self.end)
     }
 
-    /// The path that the point follows; none of a line without length.
+    /// The path that the point follows; none if the line has no length.
     fn smoothed(&self, robot: &Robot) -> Option<Path> {
         let neutral = neutral(robot, self.end()?);
         let scaled = |[x, y]: &[f64; 2]| {
@@ -61,7 +61,7 @@ impl Drawn {
         Some(Path { centre, x, y })
     }
 
-    /// Writes the gait as tables of robot.toml; none of a line without length.
+    /// Writes the gait as tables of robot.toml; none if the line has no length.
     #[must_use]
     pub fn table(&self, robot: &Robot) -> Option<String> {
         let path = self.smoothed(robot)?;
@@ -85,8 +85,8 @@ impl Drawn {
         ))
     }
 
-    /// Points of the line that the point follows, mm in the end's own frame; none of a line
-    /// without length.
+    /// Points of the line that the point follows, mm in the end's own frame; none if the
+    /// line has no length.
     #[must_use]
     pub fn path(&self, robot: &Robot) -> Option<Vec<[f64; 2]>> {
         let path = self.smoothed(robot)?;
@@ -121,11 +121,11 @@ fn harmonics(values: &[f64], terms: usize) -> (f64, Vec<Harmonic>) {
     (mean(&|value, _| value), (1..=terms).map(term).collect())
 }
 
-/// Samples a closed line at even distances along it; none of a line without length.
+/// Samples a closed line at even distances along it; none if the line has no length.
 fn evenly(points: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
     let next = |i: usize| points[(i + 1) % points.len()];
-    let long = |i: usize| (next(i)[0] - points[i][0]).hypot(next(i)[1] - points[i][1]);
-    let lengths: Vec<f64> = (0..points.len()).map(long).collect();
+    let length = |i: usize| (next(i)[0] - points[i][0]).hypot(next(i)[1] - points[i][1]);
+    let lengths: Vec<f64> = (0..points.len()).map(length).collect();
     let all: f64 = lengths.iter().sum();
     if !(all > 1e-6 && all.is_finite()) {
         return None;
@@ -153,16 +153,16 @@ fn evenly(points: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
 mod tests {
     use super::*;
     use crate::paper::{TEXT, paper, with_twin};
-    use crate::trial::Made;
+    use crate::trial::EditedGait;
 
     /// A circle about the neutral point of an end.
-    fn circle(robot: &Robot, end: End, radius: f64) -> Drawn {
+    fn circle(robot: &Robot, end: End, radius: f64) -> DrawnGait {
         let [x, y] = neutral(robot, end);
         let point = |i: usize| {
             let angle = TAU * i as f64 / 90.0;
             [x + radius * angle.cos(), y + radius * angle.sin()]
         };
-        Drawn {
+        DrawnGait {
             name: "mine".to_string(),
             end: end.name().to_string(),
             period: 4.0,
@@ -177,7 +177,7 @@ mod tests {
         let (robot, twin) = with_twin();
         for end in End::ALL {
             let drawn = circle(&robot, end, 6.0);
-            let made = Made::Drawn(drawn);
+            let made = EditedGait::DrawnGait(drawn);
             let known = made.trial(&twin).expect("a line").expect("it goes");
             assert!(
                 known.table.contains(&format!("[gait.mine.{end}]")),
@@ -221,30 +221,34 @@ mod tests {
     fn a_refusal_offers_the_nearest_size_and_the_nearest_time_that_are_possible() {
         let (robot, twin) = with_twin();
         let drawn = circle(&robot, End::Head, 40.0);
-        let trial = |drawn: &Drawn| Made::Drawn(drawn.clone()).trial(&twin).expect("a line");
+        let trial = |drawn: &DrawnGait| {
+            EditedGait::DrawnGait(drawn.clone())
+                .trial(&twin)
+                .expect("a line")
+        };
         let no = trial(&drawn).expect_err("it is too large");
         let [size] = no.instead.as_slice() else {
             panic!("no time would do: {:?}", no.instead);
         };
         assert_eq!(size.what, "size");
-        let with = |size: f64| Drawn {
+        let with = |size: f64| DrawnGait {
             size,
             ..drawn.clone()
         };
-        let does = |drawn: Drawn| trial(&drawn).is_ok();
+        let does = |drawn: DrawnGait| trial(&drawn).is_ok();
         assert!(
             does(with(size.value)) && !does(with(size.value + 0.01)),
             "{}",
             size.value
         );
-        let fast = Drawn {
+        let fast = DrawnGait {
             period: 0.2,
             ..circle(&robot, End::Head, 8.0)
         };
         let no = trial(&fast).expect_err("it is too fast");
         let slow = no.instead.iter().find(|instead| instead.what == "period");
         let slow = slow.expect("a longer time does").value;
-        let with = |period: f64| Drawn {
+        let with = |period: f64| DrawnGait {
             period,
             ..fast.clone()
         };
@@ -255,7 +259,7 @@ mod tests {
     fn a_point_is_no_line() {
         let (robot, twin) = with_twin();
         let mut drawn = circle(&robot, End::Tail, 0.0);
-        assert!(Made::Drawn(drawn.clone()).trial(&twin).is_none());
+        assert!(EditedGait::DrawnGait(drawn.clone()).trial(&twin).is_none());
         drawn.points.clear();
         assert!(drawn.path(&robot).is_none() && drawn.table(&robot).is_none());
     }

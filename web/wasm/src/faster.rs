@@ -6,7 +6,7 @@
 //! final gait is that of `lizard tune` with the same numbers.
 
 use lizard_robot::Bars;
-use lizard_tune::{Comparison, Kind, NoTuning, Scored, Search, Tuning, trials};
+use lizard_tune::{Comparison, Kind, NoTuning, ScoredParameters, Search, Tuning, trials};
 use lizard_twin::Twin;
 use serde::{Deserialize, Serialize};
 
@@ -14,7 +14,7 @@ use crate::refused::Refused;
 
 /// The task of a search: the given gait and the number of rounds.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
-pub struct Wish {
+pub struct SearchTask {
     /// The given gait.
     pub bars: Bars,
     /// Largest speed of a servo, deg/s; none for that of the given gait.
@@ -27,7 +27,7 @@ pub struct Wish {
 
 /// The extent of a search.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Begun {
+pub struct SearchExtent {
     /// Number of gaits that it tries.
     pub all: usize,
     /// Largest speed of a servo, deg/s.
@@ -74,7 +74,7 @@ impl Faster {
     ///
     /// # Errors
     /// The limit that the given gait breaks, or the reason why it cannot be made faster.
-    pub fn begin(twin: &Twin, wish: &Wish) -> Result<Self, Refused> {
+    pub fn begin(twin: &Twin, wish: &SearchTask) -> Result<Self, Refused> {
         let refusal = |key: &str, refused: String| Refused {
             refused,
             line: None,
@@ -102,8 +102,8 @@ impl Faster {
     }
 
     /// The extent of this search.
-    pub fn begun(&self) -> Begun {
-        Begun {
+    pub fn begun(&self) -> SearchExtent {
+        SearchExtent {
             all: self.all,
             rate: self.tuning.rate(),
         }
@@ -138,7 +138,7 @@ impl Faster {
         let kinds = Kind::ALL.into_iter().zip(&searches);
         let scored = kinds.flat_map(|(kind, search)| {
             let each = search.found().into_iter();
-            each.map(move |(score, parameters)| Scored {
+            each.map(move |(score, parameters)| ScoredParameters {
                 kind,
                 score,
                 parameters,
@@ -159,11 +159,11 @@ impl Faster {
 mod tests {
     use super::*;
     use crate::paper::{paper, with_twin};
-    use crate::trial::Made;
+    use crate::trial::EditedGait;
 
-    fn wish(name: &str) -> Wish {
+    fn wish(name: &str) -> SearchTask {
         let gait = paper().gait(name).cloned().expect(name);
-        Wish {
+        SearchTask {
             bars: gait.bars().expect("bars"),
             rate: None,
             rounds: 0,
@@ -171,7 +171,7 @@ mod tests {
         }
     }
 
-    fn refused(wish: &Wish) -> String {
+    fn refused(wish: &SearchTask) -> String {
         Faster::begin(&with_twin().1, wish)
             .expect_err("refused")
             .refused
@@ -192,7 +192,7 @@ mod tests {
         let scored = trials.into_iter().take(3).filter_map(|parameters| {
             let kind = Kind::Wave;
             let score = tuning.score(kind, &parameters)?;
-            Some(Scored {
+            Some(ScoredParameters {
                 kind,
                 score,
                 parameters,
@@ -205,7 +205,7 @@ mod tests {
         assert_eq!(found.comparison, tuning.compare(&alone, 20));
         // What the page takes over is the gait that was found.
         assert_eq!(found.bars.table(), alone.table());
-        let tried = Made::Bars(found.bars).trial(&twin).expect("bars");
+        let tried = EditedGait::Bars(found.bars).trial(&twin).expect("bars");
         let tried = tried.expect("it walks");
         assert_eq!(tried.speed, found.comparison.tuned.rate);
         assert_eq!(faster.step().done, 4, "it can go on");
@@ -216,7 +216,7 @@ mod tests {
         assert!(refused(&wish("arc-left")).contains("goes ahead and turns"));
         let rate = Some(900.0);
         assert_eq!(
-            refused(&Wish {
+            refused(&SearchTask {
                 rate,
                 ..wish("walk")
             }),

@@ -2,7 +2,7 @@
 //! of its own.
 //!
 //! The page gives the text of a robot.toml and then, fifty times a second, four pulse widths, as
-//! the pins of an UNO have them. It gets back the place of every joint, the margin to every
+//! the pins of a UNO have them. It gets back the place of every joint, the margin to every
 //! singularity, the guard's refusal of this pose, and the place of the body on the floor. [`Page`]
 //! holds all of that; `abi` is the interface to JavaScript, and the one place with `unsafe`
 //! attributes.
@@ -25,21 +25,24 @@ mod paper;
 mod place;
 mod refused;
 mod room;
+mod round;
 mod scene;
 mod trial;
 
 pub use core_run::{CoreFrame, CoreRun};
 pub use description::{
-    Description, GaitEntry, LinkEntry, MarginEntry, ModelEntry, Movement, Outlook, ServoEntry,
+    Description, GaitEntry, GaitPrediction, LinkEntry, MarginEntry, ModelEntry, Movement,
+    ServoEntry,
 };
-pub use drawn::Drawn;
+pub use drawn::DrawnGait;
 #[cfg(feature = "tune")]
-pub use faster::{Begun, Faster, Found, Progress, Wish};
+pub use faster::{Faster, Found, Progress, SearchExtent, SearchTask};
 pub use floor::{Floor, Legs};
 pub use map::{Curve, Map, MapPoint};
 pub use page::{Edited, Frame, Page};
 pub use place::Place;
 pub use refused::Refused;
-pub use room::Room;
+pub use room::ReachArea;
+pub use round::RoundPath;
 pub use scene::{LegScene, Margin, Scene, SliderScene, Spot};
-pub use trial::{Instead, Made, NoTrial, Trial};
+pub use trial::{Alternative, EditedGait, NoTrial, Trial};

@@ -3,24 +3,25 @@
 
 use lizard_core::virtual_board::Eeprom;
 use lizard_kinematics::End;
-use lizard_robot::edit::{with_number, with_word, without};
+use lizard_robot::edit::{with_number, with_steps, with_word, without};
 use lizard_robot::servo::FORWARD;
 use lizard_robot::{Bars, Place as Walked, Robot};
 use lizard_twin::{ServoModel, State, Twin};
 use serde::Serialize;
 
 use crate::core_run::{CoreFrame, CoreRun};
-use crate::description::{Description, Outlook, SERVO_MODELS};
-use crate::drawn::Drawn;
+use crate::description::{Description, GaitPrediction, servo_model};
+use crate::drawn::DrawnGait;
 #[cfg(feature = "tune")]
-use crate::faster::{Begun, Faster, Wish};
+use crate::faster::{Faster, SearchExtent, SearchTask};
 use crate::floor::{Floor, Legs};
 use crate::map::Map;
 use crate::place::Place;
 use crate::refused::Refused;
-use crate::room::Room;
+use crate::room::ReachArea;
+use crate::round::RoundPath;
 use crate::scene::Scene;
-use crate::trial::{Made, NoTrial, Trial};
+use crate::trial::{EditedGait, NoTrial, Trial};
 
 /// CPU cycles in a microsecond.
 const CYCLES_PER_US: f64 = 16.0;
@@ -64,7 +65,8 @@ pub struct Page {
     twin: Option<Twin>,
     /// Latest target angles of the servos, deg, chassis frame.
     targets: [f64; 4],
-    model: Option<ServoModel>,
+    /// Name of the servos, if it was set.
+    model: Option<String>,
     run: Option<CoreRun>,
     #[cfg(feature = "tune")]
     faster: Option<Faster>,
@@ -84,7 +86,12 @@ impl Page {
         {
             self.faster = None;
         }
-        self.twin = Some(Twin::new(&robot, self.model.unwrap_or(ServoModel::SG90)));
+        let named = self.model.as_deref();
+        let model = named.and_then(|name| servo_model(&robot, name));
+        self.twin = Some(Twin::new(
+            &robot,
+            model.unwrap_or_else(|| ServoModel::of(&robot)),
+        ));
         Ok(description)
     }
 
@@ -203,20 +210,21 @@ impl Page {
     /// Sets the model of the servos by its name in [`Description::models`]; an unknown name
     /// changes nothing.
     pub fn set_servos(&mut self, name: &str) {
-        let Some((_, model)) = SERVO_MODELS.iter().find(|(known, _)| *known == name) else {
+        let Some(twin) = &mut self.twin else {
+            self.model = Some(name.to_owned());
             return;
         };
-        self.model = Some(*model);
-        if let Some(twin) = &mut self.twin {
-            twin.set_servos(*model);
+        if let Some(model) = servo_model(twin.robot(), name) {
+            self.model = Some(name.to_owned());
+            twin.set_servos(model);
         }
     }
 
     /// Predicts a cycle of a gait on the present floor with the present servos.
-    pub fn predict(&self, gait: usize) -> Option<Outlook> {
+    pub fn predict(&self, gait: usize) -> Option<GaitPrediction> {
         let twin = self.twin.as_ref()?;
         let gait = twin.robot().gaits().get(gait)?;
-        Some(Outlook::of(twin, gait))
+        Some(GaitPrediction::of(twin, gait))
     }
 
     /// The bars of a gait; none if it stands or follows a path.
@@ -228,14 +236,25 @@ impl Page {
     ///
     /// # Errors
     /// The first limit that the gait breaks, with possible values.
-    pub fn trial(&self, made: &Made) -> Option<Result<Trial, NoTrial>> {
+    pub fn trial(&self, made: &EditedGait) -> Option<Result<Trial, NoTrial>> {
         made.trial(self.twin.as_ref()?)
     }
 
     /// The text of the page's robot with a gait, in place of the gait of the same name or at the
     /// end; none without a robot or a line.
-    pub fn put_gait(&self, text: &str, made: &Made) -> Option<String> {
+    pub fn put_gait(&self, text: &str, made: &EditedGait) -> Option<String> {
         made.put_into(text, self.robot()?)
+    }
+
+    /// Sets the steps of a routine in the text of a robot.toml, or adds the routine. The page's robot stays as it is.
+    #[must_use]
+    pub fn put_steps(text: &str, name: &str, steps: &[String]) -> Edited {
+        Edited::of(with_steps(text, name, steps))
+    }
+
+    /// The path of one round of a routine on the present floor with the present servos; none without the routine.
+    pub fn round(&self, routine: &str) -> Option<RoundPath> {
+        RoundPath::of(self.twin.as_ref()?, routine)
     }
 
     /// Prepares the search of a faster gait for the page's robot; none without a robot.
@@ -243,7 +262,7 @@ impl Page {
     /// # Errors
     /// The reason why there is nothing to search.
     #[cfg(feature = "tune")]
-    pub fn make_faster(&mut self, wish: &Wish) -> Option<Result<Begun, Refused>> {
+    pub fn make_faster(&mut self, wish: &SearchTask) -> Option<Result<SearchExtent, Refused>> {
         let begun = Faster::begin(self.twin.as_ref()?, wish);
         Some(begun.map(|faster| self.faster.insert(faster).begun()))
     }
@@ -255,13 +274,13 @@ impl Page {
     }
 
     /// The line that the point of an end follows in a gait that was drawn.
-    pub fn path(&self, drawn: &Drawn) -> Option<Vec<[f64; 2]>> {
+    pub fn path(&self, drawn: &DrawnGait) -> Option<Vec<[f64; 2]>> {
         drawn.path(self.robot()?)
     }
 
     /// The places that the point of the head (0) or the tail (1) may reach.
-    pub fn room(&self, end: usize) -> Option<Room> {
-        Some(Room::of(self.robot()?, *End::ALL.get(end)?))
+    pub fn room(&self, end: usize) -> Option<ReachArea> {
+        Some(ReachArea::of(self.robot()?, *End::ALL.get(end)?))
     }
 
     /// The map of singularities of the head (0) or the tail (1).

@@ -14,6 +14,6 @@ pub fn paper() -> Robot {
 /// Reads the paper's robot and makes its twin with ideal servos.
 pub fn with_twin() -> (Robot, Twin) {
     let robot = paper();
-    let twin = Twin::new(&robot, ServoModel::IDEAL);
+    let twin = Twin::new(&robot, ServoModel::Ideal);
     (robot, twin)
 }

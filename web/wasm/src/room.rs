@@ -17,7 +17,7 @@ const NEAR: f64 = 1e-6;
 /// The room of an end's point: mm in the end's own frame, from the middle of its base, outward
 /// positive in y.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Room {
+pub struct ReachArea {
     /// The first point of the first row.
     pub from: [f64; 2],
     /// Distance of two points, mm.
@@ -32,7 +32,7 @@ pub struct Room {
     pub shafts: [[f64; 2]; 2],
 }
 
-impl Room {
+impl ReachArea {
     /// Computes the room of an end.
     #[must_use]
     pub fn of(robot: &Robot, end: End) -> Self {
@@ -112,7 +112,7 @@ mod tests {
     fn the_neutral_point_is_allowed_and_points_out_of_reach_are_not() {
         let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
         for end in End::ALL {
-            let room = Room::of(&robot, end);
+            let room = ReachArea::of(&robot, end);
             let place = |[x, y]: [f64; 2]| {
                 let [column, row] = [
                     (x - room.from[0]) / room.step,
@@ -122,7 +122,8 @@ mod tests {
             };
             assert!(place(room.neutral), "{end}");
             assert_eq!(room.allowed.len() % room.columns, 0);
-            // A rim of points that are not, so that its shape is seen.
+            // The first row is a rim of points that are not allowed, so that the
+            // shape's edge is seen.
             assert!(room.allowed[..room.columns].iter().all(|allowed| !allowed));
             // The gesture of robot.toml lies in it: 10 mm to either side of 54 mm outward.
             for x in [-10.0, 0.0, 10.0] {

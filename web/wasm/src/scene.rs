@@ -96,7 +96,7 @@ impl Scene {
             .lizard()
             .solve(&pose)
             .map_err(|fault| fault.to_string())?;
-        let shape = Shape::of_solved(robot, &solution, twin.legs());
+        let shape = Shape::at_solution(robot, &solution, twin.legs());
         let sprung = twin.ground().drive.kind != lizard_robot::Kind::Rigid;
         let named = |(check, value): (Check, f64)| Margin {
             name: check.name(),
@@ -163,7 +163,7 @@ mod tests {
     use crate::paper::{TEXT, paper};
 
     fn at(robot: &Robot, angles: [f64; 4]) -> Scene {
-        let mut twin = Twin::new(robot, ServoModel::IDEAL);
+        let mut twin = Twin::new(robot, ServoModel::Ideal);
         twin.push_angles(angles);
         Scene::of(&twin).expect("closes")
     }
@@ -204,7 +204,7 @@ mod tests {
         let gaits = short.find("[gait.walk]").expect("walk");
         let limits = short[..gaits].replace("type2 = 0.3", "type2 = 0.1");
         let robot = Robot::parse(&limits).expect("it stands");
-        let mut twin = Twin::new(&robot, ServoModel::IDEAL);
+        let mut twin = Twin::new(&robot, ServoModel::Ideal);
         twin.push_angles([170.0, 10.0, 318.59, 221.41]);
         let fault = Scene::of(&twin).expect_err("out of reach");
         assert!(fault.contains("head"), "{fault}");

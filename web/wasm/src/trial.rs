@@ -8,8 +8,8 @@ use lizard_robot::{Bars, Robot, edit};
 use lizard_twin::Twin;
 use serde::{Deserialize, Serialize};
 
-use crate::description::Outlook;
-use crate::drawn::Drawn;
+use crate::description::GaitPrediction;
+use crate::drawn::DrawnGait;
 use crate::refused::Refused;
 
 /// The smallest gait that is offered: tenths of a deg, or hundredths of the drawn size.
@@ -20,9 +20,9 @@ const LONGEST: i64 = 1000;
 /// A gait that is being made.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(untagged)]
-pub enum Made {
+pub enum EditedGait {
     /// A gait along a line that was drawn.
-    Drawn(Drawn),
+    DrawnGait(DrawnGait),
     /// A gait of four bars.
     Bars(Bars),
 }
@@ -32,7 +32,7 @@ pub enum Made {
 pub struct Trial {
     /// Movement of a cycle.
     #[serde(flatten)]
-    pub outlook: Outlook,
+    pub outlook: GaitPrediction,
     /// The gait's table for robot.toml.
     pub table: String,
     /// Name of the margin that is nearest to its limit.
@@ -51,7 +51,7 @@ pub struct Trial {
 
 /// A value that is possible in place of the one that was wanted.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Instead {
+pub struct Alternative {
     /// Name of the value: `amplitude`, `size` or `period`.
     pub what: &'static str,
     /// The value in deg, as a share, or in s.
@@ -65,27 +65,27 @@ pub struct NoTrial {
     #[serde(flatten)]
     pub refused: Refused,
     /// The nearest possible values, each of them alone.
-    pub instead: Vec<Instead>,
+    pub instead: Vec<Alternative>,
 }
 
-impl Made {
+impl EditedGait {
     fn table(&self, robot: &Robot) -> Option<String> {
         match self {
-            Self::Drawn(drawn) => drawn.table(robot),
+            Self::DrawnGait(drawn) => drawn.table(robot),
             Self::Bars(bars) => Some(bars.table()),
         }
     }
 
     /// The text of a robot.toml with this gait, in place of the gait of the same name or at the
-    /// end; none of a line without length.
+    /// end; none if its line has no length.
     #[must_use]
     pub fn put_into(&self, text: &str, robot: &Robot) -> Option<String> {
-        let (Self::Drawn(Drawn { name, .. }) | Self::Bars(Bars { name, .. })) = self;
+        let (Self::DrawnGait(DrawnGait { name, .. }) | Self::Bars(Bars { name, .. })) = self;
         Some(edit::with_gait(text, name, &self.table(robot)?))
     }
 
-    /// Tries the gait with the robot, the floor and the servos of a twin; none of a line without
-    /// length.
+    /// Tries the gait with the robot, the floor and the servos of a twin; none if its line has
+    /// no length.
     ///
     /// # Errors
     /// The first limit that the gait breaks, with possible values.
@@ -99,7 +99,7 @@ impl Made {
     }
 
     /// Finds the nearest smaller gait and the nearest longer period that are possible.
-    fn instead(&self, robot: &Robot) -> Vec<Instead> {
+    fn instead(&self, robot: &Robot) -> Vec<Alternative> {
         let is_possible = |change: &dyn Fn(&mut Self)| {
             let mut other = self.clone();
             change(&mut other);
@@ -107,18 +107,18 @@ impl Made {
             table.is_some_and(|table| robot.with_gait(&table).is_ok())
         };
         let (what, size, steps, period) = match self {
-            Self::Drawn(drawn) => ("size", drawn.size, 100.0, drawn.period),
+            Self::DrawnGait(drawn) => ("size", drawn.size, 100.0, drawn.period),
             Self::Bars(bars) => ("amplitude", bars.amplitude, 10.0, bars.period),
         };
         let resized = |step: i64| {
             is_possible(&|made| match made {
-                Self::Drawn(drawn) => drawn.size = step as f64 / steps,
+                Self::DrawnGait(drawn) => drawn.size = step as f64 / steps,
                 Self::Bars(bars) => bars.amplitude = step as f64 / steps,
             })
         };
         let slower = |hundredths: i64| {
             is_possible(&|made| match made {
-                Self::Drawn(Drawn { period, .. }) | Self::Bars(Bars { period, .. }) => {
+                Self::DrawnGait(DrawnGait { period, .. }) | Self::Bars(Bars { period, .. }) => {
                     *period = hundredths as f64 / 100.0;
                 }
             })
@@ -126,7 +126,7 @@ impl Made {
         let size = nearest((size * steps).ceil() as i64 - 1, LEAST, resized);
         let period = nearest((period * 100.0).floor() as i64 + 1, LONGEST, slower);
         let instead = |what, value: Option<i64>, steps: f64| {
-            value.map(|value| Instead {
+            value.map(|value| Alternative {
                 what,
                 value: value as f64 / steps,
             })
@@ -154,7 +154,7 @@ fn tried(table: String, twin: &Twin) -> Result<Trial, Refused> {
         .min_by(|a, b| (a.0.value - a.1).total_cmp(&(b.0.value - b.1)))
         .expect("three margins");
     Ok(Trial {
-        outlook: Outlook::of(&other, gait),
+        outlook: GaitPrediction::of(&other, gait),
         table,
         margin: least.what.name(),
         least: least.value,

@@ -3,7 +3,7 @@
 use super::*;
 use proptest::prelude::*;
 
-use crate::yields::{Side, Stretch};
+use crate::lag_energy::{Side, Stretch};
 
 const EVEN: [f64; 4] = [1.0; 4];
 /// Torque of a stop: more than that of a pad at the end of a leg of 45 mm.
@@ -17,7 +17,8 @@ fn pads(at: [Point; 4], swing: [Point; 4]) -> Pads {
         swing,
         ratio: 1.0,
         load: EVEN,
-        give: None,
+        compliance: None,
+        body: None,
     }
 }
 
@@ -29,13 +30,13 @@ fn cost(pads: &Pads, displacement: &Displacement) -> f64 {
     };
     let slides = pads.slides(displacement).into_iter().zip(pads.load);
     let friction: f64 = slides.map(|(slide, load)| load * length(slide)).sum();
-    let energy = |give: Give| -> f64 {
+    let energy = |compliance: Compliance| -> f64 {
         let each = displacement.lag.iter();
-        each.zip(give.yields)
+        each.zip(compliance.lag_energy)
             .map(|(lag, drive)| drive.expand(*lag, 0.0).0)
             .sum()
     };
-    friction + pads.give.map_or(0.0, energy)
+    friction + pads.compliance.map_or(0.0, energy)
 }
 
 /// Proves a lower bound by duality: forces within the pads' friction that balance
@@ -57,9 +58,9 @@ fn certificate(pads: &Pads, displacement: &Displacement) -> ([f64; 3], f64) {
         let force = force.map(|part| pads.load[i] * part);
         let along = |[x, y]: Point| force[0] * x + force[1] * y;
         work += along(pads.swing[i]);
-        if let Some(give) = pads.give {
-            let torque = along(give.along[i]);
-            work += torque * give.before[i] - give.yields[i].conjugate(torque);
+        if let Some(compliance) = pads.compliance {
+            let torque = along(compliance.along[i]);
+            work += torque * compliance.before[i] - compliance.lag_energy[i].conjugate(torque);
         }
         net[0] += force[0];
         net[1] += force[1];
@@ -142,7 +143,7 @@ proptest! {
         load in prop::array::uniform4(0.8f64..1.2),
     ) {
         let at = std::array::from_fn(|i| [AT[i][0] + jitter[i][0], AT[i][1] + jitter[i][1]]);
-        assert_least(&Pads { at, swing, ratio, load, give: None });
+        assert_least(&Pads { at, swing, ratio, load, compliance: None, body: None });
     }
 
     #[test]
@@ -152,7 +153,7 @@ proptest! {
         size in -6i32..1,
         load in prop::array::uniform4(0.8f64..1.2),
     ) {
-        let pads = Pads { at: AT, swing, ratio: 1.3, load, give: None };
+        let pads = Pads { at: AT, swing, ratio: 1.3, load, compliance: None, body: None };
         let least = pads.least();
         let (twist, scale) = (least.twist, 10f64.powi(size));
         let other = [twist[0] + scale * nudge[0], twist[1] + scale * nudge[1], twist[2] + scale * nudge[2] / 80.0];
@@ -178,12 +179,12 @@ proptest! {
         // The spring of the paper's size; one without a rate would pull less the
         // further it is stretched, where its lever shrinks.
         let upper = force.map_or(Side::Stop, |force| Side::strut(stretch, force, 1.5, 5.0));
-        let drive = Yield { play, stop: STOP, lower: Side::Stop, upper };
-        let give = Some(Give {
+        let drive = LagEnergy { play, stop: STOP, lower: Side::Stop, upper, motor: None };
+        let compliance = Some(Compliance {
             along: [[45.0, 0.0]; 4],
             before: within.map(|share| share * play),
-            yields: [drive; 4],
+            lag_energy: [drive; 4],
         });
-        assert_least(&Pads { at: AT, swing, ratio: 1.0, load, give });
+        assert_least(&Pads { at: AT, swing, ratio: 1.0, load, compliance, body: None });
     }
 }

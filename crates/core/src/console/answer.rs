@@ -9,12 +9,12 @@ use crate::numbers::gaits::GaitId;
 
 /// The next line of an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-// From 1 on, since none at all has to be zero: see `Main::new`.
+// Starts at 1, since `None` has to be zero: see `Main::new`.
 #[repr(u8)]
 pub enum Answer {
     /// `ok` and the line as it was understood.
     Done = 1,
-    /// The gaits from this one on, as many as a line takes.
+    /// The gaits from this one on, as many as fit in a line.
     Gaits(GaitId),
     /// The words of the console.
     Words,
@@ -29,7 +29,7 @@ pub enum Answer {
     Margin,
     /// Counters, faults, restarts and supplies.
     Health,
-    /// A line of what is set, by its number; after the last one `ok cal`.
+    /// A line of the settings, by its number; after the last one `ok cal`.
     Settings(u8),
     /// `err`, since the line is not a command; nothing was changed.
     Misread(Misread),

@@ -1,4 +1,4 @@
-//! Lines into commands.
+//! Parses lines into commands.
 //!
 //! A line is one command: a word of the console, or the name of a gait in `robot.toml`.
 //! This module only parses. A line that is not understood completely is an error and
@@ -24,29 +24,29 @@ pub enum Command {
     Status,
     /// Print all settings.
     Cal,
-    /// Print the pose every so many frames; 0 ends that.
+    /// Print the pose once every this many frames; 0 ends the reports.
     Watch(u16),
     /// An order to the robot.
     Order(Order),
 }
 
-/// The reason for which a line is not a command.
+/// The reason why a line is not a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Misread {
     /// A byte of the line was garbled.
     Garbled,
     /// The line is too long.
     TooLong,
-    /// The first word is no command.
+    /// The first word is not a command.
     Unknown,
     /// A command that takes no argument has one.
     Surplus,
     /// The first words of a gait's name, without the others.
     Incomplete,
-    /// An argument is missing, malformed or too much: the sentence says what is
-    /// wanted.
+    /// An argument is missing, malformed or superfluous; the sentence describes the correct
+    /// arguments.
     Wants(Text),
-    /// An argument is out of the range that the sentence tells.
+    /// An argument is out of range; the sentence gives the range.
     Range(Text),
     /// The angle of this servo is more than a turn.
     PoseRange(Servo),
@@ -54,6 +54,9 @@ pub enum Misread {
 
 /// The rarest report: every 200 s.
 pub const WATCH_MOST: u16 = 10_000;
+
+/// The most cycles that a gait may be told to go.
+pub const COUNT_MOST: u16 = 999;
 
 /// The longest time that `deadman` allows, a minute.
 pub const DEADMAN_MOST: u16 = 60_000;
@@ -87,14 +90,14 @@ struct Form {
     /// The range of each, without its sign.
     least: u16,
     most: u16,
-    /// The answer to a line that is not of this form.
+    /// The sentence for arguments of another form.
     wants: Text,
-    /// The answer to an argument out of range.
+    /// The sentence for an argument out of range.
     range: Text,
 }
 
 flash! {
-    /// In the order of [`form`].
+    /// All forms, in the order of [`form`].
     const FORMS: [Form; 8] = [
         Form { servo: false, count: 4, kind: Kind::Degrees, least: 0, most: LARGEST_ANGLE, wants: Text::PoseWants, range: Text::Nothing },
         Form { servo: false, count: 1, kind: Kind::Whole, least: 10, most: 100, wants: Text::SpeedWants, range: Text::SpeedRange },
@@ -125,7 +128,7 @@ const fn form(word: Word) -> Option<usize> {
 /// Reads a line that is trimmed, not empty and in lower case.
 ///
 /// # Errors
-/// The reason for which the line is not a command.
+/// The reason why the line is not a command.
 pub fn parse(line: &[u8], robot: &Robot) -> Result<Command, Misread> {
     parse_among::<RESERVED>(line, robot)
 }
@@ -136,13 +139,17 @@ pub fn parse(line: &[u8], robot: &Robot) -> Result<Command, Misread> {
 fn parse_among<const YIELDING: usize>(line: &[u8], robot: &Robot) -> Result<Command, Misread> {
     let mut words = Words(line);
     let word = Word::find(words.next()).filter(|word| {
-        // No instruction is spent on it while no word yields.
+        // Costs no instruction as long as no word yields.
         YIELDING >= Word::ALL.len()
             || (*word as usize) < YIELDING
-            || !matches!(gait(line, robot), Ok(_) | Err(Misread::Surplus))
+            || matches!(
+                gait(line, robot),
+                Err(Misread::Unknown | Misread::Incomplete)
+            )
     });
     let Some(word) = word else {
-        return Ok(Command::Order(Order::Gait(gait(line, robot)?)));
+        let (gait, cycles) = gait(line, robot)?;
+        return Ok(Command::Order(Order::Gait(gait, cycles)));
     };
     let Arguments { servo, numbers } = match form(word) {
         Some(place) => Arguments::read(word, words, &FORMS.at(place).load())?,
@@ -179,7 +186,7 @@ pub fn effect(line: &str, robot: &Robot) -> Effect {
     let line = line.as_bytes();
     match parse(line, robot) {
         Err(_) => Effect::None,
-        Ok(Command::Order(Order::Gait(_))) => Effect::Moves,
+        Ok(Command::Order(Order::Gait(..))) => Effect::Moves,
         Ok(_) => Word::find(Words(line).next()).map_or(Effect::None, Word::effect),
     }
 }
@@ -190,8 +197,8 @@ fn boot(rest: &[u8], robot: &Robot) -> Result<Boot, Misread> {
         return Ok(Boot::Rest);
     }
     match gait(rest, robot) {
-        Ok(gait) => Ok(Boot::Gait(gait)),
-        Err(_) => Err(Misread::Wants(Text::BootWants)),
+        Ok((gait, 0)) => Ok(Boot::Gait(gait)),
+        _ => Err(Misread::Wants(Text::BootWants)),
     }
 }
 
@@ -199,8 +206,8 @@ fn boot(rest: &[u8], robot: &Robot) -> Result<Boot, Misread> {
 struct Arguments {
     /// The servo that is to be set.
     servo: Servo,
-    /// A percentage, frames or milliseconds as they are; `+` as 1 and `-` as 0;
-    /// hundredths as such; degrees as an [`Angle`].
+    /// The numbers: percentages, frames, milliseconds and hundredths unchanged; `+` as 1 and
+    /// `-` as 0; degrees as an [`Angle`].
     numbers: [u16; 4],
 }
 
@@ -272,47 +279,57 @@ impl<'a> Words<'a> {
     }
 }
 
-/// Finds the gait of this name. Any blanks between its words are accepted.
+/// Finds the gait of this name, and reads the number of cycles behind it; 0 without one. Any
+/// blanks between words are accepted. If one gait's name is another's and a number, the longer
+/// name counts.
 #[inline(never)]
-fn gait(line: &[u8], robot: &Robot) -> Result<GaitId, Misread> {
+fn gait(line: &[u8], robot: &Robot) -> Result<(GaitId, u16), Misread> {
     let line = line.trim_ascii_start();
-    let mut misread = Misread::Unknown;
+    let mut read = Err(Misread::Unknown);
     for id in GaitId::all(robot.gait_count()) {
         match compare(line, robot.name(id)) {
-            Some(Misread::Unknown) => {}
-            Some(other) => misread = other,
-            None => return Ok(id),
+            Err(Misread::Unknown) => {}
+            Ok(0) => return Ok((id, 0)),
+            other if read.is_err() => read = other.map(|cycles| (id, cycles)),
+            _ => {}
         }
     }
-    Err(misread)
+    read
 }
 
-/// Compares a line with a name and returns the mismatch, if any. Stops at the first byte
-/// that differs: there may be many names, and a frame may be due.
-fn compare(line: &[u8], name: Name) -> Option<Misread> {
+/// Compares a line with a name, and reads the number behind it; 0 without one. Stops at the
+/// first byte that differs: there may be many names, and a frame may be due.
+#[inline(never)]
+fn compare(line: &[u8], name: Name) -> Result<u16, Misread> {
     let mut rest = line;
     for byte in name {
         match rest {
-            [] if byte == b' ' => return Some(Misread::Incomplete),
+            [] if byte == b' ' => return Err(Misread::Incomplete),
             [first, ..] if byte == b' ' && first.is_ascii_whitespace() => {
                 rest = rest.trim_ascii_start();
             }
             [first, others @ ..] if *first == byte => rest = others,
-            _ => return Some(Misread::Unknown),
+            _ => return Err(Misread::Unknown),
         }
     }
     match rest {
-        [] => None,
-        [first, ..] if first.is_ascii_whitespace() => Some(Misread::Surplus),
-        _ => Some(Misread::Unknown),
+        [] => return Ok(0),
+        [first, ..] if !first.is_ascii_whitespace() => return Err(Misread::Unknown),
+        _ => {}
+    }
+    let mut words = Words(rest);
+    let number = number_of(words.next(), Kind::Whole);
+    match number {
+        Some((cycles @ 1..=COUNT_MOST, _)) if words.is_done() => Ok(cycles),
+        _ => Err(Misread::Wants(Text::CountWants)),
     }
 }
 
 /// Hundredths have this many decimals.
 const DECIMALS: u8 = 2;
 
-/// A word as an argument, without its sign, and whether that is a minus. 65535 stands
-/// for more than sixteen bits hold.
+/// Reads a word as a number without its sign; true if the sign is a minus. Returns 65535 for
+/// numbers of more than sixteen bits.
 #[inline(never)]
 fn number_of(word: &[u8], kind: Kind) -> Option<(u16, bool)> {
     let (mut sign, mut digits) = (b'+', word);
@@ -350,7 +367,7 @@ fn number_of(word: &[u8], kind: Kind) -> Option<(u16, bool)> {
     Some((size, negative))
 }
 
-/// A number with one more digit; 65535 stands for more than sixteen bits hold.
+/// Appends a digit to a number; saturates at 65535.
 #[inline(never)]
 fn append(number: u16, digit: u8) -> u16 {
     // 6553 and one more digit is where sixteen bits may end.

@@ -7,17 +7,19 @@
 use crate::console::answer::{Answer, Counters};
 use crate::console::command::{self, Command, Misread};
 use crate::console::digits;
-use crate::console::line::{Ended, Line};
+use crate::console::finder::Finder;
+use crate::console::line::{Ended, GARBLED, Line};
 use crate::console::output::Output;
 use crate::console::print;
 use crate::console::refusal;
 use crate::console::text::Text;
 use crate::console::watch::Watch;
 use crate::control::Control;
-use crate::control::order::Taken;
+use crate::control::order::Accepted;
 use crate::control::refusal::Refusal;
 use crate::control::safety::Notice;
 use crate::numbers::gaits::GaitId;
+use crate::numbers::rate::Rate;
 
 /// The longest line that [`Console::write_line`] writes, with its line end: a
 /// `status` whose every number has all its digits.
@@ -32,7 +34,7 @@ enum Pending {
     Answer(Answer),
     /// A notice that comes without a command.
     Notice(Notice),
-    /// The reason for which the guard holds the robot.
+    /// The reason why the guard holds the robot.
     Held,
     /// The pose, as `watch` asked for it.
     Report,
@@ -42,6 +44,7 @@ enum Pending {
 #[derive(Clone, Debug)]
 pub struct Console {
     line: Line,
+    finder: Finder,
     greeted: bool,
     answer: Option<Answer>,
     watch: Watch,
@@ -58,15 +61,26 @@ impl Console {
     pub const fn new() -> Self {
         Self {
             line: Line::new(),
+            finder: Finder::new(Rate::Fastest),
             greeted: false,
             answer: None,
             watch: Watch::every(0),
         }
     }
 
-    /// Advances the timer of `watch` by a frame.
-    pub fn frame(&mut self) {
+    /// Begins at this rate of the serial line.
+    pub const fn begin(&mut self, rate: Rate) {
+        self.finder = Finder::new(rate);
+    }
+
+    /// Advances the timer of `watch` by a frame. Returns the rate that the serial line is to
+    /// have from now on, if it changes.
+    pub fn frame(&mut self) -> Option<Rate> {
         self.watch.frame();
+        let rate = self.finder.frame()?;
+        // The next line end may end a line that began at the rate before.
+        self.line.push(GARBLED);
+        Some(rate)
     }
 
     /// True while a line waits to be written. No byte is to be passed on
@@ -76,14 +90,14 @@ impl Console {
     }
 
     /// Takes a byte from the serial line and executes the line that it ends.
-    // Out of line, as the next: half a kilobyte of flash.
+    // Not inlined, like the next function: that saves half a kilobyte of flash.
     #[inline(never)]
     pub fn receive(&mut self, byte: u8, control: &mut Control) {
         control.note_byte();
+        self.finder.note_byte(byte);
         let Some(ended) = self.line.push(byte) else {
             return;
         };
-        control.note_line();
         let answer = match ended {
             Ended::Line => self.obey(control),
             Ended::TooLong => Err(Answer::Misread(Misread::TooLong)),
@@ -98,6 +112,9 @@ impl Console {
     fn obey(&mut self, control: &mut Control) -> Result<Option<Answer>, Answer> {
         let robot = control.motion().robot();
         let command = command::parse(self.line.text(), robot);
+        if command.is_ok() {
+            self.finder.note_command();
+        }
         let reads = matches!(
             command,
             Ok(Command::Help | Command::Status | Command::Watch(_))
@@ -105,7 +122,10 @@ impl Console {
         if robot.is_none() && !reads {
             return Err(Answer::Refused(Refusal::NoRobot));
         }
-        Ok(match command.map_err(Answer::Misread)? {
+        let command = command.map_err(Answer::Misread)?;
+        // Noise and the rest of a line are nobody's, so `deadman` does not wait for them.
+        control.note_command();
+        Ok(match command {
             Command::Help => Some(Answer::Gaits(GaitId::STAND)),
             Command::Status => Some(Answer::Status),
             Command::Cal => Some(Answer::Settings(0)),
@@ -114,8 +134,8 @@ impl Console {
                 Some(Answer::Done)
             }
             Command::Order(order) => match control.execute(&order).map_err(Answer::Refused)? {
-                Taken::Done => Some(Answer::Done),
-                Taken::Later => None,
+                Accepted::Done => Some(Answer::Done),
+                Accepted::Later => None,
             },
         })
     }
@@ -128,8 +148,8 @@ impl Console {
         });
     }
 
-    /// Writes one line, if one waits, at most [`LONGEST_LINE`] bytes: the banner, once after
-    /// power-on; an answer or a part of it; a notice; the reason for which the guard holds
+    /// Writes one waiting line, if any, at most [`LONGEST_LINE`] bytes: the banner, once after
+    /// power-on; an answer or a part of it; a notice; the reason why the guard holds
     /// the robot; or the pose, as `watch` asked for it. The longest line, `status`, is written
     /// in parts, one with each call.
     #[inline(never)]
@@ -175,7 +195,7 @@ impl Console {
             Some(Pending::Answer(answer))
         } else if let Some(notice) = control.safety().notice() {
             Some(Pending::Notice(notice))
-        } else if control.was_held() {
+        } else if control.has_hold_reason() {
             Some(Pending::Held)
         } else if self.watch.due {
             Some(Pending::Report)

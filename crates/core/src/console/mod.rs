@@ -7,6 +7,7 @@ pub mod answer;
 pub mod command;
 mod dialogue;
 pub mod digits;
+mod finder;
 pub mod line;
 pub mod output;
 mod print;

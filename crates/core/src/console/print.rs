@@ -21,7 +21,8 @@ use crate::numbers::robot::Robot;
 use crate::numbers::section::Damage;
 use crate::numbers::units::{Angle, Sweep, thousandths_from_phase};
 
-/// The longest line of gaits' names, without its line end: it delays a frame by so much.
+/// The longest line of gaits' names, without its line end. A frame may have to wait
+/// until it is written.
 pub(super) const LONGEST_NAMES: u8 = 125;
 
 /// The numbers of the lines that `cal` prints.
@@ -66,7 +67,7 @@ pub(super) fn answer(
             digits::ascii(out, line.text().iter().copied());
         }
         Answer::Status => {
-            status(out, control.motion());
+            status(out, control);
             return Some(Answer::Margin);
         }
         Answer::Margin => {
@@ -87,7 +88,7 @@ pub(super) fn answer(
 /// gait that did not fit.
 fn gaits(out: &mut impl Output, first: GaitId, robot: &Robot) -> Option<GaitId> {
     Text::HelpGaits.print(out);
-    // Whatever is in the flash then is no name.
+    // Without a robot, the bytes in the flash are not a name.
     if robot.is_none() {
         return None;
     }
@@ -109,10 +110,11 @@ fn gaits(out: &mut impl Output, first: GaitId, robot: &Robot) -> Option<GaitId> 
 }
 
 #[inline(never)]
-fn status(out: &mut impl Output, motion: &Motion) {
+fn status(out: &mut impl Output, control: &Control) {
+    let motion = control.motion();
     let robot = motion.robot();
     Text::OkGait.print(out);
-    match motion.activity() {
+    match control.activity() {
         // A gait's name as a value without a blank: `arc-left`.
         Activity::Gait(gait) => {
             let bytes = robot.name(gait);
@@ -125,7 +127,7 @@ fn status(out: &mut impl Output, motion: &Motion) {
         Activity::Stop => Text::Stop.print(out),
         Activity::Rest => Text::Rest.print(out),
     }
-    // What is no robot rests, and has no pose and no margin.
+    // Without a robot there is no pose and no margin.
     if robot.is_none() {
         return;
     }
@@ -165,7 +167,7 @@ fn health(out: &mut impl Output, control: &Control, counters: Counters) {
         .print(out);
     Text::StatusReset.print(out);
     cause_word(control.cause()).print(out);
-    digits::count(out, Text::StatusResets, control.restarts().into());
+    digits::count(out, Text::StatusResets, control.resets().into());
     let robot = control.motion().robot();
     // Only a robot says by which reference a voltage is to be computed.
     if robot.is_none() {
@@ -228,7 +230,7 @@ fn boot(out: &mut impl Output, control: &Control) {
 /// Prints a notice, a line that comes without a command.
 pub(super) fn notice(out: &mut impl Output, notice: Notice, control: &Control) {
     match notice {
-        Notice::Memory => match control.found() {
+        Notice::Memory => match control.saved_settings() {
             Outcome::Latest | Outcome::Blank => Text::MemoryBlank,
             Outcome::Other => Text::MemoryOther,
             Outcome::Damaged => Text::MemoryDamaged,
@@ -262,6 +264,15 @@ pub(super) fn notice(out: &mut impl Output, notice: Notice, control: &Control) {
         Notice::Boot => {
             Text::NoticeBoot.print(out);
             boot(out, control)
+        }
+        Notice::Done => Text::NoticeDone.print(out),
+        Notice::Waiting => {
+            Text::NoticeWaiting.print(out);
+            match control.input().is_nose() {
+                true => Text::Nose,
+                false => Text::Button,
+            }
+            .print(out)
         }
     }
 }

@@ -166,15 +166,14 @@ mod tests {
     use crate::numbers::units::Sine;
     use crate::sample::Sample;
 
-    /// A refusal as the console of the odd robot prints it, with its code.
-    /// The text that a function prints.
+    /// Returns the text that a function prints for the odd robot.
     fn printed(print: impl FnOnce(&Motion, &mut String)) -> String {
         let mut text = String::new();
         print(&Motion::new(*Sample::odd()), &mut text);
         text
     }
 
-    fn told(refusal: Refusal) -> String {
+    fn refusal_text(refusal: Refusal) -> String {
         printed(|motion, out| refusal.print(motion, out))
     }
 
@@ -209,7 +208,7 @@ mod tests {
             assert_eq!(printed(|motion, out| misread.print(motion, out)), sentence);
         }
         assert_eq!(
-            told(Refusal::Resting),
+            refusal_text(Refusal::Resting),
             "7 servos are resting, send stand first"
         );
         // The ends of the travel, in whole steps within it: A1 turns 71 deg clockwise of
@@ -219,12 +218,15 @@ mod tests {
             (Servo::A3, "3 A3 reaches 235.64..18.64"),
             (Servo::A4, "3 A4 reaches 134.18..307.18"),
         ] {
-            assert_eq!(told(Refusal::Unsafe(Hazard::Travel(servo))), sentence);
+            assert_eq!(
+                refusal_text(Refusal::Unsafe(Hazard::Travel(servo))),
+                sentence
+            );
         }
     }
 
     #[test]
-    fn every_hazard_is_told_with_its_value_and_its_own_limit() {
+    fn every_hazard_is_reported_with_its_value_and_limit() {
         use Margin::{Leg, Type1, Type2};
         for (margin, value, sentence) in [
             (
@@ -265,7 +267,10 @@ mod tests {
         ] {
             let value = Sine(value);
             let hazard = Hazard::Margin { margin, value };
-            assert_eq!(told(Refusal::Unsafe(hazard)), format!("4 {sentence}"));
+            assert_eq!(
+                refusal_text(Refusal::Unsafe(hazard)),
+                format!("4 {sentence}")
+            );
         }
         // Nominal 91 mm on the left and 98 mm on the right, 256 steps each.
         assert_eq!(
@@ -286,7 +291,10 @@ mod tests {
         ] {
             let length = 256 * mm;
             let hazard = Hazard::Stroke { side, length };
-            assert_eq!(told(Refusal::Unsafe(hazard)), format!("5 {sentence}"));
+            assert_eq!(
+                refusal_text(Refusal::Unsafe(hazard)),
+                format!("5 {sentence}")
+            );
         }
     }
 }

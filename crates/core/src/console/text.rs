@@ -51,6 +51,10 @@ texts! {
     NoticeFault = "# fault: ";
     NoticeSupply = "# supply: ";
     NoticeBoot = "# boot: ";
+    NoticeDone = "# done";
+    NoticeWaiting = "# waiting for ";
+    Button = "button";
+    Nose = "nose";
     WhyGuard = "the next pose is not safe, held";
     WhySupply = "the supply is too low to move";
     WhyLink = "no line for as long as deadman says, stopped";
@@ -113,6 +117,7 @@ texts! {
     Garbled = "the line came garbled, send it again";
     Surplus = "this command takes no argument";
     Incomplete = "this command wants one more word";
+    CountWants = "a gait takes a count, 1..999";
     SpeedWants = "speed wants a whole number, 10..100";
     SpeedRange = "speed must be 10..100";
     WatchWants = "watch wants a whole number, 0..10000";
@@ -196,7 +201,7 @@ const COUNT: usize = SENTENCES.len();
 /// The number of packed strings: the sentences first, then the phrases.
 const STRINGS: usize = COUNT + PHRASES.len();
 
-/// Strings in a block. Only the start of each block is stored, and the length of each string.
+/// Strings in a block: only the start of each block is stored, besides each string's length.
 const BLOCK: usize = 16;
 
 const PACKED: Packed = pack();
@@ -213,7 +218,7 @@ impl Text {
     #[inline(never)]
     pub fn print(self, out: &mut impl Output) {
         let mut part = Part::of(self as u8);
-        // What follows the phrase that `part` is of.
+        // The rest of the sentence, behind the phrase that is being printed.
         let mut rest = Part::NONE;
         loop {
             if part.left == 0 {
@@ -312,8 +317,8 @@ impl Packed {
     }
 }
 
-/// Packs all strings, in the compiler: phrases as such in sentences, and letter by
-/// letter by themselves.
+/// Packs all strings, in the compiler: sentences with codes for phrases, and the phrases letter
+/// by letter.
 #[allow(long_running_const_eval, reason = "a second at most")]
 const fn pack() -> Packed {
     let mut packed = Packed {

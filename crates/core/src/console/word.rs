@@ -53,7 +53,7 @@ macro_rules! words {
                 match self { $(Self::$name => $word),* }
             }
 
-            /// Its effect on the servos: the one place that says so. Rules and tests on
+            /// Its effect on the servos, declared only here. Rules and tests on
             /// hosts ask here, or [`crate::console::command::effect`] for a whole line.
             pub const fn effect(self) -> Effect {
                 match self { $(Self::$name => Effect::$effect),* }
@@ -114,7 +114,7 @@ impl Word {
     #[inline(never)]
     pub fn find(written: &[u8]) -> Option<Self> {
         let mut number = 0;
-        // What is left of `written` after a word's beginning, if it has that.
+        // The rest of `written` after a word's beginning, if it begins so.
         let mut left = Some(written);
         for place in 0..LIST.len() {
             let character = CHARACTERS.at(place).load();
@@ -143,7 +143,7 @@ impl Word {
         let mut is_printed = true;
         for place in 0..LIST.len() - 1 {
             let character = CHARACTERS.at(place).load();
-            // No instruction is spent on it while no word yields.
+            // Costs no instruction as long as no word yields.
             if YIELDING < Self::ALL.len() && character == BAR {
                 number += 1;
                 is_printed = number < YIELDING || !is_gait(place + 1, robot);

@@ -7,11 +7,12 @@
 
 use lizard_avr::Region;
 
+use crate::control::contact::Contact;
 use crate::control::fault::Fault;
-use crate::control::order::{Order, Taken};
+use crate::control::order::{Accepted, Order};
 use crate::control::refusal::Refusal;
 use crate::control::safety::{Health, Notice, Reaction, Safety};
-use crate::control::supervisor::{self, BROWN_OUTS, Before, Beginning, Event, Response, State};
+use crate::control::supervisor::{self, BROWN_OUTS, Before, Event, FirstAction, Response, State};
 use crate::control::supply::Voltage;
 use crate::guard::hazard::Hazard;
 use crate::memory::copies::{self, Outcome, RESTED};
@@ -19,25 +20,30 @@ use crate::memory::record::{Memory, Writing};
 use crate::memory::restart::{Cause, Restart, Stance};
 use crate::memory::settings::{Boot, Settings};
 use crate::motion::{Activity, Motion};
-use crate::numbers::gaits::GaitId;
+use crate::numbers::gaits::{GaitId, Input};
 use crate::numbers::pose::{Pose, Pulses};
 use crate::numbers::robot::Robot;
 use crate::numbers::section::Damage;
 
 use job::Job;
+use routine::Routine;
 
 mod adjust;
 mod job;
+mod routine;
 
 /// Frames without a reset after which the supply counts as good again: 30 s.
 const STEADY: u32 = 1500;
+
+/// Frames after a start in which all servos wake: 0.6 s.
+const WAKES: u32 = 30;
 
 /// The robot: its motion, settings, safety, and the EEPROM operation in progress.
 #[derive(Clone, Debug)]
 pub struct Control {
     motion: Motion,
     settings: Settings,
-    /// The reason for which the flash holds no usable robot.
+    /// The reason why the flash holds no usable robot.
     damage: Option<Damage>,
     /// The state of the saved settings at power-on.
     found: Outcome,
@@ -50,11 +56,18 @@ pub struct Control {
     may_be_supply: bool,
     /// Consecutive resets that a weak supply may have caused.
     brown_outs: u8,
+    /// True if a command has come since the start.
+    is_heard: bool,
+    routine: Routine,
+    /// The contact that the last step of a routine waited for.
+    contact: Contact,
+    /// True if `boot` has begun what is under way, and no command has come since.
+    is_alone: bool,
     /// The EEPROM operation that an order has started.
     job: Option<Job>,
     /// The record of the rest pose that is being written or invalidated.
     rested: Option<Writing>,
-    /// The reason for which the guard holds the robot, until it is printed.
+    /// The reason why the guard holds the robot, until it is printed.
     held: Option<Hazard>,
 }
 
@@ -77,6 +90,10 @@ impl Control {
             restarts: 0,
             may_be_supply: false,
             brown_outs: 0,
+            is_heard: false,
+            routine: Routine::NONE,
+            contact: Contact::NONE,
+            is_alone: false,
             job: None,
             rested: None,
             held: None,
@@ -111,20 +128,20 @@ impl Control {
             true => brown_outs + 1,
             false => restart.brown_outs.min(BROWN_OUTS),
         };
-        let (beginning, fault) = supervisor::beginning(restart.cause, self.brown_outs, before);
+        let (beginning, fault) = supervisor::first_action(restart.cause, self.brown_outs, before);
         if let Some(fault) = fault {
             self.safety.note_byte();
             self.safety.fail(fault);
         }
-        let rested = copies::rested(self.motion.robot(), memory);
+        let rested = copies::last_rest_pose(self.motion.robot(), memory);
         let stance = restart.before.as_ref();
         let began = match (beginning, stance) {
-            (Beginning::Wake, _) => {
+            (FirstAction::Wake, _) => {
                 self.motion.wake(rested.as_ref());
                 true
             }
-            (Beginning::TakeOver, Some(stance)) => self.motion.resume(stance, true),
-            (Beginning::Hold, Some(stance)) => self.motion.resume(stance, false),
+            (FirstAction::TakeOver, Some(stance)) => self.motion.resume(stance, true),
+            (FirstAction::Hold, Some(stance)) => self.motion.resume(stance, false),
             _ => false,
         };
         if began {
@@ -152,14 +169,19 @@ impl Control {
         &self.settings
     }
 
-    /// The reason for which there is no robot, if there is none.
+    /// The reason why the flash holds no usable robot; `None` if it holds one.
     pub const fn damage(&self) -> Option<Damage> {
         self.damage
     }
 
     /// The state of the saved settings at power-on.
-    pub const fn found(&self) -> Outcome {
+    pub const fn saved_settings(&self) -> Outcome {
         self.found
+    }
+
+    /// The input that the last step of a routine waited for.
+    pub const fn input(&self) -> Input {
+        self.contact.input
     }
 
     /// The watch over supply, line, pulses and stack.
@@ -173,7 +195,7 @@ impl Control {
     }
 
     /// Resets since power-on; stays at 255.
-    pub const fn restarts(&self) -> u8 {
+    pub const fn resets(&self) -> u8 {
         self.restarts
     }
 
@@ -201,8 +223,21 @@ impl Control {
         if !was_held && let Some(hazard) = hazard {
             self.held = Some(hazard);
         }
-        if self.motion.frames() == STEADY {
+        if self.routine.is_under_way() {
+            self.go_on(health.is_closed);
+        } else if self.motion.has_ended() {
+            self.safety.notify(Notice::Done);
+        }
+        let frames = self.motion.frames();
+        if frames == STEADY {
             self.brown_outs = 0;
+        }
+        // Opening the port resets the board, and then a line comes. By radio lines come always: a
+        // supply is to blame that breaks down while the servos wake.
+        let is_external = self.may_be_supply && self.cause == Cause::External;
+        if is_external && self.is_heard && frames > WAKES {
+            self.may_be_supply = false;
+            self.brown_outs = self.brown_outs.saturating_sub(1);
         }
         self.safety.advance_led(hazard.is_some());
         pulses
@@ -218,23 +253,20 @@ impl Control {
         self.safety.note_byte();
     }
 
-    /// Notes that a line was received.
-    pub fn note_line(&mut self) {
-        self.safety.note_line();
-        // Who opens the port resets the board. A brown-out sends no line.
-        if self.may_be_supply && self.cause == Cause::External {
-            self.may_be_supply = false;
-            self.brown_outs = self.brown_outs.saturating_sub(1);
-        }
+    /// Notes that a command was received.
+    pub fn note_command(&mut self) {
+        self.safety.note_command();
+        self.is_alone = false;
+        self.is_heard = true;
     }
 
-    /// Takes the reason for which the guard holds the robot; the next call returns `None`.
+    /// Takes the reason why the guard holds the robot; the next call returns `None`.
     pub fn take_held(&mut self) -> Option<Hazard> {
         self.held.take()
     }
 
     /// True while the guard's reason waits to be printed.
-    pub const fn was_held(&self) -> bool {
+    pub const fn has_hold_reason(&self) -> bool {
         self.held.is_some()
     }
 
@@ -249,8 +281,21 @@ impl Control {
         self.safety.supply().worst(&self.motion.robot().supplies())
     }
 
-    /// The robot's state, as a column of the supervisor's table.
+    /// The present activity: a routine that is under way, unless it rests, else the motion's.
+    pub fn activity(&self) -> Activity {
+        if self.routine.is_under_way() && !self.motion.is_resting() {
+            Activity::Gait(self.routine.id)
+        } else {
+            self.motion.activity()
+        }
+    }
+
+    /// The robot's state, as a column of the supervisor's table. A routine walks also while it
+    /// stands or rests: it goes on by itself.
     fn state(&self) -> State {
+        if self.routine.is_under_way() {
+            return State::Walking;
+        }
         match self.motion.activity() {
             Activity::Rest => State::Resting,
             Activity::Gait(id) if id != GaitId::STAND => State::Walking,
@@ -266,11 +311,19 @@ impl Control {
         }
         let state = self.state();
         let supplies = self.motion.robot().supplies();
-        let deadman = self.settings.deadman();
+        // Nobody has talked to a routine that `boot` began, so nobody can have fallen silent.
+        let deadman = if self.is_alone && self.routine.is_under_way() {
+            0
+        } else {
+            self.settings.deadman()
+        };
         match self.safety.frame(health, &supplies, state, deadman) {
             Reaction::None => {}
-            Reaction::Freeze => self.motion.stop(),
-            Reaction::EndPulses => self.motion.rest(),
+            Reaction::Freeze => self.stop(),
+            Reaction::EndPulses => {
+                self.stop();
+                self.motion.rest();
+            }
             Reaction::Boot => self.boot(state),
         }
         self.motion.set_slow(self.safety.is_slow());
@@ -284,7 +337,8 @@ impl Control {
             Boot::Gait(GaitId::STAND) if !rests => return,
             Boot::Rest if rests => return,
             Boot::Gait(gait) => {
-                self.motion.start_gait(gait);
+                self.start(gait, 0);
+                self.is_alone = true;
                 self.rested = Some(RESTED.invalidate());
             }
             Boot::Rest => self.rest(),
@@ -297,18 +351,18 @@ impl Control {
     /// # Errors
     /// The refusal; then nothing has changed.
     #[inline(never)]
-    pub fn execute(&mut self, order: &Order) -> Result<Taken, Refusal> {
+    pub fn execute(&mut self, order: &Order) -> Result<Accepted, Refusal> {
         if self.motion.robot().is_none() {
             return Err(Refusal::NoRobot);
         }
         match order {
-            Order::Gait(gait) => {
+            Order::Gait(gait, cycles) => {
                 self.check_allowed(match *gait {
                     GaitId::STAND => Event::Stand,
                     _ => Event::Move,
                 })?;
-                self.motion.start_gait(*gait);
                 self.note_motion();
+                self.start(*gait, *cycles);
             }
             Order::Pose(angles) => {
                 let pose = Pose::at(angles, &self.motion.robot().neutral());
@@ -323,7 +377,7 @@ impl Control {
             }
             Order::Stop => {
                 self.check_allowed(Event::Stop)?;
-                self.motion.stop();
+                self.stop();
             }
             Order::Rest => {
                 if self.check_allowed(Event::Rest)? {
@@ -341,14 +395,14 @@ impl Control {
             Order::Save => {
                 self.check_allowed(Event::Save)?;
                 self.job = Some(Job::Save);
-                return Ok(Taken::Later);
+                return Ok(Accepted::Later);
             }
             Order::Load => {
                 self.job = Some(Job::Load);
-                return Ok(Taken::Later);
+                return Ok(Accepted::Later);
             }
         }
-        Ok(Taken::Done)
+        Ok(Accepted::Done)
     }
 
     /// Looks the order up in the supervisor's table; false if there is nothing to do.
@@ -374,9 +428,17 @@ impl Control {
         Ok(())
     }
 
-    /// Notes that an order begins a motion: it clears the fault, and the saved rest pose is
+    /// Freezes the pose, and ends the routine.
+    #[inline(never)]
+    fn stop(&mut self) {
+        self.routine = Routine::NONE;
+        self.motion.stop();
+    }
+
+    /// Notes that an order begins a motion: it ends the routine, clears the fault, and the saved rest pose is
     /// no longer true.
     fn note_motion(&mut self) {
+        self.routine = Routine::NONE;
         self.safety.clear();
         self.brown_outs = 0;
         self.rested = Some(RESTED.invalidate());
@@ -384,6 +446,7 @@ impl Control {
 
     /// Ends the pulses and saves the pose for the next power-on.
     fn rest(&mut self) {
+        self.routine = Routine::NONE;
         self.motion.rest();
         self.rested = Some(RESTED.write());
     }

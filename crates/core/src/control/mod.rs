@@ -2,9 +2,11 @@
 //! to faults.
 //!
 //! It knows no text. [`order`] and [`refusal`] are its language, [`supervisor`] is the table
-//! of its decisions, [`safety`], [`supply`] and [`fault`] watch the hardware.
+//! of its decisions, [`safety`], [`supply`], [`contact`] and [`fault`] watch the hardware.
 
 mod controller;
+
+pub mod contact;
 pub mod fault;
 pub mod order;
 pub mod refusal;

@@ -8,8 +8,8 @@ use crate::numbers::units::{Angle, Sweep};
 /// An order, its arguments within their ranges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
-    /// Change to a gait; `stand` also wakes the servos.
-    Gait(GaitId),
+    /// Change to a gait, for so many cycles if that is not 0; `stand` also wakes the servos.
+    Gait(GaitId, u16),
     /// Go to a pose, given as chassis angles in servo order.
     Pose([Angle; 4]),
     /// Go to the neutral pulses without trims.
@@ -49,7 +49,7 @@ pub enum Setting {
 
 /// The progress of an order that was accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Taken {
+pub enum Accepted {
     /// The order is done, or its motion has begun.
     Done,
     /// The EEPROM is being written or read; the outcome follows later.

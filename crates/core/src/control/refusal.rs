@@ -1,9 +1,9 @@
-//! Refusals: the reasons for which the robot does not carry out an order.
+//! Refusals: the reasons why the robot does not carry out an order.
 
 use crate::guard::hazard::Hazard;
 use crate::numbers::part::Servo;
 
-/// The reason for which an order is not carried out.
+/// The reason why an order is not carried out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
     /// A servo does not reach the pose, or the pose is not safe.

@@ -20,6 +20,8 @@ pub struct Health {
     pub late: u16,
     /// True while the stack has not grown into the data.
     pub stack_is_intact: bool,
+    /// True while the contact at the pin that the control waits for is closed.
+    pub is_closed: bool,
 }
 
 impl Default for Health {
@@ -29,6 +31,7 @@ impl Default for Health {
             supply: Reading::default(),
             late: 0,
             stack_is_intact: true,
+            is_closed: false,
         }
     }
 }
@@ -77,10 +80,14 @@ pub enum Notice {
     Supply,
     /// The `boot` action begins.
     Boot,
+    /// A gait has gone as far as its count said.
+    Done,
+    /// A step of a routine waits for an input.
+    Waiting,
 }
 
 /// The number of notices.
-const NOTICES: u8 = 5;
+const NOTICES: u8 = 7;
 
 impl Notice {
     /// The notice at a place of the order in which they are printed.
@@ -90,7 +97,9 @@ impl Notice {
             1 => Self::NotKept,
             2 => Self::Fault,
             3 => Self::Supply,
-            _ => Self::Boot,
+            4 => Self::Boot,
+            5 => Self::Done,
+            _ => Self::Waiting,
         }
     }
 }
@@ -244,8 +253,8 @@ impl Safety {
         self.boot = BOOT_AFTER;
     }
 
-    /// Notes that a line was received.
-    pub fn note_line(&mut self) {
+    /// Notes that a command was received.
+    pub fn note_command(&mut self) {
         self.silence = 0;
     }
 

@@ -15,7 +15,7 @@ pub enum State {
     Resting,
     /// It stands, holds a pose or moves to one.
     Still,
-    /// A gait other than `stand` is under way, or is what the robot goes over to.
+    /// A gait other than `stand` is running, or the robot is changing to one.
     Walking,
 }
 
@@ -131,7 +131,7 @@ pub const BROWN_OUTS: u8 = 3;
 /// The servos' state before the reset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Before {
-    /// Not known.
+    /// The state is unknown.
     Nothing,
     /// The servos got no pulses.
     Rested,
@@ -141,7 +141,7 @@ pub enum Before {
 
 /// The robot's first action after a reset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Beginning {
+pub enum FirstAction {
     /// The servos wake one after the other in the pose of the last `rest`, if the
     /// memory holds one, or else in the neutral one; then the robot stands.
     Wake,
@@ -161,8 +161,8 @@ impl Before {
 /// The table of resets: the first action and the fault that is shown, given the cause, the
 /// consecutive resets that a weak supply may have caused, and the servos' state before.
 #[rustfmt::skip]
-pub const fn beginning(cause: Cause, brown_outs: u8, before: Before) -> (Beginning, Option<Fault>) {
-    use Beginning::{Hold, Rest, TakeOver, Wake};
+pub const fn first_action(cause: Cause, brown_outs: u8, before: Before) -> (FirstAction, Option<Fault>) {
+    use FirstAction::{Hold, Rest, TakeOver, Wake};
     let too_many = brown_outs >= BROWN_OUTS;
     let ([nothing, rested, held], fault) = match cause {
         // cause                                   nothing  rested  held

@@ -55,9 +55,9 @@ pub struct Supply {
     level: Level,
     /// Frames for which another level has been measured.
     frames: u8,
-    /// The one of these levels that is nearest to the present one.
+    /// The nearest of these levels to the present one.
     nearest: Level,
-    /// Readings so far, up to [`TO_WORSE`].
+    /// Number of readings so far, up to [`TO_WORSE`].
     readings: u8,
 }
 
@@ -93,7 +93,7 @@ impl Voltage {
         self.product < mul_unsigned(mv, self.counts)
     }
 
-    /// In hundredths of a volt, rounded down; 0 if unknown.
+    /// The voltage in hundredths of a volt, rounded down; 0 if unknown.
     pub fn hundredths(self) -> u16 {
         if self.counts == 0 {
             return 0;
@@ -107,7 +107,7 @@ impl Voltage {
 const MOST_HUNDREDTHS: u16 = (1 << 13) - 1;
 
 impl Thresholds {
-    /// The level of a voltage, `above` the thresholds.
+    /// The level of a voltage, with thresholds raised by `above`, mV.
     fn level(&self, voltage: Voltage, above: u16) -> Level {
         if !voltage.is_below(self.slow.wrapping_add(above)) {
             Level::Good
@@ -158,7 +158,7 @@ impl Supply {
         self.level
     }
 
-    /// True if the last reading is of the present level; if not, it may be a mere dip.
+    /// True if the last reading is at the present level; otherwise there may be a dip.
     pub const fn is_steady(&self) -> bool {
         self.frames == 0
     }

@@ -36,7 +36,7 @@
 //! from the one triangle to the other, on all of which the sine is at least the lower
 //! root. The line `k` itself turns by at most `asin(e / |k|)`.
 //!
-//! **3. The tables**, see [`Lean`].
+//! **3. The tables**, see [`LeanError`].
 //!
 //! **4. The products** of [`crate::guard::five_bar`]: the rounded square is off by half of its
 //! step, each shift loses at most one of what it leaves, and each reciprocal less than
@@ -99,14 +99,14 @@ pub const KNOWN: f64 = 0.08;
 /// are rounded to nearest and whose value down); a share of the step of 16 bits; and the
 /// quarter that `R` and `N` lose when they are rounded down to whole steps.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Lean {
+pub struct LeanError {
     /// The error of the rise, as a number.
     pub rise: f64,
     /// The error of the skew, as a number.
     pub skew: f64,
 }
 
-impl Lean {
+impl LeanError {
     /// For couplers of whole steps whose tips' squared distance, U^2, is in a range.
     pub fn of(left: i16, right: i16, [low, high]: [f64; 2]) -> Self {
         let (a, b) = (f64::from(left) / 2.0, f64::from(right) / 2.0);
@@ -182,7 +182,7 @@ impl Product {
         let ends = [(low * 16.0 / 17.0).max(first), high * 17.0 / 16.0];
         let (mut sum, mut squares, mut top) = ([0.0; 2], [0.0; 2], 1.0f64);
         for Factor { power, p, q } in self.0 {
-            // Never 0 or less by a hair at an end of the range.
+            // Rounding may not make it 0 or negative at an end of the range.
             let line = ends.map(|t| (p + q * t).max(1e-9));
             let mut l = [q * ends[0] / line[0], q * ends[1] / line[1]];
             l.sort_by(f64::total_cmp);
@@ -302,7 +302,7 @@ impl End {
         let high = root(top_sq + q);
 
         let [left, right] = integers.couplers;
-        let lean = Lean::of(left, right, around);
+        let lean = LeanError::of(left, right, around);
         let [left, right] = [left, right].map(f64::from);
         let half = (left + right) / 2.0;
         let square = 2f64.powi((half * half).log2().floor() as i32 - 14);
@@ -373,7 +373,7 @@ mod tests {
             }),
             below in 0.0..1.0f64,
             above in 0.0..1.0f64,
-            // From a hair to more than a cell's crank tips move.
+            // From nearly nothing to more than the crank tips move within a cell.
             width in -4.0..0.7f64,
         ) {
             let [a1, a2, ..] = robot.degrees(&pose);

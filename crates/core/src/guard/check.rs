@@ -1,11 +1,11 @@
 //! The checks of a section behind its CRC: no number of it may harm a servo or the board.
 //!
 //! A section whose CRC is right was sealed by a host, and that host has checked every number
-//! and every sample of every gait. So the device trusts the numbers, but for those that
-//! reach the hardware: a pin that is the serial line's or the LED's, a pulse that a servo
-//! does not bear, a neutral pose in which the linkage would jam as soon as the servos wake. Any
-//! other number can make the robot walk badly, and no worse: every address of flash can be
-//! read, every index is checked where it is used, and each pulse ends at its servo's travel.
+//! and every sample of every gait. So the device trusts the numbers, except those that reach
+//! the hardware: a pin that is the serial line's or the LED's, a pulse that a servo does not
+//! bear, a neutral pose in which the linkage would jam as soon as the servos wake. Any other
+//! number can make the robot walk badly, and no worse: every address of flash can be read,
+//! every index is checked where it is used, and each pulse ends at its servo's travel.
 
 use core::mem::offset_of;
 
@@ -13,6 +13,7 @@ use lizard_avr::Region;
 
 use crate::guard::clearance::Clearance;
 use crate::numbers::calibration::Calibration;
+use crate::numbers::gaits::{Input, Step};
 use crate::numbers::part::Servo;
 use crate::numbers::pose::Pose;
 use crate::numbers::robot::Robot;
@@ -21,6 +22,11 @@ use crate::numbers::units::{CYCLES_PER_US, Sweep};
 
 /// The shortest and the longest pulse of a hobby servo, cycles, with one of rounding.
 const PULSES: [u16; 2] = [500 * CYCLES_PER_US - 1, 2500 * CYCLES_PER_US + 1];
+
+/// True for a pin that is neither the serial line's nor the LED's, D2 to D12 and A0 to A5.
+const fn is_free(pin: u8) -> bool {
+    pin.wrapping_sub(2) < 18 && pin != 13
+}
 
 /// The place of a field of the numbers, bytes from the section's beginning.
 macro_rules! place {
@@ -33,7 +39,7 @@ impl<'a> Robot<'a> {
     /// The robot whose section is at the beginning of `flash`.
     ///
     /// # Errors
-    /// The reason for which the section is not a usable robot.
+    /// The reason why the section is not a usable robot.
     #[inline(never)]
     pub fn open(flash: Region<'a>) -> Result<Self, Damage> {
         let length = section::find(flash)?;
@@ -62,23 +68,37 @@ impl<'a> Robot<'a> {
     #[inline(always)]
     fn has_pins(&self) -> bool {
         let rail = self.word(place!(rail)) as u8;
-        let is_analogue = |pin: u8| pin.wrapping_sub(14) < 6;
-        let mut first = place!(pins);
-        while first < place!(pins) + 4 {
-            let pin = self.word(first) as u8;
-            if pin == rail || !is_analogue(pin) && pin.wrapping_sub(2) > 10 {
+        let mut servo = place!(pins);
+        while servo < place!(pins) + 4 {
+            let pin = self.word(servo) as u8;
+            if !is_free(pin) || self.users(pin) != 1 {
                 return false;
             }
-            let mut second = first + 1;
-            while second < place!(pins) + 4 {
-                if self.word(second) as u8 == pin {
-                    return false;
-                }
-                second += 1;
-            }
-            first += 1;
+            servo += 1;
         }
-        rail == 0 || is_analogue(rail)
+        rail == 0 || rail.wrapping_sub(14) < 6
+    }
+
+    /// The number of servos, and the rail, that a pin has.
+    #[inline(never)]
+    fn users(&self, pin: u8) -> u8 {
+        let mut users = u8::from(self.word(place!(rail)) as u8 == pin);
+        let mut servo = place!(pins);
+        while servo < place!(pins) + 4 {
+            users += u8::from(self.word(servo) as u8 == pin);
+            servo += 1;
+        }
+        users
+    }
+
+    /// The input of a record of the kind [`Step::UNTIL`]; none if its pin is not free, since its
+    /// pull-up would be a servo's pulse.
+    pub(crate) fn input(&self, step: &Step) -> Input {
+        let input = Input::of(step);
+        match is_free(input.pin()) && self.users(input.pin()) == 0 {
+            true => input,
+            false => Input::NONE,
+        }
     }
 
     /// True if every servo reaches what the gaits need with pulses that a servo tolerates.

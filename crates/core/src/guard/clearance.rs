@@ -40,8 +40,8 @@ flash! {
     ];
 }
 
-/// Returns the first limit that a pose breaks. A pose in certified cells is not measured: it
-/// was proved when the section was made that they are safe.
+/// Returns the first limit that a pose breaks. A pose in certified cells is not measured:
+/// all their poses were proved safe when the section was made.
 #[inline(never)]
 pub fn hazard(robot: &Robot, pose: &Pose) -> Option<Hazard> {
     if robot.is_certified(pose) {
@@ -92,7 +92,7 @@ impl Clearance {
         clearance
     }
 
-    // Out of line, as the next: a loop over two would be copied out.
+    // Not inlined, like the next function: the compiler would unroll a loop over two.
     #[inline(never)]
     fn measure_end(&mut self, robot: &Robot, end: End, cranks: &[Direction; 4]) {
         let [left, right] = end.servos();

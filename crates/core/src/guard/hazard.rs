@@ -5,7 +5,7 @@ use crate::numbers::units::Sine;
 
 /// A margin of a pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-// From 3 on, since no hazard at all has to be zero: see `Main::new`.
+// Starts at 3, since the absence of a hazard has to be zero: see `Main::new`.
 #[repr(u8)]
 pub enum Margin {
     /// Between the two couplers of an end.

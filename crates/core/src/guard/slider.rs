@@ -94,7 +94,7 @@ mod tests {
         }
 
         #[test]
-        fn the_travel_is_told_from_nominal_in_hundredths_of_a_millimetre(
+        fn the_travel_is_printed_from_nominal_in_hundredths_of_a_millimetre(
             side in sides(),
             length: u16,
         ) {

@@ -86,13 +86,13 @@ impl Adjustment {
     }
 }
 
-/// The end of a travel towards `end`: that sweep, or the last one before it whose
-/// pulse is within two, which those at the neutral angle are.
+/// The end of a travel towards `end`: that sweep, or the last one before it whose pulse
+/// is between the shortest and the longest; the neutral pulse is.
 #[inline(never)]
 fn farthest(servo: &Calibration, end: Sweep, [shortest, longest]: [u16; 2]) -> Sweep {
     let neutral = servo.neutral.0;
     // A pulse is the neutral one and n times the gain, to the nearest cycle; this many
-    // times the gain is still within.
+    // times the gain stays within the two limits.
     let most = if (servo.gain < 0) == (end.0 < 0) {
         mul_unsigned(longest - neutral, ONE_Q14 as u16) + HALF_Q14 - 1
     } else {

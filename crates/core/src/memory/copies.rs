@@ -10,7 +10,7 @@
 //! | 64 | settings, second copy |
 //! | 128 | pose of the last `rest`: settings whose trims are the pose's sweeps |
 
-use crate::memory::record::{Address, CONTENT, Found, Memory, Writing};
+use crate::memory::record::{Address, CONTENT, Memory, RecordState, Writing};
 use crate::memory::settings::{Settings, TURN};
 use crate::numbers::pose::Pose;
 use crate::numbers::robot::Robot;
@@ -46,7 +46,7 @@ pub enum Outcome {
 /// The state of both copies.
 struct Copies {
     /// The result of checking each copy.
-    found: [Found; 2],
+    found: [RecordState; 2],
     /// The number of the copy that was saved last, if any is valid.
     latest: usize,
 }
@@ -57,15 +57,17 @@ impl Copies {
         let found = [copy(0).check(memory), copy(1).check(memory)];
         let turn = |copy: usize| self::copy(copy).byte(memory, TURN as u16);
         let latest = match found {
-            [Found::Whole, Found::Whole] => usize::from(turn(1).wrapping_sub(turn(0)) < 0x80),
-            [Found::Whole, _] => 0,
+            [RecordState::Whole, RecordState::Whole] => {
+                usize::from(turn(1).wrapping_sub(turn(0)) < 0x80)
+            }
+            [RecordState::Whole, _] => 0,
             _ => 1,
         };
         Self { found, latest }
     }
 
     fn none_is_whole(&self) -> bool {
-        self.found[self.latest & 1] != Found::Whole
+        self.found[self.latest & 1] != RecordState::Whole
     }
 
     fn address(&self) -> Address {
@@ -79,14 +81,14 @@ pub fn read<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Ou
     let copies = Copies::check(memory);
     if copies.none_is_whole() {
         return match copies.found {
-            [Found::Blank, Found::Blank] => Outcome::Blank,
+            [RecordState::Blank, RecordState::Blank] => Outcome::Blank,
             _ => Outcome::Damaged,
         };
     }
     copies.address().fetch(memory, settings.bytes_mut());
     if !settings.are_for(robot) {
         Outcome::Foreign
-    } else if copies.found.contains(&Found::Damaged) {
+    } else if copies.found.contains(&RecordState::Damaged) {
         Outcome::Other
     } else {
         Outcome::Latest
@@ -128,11 +130,11 @@ pub fn save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<Writing> {
 }
 
 /// The pose of the last rest, if the robot has not moved since.
-pub fn rested<M: Memory>(robot: &Robot, memory: &M) -> Option<Pose> {
+pub fn last_rest_pose<M: Memory>(robot: &Robot, memory: &M) -> Option<Pose> {
     let mut bytes = [0; CONTENT];
     RESTED.fetch(memory, &mut bytes);
     let kept = Settings::from_bytes(bytes);
-    (RESTED.check(memory) == Found::Whole && kept.are_for(robot)).then(|| kept.pose())
+    (RESTED.check(memory) == RecordState::Whole && kept.are_for(robot)).then(|| kept.pose())
 }
 
 #[cfg(test)]

@@ -17,10 +17,12 @@
 //! | 1 | the program runs, or hung |
 //! | 2 | restarts since power came on |
 //! | 3 | the copy that is valid, in the last bit |
-//! | 4 | first copy: state, brown-outs in a row, pose (8), pulses (8), check |
-//! | 23 | second copy |
+//! | 4 | the rate of the serial line, in the last two bits; a wrong one is found again |
+//! | 5 | first copy: state, brown-outs in a row, pose (8), pulses (8), check |
+//! | 24 | second copy |
 
 use crate::memory::restart::{Cause, Restart, Stance};
+use crate::numbers::rate::Rate;
 
 /// The number of cells.
 pub const CELLS: usize = COPIES + 2 * COPY;
@@ -38,7 +40,8 @@ const MARK: usize = 0;
 const STATE: usize = 1;
 const COUNT: usize = 2;
 const WHOLE: usize = 3;
-const COPIES: usize = 4;
+const RATE: usize = 4;
+const COPIES: usize = 5;
 
 /// Cells of a copy.
 const COPY: usize = 19;
@@ -75,16 +78,22 @@ pub fn begin<C: Cells>(cells: &C, reported: Option<Cause>) -> Restart {
         count: 0,
         may_be_supply: cause == Cause::BrownOut || cause == Cause::External && is_hidden,
         brown_outs: 0,
+        rate: Rate::Fastest,
         before: None,
     };
     if survived && cause != Cause::Power {
         restart.count = count.saturating_add(1);
+        if cause != Cause::External {
+            restart.rate = Rate::at(cells.get(RATE));
+        }
         take(cells, &mut restart);
     } else {
-        // RAM may hold anything that looks right; after the next reset it must not.
+        // By chance RAM may hold a copy that looks valid: the next reset must not find
+        // it.
         cells.set(COPIES, NOTHING);
         cells.set(COPIES + COPY, NOTHING);
     }
+    store_rate(cells, restart.rate);
     cells.set(COUNT, restart.count);
     cells.set(STATE, RUNNING);
     cells.set(MARK, ALIVE);
@@ -94,7 +103,7 @@ pub fn begin<C: Cells>(cells: &C, reported: Option<Cause>) -> Restart {
 /// Stores the servos' state, and the consecutive resets that a weak supply may have caused.
 /// The older copy stays valid until the new one is complete.
 #[inline(never)]
-pub fn keep<C: Cells>(cells: &C, stance: &Stance, brown_outs: u8) {
+pub fn store_stance<C: Cells>(cells: &C, stance: &Stance, brown_outs: u8) {
     let turn = !cells.get(WHOLE) & 1;
     let mut copy = Copy::of(cells, turn);
     copy.put(stance.awake | if stance.resting { RESTING } else { 0 });
@@ -107,6 +116,11 @@ pub fn keep<C: Cells>(cells: &C, stance: &Stance, brown_outs: u8) {
     }
     copy.put(!copy.sum);
     cells.set(WHOLE, turn);
+}
+
+/// Stores the rate of the serial line.
+pub fn store_rate<C: Cells>(cells: &C, rate: Rate) {
+    cells.set(RATE, rate as u8);
 }
 
 /// Marks the program as hung; called by the watchdog's interrupt.

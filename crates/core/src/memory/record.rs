@@ -46,7 +46,7 @@ pub struct Address(pub u16);
 
 /// The state of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Found {
+pub enum RecordState {
     /// Nothing was ever written there.
     Blank,
     /// A record that was not written to its end, or has changed since.
@@ -68,7 +68,7 @@ pub enum Progress {
 
 /// The progress of the byte of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-// From 1 on, since none at all has to be zero: see `Main::new`.
+// Starts at 1, since `None` has to be zero: see `Main::new`.
 #[repr(u8)]
 enum Byte {
     /// To be written, unless the memory holds this value already.
@@ -92,17 +92,17 @@ pub struct Writing {
 impl Address {
     /// Checks the record's mark and CRC.
     #[inline(never)]
-    pub fn check<M: Memory>(self, memory: &M) -> Found {
+    pub fn check<M: Memory>(self, memory: &M) -> RecordState {
         let mut content = [0; CONTENT];
         self.fetch(memory, &mut content);
         let crc = [1, 2].map(|n| memory.read(self.0 + CONTENT as u16 + n));
         let mark = memory.read(self.0);
         if mark == WHOLE && crc == Checksum::of(&content).0.to_le_bytes() {
-            Found::Whole
+            RecordState::Whole
         } else if mark == ERASED && content.iter().chain(&crc).all(|byte| *byte == ERASED) {
-            Found::Blank
+            RecordState::Blank
         } else {
-            Found::Damaged
+            RecordState::Damaged
         }
     }
 
@@ -210,7 +210,7 @@ mod tests {
         panic!("it never ends");
     }
 
-    fn read(chip: &Eeprom) -> (Found, Content) {
+    fn read(chip: &Eeprom) -> (RecordState, Content) {
         let mut content = [0; CONTENT];
         PLACE.fetch(chip, &mut content);
         (PLACE.check(chip), content)
@@ -220,19 +220,19 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(64))]
 
         #[test]
-        fn what_is_written_is_read_again_and_nothing_else_is_touched(
+        fn a_record_reads_back_as_written_and_no_other_byte_changes(
             first in content(),
             second in content(),
             slowness in 0u16..4,
         ) {
             let mut chip = Eeprom::blank();
             chip.slowness = slowness;
-            prop_assert_eq!(read(&Eeprom::blank()).0, Found::Blank);
+            prop_assert_eq!(read(&Eeprom::blank()).0, RecordState::Blank);
             for content in [first, second] {
                 prop_assert_eq!(write(&mut chip, &content), Progress::Done);
                 chip.slowness = 0;
                 let chip = Eeprom::with(*chip.bytes());
-                prop_assert_eq!(read(&chip), (Found::Whole, content));
+                prop_assert_eq!(read(&chip), (RecordState::Whole, content));
             }
             let beside = |at: &usize| !(64..64 + usize::from(LENGTH)).contains(at);
             prop_assert!((0..1024).filter(beside).all(|at| chip.bytes()[at] == ERASED));
@@ -283,13 +283,13 @@ mod tests {
     }
 
     #[test]
-    fn a_record_that_is_taken_away_is_no_record_and_its_bytes_stay() {
+    fn a_removed_record_is_not_read_and_its_bytes_stay() {
         let mut chip = Eeprom::blank();
         write(&mut chip, &[3; CONTENT]);
         let before = *chip.bytes();
         let mut writing = PLACE.invalidate();
         while writing.step(&[0; CONTENT], &mut chip) == Progress::Going {}
-        assert_eq!(read(&chip).0, Found::Damaged);
+        assert_eq!(read(&chip).0, RecordState::Damaged);
         assert_eq!(chip.bytes()[64], ERASED);
         assert_eq!(chip.bytes()[65..], before[65..]);
     }

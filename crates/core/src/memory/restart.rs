@@ -4,6 +4,7 @@
 //! and a few bytes of memory that survive a reset say where that is ([`crate::memory::kept`]).
 
 use crate::numbers::pose::{Pose, Pulses};
+use crate::numbers::rate::Rate;
 use crate::numbers::units::Width;
 
 /// The cause of a reset.
@@ -53,13 +54,16 @@ pub struct Restart {
     pub may_be_supply: bool,
     /// Consecutive resets before this one that a weak supply may have caused.
     pub brown_outs: u8,
+    /// The rate of the serial line: that before a brown-out or a hang, else the fastest, since
+    /// USB speaks it and opening its port resets the board.
+    pub rate: Rate,
     /// The servos' state before the reset, if it is known. Always `None` after
     /// [`Cause::Power`].
     pub before: Option<Stance>,
 }
 
 impl Stance {
-    /// Servos that get no pulses and never got any.
+    /// Servos that have never had pulses.
     pub const RESTING: Self = Self {
         resting: true,
         awake: 0,
@@ -75,6 +79,7 @@ impl Restart {
         count: 0,
         may_be_supply: false,
         brown_outs: 0,
+        rate: Rate::Fastest,
         before: None,
     };
 }

@@ -22,7 +22,7 @@ use crate::numbers::pose::Pose;
 use crate::numbers::robot::Robot;
 use crate::numbers::units::Sweep;
 
-/// Raised when the meaning of the bytes changes.
+/// The format of the bytes, increased when their meaning changes.
 pub const FORMAT: u8 = 1;
 
 /// The place of the turn, the number of the save.
@@ -41,7 +41,7 @@ pub enum Boot {
     Rest,
 }
 
-/// Everything that `save` keeps.
+/// Everything that `save` stores.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
     bytes: Content,
@@ -172,7 +172,7 @@ impl Settings {
         self.put(BOOT, kept);
     }
 
-    /// A gait ends when no line has come for this many milliseconds; 0 for never.
+    /// A gait ends when no command has come for this many milliseconds; 0 for never.
     pub fn deadman(&self) -> u16 {
         self.get(DEADMAN)
     }

@@ -48,6 +48,11 @@ use crate::numbers::pose::{Pose, Pulses};
 use crate::numbers::robot::Robot;
 use crate::numbers::section::Damage;
 
+use count::Count;
+
+mod count;
+mod resume;
+
 /// Servos wake one after the other, 0.1 s apart, to spare the supply.
 const WAKE_APART: u8 = 5;
 
@@ -68,6 +73,10 @@ pub struct Motion {
     state: State,
     /// The target once the present motion has come to a stop. None while the robot rests.
     next: Option<Target>,
+    /// The count of the gait that is under way or comes next.
+    count: Count,
+    /// True in the frame in which a count is over.
+    ended: bool,
     /// Percent of the gaits' own pace.
     speed: u8,
     /// True while the supply limits the pace to [`SLOW`].
@@ -101,6 +110,8 @@ impl Motion {
             state: State::Resting,
             robot,
             next: None,
+            count: Count::NONE,
+            ended: false,
             speed: 0,
             slow: false,
             settling: false,
@@ -117,7 +128,7 @@ impl Motion {
     /// follow.
     ///
     /// # Errors
-    /// The reason for which the flash holds no usable robot.
+    /// The reason why the flash holds no usable robot.
     pub fn take_robot(&mut self, flash: Region<'static>) -> Result<(), Damage> {
         self.speed = FULL;
         self.stance.resting = true;
@@ -160,8 +171,8 @@ impl Motion {
         self.settling = true;
     }
 
-    /// True where a servo would have to leave the travel of another calibration, where
-    /// the robot is or where it goes.
+    /// True if the robot's pose or target is beyond a servo's travel in another
+    /// calibration.
     pub fn goes_beyond(&self, servo: Servo, calibration: &Calibration) -> bool {
         let beyond = |pose: &Pose| !calibration.reaches(*servo.of(&pose.0));
         let moves_beyond = match &self.state {
@@ -175,70 +186,39 @@ impl Motion {
         beyond(&self.stance.pose) || moves_beyond || next_beyond
     }
 
-    /// Stands: the servos wake one after the other in the pose that the robot rested
-    /// in, if it is safe and within the travel; else in the neutral one.
-    #[inline(never)]
-    pub fn wake(&mut self, rested: Option<&Pose>) {
-        self.begin();
-        if let Some(pose) = rested
-            && self.may_hold(pose)
-        {
-            self.stance.pose = *pose;
-            self.state = State::Holding { asked: false };
-            self.next = Some(Target::Gait(GaitId::STAND));
-        }
-    }
-
-    /// Resumes a robot without pulses: it stays at rest, and will wake in that pose.
-    #[inline(never)]
-    pub fn resume_rest(&mut self, stance: Option<&Stance>) {
-        self.freeze(State::Resting);
-        if let Some(stance) = stance
-            && self.may_hold(&stance.pose)
-        {
-            self.stance.pose = stance.pose;
-            self.stance.sent = stance.sent;
-        }
-    }
-
-    /// Resumes servos that were held until a reset, with the pulses that they had; false if
-    /// their pose is unsafe or beyond the travel. All that had pulses get them at once. If
-    /// the robot is to `stand`, the servos wake one after the other, to spare the supply,
-    /// and then it stands.
-    #[inline(never)]
-    pub fn resume(&mut self, stance: &Stance, stand: bool) -> bool {
-        if !self.may_hold(&stance.pose) {
-            return false;
-        }
-        self.stance.pose = stance.pose;
-        self.stance.sent = stance.sent;
-        self.freeze(State::Holding { asked: false });
-        if stand {
-            self.next = Some(Target::Gait(GaitId::STAND));
-        } else {
-            // The next servo to wake waits as long as after any other.
-            let awake = stance.awake.min(AWAKE);
-            self.stance.awake = awake - awake % WAKE_APART;
-        }
-        self.settle();
-        true
-    }
-
     /// The servos' state, which has to survive a reset.
     pub const fn stance(&self) -> &Stance {
         &self.stance
     }
 
-    fn may_hold(&self, pose: &Pose) -> bool {
-        self.hazard_of(pose).is_none()
-    }
-
     /// Starts a gait by a move to its first pose. A gait that is already under way continues.
+    /// After so many cycles from there it brakes, and its last pose is held; 0 cycles do not end.
     #[inline(never)]
-    pub fn start_gait(&mut self, id: GaitId) {
+    pub fn start_gait(&mut self, id: GaitId, cycles: u16) {
         if self.activity() != Activity::Gait(id) {
             self.head_for(Target::Gait(id));
+        } else if let Some(Target::End) = self.next {
+            self.next = None;
         }
+        self.count.left = cycles;
+        self.count.covered = 0;
+    }
+
+    /// Brakes a gait or the way to it, and holds the pose in which that stands still. Returns false
+    /// if there is none to end.
+    #[inline(never)]
+    pub fn end_gait(&mut self) -> bool {
+        let moves = self.next.is_some()
+            || matches!(self.state, State::Moving { .. } | State::Cycling { .. });
+        if moves {
+            self.next = Some(Target::End);
+        }
+        moves
+    }
+
+    /// True if a gait has ended in the last frame, by its count or otherwise, and the robot stands still.
+    pub const fn has_ended(&self) -> bool {
+        self.ended
     }
 
     /// Goes to a pose within the servos' travel.
@@ -280,6 +260,7 @@ impl Motion {
     /// Computes the pulses of the next frame.
     pub fn tick(&mut self) -> Pulses {
         self.frames = self.frames.wrapping_add(1);
+        self.ended = false;
         let mut pulses = Pulses::default();
         if matches!(self.state, State::Resting) {
             return pulses;
@@ -290,7 +271,7 @@ impl Motion {
         } else if !self.settling {
             self.proceed();
         }
-        // While they settle, they keep within a frame's way of the last ones.
+        // While they settle, pulses change by at most the slew limit of a frame.
         let per_frame = self.robot.slew().per_frame;
         let mut under_way = false;
         let mut wakes_at = WAKE_APART;
@@ -300,14 +281,14 @@ impl Motion {
             let sleeps = self.stance.awake < wakes_at;
             let mut width = servo.width(self.stance.pose.0[place]);
             if self.settling && sent.0 != 0 {
-                // A servo's first pulse is the last one that it had, in a program before
-                // this one, too: that may have been on its way when a reset came.
+                // A servo's first pulse repeats its last one, also that of the previous
+                // run: a reset may have come while it was settling.
                 let slept = before < wakes_at;
-                let way = if slept { 0 } else { servo.slew(per_frame) };
+                let turn = if slept { 0 } else { servo.slew(per_frame) };
                 let wanted = width.0;
                 width.0 = wanted
-                    .max(sent.0.saturating_sub(way))
-                    .min(sent.0.saturating_add(way));
+                    .max(sent.0.saturating_sub(turn))
+                    .min(sent.0.saturating_add(turn));
                 under_way |= width.0 != wanted;
             }
             *sent = width;
@@ -329,9 +310,10 @@ impl Motion {
             (None, State::Holding { asked: true }) => Activity::Pose,
             (None, State::Holding { asked: false }) => Activity::Stop,
             (None, State::Moving { gait: None, .. }) => Activity::Pose,
-            (None, State::Moving { gait: Some(id), .. } | State::Cycling { id, .. }) => {
-                Activity::Gait(id)
-            }
+            (None, State::Moving { gait: Some(id), .. })
+            | (None | Some(Target::End), State::Cycling { id, .. }) => Activity::Gait(id),
+            // A gait that has ended needs no end of its count.
+            (Some(Target::End), _) => Activity::Stop,
         }
     }
 
@@ -368,7 +350,7 @@ impl Motion {
         self.frames
     }
 
-    /// The reason for which the guard stopped the robot, until the next motion begins.
+    /// The reason why the guard stopped the robot, until the next motion begins.
     pub const fn hazard(&self) -> Option<Hazard> {
         self.hazard
     }
@@ -386,8 +368,8 @@ impl Motion {
             self.state = State::Holding { asked: false };
             self.stance.resting = false;
             self.stance.awake = 0;
-            // They were let go of where their last pulses put them, if they ever had any;
-            // what was set since must not throw them elsewhere.
+            // The servos are still where their last pulses turned them, if they had any;
+            // settings that have changed since must not make them leap.
             self.settling = true;
         }
         self.next = Some(target);
@@ -399,9 +381,10 @@ impl Motion {
         self.next = None;
     }
 
-    // Out of line: in `tick` it costs more registers than it saves calls.
+    // Not inlined: in `tick` its registers would cost more than the call.
     #[inline(never)]
     fn proceed(&mut self) {
+        self.count();
         self.turn_to_next();
         let braking = self.next.is_some();
         let pose = match &mut self.state {
@@ -443,7 +426,10 @@ impl Motion {
         {
             self.state = match gait {
                 None => State::Holding { asked: true },
-                Some(id) => State::cycling(&self.robot, *id),
+                Some(id) => {
+                    self.count.phase = 0;
+                    State::cycling(&self.robot, *id)
+                }
             };
         }
     }
@@ -468,6 +454,10 @@ impl Motion {
         let (to, gait) = match target {
             Target::Pose(pose) => (pose, None),
             Target::Gait(id) => (self.robot.gait(id).pose(self.robot.waves(), 0), Some(id)),
+            Target::End => {
+                self.ended = true;
+                return self.freeze(State::Holding { asked: false });
+            }
         };
         self.state = State::Moving {
             path: PointToPoint::new(&self.stance.pose, &to, self.robot.slew()),

@@ -5,24 +5,24 @@
 
 use lizard_avr::mul_unsigned;
 
-/// Full pace; also the most that a pace may be.
+/// Full pace, the largest value of a pace.
 pub const FULL: u16 = 1024;
 
-/// A motion gathers or loses all its pace in seven frames, 0.14 s. In an odd
-/// number of steps a gait goes a whole number of its frames meanwhile, so that
-/// at full pace the frames meet the corners between its moves: half a frame
-/// beside them, two legs would move at once there, and cost crawl 1.2 %.
+/// A motion gathers or loses all its pace in seven frames, 0.14 s. In an odd number of
+/// steps a gait goes a whole number of its frames meanwhile, so that at full pace the
+/// frames meet the corners between its moves: half a frame beside them, two legs would
+/// move at once there, and `crawl` would lose 1.2 % of its distance.
 const PACE_STEP: u16 = FULL.div_ceil(7);
 
-/// A pace one frame later, on its way to the one that is wanted.
+/// The pace one frame later, on its way to `wanted`.
 pub fn toward(pace: u16, wanted: u16) -> u16 {
     wanted
         .max(pace.saturating_sub(PACE_STEP))
         .min(pace + PACE_STEP)
 }
 
-/// Percent as a pace: 2622/256 is 1024/100 to four digits. Off by less than one, so
-/// that the slowest pace is within one percent of itself.
+/// Converts percent to a pace: 2622/256 is 1024/100 to four digits. The error is below one step,
+/// so the slowest pace is right within one percent.
 pub fn of_percent(percent: u8) -> u16 {
     ((mul_unsigned(u16::from(percent), 2622) + 128) >> 8) as u16
 }

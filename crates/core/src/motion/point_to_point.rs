@@ -13,10 +13,10 @@ use crate::numbers::slew::Slew;
 /// eight, no move changes a servo's speed faster than the gaits do.
 const SHORTEST: u16 = 8;
 
-/// All of a move's time, Q15.
+/// The full duration of a move, Q15.
 const END: u16 = 1 << 15;
 
-/// A move under way.
+/// A move in progress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PointToPoint {
     from: Pose,
@@ -30,8 +30,8 @@ pub struct PointToPoint {
 impl PointToPoint {
     /// A move between two poses.
     pub fn new(from: &Pose, to: &Pose, slew: Slew) -> Self {
-        let way = from.farthest(to);
-        let frames = (mul_unsigned(way, slew.frames_per_way) >> 16) as u16 + 1;
+        let distance = from.farthest(to);
+        let frames = (mul_unsigned(distance, slew.frames_per_way) >> 16) as u16 + 1;
         Self {
             from: *from,
             to: *to,
@@ -64,10 +64,10 @@ impl PointToPoint {
         let share = smoothstep(self.elapsed) as i16;
         let mut pose = self.from;
         for (sweep, to) in pose.0.iter_mut().zip(&self.to.0) {
-            // Twice half the way, because a way may be more than half a turn.
+            // Twice half the distance, because a distance may be more than half a turn.
             let half = (to.0 >> 1) - (sweep.0 >> 1);
-            let way = (mul(half, share) + (1 << 13)) >> 14;
-            sweep.0 = sweep.0.wrapping_add(way as i16);
+            let distance = (mul(half, share) + (1 << 13)) >> 14;
+            sweep.0 = sweep.0.wrapping_add(distance as i16);
         }
         pose
     }
@@ -106,8 +106,8 @@ mod tests {
         poses
     }
 
-    /// A move of one servo.
-    fn way(from: i16, to: i16, slew: Slew) -> Vec<i16> {
+    /// The sweeps of one servo in a move, frame by frame.
+    fn sweeps_of_move(from: i16, to: i16, slew: Slew) -> Vec<i16> {
         let [from, to] = [from, to].map(|sweep| pose([0, 0, sweep, 0]));
         let course = course(&from, &to, slew);
         course.iter().map(|pose| pose.0[2].0).collect()
@@ -127,7 +127,7 @@ mod tests {
             to: i16,
             slew in slews(),
         ) {
-            let sweeps = way(from, to, slew);
+            let sweeps = sweeps_of_move(from, to, slew);
             prop_assert_eq!(sweeps.last(), Some(&to));
             let most = sweeps.windows(2).map(|pair| pair[1].abs_diff(pair[0])).max();
             prop_assert!(most <= Some(slew.per_frame), "{most:?} of {slew:?}");
@@ -144,18 +144,18 @@ mod tests {
         fn a_move_goes_straight_there_along_a_smoothstep(from: i16, to: i16, slew in slews()) {
             let mut path = PointToPoint::new(&pose([from; 4]), &pose([to; 4]), slew);
             let mut frame = 0.0;
-            let way = f64::from(to) - f64::from(from);
+            let distance = f64::from(to) - f64::from(from);
             let mut before = f64::from(from);
             while !path.arrived() {
                 path.advance(FULL);
                 frame += f64::from(path.step) / 32_768.0;
                 let u = f64::min(frame, 1.0);
-                let exact = f64::from(from) + way * u * u * (3.0 - 2.0 * u);
+                let exact = f64::from(from) + distance * u * u * (3.0 - 2.0 * u);
                 let here = f64::from(path.pose().0[0].0);
                 // Q15 of the way, twice, and halves of odd sweeps.
-                let rounding = 2.0 + way.abs() / 8000.0;
+                let rounding = 2.0 + distance.abs() / 8000.0;
                 prop_assert!((here - exact).abs() <= rounding, "{here}, {exact}");
-                prop_assert!((here - before) * way.signum() >= -rounding, "{here} after {before}");
+                prop_assert!((here - before) * distance.signum() >= -rounding, "{here} after {before}");
                 before = here;
             }
         }
@@ -174,10 +174,10 @@ mod tests {
                 let here = path.pose();
                 let share = f64::from(path.elapsed) / 32_768.0;
                 let share = share * share * (3.0 - 2.0 * share);
-                for (n, way) in ways.iter().enumerate() {
+                for (n, distance) in ways.iter().enumerate() {
                     let elapsed = f64::from(here.0[n].0) - f64::from(from.0[n].0);
-                    let off = elapsed - share * way;
-                    prop_assert!(off.abs() <= 2.0 + way.abs() / 8000.0, "A{}: {off}", n + 1);
+                    let off = elapsed - share * distance;
+                    prop_assert!(off.abs() <= 2.0 + distance.abs() / 8000.0, "A{}: {off}", n + 1);
                 }
             }
             prop_assert_eq!(path.pose(), to);
@@ -212,7 +212,7 @@ mod tests {
         for slew in [Slew::SLOWEST, 100, 1092, 3640].map(Slew::new) {
             for length in (0..=u16::MAX).step_by(251).chain([u16::MAX]) {
                 let to = i16::MIN.wrapping_add(length as i16);
-                let sweeps = way(i16::MIN, to, slew);
+                let sweeps = sweeps_of_move(i16::MIN, to, slew);
                 let most = sweeps
                     .windows(2)
                     .map(|pair| pair[1].abs_diff(pair[0]))
@@ -227,7 +227,7 @@ mod tests {
 
     #[test]
     fn a_move_to_where_the_robot_is_stays_there_for_eight_frames() {
-        let sweeps = way(77, 77, Slew::new(1000));
+        let sweeps = sweeps_of_move(77, 77, Slew::new(1000));
         assert_eq!(sweeps, [77; 9]);
         let path = PointToPoint::new(&pose([0; 4]), &pose([9; 4]), Slew::new(1000));
         assert_eq!(path.step, 32_768 / 8, "an equal share in each");

@@ -5,7 +5,7 @@ use crate::numbers::gaits::{Gait, GaitId};
 use crate::numbers::pose::Pose;
 use crate::numbers::robot::Robot;
 
-/// An activity of the robot; one that it is still moving to counts.
+/// An activity of the robot, also while the robot is still moving to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Activity {
     /// A gait (`stand` is one).
@@ -20,13 +20,15 @@ pub enum Activity {
 
 /// The target of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-// From 1 on, since none at all has to be zero: see `Main::new`.
+// Starts at 1, since `None` has to be zero: see `Main::new`.
 #[repr(u8)]
 pub enum Target {
     /// A pose, to be held.
     Pose(Pose) = 1,
     /// A gait, reached by a move to its first pose.
     Gait(GaitId),
+    /// The end of a gait whose count is over: the pose in which it comes to a standstill.
+    End,
 }
 
 /// The path that the servos follow at the moment.

@@ -25,9 +25,9 @@ lizard_avr::plain! {
         /// `2^27` over each coupler.
         pub(crate) per_left: i16,
         pub(crate) per_right: i16,
-        /// Takes a squared distance of the crank tips to fifteen bits.
+        /// The shift that reduces a squared distance of the crank tips to fifteen bits.
         pub(crate) square_shift: u16,
-        /// Takes rise times that to sixteen bits.
+        /// The shift that reduces the rise times that to sixteen bits.
         pub(crate) area_shift: u16,
         pub(crate) scale: Scale,
         /// Unused: it pads the fields above to a multiple of four bytes.

@@ -56,7 +56,7 @@ impl Calibration {
         cycles.max(1)
     }
 
-    /// True where the travel of the servo reaches `sweep`.
+    /// True if the servo's travel includes `sweep`.
     pub const fn reaches(&self, sweep: Sweep) -> bool {
         self.min.0 <= sweep.0 && sweep.0 <= self.max.0
     }

@@ -38,7 +38,7 @@ pub struct Cells<'a> {
 
 impl Cells<'static> {
     /// A map without cells: every pose is measured.
-    pub const NONE: Self = Self::among(0, 0, 0, NO_ROWS.as_slice());
+    pub const NONE: Self = Self::from_rows(0, 0, 0, NO_ROWS.as_slice());
 }
 
 impl<'a> Cells<'a> {
@@ -48,7 +48,7 @@ impl<'a> Cells<'a> {
     /// or column is a sweep divided by 2 to the [`ROW_BITS`] or [`COLUMN_BITS`], rounded
     /// down.
     #[inline(always)]
-    pub const fn among(first: i8, begin: u16, count: u8, rows: Flash<'a, [[i8; 2]]>) -> Self {
+    pub const fn from_rows(first: i8, begin: u16, count: u8, rows: Flash<'a, [[i8; 2]]>) -> Self {
         Self {
             first,
             begin,
@@ -59,13 +59,13 @@ impl<'a> Cells<'a> {
 
     /// A map of all of these rows, at most 255.
     pub const fn new(first: i8, rows: Flash<'a, [[i8; 2]]>) -> Self {
-        Self::among(first, 0, rows.len() as u8, rows)
+        Self::from_rows(first, 0, rows.len() as u8, rows)
     }
 
     /// True where a cell holds this pair of sweeps. A column that is no `i8`, a
     /// quarter of a turn from neutral, is in no cell.
     #[inline(always)]
-    pub fn hold(&self, row: Sweep, column: Sweep) -> bool {
+    pub fn contains(&self, row: Sweep, column: Sweep) -> bool {
         let row = ((row.0 >> ROW_BITS) as i8).wrapping_sub(self.first) as u8;
         if row >= self.count {
             return false;
@@ -88,7 +88,7 @@ mod tests {
     use super::*;
 
     /// The same question answered by division and without a shortcut.
-    fn held(first: i8, rows: &[[i8; 2]], row: i16, column: i16) -> bool {
+    fn contains_by_division(first: i8, rows: &[[i8; 2]], row: i16, column: i16) -> bool {
         let row = f64::from(row).div_euclid(256.0) as i32;
         // A turn has 256 rows, and the one behind the last is the first.
         let row = if row < i32::from(first) {
@@ -130,8 +130,8 @@ mod tests {
         for row in i16::MIN..=i16::MAX {
             for column in COLUMNS {
                 assert_eq!(
-                    cells.hold(Sweep(row), Sweep(column)),
-                    held(first, rows, row, column),
+                    cells.contains(Sweep(row), Sweep(column)),
+                    contains_by_division(first, rows, row, column),
                     "{row} {column} in {rows:?} from {first}"
                 );
             }
@@ -160,7 +160,7 @@ mod tests {
     fn a_map_without_rows_holds_nothing() {
         for row in i16::MIN..=i16::MAX {
             for column in COLUMNS {
-                assert!(!Cells::NONE.hold(Sweep(row), Sweep(column)));
+                assert!(!Cells::NONE.contains(Sweep(row), Sweep(column)));
             }
         }
         agrees(-5, &[]);
@@ -177,11 +177,11 @@ mod tests {
             let rows = Flash::from(rows.as_slice());
             let begins = [0, maps[0].len() as u16];
             for map in 0..2 {
-                let cells = Cells::among(firsts[map], begins[map], maps[map].len() as u8, rows);
+                let cells = Cells::from_rows(firsts[map], begins[map], maps[map].len() as u8, rows);
                 for [row, column] in &pairs {
                     prop_assert_eq!(
-                        cells.hold(Sweep(*row), Sweep(*column)),
-                        held(firsts[map], &maps[map], *row, *column)
+                        cells.contains(Sweep(*row), Sweep(*column)),
+                        contains_by_division(firsts[map], &maps[map], *row, *column)
                     );
                 }
             }
@@ -196,8 +196,8 @@ mod tests {
             let cells = Cells::new(first, Flash::from(rows.as_slice()));
             for [row, column] in pairs {
                 prop_assert_eq!(
-                    cells.hold(Sweep(row), Sweep(column)),
-                    held(first, &rows, row, column)
+                    cells.contains(Sweep(row), Sweep(column)),
+                    contains_by_division(first, &rows, row, column)
                 );
             }
         }

@@ -95,7 +95,7 @@ impl Coupling {
         self.right
     }
 
-    /// See [`Couplers::differ_much`].
+    /// Result of [`Couplers::differ_much`] for these couplers.
     pub const fn differs_much(&self) -> bool {
         2 * self.least_sq > self.reach_sq >> OCTAVES
     }
@@ -124,9 +124,9 @@ impl<'a> Couplers<'a> {
         Self { lengths, tables }
     }
 
-    /// True for couplers whose difference alone keeps the crank tips so far apart
-    /// that the margins are known next to it: there the rise is read from the table
-    /// of folded couplers. Of others, [`Couplers::at`] knows nothing so near.
+    /// True for couplers whose difference alone keeps the crank tips so far apart that
+    /// the margins are known next to it: there the rise is read from the table of
+    /// folded couplers. For other couplers, [`Couplers::at`] has no value so near.
     pub const fn differ_much(left: i16, right: i16) -> bool {
         Coupling::new(left, right).differs_much()
     }
@@ -172,7 +172,7 @@ impl<'a> Couplers<'a> {
     }
 }
 
-/// See [`Couplers::is_near_stretched`].
+/// Implements [`Couplers::is_near_stretched`].
 const fn is_near_stretched(reach_sq: u32, tips_sq: u32) -> bool {
     tips_sq > reach_sq - reach_sq / 4
 }

@@ -67,13 +67,16 @@ lizard_avr::plain! {
 }
 
 lizard_avr::plain! {
-    /// A gait.
+    /// A gait, or a routine, whose record has the same fields and no gain.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Gait {
         /// Phase in 1/2^24 cycle for each frame at full pace; negative where the
-        /// table is read backwards.
+        /// table is read backwards. 0 for a routine.
         pub increment: i32,
-        /// The channels of the four servos.
+        /// The channels of the four servos. Of a routine the offset of the first is the place of
+        /// its first [`Step`] in the section, that of the second their number, that of the
+        /// third how often it repeats them, 0 for ever, that of the fourth the number of the one
+        /// at which each round but the first begins.
         pub channels: [Channel; 4],
         /// The place of its name's first byte among the names of its robot.
         pub name_start: u16,
@@ -82,7 +85,83 @@ lizard_avr::plain! {
     }
 }
 
-/// A gait by its place in robot.toml. Place 0 is `stand`.
+lizard_avr::plain! {
+    /// A step of a routine.
+    #[derive(Debug, PartialEq, Eq)]
+    pub struct Step {
+        /// What it does, one of the constants of [`Step`].
+        pub kind: u8,
+        /// The place of its gait; of [`Step::UNTIL`] the [`Input`].
+        pub gait: u8,
+        /// How long it takes, in cycles of the gait or in frames; [`Step::ENDLESS`] frames do not end.
+        pub count: u16,
+    }
+}
+
+impl Step {
+    /// A gait for so many cycles.
+    pub const CYCLES: u8 = 0;
+
+    /// A gait for so many frames, the move to it included.
+    pub const FRAMES: u8 = 1;
+
+    /// No pulses for so many frames, at least one.
+    pub const REST: u8 = 2;
+
+    /// The robot stands still until the contact of the record before this one closes.
+    pub const WAIT: u8 = 3;
+
+    /// A record in front of a step: a contact that ends it, before its count or time is over.
+    pub const UNTIL: u8 = 4;
+
+    /// The frames of a step that only its contact ends.
+    pub const ENDLESS: u16 = u16::MAX;
+}
+
+/// An input: a contact between a pin and ground.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Input(u8);
+
+impl Input {
+    /// No input.
+    pub const NONE: Self = Self(0);
+
+    /// The bit by which the nose is told from the button.
+    const NOSE: u8 = 0x80;
+
+    /// The button at the pin with this Arduino number; 14 to 19 are A0 to A5.
+    pub const fn button(pin: u8) -> Self {
+        Self(pin)
+    }
+
+    /// The obstacle switch at the pin with this Arduino number.
+    pub const fn nose(pin: u8) -> Self {
+        Self(pin | Self::NOSE)
+    }
+
+    /// The input of a record of the kind [`Step::UNTIL`].
+    pub const fn of(step: &Step) -> Self {
+        Self(step.gait)
+    }
+
+    /// The byte of a record.
+    pub const fn byte(self) -> u8 {
+        self.0
+    }
+
+    /// True for the obstacle switch.
+    pub const fn is_nose(self) -> bool {
+        self.0 & Self::NOSE != 0
+    }
+
+    /// Arduino number of the pin, 0 if there is no input.
+    pub const fn pin(self) -> u8 {
+        self.0 & !Self::NOSE
+    }
+}
+
+/// A gait or a routine by its place in the section: the gaits in the order of robot.toml, and then
+/// the routines. Place 0 is `stand`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GaitId(u8);
 
@@ -93,6 +172,11 @@ impl GaitId {
     /// All gaits of a robot that has `count` of them, in their order.
     pub fn all(count: usize) -> impl Iterator<Item = Self> {
         (0..count as u8).map(Self)
+    }
+
+    /// The gait at a place.
+    pub const fn at(place: u8) -> Self {
+        Self(place)
     }
 
     /// The gait's place.
@@ -107,6 +191,21 @@ impl GaitId {
 }
 
 impl Gait {
+    /// A routine without a name.
+    #[cfg(any(test, feature = "host"))]
+    pub const fn routine(first: u16, steps: u16, rounds: u16) -> Self {
+        let mut routine = Self::STILL;
+        routine.channels[0].offset = first;
+        routine.channels[1].offset = steps;
+        routine.channels[2].offset = rounds;
+        routine
+    }
+
+    /// True for a routine.
+    pub const fn is_routine(&self) -> bool {
+        self.increment == 0
+    }
+
     /// A gait that does not move.
     pub const STILL: Self = Self {
         name_start: 0,

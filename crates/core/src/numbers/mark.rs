@@ -44,8 +44,7 @@ impl Mark {
         ],
     };
 
-    /// As it is in flash: magic, format, version, and a byte of 0, since code begins at even
-    /// addresses.
+    /// The bytes in flash: magic, format, version, and a zero, since code begins at even addresses.
     #[must_use]
     pub const fn bytes(self) -> [u8; LENGTH] {
         let [a, b, c, d] = MAGIC.to_le_bytes();

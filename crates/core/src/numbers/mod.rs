@@ -14,6 +14,7 @@ pub mod limits;
 pub mod mark;
 pub mod part;
 pub mod pose;
+pub mod rate;
 pub mod robot;
 pub mod root;
 pub mod section;

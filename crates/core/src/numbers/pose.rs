@@ -59,7 +59,7 @@ impl Pose {
         pulses
     }
 
-    /// The longest way of any servo to `other`, in 1/65536 turn.
+    /// The longest turn of any servo to `other`, in 1/65536 turn.
     pub fn farthest(&self, other: &Self) -> u16 {
         let mut most = 0;
         for (here, there) in self.0.iter().zip(&other.0) {

@@ -15,7 +15,7 @@ use crate::numbers::calibration::Calibration;
 use crate::numbers::calibration::Reach;
 use crate::numbers::cells::Cells;
 use crate::numbers::couplers::Tables;
-use crate::numbers::gaits::{Gait, GaitId, Name, Wave};
+use crate::numbers::gaits::{Gait, GaitId, Name, Step, Wave};
 use crate::numbers::limits::Limits;
 use crate::numbers::part::{End, Servo, Side};
 use crate::numbers::pose::Pose;
@@ -32,7 +32,7 @@ pub struct Robot<'a> {
     is_there: bool,
 }
 
-// Its numbers are the same in every state of a program that shows itself.
+// Its numbers are left out: they are the same in every state of a program.
 impl fmt::Debug for Robot<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(if self.is_there { "Robot" } else { "no robot" })
@@ -151,7 +151,7 @@ impl<'a> Robot<'a> {
         self.number(offset_of!(Numbers, neutral))
     }
 
-    /// One servo of [`Robot::neutral`].
+    /// The neutral angle of one servo.
     #[inline(never)]
     pub fn neutral_of(&self, servo: Servo) -> Angle {
         self.number(offset_of!(Numbers, neutral) + servo.index() * size_of::<Angle>())
@@ -162,7 +162,7 @@ impl<'a> Robot<'a> {
         self.number(offset_of!(Numbers, calibration))
     }
 
-    /// One servo of [`Robot::calibration`].
+    /// The pulses and the travel of one servo.
     #[inline(never)]
     pub fn servo(&self, servo: Servo) -> Calibration {
         self.number(offset_of!(Numbers, calibration) + servo.index() * size_of::<Calibration>())
@@ -212,7 +212,14 @@ impl<'a> Robot<'a> {
             .map_or(Gait::STILL, Flash::load)
     }
 
-    /// The name of a gait.
+    /// Reads a step of a routine.
+    pub fn step(&self, routine: &Gait, number: u16) -> Step {
+        let first = routine.channels[0].offset;
+        self.section
+            .read(first.wrapping_add(number * size_of::<Step>() as u16))
+    }
+
+    /// The name of a gait or a routine.
     #[inline(never)]
     pub fn name(&self, id: GaitId) -> Name<'a> {
         // Not the whole gait: a line may be compared with every name.
@@ -235,7 +242,7 @@ impl<'a> Robot<'a> {
             let [row, column] = PAIRS.at(pair).load();
             let row = pose.0[usize::from(row & 3)];
             let column = pose.0[usize::from(column & 3)];
-            if !Cells::among(first, begin, rows, maps).hold(row, column) {
+            if !Cells::from_rows(first, begin, rows, maps).contains(row, column) {
                 return false;
             }
             begin += u16::from(rows);

@@ -1,18 +1,18 @@
 //! The robot's section of flash: all that robot.toml says to the firmware, as data.
 //!
-//! The firmware is one image for any lizard. What differs from robot to robot lies
-//! behind it, at a fixed address, and can be written without a compiler. What is in a
-//! flash may be anything: an erased one, half of an upload, a section of another
-//! version, a byte that changed in the years. So nothing of it is believed before
-//! [`crate::numbers::robot::Robot::open`] has checked header, length and CRC, and every index and
-//! count.
+//! The firmware is one image for any lizard. What differs from robot to robot lies behind it, at
+//! a fixed address, and can be written without a compiler. What is in a flash may be anything: an
+//! erased one, half of an upload, a section of another version, a byte that changed over the
+//! years. So nothing of it is trusted before [`crate::numbers::robot::Robot::open`] has checked
+//! header, length and CRC, and every index and count.
 //!
 //! | part | bytes | what |
 //! |---|---|---|
 //! | [`Header`] | 36 | magic, [`FORMAT`], length, checksum of all behind it, name, hash of the numbers, hash of the servos |
 //! | [`Numbers`] | 232 | see there |
 //! | curves | 354 each | of the head's couplers and, where they are others, the tail's: rise, and those of stretched, folded and skew that [`Numbers::curves`] names |
-//! | gaits | 32 each | [`crate::numbers::gaits::Gait`] |
+//! | gaits | 32 each | [`crate::numbers::gaits::Gait`]; routines are the last |
+//! | steps | 4 each | of the routines, [`crate::numbers::gaits::Step`] |
 //! | waveforms | 128 each | 64 samples |
 //! | names | | of the gaits, one after the other |
 //! | maps | 2 a row | certified cells of head, tail, left and right: first and last column |
@@ -44,8 +44,8 @@ mod content;
 #[cfg(any(test, feature = "host"))]
 mod seal;
 
-/// Raised when the meaning of a byte changes.
-pub const FORMAT: u16 = 2;
+/// The format of a section, increased when the meaning of a byte changes.
+pub const FORMAT: u16 = 3;
 
 /// The first four bytes of a section.
 pub const MAGIC: u32 = u32::from_le_bytes(*b"LZRD");
@@ -123,7 +123,7 @@ pub const CURVES: usize = 4;
 /// A part of the section that is an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// The gaits, each a [`crate::numbers::gaits::Gait`].
+    /// The gaits and the routines, each a [`crate::numbers::gaits::Gait`].
     Gaits,
     /// The waveforms, each a [`crate::numbers::gaits::Wave`].
     Waves,
@@ -158,9 +158,9 @@ lizard_avr::plain! {
     }
 }
 
-/// The reason for which a section is not a usable robot.
+/// The reason why a section is not a usable robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-// From 1 on, since none at all has to be zero: see `Main::new`.
+// Starts at 1, since `None` has to be zero: see `Main::new`.
 #[repr(u8)]
 pub enum Damage {
     /// There is no section: the magic is missing.

@@ -64,7 +64,7 @@ pub struct Sine(pub i16);
 
 lizard_avr::plain!(Sine: i16);
 
-/// The width of a pulse in CPU cycles of 62.5 ns; 0 is no pulse.
+/// The width of a pulse in CPU cycles of 62.5 ns; 0 is not a pulse.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(transparent)]
 pub struct Width(pub u16);
@@ -127,7 +127,7 @@ impl Angle {
 }
 
 impl Sine {
-    /// In thousandths, rounded to nearest.
+    /// The margin in thousandths, rounded to nearest.
     pub fn thousandths(self) -> i16 {
         ((mul(self.0, 1000) + (1 << 14)) >> 15) as i16
     }
@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn every_angle_is_told_to_the_nearest_hundredth_of_a_degree() {
+    fn every_angle_is_printed_to_the_nearest_hundredth_of_a_degree() {
         for angle in (0..=u16::MAX).map(Angle) {
             let centideg = angle.centideg();
             assert!(centideg < 36_000);
@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn every_margin_is_told_to_the_nearest_thousandth() {
+    fn every_margin_is_printed_to_the_nearest_thousandth() {
         for raw in i16::MIN..=i16::MAX {
             let exact = f64::from(raw) * 1000.0 / 32768.0;
             let told = f64::from(Sine(raw).thousandths());
@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn every_length_in_every_scale_is_told_to_the_nearest_hundredth_of_a_millimetre() {
+    fn every_length_in_every_scale_is_printed_to_the_nearest_hundredth_of_a_millimetre() {
         for bits in 0..=14 {
             let scale = Scale { bits };
             for length in (-65_535..=65_535)
@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn a_phase_is_told_in_thousandths_rounded_down_so_that_none_is_a_whole_cycle() {
+    fn a_phase_is_printed_in_thousandths_rounded_down_so_it_never_reads_as_a_whole_cycle() {
         for phase in (0..CYCLE).step_by(97).chain([CYCLE - 1]) {
             let exact = f64::from(phase) * 1000.0 / f64::from(CYCLE);
             let told = thousandths_from_phase(phase);

@@ -89,7 +89,7 @@ impl Eeprom {
     }
 
     /// Lets a millisecond pass.
-    pub(super) fn pass(&mut self) {
+    pub(super) fn pass_time(&mut self) {
         let busy = self.busy.get().saturating_sub(u16::from(self.timed));
         self.busy.set(busy);
         if busy == 0 {
@@ -104,7 +104,7 @@ impl Eeprom {
     }
 
     /// Cuts the power: the byte that was being written gets this value.
-    pub(super) fn tear(&mut self, byte: u8) {
+    pub(super) fn cut_power(&mut self, byte: u8) {
         if let Some(address) = self.under_way.take() {
             self.bytes_mut()[usize::from(address)] = byte;
         }

@@ -5,6 +5,7 @@ use core::hash::{Hash, Hasher};
 
 use crate::memory::kept::{self, CELLS, Cells};
 use crate::memory::restart::{Cause, Restart, Stance};
+use crate::numbers::rate::Rate;
 
 /// The cells of [`crate::memory::kept`].
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -50,8 +51,13 @@ impl Ram {
     }
 
     /// Stores the servos' state.
-    pub fn keep(&self, stance: &Stance, brown_outs: u8) {
-        kept::keep(self, stance, brown_outs);
+    pub fn store_stance(&self, stance: &Stance, brown_outs: u8) {
+        kept::store_stance(self, stance, brown_outs);
+    }
+
+    /// Stores the rate of the serial line.
+    pub fn store_rate(&self, rate: Rate) {
+        kept::store_rate(self, rate);
     }
 
     /// Marks the program as hung.

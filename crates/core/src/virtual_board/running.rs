@@ -86,28 +86,28 @@ impl Running {
     /// pulses.
     pub fn frame(&mut self) -> Pulses {
         self.settle();
-        self.board.pass(self.board.until_tick());
+        self.board.pass_time(self.board.until_tick());
         self.settle();
         // Main also runs between the pulses.
         for ms in [4, 4, 4, 4, 3] {
-            self.board.pass(ms);
+            self.board.pass_time(ms);
             self.settle();
         }
-        self.board.begun()
+        self.board.started_pulses()
     }
 
     /// Runs frames, and returns the output in them.
     pub fn run(&mut self, frames: u32) -> Vec<String> {
-        let mut said = Vec::new();
+        let mut printed = Vec::new();
         for _ in 0..frames {
             self.frame();
-            said.extend(self.lines());
+            printed.extend(self.lines());
         }
-        said
+        printed
     }
 
-    /// Runs frames in which nobody reads the output.
-    pub fn run_unheard(&mut self, frames: u32) {
+    /// Runs frames while nobody reads the output.
+    pub fn run_without_reader(&mut self, frames: u32) {
         self.board.transmitter.held = true;
         for _ in 0..frames {
             self.frame();
@@ -144,18 +144,25 @@ impl Running {
         lines
     }
 
-    /// Sends a line and returns the final line of its answer.
+    /// Sends a line and returns the final line of its answer. What is told behind that can still be
+    /// read.
     ///
     /// # Panics
     /// If the answer does not end with exactly one final line.
     pub fn say(&mut self, line: &str) -> String {
         self.lines();
-        let mut said = self.send(line.as_bytes());
-        said.extend(self.send(b"\r"));
-        let (last, before) = said.split_last().expect("an answer");
-        assert!(is_final(last), "{last}");
-        assert!(before.iter().all(|line| line.starts_with("# ")), "{said:?}");
-        last.clone()
+        let mut printed = self.send(line.as_bytes());
+        printed.extend(self.send(b"\r"));
+        let last = printed.iter().position(|line| is_final(line));
+        let rest = printed.split_off(last.expect("an answer") + 1);
+        self.board.transmitter.text = rest.iter().map(|line| std::format!("{line}\r\n")).collect();
+        let last = printed.pop().expect("an answer");
+        let mut others = printed.iter().chain(&rest);
+        assert!(
+            others.all(|line| line.starts_with("# ")),
+            "{printed:?} {rest:?}"
+        );
+        last
     }
 
     /// Sends a line, which must be accepted.
@@ -196,9 +203,9 @@ impl Running {
     /// Lets time pass in which main hangs. Once the watchdog has ended the pulses, main stays
     /// stopped until the reset. Returns true if that comes.
     pub fn stall(&mut self, ms: u16) -> bool {
-        let mut bites = self.board.pass(ms);
+        let mut bites = self.board.pass_time(ms);
         while self.is_over() && !bites {
-            bites = self.board.pass(1);
+            bites = self.board.pass_time(1);
         }
         if bites {
             self.reset(Cause::Watchdog);

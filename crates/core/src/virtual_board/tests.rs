@@ -22,19 +22,29 @@ fn a_frame_is_played_once_handed_over_and_repeats_while_main_is_late() {
     board.connect([9, 10, 5, 6], None);
     let pulses = Pulses([1_000, 20_000, 30_000, 63_000].map(Width));
     board.submit(pulses);
-    assert_eq!(board.begun(), NONE);
-    board.pass(1 + 3);
-    assert_eq!(board.begun(), NONE, "the tick, and not yet the hand-over");
-    board.pass(1);
-    assert_eq!(board.begun().0.map(|width| width.0), [1_000, 0, 0, 0]);
+    assert_eq!(board.started_pulses(), NONE);
+    board.pass_time(1 + 3);
+    assert_eq!(
+        board.started_pulses(),
+        NONE,
+        "the tick, and not yet the hand-over"
+    );
+    board.pass_time(1);
+    assert_eq!(
+        board.started_pulses().0.map(|width| width.0),
+        [1_000, 0, 0, 0]
+    );
     for _ in 0..4 {
-        board.pass(19);
-        assert_eq!(board.begun(), pulses);
-        board.pass(1);
+        board.pass_time(19);
+        assert_eq!(board.started_pulses(), pulses);
+        board.pass_time(1);
     }
     board.submit(Pulses([0, 999, 63_001, 1_000].map(Width)));
-    board.pass(20 + 19);
-    assert_eq!(board.begun().0.map(|width| width.0), [0, 0, 0, 1_000]);
+    board.pass_time(20 + 19);
+    assert_eq!(
+        board.started_pulses().0.map(|width| width.0),
+        [0, 0, 0, 1_000]
+    );
 }
 
 #[test]
@@ -44,9 +54,13 @@ fn a_stall_below_125_ms_changes_nothing_and_a_longer_one_restarts_the_program() 
     assert!(!short.board.is_hushed());
     assert_ne!(short.frame(), NONE);
     let mut long = standing();
-    assert!(!long.board.pass(WATCHDOG_MS + 20));
+    assert!(!long.board.pass_time(WATCHDOG_MS + 20));
     assert!(long.board.is_hushed());
-    assert_eq!(long.board.begun(), NONE, "no pulse begins any more");
+    assert_eq!(
+        long.board.started_pulses(),
+        NONE,
+        "no pulse begins any more"
+    );
     let (pose, frames) = (*long.motion().pose(), long.motion().frames());
     long.settle();
     assert_eq!(long.motion().frames(), frames, "main does not go on");
@@ -72,7 +86,7 @@ fn a_reset_leaves_the_pose_and_power_takes_it() {
         running.board.restart().before.map(|stance| stance.pose),
         Some(pose)
     );
-    assert_eq!(running.board.waiting(), 0, "what main had not read is lost");
+    assert_eq!(running.board.unread(), 0, "what main had not read is lost");
     running.lose_power(None);
     assert_eq!(running.board.restart(), &Restart::NONE);
 }
@@ -85,7 +99,7 @@ fn power_lost_in_a_write_leaves_anything_in_that_byte_and_nowhere_else() {
     let mut whole = board.clone();
     board.lose_power(Some(0xb7));
     assert_eq!(board.memory.bytes()[17], 0xb7);
-    whole.pass(4);
+    whole.pass_time(4);
     whole.lose_power(Some(0xb7));
     assert_eq!(whole.memory.bytes()[17], 0x35, "it had time to end");
     let others = |at: &usize| *at != 17;
@@ -98,7 +112,7 @@ fn a_slow_listener_leaves_less_room_until_time_passes() {
     let mut transmitter = Transmitter::new(16_000, 255);
     transmitter.fill(200);
     assert_eq!(transmitter.room(), 55);
-    transmitter.pass(10);
+    transmitter.pass_time(10);
     assert_eq!(transmitter.room(), 65);
     transmitter.held = true;
     assert_eq!(transmitter.room(), 0);
@@ -125,11 +139,11 @@ fn nothing_is_measured_before_a_whole_measurement_and_each_part_in_its_turn() {
 fn bytes_beyond_what_the_receiver_holds_are_lost_and_counted() {
     let mut board = VirtualBoard::default();
     board.send(&[b'x'; RECEIVED + 5]);
-    assert_eq!((board.waiting(), board.counters().rx_lost), (RECEIVED, 5));
+    assert_eq!((board.unread(), board.counters().rx_lost), (RECEIVED, 5));
     let mut main = Main::new();
     main.begin(Sample::odd().section(), &mut board);
     while main.step(&mut board) == Step::Worked {}
-    assert_eq!(board.waiting(), 0);
+    assert_eq!(board.unread(), 0);
 }
 
 #[test]
@@ -140,8 +154,8 @@ fn the_first_pulse_after_a_reset_is_at_most_the_frame_on_its_way_then() {
     running.run(200);
     running.say("sway");
     running.run(60);
-    let before = running.board.begun();
-    running.board.pass(running.board.until_tick());
+    let before = running.board.started_pulses();
+    running.board.pass_time(running.board.until_tick());
     running.settle();
     running.reset(Cause::External);
     let on_its_way = *running.motion().sent();
@@ -178,7 +192,7 @@ fn leaps(running: &mut Running, frames: usize) -> [u16; 4] {
 }
 
 #[test]
-fn what_is_set_while_the_robot_rests_turns_no_servo_faster_than_the_slew_limit() {
+fn settings_changed_at_rest_turn_no_servo_faster_than_the_slew_limit() {
     let robot = Sample::odd();
     let per_frame = robot.slew().per_frame;
     let most = robot.calibration().map(|servo| servo.slew(per_frame));

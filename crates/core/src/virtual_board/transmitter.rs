@@ -18,7 +18,7 @@ pub struct Transmitter {
     pub held: bool,
     /// CPU cycles for a byte; 0 for a line without delay.
     per_byte: u64,
-    /// Bytes that fit in before a writer has to wait.
+    /// Bytes that it accepts before a writer has to wait.
     capacity: u64,
     /// The present cycle.
     now: u64,
@@ -56,7 +56,7 @@ impl Transmitter {
     }
 
     /// Lets milliseconds pass.
-    pub(super) const fn pass(&mut self, ms: u64) {
+    pub(super) const fn pass_time(&mut self, ms: u64) {
         self.now += ms * MS;
     }
 

@@ -3,7 +3,9 @@
 use std::io::Write;
 
 use lizard_kinematics::Check;
-use lizard_robot::{Report, Robot, Row, Sensitivity, servo};
+use lizard_robot::{
+    Assumptions, Prediction, Report, Robot, Round, Row, Sensitivity, ServoTable, servo,
+};
 use serde::Serialize;
 
 use crate::shared::json;
@@ -16,17 +18,20 @@ use crate::{Failure, RobotFile};
 /// Prints for each gait: the time of a cycle, its fastest frame, the error of its table
 /// over all 65536 phases, the smallest margins and the slider travel over every sample,
 /// and the displacement of one cycle by the contact model. A dash means that two feet
-/// pull against two, so the model cannot decide. If a gait breaks a limit, the program
+/// pull against two, so the model cannot decide. Of each routine it prints how long one
+/// round takes and how far it leads, with the changes between its gaits. If a gait breaks a limit, the program
 /// names the gait, its phase, the margin, its value and the limit, and ends with exit
 /// code 2. It does the same for any other mistake in the file.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   lizard gaits
   lizard gaits --robot my/robot.toml --json
+  lizard gaits --servos
+  lizard gaits --assumptions
   lizard gaits --trace walk > walk.csv
   lizard gaits --trace walk | lizard pose")]
 pub struct Args {
-    /// Print one JSON object a line, one for each gait
+    /// Print one JSON object a line, one for each gait and each routine
     #[arg(long)]
     json: bool,
     /// Print instead the servo angles of one gait over a cycle as CSV, with the header
@@ -38,6 +43,14 @@ pub struct Args {
     /// forward), with the legs mounted differently, and on other feet
     #[arg(long, conflicts_with_all = ["json", "trace"])]
     sensitivity: bool,
+    /// Print instead which assumptions change how far the gaits walk by a tenth or more, and how
+    /// much: servos, joints, mass, pads, legs and feet, each over its plausible range
+    #[arg(long, conflicts_with_all = ["json", "trace", "sensitivity"])]
+    assumptions: bool,
+    /// Print instead how much of their servos' torque-speed line the gaits use, and how far they
+    /// walk, on several supplies and at two speeds
+    #[arg(long, conflicts_with_all = ["json", "trace", "sensitivity", "assumptions"])]
+    servos: bool,
     #[command(flatten)]
     robot: RobotFile,
 }
@@ -53,9 +66,15 @@ pub fn run(args: Args) -> Result<(), Failure> {
     match args.trace {
         Some(name) => out.write_all(trace(&robot, &name)?.as_bytes())?,
         None if args.sensitivity => write!(out, "{}", Sensitivity::of(&robot))?,
+        None if args.assumptions => write!(out, "{}", Assumptions::of(&robot))?,
+        None if args.servos => write!(out, "{}", ServoTable::of(&robot))?,
         None if args.json => {
-            for row in &Report::of(&robot).rows {
+            let report = Report::of(&robot);
+            for row in &report.rows {
                 json::line(&mut out, &GaitLine::new(row))?;
+            }
+            for round in &report.rounds {
+                json::line(&mut out, &RoutineLine::new(round))?;
             }
         }
         None => write!(out, "{}", Report::of(&robot))?,
@@ -93,18 +112,22 @@ struct GaitLine<'a> {
     /// deg, over all phases
     table_error_max: f64,
     table_error_rms: f64,
-    type2: Least,
-    type1: Least,
-    leg: Least,
+    type2: LeastMargin,
+    type1: LeastMargin,
+    leg: LeastMargin,
     /// mm from nominal, smallest and largest
     stroke: [f64; 2],
     /// Displacement of one cycle: mm and deg, counter-clockwise; null is
     /// what depends on a tie of two feet against two
     predicted: Predicted,
+    /// Largest share of a servo's torque-speed line
+    line: f64,
+    /// The same displacement with the servos of robot.toml
+    by_servos: Predicted,
 }
 
 #[derive(Serialize)]
-struct Least {
+struct LeastMargin {
     margin: f64,
     what: &'static str,
     phase: f64,
@@ -117,9 +140,44 @@ struct Predicted {
     turn: Option<f64>,
 }
 
+/// A routine's figures under the names of `--json`.
+#[derive(Serialize)]
+struct RoutineLine<'a> {
+    routine: &'a str,
+    steps: usize,
+    /// null for ever
+    repeat: Option<u16>,
+    /// Duration of one round from standing, s.
+    seconds: f64,
+    /// Displacement of one round, as that of a gait.
+    predicted: Predicted,
+}
+
+impl<'a> RoutineLine<'a> {
+    fn new(round: &'a Round) -> Self {
+        Self {
+            routine: &round.name,
+            steps: round.steps,
+            repeat: round.rounds,
+            seconds: round.seconds,
+            predicted: round.movement.into(),
+        }
+    }
+}
+
+impl From<Prediction> for Predicted {
+    fn from(movement: Prediction) -> Self {
+        Self {
+            forward: movement.forward,
+            left: movement.left,
+            turn: movement.turn,
+        }
+    }
+}
+
 impl<'a> GaitLine<'a> {
     fn new(row: &'a Row) -> Self {
-        let least = |least: lizard_robot::Least| Least {
+        let least = |least: lizard_robot::LeastMargin| LeastMargin {
             margin: least.value,
             what: Check::name(least.what),
             phase: least.phase,
@@ -136,11 +194,9 @@ impl<'a> GaitLine<'a> {
             type1: least(audit.type1),
             leg: least(audit.leg),
             stroke: [audit.stroke.0, audit.stroke.1],
-            predicted: Predicted {
-                forward: row.way.forward,
-                left: row.way.left,
-                turn: row.way.turn,
-            },
+            predicted: row.movement.into(),
+            line: row.line,
+            by_servos: row.driven.into(),
         }
     }
 }

@@ -6,7 +6,7 @@ use super::known::Known;
 use crate::Failure;
 use crate::shared::suggestion::did_you_mean;
 
-/// The commands that a build without this feature lacks, in words.
+/// The description of the commands that need this feature.
 pub(super) fn words(feature: &str) -> &'static str {
     match feature {
         "simulator" => "the simulator",
@@ -18,7 +18,7 @@ pub(super) fn words(feature: &str) -> &'static str {
 }
 
 /// True if this build has the feature.
-fn built(feature: &str) -> bool {
+fn is_built(feature: &str) -> bool {
     let features = [
         ("simulator", cfg!(feature = "simulator")),
         ("paper", cfg!(feature = "paper")),
@@ -39,10 +39,10 @@ fn built(feature: &str) -> bool {
     allow(dead_code, reason = "a complete build lacks nothing")
 )]
 pub(super) fn explain(typed: &[OsString], known: &[Known]) -> Failure {
-    in_a_build(typed, known, built)
+    explain_in_build(typed, known, is_built)
 }
 
-fn in_a_build(typed: &[OsString], known: &[Known], has: impl Fn(&str) -> bool) -> Failure {
+fn explain_in_build(typed: &[OsString], known: &[Known], has: impl Fn(&str) -> bool) -> Failure {
     let word = typed.first().map(|word| word.to_string_lossy());
     let word = word.as_deref().unwrap_or_default();
     let names: Vec<String> = known.iter().map(Known::name).collect();
@@ -72,7 +72,7 @@ mod tests {
     use super::*;
 
     fn message(word: &str, features: &[&str]) -> String {
-        in_a_build(&[word.into(), "--json".into()], KNOWN, |feature| {
+        explain_in_build(&[word.into(), "--json".into()], KNOWN, |feature| {
             features.contains(&feature)
         })
         .to_string()
@@ -90,14 +90,14 @@ mod tests {
     }
 
     #[test]
-    fn of_two_features_those_that_are_absent_are_named() {
+    fn of_two_features_only_the_absent_ones_are_named() {
         assert!(message("tune", &["simulator"]).contains("without the commands that compute;"));
         assert!(message("tune", &["paper"]).contains("without the simulator;"));
         assert!(message("replay", &[]).contains("a board on USB and the simulator;"));
     }
 
     #[test]
-    fn a_word_that_is_no_command_is_answered_with_the_one_that_was_meant() {
+    fn a_mistyped_command_is_answered_with_a_suggestion() {
         assert_eq!(
             message("fly", &[]),
             "there is no command `fly`; lizard --help lists them"

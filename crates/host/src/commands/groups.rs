@@ -1,7 +1,7 @@
 //! The list of commands, grouped by purpose.
 //!
 //! Many commands in one list hide the five that the owner of a robot needs. So `lizard
-//! help` has them under headings, and those that people do not type are only named.
+//! help` puts them under headings, and lists those for scripts by name only.
 
 use std::fmt::Write as _;
 
@@ -9,11 +9,11 @@ use clap::Command;
 
 use super::known::{Group, Known};
 
-/// The command with its subcommands in groups in its help.
+/// Returns the command with a help that lists its subcommands in groups.
 pub(super) fn grouped(command: Command, known: &[Known]) -> Command {
     let list = list(&command, known);
     command.help_template(format!(
-        "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{list}`lizard help COMMAND` says all about one of them.\n\n{}\n{{options}}{{after-help}}",
+        "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{list}`lizard help COMMAND` explains one of them.\n\n{}\n{{options}}{{after-help}}",
         heading("Options")
     ))
 }
@@ -23,7 +23,7 @@ fn heading(words: &str) -> String {
     format!("{style}{words}:{style:#}")
 }
 
-/// Every subcommand once, under its heading.
+/// Lists every subcommand once, under its heading.
 fn list(command: &Command, known: &[Known]) -> String {
     let present: Vec<&Command> = command.get_subcommands().collect();
     let widest = present.iter().map(|sub| sub.get_name().len()).max();
@@ -41,7 +41,7 @@ fn list(command: &Command, known: &[Known]) -> String {
                 names if names.is_empty() => names,
                 names => format!(" [also: {names}]"),
             };
-            // The template's own marks are in braces.
+            // Braces would be placeholders of the template.
             let about = about.replace(['{', '}'], "");
             _ = writeln!(text, "  {:<width$}  {about}{also}", sub.get_name());
         }
@@ -96,7 +96,7 @@ mod tests {
         );
     }
 
-    /// The text without the colours of a terminal.
+    /// Removes a terminal's colour codes.
     fn without_colours(text: &str) -> String {
         let mut plain = String::new();
         let mut rest = text;

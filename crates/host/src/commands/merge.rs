@@ -1,4 +1,4 @@
-//! `lizard merge`: the parts of a long computation, put together.
+//! `lizard merge`: joins the parts of a long computation.
 
 use std::collections::BTreeMap;
 use std::io::{self, Read};
@@ -6,11 +6,11 @@ use std::path::PathBuf;
 
 use serde_json::Value;
 
+use crate::Failure;
 use crate::shared::files;
-use crate::shared::spread::{Share, Spreads, other_pieces};
-use crate::{Failure, RobotFile};
+use crate::shared::spread::{PartOutput, Spreads, other_pieces};
 
-/// Put the parts of a long computation together
+/// Join the parts of a long computation
 ///
 /// `prove`, `fit`, `tune` and `design --search` take `--part K/N`. This command takes the
 /// output of all N parts, in any order, and prints the same bytes as the command without
@@ -30,7 +30,7 @@ pub struct MergeArgs {
 /// Reads all parts, and runs the command with what they have found.
 ///
 /// # Errors
-/// A part is missing, is there twice or differs from the others; and what the command says.
+/// A part is missing, is given twice or differs from the others; and the command's own errors.
 pub fn merge(args: MergeArgs) -> Result<(), Failure> {
     let whole = Whole::of(shares(&args.files)?)?;
     match whole.command.as_str() {
@@ -43,13 +43,13 @@ pub fn merge(args: MergeArgs) -> Result<(), Failure> {
         #[cfg(feature = "parts")]
         "fit" => whole.run(crate::make::parts::fit::run),
         other => Err(Failure::Input(format!(
-            "the parts are of `lizard {other}`, which this program does not have"
+            "the parts are from `lizard {other}`, which this program does not have"
         ))),
     }
 }
 
-/// The parts in files, or in standard input.
-fn shares(files: &[PathBuf]) -> Result<Vec<Share>, Failure> {
+/// Reads the parts from files, or from standard input.
+fn shares(files: &[PathBuf]) -> Result<Vec<PartOutput>, Failure> {
     let mut shares = Vec::new();
     let mut read = |name: &str, text: &str| {
         for (number, line) in (1..).zip(text.lines()) {
@@ -57,7 +57,7 @@ fn shares(files: &[PathBuf]) -> Result<Vec<Share>, Failure> {
                 continue;
             }
             let share = serde_json::from_str(line).map_err(|error| {
-                Failure::Input(format!("{name}: line {number} is no part: {error}"))
+                Failure::Input(format!("{name}: line {number} is not a part: {error}"))
             })?;
             shares.push(share);
         }
@@ -85,8 +85,8 @@ struct Whole {
 }
 
 impl Whole {
-    /// The parts together, if they are all of one computation.
-    fn of(shares: Vec<Share>) -> Result<Self, Failure> {
+    /// Joins the parts, if they all belong to one computation.
+    fn of(shares: Vec<PartOutput>) -> Result<Self, Failure> {
         let refused = |why: String| Err(Failure::Input(why));
         let Some(first) = shares.first() else {
             return refused(
@@ -106,25 +106,29 @@ impl Whole {
             let version = env!("CARGO_PKG_VERSION");
             if share.lizard != version {
                 return refused(format!(
-                    "part {name} is of version {}, and this is {version}",
+                    "part {name} is from version {}, and this is {version}",
                     share.lizard
                 ));
             }
             if share.command != whole.command {
                 return refused(format!(
-                    "part {name} is of `lizard {}`, and another one is of `lizard {}`",
+                    "part {name} is from `lizard {}`, and another one is from `lizard {}`",
                     share.command, whole.command
                 ));
             }
             if share.options != whole.options || share.part.of != of || share.pieces != pieces {
-                return refused(format!("part {name} has other options than another part"));
+                return refused(format!(
+                    "part {name} has different options from another part"
+                ));
             }
             if share.robot != whole.robot {
-                return refused(format!("part {name} has another robot than another part"));
+                return refused(format!(
+                    "part {name} has a different robot from another part"
+                ));
             }
             let place = share.part.number as usize - 1;
             if std::mem::replace(&mut seen[place], true) {
-                return refused(format!("part {name} is there twice"));
+                return refused(format!("part {name} is given twice"));
             }
             whole.found.extend(share.found);
         }
@@ -134,16 +138,14 @@ impl Whole {
         Ok(whole)
     }
 
-    /// The command as one machine runs it, with the pieces that were found.
+    /// Runs the command as on one machine, with the pieces that were found.
     #[cfg_attr(
         not(any(feature = "paper", feature = "parts")),
         allow(dead_code, reason = "nothing can be spread")
     )]
     fn run<C: Spreads>(self, run: impl FnOnce(C) -> Result<(), Failure>) -> Result<(), Failure> {
         let mut command: C = serde_json::from_value(self.options).map_err(|_| other_pieces())?;
-        let (robot, spread) = command.places();
-        *robot = RobotFile::with_text(self.robot);
-        spread.take(self.found);
+        command.spread().set_merged(self.robot, self.found);
         run(command)
     }
 }
@@ -152,8 +154,8 @@ impl Whole {
 mod tests {
     use super::*;
 
-    fn share(part: &str) -> Share {
-        Share {
+    fn share(part: &str) -> PartOutput {
+        PartOutput {
             lizard: env!("CARGO_PKG_VERSION").to_owned(),
             command: "prove".to_owned(),
             options: Value::Null,
@@ -164,16 +166,16 @@ mod tests {
         }
     }
 
-    fn refusal(shares: Vec<Share>) -> String {
+    fn refusal(shares: Vec<PartOutput>) -> String {
         match Whole::of(shares) {
-            Ok(_) => panic!("it is taken"),
+            Ok(_) => panic!("it is accepted"),
             Err(failure) => failure.to_string(),
         }
     }
 
     #[test]
     fn parts_that_are_not_of_one_computation_are_refused() {
-        let changed = |change: fn(&mut Share)| {
+        let changed = |change: fn(&mut PartOutput)| {
             let mut second = share("2/2");
             change(&mut second);
             refusal(vec![share("1/2"), second])
@@ -181,21 +183,21 @@ mod tests {
         assert_eq!(refusal(vec![share("1/2")]), "part 2/2 is missing");
         assert_eq!(
             refusal(vec![share("1/2"), share("1/2"), share("2/2")]),
-            "part 1/2 is there twice"
+            "part 1/2 is given twice"
         );
         assert_eq!(
             changed(|part| part.robot = "other".to_owned()),
-            "part 2/2 has another robot than another part"
+            "part 2/2 has a different robot from another part"
         );
         assert_eq!(
             changed(|part| part.options = Value::Bool(true)),
-            "part 2/2 has other options than another part"
+            "part 2/2 has different options from another part"
         );
         assert_eq!(
             changed(|part| part.command = "fit".to_owned()),
-            "part 2/2 is of `lizard fit`, and another one is of `lizard prove`"
+            "part 2/2 is from `lizard fit`, and another one is from `lizard prove`"
         );
-        assert!(changed(|part| part.lizard = "0.0.1".to_owned()).contains("is of version 0.0.1"));
+        assert!(changed(|part| part.lizard = "0.0.1".to_owned()).contains("is from version 0.0.1"));
         assert!(refusal(Vec::new()).starts_with("there are no parts"));
         assert!(
             Whole::of(vec![share("2/2"), share("1/2")]).is_ok(),

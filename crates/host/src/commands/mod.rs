@@ -119,7 +119,7 @@ commands! {
     }
 }
 
-/// Commands of the version before, and the words that mean the same now.
+/// Commands of the previous version, and the words that replace them.
 const RENAMED: [(&str, &[&str]); 9] = [
     ("solve", &["pose"]),
     ("fk", &["pose"]),
@@ -132,7 +132,7 @@ const RENAMED: [(&str, &[&str]); 9] = [
     ("record", &["console", "--record"]),
 ];
 
-/// Commands of the version before that are gone.
+/// Commands of the previous version that were removed.
 const REMOVED: [(&str, &str); 2] = [
     (
         "spring",
@@ -142,11 +142,11 @@ const REMOVED: [(&str, &str); 2] = [
     ("speed", "make bench measures how fast poses are solved"),
 ];
 
-/// The command line with the words of this version for those of the one before.
+/// Translates a command line of the previous version.
 ///
 /// # Errors
-/// The command is gone.
-fn in_new_words(mut words: Vec<OsString>) -> Result<Vec<OsString>, Failure> {
+/// The command was removed.
+fn translate_old_words(mut words: Vec<OsString>) -> Result<Vec<OsString>, Failure> {
     let Some(word) = words.get(1).and_then(|word| word.to_str()) else {
         return Ok(words);
     };
@@ -199,16 +199,16 @@ pub fn program() -> clap::Command {
 /// # Errors
 /// Those of the command.
 pub fn run(words: Vec<OsString>) -> Result<(), Failure> {
-    let parsed = program().try_get_matches_from(in_new_words(words)?);
+    let parsed = program().try_get_matches_from(translate_old_words(words)?);
     match parsed.and_then(|mut matches| Cli::from_arg_matches_mut(&mut matches)) {
         Ok(cli) => cli.command.run(),
-        Err(error) => leave(&error),
+        Err(error) => exit_with(&error),
     }
 }
 
-/// Ends the program with what clap says: the help, or a mistake, of which a word that is very
-/// long is shortened.
-fn leave(error: &clap::Error) -> ! {
+/// Ends the program with clap's message: the help, or an error, in which a very long word is
+/// shortened.
+fn exit_with(error: &clap::Error) -> ! {
     let text = error.render().to_string();
     let short = readable_lines(&text);
     if short == text {
@@ -231,7 +231,7 @@ mod tests {
         feature = "console",
         feature = "parts"
     ))]
-    fn a_whole_build_has_every_command_by_its_name_and_its_other_words() {
+    fn a_complete_build_has_every_command_under_its_name_and_aliases() {
         let program = Cli::command();
         let built: BTreeSet<String> = program
             .get_subcommands()
@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn an_old_word_means_a_command_that_there_is_and_no_new_one_is_lost() {
+    fn every_old_word_means_an_existing_command_and_hides_no_new_one() {
         for (old, new) in RENAMED {
             let [old, name] =
                 [old, new[0]].map(|word| KNOWN.iter().any(|known| known.name() == word));
@@ -271,9 +271,12 @@ mod tests {
             ),
             ("lizard console solve", "lizard console solve"),
         ] {
-            assert_eq!(in_new_words(words(old)).expect("it is known"), words(new));
+            assert_eq!(
+                translate_old_words(words(old)).expect("it is known"),
+                words(new)
+            );
         }
-        let gone = in_new_words(words("lizard spring --wire 0.6")).expect_err("it is gone");
+        let gone = translate_old_words(words("lizard spring --wire 0.6")).expect_err("it is gone");
         assert!(gone.to_string().contains("[leg.drive]"), "{gone}");
     }
 

@@ -1,7 +1,7 @@
 //! `lizard image`: the firmware with a robot as a file, for any program that writes boards.
 //!
-//! A robot.toml comes to a board by `lizard flash`. Who has another programmer, or another
-//! machine at the board, needs a file.
+//! `lizard flash` writes a robot to a board. A user with another programmer, or with the board at
+//! another machine, needs a file.
 
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
@@ -14,8 +14,8 @@ use crate::{Failure, RobotFile};
 
 /// Make the image of your robot as a file of Intel HEX, without a compiler
 ///
-/// It is the firmware inside this program with the robot of robot.toml behind it: what `lizard
-/// flash` writes. avrdude and other programs write it, too.
+/// The image is the firmware inside this program with the robot of robot.toml behind it, as `lizard
+/// flash` writes it. avrdude and other programs can write it, too.
 #[derive(clap::Args, Debug)]
 pub struct Args {
     /// The file for the image [default: standard output, unless that is a terminal]
@@ -56,7 +56,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         io::stdout(),
         "{}: {what}robot {}; the robot has {} of {SPACE} bytes",
         path.display(),
-        firmware::named(robot.firmware()),
+        firmware::label(robot.firmware()),
         robot.section().len(),
     )?;
     Ok(())

@@ -32,13 +32,13 @@ struct Angles {
 #[derive(Serialize)]
 struct Loop {
     point: [f64; 2],
-    working_modes: Vec<Way>,
+    working_modes: Vec<ModeSolution>,
     why: Option<String>,
 }
 
-/// One of the four working modes, left arm first.
+/// The solution in one of the four working modes, left arm first.
 #[derive(Serialize)]
-struct Way {
+struct ModeSolution {
     left: &'static str,
     right: &'static str,
     /// The place of the end point, seen from the line between the crank tips.
@@ -64,7 +64,7 @@ pub fn print(robot: &Robot, ends: [Option<Vector>; 2], json: bool) -> Result<(),
     let head = head.map(|point| solve(robot, End::Head, point));
     let tail = tail.map(|point| solve(robot, End::Tail, point));
     let report = report(robot, head, tail);
-    json::either(json, &report, || text(&report))?;
+    json::print_json_or(json, &report, || text(&report))?;
     let unreachable = [("head", &report.head), ("tail", &report.tail)]
         .into_iter()
         .find_map(|(name, part)| Some((name, part.as_ref()?.why.as_ref()?)));
@@ -78,8 +78,8 @@ fn solve(robot: &Robot, end: End, point: Vector) -> Loop {
     let local = robot.lizard().to_end(end, point);
     let (working_modes, why) = match robot.lizard().end(end).inverse(local) {
         Ok(all) => {
-            let ways = all.into_iter().map(|a| way(robot, end, local, a));
-            (ways.collect(), None)
+            let solutions = all.into_iter().map(|a| solve_mode(robot, end, local, a));
+            (solutions.collect(), None)
         }
         Err(fault) => (Vec::new(), Some(fault.to_string())),
     };
@@ -90,7 +90,7 @@ fn solve(robot: &Robot, end: End, point: Vector) -> Loop {
     }
 }
 
-fn way(robot: &Robot, end: End, point: Vector, a: InverseSolution) -> Way {
+fn solve_mode(robot: &Robot, end: End, point: Vector, a: InverseSolution) -> ModeSolution {
     let bars = robot.lizard().end(end);
     let there = bars.forward_in(a.assembly_mode, a.theta_left, a.theta_right);
     let (error_mm, margin) = match &there {
@@ -114,9 +114,9 @@ fn way(robot: &Robot, end: End, point: Vector, a: InverseSolution) -> Way {
         let broken = robot.limits().end_violations(end, pose);
         why.extend(broken.filter(|v| !stated(v.what)).map(|v| v.to_string()));
     }
-    Way {
-        left: bend(a.working_mode.left),
-        right: bend(a.working_mode.right),
+    ModeSolution {
+        left: elbow_text(a.working_mode.left),
+        right: elbow_text(a.working_mode.right),
         assembly_mode: if behind { "behind" } else { "ahead" },
         theta_left: angles[0],
         theta_right: angles[1],
@@ -127,14 +127,14 @@ fn way(robot: &Robot, end: End, point: Vector, a: InverseSolution) -> Way {
     }
 }
 
-fn bend(elbow: Elbow) -> &'static str {
+fn elbow_text(elbow: Elbow) -> &'static str {
     match elbow {
         Elbow::Outward => "outward",
         Elbow::Inward => "inward",
     }
 }
 
-/// Combines both ends and checks the robot.
+/// Combines both ends and checks the complete pose.
 fn report(robot: &Robot, head: Option<Loop>, tail: Option<Loop>) -> Report {
     let mut angles = robot.servos().map(|servo| servo.neutral);
     let mut whole = true;
@@ -196,14 +196,14 @@ fn text(report: &Report) -> String {
             servos[0],
             servos[1]
         );
-        for way in &part.working_modes {
-            let verdict = match way.why.as_slice() {
+        for solution in &part.working_modes {
+            let verdict = match solution.why.as_slice() {
                 [] => "yes".to_string(),
                 [only] => format!("no: {only}"),
                 [first, rest @ ..] => format!("no: {first}; and {} more", rest.len()),
             };
-            let mut bends = [way.left, way.right];
-            let mut angles = [way.theta_left, way.theta_right];
+            let mut bends = [solution.left, solution.right];
+            let mut angles = [solution.theta_left, solution.theta_right];
             if swapped {
                 bends.reverse();
                 angles.reverse();
@@ -214,9 +214,9 @@ fn text(report: &Report) -> String {
                 bends[1],
                 tidy(angles[0], 3),
                 tidy(angles[1], 3),
-                way.assembly_mode,
-                tidy(way.margin, 3),
-                rounding(way.error_mm)
+                solution.assembly_mode,
+                tidy(solution.margin, 3),
+                format_mm_error(solution.error_mm)
             );
         }
         page.push('\n');
@@ -234,8 +234,8 @@ fn text(report: &Report) -> String {
     page
 }
 
-/// A miss in mm; all rounding errors count as equal.
-fn rounding(mm: f64) -> String {
+/// An error in mm; all rounding errors count as equal.
+fn format_mm_error(mm: f64) -> String {
     if mm < 1e-9 {
         "< 1e-9".to_string()
     } else {

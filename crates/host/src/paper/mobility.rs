@@ -5,10 +5,10 @@
 //! vy of its point at the origin, and omega), every joint gives two rows, and the degrees of
 //! freedom are the columns less the rank.
 //!
-//! A second question is if the servos control these freedoms: at a type-2 singularity their
-//! number is the same, but the servos do not control one of them. So the rank is computed again
-//! with the driven cranks locked, which adds a row for each. All that can still move then is
-//! loose.
+//! A second question is whether the servos control these freedoms: at a type-2 singularity
+//! their number is the same, but the servos do not control one of them. So the rank is computed
+//! again with the driven cranks locked, which adds a row for each. All that can still move then
+//! is loose.
 
 use lizard_kinematics::{Lizard, Side, Solution, Vector};
 use nalgebra::{DMatrix, DVector, SVD};
@@ -81,7 +81,7 @@ pub fn print(lizard: &Lizard, solution: &Solution, json: bool) -> Result<(), Fai
     let mut all = vec![body(lizard, solution)];
     all.extend((0..4).map(|i| leg(lizard, solution, i, legs[i])));
     let reports: Vec<Report> = all.iter().map(measure).collect();
-    json::either(json, &reports, || text(&reports))
+    json::print_json_or(json, &reports, || text(&reports))
 }
 
 fn text(reports: &[Report]) -> String {
@@ -174,7 +174,7 @@ fn body(lizard: &Lizard, s: &Solution) -> Mechanism {
 }
 
 /// A leg in a frame of its own: ground 0, crank 1, coupler 2, follower 3. The
-/// spring to the body holds nothing rigidly, so it is no link.
+/// spring to the body holds nothing rigidly, so it is not a link.
 fn leg(lizard: &Lizard, s: &Solution, servo: usize, name: &'static str) -> Mechanism {
     let crank = s.legs[servo].direction * lizard.leg.crank;
     let across = Vector::new(lizard.leg.ground, 0.0);

@@ -40,10 +40,10 @@ pub struct Args {
     #[arg(long, num_args = 2, value_names = ["X", "Y"], value_parser = Quantity::LENGTH.parser(),
           help_heading = "Pose", conflicts_with = "theta1")]
     tail: Option<Vec<f64>>,
-    /// The subject to print; all but the joints are also printed of the neutral pose, if none
-    /// is given
+    /// The subject to print; without a pose, all subjects except the joints are printed for the
+    /// neutral pose
     #[arg(long, value_enum, default_value_t, conflicts_with_all = ["head", "tail"])]
-    show: Show,
+    show: Subject,
     /// Print JSON, of a stream one object a line
     #[arg(long)]
     json: bool,
@@ -55,7 +55,7 @@ pub struct Args {
 
 /// The subject of the output.
 #[derive(clap::ValueEnum, Clone, Copy, Default)]
-enum Show {
+enum Subject {
     /// Every joint, the margins, and whether the pose is safe
     #[default]
     Joints,
@@ -69,7 +69,7 @@ enum Show {
     Rates,
 }
 
-/// Computes and prints.
+/// Computes the pose and prints it.
 ///
 /// # Errors
 /// A wrong robot.toml, a pose that the robot cannot have, a line of the stream that is none,
@@ -84,9 +84,9 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let lizard = robot.lizard();
     let solved = || lizard.solve(&pose.unwrap_or_else(|| robot.neutral()));
     match args.show {
-        Show::Joints => solve::print(&robot, pose.as_ref(), args.json),
-        Show::Singularities => singularity::print(&robot, &solved()?, args.json),
-        Show::Freedoms => mobility::print(lizard, &solved()?, args.json),
-        Show::Rates => velocity::print(lizard, &solved()?, &args.drive.into(), args.json),
+        Subject::Joints => solve::print(&robot, pose.as_ref(), args.json),
+        Subject::Singularities => singularity::print(&robot, &solved()?, args.json),
+        Subject::Freedoms => mobility::print(lizard, &solved()?, args.json),
+        Subject::Rates => velocity::print(lizard, &solved()?, &args.drive.into(), args.json),
     }
 }

@@ -65,7 +65,7 @@ pub struct Poses<R> {
     number: usize,
     /// The meaning of each field of a line.
     columns: Vec<Column>,
-    /// True while the line that was read first is still to be answered.
+    /// True while the first line read still needs an answer.
     waiting: bool,
 }
 
@@ -89,7 +89,7 @@ impl<R: BufRead> Poses<R> {
             )));
         }
         let text = poses.text()?;
-        let names: Vec<&str> = text.split(',').map(bare).collect();
+        let names: Vec<&str> = text.split(',').map(trim_quotes).collect();
         // A header has no numbers; the first line of bare poses has.
         if names.iter().any(|name| name.parse::<f64>().is_ok()) {
             poses.waiting = true;
@@ -184,7 +184,7 @@ impl<R: BufRead> Poses<R> {
             ))
         };
         for (field, text) in self.text()?.split(',').enumerate() {
-            let text = bare(text);
+            let text = trim_quotes(text);
             let Some(&column) = self.columns.get(field) else {
                 return Err(at(field, format!("\"{text}\" is one value too many")));
             };
@@ -228,7 +228,7 @@ impl<R: BufRead> Iterator for Poses<R> {
 }
 
 /// A field without blanks and without quotes around it.
-fn bare(field: &str) -> &str {
+fn trim_quotes(field: &str) -> &str {
     let field = field.trim();
     field
         .strip_prefix('"')

@@ -56,7 +56,7 @@ impl Matrix {
         for (name, row) in self.rows.iter().zip(&self.values) {
             text += &format!("\n  {name:7}");
             for value in row {
-                // What is nothing but rounding is left out.
+                // Rounding errors are printed as a point.
                 text += &match value.abs() < 5e-7 {
                     true => format!(" {:>9}", "."),
                     false => format!(" {:9.2}", tidy(*value, 2)),
@@ -104,7 +104,7 @@ struct Nearest {
 /// An output that cannot be written.
 pub fn print(robot: &Robot, solution: &Solution, json: bool) -> Result<(), Failure> {
     let report = report(robot, solution);
-    json::either(json, &report, || text(&report))
+    json::print_json_or(json, &report, || text(&report))
 }
 
 fn report(robot: &Robot, solution: &Solution) -> Report {

@@ -13,7 +13,7 @@ use crate::Failure;
 use crate::paper::pose_line::{self, PoseLine};
 use crate::paper::poses::{Poses, Timed};
 
-/// Poses that are solved together; memory is bounded by it.
+/// Number of poses that are solved together, which bounds the memory.
 const BATCH: usize = 8192;
 
 /// Blocks of lines, a sixteenth of a batch each, that may wait to be written.
@@ -22,10 +22,10 @@ const AHEAD: usize = 32;
 /// Solves a pose, or those of standard input if there is none.
 ///
 /// # Errors
-/// A pose or a line of the stream that is none, an output that cannot be written.
+/// An invalid pose or line of the stream, or an output that cannot be written.
 pub fn print(robot: &Robot, pose: Option<&Pose>, json: bool) -> Result<(), Failure> {
     match pose {
-        Some(pose) => Ok(io::stdout().write_all(&one(robot, pose, json)?)?),
+        Some(pose) => Ok(io::stdout().write_all(&solve_one(robot, pose, json)?)?),
         None if io::stdin().is_terminal() => Err(Failure::Input(
             "give a pose with --theta1 --theta4 --theta8 --theta5, or poses as CSV on standard input"
                 .to_string(),
@@ -35,7 +35,7 @@ pub fn print(robot: &Robot, pose: Option<&Pose>, json: bool) -> Result<(), Failu
 }
 
 /// One pose, as a page or an object.
-fn one(robot: &Robot, pose: &Pose, json: bool) -> Result<Vec<u8>, Failure> {
+fn solve_one(robot: &Robot, pose: &Pose, json: bool) -> Result<Vec<u8>, Failure> {
     let solved = robot.lizard().solve(pose);
     if !json {
         return Ok(pose_line::page(robot, pose, &solved).into_bytes());
@@ -56,7 +56,7 @@ fn stream(robot: &Robot, json: bool) -> Result<(), Failure> {
         let writer = scope.spawn(move || write(to_write, heading));
         let read = solve_all(robot, json, &mut poses, &solved);
         drop(solved);
-        // What could not be written matters more than what could not be read.
+        // A failure to write takes precedence over a failure to read.
         writer.join().unwrap_or_else(|panic| resume_unwind(panic))?;
         read
     })

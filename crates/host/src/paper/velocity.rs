@@ -11,8 +11,7 @@ use crate::shared::pose_args::Quantity;
 /// Longest step of the finite differences for the comparison, s.
 const STEP: f64 = 2e-4;
 
-/// Furthest that a servo may go in a step, deg: beyond it the differences are of
-/// another pose.
+/// Largest turn of a servo in a step, deg: beyond it the differences belong to another pose.
 const SWEEP: f64 = 0.04;
 
 #[derive(clap::Args)]
@@ -84,7 +83,7 @@ pub fn print(
         ));
     }
     let rows = rows(lizard, solution, drive);
-    json::either(json, &rows, || text(&rows))
+    json::print_json_or(json, &rows, || text(&rows))
 }
 
 fn text(rows: &[Row]) -> String {

@@ -30,7 +30,7 @@ impl Failure {
     }
 
     /// True if the reader of our output went away, as `lizard ... | head` does;
-    /// that is no fault.
+    /// that is not a fault.
     pub fn is_silent(&self) -> bool {
         matches!(self, Self::Io(error) if error.kind() == io::ErrorKind::BrokenPipe)
     }

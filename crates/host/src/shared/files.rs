@@ -20,7 +20,7 @@ static READ: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// Notes a file that is about to be read, so that no output replaces it.
 #[must_use]
-pub fn reading(path: &Path) -> &Path {
+pub fn note_input(path: &Path) -> &Path {
     let mut read = READ.lock().unwrap_or_else(PoisonError::into_inner);
     read.push(path.to_owned());
     path
@@ -29,11 +29,11 @@ pub fn reading(path: &Path) -> &Path {
 /// The text of an input.
 ///
 /// # Errors
-/// It cannot be read, is no text, or does not end within 256 MiB, as a device may not.
+/// It cannot be read, is not text, or does not end within 256 MiB, as a device may not.
 pub fn read_text(path: &Path) -> Result<String, Failure> {
     const LONGEST: u64 = 256 << 20;
     let mut text = String::new();
-    let read = File::open(reading(path)).and_then(|file| {
+    let read = File::open(note_input(path)).and_then(|file| {
         match file.take(LONGEST + 1).read_to_string(&mut text)? as u64 {
             0..=LONGEST => Ok(()),
             _ => Err(io::Error::other("it is longer than 256 MiB")),
@@ -90,7 +90,7 @@ fn is_robot(path: &Path) -> bool {
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     check_replaceable(path)?;
     let done = if is_stream(path) {
-        // As it is: nothing is made, nothing is cut.
+        // Opened as it is: neither created nor truncated.
         File::options()
             .write(true)
             .open(path)
@@ -98,11 +98,11 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     } else {
         folders(path).and_then(|()| persist(path, bytes))
     };
-    done.map_err(|error| cannot(path, &error))
+    done.map_err(|error| write_failure(path, &error))
 }
 
 /// The sentence for a path that cannot be written.
-pub fn cannot(path: &Path, error: &io::Error) -> Failure {
+pub fn write_failure(path: &Path, error: &io::Error) -> Failure {
     let why = error.to_string();
     // tempfile adds the name of the temporary file, which means nothing to a user.
     let why = why
@@ -135,7 +135,9 @@ fn is_stream(_: &Path) -> bool {
 fn place(path: &Path) -> io::Result<(PathBuf, Option<Permissions>)> {
     match path.metadata() {
         Ok(there) if there.is_file() => Ok((path.canonicalize()?, Some(there.permissions()))),
-        Ok(_) => Err(io::Error::other("it is there already and no ordinary file")),
+        Ok(_) => Err(io::Error::other(
+            "it already exists and is not an ordinary file",
+        )),
         Err(_) if path.is_symlink() => Err(io::Error::other("it is a link that leads nowhere")),
         Err(error) if error.kind() == ErrorKind::NotFound => Ok((path.to_owned(), None)),
         Err(error) => Err(error),
@@ -156,7 +158,7 @@ fn persist(path: &Path, bytes: &[u8]) -> io::Result<()> {
         file.sync_all()
     };
     #[cfg(target_os = "linux")]
-    if let Some(mut file) = nameless(folder) {
+    if let Some(mut file) = create_nameless(folder) {
         fill(&mut file)?;
         let link = |name: &Path| name_it(&file, name);
         tempfile::Builder::new()
@@ -168,7 +170,7 @@ fn persist(path: &Path, bytes: &[u8]) -> io::Result<()> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // As any other file: the user's umask takes its part away.
+        // The permissions of any new file: the user's umask restricts them.
         builder.permissions(Permissions::from_mode(0o666));
     }
     // In the same folder: a file moves into its place at once only there.
@@ -181,15 +183,15 @@ fn persist(path: &Path, bytes: &[u8]) -> io::Result<()> {
 /// A file in this folder that has no name yet, and is gone if the program is killed; none where
 /// the file system has no such files.
 #[cfg(target_os = "linux")]
-fn nameless(folder: &Path) -> Option<File> {
+fn create_nameless(folder: &Path) -> Option<File> {
     use rustix::fs::{Mode, OFlags, open};
     let flags = OFlags::TMPFILE | OFlags::WRONLY | OFlags::CLOEXEC;
     let file = open(folder, flags, Mode::from_raw_mode(0o666)).ok()?;
-    // Only there can it be given a name.
+    // Only through this folder can the file be given a name.
     Path::new("/proc/self/fd").is_dir().then(|| file.into())
 }
 
-/// Gives a file of [`nameless`] a name.
+/// Gives a name to a file of [`create_nameless`].
 #[cfg(target_os = "linux")]
 fn name_it(file: &File, name: &Path) -> io::Result<()> {
     use rustix::fs::{AtFlags, CWD, linkat};
@@ -220,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn an_input_and_a_robot_are_not_replaced_by_whatever_name() {
+    fn an_input_and_a_robot_are_not_replaced_under_any_name() {
         let folder = tempfile::tempdir().expect("a folder");
         let [input, other, robot, mine] =
             ["a.jsonl", "b", "robot.toml", "mine"].map(|name| folder.path().join(name));
@@ -228,7 +230,7 @@ mod tests {
         fs::write(&robot, "broken").expect("it is written");
         fs::write(&mine, "# mine\n [links]\nl0 = x\n").expect("it is written");
         fs::hard_link(&input, &other).expect("another name of it");
-        let _ = reading(&folder.path().join("../").join(&input));
+        let _ = note_input(&folder.path().join("../").join(&input));
         for (path, why) in [
             (&input, "but this command reads it; name another file"),
             (&other, "but this command reads it; name another file"),
@@ -256,7 +258,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let inner = folder.path().join("inner");
         fs::create_dir(&inner).expect("a folder in it");
-        assert!(refusal(&inner).ends_with("it is there already and no ordinary file"));
+        assert!(refusal(&inner).ends_with("it already exists and is not an ordinary file"));
         assert!(inner.is_dir());
     }
 

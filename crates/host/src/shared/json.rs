@@ -8,7 +8,7 @@ use serde::Serialize;
 ///
 /// # Errors
 /// Standard output cannot be written.
-pub fn either(
+pub fn print_json_or(
     json: bool,
     value: &impl Serialize,
     text: impl FnOnce() -> String,

@@ -41,7 +41,7 @@ mod tests {
     }
 
     #[test]
-    fn what_rounds_to_zero_has_no_sign() {
+    fn a_value_that_rounds_to_zero_has_no_sign() {
         for value in [-0.0, 0.0, -0.00049, 0.00049] {
             assert_eq!(format!("{:+.3}", tidy(value, 3)), "+0.000");
         }

@@ -21,11 +21,11 @@ pub fn plain(text: &str) -> String {
 /// The text with its lines made plain; the middle of a very long line is omitted.
 #[must_use]
 pub fn readable_lines(text: &str) -> String {
-    let lines: Vec<String> = text.split('\n').map(|line| short(&plain(line))).collect();
+    let lines: Vec<String> = text.split('\n').map(|line| shorten(&plain(line))).collect();
     lines.join("\n")
 }
 
-fn short(line: &str) -> String {
+fn shorten(line: &str) -> String {
     const SIDE: usize = 300;
     let count = line.chars().count();
     if count <= 3 * SIDE {

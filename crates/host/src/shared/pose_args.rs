@@ -18,35 +18,21 @@ pub struct Quantity {
 
 impl Quantity {
     /// An angle, degrees: some thousand turns.
-    pub const ANGLE: Self = Self {
-        most: 1e6,
-        unit: "degrees",
-    };
+    pub const ANGLE: Self = Self::up_to(1e6, "degrees");
     /// A speed of a servo, deg/s.
-    pub const RATE: Self = Self {
-        most: 1e6,
-        unit: "deg/s",
-    };
+    pub const RATE: Self = Self::up_to(1e6, "deg/s");
     /// An acceleration of a servo, deg/s^2.
-    pub const ACCELERATION: Self = Self {
-        most: 1e9,
-        unit: "deg/s^2",
-    };
+    pub const ACCELERATION: Self = Self::up_to(1e9, "deg/s^2");
     /// A time, s.
-    pub const TIME: Self = Self {
-        most: 1e9,
-        unit: "s",
-    };
+    pub const TIME: Self = Self::up_to(1e9, "s");
     /// A length in units of D.
-    pub const SHARE: Self = Self {
-        most: 1e6,
-        unit: "D",
-    };
+    pub const SHARE: Self = Self::up_to(1e6, "D");
     /// A coordinate or a length, mm.
-    pub const LENGTH: Self = Self {
-        most: 1e6,
-        unit: "mm",
-    };
+    pub const LENGTH: Self = Self::up_to(1e6, "mm");
+
+    const fn up_to(most: f64, unit: &'static str) -> Self {
+        Self { most, unit }
+    }
 
     /// A parser of this quantity for clap.
     pub fn parser(self) -> impl Fn(&str) -> Result<f64, String> + Clone {
@@ -56,7 +42,7 @@ impl Quantity {
     /// A number within the bounds.
     ///
     /// # Errors
-    /// If the text is no number, or one out of bounds; NaN and infinity are.
+    /// If the text is not a number, or one out of bounds; NaN and infinity are.
     pub fn parse(self, text: &str) -> Result<f64, NumberFault> {
         match text.parse::<f64>() {
             Ok(value) if value.abs() <= self.most => Ok(value),
@@ -70,7 +56,7 @@ impl Quantity {
 /// The reason why a typed number is refused; the text continues a sentence about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NumberFault {
-    /// The text is no number.
+    /// The text is not a number.
     NotANumber,
     /// The number is infinite, NaN, or too large for a double.
     NotFinite,

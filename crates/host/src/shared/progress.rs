@@ -1,4 +1,4 @@
-//! Progress bars on standard error; they hide themselves if that is no terminal.
+//! Progress bars on standard error; they hide themselves if that is not a terminal.
 
 use indicatif::{ProgressBar, ProgressStyle};
 

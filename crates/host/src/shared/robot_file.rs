@@ -5,13 +5,14 @@ use std::path::{Path, PathBuf};
 use lizard_robot::Robot;
 
 use crate::Failure;
-use crate::shared::files::{self, reading};
+use crate::shared::files::{self, note_input};
 
 /// The robot.toml of this source tree, for use outside it.
 const BUILT_IN: &str = include_str!("../../../../robot.toml");
 
 /// The robots of robots/, by their names.
-const NAMED: [(&str, &str); 4] = [
+const NAMED: [(&str, &str); 5] = [
+    ("grain", include_str!("../../../../robots/grain.toml")),
     ("large", include_str!("../../../../robots/large.toml")),
     (
         "own-gaits",
@@ -33,16 +34,16 @@ pub fn named(name: &str) -> Robot {
 pub struct RobotFile {
     /// The robot's measurements and limits [default: robot.toml in this folder
     /// or one above it, else the one this program was built with]; or the name of a robot
-    /// that the program has: large, own-gaits, paper, unequal
+    /// that the program has: grain, large, own-gaits, paper, unequal
     #[arg(long = "robot", value_name = "FILE", help_heading = "Robot")]
     path: Option<PathBuf>,
-    /// The text itself, if it comes from elsewhere.
+    /// The robot's text, if it does not come from a file.
     #[arg(skip)]
     text: Option<String>,
 }
 
 impl RobotFile {
-    /// The one with this text.
+    /// The robot with this text.
     #[must_use]
     pub(crate) fn with_text(text: String) -> Self {
         Self {
@@ -66,7 +67,7 @@ impl RobotFile {
         files::read_text(&path)
     }
 
-    /// The one at a path, or else as [`RobotFile::load`] finds it.
+    /// The robot file at a path; without one, [`RobotFile::load`] searches for it.
     #[must_use]
     pub fn at(path: Option<PathBuf>) -> Self {
         Self { path, text: None }
@@ -81,7 +82,7 @@ impl RobotFile {
             return Ok(Robot::parse(text)?);
         }
         Ok(match self.found()? {
-            Found::File(path) => Robot::load(reading(&path))?,
+            Found::File(path) => Robot::load(note_input(&path))?,
             Found::BuiltIn(text) => Robot::parse(text)?,
         })
     }
@@ -95,7 +96,7 @@ impl RobotFile {
     /// The name of the robot's source for messages.
     ///
     /// # Errors
-    /// This folder has no name any more.
+    /// The current folder was removed.
     pub fn name(&self) -> Result<String, Failure> {
         Ok(match (self.found()?, &self.path) {
             (Found::File(path), _) => path.display().to_string(),
@@ -130,7 +131,7 @@ enum Found {
     BuiltIn(&'static str),
 }
 
-/// This folder.
+/// The current folder.
 ///
 /// # Errors
 /// It was removed, or may not be read.

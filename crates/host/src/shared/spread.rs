@@ -18,7 +18,7 @@ use serde_json::Value;
 use crate::shared::json;
 use crate::{Failure, RobotFile};
 
-/// The most parts; more than any queue has use for.
+/// The largest number of parts; no queue has a use for more.
 const MOST: u32 = 1_000_000;
 
 /// One of several parts of a computation.
@@ -91,7 +91,7 @@ impl Part {
         for place in (0..pieces).filter(|place| self.has(*place)) {
             found.insert(place, serde_json::to_value(one(place))?);
         }
-        let share = Share {
+        let share = PartOutput {
             lizard: env!("CARGO_PKG_VERSION").to_owned(),
             command: C::COMMAND.to_owned(),
             options: serde_json::to_value(command)?,
@@ -104,9 +104,11 @@ impl Part {
     }
 }
 
-/// `--part`, and how a computation takes part in it.
+/// The robot of a computation that can be spread, and `--part`.
 #[derive(clap::Args, Debug, Default)]
 pub struct Spread {
+    #[command(flatten)]
+    pub(crate) robot: RobotFile,
     /// Compute only one of N parts, and print it for `lizard merge`
     #[arg(long, value_name = "K/N", help_heading = "Spread over machines")]
     part: Option<Part>,
@@ -115,19 +117,19 @@ pub struct Spread {
     merged: Option<BTreeMap<usize, Value>>,
 }
 
-/// A command that can be spread: its options say all but the robot.
+/// A command that can be spread. Its serialized form contains all options but the robot.
 pub trait Spreads: Serialize + DeserializeOwned {
     /// The command's name.
     const COMMAND: &'static str;
 
     /// The command's robot and its part.
-    fn places(&mut self) -> (&mut RobotFile, &mut Spread);
+    fn spread(&mut self) -> &mut Spread;
 }
 
 /// The output of one part.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Share {
+pub(crate) struct PartOutput {
     /// The version of the program.
     pub(crate) lizard: String,
     pub(crate) command: String,
@@ -137,26 +139,27 @@ pub(crate) struct Share {
     pub(crate) part: Part,
     /// The number of pieces of all parts.
     pub(crate) pieces: usize,
-    /// The pieces of this part, by their places.
+    /// The pieces of this part, by their indices.
     pub(crate) found: BTreeMap<usize, Value>,
 }
 
 impl Spread {
-    /// Sets the results of all parts, for a merge.
-    pub(crate) fn take(&mut self, merged: BTreeMap<usize, Value>) {
-        self.merged = Some(merged);
+    /// Sets the robot and the results of all parts, for a merge.
+    pub(crate) fn set_merged(&mut self, robot: String, pieces: BTreeMap<usize, Value>) {
+        self.robot = RobotFile::with_text(robot);
+        self.merged = Some(pieces);
     }
 
-    /// The part that alone is computed, if one is.
+    /// The only part to compute, if `--part` was given.
     #[must_use]
     pub fn part(&self) -> Option<Part> {
         self.part
     }
 
-    /// The results of all parts in order, in a merge.
+    /// Returns the results of all parts in order, in a merge.
     ///
     /// # Errors
-    /// It is not what this computes.
+    /// They belong to another computation.
     pub fn read<T: DeserializeOwned>(&self, count: usize) -> Result<Option<Vec<T>>, Failure> {
         let Some(merged) = &self.merged else {
             return Ok(None);
@@ -170,20 +173,19 @@ impl Spread {
         read.map(Some).map_err(|_| other_pieces())
     }
 
-    /// All pieces in their order, each by `one` from its place: computed here, or read from
-    /// parts. None where this is a part, which has been printed.
+    /// Returns all pieces in order: computed by `one` from their indices, or read from parts in
+    /// a merge. With `--part`, prints the pieces of that part and returns `None`.
     ///
     /// # Errors
-    /// The output cannot be written, or parts do not hold what this computes.
+    /// The output cannot be written, or the parts belong to another computation.
     pub fn all<T: Serialize + DeserializeOwned>(
         &self,
         command: &impl Spreads,
-        robot: &RobotFile,
         count: usize,
         one: impl FnMut(usize) -> T,
     ) -> Result<Option<Vec<T>>, Failure> {
         if let Some(part) = self.part {
-            return part.print(command, robot, count, one).map(|()| None);
+            return part.print(command, &self.robot, count, one).map(|()| None);
         }
         let read = self.read(count)?;
         Ok(Some(read.unwrap_or_else(|| (0..count).map(one).collect())))

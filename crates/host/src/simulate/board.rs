@@ -9,14 +9,14 @@ use simulated_uno::{CYCLES_PER_MS, Call, Fidelity, Image, Pin, SerialByte, State
 use crate::Failure;
 use crate::shared::firmware;
 use crate::simulate::sim::frame::{
-    FRAME, Frame, frames, latest_start, next_start, opens, servo_pins,
+    FRAME, Frame, first_cycle, frames, latest_start, next_start, servo_pins,
 };
 use crate::simulate::sim::lines::{Line, LineReader};
 use crate::simulate::sim::supplies;
 
 /// The longest wait for an answer after its command has been sent, ms. The
 /// console promises much less.
-const PATIENCE_MS: u64 = 200;
+const TIMEOUT_MS: u64 = 200;
 /// The longest wait for the banner after power-on, ms.
 pub(crate) const BANNER_MS: u64 = 500;
 /// Cycles that a byte of the sender takes, rounded up.
@@ -32,7 +32,7 @@ pub enum BoardError {
     #[error("no banner `# lizard ...` within {BANNER_MS} ms of power-on, but {0:?}")]
     Banner(Option<String>),
     /// A command was not answered.
-    #[error("no answer to {line:?} within {PATIENCE_MS} ms, only {notes:?}")]
+    #[error("no answer to {line:?} within {TIMEOUT_MS} ms, only {notes:?}")]
     Silent {
         /// The command that was sent.
         line: String,
@@ -40,7 +40,7 @@ pub enum BoardError {
         notes: Vec<String>,
     },
     /// The firmware sleeps with interrupts off.
-    #[error("the firmware sleeps with interrupts off, for ever")]
+    #[error("the firmware sleeps with interrupts off, forever")]
     Halted,
     /// The firmware ran into an invalid address.
     #[error("the firmware crashed: {0}")]
@@ -157,7 +157,7 @@ impl SimulatedBoard {
         self.returned = self.lines().len();
         self.send(line);
         let mut notes = Vec::new();
-        while let Some(answer) = self.next_line(PATIENCE_MS) {
+        while let Some(answer) = self.next_line(TIMEOUT_MS) {
             if !answer.starts_with('#') {
                 return Ok((notes, answer));
             }
@@ -167,7 +167,7 @@ impl SimulatedBoard {
         Err(BoardError::Silent { line, notes })
     }
 
-    /// Sends a line and a line feed, and does not wait.
+    /// Sends a line and a line feed, without waiting for the answer.
     pub fn send(&mut self, line: &str) {
         self.uno.send(line.as_bytes());
         self.uno.send(b"\n");
@@ -266,7 +266,7 @@ impl SimulatedBoard {
         those.map(|used| used.cycles).sum()
     }
 
-    /// Cycle of A1's first pulse among the edges that nobody has taken.
+    /// Cycle of A1's first pulse among the edges not taken yet.
     ///
     /// # Errors
     /// There is none.
@@ -288,9 +288,9 @@ impl SimulatedBoard {
         let start = self
             .anchor
             .map_or(now + FRAME, |anchor| next_start(anchor, now));
-        self.run_until(opens(start))?;
+        self.run_until(first_cycle(start))?;
         self.uno.take_edges();
-        self.run_until(opens(start + count * FRAME))?;
+        self.run_until(first_cycle(start + count * FRAME))?;
         Ok(frames(&self.uno.edges(), self.pins, start, count))
     }
 }

@@ -4,10 +4,10 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use lizard_parts::{Assembly, Course, Motor, STALL, Scene, mjcf};
+use lizard_parts::{Assembly, Course, Scene, mjcf};
 use lizard_robot::servo::LEGS;
 use lizard_robot::{CheckedGait, Robot};
-use lizard_twin::{FRAME, ServoModel};
+use lizard_twin::FRAME;
 use simulated_uno::{CYCLES_PER_US, Fidelity, Uno};
 
 use crate::shared::{files, firmware};
@@ -22,7 +22,7 @@ const MOST: f64 = 5.0;
 ///
 /// The file holds everything: the shapes of all parts, their masses and inertias, hinges
 /// and slides, the loops that they close, the springs of struts and feet, a floor, and
-/// servos whose speed and torque are limited. With --drive the firmware runs on the
+/// servos with the torque, the rate and the rotor of `[servo]`. With --drive the firmware runs on the
 /// simulated UNO, and the file gets a keyframe for each frame of its pulses. The program
 /// `tools/physics/view.py` plays them in MuJoCo's window (docs/judges.md).
 #[derive(clap::Args, Debug)]
@@ -65,7 +65,7 @@ enum LongFootError {
     Form,
     #[error("there is no leg `{0}`; the legs are LF, RF, RH and LH")]
     Leg(String),
-    #[error("`{0}` is no number of mm")]
+    #[error("`{0}` is not a number of mm")]
     Number(String),
     #[error("a foot may be off by at most {MOST} mm either way, and {0} mm is more")]
     Far(f64),
@@ -87,7 +87,7 @@ impl FromStr for LongFoot {
     }
 }
 
-/// Makes and writes the file.
+/// Makes the model and writes it.
 ///
 /// # Errors
 /// A wrong robot.toml, a robot that cannot be built, no such gait, no firmware or another
@@ -97,11 +97,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let assembly = Assembly::new(&robot);
     assembly.measures_fit()?;
     let neutral = robot.lizard().solve(&robot.neutral())?;
-    let motor = Motor {
-        rate: ServoModel::SG90.rate,
-        stall: STALL,
-    };
-    let mut scene = Scene::of(&assembly, motor);
+    let mut scene = Scene::of(&assembly);
     for (long, more) in scene.long.iter_mut().zip(lengths(&args.long_foot)?) {
         *long += more;
     }
@@ -145,7 +141,7 @@ fn lengths(given: &[LongFoot]) -> Result<[f64; 4], Failure> {
 fn course(args: &Args, robot: &Robot, gait: &CheckedGait) -> Result<Course, Failure> {
     let image = firmware::of_robot(args.elf.as_deref(), &args.robot, robot)?.image;
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
-    let script = twin::every(robot, &[gait.name()]);
+    let script = twin::walk_script(robot, &[gait.name()]);
     let recording = twin::record(&mut uno, robot, &script)?;
     let log = &recording.frames;
     let stop = script.steps.last().map_or(script.end_ms, |step| step.ms);
@@ -155,6 +151,7 @@ fn course(args: &Args, robot: &Robot, gait: &CheckedGait) -> Result<Course, Fail
         frames: targets(robot, log),
         begin: end - gait.period(),
         period: gait.period(),
+        count: 1,
     })
 }
 
@@ -186,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_long_foot_is_refused_in_a_sentence() {
+    fn an_invalid_long_foot_is_refused_in_a_sentence() {
         let refused = |text: &str| text.parse::<LongFoot>().expect_err(text).to_string();
         assert_eq!(
             refused("0.6"),
@@ -196,8 +193,8 @@ mod tests {
             refused("FL=1"),
             "there is no leg `FL`; the legs are LF, RF, RH and LH"
         );
-        assert_eq!(refused("LF="), "`` is no number of mm");
-        assert_eq!(refused("LF=nan"), "`nan` is no number of mm");
+        assert_eq!(refused("LF="), "`` is not a number of mm");
+        assert_eq!(refused("LF=nan"), "`nan` is not a number of mm");
         assert_eq!(
             refused("LF=6"),
             "a foot may be off by at most 5 mm either way, and 6 mm is more"

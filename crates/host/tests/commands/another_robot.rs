@@ -16,27 +16,27 @@ fn robot_in(report: &str) -> String {
 }
 
 /// The robot of the image that was built.
-fn of_the_image() -> String {
+fn robot_of_image() -> String {
     let gaits = std::fs::read_to_string(release().join("gaits.txt"));
     robot_in(&gaits.expect("`make firmware` has been run"))
 }
 
 /// The file of a robot that is not in the image, and its name and number.
-fn another() -> (String, String) {
+fn robot_outside_image() -> (String, String) {
     let named = ["unequal", "large"].map(|name| {
         let path = robot(name);
         let report = run(&["gaits", "--robot", &path]).success();
         (path, robot_in(&report))
     });
-    let image = of_the_image();
+    let image = robot_of_image();
     let others = named.into_iter().find(|(_, robot)| *robot != image);
     others.expect("two robots have two numbers")
 }
 
 #[test]
 fn every_command_that_runs_an_image_refuses_an_elf_of_another_robot() {
-    let (robot, wanted) = another();
-    let image = of_the_image();
+    let (robot, wanted) = robot_outside_image();
+    let image = robot_of_image();
     let elf = release().join("lizard.elf").display().to_string();
     for words in [
         &["sim"][..],

@@ -77,13 +77,13 @@ fn a_port_that_is_not_there_is_named() {
 }
 
 #[test]
-fn a_file_that_is_no_image_is_refused_before_any_port_is_opened() {
+fn a_file_that_is_not_an_image_is_refused_before_any_port_is_opened() {
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("half.hex"), &HEX[..60]).expect("a file");
     let arguments = ["flash", "/dev/no-such-port", "--image", "half.hex"];
     let message = run_in(folder.path(), &arguments, "").refusal();
     assert!(
-        message.starts_with("lizard: half.hex: line 2 is no Intel HEX"),
+        message.starts_with("lizard: half.hex: line 2 is not Intel HEX"),
         "{message}"
     );
     for other in [&["--robot", "robot.toml"][..], &["--only-robot"]] {

@@ -1,5 +1,5 @@
-//! Long computations in parts: processes that know nothing of each other compute them, and
-//! `lizard merge` prints what one process prints. `make parallel-test` does it with GNU parallel
+//! Long computations in parts: independent processes compute them, and `lizard merge` prints the
+//! same as one process. `make parallel-test` does it with GNU parallel
 //! and the commands that take longer.
 
 use crate::program::{lizard, paper};
@@ -41,15 +41,15 @@ fn a_merge_refuses_what_is_not_all_of_one_computation() {
     let other = lizard(other, "").success();
     assert_eq!(
         complaint("merge", &format!("{last}\n{other}")),
-        "lizard: part 1/2 has another robot than another part"
+        "lizard: part 1/2 has a different robot from another part"
     );
     let step = lizard(&paper("design --search --step 0.2 --part 1/2"), "").success();
-    assert!(complaint("merge", &format!("{last}\n{step}")).contains("other options"));
+    assert!(complaint("merge", &format!("{last}\n{step}")).contains("different options"));
     // A job that was killed leaves half a line.
     let half = &first[..first.len() / 2];
     let message = complaint("merge", &format!("{last}\n{half}"));
     assert!(
-        message.starts_with("lizard: standard input: line 2 is no part: "),
+        message.starts_with("lizard: standard input: line 2 is not a part: "),
         "{message}"
     );
     assert!(complaint("merge", "").contains("there are no parts"));

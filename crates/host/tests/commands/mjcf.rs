@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use crate::program::{run, scratch};
 
-/// A path at which there is no file.
-fn fresh(name: &str) -> PathBuf {
+/// A path without a file.
+fn fresh_path(name: &str) -> PathBuf {
     let file = scratch().join(name);
     let _ = fs::remove_file(&file);
     file
@@ -14,7 +14,7 @@ fn fresh(name: &str) -> PathBuf {
 
 #[test]
 fn the_file_holds_a_robot_with_four_servos_and_four_feet() {
-    let file = fresh("robot.xml");
+    let file = fresh_path("robot.xml");
     let path = file.display().to_string();
     run(&["mjcf", &path]).success();
     let text = fs::read_to_string(&file).expect("a file");
@@ -37,8 +37,8 @@ fn a_stream_gets_the_file_and_nothing_else() {
 }
 
 #[test]
-fn what_is_wrong_is_refused_in_a_sentence_and_no_file_is_written() {
-    let file = fresh("wrong.xml");
+fn wrong_input_is_refused_in_a_sentence_and_no_file_is_written() {
+    let file = fresh_path("wrong.xml");
     let path = file.display().to_string();
     let refusal = |words: &[&str]| run(&[&["mjcf", &path], words].concat()).refusal();
     let wolk = refusal(&["--drive", "wolk"]);

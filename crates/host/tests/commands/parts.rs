@@ -10,15 +10,15 @@ fn make(folder: &Path, words: &[&str]) -> Outcome {
     run(&[&["parts", &folder], words].concat())
 }
 
-/// A path at which there is no folder.
-fn fresh(name: &str) -> PathBuf {
+/// A path without a folder.
+fn fresh_path(name: &str) -> PathBuf {
     let folder = scratch().join(name);
     let _ = fs::remove_dir_all(&folder);
     folder
 }
 
 /// The paper's robot with changes, in a file of this name.
-fn changed(name: &str, change: impl Fn(String) -> String) -> String {
+fn write_changed_paper(name: &str, change: impl Fn(String) -> String) -> String {
     let file = scratch().join(name);
     fs::write(&file, change(read("robots/paper.toml"))).expect("a file");
     file.display().to_string()
@@ -26,7 +26,7 @@ fn changed(name: &str, change: impl Fn(String) -> String) -> String {
 
 #[test]
 fn a_folder_holds_everything_to_build_the_robot() {
-    let folder = fresh("parts-all");
+    let folder = fresh_path("parts-all");
     make(&folder, &["--robot", &robot("paper")]).success();
     for file in [
         "step/plate.step",
@@ -65,7 +65,7 @@ fn a_folder_holds_everything_to_build_the_robot() {
 
 #[test]
 fn one_corner_can_be_printed_first() {
-    let folder = fresh("parts-corner");
+    let folder = fresh_path("parts-corner");
     let list = make(&folder, &["--robot", &robot("paper"), "--corner", "--json"]).json();
     let list = list.as_array().expect("a list");
     let names: Vec<_> = list
@@ -92,14 +92,14 @@ fn one_corner_can_be_printed_first() {
 }
 
 #[test]
-fn a_weight_that_is_not_the_parts_is_told_with_what_to_put_in_its_place() {
-    let light = changed("light.toml", |text| {
-        text.replace("mass = 396.4", "mass = 280.0")
+fn a_wrong_weight_is_reported_with_the_right_one() {
+    let light = write_changed_paper("light.toml", |text| {
+        text.replace("mass = 435.0", "mass = 280.0")
     });
-    let summary = |robot: &str| make(&fresh("parts-light"), &["--robot", robot]).success();
+    let summary = |robot: &str| make(&fresh_path("parts-light"), &["--robot", robot]).success();
     let light = summary(&light);
     assert!(
-        light.contains("The parts weigh 396 g") && light.ends_with("\n[body]\nmass = 396.0\n"),
+        light.contains("The parts weigh 435 g") && light.ends_with("\n[body]\nmass = 435.0\n"),
         "{light}"
     );
     assert_eq!(summary(&robot("paper")).lines().count(), 1);
@@ -107,8 +107,8 @@ fn a_weight_that_is_not_the_parts_is_told_with_what_to_put_in_its_place() {
 
 #[test]
 fn struts_may_have_springs() {
-    let folder = fresh("parts-strut");
-    let robot = changed("strut.toml", |text| {
+    let folder = fresh_path("parts-strut");
+    let robot = write_changed_paper("strut.toml", |text| {
         text + "\n[leg.drive]\nkind = \"strut\"\nforce = 4.0\nrate = 0.4\n"
     });
     make(&folder, &["--robot", &robot]).success();
@@ -134,8 +134,8 @@ fn struts_may_have_springs() {
 
 #[test]
 fn a_robot_whose_parts_meet_is_refused_and_nothing_is_written() {
-    let folder = fresh("parts-refused");
-    let robot = changed("wide.toml", |text| text + "\n[parts]\nbar = 24.0\n");
+    let folder = fresh_path("parts-refused");
+    let robot = write_changed_paper("wide.toml", |text| text + "\n[parts]\nbar = 24.0\n");
     let made = make(&folder, &["--robot", &robot]);
     assert_eq!(made.code, Some(1));
     let message = made.err;

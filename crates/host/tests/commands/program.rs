@@ -103,7 +103,7 @@ pub fn run(words: &[&str]) -> Outcome {
 pub fn run_in(folder: &Path, words: &[&str], input: impl AsRef<[u8]>) -> Outcome {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
     command.args(words).current_dir(folder);
-    // A program that stops at bad input closes its end; that is no failure here.
+    // A program that stops at bad input closes its end; that is not a failure here.
     let output = LIMIT.output(&mut command, input.as_ref());
     let output = output.expect("lizard ends");
     Outcome {

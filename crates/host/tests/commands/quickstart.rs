@@ -1,4 +1,5 @@
-//! docs/quickstart.md: what it lets its reader type is what the firmware answers.
+//! docs/quickstart.md shows the firmware's real answers to the lines that it tells the reader to
+//! type.
 
 use lizard_core::virtual_board::Running;
 use lizard_robot::Robot;
@@ -32,7 +33,7 @@ impl Board {
 }
 
 /// True if a line is as the page shows it, which may omit its end.
-fn is(line: &str, shown: &str) -> bool {
+fn matches_page(line: &str, shown: &str) -> bool {
     shown
         .strip_suffix("...")
         .map_or(line == shown, |begin| line.starts_with(begin))
@@ -58,7 +59,7 @@ fn every_line_of_the_quickstart_is_answered_as_it_shows() {
                 && answer
                     .iter()
                     .zip(&shown)
-                    .all(|(answer, shown)| is(answer, shown));
+                    .all(|(answer, shown)| matches_page(answer, shown));
             assert!(
                 alike,
                 "{line}\n  is answered by {answer:#?}\n  but shown as {shown:#?}"

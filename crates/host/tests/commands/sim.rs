@@ -12,12 +12,12 @@ fn a_firmware_that_is_not_there_is_named() {
     assert_eq!(
         words,
         "lizard: there is no firmware at no/such.elf; without --elf, the one inside this program \
-         is taken"
+         is used"
     );
 }
 
 #[test]
-fn what_is_no_firmware_is_refused() {
+fn a_file_that_is_not_firmware_is_refused() {
     let own = env!("CARGO_BIN_EXE_lizard");
     let words = complaint(&["sim", "--elf", own]);
     assert!(
@@ -70,7 +70,7 @@ fn times_out_of_range_are_refused() {
 }
 
 #[test]
-fn the_picture_in_docs_is_the_paper_robot_as_it_is_drawn_now() {
+fn the_picture_in_docs_is_up_to_date() {
     let drawn = run(&["draw", "--robot", &robot("paper")]).success();
     assert!(read("docs/lizard.svg") == drawn, "run `make docs`");
 }

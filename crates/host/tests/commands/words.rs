@@ -1,5 +1,4 @@
-//! The words of the command line: which there are, which are meant by others, and what
-//! shells and `man` know of them.
+//! The words of the command line: commands, aliases, suggestions, completions and manual pages.
 
 use std::path::Path;
 use std::process::Command;
@@ -17,7 +16,7 @@ fn complaint(words: &[&str]) -> String {
 }
 
 /// The first words of the lines under a heading of `lizard --help`.
-fn under(help: &str, heading: &str) -> Vec<String> {
+fn words_under(help: &str, heading: &str) -> Vec<String> {
     let (_, after) = help.split_once(&format!("\n{heading}:\n")).expect(heading);
     let (section, _) = after.split_once("\n\n").expect("a section ends");
     let first = |line: &str| line.split_whitespace().next().expect("a word").to_owned();
@@ -44,9 +43,9 @@ fn help_has_every_command_under_what_it_is_for_and_the_owners_first() {
     );
     let listed = headings[..5]
         .iter()
-        .map(|heading| under(&help, heading).len());
+        .map(|heading| words_under(&help, heading).len());
     assert!(listed.sum::<usize>() <= 20, "{help}");
-    assert!(under(&help, "Drive the robot").contains(&"console".to_owned()));
+    assert!(words_under(&help, "Drive the robot").contains(&"console".to_owned()));
     assert_eq!(output(&["help"]), help);
 }
 
@@ -140,7 +139,7 @@ fn a_mistyped_word_is_answered_with_the_one_that_was_meant() {
 
 /// The completions that bash offers after some words, from the script alone.
 #[cfg(unix)]
-fn offered(script: &Path, words: &str, place: usize) -> Vec<String> {
+fn bash_completions(script: &Path, words: &str, place: usize) -> Vec<String> {
     let line = format!(
         ". {}; COMP_WORDS=({words}); COMP_CWORD={place}; COMP_LINE='{words}'; \
          _lizard lizard \"${{COMP_WORDS[{place}]}}\" \"${{COMP_WORDS[{}]}}\"; \
@@ -162,12 +161,15 @@ fn offered(script: &Path, words: &str, place: usize) -> Vec<String> {
 fn bash_completes_commands_and_options() {
     let script = scratch().join("lizard.bash");
     std::fs::write(&script, output(&["completions", "bash"])).expect("it is written");
-    assert_eq!(offered(&script, "lizard calib", 1), ["calibrate"]);
+    assert_eq!(bash_completions(&script, "lizard calib", 1), ["calibrate"]);
     assert_eq!(
-        offered(&script, "lizard twin --ro", 2),
+        bash_completions(&script, "lizard twin --ro", 2),
         ["--robust", "--robot"]
     );
-    assert_eq!(offered(&script, "lizard sim --fidelity sto", 3), ["stock"]);
+    assert_eq!(
+        bash_completions(&script, "lizard sim --fidelity sto", 3),
+        ["stock"]
+    );
 }
 
 #[test]
@@ -183,7 +185,7 @@ fn every_command_has_a_manual_page_that_names_its_options() {
         "Build it",
         "The paper, computed",
     ] {
-        for name in under(&help, heading) {
+        for name in words_under(&help, heading) {
             let page = std::fs::read_to_string(pages.join(format!("lizard-{name}.1")));
             let page = page.expect("it is there");
             assert!(page.contains(&format!(".TH lizard-{name} 1")), "{page}");

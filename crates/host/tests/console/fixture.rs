@@ -62,7 +62,7 @@ impl Uno {
             .spawn()
             .expect("the program starts");
         let mut uno = Self { child, link };
-        LIMIT.until("a board of `lizard sim --pty`, or its end", || {
+        LIMIT.expect("a board of `lizard sim --pty`, or its end", || {
             uno.link.exists() || uno.has_ended()
         });
         assert!(!uno.has_ended(), "no board, run `make firmware`");
@@ -167,7 +167,7 @@ impl AtTerminal {
     /// Waits until the screen shows these words after those of the previous wait.
     pub fn wait_for(&mut self, words: &str) {
         let (mut found, mut ended) = (None, false);
-        LIMIT.comes(|| {
+        LIMIT.wait_for(|| {
             ended = self.read();
             found = self.text.find(words);
             found.is_some() || ended
@@ -183,7 +183,7 @@ impl AtTerminal {
     }
 }
 
-/// A device at a pseudo terminal that is no simulated board, in a thread of its own.
+/// A device at a pseudo terminal that is not a simulated board, in a thread of its own.
 pub struct Device {
     pub port: String,
     end: mpsc::Sender<()>,
@@ -191,7 +191,7 @@ pub struct Device {
 }
 
 impl Device {
-    /// A device that calls `act` with its end of the line, again and again.
+    /// A device that calls `act` with its end of the line repeatedly.
     pub fn start(mut act: impl FnMut(&mut File) + Send + 'static) -> Self {
         let (mut ours, theirs, path) = terminal();
         // Else this test would be the program that has the port open.

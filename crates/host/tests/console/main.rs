@@ -21,7 +21,7 @@ fn a_script_on_standard_input_gets_the_banner_and_its_answers_in_order() {
     assert_eq!(code, Some(1), "a line was refused: {error}");
     assert!(
         error.ends_with(
-            "lizard: the robot did not take 1 of 3 lines, the first `fly`: err 1 unknown command, \
+            "lizard: the robot did not accept 1 of 3 lines, the first `fly`: err 1 unknown command, \
              send help for the list\n"
         ),
         "{error}"
@@ -58,7 +58,7 @@ fn a_calibration_goes_to_a_file_and_back_and_a_refused_one_changes_nothing() {
     let (out, error, code) = run(here, &["restore", "b.toml", &port], "");
     assert_eq!(code, Some(0), "{error}");
     assert!(
-        out.ends_with("has the calibration of b.toml and has saved it\n"),
+        out.ends_with("has accepted and saved the calibration of b.toml\n"),
         "{out}"
     );
 
@@ -97,7 +97,7 @@ fn a_person_at_a_terminal_types_edits_and_outlives_an_unplugged_board() {
     person.wait_for("the port is gone: the board was unplugged, or its cable is loose");
     person.wait_for("waiting for the board");
     let _uno = Uno::at(folder.path());
-    person.wait_for("is there again: # lizard ");
+    person.wait_for("is back: # lizard ");
     person.press("stand\r");
     person.wait_for("ok stand");
     person.press("\x04");
@@ -121,7 +121,7 @@ fn calibrate_shows_a_step_for_each_key_and_leaves_the_robot_as_it_was() {
     person.press("n");
     person.wait_for("The sign of A1 is `");
     person.press("q");
-    person.wait_for("left: the robot has what it had before");
+    person.wait_for("cancelled: the robot keeps its old calibration");
     assert_eq!(person.exit_code(), Some(0));
 }
 
@@ -138,7 +138,7 @@ fn a_kept_session_is_drawn_and_summed_up() {
     let mut stdin = child.stdin.take().expect("it has an input");
     stdin.write_all(b"speed 50\nfly\n").expect("it is read");
     let file = here.join("a.jsonl");
-    LIMIT.until("a refusal and a second of poses in the file", || {
+    LIMIT.expect("a refusal and a second of poses in the file", || {
         let kept = fs::read_to_string(&file).unwrap_or_default();
         kept.contains(r#""answer":"err "#) && kept.matches(r#""pose":"#).count() > 50
     });
@@ -167,7 +167,7 @@ fn a_kept_session_is_drawn_and_summed_up() {
 
     let (_, error, code) = run(here, &["console", "--record", "a.jsonl", "--sim"], "");
     assert_eq!(code, Some(2));
-    assert!(error.contains("a.jsonl is there already"), "{error}");
+    assert!(error.contains("a.jsonl already exists"), "{error}");
 }
 
 #[test]
@@ -185,7 +185,7 @@ fn a_port_that_another_program_has_open_is_refused() {
 }
 
 #[test]
-fn what_is_no_lizard_is_named_by_what_it_says() {
+fn a_board_that_is_not_a_lizard_is_described_by_its_output() {
     let folder = tempfile::tempdir().expect("a folder");
     let device = Device::start(|line| {
         // Nobody may have it open.
@@ -194,7 +194,7 @@ fn what_is_no_lizard_is_named_by_what_it_says() {
     let (_, error, code) = run(folder.path(), &["backup", "a.toml", &device.port], "");
     device.stop();
     assert_eq!(code, Some(1), "{error}");
-    let words = "this is no lizard: it says `Grbl 1.1h ['$' for help]`";
+    let words = "this is not a lizard: it says `Grbl 1.1h ['$' for help]`";
     assert!(error.contains(words), "{error}");
     assert!(
         !folder.path().join("a.toml").exists(),
@@ -219,7 +219,7 @@ fn of_a_board_that_falls_silent_the_lines_that_it_did_not_take_are_counted() {
     let (_, error, code) = run(folder.path(), &arguments, "walk\nspeed 50\nstop\n");
     device.stop();
     assert_eq!(code, Some(1), "{error}");
-    let words = "lizard: the robot did not take 3 of 3 lines, the first `walk`: no answer\n";
+    let words = "lizard: the robot did not accept 3 of 3 lines, the first `walk`: no answer\n";
     assert!(error.ends_with(words), "{error}");
 }
 
@@ -250,7 +250,7 @@ fn wrong_input_is_a_sentence_and_starts_nothing() {
         (["restore", "none.toml"], "lizard: cannot read none.toml: "),
         (
             ["replay", "other.toml"],
-            "lizard: other.toml: this is no session of `lizard console --record`: its first line has no",
+            "lizard: other.toml: this is not a session of `lizard console --record`: its first line has no",
         ),
         (
             ["calibrate", "/dev/no-such-port"],
@@ -272,7 +272,7 @@ fn a_link_of_the_simulated_board_takes_no_other_links_place_and_goes_with_the_bo
     let (_, error, code) = run(folder.path(), &["sim", "--pty", &name], "");
     assert_eq!(
         error.trim(),
-        format!("lizard: {name} is there already and no link to a pseudo terminal")
+        format!("lizard: {name} already exists and is not a link to a pseudo terminal")
     );
     assert_eq!(code, Some(2));
     assert_eq!(
@@ -287,7 +287,7 @@ fn a_link_of_the_simulated_board_takes_no_other_links_place_and_goes_with_the_bo
         .stdout(Stdio::null())
         .spawn()
         .expect("the program starts");
-    LIMIT.until("a port at the end of the link", || own.exists());
+    LIMIT.expect("a port at the end of the link", || own.exists());
     let id = rustix::process::Pid::from_child(&child);
     rustix::process::kill_process(id, rustix::process::Signal::TERM).expect("it runs");
     let status = LIMIT.end_of(&mut child).expect("it ends");
@@ -333,11 +333,11 @@ fn control_z_gives_the_terminal_back_and_fg_goes_on() {
         person.wait_for(first);
         assert!(!is_cooked(&person.keys), "{command}");
         person.press("\x1a");
-        LIMIT.until("a stopped program", || state(&person.child) == 'T');
+        LIMIT.expect("a stopped program", || state(&person.child) == 'T');
         assert!(is_cooked(&person.keys), "{command}");
         let id = rustix::process::Pid::from_child(&person.child);
         rustix::process::kill_process(id, rustix::process::Signal::CONT).expect("it is there");
-        LIMIT.until("keys one by one", || !is_cooked(&person.keys));
+        LIMIT.expect("keys one by one", || !is_cooked(&person.keys));
         person.press(keys);
         person.wait_for(then);
         person.press(if command == "console" { "\x04" } else { "q" });
@@ -392,10 +392,10 @@ fn a_simulated_robot_that_is_gone_is_not_said_to_go_on() {
     person.wait_for(&format!("ok {gait}"));
     person.wait_for(&format!("{gait}  "));
     person.press("\x04");
-    LIMIT.until("the end of the program", || {
+    LIMIT.expect("the end of the program", || {
         person.child.try_wait().expect("it is ours").is_some()
     });
-    LIMIT.comes(|| {
+    LIMIT.wait_for(|| {
         person.read();
         person.text.contains("\x1b[?2004l")
     });
@@ -403,7 +403,7 @@ fn a_simulated_robot_that_is_gone_is_not_said_to_go_on() {
 }
 
 #[test]
-fn what_a_robots_file_says_cannot_command_the_terminal() {
+fn control_characters_of_a_robot_file_do_not_reach_the_terminal() {
     let folder = tempfile::tempdir().expect("a folder");
     let text = include_str!("../../../../robots/paper.toml");
     let text = format!("{text}\n[gait.\"\\u001b]0;owned\\u0007\"]\nperiod = 1.0\n");

@@ -35,7 +35,7 @@ pub struct Polynomial {
     power: i32,
 }
 
-/// All three, in the order of `src/angle.rs`.
+/// All three polynomials, in the order of `src/angle.rs`.
 pub const POLYNOMIALS: [Polynomial; 3] = [
     Polynomial {
         name: "SIN",
@@ -68,7 +68,7 @@ fn number(whole: u32) -> Number {
 }
 
 /// An f64 exactly.
-fn exactly(value: f64) -> Number {
+fn exact_number(value: f64) -> Number {
     let exact = Number::try_from(value).expect("a finite number");
     exact.with_precision(BITS).value()
 }
@@ -77,7 +77,7 @@ impl Polynomial {
     /// The coefficients, the constant first.
     pub fn coefficients(&self) -> Vec<f64> {
         let limit = (self.limit)();
-        let longest = &limit * &limit * (number(1) + exactly(WIDER));
+        let longest = &limit * &limit * (number(1) + exact_number(WIDER));
         let half = longest / number(2);
         let nodes: Vec<Number> = (0..self.terms)
             .map(|k| {
@@ -118,7 +118,7 @@ impl Polynomial {
                 let sum = coefficients
                     .iter()
                     .rev()
-                    .fold(number(0), |sum, c| sum * &z + exactly(*c));
+                    .fold(number(0), |sum, c| sum * &z + exact_number(*c));
                 let off = (sum - self.share(&x)) * power(&x, self.power) / (self.function)(&x);
                 off.to_f64().value().abs()
             })

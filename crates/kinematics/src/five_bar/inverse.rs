@@ -31,7 +31,7 @@ impl WorkingMode {
     /// Both elbows outward, as the robot is built.
     pub const OUTWARD: Self = Self::new(Elbow::Outward, Elbow::Outward);
 
-    /// All four: outward-outward, outward-inward, inward-outward, inward-inward,
+    /// All four modes: outward-outward, outward-inward, inward-outward, inward-inward,
     /// the left elbow first.
     pub const ALL: [Self; 4] = [
         Self::OUTWARD,
@@ -69,11 +69,11 @@ impl FiveBar {
     /// # Errors
     /// [`Fault::OutOfReach`] where an arm does not reach the point,
     /// [`Fault::OnShaft`] where a crank's angle is free, [`Fault::NotFinite`] for
-    /// what is no number or overflows.
+    /// input that is not finite or that overflows.
     pub fn inverse(&self, point: Vector) -> Result<[InverseSolution; 4], Fault> {
         let arms = self.arms(point)?;
         let solution = |working_mode: WorkingMode| {
-            let (left, right, assembly_mode) = arms.bent(working_mode);
+            let (left, right, assembly_mode) = arms.directions(working_mode);
             InverseSolution {
                 working_mode,
                 assembly_mode,
@@ -90,7 +90,7 @@ impl FiveBar {
     /// # Errors
     /// As [`FiveBar::inverse`] and [`FiveBar::forward`].
     pub fn reach(&self, point: Vector) -> Result<FiveBarPose, Fault> {
-        let (left, right, mode) = self.arms(point)?.bent(WorkingMode::OUTWARD);
+        let (left, right, mode) = self.arms(point)?.directions(WorkingMode::OUTWARD);
         self.close(mode, left, right)
     }
 
@@ -104,8 +104,8 @@ impl FiveBar {
             bars: *self,
             to_left,
             to_right,
-            left: bend(to_left, self.crank_left, self.coupler_left, true)?,
-            right: bend(to_right, self.crank_right, self.coupler_right, false)?,
+            left: crank_directions(to_left, self.crank_left, self.coupler_left, true)?,
+            right: crank_directions(to_right, self.crank_right, self.coupler_right, false)?,
         })
     }
 }
@@ -124,7 +124,7 @@ struct Arms {
 
 impl Arms {
     /// Crank directions (length one) in a working mode, and the assembly mode.
-    fn bent(&self, mode: WorkingMode) -> (Vector, Vector, AssemblyMode) {
+    fn directions(&self, mode: WorkingMode) -> (Vector, Vector, AssemblyMode) {
         // Outward is to the left of the line from the left shaft to the point,
         // and to the right of the line from the right shaft.
         let left = match mode.left {
@@ -148,7 +148,12 @@ impl Arms {
 
 /// The directions (length one) of a crank whose coupler ends in a point: bent
 /// counter-clockwise and clockwise from the line between shaft and point.
-fn bend(to_point: Vector, crank: f64, coupler: f64, left: bool) -> Result<[Vector; 2], Fault> {
+fn crank_directions(
+    to_point: Vector,
+    crank: f64,
+    coupler: f64,
+    left: bool,
+) -> Result<[Vector; 2], Fault> {
     let distance = to_point.length();
     let (least, most) = ((crank - coupler).abs(), crank + coupler);
     if !distance.is_finite() || !most.is_finite() {

@@ -144,7 +144,7 @@ fn coinciding_crank_tips_are_a_singularity_and_not_a_number() {
 }
 
 #[test]
-fn where_the_papers_a_vanishes_nothing_happens() {
+fn the_solver_works_where_the_papers_a_vanishes() {
     // A = (d^2 - 2 K2 l3) / 2 = 0 where the right coupler points along -x.
     let mut least = f64::INFINITY;
     for step in 0..=1800 {
@@ -197,7 +197,7 @@ fn unreachable_points_and_bad_numbers_say_why() {
 }
 
 #[test]
-fn a_distance_that_overflows_is_no_number_and_not_out_of_reach() {
+fn a_distance_that_overflows_is_reported_as_not_finite_and_not_as_out_of_reach() {
     let far = Vector::new(1e200, 0.0);
     assert_eq!(HEAD.inverse(far).unwrap_err(), Fault::NotFinite);
     assert_eq!(HEAD.reach(far).unwrap_err(), Fault::NotFinite);

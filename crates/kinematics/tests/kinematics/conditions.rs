@@ -8,7 +8,7 @@ use proptest::prelude::*;
 
 use crate::reference::{any_lizard, any_pose, any_solved, cases, cis, meeting};
 
-fn between(a: Vector, b: Vector) -> f64 {
+fn sine_between(a: Vector, b: Vector) -> f64 {
     (a.x * b.y - a.y * b.x) / (a.x.hypot(a.y) * b.x.hypot(b.y))
 }
 
@@ -31,12 +31,12 @@ fn truth(robot: &Lizard, [t1, t4, t8, t5]: [f64; 4]) -> Option<BTreeMap<&'static
     let left = a1 + cis(t1 + 90.0) * l.l14 - (a4 + cis(t5 - 90.0) * l.l11);
     let right = a2 + cis(t4 - 90.0) * l.l19 - (a3 + cis(t8 + 90.0) * l.l16);
     Some(BTreeMap::from([
-        ("type2_head", between(head - p1, head - p4)),
-        ("type2_tail", between(tail - p8, tail - p5)),
-        ("type1_a1", between(head - p1, cis(t1))),
-        ("type1_a2", between(cis(t4), head - p4)),
-        ("type1_a3", between(tail - p8, cis(t8))),
-        ("type1_a4", between(cis(t5), tail - p5)),
+        ("type2_head", sine_between(head - p1, head - p4)),
+        ("type2_tail", sine_between(tail - p8, tail - p5)),
+        ("type1_a1", sine_between(head - p1, cis(t1))),
+        ("type1_a2", sine_between(cis(t4), head - p4)),
+        ("type1_a3", sine_between(tail - p8, cis(t8))),
+        ("type1_a4", sine_between(cis(t5), tail - p5)),
         ("leg_lf", t1.to_radians().sin()),
         ("leg_rf", t4.to_radians().sin()),
         ("leg_rh", -t8.to_radians().sin()),
@@ -167,29 +167,29 @@ proptest! {
     ) {
         prop_assume!(s.head.type2.min(s.tail.type2) > 1e-3);
         let l = &robot.links;
-        let far = |a: Vector, b: Vector| (a - b).length();
+        let distance = |a: Vector, b: Vector| (a - b).length();
         let ([p1, p4, p8, p5], [a1, a2, a3, a4]) = (s.crank_tips(), robot.shafts());
         for (tip, shaft, theta, length) in [
             (p1, a1, pose[0], l.l1), (p4, a2, pose[1], l.l4),
             (p8, a3, pose[2], l.l9), (p5, a4, pose[3], l.l6),
         ] {
-            prop_assert!(far(tip, shaft + cis(theta) * length) < 1e-9);
+            prop_assert!(distance(tip, shaft + cis(theta) * length) < 1e-9);
         }
         for (end, tips, couplers) in [
             (End::Head, [p1, p4], [l.l2, l.l3]), (End::Tail, [p5, p8], [l.l7, l.l8]),
         ] {
             let point = s.point(end);
             for i in 0..2 {
-                prop_assert!(far(tips[i] + s.couplers(end)[i] * couplers[i], point) < 1e-9);
+                prop_assert!(distance(tips[i] + s.couplers(end)[i] * couplers[i], point) < 1e-9);
             }
-            prop_assert!(far(robot.to_end(end, point), s.end(end).end_point) < 1e-9);
+            prop_assert!(distance(robot.to_end(end, point), s.end(end).end_point) < 1e-9);
         }
         // Arm tips, from the rear shaft.
         let [left, right] = Side::ALL.map(|side| s.side(side));
-        prop_assert!(far(a4 + left.rear_tip, a4 + cis(pose[3] - 90.0) * l.l11) < 1e-9);
-        prop_assert!(far(a4 + left.front_tip, a1 + cis(pose[0] + 90.0) * l.l14) < 1e-9);
-        prop_assert!(far(a3 + right.rear_tip, a3 + cis(pose[2] + 90.0) * l.l16) < 1e-9);
-        prop_assert!(far(a3 + right.front_tip, a2 + cis(pose[1] - 90.0) * l.l19) < 1e-9);
+        prop_assert!(distance(a4 + left.rear_tip, a4 + cis(pose[3] - 90.0) * l.l11) < 1e-9);
+        prop_assert!(distance(a4 + left.front_tip, a1 + cis(pose[0] + 90.0) * l.l14) < 1e-9);
+        prop_assert!(distance(a3 + right.rear_tip, a3 + cis(pose[2] + 90.0) * l.l16) < 1e-9);
+        prop_assert!(distance(a3 + right.front_tip, a2 + cis(pose[1] - 90.0) * l.l19) < 1e-9);
     }
 
     #[test]

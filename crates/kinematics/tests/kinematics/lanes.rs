@@ -46,7 +46,7 @@ proptest! {
             let pose = robot.shape_side(side, cranks);
             let closes = robot.side(side).closes(&pose);
             for i in 0..N {
-                let alone = alone(&robot, side, poses[i]);
+                let alone = travel_by_arms(&robot, side, poses[i]);
                 prop_assert_eq!(closes[i], alone.is_some());
                 let Some(alone) = alone else { continue };
                 prop_assert_eq!(pose.s.0[i].to_bits(), alone.to_bits());
@@ -56,7 +56,7 @@ proptest! {
 }
 
 /// The travel of a side, by way of its arms' angles.
-fn alone(robot: &Lizard, side: Side, pose: [f64; 4]) -> Option<f64> {
+fn travel_by_arms(robot: &Lizard, side: Side, pose: [f64; 4]) -> Option<f64> {
     let [front, rear] = side.pick(pose).map(Vector::direction);
     let closed = robot
         .side(side)

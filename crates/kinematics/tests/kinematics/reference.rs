@@ -101,7 +101,7 @@ pub fn any_solved() -> impl Strategy<Value = (Lizard, [f64; 4], Solution)> {
     })
 }
 
-/// As many cases as given, of which many may be rejected.
+/// A configuration with this many cases, of which many may be rejected.
 pub fn cases(cases: u32) -> ProptestConfig {
     ProptestConfig {
         cases,

@@ -34,14 +34,14 @@ impl Assembly {
         struts::add(&mut builder);
         Self {
             robot: robot.clone(),
-            instead: struts::instead(&builder),
+            instead: struts::alternatives(&builder),
             stack: builder.stack,
             layout: builder.layout,
             bodies: builder.bodies,
         }
     }
 
-    /// The robot that it is of.
+    /// The robot of this assembly.
     #[must_use]
     pub fn robot(&self) -> &Robot {
         &self.robot
@@ -67,7 +67,7 @@ impl Assembly {
 
     /// Bodies that may replace others: the struts of the other kind.
     #[must_use]
-    pub fn instead(&self) -> &[Body] {
+    pub fn alternatives(&self) -> &[Body] {
         &self.instead
     }
 
@@ -77,7 +77,7 @@ impl Assembly {
         self.bodies.iter().find(|body| body.name == name)
     }
 
-    /// The same robot with changed bodies, for tests and for parts of one's own.
+    /// The same robot with changed bodies, for tests and for custom parts.
     #[must_use]
     pub fn altered(mut self, change: impl FnOnce(&mut Vec<Body>)) -> Self {
         change(&mut self.bodies);
@@ -86,7 +86,7 @@ impl Assembly {
 
     /// True if two bodies may touch: they move together, or are made to meet.
     #[must_use]
-    pub fn meet(&self, a: &Body, b: &Body) -> bool {
+    pub fn may_touch(&self, a: &Body, b: &Body) -> bool {
         a.mount == b.mount || a.meets.contains(&b.name) || b.meets.contains(&a.name)
     }
 

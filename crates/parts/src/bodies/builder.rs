@@ -9,14 +9,14 @@ use crate::layers::body::{Body, Kind, Mount, Prism};
 use crate::layers::shape::Shape;
 use crate::layers::stack::{HEX, PLAY, Span, Stack, screw_length};
 
-/// The way from a screw's head to its tip.
+/// The direction from a screw's head to its tip.
 #[derive(Clone, Copy, PartialEq)]
-pub enum Points {
+pub enum Direction {
     Up,
     Down,
 }
 
-impl Points {
+impl Direction {
     fn sign(self) -> f64 {
         match self {
             Self::Up => 1.0,
@@ -42,7 +42,7 @@ pub struct Bolt<'a> {
     pub at: Vector,
     /// Height of the face under its head, mm.
     pub head: f64,
-    pub points: Points,
+    pub direction: Direction,
     /// Height of the face that the nut bears on, mm.
     pub nut: f64,
     /// Length below the head, mm; by default as long as the nut needs.
@@ -55,13 +55,13 @@ pub struct Bolt<'a> {
 
 impl<'a> Bolt<'a> {
     /// A button-head screw that meets nothing. Its nut, if it gets one, is at height 0.
-    pub fn new(name: &'a str, mount: Mount, at: Vector, head: f64, points: Points) -> Self {
+    pub fn new(name: &'a str, mount: Mount, at: Vector, head: f64, direction: Direction) -> Self {
         Self {
             name,
             mount,
             at,
             head,
-            points,
+            direction,
             nut: 0.0,
             length: None,
             meets: &[],
@@ -83,20 +83,20 @@ impl<'a> Builder<'a> {
     }
 
     /// Half a bar's width, mm.
-    pub fn half(&self) -> f64 {
+    pub fn half_bar(&self) -> f64 {
         self.parts.bar / 2.0
     }
 
     /// Outer radius around a pocket for a nut that leaves a wall at its corners, mm.
-    pub fn eye(&self) -> f64 {
+    pub fn around_nut(&self) -> f64 {
         let corner = (self.parts.screw.nut + self.parts.fit) / f64::sqrt(3.0);
-        self.half().max(corner + self.parts.wall)
+        self.half_bar().max(corner + self.parts.wall)
     }
 
-    /// Outer radius around a sunk head that leaves a wall, mm.
+    /// Outer radius around a sunk head, with a wall, mm.
     pub fn around_head(&self) -> f64 {
         let head = self.parts.screw.head / 2.0 + self.parts.fit;
-        self.half().max(head + self.parts.wall)
+        self.half_bar().max(head + self.parts.wall)
     }
 
     /// True if the struts have a slot and a spring, false if they are rigid.
@@ -157,7 +157,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Records the bodies that the last one touches by design.
-    pub fn meeting<S: AsRef<str>>(&mut self, names: &[S]) {
+    pub fn allow_contact<S: AsRef<str>>(&mut self, names: &[S]) {
         if let Some(body) = self.bodies.last_mut() {
             let names = names.iter().map(|name| name.as_ref().to_owned());
             body.meets.extend(names);
@@ -169,32 +169,32 @@ impl<'a> Builder<'a> {
         let hole = self.hole(at);
         let ring = Prism::new([Shape::disc(at, hole.radius + self.parts.wall)], [hole], z);
         self.printed(name, mount, [ring]);
-        self.meeting(meets);
+        self.allow_contact(meets);
     }
 
     /// Adds a screw and its nut.
     pub fn bolt(&mut self, bolt: &Bolt) {
         let screw = self.parts.screw;
-        let way = bolt.points.sign();
-        let behind = bolt.nut + way * screw.nut_height;
+        let sign = bolt.direction.sign();
+        let nut_end = bolt.nut + sign * screw.nut_height;
         let length = bolt
             .length
-            .unwrap_or_else(|| screw_length((behind - bolt.head).abs()));
+            .unwrap_or_else(|| screw_length((nut_end - bolt.head).abs()));
         self.screw(bolt, length);
         let flats = Shape::hexagon(bolt.at, screw.nut);
         let thread = Shape::disc(bolt.at, screw.diameter / 2.0);
-        let nut = Prism::new([flats], [thread], ordered(bolt.nut, behind));
+        let nut = Prism::new([flats], [thread], ordered(bolt.nut, nut_end));
         self.body(format!("nut {}", bolt.name), Kind::Nut, bolt.mount, [nut]);
-        self.meeting(bolt.meets);
+        self.allow_contact(bolt.meets);
     }
 
     /// Adds a screw without a nut.
     pub fn screw(&mut self, bolt: &Bolt, length: f64) {
         let screw = self.parts.screw;
-        let way = bolt.points.sign();
+        let sign = bolt.direction.sign();
         let prism = |shape: Shape, from: f64, to: f64| Prism::solid([shape], ordered(from, to));
         let shank = Shape::disc(bolt.at, screw.diameter / 2.0);
-        let (head, high, kind) = if bolt.hex {
+        let (head, height, kind) = if bolt.hex {
             let hexagon = Shape::hexagon(bolt.at, screw.nut);
             (hexagon, HEX, Kind::HexScrew(length))
         } else {
@@ -202,12 +202,12 @@ impl<'a> Builder<'a> {
             (disc, screw.head_height, Kind::Screw(length))
         };
         let mut prisms = vec![
-            prism(shank, bolt.head, bolt.head + way * length),
-            prism(head, bolt.head - way * high, bolt.head),
+            prism(shank, bolt.head, bolt.head + sign * length),
+            prism(head, bolt.head - sign * height, bolt.head),
         ];
         prisms.sort_by(|a, b| a.z[0].total_cmp(&b.z[0]));
         self.body(format!("screw {}", bolt.name), kind, bolt.mount, prisms);
-        self.meeting(bolt.meets);
+        self.allow_contact(bolt.meets);
     }
 
     /// Adds the screw of a joint on a servo's link. The link's underside holds its head,
@@ -217,7 +217,7 @@ impl<'a> Builder<'a> {
             nut: top + PLAY,
             meets,
             hex: true,
-            ..Bolt::new(name, mount, at, self.stack.held, Points::Up)
+            ..Bolt::new(name, mount, at, self.stack.held, Direction::Up)
         });
     }
 }

@@ -2,17 +2,15 @@
 
 use lizard_kinematics::{End, Vector};
 
-use crate::bodies::builder::{Bolt, Builder, Points};
+use crate::bodies::builder::{Bolt, Builder, Direction};
 use crate::bodies::fittings;
-use crate::bodies::layout::STANDOFFS;
+use crate::bodies::layout::{STANDOFF, STANDOFFS, UNO, UNO_BOARD};
 use crate::bodies::leads;
 use crate::bodies::names::names;
 use crate::layers::body::{Kind, Mount, Prism};
 use crate::layers::mark;
 use crate::layers::shape::Shape;
 
-/// Radius of a standoff, mm: 5.5 mm over flats.
-const STANDOFF: f64 = 3.2;
 /// Radius of a servo's spline, mm.
 pub const SPLINE: f64 = 2.4;
 /// Radius of the hole that a servo's own screw cuts its thread into, mm. One of the two
@@ -23,17 +21,14 @@ const PILOT: f64 = 0.75;
 /// From a seat to the middle of its servo's number, and as much outward, mm.
 const NUMBER: f64 = 4.0;
 
-/// An Arduino UNO, mm: its board, what stands on it, its four holes from its middle
-/// with the USB socket behind. From 2700 x 2100 mil and holes at (550, 100), (600, 2000),
-/// (2600, 300), (2600, 1400).
-pub const UNO: [f64; 3] = [53.34, 68.58, 12.0];
+/// The holes of a UNO from its middle, with the USB socket behind, mm: in mil from a corner
+/// (550, 100), (600, 2000), (2600, 300), (2600, 1400).
 const UNO_HOLES: [(f64, f64); 4] = [
     (24.13, -20.32),
     (-24.13, -19.05),
     (19.05, 31.75),
     (-8.89, 31.75),
 ];
-const UNO_BOARD: f64 = 1.6;
 /// The hole beside the pin AREF, whose header leaves no room for a screw's head.
 const UNO_TIGHT: usize = 1;
 
@@ -194,7 +189,7 @@ fn case(builder: &mut Builder, servo: usize) {
         layer(spline, body.boss, body.boss + 3.0),
     ];
     builder.body(format!("servo {name}"), Kind::Servo, Mount::Chassis, prisms);
-    builder.meeting(&[format!("horn {name}")]);
+    builder.allow_contact(&[format!("horn {name}")]);
     for (number, at) in flange_holes(builder, servo).into_iter().enumerate() {
         let head = Prism::solid([Shape::disc(at, 2.2)], [bottom + over, bottom + over + 1.6]);
         let screw = format!("servo screw {name} {}", number + 1);
@@ -213,16 +208,18 @@ fn deck(builder: &mut Builder) {
     let (stack, parts) = (builder.stack, builder.parts);
     let [x, y] = STANDOFFS;
     let bar = |a: (f64, f64), b: (f64, f64)| Shape::bar(at(a.0, a.1), at(b.0, b.1), 5.0);
-    let add = vec![
+    let mut add = vec![
         Shape::rectangle(Vector::default(), at(2.0 * x + 10.5, 2.0 * y + 14.0), 5.0),
         bar(UNO_HOLES[0], UNO_HOLES[1]),
         bar(UNO_HOLES[2], UNO_HOLES[3]),
     ];
+    let [wings, open] = fittings::wings(UNO_HOLES);
+    add.extend(wings);
     let screws = standoffs().map(|at| builder.hole(at));
     let threads = UNO_HOLES.map(|(x, y)| builder.thread(at(x, y)));
     // It saves weight, and cable ties for the parts below the deck pass through it.
     let window = Shape::rectangle(at(0.0, 4.0), at(12.0, 36.0), 3.0);
-    let holes = [&screws[..], &threads, &leads::holes(), &[window]].concat();
+    let holes = [&screws[..], &threads, &leads::holes(), &[window], &open].concat();
     let bosses = UNO_HOLES.map(|(x, y)| Shape::disc(at(x, y), 4.0));
     let prisms = [
         Prism::new(add, holes, stack.deck),
@@ -236,8 +233,8 @@ fn deck(builder: &mut Builder) {
         let name = format!("standoff {number}");
         builder.body(&name, Kind::Standoff(length), Mount::Chassis, [post]);
         for (end, head, points) in [
-            ("below", stack.plate[0], Points::Up),
-            ("above", stack.deck[1], Points::Down),
+            ("below", stack.plate[0], Direction::Up),
+            ("above", stack.deck[1], Direction::Down),
         ] {
             let name = format!("{name} {end}");
             let bolt = Bolt::new(&name, Mount::Chassis, place, head, points);
@@ -259,7 +256,7 @@ fn board(builder: &mut Builder) {
     for (number, (x, y)) in UNO_HOLES.into_iter().enumerate() {
         if number != UNO_TIGHT {
             let name = format!("board {}", number + 1);
-            let bolt = Bolt::new(&name, Mount::Chassis, at(x, y), top, Points::Down);
+            let bolt = Bolt::new(&name, Mount::Chassis, at(x, y), top, Direction::Down);
             builder.screw(&bolt, 10.0);
         }
     }

@@ -2,7 +2,7 @@
 
 use lizard_kinematics::{End, Vector};
 
-use crate::bodies::builder::{Bolt, Builder, Points};
+use crate::bodies::builder::{Bolt, Builder, Direction};
 use crate::bodies::looks;
 use crate::bodies::names::{coupler, names};
 use crate::layers::body::{Mount, Prism, coupler_length};
@@ -36,7 +36,7 @@ pub fn add(builder: &mut Builder) {
         builder.bolt(&Bolt {
             nut: upper[1] + looks.above + PLAY,
             meets: &meets,
-            ..Bolt::new(end.name(), mount, apex, head, Points::Up)
+            ..Bolt::new(end.name(), mount, apex, head, Direction::Up)
         });
     }
 }
@@ -45,7 +45,7 @@ fn bar(builder: &mut Builder, servo: usize, z: Span) {
     let from = Vector::default();
     let to = Vector::new(coupler_length(builder.robot, servo), 0.0);
     let layer = |hole: Option<Shape>, z: Span| {
-        let mut add = vec![Shape::bar(from, to, builder.half())];
+        let mut add = vec![Shape::bar(from, to, builder.half_bar())];
         let mut cut = vec![builder.hole(from), builder.hole(to)];
         let around = |hole: &Shape| Shape::disc(hole.middle(), builder.around_head());
         add.extend(hole.iter().map(around));

@@ -1,38 +1,132 @@
-//! The places of supply, terminal strips and straps on the robot.
+//! The places of supply, terminal strips, plugs and straps on the robot.
 //!
-//! Each has a place, so that the proof of fit and the mass include it.
+//! Each has a place, so that the proof of fit and the mass include it. Nothing moves above
+//! the deck. So it has two wings beside the board for what must be reached by hand: on the
+//! right what leads the battery's plus, on the left, beside the pins, the signals.
 
 use lizard_kinematics::Vector;
 
 use crate::bodies::builder::Builder;
-use crate::bodies::layout::STANDOFFS;
+use crate::bodies::layout::{STANDOFF, STANDOFFS, UNO, UNO_BOARD};
 use crate::layers::body::{Kind, Mount, Prism};
-use crate::layers::fitting::{Fitting, STRAP};
+use crate::layers::fitting::{Fitting, PITCH, STRAP};
 use crate::layers::shape::Shape;
 
 /// A slot for the battery's strap, mm: along the plate and across.
 const STRAP_SLOT: [f64; 2] = [17.0, 2.4];
 /// A slot for a cable tie, mm: along the plate and across.
 const TIE_SLOT: [f64; 2] = [4.0, 2.0];
-/// From the middle of the plate to the middles of the terminal strips, mm.
-const STRIPS: f64 = 12.5;
-/// From the middle of the plate to the cable ties, mm.
-const TIES: f64 = 27.0;
+/// The least distance of the terminal strips' middles from the plate's, mm.
+const STRIPS: f64 = 13.2;
+/// From the middle of the plate to the cable ties, which pass beside the battery's ends, mm.
+const TIES: f64 = 31.5;
+/// Thickness of a cable tie, mm.
+const TIE: f64 = 1.6;
+
+/// A wing of the deck, mm: its inner and its outer edge from the middle, half its length.
+/// Farther forward or back it would cover nuts of the sliders.
+const WING: [f64; 3] = [25.2, 51.2, 40.0];
+/// The openings of a wing, mm: from and to in x, away from the middle, and in y. They save
+/// weight; between them is the arm that carries the wing.
+const OPEN: [[[f64; 2]; 2]; 2] = [
+    [[32.5, 43.0], [-36.5, -26.0]],
+    [[32.5, 43.0], [-12.0, 26.0]],
+];
+/// The inner edge of what lies on a wing, mm from the middle.
+const ON_WING: f64 = 29.5;
+/// The cable ties of a wing, mm from the middle: inside and outside of what they hold.
+const WING_TIES: [f64; 2] = [28.0, 48.4];
+/// Heights of the round socket's middle above the board, and its length beyond it, mm.
+const SOCKET: [f64; 2] = [6.5, 2.0];
+/// The round socket's middle, mm to the right of the board's middle.
+const SOCKET_AT: f64 = 19.05;
+
+fn at(x: f64, y: f64) -> Vector {
+    Vector::new(x, y)
+}
+
+fn slot(x: f64, y: f64, [along, across]: [f64; 2]) -> Shape {
+    Shape::rectangle(at(x, y), at(across, along), 0.5)
+}
 
 /// Slots in the plate: for the strap beside the battery, if the plate is wide enough, and
 /// for cable ties beside the terminal strips.
 pub fn slots(builder: &Builder) -> Vec<Shape> {
-    let slot = |x: f64, y: f64, [along, across]: [f64; 2]| {
-        Shape::rectangle(Vector::new(x, y), Vector::new(across, along), 0.5)
-    };
     let mut slots = Vec::new();
     if let Some(x) = beside(builder) {
         slots.extend([-x, x].map(|x| slot(x, 0.0, STRAP_SLOT)));
     }
-    for x in [-STRIPS - 4.5, -STRIPS + 4.5, STRIPS - 4.5, STRIPS + 4.5] {
+    let strips = strips(builder);
+    for x in [-strips - 4.5, -strips + 4.5, strips - 4.5, strips + 4.5] {
         slots.extend([-TIES, TIES].map(|y| slot(x, y, TIE_SLOT)));
     }
     slots
+}
+
+/// From the middle of the plate to the middles of the terminal strips, mm: the servos' leads
+/// pass between them, along the inner sides of their cases.
+fn strips(builder: &Builder) -> f64 {
+    let plate = builder.layout.plate;
+    let cases = plate.cases.iter().map(|case| case.x.abs());
+    let lead = cases.fold(0.0, f64::max) - plate.case.x / 2.0;
+    STRIPS.max(lead + 0.3 + length(Fitting::Ground, 0) / 2.0)
+}
+
+/// The outlines of the deck's wings and of the arms that carry them from the holes of the
+/// board; and the holes in them.
+pub fn wings(holes: [(f64, f64); 4]) -> [Vec<Shape>; 2] {
+    let [inner, outer, half] = WING;
+    let middle = (inner + outer) / 2.0;
+    let mut add = Vec::new();
+    let mut cut = Vec::new();
+    for side in [-1.0, 1.0] {
+        let size = at(outer - inner, 2.0 * half);
+        add.push(Shape::rectangle(at(side * middle, 0.0), size, 4.0));
+        for [x, y] in OPEN {
+            let size = at(x[1] - x[0], y[1] - y[0]);
+            let middle = at(side * (x[0] + x[1]) / 2.0, (y[0] + y[1]) / 2.0);
+            cut.push(Shape::rectangle(middle, size, 2.0));
+        }
+    }
+    for (x, y) in holes {
+        add.push(Shape::bar(at(x, y), at(middle.copysign(x), y), 5.0));
+    }
+    // Behind the resistors, whose wires lie beside the middle of the strip.
+    for x in WING_TIES {
+        cut.push(slot(-x, signals() - 11.0, TIE_SLOT));
+    }
+    cut.push(slot(WING_TIES[0], fuse(), TIE_SLOT));
+    cut.push(slot(
+        ON_WING + length(Fitting::Fuse, 0) + 2.4,
+        fuse(),
+        TIE_SLOT,
+    ));
+    let [along, across] = TIE_SLOT;
+    cut.push(slot(38.5, tie_of_switch(), [across, along]));
+    [add, cut]
+}
+
+fn length(fitting: Fitting, axis: usize) -> f64 {
+    fitting.facts().size[axis]
+}
+
+/// The middle of the signal strip, mm ahead of the plate's: it begins at the wing's rear.
+fn signals() -> f64 {
+    0.5 - WING[2] + length(Fitting::Signals, 1) / 2.0
+}
+
+/// The middle of the fuse, at the wing's front.
+fn fuse() -> f64 {
+    WING[2] - 0.5 - length(Fitting::Fuse, 1) / 2.0
+}
+
+/// The middle of the switch, at the wing's rear end, which its cable tie goes around.
+fn switch() -> f64 {
+    0.3 - WING[2] + length(Fitting::Switch, 1) / 2.0
+}
+
+fn tie_of_switch() -> f64 {
+    switch() + length(Fitting::Switch, 1) / 2.0 + 1.2
 }
 
 /// Distance of the strap's slots from the plate's middle, mm; `None` if the plate is no
@@ -45,15 +139,51 @@ fn beside(builder: &Builder) -> Option<f64> {
 }
 
 pub fn add(builder: &mut Builder) {
+    below(builder);
+    on_deck(builder);
+    plugs(builder);
+    strap(builder);
+}
+
+/// Adds a fitting as a block.
+fn block(builder: &mut Builder, fitting: Fitting, middle: Vector, low: f64) {
+    let size = fitting.facts().size;
+    sized(
+        builder,
+        fitting,
+        fitting.name().to_owned(),
+        middle,
+        low,
+        size,
+    );
+}
+
+fn sized(
+    builder: &mut Builder,
+    fitting: Fitting,
+    name: String,
+    middle: Vector,
+    low: f64,
+    [wide, long, high]: [f64; 3],
+) {
+    let shape = Shape::rectangle(middle, at(wide, long), 0.0);
+    let prism = Prism::solid([shape], [low, low + high]);
+    builder.body(name, Kind::Fitting(fitting), Mount::Chassis, [prism]);
+}
+
+/// What hangs under the deck and under the plate.
+fn below(builder: &mut Builder) {
     let stack = builder.stack;
-    let [battery_x, battery_y, battery_z] = builder.parts.battery;
     // Under the strap, and under the heads of the standoffs' screws.
     let belly = stack.plate[0] - STRAP[1].max(builder.parts.screw.head_height) - 0.3;
     let deck = stack.deck[0];
     let room = STANDOFFS[1] - 3.4;
-    let half = |fitting: Fitting| fitting.size()[1] / 2.0;
+    let half = |fitting: Fitting| length(fitting, 1) / 2.0;
+    let strips = strips(builder);
     // The strip for ground reaches this far to either side, and the others end there.
     let strip = half(Fitting::Ground);
+    let supply = strip - half(Fitting::Supply);
+    let capacitor = half(Fitting::Capacitor) - strip;
     for (fitting, x, y, ceiling) in [
         (Fitting::Alarm, 0.0, half(Fitting::Alarm) - room, deck),
         (
@@ -62,31 +192,87 @@ pub fn add(builder: &mut Builder) {
             room - half(Fitting::Converter),
             deck,
         ),
-        (Fitting::Ground, -STRIPS, 0.0, belly),
-        (
-            Fitting::Supply,
-            STRIPS,
-            strip - half(Fitting::Supply),
-            belly,
-        ),
-        (
-            Fitting::Capacitor,
-            STRIPS,
-            half(Fitting::Capacitor) - strip,
-            belly,
-        ),
+        (Fitting::Ground, -strips, 0.0, belly),
+        (Fitting::Supply, strips, supply, belly),
+        (Fitting::Capacitor, strips, capacitor, belly),
     ] {
-        let [wide, long, high] = fitting.size();
-        let block = Shape::rectangle(Vector::new(x, y), Vector::new(wide, long), 0.0);
-        let block = Prism::solid([block], [ceiling - high, ceiling]);
-        builder.body(
-            fitting.name(),
-            Kind::Fitting(fitting),
-            Mount::Chassis,
-            [block],
+        block(builder, fitting, at(x, y), ceiling - length(fitting, 2));
+    }
+}
+
+/// What lies on the deck's wings.
+fn on_deck(builder: &mut Builder) {
+    let top = builder.stack.deck[1];
+    let half = |fitting: Fitting| length(fitting, 0) / 2.0;
+    let x = |fitting: Fitting| ON_WING + half(fitting);
+    block(
+        builder,
+        Fitting::Signals,
+        at(-x(Fitting::Signals), signals()),
+        top,
+    );
+    let front = WING[2] - 0.5 - length(Fitting::Radio, 1) / 2.0;
+    block(builder, Fitting::Radio, at(-x(Fitting::Radio), front), top);
+    block(builder, Fitting::Fuse, at(x(Fitting::Fuse), fuse()), top);
+    block(
+        builder,
+        Fitting::Switch,
+        at(x(Fitting::Switch), switch()),
+        top,
+    );
+    let way = fuse() - (length(Fitting::Fuse, 1) + length(Fitting::Plus, 1)) / 2.0 - 0.3;
+    block(builder, Fitting::Plus, at(x(Fitting::Plus), way), top);
+    // From each signal to the middle way: two over one way, two over two.
+    let outside = -ON_WING - length(Fitting::Signals, 0) - 0.4 - half(Fitting::Resistor);
+    let row = length(Fitting::Resistor, 0) + 0.4;
+    let places = [(1.0, -1.0), (0.0, -0.5), (0.0, 0.5), (1.0, 1.0)];
+    for (number, (out, ways)) in (1..).zip(places) {
+        let middle = at(outside - out * row, signals() + ways * PITCH);
+        let (size, name) = (Fitting::Resistor.facts().size, format!("resistor {number}"));
+        sized(builder, Fitting::Resistor, name, middle, top + 4.0, size);
+    }
+}
+
+/// The battery's plug, before its end or, where a long battery leaves no room, on it; and
+/// the plug in the board's socket.
+fn plugs(builder: &mut Builder) {
+    let [_, battery, high] = builder.parts.battery;
+    let [wide, thick, tall] = Fitting::Plug.facts().size;
+    let end = battery / 2.0 + 0.3;
+    let name = Fitting::Plug.name().to_owned();
+    if end + thick <= STANDOFFS[1] - STANDOFF {
+        let middle = at(0.0, end + thick / 2.0);
+        sized(
+            builder,
+            Fitting::Plug,
+            name,
+            middle,
+            TIE,
+            [wide, thick, tall],
+        );
+    } else {
+        let middle = at(0.0, STRAP[0] / 2.0 + 1.0 + tall / 2.0);
+        let low = high + 0.2;
+        sized(
+            builder,
+            Fitting::Plug,
+            name,
+            middle,
+            low,
+            [wide, tall, thick],
         );
     }
-    // Around the battery, and under the plate.
+    let [above, beyond] = SOCKET;
+    let [_, long, high] = Fitting::RoundPlug.facts().size;
+    let y = -(UNO[1] + long) / 2.0 - beyond - 0.1;
+    let low = builder.stack.boss[1] + UNO_BOARD + above - high / 2.0;
+    block(builder, Fitting::RoundPlug, at(SOCKET_AT, y), low);
+}
+
+/// The strap around battery and plate.
+fn strap(builder: &mut Builder) {
+    let stack = builder.stack;
+    let [battery_x, battery_y, battery_z] = builder.parts.battery;
     let [wide, thick] = STRAP;
     let wide = wide.min(battery_y);
     let x = battery_x / 2.0;

@@ -8,6 +8,13 @@ use lizard_robot::{LegPlan, Plate, Robot};
 /// Distance of the standoffs from the plate's middle, mm: to the right, forward.
 pub const STANDOFFS: [f64; 2] = [8.0, 39.0];
 
+/// Radius of a standoff, mm: 5.5 mm over flats.
+pub const STANDOFF: f64 = 3.2;
+/// An Arduino UNO, mm: its board of 2700 x 2100 mil, and the height of what stands on it.
+pub const UNO: [f64; 3] = [53.34, 68.58, 12.0];
+/// Thickness of its board, mm.
+pub const UNO_BOARD: f64 = 1.6;
+
 /// The pivots of all moving bodies, and their distances on each body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layout {

@@ -8,15 +8,15 @@
 use lizard_kinematics::Vector;
 use lizard_robot::LegPlan;
 
-use crate::bodies::builder::{Bolt, Builder, Points};
+use crate::bodies::builder::{Bolt, Builder, Direction};
 use crate::bodies::names::names;
+use crate::bodies::pads;
 use crate::layers::body::{Kind, Mount, Prism};
 use crate::layers::shape::Shape;
-use crate::layers::stack::{LEAF, PLAY};
+use crate::layers::stack::{LEAF, PAD_LIP, PLAY};
 
-/// Radius of the boss around a foot's nut, and of a pad, mm.
+/// Radius of the boss around a foot's nut, mm.
 const TIP: f64 = 5.0;
-const PAD: f64 = 4.0;
 /// From the follower's joint to the two screws of the foot's column, mm.
 const CLAMPS: [f64; 2] = [21.0, 9.0];
 /// Length of these screws, which cut their thread into the column, mm.
@@ -53,12 +53,12 @@ fn crank(builder: &mut Builder, servo: usize) {
     let (_, leg) = names(servo);
     let (stack, parts) = (builder.stack, builder.parts);
     let LegPlan { anchor, joint, .. } = builder.layout.legs[servo];
-    let (pivot, half) = (Vector::default(), builder.half());
+    let (pivot, half) = (Vector::default(), builder.half_bar());
     let add = [
         Shape::disc(pivot, half + 1.0),
         Shape::bar(pivot, joint, half),
         Shape::bar(pivot, anchor, half - 0.01),
-        Shape::disc(anchor, builder.eye()),
+        Shape::disc(anchor, builder.around_nut()),
     ];
     let holes = [builder.hole(pivot), builder.hole(joint)];
     let and = |hole: Shape| [&holes[..], &[hole]].concat();
@@ -80,7 +80,7 @@ fn crank(builder: &mut Builder, servo: usize) {
 fn follower(builder: &mut Builder, servo: usize) {
     let (_, leg) = names(servo);
     let (pivot, joint) = (Vector::default(), builder.layout.legs[servo].joint);
-    let (stack, half) = (builder.stack, builder.half());
+    let (stack, half) = (builder.stack, builder.half_bar());
     let holes = [builder.hole(pivot), builder.hole(joint)];
     let bearing = Shape::disc(pivot, half - 0.2);
     let bearing = Prism::new([bearing], [holes[0].clone()], stack.bearing);
@@ -112,7 +112,7 @@ fn coupler(builder: &mut Builder, servo: usize) {
     let through = clamps.map(|at| builder.hole(at));
     let sunk = clamps.map(|at| builder.sink(at));
     let joints = [builder.hole(from), builder.hole(to)];
-    let mut bar = vec![Shape::bar(from, to, builder.half())];
+    let mut bar = vec![Shape::bar(from, to, builder.half_bar())];
     bar.extend(clamps.map(|at| Shape::disc(at, builder.around_head())));
     let (seat, [low, high]) = (clamp_seat(builder), stack.leg_coupler);
     let through = [joints.clone(), through].concat();
@@ -128,7 +128,7 @@ fn foot(builder: &mut Builder, servo: usize) {
     let stack = builder.stack;
     let at = builder.layout.legs[servo].foot;
     let clamps = clamps(builder);
-    let half = builder.half();
+    let half = builder.half_bar();
     // The column begins at the end of the leaf's free length.
     let away = clamps[0] - at;
     let toward = away * (1.0 / away.length());
@@ -161,12 +161,15 @@ fn foot(builder: &mut Builder, servo: usize) {
     builder.printed(format!("foot {leg}"), mount, prisms);
     for (number, at) in (1..).zip(clamps) {
         let name = format!("foot {leg} {number}");
-        let bolt = Bolt::new(&name, mount, at, clamp_seat(builder), Points::Down);
+        let bolt = Bolt::new(&name, mount, at, clamp_seat(builder), Direction::Down);
         builder.screw(&bolt, CLAMP_SCREW);
     }
-    let head = stack.pad[1] + builder.parts.screw.head_height;
+    let head = stack.pad[1] - PAD_LIP;
     let name = format!("height {leg}");
-    builder.screw(&Bolt::new(&name, mount, at, head, Points::Up), FOOT_SCREW);
+    builder.screw(
+        &Bolt::new(&name, mount, at, head, Direction::Up),
+        FOOT_SCREW,
+    );
     let screw = builder.parts.screw;
     let (flats, thread) = (
         Shape::hexagon(at, screw.nut),
@@ -174,8 +177,8 @@ fn foot(builder: &mut Builder, servo: usize) {
     );
     let sunk = Prism::new([flats], [thread], [stack.leaf[0], nut]);
     builder.body(format!("height nut {leg}"), Kind::Nut, mount, [sunk]);
-    let pad = Prism::solid([Shape::disc(at, PAD)], stack.pad);
-    builder.body(format!("pad {leg}"), Kind::Pad, mount, [pad]);
+    let pad = pads::layers(builder.parts, at, stack.floor);
+    builder.body(format!("pad {leg}"), Kind::Pad, mount, pad);
 }
 
 fn screws(builder: &mut Builder, servo: usize) {
@@ -189,13 +192,13 @@ fn screws(builder: &mut Builder, servo: usize) {
         builder.bolt(&Bolt {
             nut: stack.plate[0] - PLAY,
             meets: &["plate"],
-            ..Bolt::new(&screw, mount, pivot, head, Points::Down)
+            ..Bolt::new(&screw, mount, pivot, head, Direction::Down)
         });
         let (head, screw) = (stack.leg_coupler[0], format!("{name} joint {leg}"));
         builder.bolt(&Bolt {
             nut: stack.crank[1] + PLAY,
             meets: &[&coupler],
-            ..Bolt::new(&screw, mount, joint, head, Points::Up)
+            ..Bolt::new(&screw, mount, joint, head, Direction::Up)
         });
     }
     let (nut, length) = stack.anchor_nut(parts);
@@ -204,6 +207,6 @@ fn screws(builder: &mut Builder, servo: usize) {
         nut,
         length: Some(length),
         meets: &[&builder.strut(leg)],
-        ..Bolt::new(&name, crank, anchor, stack.on_hook, Points::Down)
+        ..Bolt::new(&name, crank, anchor, stack.on_hook, Direction::Down)
     });
 }

@@ -6,7 +6,7 @@
 use lizard_kinematics::Vector;
 use lizard_robot::Horn;
 
-use crate::bodies::builder::{Bolt, Builder, Points};
+use crate::bodies::builder::{Bolt, Builder, Direction};
 use crate::bodies::chassis::SPLINE;
 use crate::bodies::names::names;
 use crate::layers::body::{Kind, Mount, Prism};
@@ -70,7 +70,7 @@ fn horn(builder: &mut Builder, servo: usize) {
         Mount::Link(servo),
         prisms,
     );
-    builder.meeting(&[format!("servo {name}")]);
+    builder.allow_contact(&[format!("servo {name}")]);
 }
 
 fn link(builder: &mut Builder, servo: usize) {
@@ -80,7 +80,7 @@ fn link(builder: &mut Builder, servo: usize) {
     let tip = Vector::new(layout.crank[servo], 0.0);
     let side = Vector::new(0.0, layout.hand[servo] * layout.arm[servo]);
     let anchor = layout.legs[servo].anchor;
-    let half = builder.half();
+    let half = builder.half_bar();
     let round = parts.horn.hub / 2.0 + 2.0 * parts.fit + 1.5 * parts.wall;
     // Without it the link would break in the corner between crank and arm.
     let brace = Shape::hull(&[hub, tip * 0.45, side * 0.45], 0.6 * half);
@@ -90,8 +90,8 @@ fn link(builder: &mut Builder, servo: usize) {
         Shape::bar(hub, side, half - 0.01),
         Shape::bar(hub, anchor, half - 0.02),
         brace,
-        Shape::disc(tip, builder.eye()),
-        Shape::disc(side, builder.eye()),
+        Shape::disc(tip, builder.around_nut()),
+        Shape::disc(side, builder.around_nut()),
     ];
     let horn_hub = Shape::disc(hub, parts.horn.hub / 2.0 + parts.fit);
     let holes = [builder.hole(tip), builder.hole(side)];
@@ -120,7 +120,7 @@ fn link(builder: &mut Builder, servo: usize) {
     };
     let prisms: Vec<_> = heights.windows(2).map(layer).collect();
     builder.printed(format!("link {name}"), Mount::Link(servo), prisms);
-    builder.meeting(&[format!("servo {name}")]);
+    builder.allow_contact(&[format!("servo {name}")]);
 }
 
 /// The places of the small screws that hold the horn.
@@ -155,11 +155,11 @@ fn anchor(builder: &mut Builder, servo: usize) {
     let thin = Shape::disc(at, parts.screw.diameter / 2.0 + RING);
     let prism = Prism::new([thin], [builder.hole(at)], ring);
     builder.printed(format!("strut ring {name}"), Mount::Link(servo), [prism]);
-    builder.meeting(&[&strut]);
+    builder.allow_contact(&[&strut]);
     let (mount, screw) = (Mount::Link(servo), format!("anchor {name}"));
     builder.bolt(&Bolt {
         nut: stack.strut[0] - PLAY,
         meets: &[&strut],
-        ..Bolt::new(&screw, mount, at, stack.sunk[0], Points::Down)
+        ..Bolt::new(&screw, mount, at, stack.sunk[0], Direction::Down)
     });
 }

@@ -8,7 +8,7 @@
 
 use lizard_kinematics::{End, Solution, Vector};
 
-use crate::bodies::builder::{Bolt, Builder, Points};
+use crate::bodies::builder::{Bolt, Builder, Direction};
 use crate::bodies::names::names;
 use crate::layers::body::{Mount, Prism, at_end, coupler_length};
 use crate::layers::shape::Shape;
@@ -104,7 +104,7 @@ fn tail(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> Fla
     // Seen from behind the robot, left is to the left.
     let (_, hand) = at_end(servo);
     let way = turned(straight, if hand == 0 { -APART } else { APART });
-    let half = builder.half();
+    let half = builder.half_bar();
     let wide = way.left() * (half - 1.5);
     let second = point - Vector::new(BACK, 0.0);
     let corners = [point + wide, point - wide, point + way * (length - 1.5)];
@@ -134,7 +134,7 @@ fn head(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> Fla
     let eyes = [wide, -wide].map(|left| Shape::disc(at(0.42 * length, left), EYE));
     let mut cut = vec![builder.hole(point)];
     cut.extend(eyes);
-    let add = vec![Shape::bar(second, point, builder.half()), face];
+    let add = vec![Shape::bar(second, point, builder.half_bar()), face];
     (add, cut)
 }
 
@@ -164,6 +164,6 @@ fn under_lower(builder: &mut Builder, servo: usize, (add, mut cut): Flat) {
 
 fn screw(builder: &mut Builder, of: &str, servo: usize, head: f64) {
     let at = second(builder, servo);
-    let bolt = Bolt::new(of, Mount::Coupler(servo), at, head, Points::Down);
+    let bolt = Bolt::new(of, Mount::Coupler(servo), at, head, Direction::Down);
     builder.screw(&bolt, SCREW);
 }

@@ -16,5 +16,6 @@ pub(crate) mod legs;
 pub(crate) mod links;
 pub(crate) mod looks;
 pub(crate) mod names;
+pub(crate) mod pads;
 pub(crate) mod sliders;
 pub(crate) mod struts;

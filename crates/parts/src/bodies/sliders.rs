@@ -18,7 +18,7 @@ pub(crate) const ROD: f64 = 6.0;
 /// The least length of the rod inside its sleeve, mm.
 const OVERLAP: f64 = 20.0;
 /// From the sleeve's end to the front pin at the shortest, mm.
-const SHORT: f64 = 8.0;
+const SHORTEST_GAP: f64 = 8.0;
 
 /// Lengths of one slider, mm, along its line from the rear pin.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,7 +35,7 @@ impl SliderLengths {
     /// The lengths for a side whose pins may be from `shortest` to `longest` mm apart.
     #[must_use]
     pub fn new(side: Side, [shortest, longest]: [f64; 2]) -> Self {
-        let sleeve = shortest - SHORT;
+        let sleeve = shortest - SHORTEST_GAP;
         Self {
             sleeve,
             rod: longest - sleeve + OVERLAP,
@@ -55,7 +55,7 @@ pub fn add(builder: &mut Builder) {
 
 fn sleeve(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
     let (parts, stack) = (builder.parts, builder.stack);
-    let half = builder.half();
+    let half = builder.half_bar();
     let pin = Vector::default();
     let bore = ROD + 2.0 * parts.fit;
     let outer = bore + 2.0 * parts.wall;
@@ -78,11 +78,11 @@ fn sleeve(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
     ];
     prisms.retain(Prism::has_height);
     builder.printed(format!("sleeve {side}"), Mount::Sleeve(side), prisms);
-    builder.meeting(&[format!("rod {side}")]);
+    builder.allow_contact(&[format!("rod {side}")]);
 }
 
 fn rod(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
-    let half = builder.half();
+    let half = builder.half_bar();
     let pin = Vector::default();
     let middle = Vector::new(-lengths.rod / 2.0, lengths.beside);
     let bar = Shape::rectangle(middle, Vector::new(lengths.rod, ROD), 1.0);

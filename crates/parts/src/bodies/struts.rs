@@ -32,7 +32,7 @@ pub fn add(builder: &mut Builder) {
 }
 
 /// The struts of the other kind, which can replace the robot's own.
-pub fn instead(builder: &Builder) -> Vec<Body> {
+pub fn alternatives(builder: &Builder) -> Vec<Body> {
     (0..4)
         .map(|servo| body(builder, servo, !builder.slotted()))
         .collect()
@@ -96,7 +96,7 @@ fn spring(builder: &mut Builder, servo: usize) {
     let (spring, mount) = (format!("spring {leg}"), Mount::Strut(servo));
     builder.body(spring, Kind::Spring, mount, [coil]);
     // Heads lie over the hooks, so they reach to the coil's ends.
-    builder.meeting(&[
+    builder.allow_contact(&[
         format!("screw leg anchor {leg}"),
         format!("screw anchor {name}"),
     ]);

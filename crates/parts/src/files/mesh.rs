@@ -31,7 +31,7 @@ impl Mesh {
     /// Never for a closed surface.
     #[must_use]
     pub fn of(solid: &Solid) -> Self {
-        let mut maker = Maker {
+        let mut maker = MeshBuilder {
             solid,
             mesh: Self::default(),
             at: BTreeMap::new(),
@@ -75,7 +75,7 @@ impl Mesh {
     }
 }
 
-struct Maker<'a> {
+struct MeshBuilder<'a> {
     solid: &'a Solid,
     mesh: Mesh,
     at: BTreeMap<(usize, usize), usize>,
@@ -83,7 +83,7 @@ struct Maker<'a> {
     lines: Vec<Vec<usize>>,
 }
 
-impl Maker<'_> {
+impl MeshBuilder<'_> {
     fn corner(&mut self, (point, level): (usize, usize)) -> usize {
         let (at, z) = (self.solid.points[point], self.solid.heights[level]);
         let corners = &mut self.mesh.corners;

@@ -108,7 +108,7 @@ fn is_open(outline: &Outline, hole: &Loop) -> bool {
     let within = |point: Vector| middle + (point - middle) * 0.999;
     let ends = hole.ends();
     let mut probes = ends.flat_map(|(side, to)| [side.from, side.middle(to)]);
-    probes.all(|point| !outline.holds(within(point)))
+    probes.all(|point| !outline.contains(within(point)))
 }
 
 /// The smallest and the largest x and y of a sheet, arcs at their full size, mm.

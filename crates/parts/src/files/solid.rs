@@ -73,7 +73,7 @@ impl Solid {
     #[must_use]
     pub fn of(prisms: &[Prism]) -> Self {
         let outlines: Vec<Outline> = prisms.iter().map(Outline::of).collect();
-        let mut maker = Maker::default();
+        let mut maker = SolidBuilder::default();
         let top = prisms.last().map(|last| last.z[1]);
         let heights = prisms.iter().map(|prism| prism.z[0]).chain(top);
         maker.solid.heights = heights.collect();
@@ -109,7 +109,7 @@ impl Solid {
 type Cut<'a> = (&'a Outline, &'a [Vec<Piece>]);
 
 #[derive(Default)]
-struct Maker {
+struct SolidBuilder {
     solid: Solid,
     known: BTreeMap<(usize, usize, usize, usize), usize>,
     /// Middles of pieces, which tell two arcs between the same points apart.
@@ -125,7 +125,7 @@ fn place(points: &mut Vec<Vector>, point: Vector) -> usize {
     })
 }
 
-impl Maker {
+impl SolidBuilder {
     /// Each side of an outline as pieces, cut where it meets another outline.
     fn pieces(&mut self, level: usize, of: &Outline, other: &Outline) -> Vec<Vec<Piece>> {
         let others: Vec<_> = other.loops().flat_map(Loop::ends).collect();
@@ -198,7 +198,7 @@ impl Maker {
         for piece in a.1.iter().flatten() {
             let keep = match find(piece.edge) {
                 Some(same) => same.forward != piece.forward,
-                None => !b.0.holds(self.middles[piece.middle]),
+                None => !b.0.contains(self.middles[piece.middle]),
             };
             if keep {
                 outline.push(*piece);
@@ -206,7 +206,7 @@ impl Maker {
         }
         for piece in b.1.iter().flatten() {
             let shared = a.1.iter().flatten().any(|other| other.edge == piece.edge);
-            if !shared && a.0.holds(self.middles[piece.middle]) {
+            if !shared && a.0.contains(self.middles[piece.middle]) {
                 outline.push(Piece {
                     from: piece.to,
                     to: piece.from,
@@ -244,7 +244,7 @@ impl Maker {
         outer.sort_by(|a, b| a.0.total_cmp(&b.0));
         for hole in holes {
             let inside = self.middles[hole[0].middle];
-            if let Some(face) = outer.iter_mut().find(|face| face.1.holds(inside)) {
+            if let Some(face) = outer.iter_mut().find(|face| face.1.contains(inside)) {
                 face.2.push(hole);
             }
         }

@@ -123,9 +123,9 @@ impl File {
             return self.add(&format!("CIRCLE('',#{frame},{})", real(radius)));
         }
         let way = [0, 1, 2].map(|i| to[i] - from[i]);
-        let long = way.iter().map(|part| part * part).sum::<f64>().sqrt();
+        let length = way.iter().map(|part| part * part).sum::<f64>().sqrt();
         let origin = self.triple("CARTESIAN_POINT", from);
-        let way = self.triple("DIRECTION", way.map(|part| part / long));
+        let way = self.triple("DIRECTION", way.map(|part| part / length));
         let vector = self.add(&format!("VECTOR('',#{way},1.)"));
         self.add(&format!("LINE('',#{origin},#{vector})"))
     }

@@ -13,8 +13,8 @@ pub fn stl(name: &str, mesh: &Mesh) -> Vec<u8> {
         let [a, b, c] = triangle.map(|corner| mesh.corners[corner]);
         let [u, v] = [b, c].map(|end| [0, 1, 2].map(|i| end[i] - a[i]));
         let normal = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| u[i] * v[j] - u[j] * v[i]);
-        let long = normal.iter().map(|part| part * part).sum::<f64>().sqrt();
-        let unit = normal.map(|part| if long > 0.0 { part / long } else { 0.0 });
+        let length = normal.iter().map(|part| part * part).sum::<f64>().sqrt();
+        let unit = normal.map(|part| if length > 0.0 { part / length } else { 0.0 });
         for corner in [unit, a, b, c] {
             for part in corner {
                 // Neither -0 nor 0 is more right; one of them is the same every time.

@@ -10,7 +10,7 @@ use crate::bodies::builder::Builder;
 use crate::bodies::chassis;
 use crate::bodies::names::names;
 use crate::guide::CORNER;
-use crate::layers::body::{Kind, Mount};
+use crate::layers::body::Mount;
 use crate::part::Part;
 
 impl Assembly {
@@ -25,7 +25,7 @@ impl Assembly {
             body.is_some_and(|body| {
                 let moves = !matches!(body.mount, Mount::Coupler(_));
                 let of = [name, leg].iter().any(|of| body.name.ends_with(of));
-                moves && of && body.kind == Kind::Printed
+                moves && of && body.kind.is_printed()
             })
         };
         for mut part in self.parts() {

@@ -2,18 +2,22 @@
 
 use std::fmt::Write;
 
+/// The text with what stands between pairs of a mark put into an element.
+fn paired(text: &str, mark: &str, element: &str) -> String {
+    let mut parts = text.split(mark);
+    let mut done = parts.next().unwrap_or_default().to_owned();
+    while let (Some(inside), Some(rest)) = (parts.next(), parts.next()) {
+        let _ = write!(done, "<{element}>{inside}</{element}>{rest}");
+    }
+    done
+}
+
 /// The guide's Markdown as a page. Only headings, pictures, tables, code and paragraphs
 /// are known.
 pub fn html(markdown: &str) -> String {
     let escape = |text: &str| {
         let text = text.replace('&', "&amp;").replace('<', "&lt;");
-        // Code is between a pair of back quotes.
-        let mut parts = text.split('`');
-        let mut done = parts.next().unwrap_or_default().to_owned();
-        while let (Some(code), Some(rest)) = (parts.next(), parts.next()) {
-            let _ = write!(done, "<code>{code}</code>{rest}");
-        }
-        done
+        paired(&paired(&text, "`", "code"), "**", "b")
     };
     let mut page = String::from(
         "<!DOCTYPE html>\n<html lang=\"en\"><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\">\n\

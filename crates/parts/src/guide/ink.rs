@@ -40,18 +40,18 @@ pub(super) struct Frame {
 
 impl Frame {
     /// The frame around some points, with a margin in a close view.
-    pub(super) fn around(points: impl Iterator<Item = (f64, f64)>, near: bool) -> Self {
+    pub(super) fn around(points: impl Iterator<Item = (f64, f64)>, close_up: bool) -> Self {
         /// Margin of a close view, mm.
         const AROUND: f64 = 12.0;
         let [low, high] = bounds(points.map(|(x, y)| Vector::new(x, y)));
-        let more = if near { AROUND } else { 0.0 };
+        let more = if close_up { AROUND } else { 0.0 };
         Self {
             low: (low.x - more, low.y - more),
             high: (high.x + more, high.y + more),
         }
     }
 
-    fn holds(&self, (x, y): (f64, f64)) -> bool {
+    fn contains(&self, (x, y): (f64, f64)) -> bool {
         self.low.0 <= x && x <= self.high.0 && self.low.1 <= y && y <= self.high.1
     }
 }
@@ -134,7 +134,7 @@ impl Ink {
         );
         text.push_str("</g>\n");
         let page = |(x, y): (f64, f64)| ((x - low.0) * scale + x0, (y - low.1) * scale + MARGIN);
-        let shown: Vec<_> = names.iter().filter(|(at, _)| frame.holds(*at)).collect();
+        let shown: Vec<_> = names.iter().filter(|(at, _)| frame.contains(*at)).collect();
         for (at, Label { text: name, .. }) in shown.iter().filter(|(_, label)| !label.beside) {
             let (x, y) = page(*at);
             let _ = writeln!(

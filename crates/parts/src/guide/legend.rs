@@ -8,7 +8,7 @@ use lizard_robot::servo::NAMES;
 
 use crate::bodies::assembly::Assembly;
 use crate::guide::ink::Label;
-use crate::guide::picture::Drawn;
+use crate::guide::picture::PictureBody;
 use crate::layers::body::{Body, Kind, Mount};
 use crate::part::Part;
 
@@ -21,7 +21,7 @@ pub fn called(body: &Body, parts: &[Part]) -> Option<String> {
         Kind::HornScrew(length) => format!("horn screw, {length} mm"),
         Kind::Nut => "lock nut".to_owned(),
         Kind::Standoff(length) => format!("standoff, {length} mm"),
-        Kind::Pad => "rubber pad".to_owned(),
+        Kind::Pad => "pad".to_owned(),
         Kind::Board => "Arduino UNO".to_owned(),
         Kind::Lead => return None,
         Kind::ServoScrew | Kind::Servo | Kind::Horn | Kind::Spring | Kind::Battery => {
@@ -45,7 +45,7 @@ pub fn counted(bodies: &[&Body], parts: &[Part]) -> Vec<String> {
     let mut counts: BTreeMap<(bool, usize, String), usize> = BTreeMap::new();
     for body in bodies {
         if let Some(name) = called(body, parts) {
-            let screw = !matches!(body.kind, Kind::Printed);
+            let screw = !body.kind.is_printed();
             // M3 x 8 comes before M3 x 12.
             *counts.entry((screw, name.len(), name)).or_default() += 1;
         }
@@ -57,9 +57,14 @@ pub fn counted(bodies: &[&Body], parts: &[Part]) -> Vec<String> {
 
 /// Labels for the new bodies in a picture: each name once, at the body nearest to the front
 /// left corner.
-pub fn names(assembly: &Assembly, parts: &[Part], drawn: &[Drawn], pose: &Solution) -> Vec<Label> {
+pub fn names(
+    assembly: &Assembly,
+    parts: &[Part],
+    drawn: &[PictureBody],
+    pose: &Solution,
+) -> Vec<Label> {
     let mut found: BTreeMap<String, (f64, usize, Label)> = BTreeMap::new();
-    for Drawn { body, lift, .. } in drawn.iter().filter(|drawn| !drawn.pale) {
+    for PictureBody { body, lift, .. } in drawn.iter().filter(|drawn| !drawn.grey) {
         let (Some(name), Some(prism)) = (called(body, parts), body.prisms.last()) else {
             continue;
         };

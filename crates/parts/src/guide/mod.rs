@@ -21,11 +21,11 @@ use crate::bodies::names::names;
 use crate::files::File;
 use crate::guide::html::html;
 use crate::guide::ink::Label;
-use crate::guide::picture::{Drawn, View, picture};
+use crate::guide::picture::{PictureBody, View, picture};
 use crate::layers::body::{Body, Mount};
 use crate::layers::roof::LAYER;
-use crate::order::reach::Aside;
-use crate::order::steps::{Near, Step, Where, steps};
+use crate::order::reach::AccessPose;
+use crate::order::steps::{ExtraView, Step, TurningPlace, steps};
 use crate::part::Part;
 use crate::unfit::Unfit;
 
@@ -44,17 +44,28 @@ const BEFORE: &str = "No printed robot has walked yet. So print in this order, a
 Print all parts as they lie, in layers of 0.2 mm, **without supports**. A slicer may offer some under the two ends of a sleeve's \
 roof: that is a bridge of 6.4 mm, which needs none.";
 
+/// The step after which each pad keeps its place, and what is added to it for pads with a grain.
+const LEVEL: &str = "Level the feet";
+const GRAIN: &str = " At last turn each pad on its screw until its grain is right: a finger glides smoothly over it \
+from head to tail. docs/gaits.md says more about pads with a grain.";
+
 /// The guide as Markdown and HTML, with its pictures at a pose, usually neutral.
 ///
 /// # Errors
 /// [`Unfit::Blocked`] for a screw that cannot be reached.
 pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<File>, Unfit> {
-    let steps = steps(assembly.robot().drive().strut().is_some());
-    let asides = assembly.asides(&steps)?;
+    let mut steps = steps(assembly.robot().drive().strut().is_some());
+    if assembly.robot().ground().ratio > 1.0 {
+        let level = steps.iter_mut().find(|step| step.title == LEVEL);
+        level.expect("a step levels the feet").words += GRAIN;
+    }
+    let access_poses = assembly.access_poses(&steps)?;
     let parts = assembly.parts();
     let mut files = Vec::new();
     let bodies = assembly.bodies().iter();
-    let all: Vec<_> = bodies.map(|body| Drawn::at_place(body, false)).collect();
+    let all: Vec<_> = bodies
+        .map(|body| PictureBody::at_place(body, false))
+        .collect();
     let names = legend::places(assembly, pose);
     let robot = picture(assembly, &all, pose, &View::default(), &names);
     files.push(File::text("guide/robot.svg".to_owned(), robot));
@@ -73,9 +84,12 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
             continue;
         }
         let _ = writeln!(text, "Take {}.\n", legend::counted(&new, &parts).join("; "));
-        let here = asides.iter().filter(|aside| aside.step == number);
-        let at_bench = step.stages.iter().any(|stage| stage.at == Where::Bench);
-        let turns = here.map(|aside| turned(assembly, aside, at_bench));
+        let here = access_poses.iter().filter(|aside| aside.step == number);
+        let at_bench = step
+            .stages
+            .iter()
+            .any(|stage| stage.at == TurningPlace::Bench);
+        let turns = here.map(|aside| turns_in_words(assembly, aside, at_bench));
         let turns: Vec<_> = turns.collect();
         if !turns.is_empty() {
             let _ = writeln!(
@@ -138,26 +152,26 @@ impl Scene<'_> {
             ..View::default()
         };
         let below = |azimuth: f64, view: View| View {
-            below: true,
+            from_below: true,
             azimuth,
             ..view
         };
         let corner = View {
-            near: true,
+            close_up: true,
             azimuth: 150.0,
             elevation: 30.0,
             ..view
         };
-        type Which = fn(&Body) -> bool;
-        let (all, at_corner): (Which, Which) = (|_| true, at_corner);
+        type BodyFilter = fn(&Body) -> bool;
+        let (all, at_corner): (BodyFilter, BodyFilter) = (|_| true, at_corner);
         let extra = match self.step.near {
-            Near::None => None,
-            Near::Corner => Some(("near", "the front left corner", corner, 0.6, at_corner)),
-            Near::CornerBelow => {
+            ExtraView::None => None,
+            ExtraView::Corner => Some(("near", "the front left corner", corner, 0.6, at_corner)),
+            ExtraView::CornerBelow => {
                 let words = "the front left corner from below";
                 Some(("below", words, below(30.0, corner), 0.5, at_corner))
             }
-            Near::Below => Some(("below", "from below", below(300.0, view), 0.0, all)),
+            ExtraView::Below => Some(("below", "from below", below(300.0, view), 0.0, all)),
         };
         let mut pictures = vec![("exploded", "apart", self.picture(&view, LIFT, true, all))];
         pictures.extend(extra.map(|(kind, words, view, lift, which)| {
@@ -168,11 +182,14 @@ impl Scene<'_> {
     }
 
     fn picture(&self, view: &View, lift: f64, named: bool, which: fn(&Body) -> bool) -> String {
-        let old = self.before.iter().map(|body| Drawn::at_place(body, true));
-        let new = self.new.iter().map(|&body| Drawn {
+        let old = self
+            .before
+            .iter()
+            .map(|body| PictureBody::at_place(body, true));
+        let new = self.new.iter().map(|&body| PictureBody {
             body,
             lift: lift * (self.step.lift)(body),
-            pale: !which(body),
+            grey: !which(body),
         });
         let drawn: Vec<_> = old.chain(new).collect();
         let mut labels: Vec<Label> = legend::places(self.assembly, self.pose);
@@ -195,7 +212,7 @@ fn at_corner(body: &Body) -> bool {
 }
 
 /// The guide's words about links to turn out of the way.
-fn turned(assembly: &Assembly, aside: &Aside, at_bench: bool) -> String {
+fn turns_in_words(assembly: &Assembly, aside: &AccessPose, at_bench: bool) -> String {
     let neutral: [f64; 4] = assembly.robot().neutral().into();
     let turns = (0..4).map(|servo| (servo, aside.pose[servo] - neutral[servo]));
     let turns = turns.filter(|(_, by)| by.abs() > 0.5).map(|(servo, by)| {

@@ -3,7 +3,8 @@
 //! Everything is a flat layer seen from above, so the order of drawing is known without a
 //! search: the space is cut at every height at which something begins or ends, and the
 //! slices are drawn from below to above. In a slice, walls are drawn from far to near and
-//! then the tops: a wall never rises above its own slice, so it hides no top of it.
+//! then the tops: a wall never rises above its own slice, so it cannot hide a top of that
+//! slice.
 
 use lizard_kinematics::{Solution, Vector, sin_cos};
 
@@ -15,22 +16,22 @@ use super::ink::{Frame, Ink, Label, Trail};
 
 /// A body in a picture.
 #[derive(Clone, Copy, Debug)]
-pub struct Drawn<'a> {
+pub struct PictureBody<'a> {
     /// The body to draw.
     pub body: &'a Body,
     /// Lift above its place, mm.
     pub lift: f64,
     /// True to draw it in grey, because the picture is about others.
-    pub pale: bool,
+    pub grey: bool,
 }
 
-impl<'a> Drawn<'a> {
+impl<'a> PictureBody<'a> {
     /// A body in its place, grey or in colour.
-    pub fn at_place(body: &'a Body, pale: bool) -> Self {
+    pub fn at_place(body: &'a Body, grey: bool) -> Self {
         Self {
             body,
             lift: 0.0,
-            pale,
+            grey,
         }
     }
 }
@@ -45,9 +46,9 @@ pub struct View {
     /// Width of the picture, pixels.
     pub width: f64,
     /// True to turn the robot over about its long axis and show it from below.
-    pub below: bool,
+    pub from_below: bool,
     /// True to show only the bodies that are not grey, and a little around them.
-    pub near: bool,
+    pub close_up: bool,
 }
 
 impl Default for View {
@@ -56,8 +57,8 @@ impl Default for View {
             azimuth: 240.0,
             elevation: 38.0,
             width: 900.0,
-            below: false,
-            near: false,
+            from_below: false,
+            close_up: false,
         }
     }
 }
@@ -120,7 +121,7 @@ type Wall = (f64, Trail, [f64; 3]);
 struct Layer {
     colour: [f64; 3],
     /// True if it is grey.
-    pale: bool,
+    grey: bool,
     /// Outer loops and holes as points.
     loops: Vec<Vec<Vector>>,
     z: [f64; 2],
@@ -130,14 +131,14 @@ struct Layer {
 #[must_use]
 pub fn picture(
     assembly: &Assembly,
-    drawn: &[Drawn],
+    drawn: &[PictureBody],
     pose: &Solution,
     view: &View,
     labels: &[Label],
 ) -> String {
     let eye = Eye::new(view);
     let mut layers = layers(assembly, drawn, pose);
-    if view.below {
+    if view.from_below {
         for layer in &mut layers {
             layer.turn_over();
         }
@@ -167,17 +168,17 @@ pub fn picture(
         }
     }
     // The frame is around all bodies, or in a close view around those that are not grey.
-    let framed = layers.iter().filter(|layer| !view.near || !layer.pale);
+    let framed = layers.iter().filter(|layer| !view.close_up || !layer.grey);
     let points = framed.flat_map(|layer| {
         let all = layer.loops.iter().flatten();
         all.flat_map(|at| layer.z.map(|z| eye.page(*at, z)))
     });
-    let place = |label: &Label| match view.below {
+    let place = |label: &Label| match view.from_below {
         true => eye.page(turned_over(label.at), -label.z),
         false => eye.page(label.at, label.z),
     };
     let names: Vec<_> = labels.iter().map(|label| (place(label), label)).collect();
-    ink.finish(view.width, &Frame::around(points, view.near), &names)
+    ink.finish(view.width, &Frame::around(points, view.close_up), &names)
 }
 
 /// A point of a robot that is turned over about its long axis.
@@ -200,21 +201,21 @@ fn slices(layers: &mut [Layer]) -> Vec<f64> {
     heights
 }
 
-fn layers(assembly: &Assembly, drawn: &[Drawn], pose: &Solution) -> Vec<Layer> {
+fn layers(assembly: &Assembly, drawn: &[PictureBody], pose: &Solution) -> Vec<Layer> {
     let mut layers = Vec::new();
-    for Drawn { body, lift, pale } in drawn {
+    for PictureBody { body, lift, grey } in drawn {
         let place = assembly.place(body.mount, pose);
-        let colour = colour(body, *pale);
+        let colour = colour(body, *grey);
         for prism in &body.prisms {
             let outline = Outline::of(prism);
             let filled = |line: &&Loop| {
-                let hole = line.circle().filter(|_| *pale || *lift == 0.0);
+                let hole = line.circle().filter(|_| *grey || *lift == 0.0);
                 !hole.is_some_and(|(_, radius)| radius < HOLE && line.area() < 0.0)
             };
             let placed = |line: &Loop| points(line).into_iter().map(|at| place.map(at)).collect();
             layers.push(Layer {
                 colour,
-                pale: *pale,
+                grey: *grey,
                 loops: outline.loops().filter(filled).map(placed).collect(),
                 z: prism.z.map(|z| z + lift),
             });
@@ -253,9 +254,9 @@ impl Layer {
             let (a, b) = (line[i], line[(i + 1) % n]);
             let out = (b - a).right();
             let seen = out.dot(eye.at() - a) > 0.0;
-            let long = out.length();
+            let length = out.length();
             // The light comes from the eye's left.
-            let light = (eye.away + eye.right * -0.8).dot(out) / (1.3 * long.max(1e-9));
+            let light = (eye.away + eye.right * -0.8).dot(out) / (1.3 * length.max(1e-9));
             seen.then(|| (4.0 * light.clamp(0.0, 1.0)).round() as i32)
         };
         let mut i = 0;
@@ -280,8 +281,8 @@ impl Layer {
 }
 
 /// The colour of a body.
-fn colour(body: &Body, pale: bool) -> [f64; 3] {
-    if pale {
+fn colour(body: &Body, grey: bool) -> [f64; 3] {
+    if grey {
         return [222.0, 222.0, 218.0];
     }
     match (body.kind, body.mount.servo()) {
@@ -292,6 +293,7 @@ fn colour(body: &Body, pale: bool) -> [f64; 3] {
         (Kind::Horn, _) => [250.0, 250.0, 250.0],
         (Kind::Board, _) => [20.0, 130.0, 135.0],
         (Kind::Battery, _) => [120.0, 120.0, 130.0],
+        (Kind::Pad, _) => [90.0, 90.0, 94.0],
         _ => [170.0, 170.0, 176.0],
     }
 }

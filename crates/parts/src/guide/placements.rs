@@ -13,7 +13,7 @@ use crate::bodies::assembly::Assembly;
 use crate::layers::body::{Body, Kind};
 use crate::layers::placement::Placement;
 use crate::layers::shape::Shape;
-use crate::order::steps::{place_in, steps};
+use crate::order::steps::{Step, place_in, steps};
 use crate::part::Part;
 
 /// The placement of a body.
@@ -53,6 +53,9 @@ struct Screw {
     length: f64,
     diameter: f64,
     head_above: bool,
+    /// The steps in which it is turned again, on the robot.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    turned: Vec<usize>,
 }
 
 /// A convex prism, and the holes in its layer.
@@ -88,7 +91,7 @@ pub fn placements(assembly: &Assembly, pose: &Solution) -> String {
             step,
             stage,
             printed: part.map(|part| print(&place, body, part)),
-            screw: screw(assembly, &place, body),
+            screw: screw(assembly, &steps, &place, body),
             solids: match part {
                 Some(_) => Vec::new(),
                 None => solids(&place, body),
@@ -104,10 +107,10 @@ fn pair(at: Vector) -> [f64; 2] {
 }
 
 fn print(place: &Placement, body: &Body, part: &Part) -> Print {
-    let lies = part.lies(body);
-    let home = lies.home;
-    let origin = place.map(home.at);
-    let turn = place.turn * home.turn.x + place.turn.left() * home.turn.y;
+    let motion = part.print_to_body(body);
+    let frame = motion.frame;
+    let origin = place.map(frame.at);
+    let turn = place.turn * frame.turn.x + place.turn.left() * frame.turn.y;
     let drill = part.closed_holes().into_iter().map(|at| {
         let at = if part.turned { at.mirrored() } else { at };
         pair(origin + turn * at.x + turn.left() * at.y)
@@ -115,27 +118,30 @@ fn print(place: &Placement, body: &Body, part: &Part) -> Print {
     Print {
         file: format!("stl/{}.stl", part.file()),
         mark: part.mark.clone(),
-        flipped: lies.flipped,
-        lift: lies.lift,
+        flipped: motion.flipped,
+        lift: motion.lift,
         turn: turn.angle(),
         at: pair(origin),
         drill: drill.collect(),
     }
 }
 
-fn screw(assembly: &Assembly, place: &Placement, body: &Body) -> Option<Screw> {
+fn screw(assembly: &Assembly, steps: &[Step], place: &Placement, body: &Body) -> Option<Screw> {
     let (Kind::Screw(length) | Kind::HexScrew(length)) = body.kind else {
         return None;
     };
     let [low, high] = &body.prisms[..] else {
         return None;
     };
+    let turns = |step: &Step| step.stages.iter().any(|stage| (stage.turns)(body));
+    let turned = (1..).zip(steps).filter(|(_, step)| turns(step));
     Some(Screw {
         at: pair(place.map(low.add[0].middle())),
         head: low.z[1],
         length,
         diameter: assembly.robot().parts().screw.diameter,
         head_above: high.add[0].width() > low.add[0].width(),
+        turned: turned.map(|(number, _)| number).collect(),
     })
 }
 

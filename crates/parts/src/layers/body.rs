@@ -72,7 +72,7 @@ pub enum Kind {
     Standoff(f64),
     /// A tension spring.
     Spring,
-    /// A rubber pad under a foot.
+    /// A pad under a foot, to print of a rubbery filament.
     Pad,
     /// The Arduino UNO.
     Board,
@@ -81,6 +81,12 @@ pub enum Kind {
 }
 
 impl Kind {
+    /// True for a body that is printed.
+    #[must_use]
+    pub fn is_printed(self) -> bool {
+        matches!(self, Self::Printed | Self::Pad)
+    }
+
     /// The word used for it in placements.json and on the page.
     #[must_use]
     pub fn word(self) -> &'static str {

@@ -1,9 +1,16 @@
-//! The things that the robot carries besides its mechanism: supply, terminal strips, straps.
+//! The things that the robot carries besides its mechanism: supply, terminal strips, plugs.
 //!
-//! Shops have them in many sizes; the sizes here are the largest that fit on the robot.
+//! Shops have them in many sizes, so each has a room on the robot that common products fit
+//! into; two of them are named with their sizes, and a test holds that they fit.
+
+use lizard_robot::{FUSE, SWITCH};
+
+use crate::price::Price;
 
 /// Width of the battery's strap, and its thickness, mm.
 pub const STRAP: [f64; 2] = [16.0, 1.5];
+/// Pitch of the ways of a terminal strip of the 3 A size, mm.
+pub const PITCH: f64 = 8.0;
 
 /// A thing that is bought and put on the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,57 +23,273 @@ pub enum Fitting {
     Alarm,
     /// A terminal strip that joins all grounds.
     Ground,
-    /// A terminal strip that joins the servos' supply.
+    /// Six ways of a terminal strip that join the servos' supply.
     Supply,
+    /// Five ways of a terminal strip for the servos' signals, the middle one for ground.
+    Signals,
+    /// One way of a terminal strip behind the switch: the battery's plus.
+    Plus,
+    /// A resistor from a signal to ground.
+    Resistor,
+    /// The switch in the battery's plus wire.
+    Switch,
+    /// The fuse in its holder, in the battery's plus wire.
+    Fuse,
+    /// The battery's plug and its counterpart.
+    Plug,
+    /// The plug in the board's round socket.
+    RoundPlug,
     /// A strap that holds the battery.
     Strap,
+    /// The room kept for a radio module, which is an option.
+    Radio,
+}
+
+/// The facts about a fitting.
+#[derive(Clone, Copy, Debug)]
+pub struct Facts {
+    /// Its name as a body; several of one kind get a number.
+    pub name: &'static str,
+    /// Its mass, g, as shops give it.
+    pub grams: f64,
+    /// The room for it: to the right, forward, up, mm.
+    pub size: [f64; 3],
+    /// What to buy, without rating and size.
+    pub what: &'static str,
+    /// Its place on the robot.
+    pub place: &'static str,
+    /// What fastens it there.
+    pub hold: &'static str,
+    /// Two products, with a usual size, mm; no maker's drawing was at hand.
+    pub examples: [(&'static str, [f64; 3]); 2],
+}
+
+/// The two common makes of terminal strips with a pitch of 8 mm, as pieces of some ways.
+const fn strips(ways: f64) -> [(&'static str, [f64; 3]); 2] {
+    let length = ways * PITCH;
+    [
+        ("3 A polythene strip, 2.5 mm2", [16.0, length - 2.0, 13.0]),
+        ("Weidmueller MK 3", [17.0, length, 14.0]),
+    ]
 }
 
 impl Fitting {
-    /// Its name as a body; its mass, g, as shops give it; its size to the right, forward
-    /// and up, mm.
-    fn data(self) -> (&'static str, f64, [f64; 3]) {
+    /// Every kind, in the order in which the current passes them.
+    pub const ALL: [Self; 14] = [
+        Self::Strap,
+        Self::Plug,
+        Self::Fuse,
+        Self::Switch,
+        Self::Plus,
+        Self::Converter,
+        Self::Capacitor,
+        Self::Ground,
+        Self::Supply,
+        Self::Signals,
+        Self::Resistor,
+        Self::Alarm,
+        Self::RoundPlug,
+        Self::Radio,
+    ];
+
+    /// What is known about it.
+    #[must_use]
+    pub fn facts(self) -> Facts {
         match self {
-            Self::Converter => ("converter", 8.0, [18.0, 28.0, 8.0]),
-            Self::Capacitor => ("capacitor", 2.0, [10.0, 20.0, 10.0]),
-            Self::Alarm => ("alarm", 9.0, [25.0, 40.0, 9.0]),
-            Self::Ground => ("ground strip", 12.0, [16.0, 84.0, 13.0]),
-            Self::Supply => ("supply strip", 8.0, [16.0, 60.0, 13.0]),
-            Self::Strap => ("battery strap", 3.0, [STRAP[0], 0.0, STRAP[1]]),
+            Self::Converter => Facts {
+                name: "converter",
+                grams: 6.0,
+                size: [22.0, 28.0, 10.0],
+                what: "converter from 7.4 V to 5 V, 3 A",
+                place: "under the deck, towards the head",
+                hold: "foam tape, and a cable tie through the deck's window",
+                examples: [
+                    ("Pololu D36V28F5", [17.8, 17.8, 8.8]),
+                    ("MP1584EN board", [17.0, 22.0, 5.0]),
+                ],
+            },
+            Self::Capacitor => Facts {
+                name: "capacitor",
+                grams: 2.0,
+                size: [10.5, 20.5, 10.5],
+                what: "capacitor 1000 uF, 10 V or more",
+                place: "under the plate, behind the strip for +5 V",
+                hold: "the same cable tie as the strip",
+                examples: [
+                    ("1000 uF, 10 V", [8.0, 20.0, 8.0]),
+                    ("1000 uF, 16 V", [10.0, 20.0, 10.0]),
+                ],
+            },
+            Self::Alarm => Facts {
+                name: "alarm",
+                grams: 9.0,
+                size: [26.0, 42.0, 13.0],
+                what: "low-voltage alarm for two lithium cells",
+                place: "under the deck, towards the tail",
+                hold: "foam tape, and a cable tie around the deck",
+                examples: [
+                    ("BX100 for 1 to 8 cells", [25.0, 40.0, 11.0]),
+                    ("HobbyKing alarm for 2 to 4 cells", [23.0, 37.0, 11.0]),
+                ],
+            },
+            Self::Ground => Facts {
+                name: "ground strip",
+                grams: 18.0,
+                size: [17.5, 97.0, 14.5],
+                what: "terminal strip, 12 ways, pitch 8 mm, for ground",
+                place: "under the plate, left",
+                hold: "two cable ties through the plate's slots",
+                examples: strips(12.0),
+            },
+            Self::Supply => Facts {
+                name: "supply strip",
+                grams: 9.0,
+                size: [17.5, 49.0, 14.5],
+                what: "terminal strip, 6 ways of the second strip, for +5 V",
+                place: "under the plate, right",
+                hold: "two cable ties through the plate's slots",
+                examples: strips(6.0),
+            },
+            Self::Signals => Facts {
+                name: "signal strip",
+                grams: 7.5,
+                size: [17.5, 41.0, 14.5],
+                what: "terminal strip, 5 ways of the second strip, for the signals",
+                place: "on the deck's left wing, rear half",
+                hold: "foam tape, and a cable tie through the wing's slots",
+                examples: strips(5.0),
+            },
+            Self::Plus => Facts {
+                name: "plus way",
+                grams: 1.5,
+                size: [17.5, 8.5, 14.5],
+                what: "terminal strip, the last way of the second strip, for 7.4 V",
+                place: "on the deck's right wing, between switch and fuse",
+                hold: "foam tape",
+                examples: strips(1.0),
+            },
+            Self::Resistor => Facts {
+                name: "resistor",
+                grams: 0.2,
+                size: [2.6, 6.6, 2.6],
+                what: "resistor 10 kOhm, 0.25 W, from a servo's signal to ground",
+                place: "beside the signal strip, outside",
+                hold: "its own wires, screwed into the strip",
+                examples: [
+                    ("carbon film, 0.25 W", [2.4, 6.3, 2.4]),
+                    ("metal film, 0.25 W", [2.5, 6.3, 2.5]),
+                ],
+            },
+            Self::Switch => Facts {
+                name: "switch",
+                grams: 5.0,
+                size: [27.0, 21.5, 15.5],
+                what: "or more, two contacts, for the battery's plus wire",
+                place: "on the deck's right wing, rear end, lying on its side with the rocker outward",
+                hold: "foam tape, and a cable tie around the wing's end and through its slot",
+                examples: [
+                    ("KCD1-101, 6 A at 250 V AC", [26.0, 21.0, 15.0]),
+                    ("Marquardt 1801, 6 A at 250 V AC", [26.0, 21.0, 15.0]),
+                ],
+            },
+            Self::Fuse => Facts {
+                name: "fuse",
+                grams: 6.0,
+                size: [14.0, 46.0, 14.0],
+                what: "(a glass one: 3.15 A), and a holder for it that sits in a wire",
+                place: "on the deck's right wing, front half",
+                hold: "foam tape, and a cable tie through the wing's slots",
+                examples: [
+                    ("holder for mini blade fuses (ATM)", [10.0, 40.0, 13.5]),
+                    ("holder for glass fuses 5 x 20 mm", [13.0, 44.0, 13.0]),
+                ],
+            },
+            Self::Plug => Facts {
+                name: "battery plug",
+                grams: 5.0,
+                size: [32.0, 6.6, 12.0],
+                what: "plug that fits the battery's, with two wires of 0.5 mm2, 10 cm long",
+                place: "on the plate, before the battery, on edge",
+                hold: "foam tape on the battery's end",
+                examples: [
+                    ("XT30 pair", [26.0, 5.5, 10.5]),
+                    ("JST RCY (BEC) pair", [26.0, 6.0, 8.0]),
+                ],
+            },
+            Self::RoundPlug => Facts {
+                name: "round plug",
+                grams: 4.0,
+                size: [15.0, 42.0, 15.0],
+                what: "round plug 5.5 x 2.1 mm, plus inside, with two wires of 0.25 mm2 or more, 20 cm long",
+                place: "in the UNO's round socket",
+                hold: "the socket; its wires in a cable tie at the deck",
+                examples: [
+                    ("moulded, with cable", [10.0, 36.0, 10.0]),
+                    ("with screw terminals", [14.0, 38.0, 12.5]),
+                ],
+            },
+            Self::Strap => Facts {
+                name: "battery strap",
+                grams: 3.0,
+                size: [STRAP[0], 150.0, STRAP[1]],
+                what: "hook-and-loop strap, 16 mm wide, 150 mm long",
+                place: "around battery and plate, through the slots beside the battery",
+                hold: "itself",
+                examples: [
+                    ("hook-and-loop cable strap", [16.0, 150.0, 1.5]),
+                    ("non-slip battery strap, cut to length", [16.0, 150.0, 1.5]),
+                ],
+            },
+            Self::Radio => Facts {
+                name: "place for a radio module",
+                grams: 0.0,
+                size: [16.5, 37.5, 8.0],
+                what: "radio module with a serial line",
+                place: "on the deck's left wing, front half",
+                hold: "foam tape",
+                examples: [
+                    ("HM-10, bare board", [13.0, 27.0, 3.0]),
+                    ("HC-05 or HM-10 on a carrier", [16.0, 37.0, 7.0]),
+                ],
+            },
         }
     }
 
     /// Its name as a body.
     #[must_use]
     pub fn name(self) -> &'static str {
-        self.data().0
+        self.facts().name
     }
 
-    /// Its line in the list to buy.
+    /// Its line in the list to buy; empty for a piece of another strip, and for an option.
     #[must_use]
     pub fn what(self) -> String {
-        let [x, y, z] = self.size();
-        let least = format!("at most {x} x {y} x {z} mm");
+        let Facts { what, size, .. } = self.facts();
+        let [x, y, z] = size;
         match self {
-            Self::Converter => format!("converter from 7.4 V to 5 V, 3 A, {least}"),
-            Self::Capacitor => {
-                format!("capacitor 1000 uF, 10 V or more, at most {x} mm thick and {y} mm long")
+            Self::Ground => {
+                format!(
+                    "terminal strip, 12 ways, pitch 8 mm (3 A size), at most {x} x {y} x {z} mm"
+                )
             }
-            Self::Alarm => format!("low-voltage alarm for two lithium cells, {least}"),
-            Self::Ground => format!("terminal strip, 12 ways, for ground, {least}"),
-            Self::Supply => format!("terminal strip, 8 ways, for +5 V, {least}"),
-            Self::Strap => format!("hook-and-loop strap, {x} mm wide, 150 mm long"),
+            // Three pieces of one more strip.
+            Self::Supply => Self::Ground.what(),
+            Self::Signals | Self::Plus | Self::Radio => String::new(),
+            Self::Resistor | Self::Strap | Self::Plug | Self::RoundPlug => what.to_owned(),
+            Self::Capacitor => format!("{what}, at most {x} mm thick and {y} mm long"),
+            Self::Switch => format!("switch for {SWITCH} A {what}, at most {x} x {y} x {z} mm"),
+            Self::Fuse => format!("fuse of {FUSE} A {what}, at most {x} x {y} x {z} mm"),
+            _ => format!("{what}, at most {x} x {y} x {z} mm"),
         }
     }
 
-    /// Its mass, g, as shops give it.
+    /// The price class of its row of the bill.
     #[must_use]
-    pub fn grams(self) -> f64 {
-        self.data().1
-    }
-
-    /// To the right, forward, up, mm.
-    pub(crate) fn size(self) -> [f64; 3] {
-        self.data().2
+    pub fn price(self) -> Price {
+        match self {
+            Self::Resistor => Price::A,
+            Self::Converter | Self::Alarm | Self::Radio => Price::C,
+            _ => Price::B,
+        }
     }
 }

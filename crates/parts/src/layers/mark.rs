@@ -71,9 +71,9 @@ pub fn engraved(prisms: &[Prism], text: &str) -> Option<Vec<Prism>> {
         let covered = |point| {
             outlines
                 .get(layer + 1)
-                .is_some_and(|above| above.holds(point))
+                .is_some_and(|above| above.contains(point))
         };
-        let free = |point: Vector| outlines[layer].holds(point) && !covered(point);
+        let free = |point: Vector| outlines[layer].contains(point) && !covered(point);
         let Some(at) = place(&outlines[layer], text, free) else {
             continue;
         };

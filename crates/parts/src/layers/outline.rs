@@ -111,7 +111,7 @@ impl Outline {
 
     /// True if a point is in the material.
     #[must_use]
-    pub fn holds(&self, point: Vector) -> bool {
+    pub fn contains(&self, point: Vector) -> bool {
         let turns: i32 = self.loops().map(|of| of.turns_around(point)).sum();
         turns > 0
     }
@@ -326,7 +326,7 @@ mod tests {
         assert!((circles[1].0 - b).length() < 1e-9 && (circles[1].1 - 1.6).abs() < 1e-9);
         let middle = bar.moment() * (1.0 / bar.area());
         assert!((middle - at(15.0, 5.0)).length() < 1e-9, "{middle:?}");
-        assert!(bar.holds(at(15.0, 5.0)) && !bar.holds(a) && !bar.holds(at(0.0, 9.0)));
+        assert!(bar.contains(at(15.0, 5.0)) && !bar.contains(a) && !bar.contains(at(0.0, 9.0)));
     }
 
     #[test]
@@ -338,11 +338,11 @@ mod tests {
         let ring = outline(bars.clone(), Vec::new());
         assert_eq!(ring.pieces.len(), 1);
         assert_eq!(ring.pieces[0].len(), 2);
-        assert!(!ring.holds(at(10.0, 10.0)) && ring.holds(at(10.0, 0.0)));
+        assert!(!ring.contains(at(10.0, 10.0)) && ring.contains(at(10.0, 0.0)));
         let across = Shape::bar(at(10.0, 0.0), at(10.0, 20.0), 1.0);
         let filled = outline([&bars[..], &[across]].concat(), Vec::new());
         assert_eq!(filled.pieces[0].len(), 3);
-        assert!(filled.holds(at(10.0, 10.0)) && !filled.holds(at(5.0, 10.0)));
+        assert!(filled.contains(at(10.0, 10.0)) && !filled.contains(at(5.0, 10.0)));
     }
 
     #[test]

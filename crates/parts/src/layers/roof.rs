@@ -81,7 +81,7 @@ fn begins_in_air(hole: &Shape, prism: &Prism, below: &Outline) -> bool {
     };
     let alone = Outline::of(&Prism::solid([edge], prism.z));
     let mut points = alone.loops().flat_map(Loop::ends);
-    let in_air = |point: Vector| own.holds(point) && !below.holds(point);
+    let in_air = |point: Vector| own.contains(point) && !below.contains(point);
     points.all(|(side, to)| in_air(side.from) && in_air(side.middle(to)))
 }
 

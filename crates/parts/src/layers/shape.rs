@@ -134,7 +134,7 @@ impl Shape {
     #[must_use]
     pub fn distance(&self, other: &Self) -> f64 {
         let mut between = f64::INFINITY;
-        if self.holds(other.points[0]) || other.holds(self.points[0]) {
+        if self.contains(other.points[0]) || other.contains(self.points[0]) {
             between = 0.0;
         } else {
             for (a, b) in self.edges() {
@@ -203,7 +203,7 @@ impl Shape {
     }
 
     /// True if a point is in the polygon.
-    fn holds(&self, point: Vector) -> bool {
+    fn contains(&self, point: Vector) -> bool {
         self.points.len() > 2 && self.edges().all(|(a, b)| (b - a).cross(point - a) >= 0.0)
     }
 
@@ -256,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_in_a_polygon_or_crosses_it_overlaps() {
+    fn shapes_inside_or_across_a_polygon_overlap_it() {
         let plate = Shape::rectangle(at(0.0, 0.0), at(10.0, 8.0), 0.0);
         assert_eq!(plate.distance(&Shape::disc(at(1.0, 1.0), 0.5)), -3.5);
         let across = Shape::bar(at(-20.0, 0.0), at(20.0, 0.0), 1.0);

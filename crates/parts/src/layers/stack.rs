@@ -43,9 +43,10 @@ const UNDER_HORN: f64 = 1.8;
 const SLEEVE: f64 = 1.3;
 /// The leaf that carries a foot: five layers of a printer, mm.
 pub const LEAF: f64 = 1.0;
-/// A rubber pad under a foot's screw, mm.
-const PAD: f64 = 1.5;
-/// Height by which a foot's screw can raise it, mm. It can lower it by more.
+/// Height of a pad above the head that snaps into it, mm.
+pub const PAD_LIP: f64 = 0.8;
+/// From a pad to its leaf, mm: the height by which a foot's screw can raise it, and the width
+/// of the hex key, which measures it. The screw can lower a foot by more.
 const RAISE: f64 = 2.0;
 /// Thickness above the nut of a foot's screw, mm.
 const OVER_FOOT_NUT: f64 = 1.6;
@@ -141,8 +142,8 @@ impl Stack {
             .find(|length| *length >= slider + gap)
             .unwrap_or(slider + gap);
         let leg_coupler = [-t - gap, 0.0];
-        let pad = [-parts.height, PAD - parts.height];
-        let leaf = pad[1] + screw.head_height + RAISE;
+        let pad = [-parts.height, parts.pad.height - parts.height];
+        let leaf = pad[1] + RAISE;
         Self {
             floor: -parts.height,
             pad,
@@ -180,6 +181,12 @@ impl Stack {
     pub fn anchor_nut(&self, parts: &Parts) -> (f64, f64) {
         let tip = self.crank[0] + TIP;
         (tip + parts.screw.nut_height, self.on_hook - tip)
+    }
+
+    /// From the floor to the head of a screw in its pad, mm.
+    #[must_use]
+    pub fn under_head(&self, parts: &Parts) -> f64 {
+        self.pad[1] - PAD_LIP - parts.screw.head_height - self.floor
     }
 
     /// True if a leg's crank is thick enough above the nut that is sunk into it.

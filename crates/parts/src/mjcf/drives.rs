@@ -9,9 +9,6 @@ use super::text::{MILLI, metres, round};
 use super::writer::{Writer, joined};
 use crate::layers::body::Mount;
 
-/// Error at which a servo applies its full torque, deg.
-const FULL: f64 = 3.0;
-
 impl Writer<'_> {
     pub(super) fn loops(&mut self) {
         self.xml.open("equality");
@@ -27,10 +24,11 @@ impl Writer<'_> {
 
     pub(super) fn actuators(&mut self) {
         self.xml.open("actuator");
-        let stall = self.scene.motor.stall * MILLI;
-        let (gain, stall) = (round(stall / FULL.to_radians()), round(stall));
         for (servo, name) in NAMES.iter().enumerate() {
-            let joint = match self.plays() {
+            let motor = self.scene.motors.each[servo];
+            let stall = motor.stall * MILLI;
+            let (gain, stall) = (round(stall / motor.full.to_radians()), round(stall));
+            let joint = match self.has_play() {
                 true => Node::Horn(servo),
                 false => Node::Of(Mount::Link(servo)),
             };

@@ -55,6 +55,20 @@ impl Inertia {
         self
     }
 
+    /// The same body in another place, mm from its own.
+    pub fn moved(mut self, by: [f64; 3]) -> Self {
+        for i in 0..3 {
+            for j in 0..3 {
+                self.second[i][j] += by[i] * self.first[j] + self.first[i] * by[j];
+                self.second[i][j] += self.mass * by[i] * by[j];
+            }
+        }
+        for (first, by) in self.first.iter_mut().zip(by) {
+            *first += self.mass * by;
+        }
+        self
+    }
+
     /// The moments of two bodies together.
     pub fn and(mut self, other: &Self) -> Self {
         self.mass += other.mass;
@@ -108,6 +122,23 @@ mod tests {
         let third = 800.0 / 12.0;
         let wanted = [third * 116.0, third * 416.0, third * 500.0, 0.0, 0.0, 0.0];
         for (part, wanted) in found.tensor().into_iter().zip(wanted) {
+            assert!((part - wanted).abs() < 1e-6, "{part} {wanted}");
+        }
+    }
+
+    #[test]
+    fn a_body_that_is_moved_is_the_same_body_elsewhere() {
+        let block = |x: f64, y: f64, z: f64| {
+            let (middle, size) = (Vector::new(x, y), Vector::new(20.0, 10.0));
+            prism(Shape::rectangle(middle, size, 0.0), [z, z + 4.0])
+        };
+        let (moved, wanted) = (
+            block(7.0, -3.0, 2.0).moved([-9.0, 5.0, 1.0]),
+            block(-2.0, 2.0, 3.0),
+        );
+        let pairs = moved.centre().into_iter().zip(wanted.centre());
+        let pairs = pairs.chain(moved.tensor().into_iter().zip(wanted.tensor()));
+        for (part, wanted) in pairs {
             assert!((part - wanted).abs() < 1e-6, "{part} {wanted}");
         }
     }

@@ -9,13 +9,16 @@
 //! - Only pads and floor touch each other. A separate proof shows that no two parts meet
 //!   ([`crate::Proof`]).
 //! - A foot's leaf lets its post move straight up and down on a spring. Links do not bend.
-//! - A servo is a motor whose torque falls with its speed, whose rotor takes 20 ms to
-//!   spin up, with a gain that applies the full torque at three degrees of error. It has
-//!   no dead band.
-//! - The friction of the pads is equal in all directions.
+//! - A servo is a motor whose torque falls with its speed, with a rotor, and with a gain that
+//!   applies the full torque at a few degrees of error, as `[servo]` has them. It has no dead band.
+//! - The friction of all pins that a servo turns acts at its link.
+//! - The friction of the pads is equal in all directions, as MuJoCo has it. The file says by how much
+//!   that of the robot's pads is larger backward, and `tools/physics/grain.py` sees to it.
 
 mod closed;
 mod drives;
+mod floor;
+mod footing;
 mod inertia;
 mod node;
 mod pieces;
@@ -28,8 +31,9 @@ use lizard_kinematics::Solution;
 
 use crate::bodies::assembly::Assembly;
 use crate::unfit::Unfit;
+pub use floor::{Block, Floor};
 use pieces::{Piece, pieces};
-pub use scene::{Course, Motor, Pull, Scene};
+pub use scene::{Course, Pull, Scene};
 use text::Xml;
 use writer::Writer;
 

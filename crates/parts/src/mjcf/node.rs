@@ -23,7 +23,7 @@ pub(crate) enum Node {
 
 /// The motion of a body on its parent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Moves {
+pub(crate) enum Freedom {
     /// Free in space.
     Free,
     /// Turning about an upright axis through its origin.
@@ -81,12 +81,12 @@ impl Node {
     }
 
     /// Its motion on its parent.
-    pub fn moves(self) -> Moves {
+    pub fn freedom(self) -> Freedom {
         match self {
-            Self::Of(Mount::Chassis) => Moves::Free,
-            Self::Of(Mount::Rod(_)) | Self::Slot(_) => Moves::Along,
-            Self::Pad(_) => Moves::Upright,
-            _ => Moves::Turns,
+            Self::Of(Mount::Chassis) => Freedom::Free,
+            Self::Of(Mount::Rod(_)) | Self::Slot(_) => Freedom::Along,
+            Self::Pad(_) => Freedom::Upright,
+            _ => Freedom::Turns,
         }
     }
 

@@ -32,11 +32,11 @@ pub(super) fn pieces(assembly: &Assembly, scene: &Scene) -> Result<Vec<Piece>, U
     let slotted = scene.pull.is_some();
     let is_strut = |body: &&Body| matches!(body.mount, Mount::Strut(_));
     let has = |bodies: &[Body]| bodies.iter().any(|body| body.kind == Kind::Spring);
-    // The other kind of strut lies in the drawer.
+    // The scene may have the struts of the other kind.
     let swap = has(assembly.bodies()) != slotted;
     let own = assembly.bodies().iter();
     let own = own.filter(|body| !(swap && is_strut(body)));
-    let other = assembly.instead().iter().filter(|_| swap);
+    let other = assembly.alternatives().iter().filter(|_| swap);
     let springs = (0..4).filter(|_| swap && slotted);
     let mut pieces: Vec<Piece> = springs.map(|servo| spring(assembly, servo)).collect();
     for body in own.chain(other) {

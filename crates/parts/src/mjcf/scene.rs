@@ -1,7 +1,8 @@
 //! The conditions of a simulation: feet, springs and servos, and the servos' angles.
 
-use lizard_robot::{CheckedGait, FRAMES_PER_SECOND, Robot};
+use lizard_robot::{CheckedGait, FRAMES_PER_SECOND, Motors, Robot};
 
+use super::floor::Floor;
 use crate::bodies::assembly::Assembly;
 
 /// Values that robot.toml leaves open or that an experiment changes.
@@ -13,12 +14,19 @@ pub struct Scene {
     pub long: [f64; 4],
     /// Stiffness of a foot's leaf, N/mm.
     pub stiffness: f64,
+    /// Friction of a pad that slides backward over that of one that slides forward.
+    pub ratio: f64,
     /// The spring in the slotted struts; `None` for rigid struts.
     pub pull: Option<Pull>,
     /// Free play between a servo's horn and its link to either side, deg.
     pub play: f64,
-    /// Speed and torque of the servos.
-    pub motor: Motor,
+    /// The servos' motors, and the friction of the joints.
+    pub motors: Motors,
+    /// Dry friction of each pin, N mm, besides that of `motors`; pins at which loops are closed
+    /// have none.
+    pub pins: f64,
+    /// The floor that it stands on.
+    pub floor: Floor,
     /// The servos' angles; `None` to let the robot stand.
     pub course: Option<Course>,
     /// True to include the parts' shapes; without them the file is a fiftieth as long.
@@ -28,18 +36,22 @@ pub struct Scene {
 impl Scene {
     /// The standing robot of a robot.toml.
     #[must_use]
-    pub fn of(assembly: &Assembly, motor: Motor) -> Self {
-        let (drive, stance) = (assembly.robot().drive(), assembly.robot().ground().stance);
+    pub fn of(assembly: &Assembly) -> Self {
+        let (drive, ground) = (assembly.robot().drive(), assembly.robot().ground());
+        let stance = ground.stance;
         Self {
             name: "lizard".to_owned(),
             long: [stance.twist, 0.0, 0.0, 0.0],
             stiffness: stance.stiffness,
+            ratio: ground.ratio,
             pull: drive.strut().map(|strut| Pull {
                 force: strut.force,
                 rate: strut.rate,
             }),
             play: drive.play,
-            motor,
+            motors: assembly.robot().motors(),
+            pins: 0.0,
+            floor: Floor::of(assembly.robot()),
             course: None,
             shapes: true,
         }
@@ -55,15 +67,6 @@ pub struct Pull {
     pub rate: f64,
 }
 
-/// A servo's motor: the faster it turns, the less torque it has left.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motor {
-    /// Speed without load, deg/s.
-    pub rate: f64,
-    /// Torque at a stall, N mm.
-    pub stall: f64,
-}
-
 /// The servos' target angles, frame by frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Course {
@@ -72,10 +75,12 @@ pub struct Course {
     /// The servos' targets in each frame of 20 ms: sweeps from neutral, deg,
     /// counter-clockwise positive, servo order.
     pub frames: Vec<[f64; 4]>,
-    /// Start of the cycle to measure, s from the first frame.
+    /// Start of the cycles to measure, s from the first frame.
     pub begin: f64,
     /// Period of a cycle, s.
     pub period: f64,
+    /// Number of cycles to measure.
+    pub count: u32,
 }
 
 /// Time from neutral to the gait's first pose, and time to wait there for the body to come
@@ -85,9 +90,9 @@ const REST: f64 = 0.3;
 
 impl Course {
     /// Some cycles of a gait at its own pace, after a slow approach from neutral, with the
-    /// angles of the firmware's tables. The last cycle is the one to measure.
+    /// angles of the firmware's tables. The last `count` cycles are the ones to measure.
     #[must_use]
-    pub fn of(robot: &Robot, gait: &CheckedGait, cycles: u32) -> Self {
+    pub fn of(robot: &Robot, gait: &CheckedGait, cycles: u32, count: u32) -> Self {
         let angles = |seconds: f64| {
             let phase = (gait.phase(seconds) * 65536.0).round() as i64;
             gait.table_angles(phase.rem_euclid(65536) as u16)
@@ -110,8 +115,9 @@ impl Course {
         Self {
             gait: gait.name().to_owned(),
             frames: (0..=last).map(targets).collect(),
-            begin: begin + f64::from(cycles - 1) * period,
+            begin: begin + f64::from(cycles - count) * period,
             period,
+            count,
         }
     }
 }

@@ -1,7 +1,6 @@
 //! The file from the top: options, defaults, meshes, floor, and then the robot.
 
 use lizard_kinematics::Solution;
-use lizard_robot::GRAVITY;
 
 use super::node::Node;
 use super::pieces::Piece;
@@ -16,7 +15,7 @@ const STEP: f64 = 0.0002;
 /// Stiffness of constraints and contacts: time constant, s, and damping ratio. A soft floor
 /// would hide part of a foot's excess length.
 const HARD: &str = "0.002 1";
-const CONTACT: &str = "0.001 1";
+pub(super) const CONTACT: &str = "0.001 1";
 /// Impedance of constraints and limits.
 const STIFF: &str = "0.99 0.999 0.0001";
 
@@ -34,13 +33,17 @@ impl<'a> Writer<'a> {
         let name = escaped(&self.scene.name);
         self.xml.open(format!(r#"mujoco model="{name}""#));
         self.options();
+        self.xml.open("custom");
+        let ratio = round(self.scene.ratio);
+        let data = format!(r#"numeric name="back over forward" data="{ratio}""#);
+        self.xml.leaf(data);
         if let Some(course) = &self.scene.course {
             let (begin, period) = (round(course.begin), round(course.period));
-            self.xml.open("custom");
-            let data = format!(r#"numeric name="cycle" data="{begin} {period}""#);
+            let count = course.count;
+            let data = format!(r#"numeric name="cycle" data="{begin} {period} {count}""#);
             self.xml.leaf(data);
-            self.xml.close();
         }
+        self.xml.close();
         self.assets();
         self.world();
         self.loops();
@@ -53,8 +56,8 @@ impl<'a> Writer<'a> {
         xml.leaf(r#"compiler angle="radian" autolimits="true""#);
         // Feet of a few g chatter on the default contacts.
         xml.leaf(format!(
-            r#"option timestep="{STEP}" gravity="0 0 {}" integrator="implicitfast" cone="elliptic" impratio="100" noslip_iterations="20""#,
-            -GRAVITY
+            r#"option timestep="{STEP}" gravity="{}" integrator="implicitfast" cone="elliptic" impratio="100" noslip_iterations="20""#,
+            self.scene.floor.gravity()
         ));
         xml.open("visual");
         xml.leaf(r#"map znear="0.01""#);
@@ -97,10 +100,7 @@ impl<'a> Writer<'a> {
         self.xml.open("worldbody");
         self.xml
             .leaf(r#"light pos="0.3 -0.3 1" dir="-0.3 0.3 -1" type="directional""#);
-        let contact = self.contact();
-        self.xml.leaf(format!(
-            r#"geom name="floor" type="plane" size="0 0 0.05" material="floor" conaffinity="1" {contact}"#
-        ));
+        self.floor();
         self.body(Node::Of(Mount::Chassis));
         self.xml.close();
     }
@@ -113,17 +113,8 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// The contact of pad and floor: friction against sliding only, not against turning or
-    /// rolling.
-    pub(super) fn contact(&self) -> String {
-        let friction = self.assembly.robot().ground().friction;
-        format!(
-            r#"condim="3" friction="{friction} 0 0" solref="{CONTACT}" solimp="0.95 0.99 0.0005""#
-        )
-    }
-
     /// True if the links have play on their horns.
-    pub(super) fn plays(&self) -> bool {
+    pub(super) fn has_play(&self) -> bool {
         self.scene.play > 0.0
     }
 
@@ -153,6 +144,7 @@ pub(super) fn colour(kind: Kind) -> &'static str {
         Kind::Horn => "0.95 0.95 0.95 1",
         Kind::Board => "0.0 0.5 0.55 1",
         Kind::Battery => "0.25 0.25 0.28 1",
+        Kind::Pad => "0.15 0.15 0.15 1",
         _ => "0.6 0.6 0.62 1",
     }
 }

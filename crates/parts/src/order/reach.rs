@@ -10,7 +10,7 @@
 //! own stage but the screw and its nut, so that the order within a stage does not matter.
 //! On the bench only those bodies count that the step has added to the same servo's link
 //! or leg. A screw whose nut comes in a later step is pushed in at its own stage, and
-//! turned when the nut comes.
+//! turned when the nut comes. A pad moves with the screw in it, whose key goes through its hole.
 //!
 //! The servos stand at neutral. If a screw cannot be reached then, the nearest other pose
 //! that the guard accepts is searched, and the guide names it.
@@ -22,10 +22,12 @@ use lizard_kinematics::{Pose, Solution, Vector};
 use crate::bodies::assembly::Assembly;
 use crate::layers::body::{Body, Kind};
 use crate::layers::shape::Shape;
-use crate::order::steps::{Step, Where};
+use crate::order::steps::{Step, TurningPlace};
 
 /// Radius of a screwdriver or hex key, and its length above the head, mm.
 pub const KEY: [f64; 2] = [2.0, 30.0];
+/// Radius of the bare hex key for an M3 button head, 2 mm over its flats, in the hole of a pad, mm.
+const HEX_KEY: f64 = 1.2;
 /// Wall of a socket around the nut, and its length beyond it, mm.
 pub const SOCKET: [f64; 2] = [1.0, 10.0];
 /// Angles by which one servo is turned in the search for a pose, deg.
@@ -37,7 +39,7 @@ const STEPS: u32 = 9;
 
 /// An operation on a screw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Act {
+pub enum ScrewOperation {
     /// Pushing the screw in along its axis.
     Push,
     /// Turning or holding the screw at its head.
@@ -48,19 +50,19 @@ pub enum Act {
 
 /// A screw that another body blocks.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{screw} {act} at step {step} of the guide: {by} is in the way")]
+#[error("{screw} {operation} at step {step} of the guide: {by} is in the way")]
 pub struct Blocked {
     /// The step of the guide, from 1.
     pub step: usize,
     /// The name of the screw.
     pub screw: String,
     /// The operation that is impossible.
-    pub act: Act,
+    pub operation: ScrewOperation,
     /// The name of the body in the way.
     pub by: String,
 }
 
-impl fmt::Display for Act {
+impl fmt::Display for ScrewOperation {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str(match self {
             Self::Push => "cannot be pushed in",
@@ -72,7 +74,7 @@ impl fmt::Display for Act {
 
 /// A pose to turn the servos to so that some screws can be reached.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Aside {
+pub struct AccessPose {
     /// The step of the guide, from 1.
     pub step: usize,
     /// The screws that cannot be reached at neutral.
@@ -82,7 +84,7 @@ pub struct Aside {
 }
 
 /// A space that has to be free: an upright prism over a shape, chassis frame.
-struct Room {
+struct FreeSpace {
     shape: Shape,
     z: [f64; 2],
 }
@@ -100,9 +102,9 @@ struct Axis {
 }
 
 impl Axis {
-    fn room(&self, radius: f64, from: f64, by: f64) -> Room {
+    fn room(&self, radius: f64, from: f64, by: f64) -> FreeSpace {
         let to = from + by;
-        Room {
+        FreeSpace {
             shape: Shape::disc(self.at, radius),
             z: [from.min(to), from.max(to)],
         }
@@ -140,7 +142,7 @@ impl Bench<'_> {
     }
 
     /// True if a body reaches into a space.
-    fn fills(&self, body: &Body, room: &Room) -> bool {
+    fn fills(&self, body: &Body, room: &FreeSpace) -> bool {
         /// Overlap that still counts as touching, mm.
         const TOUCH: f64 = 1e-6;
         let place = self.assembly.place(body.mount, self.pose);
@@ -154,7 +156,7 @@ impl Bench<'_> {
     }
 
     /// The space that a nut needs on its screw.
-    fn nut(&self, nut: &Body, axis: &Axis, around: &[&Body]) -> Room {
+    fn nut(&self, nut: &Body, axis: &Axis, around: &[&Body]) -> FreeSpace {
         let place = self.assembly.place(nut.mount, self.pose);
         let flats = nut.prisms[0].add[0].placed(&place);
         let corner = (flats.points[0] - axis.at).length();
@@ -172,7 +174,7 @@ impl Bench<'_> {
         let sunk = fixed.any(|body| body.prisms.iter().any(|prism| prism.cut.iter().any(holds)));
         let away = -axis.up * SOCKET[1];
         match sunk {
-            true => Room {
+            true => FreeSpace {
                 shape: flats,
                 ..axis.room(0.0, end, away)
             },
@@ -182,7 +184,13 @@ impl Bench<'_> {
 
     /// The operations on a screw that are impossible when `new` bodies are added, each with
     /// the body in the way.
-    fn obstacles(&self, screw: &Body, new: &[&Body], around: &[&Body]) -> Vec<(Act, String)> {
+    fn obstacles(
+        &self,
+        screw: &Body,
+        new: &[&Body],
+        around: &[&Body],
+        again: bool,
+    ) -> Vec<(ScrewOperation, String)> {
         let Some(axis) = self.axis(screw) else {
             return Vec::new();
         };
@@ -193,26 +201,37 @@ impl Bench<'_> {
         let new_nut = nut.filter(|nut| is_in(new, nut));
         let complete = is_in(around, screw) && nut.is_none_or(|nut| is_in(around, nut));
         let is_new = is_in(new, screw);
+        let on_pad = screw.name.strip_prefix("screw height ");
+        let pad = on_pad.and_then(|leg| self.assembly.body(&format!("pad {leg}")));
+        let is_pad = |body: &Body| pad.is_some_and(|pad| pad.name == body.name);
         let others = around.iter().filter(|body| !own(&body.name));
-        let others: Vec<&Body> = others.copied().collect();
+        let others: Vec<&Body> = others.filter(|body| !is_pad(body)).copied().collect();
         let mut rooms = Vec::new();
         if is_new {
             let way = axis.room(axis.radius, axis.end, axis.up * axis.length);
-            rooms.push((Act::Push, way));
+            rooms.push((ScrewOperation::Push, way));
         }
         // A hexagonal head is held by its pocket.
         let turns = !matches!(screw.kind, Kind::HexScrew(_));
-        if turns && complete && (is_new || new_nut.is_some()) {
-            rooms.push((Act::Turn, axis.room(KEY[0], axis.end, axis.up * KEY[1])));
+        let mut through = None;
+        if turns && complete && (is_new || new_nut.is_some() || again) {
+            let key = |radius| axis.room(radius, axis.end, axis.up * KEY[1]);
+            rooms.push((ScrewOperation::Turn, key(KEY[0])));
+            through = pad.filter(|pad| is_in(around, pad) && self.fills(pad, &key(HEX_KEY)));
         }
         if let Some(nut) = new_nut {
-            rooms.push((Act::Nut, self.nut(nut, &axis, &others)));
+            rooms.push((ScrewOperation::Nut, self.nut(nut, &axis, &others)));
         }
-        let blocked = |(act, room): (Act, Room)| {
+        let blocked = |(operation, room): (ScrewOperation, FreeSpace)| {
             let by = others.iter().find(|body| self.fills(body, &room))?;
-            Some((act, by.name.clone()))
+            Some((operation, by.name.clone()))
         };
-        rooms.into_iter().filter_map(blocked).collect()
+        let through = through.map(|pad| (ScrewOperation::Turn, pad.name.clone()));
+        rooms
+            .into_iter()
+            .filter_map(blocked)
+            .chain(through)
+            .collect()
     }
 }
 
@@ -237,14 +256,17 @@ impl Assembly {
                 for screw in self.bodies() {
                     let same = |body: &&&Body| body.mount.servos() == screw.mount.servos();
                     let around: Vec<_> = match stage.at {
-                        Where::Robot => before.clone(),
-                        Where::Bench => before[begin..].iter().filter(same).copied().collect(),
+                        TurningPlace::Robot => before.clone(),
+                        TurningPlace::Bench => {
+                            before[begin..].iter().filter(same).copied().collect()
+                        }
                     };
-                    let blocked = bench.obstacles(screw, &new, &around).into_iter();
-                    found.extend(blocked.map(|(act, by)| Blocked {
+                    let again = (stage.turns)(screw);
+                    let blocked = bench.obstacles(screw, &new, &around, again).into_iter();
+                    found.extend(blocked.map(|(operation, by)| Blocked {
                         step: number,
                         screw: screw.name.clone(),
-                        act,
+                        operation,
                         by,
                     }));
                 }
@@ -258,15 +280,15 @@ impl Assembly {
     ///
     /// # Errors
     /// A screw that cannot be reached at any of the poses tried.
-    pub fn asides(&self, steps: &[Step]) -> Result<Vec<Aside>, Blocked> {
-        let mut asides: Vec<Aside> = Vec::new();
+    pub fn access_poses(&self, steps: &[Step]) -> Result<Vec<AccessPose>, Blocked> {
+        let mut access_poses: Vec<AccessPose> = Vec::new();
         let neutral = self.robot().neutral();
         let Ok(solution) = self.robot().lizard().solve(&neutral) else {
-            return Ok(asides);
+            return Ok(access_poses);
         };
         let mut left = self.blocked(steps, &solution);
         if left.is_empty() {
-            return Ok(asides);
+            return Ok(access_poses);
         }
         for pose in self.poses_near(neutral) {
             let still = self.blocked(steps, &pose);
@@ -277,11 +299,11 @@ impl Assembly {
             let angles: [f64; 4] = pose.pose.into();
             for blocked in left.extract_if(.., reached) {
                 let of_step =
-                    |aside: &&mut Aside| aside.step == blocked.step && aside.pose == angles;
-                match asides.iter_mut().find(of_step) {
+                    |aside: &&mut AccessPose| aside.step == blocked.step && aside.pose == angles;
+                match access_poses.iter_mut().find(of_step) {
                     Some(aside) if aside.screws.contains(&blocked.screw) => {}
                     Some(aside) => aside.screws.push(blocked.screw),
-                    None => asides.push(Aside {
+                    None => access_poses.push(AccessPose {
                         step: blocked.step,
                         screws: vec![blocked.screw],
                         pose: angles,
@@ -289,8 +311,8 @@ impl Assembly {
                 }
             }
             if left.is_empty() {
-                asides.sort_by_key(|aside| aside.step);
-                return Ok(asides);
+                access_poses.sort_by_key(|aside| aside.step);
+                return Ok(access_poses);
             }
         }
         Err(left.swap_remove(0))

@@ -17,19 +17,19 @@ const WORDS: &str = include_str!("steps.md");
 pub struct Step {
     /// The headline.
     pub title: &'static str,
-    /// The instructions, as Markdown in one line.
+    /// The instructions, as Markdown with each paragraph in one line.
     pub words: String,
-    /// The bodies to add, in stages; none for a step at the console.
+    /// The bodies to add and the screws to turn, in stages; none for a step at the console.
     pub stages: Vec<Stage>,
     /// Lift of a body in the exploded picture, as a share.
     pub lift: fn(&Body) -> f64,
     /// An extra picture, if any.
-    pub near: Near,
+    pub near: ExtraView,
 }
 
 /// A picture besides the two of the complete robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Near {
+pub enum ExtraView {
     /// No extra picture.
     None,
     /// The front left corner alone.
@@ -43,14 +43,16 @@ pub enum Near {
 /// Bodies that are added together.
 pub struct Stage {
     /// The place where its screws are turned.
-    pub at: Where,
+    pub at: TurningPlace,
     /// True for a body that the stage adds, unless an earlier stage has added it.
     pub adds: fn(&Body) -> bool,
+    /// True for a screw that was added before and is turned again.
+    pub turns: fn(&Body) -> bool,
 }
 
 /// The place where the screws of a stage are turned.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Where {
+pub enum TurningPlace {
     /// On the robot, among all bodies added before.
     Robot,
     /// On the bench, among the bodies of the same servo that this step has added.
@@ -80,23 +82,28 @@ fn named(body: &Body, starts: &[&str]) -> bool {
 }
 
 fn robot(adds: fn(&Body) -> bool) -> Stage {
-    let at = Where::Robot;
-    Stage { at, adds }
+    stage(TurningPlace::Robot, adds)
 }
 
 fn bench(adds: fn(&Body) -> bool) -> Stage {
-    let at = Where::Bench;
-    Stage { at, adds }
+    stage(TurningPlace::Bench, adds)
+}
+
+fn stage(at: TurningPlace, adds: fn(&Body) -> bool) -> Stage {
+    let turns = |_: &Body| false;
+    Stage { at, adds, turns }
 }
 
 /// A step with the instructions that stand under its title.
-fn step(title: &'static str, lift: fn(&Body) -> f64, near: Near, stages: Vec<Stage>) -> Step {
+fn step(title: &'static str, lift: fn(&Body) -> f64, near: ExtraView, stages: Vec<Stage>) -> Step {
     let mut sections = WORDS
         .split("## ")
         .filter_map(|section| section.split_once('\n'));
     let words = sections.find(|(known, _)| *known == title);
     let (_, words) = words.expect("each title is in steps.md");
-    let words = words.trim().replace('\n', " ");
+    let paragraphs = words.trim().split("\n\n");
+    let paragraphs = paragraphs.map(|paragraph| paragraph.replace('\n', " "));
+    let words = paragraphs.collect::<Vec<_>>().join("\n\n");
     Step {
         title,
         words,
@@ -108,7 +115,7 @@ fn step(title: &'static str, lift: fn(&Body) -> f64, near: Near, stages: Vec<Sta
 
 /// A step at the console, which adds no bodies.
 fn console(title: &'static str) -> Step {
-    step(title, |_| 0.0, Near::None, Vec::new())
+    step(title, |_| 0.0, ExtraView::None, Vec::new())
 }
 
 /// The steps of a robot with slotted or with rigid struts.
@@ -125,8 +132,9 @@ pub fn steps(slotted: bool) -> Vec<Step> {
         struts(slotted),
         sliders(),
         ends(),
-        console("Level the feet"),
+        level(),
         console("The first walk"),
+        console("A radio module, if you want one"),
     ]
 }
 
@@ -144,7 +152,7 @@ fn chassis() -> Step {
         );
         body.name == "plate" || kinds || below
     });
-    step("Servos and standoffs", lift, Near::Corner, vec![all])
+    step("Servos and standoffs", lift, ExtraView::Corner, vec![all])
 }
 
 fn supply() -> Step {
@@ -160,7 +168,7 @@ fn supply() -> Step {
     step(
         "Strips, battery and capacitor",
         lift,
-        Near::Below,
+        ExtraView::Below,
         vec![all],
     )
 }
@@ -168,17 +176,32 @@ fn supply() -> Step {
 fn board() -> Step {
     let lift = |body: &Body| match body.kind {
         Kind::Board => 1.3,
-        Kind::Fitting(_) => 0.3,
+        Kind::Fitting(_) if named(body, &["converter", "alarm"]) => 0.3,
+        Kind::Fitting(_) => 1.1,
         Kind::Screw(_) if body.name.contains("board") => 1.8,
         Kind::Screw(_) => 1.1,
         _ => 0.8,
     };
     let deck = robot(|body| {
         let above = body.name.starts_with("screw standoff") && body.name.ends_with("above");
-        named(body, &["deck", "converter", "alarm"]) || above
+        let below = ["deck", "converter", "alarm"];
+        let wings = [
+            "signal strip",
+            "resistor",
+            "place for",
+            "switch",
+            "plus way",
+            "fuse",
+        ];
+        named(body, &below) || named(body, &wings) || above
     });
     let board = robot(|body| named(body, &["board", "screw board"]));
-    step("Deck, board and wires", lift, Near::None, vec![deck, board])
+    step(
+        "Deck, board and wires",
+        lift,
+        ExtraView::None,
+        vec![deck, board],
+    )
 }
 
 fn links() -> Step {
@@ -192,7 +215,7 @@ fn links() -> Step {
         let horn = matches!(body.kind, Kind::Horn | Kind::HornScrew(_));
         horn || named(body, &["link", "screw tip", "screw arm"])
     });
-    step("Horns and links", lift, Near::Corner, vec![all])
+    step("Horns and links", lift, ExtraView::Corner, vec![all])
 }
 
 fn legs() -> Step {
@@ -208,14 +231,27 @@ fn legs() -> Step {
         let joint = ["crank joint", "follower joint"].map(|joint| body.name.contains(joint));
         named(body, &bars) || joint.contains(&true)
     });
-    let foot = bench(|body| matches!(body.mount, Mount::Foot(_)) && body.kind != Kind::Pad);
-    let pad = bench(|body| body.kind == Kind::Pad);
+    let foot = bench(|body| matches!(body.mount, Mount::Foot(_)) && !is_height(body));
+    let height = bench(is_height);
     step(
         "Legs, on the bench",
         lift,
-        Near::Corner,
-        vec![joints, foot, pad],
+        ExtraView::Corner,
+        vec![joints, foot, height],
     )
+}
+
+/// A pad or the screw in it, which sets its foot's height.
+fn is_height(body: &Body) -> bool {
+    body.kind == Kind::Pad || named(body, &["screw height"])
+}
+
+fn level() -> Step {
+    let turned = Stage {
+        turns: |body| named(body, &["screw height"]),
+        ..robot(|_| false)
+    };
+    step("Level the feet", |_| 0.0, ExtraView::None, vec![turned])
 }
 
 fn legs_on_plate() -> Step {
@@ -224,7 +260,7 @@ fn legs_on_plate() -> Step {
         _ => 1.0,
     };
     let all = robot(|body| body.name.contains("pivot"));
-    step("Legs on the plate", lift, Near::CornerBelow, vec![all])
+    step("Legs on the plate", lift, ExtraView::CornerBelow, vec![all])
 }
 
 fn struts(slotted: bool) -> Step {
@@ -242,7 +278,7 @@ fn struts(slotted: bool) -> Step {
         true => "Struts and springs",
         false => "Struts",
     };
-    step(title, lift, Near::Corner, vec![on_leg, on_link])
+    step(title, lift, ExtraView::Corner, vec![on_leg, on_link])
 }
 
 fn sliders() -> Step {
@@ -255,7 +291,7 @@ fn sliders() -> Step {
         let slider = matches!(body.mount, Mount::Sleeve(_) | Mount::Rod(_));
         slider || named(body, &["arm spacer", "nut arm"])
     });
-    step("Sliders", lift, Near::None, vec![all])
+    step("Sliders", lift, ExtraView::None, vec![all])
 }
 
 fn ends() -> Step {
@@ -272,5 +308,11 @@ fn ends() -> Step {
     let joints = robot(|body| {
         matches!(body.mount, Mount::Coupler(_)) || named(body, &["tip spacer", "nut tip"])
     });
-    step("Head and tail", lift, Near::None, vec![couplers, joints])
+    let plug = robot(|body| named(body, &["round plug"]));
+    step(
+        "Head and tail",
+        lift,
+        ExtraView::None,
+        vec![couplers, joints, plug],
+    )
 }

@@ -62,7 +62,7 @@ impl Assembly {
                     .iter()
                     .flat_map(|p| b.prisms.iter().map(move |q| (p, q)));
                 let level = |(p, q): &(&Prism, &Prism)| p.z[0] < q.z[1] && q.z[0] < p.z[1];
-                for (p, q) in layers.filter(|layers| !self.meet(a, b) && level(layers)) {
+                for (p, q) in layers.filter(|layers| !self.may_touch(a, b) && level(layers)) {
                     let shapes = p.add.iter().flat_map(|a| q.add.iter().map(move |b| (a, b)));
                     pairs.extend(shapes.map(|(a, b)| ([i, j], [(a, disc(a)), (b, disc(b))])));
                 }

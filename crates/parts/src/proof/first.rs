@@ -9,7 +9,7 @@
 use lizard_kinematics::Solution;
 use lizard_robot::Robot;
 
-use super::solids::Task;
+use super::shape_pairs::Task;
 use crate::bodies::assembly::Assembly;
 
 /// Angles of each servo on the grid.
@@ -41,9 +41,9 @@ pub fn worst(assembly: &Assembly, tasks: &[Task]) -> Option<Vec<Task>> {
 fn distance(assembly: &Assembly, task: &Task, pose: &Solution) -> f64 {
     let [a, b] = task.mounts.map(|mount| assembly.place(mount, pose));
     let place = b.seen_from(&a);
-    let solids = task.solids.iter();
-    let near = solids.filter(|solid| !solid.far(&place, [0.0; 2], task.least()));
-    let distances = near.map(|solid| solid.apart(&place));
+    let shape_pairs = task.shape_pairs.iter();
+    let near = shape_pairs.filter(|pair| !pair.is_far(&place, [0.0; 2], task.least()));
+    let distances = near.map(|pair| pair.apart(&place));
     distances.fold(f64::INFINITY, f64::min)
 }
 

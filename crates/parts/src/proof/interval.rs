@@ -132,7 +132,7 @@ impl Real for Interval {
 mod tests {
     use super::*;
 
-    fn holds(interval: Interval, value: f64) -> bool {
+    fn contains(interval: Interval, value: f64) -> bool {
         interval.low <= value && value <= interval.high
     }
 
@@ -152,15 +152,15 @@ mod tests {
             for share in [0.0, 0.3, 1.0] {
                 let at = |of: Interval| of.low + share * (of.high - of.low);
                 let [p, q] = [x, y].map(|of| at(of).clamp(of.low, of.high));
-                assert!(holds(x + y, p + q) && holds(x - y, p - q) && holds(-x, -p));
-                assert!(holds(x * y, p * q) && holds(x * c, p * c));
-                assert!(q == 0.0 || holds(x / y, p / q), "{x:?} / {y:?}");
-                assert!(holds(x.root(), p.max(0.0).sqrt()));
+                assert!(contains(x + y, p + q) && contains(x - y, p - q) && contains(-x, -p));
+                assert!(contains(x * y, p * q) && contains(x * c, p * c));
+                assert!(q == 0.0 || contains(x / y, p / q), "{x:?} / {y:?}");
+                assert!(contains(x.root(), p.max(0.0).sqrt()));
                 let degrees = Interval::new(x.low * 100.0, x.high * 100.0);
                 let ([sine], [cosine]) = Interval::sin_cos_each([degrees]);
                 let (sin, cos) = (p * 100.0).to_radians().sin_cos();
                 let wider = |i: Interval| Interval::new(i.low - 1e-14, i.high + 1e-14);
-                assert!(holds(wider(sine), sin) && holds(wider(cosine), cos));
+                assert!(contains(wider(sine), sin) && contains(wider(cosine), cos));
             }
         }
     }
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn what_may_be_divided_by_0_may_be_anything() {
+    fn a_quotient_by_an_interval_with_0_is_unbounded() {
         let over = Interval::of(1.0) / Interval::new(-1.0, 2.0);
         assert_eq!(over, Interval::ALL);
         assert_eq!(over * Interval::of(0.0), Interval::ALL);

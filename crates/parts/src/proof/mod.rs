@@ -10,7 +10,7 @@
 //!
 //! The position of two parts to each other depends only on the servos of their mounts
 //! ([`Mount::servos`](crate::Mount::servos)): which are one or two, rarely three. So the
-//! whole proof takes seconds. `solids.rs` lists what has to keep clear of what,
+//! whole proof takes seconds. `shape_pairs.rs` lists what has to keep clear of what,
 //! `sweep.rs` leaves out pairs that are never close, `guard.rs` knows what the guard
 //! certainly refuses.
 
@@ -19,8 +19,8 @@ mod first;
 mod guard;
 mod interval;
 mod search;
+mod shape_pairs;
 mod slope;
-mod solids;
 mod sweep;
 
 use std::fmt;
@@ -34,7 +34,7 @@ use crate::proof::clearance::Clearance;
 use guard::Guard;
 pub use search::ENOUGH;
 use search::Found;
-use solids::Task;
+use shape_pairs::Task;
 
 /// Least distance of parts that are not made to meet, mm: more than the error of a printer.
 pub const LEAST: f64 = 0.2;
@@ -46,7 +46,7 @@ const JOINT_STEPS: u32 = 6;
 
 /// The least distance of two bodies.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Near {
+pub struct NearestPair {
     /// The name of one body.
     pub first: String,
     /// The name of the other body.
@@ -66,10 +66,10 @@ pub struct Near {
 pub struct Proof {
     /// The nearest two bodies of each two mounts, without those that are made to meet;
     /// the nearest first.
-    pub apart: Vec<Near>,
+    pub apart: Vec<NearestPair>,
     /// The same for bodies that are made to meet, such as a pin and its hole: the gap
     /// between them.
-    pub meeting: Vec<Near>,
+    pub meeting: Vec<NearestPair>,
     /// Bounds of each servo's angle over all accepted poses, deg.
     pub ranges: [[f64; 2]; 4],
     /// Number of pairs of shapes checked.
@@ -89,10 +89,10 @@ pub enum Clash {
     Narrow(Box<Clearance>),
     /// Two parts that may overlap at poses that the guard hardly accepts.
     #[error("{0}")]
-    Unsure(Box<Near>),
+    Unsure(Box<NearestPair>),
 }
 
-impl fmt::Display for Near {
+impl fmt::Display for NearestPair {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let (first, second, proved) = (&self.first, &self.second, self.proved);
         write!(f, "{first} and {second} ")?;
@@ -107,7 +107,7 @@ impl fmt::Display for Near {
     }
 }
 
-impl Near {
+impl NearestPair {
     /// The clash of two bodies that have to keep a least distance, mm; `None` if they do.
     fn clash(&self, least: f64) -> Option<Clash> {
         match &self.seen {
@@ -127,7 +127,7 @@ impl Near {
 impl Proof {
     /// The nearest two bodies that are not made to meet.
     #[must_use]
-    pub fn least(&self) -> Option<&Near> {
+    pub fn least(&self) -> Option<&NearestPair> {
         self.apart.first()
     }
 
@@ -164,9 +164,9 @@ pub struct Questions<'a> {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Answer {
     /// The smallest gap of a pinned pair.
-    pinned: Option<Near>,
+    pinned: Option<NearestPair>,
     /// The nearest of the other pairs, and the number of regions of poses checked.
-    nearest: Option<(Near, u64)>,
+    nearest: Option<(NearestPair, u64)>,
 }
 
 impl<'a> Questions<'a> {
@@ -190,23 +190,23 @@ impl<'a> Questions<'a> {
         self.tasks.len()
     }
 
-    /// The answer to one question, by its index below [`Questions::count`].
+    /// Answers one question, by its index below [`Questions::count`].
     #[must_use]
     pub fn one(&self, place: usize) -> Answer {
         self.within(place, search::MANY)
     }
 
-    /// The answer to one question after at most `most` regions.
+    /// Answers one question after at most `most` regions.
     fn within(&self, place: usize, most: u64) -> Answer {
         let mut task = self.tasks[place].clone();
         let pinned = match task.meet {
             true => self.assembly.take_joint(&mut task, &self.joints),
             false => None,
         };
-        let nearest = (!task.solids.is_empty()).then(|| {
+        let nearest = (!task.shape_pairs.is_empty()).then(|| {
             let found = search::least(self.assembly, &self.guard, &task, most);
             let regions = found.regions;
-            (self.assembly.near(found), regions)
+            (self.assembly.nearest_pair(found), regions)
         });
         Answer { pinned, nearest }
     }
@@ -224,7 +224,7 @@ impl<'a> Questions<'a> {
             apart: Vec::new(),
             meeting: Vec::new(),
             ranges: self.guard.ranges.map(|range| [range.low, range.high]),
-            pairs: self.tasks.iter().map(|task| task.solids.len()).sum(),
+            pairs: self.tasks.iter().map(|task| task.shape_pairs.len()).sum(),
             regions: 0,
         };
         let count = self.count();
@@ -281,22 +281,22 @@ impl Assembly {
 
     /// Takes the pinned pairs out of a task: pins in round holes whose centres coincide at
     /// every pose, so that their gap never changes.
-    fn take_joint(&self, task: &mut Task, poses: &[Solution]) -> Option<Near> {
+    fn take_joint(&self, task: &mut Task, poses: &[Solution]) -> Option<NearestPair> {
         let place = |pose| {
             let [a, b] = task.mounts.map(|mount| self.place(mount, pose));
             b.seen_from(&a)
         };
         let places: Vec<_> = poses.iter().map(place).collect();
         let pose = poses.first()?;
-        let mut least: Option<Near> = None;
-        task.solids.retain(|solid| {
-            let gap = solid.pinned(&places);
+        let mut least: Option<NearestPair> = None;
+        task.shape_pairs.retain(|pair| {
+            let gap = pair.pinned(&places);
             if let Some(mm) = gap
                 && least.as_ref().is_none_or(|least| mm < least.proved)
             {
-                least = Some(self.near(Found {
+                least = Some(self.nearest_pair(Found {
                     proved: mm,
-                    bodies: solid.bodies,
+                    bodies: pair.bodies,
                     seen: Some((*pose, mm)),
                     doubt: None,
                     regions: 0,
@@ -307,11 +307,11 @@ impl Assembly {
         least
     }
 
-    fn near(&self, found: Found) -> Near {
+    fn nearest_pair(&self, found: Found) -> NearestPair {
         let [first, second] = found.bodies.map(|body| self.bodies()[body].name.clone());
         let neutral = self.robot().servos().each_ref().map(|servo| servo.neutral);
         let angles = |of: [Option<f64>; 4]| std::array::from_fn(|i| of[i].unwrap_or(neutral[i]));
-        Near {
+        NearestPair {
             seen: found.seen.map(|(pose, mm)| Clearance {
                 first: first.clone(),
                 second: second.clone(),

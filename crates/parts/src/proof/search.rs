@@ -10,8 +10,8 @@ use std::collections::BTreeMap;
 use lizard_kinematics::{Solution, Vector};
 
 use super::guard::{Guard, Region, ordered};
+use super::shape_pairs::Task;
 use super::slope::Slope;
-use super::solids::Task;
 use crate::bodies::assembly::Assembly;
 use crate::layers::placement::Placement;
 
@@ -109,7 +109,7 @@ impl<const N: usize> Search<'_, N> {
 
     fn run(mut self, most: u64) -> Found {
         let whole = Region::of(self.servos.map(|servo| self.guard.ranges[servo]));
-        let all: Vec<u32> = (0..self.task.solids.len() as u32).collect();
+        let all: Vec<u32> = (0..self.task.shape_pairs.len() as u32).collect();
         let share = if self.task.meet { SHARE_MEETING } else { SHARE };
         // The least bound comes first; regions break ties, so the order is always the same.
         let key = |part: &Part<N>| (ordered(part.low), part.region.middle.map(ordered));
@@ -138,7 +138,7 @@ impl<const N: usize> Search<'_, N> {
         let by = unseen.map_or(self.by, |part| part.by);
         Found {
             proved: proved - ROUNDING,
-            bodies: self.task.solids[by as usize].bodies,
+            bodies: self.task.shape_pairs[by as usize].bodies,
             doubt: doubt.map(|part| self.angles(&part.region)),
             seen: self.seen,
             regions: self.regions,
@@ -163,12 +163,12 @@ impl<const N: usize> Search<'_, N> {
         let [(a, around_a), (b, around_b)] = self.task.mounts.map(|mount| {
             let place = self.assembly.place_on(mount, &middle);
             let bounds = self.assembly.place_on(mount, &bounds);
-            (place, near(&bounds, &place, &region))
+            (place, tightened(&bounds, &place, &region))
         });
         let place = b.seen_from(&a);
-        let bounds = near(&around_b.seen_from(&around_a), &place, &region);
+        let bounds = tightened(&around_b.seen_from(&around_a), &place, &region);
         let strays = [bounds.at, bounds.turn].map(|vector| {
-            let [x, y] = [vector.x, vector.y].map(|of| of.strays(&region.half));
+            let [x, y] = [vector.x, vector.y].map(|of| of.largest_change(&region.half));
             x.hypot(y)
         });
         let mut part = Part {
@@ -181,17 +181,17 @@ impl<const N: usize> Search<'_, N> {
         let closed = place.at.is_finite() && place.turn.is_finite();
         let mut nearest = (f64::INFINITY, 0);
         for &index in alive {
-            let solid = &self.task.solids[index as usize];
+            let pair = &self.task.shape_pairs[index as usize];
             let low = if !closed {
                 f64::NEG_INFINITY
-            } else if solid.far(&place, strays, self.high()) {
+            } else if pair.is_far(&place, strays, self.high()) {
                 continue;
             } else {
-                let apart = solid.apart(&place);
+                let apart = pair.apart(&place);
                 if apart < nearest.0 {
                     nearest = (apart, index);
                 }
-                let low = solid.apart_within(&place, &bounds, &region);
+                let low = pair.apart_within(&place, &bounds, &region);
                 if low.is_nan() { f64::NEG_INFINITY } else { low }
             };
             if low < self.high() {
@@ -212,14 +212,14 @@ impl<const N: usize> Search<'_, N> {
 }
 
 /// Bounds of a place, tightened by its value in the middle and the distance it can stray.
-fn near<const N: usize>(
+fn tightened<const N: usize>(
     bounds: &Placement<Slope<N>>,
     middle: &Placement,
     region: &Region<N>,
 ) -> Placement<Slope<N>> {
     let each = |bounds: Vector<Slope<N>>, middle: Vector| {
-        let x = bounds.x.near(middle.x, &region.half);
-        Vector::new(x, bounds.y.near(middle.y, &region.half))
+        let x = bounds.x.tightened(middle.x, &region.half);
+        Vector::new(x, bounds.y.tightened(middle.y, &region.half))
     };
     Placement {
         at: each(bounds.at, middle.at),

@@ -29,18 +29,18 @@ impl<const N: usize> Slope<N> {
 
     /// Largest distance from its value at the middle angles, if each servo may be `half`
     /// degrees from there.
-    pub fn strays(&self, half: &[f64; N]) -> f64 {
+    pub fn largest_change(&self, half: &[f64; N]) -> f64 {
         let slopes = self.slope.iter().zip(half);
         slopes.fold(0.0, |sum, (slope, half)| sum + slope.most() * half)
     }
 
-    /// The same number, its bounds tightened by its value in the middle and the distance it
-    /// can stray. Bounds from operations are often much wider, because each operation takes
+    /// Tightens the bounds of the number by its value in the middle and the distance that it can
+    /// stray. Bounds from operations are often much wider, because each operation takes
     /// its operands to be independent.
-    pub fn near(self, middle: f64, half: &[f64; N]) -> Self {
+    pub fn tightened(self, middle: f64, half: &[f64; N]) -> Self {
         /// A bound of the rounding error of `middle`.
         const ROUNDING: f64 = 1e-9;
-        let strays = self.strays(half) + ROUNDING;
+        let strays = self.largest_change(half) + ROUNDING;
         let (low, high) = (middle - strays, middle + strays);
         if low.is_nan() || high.is_nan() {
             return self;
@@ -72,7 +72,7 @@ impl<const N: usize> Slope<N> {
 /// Implements operators. `each` and `zip` apply the rule for the slopes.
 macro_rules! operators {
     ($($operator:ident $method:ident($self:ident, $other:ident: $type:ty) $result:block)*) => {$(
-        // The rule for the slopes of a product or a quotient has other operations in it.
+        // The slopes of a product or a quotient need other operations, too.
         #[allow(clippy::suspicious_arithmetic_impl)]
         impl<const N: usize> $operator<$type> for Slope<N> {
             type Output = Self;
@@ -117,7 +117,7 @@ impl<const N: usize> Real for Slope<N> {
 
     fn sin_cos_each<const K: usize>(degrees: [Self; K]) -> ([Self; K], [Self; K]) {
         let (sines, cosines) = Interval::sin_cos_each(degrees.map(|angle| angle.value));
-        // The degree in radians, and a number beyond it.
+        // A degree in radians, between its two neighbouring numbers.
         let degree = Interval::new((PI / 180.0).next_down(), (PI / 180.0).next_up());
         let (mut sin, mut cos) = (degrees, degrees);
         for i in 0..K {
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn a_linkage_on_bounds_holds_every_pose_between_them_and_its_rates() {
+    fn bounds_of_a_linkage_contain_every_pose_and_its_rates() {
         for (left, right) in [(120.0, 60.0), (95.0, 40.0), (140.0, 80.0)] {
             for half in [0.01, 0.1, 1.0] {
                 let bounds = |middle: f64| Interval::new(middle - half, middle + half);
@@ -159,7 +159,7 @@ mod tests {
                     for (i, value) in numbers(at).into_iter().enumerate() {
                         let Slope { value: bounds, .. } = held[i];
                         assert!(bounds.low <= value && value <= bounds.high);
-                        let strays = held[i].strays(&[half; 2]);
+                        let strays = held[i].largest_change(&[half; 2]);
                         assert!((value - middle[i]).abs() <= strays + 1e-12);
                         for servo in 0..2 {
                             let mut next = at;

@@ -1,6 +1,6 @@
 //! Tests that the pages about parts agree with the code: values, the list to buy, the steps.
 
-use lizard_parts::{Bill, steps};
+use lizard_parts::{Bill, places, steps, to_buy};
 use lizard_robot::{Parts, Robot};
 
 use crate::{assembly, neutral};
@@ -53,36 +53,56 @@ fn the_page_has_every_key() {
     assert!(asked > 30, "{asked} keys of {printed}");
 }
 
-/// The list of docs/quickstart.md, between its two marks.
-fn list(page: &str) -> (&str, &str, &str) {
-    const BEGIN: &str = "a test holds it -->\n";
+/// Compares the text of a page after a mark, up to the next mark, or writes it there.
+fn quoted(path: &str, begin: &str, expected: &str) {
     const END: &str = "<!-- end of the list -->";
-    let (before, rest) = page.split_once(BEGIN).expect("the list begins");
+    let page = read(path);
+    let (before, rest) = page.split_once(begin).expect(begin);
     let (list, after) = rest.split_once(END).expect("the list ends");
-    (&page[..before.len() + BEGIN.len()], list, after)
+    if std::env::var_os("BLESS_DOCS").is_some() {
+        let file = format!("{}/../../{path}", env!("CARGO_MANIFEST_DIR"));
+        std::fs::write(file, format!("{before}{begin}{expected}{END}{after}")).expect(path);
+        return;
+    }
+    assert_eq!(list, expected, "{path}: run with BLESS_DOCS=1");
 }
 
 #[test]
-fn the_quickstart_quotes_the_list_of_the_bill() {
+fn the_pages_quote_the_lists_of_the_bill() {
     let assembly = assembly("paper", "[leg.drive]\nkind = \"rigid\"");
     let bill = Bill::of(&assembly, &assembly.parts(), &neutral(&assembly));
-    let mut expected = "| pieces | what |\n|---|---|\n".to_owned();
-    for item in &bill.bought {
-        expected += &format!("| {} | {} |\n", item.count, item.what);
+    let bought = format!("{}\n{}\n", to_buy(&bill.bought), bill.prices());
+    for (path, mark, list) in [
+        ("docs/quickstart.md", "the list of `lizard parts`", &bought),
+        (
+            "docs/quickstart.md",
+            "the list for a radio",
+            &to_buy(&bill.radio),
+        ),
+        ("docs/build.md", "the places on the robot", &places()),
+    ] {
+        let begin = format!("<!-- {mark}; a test holds it -->\n");
+        quoted(path, &begin, list);
+        // The guide has it, too.
+        assert!(bill.to_string().contains(list), "{mark}");
     }
-    let page = read("docs/quickstart.md");
-    let (before, list, after) = list(&page);
-    if std::env::var_os("BLESS_DOCS").is_some() {
-        let path = format!("{}/../../docs/quickstart.md", env!("CARGO_MANIFEST_DIR"));
-        let page = format!("{before}{expected}<!-- end of the list -->{after}");
-        std::fs::write(path, page).expect("docs/quickstart.md");
-        return;
+    for word in ["strap", "wire", "switch", "fuse", "strip", "plug"] {
+        assert!(bought.contains(word), "{word}");
     }
-    assert_eq!(list, expected, "run with BLESS_DOCS=1");
-    // The guide has it, too, and pads, straps, wires, switch and fuse are on it.
-    assert!(bill.to_string().contains(&expected));
-    for word in ["pad", "strap", "wire", "switch", "fuse", "strip", "plug"] {
-        assert!(expected.contains(word), "{word}");
+}
+
+#[test]
+fn the_pages_have_the_mass_of_robot_toml() {
+    let mass = assembly("paper", "").robot().ground().body.mass;
+    let weighs = format!("The parts weigh {mass:.0} g.");
+    assert!(
+        read("docs/twin.md").contains(&weighs),
+        "docs/twin.md: {weighs}"
+    );
+    assert!(read("docs/twin.md").contains(&format!("| mass | {mass:.0} g,")));
+    let key = format!("\nmass = {mass:.1} ");
+    for path in ["robot.toml", "robots/paper.toml", "robots/own-gaits.toml"] {
+        assert!(read(path).contains(&key), "{path}: {key}");
     }
 }
 

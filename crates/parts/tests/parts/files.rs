@@ -69,7 +69,7 @@ fn from_hole_to_hole_is_the_length_of_the_link() {
 fn a_rigid_strut_is_as_long_as_the_other_from_hole_to_hole_and_within_it() {
     for name in ["paper", "large", "unequal"] {
         let assembly = assembly(name);
-        for (leg, rigid) in assembly.layout().legs.iter().zip(assembly.instead()) {
+        for (leg, rigid) in assembly.layout().legs.iter().zip(assembly.alternatives()) {
             let expected = [(0.0, 0.0), (leg.strut_length, 0.0)];
             assert_eq!(holes(rigid), expected, "{name}: {}", rigid.name);
             let slotted = rigid.name.trim_start_matches("rigid ");

@@ -1,18 +1,18 @@
-//! Nothing meets what it is not made to meet, at poses on a grid; and where a measure
-//! of the parts is wrong, something does.
+//! No two parts collide at poses on a grid, unless they are made to meet; and with a wrong
+//! measure some parts do.
 
 use lizard_parts::Clearance;
 
 use crate::{ROBOTS, assembly, body, slotted};
 
-/// The nearest pair of the paper's robot with other parts.
+/// The nearest pair of parts of the paper's robot with changed measures.
 fn nearest(parts: &str) -> Option<Clearance> {
     let assembly = slotted("paper", parts);
     assembly.nearest(assembly.poses(9), 1.0).into_iter().next()
 }
 
 #[test]
-fn every_robot_has_air_between_its_parts() {
+fn every_robot_has_gaps_between_its_parts() {
     for name in ROBOTS {
         let assembly = slotted(name, "");
         assert!(assembly.poses(10).count() > 100, "{name}");
@@ -61,7 +61,7 @@ fn a_body_is_found_by_its_name_and_has_layers_from_below_to_above() {
 }
 
 #[test]
-fn pins_meet_the_holes_of_what_they_hold() {
+fn pins_meet_the_holes_of_the_parts_that_they_hold() {
     for name in ROBOTS {
         let assembly = assembly(name, "");
         let mut met = 0;

@@ -3,17 +3,12 @@
 use std::collections::BTreeMap;
 
 use lizard_kinematics::{End, Side, Solution, Vector};
-use lizard_parts::{Assembly, Bill, Course, Motor, Pull, Scene, mjcf};
+use lizard_parts::{Assembly, Bill, Block, Course, Pull, Scene, mjcf};
 use lizard_robot::Robot;
 use lizard_robot::servo::{LEGS, NAMES};
 use roxmltree::{Document, Node};
 
-use crate::{ROBOTS, with};
-
-const MOTOR: Motor = Motor {
-    rate: 500.0,
-    stall: 176.0,
-};
+use crate::{GRAIN, ROBOTS, with};
 
 fn robot(name: &str) -> Robot {
     with(name, "")
@@ -26,7 +21,7 @@ fn neutral(robot: &Robot) -> Solution {
 
 fn written(robot: &Robot, change: impl FnOnce(&mut Scene)) -> String {
     let assembly = Assembly::new(robot);
-    let mut scene = Scene::of(&assembly, MOTOR);
+    let mut scene = Scene::of(&assembly);
     change(&mut scene);
     mjcf(&assembly, &neutral(robot), &scene).expect("it is made")
 }
@@ -95,33 +90,55 @@ fn child<'a>(node: Node<'a, 'a>, tag: &str) -> Node<'a, 'a> {
     found.expect(tag)
 }
 
-#[test]
-fn its_bodies_weigh_what_the_bill_says_and_where() {
-    for name in ROBOTS {
-        let robot = robot(name);
-        let assembly = Assembly::new(&robot);
-        let bill = Bill::of(&assembly, &assembly.parts(), &neutral(&robot));
-        let text = written(&robot, |_| {});
-        let document = Document::parse(&text).expect("well formed");
-        let (mut mass, mut moment) = (0.0, [0.0; 3]);
-        let all = bodies(&document);
-        for (placed, body) in all.values() {
-            let inertial = child(*body, "inertial");
-            let grams = 1000.0 * numbers(inertial, "mass")[0];
-            assert!(grams > 0.0, "{body:?}");
-            let at = placed.point(&numbers(inertial, "pos"));
-            mass += grams;
-            for (sum, part) in moment.iter_mut().zip(at) {
-                *sum += grams * part * 1000.0;
-            }
+/// Mass, g, and mass centre of all bodies: forward, left, above the plate, mm.
+fn weighed(text: &str) -> (f64, [f64; 3]) {
+    let document = Document::parse(text).expect("well formed");
+    let (mut mass, mut moment) = (0.0, [0.0; 3]);
+    let all = bodies(&document);
+    for (placed, body) in all.values() {
+        let inertial = child(*body, "inertial");
+        let grams = 1000.0 * numbers(inertial, "mass")[0];
+        assert!(grams > 0.0, "{body:?}");
+        let at = placed.point(&numbers(inertial, "pos"));
+        mass += grams;
+        for (sum, part) in moment.iter_mut().zip(at) {
+            *sum += grams * part * 1000.0;
         }
-        // A chord cuts off a little of each round end.
-        let off = mass / bill.grams - 1.0;
-        assert!(off.abs() < 2e-3, "{name} {mass} {}", bill.grams);
-        let plate = 1000.0 * all["chassis"].0.at[2];
-        let [right, forward, up] = moment.map(|part| part / mass);
-        for (found, expected) in [forward, -right, up - plate].into_iter().zip(bill.centre) {
-            assert!((found - expected).abs() < 0.05, "{name} {found} {expected}");
+    }
+    let plate = 1000.0 * all["chassis"].0.at[2];
+    let [right, forward, up] = moment.map(|part| part / mass);
+    (mass, [forward, -right, up - plate])
+}
+
+/// A robot of a file with another mass, g, and another mass centre, mm.
+fn with_body(name: &str, mass: f64, [ahead, left]: [f64; 2]) -> Robot {
+    let path = format!("{}/../../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(&path).expect(&path);
+    let (before, after) = text.split_once("\nmass = ").expect("a mass");
+    let (_, after) = after.split_once('\n').expect("its line");
+    let keys = format!("\nmass = {mass:.1}\ncentre = [{ahead:.1}, {left:.1}]\n");
+    Robot::parse(&format!("{before}{keys}{after}")).expect(name)
+}
+
+#[test]
+fn its_bodies_weigh_what_robot_toml_says_and_where() {
+    for name in ROBOTS {
+        let own = robot(name).ground().body;
+        for (mass, centre) in [
+            (own.mass, own.centre),
+            (500.0, [20.0, -9.0]),
+            (350.0, [-15.0, 0.0]),
+        ] {
+            let robot = with_body(name, mass, centre);
+            let bill = Bill::of(&Assembly::new(&robot), &[], &neutral(&robot));
+            let (grams, [ahead, left, up]) = weighed(&written(&robot, |_| {}));
+            // A chord cuts off a little of each round end.
+            assert!((grams / mass - 1.0).abs() < 2e-3, "{name} {grams} {mass}");
+            let off = (ahead - centre[0]).hypot(left - centre[1]);
+            assert!(off < 0.05, "{name} {ahead} {left} {centre:?}");
+            // Wires count at the height of the plate.
+            let moment = (grams * up / (bill.grams * bill.centre[2]) - 1.0).abs();
+            assert!(moment < 0.01, "{name} {up} {:?}", bill.centre);
         }
     }
 }
@@ -192,6 +209,70 @@ fn each_foot_stands_where_the_contact_model_has_it_and_a_long_one_is_lower() {
 }
 
 #[test]
+fn a_floor_has_its_blocks_its_slope_and_its_grip_on_each_pad() {
+    let text = written(&robot("paper"), |scene| {
+        let (at, size) = ([20.0, 300.0], [10.0, 40.0, 2.0]);
+        scene.floor.blocks.push(Block { at, size });
+        scene.floor.rises = 30.0;
+        scene.floor.friction = [0.1, 0.2, 0.3, 0.4];
+    });
+    let document = Document::parse(&text).expect("well formed");
+    let mut nodes = document.descendants();
+    let option = nodes
+        .find(|node| node.has_tag_name("option"))
+        .expect("options");
+    // It rises ahead, so weight pulls the robot back: half of it at 30 deg.
+    let [right, ahead, up] = numbers(option, "gravity")[..] else {
+        panic!("three parts")
+    };
+    assert!(right == 0.0 && (ahead + 0.5 * 9.81).abs() < 0.01, "{ahead}");
+    assert!((up + 0.866 * 9.81).abs() < 0.01, "{up}");
+    let geoms = || {
+        document
+            .descendants()
+            .filter(|node| node.has_tag_name("geom"))
+    };
+    let block = geoms().find(|geom| geom.attribute("type") == Some("box"));
+    let block = block.expect("a block");
+    let [at, half] = ["pos", "size"].map(|of| numbers(block, of));
+    assert_eq!((at[0], at[1]), (0.02, 0.3));
+    assert_eq!((half[0], half[1], at[2] + half[2]), (0.005, 0.02, 0.002));
+    for (leg, friction) in LEGS.into_iter().zip([0.1, 0.2, 0.3, 0.4]) {
+        let name = format!("pad {leg}");
+        let pad = geoms().find(|geom| geom.attribute("name") == Some(&name));
+        let pad = pad.expect("a pad");
+        // Else MuJoCo would take the larger friction of pad and floor.
+        assert_eq!(pad.attribute("priority"), Some("1"));
+        assert_eq!(numbers(pad, "friction")[0], friction);
+    }
+}
+
+#[test]
+fn the_ball_that_touches_the_floor_is_that_of_the_pads_dome() {
+    let assembly = Assembly::new(&robot("paper"));
+    let pad = assembly.body("pad LF").expect("a pad");
+    let text = written(&robot("paper"), |_| ());
+    let document = Document::parse(&text).expect("well formed");
+    let mut nodes = document
+        .descendants()
+        .filter(|node| node.has_tag_name("geom"));
+    let ball = nodes.find(|node| node.attribute("name") == Some("pad LF"));
+    let radius = 1000.0 * numbers(ball.expect("a ball"), "size")[0];
+    let floor = pad.z()[0];
+    let mut climbed: f64 = 0.0;
+    for prism in &pad.prisms {
+        let half = prism.add[0].radius;
+        let [low, high] = prism.z.map(|z| z - floor);
+        let ball = |z: f64| (z * (2.0 * radius - z)).sqrt();
+        if half < 10.9 && low > 0.15 {
+            assert!(ball(low) < half && half < ball(high), "{low} {half}");
+            climbed = climbed.max(high);
+        }
+    }
+    assert!(climbed > 1.9, "a dome of {climbed} mm");
+}
+
+#[test]
 fn a_slotted_strut_pulls_with_its_springs_force_and_yields_one_way() {
     let (force, rate) = (4.0, 0.4);
     let text = written(&robot("paper"), |scene| {
@@ -233,7 +314,11 @@ fn a_servo_turns_no_faster_and_no_stronger_than_it_can() {
             let [least, most] = numbers(*motor, "forcerange")[..] else {
                 panic!("two torques")
             };
-            assert_eq!((least, most), (-0.176, 0.176));
+            // 1.8 kg cm.
+            assert!(
+                (most - 0.018 * 9.80665).abs() < 1e-6 && least == -most,
+                "{most}"
+            );
             let rate = most / numbers(joint, "damping")[0];
             assert!((rate.to_degrees() - 500.0).abs() < 1e-3, "{rate}");
             let (low, high) = robot.servos()[servo].travel();
@@ -246,20 +331,58 @@ fn a_servo_turns_no_faster_and_no_stronger_than_it_can() {
 }
 
 #[test]
+fn servos_and_joints_of_a_robot_file_are_those_of_the_engine() {
+    let text = include_str!("../../../../robots/paper.toml").replace(
+        "[servo.A1]",
+        "[joints]\ndrag = 17.0\nslider = 0.5\n[servo]\nmodel = \"copy\"\nvolts = 4.2\nspin_up_ms = 10.0\n[servo.A1]",
+    );
+    let robot = Robot::parse(&text).expect("right");
+    let text = written(&robot, |_| {});
+    let document = Document::parse(&text).expect("well formed");
+    let joints: Vec<Node> = document
+        .descendants()
+        .filter(|node| node.has_tag_name("joint"))
+        .collect();
+    let friction = |name: &str| -> Vec<f64> {
+        let named = joints.iter().filter(|node| {
+            let own = node.attribute("name").unwrap_or_default();
+            own.starts_with(name)
+        });
+        named
+            .map(|node| numbers(*node, "frictionloss")[0])
+            .collect()
+    };
+    assert_eq!(friction("link"), [0.017; 4]);
+    assert_eq!(friction("rod"), [0.5; 2]);
+    // 1.2 kg cm and 400 deg/s at 4.8 V, both less at 4.2 V; the rotor's inertia is the same.
+    let link = joints
+        .iter()
+        .find(|node| node.attribute("name") == Some("link A1"))
+        .expect("a link");
+    let damping = 0.012 * 9.80665 / 400f64.to_radians();
+    assert!((numbers(*link, "damping")[0] - damping).abs() < 1e-8);
+    assert!((numbers(*link, "armature")[0] - 0.01 * damping).abs() < 1e-8);
+    let motor = elements(&document, "actuator")[0];
+    let most = numbers(motor, "forcerange")[1];
+    assert!((most - 0.012 * 9.80665 * 4.2 / 4.8).abs() < 1e-6, "{most}");
+}
+
+#[test]
 fn a_course_has_the_angles_of_the_firmwares_tables_and_tells_its_last_cycle() {
     let robot = robot("own-gaits");
     let gait = robot.gait("stride").expect("stride");
-    let course = Course::of(&robot, gait, 2);
+    let course = Course::of(&robot, gait, 2, 1);
     let (begin, period) = (course.begin, course.period);
     let text = written(&robot, |scene| scene.course = Some(course));
     let document = Document::parse(&text).expect("well formed");
     let mut nodes = document.descendants();
     let numeric = nodes.find(|node| node.attribute("name") == Some("cycle"));
     let numeric = numeric.expect("the cycle");
-    let [written, long] = numbers(numeric, "data")[..] else {
-        panic!("two times")
+    let [written, long, count] = numbers(numeric, "data")[..] else {
+        panic!("two times and a number")
     };
     assert!((written - begin).abs() < 1e-9 && long == period && period == 0.91);
+    assert_eq!(count, 1.0);
     let keys = elements(&document, "keyframe");
     let last = numbers(*keys.last().expect("frames"), "time")[0];
     assert!(last >= begin + period && last < begin + period + 0.02 + 1e-9);
@@ -273,6 +396,18 @@ fn a_course_has_the_angles_of_the_firmwares_tables_and_tells_its_last_cycle() {
             let off = wanted[servo] - robot.servos()[servo].neutral - target.to_degrees();
             assert!(lizard_kinematics::wrap(off).abs() < 0.11, "{time} {off}");
         }
+    }
+}
+
+#[test]
+fn the_file_says_how_much_harder_its_pads_slide_backward() {
+    for (name, ratio) in [("paper", 1.0), ("unequal", 1.15), (GRAIN, 1.5)] {
+        let text = written(&robot(name), |_| {});
+        let document = Document::parse(&text).expect("well formed");
+        let mut nodes = document.descendants();
+        let numeric = nodes.find(|node| node.attribute("name") == Some("back over forward"));
+        let numeric = numeric.expect("the ratio");
+        assert_eq!(numbers(numeric, "data"), [ratio], "{name}");
     }
 }
 

@@ -2,7 +2,9 @@
 //! it cannot.
 
 use lizard_kinematics::Vector;
-use lizard_parts::{Act, Assembly, Body, Kind, Outline, Stage, Step, Unfit, Where, steps};
+use lizard_parts::{
+    Assembly, Body, Kind, Outline, ScrewOperation, Stage, Step, TurningPlace, Unfit, steps,
+};
 
 use crate::{ROBOTS, assembly as with, neutral, slotted as assembly};
 
@@ -15,12 +17,12 @@ fn every_screw_of_every_robot_can_be_reached() {
     for name in ROBOTS {
         for kind in ["strut", "rigid"] {
             let assembly = with(name, &format!("[leg.drive]\nkind = \"{kind}\""));
-            let asides = assembly.asides(&order(&assembly));
-            let asides = asides.unwrap_or_else(|blocked| panic!("{name}: {blocked}"));
+            let access_poses = assembly.access_poses(&order(&assembly));
+            let access_poses = access_poses.unwrap_or_else(|blocked| panic!("{name}: {blocked}"));
             // At neutral the follower covers a screw of its foot: the leg, which lies on
             // the bench, is swung aside. A shorter anchor of a strut is over its servo's
             // seat, where no socket gets to its nut: the link is turned.
-            for aside in asides {
+            for aside in access_poses {
                 let screw = match aside.step {
                     7 => "screw foot",
                     9 if name == "unequal" => "screw anchor",
@@ -36,39 +38,60 @@ fn every_screw_of_every_robot_can_be_reached() {
 
 /// The blocked screws of the paper's robot with changed steps, each with the body in its
 /// way.
-fn blocked(change: impl FnOnce(&mut Vec<Step>)) -> Vec<(String, Act, String)> {
+fn blocked(change: impl FnOnce(&mut Vec<Step>)) -> Vec<(String, ScrewOperation, String)> {
     let assembly = assembly("paper", "");
     let mut steps = order(&assembly);
     change(&mut steps);
     let blocked = assembly.blocked(&steps, &neutral(&assembly));
-    let all = blocked.into_iter().map(|of| (of.screw, of.act, of.by));
+    let all = blocked
+        .into_iter()
+        .map(|of| (of.screw, of.operation, of.by));
     all.filter(|(screw, ..)| !screw.starts_with("screw foot"))
         .collect()
-}
-
-#[track_caller]
-fn finds(blocked: &[(String, Act, String)], screw: &str, act: Act, by: &str) {
-    let known = |of: &(String, Act, String)| of.0 == screw && of.1 == act && of.2 == by;
-    assert!(blocked.iter().any(known), "{blocked:?}");
 }
 
 #[test]
 fn a_wrong_order_is_found() {
     assert_eq!(blocked(|_| ()), []);
-    // A pad, before its screw is in the foot: it covers the head.
-    let early_pad = blocked(|steps| steps[6].stages.swap(1, 2));
-    finds(&early_pad, "screw height LF", Act::Push, "pad LF");
     // A link's screws from below, when the struts are under it.
     let late_screws = blocked(|steps| {
         steps[4].stages[0].adds =
             |body: &Body| matches!(body.kind, Kind::Horn) || body.name.starts_with("link");
         steps[8].stages.push(Stage {
-            at: Where::Robot,
+            at: TurningPlace::Robot,
             adds: |body: &Body| matches!(body.kind, Kind::HexScrew(_)),
+            turns: |_| false,
         });
     });
-    let pushed = late_screws.iter().filter(|(_, act, _)| *act == Act::Push);
+    let pushed = late_screws
+        .iter()
+        .filter(|(_, operation, _)| *operation == ScrewOperation::Push);
     assert!(pushed.count() > 0, "{late_screws:?}");
+}
+
+#[test]
+fn a_pad_without_a_hole_for_the_key_is_found_when_the_feet_are_levelled() {
+    let glued = assembly("paper", "").altered(|bodies| {
+        let pad = |body: &&mut Body| body.name == "pad LF";
+        for body in bodies.iter_mut().filter(pad) {
+            body.prisms[0].cut.clear();
+        }
+    });
+    let refused = glued
+        .access_poses(&order(&glued))
+        .expect_err("the key has no way");
+    assert_eq!(
+        (&*refused.screw, refused.operation),
+        ("screw height LF", ScrewOperation::Turn)
+    );
+    assert_eq!(refused.by, "pad LF");
+    // Both where it is put in and where the robot is levelled.
+    let steps = order(&glued);
+    let level = steps.iter().position(|step| step.title == "Level the feet");
+    let level = 1 + level.expect("a step");
+    let turned = glued.blocked(&steps, &neutral(&glued));
+    let found = |step| turned.iter().any(|of| of.step == step && of.by == "pad LF");
+    assert!(found(7) && found(level), "{turned:?}");
 }
 
 #[test]
@@ -81,9 +104,12 @@ fn a_strut_under_a_head_is_found() {
             }
         }
     });
-    let refused = unequal.asides(&order(&unequal));
+    let refused = unequal.access_poses(&order(&unequal));
     let refused = refused.expect_err("no key gets there");
-    assert_eq!((&*refused.screw, refused.act), ("screw tip A4", Act::Turn));
+    assert_eq!(
+        (&*refused.screw, refused.operation),
+        ("screw tip A4", ScrewOperation::Turn)
+    );
     assert_eq!(refused.by, "strut LH");
 }
 
@@ -100,7 +126,7 @@ fn a_screw_that_nothing_lets_pass_refuses_the_robot() {
         }
         bodies.push(lid);
     });
-    let refused = covered.asides(&order(&covered)).expect_err("a lid");
+    let refused = covered.access_poses(&order(&covered)).expect_err("a lid");
     assert_eq!(refused.by, "deck lid");
     let sentence = Unfit::from(refused).to_string();
     let blocked = "at step 3 of the guide: deck lid is in the way, at every pose";
@@ -125,7 +151,7 @@ fn parts_that_move_together_are_not_in_one_place() {
     assert!(refused.contains(both), "{refused}");
 }
 
-/// A second opinion on what is free: the layers' outlines, asked point by point.
+/// An independent check of free space: the layers' outlines, tested point by point.
 #[test]
 fn above_a_head_that_can_be_reached_there_is_no_material() {
     for name in ["paper", "unequal"] {
@@ -165,7 +191,7 @@ fn above_a_head_that_can_be_reached_there_is_no_material() {
                             let there = prism.z[0] < z && z < prism.z[1];
                             asked += usize::from(there);
                             let (screw, body) = (&screw.name, &body.name);
-                            let free = !there || !outline.holds(point);
+                            let free = !there || !outline.contains(point);
                             assert!(free, "{name}: {screw} in {body}");
                         }
                     }

@@ -1,5 +1,5 @@
-//! The proof that parts keep apart: it is never more than what is seen at any pose, it
-//! finds mistakes made on purpose, and every robot's file passes it.
+//! The proof that parts keep apart: its bound never exceeds the distance at any pose, it finds
+//! deliberate mistakes, and every robot's file passes it.
 
 use std::collections::BTreeSet;
 
@@ -7,7 +7,7 @@ use lizard_kinematics::{Side, Solution, Vector};
 use lizard_parts::{Assembly, Body, Clash, ENOUGH, LEAST, Mount, Shape};
 use lizard_robot::Robot;
 
-use crate::{ROBOTS, assembly as with, body, slotted as assembly};
+use crate::{GRAIN, ROBOTS, assembly as with, body, slotted as assembly};
 
 /// Numbers from 0 to 1, the same in every run.
 struct Random(u64);
@@ -49,8 +49,8 @@ fn poses(robot: &Robot, count: usize) -> Vec<Solution> {
     poses
 }
 
-/// Proves a robot's file, and holds the proof against many poses.
-fn holds(name: &str) {
+/// Proves a robot's file, and compares the bounds with the distances at many poses.
+fn contains(name: &str) {
     let assembly = assembly(name, "");
     let proof = assembly.prove(|_, _| ());
     assert_eq!(proof.judge(), Ok(()), "{name}");
@@ -74,8 +74,8 @@ fn holds(name: &str) {
         let accepted = assembly.robot().accepted(seen.pose);
         assert!(accepted.is_some(), "{name}: {near}");
         assert!(near.proved <= seen.mm, "{name}: {near}");
-        // And what is proved is not much less than what there is, but where the guard
-        // hardly accepts a pose.
+        // The proved bound is not much below the distance seen, except near poses that
+        // the guard hardly accepts.
         let close = seen.mm < near.proved.max(0.0) * 2.1 + 0.02;
         assert!(close || near.doubt.is_some(), "{name}: {near}");
     }
@@ -83,21 +83,21 @@ fn holds(name: &str) {
 
 #[test]
 fn the_papers_robot_fits_and_no_pose_is_nearer_than_proved() {
-    holds("paper");
+    contains("paper");
 }
 
 #[test]
 fn the_large_robot_fits_and_no_pose_is_nearer_than_proved() {
-    holds("large");
+    contains("large");
 }
 
 #[test]
 fn the_unequal_robot_fits_and_no_pose_is_nearer_than_proved() {
-    holds("unequal");
+    contains("unequal");
 }
 
 #[test]
-fn rigid_struts_keep_what_those_with_springs_keep() {
+fn rigid_struts_keep_the_distances_of_slotted_ones() {
     let [sprung, rigid] = ["strut", "rigid"].map(|word| {
         let assembly = with("paper", &format!("[leg.drive]\nkind = \"{word}\""));
         let strut = |body: &Body| matches!(body.mount, Mount::Strut(_));
@@ -109,12 +109,14 @@ fn rigid_struts_keep_what_those_with_springs_keep() {
 }
 
 #[test]
-fn the_robot_with_gaits_of_its_own_has_the_papers_parts() {
-    let [own, paper] = ["own-gaits", "paper"].map(|name| assembly(name, ""));
-    assert_eq!(own.bodies(), paper.bodies());
-    assert_eq!(own.robot().limits(), paper.robot().limits());
-    let travel = |of: &Assembly| of.robot().servos().each_ref().map(|servo| servo.travel());
-    assert_eq!(travel(&own), travel(&paper));
+fn the_robots_with_gaits_of_their_own_have_the_papers_parts() {
+    let paper = assembly("paper", "");
+    for own in ["own-gaits", GRAIN].map(|name| assembly(name, "")) {
+        assert_eq!(own.bodies(), paper.bodies());
+        assert_eq!(own.robot().limits(), paper.robot().limits());
+        let travel = |of: &Assembly| of.robot().servos().each_ref().map(|servo| servo.travel());
+        assert_eq!(travel(&own), travel(&paper));
+    }
 }
 
 #[test]
@@ -122,8 +124,9 @@ fn every_file_of_robots_is_here() {
     let folder = format!("{}/../../robots", env!("CARGO_MANIFEST_DIR"));
     let files = std::fs::read_dir(folder).expect("robots/");
     let names = files.map(|file| file.expect("a file").file_name());
-    let here = ROBOTS.map(|name| format!("{name}.toml").into());
-    assert_eq!(BTreeSet::from_iter(names), BTreeSet::from(here));
+    let here = ROBOTS.into_iter().chain([GRAIN]);
+    let here = here.map(|name| format!("{name}.toml").into());
+    assert_eq!(BTreeSet::from_iter(names), BTreeSet::from_iter(here));
 }
 
 /// The clash among those pairs of bodies of which one is given.
@@ -168,7 +171,7 @@ fn a_robot_far_from_fitting_is_refused_after_a_few_regions() {
     assert!(proof.regions < 10_000, "{}", proof.regions);
 }
 
-/// A screw of the paper's robot, longer by so much.
+/// The paper's robot with a screw that is longer by this much.
 fn longer(name: &str, by: f64, downwards: bool) -> Assembly {
     assembly("paper", "").altered(|bodies| {
         let mut all = bodies.iter_mut();
@@ -309,6 +312,6 @@ fn a_struts_screw_has_air_in_its_slot_all_the_way() {
 }
 
 #[test]
-fn what_has_to_be_kept_is_more_than_a_printer_is_off() {
+fn the_least_distance_exceeds_a_printers_error() {
     assert!(LEAST >= assembly("paper", "").robot().parts().fit);
 }

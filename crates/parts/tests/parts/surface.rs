@@ -1,6 +1,6 @@
 //! Every printed part of every robot has a closed surface of the right volume.
 
-use lizard_parts::{Kind, Mesh, Solid};
+use lizard_parts::{Mesh, Solid};
 
 use crate::assembly;
 
@@ -9,8 +9,8 @@ fn every_printed_part_is_closed_and_has_its_volume() {
     for name in ["paper", "large", "unequal"] {
         let assembly = assembly(name, "");
         let mut printed = 0;
-        for body in assembly.bodies().iter().chain(assembly.instead()) {
-            if body.kind != Kind::Printed {
+        for body in assembly.bodies().iter().chain(assembly.alternatives()) {
+            if !body.kind.is_printed() {
                 continue;
             }
             let solid = Solid::of(&body.prisms);

@@ -25,7 +25,7 @@ const ERROR_LIMIT: f64 = 0.50;
 
 /// The smallest margin of a kind over a cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Least {
+pub struct LeastMargin {
     /// Name of the margin.
     pub what: Check,
     /// Value, a sine.
@@ -49,11 +49,11 @@ pub struct Peak {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Audit {
     /// Smallest type-2 margin, head and tail.
-    pub type2: Least,
+    pub type2: LeastMargin,
     /// Smallest type-1 margin of the four arms.
-    pub type1: Least,
+    pub type1: LeastMargin,
     /// Smallest margin of the four legs.
-    pub leg: Least,
+    pub leg: LeastMargin,
     /// Slider travel of both sides, smallest and largest, mm from nominal.
     pub stroke: (f64, f64),
     /// Fastest frame.
@@ -63,9 +63,9 @@ pub struct Audit {
 impl Audit {
     /// The audit of a gait without samples.
     pub(crate) const NONE: Self = Self {
-        type2: Least::none(Check::TYPE2[0]),
-        type1: Least::none(Check::TYPE1[0]),
-        leg: Least::none(Check::LEG[0]),
+        type2: LeastMargin::none(Check::TYPE2[0]),
+        type1: LeastMargin::none(Check::TYPE1[0]),
+        leg: LeastMargin::none(Check::LEG[0]),
         stroke: (f64::INFINITY, f64::NEG_INFINITY),
         peak: Peak {
             servo: 0,
@@ -75,7 +75,7 @@ impl Audit {
     };
 }
 
-impl Least {
+impl LeastMargin {
     const fn none(what: Check) -> Self {
         Self {
             what,
@@ -237,7 +237,7 @@ impl Audit {
             ];
             for (least, kind) in kinds {
                 if kind.contains(&what) && value < least.value {
-                    *least = Least { what, value, phase };
+                    *least = LeastMargin { what, value, phase };
                 }
             }
         }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use lizard_contact::{Ground, Prediction, Travel, Walker};
+use lizard_contact::{Ground, Motors, Prediction, Travel, Walker};
 use lizard_core::numbers::gaits::Gait as TableGait;
 use lizard_core::numbers::units::phase16;
 use lizard_kinematics::Pose;
@@ -12,8 +12,9 @@ use crate::checks::audit::{self, Audit};
 use crate::file::{Checked, Fault};
 use crate::gaits::{Bars, Gait, Stride};
 use crate::measures::Measures;
+use crate::measures::servo::FORWARD;
 use crate::tables::Tables;
-use crate::units::FRAMES_PER_SECOND;
+use crate::units::{FRAMES_PER_SECOND, STEPS_PER_DEGREE};
 
 /// A gait of robot.toml, every sample of which has been checked: in floating point, and as the
 /// firmware's tables have it.
@@ -161,7 +162,7 @@ impl CheckedGait {
     /// The parts that depend on ties are found with rigid legs, because ties are between pads.
     pub fn predict(&self, ground: &Ground) -> Prediction {
         let known = ground.rigid().predict(self.cycle(COARSE));
-        known.known_of(self.walked(ground).travel)
+        known.keep_known(self.walked(ground).travel)
     }
 
     /// Follows one cycle on this ground, also if its result depends on ties. If legs lag, it
@@ -185,6 +186,28 @@ impl CheckedGait {
             travel: walker.place().seen_from(begin),
             lag,
         }
+    }
+
+    /// Follows the second cycle on this ground frame by frame as the firmware sends it, with servos
+    /// that have these motors; `pace` is 1 for the gait's own.
+    pub fn driven(&self, ground: &Ground, motors: &Motors, pace: f64) -> Travel {
+        let frames = (self.period() / pace * FRAMES_PER_SECOND).round().max(1.0) as usize;
+        let sweeps = |frame: usize| -> [f64; 4] {
+            let seconds = frame as f64 / FRAMES_PER_SECOND * pace;
+            let phase = (self.phase(seconds) * 65536.0).round() as i64;
+            let steps = self.table_sweeps(phase.rem_euclid(65536) as u16);
+            std::array::from_fn(|i| FORWARD[i] * f64::from(steps[i]) / STEPS_PER_DEGREE)
+        };
+        let mut walker = Walker::new(*ground, sweeps(0));
+        let mut cycle = || {
+            let begin = walker.place();
+            for frame in 1..=frames {
+                walker.drive(sweeps(frame).map(Some), 1.0 / FRAMES_PER_SECOND, motors);
+            }
+            walker.place().seen_from(begin)
+        };
+        cycle();
+        cycle()
     }
 
     /// The sweeps of one cycle in equal steps of time, both ends included.

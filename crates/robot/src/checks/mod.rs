@@ -8,7 +8,9 @@
 mod accuracy;
 mod audit;
 mod checked_gait;
+mod effort;
 
 pub use accuracy::TableError;
-pub use audit::{Audit, Least, Peak};
+pub use audit::{Audit, LeastMargin, Peak};
 pub use checked_gait::{CheckedGait, Walked};
+pub use effort::{Effort, TIGHT};

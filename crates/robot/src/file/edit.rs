@@ -142,6 +142,65 @@ pub fn with_gait(text: &str, name: &str, table: &str) -> String {
     kept
 }
 
+/// A routine as it is written, right or wrong.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct WrittenRoutine {
+    /// Name of the routine.
+    pub name: String,
+    /// Texts of its steps.
+    pub steps: Vec<String>,
+}
+
+/// The routines of a text in its order, so that one with a mistake can be shown and mended. Without those
+/// whose steps are no strings.
+#[must_use]
+pub fn routines(text: &str) -> Vec<WrittenRoutine> {
+    let Ok(document) = DeTable::parse(text) else {
+        return Vec::new();
+    };
+    let table = document.get_ref().get("routine");
+    let Some(table) = table.and_then(|table| table.get_ref().as_table()) else {
+        return Vec::new();
+    };
+    let mut found: Vec<_> = table.iter().collect();
+    found.sort_by_key(|(name, _)| name.span().start);
+    let written = |(name, routine): (&Spanned<_>, &Spanned<DeValue>)| {
+        let steps = routine.get_ref().get("steps")?.get_ref().as_array()?;
+        let steps = steps.iter().map(|step| step.get_ref().as_str());
+        Some(WrittenRoutine {
+            name: AsRef::<str>::as_ref(name.get_ref()).to_string(),
+            steps: steps
+                .map(|step| step.map(str::to_string))
+                .collect::<Option<_>>()?,
+        })
+    };
+    found.into_iter().filter_map(written).collect()
+}
+
+/// Sets the steps of a routine; a missing one is added at the end of the text. Its other lines, such as `repeat`,
+/// stay as they are.
+#[must_use]
+pub fn with_steps(text: &str, name: &str, steps: &[String]) -> String {
+    let steps: Vec<_> = steps.iter().map(|step| format!("{step:?}")).collect();
+    let steps = format!("[{}]", steps.join(", "));
+    if let Ok(document) = DeTable::parse(text)
+        && let Some(old) = find(document.get_ref(), &format!("routine.{name}.steps"))
+    {
+        let mut changed = text.to_string();
+        changed.replace_range(old.span(), &steps);
+        return changed;
+    }
+    let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '-';
+    let key = if name.is_empty() || !name.chars().all(is_bare) {
+        format!("{name:?}")
+    } else {
+        name.to_string()
+    };
+    let end = if text.ends_with('\n') { "" } else { "\n" };
+    format!("{text}{end}\n[routine.{key}]\nsteps = {steps}\n")
+}
+
 /// The value of a key of dotted names.
 fn find<'a>(table: &'a DeTable<'a>, key: &str) -> Option<&'a Spanned<DeValue<'a>>> {
     match key.split_once('.') {
@@ -198,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_is_taken_away_with_its_line() {
+    fn a_number_is_removed_with_its_line() {
         const DRIVE: &str = "[leg.drive]\nkind = \"strut\"\nforce = 3.0 # N\nplay = 0.5\n";
         let rest = without(DRIVE, "leg.drive.force").expect("it may be left out");
         assert_eq!(rest, "[leg.drive]\nkind = \"strut\"\nplay = 0.5\n");
@@ -208,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn a_word_takes_the_place_of_another() {
+    fn a_word_replaces_another() {
         const DRIVE: &str = "[leg.drive] # bars\nkind = \"rigid\" # or not\n";
         let changed = with_word(DRIVE, "leg.drive.kind", "strut").expect("there");
         assert_eq!(changed, DRIVE.replace("rigid", "strut"));
@@ -220,8 +279,62 @@ mod tests {
         assert!(with_word("[leg]\nmount = 0.0\n", "leg.mount", "x").is_err());
     }
 
+    const ROUTINES: &str = "name = \"x\"\n\n[routine.patrol] # by night\nsteps = [\n  \"walk 4\", # on\n  \"left 6\",\n]\nrepeat = 3 # rounds\n\n[routine.about]\nsteps = ['left 12']\n";
+
+    fn written(text: &str) -> Vec<(String, Vec<String>)> {
+        let all = routines(text).into_iter();
+        all.map(|WrittenRoutine { name, steps }| (name, steps))
+            .collect()
+    }
+
+    fn texts(steps: &[&str]) -> Vec<String> {
+        steps.iter().map(ToString::to_string).collect()
+    }
+
     #[test]
-    fn a_value_that_is_no_number_is_not_changed() {
+    fn routines_are_read_as_they_are_written_in_the_order_of_the_text() {
+        let [patrol, about] = ["patrol", "about"].map(str::to_string);
+        let expected = [
+            (patrol, texts(&["walk 4", "left 6"])),
+            (about, texts(&["left 12"])),
+        ];
+        assert_eq!(written(ROUTINES), expected);
+        for text in [
+            "[routine",
+            "",
+            "routine = 3",
+            "[routine]\na = 1",
+            "[routine.a]\nsteps = [1]",
+        ] {
+            assert_eq!(written(text), [], "{text}");
+        }
+    }
+
+    #[test]
+    fn steps_replace_others_and_all_else_stays() {
+        let steps = texts(&["walk until \"nose\"", "wait\\", "rest"]);
+        let changed = with_steps(ROUTINES, "patrol", &steps);
+        assert_eq!(written(&changed)[0].1, steps);
+        let begin = ROUTINES.find("[\n").expect("there");
+        assert!(changed.starts_with(&ROUTINES[..begin]));
+        assert!(changed.ends_with(&ROUTINES[ROUTINES.find("\nrepeat").expect("there")..]));
+    }
+
+    #[test]
+    fn a_new_routine_is_written_below_all() {
+        for text in [ROUTINES, ROUTINES.trim_end()] {
+            let added = with_steps(text, "new-one", &texts(&["walk 1"]));
+            let expected = format!("{ROUTINES}\n[routine.new-one]\nsteps = [\"walk 1\"]\n");
+            assert_eq!(added, expected);
+        }
+        for name in ["", "a b", "a]\n[b", "\"", "x.y"] {
+            let added = with_steps(ROUTINES, name, &texts(&["walk 1"]));
+            assert_eq!(written(&added)[2].0, name);
+        }
+    }
+
+    #[test]
+    fn a_value_that_is_not_a_number_is_not_changed() {
         for key in ["links.l2", "links.name", "wings.l0", "links", "servo.A1"] {
             assert!(with_number(TEXT, key, 1.0).is_err(), "{key}");
         }

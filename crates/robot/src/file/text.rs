@@ -18,7 +18,9 @@ pub(crate) fn read(path: &Path) -> Result<String, String> {
         .map_err(|fault| format!("cannot be read: {fault}"))?;
     if bytes.len() as u64 > LONGEST {
         let mib = LONGEST >> 20;
-        return Err(format!("is longer than {mib} MiB, so it is no robot file"));
+        return Err(format!(
+            "is longer than {mib} MiB, so it is not a robot file"
+        ));
     }
     String::from_utf8(bytes).map_err(|fault| {
         let before = &fault.as_bytes()[..fault.utf8_error().valid_up_to()];

@@ -27,8 +27,8 @@ pub struct Bars {
 }
 
 impl Bars {
-    /// Takes a gait apart that moves; none if it follows a path. A reversed gait comes as the
-    /// bars of the same movement.
+    /// Converts a moving gait to bars; none if it follows a path. A reversed gait becomes the bars
+    /// of the same movement.
     pub(crate) fn of(gait: &Gait) -> Option<Self> {
         let largest = |most: f64, leg: f64| most.max(leg.abs());
         let amplitudes = gait.strides.each_ref().map(|leg| leg.amplitude);
@@ -79,7 +79,7 @@ impl Bars {
             ..self.clone()
         };
         if self.held {
-            // As places in the order, which are quarters from 0.
+            // The places in the order become quarters of the cycle.
             let first = reversed.start.into_iter().fold(f64::MAX, f64::min);
             reversed.start = reversed.start.map(|start| start - first);
         }

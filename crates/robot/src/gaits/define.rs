@@ -38,7 +38,7 @@ pub(crate) fn gaits(root: &Section, body: &Measures) -> Checked<Vec<Gait>> {
     let section = root.open("gait")?;
     let names = section.names();
     for name in &names {
-        check_name(name).map_err(|problem| section.fault(name, problem))?;
+        check_name(name, "gait").map_err(|problem| section.fault(name, problem))?;
     }
     if names.len() > MOST_GAITS {
         let found = names.len();
@@ -75,9 +75,9 @@ pub(crate) fn gaits(root: &Section, body: &Measures) -> Checked<Vec<Gait>> {
     }
 }
 
-/// Refuses two gaits that the EEPROM cannot tell apart: it keeps the gait of `boot` by a number
+/// Refuses two gaits or routines that the EEPROM cannot tell apart: it keeps that of `boot` by a number
 /// that is made of its name.
-fn check_keys(section: &Section, names: &[&str]) -> Checked<()> {
+pub(super) fn check_keys(section: &Section, names: &[&str]) -> Checked<()> {
     let mut known = HashMap::new();
     for name in names {
         let written = name
@@ -85,7 +85,7 @@ fn check_keys(section: &Section, names: &[&str]) -> Checked<()> {
             .map(|byte| if byte == b'-' { b' ' } else { byte });
         if let Some(other) = known.insert(key(written), *name) {
             let sentence = format!(
-                "is no gait name: the memory would take it for {other} when `boot` begins it, so one of them needs another name"
+                "is not a gait name: the memory would take it for {other} when `boot` begins it, so one of them needs another name"
             );
             return Err(section.fault(name, sentence));
         }
@@ -93,9 +93,9 @@ fn check_keys(section: &Section, names: &[&str]) -> Checked<()> {
     Ok(())
 }
 
-fn check_name(name: &str) -> Result<(), String> {
+pub(super) fn check_name(name: &str, kind: &str) -> Result<(), String> {
     let letters = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
-    let refused = |why: String| Err(format!("is no gait name: {why}"));
+    let refused = |why: String| Err(format!("is not a {kind} name: {why}"));
     if !name.chars().all(letters) || !name.starts_with(|c: char| c.is_ascii_lowercase()) {
         return refused(
             "it must be lower-case letters, digits and dashes, a letter first".to_string(),
@@ -133,11 +133,11 @@ impl<'a> Resolver<'a> {
             return Ok(gait.clone());
         }
         self.chain.push(name);
-        let one = self.section.section(name, &KEYS)?;
-        let gait = match manner(&one)? {
-            "waveform" => waveform(name, &one, self.body)?,
-            "head or tail" => path(name, &one, self.body)?,
-            reference => self.derived(name, &one, reference)?,
+        let table = self.section.section(name, &KEYS)?;
+        let gait = match definition_key(&table)? {
+            "waveform" => waveform(name, &table, self.body)?,
+            "head or tail" => path(name, &table, self.body)?,
+            reference => self.derived(name, &table, reference)?,
         };
         self.chain.pop();
         self.known.insert(name, gait.clone());
@@ -148,20 +148,20 @@ impl<'a> Resolver<'a> {
     fn derived(
         &mut self,
         name: &'a str,
-        one: &Section<'a>,
+        table: &Section<'a>,
         reference: &'static str,
     ) -> Checked<Gait> {
-        only(one, &[reference, "period", "gain"], reference)?;
-        let base = one.text(reference)?;
+        allow_only(table, &[reference, "period", "gain"], reference)?;
+        let base = table.text(reference)?;
         if !self.names.contains(&base) {
             let hint = hint(base, &self.names);
             let sentence = format!("names the gait \"{base}\", which does not exist; {hint}");
-            return Err(one.fault(reference, sentence));
+            return Err(table.fault(reference, sentence));
         }
         if self.chain.contains(&base) {
             let circle = [self.chain.as_slice(), &[base]].concat().join(" -> ");
             let sentence = format!("the gaits refer to each other in a circle: {circle}");
-            return Err(Fault::clause(one.path(reference), sentence));
+            return Err(Fault::clause(table.path(reference), sentence));
         }
         let mut gait = self.resolve(base)?;
         match reference {
@@ -170,55 +170,62 @@ impl<'a> Resolver<'a> {
             _ => {}
         }
         gait.name = name.to_string();
-        gait.period = period(one, Some(gait.period))?;
-        Ok(gait.scaled(gains(one)?))
+        gait.period = period(table, Some(gait.period))?;
+        Ok(gait.scaled(gains(table)?))
     }
 }
 
-/// Finds the one key that says how this gait is given.
-fn manner(one: &Section) -> Checked<&'static str> {
-    let path = one.has("head") || one.has("tail");
-    let mut ways: Vec<&'static str> = REFERENCES.into_iter().filter(|key| one.has(key)).collect();
-    ways.extend(one.has("waveform").then_some("waveform"));
-    ways.extend(path.then_some("head or tail"));
-    match ways.as_slice() {
-        [way] => Ok(way),
+/// Finds the one key that defines this gait.
+fn definition_key(table: &Section) -> Checked<&'static str> {
+    let path = table.has("head") || table.has("tail");
+    let mut definitions: Vec<&'static str> = REFERENCES
+        .into_iter()
+        .filter(|key| table.has(key))
+        .collect();
+    definitions.extend(table.has("waveform").then_some("waveform"));
+    definitions.extend(path.then_some("head or tail"));
+    match definitions.as_slice() {
+        [definition] => Ok(definition),
         _ => {
             let sentence =
                 "needs exactly one of waveform, a path (head, tail), reverse, mirror, like";
-            Err(Fault::new(one.key.clone(), sentence))
+            Err(Fault::new(table.key.clone(), sentence))
         }
     }
 }
 
 /// Refuses keys that have no meaning together with `with`.
-fn only(one: &Section, allowed: &[&str], with: &str) -> Checked<()> {
-    match one.names().into_iter().find(|name| !allowed.contains(name)) {
-        Some(name) => Err(one.fault(name, format!("does not go with {with}"))),
+fn allow_only(table: &Section, allowed: &[&str], with: &str) -> Checked<()> {
+    match table
+        .names()
+        .into_iter()
+        .find(|name| !allowed.contains(name))
+    {
+        Some(name) => Err(table.fault(name, format!("does not go with {with}"))),
         None => Ok(()),
     }
 }
 
-fn waveform(name: &str, one: &Section, body: &Measures) -> Checked<Gait> {
-    let word = one.text("waveform")?;
+fn waveform(name: &str, table: &Section, body: &Measures) -> Checked<Gait> {
+    let word = table.text("waveform")?;
     let with = format!("waveform = \"{word}\"");
     let strides = match word {
         "still" => {
-            only(one, &["waveform", "period"], &with)?;
+            allow_only(table, &["waveform", "period"], &with)?;
             [Stride::STILL; 4]
         }
         "wave" => {
-            only(
-                one,
+            allow_only(
+                table,
                 &["waveform", "period", "duty", "amplitude", "start", "gain"],
                 &with,
             )?;
             let waveform = Waveform::Wave {
-                duty: one.number("duty", 0.05, 0.95, "of the cycle")?,
+                duty: table.number("duty", 0.05, 0.95, "of the cycle")?,
             };
-            let amplitude = amplitude(one)?;
+            let amplitude = amplitude(table)?;
             let starts = legs(
-                &one.section("start", &LEGS)?,
+                &table.section("start", &LEGS)?,
                 None,
                 0.0,
                 1.0,
@@ -231,13 +238,13 @@ fn waveform(name: &str, one: &Section, body: &Measures) -> Checked<Gait> {
             })
         }
         "held" => {
-            only(
-                one,
+            allow_only(
+                table,
                 &["waveform", "period", "amplitude", "order", "gain"],
                 &with,
             )?;
-            let amplitude = amplitude(one)?;
-            order(one)?.map(|turn| Stride {
+            let amplitude = amplitude(table)?;
+            order(table)?.map(|turn| Stride {
                 waveform: Waveform::Held { turn },
                 start: 0.0,
                 amplitude,
@@ -245,20 +252,20 @@ fn waveform(name: &str, one: &Section, body: &Measures) -> Checked<Gait> {
         }
         word => {
             let hint = hint(word, &WAVEFORMS);
-            return Err(one.fault("waveform", format!("is \"{word}\"; {hint}")));
+            return Err(table.fault("waveform", format!("is \"{word}\"; {hint}")));
         }
     };
-    finish(name, one, body, strides)
+    finish(name, table, body, strides)
 }
 
-fn path(name: &str, one: &Section, body: &Measures) -> Checked<Gait> {
-    only(one, &["period", "head", "tail", "gain"], "a path")?;
+fn path(name: &str, table: &Section, body: &Measures) -> Checked<Gait> {
+    allow_only(table, &["period", "head", "tail", "gain"], "a path")?;
     let mut strides = [Stride::STILL; 4];
     for end in End::ALL {
-        if !one.has(end.name()) {
+        if !table.has(end.name()) {
             continue;
         }
-        let section = one.section(end.name(), &["centre", "x", "y"])?;
+        let section = table.section(end.name(), &["centre", "x", "y"])?;
         let path = Path {
             centre: section.numbers("centre", -255.0, 255.0, "mm")?,
             x: harmonics(&section, "x")?,
@@ -274,37 +281,37 @@ fn path(name: &str, one: &Section, body: &Measures) -> Checked<Gait> {
             };
         }
     }
-    finish(name, one, body, strides)
+    finish(name, table, body, strides)
 }
 
-fn finish(name: &str, one: &Section, body: &Measures, strides: [Stride; 4]) -> Checked<Gait> {
+fn finish(name: &str, table: &Section, body: &Measures, strides: [Stride; 4]) -> Checked<Gait> {
     let gait = Gait {
         name: name.to_string(),
-        period: period(one, None)?,
+        period: period(table, None)?,
         reversed: false,
         strides,
         neutral: body.neutral(),
     };
-    Ok(gait.scaled(gains(one)?))
+    Ok(gait.scaled(gains(table)?))
 }
 
-fn period(one: &Section, default: Option<f64>) -> Checked<f64> {
+fn period(table: &Section, default: Option<f64>) -> Checked<f64> {
     match default {
-        Some(period) => one.number_or("period", period, 0.2, 60.0, "s"),
-        None => one.number("period", 0.2, 60.0, "s"),
+        Some(period) => table.number_or("period", period, 0.2, 60.0, "s"),
+        None => table.number("period", 0.2, 60.0, "s"),
     }
 }
 
-fn amplitude(one: &Section) -> Checked<f64> {
-    one.number("amplitude", 0.0, 90.0, "deg")
+fn amplitude(table: &Section) -> Checked<f64> {
+    table.number("amplitude", 0.0, 90.0, "deg")
 }
 
-fn gains(one: &Section) -> Checked<[f64; 4]> {
-    if !one.has("gain") {
+fn gains(table: &Section) -> Checked<[f64; 4]> {
+    if !table.has("gain") {
         return Ok([1.0; 4]);
     }
     legs(
-        &one.section("gain", &LEGS)?,
+        &table.section("gain", &LEGS)?,
         Some(1.0),
         -4.0,
         4.0,
@@ -331,9 +338,9 @@ fn legs(
 }
 
 /// Reads the order of swings: for each leg, in servo order, its place.
-fn order(one: &Section) -> Checked<[usize; 4]> {
-    let words = one.words("order")?;
-    let fault = || one.fault("order", "must list each of LF, RF, RH, LH exactly once");
+fn order(table: &Section) -> Checked<[usize; 4]> {
+    let words = table.words("order")?;
+    let fault = || table.fault("order", "must list each of LF, RF, RH, LH exactly once");
     if words.len() != LEGS.len() {
         return Err(fault());
     }

@@ -10,6 +10,7 @@ pub(crate) mod define;
 mod gait;
 mod path;
 mod path_leg;
+pub(crate) mod routine;
 mod waveform;
 
 pub use bars::Bars;
@@ -17,5 +18,6 @@ pub(crate) use gait::Gait;
 pub use gait::Stride;
 pub use path::{Harmonic, Path};
 pub use path_leg::PathLeg;
+pub use routine::Routine;
 pub use waveform::Waveform;
 pub(crate) use waveform::canonical;

@@ -192,16 +192,16 @@ mod tests {
     fn a_strut_keeps_its_length_while_its_leg_does_not_lag() {
         for (name, robot) in all() {
             for (servo, leg) in robot.legs().iter().enumerate() {
-                let long = |angle: f64, lag: f64| {
+                let length = |angle: f64, lag: f64| {
                     let [from, to] = leg.at(angle, angle - lag).strut;
                     (to - from).length()
                 };
                 let neutral = robot.servos()[servo].neutral;
                 for angle in [neutral - 30.0, neutral, neutral + 30.0] {
-                    let off = long(angle, 0.0) - leg.strut_length;
+                    let off = length(angle, 0.0) - leg.strut_length;
                     assert!(off.abs() < 1e-9, "{name} {servo} {off}");
                 }
-                assert!((long(neutral, 5.0) - leg.strut_length).abs() > 0.5);
+                assert!((length(neutral, 5.0) - leg.strut_length).abs() > 0.5);
             }
         }
     }

@@ -4,13 +4,13 @@ use lizard_kinematics::Limits;
 
 use crate::file::{Checked, Section};
 use crate::measures::scale::LONGEST_BAR;
-use crate::measures::servo::Pace;
+use crate::measures::servo::SpeedLimits;
 
 /// The smallest speed limit, deg/s: a slower move would overflow the firmware's count of frames.
 const SLOWEST: f64 = 10.0;
 
 /// Reads `[limits]`.
-pub(crate) fn read(root: &Section) -> Checked<(Limits, Pace)> {
+pub(crate) fn read(root: &Section) -> Checked<(Limits, SpeedLimits)> {
     let section = root.section(
         "limits",
         &[
@@ -40,7 +40,7 @@ pub(crate) fn read(root: &Section) -> Checked<(Limits, Pace)> {
     let speed = |name| section.number(name, SLOWEST, 1000.0, "deg/s");
     Ok((
         limits,
-        Pace {
+        SpeedLimits {
             slew: speed("slew")?,
             gait_slew: speed("gait_slew")?,
         },

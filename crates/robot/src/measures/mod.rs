@@ -9,8 +9,10 @@ mod coil;
 mod drive;
 mod ground;
 mod hips;
+mod input;
 mod legs;
 mod limits;
+mod motor;
 mod parts;
 mod plate;
 pub(crate) mod scale;
@@ -21,14 +23,16 @@ mod supply;
 mod tests;
 
 pub use coil::Coil;
+pub use input::{Inputs, NAMES as INPUTS};
 pub use legs::{LegPlace, LegPlan};
-pub use parts::{Horn, Parts, Screw, ServoBody};
+pub use motor::ServoType;
+pub use parts::{Horn, Pad, Parts, Screw, ServoBody};
 pub use plate::Plate;
-pub use servo::{Pace, Servo};
+pub use servo::{Servo, SpeedLimits};
 pub(crate) use strut::{hung, of_coil};
-pub use supply::{Rail, Supplies, healthy_rail_mv};
+pub use supply::{FUSE, Rail, SWITCH, Supplies, healthy_rail_mv};
 
-use lizard_contact::Ground;
+use lizard_contact::{Ground, Joints};
 use lizard_core::numbers::bars::SHORTEST_COUPLER;
 use lizard_kinematics::{End, Leg, Limits, Links, Lizard, Side};
 
@@ -53,10 +57,13 @@ pub(crate) struct Measures {
     pub lizard: Lizard,
     /// The servos A1, A2, A3, A4.
     pub servos: [Servo; 4],
+    pub servo_type: ServoType,
+    pub joints: Joints,
     pub limits: Limits,
-    pub pace: Pace,
+    pub pace: SpeedLimits,
     pub ground: Ground,
     pub supplies: Supplies,
+    pub inputs: Inputs,
     pub parts: Parts,
     /// The legs in servo order.
     pub legs: [LegPlan; 4],
@@ -77,12 +84,16 @@ impl Measures {
             LegPlan::new(servo, neutral[servo], &lizard, &parts, &feet)
         });
         let drive = drive::read(&root.open("leg")?, &legs, neutral, &parts)?;
+        let supplies = Supplies::read(root, &servos)?;
         let measures = Self {
+            inputs: Inputs::read(root, &servos, &supplies)?,
             servos,
+            servo_type: ServoType::read(root)?,
+            joints: motor::joints(root, &lizard, &servos)?,
             limits,
             pace,
             ground: ground::read(root, feet, drive)?,
-            supplies: Supplies::read(root, &servos)?,
+            supplies,
             legs,
             lizard,
             parts,

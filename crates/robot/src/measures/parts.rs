@@ -43,6 +43,8 @@ pub struct Parts {
     pub horn: Horn,
     /// Screws that are joints.
     pub screw: Screw,
+    /// The pads on which the robot stands.
+    pub pad: Pad,
     /// The legs' springs, which are mounted in their struts.
     pub spring: Coil,
     /// Size of the battery: to the right, forward, up.
@@ -133,6 +135,28 @@ measures! {
         /// Height of the lock nut.
         nut_height: 4.0,
     }
+
+    /// A pad under a foot, round and with a dome below, mm. A dome slides up an edge that stops a
+    /// flat pad.
+    Pad in "pad" {
+        /// Radius of the dome, which is a part of a ball.
+        radius: 30.0,
+        /// Diameter. It and the radius set the height of the edges that the dome slides up.
+        width: 22.0,
+        /// Height in all.
+        height: 4.0,
+    }
+}
+
+impl Pad {
+    /// Height of the dome, mm, and so of the highest edge that it can slide up; `None` for a pad
+    /// that is wider than the ball.
+    #[must_use]
+    pub fn dome(&self) -> Option<f64> {
+        let half = self.width / 2.0;
+        (half <= self.radius)
+            .then(|| self.radius - (self.radius * self.radius - half * half).sqrt())
+    }
 }
 
 impl Default for Parts {
@@ -152,6 +176,7 @@ impl Default for Parts {
             servo: ServoBody::DEFAULT,
             horn: Horn::DEFAULT,
             screw: Screw::DEFAULT,
+            pad: Pad::DEFAULT,
             spring: Coil::paper(0.6),
             battery: [31.0, 56.0, 16.0],
             tail: 85.0,
@@ -160,7 +185,7 @@ impl Default for Parts {
     }
 }
 
-const KEYS: [&str; 18] = [
+const KEYS: [&str; 19] = [
     "fit",
     "wall",
     "bar",
@@ -175,6 +200,7 @@ const KEYS: [&str; 18] = [
     "servo",
     "horn",
     "screw",
+    "pad",
     "spring",
     "battery",
     "tail",
@@ -236,6 +262,7 @@ impl Parts {
             servo: ServoBody::read(&section)?,
             horn: Horn::read(&section)?,
             screw: Screw::read(&section)?,
+            pad: Pad::read(&section)?,
             spring: coil(&section, all.spring)?,
             battery,
             tail: mm("tail", all.tail, 0.0, 300.0)?,

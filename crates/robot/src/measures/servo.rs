@@ -78,7 +78,7 @@ const HALF_TURN: f64 = i16::MAX as f64 / STEPS_PER_DEGREE;
 
 /// Limits of the servos' speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pace {
+pub struct SpeedLimits {
     /// Fastest turn in a point-to-point move, deg/s.
     pub slew: f64,
     /// Fastest turn in a gait, deg/s.
@@ -101,9 +101,33 @@ pub(crate) fn pin(name: &str) -> Option<u8> {
     }
 }
 
+/// Reads the key `pin`, one of [`pin`].
+pub(crate) fn free_pin(section: &Section) -> Checked<u8> {
+    let text = section.text("pin")?;
+    pin(text).ok_or_else(|| {
+        let sentence = format!(
+            "is \"{text}\"; it must be one of D2 to D12 or A0 to A5 (D0 and D1 are the serial line, D13 is the LED)"
+        );
+        section.fault("pin", sentence)
+    })
+}
+
+/// The keys of `[servo]` that describe the motor of all four.
+const MOTOR: [&str; 8] = [
+    "model",
+    "stall_kg_cm",
+    "s_per_60_deg",
+    "at_volts",
+    "volts",
+    "dead_band_us",
+    "spin_up_ms",
+    "full_torque_deg",
+];
+
 /// Reads `[servo.A1]` to `[servo.A4]`.
 pub(crate) fn read(root: &Section) -> Checked<[Servo; 4]> {
-    let section = root.section("servo", &NAMES)?;
+    let keys: Vec<&str> = NAMES.into_iter().chain(MOTOR).collect();
+    let section = root.section("servo", &keys)?;
     let mut servos = Vec::with_capacity(4);
     for name in NAMES {
         let one = section.section(
@@ -125,7 +149,7 @@ pub(crate) fn read(root: &Section) -> Checked<[Servo; 4]> {
             let (pin, other) = (one.text("pin")?, NAMES[other]);
             return Err(one.fault(
                 "pin",
-                format!("is \"{pin}\", which servo.{other} has already"),
+                format!("is \"{pin}\", which servo.{other} already has"),
             ));
         }
         servos.push(servo);
@@ -135,13 +159,7 @@ pub(crate) fn read(root: &Section) -> Checked<[Servo; 4]> {
 
 fn servo(section: &Section) -> Checked<Servo> {
     let width = |name| section.number(name, WIDTHS.0, WIDTHS.1, "us");
-    let text = section.text("pin")?;
-    let pin = pin(text).ok_or_else(|| {
-        let sentence = format!(
-            "is \"{text}\"; it must be one of D2 to D12 or A0 to A5 (D0 and D1 are the serial line, D13 is the LED)"
-        );
-        section.fault("pin", sentence)
-    })?;
+    let pin = free_pin(section)?;
     let us_per_degree = section.number("us_per_degree", -f64::MAX, f64::MAX, "us")?;
     if !(GAINS.0..=GAINS.1).contains(&us_per_degree.abs()) {
         let sentence = format!(

@@ -18,6 +18,15 @@ const BOARD: (f64, f64) = (2.7, 5.5);
 /// healthy board may show 4.3 V.
 const DEFAULTS: [f64; 3] = [4.2, 4.0, 3.7];
 
+/// Rating of the fuse, and the least one of the switch, A. The fuse carries what the
+/// converter draws from an empty battery, 3 A at 5 V from 6.4 V with a loss of 15 %: 2.8 A.
+/// It must blow before the switch is overloaded, whose rating counts by half, because it
+/// is one for alternating current, and a direct one is harder to break.
+pub const FUSE: u32 = 3;
+/// See [`FUSE`].
+pub const SWITCH: u32 = 6;
+const _: () = assert!(2 * FUSE <= SWITCH);
+
 /// The Arduino numbers of the analogue pins.
 const ANALOGUE: std::ops::RangeInclusive<u8> = 14..=19;
 
@@ -42,6 +51,25 @@ pub struct Rail {
     pub ratio: f64,
     /// Thresholds of the rail, V.
     pub thresholds: [f64; 3],
+    /// True if the first of them is left out, so that it follows from the servos.
+    pub by_servos: bool,
+}
+
+/// Least distance of a threshold from the one below it, and of the first from the supply: more
+/// than the 0.15 V by which a supply must recover before the robot is fast again.
+const APART: f64 = 0.25;
+
+impl Rail {
+    /// Lets the robot slow down below the voltage at which the hardest of its gaits would use
+    /// `share` of its servos' line, if robot.toml leaves that to the servos; `line` is what it uses
+    /// at `volts`.
+    pub(crate) fn slowed(&mut self, line: f64, share: f64, volts: f64) {
+        let [slow, stop, _] = &mut self.thresholds;
+        let least = *stop + APART;
+        // To hundredths. The supply itself must count as good, or nothing would be saved.
+        let wanted = (100.0 * volts * line / share).round() / 100.0;
+        *slow = wanted.min(volts - APART).max(least);
+    }
 }
 
 impl Default for Supplies {
@@ -112,14 +140,21 @@ fn rail(supply: &Section, servos: &[Servo; 4]) -> Checked<Option<Rail>> {
         .ok_or_else(|| refused("; it must be one of A0 to A5".to_string()))?;
     if let Some(servo) = servos.iter().position(|servo| servo.pin == pin) {
         let other = NAMES[servo];
-        return Err(refused(format!(", which servo.{other} has already")));
+        return Err(refused(format!(", which servo.{other} already has")));
     }
     // A battery of two lithium cells, 8.4 V, through a divider of two or more.
     let ratio = section.number("ratio", 1.0, 6.0, "(rail over pin)")?;
+    let by_servos = !section.has("slow");
+    let mut defaults = DEFAULTS;
+    if by_servos && section.has("stop") {
+        // Until the servos are known.
+        defaults[0] = f64::INFINITY;
+    }
     Ok(Some(Rail {
         pin,
         ratio,
-        thresholds: thresholds(&section, (1.0, 5.0 * ratio), DEFAULTS)?,
+        thresholds: thresholds(&section, (1.0, 5.0 * ratio), defaults)?,
+        by_servos,
     }))
 }
 
@@ -199,6 +234,48 @@ mod tests {
     }
 
     #[test]
+    fn a_rail_slows_the_robot_down_where_its_servos_would_be_near_their_line() {
+        let slow = |servo: &str, rail: &str, friction: &str| {
+            let tables = format!(
+                "[supply.rail]\npin = \"A3\"\nratio = 2.0\n{rail}\n{BEFORE}\nfriction = {friction}"
+            );
+            let servo = format!("[servo]\n{servo}\n[servo.A1]");
+            let robot = with("paper", &[("[servo.A1]", &servo), (BEFORE, &tables)]).expect(rail);
+            f64::from(robot.firmware().supplies().rail.slow) / 1000.0
+        };
+        let sg90 = slow("", "", "0.6");
+        let robot = with("paper", &[(BEFORE, "[ground]\nfriction = 0.6")]).expect("right");
+        let of = |gait| crate::Effort::of(gait, robot.ground(), &robot.motors());
+        let most = |supply| {
+            let used = robot
+                .gaits()
+                .iter()
+                .map(|gait| of(gait).line_share(1.0, supply));
+            used.fold(0.0, f64::max)
+        };
+        // A little below stop + 0.25 for this floor: the threshold of the paper's robot.
+        let wanted = (4.8 * most(1.0) / crate::TIGHT).max(4.25);
+        assert!((sg90 - wanted).abs() < 0.01, "{sg90} {wanted}");
+        // More friction needs more; a threshold that is given stays.
+        let rough = slow("", "", "0.8");
+        let by_line = rough / 4.8;
+        assert!(rough > sg90 + 0.1, "{rough}");
+        let grips = with("paper", &[(BEFORE, "[ground]\nfriction = 0.8")]).expect("right");
+        let used = grips.gaits().iter().map(|gait| {
+            let effort = crate::Effort::of(gait, grips.ground(), &grips.motors());
+            effort.line_share(1.0, by_line)
+        });
+        let used = used.fold(0.0, f64::max);
+        assert!((used - crate::TIGHT).abs() < 0.005, "{used}");
+        assert_eq!(slow("", "slow = 4.3", "0.8"), 4.3);
+        // A servo that is above its line on its own supply: that supply must stay a good one.
+        assert_eq!(slow("model = \"copy\"", "", "1.2"), 4.55);
+        // Two lithium cells, and servos for them.
+        let two = slow("at_volts = 8.0", "stop = 6.4\nrest = 6.0", "0.7");
+        assert!((6.65..7.75).contains(&two), "{two}");
+    }
+
+    #[test]
     fn a_pin_of_a_servo_measures_no_rail() {
         let taken = with(
             "paper",
@@ -208,6 +285,6 @@ mod tests {
             ],
         );
         let taken = taken.expect_err("a pin of a servo").to_string();
-        assert!(taken.contains("which servo.A1 has already"), "{taken}");
+        assert!(taken.contains("which servo.A1 already has"), "{taken}");
     }
 }

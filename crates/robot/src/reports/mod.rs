@@ -3,10 +3,16 @@
 //! An author of a gait asks for three things: its distance from the limits, its movement, and
 //! the effect of another floor, other feet or softer legs. Each is a table.
 
+mod assumptions;
 mod report;
+mod round;
 mod sensitivity;
-mod sprung;
+mod servos;
+mod spring_cost;
 
-pub use report::{Report, Row, UNDECIDED};
+pub use assumptions::Assumptions;
+pub use report::{Report, Row, UNDECIDED, WITHOUT_CONTACTS};
+pub use round::Round;
 pub use sensitivity::Sensitivity;
-pub use sprung::Sprung;
+pub use servos::ServoTable;
+pub use spring_cost::SpringCost;

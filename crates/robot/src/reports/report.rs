@@ -5,9 +5,10 @@ use std::fmt;
 use lizard_contact::Prediction;
 use lizard_core::numbers::section::SPACE;
 
-use crate::checks::{Audit, CheckedGait, TableError};
+use crate::checks::{Audit, CheckedGait, Effort, TIGHT, TableError};
 use crate::measures::servo::NAMES;
-use crate::reports::sprung::Sprung;
+use crate::reports::round::Round;
+use crate::reports::spring_cost::SpringCost;
 use crate::robot::Robot;
 
 /// The figures of a gait.
@@ -22,9 +23,13 @@ pub struct Row {
     /// Error of its tables over all 65 536 phases.
     pub error: TableError,
     /// Movement of one cycle by the contact model.
-    pub way: Prediction,
+    pub movement: Prediction,
     /// Effect of the legs' drive; none if legs are rigid without play.
-    pub sprung: Option<Sprung>,
+    pub spring_cost: Option<SpringCost>,
+    /// The largest share of its line that a servo uses, on the servos' own supply.
+    pub line: f64,
+    /// Movement of one cycle with the servos as they are.
+    pub driven: Prediction,
 }
 
 /// The figures of all gaits.
@@ -32,6 +37,8 @@ pub struct Row {
 pub struct Report {
     /// Rows of the table, in the order of the file.
     pub rows: Vec<Row>,
+    /// The routines, in the order of the file.
+    pub rounds: Vec<Round>,
     /// Hash of the tables.
     pub hash: u32,
     /// Number of waveforms that the gaits share.
@@ -55,26 +62,75 @@ const SEARCHES_LONG: &str = "many gaits: `cal`, or a line that names one, may ma
 pub const UNDECIDED: &str =
     "- undecided: two feet against two, where the smallest difference between the pads decides\n";
 
+/// The note for routines with inputs, which depend on walls and fingers.
+pub const WITHOUT_CONTACTS: &str =
+    "inputs: no contact closes; a wait takes one frame, a gait without an end one cycle\n";
+
 impl Report {
     /// Measures the tables and predicts the gaits of a robot; takes a moment.
     pub fn of(robot: &Robot) -> Self {
-        let row = |gait: &CheckedGait| Row {
-            name: gait.name().to_string(),
-            period: gait.period(),
-            audit: *gait.audit(),
-            error: gait.table_error(),
-            way: robot.predict(gait),
-            sprung: Sprung::of(gait, robot.ground()),
+        let (ground, motors) = (robot.ground(), robot.motors());
+        let row = |gait: &CheckedGait| {
+            let movement = robot.predict(gait);
+            Row {
+                name: gait.name().to_string(),
+                period: gait.period(),
+                audit: *gait.audit(),
+                error: gait.table_error(),
+                movement,
+                spring_cost: SpringCost::of(gait, ground),
+                line: Effort::of(gait, ground, &motors).line_share(1.0, 1.0),
+                driven: movement.keep_known(gait.driven(ground, &motors, 1.0)),
+            }
         };
         let firmware = robot.core();
         Self {
             rows: robot.gaits().iter().map(row).collect(),
+            rounds: robot
+                .routines()
+                .iter()
+                .map(|routine| Round::of(robot, routine))
+                .collect(),
             hash: firmware.hash(),
             waves: firmware.waves().len(),
             flash: robot.section().len(),
             searches_long: robot.longest_search() > BESIDE_A_FRAME,
             name: robot.name().to_string(),
         }
+    }
+}
+
+impl Report {
+    fn write_rounds(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        if self.rounds.is_empty() {
+            return Ok(());
+        }
+        let width = widest(self.rounds.iter().map(|round| round.name.as_str()));
+        writeln!(f, "\n{:width$}                  one round, mm and deg", "")?;
+        writeln!(
+            f,
+            "{:width$} steps repeat      s   ahead   left    turn",
+            "routine"
+        )?;
+        for round in &self.rounds {
+            let Round {
+                name,
+                steps,
+                rounds,
+                seconds,
+                movement,
+                ..
+            } = round;
+            let rounds = rounds.map_or("for ever".to_string(), |rounds| rounds.to_string());
+            writeln!(
+                f,
+                "{name:<width$} {steps:>5} {rounds:>6} {seconds:>6.1} {:>7} {:>6} {:>7}",
+                known(movement.forward, 1),
+                known(movement.left, 1),
+                known(movement.turn, 1)
+            )?;
+        }
+        Ok(())
     }
 }
 
@@ -90,17 +146,17 @@ impl fmt::Display for Report {
             self.name,
             self.hash
         )?;
-        let lags = self.rows.iter().any(|row| row.sprung.is_some());
+        let lags = self.rows.iter().any(|row| row.spring_cost.is_some());
         let width = widest(self.rows.iter().map(|row| row.name.as_str()));
         writeln!(
             f,
-            "{:width$}  cycle      fastest  table error, deg      smallest margins       slider, mm    one cycle, mm and deg{}",
+            "{:width$}  cycle      fastest  table error, deg      smallest margins       slider, mm    one cycle, mm and deg   by its servos{}",
             "",
             if lags { "   drive, deg and %" } else { "" }
         )?;
         writeln!(
             f,
-            "{:width$}      s  deg/s servo      max     rms  type-2 type-1    leg    least   most    ahead   left    turn{}",
+            "{:width$}      s  deg/s servo      max     rms  type-2 type-1    leg    least   most    ahead   left    turn   line  ahead   turn{}",
             "gait",
             if lags { "      lag  of rigid" } else { "" }
         )?;
@@ -110,8 +166,10 @@ impl fmt::Display for Report {
                 period,
                 audit,
                 error,
-                way,
-                sprung,
+                movement,
+                spring_cost,
+                line,
+                driven,
             } = row;
             write!(
                 f,
@@ -128,25 +186,47 @@ impl fmt::Display for Report {
             )?;
             write!(
                 f,
-                "{:>7} {:>6} {:>7}",
-                known(way.forward, 2),
-                known(way.left, 2),
-                known(way.turn, 2)
+                "{:>7} {:>6} {:>7}  {line:>5.2} {:>6} {:>6}",
+                known(movement.forward, 2),
+                known(movement.left, 2),
+                known(movement.turn, 2),
+                known(driven.forward, 1),
+                known(driven.turn, 1)
             )?;
-            if let Some(Sprung { lag, share, .. }) = sprung {
+            if let Some(SpringCost { lag, share, .. }) = spring_cost {
                 let share = share.map_or("-".to_string(), |share| format!("{:.0}", 100.0 * share));
                 write!(f, "   {lag:>6.2} {share:>9}")?;
             }
             writeln!(f)?;
         }
-        if self.rows.iter().any(|row| !row.way.is_decided()) {
+        self.write_rounds(f)?;
+        if self.rounds.iter().any(|round| round.has_inputs) {
+            write!(f, "\n{WITHOUT_CONTACTS}")?;
+        }
+        let movements = self.rows.iter().map(|row| &row.movement);
+        let mut movements = movements.chain(self.rounds.iter().map(|round| &round.movement));
+        if movements.any(|movement| !movement.is_decided()) {
             write!(f, "\n{UNDECIDED}")?;
+        }
+        for row in self.rows.iter().filter(|row| row.line >= TIGHT) {
+            write!(f, "\n{}", tight(&row.name, row.line))?;
         }
         if self.searches_long {
             write!(f, "\n{SEARCHES_LONG}")?;
         }
         Ok(())
     }
+}
+
+/// The warning for a gait that leaves its servos little or nothing.
+fn tight(name: &str, line: f64) -> String {
+    let meaning = match line < 1.0 {
+        true => "little is left for play, a cold gear or a long wire",
+        false => "above 1 a servo falls behind its pulses",
+    };
+    format!(
+        "{name}: {line:.2} of its servos' torque-speed line; {meaning}: `lizard gaits --servos`\n"
+    )
 }
 
 /// The width of a column for these names.
@@ -175,7 +255,7 @@ mod tests {
     use crate::testing::robot;
 
     #[test]
-    fn columns_stay_in_line_whatever_the_names() {
+    fn columns_are_aligned_for_names_of_any_length() {
         for name in ["paper", "own-gaits"] {
             let text = Report::of(&robot(name)).to_string();
             let rows: Vec<&str> = text

@@ -114,7 +114,7 @@ impl fmt::Display for Sensitivity {
                 let cells = &cells[table];
                 is_decided &= cells
                     .iter()
-                    .all(|way| way.forward.is_some() && way.turn.is_some());
+                    .all(|movement| movement.forward.is_some() && movement.turn.is_some());
                 let cells: String = cells.iter().map(cell).collect();
                 writeln!(f, "{}", format!("{name:<width$}{cells}").trim_end())?;
             }
@@ -127,10 +127,10 @@ impl fmt::Display for Sensitivity {
 }
 
 /// Formats a prediction; a turn that rounds to zero is left out.
-fn cell(way: &Prediction) -> String {
-    let turn = match way.turn {
+fn cell(movement: &Prediction) -> String {
+    let turn = match movement.turn {
         Some(turn) if turn.abs() < 0.05 => String::new(),
         turn => known(turn, 1),
     };
-    format!("{:>9}{turn:>6}", known(way.forward, 1))
+    format!("{:>9}{turn:>6}", known(movement.forward, 1))
 }

@@ -15,6 +15,7 @@ use lizard_core::numbers::slider::Slider;
 use lizard_core::numbers::units::{Angle, Scale, Sine, Sweep, Width};
 use lizard_kinematics as kinematics;
 
+use crate::gaits::Routine;
 use crate::measures::servo::Servo;
 use crate::measures::{Measures, scale};
 use crate::tables::table::Tables;
@@ -24,7 +25,12 @@ use crate::units::{CYCLES_PER_US, FRAMES_PER_SECOND, ONE_Q14, ONE_Q15, STEPS_PER
 const SLACK: f64 = 1e-6;
 
 /// Computes the numbers of a robot, without its maps of certified cells.
-pub(crate) fn content(name: &str, measures: &Measures, tables: &Tables) -> Content {
+pub(crate) fn content(
+    name: &str,
+    measures: &Measures,
+    tables: &Tables,
+    routines: &[Routine],
+) -> Content {
     let Measures {
         lizard,
         servos,
@@ -38,6 +44,13 @@ pub(crate) fn content(name: &str, measures: &Measures, tables: &Tables) -> Conte
         servos.map(|servo| Angle((servo.neutral * STEPS_PER_DEGREE).round() as u32 as u16));
     let calibrations = servos.map(|servo| calibration(&servo));
     let reach = reach(tables, &calibrations);
+    let (mut gaits, mut names) = (tables.gaits.clone(), tables.names.clone());
+    let mut steps = Vec::new();
+    for routine in routines {
+        gaits.push(routine.record(steps.len(), names.len()));
+        steps.extend_from_slice(routine.steps());
+        names.extend(routine.name().replace('-', " ").bytes());
+    }
     Content {
         name: name.to_string(),
         servo_hash: servo_hash(&pins, &neutral, &calibrations),
@@ -55,8 +68,9 @@ pub(crate) fn content(name: &str, measures: &Measures, tables: &Tables) -> Conte
         supplies: supplies.numbers(),
         ends: kinematics::End::ALL.map(|end| five_bar(&lizard.end(end))),
         sides: kinematics::Side::ALL.map(|of| side(&lizard.side(of), limits)),
-        gaits: tables.gaits.clone(),
-        names: tables.names.clone(),
+        gaits,
+        steps,
+        names,
         waves: tables.waves.clone(),
         maps: std::array::from_fn(|_| Map::default()),
     }

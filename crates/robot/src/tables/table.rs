@@ -34,7 +34,7 @@ impl Tables {
     /// # Errors
     /// The first gait that the fixed point does not hold.
     pub fn new(gaits: &[Gait]) -> Checked<Self> {
-        let mut bank = Bank::default();
+        let mut bank = WaveformBank::default();
         let mut parts = Vec::new();
         for gait in gaits {
             let key = format!("gait.{}", gait.name);
@@ -120,11 +120,11 @@ struct Part {
 
 /// The waveforms so far, each scaled to a largest value of 1.
 #[derive(Default)]
-struct Bank {
+struct WaveformBank {
     samples: Vec<[f64; SAMPLES]>,
 }
 
-impl Bank {
+impl WaveformBank {
     /// Finds or adds the waveform of a stride; `forward` is the sense in which
     /// the servo moves its foot forward. None if the stride sweeps half a turn.
     fn find(&mut self, stride: &Stride, forward: f64) -> Option<Part> {

@@ -1,11 +1,12 @@
 //! docs/gaits.md shows the output of the commands, docs/twin.md the cost of springs.
 
-use lizard_robot::{Drive, Ground, Kind, Report, Sensitivity, Walked};
+use lizard_robot::{Assumptions, Drive, Ground, Kind, Report, Sensitivity, ServoTable, Walked};
 
 use crate::{gait, paper};
 
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/gaits.md");
 const TWIN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/twin.md");
+const LIMITS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/limits.md");
 const END: &str = "<!-- end -->";
 
 fn fenced(text: String) -> String {
@@ -34,7 +35,21 @@ fn the_page_on_gaits_shows_the_output_of_the_commands() {
         "lizard gaits --sensitivity",
         &fenced(Sensitivity::of(paper()).to_string()),
     );
+    now = filled(
+        &now,
+        "lizard gaits --servos",
+        &fenced(ServoTable::of(paper()).to_string()),
+    );
     check(PAGE, &page, &now);
+}
+
+#[test]
+#[ignore = "make docs-check: it takes most of a minute"]
+fn the_page_on_limits_lists_the_assumptions_that_matter() {
+    let page = std::fs::read_to_string(LIMITS).expect(LIMITS);
+    let text = fenced(Assumptions::of(paper()).to_string());
+    let now = filled(&page, "lizard gaits --assumptions", &text);
+    check(LIMITS, &page, &now);
 }
 
 /// Asserts that a page is up to date, or writes it.

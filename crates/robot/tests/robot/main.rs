@@ -8,9 +8,11 @@ use lizard_robot::{Body, CheckedGait, Error, Ground, Robot};
 mod docs;
 mod drives;
 mod golden;
+mod inputs;
 mod predictions;
 mod refusals;
 mod robots;
+mod routines;
 mod standing;
 
 const PAPER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots/paper.toml");
@@ -36,7 +38,7 @@ const STUDIED: Body = Body {
 };
 
 /// The movement of a cycle: ahead in mm, or in deg for a gait that turns on the spot.
-fn way(gait: &CheckedGait, ground: &Ground) -> f64 {
+fn cycle_movement(gait: &CheckedGait, ground: &Ground) -> f64 {
     let travel = gait.walked(ground).travel;
     match gait.name() {
         "left" | "right" => travel.turn,

@@ -22,12 +22,13 @@ const EXPECTED: [(&str, f64, f64); 9] = [
 
 /// The prediction for one cycle of a gait, of which nothing depends on a tie.
 fn predict(robot: &Robot, name: &str) -> Travel {
-    let way = robot.predict(gait(robot, name));
-    let known = |part: Option<f64>| part.unwrap_or_else(|| panic!("{name} is undecided: {way:?}"));
+    let movement = robot.predict(gait(robot, name));
+    let known =
+        |part: Option<f64>| part.unwrap_or_else(|| panic!("{name} is undecided: {movement:?}"));
     Travel {
-        forward: known(way.forward),
-        left: known(way.left),
-        turn: known(way.turn),
+        forward: known(movement.forward),
+        left: known(movement.left),
+        turn: known(movement.turn),
     }
 }
 
@@ -64,7 +65,9 @@ fn a_gesture_of_the_head_pulls_two_feet_against_two_and_is_undecided() {
     let report = Report::of(robot).to_string();
     let look = report.lines().find(|line| line.starts_with("look"));
     let cells: Vec<&str> = look.expect("look").split_whitespace().collect();
-    assert_eq!(cells[cells.len() - 3], "-", "{cells:?}");
+    // The way with ideal servos, and that by its servos.
+    let [ideal, real] = [6, 2].map(|behind| cells[cells.len() - behind]);
+    assert_eq!((ideal, real), ("-", "-"), "{cells:?}");
     assert!(report.contains("\n- undecided: two feet against two"));
 }
 

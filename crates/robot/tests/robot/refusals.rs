@@ -88,11 +88,11 @@ fn refused(path: &std::path::Path) -> String {
 }
 
 #[test]
-fn a_file_that_is_no_text_is_refused_without_reading_it_to_its_end() {
+fn a_file_that_is_not_text_is_refused_without_reading_all_of_it() {
     // Without a bound this would read until memory is full.
     assert_eq!(
         refused("/dev/zero".as_ref()),
-        "FILE: is longer than 1 MiB, so it is no robot file"
+        "FILE: is longer than 1 MiB, so it is not a robot file"
     );
     let folder = refused(&std::env::temp_dir());
     assert!(folder.starts_with("FILE: cannot be read: "), "{folder}");

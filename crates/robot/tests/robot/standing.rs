@@ -2,7 +2,7 @@
 
 use lizard_robot::{Body, Ground, Stance, Walker};
 
-use crate::{STUDIED, gait, paper, paper_with, way};
+use crate::{STUDIED, cycle_movement, gait, paper, paper_with};
 
 const GAITS: [&str; 8] = [
     "walk",
@@ -41,7 +41,7 @@ fn four_tenths_on_a_diagonal_cost_as_much_as_another_solver_found() {
         let gait = gait(paper(), name);
         let at = |i: i32| gait.sweeps(gait.phase(gait.period() * f64::from(i) / 1000.0));
         let ground = *paper().ground();
-        let mut walker = Walker::uneven(ground, at(0), [1.4, 0.6, 1.4, 0.6], 1.0);
+        let mut walker = Walker::with_unevenness(ground, at(0), [1.4, 0.6, 1.4, 0.6], 1.0);
         (1..=1000).for_each(|i| {
             walker.step(at(i));
         });
@@ -62,9 +62,9 @@ fn on_soft_feet_a_foot_a_millimetre_too_long_costs_no_gait_a_tenth() {
     assert_eq!((stiffness, twist), (0.5, 0.0));
     for name in GAITS {
         let gait = gait(paper(), name);
-        let level = way(gait, paper().ground());
+        let level = cycle_movement(gait, paper().ground());
         for twist in [1.0, -1.0] {
-            let share = way(gait, &on(stiffness, twist)) / level;
+            let share = cycle_movement(gait, &on(stiffness, twist)) / level;
             assert!((0.97..1.03).contains(&share), "{name} {twist} {share}");
         }
     }
@@ -74,19 +74,19 @@ fn on_soft_feet_a_foot_a_millimetre_too_long_costs_no_gait_a_tenth() {
 fn on_a_leaf_of_three_newton_a_millimetre_half_a_millimetre_stops_the_robot() {
     let share = |name: &str| {
         let gait = gait(paper(), name);
-        way(gait, &on(3.3, 0.6)) / way(gait, paper().ground())
+        cycle_movement(gait, &on(3.3, 0.6)) / cycle_movement(gait, paper().ground())
     };
     assert!(share("walk") < 0.25 && share("crawl") < 0.15 && share("left") < 0.25);
     // Feet can be set to a fifth of a millimetre, and then it does not matter.
     let gait = gait(paper(), "walk");
-    assert!(way(gait, &on(3.3, 0.2)) > 33.5);
+    assert!(cycle_movement(gait, &on(3.3, 0.2)) > 33.5);
 }
 
 #[test]
 fn the_cost_depends_on_stiffness_times_length_over_weight() {
     let gait = gait(paper(), "walk");
-    let one = way(gait, &on(2.0, 0.6));
-    assert!((way(gait, &on(0.5, 2.4)) - one).abs() < 1e-6);
+    let one = cycle_movement(gait, &on(2.0, 0.6));
+    assert!((cycle_movement(gait, &on(0.5, 2.4)) - one).abs() < 1e-6);
     let heavy = Ground {
         body: Body {
             mass: 614.0,
@@ -94,9 +94,12 @@ fn the_cost_depends_on_stiffness_times_length_over_weight() {
         },
         ..on(2.0, 1.2)
     };
-    assert!((way(gait, &heavy) - one).abs() < 1e-6);
+    assert!((cycle_movement(gait, &heavy) - one).abs() < 1e-6);
     // Feet that all give as much are no matter while they are level.
-    assert_eq!(way(gait, &on(50.0, 0.0)), way(gait, paper().ground()));
+    assert_eq!(
+        cycle_movement(gait, &on(50.0, 0.0)),
+        cycle_movement(gait, paper().ground())
+    );
 }
 
 #[test]

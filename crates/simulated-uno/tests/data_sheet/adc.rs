@@ -22,13 +22,13 @@ fn program(body: &str) -> Image {
     ))
 }
 
-/// An UNO with this program.
+/// A UNO with this program.
 pub fn with(body: &str) -> Uno {
     uno(program(body))
 }
 
-/// An UNO whose main runs these statements once, with voltages at A0 and the pins after it, mV.
-fn once(body: &str, volts: &[u16]) -> Uno {
+/// A UNO whose main runs these statements once, with voltages at A0 and the pins after it, mV.
+fn run_once(body: &str, volts: &[u16]) -> Uno {
     let mut uno = with(&format!("int main(void) {{ {body} for (;;) {{}} }}"));
     for (n, mv) in (0..).zip(volts) {
         uno.set_analog_mv(Pin::a(n), *mv);
@@ -47,7 +47,7 @@ fn results(uno: &Uno) -> Vec<u16> {
 
 /// The results of statements that main runs once.
 fn results_of(body: &str, volts: &[u16]) -> Vec<u16> {
-    let mut uno = once(body, volts);
+    let mut uno = run_once(body, volts);
     uno.run_ms(3);
     results(&uno)
 }
@@ -174,7 +174,7 @@ fn registers_read_as_the_data_sheet_says() {
             &[0xa8, 0xc0, 0xa8],
         ),
     ] {
-        let mut uno = once(body, volts);
+        let mut uno = run_once(body, volts);
         uno.run_ms(2);
         assert_eq!(marks(&uno), expected, "{sentence}");
     }
@@ -184,7 +184,7 @@ fn registers_read_as_the_data_sheet_says() {
 fn the_first_conversion_takes_25_clocks_and_others_13() {
     // Table 24-1: "First conversion 25", "Normal conversions, single ended 13".
     // It "starts at the following rising edge of the ADC clock", so up to one more.
-    let mut uno = once(
+    let mut uno = run_once(
         "ADMUX = 0x40; ADCSRA = 0x87;
         for (unsigned char i = 0; i < 3; i++) { start(); GPIOR0 = i; wait(); GPIOR0 = i; }
         ADCSRA = 7; ADCSRA = 0x87;
@@ -203,7 +203,7 @@ fn the_first_conversion_takes_25_clocks_and_others_13() {
 fn the_prescaler_divides_by_table_24_5() {
     // ADPS 000 and 001: 2, 010: 4, ... 111: 128.
     for (select, divisor) in [2, 2, 4, 8, 16, 32, 64, 128].into_iter().enumerate() {
-        let mut uno = once(
+        let mut uno = run_once(
             &format!(
                 "ADMUX = 0x40; ADCSRA = 0xa0 | {select}; ADCSRA |= 0x40;
                 for (;;) {{ while (!(ADCSRA & 0x10)) {{}} GPIOR0 = 1; ADCSRA |= 0x10; }}"
@@ -227,7 +227,7 @@ fn the_prescaler_divides_by_table_24_5() {
 fn the_lowest_prescalers_both_divide_by_two() {
     // Table 24-5: 13 clocks are 26 cycles.
     for select in [0, 1] {
-        let mut uno = once(
+        let mut uno = run_once(
             &format!(
                 "ADMUX = 0x40; ADCSRA = 0xc0 | {select}; wait();
                 ADCSRA = 0xc0 | {select}; __builtin_avr_delay_cycles(18); GPIOR0 = ADCSRA & 0x40;
@@ -263,7 +263,7 @@ fn a_voltage_is_sampled_when_table_24_1_says() {
         ("GPIOR0 = 0; convert();", 13, 15),
     ] {
         let result = |change: u64| {
-            let mut uno = once(&format!("ADMUX = 0x40; {body}"), &[]);
+            let mut uno = run_once(&format!("ADMUX = 0x40; {body}"), &[]);
             uno.run_until(CYCLES_PER_MS, 1, |uno| !uno.marks().is_empty());
             uno.take_marks();
             uno.run_cycles(change * CLOCK);
@@ -280,7 +280,7 @@ fn conversions_keep_step_with_the_adc_clock() {
     // "the conversion starts at the following rising edge of the ADC clock cycle"
     // (24.4): whenever it is requested, its end is an integer number of clocks away
     // from that of another.
-    let mut uno = once(
+    let mut uno = run_once(
         "ADMUX = 0x40; start();
         for (unsigned char i = 0; i < 20; i++) {
             while (!(ADCSRA & 0x10)) {}
@@ -351,7 +351,7 @@ fn the_bandgap_needs_70_us_after_the_adc_is_switched_on() {
 
 #[test]
 fn a_reset_switches_the_adc_off() {
-    let mut uno = once(
+    let mut uno = run_once(
         "GPIOR0 = ADCSRA; GPIOR0 = ADMUX; GPIOR0 = ADCL; GPIOR0 = ADCH;
         ADMUX = 0x40; start(); wait(); GPIOR0 = ADCL; start();",
         &[2500],

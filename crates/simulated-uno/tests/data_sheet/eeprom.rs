@@ -10,7 +10,7 @@ pub const ATOMIC: u64 = 3400 * CYCLES_PER_US;
 /// Table 8-1: "Erase Only" and "Write Only", 1.8 ms.
 const SINGLE: u64 = 1800 * CYCLES_PER_US;
 
-/// An UNO after so many cycles of these instructions, followed by an endless loop.
+/// A UNO that has run these instructions, then an endless loop, for a number of cycles.
 fn run(source: &str, cycles: u64) -> Uno {
     after(cycles, assembler(&format!("{source}\nend: rjmp end")))
 }
@@ -36,8 +36,8 @@ pub fn program(body: &str) -> Image {
     ))
 }
 
-/// An UNO after so many milliseconds, whose main runs these statements once.
-fn once(body: &str, ms: u64) -> Uno {
+/// A UNO after a number of milliseconds, whose main runs these statements once.
+fn run_once(body: &str, ms: u64) -> Uno {
     after_ms(
         ms,
         program(&format!("int main(void) {{ {body} for (;;) {{}} }}")),
@@ -46,7 +46,7 @@ fn once(body: &str, ms: u64) -> Uno {
 
 #[test]
 fn a_new_eeprom_is_erased_and_holds_1024_bytes_that_tests_may_set() {
-    let mut uno = once("GPIOR0 = get(0); GPIOR0 = get(1023); GPIOR0 = get(512);", 1);
+    let mut uno = run_once("GPIOR0 = get(0); GPIOR0 = get(1023); GPIOR0 = get(512);", 1);
     assert_eq!(marks(&uno), [0xff, 0xff, 0xff]);
     let mut contents = [0; EEPROM_SIZE];
     (contents[0], contents[1023], contents[512]) = (1, 2, 3);
@@ -91,7 +91,7 @@ fn registers_read_as_the_data_sheet_says() {
             &[0x77, 0x42],
         ),
     ] {
-        let uno = once(body, 10);
+        let uno = run_once(body, 10);
         assert_eq!(marks(&uno), expected, "{sentence}");
         assert!(uno.eeprom_operations().len() <= 1, "{sentence}");
     }
@@ -167,7 +167,7 @@ fn eepe_reads_one_for_as_long_as_table_8_1_says() {
         (2, SINGLE, EepromMode::WriteOnly),
     ] {
         let body = format!("set(7, 0x33, {mode}); while (busy()) {{}} GPIOR0 = 1;");
-        let uno = once(&body, 5);
+        let uno = run_once(&body, 5);
         let operation = uno.eeprom_operations()[0];
         assert_eq!((operation.address, operation.mode), (7, kind));
         let busy = uno.marks()[0].cycle - operation.cycle;
@@ -180,7 +180,7 @@ fn erasing_sets_all_bits_and_writing_alone_clears_some() {
     let body = "set(0, 0x0f, 2); set(0, 0xf5, 2);
         set(1, 0x0f, 0); set(1, 0x55, 1);
         set(2, 0x0f, 0); set(2, 0xf0, 0);";
-    let uno = once(body, 30);
+    let uno = run_once(body, 30);
     assert_eq!(uno.eeprom()[..4], [0x05, 0xff, 0xf0, 0xff]);
     let operations = uno.eeprom_operations();
     let old: Vec<u8> = operations.iter().map(|operation| operation.old).collect();
@@ -294,7 +294,7 @@ fn a_reset_lets_a_running_write_finish_and_keeps_its_mode() {
     // operation will be completed provided that the power supply voltage is
     // sufficient" (8.4.2); "During reset, the EEPMn bits will be reset to 0b00
     // unless the EEPROM is busy programming" (8.6.3).
-    let mut uno = once(
+    let mut uno = run_once(
         "GPIOR0 = EECR;
         if (!busy()) set(3, 0x42, 2);
         while (busy()) {}

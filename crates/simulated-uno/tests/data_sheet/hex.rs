@@ -91,7 +91,7 @@ fn hex_that_is_wrong_is_refused_with_the_line() {
             "1 bytes at 0xffffffff do not fit an ATmega328P",
         ),
     ] {
-        let refusal = Image::parse_hex(&text).expect_err("it is no image");
+        let refusal = Image::parse_hex(&text).expect_err("it is not an image");
         assert!(refusal.to_string().starts_with(error), "{refusal}: {text}");
     }
 }

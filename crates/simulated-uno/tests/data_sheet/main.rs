@@ -3,6 +3,7 @@
 
 mod adc;
 mod brown_out;
+mod contacts;
 mod disturbed;
 mod eeprom;
 mod hex;
@@ -19,7 +20,7 @@ use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, Pin, ResetCause, Uno};
 const LED: Pin = Pin::d(13);
 const BOTH: [Fidelity; 2] = [Fidelity::Stock, Fidelity::DataSheet];
 
-/// An UNO of each fidelity with this program, after a number of cycles.
+/// A UNO of each fidelity with this program, after a number of cycles.
 fn both_after(cycles: u64, image: &Image) -> [Uno; 2] {
     BOTH.map(|fidelity| {
         let mut uno = Uno::with_image(image.clone(), fidelity);
@@ -28,10 +29,10 @@ fn both_after(cycles: u64, image: &Image) -> [Uno; 2] {
     })
 }
 
-/// The message of a test that fails once simavr itself does what a correction does.
-const FIXED: &str = "stock simavr does it by the data sheet now: drop the correction";
+/// The message of a test that fails once simavr no longer needs a correction.
+const FIXED: &str = "stock simavr now follows the data sheet here: drop the correction";
 
-/// An UNO with this program, corrected by the data sheet, at power-on.
+/// A UNO with this program, corrected by the data sheet, at power-on.
 fn uno(image: Image) -> Uno {
     Uno::with_image(image, Fidelity::DataSheet)
 }

@@ -8,7 +8,7 @@ use simulated_uno::{
 use super::{after, after_ms, both_after, causes, marks, text, uno};
 
 /// A program whose main runs these statements once.
-fn once(body: &str) -> Image {
+fn program_once(body: &str) -> Image {
     c(&format!(
         "#include <avr/io.h>\nint main(void) {{ {body} for (;;) {{}} }}"
     ))
@@ -16,7 +16,7 @@ fn once(body: &str) -> Image {
 
 /// Shows MCUSR at each start and leaves it.
 fn show_cause() -> Image {
-    once("GPIOR0 = MCUSR;")
+    program_once("GPIOR0 = MCUSR;")
 }
 
 /// Pulls the RESET pin, then runs for a millisecond.
@@ -51,7 +51,7 @@ fn mcusr_gathers_the_causes_until_power_on() {
 
 #[test]
 fn software_clears_flags_of_mcusr_and_cannot_set_them() {
-    let image = once(
+    let image = program_once(
         "GPIOR0 = MCUSR; MCUSR = 0x0e; GPIOR0 = MCUSR;
         MCUSR = 0x0f; GPIOR0 = MCUSR;",
     );
@@ -73,7 +73,7 @@ fn stock_simavr_forgets_every_cause_but_the_last() {
 #[test]
 fn sram_and_registers_survive_every_reset_but_power_on() {
     // "During reset, all I/O Registers are set to their initial values" (11.1):
-    // SRAM and r0 to r31 are none.
+    // SRAM and r0 to r31 are not among them.
     let image = assembler(
         "lds r18, 0x0234
          out GPIOR0, r18
@@ -137,7 +137,7 @@ fn each_power_on_leaves_other_noise_and_restarts_the_measurement_of_the_stack() 
 fn a_reset_makes_every_pin_an_input_and_ends_its_pulse() {
     // "the I/O ports of the AVR are immediately reset to their initial state when a
     // reset source goes active" (11.1).
-    let image = once("DDRB = 2; PORTB = 2;");
+    let image = program_once("DDRB = 2; PORTB = 2;");
     for mut uno in both_after(CYCLES_PER_MS, &image) {
         assert!(uno.is_high(Pin::d(9)));
         uno.reset();
@@ -156,9 +156,9 @@ fn a_reset_makes_every_pin_an_input_and_ends_its_pulse() {
 }
 
 #[test]
-fn a_timer_stands_still_after_a_reset() {
+fn a_timer_is_stopped_after_a_reset() {
     // CTC with a match every 1000 cycles; after the reset the program only looks.
-    let image = once(
+    let image = program_once(
         "if (MCUSR & 2) {
             OCR1A = 77; GPIOR0 = TCNT1L;
             __builtin_avr_delay_cycles(5000);
@@ -258,7 +258,7 @@ fn behind_a_boot_loader_mcusr_is_zero_and_the_watchdog_off() {
             ResetCause::External,
             ResetCause::PowerOn
         ],
-        "the bench knows them all the same"
+        "the bench knows them nevertheless"
     );
     uno.set_boot_loader(false);
     uno.reset();
@@ -267,7 +267,7 @@ fn behind_a_boot_loader_mcusr_is_zero_and_the_watchdog_off() {
 }
 
 #[test]
-fn a_boot_loader_set_before_the_first_cycle_may_be_taken_back() {
+fn a_boot_loader_set_before_the_first_cycle_may_be_removed_again() {
     let mut uno = uno(show_cause());
     uno.set_boot_loader(true);
     uno.set_boot_loader(false);

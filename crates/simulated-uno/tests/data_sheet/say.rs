@@ -30,12 +30,12 @@ fn an_answer_is_the_next_line_from_the_uno_without_its_end() {
         uno.run_ms(2);
         assert_eq!(uno.say("walk").as_deref(), Some("WALK"), "{fidelity:?}");
         assert_eq!(uno.say("stop 2").as_deref(), Some("STOP 2"));
-        assert!(uno.transmitted().is_empty(), "it is taken");
+        assert!(uno.transmitted().is_empty(), "it is removed");
     }
 }
 
 #[test]
-fn silence_for_a_second_of_the_chips_time_is_no_answer() {
+fn a_second_of_silence_in_the_chips_time_counts_as_no_answer() {
     // Stays deaf: nothing is echoed and nothing ends a line.
     let mut uno = uno(c("int main(void) { for (;;) {} }"));
     assert_eq!(uno.say("anybody"), None);

@@ -9,7 +9,7 @@ use super::{FIXED, after, after_ms, distances, mark_cycles, marks, uno};
 const SHORTEST: u64 = 16 * CYCLES_PER_MS;
 
 /// Cycles of the watchdog's resets.
-fn bites(uno: &Uno) -> Vec<u64> {
+fn watchdog_resets(uno: &Uno) -> Vec<u64> {
     let resets = uno.reset_events().into_iter();
     let bites = resets.filter(|reset| reset.cause == ResetCause::Watchdog);
     bites.map(|reset| reset.cycle).collect()
@@ -33,8 +33,8 @@ fn run(body: &str, ms: u64) -> Uno {
     after_ms(ms, program(body))
 }
 
-/// An UNO whose main runs these statements once, after MCUSR has been cleared.
-fn once(body: &str, ms: u64) -> Uno {
+/// A UNO whose main runs these statements once, after MCUSR has been cleared.
+fn run_once(body: &str, ms: u64) -> Uno {
     run(
         &format!("int main(void) {{ MCUSR = 0; {body} for (;;) {{}} }}"),
         ms,
@@ -43,7 +43,7 @@ fn once(body: &str, ms: u64) -> Uno {
 
 /// Cycles from a write to GPIOR0 to the first reset by the watchdog.
 fn to_the_bite(uno: &Uno, mark: usize) -> u64 {
-    bites(uno)[0] - uno.marks()[mark].cycle
+    watchdog_resets(uno)[0] - uno.marks()[mark].cycle
 }
 
 #[test]
@@ -59,7 +59,7 @@ fn every_prescaler_gives_the_time_out_of_table_11_2() {
         );
         let expected = (2048u64 << wdp) * 125;
         let uno = after(expected + CYCLES_PER_MS, program(&body));
-        assert_eq!(bites(&uno).len(), 1, "WDP = {wdp}");
+        assert_eq!(watchdog_resets(&uno).len(), 1, "WDP = {wdp}");
         let elapsed = to_the_bite(&uno, 0);
         assert!((expected..expected + 12).contains(&elapsed), "{elapsed}");
     }
@@ -93,7 +93,7 @@ fn the_time_runs_from_the_last_wdr_or_from_where_the_watchdog_was_switched_on() 
             0..20,
         ),
     ] {
-        let elapsed = to_the_bite(&once(body, ms), mark);
+        let elapsed = to_the_bite(&run_once(body, ms), mark);
         assert!(expected.contains(&elapsed), "{sentence}: {elapsed}");
     }
 }
@@ -118,7 +118,11 @@ fn wde_is_cleared_only_within_four_cycles_after_wdce() {
     // "Within the next four clock cycles, write the WDE and Watchdog prescaler bits
     // (WDP) as desired, but with the WDCE bit cleared" (11.8.2).
     for (nops, off) in [(0, true), (2, true), (3, false), (8, false)] {
-        assert_eq!(bites(&off_after(nops)).is_empty(), off, "{nops} nops");
+        assert_eq!(
+            watchdog_resets(&off_after(nops)).is_empty(),
+            off,
+            "{nops} nops"
+        );
     }
 }
 
@@ -158,10 +162,10 @@ fn wdtcsr_reads_as_the_data_sheet_says() {
             &[0xc0, 0xc0, 0x40],
         ),
     ] {
-        assert_eq!(marks(&once(body, ms)), expected, "{sentence}");
+        assert_eq!(marks(&run_once(body, ms)), expected, "{sentence}");
     }
-    let never_cleared = once("WDTCSR = 8; WDTCSR = 0; WDTCSR = 0x27;", 17);
-    assert_eq!(bites(&never_cleared).len(), 1);
+    let never_cleared = run_once("WDTCSR = 8; WDTCSR = 0; WDTCSR = 0x27;", 17);
+    assert_eq!(watchdog_resets(&never_cleared).len(), 1);
 }
 
 #[test]
@@ -182,7 +186,7 @@ fn the_interrupt_mode_never_resets_and_stays_on() {
     let uno = run(body, 100);
     assert_eq!(marks(&uno), [0x40; 6], "WDIE still set, WDIF cleared");
     assert_eq!(distances(&mark_cycles(&uno)), [SHORTEST; 5]);
-    assert!(bites(&uno).is_empty());
+    assert!(watchdog_resets(&uno).is_empty());
 }
 
 #[test]
@@ -226,7 +230,7 @@ fn after_its_reset_the_watchdog_stays_on_at_16_ms_until_wdrf_is_cleared() {
         for (;;) {} }";
     let uno = run(body, 128 + 40);
     assert_eq!(marks(&uno), [8, 8, 8, 8, 8, 8]);
-    let bites = bites(&uno);
+    let bites = watchdog_resets(&uno);
     // To the end of the instruction in which the time is over.
     assert!((bites[1] - bites[0]).abs_diff(SHORTEST) < 3, "{bites:?}");
     assert!((bites[2] - bites[1]).abs_diff(SHORTEST) < 3, "{bites:?}");
@@ -256,7 +260,7 @@ fn the_watchdog_ends_a_sleep_with_interrupts_off() {
 
 #[test]
 fn an_enabled_interrupt_does_not_end_a_sleep_with_interrupts_off() {
-    let uno = once(
+    let uno = run_once(
         "SMCR = 1; OCR1A = 999; TIMSK1 = 2; TCCR1B = 9; set(8);
         asm volatile (\"sleep\"); GPIOR0 = 1;",
         40,
@@ -294,7 +298,7 @@ fn a_watchdog_reset_comes_at_the_same_cycle_however_the_run_is_cut() {
     }
     assert_eq!(pieces.reset_events(), whole.reset_events());
     let mut exact = uno(image);
-    exact.run_until_cycle(bites(&whole)[0]);
+    exact.run_until_cycle(watchdog_resets(&whole)[0]);
     assert_eq!(exact.resets(), 1, "by the last cycle of a run");
     assert_eq!(pieces.marks(), whole.marks());
 }

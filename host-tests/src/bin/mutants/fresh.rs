@@ -1,5 +1,5 @@
-//! Fresh mistakes, which nobody has chosen: every place of the code in which an operator,
-//! a number or a call can be another, and a sample of them drawn by a seed.
+//! Generated mistakes: every place of the code where an operator, a number or a call can be
+//! changed, and a random sample of them.
 
 use fastrand::Rng;
 
@@ -18,7 +18,7 @@ const TEXT: [&str; 8] = [
     "word.rs",
 ];
 
-/// Not on the chip, or tables of another program.
+/// Files that do not run on the chip, or hold tables of another program.
 const HOST_ONLY: [&str; 6] = [
     "tests",
     "virtual_board",
@@ -74,7 +74,7 @@ pub fn all(file: &str, text: &str) -> Vec<Mutant> {
     let mut mutants = Vec::new();
     for (n, line) in lines.iter().enumerate() {
         for (wrong, changed) in changes(line) {
-            // As many lines before it as tell it from others.
+            // Enough of the lines before it to make it unique.
             let mut first = n;
             while first > 0 && text.matches(&lines[first..=n].join("\n")).count() > 1 {
                 first -= 1;
@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_that_is_there_twice_is_told_by_the_lines_before_it() {
+    fn a_line_that_occurs_twice_is_identified_by_the_lines_before_it() {
         let text = "one\na = b + c;\ntwo\na = b + c;\n";
         let made: Vec<String> = all("crates/pulses/src/lib.rs", text)
             .iter()

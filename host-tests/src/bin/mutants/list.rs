@@ -7,11 +7,11 @@ pub struct Mutant {
     pub file: String,
     /// A sentence that names the mistake.
     pub wrong: String,
-    /// The part of a test's name that the tests have that are tried first.
+    /// Part of the names of the tests that are run first.
     pub test: Option<String>,
-    /// The package whose own tests are to notice, of code that runs on the host, too.
+    /// The package whose own tests must notice the mistake, for code that also runs on the host.
     pub package: Option<String>,
-    /// True if nobody has chosen it.
+    /// True if it was generated.
     pub is_fresh: bool,
     /// Line of the list at which the entry begins.
     pub line: usize,
@@ -29,8 +29,8 @@ impl Mutant {
     pub fn make(&self, text: &str) -> Result<String, String> {
         match text.matches(&self.old).count() {
             1 => Ok(text.replace(&self.old, &self.new)),
-            0 => Err("the old text is not there any more".into()),
-            n => Err(format!("the old text is there {n} times")),
+            0 => Err("the old text is missing".into()),
+            n => Err(format!("the old text occurs {n} times")),
         }
     }
 }
@@ -38,7 +38,7 @@ impl Mutant {
 /// Reads the entries of `mutants.txt`.
 ///
 /// # Errors
-/// A line that is none of an entry's, an entry without a file, a mistake or texts.
+/// An unknown line, or an entry without a file, a mistake or texts.
 pub fn read(list: &str) -> Result<Vec<Mutant>, String> {
     let mut mutants = Vec::new();
     let mut open: Option<Mutant> = None;
@@ -81,7 +81,7 @@ pub fn read(list: &str) -> Result<Vec<Mutant>, String> {
     Ok(mutants)
 }
 
-/// Adds a line; lines are apart by line feeds, and the last one has none.
+/// Adds a line; line feeds separate the lines.
 fn append(text: &mut String, line: &str) {
     if !text.is_empty() {
         text.push('\n');
@@ -106,7 +106,7 @@ mod tests {
         let made = mutants[0].make("let b = 0;\nlet a = 1;\n");
         assert_eq!(made.as_deref(), Ok("let b = 0;\nlet a = 2;"));
         let gone = mutants[0].make("let a = 3;\n").expect_err("it is gone");
-        assert!(gone.contains("not there"), "{gone}");
+        assert!(gone.contains("missing"), "{gone}");
         let twice = mutants[0]
             .make("let a = 1;\nlet a = 1;\n\n")
             .expect_err("it is there twice");

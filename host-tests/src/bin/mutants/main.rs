@@ -10,9 +10,9 @@
 //! Run it from the folder `host`. Arguments: parts of a file's name or of the
 //! sentence that says what is wrong; an entry that has one of them is tried. None: all.
 //!
-//! With SAMPLE=60 it makes that many mistakes that nobody has chosen ([`fresh`]), drawn by
-//! SEED from the firmware's whole code, and prints the rate at which tests notice them,
-//! with its interval. A mistake in the core is tried on the core's own tests first, then on
+//! With SAMPLE=60 it makes that many generated mistakes ([`fresh`]), drawn by SEED from the
+//! firmware's whole code, and prints the rate at which tests notice them, with its interval.
+//! A mistake in the core is tried on the core's own tests first, then on
 //! the model checker, then in the running image.
 
 mod fresh;
@@ -26,11 +26,12 @@ use std::time::Instant;
 
 use list::Mutant;
 
-/// The longest that the image's tests may take, s, or the mistake makes them hang.
-const PATIENCE: u32 = 1_800;
+/// Time after which tests count as hanging, s.
+const TIMEOUT: u32 = 1_800;
 
-/// The longest that a package's own tests may take, s. They take seconds.
-const PATIENCE_ALONE: u32 = 300;
+/// Processor time after which a test program counts as hanging, s: one takes two minutes at most,
+/// whatever else the machine does.
+const CPU_TIMEOUT: u32 = 600;
 
 /// The root of the repository.
 fn root() -> PathBuf {
@@ -38,7 +39,7 @@ fn root() -> PathBuf {
 }
 
 /// The outcome of a mistake.
-enum Fate {
+enum Outcome {
     Caught(String),
     Lives,
     /// The compiler refuses it.
@@ -65,7 +66,7 @@ fn number(name: &str) -> Option<u64> {
     std::env::var(name).ok()?.parse().ok()
 }
 
-/// Tries `count` fresh mistakes; returns how many live.
+/// Tries `count` generated mistakes; returns the number that no test notices.
 fn sample(parts: &[String], count: usize, seed: u64) -> Result<usize, String> {
     let scratch = Scratch::copy()?;
     let mut mutants = Vec::new();
@@ -83,10 +84,12 @@ fn sample(parts: &[String], count: usize, seed: u64) -> Result<usize, String> {
             break;
         }
         let fate = match scratch.judge(&mutant)? {
-            Fate::NoProgram => continue,
+            Outcome::NoProgram => continue,
             // A hundred tests notice some.
-            Fate::Caught(test) => format!("caught by {}", test.split(',').next().unwrap_or(&test)),
-            Fate::Lives => "LIVES".to_owned(),
+            Outcome::Caught(test) => {
+                format!("caught by {}", test.split(',').next().unwrap_or(&test))
+            }
+            Outcome::Lives => "LIVES".to_owned(),
         };
         println!("{}, {}: {fate}", mutant.file, mutant.wrong);
         let of = &mut tally[usize::from(!fresh::moves(&mutant.file))];
@@ -107,7 +110,7 @@ fn sample(parts: &[String], count: usize, seed: u64) -> Result<usize, String> {
     Ok(tally.iter().map(|[noticed, tried]| tried - noticed).sum())
 }
 
-/// Returns how many live.
+/// Tries the listed mistakes; returns the number that no test notices.
 fn run(parts: &[String]) -> Result<usize, String> {
     let path = root().join("host-tests/mutants.txt");
     let list = list::read(&text(&path)?).map_err(|error| format!("mutants.txt, {error}"))?;
@@ -134,12 +137,12 @@ fn run(parts: &[String]) -> Result<usize, String> {
         let begin = Instant::now();
         let fate = scratch.judge(mutant)?;
         let fate = match &fate {
-            Fate::Caught(test) => format!("caught by {test}"),
-            Fate::Lives => {
+            Outcome::Caught(test) => format!("caught by {test}"),
+            Outcome::Lives => {
                 lives.push(mutant);
                 "LIVES".to_owned()
             }
-            Fate::NoProgram => return Err(format!("{}: it does not build", mutant.wrong)),
+            Outcome::NoProgram => return Err(format!("{}: it does not build", mutant.wrong)),
         };
         let seconds = begin.elapsed().as_secs();
         println!("{}: {}: {fate} ({seconds} s)", mutant.file, mutant.wrong);
@@ -168,7 +171,7 @@ struct Scratch {
 }
 
 impl Scratch {
-    /// Copies what git knows of, as it is in the working tree.
+    /// Copies all files that git tracks, from the working tree.
     fn copy() -> Result<Self, String> {
         let folder = root().join("target/mutants");
         let listed = Command::new("git")
@@ -214,8 +217,8 @@ impl Scratch {
         Ok(status.success().then_some(elf))
     }
 
-    /// Makes a mistake, tests, and puts it right.
-    fn judge(&self, mutant: &Mutant) -> Result<Fate, String> {
+    /// Makes a mistake, runs the tests, and undoes it.
+    fn judge(&self, mutant: &Mutant) -> Result<Outcome, String> {
         // Of the copy: the tree may be edited meanwhile.
         let right = text(&self.folder.join("tree").join(&mutant.file))?;
         self.write(&mutant.file, mutant.make(&right)?.as_bytes())?;
@@ -227,44 +230,46 @@ impl Scratch {
         fate.map_err(|error| format!("{}: {}: {error}", mutant.file, mutant.wrong))
     }
 
-    fn in_the_firmware(&self, mutant: &Mutant) -> Result<Fate, String> {
+    fn in_the_firmware(&self, mutant: &Mutant) -> Result<Outcome, String> {
         let Some(elf) = self.firmware()? else {
-            return Ok(Fate::NoProgram);
+            return Ok(Outcome::NoProgram);
         };
         // The likely ones first: all of them take a minute.
         for filter in mutant.test.as_deref().into_iter().chain([""]) {
             match tests(&elf, filter)? {
-                None => return Ok(Fate::Caught("tests that hang".into())),
-                Some(failed) if !failed.is_empty() => return Ok(Fate::Caught(failed.join(", "))),
+                None => return Ok(Outcome::Caught("tests that hang".into())),
+                Some(failed) if !failed.is_empty() => {
+                    return Ok(Outcome::Caught(failed.join(", ")));
+                }
                 Some(_) => {}
             }
         }
-        Ok(Fate::Lives)
+        Ok(Outcome::Lives)
     }
 
     /// Runs the tests of a package of the copy: those that are to notice, then all; for a
     /// fresh mistake the model checker's and those of the image, too.
-    fn in_its_package(&self, package: &str, mutant: &Mutant) -> Result<Fate, String> {
+    fn in_its_package(&self, package: &str, mutant: &Mutant) -> Result<Outcome, String> {
         if !self
             .cargo_test(package, &["--no-run"])?
             .is_some_and(|run| run.0)
         {
-            return Ok(Fate::NoProgram);
+            return Ok(Outcome::NoProgram);
         }
         let is_fresh = mutant.is_fresh;
         let filters = mutant.test.as_deref().into_iter().chain([""]);
         let runs = filters.map(|filter| (package, filter));
         for (package, filter) in runs.chain(is_fresh.then_some(("lizard-explore", ""))) {
             match self.cargo_test(package, &["--no-fail-fast", "--", filter])? {
-                None => return Ok(Fate::Caught("tests that hang".into())),
-                Some((false, said)) => {
-                    let failed = failures(&said);
-                    return Ok(Fate::Caught(match failed.is_empty() {
+                None => return Ok(Outcome::Caught("tests that hang".into())),
+                Some((false, printed)) => {
+                    let failed = failures(&printed);
+                    return Ok(Outcome::Caught(match failed.is_empty() {
                         true => format!("{package}, which crashes"),
                         false => failed.join(", "),
                     }));
                 }
-                Some((true, said)) if !said.lines().any(|line| line.starts_with("test ")) => {
+                Some((true, printed)) if !printed.lines().any(|line| line.starts_with("test ")) => {
                     return Err(format!("no test of {package} has {filter:?} in its name"));
                 }
                 Some(_) => {}
@@ -273,7 +278,7 @@ impl Scratch {
         if is_fresh {
             self.in_the_firmware(mutant)
         } else {
-            Ok(Fate::Lives)
+            Ok(Outcome::Lives)
         }
     }
 
@@ -284,7 +289,6 @@ impl Scratch {
         arguments: &[&str],
     ) -> Result<Option<(bool, String)>, String> {
         run_limited(
-            PATIENCE_ALONE,
             &self.folder.join("tree/crates"),
             &[&["-p", package], arguments].concat(),
             &[("CARGO_TARGET_DIR", self.folder.join("host").as_os_str())],
@@ -304,7 +308,6 @@ fn tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
         "trouble",
     ];
     let run = run_limited(
-        PATIENCE,
         &root().join("crates"),
         &[&arguments[..], &["--", filter]].concat(),
         // As long as in continuous integration.
@@ -313,27 +316,32 @@ fn tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
             ("LIZARD_FUZZ", "5".as_ref()),
         ],
     )?;
-    let Some((_, said)) = run else {
+    let Some((_, printed)) = run else {
         return Ok(None);
     };
-    if !said.contains("test result:") {
+    if !printed.contains("test result:") {
+        // Begun, and ended by the limit of its processor time.
+        if printed.contains("running ") {
+            return Ok(None);
+        }
         return Err("the tests of the firmware do not run; try make test".into());
     }
-    Ok(Some(failures(&said)))
+    Ok(Some(failures(&printed)))
 }
 
 /// Runs a command of cargo in a folder. Returns true if the tests passed, and their output;
-/// nothing if they do not end within `patience`, in seconds.
+/// nothing if they do not end within [`TIMEOUT`].
 fn run_limited(
-    patience: u32,
     folder: &Path,
     arguments: &[&str],
     variables: &[(&str, &OsStr)],
 ) -> Result<Option<(bool, String)>, String> {
     /// The exit code of `timeout`, which also ends the tests that cargo has started.
     const TOO_LONG: i32 = 124;
-    let run = Command::new("timeout")
-        .args(["--kill-after=5", &patience.to_string(), "cargo", "test"])
+    let run = Command::new("prlimit")
+        .arg(format!("--cpu={CPU_TIMEOUT}"))
+        .args(["timeout", "--kill-after=5", &TIMEOUT.to_string()])
+        .args(["cargo", "test"])
         .args(arguments)
         .current_dir(folder)
         .env("PROPTEST_RNG_SEED", "1")
@@ -342,13 +350,13 @@ fn run_limited(
         .stderr(Stdio::null())
         .output()
         .map_err(|error| format!("cargo: {error}"))?;
-    let said = String::from_utf8_lossy(&run.stdout).into_owned();
+    let printed = String::from_utf8_lossy(&run.stdout).into_owned();
     let is_over = run.status.code() != Some(TOO_LONG);
-    Ok(is_over.then_some((run.status.success(), said)))
+    Ok(is_over.then_some((run.status.success(), printed)))
 }
 
 /// The tests that failed, by their harness's lines.
-fn failures(said: &str) -> Vec<String> {
+fn failures(printed: &str) -> Vec<String> {
     let name = |line: &str| {
         Some(
             line.strip_prefix("test ")?
@@ -356,5 +364,5 @@ fn failures(said: &str) -> Vec<String> {
                 .to_owned(),
         )
     };
-    said.lines().filter_map(name).collect()
+    printed.lines().filter_map(name).collect()
 }

@@ -57,7 +57,7 @@ fn run(arguments: &[String]) -> Result<(), String> {
 /// A property of a robot.
 type Has = fn(&Robot) -> bool;
 
-/// An error that names what no robot has.
+/// Checks that the robots have all rare features; the error names a missing one.
 fn has_all(robots: &[(String, Robot)]) -> Result<(), String> {
     let of_interest: [(&str, Has); 5] = [
         ("a servo that is reversed", |robot| {

@@ -14,14 +14,14 @@ use lizard_host_tests::{FirmwareBench, robot};
 use lizard_rules::{Event, MS, Time};
 use simulated_uno::{FREQUENCY, Image};
 
-/// Failing scenarios that are printed whole.
+/// Number of failing scenarios that are printed in full.
 const PRINTED: usize = 5;
 
 fn number(name: &str) -> Option<u64> {
     let text = std::env::var(name).ok().filter(|text| !text.is_empty())?;
     Some(
         text.parse()
-            .unwrap_or_else(|_| panic!("{name}={text} is no number")),
+            .unwrap_or_else(|_| panic!("{name}={text} is not a number")),
     )
 }
 
@@ -29,7 +29,7 @@ fn main() -> ExitCode {
     let image = FirmwareBench::image();
     let seed = number("SEED").unwrap_or(1);
     if let Some(only) = number("ONLY") {
-        return one(&image, seed, only);
+        return play_scenario(&image, seed, only);
     }
     let count = number("COUNT").unwrap_or(10_000);
     let threads = thread::available_parallelism().map_or(1, |n| n.get());
@@ -38,7 +38,7 @@ fn main() -> ExitCode {
         if let Some(failure) = failure {
             let number = failure.scenario.number;
             let (activity, broken) = (failure.scenario.activity, &failure.broken[0]);
-            println!("scenario {number} ({activity}): not so: {broken}");
+            println!("scenario {number} ({activity}): broken: {broken}");
         } else if done.is_multiple_of(100) && std::io::stdout().is_terminal() {
             print!("{done} of {count}\r");
             _ = std::io::stdout().flush();
@@ -62,13 +62,13 @@ fn main() -> ExitCode {
 }
 
 /// Plays one scenario and prints its events.
-fn one(image: &Image, seed: u64, number: u64) -> ExitCode {
+fn play_scenario(image: &Image, seed: u64, number: u64) -> ExitCode {
     let scenario = Scenario::of(seed, number, robot());
     print!("{scenario}");
     let record = lizard_host_tests::trouble::play(image, robot(), &scenario);
     let mut last = [Time::MIN / 2; 4];
     for (at, event) in events(&record) {
-        let is_told = match event {
+        let is_reported = match event {
             Event::Byte | Event::Pass => false,
             // Only the first after the servo had none.
             Event::Pulse(pulse) => {
@@ -77,7 +77,7 @@ fn one(image: &Image, seed: u64, number: u64) -> ExitCode {
             }
             _ => true,
         };
-        if is_told {
+        if is_reported {
             println!("{:10.3} ms  {event:?}", at as f64 / MS as f64);
         }
     }

@@ -1,4 +1,4 @@
-//! Rules that need a look inside the robot, or at its future: a clone of it is left alone.
+//! Rules that need the robot's inner state, or its future, which a clone shows.
 
 use lizard_core::console::command::effect;
 use lizard_core::console::word::Effect;
@@ -8,16 +8,23 @@ use lizard_core::motion::Activity;
 use lizard_core::numbers::gaits::GaitId;
 use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::robot::Robot;
-use lizard_core::virtual_board::Eeprom;
+use lizard_core::virtual_board::{Eeprom, Running};
 use lizard_rules::{Event, Limits, MS, Pulse, Rule, Time};
 
-use super::{FRAME, Held, World, broken};
+use super::{FRAME, Verdict, World, broken};
+use crate::fingerprint;
 
 /// Cycles of a rounding, at either end of a frame.
 const ROUNDING: u16 = 2;
 
-/// Frames in which any motion of this robot ends: it wakes, brakes and goes.
+/// Frames within which any motion of this robot ends.
 const LONG: u32 = 160;
+
+/// Lines of which each tells a gait or a routine to go on for some time, less than those frames at half the pace.
+const COUNTED: [&str; 3] = ["walk 1", "trot 2", "round 1"];
+
+/// Frames in which a contact counts, and more.
+const DEBOUNCED: u8 = 5;
 
 /// Time in which the supply is measured and believed.
 const BELIEVED: Time = 14 * FRAME;
@@ -33,14 +40,19 @@ pub(super) fn limits(robot: &Robot) -> Limits {
     }
 }
 
+/// The number that equal states of main share.
+fn print(running: &Running) -> u64 {
+    fingerprint::coarse(&running.main)
+}
+
 impl World {
     /// Judges an answer to a line.
-    pub(super) fn answer(&mut self, line: &str, text: &str) -> Held {
+    pub(super) fn answer(&mut self, line: &str, text: &str) -> Verdict {
         let effect = effect(line, &self.robot());
         let is_done = text.starts_with("ok ");
         // A late edge that main has yet to see, because its last frame still waits to be
         // played, stops the robot after the order.
-        let is_late = self.observer.is_untold() && self.running.board.late > 0;
+        let is_late = self.observer.is_unreported() && self.running.board.late > 0;
         self.order(effect, Some(is_done));
         if is_done && effect == Effect::Calibrates {
             self.observe(Event::Calibrated { saved: false });
@@ -53,7 +65,7 @@ impl World {
             text,
         });
         if text == "ok load" {
-            self.takes_what_it_loaded()?;
+            self.accepts_loaded_limits()?;
         }
         let is_refused = text.starts_with("err 8");
         if is_refused
@@ -75,6 +87,8 @@ impl World {
                 self.observer.drop_pending();
             } else if text == "ok stand" && stack {
                 self.stands_after(text)?;
+            } else if COUNTED.contains(&line) {
+                self.ends_after(text)?;
             }
         }
         self.observer.verdict()
@@ -87,8 +101,8 @@ impl World {
         }
     }
 
-    /// Leaves a clone alone until the answers so far have to have come true.
-    pub(super) fn look_ahead(&mut self) -> Held {
+    /// Runs a clone until all promises of the answers so far are due.
+    pub(super) fn look_ahead(&mut self) -> Verdict {
         self.observer.verdict()?;
         if let Some(time) = self.observer.due_in() {
             let mut later = self.clone();
@@ -100,8 +114,8 @@ impl World {
         self.observer.verdict()
     }
 
-    /// `limit` accepts everything that `cal` prints.
-    fn takes_what_it_loaded(&self) -> Held {
+    /// Checks that `limit` accepts everything that `cal` prints.
+    fn accepts_loaded_limits(&self) -> Verdict {
         let mut later = self.running.clone();
         later.board.transmitter.text.clear();
         for line in later.send(b"cal\r") {
@@ -121,16 +135,39 @@ impl World {
         Ok(())
     }
 
+    /// Closes or opens every contact. Unless a routine is under way, the robot goes on as if nothing
+    /// had happened.
+    pub(super) fn contacts(&mut self, closed: bool) -> Verdict {
+        let mut without = self.running.clone();
+        self.running.board.closed = if closed { u32::MAX } else { 0 };
+        let robot = self.robot();
+        let activity = self.running.main.control().activity();
+        if matches!(activity, Activity::Gait(id) if robot.gait(id).is_routine()) {
+            return Ok(());
+        }
+        let mut with = self.running.clone();
+        for running in [&mut without, &mut with] {
+            running.run_without_reader(u32::from(DEBOUNCED));
+        }
+        if with.board.started_pulses() != without.board.started_pulses()
+            || print(&with) != print(&without)
+        {
+            return broken(Rule::Contacts, format!("{activity:?}"));
+        }
+        Ok(())
+    }
+
     /// True if the robot rests, and its pose is in the memory.
     pub(super) fn rest_is_kept(&self) -> bool {
         let memory = &self.running.board.memory;
         let motion = self.running.motion();
         // A memory that is busy cannot be read; its bytes can.
         let readable = Eeprom::with(*memory.bytes());
-        motion.is_resting() && copies::rested(motion.robot(), &readable) == Some(*motion.pose())
+        motion.is_resting()
+            && copies::last_rest_pose(motion.robot(), &readable) == Some(*motion.pose())
     }
 
-    fn stands_after(&self, answer: &str) -> Held {
+    fn stands_after(&self, answer: &str) -> Verdict {
         let mut later = self.running.clone();
         for _ in 0..LONG {
             later.frame();
@@ -142,17 +179,29 @@ impl World {
         if motion.hazard().is_some() {
             return Ok(());
         }
-        if later.board.begun() != standing || activity != Activity::Gait(GaitId::STAND) {
+        if later.board.started_pulses() != standing || activity != Activity::Gait(GaitId::STAND) {
             let status = later.say("status");
             return broken(Rule::Stands, format!("{answer}, and then {status}"));
         }
         Ok(())
     }
 
+    fn ends_after(&self, answer: &str) -> Verdict {
+        let mut later = self.running.clone();
+        later.run_without_reader(LONG);
+        if later.main.control().activity() != Activity::Stop {
+            return broken(
+                Rule::Ends,
+                format!("{answer}, and then {}", later.say("status")),
+            );
+        }
+        Ok(())
+    }
+
     /// Judges the pulses of a frame, in which main ran or not.
-    pub(super) fn pulses(&mut self, main_ran: bool) -> Held {
+    pub(super) fn pulses(&mut self, main_ran: bool) -> Verdict {
         self.observer.limits.keeps_memory = !self.running.board.memory.worn;
-        let widths = self.running.board.begun().0.map(|width| width.0);
+        let widths = self.running.board.started_pulses().0.map(|width| width.0);
         let slew = self.robot().slew().per_frame;
         for (servo, calibration) in self.running.motion().calibration().iter().enumerate() {
             let most = calibration.slew(slew).saturating_add(ROUNDING);

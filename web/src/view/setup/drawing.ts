@@ -1,12 +1,12 @@
 // The drawing of the first connection, from above, forward is up: each servo, the direction of its crank, and an arrow for
 // a turn. The body is drawn short, so that the cranks are large.
-import type { Description, Four, Scene, Spot } from '../../robot';
+import type { Description, Four, Scene, Point } from '../../robot';
 
 export const PLACES = ['front left', 'front right', 'back right', 'back left'] as const;
 export const nameOf = (servo: number): string => `A${servo + 1}, ${PLACES[servo]}`;
 
 /** The selected servo. */
-export interface Shown {
+export interface SelectedServo {
   servo: number;
   /** Its turn, deg counter-clockwise; null for none. */
   by: number | null;
@@ -29,14 +29,14 @@ function shape(tag: string, attributes: Record<string, string | number>, text = 
 }
 
 /** The point at a distance, mm, and angle from another, in the drawing's frame with y downwards. */
-function from([x, y]: Spot, length: number, degrees: number): Spot {
+function from([x, y]: Point, length: number, degrees: number): Point {
   return [x + length * Math.cos(degrees * RADIANS), y - length * Math.sin(degrees * RADIANS)];
 }
 
-const line = (className: string, [x1, y1]: Spot, [x2, y2]: Spot) => shape('line', { class: className, x1, y1, x2, y2 });
+const line = (className: string, [x1, y1]: Point, [x2, y2]: Point) => shape('line', { class: className, x1, y1, x2, y2 });
 
 /** Draws an arrow about a shaft that begins at an angle. */
-function arrow(shaft: Spot, radius: number, begin: number, by: number): SVGElement[] {
+function arrow(shaft: Point, radius: number, begin: number, by: number): SVGElement[] {
   const sense = Math.sign(by);
   const end = begin + sense * ARC;
   const [x1, y1] = from(shaft, radius, begin);
@@ -48,10 +48,10 @@ function arrow(shaft: Spot, radius: number, begin: number, by: number): SVGEleme
 }
 
 /** Draws the robot; `shown` selects one servo. */
-export function drawing({ servos, plate }: Description, { shafts, tips }: Scene, shown: Shown | null): SVGElement {
+export function drawing({ servos, plate }: Description, { shafts, tips }: Scene, shown: SelectedServo | null): SVGElement {
   const cut = Math.max(...shafts.map(([, y]) => Math.abs(y))) - SHORT;
-  const short = ([x, y]: Spot): Spot => [x, -Math.sign(y) * (Math.abs(y) - cut)];
-  const places = shafts.map(short) as Four<Spot>;
+  const short = ([x, y]: Point): Point => [x, -Math.sign(y) * (Math.abs(y) - cut)];
+  const places = shafts.map(short) as Four<Point>;
   const length = Math.hypot(tips[0][0] - shafts[0][0], tips[0][1] - shafts[0][1]);
   const [half, tall] = [plate.half[0], plate.half[1] - cut];
   const wide = Math.max(...places.map(([x]) => Math.abs(x))) + length + 58;

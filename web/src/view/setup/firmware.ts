@@ -1,6 +1,7 @@
 // The step Firmware: writes firmware and robot through the boot loader.
 import { answerOf, nameOf } from './board';
-import { button, note, row, words } from './parts';
+import { BY_CABLE } from '../../session';
+import { button, note, row, warning, words } from './parts';
 import type { Step } from './step';
 
 export const firmware: Step = {
@@ -9,6 +10,7 @@ export const firmware: Step = {
   needsRobot: false,
   parts({ session, write, go }) {
     const { link, has, hasThis } = session;
+    if (link.kind === 'radio') return [words(answerOf(session)), warning(`Nothing can be written here: ${BY_CABLE}.`)];
     const all = button('Write firmware and robot', () => write('all'), !session.answers);
     const robot = button('Write this robot alone', () => write('robot'), !hasThis);
     return [

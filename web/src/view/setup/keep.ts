@@ -6,10 +6,10 @@ import type { Step } from './step';
 
 export const keep: Step = {
   name: 'Keep',
-  title: 'Save it, and keep a file',
+  title: 'Save the calibration, also as a file',
   needsRobot: true,
-  parts({ guide, run, done, give, isDone }) {
-    if (!guide) return [words('The robot is asked what it has.')];
+  parts({ guide, run, done, setCalibration, isDone }) {
+    if (!guide) return [words('Reading the calibration…')];
     const { servos } = guide.has;
     const rows = servos.map(({ trim, limit, dir, scale }, servo) => [
       nameOf(servo),
@@ -29,17 +29,17 @@ export const keep: Step = {
     file.accept = '.toml';
     file.addEventListener('change', () => {
       const chosen = file.files?.[0];
-      if (chosen) void chosen.text().then((text) => give(text, chosen.name));
+      if (chosen) void chosen.text().then((text) => setCalibration(text, chosen.name));
     });
     const label = document.createElement('label');
     label.className = 'file';
-    label.append('A file that was kept ', file);
+    label.append('Open a saved file ', file);
     return [
-      table('What the robot has', ['servo', 'sign', 'trim', 'limits', 'µs per °'], rows),
-      words(guide.isChanged ? 'Not saved yet.' : isDone('Keep') ? 'The board has saved it.' : 'Nothing of it was changed since it was connected.'),
-      row(button('Save in the board', store, guide.isChanged), button('Keep as a file', () => save('calibration.toml', 'application/toml', fileOf(guide.has)))),
+      table('Calibration of the robot', ['servo', 'sign', 'trim', 'limits', 'µs per °'], rows),
+      words(guide.isChanged ? 'Not saved yet.' : isDone('Keep') ? 'The board has saved it.' : 'Nothing has changed since the board was connected.'),
+      row(button('Save in the board', store, guide.isChanged), button('Save as a file', () => save('calibration.toml', 'application/toml', fileOf(guide.has)))),
       row(label),
-      note('The file is that of `lizard backup`. A kept file is given to the robot at once, and is saved only by the button.'),
+      note('The file is the same as that of `lizard backup`. A file that you open takes effect at once; the button saves it in the board.'),
     ];
   },
 };

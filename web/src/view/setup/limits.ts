@@ -1,11 +1,11 @@
 // The step Limits: a servo's travel before printed parts touch each other.
 import { angle } from '../../setup/calibration';
-import { nameOf, type Shown } from './drawing';
+import { nameOf, type SelectedServo } from './drawing';
 import { button, note, number, row, words } from './parts';
 import type { Step, Tools } from './step';
 
 /** Turn of a servo for each press, deg. */
-const BY = 5;
+const STEP = 5;
 
 export class Limits implements Step {
   readonly name = 'Limits';
@@ -19,7 +19,7 @@ export class Limits implements Step {
     this.at = null;
   }
 
-  drawing({ servo }: Tools): Shown {
+  drawing({ servo }: Tools): SelectedServo {
     return { servo, by: null };
   }
 
@@ -32,8 +32,8 @@ export class Limits implements Step {
     return [
       words(`Turn ${nameOf(servo)} until a part of your print is about to touch another, and let it go no further. Where nothing touches, there is nothing to do.`),
       row(
-        button(`↺ ${BY}°`, () => this.turn(tools, place + BY)),
-        button(`↻ ${BY}°`, () => this.turn(tools, place - BY)),
+        button(`↺ ${STEP}°`, () => this.turn(tools, place + STEP)),
+        button(`↻ ${STEP}°`, () => this.turn(tools, place - STEP)),
         button('Stand', () => this.stand(tools)),
       ),
       ...(limit

@@ -2,21 +2,21 @@
 
 type Child = Node | string;
 
-function made<K extends keyof HTMLElementTagNameMap>(tag: K, children: Child[], className = ''): HTMLElementTagNameMap[K] {
+function make<K extends keyof HTMLElementTagNameMap>(tag: K, children: Child[], className = ''): HTMLElementTagNameMap[K] {
   const box = document.createElement(tag);
   box.append(...children);
   if (className !== '') box.className = className;
   return box;
 }
 
-export const words = (...children: Child[]): HTMLElement => made('p', children);
-export const note = (...children: Child[]): HTMLElement => made('p', children, 'note');
-export const warning = (text: string): HTMLElement => made('p', [text], 'refusal');
-export const row = (...children: Child[]): HTMLElement => made('p', children, 'actions');
-export const list = (...items: Child[]): HTMLElement => made('ul', items.map((item) => made('li', [item])));
+export const words = (...children: Child[]): HTMLElement => make('p', children);
+export const note = (...children: Child[]): HTMLElement => make('p', children, 'note');
+export const warning = (text: string): HTMLElement => make('p', [text], 'refusal');
+export const row = (...children: Child[]): HTMLElement => make('p', children, 'actions');
+export const list = (...items: Child[]): HTMLElement => make('ul', items.map((item) => make('li', [item])));
 
 export function button(label: string, act: () => void, isMain = false): HTMLButtonElement {
-  const box = made('button', [label], isMain ? 'main' : '');
+  const box = make('button', [label], isMain ? 'main' : '');
   box.type = 'button';
   box.addEventListener('click', act);
   return box;
@@ -29,7 +29,7 @@ export function number(label: string, value: number | null, step: string, act: (
   box.step = step;
   if (value !== null) box.value = String(value);
   box.addEventListener('change', () => Number.isFinite(box.valueAsNumber) && act(box.valueAsNumber));
-  return made('label', [label, ' ', box], 'number');
+  return make('label', [label, ' ', box], 'number');
 }
 
 /** Saves a text as a file. */
@@ -44,12 +44,12 @@ export function save(name: string, type: string, text: string): void {
 /** Makes a table with a header row. */
 export function table(caption: string, head: string[], rows: string[][]): HTMLElement {
   const cells = (texts: string[], isHead: boolean) =>
-    made('tr', texts.map((text, n) => {
+    make('tr', texts.map((text, n) => {
       const cell = document.createElement(isHead || n === 0 ? 'th' : 'td');
       if (isHead || n === 0) cell.scope = isHead ? 'col' : 'row';
       cell.textContent = text;
       return cell;
     }));
-  const name = made('caption', [caption], 'hidden');
-  return made('table', [name, made('thead', [cells(head, true)]), made('tbody', rows.map((texts) => cells(texts, false)))], 'settings');
+  const name = make('caption', [caption], 'hidden');
+  return make('table', [name, make('thead', [cells(head, true)]), make('tbody', rows.map((texts) => cells(texts, false)))], 'settings');
 }

@@ -1,5 +1,5 @@
 // The step Scale: not every servo turns a degree for 10 us of pulse.
-import { nameOf, type Shown } from './drawing';
+import { nameOf, type SelectedServo } from './drawing';
 import { button, note, number, row, words } from './parts';
 import type { Step, Tools } from './step';
 
@@ -15,7 +15,7 @@ export class Scale implements Step {
     this.turned = null;
   }
 
-  drawing({ servo }: Tools): Shown {
+  drawing({ servo }: Tools): SelectedServo {
     return { servo, by: this.turned?.servo === servo ? this.turned.by : 20 };
   }
 

@@ -1,6 +1,6 @@
 // The step Signs: a servo with a wrong sign stands on the other side of its neutral angle, and the guard would take
 // an unsafe pose for a safe one.
-import { nameOf, PLACES, type Shown } from './drawing';
+import { nameOf, PLACES, type SelectedServo } from './drawing';
 import { button, note, row, words } from './parts';
 import type { Step, Tools } from './step';
 
@@ -23,7 +23,7 @@ export class Signs implements Step {
     this.moved = this.observed = null;
   }
 
-  drawing({ servo }: Tools): Shown {
+  drawing({ servo }: Tools): SelectedServo {
     return { servo, by: this.moved?.servo === servo ? this.moved.by : 10 };
   }
 

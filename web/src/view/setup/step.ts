@@ -1,8 +1,8 @@
 // A step of the first connection, and the tools that it may use.
 import type { Guide } from '../../setup/guide';
 import type { Session } from '../../session';
-import type { What, Writer } from '../writer';
-import type { Shown } from './drawing';
+import type { WriteContent, Writer } from '../writer';
+import type { SelectedServo } from './drawing';
 
 export interface Tools {
   readonly session: Session;
@@ -14,11 +14,11 @@ export interface Tools {
   /** Connects or disconnects a board on USB. */
   connect(): void;
   /** Writes the page's robot, alone or with the firmware. */
-  write(what: What): void;
+  write(what: WriteContent): void;
   /** Runs an action at the robot; shows the returned sentence or the reason of a failure. */
   run(act: (guide: Guide) => Promise<string>): void;
   /** Sets the calibration of a file, unsaved. */
-  give(text: string, name: string): void;
+  setCalibration(text: string, name: string): void;
   /** Marks this step as done. */
   done(step: string): void;
   /** Returns true if a step is done. */
@@ -40,7 +40,7 @@ export interface Step {
   /** Makes the elements of the step. */
   parts(tools: Tools): Node[];
   /** The servo selected in the drawing; a step without this has no drawing. */
-  drawing?(tools: Tools): Shown | null;
+  drawing?(tools: Tools): SelectedServo | null;
   /** Resets the step, for another board or after it was left. */
   forget?(): void;
 }

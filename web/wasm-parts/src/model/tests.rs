@@ -22,7 +22,7 @@ fn legs_that_lag_are_where_the_drawing_has_them() {
     let neutral: [f64; 4] = robot.neutral().into();
     let angles = [0, 1, 2, 3].map(|servo| neutral[servo] + [4.0, -6.0, 3.0, 5.0][servo]);
     let lag = [0.0, 2.5, -3.0, 7.0];
-    let mut twin = Twin::new(&robot, ServoModel::IDEAL);
+    let mut twin = Twin::new(&robot, ServoModel::Ideal);
     twin.push_angles(angles);
     let sweeps = [0, 1, 2, 3].map(|i| FORWARD[i] * (angles[i] - neutral[i]) - lag[i]);
     let drawn = Shape::of(&robot, angles, sweeps).expect("closes");
@@ -125,12 +125,12 @@ fn a_printed_solid_is_laid_into_the_space_of_its_body() {
 fn a_printed_body_is_that_of_its_part_and_in_one_step() {
     let model = model("strut");
     let entry = model.entry();
-    assert_eq!(entry.steps.len(), 13);
+    assert_eq!(entry.steps.len(), 14);
     assert!(
         entry
             .bodies
             .iter()
-            .all(|body| (1..=13).contains(&body.step))
+            .all(|body| (1..=14).contains(&body.step))
     );
     let counts = entry.parts.iter().enumerate().map(|(number, part)| {
         let bodies = entry.bodies.iter().filter(|body| body.part == Some(number));

@@ -8,13 +8,13 @@ fn bars(robot: &Robot, name: &str) -> Bars {
 }
 
 fn trial(bars: &Bars, twin: &Twin) -> Result<Trial, NoTrial> {
-    let made = Made::Bars(bars.clone());
+    let made = EditedGait::Bars(bars.clone());
     made.trial(twin).expect("bars always have a table")
 }
 
 /// The text with the gait of these bars.
 fn put_into(bars: &Bars, text: &str) -> String {
-    let made = Made::Bars(bars.clone());
+    let made = EditedGait::Bars(bars.clone());
     made.put_into(text, &paper()).expect("a table")
 }
 
@@ -24,7 +24,7 @@ fn a_gait_taken_apart_and_put_together_is_the_same() {
     for name in ["walk", "trot", "crawl", "left", "arc-left", "arc-right"] {
         let gait = robot.gait(name).expect(name);
         let known = trial(&bars(&robot, name), &twin).expect("it walks");
-        assert_eq!(known.outlook, Outlook::of(&twin, gait), "{name}");
+        assert_eq!(known.outlook, GaitPrediction::of(&twin, gait), "{name}");
         assert_eq!(known.speed, gait.audit().peak.speed, "{name}");
     }
     for name in ["stand", "look"] {
@@ -38,19 +38,22 @@ fn a_gait_taken_apart_and_put_together_is_the_same() {
 fn a_reversed_gait_walks_as_the_core_in_reverse() {
     let (robot, twin) = with_twin();
     let back = robot.gait("back").expect("there");
-    let known = Outlook::of(&twin, back).way.forward().expect("decided");
+    let known = GaitPrediction::of(&twin, back)
+        .movement
+        .forward()
+        .expect("decided");
     let tried = trial(&bars(&robot, "back"), &twin).expect("it walks");
-    let way = tried.outlook.way.forward().expect("decided");
+    let movement = tried.outlook.movement.forward().expect("decided");
     assert!(
-        known < -5.0 && (way - known).abs() < 0.1,
-        "{way} and {known} mm"
+        known < -5.0 && (movement - known).abs() < 0.1,
+        "{movement} and {known} mm"
     );
     assert!((tried.speed - back.audit().peak.speed).abs() < 2.0);
     for name in ["walk", "crawl", "arc-left"] {
         let bars = bars(&robot, name);
         let ahead = trial(&bars, &twin).expect("it walks");
         let turned = trial(&bars.reversed(), &twin).expect("it walks");
-        let [ahead, turned] = [ahead, turned].map(|t| t.outlook.way.forward());
+        let [ahead, turned] = [ahead, turned].map(|t| t.outlook.movement.forward());
         let sum = ahead.expect("decided") + turned.expect("decided");
         assert!(sum.abs() < 0.2, "{name}: {ahead:?} and {turned:?} mm");
         let again = bars.reversed().reversed();
@@ -73,7 +76,7 @@ fn a_refusal_offers_the_nearest_values_that_are_possible() {
         let no = trial(&wanted, &twin).expect_err("refused");
         assert!(no.refused.key.starts_with("gait.walk"), "{:?}", no.refused);
         assert!(!no.instead.is_empty(), "{:?}", no.refused);
-        for Instead { what, value } in no.instead {
+        for Alternative { what, value } in no.instead {
             let with = |value: f64| match what {
                 "amplitude" => Bars {
                     amplitude: value,

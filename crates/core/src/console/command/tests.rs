@@ -12,9 +12,9 @@ fn read(line: &str) -> Result<Command, Misread> {
     parse(line.as_bytes(), &Sample::odd())
 }
 
-/// An order to go over to a gait.
+/// The command of a gait.
 fn gait_of(gait: GaitId) -> Command {
-    Command::Order(Order::Gait(gait))
+    Command::Order(Order::Gait(gait, 0))
 }
 
 #[test]
@@ -51,8 +51,8 @@ fn every_word_is_its_command() {
     }
 }
 
-/// The readings of a line by a console where words from a number on yield to gaits:
-/// every word, those from `cal` on, and none.
+/// Parses a line by three consoles: one in which gaits have priority over every word, one over
+/// those from `cal` on, and one over none.
 fn yielding(line: &str, robot: &Robot) -> [Result<Command, Misread>; 3] {
     const CAL: usize = Word::Cal as usize;
     const NONE: usize = Word::ALL.len();
@@ -82,7 +82,10 @@ fn a_word_that_yields_is_a_command_unless_a_gait_has_its_name() {
         for (line, as_gait) in [
             (text, Ok(gait_of(named.id(text)))),
             (&*longer, Ok(gait_of(named.id(&longer)))),
-            (&std::format!("{text} 1 2"), Err(Misread::Surplus)),
+            (
+                &std::format!("{text} 1 2"),
+                Err(Misread::Wants(Text::CountWants)),
+            ),
         ] {
             let as_word = parse(line.as_bytes(), &robot);
             let expected = since.map(|since| if number < since { as_word } else { as_gait });
@@ -91,7 +94,7 @@ fn a_word_that_yields_is_a_command_unless_a_gait_has_its_name() {
     }
 }
 
-/// An angle as the console takes it.
+/// An angle as the console reads it.
 fn angle(degrees: f64) -> Angle {
     Angle::from_centideg((degrees * 100.0).round() as i32)
 }
@@ -141,7 +144,7 @@ fn an_argument_that_is_missing_malformed_or_too_much_is_answered_by_what_is_want
         ),
         (
             Text::BootWants,
-            "boot|boot 3|boot dance|boot sway lef|boot rest now|boot stop",
+            "boot|boot 3|boot sway 1|boot dance|boot sway lef|boot rest now|boot stop",
         ),
         (
             Text::DeadmanWants,
@@ -193,11 +196,11 @@ fn every_gait_is_a_command_and_any_blanks_between_its_words_will_do() {
 }
 
 #[test]
-fn a_name_that_is_cut_short_or_goes_on_is_no_name() {
+fn a_name_that_is_too_short_or_too_long_is_not_recognised() {
     // `sway` is a gait, and so is `sway left`.
     for (misread, lines) in [
         (
-            Misread::Surplus,
+            Misread::Wants(Text::CountWants),
             "sway lef|sway leftt|sway left now|sway sway|stand up",
         ),
         (Misread::Unknown, "swayleft|sway-left|sways|swa|left|s"),
@@ -217,11 +220,42 @@ fn the_first_words_of_a_longer_name_want_one_more() {
     assert_eq!(read("arc  to\tleft"), Ok(gait_of(robot.id("arc to left"))));
     assert_eq!(read("arc t"), Err(Misread::Unknown));
     assert_eq!(read("arc left"), Err(Misread::Unknown));
-    assert_eq!(read("arc to left too"), Err(Misread::Surplus));
+    let wants = Err(Misread::Wants(Text::CountWants));
+    assert_eq!(read("arc to left too"), wants);
 }
 
 #[test]
-fn what_is_no_command_is_unknown() {
+fn every_gait_takes_every_count_from_1_to_999_and_no_other() {
+    let robot = Sample::odd();
+    for name in GAITS {
+        let read = |count: &str| parse(format!("{name} {count}").as_bytes(), &robot);
+        for count in (0..=70_000u32).chain([655_360, 655_361, 99_999_999]) {
+            let expected = match count {
+                1..=999 => Ok(Command::Order(Order::Gait(robot.id(name), count as u16))),
+                _ => Err(Misread::Wants(Text::CountWants)),
+            };
+            assert_eq!(read(&count.to_string()), expected, "{name} {count}");
+        }
+        for count in ["-1", "+1", "1.0", "1,", "x", "1 1", "0x1", "1s"] {
+            let wants = Err(Misread::Wants(Text::CountWants));
+            assert_eq!(read(count), wants, "{name} {count}");
+        }
+    }
+}
+
+#[test]
+fn a_gait_whose_name_is_anothers_with_a_number_comes_before_the_others_count() {
+    let robot = Sample::paper().with_gait("step 2").with_gait("step");
+    let read = |line: &str| parse(line.as_bytes(), &robot);
+    let go = |name, cycles| Ok(Command::Order(Order::Gait(robot.id(name), cycles)));
+    assert_eq!(read("step  2"), go("step 2", 0));
+    assert_eq!(read("step 02"), go("step", 2));
+    assert_eq!(read("step 3"), go("step", 3));
+    assert_eq!(read("step 2 3"), go("step 2", 3));
+}
+
+#[test]
+fn any_other_line_is_an_unknown_command() {
     for line in [
         "dance", "halt", "??", "-", "speed10", "watch0", "pose1", "stop.", "\0", "\u{e9}", "12",
         "helpp", "hel", "statu",
@@ -273,11 +307,11 @@ fn every_speed_and_every_watch_is_read_and_no_other() {
 }
 
 fn read_number(word: &str, number: u32) -> Result<Command, Misread> {
-    thread_robot(|robot| parse(format!("{word} {number}").as_bytes(), robot))
+    with_shared_robot(|robot| parse(format!("{word} {number}").as_bytes(), robot))
 }
 
-/// One robot for many lines: making one takes longer than reading a line.
-fn thread_robot<T>(of: impl FnOnce(&Sample) -> T) -> T {
+/// Calls a function with a shared robot, since making one takes longer than reading a line.
+fn with_shared_robot<T>(of: impl FnOnce(&Sample) -> T) -> T {
     std::thread_local!(static ROBOT: Sample = Sample::odd());
     ROBOT.with(of)
 }

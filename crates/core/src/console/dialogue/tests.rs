@@ -8,10 +8,13 @@ use proptest::prelude::*;
 
 mod any_line;
 mod calibration;
+mod counts;
 mod dialogue;
 mod effect;
 mod faults;
+mod inputs;
 mod memory;
+mod routines;
 mod status;
 
 use super::*;
@@ -64,7 +67,7 @@ fn an_accepted_line_is_answered_by_ok_and_the_line_in_lower_case() {
 #[test]
 fn help_lists_every_gait_and_every_command_and_may_be_asked_twice() {
     let mut dialogue = standing();
-    let said = dialogue.send(b"help\r");
+    let printed = dialogue.send(b"help\r");
     let gaits = format!("# gaits: {}", GAITS.join("|"));
     let words: Vec<&str> = Word::ALL.iter().map(|word| word.text()).collect();
     let others = format!("# others: {}", words.join("|"));
@@ -74,7 +77,7 @@ fn help_lists_every_gait_and_every_command_and_may_be_asked_twice() {
         "# a word alone tells what it wants, the docs what it does",
         "ok help",
     ];
-    assert_eq!(said, expected);
+    assert_eq!(printed, expected);
     assert_eq!(dialogue.send(b"?\r"), expected);
 }
 
@@ -96,8 +99,8 @@ fn many_or_long_gait_names_take_several_lines_of_help_each_full_and_none_too_lon
         let names: Vec<String> = crate::numbers::gaits::GaitId::all(robot.gait_count())
             .map(|id| robot.name(id).map(char::from).collect())
             .collect();
-        let said = awake(robot).send(b"help\r");
-        let lines: Vec<&str> = said
+        let printed = awake(robot).send(b"help\r");
+        let lines: Vec<&str> = printed
             .iter()
             .filter_map(|line| line.strip_prefix("# gaits: "))
             .collect();
@@ -117,7 +120,7 @@ fn guarded() -> Dialogue {
     let mut dialogue = standing();
     dialogue.say("stray");
     for _ in 0..200 {
-        dialogue.run_unheard(1);
+        dialogue.run_without_reader(1);
         if dialogue.motion().hazard().is_some() {
             return dialogue;
         }
@@ -155,11 +158,11 @@ fn the_guards_reason_is_printed_once_and_stays_in_status() {
 fn the_reason_is_still_told_when_stand_comes_before_it_could_be() {
     let mut dialogue = guarded();
     dialogue.board.send(b"stand\r");
-    dialogue.run_unheard(3);
-    let said = dialogue.lines();
-    assert_eq!(said.len(), 2);
-    assert!(said[0].starts_with("# held in the last safe pose: "));
-    assert_eq!(said[1], "ok stand");
+    dialogue.run_without_reader(3);
+    let printed = dialogue.lines();
+    assert_eq!(printed.len(), 2);
+    assert!(printed[0].starts_with("# held in the last safe pose: "));
+    assert_eq!(printed[1], "ok stand");
     assert!(!dialogue.has_output());
     dialogue.run(3);
     assert_eq!(dialogue.status("guard"), "clear");
@@ -170,20 +173,20 @@ fn pending_lines_are_written_in_this_order_banner_answer_fault_reason_report() {
     let mut dialogue = Dialogue::power_on(*Sample::odd());
     dialogue.board.send(b"stray\rwatch 1\rhelp\r");
     // Room for a line at a time, until the first one of the help is written.
-    let mut said = Vec::new();
+    let mut printed = Vec::new();
     let mut line = |dialogue: &mut Dialogue| {
         while !dialogue.board.transmitter.text.ends_with("\r\n") {
             assert_eq!(dialogue.main.step(&mut dialogue.board), Step::Worked);
         }
-        said.push(core::mem::take(&mut dialogue.board.transmitter.text));
-        said.last().expect("a line").starts_with("# gaits: ")
+        printed.push(core::mem::take(&mut dialogue.board.transmitter.text));
+        printed.last().expect("a line").starts_with("# gaits: ")
     };
     while !line(&mut dialogue) {}
     // The guard holds the robot, an edge comes late, a report is due.
-    dialogue.run_unheard(199);
+    dialogue.run_without_reader(199);
     assert!(dialogue.motion().hazard().is_some());
     dialogue.board.late = 1;
-    dialogue.run_unheard(1);
+    dialogue.run_without_reader(1);
     let rest = dialogue.lines();
     let starts = [
         "# lizard ",
@@ -198,9 +201,9 @@ fn pending_lines_are_written_in_this_order_banner_answer_fault_reason_report() {
         "# held ",
         "# t=200 pose=",
     ];
-    said.extend(rest);
-    assert_eq!(said.len(), starts.len(), "{said:?}");
-    for (line, start) in said.iter().zip(starts) {
+    printed.extend(rest);
+    assert_eq!(printed.len(), starts.len(), "{printed:?}");
+    for (line, start) in printed.iter().zip(starts) {
         assert!(line.starts_with(start), "{line}");
     }
 }

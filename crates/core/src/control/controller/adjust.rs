@@ -33,12 +33,12 @@ impl Control {
     pub(super) fn replace(&mut self, settings: &Settings) -> Result<(), Refusal> {
         let mut calibration = *self.motion.calibration();
         for servo in Servo::all() {
-            let servos = servo.of_mut(&mut calibration);
-            *servos = settings.calibration(servo, self.motion.robot());
-            self.fits(servo, servos)?;
+            let changed = servo.of_mut(&mut calibration);
+            *changed = settings.calibration(servo, self.motion.robot());
+            self.check_gaits(servo, changed)?;
         }
         for servo in Servo::all() {
-            self.reaches(servo, servo.of(&calibration))?;
+            self.check_poses(servo, servo.of(&calibration))?;
         }
         self.settings = *settings;
         self.motion.calibrate_all(&calibration);
@@ -46,25 +46,25 @@ impl Control {
         Ok(())
     }
 
-    /// An error if a gait leaves a servo's travel.
+    /// Checks that no gait leaves a servo's travel.
     #[inline(never)]
-    fn fits(&self, servo: Servo, calibration: &Calibration) -> Result<(), Refusal> {
+    fn check_gaits(&self, servo: Servo, calibration: &Calibration) -> Result<(), Refusal> {
         match self.motion.robot().reach(servo).is_within(calibration) {
             true => Ok(()),
             false => Err(Refusal::Unfit(servo)),
         }
     }
 
-    /// An error where the robot is beyond a servo's travel, or goes there.
+    /// Checks that the present pose and the target stay within a servo's travel.
     #[inline(never)]
-    fn reaches(&self, servo: Servo, calibration: &Calibration) -> Result<(), Refusal> {
+    fn check_poses(&self, servo: Servo, calibration: &Calibration) -> Result<(), Refusal> {
         match self.motion.goes_beyond(servo, calibration) {
             false => Ok(()),
             true => Err(Refusal::Elsewhere(servo)),
         }
     }
 
-    /// Gives the motion the calibration that the settings contain.
+    /// Applies the calibration in the settings to the motion.
     pub(super) fn calibrate(&mut self) {
         for servo in Servo::all() {
             let calibration = self.settings.calibration(servo, self.motion.robot());

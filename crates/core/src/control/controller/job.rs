@@ -13,8 +13,8 @@ use crate::memory::copies::{self, Outcome};
 use crate::memory::record::{Memory, Progress, Writing};
 use crate::memory::settings::Settings;
 
-/// Frames by which the supplies have been measured; later, nothing waits for that.
-const MEASURED_BY: u32 = 25;
+/// Frames within which the supplies are measured; no order waits longer for that.
+const MEASURING_FRAMES: u32 = 25;
 
 /// An EEPROM operation that an order has started.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,7 +29,7 @@ pub enum Job {
 
 impl Control {
     /// True while an EEPROM operation is in progress; no order may be given meanwhile. A rest
-    /// pose that waits for a better supply does not count, so nothing waits with it.
+    /// pose that waits for a better supply does not count, since no order waits for it.
     pub fn is_writing(&self) -> bool {
         self.job.is_some() || self.rested.is_some() && self.safety.allows_writing_now()
     }
@@ -38,11 +38,11 @@ impl Control {
     /// turns out to be a low supply. There is nothing to do before the next frame.
     pub fn waits_for_supply(&self) -> bool {
         let supply = self.safety.supply();
-        let soon = match supply.measured() {
-            None => self.motion.frames() < MEASURED_BY,
+        let will_know = match supply.measured() {
+            None => self.motion.frames() < MEASURING_FRAMES,
             Some(level) => level == Level::Good && !supply.is_steady(),
         };
-        self.job.is_some() && soon
+        self.job.is_some() && will_know
     }
 
     /// Does a step of the EEPROM operation: one byte at most. Returns the outcome of an order

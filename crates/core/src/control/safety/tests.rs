@@ -7,7 +7,7 @@ fn supplies() -> Supplies {
     Sample::odd().supplies()
 }
 
-/// At power-on, `boot` called off.
+/// A state after power-on with `boot` cancelled.
 fn without_boot() -> Safety {
     let mut safety = Safety::default();
     safety.note_byte();
@@ -29,14 +29,14 @@ fn at(volts: f64) -> Health {
     }
 }
 
-/// Everything that is to be said, taken away.
+/// Takes all pending notices.
 fn notices(safety: &mut Safety) -> std::vec::Vec<Notice> {
-    let mut said = std::vec::Vec::new();
+    let mut printed = std::vec::Vec::new();
     while let Some(notice) = safety.notice() {
         safety.written(notice);
-        said.push(notice);
+        printed.push(notice);
     }
-    said
+    printed
 }
 
 #[test]
@@ -116,7 +116,7 @@ fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says_and_no_sooner()
     for deadman in [1u16, 19, 20, 21, 100, 1000, 60_000] {
         let mut safety = without_boot();
         for _ in 0..10 {
-            safety.note_line();
+            safety.note_command();
             let mut frames = 0;
             while safety.frame(&WELL, &supplies, State::Walking, deadman) == Reaction::None {
                 frames += 1;
@@ -189,7 +189,7 @@ fn a_falling_supply_stops_then_ends_the_pulses_and_forbids_writing_first() {
 }
 
 #[test]
-fn each_late_edge_stops_and_is_told() {
+fn each_late_edge_stops_the_robot_and_is_reported() {
     let mut safety = without_boot();
     for late in [1, 2, 7, 65_535] {
         let health = Health { late, ..WELL };
@@ -228,7 +228,7 @@ fn of_two_reactions_at_once_the_stronger_one_counts() {
 }
 
 #[test]
-fn what_is_said_unasked_comes_in_one_order_each_once() {
+fn notes_come_once_each_and_in_a_fixed_order() {
     let mut safety = without_boot();
     for notice in [
         Notice::Boot,

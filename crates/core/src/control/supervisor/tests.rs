@@ -86,18 +86,18 @@ fn the_docs_print_the_table_of_restarts() {
     let mut rows = Vec::new();
     for cause in Cause::ALL {
         for (brown_outs, often) in [(0, "once, twice"), (BROWN_OUTS, "three times in a row")] {
-            let told = |before| beginning(cause, brown_outs, before);
+            let told = |before| first_action(cause, brown_outs, before);
             if brown_outs > 0
-                && Before::ALL.map(told) == Before::ALL.map(|before| beginning(cause, 0, before))
+                && Before::ALL.map(told) == Before::ALL.map(|before| first_action(cause, 0, before))
             {
                 continue;
             }
             let depends = matches!(cause, Cause::External | Cause::BrownOut);
             let cells = Before::ALL.map(|before| match told(before).0 {
-                Beginning::Wake => "wakes, stands",
-                Beginning::TakeOver => "wakes where it was, stands",
-                Beginning::Hold => "held",
-                Beginning::Rest => "rests",
+                FirstAction::Wake => "wakes, stands",
+                FirstAction::TakeOver => "wakes where it was, stands",
+                FirstAction::Hold => "held",
+                FirstAction::Rest => "rests",
             });
             let fault = told(Before::Held).1;
             rows.push(format!(
@@ -132,7 +132,7 @@ fn only_stand_and_boot_give_a_robot_without_pulses_any() {
 }
 
 #[test]
-fn what_is_answered_never_gets_better_as_the_supply_sinks() {
+fn the_reaction_never_relaxes_as_the_supply_sinks() {
     for event in [Event::Stand, Event::Move, Event::Save, Event::Boot] {
         for state in State::ALL {
             let obeys = |(supply, _)| response(event, supply, state) == Response::Obey;
@@ -151,16 +151,16 @@ fn servos_wake_only_where_nothing_held_them_and_are_taken_over_only_where_someth
         for brown_outs in 0..=BROWN_OUTS {
             for before in Before::ALL {
                 let case = format!("{cause:?}, {brown_outs} brown-outs, {before:?}");
-                let (begins, fault) = beginning(cause, brown_outs, before);
+                let (begins, fault) = first_action(cause, brown_outs, before);
                 let nothing_known = before == Before::Nothing && fault.is_none();
                 let wakes = cause == Cause::Power || nothing_known;
                 match begins {
-                    Beginning::Wake => assert!(wakes, "must not wake: {case}"),
-                    Beginning::TakeOver | Beginning::Hold => {
+                    FirstAction::Wake => assert!(wakes, "must not wake: {case}"),
+                    FirstAction::TakeOver | FirstAction::Hold => {
                         assert_eq!(before, Before::Held, "nothing to take over: {case}");
                         assert!(!wakes, "must wake: {case}");
                     }
-                    Beginning::Rest => assert!(!wakes, "must wake: {case}"),
+                    FirstAction::Rest => assert!(!wakes, "must wake: {case}"),
                 }
             }
         }

@@ -47,7 +47,7 @@ fn until_change(supply: &mut Supply, reading: Reading, supplies: &Supplies) -> (
 }
 
 #[test]
-fn a_voltage_is_told_to_two_decimals_for_every_reading() {
+fn every_voltage_is_printed_with_two_decimals() {
     for reference in 1..=1023u16 {
         for mv in [1000, 1080, 1100, 1200] {
             let supplies = Supplies {
@@ -58,7 +58,7 @@ fn a_voltage_is_told_to_two_decimals_for_every_reading() {
             let reading = Reading { reference, rail };
             let exact = 1024.0 * f64::from(mv) / f64::from(reference) / 10.0;
             let told = Voltage::of_board(reading, &supplies).hundredths();
-            // More than 81.91 V is no supply.
+            // More than 81.91 V is not a supply.
             let expected = exact.floor().min(8191.0);
             assert_eq!(f64::from(told), expected, "{reference} {mv}");
             let rail = Voltage::of_rail(reading, &WITH_RAIL).hundredths();
@@ -165,7 +165,7 @@ fn a_supply_that_wavers_around_a_threshold_changes_once() {
 }
 
 #[test]
-fn the_worse_of_two_supplies_counts_and_is_the_one_that_is_told() {
+fn the_worse_of_two_supplies_counts_and_is_reported() {
     let supplies = WITH_RAIL;
     for (board, rail, level, worst) in [
         (5.0, 6.6, Level::Good, 5.0),
@@ -182,7 +182,7 @@ fn the_worse_of_two_supplies_counts_and_is_the_one_that_is_told() {
 }
 
 #[test]
-fn what_has_not_been_measured_yet_is_not_low() {
+fn a_supply_that_is_not_measured_yet_is_not_low() {
     let supplies = WITH_RAIL;
     let mut supply = Supply::default();
     let (frames, _) = until_change(&mut supply, Reading::default(), &supplies);

@@ -1,5 +1,5 @@
-//! The guard's integers against floating point, on random robots at random poses; and what
-//! a hazard is called.
+//! The guard's integers against floating point, on random robots at random poses; and the
+//! hazard that is named at each limit.
 
 use std::vec::Vec;
 
@@ -15,7 +15,8 @@ use crate::numbers::units::Sweep;
 use crate::sample::bounds::{self, DIRECTION, Q15};
 use crate::sample::{Measures, Sample, per_mm, sine};
 
-/// Random robots with random poses: a robot takes longer to make than to try.
+/// Random robots, each with several poses, since a robot takes longer to make than to
+/// test.
 fn posed() -> impl Strategy<Value = (Sample, [Pose; 8])> {
     Sample::random().prop_flat_map(|robot| {
         let poses = [(); 8].map(|()| robot.pose());
@@ -26,7 +27,7 @@ fn posed() -> impl Strategy<Value = (Sample, [Pose; 8])> {
 /// The largest errors of the integers at a pose.
 struct Bounds {
     ends: [bounds::End; 2],
-    /// Of the sliders, mm.
+    /// Errors of the sliders, mm.
     sliders: [f64; 2],
 }
 
@@ -62,7 +63,7 @@ impl Bounds {
 fn truth(robot: &Sample, pose: &Pose) -> Option<bool> {
     let bounds = Bounds::of(robot, pose);
     let Some(solution) = robot.solve(pose) else {
-        // The integers may take what all but closes for singular.
+        // The integers may call a loop singular that just fails to close.
         return (bounds.most(|end| end.type2) < robot.measures.limits.type2).then_some(false);
     };
     let truths = [&solution.head, &solution.tail];
@@ -92,7 +93,7 @@ fn truth(robot: &Sample, pose: &Pose) -> Option<bool> {
     }
 }
 
-/// Every margin and slider of a pose within the bounds of its error.
+/// Checks that every margin and slider of a pose is within the bounds of its error.
 fn measured(robot: &Sample, pose: &Pose) -> Result<(), TestCaseError> {
     let got = Clearance::of(robot, pose);
     let Some(truth) = robot.solve(pose) else {
@@ -200,7 +201,7 @@ fn a_sample_stands_safely_by_the_integers_and_not_only_in_floating_point() {
     assert!(!Sample::new(measures).stands_safely());
 }
 
-/// A robot and a clearance that has something to spare at every place.
+/// A robot and a clearance far from every limit.
 fn clear() -> (Sample, Clearance) {
     let robot = Sample::odd();
     let clearance = Clearance::of(&robot, &Pose::NEUTRAL);
@@ -253,7 +254,7 @@ fn a_slider_at_either_end_of_its_stroke_is_safe_and_one_step_beyond_is_not() {
 }
 
 #[test]
-fn of_several_hazards_the_first_is_told_margins_before_strokes() {
+fn the_first_of_several_hazards_is_reported_margins_before_strokes() {
     let (robot, mut clearance) = clear();
     let mut expected: Vec<Hazard> = Vec::new();
     for (place, side) in Side::ALL.into_iter().enumerate().rev() {

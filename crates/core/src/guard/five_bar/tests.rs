@@ -44,7 +44,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(20_000))]
 
     #[test]
-    fn the_margins_are_those_of_the_real_linkage_whatever_its_bars(
+    fn the_margins_are_those_of_the_real_linkage_for_any_bars(
         bars in bars(),
         left: u16,
         right: u16,
@@ -62,11 +62,11 @@ proptest! {
         let off = sine(got.type2).abs() - pose.type2;
         prop_assert!(off <= bound.type2, "type-2 off by {off}: {bound:?}");
         if got == EndMargins::default() {
-            // What a refusal says then.
+            // All margins are zero, and a refusal says "below 0.1".
             prop_assert!(pose.type2 < 0.1, "nothing is known of {}", pose.type2);
         }
         if !bound.known {
-            // It may be told as less, or as nothing.
+            // The margin may be too small, or all of them zero.
             return Ok(());
         }
         prop_assert_ne!(got, EndMargins::default());
@@ -85,7 +85,7 @@ proptest! {
 }
 
 /// Bars of short couplers with a small type-2 margin, where a step turns them most:
-/// found among random bars, where a bound that was only tried did not hold.
+/// found among random bars, where a bound found by trial alone did not hold.
 #[test]
 fn the_largest_errors_that_random_bars_have_found_are_within_their_bounds() {
     for ([base, crank_left, coupler_left, coupler_right, crank_right], angles, found) in [

@@ -31,7 +31,7 @@ fn settings(robot: &Sample, n: i16) -> Settings {
     settings
 }
 
-/// Saves, as the console does.
+/// Saves settings as the console does.
 fn save_all(settings: &Settings, chip: &mut Eeprom) -> Settings {
     let mut kept = *settings;
     if let Some(mut writing) = save(&mut kept, chip) {
@@ -52,15 +52,15 @@ fn loaded(robot: &Sample, chip: &Eeprom) -> (Settings, Outcome) {
     (settings, outcome)
 }
 
-/// All that settings say but for their turn.
-fn said(settings: &Settings) -> Settings {
-    let mut said = *settings;
-    said.set_turn(0);
-    said
+/// The settings without their turn.
+fn without_turn(settings: &Settings) -> Settings {
+    let mut copy = *settings;
+    copy.set_turn(0);
+    copy
 }
 
 #[test]
-fn what_is_saved_is_loaded_again_the_last_one_of_a_thousand() {
+fn the_last_of_a_thousand_saves_is_loaded() {
     let robot = robot();
     let mut chip = Eeprom::blank();
     assert_eq!(
@@ -70,13 +70,13 @@ fn what_is_saved_is_loaded_again_the_last_one_of_a_thousand() {
     for n in 0..1000 {
         let new = settings(&robot, n % 70);
         let kept = save_all(&new, &mut chip);
-        assert_eq!(said(&kept), said(&new));
+        assert_eq!(without_turn(&kept), without_turn(&new));
         assert_eq!(loaded(&robot, &chip), (kept, Outcome::Latest), "{n}");
     }
 }
 
 #[test]
-fn what_is_there_already_is_not_written_again() {
+fn unchanged_bytes_are_not_written_again() {
     let robot = robot();
     let mut chip = Eeprom::blank();
     save_all(&settings(&robot, 3), &mut chip);
@@ -132,7 +132,7 @@ fn a_power_cut_at_any_byte_leaves_the_old_settings_or_the_new_whole() {
 }
 
 #[test]
-fn a_save_after_a_power_cut_is_whole_whatever_the_cut_has_left() {
+fn a_save_after_a_power_cut_is_complete_whatever_the_cut_left() {
     let robot = robot();
     let mut chip = Eeprom::blank();
     save_all(&settings(&robot, 1), &mut chip);
@@ -256,19 +256,19 @@ fn a_boot_gait_is_found_by_its_name_and_a_gait_that_is_gone_is_stand() {
 fn a_rest_is_remembered_until_it_is_forgotten_and_only_by_its_own_robot() {
     let robot = robot();
     let mut chip = Eeprom::blank();
-    assert_eq!(rested(&robot, &chip), None);
+    assert_eq!(last_rest_pose(&robot, &chip), None);
     for sweeps in [[0, 1, -2, 30_000], [-100, 4000, 17, -32_768]] {
         let there = Pose(sweeps.map(Sweep));
         let kept = Settings::of_pose(&there, &robot);
         let mut writing = RESTED.write();
         while writing.step(kept.bytes(), &mut chip) == Progress::Going {}
-        assert_eq!(rested(&robot, &chip), Some(there));
+        assert_eq!(last_rest_pose(&robot, &chip), Some(there));
         let other = robot.clone().with(|content| content.servo_hash = 7);
-        assert_eq!(rested(&other, &chip), None);
+        assert_eq!(last_rest_pose(&other, &chip), None);
     }
     let mut writing = RESTED.invalidate();
     while writing.step(&[0; CONTENT], &mut chip) == Progress::Going {}
-    assert_eq!(rested(&robot, &chip), None);
+    assert_eq!(last_rest_pose(&robot, &chip), None);
     let outside = |at: &u16| !(128..128 + LENGTH).contains(at);
     let touched: Vec<u16> = chip
         .log
@@ -281,7 +281,7 @@ fn a_rest_is_remembered_until_it_is_forgotten_and_only_by_its_own_robot() {
 }
 
 #[test]
-fn random_bytes_in_the_memory_are_no_settings() {
+fn random_bytes_in_the_memory_are_not_read_as_settings() {
     let robot = robot();
     let mut state = 1u32;
     for _ in 0..2000 {

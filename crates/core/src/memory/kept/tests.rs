@@ -12,7 +12,7 @@ use crate::numbers::units::{Sweep, Width};
 /// RAM that keeps what it holds, and a reset after this many stores.
 struct Ram {
     bytes: RefCell<Vec<u8>>,
-    /// Stores until the reset, after which none comes to pass.
+    /// Number of stores until the reset; later ones are lost.
     left: Cell<usize>,
     stores: Cell<usize>,
 }
@@ -26,7 +26,7 @@ impl Ram {
         }
     }
 
-    /// As power-on leaves it.
+    /// The memory after power-on.
     fn powered() -> Self {
         let ram = Self::of(std::vec![0; CELLS]);
         let restart = begin(&ram, Some(Cause::Power));
@@ -41,7 +41,7 @@ impl Ram {
         ram
     }
 
-    /// The state that the next run finds.
+    /// The memory as the next run finds it.
     fn after_the_reset(&self) -> Self {
         Self::of(self.bytes.borrow().clone())
     }
@@ -78,10 +78,10 @@ fn stance(n: i16) -> Stance {
 }
 
 #[test]
-fn what_is_kept_is_there_after_a_reset_and_gone_after_a_loss_of_power() {
+fn kept_state_survives_a_reset_but_not_a_loss_of_power() {
     let ram = Ram::powered();
     for n in 1..100 {
-        keep(&ram, &stance(n), n as u8);
+        store_stance(&ram, &stance(n), n as u8);
         for reported in CAUSES {
             let again = ram.after_the_reset();
             let restart = begin(&again, reported);
@@ -103,20 +103,20 @@ fn what_is_kept_is_there_after_a_reset_and_gone_after_a_loss_of_power() {
 #[test]
 fn a_reset_between_any_two_stores_leaves_the_stance_before_or_the_new_one() {
     let ram = Ram::powered();
-    keep(&ram, &stance(1), 1);
+    store_stance(&ram, &stance(1), 1);
     let mut seen = [0; 2];
     for n in 2..9 {
         let whole = ram.with_reset_after(usize::MAX);
-        keep(&whole, &stance(n), n as u8);
+        store_stance(&whole, &stance(n), n as u8);
         for stores in 0..=whole.stores.get() {
             let torn = ram.with_reset_after(stores);
-            keep(&torn, &stance(n), n as u8);
+            store_stance(&torn, &stance(n), n as u8);
             let found = begin(&torn.after_the_reset(), None).before;
             let place = usize::from(found == Some(stance(n)));
             assert!(place == 1 || found == Some(stance(n - 1)), "{n} {stores}");
             seen[place] += 1;
         }
-        keep(&ram, &stance(n), n as u8);
+        store_stance(&ram, &stance(n), n as u8);
     }
     assert!(seen[0] > 100 && seen[1] == 7, "{seen:?}");
 }
@@ -124,7 +124,7 @@ fn a_reset_between_any_two_stores_leaves_the_stance_before_or_the_new_one() {
 #[test]
 fn a_reset_between_any_two_stores_of_the_beginning_loses_nothing() {
     let ram = Ram::powered();
-    keep(&ram, &stance(5), 5);
+    store_stance(&ram, &stance(5), 5);
     mark_hung(&ram);
     let whole = ram.with_reset_after(usize::MAX);
     begin(&whole, None);
@@ -140,7 +140,7 @@ fn a_reset_between_any_two_stores_of_the_beginning_loses_nothing() {
 }
 
 #[test]
-fn every_cause_is_told_by_its_flag_or_by_what_ram_still_knows() {
+fn every_cause_is_known_from_its_flag_or_from_ram() {
     for (reported, hung, cause, may_be_supply) in [
         (Some(Cause::External), false, Cause::External, false),
         (Some(Cause::BrownOut), false, Cause::BrownOut, true),
@@ -176,7 +176,7 @@ fn restarts_are_counted_up_to_255() {
 
 proptest! {
     #[test]
-    fn what_ram_holds_after_power_on_is_not_believed(
+    fn the_contents_of_ram_at_power_on_are_not_trusted(
         bytes in prop::collection::vec(any::<u8>(), CELLS),
         reported in prop::sample::select(&CAUSES[..]),
     ) {
@@ -195,7 +195,7 @@ proptest! {
     #[test]
     fn a_bit_that_changes_in_a_stance_is_found(bit in 0..8 * COPY, n in 1i16..100) {
         let ram = Ram::powered();
-        keep(&ram, &stance(n), n as u8);
+        store_stance(&ram, &stance(n), n as u8);
         let copy = COPIES + COPY * usize::from(ram.get(WHOLE) & 1);
         ram.set(copy + bit / 8, ram.get(copy + bit / 8) ^ (1 << (bit % 8)));
         prop_assert_eq!(begin(&ram, None).before, None);

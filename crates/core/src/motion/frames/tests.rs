@@ -9,6 +9,7 @@ use crate::numbers::units::{CYCLE, Sweep};
 use crate::sample::{GAITS, Sample};
 
 mod any_order;
+mod counted;
 mod guarded;
 mod settling;
 mod waking;
@@ -46,7 +47,11 @@ impl Motion {
     }
 
     fn start(&mut self, name: &str) {
-        self.start_gait(self.robot.id(name));
+        self.start_gait(self.robot.id(name), 0);
+    }
+
+    fn start_for(&mut self, name: &str, cycles: u16) {
+        self.start_gait(self.robot.id(name), cycles);
     }
 
     fn head_for_pose(&mut self, sweeps: [i16; 4]) {

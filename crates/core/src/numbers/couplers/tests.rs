@@ -35,12 +35,12 @@ proptest! {
     fn the_lean_is_the_triangles_from_folded_to_stretched_couplers(
         shorter in SHORTEST_COUPLER..=LONGEST,
         longer in SHORTEST_COUPLER..=LONGEST,
-        alike in 0u8..4,
+        likeness in 0u8..4,
         exchanged: bool,
         share in (0.0..1.0f64, 0u8..3),
     ) {
         // Equal, nearly equal, and any.
-        let longer = match alike {
+        let longer = match likeness {
             0 => shorter,
             1 => shorter + (longer % 100).min(LONGEST - shorter),
             _ => longer,
@@ -56,9 +56,9 @@ proptest! {
         let tips_sq = least + (f64::from(reach - least) * share) as u32;
         let bars = Bars::new(left, right);
         let lean = bars.couplers().at(tips_sq);
-        let bound = bounds::Lean::of(left, right, [f64::from(tips_sq); 2]);
+        let bound = bounds::LeanError::of(left, right, [f64::from(tips_sq); 2]);
         let (left, right) = (f64::from(left), f64::from(right));
-        // Rounded lengths may close a loop that the true ones leave open by a hair.
+        // A loop that almost closes may close with rounded lengths.
         let [rise, skew] = truth(left, right, tips_sq).unwrap_or([0.0, f64::NAN]);
         let Some(lean) = lean else {
             prop_assert!(type2(left, right, tips_sq, rise) < KNOWN, "a lean for {rise}");
@@ -76,10 +76,10 @@ proptest! {
             return Ok(());
         }
         prop_assert!(off[0].abs() <= bound.rise, "rise {off:?}, {bound:?}");
-        // What floating point is off by.
-        let hair = 1e-9;
-        prop_assert!(skew.is_nan() || off[1].abs() <= bound.skew + hair, "skew {off:?}, {bound:?}");
-        // Rounding alone never calls a skew the other way.
+        // The error of the floating-point numbers.
+        let tolerance = 1e-9;
+        prop_assert!(skew.is_nan() || off[1].abs() <= bound.skew + tolerance, "skew {off:?}, {bound:?}");
+        // Rounding never changes the sign of a skew.
         prop_assert!(lean.skew == 0 || (lean.skew > 0) == (left > right));
     }
 

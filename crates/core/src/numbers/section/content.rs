@@ -14,7 +14,7 @@ use crate::numbers::calibration::Reach;
 use crate::numbers::cells::Cells;
 use crate::numbers::couplers::{self, Couplers};
 use crate::numbers::curve::Table;
-use crate::numbers::gaits::{Gait, Wave};
+use crate::numbers::gaits::{Gait, Step, Wave};
 use crate::numbers::limits::Limits;
 use crate::numbers::slew::Slew;
 use crate::numbers::slider::Slider;
@@ -51,9 +51,12 @@ pub struct Content {
     pub ends: [Loop; 2],
     /// The sliders left and right.
     pub sides: [Slider; 2],
-    /// The gaits; `stand` is the first.
+    /// The gaits; `stand` is the first. Then the routines, whose first step is given by its
+    /// place among all steps.
     pub gaits: Vec<Gait>,
-    /// Their names, one after the other.
+    /// The steps of the routines.
+    pub steps: Vec<Step>,
+    /// The names of gaits and routines, one after the other.
     pub names: Vec<u8>,
     /// Their waveforms.
     pub waves: Vec<Wave>,
@@ -125,6 +128,7 @@ impl Content {
         usize::from(REST)
             + curves.len()
             + size_of_val(self.gaits.as_slice())
+            + size_of_val(self.steps.as_slice())
             + size_of_val(self.waves.as_slice())
             + self.names.len()
             + rows * size_of::<[i8; 2]>()
@@ -133,28 +137,29 @@ impl Content {
     /// The section. Its length may be more than fits a board: see [`super::SPACE`].
     ///
     /// # Panics
-    /// If there are more gaits, waveforms or rows than a byte counts, or more bytes
-    /// of all than two count.
+    /// If a map has more than 255 rows, or the section more than 65 535 bytes.
     #[must_use]
     pub fn section(&self) -> Vec<u8> {
         let [head, tail] = &self.ends;
         let mut rest = Vec::new();
         let curves = self.curves(&mut rest);
+        let number = |value: usize| u16::try_from(value).expect("at most 65535");
+        let steps_at = usize::from(REST) + rest.len() + size_of_val(self.gaits.as_slice());
+        let mut gaits = self.gaits.clone();
+        for routine in gaits.iter_mut().filter(|gait| gait.is_routine()) {
+            let first = &mut routine.channels[0].offset;
+            *first = number(steps_at + usize::from(*first) * size_of::<Step>());
+        }
+        let gaits: Vec<u8> = gaits.iter().flat_map(Plain::bytes).copied().collect();
+        let steps = self.steps.iter().flat_map(Plain::bytes).copied();
+        let gaits: Vec<u8> = gaits.into_iter().chain(steps).collect();
         let mut place = |count: usize, bytes: &[u8]| {
             let at = usize::from(REST) + rest.len();
             rest.extend(bytes);
-            let number = |value: usize| u16::try_from(value).expect("at most 65535");
             Place {
                 at: number(at),
                 count: number(count),
             }
-        };
-        let bytes = |gaits: &[Gait]| {
-            gaits
-                .iter()
-                .flat_map(Plain::bytes)
-                .copied()
-                .collect::<Vec<u8>>()
         };
         let waves: Vec<u8> = self.waves.iter().flat_map(Plain::bytes).copied().collect();
         let rows: Vec<[i8; 2]> = self.maps.iter().flat_map(|map| map.rows.clone()).collect();
@@ -163,9 +168,9 @@ impl Content {
             .iter()
             .map(|column| *column as u8)
             .collect();
-        // The rows are the last, because the hash is not of them.
+        // The rows are the last part, because the hash does not cover them.
         let parts = [
-            place(self.gaits.len(), &bytes(&self.gaits)),
+            place(self.gaits.len(), &gaits),
             place(self.waves.len(), &waves),
             place(self.names.len(), &self.names),
             place(rows.len(), &columns),
@@ -189,13 +194,13 @@ impl Content {
             }),
         };
 
-        let mut of_robot = CRC.digest();
+        let mut digest = CRC.digest();
         // The maps change no decision.
         let mut without_maps = numbers;
         without_maps.parts[Part::Rows as usize] = Place { at: 0, count: 0 };
         without_maps.maps = [MapHead { first: 0, rows: 0 }; 4];
-        of_robot.update(without_maps.bytes());
-        of_robot.update(&rest[..rest.len() - columns.len()]);
+        digest.update(without_maps.bytes());
+        digest.update(&rest[..rest.len() - columns.len()]);
         let mut name = [0; LONGEST_NAME];
         name[..self.name.len()].copy_from_slice(self.name.as_bytes());
         let header = Header {
@@ -203,14 +208,14 @@ impl Content {
             format: FORMAT,
             length: 0,
             crc: 0,
-            hash: of_robot.finalize(),
+            hash: digest.finalize(),
             servo_hash: self.servo_hash,
             name,
         };
         sealed([header.bytes(), numbers.bytes(), &rest].concat())
     }
 
-    /// Appends the curves of both ends, those that are the same once; where each begins.
+    /// Appends the curves of both ends, equal ones only once; returns the place of each.
     fn curves(&self, rest: &mut Vec<u8>) -> [[u16; CURVES]; 2] {
         let mut written: Vec<(Table, u16)> = Vec::new();
         self.ends.each_ref().map(|end| {

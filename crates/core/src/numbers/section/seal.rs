@@ -1,9 +1,9 @@
 //! Seals a section with its length and its checksum.
 //!
-//! Sixteen bits of a checksum miss one change in 65 536. A section that was written to some
-//! byte, with erased flash behind it, is a change that happens, and a section has
-//! thousands of bytes to end at; so is a flipped bit of its length. None of these may be
-//! missed, so whoever makes a section tries them all, and adds a byte where one would be.
+//! A checksum of sixteen bits misses one change in 65 536. Two kinds of change are likely: a
+//! write that ended early, at any of thousands of bytes, so that erased flash follows what was
+//! written; and a flipped bit of the length. None of these may be missed. So `sealed` tries
+//! them all, and adds a byte where the checksum would miss one.
 
 use core::mem::offset_of;
 use std::vec::Vec;
@@ -27,8 +27,8 @@ pub fn seal(section: &mut [u8]) {
     section[CRC..CHECKED].copy_from_slice(&crc.to_le_bytes());
 }
 
-/// Adds length and checksum to a section, and a byte if that is needed so that a section
-/// that was cut short, or whose length has a flipped bit, never has the same checksum.
+/// Adds length and checksum to a section. Also appends bytes until no beginning of it, and none
+/// with a flipped bit in its length, has the same checksum.
 ///
 /// # Panics
 /// If the section is longer than 65 535 bytes.
@@ -61,8 +61,8 @@ fn sums(bytes: &[u8]) -> Vec<Checksum> {
 /// True if a proper beginning of the bytes, with erased flash behind it, has the sum of all
 /// of them. The last bytes may equal erased flash themselves.
 fn a_beginning_passes(bytes: &[u8], sums: &[Checksum]) -> bool {
-    // What a beginning's sum would have to be, for the erased bytes behind it to make it that
-    // of all.
+    // The sum that a beginning must have, so that the erased bytes behind it lead to the sum
+    // of all bytes.
     let mut needed = sums[bytes.len()];
     let mut is_whole = true;
     for (byte, beginning) in bytes.iter().zip(&sums[..bytes.len()]).rev() {
@@ -107,7 +107,7 @@ mod tests {
 
     use super::*;
 
-    /// The same, byte by byte.
+    /// The same check, byte by byte.
     fn a_beginning_has_the_sum(bytes: &[u8]) -> bool {
         let own = Checksum::of(bytes);
         (0..bytes.len()).any(|end| {
@@ -127,7 +127,7 @@ mod tests {
         lengths.any(|length| Checksum::of(&flash[CHECKED..length]) == own)
     }
 
-    /// Two bytes that lead from one sum to another: a sum of sixteen bits takes two.
+    /// Finds the two bytes that lead from one sum to another.
     fn pair(from: Checksum, to: Checksum) -> [u8; 2] {
         let pairs = (0..=u16::MAX).map(u16::to_le_bytes);
         let mut right = pairs.filter(|[low, high]| from.and(*low).and(*high) == to);

@@ -7,14 +7,14 @@ use lizard_kinematics::{AssemblyMode, End, FiveBar, Lanes};
 use lizard_robot::{CellMaps, CoreRobot, Robot};
 
 use super::positions::Positions;
-use super::rows::{Share, columns, eight_by_eight, lanes, rows_of, sine, splat};
+use super::rows::{PairSample, columns, eight_by_eight, lanes, rows_of, sine, splat};
 use super::tally::{STEPS_BAND, Tally, margin_band};
 
-/// The pairs of an end.
+/// The comparison of all pairs of an end.
 pub struct EndWalk<'a> {
     fixed: lizard_core::guard::five_bar::FiveBar<'a>,
     exact: FiveBar,
-    /// Type-2 and type-1, as robot.toml and as the firmware has them.
+    /// Least type-2 and type-1 margins, as robot.toml and as the firmware have them.
     limits: [f64; 2],
     fixed_limits: [i16; 2],
     /// The least margin of a leg, as the firmware has it.
@@ -49,7 +49,7 @@ impl<'a> EndWalk<'a> {
     pub fn walk(
         &self,
         [left, right]: [&Positions; 2],
-        share: Share,
+        share: PairSample,
         cut: usize,
         progress: &(dyn Fn(u64) + Sync),
     ) -> Tally {
@@ -85,14 +85,14 @@ impl<'a> EndWalk<'a> {
                     let [sweep, other] = [left.sweep(row), right.sweep(column)];
                     // Their rows are A1 and A3, their columns A2 and A4.
                     let held = match self.end {
-                        End::Head => self.cells.hold(sweep, other),
-                        End::Tail => self.cells.hold(other, sweep),
+                        End::Head => self.cells.contains(sweep, other),
+                        End::Tail => self.cells.contains(other, sweep),
                     };
                     if held {
                         let legs = [left.fixed[row], right.fixed[column]];
                         let accepted = self.accepts(margins)
                             && legs.iter().all(|leg| leg.sin >= self.fixed_leg);
-                        tally.certify(accepted, place);
+                        tally.count_certified(accepted, place);
                     }
                 }
             });
@@ -132,14 +132,14 @@ impl<'a> EndWalk<'a> {
         let (clear, crossed) = truth.clear_by(self.limits);
         let exact = clear >= 0.0 && crossed > 0.0;
         if fixed != exact {
-            // Of what decides, how far it is beyond its limit.
+            // The distance of the deciding value from its limit.
             let by_crossing = crossed / self.crossing_band < clear / self.margin_band;
             let (by, band) = if by_crossing {
                 (crossed.abs(), self.crossing_band)
             } else {
                 (clear.abs(), self.margin_band)
             };
-            tally.differ(by_crossing, by, band, || {
+            tally.record_difference(by_crossing, by, band, || {
                 format!(
                     "{}: the guard says {}, floating point {}: margins {:.5} {:.5} {:.5}, for {:.5} {:.5} {:.5}, crank tips {:+.4} mm apart across",
                     place(),

@@ -18,13 +18,13 @@ use std::io::{self, Write};
 use lizard_robot::{CoreRobot, Robot};
 use serde::{Deserialize, Serialize};
 
+use crate::Failure;
 use crate::shared::json;
 use crate::shared::number::grouped;
 use crate::shared::progress::bar;
 use crate::shared::spread::{Spread, Spreads};
-use crate::{Failure, RobotFile};
 
-pub use rows::Share;
+pub use rows::PairSample;
 pub use tally::{Finding, MARGIN_BAND, STEPS_BAND, Tally, margin_band};
 
 /// Compare the firmware's guard with floating point at every possible pose.
@@ -54,17 +54,14 @@ pub struct Args {
     json: bool,
     #[command(flatten)]
     #[serde(skip)]
-    robot: RobotFile,
-    #[command(flatten)]
-    #[serde(skip)]
     spread: Spread,
 }
 
 impl Spreads for Args {
     const COMMAND: &'static str = "prove";
 
-    fn places(&mut self) -> (&mut RobotFile, &mut Spread) {
-        (&mut self.robot, &mut self.spread)
+    fn spread(&mut self) -> &mut Spread {
+        &mut self.spread
     }
 }
 
@@ -86,16 +83,16 @@ impl Proof {
     pub fn of(
         robot: &Robot,
         guard: &CoreRobot,
-        share: Share,
+        share: PairSample,
         progress: &(dyn Fn(u64) + Sync),
     ) -> Self {
         let walk = walk::Walk::new(robot, guard, share);
         let piece = |place| walk.piece(place, progress);
-        Self::with(robot, guard, (0..walk::PIECES).map(piece).collect())
+        Self::from_tallies(robot, guard, (0..walk::PIECES).map(piece).collect())
     }
 
-    /// The same of what its pieces have found.
-    fn with(robot: &Robot, guard: &CoreRobot, pieces: Vec<Tally>) -> Self {
+    /// The proof from the tallies of all pieces.
+    fn from_tallies(robot: &Robot, guard: &CoreRobot, pieces: Vec<Tally>) -> Self {
         Self {
             findings: walk::findings(robot, guard, pieces),
             hash: guard.hash(),
@@ -116,8 +113,8 @@ impl Proof {
             .sum()
     }
 
-    /// Poses farther from every limit than the bands, and decided wrong all the
-    /// same, and poses of a cell that the guard refuses: 0 proves guard and cells.
+    /// The number of wrong decisions outside the bands, and of poses in a cell that the
+    /// guard refuses: 0 proves guard and cells.
     pub fn wrong(&self) -> u64 {
         self.findings
             .iter()
@@ -126,14 +123,14 @@ impl Proof {
     }
 }
 
-/// Walks and prints.
+/// Compares the guard with geometry and prints the result.
 ///
 /// # Errors
 /// A wrong robot.toml; a pose that is decided wrong.
 pub fn run(args: Args) -> Result<(), Failure> {
-    let robot = args.robot.load()?;
+    let robot = args.spread.robot.load()?;
     let guard = robot.firmware();
-    let share = Share {
+    let share = PairSample {
         one_in: args.one_in,
         offset: args.offset,
     };
@@ -144,12 +141,12 @@ pub fn run(args: Args) -> Result<(), Failure> {
     );
     let walk = walk::Walk::new(&robot, guard, share);
     let piece = |place| walk.piece(place, &|rows| bar.inc(rows));
-    let pieces = args.spread.all(&args, &args.robot, walk::PIECES, piece)?;
+    let pieces = args.spread.all(&args, walk::PIECES, piece)?;
     bar.finish_and_clear();
     let Some(pieces) = pieces else {
         return Ok(());
     };
-    let proof = Proof::with(&robot, guard, pieces);
+    let proof = Proof::from_tallies(&robot, guard, pieces);
 
     let mut out = io::stdout().lock();
     if args.json {
@@ -166,7 +163,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
 }
 
-fn print(proof: &Proof, share: Share, out: &mut impl Write) -> io::Result<()> {
+fn print(proof: &Proof, share: PairSample, out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
         "                                      largest error          decided otherwise within"

@@ -5,15 +5,15 @@ use lizard_core::numbers::units::Sweep;
 use lizard_kinematics::{End, Vector};
 use lizard_robot::CoreRobot;
 
-/// One servo's positions, in steps of 1/65536 turn over its whole travel.
+/// All positions of one servo, in steps of 1/65536 turn over its whole travel.
 pub struct Positions {
-    /// The first one's sweep from neutral.
+    /// Sweep of the first position from neutral.
     first: i16,
     /// The angle of each position in the chassis frame, degrees.
     pub degrees: Vec<f64>,
     /// The crank's direction in the frame of its end, Q15.
     pub fixed: Vec<Direction>,
-    /// The same in floating point.
+    /// The crank's direction in floating point.
     pub exact: Vec<Vector>,
 }
 

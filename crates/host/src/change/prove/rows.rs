@@ -16,14 +16,14 @@ pub const CUTS: usize = 64;
 /// A sample of the pairs: in each row, the pairs whose column has a certain remainder modulo
 /// `one_in`. The remainder differs from row to row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Share {
+pub struct PairSample {
     /// One pair in N is checked; at least 1.
     pub one_in: u32,
     /// Offset of the selected pairs, below `one_in`.
     pub offset: u32,
 }
 
-impl Share {
+impl PairSample {
     /// The sample that contains all pairs.
     pub const ALL: Self = Self {
         one_in: 1,
@@ -32,7 +32,7 @@ impl Share {
 }
 
 /// The columns of a row that belong to a share.
-pub fn columns(share: Share, row: usize, count: usize) -> impl Iterator<Item = usize> {
+pub fn columns(share: PairSample, row: usize, count: usize) -> impl Iterator<Item = usize> {
     let first = (row + share.offset as usize) % share.one_in as usize;
     (first..count).step_by(share.one_in as usize)
 }
@@ -52,7 +52,7 @@ pub fn rows_of(
             progress(1);
             tally
         })
-        .reduce(Tally::default, Tally::and)
+        .reduce(Tally::default, Tally::merged)
 }
 
 /// The columns of a row, eight at a time; the last ones are repeated.

@@ -8,10 +8,10 @@ use lizard_kinematics::{End, Lanes, Side, Slider};
 use lizard_robot::{CellMaps, CoreRobot, Robot};
 
 use super::positions::Positions;
-use super::rows::{Share, columns, eight_by_eight, lanes, rows_of, sine, splat};
+use super::rows::{PairSample, columns, eight_by_eight, lanes, rows_of, sine, splat};
 use super::tally::{MARGIN_BAND, STEPS_BAND, Tally};
 
-/// The pairs of a side.
+/// The comparison of all pairs of a side.
 pub struct SideWalk<'a> {
     side: Side,
     cells: Cells<'a>,
@@ -40,7 +40,7 @@ impl<'a> SideWalk<'a> {
     pub fn walk(
         &self,
         [front, rear]: [&Positions; 2],
-        share: Share,
+        share: PairSample,
         cut: usize,
         progress: &(dyn Fn(u64) + Sync),
     ) -> Tally {
@@ -65,8 +65,8 @@ impl<'a> SideWalk<'a> {
                     let length = f64::from(length_sq).sqrt() / self.steps_per_mm;
                     Tally::raise(&mut tally.travel, (length - d[lane]).abs());
                     let fixed = self.fixed.allows(length_sq);
-                    if self.cells.hold(front.sweep(row), rear.sweep(column)) {
-                        tally.certify(fixed, || {
+                    if self.cells.contains(front.sweep(row), rear.sweep(column)) {
+                        tally.count_certified(fixed, || {
                             format!(
                                 "{} side at {:.4} and {:.4} deg",
                                 self.side, front.degrees[row], rear.degrees[column]
@@ -76,7 +76,7 @@ impl<'a> SideWalk<'a> {
                     let [min, max] = self.stroke;
                     let clear = (s[lane] - min).min(max - s[lane]);
                     if fixed != (clear >= 0.0) {
-                        tally.differ(true, clear.abs(), band, || {
+                        tally.record_difference(true, clear.abs(), band, || {
                             format!(
                                 "at {:.4} and {:.4} deg the slider is {length:.5} mm long by the guard, {:.5} by floating point",
                                 front.degrees[row], rear.degrees[column], d[lane]
@@ -99,7 +99,7 @@ pub fn leg(robot: &Robot, guard: &CoreRobot, positions: &Positions) -> Tally {
         Tally::raise(&mut tally.leg, (sine(fixed.sin) - exact.y).abs());
         let clear = exact.y - robot.limits().leg;
         if (fixed.sin >= least) != (clear >= 0.0) {
-            tally.differ(false, clear.abs(), MARGIN_BAND, || {
+            tally.record_difference(false, clear.abs(), MARGIN_BAND, || {
                 format!("at {:.4} deg", positions.degrees[position])
             });
         }

@@ -45,7 +45,7 @@ pub struct Tally {
     pub length_band: Option<f64>,
     /// Pairs outside the band that are decided wrong.
     pub wrong: u64,
-    /// The first of them, in words.
+    /// The first such pair, in words.
     pub example: Option<String>,
 }
 
@@ -59,7 +59,7 @@ impl Tally {
     }
 
     /// Adds the sums of another walk.
-    pub fn and(mut self, other: Self) -> Self {
+    pub fn merged(mut self, other: Self) -> Self {
         self.pairs += other.pairs;
         self.certified += other.certified;
         for (largest, value) in [
@@ -79,9 +79,9 @@ impl Tally {
         self
     }
 
-    /// Notes a pair that a cell holds and that the guard refuses, if it does.
+    /// Counts a pair in a cell; records it if the guard refuses it.
     #[inline(always)]
-    pub fn certify(&mut self, accepted: bool, place: impl FnOnce() -> String) {
+    pub fn count_certified(&mut self, accepted: bool, place: impl FnOnce() -> String) {
         self.certified += 1;
         if !accepted {
             self.wrong += 1;
@@ -90,10 +90,16 @@ impl Tally {
         }
     }
 
-    /// Notes a pair that is decided differently: it is `by` from the limit, where
+    /// Records a pair that is decided differently: it is `by` from its limit, and
     /// `band` is allowed.
     #[cold]
-    pub fn differ(&mut self, length: bool, by: f64, band: f64, example: impl FnOnce() -> String) {
+    pub fn record_difference(
+        &mut self,
+        length: bool,
+        by: f64,
+        band: f64,
+        example: impl FnOnce() -> String,
+    ) {
         let widest = if length {
             &mut self.length_band
         } else {

@@ -7,7 +7,7 @@ use lizard_robot::{CellMaps, CoreRobot, Robot, servo};
 
 use super::end_walk::{EndWalk, bands};
 use super::positions::Positions;
-use super::rows::{CUTS, Share};
+use super::rows::{CUTS, PairSample};
 use super::side_walk::{SideWalk, leg};
 use super::tally::{Finding, MARGIN_BAND, Tally};
 
@@ -18,15 +18,15 @@ pub const PIECES: usize = 4 * CUTS;
 pub struct Walk<'a> {
     robot: &'a Robot,
     guard: &'a CoreRobot,
-    share: Share,
+    share: PairSample,
     maps: CellMaps,
     /// The positions of each servo, computed when a piece needs them.
     positions: [OnceLock<Positions>; 4],
 }
 
 impl<'a> Walk<'a> {
-    /// Through a share of the pairs.
-    pub fn new(robot: &'a Robot, guard: &'a CoreRobot, share: Share) -> Self {
+    /// The walk through a share of the pairs.
+    pub fn new(robot: &'a Robot, guard: &'a CoreRobot, share: PairSample) -> Self {
         Self {
             robot,
             guard,
@@ -40,7 +40,7 @@ impl<'a> Walk<'a> {
         self.positions[servo].get_or_init(|| Positions::of(self.guard, servo))
     }
 
-    /// One piece by its place, below [`PIECES`].
+    /// Walks one piece by its index, below [`PIECES`].
     pub fn piece(&self, place: usize, progress: &(dyn Fn(u64) + Sync)) -> Tally {
         let (whole, cut) = (place / CUTS, place % CUTS);
         let of = |servos: [usize; 2]| servos.map(|servo| self.positions(servo));
@@ -62,7 +62,7 @@ pub fn findings(robot: &Robot, guard: &CoreRobot, pieces: Vec<Tally>) -> Vec<Fin
         pieces
             .by_ref()
             .take(CUTS)
-            .fold(Tally::default(), Tally::and)
+            .fold(Tally::default(), Tally::merged)
     };
     let mut findings = Vec::new();
     for end in End::ALL {

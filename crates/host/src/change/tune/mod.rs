@@ -5,15 +5,15 @@ mod report;
 use std::io::{self, Write};
 
 use lizard_robot::{CheckedGait, Robot};
-use lizard_tune::{Built, Comparison, Kind, NoTuning, Scored, Tuning, trials};
+use lizard_tune::{BuiltGait, Comparison, Kind, NoTuning, ScoredParameters, Tuning, trials};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use crate::Failure;
 use crate::shared::json;
 use crate::shared::progress::bar;
 use crate::shared::spread::{Spread, Spreads};
 use crate::shared::suggestion::did_you_mean;
-use crate::{Failure, RobotFile};
 
 /// Search a gait that walks faster with the same servo rate
 ///
@@ -62,27 +62,24 @@ pub struct Args {
     json: bool,
     #[command(flatten)]
     #[serde(skip)]
-    robot: RobotFile,
-    #[command(flatten)]
-    #[serde(skip)]
     spread: Spread,
 }
 
 impl Spreads for Args {
     const COMMAND: &'static str = "tune";
 
-    fn places(&mut self) -> (&mut RobotFile, &mut Spread) {
-        (&mut self.robot, &mut self.spread)
+    fn spread(&mut self) -> &mut Spread {
+        &mut self.spread
     }
 }
 
-/// Searches and tells.
+/// Searches a gait and prints it.
 ///
 /// # Errors
-/// A wrong robot.toml, a gait that is not there or cannot be tuned, a rate or a name that will not
-/// do; no gait that the limits allow; an output that cannot be written.
+/// A wrong robot.toml; a gait that does not exist or cannot be tuned; an invalid rate or name; no
+/// gait that the limits allow; an output that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
-    let robot = args.robot.load()?;
+    let robot = args.spread.robot.load()?;
     let Some(report) = tune(&robot, &args)? else {
         return Ok(());
     };
@@ -95,10 +92,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
     Ok(out.flush()?)
 }
 
-/// The comparison; none where a part was computed alone.
+/// The comparison; `None` if only one part of the search was computed.
 fn tune(robot: &Robot, args: &Args) -> Result<Option<Comparison>, Failure> {
-    let gait = surpassed(robot, &args.gait)?;
-    free(robot, &args.name)?;
+    let gait = gait_to_surpass(robot, &args.gait)?;
+    check_name(robot, &args.name)?;
     let tuning = Tuning::new(
         robot,
         robot.ground(),
@@ -113,11 +110,11 @@ fn tune(robot: &Robot, args: &Args) -> Result<Option<Comparison>, Failure> {
             NoTuning::Rate { .. } => format!("--rate {no}"),
         })
     })?;
-    let found = found(&tuning, args)?;
+    let found = search_all(&tuning, args)?;
     Ok(found.map(|found| tuning.compare(&found, args.robots as usize)))
 }
 
-fn surpassed<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failure> {
+fn gait_to_surpass<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failure> {
     robot.gait(name).ok_or_else(|| {
         let moving = robot.gaits().iter().filter(|gait| gait.moves());
         let gaits: Vec<&str> = moving.map(|gait| gait.name()).collect();
@@ -129,23 +126,23 @@ fn surpassed<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failur
     })
 }
 
-/// Refuses a name that robot.toml has already or would not take.
-fn free(robot: &Robot, name: &str) -> Result<(), Failure> {
+/// Refuses a name that robot.toml already has or does not allow.
+fn check_name(robot: &Robot, name: &str) -> Result<(), Failure> {
     let refused = |why: String| Err(Failure::Input(format!("--name {name}: {why}")));
     if robot.gait(name).is_some() {
-        return refused("robot.toml has a gait of this name already".to_owned());
+        return refused("robot.toml already has a gait of this name".to_owned());
     }
     let gait = format!("[gait.{name:?}]\nperiod = 1.0\nwaveform = \"still\"\n");
     match robot.with_gait(&gait) {
         Err(error) => refused(error.problem),
-        Ok(read) if read.gait(name).is_none() => refused("it is no name".to_owned()),
+        Ok(read) if read.gait(name).is_none() => refused("it is not a valid name".to_owned()),
         Ok(_) => Ok(()),
     }
 }
 
-/// The best gait of all kinds; none where a part was computed alone. Kinds are searched apart
-/// from each other, and so are the pieces; the trials of a round on all cores.
-fn found(tuning: &Tuning, args: &Args) -> Result<Option<Built>, Failure> {
+/// The best gait of all kinds; `None` if only one part of the search was computed. Kinds are
+/// searched apart from each other, and so are the pieces; the trials of a round on all cores.
+fn search_all(tuning: &Tuning, args: &Args) -> Result<Option<BuiltGait>, Failure> {
     let rounds = args.rounds as usize;
     let kinds = args.spread.own(Kind::ALL.len());
     let bar = bar(kinds * trials(rounds), "{bar:40} {pos}/{len} gaits, {eta}");
@@ -162,18 +159,20 @@ fn found(tuning: &Tuning, args: &Args) -> Result<Option<Built>, Failure> {
         }
         search.found()
     };
-    let pieces = args.spread.all(args, &args.robot, Kind::ALL.len(), one)?;
+    let pieces = args.spread.all(args, Kind::ALL.len(), one)?;
     bar.finish_and_clear();
     let Some(pieces) = pieces else {
         return Ok(None);
     };
     let kinds = Kind::ALL.into_iter().zip(pieces);
     let scored = kinds.flat_map(|(kind, piece)| {
-        piece.into_iter().map(move |(score, parameters)| Scored {
-            kind,
-            score,
-            parameters,
-        })
+        piece
+            .into_iter()
+            .map(move |(score, parameters)| ScoredParameters {
+                kind,
+                score,
+                parameters,
+            })
     });
     let found = tuning.best(scored.collect());
     found.map(Some).ok_or_else(|| {
@@ -198,7 +197,7 @@ mod tests {
 
     const PAPER: &str = include_str!("../../../../../robots/paper.toml");
 
-    fn tuned(words: &str) -> Result<Comparison, String> {
+    fn run_tune(words: &str) -> Result<Comparison, String> {
         let robot = Robot::parse(PAPER).expect("right");
         let line = Line::try_parse_from(std::iter::once("tune").chain(words.split_whitespace()));
         let args = line.map_err(|error| error.to_string())?.args;
@@ -209,7 +208,7 @@ mod tests {
     /// Of `lizard tune --rounds 1 --robot robots/paper.toml`, which docs/twin.md quotes.
     #[test]
     fn a_short_search_surpasses_walk_at_the_same_rate_as_the_docs_say() {
-        let report = tuned("--rounds 1").expect("it finds one");
+        let report = run_tune("--rounds 1").expect("it finds one");
         let (walk, found) = (&report.gait, &report.tuned);
         assert!(found.rate <= walk.rate, "{found:?}");
         assert!(found.speeds[0] > 1.15 * walk.speeds[0], "{report:?}");
@@ -232,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_tuned_says_why() {
+    fn a_gait_that_cannot_be_tuned_is_refused_with_the_reason() {
         for (words, why) in [
             (
                 "--gait run",
@@ -249,16 +248,16 @@ mod tests {
             ("--rate nan", "--rate NaN: from 10"),
             (
                 "--name walk",
-                "--name walk: robot.toml has a gait of this name already",
+                "--name walk: robot.toml already has a gait of this name",
             ),
-            ("--name Fast", "--name Fast: is no gait name: it must be"),
+            ("--name Fast", "--name Fast: is not a gait name: it must be"),
             ("--name status", "--name status: "),
-            ("--name a.b", "--name a.b: is no gait name"),
+            ("--name a.b", "--name a.b: is not a gait name"),
             ("--seed -1", "invalid value '-1' for '--seed <N>'"),
             ("--rounds 0", "0 is not in 1..=10000"),
             ("--robots 3", "3 is not in 20..=100000"),
         ] {
-            let message = tuned(words).expect_err(words);
+            let message = run_tune(words).expect_err(words);
             assert!(message.contains(why), "{words}: {message}");
         }
     }

@@ -4,10 +4,10 @@ use std::io::{self, Write};
 
 use lizard_tune::{Comparison, SPREAD};
 
-/// Prints it as a piece of a robot.toml: all but the table is comment.
+/// Prints the comparison as a piece of a robot.toml: all but the table is comment.
 ///
 /// # Errors
-/// If it cannot be written.
+/// Writing failed.
 pub fn print(of: &Comparison, out: &mut impl Write) -> io::Result<()> {
     let Comparison {
         unit,

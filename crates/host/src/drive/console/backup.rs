@@ -62,7 +62,7 @@ pub fn restore(args: RestoreArgs) -> Result<(), Failure> {
     send_calibration(&set, &mut board.link)
         .map_err(|error| Failure::Impossible(format!("{}: {error}", args.file.display())))?;
     println!(
-        "{} has the calibration of {} and has saved it",
+        "{} has accepted and saved the calibration of {}",
         board.name,
         args.file.display()
     );
@@ -73,18 +73,18 @@ pub fn restore(args: RestoreArgs) -> Result<(), Failure> {
 #[derive(Debug, thiserror::Error)]
 pub enum SendError {
     /// The robot refused a value.
-    #[error("{0}; nothing was saved, the robot has what it had before")]
+    #[error("{0}; nothing was saved, and the robot keeps its old settings")]
     Refused(LinkError),
     /// Neither the new nor the old one is in effect.
     #[error("{0}; nothing was saved; send `load` or `factory`, or press the board's reset button")]
     Between(LinkError),
     /// The robot reads it back otherwise.
-    #[error("the robot has not taken all of it; nothing was saved, it has what it had before")]
+    #[error("the robot did not accept all of it; nothing was saved, and it keeps its old settings")]
     Differs,
 }
 
 /// Gives a robot a calibration, reads it back and saves it; if that fails, gives it
-/// what it had before.
+/// its old settings.
 ///
 /// # Errors
 /// A refusal, or a connection that breaks.
@@ -115,15 +115,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_backed_up_is_there_again_after_restoring_and_loading() {
+    fn a_backup_is_in_effect_again_after_restore_and_load() {
         let mut link = robot();
-        link.command("trim 3 -4.25").expect("it is taken");
-        link.command("boot walk").expect("it is taken");
+        link.command("trim 3 -4.25").expect("it is accepted");
+        link.command("boot walk").expect("it is accepted");
         let kept = Calibration::ask(&mut link).expect("it answers");
         let kept = file::parse(&file::text(&kept)).expect("it is a calibration");
-        link.command("factory").expect("it is taken");
+        link.command("factory").expect("it is accepted");
         send_calibration(&kept, &mut link).expect("it is taken and saved");
-        link.command("factory").expect("it is taken");
+        link.command("factory").expect("it is accepted");
         link.command("load").expect("something was saved");
         assert!(
             Calibration::ask(&mut link)
@@ -135,7 +135,7 @@ mod tests {
     #[test]
     fn a_refused_calibration_leaves_what_was_there_also_unsaved() {
         let mut link = robot();
-        link.command("trim 3 -4.25").expect("it is taken");
+        link.command("trim 3 -4.25").expect("it is accepted");
         let before = Calibration::ask(&mut link).expect("it answers");
         let mut set = before.clone();
         set.servo.at(0).trim = 5.0;
@@ -143,8 +143,8 @@ mod tests {
         let error = send_calibration(&set, &mut link).expect_err("it is refused");
         assert_eq!(
             error.to_string(),
-            "the robot refuses `scale 3 99.00`: 3 scale must be 5..20; nothing was saved, the \
-             robot has what it had before"
+            "the robot refuses `scale 3 99.00`: 3 scale must be 5..20; nothing was saved, and the \
+             robot keeps its old settings"
         );
         assert!(
             Calibration::ask(&mut link)

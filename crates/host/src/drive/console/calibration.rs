@@ -165,10 +165,10 @@ impl Calibration {
         lines
     }
 
-    /// Gives a robot these settings, unsaved. Each command has to leave the
-    /// gaits within the servos' travel, and on the way from one calibration to
-    /// another one may not, though the end would: so what is refused is tried again
-    /// after the others, and once more from robot.toml's settings.
+    /// Gives a robot these settings, unsaved. The robot refuses a command after which a
+    /// gait would leave the servos' travel. On the way from one calibration to another
+    /// that may happen although the result is valid. So a refused command is tried
+    /// again after the others, and once more from robot.toml's settings.
     ///
     /// # Errors
     /// The first refusal of those that remain; the robot then has a part of the

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use serialport::SerialPort;
 
 use super::find;
-use super::link::{Link, LinkError, Patience};
+use super::link::{Link, LinkError, Timeouts};
 use super::port;
 use crate::shared::plain::plain;
 use crate::{Failure, RobotFile};
@@ -47,7 +47,7 @@ pub struct Connection {
 }
 
 impl Connect {
-    /// Decides where to look; starts the simulated UNO if it is selected.
+    /// Chooses the place to look for the board; starts the simulated UNO if it is selected.
     ///
     /// # Errors
     /// No firmware for it, or no pseudo terminal.
@@ -113,12 +113,12 @@ impl Finder {
             None => {
                 let found = find::choose(&find::usb_ports(), self.command)
                     .map_err(|error| Failure::Impossible(error.to_string()))?;
-                // What the board calls itself is the board's word.
+                // The board chooses its name, so it is made safe to print.
                 (found.name.clone(), plain(&found.to_string()))
             }
         };
         Ok(Connection {
-            link: Link::new(port::open(&port)?, Patience::default()),
+            link: Link::new(port::open(&port)?, Timeouts::default()),
             name,
         })
     }
@@ -167,7 +167,7 @@ impl Connection {
         self.link.greet().map_err(|error| self.failure(&error))
     }
 
-    /// The error as a sentence with the port's name.
+    /// Converts the error to a sentence with the port's name.
     #[must_use]
     pub fn failure(&self, error: &LinkError) -> Failure {
         Failure::Impossible(format!("{}: {error}", self.name))

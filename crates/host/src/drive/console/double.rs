@@ -1,5 +1,5 @@
-//! For tests: the firmware's own console behind a connection, without a chip. Time
-//! advances when there is nothing left to read, much faster than real time.
+//! A test double: the firmware's own console behind a connection, without a chip. Time advances
+//! when there is nothing left to read, much faster than real time.
 
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};
@@ -8,13 +8,13 @@ use std::time::Duration;
 use lizard_core::virtual_board::Running;
 use lizard_robot::Robot;
 
-use super::link::{Link, Patience};
+use super::link::{Link, Timeouts};
 
 /// The core on a virtual board, and its output.
 pub struct Double {
     running: Running,
     out: VecDeque<u8>,
-    /// Every line it was sent.
+    /// Every line that it has received.
     pub sent: String,
 }
 
@@ -29,7 +29,7 @@ pub const PAPER: &str = include_str!("../../../../../robots/paper.toml");
 /// A connection to the robot of this robot.toml.
 pub fn robot_of(text: &str) -> Link<Double> {
     let robot = Robot::parse(text).expect("its robot.toml is right");
-    let mut link = Link::new(Double::of(&robot), Patience::default());
+    let mut link = Link::new(Double::of(&robot), Timeouts::default());
     link.greet().expect("it has a banner");
     link
 }

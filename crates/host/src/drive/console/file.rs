@@ -51,7 +51,7 @@ pub fn parse(text: &str) -> Result<Calibration, String> {
         }
     })?;
     if !is_name(&set.boot) {
-        return Err(format!("boot: `{}` is no name of a gait", set.boot));
+        return Err(format!("boot: `{}` is not the name of a gait", set.boot));
     }
     for (name, servo) in ["A1", "A2", "A3", "A4"].into_iter().zip(set.servo.all()) {
         let [min, max] = servo.limit;
@@ -66,7 +66,7 @@ pub fn parse(text: &str) -> Result<Calibration, String> {
             let hundredths = value * 100.0;
             if !(value.abs() <= 360.0 && (hundredths - hundredths.round()).abs() < 1e-6) {
                 return Err(format!(
-                    "servo.{name}.{key}: {value} is no number of at most two decimals, \
+                    "servo.{name}.{key}: {value} is not a number of at most two decimals, \
                      -360..360"
                 ));
             }
@@ -78,7 +78,7 @@ pub fn parse(text: &str) -> Result<Calibration, String> {
 /// Reads a file.
 ///
 /// # Errors
-/// It cannot be read, or is no calibration.
+/// It cannot be read, or is not a calibration.
 pub fn read(path: &Path) -> Result<Calibration, Failure> {
     let name = path.display();
     let text = files::read_text(path)?;
@@ -147,7 +147,7 @@ mod tests {
             parse("[links]\nl0 = 20.0\n").expect_err("it is another file"),
             "the key format = \"lizard calibration 1\" is missing"
         );
-        let words = parse("format = \"x\n").expect_err("it is no TOML");
+        let words = parse("format = \"x\n").expect_err("it is not TOML");
         assert!(words.starts_with("line 1: this is not TOML: "), "{words}");
         for (from, to, start) in [
             ("trim = -3.25\n", "", "servo.A1: missing field `trim`"),
@@ -159,17 +159,17 @@ mod tests {
             (
                 "trim = -3.25",
                 "trim = 1.234",
-                "servo.A1.trim: 1.234 is no number of at most two",
+                "servo.A1.trim: 1.234 is not a number of at most two",
             ),
             (
                 "trim = -3.25",
                 "trim = nan",
-                "servo.A1.trim: NaN is no number",
+                "servo.A1.trim: NaN is not a number",
             ),
             (
                 "trim = -3.25",
                 "trim = 1e9",
-                "servo.A1.trim: 1000000000 is no number",
+                "servo.A1.trim: 1000000000 is not a number",
             ),
             (
                 "dir = \"-\"",
@@ -183,7 +183,11 @@ mod tests {
             ),
             ("scale = 10.0", "scale = 10.0\nscal = 9", "servo.A1"),
             ("deadman = 1500", "deadman = -1", "deadman: invalid value"),
-            ("arc left", "walk\\nsave", "boot: `walk\nsave` is no name"),
+            (
+                "arc left",
+                "walk\\nsave",
+                "boot: `walk\nsave` is not the name",
+            ),
         ] {
             let words = complaint(from, to);
             assert!(words.starts_with(start), "{words} / {start}");

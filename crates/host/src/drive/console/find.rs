@@ -28,13 +28,13 @@ pub enum FindError {
          --sim takes a simulated UNO"
     )]
     None {
-        /// The subcommand, with the words before the port.
+        /// The subcommand, with the arguments before the port.
         command: &'static str,
     },
     /// There is more than one.
     #[error("several boards found: {}. Say which one: lizard {command} {}", list(.ports), .ports[0].name)]
     Several {
-        /// The subcommand, with what comes before the port.
+        /// The subcommand, with the arguments before the port.
         command: &'static str,
         /// The ports that may have the board.
         ports: Vec<UsbPort>,
@@ -70,17 +70,17 @@ fn usb(port: SerialPortInfo) -> Option<UsbPort> {
 }
 
 impl UsbPort {
-    /// True if its chip has a vendor number of Arduino's.
+    /// True if its chip has one of Arduino's vendor numbers.
     #[must_use]
     pub fn is_arduinos(&self) -> bool {
         ARDUINO.contains(&self.vendor)
     }
 }
 
-/// The one port with a UNO's USB chip, or else the only port.
+/// Chooses the one port with a UNO's USB chip, or else the only port.
 ///
 /// # Errors
-/// None, or more than one.
+/// There is no port, or more than one.
 pub fn choose(ports: &[UsbPort], command: &'static str) -> Result<UsbPort, FindError> {
     let known = ports.iter().filter(|port| VENDORS.contains(&port.vendor));
     let known: Vec<&UsbPort> = known.collect();
@@ -125,7 +125,7 @@ mod tests {
         }
     }
 
-    fn chosen(ports: &[(&str, u16)]) -> Result<String, String> {
+    fn choose_from(ports: &[(&str, u16)]) -> Result<String, String> {
         let ports: Vec<UsbPort> = ports.iter().map(|(name, id)| port(name, *id)).collect();
         choose(&ports, "console")
             .map(|port| port.to_string())
@@ -135,7 +135,7 @@ mod tests {
     #[test]
     fn the_one_uno_is_taken_among_other_devices() {
         assert_eq!(
-            chosen(&[
+            choose_from(&[
                 ("ttyUSB0", 0x0403),
                 ("ttyACM0", 0x2341),
                 ("ttyACM1", 0x1546)
@@ -143,25 +143,25 @@ mod tests {
             Ok("/dev/ttyACM0 (Arduino Uno)".to_owned())
         );
         assert_eq!(
-            chosen(&[("ttyUSB0", 0x0403), ("ttyUSB1", 0x1a86)]),
+            choose_from(&[("ttyUSB0", 0x0403), ("ttyUSB1", 0x1a86)]),
             Ok("/dev/ttyUSB1".to_owned())
         );
     }
 
     #[test]
-    fn the_only_port_is_taken_whatever_its_chip() {
+    fn the_only_port_is_chosen_whichever_chip_it_has() {
         assert_eq!(
-            chosen(&[("ttyUSB0", 0x0403)]),
+            choose_from(&[("ttyUSB0", 0x0403)]),
             Ok("/dev/ttyUSB0".to_owned())
         );
     }
 
     #[test]
     fn none_and_several_are_reported_with_the_remedy() {
-        let none = chosen(&[]).expect_err("there is none");
+        let none = choose_from(&[]).expect_err("there is none");
         assert!(none.contains("carries data") && none.contains("lizard console /dev/ttyACM0"));
         assert_eq!(
-            chosen(&[
+            choose_from(&[
                 ("ttyACM0", 0x2341),
                 ("ttyUSB0", 0x1a86),
                 ("ttyUSB1", 0x0403)
@@ -172,6 +172,6 @@ mod tests {
                     .to_owned()
             )
         );
-        assert!(chosen(&[("ttyUSB0", 1), ("ttyUSB1", 2)]).is_err());
+        assert!(choose_from(&[("ttyUSB0", 1), ("ttyUSB1", 2)]).is_err());
     }
 }

@@ -12,7 +12,7 @@ fn path() -> Option<PathBuf> {
     Some(folder.join("lizard/history"))
 }
 
-/// The lines, the oldest first; none if there is no such file.
+/// Loads the lines, the oldest first; an empty list if there is no such file.
 #[must_use]
 pub fn load() -> Vec<String> {
     let text = path().and_then(|path| std::fs::read_to_string(path).ok());
@@ -20,7 +20,7 @@ pub fn load() -> Vec<String> {
     text.lines().map(str::to_owned).collect()
 }
 
-/// Keeps the lines. A folder that cannot be written to is no reason to complain.
+/// Saves the lines. A failure is ignored.
 pub fn save(lines: &[String]) {
     let Some(path) = path() else {
         return;

@@ -22,10 +22,11 @@ use crate::Failure;
 /// Dialogue to the robot
 ///
 /// Finds the board, waits for it to start, and passes lines to it; `help` lists its
-/// commands. The arrow keys bring back older lines; Ctrl-C, Ctrl-D or `quit` end the
-/// program. The line at the bottom shows gait, pose, smallest margin, supply and faults.
-/// For that the program asks the robot for its `status` twice a second, so `boot` and
-/// `deadman` do not act. If standard input is a file or a pipe, its lines are sent one
+/// commands. Esc stops the robot at once: `stop` goes ahead of whatever waits, and is sent
+/// until it is answered. The arrow keys bring back older lines; Ctrl-C, Ctrl-D or `quit`
+/// end the program. The line at the bottom shows gait, pose, smallest margin, supply and faults.
+/// For that the program asks the robot for its `status` twice a second, so `boot` does not
+/// act. While you drive, `deadman` is set: a robot out of reach stops by itself. If standard input is a file or a pipe, its lines are sent one
 /// after another, and the exit code is 1 if the robot refuses one.
 #[derive(clap::Args, Debug)]
 pub struct ConsoleArgs {
@@ -58,7 +59,7 @@ pub fn console(args: ConsoleArgs) -> Result<(), Failure> {
 fn dialogue(finder: &Finder, file: Option<PathBuf>) -> Result<(), Failure> {
     let (board, banner) = finder.open_and_greet()?;
     let mut dialogue = Dialogue {
-        session: Session::new(Instant::now(), true, file.is_some()),
+        session: Session::new(Instant::now(), true, file.is_some()).with_person(),
         recorder: None,
         mark: "",
     };
@@ -73,7 +74,7 @@ fn dialogue(finder: &Finder, file: Option<PathBuf>) -> Result<(), Failure> {
         recorder.write(Instant::now(), event)?;
         dialogue.recorder = Some(recorder);
     }
-    let first = banner.unwrap_or_else(|| "(the board goes on, it was not reset)".to_owned());
+    let first = banner.unwrap_or_else(|| "(the board was not reset and continues)".to_owned());
     if io::stdin().is_terminal() && io::stdout().is_terminal() {
         match dialogue.with_terminal(finder, board, &first) {
             // The user has closed the terminal.
@@ -93,8 +94,8 @@ struct Dialogue {
 }
 
 impl Dialogue {
-    /// Sends the next line and takes the lines that have come; `show` gets those for the
-    /// user.
+    /// Sends the next line and reads the lines that have arrived; `show` receives those for
+    /// the user.
     fn turn(
         &mut self,
         board: &mut Connection,
@@ -103,7 +104,7 @@ impl Dialogue {
         if let Some(line) = self.session.next_line(Instant::now()) {
             board.link.send(&line)?;
         }
-        // At most 51 lines: the keys wait.
+        // At most 51 lines, since the keys wait meanwhile.
         for wait in [TURN; 1].into_iter().chain([Duration::ZERO; 50]) {
             let Some(line) = board.link.line(wait)? else {
                 break;
@@ -194,6 +195,9 @@ impl Dialogue {
             let status = status.unwrap_or_default();
             screen.draw(&format!("{}{status}", self.mark), &prompt)?;
         }
+        if let (Some(board), Some(line)) = (&mut board, self.session.last_line()) {
+            let _ = board.link.ask(&line);
+        }
         drop(screen);
         history::save(prompt.history());
         if self
@@ -204,7 +208,7 @@ impl Dialogue {
             && !finder.is_simulated()
         {
             // The terminal may be gone; then nobody can read this.
-            let _ = writeln!(io::stdout(), "the robot goes on with its gait");
+            let _ = writeln!(io::stdout(), "the robot continues its gait");
         }
         if let Some(recorder) = &mut self.recorder {
             recorder.flush()?;
@@ -212,7 +216,7 @@ impl Dialogue {
         failed.map_or(Ok(()), Err)
     }
 
-    /// Takes the keys that have been pressed; true if the user leaves.
+    /// Handles the keys that were pressed; true if the user quits.
     fn handle_keys(&mut self, screen: &mut Screen, prompt: &mut Prompt) -> Result<bool, Failure> {
         if !terminal::is_there() {
             return Ok(true);
@@ -234,7 +238,11 @@ impl Dialogue {
                     }
                     Outcome::Line(line) => {
                         screen.print(&format!("> {line}"))?;
-                        self.session.queue(&line);
+                        if line.eq_ignore_ascii_case("stop") {
+                            self.session.stop(Instant::now());
+                        } else {
+                            self.session.queue(&line);
+                        }
                     }
                 }
             }
@@ -242,7 +250,7 @@ impl Dialogue {
         Ok(false)
     }
 
-    /// The board, if it is there again.
+    /// Opens the board again, if it is back.
     fn reopen(
         &mut self,
         finder: &Finder,
@@ -255,8 +263,9 @@ impl Dialogue {
         match board.link.greet() {
             Ok(banner) => {
                 let banner = banner.unwrap_or_default();
-                screen.print(&format!("{} is there again: {banner}", board.name))?;
-                self.session = Session::new(Instant::now(), true, self.recorder.is_some());
+                screen.print(&format!("{} is back: {banner}", board.name))?;
+                let watches = self.recorder.is_some();
+                self.session = Session::new(Instant::now(), true, watches).with_person();
                 Ok(Some(board))
             }
             Err(LinkError::Gone) => Ok(None),
@@ -274,7 +283,7 @@ fn failure(error: TurnError, board: &Connection) -> Failure {
     }
 }
 
-/// The lines of standard input as they come; disconnected at its end.
+/// The lines of standard input as they arrive; the channel closes at its end.
 fn lines_of_stdin() -> Receiver<String> {
     let (send, receive) = mpsc::channel();
     std::thread::spawn(move || {

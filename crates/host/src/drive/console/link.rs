@@ -11,6 +11,10 @@ use std::time::{Duration, Instant};
 
 /// The beginning of a robot's first line.
 const BANNER: &str = "# lizard ";
+/// Questions to a board that was not reset: it finds the port's rate by five lines at most, and
+/// a radio may lose some.
+const ASKS: u32 = 8;
+
 /// The beginning of an answer to `status`.
 const STATUS: &str = "ok gait=";
 /// Longer lines are cut: the firmware's are shorter, noise may be endless.
@@ -18,7 +22,7 @@ const LONGEST: usize = 512;
 
 /// Time limits of a connection.
 #[derive(Debug, Clone, Copy)]
-pub struct Patience {
+pub struct Timeouts {
     /// Time for the banner after the port has been opened. A UNO's boot loader takes more than
     /// a second of it.
     pub banner: Duration,
@@ -26,7 +30,7 @@ pub struct Patience {
     pub answer: Duration,
 }
 
-impl Default for Patience {
+impl Default for Timeouts {
     fn default() -> Self {
         Self {
             banner: Duration::from_millis(3000),
@@ -35,7 +39,7 @@ impl Default for Patience {
     }
 }
 
-/// The reason why the other end gives no usable answer.
+/// The reason for a missing or unusable answer.
 #[derive(Debug, thiserror::Error)]
 pub enum LinkError {
     /// The port has vanished.
@@ -44,16 +48,16 @@ pub enum LinkError {
     /// A line was not answered.
     #[error("the robot does not answer to `{0}`")]
     Silent(String),
-    /// The first line of a device that is no lizard.
+    /// The first line of a device that is not a lizard.
     #[error(
-        "this is no lizard: it says `{0}`, not `# lizard ...`; is it the right port, and has \
-         the board been flashed (make flash)?"
+        "this is not a lizard: it says `{0}`, not `# lizard ...`; is it the right port, and has \
+         the board been flashed (lizard flash)?"
     )]
     Stranger(String),
-    /// Nothing answers at all.
+    /// There is no answer at all.
     #[error(
         "nothing answers: no banner and no answer to `status`; is it the right port, and has \
-         the board been flashed (make flash)?"
+         the board been flashed (lizard flash)?"
     )]
     Mute,
     /// The robot refuses a line.
@@ -64,7 +68,7 @@ pub enum LinkError {
         /// The code and the reason.
         reason: String,
     },
-    /// The answer is not of the form that this program knows.
+    /// The answer has an unknown form.
     #[error("the robot's answer to `{line}` is not understood: `{answer}`")]
     Unclear {
         /// The line that was sent.
@@ -97,7 +101,7 @@ pub struct Reply {
 #[derive(Debug)]
 pub struct Link<P> {
     port: P,
-    patience: Patience,
+    timeouts: Timeouts,
     /// The beginning of a line whose end has not come yet.
     partial: Vec<u8>,
     lines: VecDeque<String>,
@@ -105,23 +109,23 @@ pub struct Link<P> {
 
 impl<P: Read + Write> Link<P> {
     /// A connection over an open port.
-    pub fn new(port: P, patience: Patience) -> Self {
+    pub fn new(port: P, timeouts: Timeouts) -> Self {
         Self {
             port,
-            patience,
+            timeouts,
             partial: Vec::new(),
             lines: VecDeque::new(),
         }
     }
 
-    /// Waits for the banner and returns it. A board that was not reset when the
-    /// port was opened has none to say, so it is asked for its status; then the
-    /// result is `None`.
+    /// Waits for the banner and returns it. A board that was not reset when the port
+    /// was opened sends none, so it is asked for its status, until it has found the port's
+    /// rate; then the result is `None`.
     ///
     /// # Errors
     /// Nothing answers, or no lizard does.
     pub fn greet(&mut self) -> Result<Option<String>, LinkError> {
-        let end = Instant::now() + self.patience.banner;
+        let end = Instant::now() + self.timeouts.banner;
         let mut first = None;
         while let Some(line) = self.line_before(end)? {
             if line.starts_with(BANNER) {
@@ -129,34 +133,38 @@ impl<P: Read + Write> Link<P> {
             }
             first = first.or(Some(line));
         }
-        let end = Instant::now() + self.patience.answer;
-        self.send("status")?;
-        while let Some(line) = self.line_before(end)? {
-            if line.starts_with(STATUS) {
-                return Ok(None);
+        for _ in 0..ASKS {
+            let end = Instant::now() + self.timeouts.answer / 4;
+            self.send("status")?;
+            while let Some(line) = self.line_before(end)? {
+                if line.starts_with(STATUS) {
+                    return Ok(None);
+                }
+                first = first.or(Some(line));
             }
-            first = first.or(Some(line));
         }
         Err(first.map_or(LinkError::Mute, LinkError::Stranger))
     }
 
-    /// Sends a line and does not wait.
+    /// Sends a line without waiting for its answer.
     ///
     /// # Errors
     /// The port is gone.
     pub fn send(&mut self, line: &str) -> Result<(), LinkError> {
         let bytes = format!("{line}\n");
-        self.port.write_all(bytes.as_bytes()).map_err(broken)?;
-        self.port.flush().map_err(broken)
+        self.port
+            .write_all(bytes.as_bytes())
+            .map_err(to_link_error)?;
+        self.port.flush().map_err(to_link_error)
     }
 
-    /// Sends a line and waits for its answer, whatever it is.
+    /// Sends a line and waits for its answer, `ok` or `err`.
     ///
     /// # Errors
     /// No answer, or the port is gone.
     pub fn ask(&mut self, line: &str) -> Result<Reply, LinkError> {
         self.send(line)?;
-        let end = Instant::now() + self.patience.answer;
+        let end = Instant::now() + self.timeouts.answer;
         let mut notes = Vec::new();
         while let Some(answer) = self.line_before(end)? {
             if !answer.starts_with('#') {
@@ -185,7 +193,7 @@ impl<P: Read + Write> Link<P> {
         Ok(reply)
     }
 
-    /// The next line, waited for at most `wait`.
+    /// Waits for the next line, at most `wait`.
     ///
     /// # Errors
     /// The port is gone.
@@ -193,7 +201,7 @@ impl<P: Read + Write> Link<P> {
         self.line_before(Instant::now() + wait)
     }
 
-    /// Lets time pass; what comes meanwhile is dropped.
+    /// Waits; lines that arrive meanwhile are dropped.
     ///
     /// # Errors
     /// The port is gone.
@@ -227,7 +235,7 @@ impl<P: Read + Write> Link<P> {
             }
             Err(error) => match error.kind() {
                 ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted => Ok(()),
-                _ => Err(broken(error)),
+                _ => Err(to_link_error(error)),
             },
         }
     }
@@ -242,7 +250,7 @@ impl<P: Read + Write> Link<P> {
         let bytes = std::mem::take(&mut self.partial);
         let text = String::from_utf8_lossy(&bytes);
         let text = text.trim_end_matches('\r');
-        // A reset cuts off what the board was saying; that is no line, and its first line
+        // A reset cuts off the board's current line; the rest is dropped, and the first new line
         // follows on it.
         let text = &text[text.find(BANNER).unwrap_or(0)..];
         if !text.is_empty() {
@@ -254,7 +262,7 @@ impl<P: Read + Write> Link<P> {
 }
 
 /// An error of the system at an open port nearly always means that it is gone.
-fn broken(error: io::Error) -> LinkError {
+fn to_link_error(error: io::Error) -> LinkError {
     if is_gone(&error) {
         LinkError::Gone
     } else {
@@ -280,8 +288,8 @@ pub(crate) fn is_gone(error: &io::Error) -> bool {
 mod tests {
     use super::*;
 
-    /// A port that plays back what was written down for it: each write lets the
-    /// next piece come. `None` at the end is a port that vanishes.
+    /// A port that plays back a script: each write releases the next piece. `None` at the
+    /// end is a port that vanishes.
     struct Script {
         pieces: VecDeque<Option<&'static str>>,
         ready: VecDeque<u8>,
@@ -299,11 +307,11 @@ mod tests {
             };
             script.next();
             let ms = Duration::from_millis(20);
-            let patience = Patience {
+            let timeouts = Timeouts {
                 banner: ms,
                 answer: ms,
             };
-            Link::new(script, patience)
+            Link::new(script, timeouts)
         }
 
         fn next(&mut self) {
@@ -382,14 +390,14 @@ mod tests {
         };
         let words_of_printer = words(&[Some("start\nGrbl 1.1\n"), Some("error:20\n")]);
         assert!(
-            words_of_printer.starts_with("this is no lizard: it says `start`"),
+            words_of_printer.starts_with("this is not a lizard: it says `start`"),
             "{words_of_printer}"
         );
         assert!(words(&[]).starts_with("nothing answers"));
     }
 
     #[test]
-    fn an_answer_is_the_first_line_that_is_no_note() {
+    fn the_answer_is_the_first_line_that_is_not_a_note() {
         let mut link = Script::link(&[
             Some(HELLO),
             Some("# boot stand\r\n# deadman 0\r\nok cal\r\n"),

@@ -8,6 +8,7 @@ pub mod backup;
 pub mod calibrate;
 pub mod calibration;
 pub mod connect;
+mod deadman;
 #[cfg(test)]
 pub mod double;
 pub mod file;

@@ -34,14 +34,14 @@ pub enum PortError {
         /// The program that has it open.
         who: String,
     },
-    /// The user may not.
+    /// The user has no permission.
     #[error(
         "you may not open {0}: it belongs to a group, on Debian dialout. As root: \
          usermod -aG dialout <user>, then log in again"
     )]
     Forbidden(String),
-    /// The file is no serial port.
-    #[error("{0} is no serial port")]
+    /// The file is not a serial port.
+    #[error("{0} is not a serial port")]
     NoPort(String),
     /// The system's own reason.
     #[error("{name} cannot be opened: {error}")]
@@ -63,13 +63,13 @@ impl From<PortError> for crate::Failure {
     }
 }
 
-/// Opens a port for this program alone. That resets a UNO.
+/// Opens a port for this program alone. Opening it resets a UNO.
 ///
 /// # Errors
 /// There is none, or it must not or cannot be opened.
 pub fn open(name: &str) -> Result<Box<dyn SerialPort>, PortError> {
     if cfg!(unix) && !Path::new(name).exists() {
-        return Err(missing(name));
+        return Err(missing_port(name));
     }
     let busy = |who: String| PortError::Busy {
         name: name.to_owned(),
@@ -81,7 +81,7 @@ pub fn open(name: &str) -> Result<Box<dyn SerialPort>, PortError> {
     let opened = serialport::new(name, BAUD).timeout(READ).open();
     opened.map_err(|error| match error.kind() {
         ErrorKind::Io(io::ErrorKind::PermissionDenied) => PortError::Forbidden(name.to_owned()),
-        ErrorKind::Io(io::ErrorKind::NotFound) => missing(name),
+        ErrorKind::Io(io::ErrorKind::NotFound) => missing_port(name),
         ErrorKind::NoDevice => busy("another program".to_owned()),
         _ if cfg!(unix) && is_no_terminal(name) => PortError::NoPort(name.to_owned()),
         _ => PortError::Other {
@@ -91,7 +91,7 @@ pub fn open(name: &str) -> Result<Box<dyn SerialPort>, PortError> {
     })
 }
 
-fn missing(name: &str) -> PortError {
+fn missing_port(name: &str) -> PortError {
     let ports = find::usb_ports();
     let ports: Vec<String> = ports.iter().map(ToString::to_string).collect();
     PortError::Missing {
@@ -104,9 +104,8 @@ fn missing(name: &str) -> PortError {
     }
 }
 
-/// A program that has the port open and keeps it: one that is about to close it, as a
-/// console that has just been left or a simulated board that clears its line, is waited
-/// for.
+/// The program that holds the port open. One that is about to close it, such as a console
+/// that is quitting or a simulated board that clears its line, gets some time to do so.
 fn lasting_holder(name: &str) -> Option<String> {
     let begin = Instant::now();
     loop {
@@ -153,14 +152,14 @@ mod tests {
     }
 
     #[test]
-    fn a_port_that_is_not_there_and_a_file_that_is_no_port_are_two_things() {
+    fn a_missing_port_and_a_file_that_is_not_a_port_have_different_errors() {
         let words = refusal("/dev/no-such-port").to_string();
         assert!(words.starts_with("there is no /dev/no-such-port; USB serial ports"));
         let file = tempfile::NamedTempFile::new().expect("a file");
         let name = file.path().display().to_string();
         assert_eq!(
             refusal(&name).to_string(),
-            format!("{name} is no serial port")
+            format!("{name} is not a serial port")
         );
         assert_eq!(crate::Failure::from(refusal(&name)).exit_code(), 2);
     }
@@ -177,7 +176,7 @@ mod tests {
             .expect("it starts");
         let words = refusal(&name).to_string();
         LIMIT.end_of(&mut other).expect("it ends");
-        assert_eq!(words, format!("{name} is no serial port"));
+        assert_eq!(words, format!("{name} is not a serial port"));
     }
 
     #[cfg(target_os = "linux")]

@@ -10,13 +10,13 @@ const REMEMBERED: usize = 500;
 /// The effect of a key.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// Nothing for the robot.
+    /// There is nothing to send.
     Edited,
-    /// A line, to be sent.
+    /// Send this line.
     Line(String),
-    /// The user leaves.
+    /// Quit the program.
     Leave,
-    /// The program is to stop until the shell lets it go on.
+    /// Suspend the program until the shell resumes it.
     Stop,
 }
 
@@ -42,7 +42,7 @@ impl Prompt {
         }
     }
 
-    /// Takes a key.
+    /// Handles a key.
     pub fn key(&mut self, key: KeyEvent) -> Outcome {
         if key.kind == KeyEventKind::Release {
             return Outcome::Edited;
@@ -61,6 +61,7 @@ impl Prompt {
             KeyCode::Char('p') if control => self.go(self.at.saturating_sub(1)),
             KeyCode::Down => self.go(self.at + 1),
             KeyCode::Char('n') if control => self.go(self.at + 1),
+            KeyCode::Esc => return Outcome::Line("stop".to_owned()),
             KeyCode::Enter => return self.enter(),
             KeyCode::Char('j' | 'm') if control => return self.enter(),
             _ => {
@@ -70,7 +71,7 @@ impl Prompt {
         Outcome::Edited
     }
 
-    /// Takes text that was pasted; each line end in it is one.
+    /// Handles pasted text; each line end counts as Enter.
     pub fn paste(&mut self, text: &str) -> Vec<Outcome> {
         let mut outcomes = Vec::new();
         for c in text.chars() {
@@ -149,7 +150,7 @@ mod tests {
         prompt.key(KeyEvent::new(KeyCode::Char(c), KeyModifiers::CONTROL))
     }
 
-    fn typed(prompt: &mut Prompt, text: &str) -> Outcome {
+    fn type_text(prompt: &mut Prompt, text: &str) -> Outcome {
         for c in text.chars() {
             press(prompt, KeyCode::Char(c));
         }
@@ -176,8 +177,8 @@ mod tests {
     #[test]
     fn the_arrows_bring_back_older_lines_and_then_the_draft() {
         let mut prompt = Prompt::new(vec!["stand".to_owned()]);
-        typed(&mut prompt, "walk");
-        typed(&mut prompt, "walk");
+        type_text(&mut prompt, "walk");
+        type_text(&mut prompt, "walk");
         press(&mut prompt, KeyCode::Char('s'));
         let mut seen = Vec::new();
         for code in [
@@ -196,11 +197,20 @@ mod tests {
     }
 
     #[test]
+    fn escape_stops_the_robot_and_leaves_what_is_typed() {
+        let mut prompt = Prompt::default();
+        prompt.paste("wal");
+        let stop = Outcome::Line("stop".to_owned());
+        assert_eq!(press(&mut prompt, KeyCode::Esc), stop);
+        assert_eq!(prompt.text(), "wal");
+    }
+
+    #[test]
     fn control_c_control_d_on_an_empty_line_and_quit_leave() {
         let mut prompt = Prompt::default();
         assert_eq!(control(&mut prompt, 'c'), Outcome::Leave);
         assert_eq!(control(&mut prompt, 'd'), Outcome::Leave);
-        assert_eq!(typed(&mut prompt, "quit"), Outcome::Leave);
+        assert_eq!(type_text(&mut prompt, "quit"), Outcome::Leave);
         press(&mut prompt, KeyCode::Char('x'));
         press(&mut prompt, KeyCode::Home);
         assert_eq!(control(&mut prompt, 'd'), Outcome::Edited, "it deletes");

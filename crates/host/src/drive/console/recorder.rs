@@ -1,4 +1,4 @@
-//! A session as a file: one JSON object in a line, with the time in ms.
+//! A session as a file: one JSON object per line, with the time in ms.
 
 use std::fs::File;
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -36,7 +36,7 @@ pub enum Event {
         format: String,
         /// The port of the board.
         port: String,
-        /// The robot's first line, unless it was not reset.
+        /// The robot's first line; `None` if it was not reset.
         banner: Option<String>,
     },
     /// A line of the user.
@@ -58,7 +58,7 @@ pub enum Event {
     Gone,
 }
 
-/// Writes a session.
+/// The recorder of a session.
 #[derive(Debug)]
 pub struct Recorder<W: Write> {
     /// The file's name for messages.
@@ -70,20 +70,20 @@ pub struct Recorder<W: Write> {
 /// A new file for a session.
 ///
 /// # Errors
-/// It is there already, or cannot be made.
+/// It already exists, or cannot be made.
 pub fn create(path: &Path) -> Result<Recorder<BufWriter<File>>, Failure> {
     let name = path.display().to_string();
     match File::create_new(path) {
         Ok(file) => Ok(Recorder::new(name, BufWriter::new(file), Instant::now())),
         Err(error) if error.kind() == ErrorKind::AlreadyExists => Err(Failure::Input(format!(
-            "{name} is there already; name a new file for the session"
+            "{name} already exists; name a new file for the session"
         ))),
-        Err(error) => Err(files::cannot(path, &error)),
+        Err(error) => Err(files::write_failure(path, &error)),
     }
 }
 
 impl<W: Write> Recorder<W> {
-    /// A session that begins now, in a file of this name.
+    /// A new session in a file of this name.
     pub fn new(name: String, out: W, begin: Instant) -> Self {
         Self { name, out, begin }
     }
@@ -95,7 +95,8 @@ impl<W: Write> Recorder<W> {
     pub fn write(&mut self, now: Instant, event: Event) -> Result<(), Failure> {
         let ms = now.saturating_duration_since(self.begin).as_millis() as u64;
         let is_pose = matches!(event, Event::Pose { .. });
-        json::line(&mut self.out, &Entry { ms, event }).map_err(|error| self.cannot(&error))?;
+        json::line(&mut self.out, &Entry { ms, event })
+            .map_err(|error| self.write_failure(&error))?;
         if is_pose { Ok(()) } else { self.flush() }
     }
 
@@ -104,11 +105,11 @@ impl<W: Write> Recorder<W> {
     /// # Errors
     /// As [`Recorder::write`].
     pub fn flush(&mut self) -> Result<(), Failure> {
-        self.out.flush().map_err(|error| self.cannot(&error))
+        self.out.flush().map_err(|error| self.write_failure(&error))
     }
 
-    fn cannot(&self, error: &io::Error) -> Failure {
-        files::cannot(Path::new(&self.name), error)
+    fn write_failure(&self, error: &io::Error) -> Failure {
+        files::write_failure(Path::new(&self.name), error)
     }
 }
 
@@ -122,7 +123,7 @@ impl Event {
         }
     }
 
-    /// The event with its texts fit for a terminal: a file may hold anything.
+    /// The event with its texts made safe for a terminal, since a file may contain anything.
     #[cfg(feature = "simulator")]
     #[must_use]
     pub fn plain(self) -> Self {
@@ -203,7 +204,7 @@ mod tests {
     fn a_file_that_is_there_is_not_overwritten() {
         let file = tempfile::NamedTempFile::new().expect("a file");
         let words = create(file.path()).expect_err("it is there").to_string();
-        assert!(words.ends_with("is there already; name a new file for the session"));
+        assert!(words.ends_with("already exists; name a new file for the session"));
     }
 
     #[test]

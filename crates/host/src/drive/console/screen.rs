@@ -11,7 +11,7 @@ use super::prompt::Prompt;
 
 const SIGN: &str = "> ";
 
-/// A terminal whose keys come one by one. It is as before when this is dropped.
+/// A terminal that reports single keys. Dropping it restores the terminal.
 pub struct Screen {
     out: Stdout,
     /// The columns of the two lines at the bottom, the second as far as the cursor, if
@@ -22,10 +22,10 @@ pub struct Screen {
 }
 
 impl Screen {
-    /// Takes the terminal.
+    /// Takes over the terminal.
     ///
     /// # Errors
-    /// It is none.
+    /// Standard output is not a terminal.
     pub fn new() -> io::Result<Self> {
         let mut screen = Self {
             out: io::stdout(),
@@ -36,20 +36,20 @@ impl Screen {
         Ok(screen)
     }
 
-    /// Takes the terminal again, after [`Screen::leave`].
+    /// Takes over the terminal again, after [`Screen::leave`].
     ///
     /// # Errors
-    /// It is gone.
+    /// The terminal is gone.
     pub fn enter(&mut self) -> io::Result<()> {
         super::terminal::end_when_gone();
         terminal::enable_raw_mode()?;
         execute!(self.out, event::EnableBracketedPaste)
     }
 
-    /// Gives the terminal back as it was.
+    /// Restores the terminal.
     ///
     /// # Errors
-    /// It is gone.
+    /// The terminal is gone.
     pub fn leave(&mut self) -> io::Result<()> {
         self.erase()?;
         execute!(self.out, event::DisableBracketedPaste)?;

@@ -3,12 +3,15 @@
 //!
 //! The robot answers each line once and in order, and prints other lines in between. The
 //! line at the bottom of the console asks for `status` twice a second; these answers are
-//! not shown, and a user's line never waits for more than one of them. A program that sends a
-//! script has to learn that a line was refused, so failed lines are counted.
+//! not shown, and a user's line never waits for more than one of them. `stop` waits for none: it
+//! is sent at once, and again until the robot answers it, since a link may lose a line or its
+//! answer. A program that sends a script has to learn that a line was refused, so failed lines
+//! are counted.
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
+use super::deadman::{self, Deadman};
 use super::recorder::Event;
 use super::status::Status;
 use crate::Failure;
@@ -16,7 +19,15 @@ use crate::Failure;
 /// Interval between two questions for the robot's status.
 const POLL: Duration = Duration::from_millis(500);
 /// Time that an answer may take.
-const PATIENCE: Duration = Duration::from_millis(2000);
+const TIMEOUT: Duration = Duration::from_millis(2000);
+/// Time that an answer to the program's own `status` may take.
+const STATUS_TIMEOUT: Duration = Duration::from_millis(600);
+/// Time from one `stop` to the next while none is answered.
+const AGAIN: Duration = Duration::from_millis(250);
+/// Time within which the answers to the other ones have come.
+const ECHOES: Duration = Duration::from_millis(500);
+/// Time without an answer to `stop` after which the user is told.
+const SILENCE: Duration = Duration::from_millis(800);
 
 /// A line that waits for its answer.
 #[derive(Debug)]
@@ -27,13 +38,65 @@ enum Question {
     Status,
     /// `watch`, by this program.
     Watch,
+    /// A line about `deadman`, by this program.
+    Deadman(String),
+}
+
+/// A line that waits to be sent.
+#[derive(Debug)]
+enum Queued {
+    /// A line of the user.
+    Line(String),
+    /// A line about `deadman`, by this program.
+    Deadman(deadman::Step),
+}
+
+impl Question {
+    fn timeout(&self) -> Duration {
+        match self {
+            Self::Status => STATUS_TIMEOUT,
+            _ => TIMEOUT,
+        }
+    }
+
+    /// True if this answer can be its own; one that came too late is not.
+    fn is_answered_by(&self, answer: &str) -> bool {
+        let line = match self {
+            Self::Line(line) | Self::Deadman(line) => line.to_ascii_lowercase(),
+            Self::Status => "status".to_owned(),
+            Self::Watch => "watch".to_owned(),
+        };
+        let word = match line.split_whitespace().next() {
+            Some("status") => "gait=",
+            Some("?") => "help",
+            word => word.unwrap_or_default(),
+        };
+        let rest = answer.strip_prefix("ok ");
+        rest.is_none_or(|rest| rest.starts_with(word))
+    }
+}
+
+/// A `stop` without an answer.
+#[derive(Debug)]
+struct PendingStop {
+    since: Instant,
+    next: Instant,
+    times: u32,
+    is_said: bool,
 }
 
 /// The state of a dialogue with the robot.
 #[derive(Debug)]
 pub struct Session {
     waiting: Option<(Question, Instant)>,
-    queue: VecDeque<String>,
+    halt: Option<PendingStop>,
+    /// True from an answer that was missing until the next one, so that it is said once.
+    is_silent: bool,
+    /// Until then, answers to repeated `stop` lines may come.
+    echoes_until: Instant,
+    queue: VecDeque<Queued>,
+    /// There if a person drives.
+    deadman: Option<Deadman>,
     polls: bool,
     next_poll: Instant,
     /// True while the program asks for poses by `watch`, until the user does.
@@ -48,13 +111,17 @@ pub struct Session {
 }
 
 impl Session {
-    /// A dialogue that begins now. `polls`: ask for the status; `watches`: ask for
+    /// A new dialogue. `polls`: ask for the status; `watches`: ask for
     /// every pose.
     #[must_use]
     pub fn new(now: Instant, polls: bool, watches: bool) -> Self {
         Self {
             waiting: None,
+            halt: None,
+            is_silent: false,
+            echoes_until: now,
             queue: VecDeque::new(),
+            deadman: None,
             polls,
             next_poll: now,
             watches,
@@ -67,28 +134,73 @@ impl Session {
         }
     }
 
+    /// The same dialogue with a person, who may leave a robot that walks out of reach: so
+    /// `deadman` is set while it walks.
+    #[must_use]
+    pub fn with_person(mut self) -> Self {
+        self.deadman = Some(Deadman::default());
+        self
+    }
+
     /// Queues a line of the user.
     pub fn queue(&mut self, line: &str) {
         if line.split_whitespace().next() == Some("watch") {
             self.watches = false;
         }
-        self.queue.push_back(line.to_owned());
+        let walks = self.status.as_ref().is_some_and(Status::walks);
+        let (before, after) = match &mut self.deadman {
+            Some(deadman) => deadman.around(line, walks),
+            None => (&[][..], &[][..]),
+        };
+        self.queue
+            .extend(before.iter().copied().map(Queued::Deadman));
+        self.queue.push_back(Queued::Line(line.to_owned()));
+        self.queue
+            .extend(after.iter().copied().map(Queued::Deadman));
+    }
+
+    /// The line that gives the robot its own `deadman` back before the program leaves it, so
+    /// that it goes on with its gait.
+    pub fn last_line(&mut self) -> Option<String> {
+        let deadman = self.deadman.as_mut().filter(|deadman| deadman.is_set)?;
+        deadman.line(deadman::Step::Restore)
+    }
+
+    /// Stops the robot. A line that waits would have it walk on, so it is dropped.
+    pub fn stop(&mut self, now: Instant) {
+        self.queue.clear();
+        self.sent += 1;
+        self.events.push(Event::Sent("stop".to_owned()));
+        self.halt.get_or_insert(PendingStop {
+            since: now,
+            next: now,
+            times: 0,
+            is_said: false,
+        });
     }
 
     /// The line to send now, if there is one.
     pub fn next_line(&mut self, now: Instant) -> Option<String> {
-        if self.waiting.is_some() {
+        if let Some(halt) = &mut self.halt {
+            if now < halt.next {
+                return None;
+            }
+            halt.next = now + AGAIN;
+            halt.times += 1;
+            self.echoes_until = now + ECHOES;
+            return Some("stop".to_owned());
+        }
+        if self.waiting.is_some() || now < self.echoes_until {
             return None;
         }
         let (question, line) = if self.watch_due {
             self.watch_due = false;
             (Question::Watch, "watch 1".to_owned())
-        } else if let Some(line) = self.queue.pop_front() {
-            self.sent += 1;
-            self.events.push(Event::Sent(line.clone()));
-            (Question::Line(line.clone()), line)
+        } else if let Some((question, line)) = self.queued() {
+            (question, line)
         } else if self.polls && now >= self.next_poll {
-            self.next_poll = now + POLL;
+            let drives = self.deadman.as_ref().is_some_and(|it| it.is_set);
+            self.next_poll = now + if drives { deadman::LINE } else { POLL };
             (Question::Status, "status".to_owned())
         } else {
             return None;
@@ -97,44 +209,147 @@ impl Session {
         Some(line)
     }
 
-    /// Takes a line of the robot; returns it if it is to be shown.
+    fn queued(&mut self) -> Option<(Question, String)> {
+        while let Some(queued) = self.queue.pop_front() {
+            match queued {
+                Queued::Line(line) => {
+                    self.sent += 1;
+                    self.events.push(Event::Sent(line.clone()));
+                    return Some((Question::Line(line.clone()), line));
+                }
+                Queued::Deadman(step) => {
+                    if let Some(line) = self.deadman.as_mut().and_then(|it| it.line(step)) {
+                        return Some((Question::Deadman(line.clone()), line));
+                    }
+                }
+            }
+        }
+        None
+    }
+
+    /// Drops what waits, since the robot has not confirmed its `deadman`: a gait would go on out of
+    /// reach.
+    fn unsure(&mut self) -> Option<String> {
+        self.queue.clear();
+        if let Some(deadman) = &mut self.deadman {
+            deadman.is_set = false;
+        }
+        let words = "(not sent: the robot has not confirmed that it stops when it hears nothing)";
+        Some(words.to_owned())
+    }
+
+    /// Gives a robot that does not walk, and is not about to, its own `deadman` back.
+    fn end_drive(&mut self) {
+        let walks = self.status.as_ref().is_some_and(Status::walks);
+        if let Some(deadman) = &self.deadman
+            && deadman.is_set
+            && !walks
+            && self.queue.is_empty()
+        {
+            self.queue
+                .push_back(Queued::Deadman(deadman::Step::Restore));
+        }
+    }
+
+    /// Handles a line of the robot; returns it if the user should see it.
     pub fn receive(&mut self, line: &str) -> Option<String> {
         let shown = Some(line.to_owned());
+        let stands = self.halt.is_some() && cannot_move(line);
+        if (line == "ok stop" || stands) && !self.asks_to_stop() {
+            return self.stopped(line).then_some(shown).flatten();
+        }
+        if let (Some((Question::Deadman(_), _)), Some(deadman)) = (&self.waiting, &mut self.deadman)
+            && deadman.take_answer_line(line)
+        {
+            return None;
+        }
         if line.starts_with('#') {
             self.events.push(Event::of_note(line));
             if line.starts_with("# lizard ") {
                 // The board has restarted, and has forgotten the question.
                 self.waiting = None;
                 self.watch_due = self.watches;
+                self.deadman = self.deadman.take().map(|_| Deadman::default());
             }
             return shown.filter(|_| !(self.watches && line.starts_with("# t=")));
         }
+        self.is_silent = false;
         let status = Status::parse(line);
         self.status = status.clone().or(self.status.take());
-        match self.waiting.take() {
+        match self
+            .waiting
+            .take_if(|(question, _)| question.is_answered_by(line))
+        {
             Some((Question::Status, _)) if status.is_some() => {
                 self.events.push(Event::Status(line.to_owned()));
+                self.end_drive();
+                return None;
+            }
+            Some((Question::Deadman(_), _)) => {
+                if line.starts_with("err ") {
+                    return self.unsure();
+                }
                 return None;
             }
             Some((Question::Watch, _)) => return None,
             Some((Question::Line(sent), _)) if line.starts_with("err ") => self.fail(sent, line),
+            Some((Question::Line(sent), _)) => {
+                if let Some(deadman) = &mut self.deadman {
+                    deadman.follow(&sent);
+                }
+            }
             _ => {}
         }
         self.events.push(Event::Answer(line.to_owned()));
         shown
     }
 
-    /// The message about a question whose answer has not come in time.
+    /// True if a script waits for the answer to its own `stop`.
+    fn asks_to_stop(&self) -> bool {
+        matches!(&self.waiting, Some((Question::Line(line), _)) if line == "stop")
+    }
+
+    /// Takes an answer to `stop`; false if one came before, so that it belongs to no line.
+    fn stopped(&mut self, line: &str) -> bool {
+        let Some(halt) = self.halt.take() else {
+            return false;
+        };
+        if halt.times == 1 {
+            self.echoes_until = halt.since;
+        }
+        // Answers come in order: that of the line before has been lost.
+        if let Some((Question::Line(sent), _)) = self.waiting.take() {
+            self.fail(sent, "no answer");
+        }
+        self.events.push(Event::Answer(line.to_owned()));
+        true
+    }
+
+    /// The message about a question that was not answered in time.
     pub fn overdue(&mut self, now: Instant) -> Option<String> {
-        let is_late = |since: Instant| now.saturating_duration_since(since) >= PATIENCE;
-        let (question, _) = self.waiting.take_if(|(_, since)| is_late(*since))?;
+        let since = |begin: Instant| now.saturating_duration_since(begin);
+        if let Some(halt) = &mut self.halt
+            && !halt.is_said
+            && since(halt.since) >= SILENCE
+        {
+            halt.is_said = true;
+            return Some("(no answer: it may go on; stop is sent until it answers)".to_owned());
+        }
+        let is_late =
+            |(question, begin): &mut (Question, Instant)| since(*begin) >= question.timeout();
+        let (question, _) = self.waiting.take_if(is_late)?;
         Some(match question {
             Question::Line(line) => {
                 let message = format!("(no answer to `{line}`)");
                 self.fail(line, "no answer");
                 message
             }
-            Question::Status | Question::Watch => "(the robot does not answer)".to_owned(),
+            Question::Deadman(_) => return self.unsure(),
+            Question::Status | Question::Watch if self.is_silent => return None,
+            Question::Status | Question::Watch => {
+                self.is_silent = true;
+                "(the robot does not answer)".to_owned()
+            }
         })
     }
 
@@ -146,13 +361,13 @@ impl Session {
     /// Succeeds if the robot accepted all lines.
     ///
     /// # Errors
-    /// It did not; the sentence names the first such line.
+    /// The robot refused a line; the sentence names the first one.
     pub fn verdict(&self) -> Result<(), Failure> {
         let Some((line, why)) = &self.first_failed else {
             return Ok(());
         };
         Err(Failure::Impossible(format!(
-            "the robot did not take {} of {} lines, the first `{line}`: {why}",
+            "the robot did not accept {} of {} lines, the first `{line}`: {why}",
             self.failed, self.sent
         )))
     }
@@ -160,7 +375,7 @@ impl Session {
     /// True if no answer is outstanding and no line is queued.
     #[must_use]
     pub fn is_idle(&self) -> bool {
-        self.waiting.is_none() && self.queue.is_empty()
+        self.waiting.is_none() && self.halt.is_none() && self.queue.is_empty()
     }
 
     /// The latest status.
@@ -175,138 +390,10 @@ impl Session {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const STATUS: &str = "ok gait=walk phase=0 pose=1,2,3,4 margin=0.5 guard=clear fault=none";
-
-    #[test]
-    fn a_persons_line_is_sent_when_the_answer_before_it_has_come() {
-        let now = Instant::now();
-        let mut session = Session::new(now, true, false);
-        assert_eq!(session.next_line(now).as_deref(), Some("status"));
-        session.queue("walk");
-        session.queue("speed 50");
-        assert_eq!(session.next_line(now), None, "the status has not come");
-        assert_eq!(session.receive(STATUS), None, "the user did not ask for it");
-        assert_eq!(session.next_line(now).as_deref(), Some("walk"));
-        assert_eq!(session.receive("# fault: x").as_deref(), Some("# fault: x"));
-        assert_eq!(session.next_line(now), None);
-        assert_eq!(session.receive("ok walk").as_deref(), Some("ok walk"));
-        assert_eq!(session.next_line(now).as_deref(), Some("speed 50"));
-        assert_eq!(
-            session.receive("ok speed 50").as_deref(),
-            Some("ok speed 50")
-        );
-        assert!(session.is_idle());
-        assert_eq!(session.next_line(now), None, "the next status is not due");
-        assert_eq!(session.next_line(now + POLL).as_deref(), Some("status"));
-        assert!(session.status().is_some_and(Status::walks));
-    }
-
-    #[test]
-    fn a_status_that_the_person_asks_for_is_shown() {
-        let now = Instant::now();
-        let mut session = Session::new(now, false, false);
-        session.queue("status");
-        session.next_line(now);
-        assert_eq!(session.receive(STATUS).as_deref(), Some(STATUS));
-    }
-
-    #[test]
-    fn after_a_reset_nothing_is_waited_for() {
-        let now = Instant::now();
-        let mut session = Session::new(now, false, true);
-        assert_eq!(session.next_line(now).as_deref(), Some("watch 1"));
-        session.receive("ok watch 1");
-        session.queue("walk");
-        session.next_line(now);
-        session.receive("# lizard 0.2.0");
-        assert_eq!(
-            session.next_line(now).as_deref(),
-            Some("watch 1"),
-            "asked for again"
-        );
-    }
-
-    #[test]
-    fn poses_are_shown_only_if_the_person_asked_for_them() {
-        let now = Instant::now();
-        let mut session = Session::new(now, false, true);
-        session.next_line(now);
-        session.receive("ok watch 1");
-        assert_eq!(session.receive("# t=1 pose=1,2,3,4"), None);
-        session.queue("watch 50");
-        session.next_line(now);
-        session.receive("ok watch 50");
-        assert!(session.receive("# t=50 pose=1,2,3,4").is_some());
-    }
-
-    #[test]
-    fn a_missing_answer_is_reported_once_and_the_next_line_is_sent() {
-        let now = Instant::now();
-        let mut session = Session::new(now, false, false);
-        session.queue("walk");
-        session.queue("stop");
-        session.next_line(now);
-        assert_eq!(session.overdue(now), None);
-        let later = now + PATIENCE;
-        assert_eq!(
-            session.overdue(later).as_deref(),
-            Some("(no answer to `walk`)")
-        );
-        assert_eq!(session.overdue(later), None);
-        assert_eq!(session.next_line(later).as_deref(), Some("stop"));
-    }
-
-    #[test]
-    fn every_event_is_kept_in_order() {
-        let now = Instant::now();
-        let mut session = Session::new(now, true, false);
-        session.queue("walk");
-        session.next_line(now);
-        session.receive("# note");
-        session.receive("err 1 no");
-        session.next_line(now);
-        session.receive(STATUS);
-        let events = session.take_events();
-        assert_eq!(
-            events,
-            [
-                Event::Sent("walk".to_owned()),
-                Event::Note("# note".to_owned()),
-                Event::Answer("err 1 no".to_owned()),
-                Event::Status(STATUS.to_owned()),
-            ]
-        );
-        assert!(session.take_events().is_empty());
-    }
-
-    #[test]
-    fn lines_that_fail_are_counted_once_and_the_first_is_named() {
-        let now = Instant::now();
-        let mut session = Session::new(now, false, false);
-        let mut ask = |line: &str, answer: Option<&str>| {
-            session.queue(line);
-            session.next_line(now);
-            match answer {
-                Some(answer) => drop(session.receive(answer)),
-                None => drop(session.overdue(now + PATIENCE)),
-            }
-            session.verdict().map_err(|failure| failure.to_string())
-        };
-        assert_eq!(ask("walk", Some("ok walk")), Ok(()));
-        let first =
-            |count| format!("the robot did not take {count} lines, the first `fly`: err 1 no");
-        assert_eq!(ask("fly", Some("err 1 no")), Err(first("1 of 2")));
-        assert_eq!(ask("swim", Some("err 2 no")), Err(first("2 of 3")));
-        assert_eq!(ask("stop", None), Err(first("3 of 4")));
-        session.receive("err 3 late");
-        assert!(
-            session
-                .verdict()
-                .is_err_and(|it| it.to_string() == first("3 of 4"))
-        );
-    }
+/// True if a line refuses `stop` to a robot that has no pulses: it rests, or its flash has no robot.
+fn cannot_move(line: &str) -> bool {
+    line.starts_with("err 7 ") || line.starts_with("err 10 ")
 }
+
+#[cfg(test)]
+mod tests;

@@ -64,7 +64,7 @@ impl Status {
         })
     }
 
-    /// True if the servos turn, or may at any moment.
+    /// True if the servos turn, or may turn at any moment.
     #[must_use]
     pub fn walks(&self) -> bool {
         !matches!(self.gait.as_str(), "stand" | "pose" | "stop" | "rest")
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_status_is_none() {
+    fn other_lines_are_not_a_status() {
         for line in [
             "ok walk",
             "err 1 no",

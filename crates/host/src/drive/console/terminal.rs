@@ -13,28 +13,28 @@ pub fn is_there() -> bool {
 
 /// Interval between checks of the terminal, and the number of checks before the program is
 /// ended.
-const LOOK: Duration = Duration::from_millis(200);
-const PATIENCE: u32 = 10;
+const CHECK_INTERVAL: Duration = Duration::from_millis(200);
+const CHECKS: u32 = 10;
 
-/// Ends the program two seconds after its terminal has gone, if it has not ended by itself:
-/// a terminal that goes at the very moment when a key is waited for is waited for without
-/// end. No file is half written then: each is written at once.
+/// Ends the program two seconds after its terminal was closed, if it has not ended by itself:
+/// a wait for a key never returns if the terminal is closed in the middle of it. No file is
+/// left half written, since each file is written at once.
 pub fn end_when_gone() {
-    let look = || {
+    let check = || {
         let mut gone = 0;
-        while gone < PATIENCE {
-            thread::sleep(LOOK);
+        while gone < CHECKS {
+            thread::sleep(CHECK_INTERVAL);
             gone = if is_there() { 0 } else { gone + 1 };
         }
         std::process::exit(0)
     };
     static ONCE: Once = Once::new();
-    // Without this thread the program is what it was.
-    ONCE.call_once(|| drop(thread::Builder::new().spawn(look)));
+    // The program also works without this thread.
+    ONCE.call_once(|| drop(thread::Builder::new().spawn(check)));
 }
 
-/// Stops this program until the shell lets it go on, as Ctrl-Z does. The terminal has to
-/// be as it was found.
+/// Suspends this program until the shell resumes it, as Ctrl-Z does. The terminal must
+/// have been restored before.
 ///
 /// # Errors
 /// The system refuses.

@@ -1,5 +1,5 @@
-//! For tests: a board whose boot loader is played, byte for byte as optiboot.c, version 4.4,
-//! or ATmegaBOOT_168.c has it, with troubles where a test wants them.
+//! A test double: a board whose boot loader behaves byte for byte like optiboot.c, version 4.4, or
+//! ATmegaBOOT_168.c, with faults that a test can inject.
 
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};
@@ -20,7 +20,7 @@ pub struct Double {
     pub garbage: Vec<u8>,
     /// The number of calls that are ignored after each reset.
     pub ignored_calls: usize,
-    /// The loader never answers.
+    /// True if the loader never answers.
     pub mute: bool,
     /// The number of the byte to the board that is lost, counted from 0.
     pub lost_to: Option<usize>,
@@ -101,7 +101,7 @@ impl Double {
     }
 
     /// Answers a command if it is complete.
-    fn obey(&mut self) {
+    fn answer_command(&mut self) {
         let command = std::mem::take(&mut self.command);
         let length = match command[0] {
             b'0' | b'Q' | b'u' => 2,
@@ -214,7 +214,7 @@ impl Write for Double {
                 self.command.clear();
             }
             if !self.command.is_empty() {
-                self.obey();
+                self.answer_command();
             }
         }
         Ok(bytes.len())

@@ -13,7 +13,7 @@ use crate::shared::firmware::CODE;
 /// The image of a robot: the code inside this program with this robot's section behind it.
 ///
 /// # Errors
-/// Never: a test makes one for every robot there is.
+/// Never: a test makes one for every built-in robot.
 pub fn image(robot: &Robot) -> Result<Image, ImageError> {
     let mut bytes = Image::from_hex(CODE)?.bytes().to_vec();
     bytes.resize(START.into(), BLANK);
@@ -32,7 +32,7 @@ pub fn robot_alone(robot: &Robot) -> Result<Image, ImageError> {
 /// Reads an image from a file of Intel HEX.
 ///
 /// # Errors
-/// It cannot be read, or is no image for a UNO.
+/// It cannot be read, or is not an image for a UNO.
 pub fn read(path: &Path) -> Result<Image, Failure> {
     let name = path.display();
     let text = files::read_text(path)?;
@@ -70,14 +70,16 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_is_no_image_is_named() {
+    fn the_error_names_a_file_that_is_not_an_image() {
         let file = tempfile::NamedTempFile::new().expect("a file");
         std::fs::write(file.path(), "[servo]\n").expect("it is written");
-        let words = read(file.path()).expect_err("it is no image").to_string();
+        let words = read(file.path())
+            .expect_err("it is not an image")
+            .to_string();
         let name = file.path().display();
         assert_eq!(
             words,
-            format!("{name}: line 1 is no Intel HEX: missing start code ':'")
+            format!("{name}: line 1 is not Intel HEX: missing start code ':'")
         );
     }
 }

@@ -9,7 +9,7 @@ use lizard_core::numbers::mark::Mark;
 use lizard_core::numbers::section::START;
 
 use super::image::{BLANK, Image, PAGE};
-use crate::shared::firmware::{named, robot_in};
+use crate::shared::firmware::{label, robot_in};
 
 /// The first page of a board whose upload was not finished: `rjmp .-2`, a jump to itself.
 pub(super) const IDLE: [u8; 2] = [0xff, 0xcf];
@@ -19,7 +19,7 @@ const ROBOT: usize = START as usize;
 
 /// The contents of a board's flash, compared with an image.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Found {
+pub struct FlashContents {
     /// The program in flash.
     pub program: Program,
     /// The robot behind it, if it is a lizard's code.
@@ -31,18 +31,18 @@ pub struct Found {
 /// The code in a flash.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Program {
-    /// Nothing: as a chip is sold.
+    /// Nothing, as on a new chip.
     Blank,
-    /// An upload was not finished; the chip does nothing.
+    /// Half a program: an upload was not finished, and the chip does nothing.
     Half,
     /// The firmware of a lizard.
     Lizard {
         /// The version mark in the code.
         mark: Mark,
-        /// True if it is not the code that is to be written, though it may have its version.
+        /// True if it differs from the code to be written, even if the version is the same.
         differs: bool,
     },
-    /// A program that is no lizard firmware.
+    /// A program that is not lizard firmware.
     Other {
         /// The size up to the last byte; none if only the first page was read.
         bytes: Option<usize>,
@@ -60,7 +60,7 @@ pub enum TheirRobot {
     Damaged,
 }
 
-impl Found {
+impl FlashContents {
     /// Compares `flash`, from address 0 to the boot loader, with an image. For an image that is
     /// a robot alone, only the first page and the robot's pages were read.
     #[must_use]
@@ -87,7 +87,7 @@ impl Found {
         let has_code = matches!(program, Program::Lizard { .. }) || !image.is_robot_alone();
         let has_image = has_code && pages.iter().all(|page| is_there(&page));
         let robot = match robot_in(flash) {
-            Some(robot) => TheirRobot::Named(named(&robot)),
+            Some(robot) => TheirRobot::Named(label(&robot)),
             None if is_blank(&flash[ROBOT..ROBOT + PAGE]) => TheirRobot::None,
             None => TheirRobot::Damaged,
         };
@@ -103,7 +103,7 @@ fn is_blank(bytes: &[u8]) -> bool {
     bytes.iter().all(|&byte| byte == BLANK)
 }
 
-impl fmt::Display for Found {
+impl fmt::Display for FlashContents {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("the board has ")?;
         match self.program {
@@ -147,7 +147,7 @@ mod tests {
             for (address, byte) in changes {
                 flash[*address] = *byte;
             }
-            Found::in_flash(&flash, &image).to_string()
+            FlashContents::in_flash(&flash, &image).to_string()
         };
         assert_eq!(found(&[]), "the board has no program");
         assert_eq!(
@@ -172,8 +172,8 @@ mod tests {
         let mut flash = image.bytes().to_vec();
         flash.resize(BOOT, 0xff);
         let lizard = format!("the board has lizard {}", env!("CARGO_PKG_VERSION"));
-        let its = |robot: &Robot| format!("{lizard} robot {}", named(robot.firmware()));
-        let found = |flash: &[u8], image: &Image| Found::in_flash(flash, image).to_string();
+        let its = |robot: &Robot| format!("{lizard} robot {}", label(robot.firmware()));
+        let found = |flash: &[u8], image: &Image| FlashContents::in_flash(flash, image).to_string();
         assert_eq!(found(&flash, &image), format!("{} already", its(&paper)));
         assert_eq!(found(&flash, &alone), format!("{} already", its(&paper)));
         let other = file::image(&large).expect("it fits");

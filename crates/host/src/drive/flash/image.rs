@@ -46,19 +46,19 @@ pub struct Page {
 /// The reason why bytes are no valid image.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ImageError {
-    /// A chip starts at address 0.
+    /// There is no code at address 0, where the chip starts.
     #[error("there is no code at address 0, where the chip starts")]
     NoStart,
-    /// A robot without a byte.
+    /// The robot's section is empty.
     #[error("there is no robot")]
     NoRobot,
     /// The code reaches into the boot loader.
     #[error("the firmware has {0} bytes; {BOOT} fit before the boot loader")]
     Long(usize),
-    /// A line is no Intel HEX.
-    #[error("line {line} is no Intel HEX: {reason}")]
+    /// A line is not Intel HEX.
+    #[error("line {line} is not Intel HEX: {reason}")]
     Line {
-        /// Counted from 1.
+        /// The line's number, counted from 1.
         line: usize,
         /// The error of the Intel HEX reader.
         reason: ihex::ReaderError,
@@ -66,21 +66,21 @@ pub enum ImageError {
     /// The last line is missing, and so perhaps others before it.
     #[error("the HEX file has no end: only a part of it is there")]
     NoEnd,
-    /// One address, two values.
+    /// An address is given two values.
     #[error("line {line} gives another value to address {address:#06x}")]
     Twice {
-        /// Counted from 1.
+        /// The line's number, counted from 1.
         line: usize,
         /// The address in flash.
         address: usize,
     },
-    /// The boot loader cannot write itself.
+    /// A line reaches into the boot loader, which cannot write itself.
     #[error(
         "line {line} is for address {address:#06x}; the boot loader, which is never written, \
          begins at {BOOT:#06x}"
     )]
     BootLoader {
-        /// Counted from 1.
+        /// The line's number, counted from 1.
         line: usize,
         /// The address of its last byte.
         address: usize,
@@ -97,7 +97,7 @@ impl Image {
     /// An image of these bytes, from address 0 on.
     ///
     /// # Errors
-    /// There are none, or too many.
+    /// There are no bytes, or too many.
     pub fn new(bytes: Vec<u8>) -> Result<Self, ImageError> {
         match bytes.len() {
             0 => Err(ImageError::NoStart),
@@ -130,7 +130,7 @@ impl Image {
     /// Reads Intel HEX.
     ///
     /// # Errors
-    /// The text is no Intel HEX, is cut off, contradicts itself, or is not for this chip.
+    /// The text is not Intel HEX, is cut off, contradicts itself, or is not for this chip.
     pub fn from_hex(text: &str) -> Result<Self, ImageError> {
         let mut flash = vec![None; BOOT];
         let mut base = 0;
@@ -249,7 +249,7 @@ mod tests {
 
     fn complaint(text: &str) -> String {
         Image::from_hex(text)
-            .expect_err("it is no image")
+            .expect_err("it is not an image")
             .to_string()
     }
 
@@ -299,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_is_refused_with_its_size() {
+    fn an_image_that_does_not_fit_is_refused_with_its_size() {
         let error = Image::new(vec![0; 32_257]).expect_err("too long");
         assert_eq!(
             error.to_string(),
@@ -312,8 +312,10 @@ mod tests {
     #[test]
     fn a_hex_file_that_is_wrong_is_refused_with_its_line() {
         let second = |line: &str| complaint(&HEX.replacen(":0400100001020304E2", line, 1));
-        assert!(second(":0400100001020304E3").starts_with("line 2 is no Intel HEX: invalid check"));
-        assert!(second("<html>").starts_with("line 2 is no Intel HEX: missing start"));
+        assert!(
+            second(":0400100001020304E3").starts_with("line 2 is not Intel HEX: invalid check")
+        );
+        assert!(second("<html>").starts_with("line 2 is not Intel HEX: missing start"));
         assert_eq!(
             second(":010004009566\n"),
             "line 2 gives another value to address 0x0004"

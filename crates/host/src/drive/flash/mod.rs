@@ -1,9 +1,9 @@
 //! `lizard flash`: the firmware into a UNO or a Nano, by the boot loader that each of them has.
 //!
-//! A boot loader is talked to over the same USB cable as the console, but within a second
-//! after a reset, without checksums, and a part of flash is wrong whenever a cable is pulled in
-//! the middle. So what is on the board is read first, only pages that differ are written, all of
-//! them are read back, and the place where the chip starts is written last.
+//! The boot loader uses the same USB cable as the console, but it listens only for a second after a
+//! reset, it has no checksums, and a cable pulled in the middle leaves a part of flash wrong. So
+//! what is on the board is read first, only pages that differ are written, all of them are read
+//! back, and the place where the chip starts is written last.
 
 mod chip;
 #[cfg(test)]
@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 pub use chip::Chip;
-pub use found::{Found, Program, TheirRobot};
+pub use found::{FlashContents, Program, TheirRobot};
 
 use crate::drive::console::find::{self, FindError, UsbPort};
 use crate::drive::console::link::{self, Link};
@@ -30,7 +30,7 @@ use crate::shared::progress::bar;
 use crate::{Failure, RobotFile};
 use image::{Image, PAGE};
 use serial_board::SerialBoard;
-use stk500::{Loader, Patience};
+use stk500::{Loader, Timeouts};
 use target::{Model, Target};
 use upload::{Done, Event, Step};
 
@@ -86,7 +86,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let board = write(board, &image, target).map_err(|error| at(error.to_string()))?;
     let banner = greet(board).map_err(|error| {
         at(format!(
-            "the flash is written and verified, but the firmware is not heard: {error}"
+            "the flash is written and verified, but the firmware does not answer: {error}"
         ))
     })?;
     writeln!(io::stdout(), "{banner}")?;
@@ -109,7 +109,7 @@ fn choose(ports: &[UsbPort]) -> Result<UsbPort, Failure> {
 
 /// True if a port has a USB chip that a Nano may have. Chips of Arduino are on its UNOs alone.
 fn may_be_nano(ports: &[UsbPort], name: &str) -> bool {
-    // It may have been given by a link, as those of /dev/serial/by-id.
+    // It may be a link, such as those of /dev/serial/by-id.
     let target = std::fs::canonicalize(name).unwrap_or_else(|_| name.into());
     let port = ports.iter().find(|port| target == Path::new(&port.name));
     port.is_some_and(|port| !port.is_arduinos())
@@ -119,7 +119,7 @@ fn may_be_nano(ports: &[UsbPort], name: &str) -> bool {
 /// starts.
 fn write(board: SerialBoard, image: &Image, target: Target) -> Result<SerialBoard, Failure> {
     let bar = bar(0, "{msg} {wide_bar} {percent} %");
-    let mut loader = Loader::new(board, Patience::default());
+    let mut loader = Loader::new(board, Timeouts::default());
     let begin = Instant::now();
     let done = upload::upload(&mut loader, image, target, &mut |event| match event {
         Event::Found(found) => bar.suspend(|| println(&found.to_string())),
@@ -131,7 +131,7 @@ fn write(board: SerialBoard, image: &Image, target: Target) -> Result<SerialBoar
             (before, now) if before != now => {
                 eprintln!("lizard: no answer at {before} baud; calling again at {now} baud");
             }
-            _ => eprintln!("lizard: {trouble}; the board is reset, and all begins again"),
+            _ => eprintln!("lizard: {trouble}; the board is reset for another attempt"),
         }),
         Event::Progress(step, done, of) => {
             bar.set_message(match step {
@@ -169,7 +169,7 @@ fn println(line: &str) {
 
 /// Waits for the firmware's first line.
 fn greet(board: SerialBoard) -> Result<String, link::LinkError> {
-    let mut link = Link::new(board, link::Patience::default());
+    let mut link = Link::new(board, link::Timeouts::default());
     let banner = link.greet()?;
     Ok(banner.unwrap_or_else(|| "the robot answers".to_owned()))
 }
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn a_board_with_a_usb_chip_of_arduino_is_no_nano_and_one_with_another_may_be() {
+    fn a_board_with_arduinos_usb_chip_is_not_a_nano_and_one_with_another_chip_may_be() {
         let at = |name: &str, vendor| UsbPort {
             name: name.to_owned(),
             vendor,

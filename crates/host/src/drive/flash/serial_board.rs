@@ -15,7 +15,7 @@ const PULL: Duration = Duration::from_millis(50);
 /// A port that can be reopened.
 pub struct SerialBoard {
     name: String,
-    /// None for the moment between closing and opening.
+    /// `None` only between closing and reopening.
     port: Option<Box<dyn SerialPort>>,
     /// True just after opening, which resets a board as well.
     fresh: bool,
@@ -39,7 +39,7 @@ impl SerialBoard {
     }
 
     /// Toggles the lines that reset a board: DTR on a UNO, RTS on some copies.
-    fn pull(&mut self) -> io::Result<()> {
+    fn toggle_reset(&mut self) -> io::Result<()> {
         let port = self.port()?;
         for level in [false, true] {
             port.write_data_terminal_ready(level)?;
@@ -72,7 +72,7 @@ impl SerialBoard {
 impl Board for SerialBoard {
     fn reset(&mut self, baud: u32) -> io::Result<()> {
         let fresh = std::mem::take(&mut self.fresh);
-        match self.pull() {
+        match self.toggle_reset() {
             Ok(()) => {}
             // A pseudo terminal, as a simulated board has it, has no such lines; but opening it
             // resets that board. Nor have they a port that is gone, which then does not open.

@@ -1,10 +1,10 @@
-//! The language of the boot loaders of UNO and Nano: STK500, version 1.
+//! The protocol of the boot loaders of UNO and Nano: STK500, version 1.
 //!
 //! After a reset by its button or by USB's DTR line, the chip starts in the boot loader. It
 //! blinks, then listens for about a second, and starts the program in flash if nobody calls.
-//! Whatever it does not understand, once or some times, makes it start that program at once; then
-//! only another reset brings it back. Commands and answers have no checksums: what was written
-//! must be read back.
+//! One or a few bytes that it does not understand make it start that program at once; then only
+//! another reset starts the boot loader again. Commands and answers have no checksums: what was
+//! written must be read back.
 //!
 //! There are two of them, and which one a board has shows only in the speed at which it answers:
 //! see [`Kind`].
@@ -75,7 +75,7 @@ pub trait Board: Read + Write {
 
 /// Time limits for answers of a boot loader.
 #[derive(Debug, Clone, Copy)]
-pub struct Patience {
+pub struct Timeouts {
     /// After a reset: the loader blinks and does not listen. Bytes sent meanwhile overflow its
     /// receiver, and half a command makes it give up.
     pub blinks: Duration,
@@ -87,7 +87,7 @@ pub struct Patience {
     pub answer: Duration,
 }
 
-impl Default for Patience {
+impl Default for Timeouts {
     fn default() -> Self {
         Self {
             blinks: Duration::from_millis(400),
@@ -100,7 +100,7 @@ impl Default for Patience {
 
 /// The reason why a command failed.
 #[derive(Debug, thiserror::Error)]
-pub enum Trouble {
+pub enum LoaderError {
     /// No answer, or a part of one.
     #[error("the board does not answer")]
     Silent,
@@ -115,7 +115,7 @@ pub enum Trouble {
     Io(io::Error),
 }
 
-impl Trouble {
+impl LoaderError {
     /// True if another reset may help.
     #[must_use]
     pub fn may_pass(&self) -> bool {
@@ -123,10 +123,10 @@ impl Trouble {
     }
 }
 
-impl From<io::Error> for Trouble {
+impl From<io::Error> for LoaderError {
     fn from(error: io::Error) -> Self {
         match error.kind() {
-            // What could not be sent has no answer.
+            // A command that could not be sent has no answer.
             ErrorKind::TimedOut => Self::Silent,
             _ if is_gone(&error) => Self::Gone,
             _ => Self::Io(error),
@@ -138,13 +138,13 @@ impl From<io::Error> for Trouble {
 #[derive(Debug)]
 pub struct Loader<B> {
     board: B,
-    patience: Patience,
+    timeouts: Timeouts,
 }
 
 impl<B: Board> Loader<B> {
-    /// Nothing is sent before [`Loader::call`].
-    pub fn new(board: B, patience: Patience) -> Self {
-        Self { board, patience }
+    /// Makes a loader; nothing is sent before [`Loader::call`].
+    pub fn new(board: B, timeouts: Timeouts) -> Self {
+        Self { board, timeouts }
     }
 
     /// Returns the connection, with all bytes that were not read.
@@ -155,35 +155,35 @@ impl<B: Board> Loader<B> {
     /// Resets the board and calls a boot loader of this kind until it answers.
     ///
     /// # Errors
-    /// [`Trouble::Silent`] if it never does.
-    pub fn call(&mut self, kind: Kind) -> Result<(), Trouble> {
+    /// [`LoaderError::Silent`] if it never does.
+    pub fn call(&mut self, kind: Kind) -> Result<(), LoaderError> {
         self.board.reset(kind.baud())?;
         // What the program said before the reset comes meanwhile, too.
-        self.pass_over(self.patience.blinks)?;
+        self.pass_over(self.timeouts.blinks)?;
         for _ in 0..CALLS {
             self.board.write_all(&[GET_SYNC, END])?;
-            if self.finds_answer(self.patience.call)? {
-                return self.pass_over(self.patience.quiet);
+            if self.finds_answer(self.timeouts.call)? {
+                return self.pass_over(self.timeouts.quiet);
             }
         }
-        Err(Trouble::Silent)
+        Err(LoaderError::Silent)
     }
 
-    /// The three bytes that tell the kind of chip.
+    /// Reads the three bytes that identify the chip.
     ///
     /// # Errors
-    /// See [`Trouble`].
-    pub fn signature(&mut self) -> Result<[u8; 3], Trouble> {
+    /// See [`LoaderError`].
+    pub fn signature(&mut self) -> Result<[u8; 3], LoaderError> {
         let mut signature = [0; 3];
         self.command(&[READ_SIGNATURE], &mut signature)?;
         Ok(signature)
     }
 
-    /// A page of flash; `address` is that of its first byte.
+    /// Reads a page of flash; `address` is that of its first byte.
     ///
     /// # Errors
-    /// See [`Trouble`].
-    pub fn read_page(&mut self, address: usize) -> Result<[u8; PAGE], Trouble> {
+    /// See [`LoaderError`].
+    pub fn read_page(&mut self, address: usize) -> Result<[u8; PAGE], LoaderError> {
         self.go_to(address)?;
         let mut page = [0; PAGE];
         self.command(&[READ_PAGE, 0, PAGE as u8, FLASH], &mut page)?;
@@ -193,47 +193,47 @@ impl<B: Board> Loader<B> {
     /// Erases and writes a page of flash.
     ///
     /// # Errors
-    /// See [`Trouble`].
-    pub fn write_page(&mut self, address: usize, page: &[u8; PAGE]) -> Result<(), Trouble> {
+    /// See [`LoaderError`].
+    pub fn write_page(&mut self, address: usize, page: &[u8; PAGE]) -> Result<(), LoaderError> {
         self.go_to(address)?;
         let head = [PROGRAM_PAGE, 0, PAGE as u8, FLASH];
         self.command(&[head.as_slice(), page].concat(), &mut [])
     }
 
-    /// Ends the boot loader, which starts the program in flash.
+    /// Ends the boot loader, which then starts the program in flash.
     ///
     /// # Errors
-    /// See [`Trouble`].
-    pub fn leave(&mut self) -> Result<(), Trouble> {
+    /// See [`LoaderError`].
+    pub fn leave(&mut self) -> Result<(), LoaderError> {
         self.command(&[LEAVE], &mut [])
     }
 
     /// Sets the address of the next page. It is sent in words of two bytes.
-    fn go_to(&mut self, address: usize) -> Result<(), Trouble> {
+    fn go_to(&mut self, address: usize) -> Result<(), LoaderError> {
         let [low, high] = ((address / 2) as u16).to_le_bytes();
         self.command(&[LOAD_ADDRESS, low, high], &mut [])
     }
 
-    fn command(&mut self, bytes: &[u8], answer: &mut [u8]) -> Result<(), Trouble> {
+    fn command(&mut self, bytes: &[u8], answer: &mut [u8]) -> Result<(), LoaderError> {
         self.board.write_all(&[bytes, &[END]].concat())?;
-        let end = Instant::now() + self.patience.answer;
+        let end = Instant::now() + self.timeouts.answer;
         if self.byte(end)? != IN_SYNC {
-            return Err(Trouble::OutOfStep);
+            return Err(LoaderError::OutOfStep);
         }
         self.take(answer, end)?;
         if self.byte(end)? != OK {
-            return Err(Trouble::OutOfStep);
+            return Err(LoaderError::OutOfStep);
         }
         Ok(())
     }
 
     /// Searches for [`IN_SYNC`] and [`OK`] behind any other bytes.
-    fn finds_answer(&mut self, time: Duration) -> Result<bool, Trouble> {
+    fn finds_answer(&mut self, time: Duration) -> Result<bool, LoaderError> {
         let end = Instant::now() + time;
         let mut last = 0;
         loop {
             let byte = match self.byte(end) {
-                Err(Trouble::Silent) => return Ok(false),
+                Err(LoaderError::Silent) => return Ok(false),
                 byte => byte?,
             };
             if [last, byte] == [IN_SYNC, OK] {
@@ -247,8 +247,8 @@ impl<B: Board> Loader<B> {
         }
     }
 
-    /// Lets time pass and drops all bytes received meanwhile.
-    fn pass_over(&mut self, time: Duration) -> Result<(), Trouble> {
+    /// Waits, and drops all bytes received meanwhile.
+    fn pass_over(&mut self, time: Duration) -> Result<(), LoaderError> {
         let end = Instant::now() + time;
         let mut bytes = [0; 256];
         loop {
@@ -259,29 +259,29 @@ impl<B: Board> Loader<B> {
         }
     }
 
-    fn byte(&mut self, end: Instant) -> Result<u8, Trouble> {
+    fn byte(&mut self, end: Instant) -> Result<u8, LoaderError> {
         let mut byte = [0];
         self.take(&mut byte, end)?;
         Ok(byte[0])
     }
 
     /// Fills `bytes` and reads no more: further bytes may be for another reader.
-    fn take(&mut self, mut bytes: &mut [u8], end: Instant) -> Result<(), Trouble> {
+    fn take(&mut self, mut bytes: &mut [u8], end: Instant) -> Result<(), LoaderError> {
         while !bytes.is_empty() {
             let count = self.read(bytes)?;
             bytes = &mut bytes[count..];
-            // Looked at afterwards: this program may have been held up, not the board.
+            // Checked after reading, since this program may have been delayed, not the board.
             if count == 0 && Instant::now() >= end {
-                return Err(Trouble::Silent);
+                return Err(LoaderError::Silent);
             }
         }
         Ok(())
     }
 
     /// Reads the bytes that are available; returns 0 if there are none.
-    fn read(&mut self, bytes: &mut [u8]) -> Result<usize, Trouble> {
+    fn read(&mut self, bytes: &mut [u8]) -> Result<usize, LoaderError> {
         match self.board.read(bytes) {
-            Ok(0) => Err(Trouble::Gone),
+            Ok(0) => Err(LoaderError::Gone),
             Ok(count) => Ok(count),
             Err(error) => match error.kind() {
                 ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted => Ok(0),

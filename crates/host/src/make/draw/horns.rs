@@ -26,7 +26,7 @@ const SPLINE: (f64, f64) = (558.0, 158.0);
 const RADII: (f64, f64) = (52.0, 62.0);
 const CRANK: f64 = 150.0;
 
-/// The error of the example: its crank sits this many degrees clockwise of its angle.
+/// The error of the example: its crank is placed this many degrees clockwise of its angle.
 const EXAMPLE: f64 = 6.0;
 
 /// An SG-90 from above, mm: its width, its length, its shaft from one end.
@@ -71,9 +71,9 @@ fn on_page(at: Vector, scale: f64) -> (f64, f64) {
 }
 
 /// The point at a distance from another in some direction, on the page.
-fn toward(from: (f64, f64), degrees: f64, far: f64) -> (f64, f64) {
+fn point_toward(from: (f64, f64), degrees: f64, distance: f64) -> (f64, f64) {
     let (sin, cos) = sin_cos(degrees);
-    (from.0 + far * cos, from.1 - far * sin)
+    (from.0 + distance * cos, from.1 - distance * sin)
 }
 
 /// Part of a circle, counter-clockwise.
@@ -82,24 +82,24 @@ fn arc(middle: (f64, f64), radius: f64, from: f64, to: f64, colour: &str) -> Pol
     let points: Vec<(f64, f64)> = (0..=STEPS)
         .map(|step| {
             let part = step as f64 / STEPS as f64;
-            toward(middle, from + (to - from) * part, radius)
+            point_toward(middle, from + (to - from) * part, radius)
         })
         .collect();
     curve(&points, colour, 1.6)
 }
 
-/// An arc with a point at its end.
+/// An arc with an arrowhead at its end.
 fn arrow(middle: (f64, f64), radius: f64, from: f64, to: f64, colour: &str) -> Group {
     const BARB: f64 = 8.0;
-    let tip = toward(middle, to, radius);
+    let tip = point_toward(middle, to, radius);
     let along = if to > from { to - 90.0 } else { to + 90.0 };
-    let barb = |lean: f64| toward(tip, along + lean, BARB);
+    let barb = |lean: f64| point_toward(tip, along + lean, BARB);
     Group::new()
         .add(arc(middle, radius, from, to, colour))
         .add(curve(&[barb(28.0), tip, barb(-28.0)], colour, 1.6))
 }
 
-/// Plate, servos and the way ahead.
+/// The plate, the servos, and an arrow that points to the head.
 fn chassis(robot: &Robot) -> Group {
     let (scale, cranks) = (scale(robot), cranks(robot));
     let half = cranks
@@ -145,7 +145,7 @@ fn crank(robot: &Robot, servo: usize) -> Group {
     let (from, to) = (on_page(shaft, scale), on_page(tip, scale));
     let angle = robot.servos()[servo].neutral.rem_euclid(360.0);
     let colour = SERVO[servo];
-    // Three lines of words, outside of the robot.
+    // Three lines of text, outside of the robot.
     let base = if shaft.y > 0.0 {
         to.1 - 56.0
     } else {
@@ -174,7 +174,7 @@ fn example(robot: &Robot) -> Group {
     const LEFT: f64 = 404.0;
     let servo = 0;
     let exact = robot.servos()[servo].neutral;
-    let sits = exact - EXAMPLE;
+    let placed = exact - EXAMPLE;
     let number = servo + 1;
     let lines = [
         format!("{TEETH} teeth, {TOOTH}° apart. On the best"),
@@ -187,33 +187,38 @@ fn example(robot: &Robot) -> Group {
         "\u{2212} clockwise, seen from above.".into(),
     ];
     let mut group = Group::new()
-        .add(spline(sits))
+        .add(spline(placed))
         .add(
-            line(SPLINE, toward(SPLINE, sits, CRANK), GREY, 13.0)
+            line(SPLINE, point_toward(SPLINE, placed, CRANK), GREY, 13.0)
                 .set("stroke-opacity", 0.5)
                 .set("id", "sits"),
         )
         .add(
-            line(SPLINE, toward(SPLINE, exact, CRANK), SERVO[servo], 3.0)
-                .set("stroke-dasharray", "9 5")
-                .set("id", "should"),
+            line(
+                SPLINE,
+                point_toward(SPLINE, exact, CRANK),
+                SERVO[servo],
+                3.0,
+            )
+            .set("stroke-dasharray", "9 5")
+            .set("id", "should"),
         )
-        .add(arrow(SPLINE, CRANK + 12.0, sits - 7.0, exact, DARK))
+        .add(arrow(SPLINE, CRANK + 12.0, placed - 7.0, exact, DARK))
         .add(circle(SPLINE, 6.0, DARK))
         .add(text_end(
             "trim",
-            toward(SPLINE, exact + 4.0, CRANK + 16.0),
+            point_toward(SPLINE, exact + 4.0, CRANK + 16.0),
             14.0,
         ))
         // A tooth's width on the other side, where nothing else is.
-        .add(tooth(sits - 9.0 * TOOTH));
+        .add(tooth(placed - 9.0 * TOOTH));
     for (place, words) in lines.iter().enumerate() {
         let at = (LEFT, SPLINE.1 + 102.0 + 19.0 * place as f64);
-        let mut words_there = text_start(words, at, 14.0);
+        let mut line = text_start(words, at, 14.0);
         if words.starts_with("trim") {
-            words_there = words_there.set("font-weight", "bold");
+            line = line.set("font-weight", "bold");
         }
-        group = group.add(words_there);
+        group = group.add(line);
     }
     group
 }
@@ -225,7 +230,7 @@ fn spline(degrees: f64) -> Polygon {
             // Two corners at a tooth's tip, two between teeth.
             let radius = if corner % 4 < 2 { RADII.1 } else { RADII.0 };
             let turned = degrees + TOOTH / 4.0 * (corner as f64 - 0.5);
-            let (x, y) = toward(SPLINE, turned, radius);
+            let (x, y) = point_toward(SPLINE, turned, radius);
             format!("{},{}", fixed(x), fixed(y))
         })
         .collect();
@@ -242,13 +247,13 @@ fn tooth(degrees: f64) -> Group {
     let (near, far) = (RADII.1 + 3.0, RADII.1 + 26.0);
     let ray = |degrees| {
         line(
-            toward(SPLINE, degrees, near),
-            toward(SPLINE, degrees, far),
+            point_toward(SPLINE, degrees, near),
+            point_toward(SPLINE, degrees, far),
             DARK,
             1.2,
         )
     };
-    let words = toward(SPLINE, degrees + TOOTH / 2.0, far + 3.0);
+    let words = point_toward(SPLINE, degrees + TOOTH / 2.0, far + 3.0);
     Group::new()
         .add(ray(degrees))
         .add(ray(degrees + TOOTH))
@@ -274,7 +279,7 @@ fn rose() -> Group {
         (180.0, "180°", Anchor::End, (-8.0, 5.0)),
         (270.0, "270°", Anchor::Middle, (0.0, 19.0)),
     ] {
-        let end = toward(middle, degrees, 52.0);
+        let end = point_toward(middle, degrees, 52.0);
         let at = (end.0 + off.0, end.1 + off.1);
         group = group
             .add(line(middle, end, GREY, 1.2))

@@ -81,9 +81,11 @@ impl Uno {
         for (place, name) in REFERENCES.1.iter().enumerate() {
             let at = self.at(REFERENCES.0 + place as f64, UPPER_ROW);
             let is_used = at == self.ground();
-            group = group
-                .add(hole(at, is_used))
-                .add(self.label(at, name, is_used));
+            let mut hole = hole(at, is_used);
+            if is_used {
+                hole = hole.set("id", "pin-GND");
+            }
+            group = group.add(hole).add(self.label(at, name, is_used));
         }
         for (place, name) in POWER.1.iter().enumerate() {
             let at = self.at(POWER.0 + place as f64, LOWER_ROW);

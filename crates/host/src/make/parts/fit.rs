@@ -2,13 +2,13 @@
 
 use std::io::{self, Write};
 
-use lizard_parts::{Answer, Assembly, ENOUGH, Near, Proof, Questions, Unfit};
+use lizard_parts::{Answer, Assembly, ENOUGH, NearestPair, Proof, Questions, Unfit};
 use lizard_robot::servo::NAMES;
 use serde::{Deserialize, Serialize};
 
+use crate::Failure;
 use crate::shared::progress::bar;
 use crate::shared::spread::{Spread, Spreads};
-use crate::{Failure, RobotFile};
 
 /// Prove that no two parts meet at any pose that the guard accepts
 ///
@@ -30,17 +30,14 @@ pub struct Args {
     json: bool,
     #[command(flatten)]
     #[serde(skip)]
-    robot: RobotFile,
-    #[command(flatten)]
-    #[serde(skip)]
     spread: Spread,
 }
 
 impl Spreads for Args {
     const COMMAND: &'static str = "fit";
 
-    fn places(&mut self) -> (&mut RobotFile, &mut Spread) {
-        (&mut self.robot, &mut self.spread)
+    fn spread(&mut self) -> &mut Spread {
+        &mut self.spread
     }
 }
 
@@ -73,8 +70,8 @@ struct Report<'a> {
     regions: u64,
 }
 
-impl<'a> From<&'a Near> for Pair<'a> {
-    fn from(near: &'a Near) -> Self {
+impl<'a> From<&'a NearestPair> for Pair<'a> {
+    fn from(near: &'a NearestPair) -> Self {
         Self {
             first: &near.first,
             second: &near.second,
@@ -91,11 +88,11 @@ const PAIRS: &str = "{wide_bar} {pos}/{len} looking for parts that meet";
 
 /// Proves it, with a bar.
 pub(super) fn proof(assembly: &Assembly) -> Proof {
-    answered(&Questions::new(assembly, |_, _| true), None)
+    complete_proof(&Questions::new(assembly, |_, _| true), None)
 }
 
 /// The proof, of answers that are known or else are found here.
-fn answered(questions: &Questions, known: Option<Vec<Answer>>) -> Proof {
+fn complete_proof(questions: &Questions, known: Option<Vec<Answer>>) -> Proof {
     let bar = bar(questions.count(), PAIRS);
     let known = |place: usize| known.as_ref()?.get(place).cloned();
     let proof = questions.answer(known, |done, _| bar.set_position(done as u64));
@@ -103,12 +100,12 @@ fn answered(questions: &Questions, known: Option<Vec<Answer>>) -> Proof {
     proof
 }
 
-/// Proves and prints.
+/// Proves that the parts fit and prints the clearances.
 ///
 /// # Errors
 /// A wrong robot.toml, measures that do not go together, parts that meet.
 pub fn run(args: Args) -> Result<(), Failure> {
-    let robot = args.robot.load()?;
+    let robot = args.spread.robot.load()?;
     let assembly = Assembly::new(&robot);
     assembly.measures_fit()?;
     let questions = Questions::new(&assembly, |_, _| true);
@@ -119,11 +116,11 @@ pub fn run(args: Args) -> Result<(), Failure> {
             bar.inc(1);
             questions.one(place)
         };
-        part.print(&args, &args.robot, count, one)?;
+        part.print(&args, &args.spread.robot, count, one)?;
         bar.finish_and_clear();
         return Ok(());
     }
-    let proof = answered(&questions, args.spread.read(count)?);
+    let proof = complete_proof(&questions, args.spread.read(count)?);
     let judged = proof.judge();
     let mut out = io::stdout().lock();
     if args.json {
@@ -153,7 +150,7 @@ fn print(proof: &Proof, all: bool, out: &mut impl Write) -> io::Result<()> {
         "proved   seen   parts                                          at A1 A2 A3 A4, deg"
     )?;
     writeln!(out, "    mm     mm")?;
-    let list = |near: &[Near], out: &mut dyn Write| -> io::Result<()> {
+    let list = |near: &[NearestPair], out: &mut dyn Write| -> io::Result<()> {
         let near: Vec<_> = near
             .iter()
             .filter(|near| near.proved < ENOUGH * 0.9)
@@ -189,7 +186,7 @@ fn print(proof: &Proof, all: bool, out: &mut impl Write) -> io::Result<()> {
     Ok(())
 }
 
-fn row(near: &Near, out: &mut dyn Write) -> io::Result<()> {
+fn row(near: &NearestPair, out: &mut dyn Write) -> io::Result<()> {
     let seen = near.seen.as_ref();
     let parts = format!("{}, {}", near.first, near.second);
     write!(

@@ -49,7 +49,7 @@ pub struct Args {
 
 /// A part as `--json` prints it.
 #[derive(Serialize)]
-struct Listed {
+struct PartEntry {
     part: String,
     count: usize,
     /// The part that it may be put in instead of, if the robot has it not.
@@ -67,7 +67,7 @@ impl From<Unfit> for Failure {
     }
 }
 
-/// Makes and writes everything.
+/// Makes all files and writes them.
 ///
 /// # Errors
 /// A wrong robot.toml, parts that do not fit, a folder or a file that cannot be written.
@@ -95,7 +95,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     for part in &parts {
         bar.set_message(part.name.clone());
         let made = part_files(part, kerf)?;
-        list.push(Listed {
+        list.push(PartEntry {
             part: part.name.clone(),
             count: part.count(),
             instead_of: part.instead_of.clone(),
@@ -145,7 +145,7 @@ fn weight_note(bill: &Bill, robot: &Robot) -> String {
         "The parts weigh {:.0} g, and their mass centre is {} the middle of the plate; robot.toml has {mass} g and \
          {centre:?} mm. For predictions with these parts put into it:\n\n{}",
         bill.grams,
-        bill.beside(),
+        bill.centre_in_words(),
         bill.body_toml()
     )
 }

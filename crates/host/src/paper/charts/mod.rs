@@ -2,6 +2,7 @@
 
 mod performance;
 mod plot;
+mod reach;
 mod singularity;
 mod stroke;
 mod workspace;
@@ -24,7 +25,7 @@ const RINGS: usize = 16;
 
 /// Draw all charts into a folder, as SVG.
 ///
-/// workspace (with the maximal inscribed circle), conditioning (the LCI map),
+/// workspace (with the maximal inscribed circle), workspaces (of tail, body and legs), conditioning (the LCI map),
 /// performance (over the whole design space), singularity (with the gaits'
 /// paths), stroke (slider travel in each gait), top-view (at neutral, or at the
 /// pose given).
@@ -50,7 +51,7 @@ struct Drawn {
     files: Vec<PathBuf>,
 }
 
-/// Draws and writes everything.
+/// Draws all charts and writes them.
 ///
 /// # Errors
 /// A wrong robot.toml, a folder or a file that cannot be written.
@@ -59,7 +60,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let pose = args.pose.get().unwrap_or_else(|| robot.neutral());
     let solution = robot.lizard().solve(&pose)?;
     // Before anything is computed, which takes seconds.
-    fs::create_dir_all(&args.folder).map_err(|error| files::cannot(&args.folder, &error))?;
+    fs::create_dir_all(&args.folder).map_err(|error| files::write_failure(&args.folder, &error))?;
     let mut pictures = charts(&robot);
     pictures.push(("top-view", draw::top_view(&robot, &solution, true)));
     let drawn: Vec<Drawn> = pictures
@@ -88,6 +89,7 @@ pub fn charts(robot: &Robot) -> Vec<(&'static str, String)> {
     progress.finish_and_clear();
     vec![
         ("workspace", workspace::workspace(robot)),
+        ("workspaces", reach::reach(robot)),
         ("conditioning", workspace::conditioning(robot)),
         ("performance", performance::performance(&points, STEP)),
         ("singularity", singularity::singularity(robot)),

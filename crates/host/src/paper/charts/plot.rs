@@ -22,7 +22,7 @@ pub const BLUES: &[&str] = &[
 ];
 
 /// The colour of impossible regions.
-pub const SHUT: &str = "#d4d0cb";
+pub const IMPOSSIBLE: &str = "#d4d0cb";
 
 /// A rectangle of the page with a coordinate system.
 #[derive(Clone, Copy)]
@@ -61,7 +61,7 @@ impl Plot {
         )
     }
 
-    /// Page units for a unit of x.
+    /// Page units per unit of x.
     pub fn scale(&self) -> f64 {
         self.size.0 / (self.x.1 - self.x.0)
     }

@@ -5,7 +5,7 @@ use lizard_kinematics::{Check, End, FiveBar, Pose, SingularPose, Singularity, wr
 use lizard_robot::{CheckedGait, Robot};
 use svg::node::element::Group;
 
-use super::plot::{Axis, BLUES, Plot, SHUT, Scale, entry};
+use super::plot::{Axis, BLUES, IMPOSSIBLE, Plot, Scale, entry};
 use crate::shared::ink::{DARK, circle, cross, edged, line, page, rectangle, text_start, title};
 
 const SIZE: (f64, f64) = (1500.0, 860.0);
@@ -56,7 +56,7 @@ pub fn singularity(robot: &Robot) -> String {
     let mut group = Group::new();
     for (plot, cells) in [(&left, 360), (&right, 200)] {
         group = plot.map(group, (cells, cells), |x, y| {
-            Some(least(robot, x, y).map_or(SHUT, |least| scale.colour(least)))
+            Some(least(robot, x, y).map_or(IMPOSSIBLE, |least| scale.colour(least)))
         });
     }
     group = curves(group, &left, robot);
@@ -121,7 +121,7 @@ pub fn singularity(robot: &Robot) -> String {
             (974.0, 701.0),
             15.0,
         ))
-        .add(rectangle((930.0, 716.0), (34.0, 18.0), SHUT))
+        .add(rectangle((930.0, 716.0), (34.0, 18.0), IMPOSSIBLE))
         .add(text_start(
             "below the robot's limits, or cranks crossed",
             (974.0, 730.0),
@@ -165,7 +165,7 @@ fn paths(robot: &Robot) -> Vec<(String, Vec<(f64, f64)>)> {
     let mut paths: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
     for gait in robot.gaits() {
         let path = path(gait);
-        let known = paths.iter_mut().find(|(_, other)| same(other, &path));
+        let known = paths.iter_mut().find(|(_, other)| are_close(other, &path));
         match known {
             Some((names, _)) => {
                 names.push_str(", ");
@@ -192,7 +192,7 @@ fn path(gait: &CheckedGait) -> Vec<(f64, f64)> {
 }
 
 /// True if the two paths are close to each other everywhere.
-fn same(one: &[(f64, f64)], two: &[(f64, f64)]) -> bool {
+fn are_close(one: &[(f64, f64)], two: &[(f64, f64)]) -> bool {
     let near = |point: &(f64, f64), path: &[(f64, f64)]| {
         path.iter()
             .any(|other| (point.0 - other.0).hypot(point.1 - other.1) < 0.5)

@@ -3,7 +3,7 @@
 use lizard_robot::{CheckedGait, Robot};
 use svg::node::element::Group;
 
-use super::plot::{Axis, Plot, SHUT, entry};
+use super::plot::{Axis, IMPOSSIBLE, Plot, entry};
 use crate::shared::ink::{Anchor, GREY, page, rectangle, text, text_start, title};
 use crate::shared::number::tidy;
 
@@ -68,7 +68,7 @@ fn panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &CheckedGait) -> Gr
         (robot.limits().stroke_max, plot.y.1),
     ] {
         let (top, bottom) = (plot.at(0.0, to), plot.at(0.0, from));
-        group = group.add(rectangle(top, (plot.size.0, bottom.1 - top.1), SHUT));
+        group = group.add(rectangle(top, (plot.size.0, bottom.1 - top.1), IMPOSSIBLE));
     }
     let travel: Vec<(f64, f64, f64)> = (0..=400)
         .map(|i| f64::from(i) / 400.0)

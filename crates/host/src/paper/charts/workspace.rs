@@ -4,7 +4,7 @@ use lizard_kinematics::{Circle, End, Vector, Workspace};
 use lizard_robot::Robot;
 use svg::node::element::{Circle as Ring, Group};
 
-use super::plot::{Axis, Plot, SHUT, Scale, VIRIDIS, entry};
+use super::plot::{Axis, IMPOSSIBLE, Plot, Scale, VIRIDIS, entry};
 use crate::paper::design::{CLAIM, Performance, lci};
 use crate::shared::ink::{DARK, GREY, circle, edged, page, text_start, title};
 
@@ -96,7 +96,7 @@ pub fn conditioning(robot: &Robot) -> String {
         let point = Vector::new(x, y);
         space.contains(point).then(|| match bars.reach(point) {
             Ok(pose) if y >= 0.0 && pose.gap.x > 0.0 => scale.colour(lci(&bars, point)),
-            _ => SHUT,
+            _ => IMPOSSIBLE,
         })
     });
     let p = Performance::of(&bars, 64);
@@ -147,7 +147,7 @@ fn ring(plot: &Plot, centre: Vector, radius: f64, colour: &str, width: f64) -> R
     )
 }
 
-/// The head's closed paths that gaits give by points.
+/// The closed paths of the head in the gesture `look`.
 fn look_paths(robot: &Robot) -> Vec<Vec<(f64, f64)>> {
     robot
         .gait("look")

@@ -11,11 +11,11 @@ use std::io::{self, BufWriter, Write};
 use lizard_robot::Robot;
 use serde::{Deserialize, Serialize};
 
+use crate::Failure;
 use crate::shared::json;
 use crate::shared::pose_args::Quantity;
 use crate::shared::progress::bar;
 use crate::shared::spread::{Spread, Spreads};
-use crate::{Failure, RobotFile};
 
 pub use chart::{Point, chart};
 pub use performance::{CLAIM, Conditioning, Performance, lci};
@@ -62,10 +62,10 @@ pub struct Args {
     #[arg(long)]
     search: bool,
     /// Step of the grid of --chart and --search
-    #[arg(long, default_value_t = 0.02, value_parser = within(0.002, 0.2, "0.002 to 0.2"))]
+    #[arg(long, default_value_t = 0.02, value_parser = range_parser(0.002, 0.2, "0.002 to 0.2"))]
     step: f64,
     /// Sweep that --search requires of every servo, degrees to either side
-    #[arg(long, default_value_t = 20.0, value_parser = within(1.0, 60.0, "1 to 60 degrees"))]
+    #[arg(long, default_value_t = 20.0, value_parser = range_parser(1.0, 60.0, "1 to 60 degrees"))]
     sweep: f64,
     /// Shortest link that --search allows, mm; two M3 joints need about this length
     #[arg(long, default_value_t = 20.0, value_name = "MM", value_parser = Quantity::LENGTH.parser())]
@@ -78,22 +78,19 @@ pub struct Args {
     json: bool,
     #[command(flatten)]
     #[serde(skip)]
-    robot: RobotFile,
-    #[command(flatten)]
-    #[serde(skip)]
     spread: Spread,
 }
 
 impl Spreads for Args {
     const COMMAND: &'static str = "design";
 
-    fn places(&mut self) -> (&mut RobotFile, &mut Spread) {
-        (&mut self.robot, &mut self.spread)
+    fn spread(&mut self) -> &mut Spread {
+        &mut self.spread
     }
 }
 
 /// A parser of numbers in a range.
-fn within(
+fn range_parser(
     least: f64,
     most: f64,
     range: &'static str,
@@ -124,7 +121,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
     let proportions = args.proportions().map_err(Failure::Input)?;
     let l0 = args.l0.unwrap_or(20.0);
-    let robot = args.robot.load()?;
+    let robot = args.spread.robot.load()?;
     let mut out = BufWriter::new(io::stdout().lock());
     if args.chart {
         charts(&args, &mut out)?;
@@ -314,7 +311,7 @@ fn ranking(
         args.spread.own(count)
     });
     let one = |place| search.piece(place);
-    let pieces = args.spread.all(args, &args.robot, search.pieces(), one)?;
+    let pieces = args.spread.all(args, search.pieces(), one)?;
     progress.finish_and_clear();
     let Some(pieces) = pieces else {
         return Ok(());

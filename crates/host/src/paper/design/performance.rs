@@ -50,7 +50,7 @@ impl Performance {
             area: workspace.area(),
             r_mic: circle.map_or(0.0, |circle| circle.radius),
             y_mic: circle.map_or(0.0, |circle| circle.centre.y),
-            lci: circle.map(|circle| Conditioning::over(bars, circle, rings)),
+            lci: circle.map(|circle| Conditioning::sample(bars, circle, rings)),
         }
     }
 }
@@ -58,7 +58,7 @@ impl Performance {
 impl Conditioning {
     /// Samples rings of equal area, each at its middle, then marches outward
     /// until the index first falls below the claim.
-    fn over(bars: &FiveBar, circle: Circle, rings: usize) -> Self {
+    fn sample(bars: &FiveBar, circle: Circle, rings: usize) -> Self {
         let spokes = 4 * rings;
         let mut sum = 0.0;
         let mut above = 0;

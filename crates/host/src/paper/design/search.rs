@@ -31,7 +31,7 @@ pub struct Demands {
     pub sweep: f64,
 }
 
-/// A design that can sweep at least as far as is demanded.
+/// A design that sweeps at least as far as demanded.
 #[derive(Clone, Copy, Serialize, Deserialize)]
 pub struct Design {
     /// The proportions of the five-bar.
@@ -43,7 +43,7 @@ pub struct Design {
     pub neutral: f64,
     /// Largest safe sweep to either side, degrees.
     pub sweep: f64,
-    /// The distance that a foot goes with it, mm.
+    /// The stride of a foot with that sweep, mm.
     pub stride: f64,
     /// Least margin at the demanded sweep.
     pub margin: f64,
@@ -52,7 +52,7 @@ pub struct Design {
     /// Mean conditioning index, margin and stride as shares of the best of
     /// each, multiplied and rooted.
     pub score: f64,
-    /// No other design is better in all three.
+    /// True if no other design is better in all three.
     pub pareto: bool,
 }
 
@@ -67,7 +67,8 @@ pub struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    /// All points of the triangle. `own` says how many of all pieces are computed here.
+    /// Prepares the search of all points of the triangle. `own` returns the number of pieces to
+    /// compute here, out of all.
     pub fn new(
         step: f64,
         demands: Demands,
@@ -111,8 +112,8 @@ pub fn ranked(pieces: Vec<Vec<Design>>) -> Vec<Design> {
     designs
 }
 
-/// The best that can be made of some proportions; none if they cannot sweep as
-/// far as is demanded, or have too short a link.
+/// The best design with some proportions; none if it cannot sweep as far as demanded, or has too
+/// short a link.
 pub fn design(proportions: Proportions, demands: &Demands) -> Option<Design> {
     let d = proportions.scale_for_base(demands.base);
     let bars = proportions.at_scale(d);
@@ -145,12 +146,12 @@ pub fn design(proportions: Proportions, demands: &Demands) -> Option<Design> {
 /// The largest sweep about a neutral angle that keeps every limit, degrees.
 fn widest(bars: &FiveBar, neutral: f64, demands: &Demands) -> f64 {
     let (mut safe, mut unsafe_from) = (0.0, demands.travel.min(89.9));
-    if !holds(bars, neutral, safe, demands) {
+    if !meets_demands(bars, neutral, safe, demands) {
         return 0.0;
     }
     for _ in 0..9 {
         let middle = (safe + unsafe_from) / 2.0;
-        if holds(bars, neutral, middle, demands) {
+        if meets_demands(bars, neutral, middle, demands) {
             safe = middle;
         } else {
             unsafe_from = middle;
@@ -162,10 +163,10 @@ fn widest(bars: &FiveBar, neutral: f64, demands: &Demands) -> f64 {
 /// Sample positions across the sweep, from -1 to 1.
 const ACROSS: [f64; 9] = [-1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 1.0];
 
-fn holds(bars: &FiveBar, neutral: f64, sweep: f64, demands: &Demands) -> bool {
+fn meets_demands(bars: &FiveBar, neutral: f64, sweep: f64, demands: &Demands) -> bool {
     let limits = &demands.limits;
     let slider = slider(bars, demands);
-    // theta5 in tail-local angles is what theta1 is, so neutral mirrors.
+    // theta5 in the tail's frame equals theta1, so neutral mirrors.
     let span = |front: f64, rear: f64| {
         slider
             .forward(-rear - 90.0, front + 90.0)

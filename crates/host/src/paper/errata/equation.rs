@@ -14,7 +14,7 @@ pub struct Equation {
     pub printed: &'static str,
     /// The error of the printed form.
     pub miss: Miss,
-    /// Unit of every miss of this equation.
+    /// Unit of every error of this equation.
     pub unit: &'static str,
     /// The error if right-hand angles are read clockwise from -x, where the paper's drawing
     /// suggests it.
@@ -58,7 +58,7 @@ impl Equation {
     }
 
     /// Adds a place that deserves a closer look.
-    pub const fn aside(mut self, place: &'static str, miss: Miss) -> Self {
+    pub const fn with_special_place(mut self, place: &'static str, miss: Miss) -> Self {
         self.aside = Some((place, miss));
         self
     }
@@ -74,7 +74,7 @@ pub struct Misses {
 }
 
 impl Misses {
-    /// Misses below this are rounding, whatever the unit.
+    /// Errors below this are rounding, in any unit.
     const ROUNDING: f64 = 1e-6;
 
     /// Measures one form.

@@ -65,7 +65,7 @@ pub const EQUATIONS: &[Equation] = &[
             ))
         },
     )
-    .aside("θ4 within 1e-9° of A = 0", near_vanishing_a),
+    .with_special_place("θ4 within 1e-9° of A = 0", near_vanishing_a),
     Equation::new(
         "4.2 head, θ2",
         "θ2 = 2 atan((-E + sqrt(E² + 4DF))/2D), K4 = -l4 cos θ4 + l1 cos θ1 + l0",

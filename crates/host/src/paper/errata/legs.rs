@@ -72,7 +72,7 @@ const FRONT: &[usize] = &[1, 4];
 const BACK: &[usize] = &[8, 5];
 const ALL: &[usize] = &[1, 4, 8, 5];
 
-/// The worst of a miss over some legs.
+/// The largest error over some legs.
 fn worst_of(s: &Sample, legs: &[usize], miss: impl Fn(f64) -> Option<f64>) -> Option<f64> {
     legs.iter()
         .map(|&leg| miss(s.angles().t[leg]))
@@ -95,7 +95,10 @@ fn follower(s: &Sample, legs: &[usize], sign: f64, h: Option<f64>) -> Option<f64
         let g = c - ground / crank - ground * c / follower + last;
         let h = h.unwrap_or(-2.0 * theta.sin());
         let i = ground / crank - (ground / follower + 1.0) * c + last;
-        Some(apart(2.0 * half(g, h, i, sign)?.atan(), theta))
+        Some(apart(
+            2.0 * half_angle_tangent(g, h, i, sign)?.atan(),
+            theta,
+        ))
     })
 }
 
@@ -115,13 +118,13 @@ fn coupler(s: &Sample, legs: &[usize], slip: f64, sign: f64) -> Option<f64> {
         let j = c - ground / crank + slip * ground * c / coupler + last;
         let k = -2.0 * theta.sin();
         let l = ground / crank + (slip * ground / coupler - 1.0) * c + last;
-        Some(apart(2.0 * half(j, k, l, sign)?.atan(), 0.0))
+        Some(apart(2.0 * half_angle_tangent(j, k, l, sign)?.atan(), 0.0))
     })
 }
 
 /// tan of half an angle by the quadratic formula. Rounding may carry the root's
 /// argument below zero where it is zero.
-fn half(a: f64, b: f64, c: f64, sign: f64) -> Option<f64> {
+fn half_angle_tangent(a: f64, b: f64, c: f64, sign: f64) -> Option<f64> {
     let under = b * b - 4.0 * a * c;
     (under > -1e-12).then(|| (-b + sign * under.max(0.0).sqrt()) / (2.0 * a))
 }

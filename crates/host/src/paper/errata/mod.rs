@@ -1,5 +1,5 @@
-//! `lizard errata`: every printed equation, measured against the geometric
-//! solution. Nothing in the table is typed in but the equations themselves.
+//! `lizard errata`: every printed equation, measured against the geometric solution.
+//! Only the equations are typed in; everything else in the table is computed.
 
 mod equation;
 mod forward;
@@ -50,12 +50,12 @@ pub struct Entry {
     place: &'static str,
     printed: &'static str,
     holds: bool,
-    /// The worst miss, in `unit`.
+    /// The largest error, in `unit`.
     worst: f64,
     /// Share of the samples at which the printed form has no real value.
     unreal: f64,
     unit: &'static str,
-    /// The worst miss at a place that deserves a closer look, and that place.
+    /// The largest error at a place that deserves a closer look, and that place.
     aside: Option<(f64, &'static str)>,
     /// True if it holds with right-hand angles clockwise from -x; null if that reading does not
     /// arise.
@@ -134,7 +134,7 @@ impl Entry {
     }
 
     /// The largest error in words; all rounding errors count as equal.
-    fn miss(&self) -> String {
+    fn format_error(&self) -> String {
         let mut words = self.plain_miss();
         if let Some((worst, place)) = self.aside {
             let unit = self.unit;
@@ -187,7 +187,7 @@ fn text(entries: &[Entry], samples: u32) -> String {
             entry.place, entry.printed
         );
         if !entry.holds || entry.aside.is_some() {
-            let _ = writeln!(page, "       worst      {}", entry.miss());
+            let _ = writeln!(page, "       worst      {}", entry.format_error());
         }
         match entry.holds_clockwise {
             Some(true) => page += "       clockwise  holds\n",
@@ -242,7 +242,7 @@ poses and holds.
             cell(entry.place),
             cell(entry.printed),
             entry.verdict(),
-            cell(&entry.miss())
+            cell(&entry.format_error())
         );
     }
     page

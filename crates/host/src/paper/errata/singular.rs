@@ -44,14 +44,20 @@ pub const EQUATIONS: &[Equation] = &[
         "mm/rad",
         |s| {
             let (l, t) = (&s.lizard.links, s.angles().t);
-            let block = side([l.l11, l.l14], FRAC_PI_2 - t[5], FRAC_PI_2 + t[1], -1.0);
-            Some(against(&k(s, 4, 3, 0).map(|v| -v), &block))
+            let block = side_block([l.l11, l.l14], FRAC_PI_2 - t[5], FRAC_PI_2 + t[1], -1.0);
+            Some(largest_difference(
+                &active_block(s, 4, 3, 0).map(|v| -v),
+                &block,
+            ))
         },
     )
     .corrected("+l14 sin(C1 + θ1)", |s| {
         let (l, t) = (&s.lizard.links, s.angles().t);
-        let block = side([l.l11, l.l14], FRAC_PI_2 - t[5], FRAC_PI_2 + t[1], 1.0);
-        Some(against(&k(s, 4, 3, 0).map(|v| -v), &block))
+        let block = side_block([l.l11, l.l14], FRAC_PI_2 - t[5], FRAC_PI_2 + t[1], 1.0);
+        Some(largest_difference(
+            &active_block(s, 4, 3, 0).map(|v| -v),
+            &block,
+        ))
     }),
     Equation::new(
         "5.1 K, right",
@@ -59,14 +65,20 @@ pub const EQUATIONS: &[Equation] = &[
         "mm/rad",
         |s| {
             let (l, t) = (&s.lizard.links, s.angles().t);
-            let block = side([l.l16, l.l19], FRAC_PI_2 - t[8], FRAC_PI_2 + t[4], -1.0);
-            Some(against(&k(s, 6, 2, 1).map(|v| -v), &block))
+            let block = side_block([l.l16, l.l19], FRAC_PI_2 - t[8], FRAC_PI_2 + t[4], -1.0);
+            Some(largest_difference(
+                &active_block(s, 6, 2, 1).map(|v| -v),
+                &block,
+            ))
         },
     )
     .corrected("+l19 sin(C2 + θ4), and C2 = C4 = -90°", |s| {
         let (l, t) = (&s.lizard.links, s.angles().t);
-        let block = side([l.l16, l.l19], -FRAC_PI_2 - t[8], -FRAC_PI_2 + t[4], 1.0);
-        Some(against(&k(s, 6, 2, 1).map(|v| -v), &block))
+        let block = side_block([l.l16, l.l19], -FRAC_PI_2 - t[8], -FRAC_PI_2 + t[4], 1.0);
+        Some(largest_difference(
+            &active_block(s, 6, 2, 1).map(|v| -v),
+            &block,
+        ))
     }),
     Equation::new(
         "5.1 K*, head",
@@ -115,9 +127,9 @@ pub const EQUATIONS: &[Equation] = &[
     })
     .corrected("sin(θ3 - θ2) = 0", |s| {
         let t = s.angles().t;
-        Some(((t[3] - t[2]).sin() - determinant_sine(&passive(s, 0), 2500.0)).abs())
+        Some(((t[3] - t[2]).sin() - determinant_sine(&passive_block(s, 0), 2500.0)).abs())
     })
-    .aside("the neutral pose, which it flags", |s| {
+    .with_special_place("the neutral pose, which it flags", |s| {
         let (home, sum) = neutral(s)?;
         Some((sum.sin().abs() - home).abs())
     }),
@@ -136,7 +148,7 @@ pub const EQUATIONS: &[Equation] = &[
     })
     .corrected("sin(θ7 - θ6) = 0", |s| {
         let t = s.angles().t;
-        Some(((t[7] - t[6]).sin() - determinant_sine(&passive(s, 2), 2500.0)).abs())
+        Some(((t[7] - t[6]).sin() - determinant_sine(&passive_block(s, 2), 2500.0)).abs())
     }),
     Equation::new(
         "5.1 singular left side",
@@ -145,7 +157,7 @@ pub const EQUATIONS: &[Equation] = &[
         |s| Some(1.0 - (2.0 * s.angles().t[11]).sin().abs()),
     )
     .corrected("never: the block's determinant is -d", |s| {
-        let [a, b, c, d] = passive(s, 4);
+        let [a, b, c, d] = passive_block(s, 4);
         Some((a * d - b * c + s.s.left.d).abs())
     }),
     Equation::new(
@@ -155,7 +167,7 @@ pub const EQUATIONS: &[Equation] = &[
         |s| Some(1.0 - (2.0 * s.angles().t[14]).sin().abs()),
     )
     .corrected("never: the block's determinant is -d", |s| {
-        let [a, b, c, d] = passive(s, 6);
+        let [a, b, c, d] = passive_block(s, 6);
         Some((a * d - b * c + s.s.right.d).abs())
     }),
     Equation::new(
@@ -225,22 +237,22 @@ struct Block {
 }
 
 const K_HEAD: Block = Block {
-    truth: |s| k(s, 0, 0, 1),
+    truth: |s| active_block(s, 0, 0, 1),
     angles: [1, 4],
     bars: [1, 4],
 };
 const K_TAIL: Block = Block {
-    truth: |s| k(s, 2, 3, 2),
+    truth: |s| active_block(s, 2, 3, 2),
     angles: [5, 8],
     bars: [6, 9],
 };
 const PASSIVE_HEAD: Block = Block {
-    truth: |s| passive(s, 0),
+    truth: |s| passive_block(s, 0),
     angles: [2, 3],
     bars: [2, 3],
 };
 const PASSIVE_TAIL: Block = Block {
-    truth: |s| passive(s, 2),
+    truth: |s| passive_block(s, 2),
     angles: [6, 7],
     bars: [7, 8],
 };
@@ -249,7 +261,10 @@ impl Block {
     /// The error of the printed block.
     fn printed(&self, s: &Sample) -> Option<f64> {
         let right = s.angles().t[self.angles[1]];
-        Some(against(&(self.truth)(s), &self.with(s, right, -1.0)))
+        Some(largest_difference(
+            &(self.truth)(s),
+            &self.block_with(s, right, -1.0),
+        ))
     }
 
     /// The error of the printed block with the right angle clockwise from -x. The derivative by
@@ -257,17 +272,23 @@ impl Block {
     fn clockwise(&self, s: &Sample) -> Option<f64> {
         let [a, b, c, d] = (self.truth)(s);
         let right = PI - s.angles().t[self.angles[1]];
-        Some(against(&[a, -b, c, -d], &self.with(s, right, -1.0)))
+        Some(largest_difference(
+            &[a, -b, c, -d],
+            &self.block_with(s, right, -1.0),
+        ))
     }
 
     /// The error of the corrected block.
     fn corrected(&self, s: &Sample) -> Option<f64> {
         let right = s.angles().t[self.angles[1]];
-        Some(against(&(self.truth)(s), &self.with(s, right, 1.0)))
+        Some(largest_difference(
+            &(self.truth)(s),
+            &self.block_with(s, right, 1.0),
+        ))
     }
 
     /// The block with some angle of the right bar, and a sign of its sine.
-    fn with(&self, s: &Sample, right: f64, sign: f64) -> [f64; 4] {
+    fn block_with(&self, s: &Sample, right: f64, sign: f64) -> [f64; 4] {
         let l = s.lizard.links.to_array();
         let ([a, b], left) = (self.bars, s.angles().t[self.angles[0]]);
         [
@@ -280,7 +301,7 @@ impl Block {
 }
 
 /// The largest difference of two 2x2 blocks, given by rows.
-fn against(truth: &[f64; 4], block: &[f64; 4]) -> f64 {
+fn largest_difference(truth: &[f64; 4], block: &[f64; 4]) -> f64 {
     truth
         .iter()
         .zip(block)
@@ -288,7 +309,7 @@ fn against(truth: &[f64; 4], block: &[f64; 4]) -> f64 {
 }
 
 /// A block of the true K: two rows, and the columns of two servos.
-fn k(s: &Sample, row: usize, first: usize, second: usize) -> [f64; 4] {
+fn active_block(s: &Sample, row: usize, first: usize, second: usize) -> [f64; 4] {
     let k = s.s.active_matrix();
     [
         k[row][first],
@@ -299,13 +320,13 @@ fn k(s: &Sample, row: usize, first: usize, second: usize) -> [f64; 4] {
 }
 
 /// A diagonal block of the true K*.
-fn passive(s: &Sample, at: usize) -> [f64; 4] {
+fn passive_block(s: &Sample, at: usize) -> [f64; 4] {
     let k = s.s.passive_matrix();
     [k[at][at], k[at][at + 1], k[at + 1][at], k[at + 1][at + 1]]
 }
 
 /// A printed side block: rear arm, then front arm with the sign of its sine.
-fn side([rear, front]: [f64; 2], rear_angle: f64, front_angle: f64, sign: f64) -> [f64; 4] {
+fn side_block([rear, front]: [f64; 2], rear_angle: f64, front_angle: f64, sign: f64) -> [f64; 4] {
     [
         rear * rear_angle.sin(),
         sign * front * front_angle.sin(),

@@ -51,10 +51,10 @@ pub const EQUATIONS: &[Equation] = &[
         "3.1.2 workspace circles (all four)",
         "(x11 ± l0/2)² + y11 = (l1 ± l2)²",
         "mm in radius",
-        |s| circles(s, |y| y),
+        |s| circle_error(s, |y| y),
     )
     .corrected("(x11 ± l0/2)² + y11² = (l1 ± l2)²", |s| {
-        circles(s, |y| y * y)
+        circle_error(s, |y| y * y)
     }),
     Equation::new(
         "3.1.3 maximal inscribed circle",
@@ -96,12 +96,12 @@ pub const EQUATIONS: &[Equation] = &[
         "3.2 table of links",
         "l12, l13, l16, l18 = 45 (l16 = 30 before)",
         "links without a length",
-        |_| Some(missing(|i, _| i)),
+        |_| Some(count_unlisted_links(|i, _| i)),
     )
     .corrected("l12, l13, l17, l18 = 45", |_| {
-        Some(missing(
-            |i, length| if i == 16 && length == 45.0 { 17 } else { i },
-        ))
+        Some(count_unlisted_links(|i, length| {
+            if i == 16 && length == 45.0 { 17 } else { i }
+        }))
     }),
     Equation::new(
         "3.2 legs",
@@ -122,9 +122,9 @@ pub const EQUATIONS: &[Equation] = &[
     ),
 ];
 
-/// A point on the rim of an arm's reach, put into a circle equation whose y
-/// term is given; the miss is in the radius.
-fn circles(s: &Sample, term: fn(f64) -> f64) -> Option<f64> {
+/// The error, in radius, of a circle equation with this y term, at a random point of the rim
+/// of an arm's reach.
+fn circle_error(s: &Sample, term: fn(f64) -> f64) -> Option<f64> {
     let bars = s.lizard.end(End::Head);
     let mut worst = 0.0_f64;
     for shaft in [-bars.base / 2.0, bars.base / 2.0] {
@@ -133,7 +133,7 @@ fn circles(s: &Sample, term: fn(f64) -> f64) -> Option<f64> {
             (bars.crank_left - bars.coupler_left).abs(),
         ] {
             let rim = cis(radius, PI * s.random[0]);
-            // x11 is the shaft's x more; the equation takes it off again.
+            // x11 is measured from the middle, the rim from the shaft.
             let (x11, y11) = (rim.x + shaft, rim.y);
             let square = (x11 - shaft).powi(2) + term(y11);
             worst = worst.max((square.sqrt() - radius).abs());
@@ -142,7 +142,7 @@ fn circles(s: &Sample, term: fn(f64) -> f64) -> Option<f64> {
     Some(worst)
 }
 
-/// The index at a random point of the inscribed circle shrunk by a factor.
+/// The LCI at a random point of the inscribed circle, shrunk by a factor.
 fn lci_at(s: &Sample, shrink: f64) -> f64 {
     let bars = s.lizard.end(End::Head);
     Workspace::of(&bars)
@@ -156,9 +156,9 @@ fn lci_at(s: &Sample, shrink: f64) -> f64 {
         })
 }
 
-/// The number of lengths l0 to l19 that the table leaves out, if its entries are read in some
-/// way.
-fn missing(read: fn(usize, f64) -> usize) -> f64 {
+/// Counts the lengths l0 to l19 that the table leaves out, if `read` corrects the number of
+/// each entry.
+fn count_unlisted_links(read: fn(usize, f64) -> usize) -> f64 {
     let named = |link: usize| {
         TABLE
             .iter()

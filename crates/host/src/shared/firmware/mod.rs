@@ -15,10 +15,10 @@ use lizard_core::numbers::robot::Robot as CoreRobot;
 use lizard_core::numbers::section::{Region, START};
 
 #[cfg(feature = "simulator")]
-pub use simulated::{Firmware, Unreadable, inside, read, with_robot};
+pub use simulated::{Firmware, Unreadable, image_with, read, with_robot};
 
 #[cfg(feature = "simulator")]
-pub(crate) use simulated::{code_bytes, of_robot};
+pub(crate) use simulated::{code_bytes, of_robot, without_contacts};
 
 #[cfg(feature = "simulator")]
 mod simulated;
@@ -30,7 +30,7 @@ pub const CODE: &str = include_str!("../../../../../firmware/code.hex");
 
 /// A robot's name and hash, as its banner says them.
 #[must_use]
-pub fn named(robot: &CoreRobot) -> String {
+pub fn label(robot: &CoreRobot) -> String {
     let name: String = robot.label().map(char::from).collect();
     format!("{name} {:08x}", robot.hash())
 }

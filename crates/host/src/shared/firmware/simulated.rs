@@ -6,20 +6,20 @@ use lizard_core::numbers::section::{SPACE, START};
 use lizard_robot::Robot;
 use simulated_uno::{Image, LoadError};
 
-use super::{CODE, named, robot_in};
-use crate::shared::files::reading;
+use super::{CODE, label, robot_in};
+use crate::shared::files::note_input;
 use crate::{Failure, RobotFile};
 
 /// An image to run, and its source.
 #[derive(Debug, Clone)]
 pub struct Firmware {
-    /// The file, or that it is this program's own.
+    /// The file's path, or a note that it is this program's own image.
     pub name: String,
     /// The code with the robot behind it.
     pub image: Image,
 }
 
-/// A file that is no program of an AVR, or cannot be read.
+/// A file that is not a program of an AVR, or cannot be read.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {error}; `make firmware` builds it", elf.display())]
 pub struct Unreadable {
@@ -36,9 +36,9 @@ impl From<Unreadable> for Failure {
 /// Reads the program of an ELF or HEX file.
 ///
 /// # Errors
-/// It cannot be read, or is no program of an AVR.
+/// It cannot be read, or is not a program of an AVR.
 pub fn read(elf: &Path) -> Result<Image, Unreadable> {
-    Image::read(reading(elf)).map_err(|error| Unreadable {
+    Image::read(note_input(elf)).map_err(|error| Unreadable {
         elf: elf.to_owned(),
         error,
     })
@@ -47,7 +47,7 @@ pub fn read(elf: &Path) -> Result<Image, Unreadable> {
 /// The reason why an image is not run.
 #[derive(Debug, thiserror::Error)]
 enum FirmwareError {
-    #[error("there is no firmware at {0}; without --elf, the one inside this program is taken")]
+    #[error("there is no firmware at {0}; without --elf, the one inside this program is used")]
     Missing(String),
     #[error(
         "{} has the robot {its} in it, and not {robot}, which is {wanted}; without --elf, the \
@@ -71,14 +71,11 @@ impl From<FirmwareError> for Failure {
 /// The firmware to run for a robot: the given file, which must have this robot in it, or the
 /// code inside this program with this robot. `file` is the robot's source.
 ///
-/// An image without a robot's section is no lizard's and is accepted: running it shows what it
-/// does.
-///
-/// An image that has no robot's section is no lizard's and is let through: what it does is
-/// seen when it runs.
+/// An image without a robot's section is another program's and is accepted: running it shows
+/// what it does.
 ///
 /// # Errors
-/// The file is missing, is no program of an AVR, or has another robot in it.
+/// The file is missing, is not a program of an AVR, or has another robot in it.
 pub(crate) fn of_robot(
     elf: Option<&Path>,
     file: &RobotFile,
@@ -86,7 +83,7 @@ pub(crate) fn of_robot(
 ) -> Result<Firmware, Failure> {
     let Some(elf) = elf else {
         let name = format!("the firmware of lizard {}", env!("CARGO_PKG_VERSION"));
-        let image = inside(robot);
+        let image = image_with(robot);
         return Ok(Firmware { name, image });
     };
     if !elf.is_file() {
@@ -98,8 +95,8 @@ pub(crate) fn of_robot(
     {
         return Err(FirmwareError::OtherRobot {
             robot: file.name()?,
-            its: named(&its),
-            wanted: named(robot.firmware()),
+            its: label(&its),
+            wanted: label(robot.firmware()),
             elf: elf.to_owned(),
         }
         .into());
@@ -120,9 +117,18 @@ pub(crate) fn code_bytes(image: &Image, robot: &Robot) -> u32 {
 /// # Panics
 /// Never: a test reads that code, and a robot's section has room.
 #[must_use]
-pub fn inside(robot: &Robot) -> Image {
+pub fn image_with(robot: &Robot) -> Image {
     let mut image = Image::parse_hex(CODE).expect("a test reads it");
-    put(&mut image, robot).expect("a robot's section has room");
+    put_robot(&mut image, robot).expect("a robot's section has room");
+    image
+}
+
+/// The image with this robot in it, whose routines wait for nobody: see [`Robot::without_contacts`].
+///
+/// # Panics
+/// Never: the section is as long as that of the robot.
+pub(crate) fn without_contacts(mut image: Image, robot: &Robot) -> Image {
+    put_robot(&mut image, &robot.without_contacts()).expect("a robot's section has room");
     image
 }
 
@@ -130,11 +136,11 @@ pub fn inside(robot: &Robot) -> Image {
 /// none.
 ///
 /// # Errors
-/// It cannot be read, or is no program of an AVR.
+/// It cannot be read, or is not a program of an AVR.
 pub fn with_robot(path: &Path, robot: &Robot) -> Result<Image, Unreadable> {
     let mut image = read(path)?;
     if robot_in(&image.flash()).is_some() {
-        put(&mut image, robot).map_err(|error| Unreadable {
+        put_robot(&mut image, robot).map_err(|error| Unreadable {
             elf: path.to_owned(),
             error,
         })?;
@@ -142,7 +148,7 @@ pub fn with_robot(path: &Path, robot: &Robot) -> Result<Image, Unreadable> {
     Ok(image)
 }
 
-fn put(image: &mut Image, robot: &Robot) -> Result<(), LoadError> {
+fn put_robot(image: &mut Image, robot: &Robot) -> Result<(), LoadError> {
     let start = u32::from(START);
     image.replace(start..start + u32::from(SPACE), &robot.section())
 }

@@ -6,7 +6,7 @@ use lizard_robot::CoreRobot;
 
 use crate::simulate::board::{BoardError, SimulatedBoard};
 use crate::simulate::sim::core_run;
-use crate::simulate::sim::frame::{FRAME, frames, opens};
+use crate::simulate::sim::frame::{FRAME, first_cycle, frames};
 
 /// The errors of the pulses' widths and periods.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,7 +37,7 @@ impl Exactness {
         let first = board.first_pulse()?;
         let pins = board.pins();
         let mut edges = board.uno.edges();
-        let count = (board.uno.cycle() - opens(first)) / FRAME;
+        let count = (board.uno.cycle() - first_cycle(first)) / FRAME;
         let sent = frames(&edges, pins, first, count);
         let received = &board.uno.received_by_uno()[..commands];
         let commanded = core_run::play(*robot, received, first, sent.len());

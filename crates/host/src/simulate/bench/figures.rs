@@ -206,7 +206,7 @@ impl Figures {
     }
 }
 
-/// The most cycles of a step of main that is no frame, interrupts left out.
+/// The most cycles of a step of main that is not a frame, interrupts left out.
 ///
 /// # Errors
 /// See [`Figures::measure`].
@@ -263,9 +263,9 @@ impl Steady {
     }
 }
 
-/// Twenty seconds of commands that move nothing, as fast as they go through the
-/// line, while the robot turns, and as many bytes back. Also returns how many
-/// bytes came before.
+/// Sends commands that move nothing for twenty seconds, at the full rate of the line,
+/// while the robot walks and as many bytes come back. Also returns the number of bytes
+/// received before.
 fn flood(mut board: SimulatedBoard, gait: &str) -> Result<(SimulatedBoard, usize), BoardError> {
     let before = saturate(&mut board, gait)?;
     board.run_ms(20_000)?;
@@ -339,8 +339,8 @@ fn times(
     Ok(calls)
 }
 
-/// Lines that take long. Among those that are no gait's name, the one that is compared
-/// with the most characters of the names.
+/// Lines that take long to execute. Among them is the line that is no gait's name but
+/// agrees with the most characters of the names.
 fn long_lines(robot: &Robot) -> Vec<String> {
     let names = || robot.gaits().iter().map(|gait| command(gait.name()));
     let alike = |line: &String| -> usize {

@@ -53,7 +53,7 @@ impl<'a> Judged<'a> {
     }
 }
 
-/// Measures and prints.
+/// Measures the firmware and prints the table.
 ///
 /// # Errors
 /// No firmware, a firmware that dies or does not answer, a broken budget.

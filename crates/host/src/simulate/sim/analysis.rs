@@ -14,7 +14,7 @@ use crate::shared::ink::pin_name;
 
 /// One frame as the servos understand it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Instant {
+pub struct ServoFrame {
     /// Seconds since power-on.
     pub seconds: f64,
     /// Servo angles in degrees, chassis frame; `None` while the robot rests.
@@ -49,7 +49,7 @@ pub struct ServoReport {
 
 /// The tightest moment of the run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Tightest {
+pub struct SmallestMargin {
     /// The name of the margin.
     pub margin: String,
     /// The value of the margin.
@@ -62,7 +62,7 @@ pub struct Tightest {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Safety {
     /// The smallest margin.
-    pub least: Option<Tightest>,
+    pub least: Option<SmallestMargin>,
     /// Least and largest slider travel, mm.
     pub stroke: [f64; 2],
     /// Frames that break a limit of robot.toml, with the first reason.
@@ -73,7 +73,7 @@ pub struct Safety {
 
 /// The path under one command, by the contact model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Leg {
+pub struct CommandPath {
     /// The command in effect.
     pub command: String,
     /// The beginning, seconds since power-on.
@@ -89,7 +89,7 @@ pub struct Leg {
     pub turn: Option<f64>,
 }
 
-impl Instant {
+impl ServoFrame {
     /// A frame that starts at a time (s) with these pulses (cycles).
     fn of(robot: &Robot, seconds: f64, widths: Option<[u64; 4]>) -> Self {
         let us = |width: u64| width as f64 / CYCLES_PER_US as f64;
@@ -107,11 +107,11 @@ impl Instant {
 
 /// Reads frames back into angles.
 #[must_use]
-pub fn instants(robot: &Robot, frames: &[Frame]) -> Vec<Instant> {
+pub fn instants(robot: &Robot, frames: &[Frame]) -> Vec<ServoFrame> {
     let seconds = |frame: &Frame| frame.start as f64 / FREQUENCY as f64;
     frames
         .iter()
-        .map(|frame| Instant::of(robot, seconds(frame), frame.all()))
+        .map(|frame| ServoFrame::of(robot, seconds(frame), frame.all()))
         .collect()
 }
 
@@ -129,17 +129,17 @@ impl<'a> Run<'a> {
     pub fn within(
         self,
         range: std::ops::Range<usize>,
-    ) -> impl Iterator<Item = Instant> + Clone + 'a {
+    ) -> impl Iterator<Item = ServoFrame> + Clone + 'a {
         range.map(move |n| {
             let widths = self.log.widths[n];
             let all = widths.iter().all(|width| *width > 0);
             let widths = all.then_some(widths.map(u64::from));
-            Instant::of(self.robot, self.log.seconds(n), widths)
+            ServoFrame::of(self.robot, self.log.seconds(n), widths)
         })
     }
 
     /// Frame by frame.
-    pub fn instants(self) -> impl Iterator<Item = Instant> + Clone + 'a {
+    pub fn instants(self) -> impl Iterator<Item = ServoFrame> + Clone + 'a {
         self.within(0..self.log.widths.len())
     }
 }
@@ -224,7 +224,7 @@ impl Safety {
         };
         let (check, value) = solution.margins.min();
         if self.least.as_ref().is_none_or(|least| value < least.value) {
-            self.least = Some(Tightest {
+            self.least = Some(SmallestMargin {
                 margin: check.to_string(),
                 value,
                 seconds,
@@ -242,7 +242,7 @@ impl Safety {
 /// last one. Legs count as rigid, so that each pair of frames is computed once; `lizard twin`
 /// lets them lag. Feet are never lifted: see [`lizard_robot::Ground`].
 #[must_use]
-pub fn way(run: Run<'_>, spans: &[Span]) -> Vec<Leg> {
+pub fn command_paths(run: Run<'_>, spans: &[Span]) -> Vec<CommandPath> {
     let mut steps = Steps {
         run,
         known: HashMap::new(),
@@ -250,7 +250,7 @@ pub fn way(run: Run<'_>, spans: &[Span]) -> Vec<Leg> {
     let mut whole = NOWHERE;
     let mut all_known = [true; 3];
     let mut predictions = HashMap::new();
-    let mut legs = Vec::with_capacity(spans.len() + 1);
+    let mut paths = Vec::with_capacity(spans.len() + 1);
     for span in spans {
         let mut travel = NOWHERE;
         for n in run.log.index(span.from)..run.log.index(span.to) {
@@ -260,25 +260,30 @@ pub fn way(run: Run<'_>, spans: &[Span]) -> Vec<Leg> {
         }
         let known = *predictions
             .entry(span.command.as_str())
-            .or_insert_with(|| decided(run.robot, &span.command));
+            .or_insert_with(|| decided_parts(run.robot, &span.command));
         all_known = std::array::from_fn(|part| all_known[part] && known[part]);
-        legs.push(Leg::new(&span.command, [span.from, span.to], travel, known));
+        paths.push(CommandPath::new(
+            &span.command,
+            [span.from, span.to],
+            travel,
+            known,
+        ));
     }
     let end = spans.last().map_or(0.0, |span| span.to);
-    legs.push(Leg::new("all", [0.0, end], whole, all_known));
-    legs
+    paths.push(CommandPath::new("all", [0.0, end], whole, all_known));
+    paths
 }
 
 /// True for each part of a command's path (forward, left, turn) that is determined. A part of a
-/// gait's path may depend on a tie.
-fn decided(robot: &Robot, command: &str) -> [bool; 3] {
-    robot.gait(command).map_or([true; 3], |gait| {
+/// gait's path may depend on a tie, and so may that of some of its cycles.
+fn decided_parts(robot: &Robot, command: &str) -> [bool; 3] {
+    robot.gait_of_line(command).map_or([true; 3], |gait| {
         let way = robot.predict(gait);
         [way.forward, way.left, way.turn].map(|part| part.is_some())
     })
 }
 
-impl Leg {
+impl CommandPath {
     fn new(command: &str, [from, to]: [f64; 2], travel: Travel, known: [bool; 3]) -> Self {
         let [forward, left, turn] = known;
         Self {
@@ -292,7 +297,7 @@ impl Leg {
     }
 }
 
-/// The way of a robot that stands.
+/// The travel of a robot that stands.
 const NOWHERE: Travel = Travel {
     forward: 0.0,
     left: 0.0,

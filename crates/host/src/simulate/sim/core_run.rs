@@ -69,7 +69,7 @@ impl CoreRun {
     /// The cycle at which waiting lines are written and waiting bytes are taken.
     fn retry(&self) -> Option<u64> {
         let board = &self.running.board;
-        let waits = board.waiting() > 0 || self.running.has_output();
+        let waits = board.unread() > 0 || self.running.has_output();
         waits.then(|| board.transmitter.free().saturating_sub(QUEUED * BYTE))
     }
 }
@@ -85,7 +85,7 @@ pub struct Commands {
 
 /// Runs the core of a robot along with a recording: `received` are the bytes that
 /// reached the UNO, `first` is the cycle of A1's first pulse, `count` the number of
-/// frames from there on. Exact but for the lines of [`undecided`].
+/// frames from there on. Exact except for the lines of [`undecided`].
 #[must_use]
 pub fn play(robot: Robot<'static>, received: &[SerialByte], first: u64, count: usize) -> Commands {
     let silent = frames_before_waking(robot);

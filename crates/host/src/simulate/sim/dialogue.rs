@@ -71,7 +71,7 @@ impl Printer {
 mod tests {
     use super::*;
 
-    fn printed(all: bool, lines: &[(Sender, &str)]) -> String {
+    fn print_lines(all: bool, lines: &[(Sender, &str)]) -> String {
         let mut out = Vec::new();
         let mut printer = Printer::new(all);
         for (from, text) in lines {
@@ -92,12 +92,12 @@ mod tests {
         lines.extend(&watch[..3]);
         lines.push((Sender::User, "# t=0"));
         lines.extend(&watch[..4]);
-        let short = printed(false, &lines);
+        let short = print_lines(false, &lines);
         assert_eq!(short.matches("# t=1").count(), 9, "{short}");
         assert!(short.contains("(2 more lines `# t=`; --all prints them)\n    1.500 s    # hold"));
         assert!(short.ends_with("(1 more lines `# t=`; --all prints them)\n"));
         assert_eq!(short.matches("more lines").count(), 2);
-        let all = printed(true, &lines);
+        let all = print_lines(true, &lines);
         assert_eq!(all.lines().count(), lines.len());
         assert!(all.starts_with("    1.500 s  > watch 1\n    1.500 s    ok watch 1\n"));
     }

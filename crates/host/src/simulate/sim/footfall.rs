@@ -2,7 +2,7 @@
 
 use simulated_uno::FREQUENCY;
 
-use super::analysis::Instant;
+use super::analysis::ServoFrame;
 use super::frame::FRAME;
 
 /// A foot slower than this (deg/s of its leg) stands still: a cubic or smoothstep
@@ -20,9 +20,9 @@ pub enum Phase {
     Still,
 }
 
-/// A time span in which a foot keeps its movement.
+/// A time span with one movement of a foot.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stretch {
+pub struct FootSpan {
     /// The movement of the foot.
     pub phase: Phase,
     /// The beginning, s.
@@ -33,9 +33,12 @@ pub struct Stretch {
 
 /// The movements of a servo's foot, in order of time. None while it rests.
 #[must_use]
-pub fn stretches(instants: impl Iterator<Item = Instant> + Clone, servo: usize) -> Vec<Stretch> {
+pub fn foot_spans(
+    instants: impl Iterator<Item = ServoFrame> + Clone,
+    servo: usize,
+) -> Vec<FootSpan> {
     let frame = FRAME as f64 / FREQUENCY as f64;
-    let mut stretches: Vec<Stretch> = Vec::new();
+    let mut spans: Vec<FootSpan> = Vec::new();
     for (here, next) in instants.clone().zip(instants.skip(1)) {
         let (Some(before), Some(after)) = (here.sweeps, next.sweeps) else {
             continue;
@@ -49,12 +52,12 @@ pub fn stretches(instants: impl Iterator<Item = Instant> + Clone, servo: usize) 
             Phase::Stance
         };
         let (from, to) = (here.seconds, next.seconds);
-        match stretches.last_mut() {
+        match spans.last_mut() {
             Some(last) if last.phase == phase && from - last.to < frame / 2.0 => last.to = to,
-            _ => stretches.push(Stretch { phase, from, to }),
+            _ => spans.push(FootSpan { phase, from, to }),
         }
     }
-    stretches
+    spans
 }
 
 #[cfg(test)]
@@ -63,7 +66,7 @@ mod tests {
     use lizard_robot::servo::FORWARD;
 
     /// Five seconds of a gait, then a second of rest.
-    fn instants(gait: &str) -> Vec<Instant> {
+    fn instants(gait: &str) -> Vec<ServoFrame> {
         let robot = crate::shared::robot_file::named("paper");
         let gait = robot.gait(gait).expect("it is in robot.toml");
         let neutral: [f64; 4] = robot.neutral().into();
@@ -72,7 +75,7 @@ mod tests {
             .map(|seconds| {
                 let angles = (seconds < 5.0).then(|| gait.angles(gait.phase(seconds)));
                 let sweep = |angles: [f64; 4], i: usize| (angles[i] - neutral[i]) * FORWARD[i];
-                Instant {
+                ServoFrame {
                     seconds,
                     angles,
                     sweeps: angles.map(|angles| std::array::from_fn(|i| sweep(angles, i))),
@@ -82,8 +85,8 @@ mod tests {
     }
 
     fn at(gait: &str, servo: usize, seconds: f64) -> Option<Phase> {
-        let stretches = stretches(instants(gait).into_iter(), servo);
-        let here = stretches
+        let spans = foot_spans(instants(gait).into_iter(), servo);
+        let here = spans
             .iter()
             .find(|stretch| (stretch.from..stretch.to).contains(&seconds));
         here.map(|stretch| stretch.phase)
@@ -92,11 +95,9 @@ mod tests {
     #[test]
     fn walk_is_three_quarters_stance_and_every_foot_returns_once_a_second() {
         for servo in 0..4 {
-            let stretches = stretches(instants("walk").into_iter(), servo);
+            let spans = foot_spans(instants("walk").into_iter(), servo);
             let within = |phase| {
-                let ours = stretches
-                    .iter()
-                    .filter(move |stretch| stretch.phase == phase);
+                let ours = spans.iter().filter(move |stretch| stretch.phase == phase);
                 ours.map(|stretch| stretch.to.min(4.0) - stretch.from.max(1.0))
                     .filter(|seconds| *seconds > 0.0)
                     .sum::<f64>()

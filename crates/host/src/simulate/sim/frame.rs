@@ -1,4 +1,4 @@
-//! Edges cut into frames: one pulse for each servo every 20 ms.
+//! Divides edges into frames: one pulse for each servo every 20 ms.
 
 use lizard_robot::Robot;
 use simulated_uno::{CYCLES_PER_MS, Edge, Pin, pulses};
@@ -55,7 +55,7 @@ pub fn servo_pins(robot: &Robot) -> [Pin; 4] {
 /// The first cycle that belongs to the frame which starts at cycle `start`: half
 /// a slot earlier, so that no pulse falls between two frames.
 #[must_use]
-pub fn opens(start: u64) -> u64 {
+pub fn first_cycle(start: u64) -> u64 {
     start.saturating_sub(SLOT / 2)
 }
 
@@ -76,7 +76,7 @@ pub fn latest_start(edges: &[Edge], pins: [Pin; 4]) -> Option<u64> {
         .map(|edge| edge.cycle)
 }
 
-/// `count` frames, the first of which starts at cycle `start`.
+/// The `count` frames from cycle `start` on.
 #[must_use]
 pub fn frames(edges: &[Edge], pins: [Pin; 4], start: u64, count: u64) -> Vec<Frame> {
     let empty = |n| Frame {
@@ -85,7 +85,7 @@ pub fn frames(edges: &[Edge], pins: [Pin; 4], start: u64, count: u64) -> Vec<Fra
         widths: [None; 4],
     };
     let mut frames: Vec<Frame> = (0..count).map(empty).collect();
-    let first = opens(start);
+    let first = first_cycle(start);
     for (servo, pin) in pins.into_iter().enumerate() {
         for pulse in pulses(edges, pin) {
             let Some(since) = pulse.start.checked_sub(first) else {
@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pulse_belongs_to_the_frame_it_starts_in_even_a_little_early() {
+    fn a_pulse_that_starts_a_little_early_belongs_to_the_next_frame() {
         let start = 1_000_000;
         let mut edges = Vec::new();
         edges.extend(pulse(start, 24_000, PINS[0]));
@@ -141,7 +141,7 @@ mod tests {
         assert_eq!(next_start(1_000_000, 0), 1_000_000);
         let next = next_start(1_000_000, 1_000_000);
         assert_eq!(next, 1_000_000 + FRAME);
-        assert_eq!(next_start(1_000_000, opens(next)), next);
-        assert_eq!(next_start(1_000_000, opens(next) + 1), next + FRAME);
+        assert_eq!(next_start(1_000_000, first_cycle(next)), next);
+        assert_eq!(next_start(1_000_000, first_cycle(next) + 1), next + FRAME);
     }
 }

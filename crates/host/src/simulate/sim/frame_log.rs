@@ -2,7 +2,7 @@
 
 use simulated_uno::{Edge, FREQUENCY, Pin};
 
-use super::frame::{FRAME, opens};
+use super::frame::{FRAME, first_cycle};
 
 /// Every frame from A1's first pulse on.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -85,7 +85,7 @@ impl FrameReader {
     }
 
     fn pulse(&mut self, servo: usize, start: u64, width: u64) {
-        let Some(since) = start.checked_sub(opens(self.log.first)) else {
+        let Some(since) = start.checked_sub(first_cycle(self.log.first)) else {
             return;
         };
         if !self.started {
@@ -108,7 +108,7 @@ impl FrameReader {
     #[must_use]
     pub fn finish(mut self, cycle: u64) -> FrameLog {
         let whole = if self.started {
-            (cycle - opens(self.log.first)) / FRAME
+            (cycle - first_cycle(self.log.first)) / FRAME
         } else {
             0
         };
@@ -152,7 +152,7 @@ mod tests {
             let [a, b, c] = [24_000, 26_000, 27_000];
             let widths = [[a, 0, 25_000, 0], [b, 0, 0, 0], [0; 4], [c, 0, 0, 0]];
             assert_eq!((log.first, &log.widths[..]), (start, &widths[..]), "{cut}");
-            assert_eq!(log.period_error, [7, 0, 0, 0], "a gap is no period");
+            assert_eq!(log.period_error, [7, 0, 0, 0], "a gap is not a period");
             assert_eq!(log.most_pins_high, 1);
         }
     }

@@ -23,6 +23,8 @@ use std::path::{Path, PathBuf};
 
 use indicatif::ProgressBar;
 use lizard_robot::Robot;
+#[cfg(target_os = "linux")]
+use simulated_uno::{Air, Radio};
 use simulated_uno::{FREQUENCY, Fidelity, State, Uno};
 
 use crate::shared::firmware::{self, Firmware};
@@ -83,6 +85,16 @@ pub struct Args {
     #[cfg(target_os = "linux")]
     #[arg(long, value_name = "FILE", requires = "pty", conflicts_with = "elf")]
     boot_loader: Option<PathBuf>,
+    /// With --pty: behind a radio module of this rate, in baud, such as 9600: packets of 20
+    /// bytes that come late, get lost, or are cut; no reset when the port is opened
+    #[cfg(target_os = "linux")]
+    #[arg(long, value_name = "BAUD", requires = "pty", conflicts_with = "boot_loader",
+          value_parser = clap::value_parser!(u32).range(300..=1_000_000))]
+    radio: Option<u32>,
+    /// With --radio: the seed of its random numbers; the same seed, the same air
+    #[cfg(target_os = "linux")]
+    #[arg(long, value_name = "N", requires = "radio", default_value_t = 0)]
+    seed: u64,
     #[command(flatten)]
     robot: RobotFile,
 }
@@ -128,7 +140,14 @@ pub fn run(args: Args) -> Result<(), Failure> {
             }
         };
         supplies::connect(&mut uno, &robot);
-        return served::until_interrupted(uno, link.as_deref());
+        let radio = args.radio.map(|baud| {
+            Radio::new(Air {
+                baud: f64::from(baud),
+                seed: args.seed,
+                ..Air::default()
+            })
+        });
+        return served::until_interrupted(uno, link.as_deref(), radio);
     }
     let script = script(&args, &robot)?;
     let Firmware { name, image } = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?;
@@ -154,14 +173,14 @@ pub fn run(args: Args) -> Result<(), Failure> {
         wall_seconds: recording.wall.as_secs_f64(),
         servos: analysis::servos(frames, commands.as_deref()),
         safety: analysis::safety(frames),
-        way: analysis::way(frames, &spans),
+        way: analysis::command_paths(frames, &spans),
         most_pins_high: log.most_pins_high,
         asleep_percent: 100.0 * uno.asleep_cycles() as f64 / uno.cycle().max(1) as f64,
         flash: firmware::code_bytes(uno.image(), robot) + robot.section().len() as u32,
         ram: Ram::of(&uno),
         overruns: uno.overruns(),
         resets: uno.resets(),
-        ended: ended(&recording.state),
+        ended: end_message(&recording.state),
         svg: Some(args.svg.display().to_string()),
         dialogue: kept,
         frames,
@@ -221,10 +240,10 @@ fn commands(robot: &Robot, recording: &Recording) -> Option<Vec<[u16; 4]>> {
     same.then_some(commands.widths)
 }
 
-fn ended(state: &State) -> String {
+fn end_message(state: &State) -> String {
     match state {
         State::Alive => "the firmware is alive".to_owned(),
-        State::Halted => "the firmware sleeps with interrupts off, for ever".to_owned(),
+        State::Halted => "the firmware sleeps with interrupts off, forever".to_owned(),
         State::Crashed { pc, message } => {
             // The simulator's name for it, where it has no words.
             let why = match message.as_str() {

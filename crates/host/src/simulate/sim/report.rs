@@ -6,7 +6,7 @@ use lizard_robot::UNDECIDED;
 use serde::Serialize;
 use simulated_uno::Uno;
 
-use super::analysis::{Leg, Run, Safety, ServoReport};
+use super::analysis::{CommandPath, Run, Safety, ServoReport};
 use super::session::DialogueLine;
 use crate::shared::number::tidy;
 
@@ -28,7 +28,7 @@ pub struct Report<'a> {
     /// Margins and strokes of every pose sent.
     pub safety: Safety,
     /// The predicted path of each command; the last entry is the complete run.
-    pub way: Vec<Leg>,
+    pub way: Vec<CommandPath>,
     /// The most servo pins high at once.
     pub most_pins_high: u32,
     /// Share of cycles that the CPU was asleep, percent.
@@ -57,7 +57,7 @@ impl Report<'_> {
     /// Writing failed.
     pub fn print(&self, out: &mut impl Write) -> io::Result<()> {
         self.print_servos(out)?;
-        self.print_way(out)?;
+        self.print_paths(out)?;
         self.print_rest(out)
     }
 
@@ -97,12 +97,12 @@ impl Report<'_> {
         writeln!(out)
     }
 
-    fn print_way(&self, out: &mut impl Write) -> io::Result<()> {
+    fn print_paths(&self, out: &mut impl Write) -> io::Result<()> {
         writeln!(
             out,
-            "predicted way        from      to   forward      left      turn"
+            "predicted path       from      to   forward      left      turn"
         )?;
-        for leg in &self.way {
+        for path in &self.way {
             let cell = |part: Option<f64>, digits: usize| {
                 let tidy = |part| format!("{:.digits$}", tidy(part, digits as i32));
                 part.map_or("-".to_owned(), tidy)
@@ -110,12 +110,12 @@ impl Report<'_> {
             writeln!(
                 out,
                 "{:<16} {:>6.2} s {:>5.2} s {:>6} mm {:>6} mm {:>6} deg",
-                leg.command,
-                leg.from,
-                leg.to,
-                cell(leg.forward, 1),
-                cell(leg.left, 1),
-                cell(leg.turn, 2)
+                path.command,
+                path.from,
+                path.to,
+                cell(path.forward, 1),
+                cell(path.left, 1),
+                cell(path.turn, 2)
             )?;
         }
         if self.frames.robot.drive().lags() {
@@ -124,8 +124,8 @@ impl Report<'_> {
                 "Legs are where their servos are here; `lizard twin` lets them lag."
             )?;
         }
-        let parts = |leg: &Leg| [leg.forward, leg.left, leg.turn];
-        if self.way.iter().any(|leg| parts(leg).contains(&None)) {
+        let parts = |path: &CommandPath| [path.forward, path.left, path.turn];
+        if self.way.iter().any(|path| parts(path).contains(&None)) {
             write!(out, "{UNDECIDED}")?;
         }
         writeln!(out)

@@ -9,30 +9,41 @@ use std::time::Duration;
 
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
-use simulated_uno::{Fidelity, Image, Port, State, Uno};
+use simulated_uno::{Fidelity, Image, Port, Radio, State, Uno};
 
 use crate::Failure;
-use crate::shared::files::{self, reading};
+use crate::shared::files::{self, note_input};
 
 /// A board as sold, with this boot loader in flash and nothing else.
 ///
 /// # Errors
 /// The file is missing or no AVR program.
 pub(super) fn as_sold(boot_loader: &Path, fidelity: Fidelity) -> Result<Uno, Failure> {
-    let image = Image::read(reading(boot_loader))
+    let image = Image::read(note_input(boot_loader))
         .map_err(|error| Failure::Input(format!("{}: {error}", boot_loader.display())))?;
     Ok(Uno::with_boot_loader(image, fidelity))
 }
 
-/// Serves the UNO until the program is ended. `link` becomes a symbolic link to
+/// Serves the UNO until the program is ended, by cable or by radio. `link` becomes a symbolic link to
 /// the port, whose own name differs from run to run, and is removed at the end.
 ///
 /// # Errors
 /// No pseudo terminal, or `link` is something else already.
-pub(super) fn until_interrupted(mut uno: Uno, link: Option<&Path>) -> Result<(), Failure> {
+pub(super) fn until_interrupted(
+    mut uno: Uno,
+    link: Option<&Path>,
+    radio: Option<Radio>,
+) -> Result<(), Failure> {
     let mut port = Port::new().map_err(|error| {
         Failure::Impossible(format!("this machine gives no pseudo terminal: {error}"))
     })?;
+    let opening = match radio {
+        Some(radio) => {
+            port = port.by_radio(radio);
+            "opening the port resets nothing"
+        }
+        None => "opening the port resets it",
+    };
     let name = match link {
         Some(link) => {
             // First, so that the program cannot end between the two.
@@ -44,7 +55,7 @@ pub(super) fn until_interrupted(mut uno: Uno, link: Option<&Path>) -> Result<(),
     };
     let mut out = io::stdout();
     writeln!(out, "the simulated UNO is at {}", name.display())?;
-    writeln!(out, "opening the port resets it; Ctrl-C ends it")?;
+    writeln!(out, "{opening}; Ctrl-C ends it")?;
     let mut told = State::Alive;
     loop {
         port.serve(&mut uno, Duration::from_secs(1))
@@ -53,20 +64,20 @@ pub(super) fn until_interrupted(mut uno: Uno, link: Option<&Path>) -> Result<(),
         uno.take_marks();
         if *uno.state() != told {
             told = uno.state().clone();
-            writeln!(out, "{}", ended(&told, uno.flash(), &name))?;
+            writeln!(out, "{}", end_message(&told, uno.flash(), &name))?;
         }
     }
 }
 
 /// The message when the chip stops. A new board has nothing in flash at the firmware's address,
 /// so it stops as soon as the boot loader hands over.
-fn ended(state: &State, flash: &[u8], port: &Path) -> String {
+fn end_message(state: &State, flash: &[u8], port: &Path) -> String {
     match state {
         State::Crashed { .. } if flash.starts_with(&[0xff, 0xff]) => format!(
             "there is no firmware in this board yet; `lizard flash {}` writes it",
             port.display()
         ),
-        _ => super::ended(state),
+        _ => super::end_message(state),
     }
 }
 
@@ -90,11 +101,11 @@ fn remove_at_end(link: PathBuf, port: PathBuf) -> Result<(), Failure> {
 /// Makes `link` point at `port`. A link to another pseudo terminal, which a run that
 /// was killed has left, is replaced.
 fn point(link: &Path, port: &Path) -> Result<(), Failure> {
-    let cannot = |error: io::Error| files::cannot(link, &error);
+    let cannot = |error: io::Error| files::write_failure(link, &error);
     let foreign = || {
         let name = link.display();
         Failure::Input(format!(
-            "{name} is there already and no link to a pseudo terminal"
+            "{name} already exists and is not a link to a pseudo terminal"
         ))
     };
     if fs::read_link(link).is_ok_and(|end| end.starts_with("/dev/pts")) {
@@ -114,18 +125,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_board_without_a_firmware_is_no_crash_and_a_crash_has_no_name_of_the_simulator() {
+    fn an_empty_board_is_not_reported_as_a_crash_and_a_crash_does_not_name_the_simulator() {
         let crashed = State::Crashed {
             pc: 0x7fe4,
             message: "avr_sadly_crashed".to_owned(),
         };
         let port = Path::new("out/uno");
         assert_eq!(
-            ended(&crashed, &[0xff; 8], port),
+            end_message(&crashed, &[0xff; 8], port),
             "there is no firmware in this board yet; `lizard flash out/uno` writes it"
         );
         assert_eq!(
-            ended(&crashed, &[0x0c, 0x94, 0xff], port),
+            end_message(&crashed, &[0x0c, 0x94, 0xff], port),
             "the firmware crashed at 0x7fe4: no such instruction or address"
         );
     }

@@ -15,7 +15,7 @@ pub struct Span {
     pub to: f64,
 }
 
-/// True if a command begins, ends or paces a motion. What is no word of the console is the
+/// True if a command begins, ends or paces a motion. What is not a word of the console is the
 /// gait of some robot.
 fn changes_motion(command: &str) -> bool {
     let word = command.split_whitespace().next().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! The default supplies of a simulated UNO.
+//! The default supplies and contacts of a simulated UNO.
 //!
 //! The firmware ends the pulses when a supply is too low. So a simulated board needs,
 //! besides its own 5 V, the voltage that it measures according to robot.toml: the servos'
@@ -22,11 +22,14 @@ pub fn at_pin(robot: &Robot) -> Option<(Pin, u16)> {
     Some((Pin::arduino(robot.firmware().rail_pin()?), mv as u16))
 }
 
-/// Gives the UNO the supplies of a robot in good order.
+/// Gives the UNO the supplies of a robot in good order, and its contacts, all open.
 pub fn connect(uno: &mut Uno, robot: &Robot) {
     uno.set_bandgap_mv(robot.supplies().reference * 1_000.0);
     if let Some((pin, mv)) = at_pin(robot) {
         uno.set_analog_mv(pin, mv);
+    }
+    for (_, pin) in robot.inputs().each() {
+        uno.set_contact(Pin::arduino(pin), false);
     }
 }
 

@@ -4,7 +4,7 @@ use lizard_robot::servo::NAMES;
 use svg::node::element::Group;
 
 use super::analysis::Run;
-use super::footfall::{Phase, Stretch, stretches};
+use super::footfall::{FootSpan, Phase, foot_spans};
 use super::spans::Span;
 use crate::shared::ink::pin_name;
 use crate::shared::ink::{
@@ -203,13 +203,13 @@ impl Chart<'_> {
                 SERVO[servo],
                 Anchor::End,
             ));
-        let stretches = stretches(self.run.instants(), servo);
+        let stretches = foot_spans(self.run.instants(), servo);
         if stretches.len() as f64 > (end - begin) / 2.0 {
             let at = ((begin + end) / 2.0, top + FOOT / 2.0 + 5.0);
             let words = "steps shorter than a pixel: simulate less to see them";
             return group.add(text(words, at, 13.0, GREY, Anchor::Middle));
         }
-        for Stretch { phase, from, to } in stretches {
+        for FootSpan { phase, from, to } in stretches {
             let (x, width) = (self.x(from), self.x(to) - self.x(from));
             group = group.add(foot(phase, SERVO[servo], (x, top), (width, FOOT)));
         }

@@ -1,5 +1,5 @@
-//! `lizard twin`: the real firmware on the simulated UNO moves a robot that nobody has
-//! built yet, and shows how it walks.
+//! `lizard twin`: the real firmware on the simulated UNO moves a simulated robot, and the output
+//! shows how it walks.
 
 pub mod replay;
 pub mod report;
@@ -8,7 +8,7 @@ mod robust;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use lizard_robot::{CheckedGait, Robot};
+use lizard_robot::{CheckedGait, Robot, Round, Routine, WITHOUT_CONTACTS};
 use lizard_twin::ServoModel;
 use simulated_uno::{Fidelity, State, Uno};
 
@@ -38,7 +38,7 @@ pub struct Args {
     /// A file of commands and their times, as for `lizard sim` [default: every gait]
     #[arg(value_name = "SCRIPT")]
     script: Option<PathBuf>,
-    /// Walk one gait of robot.toml
+    /// Walk one gait of robot.toml, or one round of a routine
     #[arg(long, value_name = "NAME", conflicts_with = "script")]
     gait: Option<String>,
     /// The firmware: an ELF that has this robot in it [default: the one inside this
@@ -52,7 +52,8 @@ pub struct Args {
     #[arg(long)]
     json: bool,
     /// Then walk each gait N more times with random friction, loads, mounting, hips,
-    /// feet, springs and play, and print the spread of the distances
+    /// feet, springs and play, and print the spread of the distances, and how much of their
+    /// servos' torque-speed line the gaits use
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=100_000))]
     robust: Option<u32>,
     #[command(flatten)]
@@ -61,26 +62,31 @@ pub struct Args {
 
 #[derive(clap::ValueEnum, Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum ServoArg {
-    /// 60 degrees in 0.12 s, dead band 10 us
+    /// With the torque, the rate, the rotor and the dead band of `[servo]` in robot.toml
     #[default]
-    Sg90,
-    /// Follows its pulse at once
+    Own,
+    /// Follows its pulse at once, whatever it carries
     Ideal,
 }
 
-/// Walks and tells.
+/// Runs the firmware, walks the robot and prints the report.
 ///
 /// # Errors
 /// No firmware, a wrong script, a firmware that dies, a file that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let script = script(&args, &robot)?;
-    let image = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?.image;
+    let mut image = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?.image;
+    let routine = args.gait.as_deref().and_then(|name| robot.routine(name));
+    let has_inputs = routine.is_some_and(Routine::has_inputs);
+    if has_inputs {
+        image = firmware::without_contacts(image, &robot);
+    }
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     let recording = record(&mut uno, &robot, &script)?;
     let model = match args.servo {
-        ServoArg::Sg90 => ServoModel::SG90,
-        ServoArg::Ideal => ServoModel::IDEAL,
+        ServoArg::Own => ServoModel::of(&robot),
+        ServoArg::Ideal => ServoModel::Ideal,
     };
     let spans = spans::spans(&script, &recording.answers);
     let paced = script
@@ -95,6 +101,9 @@ pub fn run(args: Args) -> Result<(), Failure> {
         report.json(&mut out)?;
     } else {
         report.print(&mut out)?;
+        if has_inputs {
+            write!(out, "\n{WITHOUT_CONTACTS}")?;
+        }
     }
     if let Some(times) = args.robust {
         robust::run(&robot, &replay, model, times, args.json, &mut out)?;
@@ -130,9 +139,31 @@ fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
         return read_script(path);
     }
     Ok(match &args.gait {
-        None => every(robot, &tour::moving(robot)),
-        Some(name) => every(robot, &[moving_gait(robot, name)?.name()]),
+        None => walk_script(robot, &tour::moving(robot)),
+        Some(name) => match robot.routine(name) {
+            Some(routine) => a_round(robot, routine),
+            None => walk_script(robot, &[moving_gait(robot, name)?.name()]),
+        },
     })
+}
+
+/// A routine after a second of standing, for one round, and a second after its end.
+fn a_round(robot: &Robot, routine: &Routine) -> Script {
+    const STAND_MS: u64 = 1000;
+    let round = Round::of(robot, routine);
+    let name = routine.name().replace('-', " ");
+    let ms = STAND_MS + (1000.0 * round.seconds).ceil() as u64;
+    let step = |ms, command: &str| Step {
+        ms,
+        command: command.to_owned(),
+    };
+    Script {
+        steps: vec![
+            step(STAND_MS, &format!("{name} 1")),
+            step(ms + STAND_MS, "stop"),
+        ],
+        end_ms: ms + 2 * STAND_MS,
+    }
 }
 
 /// The gait of this name, if it moves a servo.
@@ -151,8 +182,8 @@ pub(crate) fn moving_gait<'a>(robot: &'a Robot, name: &str) -> Result<&'a Checke
     }
 }
 
-/// Each of these gaits after a second at its beginning, for three cycles.
-pub(crate) fn every(robot: &Robot, gaits: &[&str]) -> Script {
+/// A script that walks each of these gaits for three cycles, after a second at its first pose.
+pub(crate) fn walk_script(robot: &Robot, gaits: &[&str]) -> Script {
     const CYCLES: f64 = 3.0;
     const STAND_MS: u64 = 1000;
     let mut ms = STAND_MS;

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use lizard_robot::{Prediction, Robot, Sprung, Travel, UNDECIDED};
+use lizard_robot::{Prediction, Robot, SpringCost, Travel, UNDECIDED};
 use lizard_twin::Tally;
 use serde::Serialize;
 
@@ -24,7 +24,7 @@ pub struct Row {
     /// The time of its first frame and of its end, s since power-on.
     pub seconds: [f64; 2],
     /// The complete path under the command.
-    pub way: Way,
+    pub way: PathParts,
     /// The gait's last complete cycle, and its prediction.
     pub cycle: Option<Cycle>,
     /// The remaining figures are of the last complete cycle if there is one, else of all
@@ -38,13 +38,13 @@ pub struct Row {
     pub stroke: Option<[f64; 2]>,
     /// The fastest turn of a servo, deg/s.
     pub servo_rate: f64,
-    /// The most that a servo was away from its pulse, deg.
+    /// The largest deviation of a servo from its pulse, deg.
     pub servo_error: f64,
 }
 
 /// A path; null for a part that depends on a tie.
 #[derive(Debug, Clone, Copy, Serialize)]
-pub struct Way {
+pub struct PathParts {
     /// Distance forward, mm.
     pub forward: Option<f64>,
     /// Distance to the left, mm.
@@ -57,9 +57,9 @@ pub struct Way {
 #[derive(Debug, Serialize)]
 pub struct Cycle {
     /// The path of the cycle.
-    pub way: Way,
+    pub way: PathParts,
     /// The path that the contact model predicts for ideal servos.
-    pub predicted: Way,
+    pub predicted: PathParts,
     /// Mean speed over the cycle, mm/s; null if the path depends on a tie.
     pub speed: Option<f64>,
     /// Distance relative to rigid legs, by the prediction; null if legs are rigid or there is
@@ -67,8 +67,8 @@ pub struct Cycle {
     pub share_of_rigid: Option<f64>,
 }
 
-impl Way {
-    fn known(travel: Travel, known: Option<&Prediction>) -> Self {
+impl PathParts {
+    fn of(travel: Travel, known: Option<&Prediction>) -> Self {
         let keep = |part: fn(&Prediction) -> Option<f64>, value: f64| match known {
             Some(known) => part(known).map(|_| value),
             None => Some(value),
@@ -82,7 +82,7 @@ impl Way {
 }
 
 impl Report {
-    /// Sums up a replay. With `paced` gaits went at other speeds than their own, and
+    /// Sums up a replay. With `paced`, gaits went at other speeds than their own, and
     /// their cycles are not reported.
     #[must_use]
     pub fn of(robot: &Robot, replay: &Replay, paced: bool) -> Self {
@@ -92,7 +92,7 @@ impl Report {
             .filter(|stage| !stage.frames.is_empty());
         let row = |stage: &super::replay::Stage| {
             let whole = replay.tally(stage.frames.clone());
-            let gait = robot.gait(&stage.command);
+            let gait = robot.gait_of_line(&stage.command);
             let prediction = gait.map(|gait| robot.predict(gait));
             let cycle = replay.last_cycle(stage).filter(|_| !paced);
             let last = cycle
@@ -104,10 +104,10 @@ impl Report {
             Row {
                 command: stage.command.clone(),
                 seconds: [seconds(stage.frames.start), seconds(stage.frames.end)],
-                way: Way::known(whole.travel(), known),
+                way: PathParts::of(whole.travel(), known),
                 cycle: last.zip(cycle).map(|(tally, (gait, _))| Cycle {
-                    way: Way::known(tally.travel(), known),
-                    predicted: known.map_or(Way::known(tally.travel(), None), |way| Way {
+                    way: PathParts::of(tally.travel(), known),
+                    predicted: known.map_or(PathParts::of(tally.travel(), None), |way| PathParts {
                         forward: way.forward,
                         left: way.left,
                         turn: way.turn,
@@ -116,7 +116,7 @@ impl Report {
                         let travel = tally.travel();
                         travel.forward.hypot(travel.left) / tally.seconds()
                     }),
-                    share_of_rigid: Sprung::of(gait, robot.ground()).and_then(|on| on.share),
+                    share_of_rigid: SpringCost::of(gait, robot.ground()).and_then(|on| on.share),
                 }),
                 foot_slip: of.slip,
                 lag: of.lag,
@@ -171,7 +171,7 @@ impl Report {
             write!(out, "{:width$}  ", row.command)?;
             for way in [&cycle.way, &cycle.predicted] {
                 for (part, decimals) in [(way.forward, 1), (way.left, 1), (way.turn, 1)] {
-                    write!(out, "{:>8}", known(part, decimals))?;
+                    write!(out, "{:>8}", format_part(part, decimals))?;
                 }
             }
             write!(
@@ -207,13 +207,13 @@ impl Report {
                 out,
                 "\n{} from {from:.2} to {to:.2} s: ahead {} mm, left {} mm, turn {} deg",
                 row.command,
-                known(way.forward, 1),
-                known(way.left, 1),
-                known(way.turn, 1)
+                format_part(way.forward, 1),
+                format_part(way.left, 1),
+                format_part(way.turn, 1)
             )?;
         }
         let undecided =
-            |way: &Way| way.forward.is_none() || way.left.is_none() || way.turn.is_none();
+            |way: &PathParts| way.forward.is_none() || way.left.is_none() || way.turn.is_none();
         if self.rows.iter().any(|row| undecided(&row.way)) {
             write!(out, "\n{UNDECIDED}")?;
         }
@@ -223,7 +223,7 @@ impl Report {
 
 /// A part of a path with its sign, except for zero; a dash if it is unknown.
 #[must_use]
-pub fn known(part: Option<f64>, decimals: usize) -> String {
+pub fn format_part(part: Option<f64>, decimals: usize) -> String {
     part.map_or("-".to_owned(), |value| {
         format!("{:+.decimals$}", tidy(value, decimals as i32))
     })

@@ -1,14 +1,14 @@
-//! The spread of a gait's distance over robots and floors that differ a little.
+//! The spread of a gait's distance over slightly different robots and floors.
 
 use std::io::{self, Write};
 
-use lizard_robot::{CheckedGait, Robot, Travel};
-use lizard_tune::{PLAYED, SPREAD, Variation, quantiles};
+use lizard_robot::{CheckedGait, Effort, Ground, Robot, TIGHT, Travel};
+use lizard_tune::{FRICTION, PLAY_SPREAD, SPREAD, Variation, quantiles};
 use lizard_twin::ServoModel;
 use serde::Serialize;
 
 use super::replay::Replay;
-use super::report::known;
+use super::report::format_part;
 use crate::Failure;
 use crate::shared::json;
 use crate::shared::progress::bar;
@@ -18,12 +18,15 @@ use crate::shared::progress::bar;
 struct Spread {
     gait: String,
     times: usize,
-    /// 5 %, half and 95 % of the ways are below: mm ahead.
+    /// The 5th, 50th and 95th percentile of the distance forward, mm.
     forward: [f64; 3],
     /// Distance to the left, mm.
     left: [f64; 3],
     /// Turn, deg counter-clockwise.
     turn: [f64; 3],
+    /// Largest share of a servo's torque-speed line: on the robot's own floor, and with the most
+    /// friction.
+    line: [f64; 2],
 }
 
 /// Walks every gait of the run `times` times.
@@ -52,14 +55,21 @@ pub fn run(
         if spreads.iter().any(|spread| spread.gait == gait.name()) {
             continue;
         }
-        let way = |seed: u64| {
+        let path = |seed: u64| {
             bar.inc(1);
             Variation::of(robot.ground(), seed)
                 .with_play(seed)
                 .walked(robot, gait, model)
         };
-        let ways: Vec<Travel> = (0..u64::from(times)).map(way).collect();
-        spreads.push(Spread::of(gait.name(), &ways));
+        let paths: Vec<Travel> = (0..u64::from(times)).map(path).collect();
+        let line = [1.0, FRICTION.1].map(|more| {
+            let ground = Ground {
+                friction: robot.ground().friction * more,
+                ..*robot.ground()
+            };
+            Effort::of(gait, &ground, &robot.motors()).line_share(1.0, 1.0)
+        });
+        spreads.push(Spread::of(gait.name(), &paths, line));
     }
     bar.finish_and_clear();
     if json {
@@ -73,15 +83,16 @@ pub fn run(
 }
 
 impl Spread {
-    fn of(gait: &str, ways: &[Travel]) -> Self {
+    fn of(gait: &str, paths: &[Travel], line: [f64; 2]) -> Self {
         let part =
-            |of: fn(&Travel) -> f64| quantiles(ways.iter().map(of).collect(), [0.05, 0.5, 0.95]);
+            |of: fn(&Travel) -> f64| quantiles(paths.iter().map(of).collect(), [0.05, 0.5, 0.95]);
         Self {
             gait: gait.to_owned(),
-            times: ways.len(),
-            forward: part(|way| way.forward),
-            left: part(|way| way.left),
-            turn: part(|way| way.turn),
+            times: paths.len(),
+            forward: part(|path| path.forward),
+            left: part(|path| path.left),
+            turn: part(|path| path.turn),
+            line,
         }
     }
 }
@@ -89,7 +100,7 @@ impl Spread {
 fn print(spreads: &[Spread], times: u32, out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
-        "\n{times} robots and floors: {SPREAD}, {PLAYED}; a cycle, mm and deg:\n"
+        "\n{times} robots and floors: {SPREAD}, {PLAY_SPREAD}; a cycle, mm and deg:\n"
     )?;
     let columns = [
         "ahead  5 %",
@@ -106,14 +117,19 @@ fn print(spreads: &[Spread], times: u32, out: &mut impl Write) -> io::Result<()>
     columns
         .iter()
         .try_for_each(|name| write!(out, "{name:>11}"))?;
-    writeln!(out)?;
+    writeln!(out, "  line      most")?;
     for spread in spreads {
         write!(out, "{:<12}", spread.gait)?;
         let parts = [spread.forward, spread.left, spread.turn];
         for value in parts.into_iter().flatten() {
-            write!(out, "{:>11}", known(Some(value), 1))?;
+            write!(out, "{:>11}", format_part(Some(value), 1))?;
         }
-        writeln!(out)?;
+        let [line, most] = spread.line;
+        writeln!(out, "{line:>6.2} {most:>9.2}")?;
     }
-    Ok(())
+    writeln!(
+        out,
+        "\nline: the largest share of a servo's torque-speed line, on the robot's own floor and with the most friction.\n\
+         Above {TIGHT} little is left; above 1 a servo falls behind: `lizard gaits --servos`"
+    )
 }

@@ -38,7 +38,7 @@ fn a_crank_is_drawn_and_named_at_its_neutral_angle() {
             let neutral: f64 = value_of(&text, servo, "neutral").parse().expect("degrees");
             let crank = drawing.path(&format!("crank-{servo}"));
             assert!(
-                turned(neutral, direction(&crank)).abs() < 0.02,
+                turn_between(neutral, direction(&crank)).abs() < 0.02,
                 "{name} {servo}"
             );
             let label = &drawing.named(&format!("angle-{servo}")).words;
@@ -56,7 +56,7 @@ fn direction(line: &[Point]) -> f64 {
 }
 
 /// The counter-clockwise turn from one direction to another.
-fn turned(from: f64, to: f64) -> f64 {
+fn turn_between(from: f64, to: f64) -> f64 {
     (to - from + 180.0).rem_euclid(360.0) - 180.0
 }
 
@@ -66,13 +66,16 @@ fn the_trim_of_the_example_turns_the_crank_to_its_neutral_angle() {
         let drawing = Drawing::of(&horns(&Robot::parse(&text).expect("a robot")));
         let (sits, should) = (drawing.path("sits"), drawing.path("should"));
         let neutral: f64 = value_of(&text, "A1", "neutral").parse().expect("degrees");
-        assert!(turned(neutral, direction(&should)).abs() < 0.02, "{name}");
+        assert!(
+            turn_between(neutral, direction(&should)).abs() < 0.02,
+            "{name}"
+        );
         let words = drawing.0.iter().map(|element| element.words.as_str());
         let trims: Vec<&str> = words
             .filter_map(|words| words.strip_prefix("trim 1 "))
             .collect();
         let trim: f64 = trims[0].parse().expect("degrees");
-        let off = turned(direction(&sits), direction(&should)) - trim;
+        let off = turn_between(direction(&sits), direction(&should)) - trim;
         assert!(off.abs() < 0.02, "{name} {off}");
         assert!(trim.abs() <= 7.2, "more than the teeth leave");
     }

@@ -1,4 +1,4 @@
-//! The robots, and what their files say when a person reads them.
+//! The robots of robots/, and the values in their files, read as text.
 
 use crate::program::{read, root};
 

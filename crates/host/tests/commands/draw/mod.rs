@@ -51,7 +51,7 @@ fn everything_is_on_the_page_and_large_enough_to_be_read() {
 }
 
 #[test]
-fn the_drawings_in_docs_are_of_the_paper_robot_as_it_is_drawn_now() {
+fn the_drawings_in_docs_are_up_to_date() {
     let robot = Robot::parse(&paper()).expect("a robot");
     let neutral = robot.lizard().solve(&robot.neutral()).expect("it closes");
     let above = top_view(&robot, &neutral, true);

@@ -1,4 +1,6 @@
-//! The wiring.
+//! The wiring: what is joined, read from the drawing alone.
+
+use std::collections::BTreeMap;
 
 use lizard_host::draw::wiring;
 use lizard_robot::Robot;
@@ -36,86 +38,292 @@ fn many_pins() -> Vec<[String; 4]> {
         .collect()
 }
 
+/// Farthest that a wire may end from the terminal that it is in: two wires share some.
+const HOLE: f64 = 13.0;
+
+/// What is joined in a drawing: names of terminals and pins by their net.
+struct Nets<'a> {
+    drawing: &'a Drawing,
+    parent: BTreeMap<String, String>,
+}
+
+impl<'a> Nets<'a> {
+    /// The nets that wires, links and the brass of ways make; not what fuse, switch or resistors
+    /// would join.
+    fn of(drawing: &'a Drawing) -> Self {
+        let mut nets = Self {
+            drawing,
+            parent: BTreeMap::new(),
+        };
+        for (wire, path) in drawing.wires() {
+            let is_option = wire.starts_with("radio-") || wire.starts_with("input-");
+            if !wire.starts_with("resistor-") && !is_option {
+                nets.join(&nets.end(path[0]), &nets.end(path[path.len() - 1]));
+            }
+        }
+        for (strip, ways, sides) in [
+            ("ground", 12, ["wire", "link"]),
+            ("supply", 6, ["wire", "link"]),
+            ("signals", 5, ["servo", "board"]),
+        ] {
+            for way in 1..=ways {
+                let [one, other] = sides.map(|side| format!("end-{strip}-{way}-{side}"));
+                nets.join(&one, &other);
+            }
+        }
+        nets.join("end-way-1", "end-way-2");
+        nets
+    }
+
+    /// The terminal or pin nearest to a point.
+    fn end(&self, at: Point) -> String {
+        let away = |end: &Point| (end.0 - at.0).hypot(end.1 - at.1);
+        let ends = self.drawing.0.iter().filter(|element| {
+            let id = element.text("id");
+            element.tag == "circle" && (id.starts_with("end-") || id.starts_with("pin-"))
+        });
+        let ends = ends.map(|element| (away(&element.points()[0]), element.text("id")));
+        let (nearest, name) = ends.min_by(|a, b| a.0.total_cmp(&b.0)).expect("an end");
+        assert!(
+            nearest <= HOLE,
+            "nothing is at {at:?}; {name} is {nearest} away"
+        );
+        name.to_owned()
+    }
+
+    fn root(&self, name: &str) -> String {
+        match self.parent.get(name) {
+            Some(parent) => self.root(parent),
+            None => name.to_owned(),
+        }
+    }
+
+    fn join(&mut self, a: &str, b: &str) {
+        let (a, b) = (self.root(a), self.root(b));
+        if a != b {
+            self.parent.insert(a, b);
+        }
+    }
+
+    #[track_caller]
+    fn same(&self, names: &[&str]) {
+        for name in names {
+            // It is on the page.
+            self.drawing.named(name);
+            assert_eq!(
+                self.root(name),
+                self.root(names[0]),
+                "{name} and {}",
+                names[0]
+            );
+        }
+    }
+}
+
 #[test]
-fn a_signal_ends_at_the_pin_that_the_file_names() {
-    let pins = many_pins();
-    let many = pins.iter().map(|pins| {
+fn every_thing_is_joined_to_what_it_needs_and_to_nothing_else() {
+    let many = many_pins();
+    let many = many.iter().map(|pins| {
         let text = with_pins([0, 1, 2, 3].map(|servo| pins[servo].as_str()));
         (format!("{pins:?}"), text)
     });
     for (name, text) in files().into_iter().chain(many) {
         let drawing = Drawing::of(&wiring(&Robot::parse(&text).expect("a robot")));
+        let nets = Nets::of(&drawing);
+        let grounds = [
+            "end-A1-ground",
+            "end-A2-ground",
+            "end-A3-ground",
+            "end-A4-ground",
+        ];
+        let ground = [
+            "end-battery-minus",
+            "end-converter-in-minus",
+            "end-converter-out-minus",
+            "end-capacitor-minus",
+            "end-round-plug-minus",
+            "end-signals-3-servo",
+            "pin-GND",
+        ];
+        nets.same(&[&ground[..], &grounds].concat());
+        let five = ["end-converter-out-plus", "end-capacitor-plus"];
+        let servos = ["end-A1-plus", "end-A2-plus", "end-A3-plus", "end-A4-plus"];
+        nets.same(&[&five[..], &servos].concat());
+        nets.same(&["end-battery-plus", "end-fuse-2"]);
+        nets.same(&["end-fuse-1", "end-switch-2"]);
+        nets.same(&[
+            "end-switch-1",
+            "end-converter-in-plus",
+            "end-round-plug-plus",
+        ]);
+        for number in 1..=3 {
+            let [battery, alarm] =
+                ["battery-balance", "alarm"].map(|of| format!("end-{of}-{number}"));
+            nets.same(&[&battery, &alarm]);
+        }
+        let mut apart = vec![
+            nets.root("end-battery-plus"),
+            nets.root("end-fuse-1"),
+            nets.root("end-switch-1"),
+            nets.root("end-converter-out-plus"),
+            nets.root("end-battery-minus"),
+        ];
         for servo in SERVOS {
             let pin = value_of(&text, servo, "pin");
-            let end = *drawing
-                .path(&format!("signal-{servo}"))
-                .last()
-                .expect("a path");
-            assert_eq!(
-                end,
-                drawing.path(&format!("pin-{pin}"))[0],
-                "{name} {servo}"
-            );
+            let signal = format!("end-{servo}-signal");
+            nets.same(&[&signal, &format!("pin-{pin}")]);
+            apart.push(nets.root(&signal));
             let words = format!("to {pin}");
             assert!(
                 drawing.0.iter().any(|element| element.words == words),
                 "{name}"
             );
+            // Its resistor leads from its way to ground.
+            let legs = drawing.path(&format!("resistor-{servo}"));
+            let ends = [legs[0], legs[legs.len() - 1]].map(|at| nets.root(&nets.end(at)));
+            assert_eq!(
+                ends,
+                [nets.root(&signal), nets.root("pin-GND")],
+                "{name} {servo}"
+            );
         }
-        crossings(&name, &drawing);
-    }
-}
-
-/// No wire meets another but where it ends at its rail, where one to ground has to pass
-/// over the red rail, and where a resistor ends at its signal.
-fn crossings(name: &str, drawing: &Drawing) {
-    let wires = drawing.wires();
-    assert_eq!(wires.len(), 2 + 1 + 4 * 4, "{name}");
-    let mut joints = 0;
-    for (place, (a, path)) in wires.iter().enumerate() {
-        for (b, other) in &wires[place + 1..] {
-            let meet = path.windows(2).any(|one| {
-                other.windows(2).any(|two| {
-                    let apart = |axis: fn(Point) -> f64| {
-                        let ends = |part: &[Point]| {
-                            let (a, b) = (axis(part[0]), axis(part[1]));
-                            (a.min(b), a.max(b))
-                        };
-                        let (one, two) = (ends(one), ends(two));
-                        one.1 < two.0 || two.1 < one.0
-                    };
-                    !apart(|point| point.0) && !apart(|point| point.1)
-                })
-            });
-            let may = match (*a, *b) {
-                ("rail-plus", b) => ["plus-", "ground-", "pull-down-"]
-                    .iter()
-                    .any(|kind| b.starts_with(kind)),
-                ("rail-ground", b) => ["ground-", "pull-down-", "uno-ground"]
-                    .iter()
-                    .any(|kind| b.starts_with(kind)),
-                (a, b) => match (a.strip_prefix("pull-down-"), b.strip_prefix("signal-")) {
-                    (Some(servo), Some(signal)) => servo == signal,
-                    _ => false,
-                },
-            };
-            assert_eq!(meet, may, "{name}: {a} and {b}");
-            joints += usize::from(meet);
+        let count = apart.len();
+        apart.sort();
+        apart.dedup();
+        assert_eq!(apart.len(), count, "{name}: two nets are one");
+        // Ways that are spare are joined to nothing.
+        for way in ["end-ground-11-wire", "end-ground-12-wire"] {
+            assert_ne!(nets.root(way), nets.root("pin-GND"));
         }
     }
-    assert_eq!(joints, 3 * 4 + 1 + 3 * 4, "{name}");
 }
 
 #[test]
-fn every_part_of_a_wire_is_horizontal_or_vertical() {
-    // What the test of crossings takes for granted.
-    for (name, text) in files() {
+fn without_one_of_its_links_a_strip_joins_no_longer() {
+    let svg = wiring(&Robot::parse(&paper()).expect("a robot"));
+    let links = (1..10).map(|link| format!("link-ground-{link}"));
+    let links = links.chain((1..6).map(|link| format!("link-supply-{link}")));
+    for link in links {
+        let mut drawing = Drawing::of(&svg);
+        assert!(
+            drawing.0.iter().any(|element| element.text("id") == link),
+            "{link}"
+        );
+        drawing.0.retain(|element| element.text("id") != link);
+        let nets = Nets::of(&drawing);
+        let whole = match link.starts_with("link-ground") {
+            true => ["end-ground-1-wire", "end-ground-10-wire"],
+            false => ["end-supply-1-wire", "end-supply-6-wire"],
+        };
+        assert_ne!(nets.root(whole[0]), nets.root(whole[1]), "{link}");
+    }
+}
+
+#[test]
+fn wires_only_cross_they_never_run_into_or_along_each_other() {
+    let many = many_pins();
+    let many = many
+        .iter()
+        .map(|pins| with_pins([0, 1, 2, 3].map(|servo| pins[servo].as_str())));
+    for text in files().into_iter().map(|file| file.1).chain(many) {
         let drawing = Drawing::of(&wiring(&Robot::parse(&text).expect("a robot")));
-        for (wire, path) in drawing.wires() {
+        // The radio's panel has joints of its own.
+        let mut wires = drawing.wires();
+        wires.retain(|(name, _)| !name.starts_with("radio-"));
+        let upright = |part: &[Point]| part[0].0 == part[1].0;
+        for (wire, path) in &wires {
             let straight = |part: &[Point]| part[0].0 == part[1].0 || part[0].1 == part[1].1;
-            assert!(path.windows(2).all(straight), "{name} {wire}");
+            assert!(path.windows(2).all(straight), "{wire}");
+        }
+        for (place, (a, path)) in wires.iter().enumerate() {
+            for (b, other) in &wires[place + 1..] {
+                for (one, two) in path
+                    .windows(2)
+                    .flat_map(|one| other.windows(2).map(move |two| (one, two)))
+                {
+                    let apart = |axis: fn(&Point) -> f64| {
+                        let range = |part: &[Point]| {
+                            let (a, b) = (axis(&part[0]), axis(&part[1]));
+                            (a.min(b), a.max(b))
+                        };
+                        let (one, two) = (range(one), range(two));
+                        (one.0 - two.1).max(two.0 - one.1)
+                    };
+                    let (x, y) = (apart(|at| at.0), apart(|at| at.1));
+                    if upright(one) == upright(two) {
+                        // Side by side, unless they share a hole or a screw.
+                        let shared = a.starts_with("link-") && b.starts_with("link-");
+                        let near = x < 3.0 && y < 3.0;
+                        assert!(
+                            !near || shared || one.contains(&two[0]) || one.contains(&two[1]),
+                            "{a} along {b}: {one:?} {two:?}"
+                        );
+                    } else if x <= 0.0 && y <= 0.0 {
+                        // They cross, well away from the ends of both.
+                        let depth = (-x).min(-y);
+                        let touch = one.iter().any(|end| two.contains(end));
+                        assert!(depth > 2.0 || touch, "{a} runs into {b}: {one:?} {two:?}");
+                    }
+                }
+            }
         }
     }
+}
+
+#[test]
+fn the_radio_is_an_option_with_a_diode_to_d0_and_a_divider_from_d1() {
+    let drawing = Drawing::of(&wiring(&Robot::parse(&paper()).expect("a robot")));
+    let at = |name: &str| drawing.path(name)[0];
+    let path = |name: &str| drawing.path(name);
+    let [anode, cathode] = ["end-diode-anode", "end-diode-cathode"].map(at);
+    // The module pulls D0 low: current flows from D0 into TXD.
+    assert_eq!(path("radio-d0"), [at("end-radio-D0 (RX)"), anode]);
+    assert_eq!(path("radio-txd"), [cathode, at("end-radio-module-TXD")]);
+    assert_eq!(path("radio-d1")[0], at("end-radio-D1 (TX)"));
+    assert_eq!(path("radio-rxd")[1], at("end-radio-module-RXD"));
+    let [rxd, ground] = ["radio-rxd", "radio-ground"].map(|name| path(name)[0].1);
+    let lower = path("radio-2k");
+    assert_eq!([lower[0].1, lower[1].1], [rxd, ground]);
+    let printed = |words: &str| {
+        drawing
+            .0
+            .iter()
+            .any(|element| element.words.contains(words))
+    };
+    assert!(printed("Option: a radio module") && printed("1 k\u{3a9}") && printed("2 k\u{3a9}"));
+}
+
+#[test]
+fn inputs_are_an_option_of_a_robot_that_has_them_between_their_pins_and_ground() {
+    let draw = |tables: &str| {
+        let text = paper().replace("[limits]", &format!("{tables}\n[limits]"));
+        Drawing::of(&wiring(&Robot::parse(&text).expect("a robot")))
+    };
+    let has = |drawing: &Drawing, name: &str| {
+        let mut ids = drawing.0.iter().map(|element| element.text("id"));
+        ids.any(|id| id == name)
+    };
+    let (button, nose) = ("[input.button]\npin = \"A1\"", "[input.nose]\npin = \"D7\"");
+    let (none, one) = (draw(""), draw(button));
+    let both = draw(&format!("{button}\n{nose}"));
+    for name in ["input-button-A1", "input-button-GND"] {
+        assert_eq!(
+            [has(&none, name), has(&one, name), has(&both, name)],
+            [false, true, true]
+        );
+    }
+    for name in ["input-nose-D7", "input-nose-GND", "input-nose-5V"] {
+        assert_eq!(
+            [has(&none, name), has(&one, name), has(&both, name)],
+            [false, false, true]
+        );
+        let path = both.path(name);
+        let from = name.strip_prefix("input-").expect("it begins so");
+        assert_eq!(path[0], both.path(&format!("end-{from}"))[0]);
+    }
+    let fill = |drawing: &Drawing, pin: &str| drawing.named(pin).text("fill").to_string();
+    assert_eq!(fill(&both, "pin-A1"), fill(&both, "pin-D9"));
+    assert_ne!(fill(&none, "pin-A1"), fill(&none, "pin-D9"));
 }
 
 #[test]
@@ -153,7 +361,7 @@ fn a_rail_that_is_measured_has_its_pin_marked() {
         "[supply.rail]\npin = \"A3\"\nratio = 2.5\n[limits]",
     );
     let drawing = Drawing::of(&wiring(&Robot::parse(&text).expect("a robot")));
-    let words = "A3 measures the red rail, divided by 2.50.";
+    let words = "A3 measures the +5 V strip, divided by 2.50.";
     assert!(drawing.0.iter().any(|element| element.words == words));
     let fill = |pin: &str| drawing.named(pin).text("fill").to_string();
     assert_eq!(fill("pin-A3"), fill("pin-D9"));

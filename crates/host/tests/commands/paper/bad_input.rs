@@ -144,7 +144,7 @@ fn wrong_arguments_end_with_code_2_and_say_what_is_wrong() {
         ),
         (
             "gaits --robot /dev/zero",
-            "/dev/zero: is longer than 1 MiB, so it is no robot file",
+            "/dev/zero: is longer than 1 MiB, so it is not a robot file",
         ),
         ("gaits --robot /", "cannot be read"),
         ("pose --show rates --omega1 fast", "it is not a number"),
@@ -174,7 +174,7 @@ fn wrong_arguments_end_with_code_2_and_say_what_is_wrong() {
 }
 
 #[test]
-fn what_does_not_exist_ends_with_code_1() {
+fn an_impossible_request_ends_with_code_1() {
     let cases: &[(&str, &str)] = &[
         (
             "pose --head 0 200",
@@ -197,7 +197,7 @@ fn what_does_not_exist_ends_with_code_1() {
 }
 
 #[test]
-fn a_pipe_that_closes_is_no_failure() {
+fn a_closed_pipe_is_not_a_failure() {
     let mut input = HEADER.to_string();
     input += &"138,42,318,221\n".repeat(50_000);
     std::fs::write(std::env::temp_dir().join("lizard-poses.csv"), input).unwrap();

@@ -1,4 +1,4 @@
-//! The pages are what the program makes today.
+//! The pages in docs/ are up to date with the program's output.
 
 use lizard_host::errata::{SAMPLES, markdown, measure};
 
@@ -66,6 +66,7 @@ fn charts_come_as_svg_leave_nothing_else_and_are_those_of_the_docs() {
         "stroke",
         "top-view",
         "workspace",
+        "workspaces",
     ]
     .map(|name| format!("{name}.svg"))
     .into();
@@ -79,4 +80,144 @@ fn charts_come_as_svg_leave_nothing_else_and_are_those_of_the_docs() {
         );
     }
     std::fs::remove_dir_all(&folder).unwrap();
+}
+
+/// Table 1 of the paper, as it is printed: names and lengths, mm.
+const TABLE_1: [(&str, f64); 7] = [
+    ("l0 l5", 20.0),
+    ("l1 l4 l6 l9 l14 l11 l16 l19", 30.0),
+    ("l2 l3 l7 l8", 50.0),
+    ("l12 l13 l16 l18", 45.0),
+    ("l10 l15", 135.0),
+    ("ground coupler", 50.0),
+    ("follower crank", 45.0),
+];
+
+#[test]
+fn table_1_of_the_paper_is_in_its_robot_but_for_the_link_that_it_names_twice() {
+    let robot = read("robots/paper.toml");
+    let value = |name: &str| -> f64 {
+        let line = robot
+            .lines()
+            .find_map(|line| line.strip_prefix(name)?.trim().strip_prefix('='));
+        let value = line.expect(name).split('#').next().expect("a value");
+        value.trim().parse().expect(name)
+    };
+    let rows = TABLE_1
+        .iter()
+        .flat_map(|(names, mm)| names.split(' ').map(move |name| (name, *mm)));
+    let rows: Vec<_> = rows.collect();
+    let differ: Vec<_> = rows
+        .iter()
+        .filter(|(name, mm)| value(name) != *mm)
+        .collect();
+    assert_eq!(differ, [&("l16", 45.0)]);
+    let mut links: Vec<_> = rows
+        .iter()
+        .map(|row| row.0)
+        .filter(|name| name.starts_with('l'))
+        .collect();
+    links.sort_unstable();
+    links.dedup();
+    assert_eq!(links.len(), 19);
+    assert!(!links.contains(&"l17") && value("l17") == 45.0);
+    assert!(
+        read("docs/paper.md").contains("19 of 20 links; l17 is missing and l16 is there twice")
+    );
+}
+
+#[test]
+fn the_table_of_the_papers_figures_has_each_once_with_a_command_that_runs_and_a_file() {
+    let page = read("docs/paper.md");
+    let (_, table) = page.split_once("| in the paper |").expect("the table");
+    let rows: Vec<Vec<&str>> = table
+        .lines()
+        .skip(2)
+        .map_while(|line| line.strip_prefix("| "))
+        .map(|line| line.trim_end_matches(" |").split(" | ").collect())
+        .collect();
+    let figures = (1..=10).map(|number| format!("Figure {number}"));
+    let others = ["Table 1", "Algorithm 1", "section 3.1.2"].map(str::to_owned);
+    let expected: Vec<String> = figures.chain(others).collect();
+    let names: Vec<&str> = rows.iter().map(|row| row[0]).collect();
+    assert_eq!(names, expected);
+    let charts = lizard("charts --help", "").success();
+    for row in &rows {
+        let [name, _, command, files, agrees] = row[..] else {
+            panic!("{row:?}")
+        };
+        assert!(!agrees.is_empty(), "{name}");
+        for file in files.split(", ") {
+            assert!(root().join("docs").join(file).is_file(), "{name}: {file}");
+        }
+        let Some(command) = command.strip_prefix("`lizard ") else {
+            assert_eq!(command, "none", "{name}");
+            continue;
+        };
+        let command = command.trim_end_matches('`');
+        // Other tests make all parts and all charts, which takes seconds.
+        if let Some(makes) = command.strip_suffix(" DIR") {
+            assert_eq!(
+                lizard(&format!("{makes} --help"), "").code,
+                Some(0),
+                "{name}"
+            );
+            let chart = |file: &str| {
+                let chart = file.strip_prefix("charts/")?.strip_suffix(".svg")?;
+                Some(chart.to_owned())
+            };
+            for chart in files.split(", ").filter_map(chart) {
+                assert!(charts.contains(&chart), "{name}: {chart}");
+            }
+        } else {
+            let outcome = lizard(&paper(command), "");
+            assert_eq!(outcome.code, Some(0), "{name}: {}", outcome.err);
+        }
+    }
+}
+
+#[test]
+fn what_the_page_says_about_the_papers_walk_is_what_the_gaits_make() {
+    let page = read("docs/paper.md").replace('\n', " ");
+    let rows = lizard(&paper("gaits --json"), "").success();
+    let predicted = |gait: &str, key: &str| -> f64 {
+        let rows = rows
+            .lines()
+            .map(|row| serde_json::from_str::<serde_json::Value>(row).expect("JSON"));
+        let row = rows
+            .into_iter()
+            .find(|row| row["gait"] == gait)
+            .expect(gait);
+        row["predicted"][key].as_f64().expect(key)
+    };
+    let (walk, left) = (predicted("walk", "forward"), predicted("left", "turn"));
+    let moved = 80.0_f64.hypot(55.0) * left.to_radians();
+    let table = lizard(&paper("gaits --sensitivity"), "").success();
+    let numbers = |from: &str, name: &str| -> Vec<f64> {
+        let (_, rows) = table.split_once(from).expect(from);
+        let row = rows
+            .lines()
+            .find_map(|line| line.strip_prefix(&format!("{name} ")));
+        let row = row.expect(name).split_whitespace();
+        row.filter_map(|word| word.parse().ok()).collect()
+    };
+    // The third mount, 41.4 deg, and the fourth friction, 1.25; a turn has two numbers.
+    let [mounted, turned] = [
+        numbers("mount, deg", "walk")[2],
+        numbers("mount, deg", "left")[5],
+    ];
+    assert!(table.contains("41.4") && table.contains("1.25"));
+    let uneven = numbers("friction", "walk")[3];
+    for words in [
+        format!("25 cycles of `walk` are {:.0} mm", 25.0 * walk),
+        format!("`left` turns {left:.1} deg in a cycle"),
+        format!("`trot`, {:.1} mm in a cycle", predicted("trot", "forward")),
+        format!("in a cycle `walk` makes {walk:.1} mm"),
+        format!("the feet, 97 mm from the middle, move by {moved:.1} mm"),
+        format!("`walk` makes {mounted:.1} mm a cycle instead of {walk:.1}"),
+        format!("`left` turns {turned:.1} deg instead of {left:.1}"),
+        format!("1.25 times as strong backward as forward, `walk` makes {uneven:.1} mm"),
+    ] {
+        assert!(page.contains(&words), "docs/paper.md does not say: {words}");
+    }
 }

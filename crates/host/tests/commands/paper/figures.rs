@@ -211,7 +211,7 @@ fn at_type_2_the_locked_servos_leave_the_papers_end_point_loose() {
     for mechanism in home.as_array().unwrap() {
         assert_eq!(mechanism["locked_freedoms"], 0, "{mechanism}");
     }
-    // Crank tips that coincide but for the seventh digit.
+    // Crank tips that coincide except for the seventh digit.
     let head = at("--theta1 70.528779 --theta4 109.471221 --theta8 318.59 --theta5 221.41");
     assert_eq!(
         (&head[0]["freedoms"], &head[0]["locked_freedoms"]),

@@ -47,7 +47,7 @@ fn the_object_has_exactly_the_promised_keys() {
 }
 
 #[test]
-fn what_it_prints_closes_every_loop() {
+fn every_printed_solution_closes_all_loops() {
     let mut input = HEADER.to_string();
     let mut poses = Vec::new();
     for i in 0..2000 {
@@ -171,7 +171,7 @@ fn a_long_stream_keeps_its_order() {
 }
 
 #[test]
-fn what_a_reader_sees_is_aligned_and_says_safe() {
+fn the_table_is_aligned_and_says_safe() {
     let outcome = lizard(
         &paper("pose"),
         format!("{HEADER}138,42,318,221\n60,60,318,221\n"),

@@ -76,11 +76,11 @@ impl Span {
 
 impl Cell {
     /// True if a condition is proved in all of the cell.
-    pub fn keeps(&self, condition: &impl Condition) -> bool {
-        self.keeps_within(condition, DIVISIONS)
+    pub fn proves(&self, condition: &impl Condition) -> bool {
+        self.proves_within(condition, DIVISIONS)
     }
 
-    fn keeps_within(&self, condition: &impl Condition, divisions: u32) -> bool {
+    fn proves_within(&self, condition: &impl Condition, divisions: u32) -> bool {
         match condition.judge(self) {
             Verdict::Kept => true,
             Verdict::Broken => false,
@@ -89,7 +89,7 @@ impl Cell {
                 divisions > 0
                     && rows.into_iter().all(|row| {
                         columns.into_iter().all(|column| {
-                            Self([row, column]).keeps_within(condition, divisions - 1)
+                            Self([row, column]).proves_within(condition, divisions - 1)
                         })
                     })
             }

@@ -27,7 +27,7 @@ use super::cell::{Cell, Condition, HAIR, Span, Verdict};
 use crate::units::ONE_Q15;
 
 /// The conditions of head or tail.
-pub(super) struct Rule {
+pub(super) struct EndConditions {
     end: End,
     bars: FiveBar,
     integers: bounds::Bars,
@@ -36,7 +36,7 @@ pub(super) struct Rule {
     leg: f64,
 }
 
-impl Rule {
+impl EndConditions {
     pub fn new(lizard: &Lizard, numbers: &Content, end: End) -> Self {
         let integers = &numbers.ends[end as usize];
         let Limits { type2, type1, leg } = numbers.limits;
@@ -63,7 +63,7 @@ impl Rule {
     }
 }
 
-impl Condition for Rule {
+impl Condition for EndConditions {
     fn servos(&self) -> [usize; 2] {
         match self.end {
             End::Head => [0, 1],
@@ -124,14 +124,14 @@ mod tests {
     use crate::testing::robot;
 
     /// The neutral pose of the head of a robot without symmetry, as a cell.
-    fn standing() -> (Rule, Cell) {
+    fn standing() -> (EndConditions, Cell) {
         let robot = robot("unequal");
         let numbers = robot.content();
-        let rule = Rule {
+        let rule = EndConditions {
             type2: 0.0,
             type1: -1.0,
             leg: 0.0,
-            ..Rule::new(robot.lizard(), numbers, End::Head)
+            ..EndConditions::new(robot.lizard(), numbers, End::Head)
         };
         let span = |servo: usize| {
             let angle = f64::from(numbers.neutral[servo].0);
@@ -143,12 +143,12 @@ mod tests {
         (rule, Cell([span(0), span(1)]))
     }
 
-    type Limit = fn(&mut Rule) -> &mut f64;
+    type Limit = fn(&mut EndConditions) -> &mut f64;
 
     #[test]
     fn a_single_pose_is_proved_if_it_is_clear_of_each_limit_by_what_the_integers_may_be_off_by() {
         let (mut rule, cell) = standing();
-        // No limit, nothing to keep.
+        // Without limits every pose passes.
         assert_eq!(rule.judge(&cell), Verdict::Kept);
         let cranks = cell.0.map(|span| span.direction());
         let [left, right] = cranks;

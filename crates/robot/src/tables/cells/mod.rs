@@ -41,8 +41,8 @@ const NO_CELL: [i8; 2] = [1, 0];
 impl CellMaps {
     /// Computes the maps from the true measurements and their integers.
     pub(crate) fn new(lizard: &Lizard, numbers: &Content) -> Self {
-        let end = |end: End| map(&end::Rule::new(lizard, numbers, end), numbers);
-        let side = |side: Side| map(&side::Rule::new(lizard, numbers, side), numbers);
+        let end = |end: End| map(&end::EndConditions::new(lizard, numbers, end), numbers);
+        let side = |side: Side| map(&side::StrokeCondition::new(lizard, numbers, side), numbers);
         Self {
             head: end(End::Head),
             tail: end(End::Tail),
@@ -52,12 +52,12 @@ impl CellMaps {
     }
 
     /// True if a pose is certified, so that the guard accepts it.
-    pub fn hold(&self, pose: &Pose) -> bool {
+    pub fn contains(&self, pose: &Pose) -> bool {
         let [a1, a2, a3, a4] = pose.0;
-        self.head.cells().hold(a1, a2)
-            && self.tail.cells().hold(a3, a4)
-            && self.left.cells().hold(a1, a4)
-            && self.right.cells().hold(a2, a3)
+        self.head.cells().contains(a1, a2)
+            && self.tail.cells().contains(a3, a4)
+            && self.left.cells().contains(a1, a4)
+            && self.right.cells().contains(a2, a3)
     }
 }
 
@@ -76,7 +76,7 @@ fn map(rule: &impl Condition, numbers: &Content) -> Map {
             let across = row.span(at, ROW_BITS);
             certified(&columns, |at| {
                 let along = column.span(at, COLUMN_BITS);
-                Cell([across, along]).keeps(rule)
+                Cell([across, along]).proves(rule)
             })
         })
         .collect();

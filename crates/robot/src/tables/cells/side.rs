@@ -13,7 +13,7 @@ use super::cell::{Cell, Condition, HAIR, Verdict};
 use crate::measures::scale;
 
 /// The stroke condition of a side.
-pub(super) struct Rule {
+pub(super) struct StrokeCondition {
     side: Side,
     slider: Slider,
     /// Error bound of the integers, mm.
@@ -23,7 +23,7 @@ pub(super) struct Rule {
     max: f64,
 }
 
-impl Rule {
+impl StrokeCondition {
     pub fn new(lizard: &Lizard, numbers: &Content, side: Side) -> Self {
         let integers = &numbers.sides[side as usize];
         let slider = lizard.side(side);
@@ -45,7 +45,7 @@ impl Rule {
     }
 }
 
-impl Condition for Rule {
+impl Condition for StrokeCondition {
     fn servos(&self) -> [usize; 2] {
         self.side.servos()
     }
@@ -78,7 +78,7 @@ mod tests {
         let robot = robot("unequal");
         let numbers = robot.content();
         for side in Side::ALL {
-            let mut rule = Rule::new(robot.lizard(), numbers, side);
+            let mut rule = StrokeCondition::new(robot.lizard(), numbers, side);
             let spans = side.servos().map(|servo| {
                 let angle = f64::from(numbers.neutral[servo].0);
                 Span {

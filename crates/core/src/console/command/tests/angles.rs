@@ -10,7 +10,7 @@ fn pose_with(place: usize, angle: &str) -> String {
 }
 
 fn angle_read(place: usize, angle: &str) -> Result<i32, Misread> {
-    match thread_robot(|robot| parse(pose_with(place, angle).as_bytes(), robot)) {
+    match with_shared_robot(|robot| parse(pose_with(place, angle).as_bytes(), robot)) {
         Ok(Command::Order(Order::Pose(angles))) => Ok(angles[place].centideg().into()),
         Ok(other) => panic!("{other:?}"),
         Err(misread) => Err(misread),
@@ -50,7 +50,7 @@ fn an_angle_may_be_written_in_several_ways() {
 }
 
 #[test]
-fn what_is_no_angle_is_not_taken_for_one() {
+fn an_invalid_angle_is_refused() {
     for word in [
         "", "a", ".5", "-", "+", "--1", "+-1", "1e2", "138.5x", "138.591", "138,59", "1.x", "1.5.",
         "1.-5", ".", "0x10",

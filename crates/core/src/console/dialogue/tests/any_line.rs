@@ -23,7 +23,7 @@ const REFUSED: [&str; 9] = [
     "pose 170 130 309.64 226.18",
 ];
 
-/// Bytes of a person, of a program gone mad, and of a broken cable.
+/// Bytes as from a person, from a faulty program, and from a broken cable.
 fn bytes() -> impl Strategy<Value = Vec<u8>> {
     let mut lines = GAITS.to_vec();
     lines.extend([
@@ -41,7 +41,7 @@ fn bytes() -> impl Strategy<Value = Vec<u8>> {
     prop::collection::vec(piece, 0..12).prop_map(|pieces| pieces.concat())
 }
 
-/// The final lines that bytes are owed.
+/// The number of final lines that must answer these bytes.
 fn owed(bytes: &[u8]) -> usize {
     let mut line = Line::new();
     bytes
@@ -54,26 +54,26 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
 
     #[test]
-    fn every_line_of_any_bytes_gets_one_final_line_whatever_the_frames_between(
+    fn every_line_of_any_bytes_gets_one_final_line_with_any_frames_between(
         bytes in bytes(),
         frames in 0u32..3,
     ) {
         let (mut at_once, mut apart) = (standing(), standing());
-        let finals = |said: Vec<String>| -> Vec<String> {
-            said.into_iter().filter(|line| is_final(line)).collect()
+        let finals = |printed: Vec<String>| -> Vec<String> {
+            printed.into_iter().filter(|line| is_final(line)).collect()
         };
         let once = finals(at_once.send(&bytes));
         prop_assert_eq!(once.len(), owed(&bytes));
-        let mut said = Vec::new();
+        let mut printed = Vec::new();
         for byte in &bytes {
-            said.extend(apart.send(&[*byte]));
-            said.extend(apart.run(frames));
+            printed.extend(apart.send(&[*byte]));
+            printed.extend(apart.run(frames));
         }
         // All but status say the same at any time.
-        let timeless = |said: Vec<String>| -> Vec<String> {
-            said.into_iter().filter(|line| !line.contains('=')).collect()
+        let timeless = |printed: Vec<String>| -> Vec<String> {
+            printed.into_iter().filter(|line| !line.contains('=')).collect()
         };
-        prop_assert_eq!(timeless(finals(said)), timeless(once));
+        prop_assert_eq!(timeless(finals(printed)), timeless(once));
     }
 
     #[test]

@@ -12,7 +12,7 @@ fn cal(dialogue: &mut Dialogue) -> Vec<String> {
 }
 
 #[test]
-fn cal_prints_all_that_is_set_and_nothing_that_varies() {
+fn cal_prints_all_settings_and_no_state() {
     let mut dialogue = standing();
     let untouched = cal(&mut dialogue);
     assert_eq!(untouched.len(), 7);
@@ -48,7 +48,7 @@ fn cal_prints_all_that_is_set_and_nothing_that_varies() {
 }
 
 #[test]
-fn what_is_saved_is_there_after_power_on_and_what_is_not_is_not() {
+fn only_saved_settings_survive_power_off() {
     let mut dialogue = standing();
     dialogue.say("trim 2 4");
     dialogue.accept("save");
@@ -62,13 +62,13 @@ fn what_is_saved_is_there_after_power_on_and_what_is_not_is_not() {
     );
     assert_eq!(again.lines().len(), 1, "the banner alone");
     assert_eq!(cal(&mut again), saved);
-    // And without power going off.
+    // Also without a power cycle.
     dialogue.accept("load");
     assert_eq!(cal(&mut dialogue), saved);
 }
 
 #[test]
-fn there_is_nothing_to_load_before_the_first_save_and_a_worn_memory_is_told() {
+fn load_before_the_first_save_and_a_worn_memory_are_refused() {
     let mut dialogue = standing();
     dialogue.refuse("load", "9 nothing is saved that could be loaded");
     dialogue.board.memory.worn = true;
@@ -189,7 +189,7 @@ fn a_factory_or_a_load_that_is_refused_changes_nothing() {
     other.board.memory.bytes_mut()[0] = 0;
     other.refuse("load", "9 nothing is saved that could be loaded");
     assert_eq!(cal(&mut other), before);
-    // Saved for other servos: not loaded, and what is set stays.
+    // Settings for other servos are not loaded, and the current ones stay.
     let mut chip = standing();
     chip.say("save");
     other.board.memory = chip.board.memory.clone();
@@ -233,7 +233,7 @@ fn settings_that_cut_a_gait_off_are_not_loaded_and_change_nothing() {
 }
 
 #[test]
-fn center_goes_to_the_neutral_pulses_of_robot_toml_whatever_the_trims() {
+fn center_goes_to_the_neutral_pulses_of_robot_toml_with_any_trims() {
     let mut dialogue = standing();
     for line in ["trim 1 3", "trim 2 -4.5", "trim 3 2", "trim 4 -1"] {
         dialogue.say(line);
@@ -292,7 +292,7 @@ fn a_travel_may_not_end_before_a_pose_that_is_to_come_next() {
     let mut dialogue = standing();
     dialogue.say("sway left");
     dialogue.run(150);
-    // Far outside of all gaits. The gait brakes first, so the pose is only to come.
+    // Far outside of all gaits. The gait brakes first, so the pose is still in the future.
     dialogue.accept("pose 152 50 311 224.5");
     dialogue.run(2);
     let refused = dialogue.say("limit 1 115 150");
@@ -326,7 +326,7 @@ fn after_a_calibration_a_gait_gathers_its_pace_again() {
     assert_eq!(phases.last(), Some(&full));
 }
 
-/// By how much the phase advances in a frame, 1/2^24 cycle.
+/// The advance of the phase in a frame, 1/2^24 cycle.
 fn phase_of_a_frame(dialogue: &mut Dialogue) -> u32 {
     let before = dialogue.motion().phase();
     dialogue.frame();

@@ -10,22 +10,22 @@ use crate::virtual_board::{Running, reading};
 /// Frames until the robot stands and may begin to move.
 pub(super) const WAKING: u32 = 21;
 
-/// A robot of these tests, running.
+/// A running robot of these tests.
 pub(super) type Dialogue = Running;
 
-/// With the banner read and the robot awake.
+/// The odd robot, awake, with its banner read.
 pub(super) fn standing() -> Dialogue {
     awake(Sample::odd())
 }
 
-/// The same of another robot.
+/// A robot, awake, with its banner read.
 pub(super) fn awake(robot: Sample) -> Dialogue {
     let mut dialogue = Dialogue::power_on(*robot);
-    let said = dialogue.lines();
+    let printed = dialogue.lines();
     assert_eq!(
-        said.len(),
+        printed.len(),
         2,
-        "the banner, and that nothing is saved: {said:?}"
+        "the banner, and that nothing is saved: {printed:?}"
     );
     dialogue.run(WAKING);
     dialogue
@@ -36,7 +36,7 @@ pub(super) fn widths(dialogue: &mut Dialogue) -> [u16; 4] {
     dialogue.frame().0.map(|width| width.0)
 }
 
-/// `key=value` with blanks between, each key once.
+/// Splits `key=value` pairs, and checks that each key occurs once.
 pub(super) fn pairs(text: &str) -> HashMap<String, String> {
     let mut pairs = HashMap::new();
     for word in text.split(' ') {
@@ -47,14 +47,14 @@ pub(super) fn pairs(text: &str) -> HashMap<String, String> {
     pairs
 }
 
-/// The board's supply is at this many millivolts, its rail at 6 V.
+/// Sets the board's supply, mV, and its rail to 6 V.
 pub(super) fn supply(dialogue: &mut Dialogue, mv: u32) {
     let supplies = dialogue.motion().robot().supplies();
     let truth = reading(&supplies, mv, 6_000);
     dialogue.board.converter.set(truth);
 }
 
-/// The neutral pose as `status` has it.
+/// The neutral pose in the format of `status`.
 pub(super) fn neutral() -> String {
     NEUTRAL.replacen("pose ", "", 1).replace(' ', ",")
 }

@@ -1,34 +1,34 @@
-//! The effect that a word is said to have, and the one that it has.
+//! The declared effect of each word, compared with the observed one.
 
 use super::*;
 use crate::console::word::Effect;
 
-/// Frames in which every effect shows.
+/// Frames within which every effect is visible.
 const FRAMES: usize = 40;
 
 fn frames(robot: &mut Dialogue) -> Vec<[u16; 4]> {
     (0..FRAMES).map(|_| widths(robot)).collect()
 }
 
-/// The effect of a line, by the pulses and the calibration of a robot that gets it.
-fn observed(line: &str) -> Effect {
+/// Observes the effect of a line on a robot's pulses and calibration.
+fn observe_effect(line: &str) -> Effect {
     let mut walking = awake(Sample::paper());
     // So `load` and `factory` change something.
     for setting in ["trim 2 3", "save", "trim 1 5", "sway"] {
         assert!(walking.say(setting).starts_with("ok "), "{setting}");
         walking.run(60);
     }
-    let mut untold = walking.clone();
+    let mut unchanged = walking.clone();
     let mut still = walking.clone();
     still.say("stop");
     still.run(60);
     still.say(line);
     assert!(walking.say(line).starts_with("ok "), "{line}");
-    let [with, without, from_still] = [&mut walking, &mut untold, &mut still].map(frames);
+    let [with, without, from_still] = [&mut walking, &mut unchanged, &mut still].map(frames);
     let is_constant = |frames: &[[u16; 4]]| frames[1..].iter().all(|frame| *frame == frames[1]);
     if with[FRAMES - 1] == [0; 4] {
         Effect::Rests
-    } else if walking.motion().calibration() != untold.motion().calibration() {
+    } else if walking.motion().calibration() != unchanged.motion().calibration() {
         Effect::Calibrates
     } else if !is_constant(&from_still) {
         Effect::Moves
@@ -42,16 +42,16 @@ fn observed(line: &str) -> Effect {
 }
 
 #[test]
-fn every_word_and_every_gait_has_the_effect_that_is_said_beside_it() {
+fn every_word_and_every_gait_has_its_declared_effect() {
     let robot = Sample::paper();
     for word in Word::ALL {
         let line = word.example();
         assert_eq!(command::effect(line, &robot), word.effect(), "{line}");
-        assert_eq!(observed(line), word.effect(), "{line}");
+        assert_eq!(observe_effect(line), word.effect(), "{line}");
     }
     for gait in GAITS {
         assert_eq!(command::effect(gait, &robot), Effect::Moves, "{gait}");
-        assert_eq!(observed(gait), Effect::Moves, "{gait}");
+        assert_eq!(observe_effect(gait), Effect::Moves, "{gait}");
     }
     for line in ["", "pose", "pose 1", "nonsense", "sway now", "rest 1"] {
         assert_eq!(command::effect(line, &robot), Effect::None, "{line}");

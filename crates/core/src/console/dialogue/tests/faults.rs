@@ -10,8 +10,8 @@ fn boot_is_carried_out_three_seconds_after_power_on_unless_a_byte_comes() {
         dialogue.accept("save");
         let chip = dialogue.board.memory.clone();
         let mut alone = Dialogue::with(*Sample::odd(), chip.clone(), Restart::default());
-        let said = alone.run(149);
-        assert_eq!(said.len(), 1, "{said:?}");
+        let printed = alone.run(149);
+        assert_eq!(printed.len(), 1, "{printed:?}");
         assert_eq!(alone.motion().activity(), Activity::Gait(GaitId::STAND));
         assert_eq!(alone.run(1), [format!("# boot: {boot}")]);
         assert_eq!(alone.status("gait"), boot.replace(' ', "-"));
@@ -24,7 +24,7 @@ fn boot_is_carried_out_three_seconds_after_power_on_unless_a_byte_comes() {
 }
 
 #[test]
-fn a_gait_ends_when_the_link_is_lost_and_says_why() {
+fn a_gait_ends_when_the_link_is_lost_and_the_robot_reports_it() {
     let mut dialogue = standing();
     dialogue.say("deadman 400");
     dialogue.say("sway");
@@ -32,9 +32,9 @@ fn a_gait_ends_when_the_link_is_lost_and_says_why() {
         assert!(dialogue.run(15).is_empty());
         dialogue.say("status");
     }
-    let said = dialogue.run(21);
+    let printed = dialogue.run(21);
     assert_eq!(
-        said,
+        printed,
         ["# fault: no line for as long as deadman says, stopped"]
     );
     assert_eq!(
@@ -43,6 +43,28 @@ fn a_gait_ends_when_the_link_is_lost_and_says_why() {
     );
     dialogue.say("sway");
     assert_eq!(dialogue.status("fault"), "none");
+}
+
+#[test]
+fn lines_that_are_no_commands_do_not_keep_a_gait_going() {
+    let lines: [&[u8]; 4] = [
+        b"OK+CONN",
+        b"walk 0",
+        &[b'w', b'a', crate::console::line::GARBLED, b'k'],
+        b"nonsense",
+    ];
+    for line in lines {
+        let mut dialogue = standing();
+        dialogue.say("deadman 400");
+        dialogue.say("sway");
+        for _ in 0..4 {
+            dialogue.board.send(line);
+            dialogue.board.send(b"\n");
+            dialogue.run(5);
+        }
+        dialogue.run(3);
+        assert_eq!(dialogue.status("fault"), "link", "{line:?}");
+    }
 }
 
 #[test]
@@ -57,17 +79,18 @@ fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses_and_nothin
     };
     let full = pace(&mut dialogue);
     supply(&mut dialogue, 4_400);
-    let said = dialogue.run(40);
+    let printed = dialogue.run(40);
     assert!(
-        said[0].starts_with("# supply: 4.") && said[0].ends_with("V, low: half speed, no saving"),
-        "{said:?}"
+        printed[0].starts_with("# supply: 4.")
+            && printed[0].ends_with("V, low: half speed, no saving"),
+        "{printed:?}"
     );
     let half = f64::from(pace(&mut dialogue)) / f64::from(full);
     assert!((half - 0.5).abs() < 0.02, "{half}");
     dialogue.refuse("save", "8 the supply is too low");
     supply(&mut dialogue, 4_200);
-    let said = dialogue.run(40);
-    assert_eq!(said.len(), 2);
+    let printed = dialogue.run(40);
+    assert_eq!(printed.len(), 2);
     assert_eq!(dialogue.status("gait"), "stop");
     assert_eq!(dialogue.status("fault"), "supply");
     dialogue.refuse("sway", "8 ");
@@ -77,10 +100,12 @@ fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses_and_nothin
     assert_eq!(dialogue.status("gait"), "rest");
     assert_eq!(dialogue.frame(), Pulses::default());
     supply(&mut dialogue, 5_000);
-    let said = dialogue.run(100);
+    let printed = dialogue.run(100);
     assert!(
-        said.last().is_some_and(|line| line.ends_with(" V, good")),
-        "{said:?}"
+        printed
+            .last()
+            .is_some_and(|line| line.ends_with(" V, good")),
+        "{printed:?}"
     );
     assert_eq!(dialogue.status("gait"), "rest");
     dialogue.accept("stand");
@@ -107,13 +132,13 @@ fn hung(count: u8, stance: Stance) -> Restart {
 }
 
 #[test]
-fn after_a_hang_the_robot_is_held_in_the_pose_it_had_and_says_so() {
+fn after_a_hang_the_robot_holds_its_pose_and_reports_the_hang() {
     let stance = held([400, -300, 200, -100]);
     let mut dialogue = Dialogue::with(*Sample::odd(), Eeprom::blank(), hung(3, stance));
-    let said = dialogue.run(1);
+    let printed = dialogue.run(1);
     assert!(
-        said.contains(&"# fault: the program hung and began anew".to_string()),
-        "{said:?}"
+        printed.contains(&"# fault: the program hung and began anew".to_string()),
+        "{printed:?}"
     );
     for _ in 0..400 {
         assert_eq!(dialogue.frame(), stance.sent, "at once, and for good");
@@ -153,7 +178,7 @@ fn a_pose_beyond_a_travel_that_was_saved_narrower_is_not_taken_over() {
     assert!(dialogue.say("limit 1 115 160").starts_with("ok "));
     dialogue.accept("save");
     let chip = dialogue.board.memory.clone();
-    // 132.37 deg and 30 more is safe, and beyond 160.
+    // 132.37 deg plus 30 is safe, but beyond 160.
     let beyond = held([5461, 0, 0, 0]);
     let mut within = Dialogue::with(*Sample::odd(), Eeprom::blank(), hung(1, beyond));
     within.run(10);
@@ -243,10 +268,10 @@ fn a_robot_that_rests_stays_at_rest_through_every_reset_but_power() {
         }
         assert_eq!(*dialogue.board.memory.bytes(), kept, "{cause:?}");
         assert!(dialogue.board.memory.log.is_empty(), "it is there already");
-        // `boot` is stand, and a hang calls it off.
-        let said = dialogue.run(1);
-        let boots = said.iter().any(|line| line == "# boot: stand");
-        assert_eq!(boots, cause != Cause::Watchdog, "{said:?}");
+        // `boot` is `stand`; a hang cancels it.
+        let printed = dialogue.run(1);
+        let boots = printed.iter().any(|line| line == "# boot: stand");
+        assert_eq!(boots, cause != Cause::Watchdog, "{printed:?}");
         assert_eq!(dialogue.status("pose"), "140.00,50.00,311.00,224.50");
     }
 }
@@ -283,15 +308,15 @@ fn brown_outs_or_presses_in_a_row_end_in_a_rest_that_says_why_until_a_motion_is_
         dialogue.lines();
         for resets in 1..=5 {
             dialogue.reset(cause);
-            let said = dialogue.run(17);
+            let printed = dialogue.run(17);
             let rests = dialogue.frame() == Pulses::default();
             assert_eq!(rests, resets >= 3, "{resets}");
             let why =
                 "# fault: reset several times in a row by the button or a weak supply, resting";
-            assert_eq!(said.iter().any(|line| line == why), resets >= 3);
+            assert_eq!(printed.iter().any(|line| line == why), resets >= 3);
         }
         dialogue.run(300);
-        assert_eq!(dialogue.frame(), Pulses::default(), "boot is called off");
+        assert_eq!(dialogue.frame(), Pulses::default(), "boot is cancelled");
         assert_eq!(dialogue.status("fault"), "brownout");
         dialogue.refuse("sway", "7 ");
         dialogue.accept("stand");
@@ -319,7 +344,21 @@ fn opening_the_port_many_times_and_sending_a_line_does_not_count_as_a_weak_suppl
 }
 
 #[test]
-fn brown_outs_half_a_minute_apart_are_none_in_a_row() {
+fn lines_by_radio_do_not_excuse_a_supply_that_breaks_down_while_the_servos_wake() {
+    let mut dialogue = standing();
+    dialogue.board.boot_loader = true;
+    for resets in 1..=3 {
+        dialogue.reset(Cause::External);
+        dialogue.run(5);
+        let fault = if resets < 3 { "none" } else { "brownout" };
+        assert_eq!(dialogue.status("fault"), fault, "{resets}");
+        // The third servo wakes.
+        dialogue.run(10);
+    }
+}
+
+#[test]
+fn brown_outs_half_a_minute_apart_do_not_count_as_in_a_row() {
     let mut dialogue = standing();
     for _ in 0..6 {
         dialogue.reset(Cause::BrownOut);

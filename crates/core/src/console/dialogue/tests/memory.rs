@@ -35,7 +35,7 @@ fn nothing_is_written_before_the_supply_has_been_measured_or_while_it_is_low() {
 }
 
 #[test]
-fn a_save_that_meets_a_low_supply_is_refused_and_the_settings_before_stay() {
+fn a_save_during_a_low_supply_is_refused_and_the_old_settings_stay() {
     let mut dialogue = standing();
     dialogue.say("deadman 1000");
     dialogue.accept("save");
@@ -47,16 +47,16 @@ fn a_save_that_meets_a_low_supply_is_refused_and_the_settings_before_stay() {
     }
     assert!(dialogue.main.control().is_writing());
     supply(&mut dialogue, 4_400);
-    let mut said = Vec::new();
+    let mut printed = Vec::new();
     for _ in 0..20 {
         // Frames alone: main has no time for the memory.
         dialogue.board.tick();
         dialogue.main.step(&mut dialogue.board);
     }
-    said.extend(dialogue.lines());
+    printed.extend(dialogue.lines());
     assert!(
-        said.contains(&"err 8 the supply is too low".to_string()),
-        "{said:?}"
+        printed.contains(&"err 8 the supply is too low".to_string()),
+        "{printed:?}"
     );
     let chip = dialogue.board.memory.clone();
     let again = Dialogue::with(*Sample::odd(), chip, Restart::NONE);
@@ -64,7 +64,7 @@ fn a_save_that_meets_a_low_supply_is_refused_and_the_settings_before_stay() {
 }
 
 #[test]
-fn rest_sent_again_and_again_writes_nothing_and_a_worn_cell_is_told() {
+fn repeated_rests_write_nothing_and_a_worn_cell_is_reported() {
     let mut dialogue = standing();
     dialogue.say("rest");
     dialogue.run(2);
@@ -78,9 +78,9 @@ fn rest_sent_again_and_again_writes_nothing_and_a_worn_cell_is_told() {
     dialogue.run(50);
     dialogue.board.memory.worn = true;
     dialogue.board.send(b"rest\r");
-    let said = dialogue.run(3);
+    let printed = dialogue.run(3);
     let told = "# memory: does not keep the pose of this rest";
-    assert!(said.iter().any(|line| line == told), "{said:?}");
+    assert!(printed.iter().any(|line| line == told), "{printed:?}");
 }
 
 #[test]
@@ -129,14 +129,14 @@ fn the_pose_of_a_rest_is_forgotten_before_the_first_pulse() {
 }
 
 #[test]
-fn a_save_right_after_the_start_waits_for_the_supply_and_no_longer_than_half_a_second() {
+fn a_save_right_after_the_start_waits_at_most_half_a_second_for_the_supply() {
     let mut dialogue = Dialogue::power_on(*Sample::odd());
     dialogue.lines();
     dialogue.board.send(b"save\r");
-    let said = dialogue.run(5);
+    let printed = dialogue.run(5);
     assert!(
-        said.is_empty() && dialogue.board.memory.log.is_empty(),
-        "{said:?}"
+        printed.is_empty() && dialogue.board.memory.log.is_empty(),
+        "{printed:?}"
     );
     assert_eq!(dialogue.run(15), ["ok save"]);
     let mut never = Dialogue::on(Sample::odd().section(), VirtualBoard::default());

@@ -6,7 +6,7 @@ use super::*;
 fn status_tells_everything_as_key_and_value() {
     let mut dialogue = standing();
     dialogue.board.late = 7;
-    dialogue.board.lose(65_535);
+    dialogue.board.count_lost(65_535);
     dialogue.run(1);
     dialogue.say("speed 42");
     dialogue.say("sway left");
@@ -59,7 +59,7 @@ fn the_longest_status_that_there_can_be_fits_a_line() {
     let robot = Sample::odd().with_gait(name);
     let mut dialogue = awake(robot);
     dialogue.board.late = u16::MAX;
-    dialogue.board.lose(u16::MAX);
+    dialogue.board.count_lost(u16::MAX);
     dialogue.accept(name);
     let line = dialogue.say("status");
     // Each number as long as it gets.
@@ -120,12 +120,15 @@ fn watch_goes_on_while_the_robot_rests_and_a_new_one_counts_from_its_own_beginni
 fn a_report_that_nobody_read_is_written_once_and_a_new_watch_ends_them() {
     let mut dialogue = standing();
     dialogue.say("watch 2");
-    dialogue.run_unheard(20);
+    dialogue.run_without_reader(20);
     assert_eq!(dialogue.lines().len(), 1);
-    dialogue.run_unheard(2);
+    dialogue.run_without_reader(2);
     assert!(dialogue.has_output());
     dialogue.board.send(b"watch 0\r");
-    let said = dialogue.lines();
-    assert!(said.len() == 2 && said[1] == "ok watch 0", "{said:?}");
+    let printed = dialogue.lines();
+    assert!(
+        printed.len() == 2 && printed[1] == "ok watch 0",
+        "{printed:?}"
+    );
     assert!(dialogue.run(10).is_empty());
 }

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// Something to ask of a robot.
+/// An order to a robot.
 #[derive(Clone, Copy, Debug)]
 enum Ask {
     Gait(&'static str),
@@ -16,7 +16,7 @@ enum Ask {
     Speed(u8),
 }
 
-/// Anything, and for how many frames the robot is left with it.
+/// Random orders, each with the number of frames that follow it.
 fn asks() -> impl Strategy<Value = Vec<(Ask, u32)>> {
     let ask = prop_oneof![
         5 => prop::sample::select(GAITS.to_vec()).prop_map(Ask::Gait),
@@ -59,8 +59,8 @@ proptest! {
                     prop_assert!(got == Width(0) || got == held);
                 }
                 if !cycling {
-                    let way = before.farthest(motion.pose());
-                    prop_assert!(way <= motion.robot.slew().per_frame, "{}", way);
+                    let distance = before.farthest(motion.pose());
+                    prop_assert!(distance <= motion.robot.slew().per_frame, "{}", distance);
                 }
             }
         }

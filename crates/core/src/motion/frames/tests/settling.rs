@@ -1,4 +1,4 @@
-//! Pulses that go over to another calibration.
+//! The change of the pulses to another calibration.
 
 use super::*;
 use crate::numbers::units::Width;
@@ -9,12 +9,15 @@ fn every_servo_settles_as_fast_as_its_own_gain_allows_and_no_faster() {
     let mut motion = Motion::standing();
     let before = motion.sent().0;
     let per_frame = f64::from(motion.robot.slew().per_frame);
-    let ways = motion.calibration.map(|servo| {
+    let steps = motion.calibration.map(|servo| {
         // Cycles for a frame's turn, rounded down.
         (per_frame * f64::from(servo.gain).abs() / 16_384.0).floor() as u16
     });
-    for (place, way) in ways.iter().enumerate() {
-        assert!(ways[..place].iter().all(|other| other != way), "{ways:?}");
+    for (place, step) in steps.iter().enumerate() {
+        assert!(
+            steps[..place].iter().all(|other| other != step),
+            "{steps:?}"
+        );
     }
     for place in 0..4 {
         let mut servo = motion.calibration[place];
@@ -28,7 +31,7 @@ fn every_servo_settles_as_fast_as_its_own_gain_allows_and_no_faster() {
             let gone = sent.0 - before[place].0;
             assert_eq!(
                 gone,
-                1000.min(frame.saturating_mul(ways[place])),
+                1000.min(frame.saturating_mul(steps[place])),
                 "A{}",
                 place + 1
             );

@@ -104,7 +104,7 @@ fn stop_while_it_wakes_lets_the_servos_wake_and_nothing_move() {
 }
 
 #[test]
-fn what_is_asked_for_while_it_wakes_waits_until_all_are_awake() {
+fn a_command_during_waking_waits_until_all_servos_are_awake() {
     let mut motion = Motion::new(*Sample::odd());
     motion.run(3);
     motion.head_for_pose(THERE);

@@ -20,7 +20,7 @@ const PROOFS: [f64; 4] = [10.0, 5.0, -10.0, -5.0];
 /// Angles by which a servo is moved to measure its scale, degrees; the first that the robot
 /// accepts is used. A larger angle measures more exactly.
 const FAR: [f64; 6] = [30.0, -30.0, 20.0, -20.0, 10.0, -10.0];
-/// The longest wait for a motion to end.
+/// Longest time for a motion to end.
 const MOTION: Duration = Duration::from_secs(5);
 /// Interval between two questions for the robot's status.
 const LOOK: Duration = Duration::from_millis(25);
@@ -44,7 +44,7 @@ pub enum Key {
     Turn(f64),
 }
 
-/// A calibration on its way.
+/// A calibration in progress.
 #[derive(Debug)]
 pub struct Guide<'a, P> {
     link: &'a mut Link<P>,
@@ -94,31 +94,31 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         self.step() == Step::Saved
     }
 
-    /// Takes a key; true when the person is done or has left.
+    /// Handles a key; true when the user has finished or cancelled.
     ///
     /// # Errors
-    /// The connection breaks. A refusal is no error: it is shown.
+    /// The connection breaks. A refusal is not an error: it is shown.
     pub fn key(&mut self, key: Key) -> Result<bool, LinkError> {
         self.message.clear();
         let done = match (key, self.step()) {
             (Key::Leave, Step::Saved) | (Key::Next, Step::Saved) => Ok(true),
             (Key::Leave, _) => self.leave().map(|()| true),
-            (Key::Back, Step::Walk) if self.left_out => self.to(Step::More).map(|()| false),
-            (Key::Back, _) => self.go(self.at.saturating_sub(1)).map(|()| false),
+            (Key::Back, Step::Walk) if self.left_out => self.go_to_step(Step::More).map(|()| false),
+            (Key::Back, _) => self.enter_step(self.at.saturating_sub(1)).map(|()| false),
             (Key::Next, Step::More) => {
                 self.left_out = true;
-                self.to(Step::Walk).map(|()| false)
+                self.go_to_step(Step::Walk).map(|()| false)
             }
             (Key::Yes, Step::More) => {
                 self.left_out = false;
-                self.go(self.at + 1).map(|()| false)
+                self.enter_step(self.at + 1).map(|()| false)
             }
             (Key::Next, Step::Sign(_)) => {
                 self.message = "Press the space bar, look, then answer with y or n.".to_owned();
                 Ok(false)
             }
             (Key::Next, Step::Save) => self.save().map(|()| false),
-            (Key::Next, _) => self.go(self.at + 1).map(|()| false),
+            (Key::Next, _) => self.enter_step(self.at + 1).map(|()| false),
             (Key::Act, Step::Sign(servo)) => self.move_one(servo, &PROOFS).map(|()| false),
             (Key::Act, Step::Scale(servo)) => self.move_one(servo, &FAR).map(|()| false),
             (Key::Turn(degrees), Step::Scale(servo)) => self.scale(servo, degrees).map(|()| false),
@@ -137,7 +137,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         }
     }
 
-    /// Lets the robot speak while no key comes.
+    /// Reads the robot's messages while no key is pressed.
     ///
     /// # Errors
     /// The connection breaks.
@@ -160,7 +160,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     /// Restores the calibration of the beginning, and lets the robot stand.
     fn leave(&mut self) -> Result<(), LinkError> {
         match self.stand() {
-            // The supply may be too low for it. That is no reason to stay.
+            // The supply may be too low for it; the guide ends all the same.
             Ok(()) | Err(LinkError::Refused { .. }) => {}
             Err(error) => return Err(error),
         }
@@ -173,15 +173,15 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     fn save(&mut self) -> Result<(), LinkError> {
         self.link.command("save")?;
         self.before = self.now.clone();
-        self.go(self.at + 1)
+        self.enter_step(self.at + 1)
     }
 
-    fn to(&mut self, step: Step) -> Result<(), LinkError> {
+    fn go_to_step(&mut self, step: Step) -> Result<(), LinkError> {
         let place = STEPS.iter().position(|at| *at == step);
-        self.go(place.unwrap_or(self.at))
+        self.enter_step(place.unwrap_or(self.at))
     }
 
-    fn go(&mut self, to: usize) -> Result<(), LinkError> {
+    fn enter_step(&mut self, to: usize) -> Result<(), LinkError> {
         match STEPS[to] {
             Step::Horns => {
                 self.stand()?;
@@ -276,7 +276,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             return Ok(());
         }
         if answer == Key::Yes {
-            return self.go(self.at + 1);
+            return self.enter_step(self.at + 1);
         }
         self.stand()?;
         let n = servo + 1;
@@ -332,12 +332,12 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     }
 }
 
-/// A number as the robot has it, and no negative zero.
+/// Rounds to hundredths, as the robot does, without a negative zero.
 fn hundredths(value: f64) -> f64 {
     (value * 100.0).round() / 100.0 + 0.0
 }
 
-/// Waits until the robot stands still; returns its pose.
+/// Waits until the robot stands still, and returns its pose.
 fn settle<P: Read + Write>(link: &mut Link<P>) -> Result<[f64; 4], LinkError> {
     let end = Instant::now() + MOTION;
     let mut last: Option<Status> = None;

@@ -52,7 +52,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
             let words = if saved {
                 "the calibration is saved"
             } else {
-                "left: the robot has what it had before"
+                "cancelled: the robot keeps its old calibration"
             };
             let _ = writeln!(io::stdout(), "{words}");
             Ok(())
@@ -61,7 +61,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         Err(TurnError::File(failure)) => Err(failure),
         // Opening the port resets the board, so what was not saved is gone then.
         Err(TurnError::Link(error)) => Err(Failure::Impossible(format!(
-            "{}: {error}; what was not saved is forgotten when the port is opened again",
+            "{}: {error}; what was not saved is lost when the port is opened again",
             board.name
         ))),
     }

@@ -36,10 +36,10 @@ const CAPTION: Caption = Caption {
     axis: "time since the session began (s)",
 };
 
-/// Runs it.
+/// Runs `lizard replay`.
 ///
 /// # Errors
-/// The file is no session, or the picture cannot be written.
+/// The file is not a session, or the picture cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let name = args.file.display();

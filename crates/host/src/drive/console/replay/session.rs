@@ -1,4 +1,4 @@
-//! A session read back: its events, its frames, its commands.
+//! A session that was read from its file: its events, frames and commands.
 
 use lizard_robot::Robot;
 use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US};
@@ -22,10 +22,12 @@ const LONGEST_MS: u64 = 86_400_000;
 /// The reason why a file is not a valid session.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
 pub(super) enum SessionError {
-    /// The file is no session, or one of another format.
-    #[error("this is no session of `lizard console --record`: its first line has no \"{FORMAT}\"")]
+    /// The file is not a session, or one of another format.
+    #[error(
+        "this is not a session of `lizard console --record`: its first line has no \"{FORMAT}\""
+    )]
     Format,
-    /// A line is no event.
+    /// A line that is not an event.
     #[error("line {line}: {problem}")]
     Line {
         /// The number of the line, from 1.
@@ -59,7 +61,7 @@ impl Session {
             let entry: Entry = match serde_json::from_str(line) {
                 Ok(entry) => entry,
                 Err(_) if cut && index > 0 => break,
-                Err(error) => return Err(wrong(format!("it is no event: {error}"))),
+                Err(error) => return Err(wrong(format!("it is not an event: {error}"))),
             };
             let begins = matches!(&entry.event, Event::Begin { format, .. } if format == FORMAT);
             if begins != (index == 0) {
@@ -205,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_file_says_cannot_command_the_terminal() {
+    fn control_characters_of_a_session_do_not_reach_the_terminal() {
         let text = BEGIN.replace("\"p\"", "\"p\\u001b[2J\"")
             + "{\"ms\":1,\"note\":\"# x\\u001b]0;y\\u0007\"}\n{\"ms\":2,\"sent\":\"\\u009b1m\"}\n";
         let session = Session::parse(&text).expect("it is a session");
@@ -282,13 +284,13 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_session_is_refused_with_its_line() {
+    fn an_invalid_session_is_refused_with_the_line_number() {
         let words = |text: &str| Session::parse(text).expect_err("it is wrong").to_string();
         for text in ["", "{}\n", "walk\n", "{\"ms\":0,\"sent\":\"walk\"}\n"] {
-            assert!(words(text).starts_with("this is no session"), "{text}");
+            assert!(words(text).starts_with("this is not a session"), "{text}");
         }
         let line = |line: &str| words(&format!("{BEGIN}{{\"ms\":9,\"gone\":null}}\n{line}\n"));
-        assert!(line("{\"ms\":10,\"flew\":1}").starts_with("line 3: it is no event: "));
+        assert!(line("{\"ms\":10,\"flew\":1}").starts_with("line 3: it is not an event: "));
         assert_eq!(
             line("{\"ms\":8,\"gone\":null}"),
             "line 3: 8 ms is out of order"

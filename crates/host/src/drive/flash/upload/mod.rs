@@ -1,4 +1,4 @@
-//! Writing an image to a board, so that no moment of it is dangerous.
+//! Writes an image to a board so that an interruption is never dangerous.
 //!
 //! A cable may be pulled at any moment, and the chip then starts whatever is in flash: half
 //! a program may drive the servos anywhere. So, before code is changed, the page where the chip
@@ -20,9 +20,9 @@ use lizard_core::numbers::mark::Mark;
 use lizard_core::numbers::section::{FORMAT, Header, MAGIC, Region, START};
 
 use super::chip::Chip;
-use super::found::{Found, IDLE, Program};
+use super::found::{FlashContents, IDLE, Program};
 use super::image::{BLANK, BOOT, Image, PAGE, Page};
-use super::stk500::{Board, Kind, Loader, Trouble};
+use super::stk500::{Board, Kind, Loader, LoaderError};
 use super::target::{Target, TooLong};
 
 /// The number of attempts, each after a reset: two at each speed if the board does not answer,
@@ -36,7 +36,7 @@ const ROBOT: usize = START as usize / PAGE;
 pub enum Step {
     /// Reading the contents of flash.
     Reading,
-    /// Pages are written.
+    /// Writing pages.
     Writing,
     /// Reading back the written pages.
     Verifying,
@@ -45,14 +45,14 @@ pub enum Step {
 /// The progress of an upload, for the user.
 #[derive(Debug)]
 pub enum Event<'a> {
-    /// The contents of the board's flash, reported once.
-    Found(Found),
+    /// The board's flash has been read; reported once.
+    Found(FlashContents),
     /// The number of finished pages, and of all.
     Progress(Step, usize, usize),
     /// The board is reset for another attempt.
     Again {
         /// The reason for another attempt.
-        trouble: &'a Trouble,
+        trouble: &'a LoaderError,
         /// The boot loader that was called.
         called: Kind,
         /// The boot loader that is called next.
@@ -63,9 +63,9 @@ pub enum Event<'a> {
 /// The result of an upload.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Done {
-    /// Pages that are different now.
+    /// Number of pages written.
     pub written: usize,
-    /// Pages that were right before.
+    /// Number of pages that were already right.
     pub kept: usize,
 }
 
@@ -82,12 +82,12 @@ pub enum UploadError {
     /// The chip is not that of a UNO.
     #[error("the chip is {0}; the firmware is for {uno}. Nothing was written", uno = Chip::ATMEGA328P)]
     Chip(Chip),
-    /// A robot alone, and no code that it could be written behind.
+    /// A robot alone, but the board has no code that reads one.
     #[error(
         "{0}, and a robot alone moves nothing: write both, without --only-robot. Nothing was written"
     )]
-    NoLizard(Found),
-    /// A robot alone, and code that reads other ones.
+    NoLizard(FlashContents),
+    /// A robot alone, but the board's code reads another format.
     #[error(
         "{found}, whose robots are of format {}; this program's are of format {FORMAT}. Write \
          both, without --only-robot. Nothing was written",
@@ -95,14 +95,14 @@ pub enum UploadError {
     )]
     Format {
         /// The contents of the board's flash.
-        found: Found,
+        found: FlashContents,
         /// The version mark of its code.
         mark: Mark,
     },
     /// The image would reach into the boot section.
     #[error(transparent)]
     TooLong(#[from] TooLong),
-    /// A byte was written twice and is still another.
+    /// A byte that was written twice does not have the new value.
     #[error(
         "the flash does not keep the byte at address {address:#06x}: written {written:#04x}, read \
          {read:#04x}. The flash is worn out, or the supply too weak. {left}"
@@ -121,7 +121,7 @@ pub enum UploadError {
     #[error("{trouble}. {left}")]
     Broken {
         /// The error of the boot loader.
-        trouble: Trouble,
+        trouble: LoaderError,
         /// The state of flash now.
         left: Left,
     },
@@ -141,7 +141,7 @@ pub enum Left {
 impl fmt::Display for Left {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::AsBefore => "Nothing was written: the board has what it had",
+            Self::AsBefore => "Nothing was written: the board is unchanged",
             Self::NoRobot => {
                 "The board has half a robot now: its firmware says fault=robot and moves no \
                  servo. Run this command again"
@@ -190,7 +190,7 @@ pub fn upload<B: Board>(
         let trouble = match upload.attempt(kind, &mut written) {
             Ok(()) => break,
             Err(Stop::Error(error)) => return Err(error),
-            Err(Stop::Trouble(trouble)) => trouble,
+            Err(Stop::Loader(trouble)) => trouble,
         };
         if attempt == ATTEMPTS || !trouble.may_pass() {
             return Err(upload.failure(trouble));
@@ -215,13 +215,13 @@ pub fn upload<B: Board>(
 
 /// The reason why one attempt ended.
 enum Stop {
-    Trouble(Trouble),
+    Loader(LoaderError),
     Error(UploadError),
 }
 
-impl From<Trouble> for Stop {
-    fn from(trouble: Trouble) -> Self {
-        Self::Trouble(trouble)
+impl From<LoaderError> for Stop {
+    fn from(trouble: LoaderError) -> Self {
+        Self::Loader(trouble)
     }
 }
 
@@ -256,11 +256,11 @@ impl<B: Board> Upload<'_, B> {
             for page in &goal {
                 written[page.address / PAGE] = true;
             }
-            // There was something else meanwhile.
+            // The flash had other contents in between.
             written[self.first_page().address / PAGE] = true;
             self.write_pages(goal, &flash)?;
         }
-        // All is written; the program starts after a second in any case.
+        // Everything is written; the program starts after a second in any case.
         let _ = self.loader.leave();
         Ok(())
     }
@@ -302,7 +302,7 @@ impl<B: Board> Upload<'_, B> {
         } else {
             self.read(&mut flash, 0..boot / PAGE)?;
         }
-        let found = Found::in_flash(&flash, self.image);
+        let found = FlashContents::in_flash(&flash, self.image);
         if self.image.is_robot_alone() {
             self.check_code(&found)?;
         }
@@ -314,7 +314,7 @@ impl<B: Board> Upload<'_, B> {
     }
 
     /// Checks that the code in flash can read the robot that is to be written behind it.
-    fn check_code(&self, found: &Found) -> Result<(), Stop> {
+    fn check_code(&self, found: &FlashContents) -> Result<(), Stop> {
         let found = found.clone();
         Err(Stop::Error(match found.program {
             Program::Lizard { mark, .. } if mark.format == FORMAT => return Ok(()),
@@ -364,9 +364,9 @@ impl<B: Board> Upload<'_, B> {
         Ok(self.loader.write_page(address, bytes)?)
     }
 
-    fn failure(&self, trouble: Trouble) -> UploadError {
+    fn failure(&self, trouble: LoaderError) -> UploadError {
         match trouble {
-            Trouble::Silent if !self.answered => UploadError::Nobody,
+            LoaderError::Silent if !self.answered => UploadError::Nobody,
             trouble => UploadError::Broken {
                 trouble,
                 left: self.left,

@@ -5,7 +5,7 @@ use std::time::Duration;
 use lizard_core::numbers::mark::AT;
 
 use super::super::double::Double;
-use super::super::stk500::Patience;
+use super::super::stk500::Timeouts;
 use super::super::target::Model;
 use super::*;
 use crate::drive::flash::file;
@@ -15,7 +15,7 @@ use crate::shared::robot_file::named as robot;
 mod alone;
 mod nano;
 
-/// Five pages, the last in part.
+/// An image of five pages, the last one partly filled.
 fn image() -> Image {
     Image::new(bytes(600, 3)).expect("it fits")
 }
@@ -50,13 +50,13 @@ fn run_with(board: Double, image: &Image) -> Run {
 
 /// Uploads to a board with these known facts.
 fn run_as(board: Double, image: &Image, target: Target) -> Run {
-    let patience = Patience {
+    let timeouts = Timeouts {
         blinks: Duration::ZERO,
         call: Duration::from_millis(2),
         quiet: Duration::ZERO,
         answer: Duration::from_millis(5),
     };
-    let mut loader = Loader::new(board, patience);
+    let mut loader = Loader::new(board, timeouts);
     let (mut found, mut again) = (Vec::new(), 0);
     let result = upload(&mut loader, image, target, &mut |event| match event {
         Event::Found(what) => found.push(what.to_string()),
@@ -96,20 +96,20 @@ impl Run {
 
 /// A board with the firmware and this robot.
 fn with_robot(name: &str) -> Double {
-    Double::with(whole(name).bytes())
+    Double::with(whole_image(name).bytes())
 }
 
-fn alone(name: &str) -> Image {
+fn robot_image(name: &str) -> Image {
     file::robot_alone(&robot(name)).expect("it fits")
 }
 
-/// The name of the robot that the firmware would find.
+/// The name of the robot that the firmware would load.
 fn its_robot(board: &Double) -> Option<String> {
     robot_in(&board.flash[..BOOT]).map(|robot| robot.label().map(char::from).collect())
 }
 
-/// The robot of this file with the code.
-fn whole(name: &str) -> Image {
+/// The code with the robot of this file.
+fn whole_image(name: &str) -> Image {
     file::image(&robot(name)).expect("it fits")
 }
 
@@ -151,7 +151,7 @@ fn only_pages_that_differ_are_written() {
 }
 
 #[test]
-fn a_loader_that_hears_only_the_third_call_is_waited_for() {
+fn a_loader_that_answers_only_the_third_call_is_waited_for() {
     let mut board = Double::blank();
     board.ignored_calls = 2;
     let run = run(board);
@@ -160,9 +160,9 @@ fn a_loader_that_hears_only_the_third_call_is_waited_for() {
 }
 
 #[test]
-fn what_the_old_program_says_before_the_answer_is_passed_over() {
+fn output_of_the_old_program_before_the_answer_is_skipped() {
     let mut board = Double::with(&[9; 500]);
-    // The two bytes of an answer are among it, not beside each other.
+    // The output contains both bytes of an answer, but not next to each other.
     board.garbage = b"# t=1\r\n\x14\x15\x10ok\r\n".repeat(30);
     run(board).is_right();
 }
@@ -182,7 +182,7 @@ fn a_board_that_never_answers_is_called_after_four_resets_and_not_written() {
 }
 
 #[test]
-fn a_board_that_talks_without_end_is_no_boot_loader() {
+fn a_board_that_never_stops_sending_is_not_a_boot_loader() {
     struct Talker;
     impl std::io::Read for Talker {
         fn read(&mut self, bytes: &mut [u8]) -> std::io::Result<usize> {
@@ -204,12 +204,12 @@ fn a_board_that_talks_without_end_is_no_boot_loader() {
         }
     }
     let result = lizard_time_limit::LIMIT.within("the end of the calls", || {
-        let patience = Patience {
+        let timeouts = Timeouts {
             blinks: Duration::from_millis(2),
             call: Duration::from_millis(2),
-            ..Patience::default()
+            ..Timeouts::default()
         };
-        let mut loader = Loader::new(Talker, patience);
+        let mut loader = Loader::new(Talker, timeouts);
         upload(&mut loader, &image(), Target::default(), &mut |_| {})
     });
     assert!(matches!(result, Err(UploadError::Nobody)));
@@ -303,7 +303,7 @@ fn a_board_unplugged_before_the_first_page_has_what_it_had() {
     let run = run(board);
     assert!(
         run.words()
-            .ends_with("Nothing was written: the board has what it had")
+            .ends_with("Nothing was written: the board is unchanged")
     );
     assert_eq!(run.board.flash[..500], [9; 500]);
 }

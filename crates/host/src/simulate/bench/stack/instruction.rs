@@ -1,7 +1,7 @@
 //! The effect of an AVR instruction on the stack and on the flow of the program, for the few
 //! instructions that have one, by the AVR Instruction Set Manual.
 
-/// An instruction's part in it. Addresses are of bytes in flash.
+/// The effect of an instruction. Addresses are of bytes in flash.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Effect {
     /// No effect on stack or flow.
@@ -23,7 +23,7 @@ pub enum Effect {
     PointerFromStack,
     /// The stack pointer gets r29:r28 (its low byte, written last).
     StackFromPointer,
-    /// The stack pointer gets something else.
+    /// The stack pointer gets another value.
     StackFromOther,
     /// Adds a constant to r29:r28.
     AddToPointer(i16),
@@ -34,7 +34,7 @@ pub enum Effect {
     /// `ldi r28` and `ldi r29`.
     LoadLow(u8),
     LoadHigh(u8),
-    /// r29:r28 gets something else.
+    /// r29:r28 gets another value.
     LosePointer,
     /// `ldi r26`: how much room a shared beginning or end is about.
     LoadRoom(u8),
@@ -87,11 +87,11 @@ fn effect(code: u16, second: u16, at: u32) -> Effect {
         0x9478 => Effect::EnableInterrupts,
         _ if code & 0xfe0f == 0x920f => Effect::Push,
         _ if code & 0xfe0f == 0x900f => Effect::Pop,
-        _ if code & 0xfe0e == 0x940e => Effect::Call(far(code, second)),
-        _ if code & 0xfe0e == 0x940c => Effect::Jump(far(code, second)),
-        _ if code & 0xf000 == 0xc000 => Effect::Jump(near(code, 12, at)), // rjmp
-        _ if code & 0xf000 == 0xd000 => Effect::Call(near(code, 12, at)), // rcall
-        _ if code & 0xf800 == 0xf000 => Effect::Branch(near(code >> 3, 7, at)),
+        _ if code & 0xfe0e == 0x940e => Effect::Call(far_target(code, second)),
+        _ if code & 0xfe0e == 0x940c => Effect::Jump(far_target(code, second)),
+        _ if code & 0xf000 == 0xc000 => Effect::Jump(relative_target(code, 12, at)), // rjmp
+        _ if code & 0xf000 == 0xd000 => Effect::Call(relative_target(code, 12, at)), // rcall
+        _ if code & 0xf800 == 0xf000 => Effect::Branch(relative_target(code >> 3, 7, at)),
         // cpse; sbrc and sbrs; sbic and sbis
         _ if code & 0xfc00 == 0x1000 => Effect::Skip,
         _ if code & 0xfc08 == 0xfc00 => Effect::Skip,
@@ -110,8 +110,8 @@ fn effect(code: u16, second: u16, at: u32) -> Effect {
             _ => Effect::None,
         },
         // adiw and sbiw of r29:r28
-        _ if code & 0xff30 == 0x9620 => Effect::AddToPointer(small(code)),
-        _ if code & 0xff30 == 0x9720 => Effect::AddToPointer(-small(code)),
+        _ if code & 0xff30 == 0x9620 => Effect::AddToPointer(small_constant(code)),
+        _ if code & 0xff30 == 0x9720 => Effect::AddToPointer(-small_constant(code)),
         // subi, sbci and ldi know r16 to r31 only
         _ if code & 0xf0f0 == 0x50c0 => Effect::SubtractLow(byte(code)),
         _ if code & 0xf0f0 == 0x40d0 => Effect::SubtractHigh(byte(code)),
@@ -125,13 +125,13 @@ fn effect(code: u16, second: u16, at: u32) -> Effect {
 }
 
 /// The target of `jmp` and `call`: 22 bits, of words.
-fn far(code: u16, second: u16) -> u32 {
+fn far_target(code: u16, second: u16) -> u32 {
     let high = u32::from(code >> 3 & 0x3e | code & 1);
     (high << 16 | u32::from(second)) * 2
 }
 
 /// A target relative to the next instruction, in words of this many bits with a sign.
-fn near(offset: u16, bits: u32, at: u32) -> u32 {
+fn relative_target(offset: u16, bits: u32, at: u32) -> u32 {
     let shift = 16 - bits;
     let words = (offset << shift) as i16 >> shift;
     at.wrapping_add(2).wrapping_add_signed(i32::from(words) * 2)
@@ -143,7 +143,7 @@ fn port(code: u16) -> u16 {
 }
 
 /// The constant of `adiw` and `sbiw`.
-fn small(code: u16) -> i16 {
+fn small_constant(code: u16) -> i16 {
     (code >> 2 & 0x30 | code & 0x0f) as i16
 }
 

@@ -49,8 +49,8 @@ struct Shared {
 }
 
 impl Shared {
-    /// Those of an image. What each saves besides the room in r26: the registers from its
-    /// own to r17, and r28 and r29.
+    /// Finds the shared routines of an image. Besides the room in r26, each saves the registers
+    /// from its own to r17, and r28 and r29.
     fn of(image: &Image) -> Self {
         let all = |prefix: &str| {
             let bytes = |symbol: &simulated_uno::Symbol| {
@@ -160,7 +160,7 @@ impl<'a> Walk<'a> {
                         return Err(self.refuse(entry, at, ROOM));
                     };
                     if state.depth != self.shared.restore[&target] + room {
-                        let what = "restores something else than it saved";
+                        let what = "restores other registers than it saved";
                         return Err(self.refuse(entry, at, what));
                     }
                     returns = true;

@@ -63,8 +63,8 @@ fn walking_and_turning_lead_where_the_contact_model_says() {
             robot: &robot,
             log: &frames,
         };
-        let way = way(run, &[span]);
-        let all = way.last().expect("the whole run");
+        let paths = command_paths(run, &[span]);
+        let all = paths.last().expect("the whole run");
         let off = |found: Option<f64>, wanted: f64| found.map(|found| (found - wanted).abs());
         assert!(off(all.forward, forward) < Some(0.35), "{gait}: {all:?}");
         assert!(off(all.turn, turn) < Some(0.2), "{gait}: {all:?}");
@@ -85,9 +85,9 @@ fn a_way_that_hangs_on_a_tie_is_not_told() {
         from,
         to,
     };
-    let legs = way(run, &[span("stand", 0.0, 1.0), span("look", 1.0, 3.0)]);
-    let forward: Vec<bool> = legs.iter().map(|leg| leg.forward.is_some()).collect();
-    assert_eq!(forward, [true, false, false], "{legs:?}");
+    let paths = command_paths(run, &[span("stand", 0.0, 1.0), span("look", 1.0, 3.0)]);
+    let forward: Vec<bool> = paths.iter().map(|path| path.forward.is_some()).collect();
+    assert_eq!(forward, [true, false, false], "{paths:?}");
 }
 
 #[test]
@@ -104,17 +104,17 @@ fn a_way_step_by_step_is_the_way_as_a_whole() {
             from,
             to,
         };
-        let legs = way(run, &[span(0.0, 3.0), span(3.0, 20.0)]);
+        let paths = command_paths(run, &[span(0.0, 3.0), span(3.0, 20.0)]);
         let whole = robot
             .ground()
             .travel(run.instants().filter_map(|at| at.sweeps));
-        let [first, second, all] = &legs[..] else {
-            panic!("two commands and the whole: {legs:?}")
+        let [first, second, all] = &paths[..] else {
+            panic!("two commands and the whole: {paths:?}")
         };
-        let travel = |leg: &Leg| Travel {
-            forward: leg.forward.expect("it is decided"),
-            left: leg.left.expect("it is decided"),
-            turn: leg.turn.expect("it is decided"),
+        let travel = |path: &CommandPath| Travel {
+            forward: path.forward.expect("it is decided"),
+            left: path.left.expect("it is decided"),
+            turn: path.turn.expect("it is decided"),
         };
         let apart = |a: Travel, b: Travel| {
             (a.forward - b.forward).hypot(a.left - b.left) + (a.turn - b.turn).abs()

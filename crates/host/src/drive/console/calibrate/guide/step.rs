@@ -1,13 +1,13 @@
 //! The steps of a calibration, in their order.
 
-/// A step; servos by their place, 0 to 3.
+/// A step; servos are numbered from 0 to 3.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Step {
     Begin,
     Horns,
     Sign(usize),
     Trim(usize),
-    /// Asks if scales and limits are to be set, too.
+    /// Asks whether to set scales and limits as well.
     More,
     Scale(usize),
     Limit(usize),

@@ -67,7 +67,7 @@ fn a_whole_calibration_turns_a_sign_trims_a_servo_walks_and_saves() {
     assert!(press(&mut guide, &[Key::Leave]), "what is saved stays");
     let left = Calibration::ask(&mut link).expect("it answers");
     assert_eq!(left.servo.a1.trim, 0.9);
-    link.command("factory").expect("it is taken");
+    link.command("factory").expect("it is accepted");
     link.command("load").expect("it was saved");
     let kept = Calibration::ask(&mut link).expect("it answers");
     assert_eq!(kept.servo.a1.trim, 0.9);
@@ -77,8 +77,8 @@ fn a_whole_calibration_turns_a_sign_trims_a_servo_walks_and_saves() {
 }
 
 #[test]
-fn who_leaves_at_any_step_leaves_everything_as_it_was() {
-    let way: Vec<Key> = [Key::Next, Key::Next]
+fn cancelling_at_any_step_restores_everything() {
+    let keys: Vec<Key> = [Key::Next, Key::Next]
         .into_iter()
         .chain([Key::Act, Key::No, Key::Act, Key::Yes])
         .chain(PROVE.repeat(3))
@@ -94,11 +94,11 @@ fn who_leaves_at_any_step_leaves_everything_as_it_was() {
         .collect();
     for length in [1, 4, 13, 19] {
         let mut link = robot();
-        link.command("trim 1 2.50").expect("it is taken");
-        link.command("boot walk").expect("it is taken");
+        link.command("trim 1 2.50").expect("it is accepted");
+        link.command("boot walk").expect("it is accepted");
         let before = Calibration::ask(&mut link).expect("it answers");
         let mut guide = Guide::new(&mut link).expect("it answers");
-        press(&mut guide, &way[..length]);
+        press(&mut guide, &keys[..length]);
         assert!(press(&mut guide, &[Key::Leave]), "after {length} keys");
         let after = Calibration::ask(&mut link).expect("it answers");
         assert_eq!(after, before, "after {length} keys");
@@ -112,7 +112,7 @@ fn who_leaves_at_any_step_leaves_everything_as_it_was() {
 #[test]
 fn the_horn_keeps_its_pulse_when_a_sign_is_turned_round() {
     let mut link = robot();
-    link.command("trim 1 3").expect("it is taken");
+    link.command("trim 1 3").expect("it is accepted");
     let mut guide = Guide::new(&mut link).expect("it answers");
     press(&mut guide, &[Key::Next, Key::Next, Key::Act, Key::No]);
     assert_eq!(guide.now.servo.a1.trim, -3.0);
@@ -144,7 +144,7 @@ fn a_motion_that_has_begun_is_seen_before_the_robot_is_taken_to_stand() {
     // The slowest that a robot may be, and the smallest turn of a key.
     let slow = PAPER.replacen("\nslew = 300.0", "\nslew = 10.0", 1);
     assert_ne!(slow, PAPER);
-    for (text, way) in [
+    for (text, degrees) in [
         (PAPER, 10.0),
         (PAPER, 0.1),
         (slow.as_str(), 10.0),
@@ -155,7 +155,7 @@ fn a_motion_that_has_begun_is_seen_before_the_robot_is_taken_to_stand() {
         running.run(200);
         let before = running.status("pose");
         let [a1, a2, a3, a4] = robot.servos().map(|servo| servo.neutral);
-        let line = format!("pose {:.2} {a2:.2} {a3:.2} {a4:.2}", a1 + way);
+        let line = format!("pose {:.2} {a2:.2} {a3:.2} {a4:.2}", a1 + degrees);
         assert!(running.say(&line).starts_with("ok pose"), "{line}");
         let unseen = (0..100).take_while(|_| {
             running.run(1);
@@ -164,7 +164,7 @@ fn a_motion_that_has_begun_is_seen_before_the_robot_is_taken_to_stand() {
         let unseen = unseen.count() as u64;
         assert!(
             unseen + 2 < STILL_FRAMES,
-            "{way} deg: {unseen} frames show nothing"
+            "{degrees} deg: {unseen} frames show nothing"
         );
     }
 }
@@ -203,7 +203,7 @@ fn to_scales() -> Vec<Key> {
 #[test]
 fn a_scale_is_set_where_the_crank_points_and_its_middle_stays() {
     let mut link = robot();
-    link.command("trim 1 2.00").expect("it is taken");
+    link.command("trim 1 2.00").expect("it is accepted");
     let mut guide = Guide::new(&mut link).expect("it answers");
     press(&mut guide, &to_scales());
     assert!(
@@ -217,7 +217,7 @@ fn a_scale_is_set_where_the_crank_points_and_its_middle_stays() {
     press(&mut guide, &[Key::Act]);
     let by = guide.moved.expect("it was moved");
     assert!(by.abs() >= 20.0, "{by}");
-    // Four times half a degree more in this many.
+    // Four corrections by half a degree of a turn of `by` degrees.
     press(&mut guide, &[Key::Turn(0.5); 4]);
     let expected = 10.0 * (1.0 + 0.5 / by).powi(4);
     let now = Calibration::ask(&mut link).expect("it answers").servo.a1;

@@ -7,7 +7,7 @@ use crate::shared::ink::PLACES;
 use super::step::{STEPS, Step};
 use super::{FAR, Guide, PROOFS};
 
-/// The contents of the screen.
+/// The contents of the screen in one step.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct View {
     /// The title of the step.
@@ -25,7 +25,7 @@ impl<P: Read + Write> Guide<'_, P> {
     #[must_use]
     pub fn view(&self) -> View {
         let servo = |place: usize| format!("A{}, {}", place + 1, PLACES[place]);
-        let next = "Enter: next    b: back    q: leave, nothing is changed";
+        let next = "Enter: next    b: back    q: cancel, nothing is saved";
         let (name, text, keys): (String, String, &str) = match self.step() {
             Step::Begin => (
                 "before you begin".to_owned(),
@@ -33,7 +33,7 @@ impl<P: Read + Write> Guide<'_, P> {
                  Lift the robot off the table: its legs will move.\n\
                  Nothing is kept before the last step. Leave at any time with q."
                     .to_owned(),
-                "Enter: next    q: leave, nothing is changed",
+                "Enter: next    q: cancel, nothing is saved",
             ),
             Step::Horns => {
                 let angle =
@@ -65,7 +65,7 @@ impl<P: Read + Write> Guide<'_, P> {
                 (
                     format!("which way does {} turn?", servo(place)),
                     text,
-                    "space: move it    y: yes    n: no    b: back    q: leave, nothing is changed",
+                    "space: move it    y: yes    n: no    b: back    q: cancel, nothing is saved",
                 )
             }
             Step::Trim(place) => {
@@ -133,7 +133,7 @@ impl<P: Read + Write> Guide<'_, P> {
                 (
                     "a test walk".to_owned(),
                     format!("Put the robot on the floor, with room in front of it.\n{bar}"),
-                    "space: start, stop    Enter: next    b: back    q: leave, nothing is changed",
+                    "space: start, stop    Enter: next    b: back    q: cancel, nothing is saved",
                 )
             }
             Step::Save => {
@@ -152,7 +152,7 @@ impl<P: Read + Write> Guide<'_, P> {
                 (
                     "save".to_owned(),
                     text,
-                    "Enter: save    b: back    q: leave, nothing is changed",
+                    "Enter: save    b: back    q: cancel, nothing is saved",
                 )
             }
             Step::Saved => (

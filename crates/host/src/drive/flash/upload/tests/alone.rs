@@ -5,14 +5,14 @@ use crate::drive::console::double::PAPER;
 
 #[test]
 fn a_robot_alone_is_written_behind_the_code_its_first_page_first_blank_and_then_last() {
-    let run = run_with(with_robot("paper"), &alone("unequal"));
+    let run = run_with(with_robot("paper"), &robot_image("unequal"));
     let done = run.result.expect("it is written");
     let section = robot("unequal").section();
     let pages: Vec<usize> = (0x6e00..0x6e00 + section.len()).step_by(128).collect();
     assert_eq!(done.written, pages.len(), "each byte of the robots differs");
     let order = [&pages[..], &[0x6e00]].concat();
     assert_eq!(run.board.written, order);
-    let whole = self::whole("unequal");
+    let whole = whole_image("unequal");
     assert!(run.board.flash[..whole.end()] == *whole.bytes());
     assert!(run.board.left, "the firmware is started");
     let [found] = &run.found[..] else {
@@ -39,7 +39,7 @@ fn a_gait_that_changes_costs_less_than_a_second_of_the_line() {
 
 #[test]
 fn a_robot_that_the_board_has_is_not_written() {
-    let run = run_with(with_robot("paper"), &alone("paper"));
+    let run = run_with(with_robot("paper"), &robot_image("paper"));
     assert_eq!(run.result.expect("it is right").written, 0);
     assert!(run.board.written.is_empty() && run.board.left);
     assert!(run.found[0].ends_with(" already"), "{:?}", run.found);
@@ -47,7 +47,7 @@ fn a_robot_that_the_board_has_is_not_written() {
 
 #[test]
 fn after_a_cable_is_pulled_the_firmware_finds_no_robot_until_the_next_upload() {
-    let (before, large) = (with_robot("own-gaits").flash, alone("large"));
+    let (before, large) = (with_robot("own-gaits").flash, robot_image("large"));
     let code = before[..0x6e00].to_vec();
     for written in 1..=large.pages().len() {
         let mut board = Double::with(&before);
@@ -73,8 +73,8 @@ fn after_a_cable_is_pulled_the_firmware_finds_no_robot_until_the_next_upload() {
 
 #[test]
 fn any_one_byte_that_is_lost_while_a_robot_is_written_is_made_up_for() {
-    let (before, paper) = (with_robot("own-gaits").flash, alone("paper"));
-    let right = self::whole("paper");
+    let (before, paper) = (with_robot("own-gaits").flash, robot_image("paper"));
+    let right = whole_image("paper");
     let whole = run_with(Double::with(&before), &paper).board;
     let is_right = |run: &Run, at: usize| {
         assert!(run.result.is_ok(), "byte {at}: {}", run.words());
@@ -96,8 +96,8 @@ fn any_one_byte_that_is_lost_while_a_robot_is_written_is_made_up_for() {
 }
 
 #[test]
-fn a_robot_alone_is_refused_where_the_code_is_none_that_reads_it() {
-    let (before, large) = (with_robot("paper").flash, alone("large"));
+fn a_robot_alone_is_refused_if_the_code_on_the_board_cannot_read_it() {
+    let (before, large) = (with_robot("paper").flash, robot_image("large"));
     let refused = |change: &dyn Fn(&mut Double)| {
         let mut board = Double::with(&before);
         change(&mut board);

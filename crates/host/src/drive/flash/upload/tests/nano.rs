@@ -6,7 +6,7 @@ use super::*;
 fn an_old_nano_is_found_at_its_own_speed_and_keeps_its_boot_loader() {
     let mut board = Double::old_nano();
     board.flash[..500].fill(9);
-    let run = run_with(board, &whole("paper"));
+    let run = run_with(board, &whole_image("paper"));
     assert!(run.result.is_ok(), "{}", run.words());
     assert_eq!(
         (run.board.resets, run.again),
@@ -14,7 +14,7 @@ fn an_old_nano_is_found_at_its_own_speed_and_keeps_its_boot_loader() {
         "called at both speeds"
     );
     assert_eq!(run.found, ["the board has another program, of 500 bytes"]);
-    let image = whole("paper");
+    let image = whole_image("paper");
     assert!(run.board.flash[..image.end()] == *image.bytes());
     assert!(run.board.flash[0x7800..] == Double::old_nano().flash[0x7800..]);
     assert!(run.board.left, "the program is started");
@@ -22,7 +22,7 @@ fn an_old_nano_is_found_at_its_own_speed_and_keeps_its_boot_loader() {
 
 #[test]
 fn a_byte_that_is_lost_on_the_way_to_an_old_nano_is_made_up_for_at_its_speed() {
-    let (code, large) = (whole("paper"), alone("large"));
+    let (code, large) = (whole_image("paper"), robot_image("large"));
     let nano = |lost| {
         let mut board = Double::old_nano();
         board.flash[..code.end()].copy_from_slice(code.bytes());
@@ -44,9 +44,9 @@ fn a_byte_that_is_lost_on_the_way_to_an_old_nano_is_made_up_for_at_its_speed() {
 }
 
 #[test]
-fn what_would_reach_into_the_boot_section_of_a_nano_is_refused() {
+fn an_image_that_reaches_into_a_nanos_boot_section_is_refused() {
     // Of the robots in the repository the one with the most gaits.
-    let image = whole("own-gaits");
+    let image = whole_image("own-gaits");
     assert!(image.end() > 0x7800, "{:#x}", image.end());
     let refused = |mut board: Double, target: Target| {
         board.flash[..500].fill(9);
@@ -83,6 +83,6 @@ fn what_would_reach_into_the_boot_section_of_a_nano_is_refused() {
         assert!(run.result.is_ok(), "{}", run.words());
     }
     // What is short enough is written without a question.
-    let run = run_as(Double::blank(), &whole("paper"), in_doubt);
+    let run = run_as(Double::blank(), &whole_image("paper"), in_doubt);
     assert!(run.result.is_ok(), "{}", run.words());
 }

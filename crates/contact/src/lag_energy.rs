@@ -5,10 +5,12 @@
 //! a stop a slope that no pad can climb. It has kinks at the lags that are most likely.
 //! They are rounded off within `eps`, like the lengths of slides in `friction.rs`.
 
+use crate::motor::{Expansion, MotorStep};
+
 /// The energy of a lag, in the units of the contact problem: forces over the mean friction of a
 /// pad, mm and radians.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Yield {
+pub(crate) struct LagEnergy {
     /// Free movement of the leg to either side, rad.
     pub play: f64,
     /// Torque of a stop, more than that of a pad. Much more would only make the cost harder to
@@ -18,6 +20,9 @@ pub(crate) struct Yield {
     pub lower: Side,
     /// Resistance to a lag above 0.
     pub upper: Side,
+    /// The servo's motor, if the servo is not where it is asked to be; lags are then those of leg
+    /// and servo together.
+    pub motor: Option<MotorStep>,
 }
 
 /// The resistance to a lag on one side, beyond the play.
@@ -34,7 +39,7 @@ pub(crate) enum Side {
         /// Rate of the spring, per mm.
         rate: f64,
         /// Lag at the end of the slot, beyond the play, rad.
-        way: f64,
+        end_lag: f64,
     },
 }
 
@@ -53,9 +58,6 @@ pub(crate) struct Stretch {
     /// Length of the strut while the leg does not lag, mm.
     still: f64,
 }
-
-/// The energy, its slope and its curvature.
-type Expansion = (f64, f64, f64);
 
 /// The part of x above 0, rounded off within `eps`.
 fn above(x: f64, eps: f64) -> Expansion {
@@ -91,14 +93,14 @@ impl Stretch {
         (self.far * self.near * self.sin_cos.0 / self.still).copysign(self.angle)
     }
 
-    /// Lever without its sign, after a lag in the direction in which the strut grows.
+    /// Magnitude of the lever after a lag in the direction in which the strut grows.
     pub fn lever_after(&self, lag: f64) -> f64 {
         self.at(lag).1
     }
 
-    /// Lag at which the strut has grown by this length, rad, without its sign; infinite if it
-    /// cannot.
-    pub fn way(&self, longer: f64) -> f64 {
+    /// Magnitude of the lag at which the strut has grown by this length, rad; infinite if it
+    /// cannot grow so far.
+    pub fn lag_at_growth(&self, longer: f64) -> f64 {
         let Self { far, near, .. } = self;
         let length = self.still + longer;
         let cos = (far * far + near * near - length * length) / (2.0 * far * near);
@@ -146,7 +148,7 @@ impl Side {
             stretch,
             force,
             rate,
-            way: stretch.way(slot),
+            end_lag: stretch.lag_at_growth(slot),
         }
     }
 
@@ -161,7 +163,7 @@ impl Side {
                 stretch,
                 force,
                 rate,
-                way,
+                end_lag,
             } => {
                 // The kink holds the preload; the rest begins smoothly.
                 let preload = force * stretch.lever().abs();
@@ -169,8 +171,8 @@ impl Side {
                     true => stretch.energy(beyond, force, rate, preload),
                     false => (0.0, 0.0, 0.0),
                 };
-                let (past, slope, bend) = above(beyond - way, eps);
-                let end = match way.is_finite() {
+                let (past, slope, bend) = above(beyond - end_lag, eps);
+                let end = match end_lag.is_finite() {
                     true => (stop * past, stop * slope, stop * bend),
                     false => (0.0, 0.0, 0.0),
                 };
@@ -197,21 +199,53 @@ impl Side {
     fn end(&self) -> f64 {
         match self {
             Self::Stop => 0.0,
-            Self::Strut { way, .. } => *way,
+            Self::Strut { end_lag, .. } => *end_lag,
         }
     }
 }
 
-impl Yield {
+impl LagEnergy {
     /// Energy at a lag (rad), its slope and its curvature, with kinks rounded off within `eps`
     /// rad.
     pub fn expand(&self, lag: f64, eps: f64) -> Expansion {
+        let Some(motor) = &self.motor else {
+            return self.expand_leg(lag, eps);
+        };
+        if self.is_rigid() {
+            return motor.expand(lag, eps);
+        }
+        // Leg and servo are in series: both have the same torque.
+        let place = self.servo(lag, eps);
+        let (turned, torque, stiff) = motor.expand(place, eps);
+        let (yields, _, soft) = self.expand_leg(lag - place, eps);
+        (turned + yields, torque, stiff * soft / (stiff + soft))
+    }
+
+    /// The servo's place behind its reference at a lag of leg and servo together, rad.
+    pub fn servo(&self, lag: f64, eps: f64) -> f64 {
+        match &self.motor {
+            None => 0.0,
+            Some(_) if self.is_rigid() => lag,
+            Some(motor) => motor.balance(self.stop, eps, |place| {
+                let (_, torque, stiffness) = self.expand_leg(lag - place, eps);
+                (torque, stiffness)
+            }),
+        }
+    }
+
+    /// True if the leg moves exactly with its servo.
+    fn is_rigid(&self) -> bool {
+        self.play == 0.0 && self.lower == Side::Stop && self.upper == Side::Stop
+    }
+
+    /// The energy of a leg's lag behind its servo.
+    fn expand_leg(&self, lag: f64, eps: f64) -> Expansion {
         let (up, by_up, bend_up) = self.upper.expand(lag - self.play, eps, self.stop);
         let (down, by_down, bend_down) = self.lower.expand(-lag - self.play, eps, self.stop);
         (up + down, by_up - by_down, bend_up + bend_down)
     }
 
-    /// Torque with which the spring pulls the leg back, without its sign.
+    /// Magnitude of the torque with which the spring pulls the leg back.
     pub fn pulls(&self, lag: f64) -> f64 {
         self.upper.pulls(lag - self.play) + self.lower.pulls(-lag - self.play)
     }
@@ -262,7 +296,7 @@ mod tests {
         Stretch::new(f64::hypot(far[0], far[1]), 22.0, between)
     }
 
-    fn assert_slopes(drive: Yield, lags: impl IntoIterator<Item = f64>) {
+    fn assert_slopes(drive: LagEnergy, lags: impl IntoIterator<Item = f64>) {
         for lag in lags {
             let (_, slope, curvature) = drive.expand(lag, 1e-3);
             let at = |lag| drive.expand(lag, 1e-3);
@@ -285,11 +319,12 @@ mod tests {
     fn the_slope_of_the_energy_is_the_torque_and_its_slope_the_stiffness() {
         let lags = (-40..40).map(|i| f64::from(i) / 200.0 + 1e-4);
         for play in [0.0, 0.02] {
-            let drive = |lower, upper| Yield {
+            let drive = |lower, upper| LagEnergy {
                 play,
                 stop: STOP,
                 lower,
                 upper,
+                motor: None,
             };
             let side = Side::strut(strut(70.0), 8.0, 0.7, 5.0);
             for sides in [[Side::Stop; 2], [Side::Stop, side], [side; 2]] {
@@ -301,11 +336,12 @@ mod tests {
     #[test]
     fn a_leg_is_free_within_its_play_and_no_further() {
         let strut = strut(70.0);
-        let drive = Yield {
+        let drive = LagEnergy {
             play: 0.1,
             stop: STOP,
             lower: Side::Stop,
             upper: Side::strut(strut, 8.0, 0.7, 5.0),
+            motor: None,
         };
         for lag in [-0.1, -0.05, 0.0, 0.1] {
             assert_eq!(drive.expand(lag, 0.0).0, 0.0, "{lag}");
@@ -314,34 +350,35 @@ mod tests {
         let torque = (8.0 + 0.7 * longer) * lever;
         assert!((drive.expand(0.11, 0.0).1 - torque).abs() < 1e-9);
         assert_eq!(drive.expand(-0.11, 0.0).1, -STOP);
-        assert_eq!(drive.stops(), [-0.1, 0.1 + strut.way(5.0)]);
+        assert_eq!(drive.stops(), [-0.1, 0.1 + strut.lag_at_growth(5.0)]);
         assert!((drive.pulls(0.11) - torque).abs() < 1e-9);
         assert_eq!(drive.pulls(-0.2), 0.0, "a stop does not pull");
     }
 
     #[test]
-    fn a_strut_is_a_triangles_side() {
+    fn a_strut_is_the_third_side_of_a_triangle() {
         let strut = strut(70.0);
         assert!((strut.still - 30.2).abs() < 1e-9, "parallel arms");
         // The arm's part square to the strut.
         assert!((strut.lever().abs() - 22.0 * 70f64.to_radians().sin()).abs() < 1e-9);
-        let way = strut.way(5.0);
-        let (longer, ..) = strut.at(way);
+        let end_lag = strut.lag_at_growth(5.0);
+        let (longer, ..) = strut.at(end_lag);
         assert!((longer - 5.0).abs() < 1e-9, "{longer}");
-        assert_eq!(strut.way(50.0), f64::INFINITY);
+        assert_eq!(strut.lag_at_growth(50.0), f64::INFINITY);
     }
 
     #[test]
-    fn the_energy_of_a_hair_of_lag_is_no_rounding() {
+    fn the_energy_of_a_tiny_lag_is_exact() {
         let strut = strut(70.0);
         for lag in [1e-12, 1e-9, 1e-6] {
-            // To first order a lever's way, and half of the next order is its growth.
+            // A series: the lever to first order, half its slope to second order.
             let (longer, ..) = strut.at(lag);
             let (_, lever, grows) = strut.at(0.0);
             let series = lever * lag + grows * lag * lag / 2.0;
             assert!((longer / series - 1.0).abs() < 1e-11, "{lag} {longer}");
         }
-        // Far below a kink its rounding is eps^2 / 4 |x|, though 1e16 times less than x.
+        // Far below a kink the rounded value is eps^2 / 4 |x|, even where that is 1e16 times less
+        // than x.
         let (far, slope, _) = above(-0.5, 1e-9);
         assert!((far / 5e-19 - 1.0).abs() < 1e-9, "{far}");
         assert!((slope / 1e-18 - 1.0).abs() < 1e-9, "{slope}");

@@ -19,7 +19,7 @@ const SAME: f64 = 1e-6;
 
 /// A pair of shapes of two bodies.
 #[derive(Clone, Debug)]
-pub struct Solid {
+pub struct ShapePair {
     /// The bodies, by their index in [`Assembly::bodies`].
     pub bodies: [usize; 2],
     /// Gap between their heights, mm; 0 if they share one.
@@ -44,7 +44,7 @@ pub struct Task {
     pub mounts: [Mount; 2],
     /// True if these are pairs that are made to meet.
     pub meet: bool,
-    pub solids: Vec<Solid>,
+    pub shape_pairs: Vec<ShapePair>,
 }
 
 impl Task {
@@ -78,20 +78,20 @@ impl Task {
                 if a.mount == b.mount || !which(a, b) || away() {
                     continue;
                 }
-                let meet = assembly.meet(a, b);
+                let meet = assembly.may_touch(a, b);
                 let within = if meet { 0.0 } else { within };
-                let solids = solids(i, a, j, b, within);
-                if solids.is_empty() {
+                let shape_pairs = shape_pairs(i, a, j, b, within);
+                if shape_pairs.is_empty() {
                     continue;
                 }
                 let mounts = [a.mount, b.mount];
                 let same = |task: &&mut Self| task.mounts == mounts && task.meet == meet;
                 match tasks.iter_mut().find(same) {
-                    Some(task) => task.solids.extend(solids),
+                    Some(task) => task.shape_pairs.extend(shape_pairs),
                     None => tasks.push(Self {
                         mounts,
                         meet,
-                        solids,
+                        shape_pairs,
                     }),
                 }
             }
@@ -100,8 +100,8 @@ impl Task {
     }
 }
 
-fn solids(i: usize, a: &Body, j: usize, b: &Body, within: f64) -> Vec<Solid> {
-    let mut solids = Vec::new();
+fn shape_pairs(i: usize, a: &Body, j: usize, b: &Body, within: f64) -> Vec<ShapePair> {
+    let mut shape_pairs = Vec::new();
     for p in &a.prisms {
         for q in &b.prisms {
             let gap = (p.z[0] - q.z[1]).max(q.z[0] - p.z[1]);
@@ -111,7 +111,7 @@ fn solids(i: usize, a: &Body, j: usize, b: &Body, within: f64) -> Vec<Solid> {
             let gap = if gap < -SAME { 0.0 } else { gap.max(SAME) };
             for first in &p.add {
                 for second in &q.add {
-                    solids.push(Solid {
+                    shape_pairs.push(ShapePair {
                         bodies: [i, j],
                         gap,
                         first: first.clone(),
@@ -128,7 +128,7 @@ fn solids(i: usize, a: &Body, j: usize, b: &Body, within: f64) -> Vec<Solid> {
             }
         }
     }
-    solids
+    shape_pairs
 }
 
 /// The holes of a layer that are large enough for a shape.
@@ -137,11 +137,11 @@ fn holes(prism: &Prism, shape: &Shape) -> Vec<Shape> {
     prism.cut.iter().filter(large).cloned().collect()
 }
 
-impl Solid {
-    /// True if the two are surely `by` mm apart or more while the second's frame strays by
-    /// `moves` mm and the ends of its axes by `turns`. It is a quick test, so it may be
-    /// false although they are apart.
-    pub fn far(&self, place: &Placement, [moves, turns]: [f64; 2], by: f64) -> bool {
+impl ShapePair {
+    /// True if the two are certainly at least `by` mm apart while the second's frame moves
+    /// by up to `moves` mm and the ends of its axes by up to `turns`. It is a quick test,
+    /// so it may be false although they are apart.
+    pub fn is_far(&self, place: &Placement, [moves, turns]: [f64; 2], by: f64) -> bool {
         let [(a, reach), (b, other)] = self.discs;
         let between = (place.map(b) - a).length() - reach - other;
         // Turned, a point strays along both axes.
@@ -218,7 +218,10 @@ impl Solid {
         self.at_least(place, |shape| {
             let strays = shape.points.iter().map(|&point| {
                 let at = bounds.map(point);
-                Vector::new(at.x.strays(&region.half), at.y.strays(&region.half))
+                Vector::new(
+                    at.x.largest_change(&region.half),
+                    at.y.largest_change(&region.half),
+                )
             });
             strays.fold(Vector::default(), |most, of| match of.is_finite() {
                 true => Vector::new(most.x.max(of.x), most.y.max(of.y)),
@@ -227,16 +230,16 @@ impl Solid {
         })
     }
 
-    fn at_least(&self, place: &Placement, strays: impl Fn(&Shape) -> Vector) -> f64 {
+    fn at_least(&self, place: &Placement, largest_change: impl Fn(&Shape) -> Vector) -> f64 {
         let second = self.second.placed(place);
-        let moves = strays(&self.second);
+        let moves = largest_change(&self.second);
         let mut flat = self.first.distance(&second) - moves.length();
         if self.gap > 0.0 {
             return self.with_gap(flat);
         }
         for hole in &self.around_first {
             // A hole that strays has the same effect as a pin that strays.
-            flat = flat.max(self.first.within(&hole.placed(place), strays(hole)));
+            flat = flat.max(self.first.within(&hole.placed(place), largest_change(hole)));
         }
         for hole in &self.around_second {
             flat = flat.max(second.within(hole, moves));

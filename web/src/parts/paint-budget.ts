@@ -13,7 +13,7 @@ const COARSER = 0.8;
 /** Quick pictures in a row after which the resolution rises again. */
 const STEADY = 90;
 
-export class Thrift {
+export class PaintBudget {
   /** Resolution of the next picture, as a share of the screen's points to a side. */
   sharpness = 1;
   private fence: WebGLSync | null = null;
@@ -24,7 +24,7 @@ export class Thrift {
   constructor(private readonly gl: WebGL2RenderingContext) {}
 
   /** Returns true if a picture may be painted now; must be called in every frame of the page. */
-  may(now = performance.now()): boolean {
+  mayPaint(now = performance.now()): boolean {
     const { gl } = this;
     if (this.fence) {
       if (gl.clientWaitSync(this.fence, 0, 0) === gl.TIMEOUT_EXPIRED) return false;

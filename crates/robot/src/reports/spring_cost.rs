@@ -7,9 +7,9 @@ use crate::checks::CheckedGait;
 
 /// A gait on legs that lag, compared with the same gait on rigid ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sprung {
+pub struct SpringCost {
     /// Movement of a cycle, as [`CheckedGait::predict`] has it.
-    pub way: Prediction,
+    pub movement: Prediction,
     /// Largest lag of a leg behind its servo, deg.
     pub lag: f64,
     /// Movement of a cycle over that of rigid legs: ahead, or the turn of a gait that turns on
@@ -19,9 +19,9 @@ pub struct Sprung {
 }
 
 /// Smallest movement of a cycle that counts: mm ahead, deg of turn.
-const NOWHERE: (f64, f64) = (1.0, 0.5);
+const LEAST_MOVEMENT: (f64, f64) = (1.0, 0.5);
 
-impl Sprung {
+impl SpringCost {
     /// Compares a gait on this ground with the same gait on rigid legs; none if legs do not lag.
     #[must_use]
     pub fn of(gait: &CheckedGait, ground: &Ground) -> Option<Self> {
@@ -29,16 +29,16 @@ impl Sprung {
             return None;
         }
         let walked = gait.walked(ground);
-        let way = gait.predict(&ground.rigid());
-        let part = |sprung: f64, rigid: Option<f64>, least: f64| {
+        let movement = gait.predict(&ground.rigid());
+        let part = |lagging: f64, rigid: Option<f64>, least: f64| {
             rigid
                 .filter(|rigid| rigid.abs() > least)
-                .map(|rigid| sprung / rigid)
+                .map(|rigid| lagging / rigid)
         };
-        let ahead = part(walked.travel.forward, way.forward, NOWHERE.0);
-        let turn = part(walked.travel.turn, way.turn, NOWHERE.1);
+        let ahead = part(walked.travel.forward, movement.forward, LEAST_MOVEMENT.0);
+        let turn = part(walked.travel.turn, movement.turn, LEAST_MOVEMENT.1);
         Some(Self {
-            way: way.known_of(walked.travel),
+            movement: movement.keep_known(walked.travel),
             lag: walked.lag,
             share: [ahead, turn].into_iter().flatten().reduce(f64::min),
         })

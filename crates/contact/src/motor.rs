@@ -1,0 +1,427 @@
+//! A servo's motor: its torque falls as it turns faster, and its rotor takes time to spin up.
+//!
+//! A DC motor on a supply has a line: full torque at a stall, none at its no-load rate. Below
+//! its limit a servo applies torque in proportion to its error. Its rotor, seen through
+//! hundreds to one of gears, is far harder to turn than a leg, so rotor and friction alone decide
+//! how well the servo follows its pulses.
+//!
+//! In a short step of time all of this is one convex function of the error at the end of the
+//! step: the motor's torque, its damping and its rotor's change of speed are the slopes of it.
+//! So the contact problem of `friction.rs` takes a servo as it takes a spring.
+
+use crate::joints::Joints;
+
+/// A servo's motor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Motor {
+    /// Torque at a stall, N mm.
+    pub stall: f64,
+    /// Speed without load, deg/s.
+    pub rate: f64,
+    /// Time constant of the rotor without load, s.
+    pub spin_up: f64,
+    /// Error beyond the dead band at which the full torque is applied, deg.
+    pub full: f64,
+    /// Error within which no torque is applied, deg: half the dead band.
+    pub idle: f64,
+}
+
+impl Motor {
+    /// Returns the same motor on another supply, given as a share of its own.
+    #[must_use]
+    pub fn at_supply(&self, share: f64) -> Self {
+        Self {
+            stall: self.stall * share,
+            rate: self.rate * share,
+            ..*self
+        }
+    }
+
+    /// Torque that the motor loses for each rad/s, N mm s: that of its own voltage.
+    #[must_use]
+    pub fn damping(&self) -> f64 {
+        self.stall / self.rate.to_radians()
+    }
+
+    /// Inertia of the rotor through the gears, N mm s^2.
+    #[must_use]
+    pub fn inertia(&self) -> f64 {
+        self.damping() * self.spin_up
+    }
+
+    /// The share of the motor's line that a torque (N mm) at a rate (deg/s) uses: 1 on the line
+    /// itself, negative where the motor brakes.
+    #[must_use]
+    pub fn line_share(&self, torque: f64, rate: f64) -> f64 {
+        torque / self.stall + rate / self.rate
+    }
+}
+
+/// The motors of the four servos, and the friction of what they turn besides the feet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Motors {
+    /// The motors in servo order.
+    pub each: [Motor; 4],
+    /// Pins and sliders.
+    pub joints: Joints,
+}
+
+/// Longest step of time, s; and a step as a share of the time in which a servo swings by a radian of
+/// its own vibration.
+const STEP: f64 = 0.0025;
+const SWING: f64 = 0.25;
+
+impl Motors {
+    /// The step of time in which the motors are followed, s: a light rotor with a high gain swings
+    /// fast, and a long step would damp it.
+    pub(crate) fn step(&self) -> f64 {
+        let swing = |motor: &Motor| match motor.spin_up > 0.0 {
+            true => (motor.full / motor.rate * motor.spin_up).sqrt(),
+            // Without a rotor nothing swings.
+            false => f64::INFINITY,
+        };
+        let swings = self.each.iter().map(|motor| SWING * swing(motor));
+        swings.fold(STEP, f64::min)
+    }
+
+    /// The speed of a slider, mm/s, below which its friction fades so that in a step of time it
+    /// cannot turn a servo back.
+    pub(crate) fn fade_speed(&self, seconds: f64) -> f64 {
+        let arm = |[x, y]: [f64; 2]| x * x + y * y;
+        let square = self.joints.arms.map(arm).into_iter().fold(0.0, f64::max);
+        let inert = |motor: &Motor| motor.inertia() + motor.damping() * seconds;
+        let least = self.each.iter().map(inert).fold(f64::INFINITY, f64::min);
+        2.0 * self.joints.slider * square * seconds / least
+    }
+}
+
+/// The turn of a servo at the beginning of a step: all in rad, and rad/s.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ServoState {
+    /// Angle that the pulse asks for.
+    pub target: f64,
+    /// Angle of the servo.
+    pub servo: f64,
+    /// Rate of the servo.
+    pub rate: f64,
+}
+
+/// The energy, its slope and its curvature.
+pub(crate) type Expansion = (f64, f64, f64);
+
+/// A motor in a short step of time, as a function of the servo's place behind a reference, rad:
+/// the angle that it would have at an unchanged rate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct MotorStep {
+    /// Target ahead of the reference, rad.
+    ahead: f64,
+    /// Error without torque, and error beyond it at the full torque, rad.
+    idle: f64,
+    full: f64,
+    stall: f64,
+    /// Stiffness of rotor and damping, and the place that both alone lead to.
+    inert: f64,
+    free: f64,
+    /// Place at which the servo has not turned, and the dry friction of turning.
+    still: f64,
+    drag: f64,
+    /// Torque of the slider on the servo.
+    slider: f64,
+}
+
+impl MotorStep {
+    /// Describes a step of `seconds`, with dry friction and a slider's torque in N mm; the unit of
+    /// forces is `force` N.
+    pub fn new(
+        motor: &Motor,
+        turn: ServoState,
+        seconds: f64,
+        [drag, slider]: [f64; 2],
+        force: f64,
+    ) -> Self {
+        let inertia = motor.inertia() / (seconds * seconds);
+        let inert = inertia + motor.damping() / seconds;
+        let turned = turn.rate * seconds;
+        Self {
+            ahead: turn.target - turn.servo - turned,
+            idle: motor.idle.to_radians(),
+            full: motor.full.to_radians(),
+            stall: motor.stall / force,
+            inert: inert / force,
+            free: turned * (1.0 - inertia / inert),
+            still: turned,
+            drag: drag / force,
+            slider: slider / force,
+        }
+    }
+
+    /// Energy at a place, its slope and its curvature, with the kink of dry friction rounded off
+    /// within `eps` rad.
+    pub fn expand(&self, place: f64, eps: f64) -> Expansion {
+        let error = self.ahead + place;
+        let past = (error.abs() - self.idle).max(0.0);
+        let gain = self.stall / self.full;
+        let (energy, torque, stiffness) = match past < self.full {
+            true if past > 0.0 => (gain * past * past / 2.0, gain * past, gain),
+            true => (0.0, 0.0, 0.0),
+            false => (self.stall * (past - self.full / 2.0), self.stall, 0.0),
+        };
+        let off = place - self.free;
+        let turned = place - self.still;
+        let length = turned.hypot(eps);
+        let (rubs, bend) = match length > 0.0 {
+            true => (turned / length, eps * eps / (length * length * length)),
+            false => (0.0, 0.0),
+        };
+        (
+            energy + self.inert * off * off / 2.0 + self.drag * length + self.slider * place,
+            torque.copysign(error) + self.inert * off + self.drag * rubs + self.slider,
+            stiffness + self.inert + self.drag * bend,
+        )
+    }
+
+    /// Place at the end of the step without a load, to the first order, rad.
+    pub fn unloaded_end(&self) -> f64 {
+        -self.expand(0.0, 0.0).1 / self.inert
+    }
+
+    /// The place at which the motor's torque equals the load's. `slope` gives the load's torque
+    /// and stiffness at a place; the torque is at most `most`.
+    pub fn balance(&self, most: f64, eps: f64, slope: impl Fn(f64) -> (f64, f64)) -> f64 {
+        let reach = (self.stall + self.drag + self.slider.abs() + most) / self.inert;
+        let (mut low, mut high) = (self.free - reach, self.free + reach);
+        let mut place = self.free;
+        for _ in 0..ROUNDS {
+            let (_, torque, stiffness) = self.expand(place, eps);
+            let (load, load_stiffness) = slope(place);
+            let off = torque - load;
+            match off > 0.0 {
+                true => high = place,
+                false => low = place,
+            }
+            let next = place - off / (stiffness + load_stiffness);
+            let next = match low < next && next < high {
+                true => next,
+                false => f64::midpoint(low, high),
+            };
+            if (next - place).abs() <= f64::EPSILON * reach {
+                return next;
+            }
+            place = next;
+        }
+        place
+    }
+}
+
+/// Most rounds of a balance; a bisection alone would need as many.
+const ROUNDS: usize = 60;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drive::{Drive, Kind};
+    use crate::feet::{Body, Feet};
+    use crate::ground::Ground;
+    use crate::stance::Stance;
+    use crate::walker::Walker;
+
+    const SG90: Motor = Motor {
+        stall: 176.5,
+        rate: 500.0,
+        spin_up: 0.02,
+        full: 3.0,
+        idle: 0.0,
+    };
+
+    const JOINTS: Joints = Joints {
+        drag: 0.0,
+        slider: 0.0,
+        arms: [[-22.5, 19.8], [-22.5, -19.8], [22.5, -19.8], [22.5, 19.8]],
+        base: 135.0,
+    };
+
+    /// A robot of this mass on a floor; a light one hardly holds its servos.
+    fn ground(mass: f64, friction: f64) -> Ground {
+        Ground {
+            feet: Feet {
+                hip_forward: 55.0,
+                hip_side: [35.0; 2],
+                mount: 0.0,
+                reach: 45.0,
+            },
+            body: Body {
+                mass,
+                ..Body::DEFAULT
+            },
+            stance: Stance::LEVEL,
+            friction,
+            ratio: 1.0,
+            drive: Drive::RIGID,
+        }
+    }
+
+    fn motors(motor: Motor, joints: Joints) -> Motors {
+        Motors {
+            each: [motor; 4],
+            joints,
+        }
+    }
+
+    /// Lets all servos turn from 0 towards `target` deg for some seconds.
+    fn turned(ground: Ground, motors: &Motors, target: f64, seconds: f64) -> Walker {
+        let mut walker = Walker::new(ground, [0.0; 4]);
+        walker.drive([Some(target); 4], seconds, motors);
+        walker
+    }
+
+    #[test]
+    fn without_a_load_it_spins_up_as_a_motor_with_a_rotor_does() {
+        let free = ground(0.1, 0.001);
+        for seconds in [0.02, 0.04, 0.1] {
+            let walker = turned(free, &motors(SG90, JOINTS), 1000.0, seconds);
+            // The solution of J w' = stall - b w from rest.
+            let Motor { rate, spin_up, .. } = SG90;
+            let exact = rate * (seconds - spin_up * (1.0 - (-seconds / spin_up).exp()));
+            for sweep in walker.servos() {
+                assert!(
+                    (sweep / exact - 1.0).abs() < 0.12,
+                    "{seconds} {sweep} {exact}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn the_load_of_a_pad_that_slides_takes_its_share_of_the_rate() {
+        // Two legs that swing against the two others: each pad slides, and drags at its leg.
+        let heavy = ground(800.0, 1.0);
+        let quick = Motor {
+            spin_up: 0.001,
+            ..SG90
+        };
+        let mut walker = Walker::new(heavy, [0.0; 4]);
+        let targets = [Some(8.0), Some(8.0), Some(-8.0), Some(-8.0)].map(|at| at.map(|x| 1e3 * x));
+        walker.drive(targets, 0.02, &motors(quick, JOINTS));
+        let torque = heavy.grip() * heavy.feet.reach;
+        let rate = SG90.rate * (1.0 - torque / SG90.stall);
+        let mean = walker.servos().map(f64::abs).iter().sum::<f64>() / 4.0 / 0.02;
+        assert!((mean / rate - 1.0).abs() < 0.1, "{mean} {rate}");
+    }
+
+    #[test]
+    fn dry_friction_of_the_joints_is_a_load_and_holds_a_servo_that_cannot_overcome_it() {
+        let free = ground(0.1, 0.001);
+        let drag = |drag| Joints { drag, ..JOINTS };
+        let after = |joints| turned(free, &motors(SG90, joints), 1000.0, 0.4).servos()[0];
+        let half = after(drag(SG90.stall / 2.0)) / after(JOINTS);
+        assert!((half - 0.5).abs() < 0.03, "{half}");
+        assert!(after(drag(1.01 * SG90.stall)).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_slider_resists_only_servos_that_change_its_length() {
+        let free = ground(0.1, 0.001);
+        let joints = Joints {
+            slider: 3.0,
+            ..JOINTS
+        };
+        let after = |targets: [f64; 4], joints| {
+            let mut walker = Walker::new(free, [0.0; 4]);
+            walker.drive(
+                targets.map(|at| Some(1000.0 * at)),
+                0.04,
+                &motors(SG90, joints),
+            );
+            walker.servos()
+        };
+        let alone = [1.0, 0.0, 0.0, 0.0];
+        let [slow, fast] = [joints, JOINTS].map(|joints| after(alone, joints)[0]);
+        let lever = JOINTS.levers([0.0; 4])[0].abs();
+        assert!((lever - 19.8).abs() < 1e-9, "{lever}");
+        let share = 1.0 - 3.0 * lever / SG90.stall;
+        assert!((slow / fast - share).abs() < 0.06, "{slow} {fast} {share}");
+        // Both feet of a side forward: the arms turn alike, and its length hardly changes.
+        let [slow, fast] = [joints, JOINTS].map(|joints| after([1.0; 4], joints)[0]);
+        assert!(1.0 - slow / fast < 0.4 * (1.0 - share), "{slow} {fast}");
+    }
+
+    #[test]
+    fn a_servo_settles_where_its_gain_bears_the_load_and_keeps_its_dead_band() {
+        let free = ground(0.1, 0.001);
+        let banded = Motor { idle: 0.5, ..SG90 };
+        let at = turned(free, &motors(banded, JOINTS), 10.0, 1.0).servos()[0];
+        assert!((9.49..10.51).contains(&at), "{at}");
+        let at = turned(free, &motors(SG90, JOINTS), 10.0, 1.0).servos()[0];
+        assert!((at - 10.0).abs() < 0.02, "{at}");
+    }
+
+    #[test]
+    fn the_share_of_the_line_is_one_at_a_stall_and_at_the_rate_without_load() {
+        let low = SG90.at_supply(0.875);
+        for (torque, rate, supply) in [(176.5, 0.0, 1.0), (0.0, 500.0, 1.0), (88.25, 250.0, 1.0)] {
+            assert!((SG90.line_share(torque, rate) - supply).abs() < 1e-12);
+            assert!((low.line_share(torque, rate) - supply / 0.875).abs() < 1e-12);
+        }
+        assert!(
+            (low.inertia() - SG90.inertia()).abs() < 1e-12,
+            "the rotor stays"
+        );
+    }
+
+    #[test]
+    fn a_servo_drags_its_leg_at_the_end_of_its_play() {
+        let floor = Ground {
+            drive: Drive {
+                kind: Kind::Rigid,
+                play: 1.0,
+            },
+            ..ground(400.0, 0.7)
+        };
+        let mut walker = Walker::new(floor, [0.0; 4]);
+        walker.drive(
+            [Some(10.0), Some(0.0), Some(0.0), Some(0.0)],
+            1.0,
+            &motors(SG90, JOINTS),
+        );
+        let (servo, lag) = (walker.servos()[0], walker.lag()[0]);
+        // On its way the servo drags the leg at the end of its play; at its end nothing pulls.
+        assert!(
+            (servo - 10.0).abs() < 1e-6 && lag.abs() < 1.0,
+            "{servo} {lag}"
+        );
+        let mut walker = Walker::new(floor, [0.0; 4]);
+        walker.drive(
+            [Some(90.0), Some(0.0), Some(0.0), Some(0.0)],
+            0.1,
+            &motors(SG90, JOINTS),
+        );
+        assert!((walker.lag()[0] - 1.0).abs() < 1e-3, "{:?}", walker.lag());
+        assert!((walker.legs()[0] - (walker.servos()[0] - walker.lag()[0])).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_energy_of_a_step_has_its_torque_as_slope() {
+        let turn = ServoState {
+            target: 0.2,
+            servo: 0.05,
+            rate: 3.0,
+        };
+        let motor_step = MotorStep::new(&SG90, turn, 0.0025, [12.0, -4.0], 0.7);
+        for step in -40..40 {
+            let place = f64::from(step) / 200.0 + 1e-4;
+            let at = |place: f64| motor_step.expand(place, 1e-3);
+            let (before, after) = (at(place - 1e-6), at(place + 1e-6));
+            let (_, torque, stiffness) = at(place);
+            let slope = (after.0 - before.0) / 2e-6;
+            assert!(
+                (slope - torque).abs() < 1e-3 * torque.abs().max(1.0),
+                "{place}"
+            );
+            let bend = (after.1 - before.1) / 2e-6;
+            assert!(
+                (bend / stiffness - 1.0).abs() < 1e-2,
+                "{place} {bend} {stiffness}"
+            );
+        }
+    }
+}

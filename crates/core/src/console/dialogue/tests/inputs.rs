@@ -1,0 +1,387 @@
+//! Steps of routines that a contact ends: a button to press, a nose that meets a wall.
+
+use super::*;
+use crate::numbers::gaits::{Input, Step};
+use crate::sample::{BUTTON, NOSE};
+
+const CYCLES: u8 = Step::CYCLES;
+const FRAMES: u8 = Step::FRAMES;
+const REST: u8 = Step::REST;
+const WAIT: u8 = Step::WAIT;
+const UNTIL: u8 = Step::UNTIL;
+const ENDLESS: u16 = Step::ENDLESS;
+
+/// A press, then a way that ends at a wall or after a while, then a turn.
+const PATROL: [(u8, &str, u16); 6] = [
+    (UNTIL, "button", 0),
+    (WAIT, "stand", ENDLESS),
+    (UNTIL, "nose", 0),
+    (FRAMES, "sway", ENDLESS),
+    (CYCLES, "back", 1),
+    (CYCLES, "sway left", 1),
+];
+
+/// Frames in which a contact counts as closed.
+const DEBOUNCED: u32 = 3;
+
+/// Frames of any step here that has an end, and more.
+const LONG: u32 = 600;
+
+fn begun(rounds: u16, steps: &[(u8, &str, u16)]) -> Dialogue {
+    let mut dialogue = awake(Sample::odd().with_routine("patrol", rounds, steps));
+    dialogue.accept("patrol");
+    dialogue
+}
+
+fn set(dialogue: &mut Dialogue, input: Input, is_closed: bool) {
+    let bit = 1 << input.pin();
+    dialogue.board.closed &= !bit;
+    dialogue.board.closed |= bit * u32::from(is_closed);
+}
+
+/// Presses for these frames and lets go; returns what the robot says meanwhile.
+fn press(dialogue: &mut Dialogue, input: Input, frames: u32) -> Vec<String> {
+    set(dialogue, input, true);
+    let said = dialogue.run(frames);
+    set(dialogue, input, false);
+    said
+}
+
+/// The name of the gait that moves the robot, or what it does instead.
+fn gait(dialogue: &Dialogue) -> String {
+    match dialogue.motion().activity() {
+        Activity::Gait(id) => dialogue.motion().robot().name(id).map(char::from).collect(),
+        activity => format!("{activity:?}"),
+    }
+}
+
+/// Frames until the robot does something else, and what that is; at most [`LONG`].
+fn change(dialogue: &mut Dialogue) -> (u32, String) {
+    let before = gait(dialogue);
+    for frames in 0..LONG {
+        if gait(dialogue) != before {
+            return (frames, gait(dialogue));
+        }
+        dialogue.run(1);
+    }
+    (LONG, before)
+}
+
+#[test]
+fn a_robot_waits_for_its_button_walks_to_the_wall_and_turns_away_round_after_round() {
+    let mut dialogue = begun(2, &PATROL);
+    for _ in 0..2 {
+        assert_eq!(dialogue.run(LONG), ["# waiting for button"]);
+        assert_eq!(
+            (gait(&dialogue), dialogue.status("gait")),
+            ("Stop".into(), "patrol".into())
+        );
+        assert_eq!(
+            press(&mut dialogue, BUTTON, DEBOUNCED),
+            ["# waiting for nose"]
+        );
+        assert_eq!(gait(&dialogue), "sway");
+        assert!(dialogue.run(3 * LONG).is_empty(), "no wall, no end");
+        assert_eq!(gait(&dialogue), "sway");
+        assert!(press(&mut dialogue, NOSE, DEBOUNCED).is_empty());
+        assert_eq!(gait(&dialogue), "back");
+        assert_eq!(change(&mut dialogue).1, "sway left");
+    }
+    assert_eq!(dialogue.run(LONG), ["# done"]);
+    assert_eq!(dialogue.status("gait"), "stop");
+}
+
+#[test]
+fn a_bouncing_contact_counts_once_it_has_held_for_three_frames() {
+    let mut dialogue = begun(1, &PATROL);
+    dialogue.run(LONG);
+    for _ in 0..20 {
+        press(&mut dialogue, BUTTON, DEBOUNCED - 1);
+        dialogue.run(1);
+    }
+    assert_eq!(gait(&dialogue), "Stop");
+    set(&mut dialogue, BUTTON, true);
+    let frames = change(&mut dialogue);
+    assert_eq!(frames, (DEBOUNCED, "sway".to_string()));
+}
+
+#[test]
+fn a_button_that_is_stuck_never_starts_the_robot_and_has_to_be_let_go_of_first() {
+    let mut dialogue = awake(Sample::odd().with_routine("patrol", 1, &PATROL));
+    set(&mut dialogue, BUTTON, true);
+    dialogue.accept("patrol");
+    assert_eq!(dialogue.run(5 * LONG), ["# waiting for button"]);
+    assert_eq!(gait(&dialogue), "Stop");
+    set(&mut dialogue, BUTTON, false);
+    dialogue.run(DEBOUNCED - 1);
+    press(&mut dialogue, BUTTON, LONG);
+    assert_eq!(gait(&dialogue), "Stop", "too short to have been open");
+    dialogue.run(DEBOUNCED);
+    press(&mut dialogue, BUTTON, DEBOUNCED);
+    assert_eq!(gait(&dialogue), "sway");
+}
+
+#[test]
+fn a_wall_that_is_there_already_ends_the_way_at_once() {
+    let mut dialogue = begun(1, &PATROL);
+    dialogue.run(LONG);
+    set(&mut dialogue, NOSE, true);
+    press(&mut dialogue, BUTTON, DEBOUNCED);
+    assert_eq!(change(&mut dialogue), (DEBOUNCED, "back".to_string()));
+}
+
+#[test]
+fn a_contact_ends_a_step_of_every_kind_and_without_it_count_or_time_do() {
+    let stand = (FRAMES, "stand", 20);
+    for (step, doing, alone) in [
+        ((CYCLES, "sway", 2), "sway", 100..400),
+        ((FRAMES, "sway", 150), "sway", 149..151),
+        ((REST, "stand", 150), "Rest", 149..151),
+        ((WAIT, "stand", 150), "Stop", 120..151),
+    ] {
+        let steps = [(FRAMES, "back", 40), (UNTIL, "nose", 0), step, stand];
+        let at_step = || {
+            let mut dialogue = begun(1, &steps);
+            while gait(&dialogue) != doing {
+                dialogue.run(1);
+            }
+            dialogue
+        };
+        let mut ended = at_step();
+        ended.run(10);
+        set(&mut ended, NOSE, true);
+        assert_eq!(
+            change(&mut ended),
+            (DEBOUNCED, "stand".to_string()),
+            "{step:?}"
+        );
+        let (frames, next) = change(&mut at_step());
+        assert_eq!(next, "stand");
+        assert!(alone.contains(&frames), "{step:?}: {frames}");
+    }
+}
+
+#[test]
+fn a_press_during_a_step_that_does_not_wait_for_it_is_not_remembered() {
+    for step in [
+        (CYCLES, "sway", 2),
+        (FRAMES, "sway", 150),
+        (FRAMES, "stand", 150),
+        (REST, "stand", 150),
+    ] {
+        let steps = [
+            step,
+            (UNTIL, "button", 0),
+            (WAIT, "stand", ENDLESS),
+            (CYCLES, "back", 1),
+        ];
+        let mut dialogue = begun(1, &steps);
+        dialogue.run(20);
+        assert!(press(&mut dialogue, BUTTON, 50).is_empty());
+        assert_eq!(dialogue.run(LONG), ["# waiting for button"], "{step:?}");
+        assert!(["Stop", "Rest"].contains(&gait(&dialogue).as_str()));
+        press(&mut dialogue, BUTTON, DEBOUNCED);
+        assert_eq!(gait(&dialogue), "back");
+    }
+}
+
+#[test]
+fn a_wait_behind_a_rest_gives_no_pulse_and_the_press_wakes_the_servos() {
+    let steps = [
+        (REST, "stand", 10),
+        (UNTIL, "button", 0),
+        (WAIT, "stand", ENDLESS),
+        (CYCLES, "back", 1),
+    ];
+    let mut dialogue = begun(1, &steps);
+    dialogue.run(20);
+    for _ in 0..LONG {
+        assert_eq!(dialogue.frame(), Pulses::default());
+    }
+    press(&mut dialogue, BUTTON, DEBOUNCED);
+    assert_eq!(gait(&dialogue), "back");
+    assert_eq!(dialogue.run(LONG), ["# done"]);
+}
+
+#[test]
+fn a_wait_brakes_the_gait_before_it_within_the_slew_limit() {
+    let steps = [
+        (FRAMES, "sway", 90),
+        (UNTIL, "button", 0),
+        (WAIT, "stand", ENDLESS),
+    ];
+    let mut dialogue = begun(1, &steps);
+    let mut last = widths(&mut dialogue);
+    let mut ways = Vec::new();
+    for _ in 0..200 {
+        let now = widths(&mut dialogue);
+        let way = last.iter().zip(now).map(|(a, b)| a.abs_diff(b)).max();
+        ways.push(way.expect("four"));
+        last = now;
+    }
+    let braked = ways[90..].iter().position(|way| *way == 0);
+    assert!((4..12).contains(&braked.expect("it stands")), "{ways:?}");
+    let walking = ways[80..90].iter().max();
+    assert!(ways[90..].iter().max() <= walking, "{ways:?}");
+    assert!(ways[110..].iter().all(|way| *way == 0), "{ways:?}");
+}
+
+/// A robot in every wait of the patrol.
+fn waiting() -> [Dialogue; 2] {
+    let mut for_button = begun(0, &PATROL);
+    for_button.run(100);
+    let mut for_nose = for_button.clone();
+    press(&mut for_nose, BUTTON, 100);
+    [for_button, for_nose]
+}
+
+#[test]
+fn whatever_ends_a_routine_ends_its_wait_and_then_no_contact_moves_the_robot() {
+    let stays = |mut dialogue: Dialogue, what: &str| {
+        dialogue.run(60);
+        let now = gait(&dialogue);
+        for input in [BUTTON, NOSE] {
+            press(&mut dialogue, input, 50);
+            assert_eq!(dialogue.run(50), Vec::<String>::new(), "{what}");
+            assert_eq!(gait(&dialogue), now, "{what}");
+        }
+    };
+    for begun in waiting() {
+        for line in ["stop", "rest", "stand", NEUTRAL] {
+            let mut dialogue = begun.clone();
+            dialogue.accept(line);
+            dialogue.run(300);
+            stays(dialogue, line);
+        }
+        for mv in [4_200, 3_900] {
+            let mut weak = begun.clone();
+            supply(&mut weak, mv);
+            weak.run(60);
+            assert_eq!(weak.status("fault"), "supply");
+            supply(&mut weak, 5_000);
+            stays(weak, "a weak supply");
+        }
+        let mut late = begun.clone();
+        late.board.late = 1;
+        stays(late, "a late edge");
+        let mut silent = begun.clone();
+        silent.accept("deadman 200");
+        silent.run(20);
+        assert_eq!(silent.status("fault"), "link");
+        stays(silent, "silence");
+        for cause in [Cause::External, Cause::BrownOut, Cause::Watchdog] {
+            let mut reset = begun.clone();
+            reset.reset(cause);
+            reset.run(300);
+            stays(reset, "a reset");
+        }
+        let mut hung = begun.clone();
+        assert!(hung.stall(1_000));
+        hung.run(300);
+        stays(hung, "a hang");
+    }
+}
+
+#[test]
+fn a_low_supply_slows_the_way_and_the_contact_ends_it_as_always() {
+    let [_, mut dialogue] = waiting();
+    supply(&mut dialogue, 4_400);
+    dialogue.run(60);
+    assert_eq!(gait(&dialogue), "sway");
+    set(&mut dialogue, NOSE, true);
+    assert_eq!(change(&mut dialogue), (DEBOUNCED, "back".to_string()));
+}
+
+#[test]
+fn boot_waits_for_the_button_as_long_as_it_takes_and_deadman_does_not_end_that() {
+    let mut dialogue = awake(Sample::odd().with_routine("patrol", 0, &PATROL));
+    for line in ["boot patrol", "deadman 200", "save"] {
+        dialogue.accept(line);
+    }
+    let robot = *Sample::odd().with_routine("patrol", 0, &PATROL);
+    let mut alone = Dialogue::with(robot, dialogue.board.memory.clone(), Restart::default());
+    let said = alone.run(10 * LONG);
+    assert_eq!(
+        said[said.len() - 2..],
+        ["# boot: patrol", "# waiting for button"]
+    );
+    let said = press(&mut alone, BUTTON, DEBOUNCED);
+    assert_eq!(said, ["# waiting for nose"]);
+    assert_eq!(gait(&alone), "sway");
+    assert!(alone.run(10 * LONG).is_empty());
+}
+
+#[test]
+fn only_the_pin_that_is_waited_for_gets_a_pull_up() {
+    let mut dialogue = awake(Sample::odd().with_routine("patrol", 1, &PATROL));
+    assert_eq!(dialogue.board.pulled_up, 0);
+    dialogue.accept("patrol");
+    dialogue.run(10);
+    assert_eq!(dialogue.board.pulled_up, 1 << BUTTON.pin());
+    dialogue.run(DEBOUNCED);
+    press(&mut dialogue, BUTTON, 10);
+    assert_eq!(
+        dialogue.board.pulled_up,
+        1 << BUTTON.pin() | 1 << NOSE.pin()
+    );
+}
+
+#[test]
+fn a_pin_that_is_a_servos_the_rails_or_none_is_never_touched_whatever_the_section_says() {
+    let pins = Sample::odd().content.pins;
+    for pin in 0..=127 {
+        let robot = Sample::odd().with_routine("patrol", 1, &PATROL);
+        let robot = robot.with(|content| {
+            let button = content.steps.iter_mut().find(|step| step.kind == UNTIL);
+            button.expect("the button").gait = pin;
+        });
+        let mut dialogue = awake(robot);
+        dialogue.board.closed = u32::MAX;
+        dialogue.accept("patrol");
+        dialogue.run(10);
+        let is_free = (2..=12).contains(&pin) || (15..=19).contains(&pin);
+        let expected = is_free && !pins.contains(&pin);
+        let pulled_up = if expected { 1 << pin } else { 0 };
+        assert_eq!(dialogue.board.pulled_up, pulled_up, "{pin}");
+        assert_eq!(gait(&dialogue), "Stop");
+    }
+}
+
+#[test]
+fn a_routine_whose_last_gait_has_a_time_or_a_contact_brakes_before_it_is_done() {
+    for steps in [
+        &[(FRAMES, "sway", 90)][..],
+        &[(UNTIL, "nose", 0), (FRAMES, "sway", ENDLESS)],
+    ] {
+        let mut dialogue = begun(1, steps);
+        dialogue.run(90);
+        set(&mut dialogue, NOSE, true);
+        assert_eq!(dialogue.run(20), ["# done"]);
+        assert_eq!(dialogue.status("gait"), "stop");
+        let held = widths(&mut dialogue);
+        assert!(dialogue.run(LONG).is_empty());
+        assert_eq!(widths(&mut dialogue), held);
+    }
+}
+
+#[test]
+fn a_routine_may_wait_once_and_repeat_the_steps_behind_that() {
+    let robot = Sample::odd().with_routine("patrol", 3, &PATROL);
+    let robot = robot.with(|content| {
+        let routine = content.gaits.last_mut().expect("the routine");
+        routine.channels[3].offset = 2;
+    });
+    let mut dialogue = awake(robot);
+    dialogue.accept("patrol");
+    assert_eq!(dialogue.run(LONG), ["# waiting for button"]);
+    press(&mut dialogue, BUTTON, DEBOUNCED);
+    for _ in 0..3 {
+        assert_eq!(gait(&dialogue), "sway");
+        set(&mut dialogue, NOSE, true);
+        assert_eq!(change(&mut dialogue).1, "back");
+        set(&mut dialogue, NOSE, false);
+        assert_eq!(change(&mut dialogue).1, "sway left");
+        change(&mut dialogue);
+    }
+    assert_eq!(dialogue.status("gait"), "stop");
+}

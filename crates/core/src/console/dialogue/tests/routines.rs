@@ -1,0 +1,277 @@
+//! Routines: steps one after another, and everything that ends them before their time.
+
+use super::*;
+use crate::numbers::gaits::Step;
+
+const CYCLES: u8 = Step::CYCLES;
+const FRAMES: u8 = Step::FRAMES;
+const REST: u8 = Step::REST;
+
+/// A step of every kind; `sway` twice, one behind the other.
+const STEPS: [(u8, &str, u16); 5] = [
+    (FRAMES, "stand", 30),
+    (CYCLES, "sway", 2),
+    (CYCLES, "sway", 1),
+    (FRAMES, "back", 60),
+    (CYCLES, "sway left", 1),
+];
+
+/// More frames than a round takes.
+const LONG: u32 = 1_500;
+
+fn robot(rounds: u16) -> Sample {
+    Sample::odd().with_routine("patrol", rounds, &STEPS)
+}
+
+/// The gaits of a robot in these frames, one after another, and the lines that it
+/// prints.
+fn course(dialogue: &mut Dialogue, frames: u32) -> (Vec<String>, Vec<String>) {
+    let (mut gaits, mut printed): (Vec<String>, Vec<String>) = Default::default();
+    for _ in 0..frames {
+        printed.extend(dialogue.run(1));
+        let gait = match dialogue.motion().activity() {
+            Activity::Gait(id) => dialogue.motion().robot().name(id).map(char::from).collect(),
+            activity => format!("{activity:?}"),
+        };
+        if gaits.last() != Some(&gait) {
+            gaits.push(gait);
+        }
+    }
+    (gaits, printed)
+}
+
+/// Robots at many moments of the routine.
+fn everywhere(robot: fn() -> Sample) -> Vec<Dialogue> {
+    let mut dialogue = awake(robot());
+    dialogue.say("patrol");
+    let mut all = Vec::new();
+    for _ in 0..40 {
+        dialogue.run(17);
+        if dialogue.status("gait") == "patrol" {
+            all.push(dialogue.clone());
+        }
+    }
+    assert!(all.len() > 20, "{}", all.len());
+    all
+}
+
+#[test]
+fn a_routine_goes_through_its_steps_and_says_once_that_it_is_done() {
+    for rounds in [1, 2, 3] {
+        let mut dialogue = awake(robot(rounds));
+        assert_eq!(dialogue.say("Patrol"), "ok patrol");
+        assert_eq!(dialogue.status("gait"), "patrol");
+        let (gaits, printed) = course(&mut dialogue, LONG * u32::from(rounds));
+        assert_eq!(printed, ["# done"]);
+        let round = ["stand", "sway", "back", "sway left"];
+        let (last, all) = gaits.split_last().expect("a course");
+        assert_eq!(last, "Stop");
+        let expected = round.repeat(rounds.into());
+        assert!(all.iter().eq(&expected), "{gaits:?}");
+        assert_eq!(dialogue.status("gait"), "stop");
+    }
+}
+
+#[test]
+fn a_number_says_how_many_rounds_and_a_routine_without_an_end_has_none() {
+    let mut counted = awake(robot(0));
+    counted.say("patrol 2");
+    let (gaits, printed) = course(&mut counted, 3 * LONG);
+    assert_eq!(printed, ["# done"]);
+    assert_eq!(gaits.iter().filter(|gait| *gait == "back").count(), 2);
+    let mut endless = awake(robot(0));
+    endless.say("patrol");
+    let (gaits, printed) = course(&mut endless, 20 * LONG);
+    assert!(printed.is_empty(), "{printed:?}");
+    assert!(gaits.iter().filter(|gait| *gait == "back").count() > 20);
+}
+
+#[test]
+fn a_step_of_some_time_lasts_that_time() {
+    let mut dialogue = awake(robot(1));
+    dialogue.say("patrol");
+    let (gaits, _) = course(&mut dialogue, 29);
+    assert_eq!(gaits, ["stand"]);
+    let (gaits, _) = course(&mut dialogue, 1);
+    assert_eq!(gaits, ["sway"]);
+}
+
+#[test]
+fn help_boot_and_cal_know_a_routine_as_they_know_a_gait() {
+    let mut dialogue = awake(robot(1));
+    assert!(dialogue.send(b"help\r")[0].ends_with("|stray|patrol"));
+    assert_eq!(dialogue.say("boot patrol"), "ok boot patrol");
+    assert!(
+        dialogue
+            .send(b"cal\r")
+            .contains(&"# boot patrol".to_string())
+    );
+    dialogue.accept("save");
+    let chip = dialogue.board.memory.clone();
+    let mut alone = Dialogue::with(*robot(1), chip, Restart::default());
+    let printed = alone.run(150);
+    assert_eq!(printed.last().map(String::as_str), Some("# boot: patrol"));
+    assert_eq!(alone.status("gait"), "patrol");
+    dialogue.say("rest");
+    dialogue.refuse("patrol", "7 servos are resting, send stand first");
+}
+
+#[test]
+fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
+    for begun in everywhere(|| robot(0)) {
+        for line in ["stop", "rest", "stand", "sway", "back 1", NEUTRAL] {
+            let mut dialogue = begun.clone();
+            dialogue.accept(line);
+            let (gaits, printed) = course(&mut dialogue, 600);
+            assert!(gaits.len() <= 2, "{line}: {gaits:?}");
+            assert_eq!(
+                printed.len(),
+                usize::from(line == "back 1"),
+                "{line}: {printed:?}"
+            );
+            assert_ne!(dialogue.status("gait"), "patrol");
+        }
+        let mut again = begun.clone();
+        again.say("patrol");
+        assert_eq!(
+            course(&mut again, 30).0.last().map(String::as_str),
+            Some("sway")
+        );
+        let mut weak = begun.clone();
+        supply(&mut weak, 4_200);
+        weak.run(60);
+        assert_eq!(
+            (weak.status("gait"), weak.status("fault")),
+            ("stop".into(), "supply".into())
+        );
+        supply(&mut weak, 5_000);
+        assert_eq!(
+            course(&mut weak, 300).0,
+            ["Stop"],
+            "it does not go on by itself"
+        );
+        let mut empty = begun.clone();
+        supply(&mut empty, 3_900);
+        empty.run(60);
+        assert_eq!(empty.status("gait"), "rest");
+        for cause in [Cause::External, Cause::BrownOut, Cause::Watchdog] {
+            let mut reset = begun.clone();
+            reset.reset(cause);
+            let (gaits, printed) = course(&mut reset, 400);
+            let still = ["stand", "Stop"].contains(&gaits[0].as_str());
+            assert!(still && gaits.len() == 1, "{cause:?}: {gaits:?}");
+            assert!(!printed.contains(&"# done".to_string()));
+        }
+    }
+}
+
+#[test]
+fn a_low_supply_slows_a_routine_and_does_not_end_it() {
+    let mut dialogue = awake(robot(1));
+    supply(&mut dialogue, 4_400);
+    dialogue.run(40);
+    dialogue.say("patrol");
+    assert_eq!(course(&mut dialogue, 2 * LONG).1, ["# done"]);
+}
+
+#[test]
+fn the_guard_ends_a_routine_as_it_ends_a_gait() {
+    let stray = [(CYCLES, "stray", 3), (CYCLES, "sway", 1)];
+    let mut dialogue = awake(Sample::odd().with_routine("patrol", 0, &stray));
+    dialogue.say("patrol");
+    let (gaits, printed) = course(&mut dialogue, LONG);
+    assert_eq!(gaits, ["stray", "Stop"]);
+    assert_eq!(printed.len(), 1);
+    assert!(printed[0].starts_with("# held"), "{printed:?}");
+    assert_eq!(dialogue.status("fault"), "guard");
+}
+
+#[test]
+fn silence_ends_a_routine_that_a_talker_began_and_not_one_that_boot_began() {
+    for begun in everywhere(|| robot(0)) {
+        let mut dialogue = begun;
+        dialogue.say("deadman 200");
+        let printed = dialogue.run(100);
+        assert_eq!(
+            printed,
+            ["# fault: no line for as long as deadman says, stopped"]
+        );
+        assert_eq!(dialogue.status("gait"), "stop");
+    }
+    let mut dialogue = awake(robot(0));
+    dialogue.say("boot patrol");
+    dialogue.say("deadman 200");
+    dialogue.accept("save");
+    let chip = dialogue.board.memory.clone();
+    let alone = || {
+        let mut alone = Dialogue::with(*robot(0), chip.clone(), Restart::default());
+        alone.run(150);
+        alone
+    };
+    let mut nobody = alone();
+    assert!(nobody.run(5 * LONG).is_empty(), "it goes on");
+    // After a first line the next ones are expected within `deadman`.
+    nobody.say("speed 90");
+    assert_eq!(nobody.run(100).len(), 1);
+    assert_eq!(nobody.status("fault"), "link");
+    // A line that is no command is nobody, and so is a byte.
+    let mut noise = alone();
+    noise.board.send(b"x");
+    assert!(noise.run(LONG).is_empty());
+    noise.board.send(b"x\r");
+    assert_eq!(noise.run(100).len(), 1, "the refusal");
+}
+
+#[test]
+fn a_rest_within_a_routine_ends_the_pulses_for_its_time_and_the_servos_wake_one_by_one() {
+    let steps = [
+        (CYCLES, "sway", 1),
+        (REST, "stand", 50),
+        (FRAMES, "stand", 100),
+    ];
+    let mut dialogue = awake(Sample::odd().with_routine("patrol", 2, &steps));
+    dialogue.say("patrol");
+    let (mut dark, mut awake) = (0, Vec::new());
+    let mut printed = Vec::new();
+    for _ in 0..LONG {
+        printed.extend(dialogue.run(1));
+        let pulses = dialogue.board.submitted().0;
+        let count = pulses.iter().filter(|width| width.0 > 0).count();
+        dark += usize::from(count == 0);
+        if awake.last() != Some(&count) {
+            awake.push(count);
+        }
+    }
+    assert_eq!(printed, ["# done"]);
+    assert_eq!(awake, [4, 0, 1, 2, 3, 4, 0, 1, 2, 3, 4]);
+    // 50 frames each, and five more until the first servo wakes.
+    assert!((100..=112).contains(&dark), "{dark}");
+}
+
+#[test]
+fn a_routine_can_be_stopped_while_it_rests_and_its_last_rest_is_kept_in_the_memory() {
+    let steps = [(CYCLES, "sway", 1), (REST, "stand", 50)];
+    let resting = || {
+        let mut dialogue = awake(Sample::odd().with_routine("patrol", 2, &steps));
+        dialogue.say("patrol");
+        while !dialogue.motion().is_resting() {
+            dialogue.run(1);
+        }
+        dialogue.run(5);
+        assert_eq!(dialogue.status("gait"), "rest");
+        dialogue
+    };
+    for line in ["stop", "rest"] {
+        let mut dialogue = resting();
+        dialogue.accept(line);
+        assert!(dialogue.run(LONG).is_empty());
+        assert!(dialogue.motion().is_resting());
+    }
+    let mut dialogue = resting();
+    assert_eq!(dialogue.run(LONG), ["# done"]);
+    assert!(dialogue.motion().is_resting());
+    let pose = *dialogue.motion().pose();
+    dialogue.lose_power(None);
+    dialogue.run(1);
+    assert_eq!(*dialogue.motion().pose(), pose, "it wakes where it rested");
+}

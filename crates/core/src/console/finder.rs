@@ -1,0 +1,68 @@
+//! Finds the rate at which others send.
+//!
+//! A radio module has a rate of its own, and nothing but the bytes themselves tells which. At a
+//! wrong rate most bytes come garbled or are none that a text has. After a few of them the next
+//! slower rate is tried. Up to the sender's own rate, the receiver is then always the faster of
+//! the two, which never reads the end of a line.
+//!
+//! The rate changes only in a pause, so that the next byte is read from its beginning.
+
+use crate::numbers::rate::Rate;
+
+/// Wrong bytes after which a rate is left.
+const WRONG_BYTES: i8 = 4;
+
+/// Wrong bytes more for a rate that has carried a command: noise, or somebody else who sends,
+/// must not cut off a robot that is being driven.
+const MORE_AFTER_COMMAND: i8 = 28;
+
+/// The present rate, and the wrong bytes at it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Finder {
+    rate: Rate,
+    /// Wrong bytes since the last command, from `-MORE_AFTER_COMMAND` on, or since the last change
+    /// of rate, from 0 on.
+    wrong_bytes: i8,
+    /// True if a byte came since the last frame.
+    has_received: bool,
+}
+
+impl Finder {
+    /// A finder that begins with this rate.
+    pub const fn new(rate: Rate) -> Self {
+        Self {
+            rate,
+            wrong_bytes: 0,
+            has_received: false,
+        }
+    }
+
+    /// Takes a byte; [`crate::console::line::GARBLED`], as each that is not ASCII, is wrong.
+    pub fn note_byte(&mut self, byte: u8) {
+        self.has_received = true;
+        if !byte.is_ascii() && self.wrong_bytes < WRONG_BYTES {
+            self.wrong_bytes += 1;
+        }
+    }
+
+    /// Takes a line that is a command.
+    pub fn note_command(&mut self) {
+        self.wrong_bytes = -MORE_AFTER_COMMAND;
+    }
+
+    /// Changes the rate if it must be a wrong one and nothing came in this frame; returns the new
+    /// one.
+    pub fn frame(&mut self) -> Option<Rate> {
+        let is_pause = !core::mem::take(&mut self.has_received);
+        if !is_pause || self.wrong_bytes < WRONG_BYTES {
+            return None;
+        }
+        *self = Self::new(self.rate.next());
+        Some(self.rate)
+    }
+}
+
+#[cfg(test)]
+mod misread;
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,434 @@
+//! Every command, sent at any rate and read at any other: which lines does the robot read?
+//!
+//! The truth is the line itself, bit by bit: a receiver begins at a falling edge and looks at
+//! the middle of each of its own bits. The search goes through every state that sender and
+//! receiver can reach together, so it covers every command with every number, and every
+//! distance between the clocks of both.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::vec::Vec;
+use std::{format, println, vec};
+
+use crate::console::word::Word;
+use crate::numbers::rate::Rate;
+
+/// The gaits of robot.toml, as lines.
+const GAITS: [&str; 10] = [
+    "stand",
+    "walk",
+    "trot",
+    "crawl",
+    "back",
+    "left",
+    "right",
+    "arc left",
+    "arc right",
+    "look",
+];
+
+/// The sender's clock is off by this share at most.
+const SENDER: f64 = 0.02;
+
+/// The middle of a bit as a receiver of eight samples for a bit finds it: the start bit is seen
+/// up to a sample late, and of the samples 4, 5 and 6 the majority counts.
+const MIDDLE: [f64; 2] = [0.5, 0.625];
+
+/// A state machine of text: what may follow, and where a command may end.
+#[derive(Default)]
+struct Text {
+    next: Vec<BTreeMap<u8, usize>>,
+    ends: BTreeSet<usize>,
+}
+
+impl Text {
+    const START: usize = 0;
+
+    fn new() -> Self {
+        let mut text = Self::default();
+        text.state();
+        text
+    }
+
+    fn state(&mut self) -> usize {
+        self.next.push(BTreeMap::new());
+        self.next.len() - 1
+    }
+
+    /// Leads from states to a new one by each of these bytes.
+    fn lead(&mut self, from: &[usize], bytes: impl IntoIterator<Item = u8> + Clone) -> usize {
+        let to = self.state();
+        for at in from {
+            self.next[*at].extend(bytes.clone().into_iter().map(|byte| (byte, to)));
+        }
+        to
+    }
+
+    fn word(&mut self, word: &str) -> usize {
+        word.bytes().fold(Self::START, |at, byte| {
+            self.next[at]
+                .get(&byte)
+                .copied()
+                .unwrap_or_else(|| self.lead(&[at], [byte]))
+        })
+    }
+
+    /// Digits, up to so many; returns the states in which the number may end.
+    fn digits(&mut self, from: &[usize], most: usize) -> Vec<usize> {
+        let mut at = from.to_vec();
+        let mut ends = Vec::new();
+        for _ in 0..most {
+            at = vec![self.lead(&at, b'0'..=b'9')];
+            ends.extend(&at);
+        }
+        ends
+    }
+
+    /// Degrees or hundredths: a sign or none, up to three digits, up to two decimals.
+    fn decimal(&mut self, blank: usize) -> Vec<usize> {
+        let sign = self.lead(&[blank], *b"+-");
+        let mut ends = self.digits(&[blank, sign], 3);
+        let point = self.lead(&ends, *b".");
+        ends.extend(self.digits(&[point], 2));
+        ends
+    }
+
+    /// The state before the last byte; `None` if there are several.
+    fn before(&self, at: usize) -> Option<usize> {
+        let leads = |from: &usize| self.next[*from].values().any(|to| *to == at);
+        let mut before = (0..self.next.len()).filter(leads);
+        let first = before.next().unwrap_or(Self::START);
+        before.next().is_none().then_some(first)
+    }
+
+    /// All commands, as programs and people write them.
+    fn sent() -> Self {
+        let mut text = Self::new();
+        for gait in GAITS {
+            let name = text.word(gait);
+            let blank = text.lead(&[name], *b" ");
+            let counts = text.digits(&[blank], 3);
+            text.ends.insert(name);
+            text.ends.extend(counts);
+        }
+        for word in Word::ALL {
+            let end = text.word(word.text());
+            if *word == Word::Boot {
+                for argument in GAITS.iter().chain(&["rest"]) {
+                    let end = text.word(&format!("boot {argument}"));
+                    text.ends.insert(end);
+                }
+                continue;
+            }
+            let mut ends = vec![end];
+            // The example has as many arguments as the word takes.
+            for (place, example) in word.example().split(' ').skip(1).enumerate() {
+                let blank = text.lead(&ends, *b" ");
+                let whole = matches!(word, Word::Speed | Word::Watch | Word::Deadman);
+                ends = match (word, place) {
+                    (Word::Trim | Word::Limit | Word::Dir | Word::Scale, 0) => {
+                        vec![text.lead(&[blank], *b"1234")]
+                    }
+                    _ if matches!(example, "+" | "-") => vec![text.lead(&[blank], *b"+-")],
+                    _ if whole => text.digits(&[blank], 5),
+                    _ => text.decimal(blank),
+                };
+            }
+            text.ends.extend(ends);
+        }
+        text
+    }
+
+    /// More than all that the parser takes: arguments of any length and number.
+    fn taken() -> Self {
+        let mut text = Self::new();
+        for word in GAITS
+            .iter()
+            .copied()
+            .chain(Word::ALL.iter().map(|word| word.text()))
+        {
+            let end = text.word(word);
+            let blank = text.lead(&[end], *b" \t\x0c");
+            let any: Vec<u8> = match word {
+                "boot" => (b' '..=b'~').collect(),
+                _ => b"0123456789.+- \t\x0c".to_vec(),
+            };
+            for byte in any {
+                text.next[blank].entry(byte).or_insert(blank);
+            }
+            text.ends.extend([end, blank]);
+        }
+        for blank in *b" \t\x0c" {
+            text.next[Self::START].insert(blank, Self::START);
+        }
+        text
+    }
+}
+
+/// What a receiver has of a line.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Read {
+    /// The beginning of a command, or all of it.
+    Begun(usize),
+    /// The same, and so many bytes behind it with which no command goes on.
+    Other(usize, u8),
+    /// A line with a garbled byte.
+    Garbled,
+    /// A line that may be anything, since an argument was deleted.
+    Deleted,
+    /// A command that was read to its end, in this state.
+    Ended(usize),
+}
+
+impl Read {
+    fn take(self, byte: u8, text: &Text) -> Self {
+        match (byte.to_ascii_lowercase(), self) {
+            (b'\r' | b'\n', Self::Begun(at)) if text.ends.contains(&at) => Self::Ended(at),
+            (b'\r' | b'\n', Self::Deleted) => Self::Ended(usize::MAX),
+            (b'\r' | b'\n', _) => Self::Begun(Text::START),
+            (0x80.., _) | (_, Self::Garbled) => Self::Garbled,
+            (_, Self::Deleted) => Self::Deleted,
+            (0x08 | 0x7f, Self::Begun(at)) => text.before(at).map_or(Self::Deleted, Self::Begun),
+            (0x08 | 0x7f, Self::Other(at, 1)) => Self::Begun(at),
+            (0x08 | 0x7f, Self::Other(at, more)) => Self::Other(at, more - 1),
+            (_, Self::Other(at, more)) => Self::Other(at, more + 1),
+            (byte, Self::Begun(at)) => text.next[at]
+                .get(&byte)
+                .map_or(Self::Other(at, 1), |to| Self::Begun(*to)),
+            (_, read) => read,
+        }
+    }
+}
+
+/// The line's level, bit by bit, and the bits that may come next.
+struct Bits {
+    high: Vec<bool>,
+    next: Vec<Vec<usize>>,
+    /// The start bits of a first byte.
+    first: Vec<usize>,
+}
+
+impl Bits {
+    /// Text without pauses, and silence behind its end.
+    fn of(text: &Text) -> Self {
+        let mut bytes: Vec<(usize, u8, Option<usize>)> = Vec::new();
+        for (at, next) in text.next.iter().enumerate() {
+            bytes.extend(next.iter().map(|(byte, to)| (at, *byte, Some(*to))));
+        }
+        // CR, LF, or both.
+        let return_sent = text.next.len();
+        for end in &text.ends {
+            bytes.extend([
+                (*end, b'\n', None),
+                (*end, b'\r', None),
+                (*end, b'\r', Some(return_sent)),
+            ]);
+        }
+        bytes.push((return_sent, b'\n', None));
+        let mut bits = Self {
+            high: vec![true],
+            next: vec![vec![0]],
+            first: Vec::new(),
+        };
+        let start = |place: usize| 1 + 10 * place;
+        let followers = |at: usize| {
+            let follows = bytes
+                .iter()
+                .enumerate()
+                .filter(move |(_, byte)| byte.0 == at);
+            follows.map(|(place, _)| start(place)).collect::<Vec<_>>()
+        };
+        for (place, (_, byte, to)) in bytes.iter().enumerate() {
+            let line = 1 << 9 | u16::from(*byte) << 1;
+            bits.high.extend((0..10).map(|bit| line >> bit & 1 == 1));
+            bits.next
+                .extend((1..10).map(|bit| vec![start(place) + bit]));
+            bits.next.push(to.map_or(vec![0], followers));
+        }
+        bits.first = followers(Text::START);
+        bits
+    }
+
+    /// Bytes of 7 bits in any order, with pauses.
+    fn any() -> Self {
+        let mut text = Text::new();
+        text.next[0] = (0..0x80).map(|byte| (byte, 0)).collect();
+        let mut bits = Self::of(&text);
+        bits.next[0].extend(bits.first.clone());
+        for place in 0..0x80 {
+            bits.next[10 + 10 * place].push(0);
+        }
+        bits
+    }
+}
+
+/// The bits of the sender at which a receiver looks, counted from its start edge: for every
+/// distance of the clocks and every place of the middle.
+fn looks(sender: Rate, receiver: Rate) -> BTreeSet<[usize; 10]> {
+    // The chip's own rate, as src/board/serial.rs has it.
+    let chip = 2e6 / (2e6 / f64::from(receiver.baud())).round();
+    let ratio = f64::from(sender.baud()) / chip;
+    let mut all = BTreeSet::new();
+    for step in 0..=400 {
+        let ratio = ratio * (1.0 + SENDER * (f64::from(step) / 200.0 - 1.0));
+        for step in 0..=32 {
+            let middle = MIDDLE[0] + (MIDDLE[1] - MIDDLE[0]) * f64::from(step) / 32.0;
+            all.insert(core::array::from_fn(|bit| {
+                ((bit as f64 + middle) * ratio) as usize
+            }));
+        }
+    }
+    all
+}
+
+/// A receiver's state at a bit of the sender.
+type At = (Read, usize);
+
+/// Reads a byte from each of these start edges; returns the states behind it.
+fn read_byte(edges: &BTreeSet<At>, bits: &Bits, text: &Text, look: [usize; 10]) -> BTreeSet<At> {
+    let mut now: BTreeSet<(Read, usize, u16)> =
+        edges.iter().map(|(read, at)| (*read, *at, 0)).collect();
+    let mut time = 0;
+    for (bit, at) in look.into_iter().enumerate() {
+        while time < at {
+            time += 1;
+            let next = |(read, at, line): &(Read, usize, u16)| {
+                let (read, line) = (*read, *line);
+                bits.next[*at].iter().map(move |next| (read, *next, line))
+            };
+            now = now.iter().flat_map(next).collect();
+        }
+        let look = |(read, at, line)| (read, at, line | u16::from(bits.high[at]) << bit);
+        now = now
+            .into_iter()
+            .map(look)
+            .filter(|(.., line)| line & 1 == 0)
+            .collect();
+    }
+    let end = |(read, at, line): (Read, usize, u16)| {
+        // Without its stop bit it is garbled.
+        let byte = if line >> 9 == 1 {
+            (line >> 1) as u8
+        } else {
+            0xff
+        };
+        (read.take(byte, text), at)
+    };
+    now.into_iter().map(end).collect()
+}
+
+/// The next start edges of each state, whatever the sender does.
+fn edges_from(states: BTreeSet<At>, bits: &Bits) -> BTreeSet<At> {
+    let (mut seen, mut edges) = (BTreeSet::new(), BTreeSet::new());
+    let mut left: Vec<At> = states.into_iter().collect();
+    while let Some((read, at)) = left.pop() {
+        if !seen.insert((read, at)) {
+            continue;
+        }
+        for next in &bits.next[at] {
+            if bits.high[at] && !bits.high[*next] {
+                edges.insert((read, *next));
+            } else {
+                left.push((read, *next));
+            }
+        }
+    }
+    edges
+}
+
+/// All bytes and states that a receiver can reach from these edges on; the commands that it reads.
+fn commands_read(sender: Rate, receiver: Rate) -> BTreeSet<usize> {
+    let (bits, text) = (Bits::of(&Text::sent()), Text::taken());
+    let before = [
+        Read::Begun(Text::START),
+        Read::Other(Text::START, 1),
+        Read::Garbled,
+    ];
+    let mut new: BTreeSet<At> = (bits.first.iter())
+        .flat_map(|at| before.map(|read| (read, *at)))
+        .collect();
+    let (mut known, mut commands) = (new.clone(), BTreeSet::new());
+    while !new.is_empty() {
+        let mut ends = BTreeSet::new();
+        for look in looks(sender, receiver) {
+            ends.extend(read_byte(&new, &bits, &text, look));
+        }
+        ends.retain(|(read, _)| match read {
+            Read::Ended(command) => {
+                commands.insert(*command);
+                false
+            }
+            _ => true,
+        });
+        new = edges_from(ends, &bits);
+        new.retain(|state| known.insert(*state));
+    }
+    println!(
+        "{} at {}: {} states",
+        sender.baud(),
+        receiver.baud(),
+        known.len()
+    );
+    commands
+}
+
+/// The pairs of different rates: true if the sender is the faster one.
+fn pairs(is_faster: bool) -> impl Iterator<Item = (Rate, Rate)> {
+    let all = Rate::ALL.into_iter();
+    let pairs = all.flat_map(|sender| Rate::ALL.map(|receiver| (sender, receiver)));
+    pairs.filter(move |(sender, receiver)| {
+        sender != receiver && (sender.baud() > receiver.baud()) == is_faster
+    })
+}
+
+#[test]
+fn no_line_ends_at_a_receiver_that_is_faster_than_the_sender_of_any_bytes() {
+    let bits = Bits::any();
+    let text = Text::taken();
+    for (sender, receiver) in pairs(false) {
+        let edges: BTreeSet<At> = (0..bits.high.len())
+            .filter(|at| bits.high[*at])
+            .flat_map(|at| bits.next[at].iter().filter(|next| !bits.high[**next]))
+            .map(|at| (Read::Garbled, *at))
+            .collect();
+        assert!(edges.len() > 128);
+        for look in looks(sender, receiver) {
+            let read = read_byte(&edges, &bits, &text, look);
+            let ends = read
+                .iter()
+                .any(|(read, _)| *read == Read::Begun(Text::START));
+            assert!(!ends, "{sender:?} read at {receiver:?}");
+        }
+    }
+}
+
+#[test]
+fn no_command_is_read_at_a_slower_rate_but_one_that_only_prints() {
+    let cal = Text::taken().word("cal");
+    for (sender, receiver) in pairs(true) {
+        let may = match (sender, receiver) {
+            // A pose with many digits may look like it.
+            (Rate::Half, Rate::Slowest) => BTreeSet::from([cal]),
+            _ => BTreeSet::new(),
+        };
+        assert_eq!(
+            commands_read(sender, receiver),
+            may,
+            "{sender:?} at {receiver:?}"
+        );
+    }
+}
+
+#[test]
+fn every_command_is_read_at_its_own_rate() {
+    let mut text = Text::taken();
+    for rate in Rate::ALL {
+        let read = commands_read(rate, rate);
+        let words = Word::ALL.iter().map(|word| word.text());
+        for word in GAITS.into_iter().chain(words) {
+            let end = text.word(word);
+            let with_arguments = text.next[end][&b' '];
+            let is_read = read.contains(&end) || read.contains(&with_arguments);
+            assert!(is_read, "{word} at {rate:?}");
+        }
+    }
+}

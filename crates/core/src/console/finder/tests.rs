@@ -1,0 +1,56 @@
+//! Doubts, commands and pauses, in all orders.
+
+use super::*;
+use crate::console::line::GARBLED;
+
+/// A finder after these bytes, with a pause behind them; the rate it changes to, if any.
+fn after(finder: &mut Finder, bytes: &[u8]) -> Option<Rate> {
+    for byte in bytes {
+        finder.note_byte(*byte);
+        // A frame in which a byte came is no pause.
+        assert_eq!(finder.frame(), None);
+    }
+    finder.frame()
+}
+
+#[test]
+fn wrong_bytes_lead_through_all_rates_and_back_to_that_of_usb() {
+    let mut finder = Finder::new(Rate::Fastest);
+    let mut tried = std::vec::Vec::new();
+    for _ in 0..5 {
+        assert_eq!(after(&mut finder, &[GARBLED; 3]), None);
+        tried.extend(after(&mut finder, &[0x80]).map(Rate::baud));
+    }
+    assert_eq!(tried, [57_600, 38_400, 9_600, 115_200, 57_600]);
+}
+
+#[test]
+fn text_of_any_kind_and_length_changes_no_rate() {
+    let mut finder = Finder::new(Rate::Third);
+    for _ in 0..1000 {
+        let text: std::vec::Vec<u8> = (0..0x80).collect();
+        assert_eq!(after(&mut finder, &text), None);
+    }
+}
+
+#[test]
+fn a_rate_that_has_carried_a_command_stands_31_wrong_bytes_between_two_commands() {
+    let mut finder = Finder::new(Rate::Slowest);
+    for _ in 0..100 {
+        finder.note_command();
+        assert_eq!(after(&mut finder, &[GARBLED; 31]), None);
+    }
+    assert_eq!(after(&mut finder, &[GARBLED]), Some(Rate::Fastest));
+    assert_eq!(
+        after(&mut finder, &[GARBLED; 4]),
+        Some(Rate::Half),
+        "a guess stands 3"
+    );
+}
+
+#[test]
+fn noise_without_a_pause_changes_the_rate_once_it_pauses() {
+    let mut finder = Finder::new(Rate::Fastest);
+    assert_eq!(after(&mut finder, &[GARBLED; 10_000]), Some(Rate::Half));
+    assert_eq!(after(&mut finder, &[]), None, "and once only");
+}

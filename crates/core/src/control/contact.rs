@@ -1,0 +1,91 @@
+//! The contact that a step of a routine waits for: a push button, or the switch of a feeler.
+//!
+//! Contacts bounce for some milliseconds, and long wires pick up noise. So a level counts once
+//! it has held in three successive frames, at most 60 ms after it came.
+//!
+//! A button that is stuck must not start the robot. So a wait for a contact ends when it closes, and
+//! not because it is closed: it must have been open since the wait began. A step that
+//! goes on until there is an obstacle has to end also if that is there already.
+
+use crate::numbers::gaits::Input;
+
+/// The levels of the last three frames, the latest in bit 0; a closed contact is 1.
+const LEVELS: u8 = 0b111;
+
+/// The bit that is set once the contact may end the step.
+const READY: u8 = 0b1000;
+
+/// The contact that is awaited, and its levels in the last frames.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Contact {
+    /// The input at which the contact is.
+    pub input: Input,
+    seen: u8,
+}
+
+impl Contact {
+    /// No contact: none of its frames ends a step.
+    pub const NONE: Self = Self {
+        input: Input::NONE,
+        seen: 0,
+    };
+
+    /// A contact that has to close, from open.
+    pub const fn closing(input: Input) -> Self {
+        Self {
+            input,
+            seen: LEVELS,
+        }
+    }
+
+    /// A contact that has to be closed.
+    pub const fn closed(input: Input) -> Self {
+        Self { input, seen: 0 }
+    }
+
+    /// Takes the level of a frame; true once the contact has closed.
+    pub fn frame(&mut self, is_closed: bool) -> bool {
+        if self.seen & LEVELS == 0 {
+            self.seen |= READY;
+        }
+        let levels = self.seen << 1 | u8::from(is_closed);
+        self.seen = self.seen & READY | levels & LEVELS;
+        self.seen == READY | LEVELS
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::string::String;
+    use std::vec::Vec;
+
+    use super::*;
+
+    /// The frames in which a contact with these levels, `#` for closed, has closed.
+    fn closes(mut contact: Contact, levels: &str) -> Vec<usize> {
+        let frames = levels.bytes().enumerate();
+        let closed = frames.filter(|(_, level)| contact.frame(*level == b'#'));
+        closed.map(|(frame, _)| frame).collect()
+    }
+
+    #[test]
+    fn a_contact_closes_in_the_third_frame_in_a_row() {
+        let input = Input::button(15);
+        for contact in [Contact::closing(input), Contact::closed(input)] {
+            assert_eq!(closes(contact, "....###"), [6]);
+            assert_eq!(closes(contact, "....##.##.#.#.##.###."), [19]);
+            assert!(closes(contact, "...##..##..#..##.##.#").is_empty());
+        }
+    }
+
+    #[test]
+    fn a_contact_that_is_closed_from_the_start_ends_a_way_and_no_wait_until_it_was_open() {
+        let input = Input::nose(16);
+        assert_eq!(closes(Contact::closed(input), "###"), [2]);
+        let stuck: String = "#".repeat(1000);
+        assert!(closes(Contact::closing(input), &stuck).is_empty());
+        assert_eq!(closes(Contact::closing(input), "####...###"), [9]);
+        // Too short to have been open.
+        assert!(closes(Contact::closing(input), "####..####.##").is_empty());
+    }
+}

@@ -1,0 +1,129 @@
+//! A routine under way: steps of robot.toml, one after another, without a person.
+//!
+//! A step is a gait for some cycles, a gait for some time, a rest, or a wait; a contact may end it
+//! earlier. Whatever stops the robot or moves it otherwise ends the routine, and nothing but an
+//! order or `boot` begins one.
+
+use super::Control;
+use crate::control::contact::Contact;
+use crate::control::safety::Notice;
+use crate::numbers::gaits::{GaitId, Input, Step};
+
+/// The routine under way, if there is one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Routine {
+    /// The routine; `stand`, which is not one, while there is none.
+    pub id: GaitId,
+    /// The number of the next step.
+    step: u8,
+    /// Rounds that are not over yet; 0 for ever.
+    left: u16,
+    /// Frames after which its step is over; 0 if the end of a gait's count is awaited,
+    /// [`Step::ENDLESS`] if only a contact ends it.
+    wait: u16,
+}
+
+impl Routine {
+    pub const NONE: Self = Self {
+        id: GaitId::STAND,
+        step: 0,
+        left: 0,
+        wait: 0,
+    };
+
+    pub fn is_under_way(&self) -> bool {
+        self.id != GaitId::STAND
+    }
+}
+
+impl Control {
+    /// Begins a gait for so many cycles, or a routine for so many rounds; 0 for as many as it has
+    /// by itself.
+    #[inline(never)]
+    pub(super) fn start(&mut self, id: GaitId, count: u16) {
+        let gait = self.motion.robot().gait(id);
+        self.routine = Routine::NONE;
+        if gait.is_routine() {
+            let [_, _, rounds, _] = gait.channels;
+            self.routine.id = id;
+            self.routine.left = if count == 0 { rounds.offset } else { count };
+            self.next_step();
+        } else {
+            self.motion.start_gait(id, count);
+        }
+    }
+
+    /// Goes on with the routine after a frame, in which the awaited contact had this level.
+    #[inline(never)]
+    pub(super) fn go_on(&mut self, is_closed: bool) {
+        if self.motion.hazard().is_some() {
+            self.routine = Routine::NONE;
+            return;
+        }
+        let is_over = match self.routine.wait {
+            0 => self.motion.has_ended(),
+            Step::ENDLESS => false,
+            _ => {
+                self.routine.wait -= 1;
+                self.routine.wait == 0
+            }
+        };
+        if self.contact.frame(is_closed) || is_over {
+            self.next_step();
+        }
+    }
+
+    #[inline(never)]
+    fn next_step(&mut self) {
+        let robot = *self.motion.robot();
+        let gait = robot.gait(self.routine.id);
+        let [_, steps, _, again] = &gait.channels;
+        let mut number = u16::from(self.routine.step);
+        if number >= steps.offset {
+            number = again.offset;
+            if self.routine.left == 1 {
+                self.routine = Routine::NONE;
+                // The pose of its last rest has to survive a loss of power.
+                if self.motion.is_resting() {
+                    self.rest();
+                }
+                // A gait that is still under way brakes first.
+                if !self.motion.end_gait() {
+                    self.safety.notify(Notice::Done);
+                }
+                return;
+            }
+            self.routine.left = self.routine.left.saturating_sub(1);
+        }
+        let mut step = robot.step(&gait, number);
+        let mut input = Input::NONE;
+        if step.kind == Step::UNTIL {
+            input = robot.input(&step);
+            number += 1;
+            step = robot.step(&gait, number);
+            self.safety.notify(Notice::Waiting);
+        }
+        let Step {
+            kind,
+            gait: place,
+            count,
+        } = step;
+        self.routine.step = number as u8 + 1;
+        self.routine.wait = if kind == Step::CYCLES { 0 } else { count };
+        self.contact = if kind == Step::WAIT {
+            Contact::closing(input)
+        } else {
+            Contact::closed(input)
+        };
+        match kind {
+            Step::REST => self.motion.rest(),
+            Step::WAIT => {
+                self.motion.end_gait();
+            }
+            _ => {
+                let cycles = if kind == Step::CYCLES { count } else { 0 };
+                self.motion.start_gait(GaitId::at(place), cycles);
+            }
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! The count of a gait: the cycles that it still has to go.
+//!
+//! A gait brakes in seven frames. Meanwhile it still covers as much as in three frames at full
+//! pace, or less from a lower pace. So it begins to brake three frames before the end of its
+//! last cycle, and stops within two frames of that end.
+
+use super::Motion;
+use crate::motion::state::{State, Target};
+use crate::numbers::units::phase16;
+
+/// The part of a gait's count that is left. A phase is in 1/65536 cycle, so that it wraps
+/// where a cycle does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Count {
+    /// Cycles that are not over yet; 0 if nothing is counted.
+    pub left: u16,
+    /// The phase covered since the count began, without whole cycles.
+    pub covered: u16,
+    /// The phase of the last frame.
+    pub phase: u16,
+}
+
+impl Count {
+    /// No count: the gait goes on until an order or a fault ends it.
+    pub const NONE: Self = Self {
+        left: 0,
+        covered: 0,
+        phase: 0,
+    };
+}
+
+impl Motion {
+    /// Counts the phase that the last frame covered. At the end of the count the gait has to
+    /// brake.
+    #[inline(never)]
+    pub(super) fn count(&mut self) {
+        let State::Cycling { gait, phase, .. } = &self.state else {
+            return;
+        };
+        let count = &mut self.count;
+        let now = phase16(*phase);
+        let mut gone = now.wrapping_sub(count.phase);
+        count.phase = now;
+        if count.left == 0 || self.next.is_some() {
+            return;
+        }
+        if gait.increment < 0 {
+            gone = gone.wrapping_neg();
+        }
+        let (covered, mut is_over) = count.covered.overflowing_add(gone);
+        count.covered = covered;
+        is_over |= count.left == 1 && covered.checked_add(3 * gone).is_none();
+        if is_over {
+            count.left -= 1;
+            if count.left == 0 {
+                self.next = Some(Target::End);
+            }
+        }
+    }
+}

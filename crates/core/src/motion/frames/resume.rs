@@ -1,0 +1,65 @@
+//! The first frames after a reset: the servos wake in the pose that they have.
+//!
+//! A servo does not report its angle. A robot that rested or was held until the reset is where
+//! its saved stance says, so that it need not leap to the neutral pose.
+
+use super::{AWAKE, Motion, WAKE_APART};
+use crate::memory::restart::Stance;
+use crate::motion::state::{State, Target};
+use crate::numbers::gaits::GaitId;
+use crate::numbers::pose::Pose;
+
+impl Motion {
+    /// Stands: the servos wake one after the other in the pose that the robot rested
+    /// in, if it is safe and within the travel; else in the neutral one.
+    #[inline(never)]
+    pub fn wake(&mut self, rested: Option<&Pose>) {
+        self.begin();
+        if let Some(pose) = rested
+            && self.may_hold(pose)
+        {
+            self.stance.pose = *pose;
+            self.state = State::Holding { asked: false };
+            self.next = Some(Target::Gait(GaitId::STAND));
+        }
+    }
+
+    /// Resumes a robot without pulses: it stays at rest, and will wake in that pose.
+    #[inline(never)]
+    pub fn resume_rest(&mut self, stance: Option<&Stance>) {
+        self.freeze(State::Resting);
+        if let Some(stance) = stance
+            && self.may_hold(&stance.pose)
+        {
+            self.stance.pose = stance.pose;
+            self.stance.sent = stance.sent;
+        }
+    }
+
+    /// Resumes servos that were held until a reset, with the pulses that they had; false if
+    /// their pose is unsafe or beyond the travel. All that had pulses get them at once. If
+    /// the robot is to `stand`, the servos wake one after the other, to spare the supply,
+    /// and then it stands.
+    #[inline(never)]
+    pub fn resume(&mut self, stance: &Stance, stand: bool) -> bool {
+        if !self.may_hold(&stance.pose) {
+            return false;
+        }
+        self.stance.pose = stance.pose;
+        self.stance.sent = stance.sent;
+        self.freeze(State::Holding { asked: false });
+        if stand {
+            self.next = Some(Target::Gait(GaitId::STAND));
+        } else {
+            // The next servo to wake waits as long as after any other.
+            let awake = stance.awake.min(AWAKE);
+            self.stance.awake = awake - awake % WAKE_APART;
+        }
+        self.settle();
+        true
+    }
+
+    fn may_hold(&self, pose: &Pose) -> bool {
+        self.hazard_of(pose).is_none()
+    }
+}

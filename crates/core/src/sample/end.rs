@@ -1,0 +1,108 @@
+//! The bars of head and tail of a sample, with every table that they need.
+
+use lizard_avr::Flash;
+use lizard_kinematics as kinematics;
+
+use crate::guard::five_bar::FiveBar;
+use crate::numbers::bars;
+use crate::numbers::couplers::{self, Couplers, Coupling};
+use crate::numbers::curve::Table;
+use crate::numbers::section;
+use crate::numbers::units::Scale;
+
+/// The bars of one end, with every table that they need.
+#[derive(Clone, Debug)]
+pub struct Loop {
+    /// Half the sum of base and cranks is the farthest that crank tips part.
+    pub bars: [i16; 3],
+    pub scale: Scale,
+    pub couplers: Bars,
+}
+
+/// Two couplers and their tables.
+#[derive(Clone, Debug)]
+pub struct Bars {
+    pub left: i16,
+    pub right: i16,
+    rise: Table,
+    stretched: Table,
+    folded: Option<Table>,
+    skew: Option<Table>,
+}
+
+impl Bars {
+    pub fn new(left: i16, right: i16) -> Self {
+        let unequal = left != right;
+        Self {
+            left,
+            right,
+            rise: couplers::rise(left, right),
+            stretched: couplers::stretched(left, right),
+            folded: Couplers::differ_much(left, right).then(|| couplers::folded(left, right)),
+            skew: unequal.then(|| couplers::skew(left, right)),
+        }
+    }
+
+    pub fn couplers(&self) -> Couplers<'_> {
+        Couplers::new(Coupling::new(self.left, self.right), self.tables())
+    }
+
+    fn tables(&self) -> couplers::Tables<'_> {
+        couplers::Tables {
+            rise: Some(Flash::from(&self.rise)),
+            stretched: Some(Flash::from(&self.stretched)),
+            folded: self.folded.as_ref().map(Flash::from),
+            skew: self.skew.as_ref().map(Flash::from),
+        }
+    }
+}
+
+impl Loop {
+    /// Bars in mm, in the finest step that holds them; none if a coupler is too
+    /// short compared with the rest.
+    pub fn new(bars: &kinematics::FiveBar) -> Option<Self> {
+        let [base, left, right] = [bars.base, bars.crank_left, bars.crank_right];
+        let couplers = [bars.coupler_left, bars.coupler_right];
+        let longest = couplers.iter().copied().fold(base + left + right, f64::max);
+        let scale = (0..=14)
+            .rev()
+            .map(|bits| Scale { bits })
+            .find(|scale| longest * per_mm(*scale) < bars::LONGEST)?;
+        let [a, b] = couplers.map(|mm| steps(mm, scale) as i16);
+        if a.min(b) < bars::SHORTEST_COUPLER {
+            return None;
+        }
+        Some(Self {
+            bars: [base, left, right].map(|mm| steps(mm, scale) as i16),
+            scale,
+            couplers: Bars::new(a, b),
+        })
+    }
+
+    /// The loop in the form that a section has.
+    pub(super) fn content(&self) -> section::Loop {
+        let [base, left, right] = self.bars;
+        section::Loop {
+            scale: self.scale,
+            base,
+            cranks: [left, right],
+            couplers: [self.couplers.left, self.couplers.right],
+            near_stretched: true,
+        }
+    }
+
+    pub fn five_bar(&self) -> FiveBar<'_> {
+        let Bars { left, right, .. } = self.couplers;
+        let bars = bars::Bars::new(self.bars, [left, right], self.scale);
+        FiveBar::new(bars, self.couplers.tables())
+    }
+}
+
+/// Steps in a millimetre.
+pub fn per_mm(scale: Scale) -> f64 {
+    f64::from(1u32 << scale.bits)
+}
+
+pub(super) fn steps(mm: f64, scale: Scale) -> i32 {
+    (mm * per_mm(scale)).round() as i32
+}

@@ -1,0 +1,97 @@
+//! `deadman` while a person drives.
+//!
+//! A robot that is out of reach would walk on. So while a person drives it, `deadman` is set:
+//! it ends a gait by itself when no line has come for that long. When the gait has ended, and
+//! when the program leaves, the robot gets its own setting back.
+
+use std::time::Duration;
+
+use lizard_core::console::word::Word;
+
+/// `deadman` while a person drives, ms. A person sets round numbers, so this one was left by a
+/// program that was ended.
+const DRIVEN: u16 = 901;
+/// Time between two lines that keep the robot walking: two of three may be lost, and a
+/// robot's own setting may be somewhat shorter.
+pub(super) const LINE: Duration = Duration::from_millis(200);
+
+/// A line about `deadman`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Step {
+    /// Read the robot's own setting.
+    Read,
+    /// Set it.
+    Set,
+    /// Restore the robot's own setting for the next line only.
+    Lend,
+    /// Restore the robot's own setting.
+    Restore,
+}
+
+/// The robot's own `deadman`, and true while this program has replaced it.
+#[derive(Debug, Default)]
+pub(super) struct Deadman {
+    /// The robot's own setting, ms, once it is read.
+    own: Option<u16>,
+    pub(super) is_set: bool,
+}
+
+impl Deadman {
+    /// The steps before and after a line of the user; `walks` is true if the robot
+    /// walks.
+    pub(super) fn around(&mut self, line: &str, walks: bool) -> (&'static [Step], &'static [Step]) {
+        let line = line.to_ascii_lowercase();
+        let word = line.split_whitespace().next().unwrap_or_default();
+        if matches!(word, "cal" | "save") && self.is_set {
+            let after = if walks { &[Step::Set][..] } else { &[] };
+            return (&[Step::Lend], after);
+        }
+        if word == "stand" || Word::find(word.as_bytes()).is_some() || self.is_set {
+            return (&[], &[]);
+        }
+        self.is_set = true;
+        match self.own {
+            None => (&[Step::Read, Step::Set], &[]),
+            Some(_) => (&[Step::Set], &[]),
+        }
+    }
+
+    /// The line of a step, if there is one.
+    pub(super) fn line(&mut self, step: Step) -> Option<String> {
+        let own = self.own.unwrap_or(0);
+        let ms = match step {
+            Step::Read => return Some("cal".to_owned()),
+            Step::Set if own == 0 => DRIVEN,
+            Step::Set => own.min(DRIVEN),
+            Step::Lend => own,
+            Step::Restore => {
+                self.is_set = false;
+                own
+            }
+        };
+        Some(format!("deadman {ms}"))
+    }
+
+    /// Takes a line of the answer to its own `cal`; true if it is one.
+    pub(super) fn take_answer_line(&mut self, line: &str) -> bool {
+        if let Some(ms) = line
+            .strip_prefix("# deadman ")
+            .and_then(|ms| ms.parse().ok())
+        {
+            self.own = Some(if ms == DRIVEN { 0 } else { ms });
+        }
+        ["# A", "# boot ", "# deadman "]
+            .iter()
+            .any(|begin| line.starts_with(begin))
+    }
+
+    /// Takes note of a user's line that the robot has accepted.
+    pub(super) fn follow(&mut self, line: &str) {
+        let line = line.to_ascii_lowercase();
+        match line.split_whitespace().collect::<Vec<_>>()[..] {
+            ["deadman", ms] => self.own = ms.parse().ok(),
+            ["load" | "factory"] => self.own = None,
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,317 @@
+use super::*;
+
+const STATUS: &str = "ok gait=walk phase=0 pose=1,2,3,4 margin=0.5 guard=clear fault=none";
+
+#[test]
+fn a_persons_line_is_sent_when_the_answer_before_it_has_come() {
+    let now = Instant::now();
+    let mut session = Session::new(now, true, false);
+    assert_eq!(session.next_line(now).as_deref(), Some("status"));
+    session.queue("walk");
+    session.queue("speed 50");
+    assert_eq!(session.next_line(now), None, "the status has not come");
+    assert_eq!(session.receive(STATUS), None, "the user did not ask for it");
+    assert_eq!(session.next_line(now).as_deref(), Some("walk"));
+    assert_eq!(session.receive("# fault: x").as_deref(), Some("# fault: x"));
+    assert_eq!(session.next_line(now), None);
+    assert_eq!(session.receive("ok walk").as_deref(), Some("ok walk"));
+    assert_eq!(session.next_line(now).as_deref(), Some("speed 50"));
+    assert_eq!(
+        session.receive("ok speed 50").as_deref(),
+        Some("ok speed 50")
+    );
+    assert!(session.is_idle());
+    assert_eq!(session.next_line(now), None, "the next status is not due");
+    assert_eq!(session.next_line(now + POLL).as_deref(), Some("status"));
+    assert!(session.status().is_some_and(Status::walks));
+}
+
+#[test]
+fn a_status_that_the_person_asks_for_is_shown() {
+    let now = Instant::now();
+    let mut session = Session::new(now, false, false);
+    session.queue("status");
+    session.next_line(now);
+    assert_eq!(session.receive(STATUS).as_deref(), Some(STATUS));
+}
+
+#[test]
+fn after_a_reset_nothing_is_waited_for() {
+    let now = Instant::now();
+    let mut session = Session::new(now, false, true);
+    assert_eq!(session.next_line(now).as_deref(), Some("watch 1"));
+    session.receive("ok watch 1");
+    session.queue("walk");
+    session.next_line(now);
+    session.receive("# lizard 0.2.0");
+    assert_eq!(
+        session.next_line(now).as_deref(),
+        Some("watch 1"),
+        "asked for again"
+    );
+}
+
+#[test]
+fn poses_are_shown_only_if_the_person_asked_for_them() {
+    let now = Instant::now();
+    let mut session = Session::new(now, false, true);
+    session.next_line(now);
+    session.receive("ok watch 1");
+    assert_eq!(session.receive("# t=1 pose=1,2,3,4"), None);
+    session.queue("watch 50");
+    session.next_line(now);
+    session.receive("ok watch 50");
+    assert!(session.receive("# t=50 pose=1,2,3,4").is_some());
+}
+
+#[test]
+fn a_missing_answer_is_reported_once_and_the_next_line_is_sent() {
+    let now = Instant::now();
+    let mut session = Session::new(now, false, false);
+    session.queue("walk");
+    session.queue("stop");
+    session.next_line(now);
+    assert_eq!(session.overdue(now), None);
+    let later = now + TIMEOUT;
+    assert_eq!(
+        session.overdue(later).as_deref(),
+        Some("(no answer to `walk`)")
+    );
+    assert_eq!(session.overdue(later), None);
+    assert_eq!(session.next_line(later).as_deref(), Some("stop"));
+}
+
+#[test]
+fn stop_waits_for_no_answer_and_drops_what_waits() {
+    let now = Instant::now();
+    let mut session = Session::new(now, true, false);
+    assert_eq!(session.next_line(now).as_deref(), Some("status"));
+    session.queue("walk");
+    session.stop(now);
+    assert_eq!(session.next_line(now).as_deref(), Some("stop"));
+    assert_eq!(session.receive(STATUS), None, "the answer of before");
+    assert_eq!(session.receive("ok stop").as_deref(), Some("ok stop"));
+    assert!(session.is_idle());
+    assert_eq!(session.next_line(now + POLL).as_deref(), Some("status"));
+}
+
+#[test]
+fn stop_is_sent_until_it_is_answered_and_its_later_answers_belong_to_no_line() {
+    let now = Instant::now();
+    let mut session = Session::new(now, false, false);
+    session.stop(now);
+    let mut at = now;
+    for _ in 0..9 {
+        assert_eq!(session.next_line(at).as_deref(), Some("stop"));
+        assert_eq!(session.next_line(at), None);
+        at += AGAIN;
+    }
+    let printed = session.overdue(at).expect("the user is told");
+    assert!(printed.contains("may go on"), "{printed}");
+    assert_eq!(session.overdue(at), None, "once");
+    assert_eq!(session.receive("ok stop").as_deref(), Some("ok stop"));
+    session.queue("walk");
+    assert_eq!(session.next_line(at), None, "others may still come");
+    at += ECHOES;
+    assert_eq!(session.next_line(at).as_deref(), Some("walk"));
+    assert_eq!(session.receive("ok stop"), None, "it is not that of walk");
+    assert!(!session.is_idle());
+    assert_eq!(session.receive("ok walk").as_deref(), Some("ok walk"));
+    assert!(session.is_idle());
+}
+
+#[test]
+fn a_robot_that_refuses_to_stop_since_it_has_no_pulses_is_not_asked_again() {
+    for refusal in [
+        "err 7 servos are resting, send stand first",
+        "err 10 there is no robot in the flash",
+    ] {
+        let now = Instant::now();
+        let mut session = Session::new(now, false, false);
+        session.stop(now);
+        assert_eq!(session.next_line(now).as_deref(), Some("stop"));
+        assert_eq!(session.receive(refusal).as_deref(), Some(refusal));
+        session.queue("stand");
+        assert_eq!(session.next_line(now + AGAIN).as_deref(), Some("stand"));
+    }
+}
+
+#[test]
+fn a_late_answer_is_not_that_of_the_next_line() {
+    let now = Instant::now();
+    let mut session = Session::new(now, false, false);
+    session.queue("trim 1 2");
+    session.queue("walk");
+    session.next_line(now);
+    session.overdue(now + TIMEOUT);
+    session.next_line(now + TIMEOUT);
+    session.receive("ok trim 1 2.00");
+    assert!(!session.is_idle(), "walk has no answer");
+    session.receive("ok walk");
+    assert!(session.is_idle());
+}
+
+#[test]
+fn every_event_is_kept_in_order() {
+    let now = Instant::now();
+    let mut session = Session::new(now, true, false);
+    session.queue("walk");
+    session.next_line(now);
+    session.receive("# note");
+    session.receive("err 1 no");
+    session.next_line(now);
+    session.receive(STATUS);
+    let events = session.take_events();
+    assert_eq!(
+        events,
+        [
+            Event::Sent("walk".to_owned()),
+            Event::Note("# note".to_owned()),
+            Event::Answer("err 1 no".to_owned()),
+            Event::Status(STATUS.to_owned()),
+        ]
+    );
+    assert!(session.take_events().is_empty());
+}
+
+#[test]
+fn lines_that_fail_are_counted_once_and_the_first_is_named() {
+    let now = Instant::now();
+    let mut session = Session::new(now, false, false);
+    let mut ask = |line: &str, answer: Option<&str>| {
+        session.queue(line);
+        session.next_line(now);
+        match answer {
+            Some(answer) => drop(session.receive(answer)),
+            None => drop(session.overdue(now + TIMEOUT)),
+        }
+        session.verdict().map_err(|failure| failure.to_string())
+    };
+    assert_eq!(ask("walk", Some("ok walk")), Ok(()));
+    let first =
+        |count| format!("the robot did not accept {count} lines, the first `fly`: err 1 no");
+    assert_eq!(ask("fly", Some("err 1 no")), Err(first("1 of 2")));
+    assert_eq!(ask("swim", Some("err 2 no")), Err(first("2 of 3")));
+    assert_eq!(ask("stop", None), Err(first("3 of 4")));
+    session.receive("err 3 late");
+    assert!(
+        session
+            .verdict()
+            .is_err_and(|it| it.to_string() == first("3 of 4"))
+    );
+}
+
+/// The lines that are sent while the robot answers each of them with what `answer` says.
+fn sent(
+    session: &mut Session,
+    from: Instant,
+    ms: u64,
+    answer: impl Fn(&str) -> String,
+) -> Vec<(u64, String)> {
+    let mut lines = Vec::new();
+    for at in (0..ms).step_by(10) {
+        if let Some(line) = session.next_line(from + Duration::from_millis(at)) {
+            for printed in answer(&line).lines() {
+                session.receive(printed);
+            }
+            lines.push((at, line));
+        }
+    }
+    lines
+}
+
+fn robot(line: &str) -> String {
+    match line {
+        "status" => STATUS.to_owned(),
+        "cal" => "# boot stand\n# deadman 700\nok cal".to_owned(),
+        line => format!("ok {}", line.trim()),
+    }
+}
+
+fn words(lines: &[(u64, String)]) -> Vec<&str> {
+    let all = lines.iter().map(|(_, line)| line.as_str());
+    all.filter(|line| *line != "status").collect()
+}
+
+#[test]
+fn while_a_person_drives_deadman_is_set_and_a_line_goes_out_in_every_third_of_it() {
+    let now = Instant::now();
+    let mut session = Session::new(now, true, false).with_person();
+    session.queue("walk");
+    let lines = sent(&mut session, now, 5000, robot);
+    assert_eq!(words(&lines), ["cal", "deadman 700", "walk"]);
+    let gaps = lines.windows(2).map(|pair| pair[1].0 - pair[0].0);
+    assert!(gaps.max().is_some_and(|gap| gap <= 700 / 3), "{lines:?}");
+}
+
+#[test]
+fn a_robot_that_has_stopped_gets_its_own_deadman_back() {
+    let now = Instant::now();
+    let mut session = Session::new(now, true, false).with_person();
+    let own = |line: &str| robot(line).replace("700", "2000");
+    session.queue("walk");
+    let lines = sent(&mut session, now, 1000, own);
+    assert_eq!(words(&lines), ["cal", "deadman 901", "walk"]);
+    session.queue("save");
+    let saved = sent(&mut session, now + Duration::from_secs(1), 500, own);
+    assert_eq!(words(&saved), ["deadman 2000", "save", "deadman 901"]);
+    session.stop(now + Duration::from_secs(2));
+    let stopped = |line: &str| own(line).replace("gait=walk", "gait=stop");
+    let lines = sent(&mut session, now + Duration::from_secs(2), 2000, stopped);
+    assert_eq!(words(&lines), ["stop", "deadman 2000"]);
+    assert_eq!(session.last_line(), None);
+}
+
+#[test]
+fn a_robot_that_its_person_leaves_goes_on_and_a_value_of_the_program_is_not_its_own() {
+    let now = Instant::now();
+    let mut session = Session::new(now, true, false).with_person();
+    session.queue("arc left");
+    let left = |line: &str| robot(line).replace("700", "901");
+    sent(&mut session, now, 1000, left);
+    assert_eq!(session.last_line().as_deref(), Some("deadman 0"));
+}
+
+#[test]
+fn a_script_sets_no_deadman() {
+    let now = Instant::now();
+    let mut session = Session::new(now, true, false);
+    session.queue("walk");
+    assert_eq!(words(&sent(&mut session, now, 1000, robot)), ["walk"]);
+}
+
+#[test]
+fn no_gait_begins_while_the_robot_has_not_confirmed_its_deadman() {
+    let now = Instant::now();
+    let mut session = Session::new(now, false, false).with_person();
+    session.queue("walk");
+    assert_eq!(session.next_line(now).as_deref(), Some("cal"));
+    session.receive("# deadman 0");
+    session.receive("ok cal");
+    assert_eq!(session.next_line(now).as_deref(), Some("deadman 901"));
+    let later = now + TIMEOUT;
+    let printed = session.overdue(later).expect("it is said");
+    assert!(printed.contains("not sent"), "{printed}");
+    assert_eq!(session.next_line(later), None, "walk is not sent");
+    session.queue("walk");
+    assert_eq!(session.next_line(later).as_deref(), Some("deadman 901"));
+}
+
+#[test]
+fn a_robot_that_is_silent_is_said_to_be_once_until_it_answers_again() {
+    let mut now = Instant::now();
+    let mut session = Session::new(now, true, false);
+    let mut ask = |answers: bool| {
+        now += POLL;
+        assert_eq!(session.next_line(now).as_deref(), Some("status"));
+        if answers {
+            session.receive(STATUS);
+        }
+        now += STATUS_TIMEOUT;
+        session.overdue(now)
+    };
+    assert!(ask(false).is_some_and(|printed| printed.contains("does not answer")));
+    assert_eq!(ask(false), None);
+    assert_eq!(ask(true), None);
+    assert!(ask(false).is_some());
+}

@@ -1,0 +1,119 @@
+//! The option of a push button and an obstacle switch, where robot.toml has `[input]`.
+//!
+//! Either makes its pin low. The board's own pull-up makes it high else, so there is no resistor.
+
+use lizard_robot::Robot;
+use svg::node::element::Group;
+
+use super::wire::{BLACK, THIN, end};
+use crate::shared::ink::{
+    DARK, GREY, ORANGE, RED, circle, curve, edged, line, pin_name, rectangle, text_end, text_start,
+};
+
+/// Height of the panel.
+const HEIGHT: f64 = 214.0;
+/// The board's pins, and those of button and module.
+const BOARD: f64 = 120.0;
+const THING: f64 = 400.0;
+/// Pixels from a row to the next one.
+const ROW: f64 = 26.0;
+/// The first rows of button and module, below the panel's top.
+const BUTTON: f64 = 58.0;
+const NOSE: f64 = 122.0;
+
+/// Height of the panel of a robot; 0 if it has no inputs.
+pub fn height(robot: &Robot) -> f64 {
+    match robot.inputs().each().count() {
+        0 => 0.0,
+        _ => HEIGHT,
+    }
+}
+
+/// The panel with its upper edge at a height.
+pub fn draw(robot: &Robot, top: f64) -> Group {
+    let frame = rectangle((16.0, top), (668.0, HEIGHT - 12.0), "#fbfbf4").set("rx", 8);
+    let frame = edged(frame, GREY, 1.5).set("stroke-dasharray", "7 5");
+    let title = "Option: inputs, for routines that wait or turn away";
+    let mut group = Group::new()
+        .add(frame)
+        .add(text_start(title, (30.0, top + 26.0), 15.0).set("font-weight", "bold"));
+    for (name, pin) in robot.inputs().each() {
+        group = match name {
+            "button" => button(group, pin, top + BUTTON),
+            _ => nose(group, pin, top + NOSE),
+        };
+    }
+    group
+}
+
+/// A wire from the board to a pin of a thing, with the names of both.
+fn wire(group: Group, names: [&str; 3], y: f64, colour: &'static str) -> Group {
+    let [thing, of_board, of_thing] = names;
+    // On its own ground it crosses nothing, and a white edge would cut the frame.
+    let path = curve(&[(BOARD, y), (THING, y)], colour, THIN);
+    group
+        .add(path.set("id", format!("input-{thing}-{of_board}")))
+        .add(text_end(
+            &format!("UNO {of_board}"),
+            (BOARD - 10.0, y + 5.0),
+            13.0,
+        ))
+        .add(text_start(of_thing, (THING + 40.0, y + 5.0), 13.0))
+        .add(end(&format!("{thing}-{of_board}"), (BOARD, y), DARK))
+        .add(end(&format!("{thing}-at-{of_board}"), (THING, y), DARK))
+}
+
+/// A push button between its pin and ground.
+fn button(group: Group, pin: u8, y: f64) -> Group {
+    let case = rectangle((THING - 12.0, y - 14.0), (44.0, ROW + 28.0), "#e6eef7").set("rx", 5);
+    let middle = y + ROW / 2.0;
+    let group = group
+        .add(edged(case, DARK, 1.5))
+        .add(line((THING, y), (THING + 16.0, y), DARK, THIN))
+        .add(line((THING, y + ROW), (THING + 16.0, y + ROW), DARK, THIN))
+        .add(edged(
+            circle((THING + 20.0, middle), 8.0, "white"),
+            DARK,
+            1.5,
+        ));
+    let group = wire(
+        group,
+        ["button", &pin_name(pin), "push button, closes when pressed"],
+        y,
+        ORANGE,
+    );
+    wire(
+        group,
+        ["button", "GND", "its other contact"],
+        y + ROW,
+        BLACK,
+    )
+}
+
+/// An infrared obstacle switch at the robot's nose.
+fn nose(group: Group, pin: u8, y: f64) -> Group {
+    let case = rectangle(
+        (THING - 12.0, y - 14.0),
+        (44.0, 2.0 * ROW + 28.0),
+        "#e6eef7",
+    )
+    .set("rx", 5);
+    let group = group.add(edged(case, DARK, 1.5));
+    let group = wire(
+        group,
+        [
+            "nose",
+            &pin_name(pin),
+            "OUT of the obstacle switch, low at a wall",
+        ],
+        y,
+        ORANGE,
+    );
+    let group = wire(group, ["nose", "GND", "GND"], y + ROW, BLACK);
+    wire(
+        group,
+        ["nose", "5V", "VCC, 3.3 to 5 V, at most 40 mA"],
+        y + 2.0 * ROW,
+        RED,
+    )
+}

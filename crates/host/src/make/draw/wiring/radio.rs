@@ -1,0 +1,122 @@
+//! The option of a radio module beside the USB chip on the board's serial line.
+//!
+//! Both talk to pin D0, and both hold it high when they are silent; the USB chip does so
+//! through 1 kOhm, so a module that is wired straight to D0 wins, and uploads fail. A diode
+//! lets the module only pull low. The module's input takes 3.3 V: a divider makes them.
+
+use svg::node::element::{Group, Polygon};
+
+use super::wire::{BLACK, LEG, THIN, Wire, end};
+use crate::shared::ink::{
+    DARK, GREY, ORANGE, RED, circle, curve, edged, line, rectangle, text_end, text_middle,
+    text_start,
+};
+
+/// Height of the panel.
+pub const HEIGHT: f64 = 246.0;
+/// The board's pins and the module's.
+const BOARD: f64 = 120.0;
+const MODULE: f64 = 500.0;
+/// Diode, upper resistor and the divider's middle.
+const DIODE: f64 = 300.0;
+const UPPER: f64 = 260.0;
+const DIVIDED: f64 = 390.0;
+/// Rows below the panel's top: board's pin, module's pin.
+const ROWS: [(&str, &str, f64); 4] = [
+    ("D0 (RX)", "TXD", 64.0),
+    ("D1 (TX)", "RXD", 102.0),
+    ("GND", "GND", 154.0),
+    ("5V", "VCC", 182.0),
+];
+
+/// The panel with its upper edge at a height.
+pub fn draw(top: f64) -> Group {
+    let y = |row: usize| top + ROWS[row].2;
+    let row = |row: usize, from: f64, to: f64| vec![(from, y(row)), (to, y(row))];
+    let frame = rectangle((16.0, top), (668.0, HEIGHT - 12.0), "#fbfbf4").set("rx", 8);
+    let frame = edged(frame, GREY, 1.5).set("stroke-dasharray", "7 5");
+    let divided = vec![(DIVIDED, y(1)), (DIVIDED, y(2))];
+    let wires = [
+        Wire::new("radio-d0", row(0, BOARD, DIODE - 12.0), ORANGE, THIN),
+        Wire::new("radio-txd", row(0, DIODE + 12.0, MODULE), ORANGE, THIN),
+        Wire::new("radio-d1", row(1, BOARD, UPPER - 14.0), ORANGE, THIN),
+        Wire::new("radio-rxd", row(1, UPPER + 14.0, MODULE), ORANGE, THIN),
+        Wire::new("radio-2k", divided, DARK, LEG),
+        Wire::new("radio-ground", row(2, BOARD, MODULE), BLACK, THIN),
+        Wire::new("radio-vcc", row(3, BOARD, MODULE), RED, THIN),
+    ];
+    let mut group = Group::new().add(frame).add(
+        text_start(
+            "Option: a radio module, to drive without a cable",
+            (30.0, top + 26.0),
+            15.0,
+        )
+        .set("font-weight", "bold"),
+    );
+    // On its own ground these wires cross nothing, and a white edge would cut the frame.
+    for wire in wires {
+        let path = curve(&wire.path, wire.colour, wire.width);
+        group = group.add(path.set("id", wire.name));
+    }
+    group = diode(group, (DIODE, y(0)));
+    group = resistor(group, (UPPER, y(1)), (28.0, 10.0)).add(text_middle(
+        "1 k\u{3a9}",
+        (UPPER, y(1) - 10.0),
+        13.0,
+    ));
+    let lower = (DIVIDED, (y(1) + y(2)) / 2.0);
+    group = resistor(group, lower, (10.0, 26.0)).add(text_start(
+        "2 k\u{3a9}",
+        (DIVIDED + 12.0, lower.1 + 5.0),
+        13.0,
+    ));
+    group = group
+        .add(circle((DIVIDED, y(1)), 4.5, ORANGE))
+        .add(circle((DIVIDED, y(2)), 4.5, BLACK))
+        .add(text_middle("1N4148 or BAT85", (DIODE, y(0) - 13.0), 13.0));
+    let module = rectangle((MODULE, top + 42.0), (150.0, 160.0), "#e6eef7").set("rx", 5);
+    group = group.add(edged(module, DARK, 1.5)).add(text_end(
+        "HM-10, HC-05",
+        (MODULE + 142.0, top + 126.0),
+        13.0,
+    ));
+    for (pin, of_module, below) in ROWS {
+        let y = top + below;
+        group = group
+            .add(text_end(
+                &format!("UNO {pin}"),
+                (BOARD - 10.0, y + 5.0),
+                13.0,
+            ))
+            .add(text_start(of_module, (MODULE + 10.0, y + 5.0), 13.0))
+            .add(end(&format!("radio-{pin}"), (BOARD, y), DARK))
+            .add(end(&format!("radio-module-{of_module}"), (MODULE, y), DARK));
+    }
+    let words = "The diode's stripe is at the module. It lets the module only pull D0 low, so USB still works.";
+    group.add(text_start(words, (30.0, top + 220.0), 13.0))
+}
+
+/// A diode that lets current pass from left to right, with its stripe at the right.
+fn diode(group: Group, (x, y): (f64, f64)) -> Group {
+    let corners = format!(
+        "{},{} {},{} {},{}",
+        x - 12.0,
+        y - 9.0,
+        x - 12.0,
+        y + 9.0,
+        x + 8.0,
+        y
+    );
+    group
+        .add(line((x - 12.0, y), (x + 12.0, y), DARK, LEG))
+        .add(Polygon::new().set("points", corners).set("fill", DARK))
+        .add(line((x + 9.0, y - 9.0), (x + 9.0, y + 9.0), DARK, 3.0))
+        .add(end("diode-anode", (x - 12.0, y), DARK))
+        .add(end("diode-cathode", (x + 12.0, y), DARK))
+}
+
+fn resistor(group: Group, (x, y): (f64, f64), (width, height): (f64, f64)) -> Group {
+    let corner = (x - width / 2.0, y - height / 2.0);
+    let body = rectangle(corner, (width, height), "#f3e3c3").set("rx", 2);
+    group.add(edged(body, DARK, 1.5))
+}

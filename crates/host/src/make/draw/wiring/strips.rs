@@ -1,0 +1,205 @@
+//! Terminal strips and the links between their ways.
+//!
+//! A strip does not join its ways: each is a tube of brass with a screw at both ends. So on
+//! one side of a strip short links lead from way to way, and its wires are on the other side.
+
+use svg::node::element::Group;
+
+use super::wire::{BLACK, LEG, THICK, Wire, end};
+use crate::make::draw::route::Path;
+use crate::shared::ink::{
+    DARK, ORANGE, RED, circle, edged, line, rectangle, text_middle, text_start,
+};
+
+/// Pixels between neighbouring ways of the upright strips.
+const PITCH: f64 = 22.0;
+/// Width of a strip, and the reach of a link beyond it, pixels.
+const WIDE: f64 = 36.0;
+const LINK: f64 = 11.0;
+/// Ways of the strip for ground that have links; two more are spare.
+pub const GROUNDS: usize = 10;
+const GROUND_WAYS: usize = 12;
+/// Ways of the strip for +5 V.
+pub const SUPPLIES: usize = 6;
+/// The inner edges of both strips, and the heights of their first ways.
+const GROUND: (f64, f64) = (640.0, 160.0);
+const SUPPLY: (f64, f64) = (96.0, 259.0);
+/// The strip for the signals: its first way and their distance, its upper and lower ends.
+const SIGNALS: (f64, f64) = (265.0, 48.0);
+const SIGNALS_AT: (f64, f64) = (597.0, 633.0);
+/// From the middle of a way to the board's jumper in it, away from the middle way.
+const JUMPER: f64 = 5.0;
+
+/// The hole of a way of the ground strip, from 0, for a wire.
+pub fn ground(way: usize) -> (f64, f64) {
+    (GROUND.0, GROUND.1 + PITCH * way as f64)
+}
+
+/// The hole of a way of the strip for +5 V, from 0, for a wire.
+pub fn supply(way: usize) -> (f64, f64) {
+    (SUPPLY.0, SUPPLY.1 + PITCH * way as f64)
+}
+
+/// The way of the signal strip for the servo at a place from left to right; the middle one is
+/// for ground.
+const fn way(place: usize) -> usize {
+    if place < 2 { place } else { place + 1 }
+}
+
+/// The way for ground among those of the signals.
+const MIDDLE: usize = 2;
+
+fn signal_x(way: usize) -> f64 {
+    SIGNALS.0 + SIGNALS.1 * way as f64
+}
+
+/// Where a servo's signal goes into the signal strip.
+pub fn servo(place: usize) -> (f64, f64) {
+    (signal_x(way(place)), SIGNALS_AT.0)
+}
+
+/// Where the wire from the ground strip goes into the signal strip.
+pub fn signal_ground() -> (f64, f64) {
+    (signal_x(MIDDLE), SIGNALS_AT.0)
+}
+
+/// Where the jumper to the board leaves the signal strip.
+pub fn board(place: usize) -> (f64, f64) {
+    let outward = if place < 2 { -JUMPER } else { JUMPER };
+    (signal_x(way(place)) + outward, SIGNALS_AT.1)
+}
+
+/// Where the board's ground leaves the signal strip.
+pub fn board_ground() -> (f64, f64) {
+    (signal_x(MIDDLE), SIGNALS_AT.1)
+}
+
+/// The links of both strips.
+pub fn links() -> Vec<Wire> {
+    let link = |name: String, out: f64, from: (f64, f64)| {
+        let (x, y) = from;
+        let path: Path = vec![(x, y), (x + out, y), (x + out, y + PITCH), (x, y + PITCH)];
+        Wire::new(name, path, if out > 0.0 { BLACK } else { RED }, THICK - 1.0)
+    };
+    let grounds = (1..GROUNDS).map(|way| {
+        let (x, y) = ground(way - 1);
+        link(format!("link-ground-{way}"), LINK, (x + WIDE, y))
+    });
+    let supplies = (1..SUPPLIES).map(|way| {
+        let (x, y) = supply(way - 1);
+        link(format!("link-supply-{way}"), -LINK, (x - WIDE, y))
+    });
+    grounds.chain(supplies).collect()
+}
+
+/// The resistors from the signals of the servos, left to right, to the middle way: their legs.
+pub fn resistors(names: [&str; 4]) -> Vec<Wire> {
+    let resistor = |(place, name): (usize, &str)| {
+        let (to_middle, inner) = match place {
+            0 => (-5.0, false),
+            1 => (-11.0, true),
+            2 => (11.0, true),
+            _ => (5.0, false),
+        };
+        let inward = if place < 2 { JUMPER } else { -JUMPER };
+        let from = (signal_x(way(place)) + inward, SIGNALS_AT.1);
+        let to = (signal_x(MIDDLE) + to_middle, SIGNALS_AT.1);
+        let low = SIGNALS_AT.1 + if inner { 17.0 } else { 35.0 };
+        let path = vec![from, (from.0, low), (to.0, low), to];
+        Wire::new(format!("resistor-{name}"), path, DARK, LEG)
+    };
+    names.into_iter().enumerate().map(resistor).collect()
+}
+
+/// The bodies of the resistors.
+pub fn resistor_bodies() -> Group {
+    let mut group = Group::new();
+    for (way, low) in [(0, 35.0), (1, 17.0), (2, 17.0), (3, 35.0)] {
+        let x = (signal_x(way) + signal_x(way + 1)) / 2.0;
+        let (width, height) = (22.0, 9.0);
+        let corner = (x - width / 2.0, SIGNALS_AT.1 + low - height / 2.0);
+        let body = rectangle(corner, (width, height), "#f3e3c3").set("rx", 2);
+        group = group.add(edged(body, DARK, 1.5));
+    }
+    let at = (signal_x(4) + 22.0, SIGNALS_AT.1 + 31.0);
+    group.add(text_start("4 x 10 k\u{3a9}", at, 13.0))
+}
+
+/// A way: its brass, its two screws and its number.
+fn brass(group: Group, from: (f64, f64), to: (f64, f64), number: usize) -> Group {
+    let middle = ((from.0 + to.0) / 2.0, (from.1 + to.1) / 2.0);
+    group
+        .add(line(from, to, "#c9b26b", 7.0))
+        .add(circle(middle, 8.5, "white"))
+        .add(text_middle(
+            &number.to_string(),
+            (middle.0, middle.1 + 4.5),
+            12.0,
+        ))
+}
+
+fn case(corner: (f64, f64), size: (f64, f64)) -> svg::node::element::Rectangle {
+    edged(rectangle(corner, size, "#f2f2f2").set("rx", 4), DARK, 1.3)
+}
+
+/// The three strips.
+pub fn draw() -> Group {
+    let mut group = Group::new();
+    let upright = |ways: usize, left: f64, top: f64| {
+        let size = (WIDE, PITCH * ways as f64);
+        case((left, top - PITCH / 2.0), size)
+    };
+    group = group
+        .add(upright(GROUND_WAYS, GROUND.0, GROUND.1))
+        .add(upright(SUPPLIES, SUPPLY.0 - WIDE, SUPPLY.1));
+    let upright = [("ground", GROUND_WAYS), ("supply", SUPPLIES)];
+    for (name, ways) in upright {
+        for way in 0..ways {
+            let (hole, other) = match name {
+                "ground" => (ground(way), WIDE),
+                _ => (supply(way), -WIDE),
+            };
+            let link = (hole.0 + other, hole.1);
+            group = brass(group, hole, link, way + 1)
+                .add(end(&format!("{name}-{}-wire", way + 1), hole, DARK))
+                .add(end(&format!("{name}-{}-link", way + 1), link, DARK));
+        }
+    }
+    let (top, bottom) = SIGNALS_AT;
+    let half = SIGNALS.1 / 2.0;
+    group = group.add(case(
+        (SIGNALS.0 - half, top),
+        (5.0 * SIGNALS.1, bottom - top),
+    ));
+    for way in 0..5 {
+        let x = signal_x(way);
+        group = brass(group, (x, top + 3.0), (x, bottom - 3.0), way + 1)
+            .add(end(&format!("signals-{}-servo", way + 1), (x, top), ORANGE))
+            .add(end(
+                &format!("signals-{}-board", way + 1),
+                (x, bottom),
+                ORANGE,
+            ));
+    }
+    let last = GROUND.1 + PITCH * GROUND_WAYS as f64;
+    group
+        .add(text_middle("ground", (GROUND.0 + 20.0, last + 4.0), 13.0))
+        .add(text_middle("strip,", (GROUND.0 + 20.0, last + 19.0), 13.0))
+        .add(text_middle("12 ways", (GROUND.0 + 20.0, last + 34.0), 13.0))
+        .add(text_start(
+            "+5 V strip",
+            (46.0, SUPPLY.1 + PITCH * 6.0 + 4.0),
+            13.0,
+        ))
+        .add(text_start(
+            "6 ways",
+            (46.0, SUPPLY.1 + PITCH * 6.0 + 20.0),
+            13.0,
+        ))
+        .add(text_start(
+            "signal strip, 5 ways:",
+            (76.0, top + 16.0),
+            13.0,
+        ))
+        .add(text_start("3 is ground", (76.0, top + 32.0), 13.0))
+}

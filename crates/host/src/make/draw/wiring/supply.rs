@@ -1,0 +1,321 @@
+//! From the cells of the battery to the strips: plug, fuse, switch, converter, capacitor,
+//! alarm, and the board's round plug.
+
+use lizard_robot::{FUSE, SWITCH};
+use svg::node::element::Group;
+
+use super::strips::{ground, supply};
+use super::wire::{BLACK, GREY_WIRE, LEG, THICK, THIN, Wire, end};
+use crate::make::draw::route::Path;
+use crate::shared::ink::{DARK, RED, edged, line, rectangle, text_end, text_middle, text_start};
+
+type Point = (f64, f64);
+
+/// The battery's left edge, its contacts' heights; its cells' left edge.
+const BATTERY: f64 = 560.0;
+const PLUS: f64 = 40.0;
+const MINUS: f64 = 112.0;
+const BALANCE: [f64; 3] = [62.0, 76.0, 90.0];
+const CELLS: f64 = 600.0;
+/// The alarm's right edge.
+const ALARM: f64 = 500.0;
+/// Fuse, switch and the way behind it: left and right contacts.
+const FUSE_AT: [f64; 2] = [458.0, 518.0];
+const SWITCH_AT: [f64; 2] = [362.0, 428.0];
+const WAY: [f64; 2] = [286.0, 322.0];
+/// From the middle of the way's hole to each of its two wires.
+const TWO: f64 = 5.0;
+/// The converter's edges, and the heights of its contacts.
+const CONVERTER: [f64; 2] = [130.0, 235.0];
+const IN_PLUS: f64 = PLUS - TWO;
+const BELOW: f64 = 104.0;
+/// The capacitor's place: x, and the heights of its legs.
+const CAPACITOR: f64 = 150.0;
+/// Where the wires of the round plug go down.
+const MARGINS: [f64; 2] = [20.0, 34.0];
+
+/// Ways of the ground strip, from 0.
+const GROUND_OF: [(&str, usize); 5] = [
+    ("battery", 0),
+    ("converter-in", 1),
+    ("converter-out", 2),
+    ("round-plug", 3),
+    ("capacitor", 4),
+];
+
+/// The first way of the ground strip for a servo.
+pub const SERVOS: usize = GROUND_OF.len();
+
+fn way(of: &str) -> Point {
+    let found = GROUND_OF.iter().find(|(name, _)| *name == of);
+    ground(found.map_or(0, |(_, way)| *way))
+}
+
+/// All wires of the supply; `socket` is the middle of the board's round socket.
+pub fn wires(socket: Point) -> Vec<Wire> {
+    let [plug_plus, plug_minus] = round_plug(socket);
+    let straight = |a: Point, b: Point| vec![a, b];
+    let thick = |name: &str, path: Path, colour| Wire::new(name, path, colour, THICK);
+    let out = supply(0);
+    let minus = way("battery");
+    let inner = way("converter-in");
+    let outer = way("converter-out");
+    let round = way("round-plug");
+    let mut wires = vec![
+        thick(
+            "battery-fuse",
+            straight((BATTERY, PLUS), (FUSE_AT[1], PLUS)),
+            RED,
+        ),
+        thick(
+            "fuse-switch",
+            straight((FUSE_AT[0], PLUS), (SWITCH_AT[1], PLUS)),
+            RED,
+        ),
+        thick(
+            "switch-way",
+            straight((SWITCH_AT[0], PLUS), (WAY[1], PLUS)),
+            RED,
+        ),
+        thick(
+            "way-converter",
+            straight((WAY[0], IN_PLUS), (CONVERTER[1], IN_PLUS)),
+            RED,
+        ),
+        thick(
+            "battery-ground",
+            vec![(BATTERY, MINUS), (546.0, MINUS), (546.0, minus.1), minus],
+            BLACK,
+        ),
+        thick(
+            "converter-in-ground",
+            vec![
+                (CONVERTER[1], BELOW),
+                (252.0, BELOW),
+                (252.0, inner.1),
+                inner,
+            ],
+            BLACK,
+        ),
+        thick(
+            "converter-out-ground",
+            vec![
+                (CONVERTER[0], BELOW),
+                (119.0, BELOW),
+                (119.0, outer.1),
+                outer,
+            ],
+            BLACK,
+        ),
+        thick(
+            "converter-supply",
+            vec![(CONVERTER[0], PLUS), (106.0, PLUS), (106.0, out.1), out],
+            RED,
+        ),
+        Wire::new(
+            "round-plug-plus",
+            vec![
+                (WAY[0], PLUS + TWO),
+                (268.0, PLUS + TWO),
+                (268.0, 138.0),
+                (MARGINS[0], 138.0),
+                (MARGINS[0], plug_plus.1),
+                plug_plus,
+            ],
+            RED,
+            THIN,
+        ),
+        Wire::new(
+            "round-plug-ground",
+            vec![
+                round,
+                (MARGINS[1], round.1),
+                (MARGINS[1], plug_minus.1),
+                plug_minus,
+            ],
+            BLACK,
+            THIN,
+        ),
+    ];
+    let [above, below] = capacitor();
+    wires.push(Wire::new(
+        "capacitor-ground",
+        straight(above, way("capacitor")),
+        BLACK,
+        LEG,
+    ));
+    wires.push(Wire::new(
+        "capacitor-supply",
+        straight(below, supply(1)),
+        RED,
+        LEG,
+    ));
+    for (number, (y, colour)) in (1..).zip(BALANCE.into_iter().zip([RED, GREY_WIRE, BLACK])) {
+        let path = straight((BATTERY, y), (ALARM, y));
+        wires.push(Wire::new(format!("balance-{number}"), path, colour, LEG));
+    }
+    wires
+}
+
+/// The ends of the round plug's wires.
+fn round_plug((x, y): Point) -> [Point; 2] {
+    [(x - 40.0, y - 9.0), (x - 40.0, y + 9.0)]
+}
+
+/// The ends of the capacitor's legs, minus and plus.
+fn capacitor() -> [Point; 2] {
+    [(CAPACITOR, way("capacitor").1), (CAPACITOR, supply(1).1)]
+}
+
+fn case(group: Group, corner: Point, size: Point, fill: &str) -> Group {
+    group.add(edged(rectangle(corner, size, fill).set("rx", 5), DARK, 1.5))
+}
+
+/// The things that the wires join.
+pub fn draw(socket: Point) -> Group {
+    let mut group = battery(Group::new());
+    group = alarm(group);
+    group = in_line(group);
+    group = converter(group);
+    let [above, below] = capacitor();
+    group = case(
+        group,
+        (CAPACITOR - 9.0, above.1 + 5.0),
+        (18.0, below.1 - above.1 - 10.0),
+        "#dddddd",
+    )
+    .add(rectangle(
+        (CAPACITOR - 9.0, above.1 + 5.0),
+        (18.0, 7.0),
+        DARK,
+    ))
+    .add(end("capacitor-minus", above, DARK))
+    .add(end("capacitor-plus", below, RED))
+    .add(text_start(
+        "1000 µF, 10 V",
+        (CAPACITOR + 8.0, above.1 - 6.0),
+        13.0,
+    ));
+    for (words, at) in [
+        ("0.5 mm\u{b2}", (300.0, 176.0)),
+        ("0.25 mm\u{b2}", (140.0, 134.0)),
+        ("26 AWG", (545.0, 330.0)),
+    ] {
+        group = group.add(text_start(words, at, 12.0));
+    }
+    let [plus, minus] = round_plug(socket);
+    case(group, (plus.0, plus.1 - 8.0), (34.0, 34.0), "#8f8f8f")
+        .add(rectangle(
+            (plus.0 + 34.0, socket.1 - 5.0),
+            (10.0, 10.0),
+            "#8f8f8f",
+        ))
+        .add(end("round-plug-plus", plus, RED))
+        .add(end("round-plug-minus", minus, DARK))
+        .add(text_start("round plug,", (44.0, plus.1 - 28.0), 13.0))
+        .add(text_start("+ inside", (44.0, plus.1 - 13.0), 13.0))
+}
+
+fn battery(group: Group) -> Group {
+    let mut group = case(group, (BATTERY, 18.0), (132.0, 114.0), "#f4efe2");
+    for (number, top) in [(2, 30.0), (1, 82.0)] {
+        group = case(group, (CELLS, top), (82.0, 38.0), "white").add(text_middle(
+            &format!("cell {number}: 3.7 V"),
+            (CELLS + 41.0, top + 23.0),
+            12.0,
+        ));
+    }
+    let inside = |group: Group, from: Point, to: Point| group.add(line(from, to, DARK, 1.6));
+    group = inside(group, (BATTERY, PLUS), (CELLS, PLUS));
+    group = inside(group, (BATTERY, BALANCE[0]), (CELLS, BALANCE[0]));
+    group = inside(group, (CELLS + 41.0, 68.0), (CELLS + 41.0, 82.0));
+    group = inside(group, (BATTERY, BALANCE[1]), (CELLS + 41.0, BALANCE[1]));
+    group = inside(group, (BATTERY, BALANCE[2]), (CELLS, BALANCE[2]));
+    group = inside(group, (BATTERY, MINUS), (CELLS, MINUS));
+    for (number, y) in (1..).zip(BALANCE) {
+        group = group.add(end(
+            &format!("battery-balance-{number}"),
+            (BATTERY, y),
+            DARK,
+        ));
+    }
+    // The plug that opens both wires.
+    for y in [PLUS, MINUS] {
+        group = group.add(edged(
+            rectangle((534.0, y - 7.0), (9.0, 14.0), "#f0c808"),
+            DARK,
+            1.0,
+        ));
+    }
+    group
+        .add(end("battery-plus", (BATTERY, PLUS), RED))
+        .add(end("battery-minus", (BATTERY, MINUS), DARK))
+        .add(text_end("plug", (556.0, 24.0), 12.0))
+        .add(text_end("battery, 7.4 V", (690.0, 147.0), 13.0))
+}
+
+fn alarm(group: Group) -> Group {
+    let mut group = case(group, (ALARM - 92.0, 58.0), (92.0, 38.0), "#e6eef7")
+        .add(text_start("low-voltage", (ALARM - 84.0, 74.0), 13.0))
+        .add(text_start("alarm", (ALARM - 84.0, 90.0), 13.0))
+        .add(text_start("balance plug", (ALARM - 40.0, 112.0), 12.0));
+    for (number, y) in (1..).zip(BALANCE) {
+        group = group.add(end(&format!("alarm-{number}"), (ALARM, y), DARK));
+    }
+    group
+}
+
+/// Fuse, switch and the single way.
+fn in_line(group: Group) -> Group {
+    let mut group = group;
+    for ([left, right], fill) in [
+        (FUSE_AT, "#fde9e9"),
+        (SWITCH_AT, "#e9f3e9"),
+        (WAY, "#f2f2f2"),
+    ] {
+        group = case(group, (left, PLUS - 13.0), (right - left, 26.0), fill);
+    }
+    let middle = |of: [f64; 2]| (of[0] + of[1]) / 2.0;
+    let lever = [
+        (SWITCH_AT[0] + 16.0, PLUS + 4.0),
+        (SWITCH_AT[1] - 18.0, PLUS - 8.0),
+    ];
+    group = group
+        .add(line((WAY[0], PLUS), (WAY[1], PLUS), "#c9b26b", 9.0))
+        .add(line(lever[0], lever[1], DARK, 2.5))
+        .add(text_middle("fuse", (middle(FUSE_AT), 20.0), 13.0))
+        .add(text_middle(
+            &format!("{FUSE} A"),
+            (middle(FUSE_AT), PLUS + 5.0),
+            14.0,
+        ))
+        .add(text_middle(
+            &format!("switch, {SWITCH} A"),
+            (middle(SWITCH_AT), 20.0),
+            13.0,
+        ))
+        .add(text_middle("single way", (middle(WAY), 20.0), 13.0));
+    let ends = [("fuse", FUSE_AT), ("switch", SWITCH_AT), ("way", WAY)];
+    for (name, [left, right]) in ends {
+        group = group
+            .add(end(&format!("{name}-1"), (left, PLUS), RED))
+            .add(end(&format!("{name}-2"), (right, PLUS), RED));
+    }
+    group
+}
+
+fn converter(group: Group) -> Group {
+    let [left, right] = CONVERTER;
+    let middle = (left + right) / 2.0;
+    case(group, (left, 20.0), (right - left, 102.0), "#e3f0e3")
+        .add(text_middle("converter", (middle, 66.0), 14.0))
+        .add(text_middle("to 5.0 V, 3 A", (middle, 84.0), 14.0))
+        .add(text_start("OUT+", (left + 8.0, PLUS + 5.0), 12.0))
+        .add(text_start("OUT\u{2212}", (left + 8.0, BELOW + 5.0), 12.0))
+        .add(text_end("IN+", (right - 8.0, IN_PLUS + 5.0), 12.0))
+        .add(text_end("IN\u{2212}", (right - 8.0, BELOW + 5.0), 12.0))
+        .add(end("converter-out-plus", (left, PLUS), RED))
+        .add(end("converter-out-minus", (left, BELOW), DARK))
+        .add(end("converter-in-plus", (right, IN_PLUS), RED))
+        .add(end("converter-in-minus", (right, BELOW), DARK))
+}

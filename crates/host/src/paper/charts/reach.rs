@@ -1,0 +1,261 @@
+//! The chart of the points that tail, body and legs reach, as seen from above.
+//!
+//! The paper draws the workspace of the head and says that those of tail, body and legs can
+//! be plotted likewise. The tail's is the head's, mirrored. A slider has no end point of its
+//! own, so its middle stands for it. A foot has one freedom, so its workspace is an arc.
+
+use std::collections::HashSet;
+
+use lizard_kinematics::{End, Pose, Side, Solution, Vector, Workspace};
+use lizard_robot::Robot;
+use svg::node::element::Group;
+
+use super::plot::{Axis, Plot, entry};
+use crate::shared::ink::{DARK, GREY, circle, edged, page, rectangle, text_start, title};
+
+const SIZE: (f64, f64) = (1120.0, 900.0);
+const AXES: [Axis<'static>; 2] = [
+    Axis::new(40.0, "x, mm to the right of the plate's middle"),
+    Axis::new(40.0, "y, mm ahead of it"),
+];
+/// The drawn square reaches this far, and its cells are this wide, mm.
+const REACH: f64 = 160.0;
+const CELL: f64 = 2.0;
+/// Servo angles are tried in a range about neutral, in steps, deg.
+const RANGE: i32 = 80;
+/// Mechanism alone, and what the guard accepts: tail, sliders.
+const TAIL: [&str; 2] = ["#cfe3f1", "#4a9bd0"];
+const SLIDERS: [&str; 2] = ["#f9e0cc", "#e08a4a"];
+const LEGS: &str = "#117733";
+
+/// Cells of the plane.
+type Cells = HashSet<(i32, i32)>;
+
+fn cell(at: Vector) -> (i32, i32) {
+    ((at.x / CELL).floor() as i32, (at.y / CELL).floor() as i32)
+}
+
+/// The workspaces of tail, both sliders and all feet.
+pub fn reach(robot: &Robot) -> String {
+    let plot = Plot {
+        corner: (90.0, 90.0),
+        size: (720.0, 720.0),
+        x: (-REACH, REACH),
+        y: (-REACH, REACH),
+    };
+    let tail = accepted_tail(robot);
+    let free = free_sliders(robot);
+    let sliders = accepted_sliders(robot);
+    let cells = (2.0 * REACH / CELL) as usize;
+    let mut group = plot.grid(Group::new(), &AXES[0], &AXES[1]);
+    group = plot.map(group, (cells, cells), |x, y| {
+        let at = Vector::new(x, y);
+        let found = cell(at);
+        let colours = [
+            (sliders.contains(&found), SLIDERS[1]),
+            (tail.contains(&found), TAIL[1]),
+            (free.contains(&found), SLIDERS[0]),
+            (in_tail(robot, at), TAIL[0]),
+        ];
+        colours
+            .into_iter()
+            .find(|(is_in, _)| *is_in)
+            .map(|(_, colour)| colour)
+    });
+    for servo in 0..4 {
+        let whole = feet(robot, servo, (-180..=180).map(f64::from), false);
+        let guarded = feet(robot, servo, (-RANGE..=RANGE).map(f64::from), true);
+        group = group
+            .add(plot.curve(&whole, GREY, 1.2).set("stroke-dasharray", "5 4"))
+            .add(plot.curve(&guarded, LEGS, 4.0))
+            .add(
+                plot.curve(&walked(robot, servo), DARK, 8.0)
+                    .set("stroke-opacity", 0.55),
+            );
+    }
+    for shaft in robot.lizard().shafts() {
+        group = group.add(edged(
+            circle(plot.at(shaft.x, shaft.y), 6.0, "white"),
+            DARK,
+            2.0,
+        ));
+    }
+    group = plot.axes(group, &AXES[0], &AXES[1]);
+    group = title(
+        group,
+        90.0,
+        "Workspaces of tail, body and legs",
+        "from above; light: what the links alone allow, dark: what the guard accepts",
+    );
+    page(SIZE, legend(group))
+}
+
+fn legend(mut group: Group) -> Group {
+    let left = 840.0;
+    let patches = [
+        (TAIL, "tail's point"),
+        (SLIDERS, "middle of a slider (the body)"),
+    ];
+    for ([light, dark], words) in patches {
+        let y = if words.starts_with('t') { 110.0 } else { 142.0 };
+        group = group
+            .add(rectangle((left, y), (17.0, 17.0), light))
+            .add(rectangle((left + 17.0, y), (17.0, 17.0), dark))
+            .add(text_start(words, (left + 44.0, y + 14.0), 15.0));
+    }
+    group = entry(group, (left, 190.0), GREY, "5 4", "circle of a foot");
+    group = entry(group, (left, 218.0), LEGS, "", "what the guard accepts,");
+    group = group.add(text_start(
+        "the other servos at neutral",
+        (left + 44.0, 242.0),
+        15.0,
+    ));
+    group = entry(group, (left, 268.0), DARK, "", "where walk has the foot");
+    group
+        .add(edged(circle((left + 17.0, 300.0), 6.0, "white"), DARK, 2.0))
+        .add(text_start("shaft of a servo", (left + 44.0, 305.0), 15.0))
+}
+
+/// The angles of neutral with some servos turned.
+fn turned(robot: &Robot, turns: [f64; 4]) -> [f64; 4] {
+    let neutral: [f64; 4] = robot.neutral().into();
+    std::array::from_fn(|servo| neutral[servo] + turns[servo])
+}
+
+/// Solutions that the guard accepts for two turns in steps of a degree.
+fn accepted(robot: &Robot, turns: impl Fn(f64, f64) -> [f64; 4]) -> Vec<Solution> {
+    let range = || (-RANGE..=RANGE).map(f64::from);
+    let pairs = range().flat_map(|a| range().map(move |b| (a, b)));
+    pairs
+        .filter_map(|(a, b)| robot.accepted(turned(robot, turns(a, b))))
+        .collect()
+}
+
+fn accepted_tail(robot: &Robot) -> Cells {
+    let poses = accepted(robot, |a, b| [0.0, 0.0, a, b]);
+    poses.iter().map(|pose| cell(pose.tail_point())).collect()
+}
+
+/// The robot's sides mirror each other, so that head and tail accept the most.
+fn accepted_sliders(robot: &Robot) -> Cells {
+    let poses = accepted(robot, |a, b| [a, -a, -b, b]);
+    let both = poses.iter().flat_map(|pose| {
+        Side::ALL.map(|side| {
+            let slider = match side {
+                Side::Left => &pose.left,
+                Side::Right => &pose.right,
+            };
+            middle(robot, side, slider.rear_tip, slider.front_tip)
+        })
+    });
+    both.map(cell).collect()
+}
+
+/// The middle of a slider by the tips of its arms, which count from its rear shaft.
+fn middle(robot: &Robot, side: Side, rear: Vector, front: Vector) -> Vector {
+    robot.lizard().shafts()[side.servos()[1]] + (rear + front) * 0.5
+}
+
+/// The middles of both sliders for every turn of their arms within the stroke.
+fn free_sliders(robot: &Robot) -> Cells {
+    let limits = robot.limits();
+    let mut cells = Cells::new();
+    for side in Side::ALL {
+        let slider = robot.lizard().side(side);
+        let shaft = Vector::new(slider.offset, slider.base);
+        let range = || (0..180).map(|step| Vector::direction(2.0 * f64::from(step)));
+        for (front, rear) in range().flat_map(|front| range().map(move |rear| (front, rear))) {
+            let (rear, front) = (rear * slider.rear, shaft + front * slider.front);
+            let travel = (front - rear).length() - slider.nominal;
+            if (limits.stroke_min..=limits.stroke_max).contains(&travel) {
+                cells.insert(cell(middle(robot, side, rear, front)));
+            }
+        }
+    }
+    cells
+}
+
+/// True if both arms of the tail reach a point of the chassis frame behind its base.
+fn in_tail(robot: &Robot, at: Vector) -> bool {
+    let [left, right] = End::Tail.servos();
+    let shafts = robot.lizard().shafts();
+    let from = at - (shafts[left] + shafts[right]) * 0.5;
+    let own = Vector::new(from.x, -from.y);
+    own.y >= 0.0 && Workspace::of(&robot.lizard().end(End::Tail)).contains(own)
+}
+
+/// The places of a foot while its servo turns from neutral and no other does.
+fn feet(
+    robot: &Robot,
+    servo: usize,
+    turns: impl Iterator<Item = f64>,
+    guarded: bool,
+) -> Vec<(f64, f64)> {
+    let place = |turn: f64| {
+        let mut turns = [0.0; 4];
+        turns[servo] = turn;
+        let angles = turned(robot, turns);
+        let is_in = !guarded || robot.accepted(angles).is_some();
+        is_in.then(|| foot(robot, servo, angles[servo]))
+    };
+    turns.filter_map(place).collect()
+}
+
+fn foot(robot: &Robot, servo: usize, angle: f64) -> (f64, f64) {
+    let foot = robot.legs()[servo].at(angle, angle).foot;
+    (foot.x, foot.y)
+}
+
+fn walked(robot: &Robot, servo: usize) -> Vec<(f64, f64)> {
+    let gait = robot.gait("walk").into_iter();
+    let phases = gait.flat_map(|gait| (0..=100).map(move |i| gait.pose(f64::from(i) / 100.0)));
+    let angle = |pose: Pose| <[f64; 4]>::from(pose)[servo];
+    phases.map(|pose| foot(robot, servo, angle(pose))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shared::robot_file::named;
+
+    fn paper() -> Robot {
+        named("paper")
+    }
+
+    #[test]
+    fn what_the_guard_accepts_lies_in_what_the_links_allow() {
+        let robot = paper();
+        let poses = accepted(&robot, |a, b| [0.0, 0.0, a, b]);
+        assert!(poses.len() > 300, "{}", poses.len());
+        for pose in poses {
+            assert!(in_tail(&robot, pose.tail_point()), "{pose:?}");
+        }
+        let (sliders, free) = (accepted_sliders(&robot), free_sliders(&robot));
+        let outside = sliders.difference(&free).count();
+        assert!(
+            sliders.len() > 100 && outside * 20 < sliders.len(),
+            "{outside}"
+        );
+    }
+
+    #[test]
+    fn areas_are_those_of_geometry() {
+        let robot = paper();
+        // The tail's upper half, as `lizard design` has it for the head.
+        let step = |i: i32| f64::from(i) - 160.5;
+        let all = (0..321).flat_map(|i| (0..321).map(move |j| Vector::new(step(i), step(j))));
+        let area = all.filter(|at| in_tail(&robot, *at)).count() as f64;
+        assert!((area / 7446.3 - 1.0).abs() < 0.01, "{area}");
+        // The middle of a slider is half the sum of two arms of 30 mm: in a disc of 30 mm.
+        for (x, y) in free_sliders(&robot) {
+            let (x, y) = (CELL * (f64::from(x) + 0.5), CELL * (f64::from(y) + 0.5));
+            let away = (x.abs() - 10.0).hypot(y);
+            assert!(away < 30.0 + 2.0 * CELL, "{x} {y}");
+        }
+        // A foot keeps its distance of 45 mm from its hip, 35 mm to the side and 55 mm ahead.
+        for (x, y) in feet(&robot, 0, (-180..=180).map(f64::from), false) {
+            let away = (x + 35.0).hypot(y - 55.0);
+            assert!((away - 45.0).abs() < 0.01, "{x} {y} {away}");
+        }
+    }
+}

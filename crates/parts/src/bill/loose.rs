@@ -1,0 +1,96 @@
+//! Things to buy that are drawn nowhere on the robot: wires, tools, options.
+
+use crate::price::Price;
+
+/// Count, name, grams of one piece and price class.
+pub(super) type Row = (usize, &'static str, f64, Price);
+
+/// Things to buy that have no place of their own on the robot, such as wires. Their centre is taken to be
+/// that of the rest.
+pub(super) const ALWAYS: [Row; 12] = [
+    (
+        2,
+        "wire of 0.5 mm2 (20 AWG), one red and one black, 1 m long",
+        4.0,
+        Price::B,
+    ),
+    (
+        17,
+        "jumper wire (26 AWG), pin to pin, 20 cm, one of its pins cut off",
+        0.4,
+        Price::B,
+    ),
+    (10, "cable tie, 2.5 mm wide, 100 mm long", 0.3, Price::A),
+    (
+        1,
+        "double-sided foam tape, 20 mm wide, 40 cm",
+        2.0,
+        Price::B,
+    ),
+    (1, "heat-shrink tube, 3 mm, 20 cm", 0.5, Price::A),
+    (1, "filament, PLA, 250 g", 0.0, Price::C),
+    (1, "filament, TPU (95A), 10 g, for the pads", 0.0, Price::B),
+    (1, "USB cable, A to B, that carries data", 0.0, Price::B),
+    (
+        1,
+        "charger for two lithium cells, with balancer",
+        0.0,
+        Price::D,
+    ),
+    (
+        1,
+        "drill of 3 mm, hex key of 2 mm and sockets for M3",
+        0.0,
+        Price::C,
+    ),
+    (1, "multimeter, kitchen scale", 0.0, Price::E),
+    (1, "soldering iron and solder", 0.0, Price::E),
+];
+
+/// Things to buy for driving without a cable.
+/// They are an option, so neither mass nor sum has them.
+pub(super) const RADIO: [Row; 5] = [
+    (
+        1,
+        "radio module with a serial line: HM-10 or HC-05, at most 16 x 37 mm",
+        3.0,
+        Price::C,
+    ),
+    (
+        1,
+        "diode 1N4148 (a Schottky diode such as BAT85 is better)",
+        0.1,
+        Price::A,
+    ),
+    (1, "resistor 1 kOhm, 0.25 W", 0.2, Price::A),
+    (
+        1,
+        "resistor 2 kOhm, 0.25 W (or two of 1 kOhm in a row)",
+        0.2,
+        Price::A,
+    ),
+    (4, "jumper wire, socket to pin, 20 cm", 0.4, Price::B),
+];
+
+/// Things to buy for the inputs of robot.toml: the input's name, and its row. They are an
+/// option, too.
+pub(super) const INPUTS: [(&str, Row); 2] = [
+    (
+        "button",
+        (
+            1,
+            "push button that closes when it is pressed, with two wires of 20 cm",
+            4.0,
+            Price::A,
+        ),
+    ),
+    (
+        "nose",
+        (
+            1,
+            "infrared obstacle switch with digital output (FC-51 or alike), with three wires of 20 cm",
+            5.0,
+            Price::B,
+        ),
+    ),
+];

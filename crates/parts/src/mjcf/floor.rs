@@ -1,0 +1,35 @@
+//! The floor: level or rising, with blocks on it, and with its own grip on each pad.
+
+use lizard_robot::Robot;
+
+/// A floor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Floor {
+    /// The blocks that lie on it.
+    pub blocks: Vec<Block>,
+    /// The angle by which it rises ahead of the robot, deg.
+    pub rises: f64,
+    /// The friction of each pad on it, servo order.
+    pub friction: [f64; 4],
+}
+
+/// A block on the floor, beside the axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Block {
+    /// Its middle: to the right and forward of the robot's place at the start, mm.
+    pub at: [f64; 2],
+    /// Its size to the right, forward and up, mm.
+    pub size: [f64; 3],
+}
+
+impl Floor {
+    /// The empty, level floor of a robot.toml.
+    #[must_use]
+    pub fn of(robot: &Robot) -> Self {
+        Self {
+            blocks: Vec::new(),
+            rises: 0.0,
+            friction: [robot.ground().friction; 4],
+        }
+    }
+}

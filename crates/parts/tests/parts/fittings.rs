@@ -1,0 +1,121 @@
+//! Supply, strips and plugs: each has a room, and products that fit into it.
+
+use lizard_parts::{Assembly, Body, Fitting, Kind, Price, Shape};
+use lizard_robot::{FUSE, SWITCH};
+
+use crate::{ROBOTS, assembly};
+
+fn bodies(assembly: &Assembly, fitting: Fitting) -> Vec<&Body> {
+    let bodies = assembly.bodies().iter();
+    bodies
+        .filter(|body| body.kind == Kind::Fitting(fitting))
+        .collect()
+}
+
+/// Lengths of a box, the shortest first.
+fn sorted(mut size: [f64; 3]) -> [f64; 3] {
+    size.sort_by(f64::total_cmp);
+    size
+}
+
+#[test]
+fn both_products_that_are_named_for_a_fitting_go_into_the_room_that_its_body_takes() {
+    for name in ROBOTS {
+        let assembly = assembly(name, "");
+        for fitting in Fitting::ALL {
+            let facts = fitting.facts();
+            let found = bodies(&assembly, fitting);
+            let count = if fitting == Fitting::Resistor { 4 } else { 1 };
+            assert_eq!(found.len(), count, "{name}: {}", facts.name);
+            // A strap goes around things: it has no box.
+            if fitting == Fitting::Strap {
+                continue;
+            }
+            for body in found {
+                let points = body.prisms.iter().flat_map(|prism| &prism.add[0].points);
+                let range = |of: fn(&lizard_kinematics::Vector) -> f64| {
+                    let all = points.clone().map(of);
+                    all.clone().fold(f64::MIN, f64::max) - all.fold(f64::MAX, f64::min)
+                };
+                let [low, high] = body.z();
+                let room = sorted([range(|at| at.x), range(|at| at.y), high - low]);
+                for (product, size) in facts.examples {
+                    let size = sorted(size);
+                    let fits = size.iter().zip(room).all(|(of, room)| *of <= room + 1e-9);
+                    assert!(fits, "{product}: {size:?} in {room:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_radio_module_of_either_common_size_has_a_place() {
+    let assembly = assembly("paper", "");
+    let [place] = bodies(&assembly, Fitting::Radio)[..] else {
+        panic!("one place")
+    };
+    let xs = place.prisms[0].add[0].points.iter().map(|point| point.x);
+    let ys = place.prisms[0].add[0].points.iter().map(|point| point.y);
+    let long = |of: Vec<f64>| {
+        of.iter().copied().fold(f64::MIN, f64::max) - of.iter().copied().fold(f64::MAX, f64::min)
+    };
+    let (wide, long) = (long(xs.collect()), long(ys.collect()));
+    assert!(wide >= 16.0 && long >= 37.0, "{wide} {long}");
+}
+
+#[test]
+fn a_tie_slot_has_a_wall_on_each_side_and_nothing_stands_in_the_ties_way() {
+    // Ties go through the deck beside what they hold, so no fitting is over a slot.
+    let assembly = assembly("paper", "");
+    let deck = assembly.body("deck").expect("a deck");
+    let narrow = |cut: &&Shape| {
+        let range = |of: fn(&lizard_kinematics::Vector) -> f64| {
+            let all = cut.points.iter().map(of);
+            all.clone().fold(f64::MIN, f64::max) - all.fold(f64::MAX, f64::min)
+        };
+        let thin = range(|at| at.x).min(range(|at| at.y)) + 2.0 * cut.radius;
+        cut.points.len() > 1 && (1.9..2.1).contains(&thin)
+    };
+    let slots = deck.prisms[0].cut.iter().filter(narrow);
+    let mut count = 0;
+    for slot in slots {
+        for body in assembly.bodies() {
+            if !matches!(body.kind, Kind::Fitting(_)) || body.z()[0] < deck.z()[0] {
+                continue;
+            }
+            for prism in &body.prisms {
+                let apart = prism.add[0].distance(slot);
+                assert!(apart > 0.05, "{}: {apart}", body.name);
+            }
+        }
+        count += 1;
+    }
+    assert_eq!(
+        count, 5,
+        "two for signals, two for the fuse, one for the switch"
+    );
+}
+
+#[test]
+fn the_fuse_carries_what_the_converter_draws_and_the_list_names_both_ratings() {
+    // From a battery of two cells at 3.2 V, with a loss of 15 %.
+    let most = 3.0 * 5.0 / (0.85 * 2.0 * 3.2);
+    assert!(most < f64::from(FUSE), "{most}");
+    for (fitting, rating) in [(Fitting::Fuse, FUSE), (Fitting::Switch, SWITCH)] {
+        assert!(fitting.what().contains(&format!(" {rating} A ")));
+    }
+}
+
+#[test]
+fn price_classes_follow_each_other_and_their_sum_is_that_of_their_ends() {
+    for pair in Price::ALL.windows(2) {
+        assert_eq!(pair[0].euros()[1], pair[1].euros()[0]);
+    }
+    let some = [Price::A, Price::C, Price::C, Price::E];
+    assert_eq!(Price::sum(some.into_iter()), [3 + 3 + 15, 1 + 7 + 7 + 30]);
+    let printed = Price::meaning();
+    for words in ["A up to 1", "E 15 to 30", "2026", "vary"] {
+        assert!(printed.contains(words), "{printed}");
+    }
+}

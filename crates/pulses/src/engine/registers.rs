@@ -1,0 +1,171 @@
+//! The part of the engine that accesses registers.
+
+use core::ptr::with_exposed_provenance_mut;
+
+use super::{Engine, LEAD};
+use crate::pin::Pin;
+use crate::store::store_at;
+use crate::timing::slot_cycles;
+
+// Timer1 of an ATmega328P (data sheet, register summary).
+const TIFR1: usize = 0x36;
+const TIMSK1: usize = 0x6f;
+const TCCR1A: usize = 0x80;
+const TCCR1B: usize = 0x81;
+const TCNT1: usize = 0x84;
+const OCR1A: usize = 0x88;
+const OCR1B: usize = 0x8a;
+/// OCF1B in TIFR1, OCIE1B in TIMSK1.
+const B: u8 = 1 << 2;
+/// OCF1A in TIFR1, OCIE1A in TIMSK1.
+const A: u8 = 1 << 1;
+/// WGM12 and CS10 in TCCR1B: CTC up to OCR1A, every cycle is counted.
+const RUN: u8 = 1 << 3 | 1;
+
+/// A compare value that the timer never reaches.
+const NEVER: u16 = u16::MAX;
+
+#[inline(always)]
+fn port(address: u8) -> *mut u8 {
+    with_exposed_provenance_mut(usize::from(address))
+}
+
+/// Stores to a register.
+///
+/// # Safety
+/// It is one of Timer1's.
+#[inline(always)]
+unsafe fn set<T>(register: usize, value: T) {
+    // SAFETY: as the caller says.
+    unsafe { with_exposed_provenance_mut::<T>(register).write_volatile(value) }
+}
+
+impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
+    /// Puts the pins low and makes them outputs, in the order of the widths. Call it once,
+    /// before the first [`Engine::submit`]; with interrupts off, if any handler changes
+    /// other pins of these ports.
+    #[inline(always)]
+    pub fn connect(&self, pins: [Pin; SERVOS]) {
+        for (slot, pin) in self.pins.iter().zip(&pins) {
+            slot[0].set(pin.port);
+            slot[1].set(pin.mask);
+        }
+        self.lower();
+    }
+
+    /// [`Engine::start`], with the pins of a constant, which are put low first.
+    ///
+    /// # Safety
+    /// See [`Engine::start`].
+    #[doc(hidden)]
+    #[inline(always)]
+    pub unsafe fn start_all(&self) {
+        self.lower();
+        // SAFETY: as the caller says.
+        unsafe { self.start() }
+    }
+
+    /// Puts the pins low and makes them outputs.
+    #[inline(always)]
+    fn lower(&self) {
+        for [address, mask] in &self.pins[..SERVOS] {
+            let port = port(address.get());
+            let mask = mask.get();
+            // SAFETY: PORT is an I/O register, and DDR the one just below it, for a
+            // `Pin` knows no other addresses. No handler writes one of them before a
+            // width has been submitted.
+            unsafe {
+                let ddr = port.sub(1);
+                port.write_volatile(port.read_volatile() & !mask);
+                ddr.write_volatile(ddr.read_volatile() | mask);
+            }
+        }
+    }
+
+    /// Starts the timer; the first tick comes a slot later. Call it once.
+    ///
+    /// # Safety
+    /// Interrupts are off, and nothing else uses Timer1 from now on.
+    #[inline(always)]
+    pub unsafe fn start(&self) {
+        self.slot.set(Self::TICK_SLOT);
+        self.fall.set(Self::NO_PULSE);
+        self.allowed.set(u8::MAX);
+        // SAFETY: these registers are Timer1's, which is ours.
+        unsafe {
+            // A boot loader leaves the timer running for its LED: stop it first.
+            set(TCCR1B, 0u8);
+            set(TCCR1A, 0u8);
+            set(TCNT1, 0u16);
+            set(OCR1A, const { slot_cycles(SERVOS) - 1 });
+            set(OCR1B, NEVER);
+            set(TIFR1, A | B);
+            set(TIMSK1, A | B);
+            set(TCCR1B, RUN);
+        }
+    }
+
+    /// Edges that came late because an interrupt was held up for longer than the
+    /// lead allows. Stays at 65535.
+    #[inline(always)]
+    pub fn late(&self) -> u16 {
+        self.late.read()
+    }
+
+    /// Opens a slot: raises its pin, or gives the tick.
+    ///
+    /// # Safety
+    /// Only in the handler of Timer1's compare match A.
+    #[doc(hidden)]
+    #[inline(always)]
+    pub unsafe fn open(&self) {
+        let mask = self.mask.get() & self.allowed.get();
+        if mask != 0 {
+            let port = port(self.port.get());
+            // SAFETY: the port of a servo pin, in a handler, LEAD after the match.
+            unsafe {
+                let before = port.read_volatile();
+                // A pin that is still high has missed its falling edge: it only goes
+                // down.
+                let change = mask & !before;
+                let on_time = store_at([LEAD, 0], port, before & !mask, change);
+                if on_time & change == 0 {
+                    self.late.count();
+                    self.mask.set(0);
+                    self.fall.set(Self::NO_PULSE);
+                }
+            }
+        } else if self.slot.get() == Self::TICK_SLOT {
+            self.ticks.set(self.ticks.get().wrapping_add(1));
+        }
+        // SAFETY: after `start` only the two handlers use Timer1, and they cannot
+        // interrupt each other.
+        unsafe {
+            set(OCR1B, self.fall.get() - u16::from(LEAD));
+            // Had interrupts been off for very long, the match of the slot before, or
+            // of this one with the old count, would wait here and close this slot at
+            // once.
+            set(TIFR1, B);
+        }
+    }
+
+    /// Closes a slot: lowers its pin and plans the next slot.
+    ///
+    /// # Safety
+    /// Only in the handler of Timer1's compare match B.
+    #[doc(hidden)]
+    #[inline(always)]
+    pub unsafe fn close(&self) {
+        let mask = self.mask.get();
+        if mask != 0 {
+            let port = port(self.port.get());
+            // SAFETY: the port of a servo pin, in a handler, LEAD after the match.
+            let on_time =
+                unsafe { store_at(self.fall.bytes(), port, port.read_volatile() & !mask, 0) };
+            if on_time == 0 {
+                self.late.count();
+            }
+        }
+        self.plan();
+    }
+}

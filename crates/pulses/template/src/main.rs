@@ -1,0 +1,46 @@
+//! Four servos on pins 9, 10, 11 and 3 of an Arduino UNO move to and fro once in two seconds, each a
+//! quarter of the way behind the one before it.
+
+#![no_std]
+#![no_main]
+#![feature(abi_avr_interrupt)]
+
+use panic_halt as _;
+use servo_pulses::{CYCLES_PER_US, Pin};
+
+const PINS: [Pin; 4] = [pin(9), pin(10), pin(11), pin(3)];
+
+const fn pin(number: u8) -> Pin {
+    match Pin::arduino(number) {
+        Some(pin) => pin,
+        None => panic!("a UNO has no such pin"),
+    }
+}
+
+mod servos {
+    servo_pulses::engine!(super::PINS);
+}
+
+/// The width of a pulse in cycles: from 1000 to 2000 us and back in 100 frames.
+fn width(frame: u8) -> u16 {
+    let step = if frame < 50 { frame } else { 100 - frame };
+    (1000 + 20 * u16::from(step)) * CYCLES_PER_US
+}
+
+#[avr_device::entry]
+fn main() -> ! {
+    // SAFETY: interrupts are off, and nothing else uses Timer1.
+    unsafe { servos::start() };
+    // SAFETY: every interrupt that is enabled has its handler.
+    unsafe { avr_device::interrupt::enable() };
+    let mut tick = servos::ticks();
+    let mut frame = 0;
+    loop {
+        // A new tick: there is a frame's time for the next widths, which play together.
+        if servos::ticks() != tick {
+            tick = servos::ticks();
+            frame = (frame + 1) % 100;
+            servos::submit([0, 25, 50, 75].map(|ahead| width((frame + ahead) % 100)));
+        }
+    }
+}

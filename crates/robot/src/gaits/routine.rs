@@ -1,0 +1,255 @@
+//! Routines of robot.toml: gaits one after another, each for some cycles or some time or until a
+//! contact closes, rests, and waits for a button.
+
+use lizard_core::console::command::COUNT_MOST;
+use lizard_core::numbers::gaits::{Gait as Record, MOST_GAITS, Step};
+
+use crate::file::{Checked, Fault, Section, hint};
+use crate::gaits::define::{check_keys, check_name};
+use crate::measures::{INPUTS, Inputs};
+use crate::units::FRAMES_PER_SECOND;
+
+/// The most steps of a routine.
+const MOST_STEPS: usize = 99;
+
+/// The longest time of a step, s.
+const LONGEST: f64 = 999.0;
+
+/// What `repeat` may be beside a number.
+const FOR_EVER: &str = "for ever";
+
+/// A routine whose every step has been checked.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Routine {
+    name: String,
+    steps: Vec<Step>,
+    rounds: u16,
+    /// The record at which each round but the first begins.
+    again: u16,
+}
+
+impl Routine {
+    /// Name of the routine; with a blank for each dash also its console command.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its records in the section: a step, or an input and the step that it ends.
+    pub fn steps(&self) -> &[Step] {
+        &self.steps
+    }
+
+    /// The number of its steps.
+    pub fn count(&self) -> usize {
+        let is_step = |record: &&Step| record.kind != Step::UNTIL;
+        self.steps.iter().filter(is_step).count()
+    }
+
+    /// True if a contact may end one of its steps.
+    pub fn has_inputs(&self) -> bool {
+        self.count() < self.steps.len()
+    }
+
+    /// How often it goes through its steps; None for ever.
+    pub fn rounds(&self) -> Option<u16> {
+        (self.rounds > 0).then_some(self.rounds)
+    }
+
+    /// Its record in the section; `first` of all steps there is its first.
+    pub(crate) fn record(&self, first: usize, name_start: usize) -> Record {
+        let mut record = Record {
+            name_start: name_start as u16,
+            name_length: self.name.len() as u16,
+            ..Record::routine(first as u16, self.steps.len() as u16, self.rounds)
+        };
+        record.channels[3].offset = self.again;
+        record
+    }
+}
+
+/// Reads the routines in the order of the file, for a robot with these gaits.
+pub(crate) fn routines(root: &Section, gaits: &[&str], inputs: &Inputs) -> Checked<Vec<Routine>> {
+    if !root.has("routine") {
+        return Ok(Vec::new());
+    }
+    let section = root.open("routine")?;
+    let names = section.names();
+    for name in &names {
+        check_name(name, "routine").map_err(|problem| section.fault(name, problem))?;
+        if gaits.contains(name) {
+            return Err(section.fault(name, "has the name of a gait; give it another one"));
+        }
+    }
+    let all: Vec<&str> = gaits.iter().chain(&names).copied().collect();
+    check_keys(&section, &all)?;
+    if all.len() > MOST_GAITS {
+        let found = all.len();
+        let sentence = format!(
+            "and gait are {found} together; the firmware numbers them with a byte, so leave at most {MOST_GAITS}"
+        );
+        return Err(Fault::new("routine", sentence));
+    }
+    let read = |name: &&str| routine(&section, name, gaits, &names, inputs);
+    names.iter().map(read).collect()
+}
+
+fn routine(
+    section: &Section,
+    name: &str,
+    gaits: &[&str],
+    routines: &[&str],
+    inputs: &Inputs,
+) -> Checked<Routine> {
+    let one = section.section(name, &["steps", "repeat", "repeat_from"])?;
+    let texts = one.words("steps")?;
+    if texts.is_empty() || texts.len() > MOST_STEPS {
+        let found = texts.len();
+        let sentence = format!("has {found} steps; it must have 1 to {MOST_STEPS}");
+        return Err(one.fault("steps", sentence));
+    }
+    let read = |(place, text): (usize, &&str)| {
+        let fault = |problem| {
+            let sentence = format!("step {}, \"{text}\", {problem}", place + 1);
+            Fault::clause(one.path("steps"), sentence)
+        };
+        records(text, name, gaits, routines, inputs).map_err(fault)
+    };
+    let steps = texts.iter().enumerate().map(read);
+    let steps = steps.collect::<Checked<Vec<_>>>()?;
+    let unit = "(a step)";
+    let from = one.number_or("repeat_from", 1.0, 1.0, steps.len() as f64, unit)?;
+    if from.fract() != 0.0 {
+        let sentence = format!("is {from}; it must be the number of a step");
+        return Err(one.fault("repeat_from", sentence));
+    }
+    Ok(Routine {
+        name: name.to_string(),
+        again: steps[..from as usize - 1].concat().len() as u16,
+        steps: steps.concat(),
+        rounds: rounds(&one)?,
+    })
+}
+
+fn rounds(one: &Section) -> Checked<u16> {
+    if one.text("repeat").is_ok_and(|text| text == FOR_EVER) {
+        return Ok(0);
+    }
+    let most = f64::from(COUNT_MOST);
+    let unit = format!("or \"{FOR_EVER}\"");
+    let rounds = one.number_or("repeat", 1.0, 1.0, most, &unit)?;
+    if rounds.fract() != 0.0 {
+        let sentence = format!("is {rounds}; it must be a whole number {unit}");
+        return Err(one.fault("repeat", sentence));
+    }
+    Ok(rounds as u16)
+}
+
+/// Reads a step and its input, such as `wait button` or `walk 10 until nose`.
+fn records(
+    text: &str,
+    own: &str,
+    gaits: &[&str],
+    routines: &[&str],
+    inputs: &Inputs,
+) -> Result<Vec<Step>, String> {
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let until = |name: &str| {
+        let input = inputs.named(name).ok_or_else(|| no_input(name))?;
+        Ok::<_, String>(Step {
+            kind: Step::UNTIL,
+            gait: input.byte(),
+            count: 0,
+        })
+    };
+    match words.as_slice() {
+        ["wait"] => Err("must say for what, as \"wait button\"".to_string()),
+        ["wait", name] if name.parse::<f64>().is_err() => {
+            let wait = Step {
+                kind: Step::WAIT,
+                gait: 0,
+                count: Step::ENDLESS,
+            };
+            Ok(vec![until(name)?, wait])
+        }
+        [.., "until"] => Err("must say until what, as \"walk until nose\"".to_string()),
+        [words @ .., "until", name] if !words.is_empty() => {
+            Ok(vec![until(name)?, step(words, own, gaits, routines, true)?])
+        }
+        words => Ok(vec![step(words, own, gaits, routines, false)?]),
+    }
+}
+
+/// The problem of a step with an input that robot.toml does not have.
+fn no_input(name: &str) -> String {
+    if INPUTS.contains(&name) {
+        return format!(
+            "names the input \"{name}\", which has no pin; [input.{name}] must have one, as pin = \"A1\""
+        );
+    }
+    let hint = hint(name, &INPUTS);
+    format!("names the input \"{name}\", which does not exist; {hint}")
+}
+
+/// Reads a step such as `walk 4`, `stand 1 s`, `rest` or `rest 2.5 s`. One that an input ends needs
+/// neither a number nor a time.
+fn step(
+    words: &[&str],
+    own: &str,
+    gaits: &[&str],
+    routines: &[&str],
+    has_input: bool,
+) -> Result<Step, String> {
+    let (words, frames) = match words {
+        [words @ .., time, "s"] => (words, Some(frames(time)?)),
+        words => (words, None),
+    };
+    if words == ["rest"] {
+        let least = if has_input { Step::ENDLESS } else { 1 };
+        return Ok(Step {
+            kind: Step::REST,
+            gait: 0,
+            count: frames.unwrap_or(least),
+        });
+    }
+    let (words, count) = match (words, frames) {
+        (words, Some(_)) => (words, ""),
+        ([name @ .., count], None) if count.parse::<f64>().is_ok() => (name, *count),
+        (words, None) => (words, "none"),
+    };
+    let name = words.join("-");
+    let Some(gait) = gaits.iter().position(|gait| *gait == name) else {
+        return Err(if name == own {
+            "is the routine itself, which would never end".to_string()
+        } else if routines.contains(&&*name) {
+            "is a routine; a step is a gait".to_string()
+        } else {
+            let hint = hint(&name, gaits);
+            format!("names the gait \"{name}\", which does not exist; {hint}")
+        });
+    };
+    let gait = gait as u8;
+    let endless = (has_input && count == "none").then_some(Step::ENDLESS);
+    if let Some(count) = frames.or(endless) {
+        let kind = Step::FRAMES;
+        return Ok(Step { kind, gait, count });
+    }
+    let kind = Step::CYCLES;
+    match count.parse() {
+        Ok(count @ 1..=COUNT_MOST) => Ok(Step { kind, gait, count }),
+        _ => Err(format!(
+            "must say how long: cycles, as \"{name} 3\", a whole number of 1 to {COUNT_MOST}, or a time, as \"{name} 2 s\""
+        )),
+    }
+}
+
+fn frames(time: &str) -> Result<u16, String> {
+    let seconds: f64 = time.parse().unwrap_or(f64::NAN);
+    let least = 1.0 / FRAMES_PER_SECOND;
+    if (least..=LONGEST).contains(&seconds) {
+        Ok((seconds * FRAMES_PER_SECOND).round() as u16)
+    } else {
+        Err(format!(
+            "has a time that is not within {least} to {LONGEST} s"
+        ))
+    }
+}

@@ -1,0 +1,72 @@
+//! The inputs: contacts between a pin and ground that end steps of routines.
+
+use lizard_core::numbers::gaits::Input;
+
+use crate::file::{Checked, Section};
+use crate::measures::servo::{self, Servo, free_pin};
+use crate::measures::supply::Supplies;
+
+/// The names of the inputs.
+pub const NAMES: [&str; 2] = ["button", "nose"];
+
+/// Arduino numbers of the pins of the inputs that a robot has.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Inputs {
+    /// A push button.
+    pub button: Option<u8>,
+    /// A switch that closes in front of an obstacle.
+    pub nose: Option<u8>,
+}
+
+impl Inputs {
+    /// Reads `[input]`; every input may be left out.
+    pub(crate) fn read(root: &Section, servos: &[Servo; 4], supplies: &Supplies) -> Checked<Self> {
+        if !root.has("input") {
+            return Ok(Self::default());
+        }
+        let section = root.section("input", &NAMES)?;
+        let pins = servos.map(|servo| servo.pin);
+        let owners = pins.into_iter().zip(servo::NAMES);
+        let mut taken: Vec<(u8, String)> = owners
+            .map(|(pin, name)| (pin, format!("servo.{name}")))
+            .collect();
+        taken.extend(
+            supplies
+                .rail
+                .map(|rail| (rail.pin, "supply.rail".to_string())),
+        );
+        let mut read = |name: &str| -> Checked<Option<u8>> {
+            if !section.has(name) {
+                return Ok(None);
+            }
+            let one = section.section(name, &["pin"])?;
+            let pin = free_pin(&one)?;
+            if let Some((_, owner)) = taken.iter().find(|(other, _)| *other == pin) {
+                let sentence = format!("is \"{}\", which {owner} already has", one.text("pin")?);
+                return Err(one.fault("pin", sentence));
+            }
+            taken.push((pin, format!("input.{name}")));
+            Ok(Some(pin))
+        };
+        let [button, nose] = NAMES;
+        Ok(Self {
+            button: read(button)?,
+            nose: read(nose)?,
+        })
+    }
+
+    /// The inputs that the robot has: name and Arduino number of the pin.
+    pub fn each(&self) -> impl Iterator<Item = (&'static str, u8)> {
+        let pins = NAMES.into_iter().zip([self.button, self.nose]);
+        pins.filter_map(|(name, pin)| Some((name, pin?)))
+    }
+
+    /// The input of this name in the core's form, if the robot has it.
+    pub(crate) fn named(&self, name: &str) -> Option<Input> {
+        match name {
+            "button" => self.button.map(Input::button),
+            "nose" => self.nose.map(Input::nose),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,238 @@
+//! The servos' motors and the friction of the joints: `[servo]` and `[joints]` in robot.toml.
+//!
+//! A data sheet gives a servo's torque at a stall and its time for 60 deg without load, at one
+//! voltage. Between both the torque falls in a line, and both grow with the voltage. No data sheet
+//! gives the inertia of the rotor or the error at which the full torque comes: these are assumed.
+
+use lizard_contact::{GRAVITY, Joints, Motor};
+use lizard_kinematics::Lizard;
+
+use crate::file::{Checked, Section, hint};
+use crate::measures::servo::{HAND, Servo};
+
+/// N mm for each kg cm.
+const N_MM: f64 = 10.0 * GRAVITY;
+
+/// A type of servo, in the units of its data sheet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ServoType {
+    /// Name of the type from which robot.toml starts.
+    pub model: &'static str,
+    /// Source of its figures.
+    pub source: &'static str,
+    /// Torque at a stall, kg cm.
+    pub stall_kg_cm: f64,
+    /// Time for 60 deg without load, s.
+    pub s_per_60_deg: f64,
+    /// Supply at which torque and time are given, V.
+    pub at_volts: f64,
+    /// Supply of this robot's servos, V.
+    pub volts: f64,
+    /// Width of the dead band, us.
+    pub dead_band_us: f64,
+    /// Time constant of the rotor without load, ms.
+    pub spin_up_ms: f64,
+    /// Error beyond the dead band at which the full torque is applied, deg.
+    pub full_torque_deg: f64,
+}
+
+/// The default: an SG-90 by its data sheet.
+const SG90: ServoType = ServoType {
+    model: "SG-90",
+    source: "data sheet; rotor and full torque assumed",
+    stall_kg_cm: 1.8,
+    s_per_60_deg: 0.12,
+    at_volts: 4.8,
+    volts: 4.8,
+    dead_band_us: 10.0,
+    spin_up_ms: 20.0,
+    full_torque_deg: 3.0,
+};
+
+impl ServoType {
+    /// The types that robot.toml can name.
+    pub const ALL: [Self; 4] = [
+        SG90,
+        Self {
+            model: "MG90S",
+            source: "data sheet; rotor and full torque assumed",
+            s_per_60_deg: 0.1,
+            dead_band_us: 5.0,
+            ..SG90
+        },
+        Self {
+            model: "copy",
+            source: "assumed: a cheap copy with two thirds of an SG-90's torque and four fifths of its rate",
+            stall_kg_cm: 1.2,
+            s_per_60_deg: 0.15,
+            ..SG90
+        },
+        Self {
+            model: "digital",
+            source: "assumed: an MG90S with half the rotor, full torque at 1 deg and a dead band of 2 us",
+            s_per_60_deg: 0.1,
+            dead_band_us: 2.0,
+            spin_up_ms: 10.0,
+            full_torque_deg: 1.0,
+            ..SG90
+        },
+    ];
+
+    /// Reads the keys of `[servo]` beside its four tables; all may be left out.
+    pub(crate) fn read(root: &Section) -> Checked<Self> {
+        let section = root.open("servo")?;
+        let own = match section.has("model") {
+            true => named(&section)?,
+            false => SG90,
+        };
+        let number = |name, default, (least, most), unit| {
+            section.number_or(name, default, least, most, unit)
+        };
+        let at_volts = number("at_volts", own.at_volts, (2.0, 9.0), "V")?;
+        Ok(Self {
+            stall_kg_cm: number("stall_kg_cm", own.stall_kg_cm, (0.1, 100.0), "kg cm")?,
+            s_per_60_deg: number("s_per_60_deg", own.s_per_60_deg, (0.02, 2.0), "s")?,
+            at_volts,
+            volts: number("volts", at_volts, (2.0, 9.0), "V")?,
+            dead_band_us: number("dead_band_us", own.dead_band_us, (0.0, 100.0), "us")?,
+            spin_up_ms: number("spin_up_ms", own.spin_up_ms, (0.5, 200.0), "ms")?,
+            full_torque_deg: number("full_torque_deg", own.full_torque_deg, (0.1, 45.0), "deg")?,
+            ..own
+        })
+    }
+
+    /// The motor at a supply in V, with a gain in us per degree.
+    pub fn motor(&self, volts: f64, us_per_degree: f64) -> Motor {
+        let motor = Motor {
+            stall: self.stall_kg_cm * N_MM,
+            rate: 60.0 / self.s_per_60_deg,
+            spin_up: self.spin_up_ms / 1000.0,
+            full: self.full_torque_deg,
+            idle: self.dead_band_us / 2.0 / us_per_degree.abs(),
+        };
+        motor.at_supply(volts / self.at_volts)
+    }
+}
+
+/// The type that `[servo] model` names, whatever its capitals and dashes.
+fn named(section: &Section) -> Checked<ServoType> {
+    let plain = |name: &str| name.to_ascii_lowercase().replace(['-', ' '], "");
+    let word = section.text("model")?;
+    let known = ServoType::ALL
+        .iter()
+        .find(|own| plain(own.model) == plain(word));
+    known.copied().ok_or_else(|| {
+        let hint = hint(word, &ServoType::ALL.map(|own| own.model));
+        let sentence = format!(
+            "is \"{word}\"; for a servo without a name here write stall_kg_cm and s_per_60_deg of its data sheet instead; {hint}"
+        );
+        section.fault("model", sentence)
+    })
+}
+
+/// Reads `[joints]`; every key may be left out.
+pub(crate) fn joints(root: &Section, lizard: &Lizard, servos: &[Servo; 4]) -> Checked<Joints> {
+    let links = &lizard.links;
+    let lengths = [links.l14, links.l19, links.l16, links.l11];
+    let frictionless = Joints {
+        drag: 0.0,
+        slider: 0.0,
+        arms: std::array::from_fn(|i| {
+            let (sin, cos) = (servos[i].neutral + HAND[i] * 90.0).to_radians().sin_cos();
+            // Forward is y of the chassis frame, and left is against x.
+            [lengths[i] * sin, -lengths[i] * cos]
+        }),
+        base: links.l10,
+    };
+    if !root.has("joints") {
+        return Ok(frictionless);
+    }
+    let section = root.section("joints", &["drag", "slider"])?;
+    Ok(Joints {
+        drag: section.number_or("drag", 0.0, 0.0, 1000.0, "N mm")?,
+        slider: section.number_or("slider", 0.0, 0.0, 20.0, "N")?,
+        ..frictionless
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::Robot;
+    use crate::testing::with;
+
+    const BEFORE: &str = "[servo.A1]";
+
+    fn robot(keys: &str) -> Result<Robot, crate::Error> {
+        with("paper", &[(BEFORE, &format!("{keys}\n{BEFORE}"))])
+    }
+
+    #[test]
+    fn without_a_table_the_servos_are_sg90_by_their_data_sheet() {
+        let motors = robot("").expect("right").motors();
+        for motor in motors.each {
+            // 1.8 kg cm; 60 deg in 0.12 s; 10 us of 10 us for each deg.
+            assert!((motor.stall - 176.5197).abs() < 1e-9 && motor.rate == 500.0);
+            assert_eq!((motor.idle, motor.full, motor.spin_up), (0.5, 3.0, 0.02));
+        }
+        assert_eq!((motors.joints.drag, motors.joints.slider), (0.0, 0.0));
+    }
+
+    #[test]
+    fn every_key_overrides_its_model() {
+        let keys = "[servo]\nmodel = \"mg90s\"\ns_per_60_deg = 0.2\nvolts = 6.0\nspin_up_ms = 5\n\
+                    full_torque_deg = 1.5\ndead_band_us = 2\n[joints]\nslider = 0.3";
+        let motors = robot(keys).expect("right").motors();
+        let motor = motors.each[3];
+        assert!((motor.rate - 300.0 * 6.0 / 4.8).abs() < 1e-9);
+        assert!(
+            (motor.stall - 176.5197 * 6.0 / 4.8).abs() < 1e-9,
+            "of the model"
+        );
+        assert_eq!((motor.idle, motor.full, motor.spin_up), (0.1, 1.5, 0.005));
+        assert_eq!((motors.joints.drag, motors.joints.slider), (0.0, 0.3));
+    }
+
+    #[test]
+    fn a_servo_that_no_one_knows_or_that_cannot_be_is_refused_with_what_to_write() {
+        for (keys, words) in [
+            ("model = \"SG-91\"", "did you mean \"SG-90\""),
+            (
+                "model = \"DS3218\"",
+                "allowed are SG-90, MG90S, copy, digital",
+            ),
+            (
+                "model = \"DS3218\"",
+                "write stall_kg_cm and s_per_60_deg of its data sheet",
+            ),
+            ("stall = 1.8", "stall_kg_cm"),
+            ("stall_kg_cm = 0.0", "servo.stall_kg_cm"),
+            ("volts = 12.0", "must be within 2 to 9 V"),
+        ] {
+            let refused = robot(&format!("[servo]\n{keys}"))
+                .expect_err(keys)
+                .to_string();
+            assert!(refused.contains(words), "{keys}: {refused}");
+        }
+    }
+
+    #[test]
+    fn the_arms_of_the_sliders_are_where_the_linkage_has_them() {
+        let robot = robot("").expect("right");
+        let solved = robot.lizard().solve(&robot.neutral()).expect("closes");
+        let arms = robot.motors().joints.arms;
+        for side in lizard_kinematics::Side::ALL {
+            let [front, hind] = side.servos();
+            let slider = solved.side(side);
+            // The tips are seen from the hind shaft.
+            let tips = [
+                (front, slider.front_tip, 135.0),
+                (hind, slider.rear_tip, 0.0),
+            ];
+            for (servo, tip, base) in tips {
+                let [forward, left] = arms[servo];
+                let off = (tip.y - base - forward).hypot(tip.x + left);
+                assert!(off < 1e-6, "{servo}: {tip:?} {:?}", arms[servo]);
+            }
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! A round of a routine: how long it takes, and how far it leads.
+//!
+//! Changes from one gait to the next take time and move the robot, too. So the firmware's core
+//! goes through the routine here, frame by frame, and the contact model follows its poses.
+
+use lizard_contact::Prediction;
+use lizard_core::virtual_board::Running;
+
+use crate::gaits::Routine;
+use crate::measures::servo::FORWARD;
+use crate::robot::Robot;
+use crate::units::{FRAMES_PER_SECOND, STEPS_PER_DEGREE};
+
+/// The figures of a routine.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Round {
+    /// Name of the routine.
+    pub name: String,
+    /// The number of its steps.
+    pub steps: usize,
+    /// How often it goes through them; None for ever.
+    pub rounds: Option<u16>,
+    /// True if a contact may end one of its steps.
+    pub has_inputs: bool,
+    /// Time of one round from standing, at full speed, s.
+    pub seconds: f64,
+    /// Movement in one round by the contact model; a part that depends on a tie is none.
+    pub movement: Prediction,
+}
+
+impl Round {
+    /// Goes through a routine once, while no contact closes ([`Robot::without_contacts`]). The time
+    /// that it takes grows with the routine's length.
+    #[must_use]
+    pub fn of(robot: &Robot, routine: &Routine) -> Self {
+        let mut sweeps: Vec<[f64; 4]> = vec![[0.0; 4]];
+        sweeps.extend(Self::sweeps(robot, routine));
+        let seconds = (sweeps.len() - 1) as f64 / FRAMES_PER_SECOND;
+        // Ties are between pads, so rigid legs show them.
+        let known = robot.ground().rigid().predict(sweeps.iter().copied());
+        let movement = known.keep_known(robot.ground().travel(sweeps));
+        Self {
+            name: routine.name().to_string(),
+            steps: routine.count(),
+            rounds: routine.rounds(),
+            has_inputs: routine.has_inputs(),
+            seconds,
+            movement,
+        }
+    }
+
+    /// The sweeps of the legs in each frame of one round from standing, deg, foot forward positive.
+    pub fn sweeps(robot: &Robot, routine: &Routine) -> impl Iterator<Item = [f64; 4]> {
+        let mut running = Running::power_on(*robot.without_contacts().firmware());
+        running.run(STANDS);
+        running.say(&format!("{} 1", routine.name().replace('-', " ")));
+        let mut is_done = false;
+        std::iter::from_fn(move || {
+            if is_done {
+                return None;
+            }
+            is_done = running.run(1).iter().any(|line| line == "# done");
+            let pose = running.motion().pose().0;
+            Some(std::array::from_fn(|servo| {
+                FORWARD[servo] * f64::from(pose[servo].0) / STEPS_PER_DEGREE
+            }))
+        })
+    }
+}
+
+/// Frames in which a robot whose power comes on has woken and stands.
+const STANDS: u32 = 60;

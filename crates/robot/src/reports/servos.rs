@@ -1,0 +1,134 @@
+//! The servos' effort in every gait, at several supplies and paces, and the movement that is left.
+
+use std::fmt;
+
+use lizard_contact::Prediction;
+
+use crate::checks::{CheckedGait, Effort};
+use crate::measures::ServoType;
+use crate::reports::report::{UNDECIDED, known, widest};
+use crate::robot::Robot;
+
+/// Paces of the table, as `speed` has them: percent of a gait's own.
+const PACES: [f64; 2] = [100.0, 50.0];
+
+/// A gait at one supply and pace.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Cell {
+    line: f64,
+    movement: Prediction,
+}
+
+/// A gait at every supply.
+#[derive(Debug, Clone, PartialEq)]
+struct Row {
+    name: String,
+    /// For each pace, for each supply.
+    cells: [[Cell; 3]; PACES.len()],
+    /// Greatest pace at which no servo is above its line, percent.
+    paces: [f64; 3],
+}
+
+/// The gaits that move, at the servos' own supply and at those at which the robot slows down and
+/// stops.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ServoTable {
+    servo: ServoType,
+    volts: [f64; 3],
+    rows: Vec<Row>,
+}
+
+impl ServoTable {
+    /// Predicts a robot's gaits at all supplies and paces; takes some seconds.
+    #[must_use]
+    pub fn of(robot: &Robot) -> Self {
+        let servo = *robot.servo_type();
+        let supplies = robot.supplies();
+        let [slow, stop, _] = supplies.rail.map_or(supplies.board, |rail| rail.thresholds);
+        let volts = [servo.volts, slow, stop];
+        let ground = robot.ground();
+        let row = |gait: &CheckedGait| {
+            let effort = Effort::of(gait, ground, &robot.motors());
+            let known = gait.predict(&ground.rigid());
+            let cell = |pace: f64, volts: f64| Cell {
+                line: effort.line_share(pace / 100.0, volts / servo.volts),
+                movement: known.keep_known(gait.driven(
+                    ground,
+                    &robot.motors_at(volts),
+                    pace / 100.0,
+                )),
+            };
+            Row {
+                name: gait.name().to_string(),
+                cells: PACES.map(|pace| volts.map(|volts| cell(pace, volts))),
+                paces: volts.map(|volts| 100.0 * effort.pace(volts / servo.volts)),
+            }
+        };
+        let moving = robot.gaits().iter().filter(|gait| gait.moves());
+        Self {
+            servo,
+            volts,
+            rows: moving.map(row).collect(),
+        }
+    }
+
+    fn head(
+        &self,
+        f: &mut fmt::Formatter,
+        title: &str,
+        width: usize,
+        column: usize,
+    ) -> fmt::Result {
+        write!(f, "\n{title:<width$}")?;
+        for volts in self.volts {
+            write!(f, "{:>column$}", format!("{volts:.2} V"))?;
+        }
+        writeln!(f)
+    }
+}
+
+impl fmt::Display for ServoTable {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let ServoType {
+            model,
+            source,
+            stall_kg_cm,
+            s_per_60_deg,
+            at_volts,
+            ..
+        } = self.servo;
+        writeln!(
+            f,
+            "Servos: {stall_kg_cm} kg cm and {s_per_60_deg} s for 60 deg at {at_volts} V; the rest as {model} ({source}).\n\
+             The share of their torque-speed line, and one cycle: mm ahead, and deg where it turns. Above 1 a servo\n\
+             falls behind its pulses. The second and the third supply are those at which the robot slows down and stops."
+        )?;
+        let width = widest(self.rows.iter().map(|row| row.name.as_str()));
+        for (i, pace) in PACES.into_iter().enumerate() {
+            self.head(f, &format!("speed {pace:.0}"), width, 22)?;
+            for row in &self.rows {
+                let cells: String = row.cells[i].iter().map(cell).collect();
+                writeln!(f, "{}", format!("{:<width$}{cells}", row.name).trim_end())?;
+            }
+        }
+        self.head(f, "fastest", width, 10)?;
+        for Row { name, paces, .. } in &self.rows {
+            let paces: String = paces.iter().map(|pace| format!("{pace:>10.0}")).collect();
+            writeln!(f, "{name:<width$}{paces}")?;
+        }
+        let all = self.rows.iter().flat_map(|row| row.cells.as_flattened());
+        match all.into_iter().all(|cell| cell.movement.is_decided()) {
+            true => Ok(()),
+            false => write!(f, "\n{UNDECIDED}"),
+        }
+    }
+}
+
+/// Formats a cell; a turn that rounds to zero is left out.
+fn cell(Cell { line, movement }: &Cell) -> String {
+    let turn = match movement.turn {
+        Some(turn) if turn.abs() < 0.05 => String::new(),
+        turn => known(turn, 1),
+    };
+    format!("{line:>9.2}{:>7}{turn:>6}", known(movement.forward, 1))
+}

@@ -1,0 +1,252 @@
+//! Inputs of robot.toml, and the steps that they end.
+
+use lizard_core::numbers::gaits::{Input, Step};
+use lizard_robot::{Error, Report, Robot, Round, WITHOUT_CONTACTS};
+
+use super::{paper, paper_text};
+
+const INPUTS: &str = "[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A2\"\n";
+
+/// The paper's robot with more tables.
+fn with(tables: &str) -> Result<Robot, Error> {
+    Robot::parse(&format!("{}\n\n{tables}", paper_text().trim_end()))
+}
+
+/// The sentence for these tables, with its line counted from their first one.
+fn refusal(tables: &str) -> String {
+    let error = with(tables).map(|_| ()).expect_err(tables);
+    let before = paper_text().trim_end().lines().count() + 1;
+    let line = error.line.expect("a line") - before;
+    error.to_string().replacen(
+        &format!("robot.toml:{}", line + before),
+        &line.to_string(),
+        1,
+    )
+}
+
+/// Kind, gait and count of the records of a routine with this one step.
+fn records(step: &str) -> Vec<(u8, u8, u16)> {
+    let robot = with(&format!("{INPUTS}[routine.one]\nsteps = [\"{step}\"]")).expect(step);
+    let [routine] = robot.routines() else {
+        panic!("one routine");
+    };
+    assert_eq!(routine.count(), 1);
+    let fields = |step: &Step| (step.kind, step.gait, step.count);
+    routine.steps().iter().map(fields).collect()
+}
+
+#[test]
+fn a_step_with_an_input_is_two_records_the_input_first() {
+    let (button, nose) = (Input::button(15), Input::nose(16));
+    let until = |input: Input| (Step::UNTIL, input.byte(), 0);
+    let gait = |name: &str| paper().gait(name).expect(name).index() as u8;
+    for (step, expected) in [
+        (
+            "wait button",
+            vec![until(button), (Step::WAIT, 0, Step::ENDLESS)],
+        ),
+        (
+            " wait  nose ",
+            vec![until(nose), (Step::WAIT, 0, Step::ENDLESS)],
+        ),
+        (
+            "walk until nose",
+            vec![until(nose), (Step::FRAMES, gait("walk"), Step::ENDLESS)],
+        ),
+        (
+            "walk 10 until nose",
+            vec![until(nose), (Step::CYCLES, gait("walk"), 10)],
+        ),
+        (
+            "arc left 2.5 s until button",
+            vec![until(button), (Step::FRAMES, gait("arc-left"), 125)],
+        ),
+        (
+            "stand until button",
+            vec![until(button), (Step::FRAMES, 0, Step::ENDLESS)],
+        ),
+        (
+            "rest until button",
+            vec![until(button), (Step::REST, 0, Step::ENDLESS)],
+        ),
+        (
+            "rest 5 s until button",
+            vec![until(button), (Step::REST, 0, 250)],
+        ),
+        ("rest", vec![(Step::REST, 0, 1)]),
+    ] {
+        assert_eq!(records(step), expected, "{step}");
+    }
+    assert_eq!((button.pin(), nose.pin()), (15, 16));
+    assert!(nose.is_nose() && !button.is_nose());
+}
+
+#[test]
+fn inputs_that_no_step_uses_change_no_byte_of_the_section() {
+    let robot = with(INPUTS).expect("inputs");
+    assert_eq!(robot.section(), paper().section());
+    let each: Vec<_> = robot.inputs().each().collect();
+    assert_eq!(each, [("button", 15), ("nose", 16)]);
+    assert_eq!(paper().inputs().each().count(), 0);
+}
+
+#[test]
+fn every_free_pin_is_an_input_and_a_taken_one_is_refused_with_its_owner() {
+    let rail = "[supply.rail]\npin = \"A3\"\nratio = 2.0\n";
+    for (pin, sentence) in [
+        ("D9", ", which servo.A1 already has"),
+        ("D3", ", which servo.A4 already has"),
+        ("A3", ", which supply.rail already has"),
+        (
+            "D0",
+            "; it must be one of D2 to D12 or A0 to A5 (D0 and D1 are the serial line, D13 is the LED)",
+        ),
+        (
+            "D1",
+            "; it must be one of D2 to D12 or A0 to A5 (D0 and D1 are the serial line, D13 is the LED)",
+        ),
+        (
+            "D13",
+            "; it must be one of D2 to D12 or A0 to A5 (D0 and D1 are the serial line, D13 is the LED)",
+        ),
+        (
+            "A6",
+            "; it must be one of D2 to D12 or A0 to A5 (D0 and D1 are the serial line, D13 is the LED)",
+        ),
+        (
+            "A7",
+            "; it must be one of D2 to D12 or A0 to A5 (D0 and D1 are the serial line, D13 is the LED)",
+        ),
+        (
+            "a1",
+            "; it must be one of D2 to D12 or A0 to A5 (D0 and D1 are the serial line, D13 is the LED)",
+        ),
+    ] {
+        for name in ["button", "nose"] {
+            let found = refusal(&format!("[input.{name}]\npin = \"{pin}\"\n{rail}"));
+            assert_eq!(found, format!("2: input.{name}.pin is \"{pin}\"{sentence}"));
+        }
+    }
+    let free = [
+        "D2", "D4", "D5", "D6", "D7", "D8", "D12", "A0", "A1", "A2", "A4", "A5",
+    ];
+    for pin in free {
+        let robot = with(&format!("[input.nose]\npin = \"{pin}\"\n{rail}")).expect(pin);
+        assert!(robot.inputs().nose.is_some() && robot.inputs().button.is_none());
+    }
+    let twice = refusal("[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A1\"");
+    assert_eq!(
+        twice,
+        "4: input.nose.pin is \"A1\", which input.button already has"
+    );
+}
+
+#[test]
+fn a_mistake_in_an_input_or_its_step_is_told_with_its_line_and_its_step() {
+    for (tables, sentence) in [
+        (
+            "[input.knob]\npin = \"A1\"",
+            "1: input.knob is not a known key; allowed are button, nose",
+        ),
+        (
+            "[input.nose]\npim = \"A1\"",
+            "2: input.nose.pim is not a known key; did you mean \"pin\"?",
+        ),
+        (
+            "[input.nose]\n",
+            "1: input.nose.pin is missing; it must be a string",
+        ),
+    ] {
+        assert_eq!(refusal(tables), sentence);
+    }
+    for (step, sentence) in [
+        ("wait", "must say for what, as \"wait button\""),
+        ("walk until", "must say until what, as \"walk until nose\""),
+        (
+            "wait buton",
+            "names the input \"buton\", which does not exist; did you mean \"button\"?",
+        ),
+        (
+            "walk until wall",
+            "names the input \"wall\", which does not exist; allowed are button, nose",
+        ),
+        (
+            "wolk until nose",
+            "names the gait \"wolk\", which does not exist; did you mean \"walk\"?",
+        ),
+        (
+            "walk 0 until nose",
+            "must say how long: cycles, as \"walk 3\", a whole number of 1 to 999, or a time, as \"walk 2 s\"",
+        ),
+        (
+            "one until nose",
+            "is the routine itself, which would never end",
+        ),
+        (
+            "walk 0 s until nose",
+            "has a time that is not within 0.02 to 999 s",
+        ),
+        (
+            "wait button until nose",
+            "names the gait \"wait-button\", which does not exist; allowed are stand, walk, trot, crawl, back, left, right, arc-left, arc-right, look",
+        ),
+    ] {
+        let found = refusal(&format!(
+            "{INPUTS}[routine.one]\nsteps = [\"walk 1\", \"{step}\"]"
+        ));
+        let expected = format!("6: routine.one.steps: step 2, \"{step}\", {sentence}");
+        assert_eq!(found, expected);
+    }
+    let found = refusal("[routine.one]\nsteps = [\"wait nose\"]");
+    let sentence =
+        "names the input \"nose\", which has no pin; [input.nose] must have one, as pin = \"A1\"";
+    assert_eq!(
+        found,
+        format!("2: routine.one.steps: step 1, \"wait nose\", {sentence}")
+    );
+}
+
+#[test]
+fn a_round_takes_a_frame_for_a_wait_and_a_cycle_for_a_way_without_an_end() {
+    let round = |steps: &str| {
+        let robot = with(&format!(
+            "{INPUTS}[routine.one]\nsteps = [{steps}]\nrepeat = \"for ever\""
+        ));
+        let robot = robot.expect(steps);
+        Round::of(&robot, &robot.routines()[0])
+    };
+    let text = |tables: &str| Report::of(&with(tables).expect(tables)).to_string();
+    let patrol = format!("{INPUTS}[routine.one]\nsteps = [\"wait button\"]");
+    assert!(text(&patrol).contains(WITHOUT_CONTACTS));
+    assert!(!text(INPUTS).contains(WITHOUT_CONTACTS));
+    let with_inputs =
+        round("\"wait button\", \"walk until nose\", \"left 3 until nose\", \"rest until button\"");
+    let without = round("\"walk 1\", \"left 3\", \"rest\"");
+    assert!(with_inputs.has_inputs && !without.has_inputs);
+    assert_eq!((with_inputs.steps, without.steps), (4, 3));
+    let longer = with_inputs.seconds - without.seconds;
+    assert!((0.0..0.1).contains(&longer), "{longer}");
+    let turned = |round: &Round| round.movement.turn.expect("known");
+    assert!((turned(&with_inputs) - turned(&without)).abs() < 0.1);
+}
+
+#[test]
+fn the_patrol_of_the_docs_waits_once_and_then_repeats_from_its_second_step() {
+    let docs = include_str!("../../../../docs/gaits.md");
+    let blocks = docs.split("```toml\n").skip(1);
+    let mut blocks = blocks.filter_map(|block| block.split("```").next());
+    let patrol = blocks
+        .find(|block| block.contains("[input."))
+        .expect("it is there");
+    let robot = with(patrol).expect("a robot");
+    let [routine] = robot.routines() else {
+        panic!("one routine");
+    };
+    assert_eq!((routine.count(), routine.rounds()), (4, None));
+    let core = robot.core();
+    let ids = lizard_core::numbers::gaits::GaitId::all(core.gait_count());
+    let record = core.gait(ids.last().expect("the routine"));
+    let [_, steps, _, again] = record.channels.map(|channel| channel.offset);
+    assert_eq!((steps, again), (6, 2));
+    assert_eq!(core.step(&record, again).kind, Step::UNTIL);
+}

@@ -1,0 +1,268 @@
+//! Routines of robot.toml: what they may be, what the section has of them, and how far they lead.
+
+use lizard_core::numbers::gaits::Step;
+use lizard_robot::{Error, Robot, Round};
+
+use super::{paper, paper_text};
+
+/// The paper's robot with more tables.
+fn with(tables: &str) -> Result<Robot, Error> {
+    Robot::parse(&format!("{}\n\n{tables}", paper_text().trim_end()))
+}
+
+/// The sentence for a routine `patrol` with these lines.
+fn refusal(lines: &str) -> String {
+    let refused = with(&format!("[routine.patrol]\n{lines}"));
+    refused.map(|_| ()).expect_err(lines).to_string()
+}
+
+const PATROL: &str = r#"
+[routine.patrol]
+steps = ["stand 1 s", "walk 4", "left 6", "look 1", "rest"]
+repeat = 3
+"#;
+
+#[test]
+fn a_routine_is_its_steps_and_how_often_they_are_repeated() {
+    let robot = with(PATROL).expect("a routine");
+    let routine = robot.routine("patrol").expect("it is there");
+    let gait = |name: &str| robot.gait(name).expect(name).index() as u8;
+    let steps = [
+        (Step::FRAMES, gait("stand"), 50),
+        (Step::CYCLES, gait("walk"), 4),
+        (Step::CYCLES, gait("left"), 6),
+        (Step::CYCLES, gait("look"), 1),
+        (Step::REST, 0, 1),
+    ]
+    .map(|(kind, gait, count)| Step { kind, gait, count });
+    assert_eq!(routine.steps(), steps);
+    assert_eq!(routine.rounds(), Some(3));
+    let rounds = |repeat: &str| {
+        let text = format!("[routine.one]\nsteps = [\"walk 1\"]\n{repeat}");
+        with(&text).expect(repeat).routines()[0].rounds()
+    };
+    assert_eq!(rounds(""), Some(1));
+    assert_eq!(rounds("repeat = 999"), Some(999));
+    assert_eq!(rounds("repeat = \"for ever\""), None);
+}
+
+#[test]
+fn names_of_two_words_and_times_with_decimals_are_read() {
+    let text = r#"[routine.about-face]
+steps = ["arc left 2", "arc-left 2.5 s", "  arc  left   999 ", "rest 0.02 s", "stand 999 s"]"#;
+    let robot = with(text).expect("a routine");
+    let arc = robot.gait("arc-left").expect("it is there").index() as u8;
+    let steps: Vec<_> = robot
+        .routine("about face")
+        .expect("it is there")
+        .steps()
+        .to_vec();
+    let found: Vec<_> = steps
+        .iter()
+        .map(|step| (step.kind, step.gait, step.count))
+        .collect();
+    let expected = [
+        (Step::CYCLES, arc, 2),
+        (Step::FRAMES, arc, 125),
+        (Step::CYCLES, arc, 999),
+        (Step::REST, 0, 1),
+        (Step::FRAMES, 0, 49_950),
+    ];
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn the_core_finds_in_the_section_what_the_file_says_behind_the_gaits_which_stay() {
+    let robot = with(&format!("{PATROL}[routine.other]\nsteps = [\"right 2\"]\n")).expect("two");
+    let core = robot.core();
+    let gaits = robot.gaits().len();
+    assert_eq!(core.gait_count(), gaits + 2);
+    let ids: Vec<_> = lizard_core::numbers::gaits::GaitId::all(core.gait_count()).collect();
+    for (place, id) in ids.iter().enumerate() {
+        assert_eq!(core.gait(*id).is_routine(), place >= gaits);
+        if place < gaits {
+            let same = paper().core().gait(*id);
+            assert_eq!(core.gait(*id), same);
+        }
+    }
+    for (id, routine) in ids[gaits..].iter().zip(robot.routines()) {
+        let name: String = core.name(*id).map(char::from).collect();
+        assert_eq!(name, routine.name());
+        let record = core.gait(*id);
+        let [_, count, rounds, _] = record.channels;
+        assert_eq!(usize::from(count.offset), routine.steps().len());
+        assert_eq!(rounds.offset, routine.rounds().unwrap_or(0));
+        for (number, step) in routine.steps().iter().enumerate() {
+            assert_eq!(core.step(&record, number as u16), *step);
+        }
+    }
+    assert_ne!(core.hash(), paper().core().hash());
+}
+
+#[test]
+fn eight_routines_of_sixteen_steps_fit_beside_the_papers_gaits_and_their_maps() {
+    let steps = "\"walk 999\", \"arc-left 3\", \"look 1\", \"stand 2 s\", ".repeat(4);
+    let tables: String = (0..8)
+        .map(|n| format!("[routine.a-long-routine-{n}]\nsteps = [{steps}]\n"))
+        .collect();
+    let robot = with(&tables).expect("they fit");
+    assert!(robot.has_room_for_maps());
+    let bytes = robot.section().len() - paper().section().len();
+    assert_eq!(bytes, 8 * (32 + 16 * 4 + "a-long-routine-0".len()));
+}
+
+#[test]
+fn a_mistake_is_told_with_its_line_and_its_step() {
+    for (lines, sentence) in [
+        (
+            "steps = [\"walk 1\", \"wolk 4\"]",
+            "step 2, \"wolk 4\", names the gait \"wolk\", which does not exist; did you mean \"walk\"?",
+        ),
+        (
+            "steps = [\"patrol 1\"]",
+            "step 1, \"patrol 1\", is the routine itself, which would never end",
+        ),
+        (
+            "steps = [\"round 1\"]\n[routine.round]\nsteps = [\"patrol 1\"]",
+            "step 1, \"round 1\", is a routine; a step is a gait",
+        ),
+        (
+            "steps = [\"walk\"]",
+            "step 1, \"walk\", must say how long: cycles, as \"walk 3\", a whole number of 1 to 999, or a time, as \"walk 2 s\"",
+        ),
+        (
+            "steps = [\"walk 0\"]",
+            "step 1, \"walk 0\", must say how long: cycles, as \"walk 3\", a whole number of 1 to 999, or a time, as \"walk 2 s\"",
+        ),
+        (
+            "steps = [\"walk 1000\"]",
+            "step 1, \"walk 1000\", must say how long: cycles, as \"walk 3\", a whole number of 1 to 999, or a time, as \"walk 2 s\"",
+        ),
+        (
+            "steps = [\"walk 1.5\"]",
+            "step 1, \"walk 1.5\", must say how long: cycles, as \"walk 3\", a whole number of 1 to 999, or a time, as \"walk 2 s\"",
+        ),
+        (
+            "steps = [\"walk 0 s\"]",
+            "step 1, \"walk 0 s\", has a time that is not within 0.02 to 999 s",
+        ),
+        (
+            "steps = [\"rest nan s\"]",
+            "step 1, \"rest nan s\", has a time that is not within 0.02 to 999 s",
+        ),
+        (
+            "steps = [\"\"]",
+            "step 1, \"\", names the gait \"\", which does not exist; allowed are stand, walk, trot, crawl, back, left, right, arc-left, arc-right, look",
+        ),
+    ] {
+        // The routine's table follows the file and a blank line, and its first key that.
+        let line = paper_text().lines().count() + 3;
+        let expected = format!("robot.toml:{line}: routine.patrol.steps: {sentence}");
+        assert_eq!(refusal(lines), expected);
+    }
+    for (lines, sentence) in [
+        (
+            "steps = []",
+            "routine.patrol.steps has 0 steps; it must have 1 to 99",
+        ),
+        (
+            "steps = \"walk 1\"",
+            "routine.patrol.steps is the string \"walk 1\"; it must be an array of strings",
+        ),
+        (
+            "repeat = 1",
+            "routine.patrol.steps is missing; it must be an array of strings",
+        ),
+        (
+            "steps = [\"walk 1\"]\nrepeat = 0",
+            "routine.patrol.repeat is 0; it must be within 1 to 999 or \"for ever\"",
+        ),
+        (
+            "steps = [\"walk 1\"]\nrepeat = 1.5",
+            "routine.patrol.repeat is 1.5; it must be a whole number or \"for ever\"",
+        ),
+        (
+            "steps = [\"walk 1\"]\nrepeat = \"ever\"",
+            "routine.patrol.repeat is the string \"ever\"; it must be a number",
+        ),
+        (
+            "steps = [\"walk 1\"]\nrepeat_from = 2",
+            "routine.patrol.repeat_from is 2; it must be within 1 to 1 (a step)",
+        ),
+        (
+            "steps = [\"walk 1\", \"left 1\"]\nrepeat_from = 1.5",
+            "routine.patrol.repeat_from is 1.5; it must be the number of a step",
+        ),
+        (
+            "steps = [\"walk 1\"]\nspeed = 5",
+            "routine.patrol.speed is not a known key; allowed are steps, repeat, repeat_from",
+        ),
+    ] {
+        let found = refusal(lines);
+        assert!(found.ends_with(sentence), "{found}");
+        assert!(found.starts_with("robot.toml:"), "{found}");
+    }
+    let many = "\"walk 1\", ".repeat(100);
+    let found = refusal(&format!("steps = [{many}]"));
+    assert!(
+        found.ends_with("has 100 steps; it must have 1 to 99"),
+        "{found}"
+    );
+}
+
+#[test]
+fn a_name_that_is_taken_or_no_name_is_refused() {
+    for (name, sentence) in [
+        (
+            "walk",
+            "routine.walk has the name of a gait; give it another one",
+        ),
+        (
+            "stop",
+            "routine.stop is not a routine name: \"stop\" is a command of the console",
+        ),
+        (
+            "rest-now",
+            "routine.rest-now is not a routine name: \"rest\" is a command of the console",
+        ),
+        (
+            "Patrol",
+            "routine.Patrol is not a routine name: it must be lower-case letters, digits and dashes, a letter first",
+        ),
+    ] {
+        let found = with(&format!("[routine.{name}]\nsteps = [\"walk 1\"]"));
+        let found = found.map(|_| ()).expect_err(name).to_string();
+        assert!(found.ends_with(sentence), "{found}");
+    }
+}
+
+#[test]
+fn a_round_takes_its_cycles_and_the_changes_between_them_and_leads_as_far_as_its_gaits() {
+    let robot = with(
+        "[routine.ahead]\nsteps = [\"walk 10\"]\n[routine.about]\nsteps = [\"left 5\", \"stand 2 s\"]\nrepeat = \"for ever\"\n[routine.gaze]\nsteps = [\"look 1\"]",
+    )
+    .expect("three");
+    let rounds = robot
+        .routines()
+        .iter()
+        .map(|routine| Round::of(&robot, routine));
+    let [ahead, about, gaze]: [Round; 3] = rounds.collect::<Vec<_>>().try_into().expect("three");
+    let walk = robot
+        .predict(robot.gait("walk").expect("it is there"))
+        .forward
+        .expect("known");
+    let left = robot
+        .predict(robot.gait("left").expect("it is there"))
+        .turn
+        .expect("known");
+    // A cycle each second, the way there and back.
+    assert!((10.0..11.0).contains(&ahead.seconds), "{}", ahead.seconds);
+    let share = ahead.movement.forward.expect("known") / (10.0 * walk);
+    assert!((0.95..1.05).contains(&share), "{share}");
+    assert!((7.0..8.0).contains(&about.seconds), "{}", about.seconds);
+    let share = about.movement.turn.expect("known") / (5.0 * left);
+    assert!((0.9..1.1).contains(&share), "{share}");
+    assert_eq!((about.rounds, about.steps), (None, 2));
+    // Two feet pull against two: where it goes, pads decide that nobody can measure.
+    assert_eq!(gaze.movement.forward, None);
+}

@@ -1,0 +1,19 @@
+//! Contacts between pins and ground.
+
+use crate::ffi;
+use crate::{Pin, Uno};
+
+impl Uno {
+    /// Closes or opens a contact between a pin and ground, such as a push button. As an input the pin
+    /// is low while it is closed, and high while it is open and the pin's pull-up is on.
+    pub fn set_contact(&mut self, pin: Pin, is_closed: bool) {
+        // PIND, PINB and PINC (data sheet, 14.4).
+        let (address, bit) = match pin.number() {
+            number @ 0..=7 => (0x29, number),
+            number @ 8..=13 => (0x23, number - 8),
+            number => (0x26, number - 14),
+        };
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps two bits.
+        unsafe { ffi::uno_set_contact(self.raw, address, bit, is_closed) }
+    }
+}

@@ -1,0 +1,216 @@
+//! A radio module at the serial line, such as an HM-10 or an HC-05.
+//!
+//! Instead of a cable there is air between a phone and the chip. Bytes travel in packets of 20,
+//! each some milliseconds late, in order; a packet may be lost, and the link may end in the middle
+//! of a line and be back seconds later. Then the module says so in the line itself,
+//! `OK+LOST` and `OK+CONN`, without a line end; an HC-05 says nothing. It passes bytes on at its own rate, and it resets
+//! nothing.
+//!
+//! ```no_run
+//! # use simulated_uno::{Air, Fidelity, Radio, Uno};
+//! let mut uno = Uno::load("firmware.elf", Fidelity::DataSheet)?;
+//! let mut radio = Radio::new(Air::default());
+//! radio.write(b"status\n", uno.cycle());
+//! for _ms in 0..500 {
+//!     uno.run_ms(1);
+//!     print!("{}", String::from_utf8_lossy(&radio.exchange(&mut uno)));
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use std::collections::VecDeque;
+
+use crate::serial::sample_byte;
+use crate::{CYCLES_PER_MS, Uno};
+
+/// Most bytes of a packet.
+const PACKET: usize = 20;
+/// Time that a packet takes, ms.
+const DELAY: std::ops::Range<f64> = 7.5..100.0;
+/// Time for which a module gathers bytes of the chip, ms.
+const GATHERS: u64 = 20;
+/// Time for which a link stays away, ms.
+const AWAY: std::ops::Range<u64> = 200..5000;
+
+/// The air between a module and a phone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Air {
+    /// The rate of the module's serial line, baud.
+    pub baud: f64,
+    /// The share of packets that are lost, 0 to 1.
+    pub loss: f64,
+    /// The mean time from one end of the link to the next, ms; 0: it does not end.
+    pub holds: u64,
+    /// True if the module says in the line when the link begins and ends.
+    pub says: bool,
+    /// Where the random numbers begin: the same seed, the same air.
+    pub seed: u64,
+}
+
+impl Default for Air {
+    /// A module out of its bag, in a room.
+    fn default() -> Self {
+        Self {
+            baud: 9600.0,
+            loss: 0.01,
+            holds: 20_000,
+            says: true,
+            seed: 0,
+        }
+    }
+}
+
+/// Packets on their way in one direction.
+#[derive(Debug, Default)]
+struct Flight {
+    /// Each with the cycle at which it arrives.
+    packets: VecDeque<(u64, Vec<u8>)>,
+}
+
+impl Flight {
+    fn send(&mut self, bytes: &[u8], now: u64, air: Air, random: &mut fastrand::Rng) {
+        for packet in bytes.chunks(PACKET) {
+            let delay = DELAY.start + random.f64() * (DELAY.end - DELAY.start);
+            let last = self.packets.back().map_or(0, |(due, _)| *due);
+            let due = last.max(now + (delay * CYCLES_PER_MS as f64) as u64);
+            if random.f64() >= air.loss {
+                self.packets.push_back((due, packet.to_vec()));
+            }
+        }
+    }
+
+    fn arrive(&mut self, now: u64) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        while self.packets.front().is_some_and(|(due, _)| *due <= now) {
+            bytes.extend(self.packets.pop_front().into_iter().flat_map(|it| it.1));
+        }
+        bytes
+    }
+
+    /// Ends the flight: of the next packet some bytes arrive, of the others none.
+    fn cut(&mut self, random: &mut fastrand::Rng) -> Vec<u8> {
+        let packets = std::mem::take(&mut self.packets);
+        let mut next = packets.into_iter().next().unwrap_or_default().1;
+        next.truncate(random.usize(..=next.len()));
+        next
+    }
+}
+
+/// A module, and the air to a phone.
+#[derive(Debug)]
+pub struct Radio {
+    air: Air,
+    random: fastrand::Rng,
+    to_uno: Flight,
+    to_phone: Flight,
+    /// The chip's bytes that wait for a packet, and the cycle of the first.
+    gathered: (Vec<u8>, u64),
+    /// The cycle of the next end of the link, or of its next beginning.
+    turns: Option<u64>,
+    in_reach: bool,
+    has_left: bool,
+}
+
+impl Radio {
+    /// A module with a link to a phone.
+    #[must_use]
+    pub fn new(air: Air) -> Self {
+        let mut radio = Self {
+            air,
+            random: fastrand::Rng::with_seed(air.seed),
+            to_uno: Flight::default(),
+            to_phone: Flight::default(),
+            gathered: (Vec::new(), 0),
+            turns: None,
+            in_reach: true,
+            has_left: false,
+        };
+        radio.turns = radio.holds(0);
+        radio
+    }
+
+    /// True while the link is there.
+    #[must_use]
+    pub fn in_reach(&self) -> bool {
+        self.in_reach
+    }
+
+    /// The rate of the module's serial line, baud.
+    #[must_use]
+    pub fn baud(&self) -> f64 {
+        self.air.baud
+    }
+
+    /// Sends the phone's bytes at a cycle of the chip. Out of reach they are lost.
+    pub fn write(&mut self, bytes: &[u8], now: u64) {
+        if self.in_reach {
+            self.to_uno.send(bytes, now, self.air, &mut self.random);
+        }
+    }
+
+    /// Ends the link for good: the phone leaves.
+    pub fn leave(&mut self, now: u64) {
+        self.has_left = true;
+        self.turns = self.in_reach.then_some(now);
+    }
+
+    /// Passes on what has arrived by now: to the chip, and to the phone, whose bytes it returns.
+    /// To be called every millisecond of the chip's time.
+    pub fn exchange(&mut self, uno: &mut Uno) -> Vec<u8> {
+        uno.set_baud(self.air.baud);
+        let ratio = uno.chip_baud() / self.air.baud;
+        let sent = uno.take_transmitted();
+        let sent: Vec<u8> = sent.iter().map(|it| sample_byte(it.byte, ratio)).collect();
+        let [to_uno, to_phone] = self.pass(&sent, uno.cycle());
+        uno.send(&to_uno);
+        to_phone
+    }
+
+    /// Takes the bytes that the module has heard from the chip, and returns what has arrived by
+    /// now at the chip and at the phone.
+    pub fn pass(&mut self, heard: &[u8], now: u64) -> [Vec<u8>; 2] {
+        if self.turns.is_some_and(|turn| turn <= now) {
+            return self.turn(now);
+        }
+        let to_uno = self.to_uno.arrive(now);
+        if !self.in_reach {
+            return [to_uno, Vec::new()];
+        }
+        let (bytes, since) = &mut self.gathered;
+        if bytes.is_empty() {
+            *since = now;
+        }
+        bytes.extend(heard);
+        if bytes.len() >= PACKET || now >= *since + GATHERS * CYCLES_PER_MS {
+            let bytes = std::mem::take(bytes);
+            self.to_phone.send(&bytes, now, self.air, &mut self.random);
+        }
+        [to_uno, self.to_phone.arrive(now)]
+    }
+
+    /// Ends the link, or begins it again.
+    fn turn(&mut self, now: u64) -> [Vec<u8>; 2] {
+        self.in_reach = !self.in_reach;
+        let mut to_uno = self.to_uno.cut(&mut self.random);
+        if self.air.says {
+            to_uno.extend(if self.in_reach {
+                b"OK+CONN"
+            } else {
+                b"OK+LOST"
+            });
+        }
+        if self.in_reach {
+            self.turns = self.holds(now);
+            return [to_uno, Vec::new()];
+        }
+        self.gathered.0.clear();
+        let back = now + self.random.u64(AWAY) * CYCLES_PER_MS;
+        self.turns = (!self.has_left).then_some(back);
+        [to_uno, self.to_phone.cut(&mut self.random)]
+    }
+
+    fn holds(&mut self, now: u64) -> Option<u64> {
+        let most = 2 * self.air.holds * CYCLES_PER_MS;
+        (most > 0).then(|| now + self.random.u64(..most))
+    }
+}

@@ -1,0 +1,128 @@
+//! The serial line: the bytes that are sent to the UNO, and those that it sends.
+
+use crate::traces::SerialByte;
+use crate::{FREQUENCY, Uno, ffi};
+
+impl Uno {
+    /// The sender's baud rate unless [`Uno::set_baud`] changes it.
+    pub const BAUD: f64 = 115_200.0;
+
+    /// Runs until the UNO has sent a complete line, for at most `limit` cycles.
+    /// True if it has sent one.
+    pub fn run_until_line(&mut self, limit: u64) -> bool {
+        self.run_to(self.cycle() + limit, true)
+    }
+
+    /// Queues bytes for the serial line. They are sent back to back at the baud rate,
+    /// whether or not the firmware keeps up.
+    pub fn send(&mut self, bytes: &[u8]) {
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim copies `len` bytes from
+        // a slice that has them.
+        unsafe { ffi::uno_send(self.raw, bytes.as_ptr(), bytes.len(), false) }
+    }
+
+    /// Sends a line with its end, `\n`, and returns the next complete line that the UNO sends,
+    /// without its end. `None` if it sends none within a second of the chip's time, or if
+    /// the firmware runs no more.
+    ///
+    /// Takes all that the UNO has transmitted, before and meanwhile, as
+    /// [`Uno::take_transmitted`] does. A line that the UNO began earlier counts as the
+    /// answer: with a firmware that sends lines of its own accord, use [`Uno::send`] and
+    /// [`Uno::run_until_line`].
+    pub fn say(&mut self, line: &str) -> Option<String> {
+        self.take_transmitted();
+        self.send(line.as_bytes());
+        self.send(b"\n");
+        if !self.run_until_line(FREQUENCY) {
+            return None;
+        }
+        let bytes = self.take_transmitted();
+        let bytes: Vec<u8> = bytes.iter().map(|byte| byte.byte).collect();
+        let text = String::from_utf8_lossy(&bytes);
+        Some(text.trim_end_matches(['\r', '\n']).to_owned())
+    }
+
+    /// Sends bytes as [`Uno::send`] does, but with the line low in place of each stop bit, as after
+    /// noise or a missed start bit: the byte arrives with a framing error, FE0 in
+    /// UCSR0A. The next byte begins as usual.
+    pub fn send_with_framing_error(&mut self, bytes: &[u8]) {
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim copies `len` bytes from
+        // a slice that has them.
+        unsafe { ffi::uno_send(self.raw, bytes.as_ptr(), bytes.len(), true) }
+    }
+
+    /// Saturates the serial line: repeats `bytes` forever once the queue is
+    /// empty. An empty slice ends the flood.
+    pub fn flood(&mut self, bytes: &[u8]) {
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim copies `len` bytes from
+        // a slice that has them.
+        unsafe { ffi::uno_flood(self.raw, bytes.as_ptr(), bytes.len()) }
+    }
+
+    /// Changes the sender's baud rate, from the next byte on.
+    ///
+    /// # Panics
+    /// Beyond 1 to 10 million.
+    pub fn set_baud(&mut self, baud: f64) {
+        assert!(
+            (1.0..=1e7).contains(&baud),
+            "a sender has 1 to 10 million baud, not {baud}"
+        );
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; with such a rate a bit's cycles
+        // are a number that C can convert.
+        unsafe { ffi::uno_set_baud(self.raw, baud) }
+    }
+
+    /// The present baud rate of the chip's USART, by its registers.
+    #[must_use]
+    pub fn chip_baud(&self) -> f64 {
+        // SAFETY: `raw` is valid, see `Uno`; the shim reads registers.
+        FREQUENCY as f64 / f64::from(unsafe { ffi::uno_cycles_per_bit(self.raw) })
+    }
+
+    /// The number of queued bytes that have not arrived yet.
+    #[must_use]
+    pub fn unsent(&self) -> usize {
+        // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
+        unsafe { ffi::uno_unsent(self.raw) }
+    }
+
+    /// The number of bytes sent so far, a flood's included.
+    #[must_use]
+    pub fn bytes_sent(&self) -> u64 {
+        // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
+        unsafe { ffi::uno_sent(self.raw) }
+    }
+
+    /// The number of bytes lost because the firmware read UDR0 too late. Always 0 in
+    /// [`Fidelity::Stock`](crate::Fidelity::Stock).
+    #[must_use]
+    pub fn overruns(&self) -> u64 {
+        // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
+        unsafe { ffi::uno_overruns(self.raw) }
+    }
+
+    /// The bytes transmitted by the UNO since the last [`Uno::take_transmitted`].
+    #[must_use]
+    pub fn transmitted(&self) -> Vec<SerialByte> {
+        self.list(ffi::uno_transmitted)
+    }
+
+    /// Takes the bytes transmitted since the last call.
+    pub fn take_transmitted(&mut self) -> Vec<SerialByte> {
+        self.take(ffi::uno_transmitted)
+    }
+
+    /// All bytes that have arrived at the UNO, lost bytes included, each with the cycle at
+    /// which it was complete; 0xff in place of one with a framing error.
+    #[must_use]
+    pub fn received_by_uno(&self) -> Vec<SerialByte> {
+        self.list(ffi::uno_received)
+    }
+}
+
+/// The byte that a receiver reads if its bits are `ratio` times as long as the sender's.
+pub(crate) fn sample_byte(byte: u8, ratio: f64) -> u8 {
+    // SAFETY: the shim computes with two numbers.
+    unsafe { ffi::uno_sampled(byte, ratio) }
+}

@@ -1,0 +1,42 @@
+//! Contacts between pins and ground (14.2.1 and 14.2.4).
+
+use simulated_uno::{Pin, Uno, avr_gcc};
+
+use super::{BOTH, marks};
+
+/// Pull-ups at D4, D8 and A1, switched on by writes to PIN as 14.2.2 has it; then the three pins' levels
+/// as bits 0, 1 and 2, again and again.
+const PROGRAM: &str = "
+#include <avr/io.h>
+int main(void) {
+    PIND = 1 << 4; PINB = 1 << 0; PINC = 1 << 1;
+    for (;;) {
+        unsigned char levels = 0;
+        if (PIND & 1 << 4) levels |= 1;
+        if (PINB & 1 << 0) levels |= 2;
+        if (PINC & 1 << 1) levels |= 4;
+        GPIOR0 = levels;
+    }
+}";
+
+#[test]
+fn a_closed_contact_makes_its_pin_low_and_the_pull_up_makes_it_high_again_also_after_a_reset() {
+    let image = avr_gcc::c(PROGRAM);
+    let pins = [Pin::d(4), Pin::d(8), Pin::a(1)];
+    for fidelity in BOTH {
+        let mut uno = Uno::with_image(image.clone(), fidelity);
+        let level = |uno: &mut Uno, closed: u8| {
+            for (bit, pin) in pins.into_iter().enumerate() {
+                uno.set_contact(pin, closed & 1 << bit != 0);
+            }
+            uno.run_cycles(1_000);
+            marks(uno).last().copied()
+        };
+        for _ in 0..2 {
+            for closed in [0, 1, 2, 4, 7, 3, 0, 5] {
+                assert_eq!(level(&mut uno, closed), Some(7 & !closed), "{fidelity:?}");
+            }
+            uno.reset();
+        }
+    }
+}

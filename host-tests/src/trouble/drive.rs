@@ -1,0 +1,140 @@
+//! A person who drives by radio, with the dialogue of `lizard console`, beside a cable from
+//! which others talk.
+
+use std::time::{Duration, Instant};
+
+use fastrand::Rng;
+use lizard_host::session::Session;
+use lizard_host::sim::tour;
+use lizard_robot::Robot;
+use simulated_uno::{Air, Radio, Uno, Wire};
+
+use super::record::{MS, Record, Span};
+use super::setup;
+
+/// The rate of the module and of the cable, baud.
+const BAUD: f64 = 115_200.0;
+
+/// One byte in so many loses its stop bit on the wire.
+const SPOILT: u16 = 300;
+
+/// The talkers on the wire to the board.
+const RADIO: usize = 0;
+const CABLE: usize = 1;
+
+/// A person, a phone, the air, a module, and the wire that it shares with the cable.
+pub struct Drive<'a> {
+    robot: &'a Robot,
+    radio: Radio,
+    wire: Wire,
+    session: Session,
+    /// The moment of cycle 0.
+    began: Instant,
+    random: Rng,
+    /// The phone's part of a line.
+    text: String,
+    /// Until this cycle the phone's screen is locked.
+    locked: u64,
+    has_left: bool,
+}
+
+impl<'a> Drive<'a> {
+    /// A person who has just connected.
+    pub fn new(air: Air, robot: &'a Robot) -> Self {
+        let began = Instant::now();
+        Self {
+            robot,
+            radio: Radio::new(Air { baud: BAUD, ..air }),
+            wire: Wire::new(BAUD),
+            session: Session::new(began, true, false).with_person(),
+            began,
+            random: Rng::with_seed(air.seed),
+            text: String::new(),
+            locked: 0,
+            has_left: false,
+        }
+    }
+
+    /// Ends the drive; the module stays where it is.
+    pub fn leave(&mut self, now: u64) {
+        self.has_left = true;
+        self.radio.leave(now);
+    }
+
+    /// Sends bytes by the cable.
+    pub fn send_by_cable(&mut self, bytes: &[u8], now: u64) {
+        self.wire.write(CABLE, bytes, now);
+    }
+
+    /// Passes on all bytes, with those that the board has just sent. To be called every
+    /// millisecond.
+    pub fn pass(&mut self, said: &[u8], uno: &mut Uno, record: &mut Record) {
+        let now = uno.cycle();
+        let [to_uno, to_phone] = self.radio.pass(said, now);
+        self.wire.write(RADIO, &to_uno, now);
+        for received in self.wire.receive(now) {
+            let is_spoilt = !self.has_left && self.random.u16(..SPOILT) == 0;
+            match received.filter(|_| !is_spoilt) {
+                Some(byte) => uno.send(&[byte]),
+                None => uno.send_with_framing_error(&[0]),
+            }
+        }
+        self.text.push_str(&String::from_utf8_lossy(&to_phone));
+        if self.has_left || self.locked > now {
+            return;
+        }
+        self.talk(now, record);
+        if self.radio.in_reach() {
+            match record.reached.last_mut() {
+                Some(span) if span.end + 2 * MS > now => span.end = now,
+                _ => record.reached.push(Span {
+                    start: now,
+                    end: now,
+                }),
+            }
+        }
+    }
+
+    /// Has the phone read its lines and the person act.
+    fn talk(&mut self, now: u64, record: &mut Record) {
+        while let Some((line, rest)) = self.text.split_once('\n') {
+            self.session.receive(line.trim_end_matches('\r'));
+            self.text = rest.to_owned();
+        }
+        let moment = self.began + Duration::from_nanos(now * 125 / 2);
+        match self.random.u16(..4_000) {
+            0 => self.locked = now + self.random.u64(..3_000) * MS,
+            1 => {
+                self.session.stop(moment);
+                record.stops.push(now);
+            }
+            2..8 => {
+                let line = self.line();
+                self.session.queue(&line);
+            }
+            _ => {}
+        }
+        self.session.overdue(moment);
+        self.session.take_events();
+        while let Some(line) = self.session.next_line(moment) {
+            self.radio.write(format!("{line}\n").as_bytes(), now);
+            record.sent.push((now, line));
+        }
+    }
+
+    /// A line of the person.
+    fn line(&mut self) -> String {
+        let gaits = tour::moving(self.robot);
+        let gait = self.random.choice(&gaits).unwrap_or(&"stand");
+        let gait = gait.replace('-', " ");
+        match self.random.u8(..24) {
+            0 | 1 => setup::pose(&mut self.random, self.robot),
+            2 | 3 => format!("speed {}", self.random.u8(10..=100)),
+            4 => setup::trim(&mut self.random),
+            5 | 6 => "stand".to_owned(),
+            7 => "rest".to_owned(),
+            8..12 => format!("{gait} {}", self.random.u8(1..40)),
+            _ => gait,
+        }
+    }
+}

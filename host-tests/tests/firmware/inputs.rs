@@ -1,0 +1,244 @@
+//! A button and an obstacle switch at the pins of the running image: the patrol of docs/gaits.md.
+
+use std::fs;
+use std::sync::LazyLock;
+
+use lizard_host::board::SimulatedBoard;
+use lizard_host::sim::frame::Frame;
+use lizard_host_tests::{FirmwareBench, root};
+use lizard_robot::{Robot, Travel};
+use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin};
+
+use crate::kept::{power_cycle, pulses_in, widths_now};
+use crate::{SECOND, Status, in_both};
+
+/// The pins of docs/gaits.md.
+const BUTTON: Pin = Pin::a(1);
+const NOSE: Pin = Pin::a(2);
+
+/// The longest that a contact needs to count, ms.
+const DEBOUNCED: u64 = 60;
+
+/// The greatest mean of a frame's computation, cycles.
+const TICK: u64 = 5_000;
+
+/// The paper's robot with the patrol of docs/gaits.md.
+fn robot() -> &'static Robot {
+    static ROBOT: LazyLock<Robot> = LazyLock::new(|| with_pins("A1", "A2"));
+    &ROBOT
+}
+
+/// The same with its contacts at other pins.
+fn with_pins(button: &str, nose: &str) -> Robot {
+    let read = |file: &str| fs::read_to_string(root().join(file)).expect(file);
+    let docs = read("docs/gaits.md");
+    let blocks = docs
+        .split("```toml\n")
+        .filter_map(|block| block.split("```").next());
+    let mut patrols = blocks.filter(|block| block.contains("[input.button]"));
+    let patrol = patrols.next().expect("it is there");
+    let patrol = patrol.replace("\"A1\"", &format!("\"{button}\""));
+    let patrol = patrol.replace("\"A2\"", &format!("\"{nose}\""));
+    let text = format!("{}\n{patrol}", read("robots/paper.toml"));
+    Robot::parse(&text).expect("a robot")
+}
+
+/// This robot a second after power-on.
+fn awake(robot: &Robot, fidelity: Fidelity) -> FirmwareBench {
+    let board = SimulatedBoard::boot(&FirmwareBench::elf(), fidelity, robot).expect("a banner");
+    let mut bench = FirmwareBench::with_board(board);
+    for pin in [BUTTON, NOSE] {
+        bench.uno.set_contact(pin, false);
+    }
+    bench.run_ms(1_000);
+    bench
+}
+
+/// A robot that waits for its button.
+fn waiting(fidelity: Fidelity) -> FirmwareBench {
+    let mut bench = awake(robot(), fidelity);
+    assert_eq!(bench.say("patrol"), "ok patrol");
+    bench.run_ms(500);
+    assert_eq!(notes(&mut bench, 0), ["# waiting for button"]);
+    bench
+}
+
+/// A robot that walks until there is a wall.
+fn walking(fidelity: Fidelity) -> FirmwareBench {
+    let mut bench = waiting(fidelity);
+    press(&mut bench, BUTTON, 200);
+    bench.run_ms(1_000);
+    bench
+}
+
+fn press(bench: &mut FirmwareBench, pin: Pin, ms: u64) {
+    bench.uno.set_contact(pin, true);
+    bench.run_ms(ms);
+    bench.uno.set_contact(pin, false);
+}
+
+/// The lines since this one that no command asked for, but for those of the start.
+fn notes(bench: &mut FirmwareBench, since: usize) -> Vec<String> {
+    let lines = bench.lines()[since..].iter().map(|line| line.text.clone());
+    let starts = ["# lizard", "# calibration"];
+    let is_note = |line: &String| {
+        line.starts_with('#') && !starts.iter().any(|start| line.starts_with(start))
+    };
+    lines.filter(is_note).collect()
+}
+
+/// The way that the contact model goes with these pulses.
+fn way(frames: &[Frame]) -> Travel {
+    let servos = robot().servos();
+    let angles = |frame: &Frame| {
+        let widths = frame.widths();
+        std::array::from_fn(|i| servos[i].neutral + servos[i].sweep(widths[i] as f64 / 16.0))
+    };
+    robot().travel(frames.iter().map(angles))
+}
+
+/// True if the servos stand still for a second.
+fn stands(bench: &mut FirmwareBench) -> bool {
+    let frames = bench.run_for_frames(SECOND);
+    frames.iter().all(|frame| frame.widths == frames[0].widths)
+}
+
+#[test]
+fn switched_on_and_pressed_the_robot_patrols_and_turns_away_from_walls_with_no_computer() {
+    in_both(|fidelity| {
+        let mut bench = awake(robot(), fidelity);
+        bench.say("boot patrol");
+        bench.send("save");
+        bench.run_ms(500);
+        power_cycle(&mut bench);
+        let since = bench.lines().len();
+        bench.run_ms(10_000);
+        let said = notes(&mut bench, since);
+        assert_eq!(said, ["# boot: patrol", "# waiting for button"]);
+        assert!(stands(&mut bench));
+        // The button bounces.
+        for ms in [1, 3, 1, 2, 7, 1, 2] {
+            press(&mut bench, BUTTON, ms);
+            bench.run_ms(1);
+        }
+        press(&mut bench, BUTTON, 150);
+        // The way to the first pose is done after half a second.
+        bench.run_ms(500);
+        let ahead = way(&bench.run_for_frames(3 * SECOND));
+        assert!(ahead.forward > 90.0 && ahead.turn.abs() < 5.0, "{ahead:?}");
+        for _ in 0..2 {
+            let walked = bench.lines().len();
+            bench.uno.set_contact(NOSE, true);
+            let mut away = bench.run_for_frames(2 * SECOND);
+            bench.uno.set_contact(NOSE, false);
+            away.extend(bench.run_for_frames(6 * SECOND));
+            let away = way(&away);
+            assert!(away.turn > 75.0, "it has turned: {away:?}");
+            assert!(notes(&mut bench, walked).is_empty());
+            // No second press: only the wall is waited for.
+            bench.run_ms(2_500);
+            let said = notes(&mut bench, walked);
+            assert_eq!(said, ["# waiting for nose"]);
+            let ahead = way(&bench.run_for_frames(3 * SECOND));
+            assert!(ahead.forward > 90.0 && ahead.turn.abs() < 5.0, "{ahead:?}");
+        }
+        let status = Status::of(&mut bench);
+        assert_eq!((status.text("gait"), status.text("late")), ("patrol", "0"));
+    });
+}
+
+#[test]
+fn a_button_that_is_stuck_or_only_touched_starts_nothing() {
+    in_both(|fidelity| {
+        let mut bench = awake(robot(), fidelity);
+        bench.uno.set_contact(BUTTON, true);
+        bench.say("patrol");
+        bench.run_ms(5_000);
+        assert!(stands(&mut bench));
+        bench.uno.set_contact(BUTTON, false);
+        bench.run_ms(DEBOUNCED);
+        for ms in 1..39 {
+            press(&mut bench, BUTTON, ms);
+            bench.run_ms(41);
+        }
+        assert!(stands(&mut bench));
+        press(&mut bench, BUTTON, DEBOUNCED);
+        assert!(!stands(&mut bench));
+    });
+}
+
+#[test]
+fn a_reset_a_hang_a_rest_and_a_weak_supply_end_the_patrol_and_no_press_begins_it_again() {
+    for begin in [waiting, walking] {
+        type Event = fn(&mut FirmwareBench);
+        let events: [(&str, Event); 5] = [
+            ("stop", |bench| assert_eq!(bench.say("stop"), "ok stop")),
+            ("rest", |bench| assert_eq!(bench.say("rest"), "ok rest")),
+            ("a reset", |bench| {
+                bench.uno.reset();
+                bench.uno.run_ms(4_000);
+            }),
+            ("a hang", |bench| {
+                bench.uno.stall_main(270 * CYCLES_PER_MS);
+                bench.uno.run_ms(4_000);
+            }),
+            ("a weak supply", |bench| {
+                bench.uno.set_supply_mv(3_850.0);
+                bench.run_ms(500);
+                bench.uno.set_supply_mv(5_000.0);
+                bench.run_ms(1_000);
+            }),
+        ];
+        for (name, event) in events {
+            let mut bench = begin(Fidelity::DataSheet);
+            event(&mut bench);
+            let before = widths_now(&mut bench);
+            let since = bench.lines().len();
+            for pin in [BUTTON, NOSE] {
+                bench.uno.set_contact(pin, true);
+                let moved = pulses_in(&mut bench, 1_000);
+                bench.uno.set_contact(pin, false);
+                for (pulses, before) in moved.iter().zip(before) {
+                    let is_still = pulses.iter().all(|pulse| pulse.width == before);
+                    assert!(is_still && pulses.is_empty() == (before == 0), "{name}");
+                }
+            }
+            assert!(notes(&mut bench, since).is_empty(), "{name}");
+        }
+    }
+}
+
+#[test]
+fn contacts_on_the_ports_of_the_servos_leave_every_pulse_as_it_is() {
+    in_both(|fidelity| {
+        let mut bench = awake(&with_pins("D8", "D4"), fidelity);
+        bench.uno.set_contact(Pin::d(8), false);
+        bench.uno.set_contact(Pin::d(4), false);
+        let neutral = widths_now(&mut bench);
+        assert_eq!(bench.say("patrol"), "ok patrol");
+        for frame in bench.run_for_frames(5 * SECOND) {
+            assert_eq!(frame.widths(), neutral);
+        }
+        press(&mut bench, Pin::d(8), 100);
+        bench.run_ms(2_000);
+        assert!(!stands(&mut bench));
+        press(&mut bench, Pin::d(4), 100);
+        bench.run_ms(10_000);
+        assert_eq!(Status::of(&mut bench).text("late"), "0");
+        let said = notes(&mut bench, 0);
+        let expected = ["button", "nose", "nose"].map(|name| format!("# waiting for {name}"));
+        assert_eq!(said, expected);
+    });
+}
+
+#[test]
+fn a_frame_of_a_patrol_takes_no_more_than_five_thousand_cycles_on_average() {
+    for begin in [waiting, walking] {
+        let mut bench = begin(Fidelity::DataSheet);
+        let calls = bench.time_calls("Control::frame", 4_000);
+        let cycles = calls.iter().map(|call| call.leave - call.enter);
+        let mean = cycles.sum::<u64>() / calls.len() as u64;
+        println!("{mean} cycles a frame");
+        assert!(calls.len() >= 190 && mean <= TICK, "{mean}");
+    }
+}

@@ -1,0 +1,156 @@
+//! The rate of the serial line, which the firmware finds by itself.
+
+use fastrand::Rng;
+use lizard_host_tests::FirmwareBench;
+use simulated_uno::{CYCLES_PER_MS, Fidelity};
+
+use crate::pulses::servo_edges;
+use crate::{Status, awake, first_moving_gait, in_both, robot_after};
+
+/// The rates, baud, each with the number of `status` lines until one is answered from a cold start:
+/// one for each rate before it, and one whose end the robot does not trust.
+const RATES: [(f64, u32); 4] = [(115_200.0, 1), (57_600.0, 3), (38_400.0, 4), (9_600.0, 5)];
+
+/// Asks until there is an answer; returns the number of lines that it took.
+pub fn ask_until_answered(bench: &mut FirmwareBench) -> u32 {
+    for asked in 1..=40 {
+        let said = bench.lines().len();
+        bench.uno.send(b"status\n");
+        bench.run_ms(350);
+        if bench.lines()[said..]
+            .iter()
+            .any(|line| line.text.starts_with("ok gait="))
+        {
+            return asked;
+        }
+    }
+    panic!("no answer at any rate");
+}
+
+/// A robot that was found at this rate.
+fn found_at(baud: f64) -> FirmwareBench {
+    let mut bench = awake(Fidelity::DataSheet);
+    bench.uno.set_baud(baud);
+    ask_until_answered(&mut bench);
+    assert!((bench.uno.chip_baud() / baud - 1.0).abs() < 0.022, "{baud}");
+    bench
+}
+
+#[test]
+fn a_robot_answers_at_each_rate_after_a_few_lines_and_then_to_each() {
+    // Stock simavr passes every byte on, whatever its rate.
+    for (baud, lines) in RATES {
+        // Slow and fast senders.
+        for error in [0.985, 1.0, 1.02] {
+            let mut bench = awake(Fidelity::DataSheet);
+            bench.uno.set_baud(baud * error);
+            assert_eq!(ask_until_answered(&mut bench), lines, "{baud} baud");
+            assert_eq!(ask_until_answered(&mut bench), 1);
+        }
+    }
+}
+
+#[test]
+fn the_module_may_be_exchanged_for_one_of_any_other_rate() {
+    for (first, _) in RATES {
+        for (second, _) in RATES {
+            let mut bench = found_at(first);
+            bench.uno.set_baud(second);
+            ask_until_answered(&mut bench);
+        }
+    }
+}
+
+#[test]
+fn opening_the_port_on_usb_returns_to_its_rate_and_a_hang_does_not() {
+    for (baud, _) in RATES {
+        let mut bench = found_at(baud);
+        let resets = bench.uno.resets();
+        bench.uno.stall_main(1_000 * CYCLES_PER_MS);
+        let hangs = bench
+            .uno
+            .run_until(400 * CYCLES_PER_MS, 1_000, |uno| uno.resets() > resets);
+        assert!(hangs, "no reset");
+        bench.uno.stall_main(0);
+        bench.run_ms(1_000);
+        assert_eq!(
+            ask_until_answered(&mut bench),
+            1,
+            "{baud} baud after a hang"
+        );
+        assert_eq!(Status::of(&mut bench).text("reset"), "watchdog");
+        bench.uno.reset();
+        bench.uno.set_baud(115_200.0);
+        bench.run_ms(1_000);
+        assert_eq!(ask_until_answered(&mut bench), 1, "{baud} baud, then USB");
+        bench.uno.set_baud(baud);
+        ask_until_answered(&mut bench);
+        bench.uno.power_cycle();
+        bench.uno.set_baud(115_200.0);
+        bench.run_ms(1_000);
+        assert_eq!(ask_until_answered(&mut bench), 1, "{baud} baud, then power");
+    }
+}
+
+#[test]
+fn no_pulse_moves_by_a_cycle_while_the_rate_is_sought() {
+    in_both(|fidelity| {
+        let gait = first_moving_gait();
+        let [undisturbed, sought] = [false, true].map(|is_sought| {
+            let mut bench = robot_after(&gait, fidelity);
+            bench.uno.take_edges();
+            let mut rng = Rng::with_seed(3);
+            let mut rates = std::collections::BTreeSet::new();
+            for _ in 0..120 {
+                if is_sought {
+                    // Never that of the chip, or the robot would obey.
+                    bench.uno.set_baud(4_800.0);
+                    let line: Vec<u8> = (0..rng.usize(1..30)).map(|_| rng.u8(..)).collect();
+                    bench.uno.send(&line);
+                }
+                bench.run_ms(97);
+                rates.insert(bench.uno.chip_baud() as u64);
+            }
+            assert_eq!(rates.len(), if is_sought { 4 } else { 1 });
+            servo_edges(&bench.uno)
+        });
+        assert!(undisturbed.len() > 4_000);
+        assert!(undisturbed == sought, "an edge is elsewhere");
+    });
+}
+
+#[test]
+fn noise_is_never_obeyed_and_the_robot_is_found_again() {
+    let mut bench = awake(Fidelity::DataSheet);
+    let said = bench.lines().len();
+    let mut rng = Rng::with_seed(5);
+    for _ in 0..400 {
+        bench.uno.set_baud(300.0 + 200_000.0 * rng.f64());
+        let noise: Vec<u8> = (0..rng.usize(1..9)).map(|_| rng.u8(..)).collect();
+        bench.uno.send_with_framing_error(&noise);
+        bench.run_ms(rng.u64(1..60));
+    }
+    let obeyed = bench.lines()[said..]
+        .iter()
+        .any(|line| line.text.starts_with("ok "));
+    assert!(!obeyed);
+    bench.uno.set_baud(115_200.0);
+    assert!(ask_until_answered(&mut bench) <= 8);
+    assert_eq!(Status::of(&mut bench).number("late"), 0.0);
+}
+
+#[test]
+fn a_robot_that_is_driven_keeps_its_rate_beside_others_who_send_at_another() {
+    let gait = first_moving_gait();
+    let mut bench = found_at(9_600.0);
+    for _ in 0..40 {
+        bench.uno.send_with_framing_error(&[0x55; 31]);
+        bench.run_ms(100);
+        assert_eq!(bench.say(""), "err 1 the line came garbled, send it again");
+        assert_eq!(bench.say(&gait), format!("ok {gait}"));
+        bench.uno.send_with_framing_error(&[0x55; 31]);
+        bench.uno.send(b"\n");
+        bench.run_ms(100);
+        assert_eq!(bench.say("stop"), "ok stop");
+    }
+}

@@ -1,0 +1,182 @@
+//! The gaits of `robots/grain.toml` on pads that grip more backward than forward: how fast the
+//! robot is then, and what it costs where a gait goes against the grain.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use lizard_parts::{Assembly, Course, Scene};
+use lizard_robot::{CheckedGait, Ground, Robot, Stance};
+
+use crate::case::Legs;
+use crate::figures::{Answers, Displacement};
+use crate::here;
+use crate::mujoco::{Jobs, MujocoError};
+
+/// The name of the robot's file.
+pub const ROBOT: &str = "grain";
+/// Frictions backward over forward.
+pub const RATIOS: [f64; 5] = [1.0, 1.1, 1.2, 1.5, 2.0];
+/// The gaits of which none is another's mirror image; true for those that push some pads against
+/// the grain.
+pub const GAITS: [(&str, bool); 5] = [
+    ("run", false),
+    ("walk", false),
+    ("back", true),
+    ("left", true),
+    ("arc-left", false),
+];
+/// Largest ratio at which a gait against the grain has to agree. Beyond it the pads that push hold
+/// hardly longer than the one that returns, and a little inertia decides.
+const AGAINST: f64 = 1.5;
+/// The allowed difference between MuJoCo and the model in a cycle: mm, share of the distance, deg.
+const BOUND: (f64, f64, f64) = (3.0, 0.2, 2.0);
+/// Time until a gait repeats from cycle to cycle, s: it starts from rest and has to bring the body
+/// to its speed first.
+const SETTLED: f64 = 1.5;
+
+/// The answers by gait, in the order of [`RATIOS`].
+pub type Grains = BTreeMap<String, Vec<Answers>>;
+
+/// The figures stored in `grains.json`.
+///
+/// # Panics
+/// If `grains.json` is not as [`text`] makes it.
+#[must_use]
+pub fn stored() -> Grains {
+    serde_json::from_str(include_str!("../grains.json")).expect("grains.json")
+}
+
+/// The text of `grains.json`: a line for each walk.
+///
+/// # Panics
+/// Never: they are names and numbers.
+#[must_use]
+pub fn text(grains: &Grains) -> String {
+    let gaits = grains.iter().map(|(gait, answers)| {
+        let lines = answers
+            .iter()
+            .map(|answers| serde_json::to_string(answers).expect("numbers"));
+        format!("{gait:?}: [\n{}\n]", lines.collect::<Vec<_>>().join(",\n"))
+    });
+    format!("{{\n{}\n}}\n", gaits.collect::<Vec<_>>().join(",\n"))
+}
+
+/// The model's answer for level feet; none where it depends on ties.
+#[must_use]
+pub fn model(robot: &Robot, gait: &CheckedGait, ratio: f64) -> Option<Displacement> {
+    let ground = Ground {
+        stance: Stance {
+            stiffness: robot.ground().stance.stiffness,
+            ..Stance::LEVEL
+        },
+        ratio,
+        ..*robot.ground()
+    };
+    let decided = gait.predict(&ground).is_decided();
+    decided.then(|| gait.walked(&ground).travel.into())
+}
+
+/// The answers of model and MuJoCo for every gait and ratio.
+///
+/// # Errors
+/// MuJoCo gives no answer.
+///
+/// # Panics
+/// If the robot does not have the gaits.
+pub fn measure(robot: &Robot) -> Result<Grains, MujocoError> {
+    let assembly = Assembly::new(robot);
+    let name = |gait: &str, place: usize| format!("{gait}-{place}");
+    let gaits = GAITS.map(|(name, _)| robot.gait(name).expect(name));
+    let mut jobs = Jobs::new()?;
+    let scenes = gaits.iter().flat_map(|gait| {
+        let ratios = RATIOS.into_iter().enumerate();
+        ratios.map(|(place, ratio)| scene(name(gait.name(), place), &assembly, gait, ratio))
+    });
+    jobs.add(&assembly, scenes.map(|scene| (Legs::Rigid, scene)))?;
+    let by_mujoco = jobs.start()?.done()?;
+    let grains = gaits.iter().map(|gait| {
+        let answers = RATIOS
+            .into_iter()
+            .enumerate()
+            .map(|(place, ratio)| Answers {
+                model: model(robot, gait, ratio),
+                mujoco: by_mujoco[&name(gait.name(), place)],
+            });
+        (gait.name().to_owned(), answers.collect())
+    });
+    Ok(grains.collect())
+}
+
+fn scene(name: String, assembly: &Assembly, gait: &CheckedGait, ratio: f64) -> Scene {
+    let robot = assembly.robot();
+    let cycles = (SETTLED / gait.period()).ceil() as u32 + 1;
+    Scene {
+        name,
+        ratio,
+        course: Some(Course::of(robot, gait, cycles, 1)),
+        shapes: false,
+        ..Scene::of(assembly)
+    }
+}
+
+/// The sentences for answers of MuJoCo that are too far from the model's.
+#[must_use]
+pub fn disagreements(grains: &Grains) -> Vec<String> {
+    let (mm, share, deg) = BOUND;
+    let mut words = Vec::new();
+    for (gait, against) in GAITS {
+        for (ratio, answers) in RATIOS.into_iter().zip(&grains[gait]) {
+            let Some(model) = answers.model else { continue };
+            let (off, turned) = answers.mujoco.distance_to(&model);
+            let displacement = model.0[0].hypot(model.0[1]);
+            let far = off > mm.max(share * displacement) || turned > deg;
+            if far && !(against && ratio > AGAINST) {
+                words.push(format!(
+                    "{ROBOT}: {gait} (r {ratio}): MuJoCo is {off:.1} mm and {turned:.1} deg from the model"
+                ));
+            }
+        }
+    }
+    words
+}
+
+/// The speeds as a table: the model's and MuJoCo's, mm/s ahead and deg/s counter-clockwise.
+///
+/// # Panics
+/// If a gait is missing.
+#[must_use]
+pub fn table(robot: &Robot, grains: &Grains) -> String {
+    let mut text = format!("{:16}", "model, MuJoCo");
+    for ratio in RATIOS {
+        let head = format!("r = {ratio:.1}");
+        _ = write!(text, "  {head:>13}");
+    }
+    text.push('\n');
+    // The part of the displacement that a gait is for: 0 is ahead, 2 the turn.
+    let rows = GAITS.into_iter().flat_map(|(gait, _)| match gait {
+        "left" => vec![(gait, 2)],
+        "arc-left" => vec![(gait, 0), (gait, 2)],
+        _ => vec![(gait, 0)],
+    });
+    for (gait, part) in rows {
+        let period = robot.gait(gait).expect(gait).period();
+        let unit = if part == 0 { "mm/s" } else { "deg/s" };
+        _ = write!(text, "{gait:10}{unit:>6}");
+        for answers in &grains[gait] {
+            let speed =
+                |displacement: Displacement| format!("{:+.1}", displacement.0[part] / period + 0.0);
+            let model = answers.model.map_or_else(|| "-".to_owned(), speed);
+            _ = write!(text, "  {model:>6} {:>6}", speed(answers.mujoco));
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// Stores the answers.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn store(grains: &Grains) -> std::io::Result<()> {
+    std::fs::write(here().join("grains.json"), text(grains))
+}

@@ -1,0 +1,226 @@
+//! Servos that cannot follow their pulses: the model with motors, and MuJoCo with the motors of
+//! `lizard mjcf`. Neither has a dead band here.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use lizard_parts::{Assembly, Course, Scene};
+use lizard_robot::Robot;
+
+use crate::figures::{Answers, Displacement};
+use crate::here;
+
+/// The gaits that are walked, and the part of the way that each is for: 0 ahead, 2 turn.
+pub const GAITS: [(&str, usize); 4] = [("walk", 0), ("trot", 0), ("crawl", 0), ("left", 2)];
+/// The allowed difference between the model and MuJoCo, as a share of MuJoCo's way.
+const ALLOWED: f64 = 0.10;
+
+/// The paper's robot with other servos, joints, mass and pads.
+#[derive(Clone, Copy, Debug)]
+pub struct Variant {
+    /// Its name in the table.
+    pub name: &'static str,
+    /// Keys of `[servo]` and of `[joints]`.
+    servo: &'static str,
+    joints: &'static str,
+    /// Friction of each pin of MuJoCo's robot, N mm, instead of the model's `drag`.
+    pins: Option<f64>,
+    /// Mass that it weighs more, g.
+    more: f64,
+    friction: f64,
+    /// Gaits that are further off, with the share that is allowed instead.
+    further: &'static [(&'static str, f64)],
+}
+
+const SG90: Variant = Variant {
+    name: "SG-90",
+    servo: "",
+    joints: "",
+    pins: None,
+    more: 0.0,
+    friction: 0.7,
+    further: &[],
+};
+const COPY: Variant = Variant {
+    name: "copy, 50 g more, friction 1, joints that run easily",
+    servo: "model = \"copy\"",
+    more: 50.0,
+    friction: 1.0,
+    ..SG90
+};
+const STIFF: Variant = Variant {
+    name: "copy, 50 g more, friction 1, stiff joints",
+    joints: "drag = 17.0\nslider = 0.5",
+    ..COPY
+};
+
+impl Variant {
+    /// All of them, in the order of the table.
+    pub const ALL: [Self; 7] = [
+        SG90,
+        COPY,
+        STIFF,
+        Self {
+            name: "the same, but 3 N mm in each pin of MuJoCo's robot",
+            pins: Some(3.0),
+            // The pins of head and tail turn more if a leg returns alone.
+            further: &[("crawl", 0.17)],
+            ..STIFF
+        },
+        Self {
+            name: "the same copy on 4.2 V",
+            servo: "model = \"copy\"\nvolts = 4.2",
+            // The inertia of the legs and the height of the mass centre.
+            further: &[("left", 0.17)],
+            ..STIFF
+        },
+        Self {
+            name: "a rotor of 2 ms",
+            servo: "spin_up_ms = 2.0",
+            // Each pulse throws the foot forward.
+            further: &[("walk", 0.13)],
+            ..SG90
+        },
+        Self {
+            name: "a rotor of 2 ms, and full torque at 1 deg",
+            servo: "spin_up_ms = 2.0\nfull_torque_deg = 1.0",
+            ..SG90
+        },
+    ];
+
+    /// The robot.
+    ///
+    /// # Panics
+    /// If robots/paper.toml does not have the lines that are replaced.
+    #[must_use]
+    pub fn robot(&self) -> Robot {
+        let text = std::fs::read_to_string(here().join("../../robots/paper.toml"));
+        let mut text = text.expect("robots/paper.toml");
+        let own = crate::robot("paper").ground().body.mass;
+        let mut replace = |old: &str, new: &str| {
+            assert!(text.contains(old), "{old}");
+            text = text.replacen(old, new, 1);
+        };
+        replace(
+            "[servo.A1]",
+            &format!(
+                "[joints]\n{}\n[servo]\n{}\ndead_band_us = 0.0\n[servo.A1]",
+                self.joints, self.servo
+            ),
+        );
+        replace(
+            "[ground]",
+            &format!("[ground]\nfriction = {}", self.friction),
+        );
+        replace(
+            &format!("mass = {own:.1}"),
+            &format!("mass = {:.1}", own + self.more),
+        );
+        Robot::parse(&text).expect(self.name)
+    }
+
+    /// MuJoCo's second cycle of a gait of [`Variant::robot`].
+    ///
+    /// # Panics
+    /// If the robot has no such gait.
+    #[must_use]
+    pub fn scene(&self, name: &str, assembly: &Assembly, gait: &str) -> Scene {
+        let gait = assembly.robot().gait(gait).expect(gait);
+        let mut scene = Scene {
+            name: name.to_owned(),
+            course: Some(Course::of(assembly.robot(), gait, 2, 1)),
+            shapes: false,
+            ..Scene::of(assembly)
+        };
+        if let Some(pins) = self.pins {
+            (scene.pins, scene.motors.joints.drag) = (pins, 0.0);
+        }
+        scene
+    }
+
+    /// The model's second cycle of a gait.
+    ///
+    /// # Panics
+    /// If the robot has no such gait.
+    #[must_use]
+    pub fn model(&self, gait: &str) -> Displacement {
+        let robot = self.robot();
+        let gait = robot.gait(gait).expect(gait);
+        gait.driven(robot.ground(), &robot.motors(), 1.0).into()
+    }
+
+    /// The share by which the model may differ from MuJoCo in a gait.
+    fn allowed(&self, gait: &str) -> f64 {
+        let further = self.further.iter().find(|(of, _)| *of == gait);
+        further.map_or(ALLOWED, |(_, share)| *share)
+    }
+
+    /// The sentence for a gait in which the model differs from MuJoCo too much.
+    #[must_use]
+    pub fn disagreement(&self, gait: &str, answers: &Answers) -> Option<String> {
+        let (_, part) = GAITS.into_iter().find(|(name, _)| *name == gait)?;
+        let [model, mujoco] = [answers.model?, answers.mujoco].map(|way| way.0[part]);
+        let off = model / mujoco - 1.0;
+        (off.abs() > self.allowed(gait)).then(|| {
+            let percent = 100.0 * off;
+            format!("the model has {model:.1}, MuJoCo {mujoco:.1}: {percent:+.0} %")
+        })
+    }
+}
+
+/// The answers by variant and gait.
+pub type Servos = BTreeMap<String, BTreeMap<String, Answers>>;
+
+/// The figures stored in `servos.json`.
+///
+/// # Panics
+/// If `servos.json` is not as [`text`] makes it.
+#[must_use]
+pub fn kept() -> Servos {
+    serde_json::from_str(include_str!("../servos.json")).expect("servos.json")
+}
+
+/// The text of `servos.json`: a line for each walk.
+///
+/// # Panics
+/// Never: they are names and numbers.
+#[must_use]
+pub fn text(servos: &Servos) -> String {
+    let variants = servos.iter().map(|(variant, gaits)| {
+        let lines = gaits.iter().map(|(gait, answers)| {
+            format!(
+                "{gait:?}: {}",
+                serde_json::to_string(answers).expect("numbers")
+            )
+        });
+        format!(
+            "{variant:?}: {{\n{}\n}}",
+            lines.collect::<Vec<_>>().join(",\n")
+        )
+    });
+    format!("{{\n{}\n}}\n", variants.collect::<Vec<_>>().join(",\n"))
+}
+
+/// The table of all variants, as Markdown; a dash where a walk is missing.
+#[must_use]
+pub fn servos_table(servos: &Servos) -> String {
+    let heads = GAITS.map(|(gait, part)| {
+        let unit = if part == 2 { "deg" } else { "mm" };
+        format!(" {gait}, {unit} |")
+    });
+    let lines = "---|".repeat(GAITS.len());
+    let mut table = format!("| model, MuJoCo |{}\n|---|{lines}\n", heads.concat());
+    for variant in Variant::ALL {
+        _ = write!(table, "| {} |", variant.name);
+        for (gait, part) in GAITS {
+            let answers = servos.get(variant.name).and_then(|of| of.get(gait));
+            let pair = answers.and_then(|of| Some((of.model?.0[part], of.mujoco.0[part])));
+            _ = match pair {
+                Some((model, mujoco)) => write!(table, " {model:.1}, {mujoco:.1} |"),
+                None => write!(table, " - |"),
+            };
+        }
+        table.push('\n');
+    }
+    table
+}

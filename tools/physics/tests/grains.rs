@@ -1,0 +1,96 @@
+//! Tests of the speeds on pads with a grain, as model and MuJoCo last gave them.
+//!
+//! `BLESS_PHYSICS=1` writes them into the page and into the robot's file; `make docs` does it.
+
+use lizard_physics::grains::{self, GAITS, Grains, RATIOS};
+use lizard_physics::{here, robot};
+
+/// Speeds of a gait at a ratio, by the model and by MuJoCo: mm/s ahead or deg/s of turn.
+fn speeds(kept: &Grains, gait: &str, ratio: f64, part: usize) -> Vec<f64> {
+    let period = robot(grains::ROBOT).gait(gait).expect(gait).period();
+    let place = RATIOS.iter().position(|known| *known == ratio);
+    let answers = kept[gait][place.expect("a ratio of the table")];
+    let displacements = answers.model.into_iter().chain([answers.mujoco]);
+    displacements
+        .map(|displacement| displacement.0[part] / period)
+        .collect()
+}
+
+/// Replaces or compares the text of a file between two others.
+fn block(path: &str, begin: &str, end: &str, wanted: &str) {
+    let file = here().join("../..").join(path);
+    let text = std::fs::read_to_string(&file).expect(path);
+    let start = text.find(begin).expect(begin) + begin.len();
+    let stop = start + text[start..].find(end).expect(end);
+    let now = format!("{}{wanted}{}", &text[..start], &text[stop..]);
+    if std::env::var_os("BLESS_PHYSICS").is_some() {
+        std::fs::write(&file, now).expect(path);
+    } else {
+        assert_eq!(text, now, "{path} is out of date; run with BLESS_PHYSICS=1");
+    }
+}
+
+#[test]
+fn the_page_and_the_robots_file_have_the_speeds_of_model_and_engine() {
+    let table = grains::table(&robot(grains::ROBOT), &grains::stored());
+    let begin = "<!-- speeds of robots/grain.toml -->\n```text\n";
+    block("docs/gaits.md", begin, "```\n<!-- end -->", &table);
+    let comment: String = table.lines().map(|line| format!("# {line}\n")).collect();
+    let begin = "# leads nowhere.\n#\n";
+    block("robots/grain.toml", begin, "#\n# Fit all", &comment);
+}
+
+#[test]
+fn every_speed_is_stored_as_it_is_read_and_close_to_the_model() {
+    let kept = grains::stored();
+    let text = std::fs::read_to_string(here().join("grains.json")).expect("grains.json");
+    assert_eq!(text, grains::text(&kept));
+    assert_eq!(grains::disagreements(&kept), Vec::<String>::new());
+    for (gait, _) in GAITS {
+        assert_eq!(kept[gait].len(), RATIOS.len(), "{gait}");
+    }
+}
+
+#[test]
+fn the_stored_answers_of_the_model_are_its_present_ones() {
+    let (kept, robot) = (grains::stored(), robot(grains::ROBOT));
+    for (name, _) in GAITS {
+        let gait = robot.gait(name).expect(name);
+        for (ratio, answers) in RATIOS.into_iter().zip(&kept[name]) {
+            let now = grains::model(&robot, gait, ratio);
+            assert_eq!(now.is_some(), answers.model.is_some(), "{name} {ratio}");
+            let Some((was, is)) = answers.model.zip(now) else {
+                continue;
+            };
+            let (mm, deg) = was.distance_to(&is);
+            assert!(mm < 0.05 && deg < 0.05, "{name} {ratio}: {was:?} {is:?}");
+        }
+    }
+}
+
+#[test]
+fn with_a_grain_the_robot_runs_at_90_mm_a_second_and_still_turns() {
+    let kept = grains::stored();
+    assert_eq!(
+        robot(grains::ROBOT).ground().ratio,
+        1.5,
+        "robots/grain.toml"
+    );
+    let run = speeds(&kept, "run", 1.5, 0);
+    assert!(run.len() == 2 && run.iter().all(|mm| *mm > 90.0), "{run:?}");
+    for ratio in RATIOS {
+        let turn = speeds(&kept, "arc-left", ratio, 2);
+        assert!(
+            turn.len() == 2 && turn.iter().all(|deg| *deg > 14.0),
+            "{turn:?}"
+        );
+    }
+    for (gait, part, least) in [("left", 2, 14.0), ("back", 0, 30.0)] {
+        let against = speeds(&kept, gait, 1.5, part);
+        let still = |speed: &f64| speed.abs() > least;
+        assert!(
+            against.len() == 2 && against.iter().all(still),
+            "{against:?}"
+        );
+    }
+}

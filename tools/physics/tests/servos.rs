@@ -1,0 +1,54 @@
+//! Tests of servos that cannot follow, as model and MuJoCo last walked with them.
+//!
+//! `BLESS_PHYSICS=1` writes the table into the page; `make docs` does it.
+
+use lizard_physics::here;
+use lizard_physics::servos::{GAITS, Variant, kept, servos_table, text};
+
+#[test]
+fn a_servo_that_cannot_follow_loses_in_the_model_what_it_loses_in_mujoco() {
+    let kept = kept();
+    let mut count = 0;
+    for variant in Variant::ALL {
+        for (gait, part) in GAITS {
+            let answers = kept[variant.name][gait];
+            let name = variant.name;
+            assert_eq!(variant.disagreement(gait, &answers), None, "{name}, {gait}");
+            let (was, is) = (answers.model.expect("a way"), variant.model(gait));
+            let off = (was.0[part] - is.0[part]).abs();
+            assert!(off < 0.05, "{name}, {gait}: {was:?} {is:?}");
+            // The rule refuses a servo that follows in the model only.
+            let mut lost = answers;
+            lost.mujoco.0[part] /= 2.0;
+            assert!(
+                variant.disagreement(gait, &lost).is_some(),
+                "{name}, {gait}"
+            );
+            count += 1;
+        }
+    }
+    let all: usize = kept.values().map(std::collections::BTreeMap::len).sum();
+    assert_eq!(all, count, "and no others are kept");
+    let file = std::fs::read_to_string(here().join("servos.json")).expect("servos.json");
+    assert_eq!(file, text(&kept));
+}
+
+#[test]
+fn the_page_has_the_ways_of_model_and_mujoco() {
+    let file = here().join("../../docs/judges.md");
+    let page = std::fs::read_to_string(&file).expect("judges.md");
+    let begin = "<!-- servos of robots/paper.toml -->\n";
+    let start = page.find(begin).expect(begin) + begin.len();
+    let end = start + page[start..].find("<!-- end -->").expect("an end");
+    let now = format!(
+        "{}{}{}",
+        &page[..start],
+        servos_table(&kept()),
+        &page[end..]
+    );
+    if std::env::var_os("BLESS_PHYSICS").is_some() {
+        std::fs::write(&file, now).expect("judges.md");
+    } else {
+        assert_eq!(page, now, "run with BLESS_PHYSICS=1");
+    }
+}

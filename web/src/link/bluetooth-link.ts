@@ -1,0 +1,156 @@
+// The link to a board with a Bluetooth LE module on its serial line, by Web Bluetooth. A module passes bytes on in
+// packets, resets no board, and may be out of reach for a while: then this tries to reach it again.
+import { sleep, type Link } from './link';
+
+/** The parts of Web Bluetooth that the page uses; TypeScript's library does not declare them. */
+interface Characteristic extends EventTarget {
+  readonly value?: DataView;
+  readonly properties: { writeWithoutResponse: boolean };
+  startNotifications(): Promise<unknown>;
+  writeValueWithResponse(bytes: Uint8Array): Promise<void>;
+  writeValueWithoutResponse(bytes: Uint8Array): Promise<void>;
+}
+
+interface Service {
+  getCharacteristic(id: number | string): Promise<Characteristic>;
+}
+
+interface Device extends EventTarget {
+  readonly name?: string;
+  readonly gatt: { connect(): Promise<{ getPrimaryService(id: number | string): Promise<Service> }>; disconnect(): void };
+}
+
+interface Bluetooth {
+  getAvailability(): Promise<boolean>;
+  requestDevice(options: { filters: object[]; optionalServices: (number | string)[] }): Promise<Device>;
+}
+
+/** The serial lines that modules offer: the HM-10 and its copies, and Nordic's. */
+const LINES = [
+  { service: 0xffe0, to: 0xffe1, from: 0xffe1 },
+  {
+    service: '6e400001-b5a3-f393-e0a9-e50e24dcca9e',
+    to: '6e400002-b5a3-f393-e0a9-e50e24dcca9e',
+    from: '6e400003-b5a3-f393-e0a9-e50e24dcca9e',
+  },
+];
+/** The beginnings of the names of modules that do not say which service they have. */
+const NAMES = ['HM', 'BT05', 'MLT-BT05', 'CC41', 'AT-09', 'JDY'];
+/** Most bytes of a packet. */
+const PACKET = 20;
+/** Time from one attempt to reach a module to the next, ms. */
+const RETRY = 500;
+
+function bluetooth(): Bluetooth | undefined {
+  return (navigator as Navigator & { bluetooth?: Bluetooth }).bluetooth;
+}
+
+const isApple = /iPhone|iPad/.test(navigator.userAgent) || (navigator.platform === 'MacIntel' && navigator.maxTouchPoints > 1);
+/** What somebody with an iPhone can do; null on another device. */
+export const ON_IPHONE =
+  isApple && !bluetooth() ? 'On an iPhone or iPad neither Safari nor Chrome can reach a robot. The browser Bluefy can, by a Bluetooth LE module.' : null;
+
+/** The reason why this browser reaches no Bluetooth module; null if it can. */
+export function noBluetooth(): string | null {
+  if (bluetooth()) return null;
+  return (
+    ON_IPHONE ??
+    'This browser cannot reach a Bluetooth LE module. Chrome and Edge can, on localhost and over https; on Linux only with the flag "Experimental Web Platform features".'
+  );
+}
+
+export class BluetoothLink implements Link {
+  readonly kind = 'radio';
+  onBytes: (bytes: Uint8Array) => void = () => {};
+  onGone: (why: string) => void = () => {};
+  onReach: (isInReach: boolean) => void = () => {};
+  private to: Characteristic | null = null;
+  private packets: Promise<void> = Promise.resolve();
+  private isClosing = false;
+
+  private constructor(private readonly device: Device) {
+    device.addEventListener('gattserverdisconnected', () => void this.lost());
+  }
+
+  get name(): string {
+    return `board at ${this.device.name || 'a Bluetooth module'}`;
+  }
+
+  /** Lets the user pick a module and connects to it; null if the user picks none. Throws a sentence. */
+  static async open(): Promise<BluetoothLink | null> {
+    const radio = bluetooth();
+    if (!radio) throw new Error(noBluetooth() ?? '');
+    if (!(await radio.getAvailability())) throw new Error('This machine has no Bluetooth, or it is switched off.');
+    const filters = [...LINES.map(({ service }) => ({ services: [service] })), ...NAMES.map((namePrefix) => ({ namePrefix }))];
+    let device: Device;
+    try {
+      device = await radio.requestDevice({ filters, optionalServices: LINES.map(({ service }) => service) });
+    } catch (error) {
+      // The error of a chooser closed without a choice. Without the system's permission a browser gives the same
+      // error with another message.
+      const isChoice = error instanceof DOMException && error.name === 'NotFoundError';
+      if (isChoice && !/permission|denied/i.test(error.message)) return null;
+      throw new Error(`The browser may not use Bluetooth: allow it in its settings, and in those of the system. It says: ${String(error)}`);
+    }
+    const link = new BluetoothLink(device);
+    await link.reach();
+    return link;
+  }
+
+  private async reach(): Promise<void> {
+    const server = await this.device.gatt.connect();
+    for (const line of LINES) {
+      const service = await server.getPrimaryService(line.service).catch(() => null);
+      if (!service) continue;
+      const from = await service.getCharacteristic(line.from);
+      from.addEventListener('characteristicvaluechanged', () => {
+        const { value } = from;
+        if (value) this.onBytes(new Uint8Array(value.buffer, value.byteOffset, value.byteLength).slice());
+      });
+      await from.startNotifications();
+      this.to = line.to === line.from ? from : await service.getCharacteristic(line.to);
+      return;
+    }
+    this.device.gatt.disconnect();
+    throw new Error(`${this.device.name ?? 'The module'} has no serial line: neither the service FFE0 of an HM-10 nor Nordic's.`);
+  }
+
+  private async lost(): Promise<void> {
+    // A module that was never reached is reported by `open`.
+    if (this.isClosing || !this.to) return;
+    this.to = null;
+    this.onReach(false);
+    while (!this.isClosing && !this.to) {
+      await sleep(RETRY);
+      await this.reach().catch(() => {});
+    }
+    if (!this.isClosing) this.onReach(true);
+  }
+
+  write(bytes: Uint8Array): Promise<void> {
+    return (this.packets = this.packets.catch(() => {}).then(() => this.send(bytes)));
+  }
+
+  private async send(bytes: Uint8Array): Promise<void> {
+    for (let at = 0; at < bytes.length; at += PACKET) {
+      const { to } = this;
+      if (!to) throw new Error(`the ${this.name} is out of reach`);
+      const packet = bytes.slice(at, at + PACKET);
+      await (to.properties.writeWithoutResponse ? to.writeValueWithoutResponse(packet) : to.writeValueWithResponse(packet));
+    }
+  }
+
+  /** No radio resets a board. */
+  async reset(): Promise<void> {}
+
+  wait(ms: number): Promise<void> {
+    return sleep(ms);
+  }
+
+  async close(): Promise<void> {
+    this.isClosing = true;
+    // What was sent goes out before the link ends.
+    await Promise.race([this.packets.catch(() => {}), sleep(RETRY)]);
+    this.device.gatt.disconnect();
+  }
+}

@@ -1,0 +1,95 @@
+// A drive as the steps of a routine, by what the robot said: its gaits, its pace, the phase of its cycle. Moments are
+// in seconds of `Session.clock`.
+import type { Gait } from '../robot';
+import { GAITS, WORDS } from '../words';
+
+/** Shortest pause that becomes a step, s: a thumb that changes direction lets go for a moment. */
+const PAUSE = 0.5;
+/** Shortest step, s. */
+const SHORTEST = 0.1;
+/** Error of a count of cycles since the last phase that the robot said. */
+const SLACK = 0.05;
+/** A phase is that of the cycle nearest to the count, which is rather too high: a gait begins with the way to its first pose. */
+const TOO_LOW = 0.4;
+/** What the robot does between gaits; a routine has only `stand` for it. */
+const PAUSES: string[] = ['', GAITS.stand, WORDS.stop, WORDS.pose, WORDS.center];
+
+interface Part {
+  name: string;
+  /** Whole cycles; 0 for a part that is measured by time. */
+  cycles: number;
+  seconds: number;
+}
+
+const isPause = ({ name }: Part) => name === GAITS.stand;
+/** True for what is too short to be a step. */
+const isShort = (part: Part) => part.seconds < (isPause(part) ? PAUSE : SHORTEST);
+
+export class Recorder {
+  private parts: Part[] = [];
+  /** Cycles of the gait until the moment `counted`. */
+  private cycles = 0;
+  private counted: number;
+
+  /** Begins with what the robot does and with its pace, percent. */
+  constructor(
+    private readonly gaits: Gait[],
+    private gait: string,
+    private pace: number,
+    private since: number,
+  ) {
+    this.counted = since;
+  }
+
+  /** Takes what the robot does now. */
+  doing(gait: string, at: number): void {
+    if (gait === this.gait) return;
+    this.parts = this.closed(at);
+    [this.gait, this.since, this.counted, this.cycles] = [gait, at, at, 0];
+  }
+
+  /** Takes another pace, percent. */
+  speed(percent: number, at: number): void {
+    this.count(at);
+    this.pace = percent;
+  }
+
+  /** Takes the phase that the robot says of its gait. */
+  phase(said: number, at: number): void {
+    this.count(at);
+    const phase = this.known?.reversed ? (1 - said) % 1 : said;
+    this.cycles = Math.floor(this.cycles + TOO_LOW - phase) + phase;
+  }
+
+  /** The steps until now, from the first gait to the last one. */
+  steps(at: number): string[] {
+    const parts = this.closed(at).filter((part) => !isShort(part));
+    const first = parts.findIndex((part) => !isPause(part));
+    const last = parts.findLastIndex((part) => !isPause(part));
+    const steps = first < 0 ? [] : parts.slice(first, last + 1);
+    return steps.map(({ name, cycles, seconds }) => `${name} ${cycles || `${Number(seconds.toFixed(1))} s`}`);
+  }
+
+  private get known(): Gait | undefined {
+    return this.gaits.find(({ command }) => command === this.gait);
+  }
+
+  private count(at: number): void {
+    const { period } = this.known ?? {};
+    if (period !== undefined) this.cycles += ((at - this.counted) * this.pace) / 100 / period;
+    this.counted = at;
+  }
+
+  /** All parts, with what the robot does until now as the last one. */
+  private closed(at: number): Part[] {
+    this.count(at);
+    const { parts, gait, known } = this;
+    const seconds = at - this.since;
+    const part = PAUSES.includes(gait)
+      ? { name: GAITS.stand, cycles: 0, seconds }
+      : { name: gait, cycles: known ? Math.max(0, Math.floor(this.cycles + SLACK)) : 0, seconds };
+    const before = parts.at(-1);
+    if (!before || !isPause(part) || !isPause(before)) return [...parts, part];
+    return [...parts.slice(0, -1), { ...before, seconds: before.seconds + seconds }];
+  }
+}

@@ -1,0 +1,58 @@
+// The phone as a remote control: the whole screen, lying, with the stick under one thumb and `stop` under the other. A
+// screen that went dark would let go of the robot, so it stays on.
+import { element } from './canvas';
+
+/** A short buzz, ms. */
+const BUZZ = 200;
+
+export class Remote {
+  private readonly button = element('remote');
+  private light: WakeLockSentinel | null = null;
+
+  constructor() {
+    this.button.addEventListener('click', () => void (this.isOn ? this.leave() : this.enter()));
+    // The system's own gesture also ends it.
+    document.addEventListener('fullscreenchange', () => !document.fullscreenElement && this.show(false));
+    // A screen that comes back has forgotten it.
+    document.addEventListener('visibilitychange', () => !document.hidden && this.isOn && void this.keepLight());
+  }
+
+  private get isOn(): boolean {
+    return document.body.classList.contains('remote');
+  }
+
+  /** Tells the hand that the robot has stopped by itself. */
+  buzz(): void {
+    if (navigator.userActivation?.hasBeenActive) navigator.vibrate?.(BUZZ);
+  }
+
+  private async enter(): Promise<void> {
+    this.show(true);
+    // A browser that has one of these not, such as that of an iPhone, shows the remote all the same.
+    await document.documentElement.requestFullscreen?.().catch(() => {});
+    const { orientation } = screen as Screen & { orientation?: { lock?(to: string): Promise<void> } };
+    await orientation?.lock?.('landscape').catch(() => {});
+    await this.keepLight();
+  }
+
+  private async leave(): Promise<void> {
+    this.show(false);
+    if (document.fullscreenElement) await document.exitFullscreen().catch(() => {});
+  }
+
+  private async keepLight(): Promise<void> {
+    this.light = (await navigator.wakeLock?.request('screen').catch(() => null)) ?? null;
+    if (!this.isOn) this.release();
+  }
+
+  private release(): void {
+    void this.light?.release();
+    this.light = null;
+  }
+
+  private show(isOn: boolean): void {
+    document.body.classList.toggle('remote', isOn);
+    this.button.setAttribute('aria-pressed', String(isOn));
+    if (!isOn) this.release();
+  }
+}

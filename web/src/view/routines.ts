@@ -1,0 +1,310 @@
+// The panel of routines: a view of their steps in the text of robot.toml, and the recorder of a drive.
+import { LatestQuestion } from '../latest';
+import { type Place, type Refused, type RoundPath, type Routine } from '../robot';
+import type { Answer, Question } from '../routines/question';
+import { Recorder } from '../routines/recorder';
+import type { Session } from '../session';
+import { element } from './canvas';
+import type { RobotText } from './robot-text';
+import { NO_BOARD, type Writer } from './writer';
+
+/** A step to begin with. */
+const FIRST = 'stand 1 s';
+/** Least width and height of the path's picture, and the room around the path, mm. */
+const LEAST = 160;
+const RIM = 20;
+
+const round = (value: number) => (Math.round(value) + 0).toFixed(0);
+
+/** The list with the item of one place at another. */
+function moved<T>(list: T[], from: number, to: number): T[] {
+  const rest = list.toSpliced(from, 1);
+  return rest.toSpliced(to, 0, list[from] as T);
+}
+
+export class RoutinesView {
+  private readonly panel = element<HTMLDetailsElement>('routines');
+  private readonly list = element<HTMLOListElement>('routine-steps');
+  private readonly choice = element<HTMLSelectElement>('routine');
+  private readonly name = element<HTMLInputElement>('routine-name');
+  private readonly refusal = element('routine-refusal');
+  private readonly path = element<HTMLElement>('routine-path') as unknown as SVGSVGElement;
+  private routines: Routine[] = [];
+  private recorder: Recorder | null = null;
+  /** The recorded steps until they have a name. */
+  private recorded: string[] = [];
+  /** The step that is dragged, and its place if it is let go now. */
+  private dragged: { from: number; to: number } | null = null;
+  private paths: LatestQuestion<Question, Answer> | null = null;
+
+  /** Takes functions that return the session and the pace in percent, and that send a line. */
+  constructor(
+    private readonly module: WebAssembly.Module,
+    private readonly session: () => Session,
+    private readonly text: RobotText,
+    private readonly pace: () => number,
+    private readonly ask: (line: string) => Promise<void>,
+    private readonly writer: Writer,
+  ) {
+    const on = (id: string, act: () => void) => element(`routine-${id}`).addEventListener('click', act);
+    this.panel.addEventListener('toggle', () => this.show());
+    this.choice.addEventListener('change', () => this.show());
+    on('record', () => this.record());
+    on('keep', () => void this.keep());
+    on('drop', () => this.offer([]));
+    on('add', () => void this.add());
+    on('undo', () => void this.text.back());
+    on('start', () => void this.start());
+    on('write', () => void this.write());
+  }
+
+  /** Takes another robot, which ends a recording. */
+  showRobot(): void {
+    if (this.recorder) this.record();
+  }
+
+  /** Takes what the robot does. */
+  doing(gait: string): void {
+    this.recorder?.doing(gait, this.session().clock);
+    this.tell();
+  }
+
+  /** Takes the robot's pace, percent. */
+  speed(percent: number): void {
+    this.recorder?.speed(percent, this.session().clock);
+  }
+
+  /** Takes the phase of the robot's gait. */
+  phase(phase: number): void {
+    this.recorder?.phase(phase, this.session().clock);
+  }
+
+  /** Shows the routines of the text, if the panel is open. */
+  show(): void {
+    if (!this.panel.open) return;
+    const { value } = this.choice;
+    this.routines = this.session().robot.routines(this.text.draft);
+    this.choice.replaceChildren(...this.routines.map(({ name }) => new Option(name)));
+    if (this.routines.some(({ name }) => name === value)) this.choice.value = value;
+    this.choice.disabled = this.routines.length === 0;
+    this.dragged = null;
+    this.showSteps();
+    this.predict();
+  }
+
+  /** Predicts the path of the steps as they are shown. */
+  predict(): void {
+    if (!this.panel.open) return;
+    const { shown } = this;
+    if (!shown) return this.draw(null);
+    const { robot, floor, servos } = this.session();
+    this.paths ??= new LatestQuestion(new Worker(new URL('../routines/worker.ts', import.meta.url), { type: 'module' }), this.module, (path: Answer) => this.draw(path));
+    this.paths.ask({ toml: robot.putSteps(this.text.draft, shown).text, floor, servos, routine: shown.name });
+  }
+
+  private say(text: string): void {
+    element('routine-said').textContent = text;
+  }
+
+  /** The chosen routine, with its steps in the order in which they are dragged. */
+  private get shown(): Routine | null {
+    const chosen = this.routines.find(({ name }) => name === this.choice.value);
+    if (!chosen || !this.dragged) return chosen ?? null;
+    return { ...chosen, steps: moved(chosen.steps, this.dragged.from, this.dragged.to) };
+  }
+
+  private record(): void {
+    const { description, gait, clock } = this.session();
+    const steps = this.recorder?.steps(clock) ?? null;
+    this.recorder = steps ? null : new Recorder(description.gaits, gait, this.pace(), clock);
+    const button = element('routine-record');
+    button.setAttribute('aria-pressed', String(!steps));
+    button.textContent = steps ? 'Record a drive' : 'Stop recording';
+    this.offer(steps ?? []);
+    if (steps?.length === 0) this.say('Nothing is recorded: the robot has not walked.');
+    this.tell();
+  }
+
+  /** Says the steps that are recorded so far. */
+  private tell(): void {
+    if (this.recorder) this.say(`Recording: ${this.recorder.steps(this.session().clock).join(', ') || 'drive now'}`);
+  }
+
+  /** Offers recorded steps to be kept by a name. */
+  private offer(steps: string[]): void {
+    this.recorded = steps;
+    element('routine-recorded').hidden = steps.length === 0;
+    this.say(steps.length === 0 ? '' : `Recorded: ${steps.join(', ')}`);
+    if (steps.length === 0) return;
+    const taken = new Set(this.session().robot.routines(this.text.draft).map(({ name }) => name));
+    const names = ['patrol', ...Array.from(taken, (_, n) => `patrol-${n + 2}`)];
+    this.name.value = names.find((name) => !taken.has(name)) ?? '';
+    this.name.select();
+  }
+
+  private async keep(): Promise<void> {
+    const name = this.name.value.trim().replaceAll(' ', '-');
+    const { draft } = this.text;
+    const { robot } = this.session();
+    if (robot.routines(draft).some((routine) => routine.name === name)) return this.say(`${name} is there already: give it another name.`);
+    const { text, refusal } = robot.putSteps(draft, { name, steps: this.recorded });
+    // A mistake in a step is shown at its block, and then the routine is there.
+    if (refusal && refusal.key !== `routine.${name}.steps`) return this.say(refusal.refused);
+    this.offer([]);
+    await this.text.loadText(text);
+    this.choice.value = name;
+    this.show();
+  }
+
+  private async add(): Promise<void> {
+    const { steps, name } = this.shown ?? { steps: [], name: 'patrol' };
+    await this.change([...steps, steps.at(-1) ?? FIRST], name);
+    this.input(steps.length)?.select();
+  }
+
+  /** Gives the chosen routine other steps. */
+  private async change(steps: string[], name = this.choice.value): Promise<void> {
+    this.say('');
+    await this.text.loadText(this.session().robot.putSteps(this.text.draft, { name, steps }).text);
+  }
+
+  private async move(from: number, to: number): Promise<void> {
+    const { shown } = this;
+    if (!shown || to < 0 || to >= shown.steps.length) return;
+    await this.change(moved(shown.steps, from, to));
+  }
+
+  private async start(): Promise<void> {
+    const session = this.session();
+    // A simulated UNO restarts with each change.
+    if (!session.answers) await session.greeting();
+    await this.ask(this.choice.value.replaceAll('-', ' '));
+  }
+
+  private async write(): Promise<void> {
+    const said = element('routine-said');
+    if (!this.session().isReal) this.say(NO_BOARD);
+    else await this.writer.write('robot', { said, progress: element<HTMLProgressElement>('routine-progress') });
+  }
+
+  private input(at: number): HTMLInputElement | null {
+    return this.list.children[at]?.querySelector('input') ?? null;
+  }
+
+  private showSteps(): void {
+    const { shown, list } = this;
+    const { refused, canUndo } = this.text;
+    const steps = shown?.steps ?? [];
+    while (list.children.length > steps.length) list.lastElementChild?.remove();
+    while (list.children.length < steps.length) list.append(this.block(list.children.length));
+    const wrong = shown && refused?.key === `routine.${shown.name}.steps` ? mistaken(refused) : null;
+    steps.forEach((step, at) => {
+      const [block, input] = [list.children[at], this.input(at)];
+      if (!block || !input) return;
+      if (input.value !== step) input.value = step;
+      block.classList.toggle('held', this.dragged?.to === at);
+      input.setAttribute('aria-invalid', String(wrong === at));
+      if (wrong === at) input.setAttribute('aria-describedby', this.refusal.id);
+      else input.removeAttribute('aria-describedby');
+    });
+    this.refusal.hidden = refused === null;
+    this.refusal.textContent = refused?.refused ?? '';
+    if (wrong !== null) list.children[wrong]?.append(this.refusal);
+    else list.after(this.refusal);
+    element<HTMLButtonElement>('routine-undo').disabled = !canUndo;
+    for (const name of ['start', 'write']) element<HTMLButtonElement>(`routine-${name}`).disabled = !shown || refused !== null;
+    element('routine-none').hidden = shown !== null;
+  }
+
+  /** Makes the block of the step at a place. */
+  private block(at: number): HTMLLIElement {
+    const block = document.createElement('li');
+    const grip = block.appendChild(document.createElement('span'));
+    grip.className = 'grip';
+    grip.setAttribute('aria-hidden', 'true');
+    grip.textContent = '⠿';
+    this.drag(grip, at);
+    const input = block.appendChild(document.createElement('input'));
+    Object.assign(input, { type: 'text', spellcheck: false, autocomplete: 'off', maxLength: 63 });
+    input.setAttribute('aria-label', `Step ${at + 1}`);
+    input.addEventListener('change', () => void this.change(this.shown?.steps.with(at, input.value.trim()) ?? []));
+    const button = (text: string, name: string, act: () => Promise<void>, next: () => number) => {
+      const made = block.appendChild(document.createElement('button'));
+      made.type = 'button';
+      made.textContent = text;
+      made.setAttribute('aria-label', `${name} ${at + 1}`);
+      // The step keeps the focus, wherever it goes.
+      made.addEventListener('click', () => void act().then(() => this.button(next(), name)?.focus()));
+    };
+    button('↑', 'Move up step', () => this.move(at, at - 1), () => Math.max(0, at - 1));
+    button('↓', 'Move down step', () => this.move(at, at + 1), () => Math.min(at + 1, this.list.children.length - 1));
+    button('Copy', 'Copy step', () => this.change(this.shown?.steps.toSpliced(at, 0, this.shown.steps[at] ?? '') ?? []), () => at + 1);
+    button('×', 'Delete step', () => this.change(this.shown?.steps.toSpliced(at, 1) ?? []), () => Math.min(at, this.list.children.length - 1));
+    return block;
+  }
+
+  private button(at: number, name: string): HTMLButtonElement | null {
+    return this.list.children[at]?.querySelector(`[aria-label^="${name}"]`) ?? null;
+  }
+
+  /** Moves the step at a place where a pointer drags its grip; the path follows. */
+  private drag(grip: HTMLElement, at: number): void {
+    const place = (y: number) => [...this.list.children].findLastIndex((block) => block.getBoundingClientRect().top <= y);
+    const to = (to: number) => {
+      if (!this.dragged || this.dragged.to === to) return;
+      this.dragged = { from: at, to };
+      this.showSteps();
+      this.predict();
+    };
+    grip.addEventListener('pointerdown', (event) => {
+      event.preventDefault();
+      grip.setPointerCapture(event.pointerId);
+      this.dragged = { from: at, to: at };
+      this.showSteps();
+    });
+    grip.addEventListener('pointermove', ({ clientY }) => to(Math.max(0, place(clientY))));
+    grip.addEventListener('pointerup', () => {
+      const { dragged } = this;
+      this.dragged = null;
+      if (dragged && dragged.to !== at) void this.move(at, dragged.to);
+      else this.showSteps();
+    });
+    grip.addEventListener('pointercancel', () => {
+      to(at);
+      this.dragged = null;
+      this.showSteps();
+    });
+  }
+
+  private draw(path: RoundPath | null): void {
+    const end = path?.places.at(-1) ?? null;
+    this.path.toggleAttribute('hidden', end === null);
+    element('routine-round').textContent = path && end ? sentence(path, end) : '';
+    if (!path || !end) return;
+    const [xs, ys] = [path.places.map(({ x }) => x), path.places.map(({ y }) => -y)];
+    const side = (values: number[]) => {
+      const [least, most] = [Math.min(...values), Math.max(...values)];
+      const size = Math.max(LEAST, most - least) + 2 * RIM;
+      return { from: (least + most - size) / 2, size };
+    };
+    const [across, down] = [side(xs), side(ys)];
+    this.path.setAttribute('viewBox', `${across.from} ${down.from} ${across.size} ${down.size}`);
+    const part = (name: string) => this.path.querySelector(`.${name}`);
+    part('track')?.setAttribute('d', `M ${xs.map((x, n) => `${x.toFixed(1)} ${ys[n]?.toFixed(1)}`).join(' L ')}`);
+    const size = Math.max(across.size, down.size) / 20;
+    part('start')?.setAttribute('r', String(size / 3));
+    part('end')?.setAttribute('transform', `translate(${end.x} ${-end.y}) rotate(${-end.heading}) scale(${size})`);
+  }
+}
+
+/** The place of the step that a refusal names; null if it names none. */
+function mistaken({ refused }: Refused): number | null {
+  const number = /: step (\d+), /.exec(refused)?.[1];
+  return number === undefined ? null : Number(number) - 1;
+}
+
+function sentence({ seconds, is_cut }: RoundPath, { x, y, heading }: Place): string {
+  const what = is_cut ? `The first ${seconds.toFixed(0)} s of a round` : `A round takes ${seconds.toFixed(1)} s and`;
+  const aside = `${round(Math.abs(x))} mm to the ${x > 0 ? 'right' : 'left'}`;
+  return `${what} ${is_cut ? 'end' : 'ends'} ${round(y)} mm ahead and ${aside} of its start, turned by ${round(heading)}°.`;
+}

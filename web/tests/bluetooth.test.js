@@ -1,0 +1,145 @@
+// A robot off its cable, by Web Bluetooth: modules as they are bought, and what goes wrong with them.
+import assert from 'node:assert/strict';
+import { after, afterEach, before, test } from 'node:test';
+
+import { close, complaints, openWithBluetooth, page, tidy } from './browser.js';
+import { HM10, NORDIC, Radio } from './radio.js';
+
+let radio;
+
+before(openWithBluetooth);
+afterEach(async () => {
+  await tidy();
+  await radio?.end();
+  radio = undefined;
+});
+after(close);
+
+const text = (opened, selector) => opened.locator(selector).innerText();
+const doing = (opened) => opened.evaluate(() => window.lizard.gait);
+const now = (opened) => opened.evaluate(() => performance.now());
+
+async function driven(module) {
+  radio = await Radio.near(module);
+  const { opened } = radio;
+  await radio.pick();
+  await radio.until('it is found', async () => (await text(opened, '#where')).includes(`board at ${module.name} that has not restarted`));
+  await radio.until('it stands', async () => (await doing(opened)) === 'stand');
+  await opened.locator('#gaits button[data-command="walk"]').click();
+  await radio.until('it walks', async () => (await doing(opened)) === 'walk');
+  return opened;
+}
+
+for (const module of [HM10, NORDIC]) {
+  test(`a robot behind a module of the kind ${module.name} is driven and stopped`, async () => {
+    const opened = await driven(module);
+    await radio.run(3000);
+    assert.equal(await doing(opened), 'walk', 'it is kept walking');
+    assert.ok((await now(opened)) - (await opened.evaluate(() => window.moved)) < 100, 'it walks');
+    await opened.keyboard.press('Escape');
+    await radio.until('it stops', async () => (await doing(opened)) === 'stop');
+    assert.ok(Math.max(...radio.packets) <= 20, 'packets of at most 20 bytes');
+    const heard = await opened.evaluate(() => window.heard);
+    assert.ok(heard.indexOf('deadman 901\n') < heard.indexOf('walk\n'), heard);
+    assert.match(heard, /OK\+CONN.*\n/);
+    assert.equal(await opened.locator('#trouble').isVisible(), false);
+    assert.equal(await opened.locator('#setup').isVisible(), false, 'nobody is sent to write firmware by radio');
+    for (const control of ['#flash-write', '#flash-robot', '#flash-file', '#reset']) assert.ok(await opened.locator(control).isDisabled(), control);
+  });
+}
+
+test('a robot whose link is cut stands still, and the page goes on with it by itself', async () => {
+  const opened = await driven(HM10);
+  await radio.run(1000);
+  const at = await now(opened);
+  await radio.cut();
+  await radio.until('it is said', async () => (await text(opened, '#trouble')).includes('The board at HMSoft is out of reach.'));
+  await radio.run(2000);
+  assert.match(await text(opened, '#alarm'), /^No answer from the robot\. [23]\.\d s$/);
+  const last = await opened.evaluate(() => window.moved);
+  assert.ok(last - at <= 901 + 40, `it moved for ${last - at} ms`);
+  await radio.back();
+  await radio.until('it is stopped', async () => (await doing(opened)) === 'stop');
+  await opened.locator('#trouble', { hasText: 'The robot has stopped by itself: no line had reached it for too long.' }).waitFor();
+  assert.ok(!(await text(opened, '#trouble')).includes('out of reach'));
+  assert.equal(await opened.locator('#alarm').isVisible(), false);
+  await opened.locator('#gaits button[data-command="walk"]').click();
+  await radio.until('it walks again', async () => (await doing(opened)) === 'walk');
+});
+
+test('a trim that was set out of reach is shown as the robot has it, once it is heard again', async () => {
+  radio = await Radio.near(HM10);
+  const { opened } = radio;
+  await radio.pick();
+  await radio.until('it stands', async () => (await doing(opened)) === 'stand');
+  await opened.locator('details.calibrate summary').click();
+  const trim = opened.getByRole('group', { name: 'A1' }).getByLabel('trim');
+  await radio.until('it is read', () => trim.isVisible());
+  await radio.cut();
+  await trim.fill('5');
+  await radio.run(4000);
+  await opened.locator('#trouble', { hasText: 'the board at HMSoft is out of reach.' }).waitFor();
+  assert.equal(await trim.inputValue(), '5');
+  await radio.back();
+  await radio.until('it is read again', async () => (await trim.inputValue()) === '0');
+});
+
+test('a stop that was pressed out of reach is the first thing that the robot hears', async () => {
+  const opened = await driven(HM10);
+  await radio.cut();
+  await radio.run(300);
+  await opened.keyboard.press('Escape');
+  const before = (await opened.evaluate(() => window.heard)).length;
+  await radio.run(1000);
+  assert.ok(await opened.evaluate(() => document.body.classList.contains('stopping')));
+  await radio.back();
+  await radio.until('it is stopped', async () => !(await opened.evaluate(() => document.body.classList.contains('stopping'))));
+  const lines = (await opened.evaluate(() => window.heard)).slice(before).split('\n');
+  assert.equal(lines.find((line) => line !== '' && !line.startsWith('OK+')), 'stop', lines.join('|'));
+});
+
+test('a module behind which no robot answers is named', async () => {
+  radio = await Radio.near(HM10, { robot: false });
+  const { opened } = radio;
+  await radio.pick();
+  await radio.until('it is said', async () => (await text(opened, '#trouble')).includes('no robot answers'));
+  assert.match(await text(opened, '#trouble'), /The module is connected, but no robot answers from the board at HMSoft: is its TXD on D0/);
+  assert.equal(await opened.getByRole('button', { name: 'Write firmware and robot to it' }).count(), 0);
+});
+
+test('who picks no module is told of no trouble', async () => {
+  radio = await Radio.near(HM10);
+  const { opened } = radio;
+  await radio.pick(false);
+  await radio.run(500);
+  assert.equal(await opened.locator('#trouble').isVisible(), false);
+  assert.match(await text(opened, '#where'), /simulated UNO/);
+});
+
+test('a machine without Bluetooth says so', async () => {
+  radio = await Radio.near(HM10, { adapter: 'absent' });
+  await radio.opened.locator('#radio').click();
+  await radio.opened.locator('#trouble', { hasText: 'No board is connected: This machine has no Bluetooth, or it is switched off.' }).waitFor();
+});
+
+test('a browser that may not use Bluetooth says where to allow it', async () => {
+  radio = await Radio.near(HM10);
+  const { opened } = radio;
+  await opened.evaluate(() => {
+    navigator.bluetooth.requestDevice = () =>
+      Promise.reject(new DOMException('User denied the browser permission to scan for Bluetooth devices.', 'NotFoundError'));
+  });
+  await opened.locator('#radio').click();
+  await opened.locator('#trouble', { hasText: 'The browser may not use Bluetooth: allow it in its settings' }).waitFor();
+});
+
+test('an iPhone is told which browser can, before anything is pressed', async () => {
+  const opened = await page({ userAgent: 'Mozilla/5.0 (iPhone; CPU iPhone OS 26_0 like Mac OS X) AppleWebKit/605.1.15' }, () => {
+    for (const name of ['serial', 'bluetooth']) Object.defineProperty(navigator, name, { value: undefined });
+    delete Object.getPrototypeOf(navigator).serial;
+  });
+  await opened.locator('#no-serial', { hasText: 'On an iPhone or iPad neither Safari nor Chrome can reach a robot. The browser Bluefy can' }).waitFor();
+  assert.equal(await opened.locator('#radio').isVisible(), false);
+});
+
+test('nothing was complained of', () => assert.deepEqual(complaints, []));

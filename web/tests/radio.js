@@ -1,0 +1,175 @@
+// A Bluetooth module near the browser, by Chromium's own emulation, with a simulated UNO at its serial line. What
+// the page writes comes out of the emulation; what the robot says is given to the page as the event that a
+// notification is, since the emulation has none.
+import { devTools, page, within } from './browser.js';
+
+const uuid = (short) => `0000${short}-0000-1000-8000-00805f9b34fb`;
+export const HM10 = { name: 'HMSoft', service: uuid('ffe0'), to: 'ffe1', characteristics: { [uuid('ffe1')]: ['notify', 'writeWithoutResponse'] } };
+export const NORDIC = {
+  name: 'Bluefruit',
+  service: '6e400001-b5a3-f393-e0a9-e50e24dcca9e',
+  characteristics: { '6e400002-b5a3-f393-e0a9-e50e24dcca9e': ['write'], '6e400003-b5a3-f393-e0a9-e50e24dcca9e': ['notify'] },
+};
+const ADDRESS = '09:09:09:09:09:09';
+const CONFIGURATION = '00002902-0000-1000-8000-00805f9b34fb';
+/** The error of a module that is not there. */
+const NOBODY = 0x3e;
+/** The page's time from one look at the radio to the next, ms. */
+const STEP = 20;
+
+/** Runs in the page before anything else. */
+function inPage() {
+  const { prototype } = BluetoothRemoteGATTCharacteristic;
+  const { startNotifications } = prototype;
+  prototype.startNotifications = function () {
+    window.notifier = this;
+    return startNotifications.call(this);
+  };
+  window.written = 0;
+  for (const name of ['writeValueWithResponse', 'writeValueWithoutResponse']) {
+    const write = prototype[name];
+    prototype[name] = function (bytes) {
+      window.written += 1;
+      return write.call(this, bytes);
+    };
+  }
+  window.say = (bytes) => {
+    if (!window.inReach || !window.notifier) return;
+    const value = new DataView(Uint8Array.from(bytes).buffer);
+    Object.defineProperty(window.notifier, 'value', { value, configurable: true });
+    window.notifier.dispatchEvent(new Event('characteristicvaluechanged'));
+  };
+  window.powerOn = () => {
+    const { link, image } = window.lizard;
+    const board = new link.board.constructor(image, null, null);
+    // A module out of its bag.
+    board.baud = 9600;
+    board.run(16_000 * 4000);
+    const out = [];
+    board.onByte = (byte) => out.push(byte);
+    window.moved = 0;
+    const widths = {};
+    const pins = window.lizard.description.servos.map(({ pin }) => pin);
+    board.onPulse = (pin, rise, width) => {
+      if (pins.includes(pin) && Math.abs(widths[pin] - width) > 16) window.moved = performance.now();
+      widths[pin] = width;
+    };
+    window.heard = '';
+    board.onReceived = (byte) => (window.heard += String.fromCharCode(byte));
+    setInterval(() => {
+      board.run(16_000 * 2);
+      while (out.length > 0) window.say(out.splice(0, 20));
+    }, 2);
+    window.otherBoard = board;
+  };
+}
+
+export class Radio {
+  /** Writes that have come out of the emulation, and their lengths. */
+  packets = [];
+  /** True while the module is in reach. */
+  isInReach = true;
+
+  constructor(opened, root, prompts, module) {
+    Object.assign(this, { opened, root, prompts, module });
+  }
+
+  /** The page with such a module near by; `adapter` is the state of the browser's own radio. */
+  static async near(module, { adapter = 'powered-on', robot = true } = {}) {
+    const opened = await page({}, inPage);
+    const root = await devTools();
+    await root.send('BluetoothEmulation.enable', { state: adapter, leSupported: true });
+    const radio = new Radio(opened, root, await opened.context().newCDPSession(opened), module);
+    if (robot) await opened.evaluate(() => window.powerOn());
+    if (adapter !== 'powered-on') return radio;
+    const { name, service } = module;
+    await root.send('BluetoothEmulation.simulatePreconnectedPeripheral', { address: ADDRESS, name, manufacturerData: [], knownServiceUuids: [service] });
+    // What fails after the page was closed is of no interest; what fails before does not arrive, and the test waits in vain.
+    root.on('BluetoothEmulation.gattOperationReceived', (event) => radio.gatt(event).catch(() => {}));
+    root.on('BluetoothEmulation.characteristicOperationReceived', (event) => radio.characteristic(event).catch(() => {}));
+    await radio.prompts.send('DeviceAccess.enable');
+    return radio;
+  }
+
+  async gatt({ type }) {
+    if (type === 'discovery') await this.offer();
+    if (type === 'connection' && this.isInReach) await this.reached();
+    const code = this.isInReach ? 0 : NOBODY;
+    await this.root.send('BluetoothEmulation.simulateGATTOperationResponse', { address: ADDRESS, type, code }).catch(() => {});
+  }
+
+  /** An HM-10 says so to the robot, without a line end. */
+  async reached() {
+    await this.opened.evaluate(() => {
+      window.inReach = true;
+      window.otherBoard?.send([...'OK+CONN'].map((letter) => letter.charCodeAt(0)));
+    });
+  }
+
+  async offer() {
+    const { serviceId } = await this.root.send('BluetoothEmulation.addService', { address: ADDRESS, serviceUuid: this.module.service });
+    for (const [characteristicUuid, can] of Object.entries(this.module.characteristics)) {
+      const properties = Object.fromEntries(can.map((name) => [name, true]));
+      const { characteristicId } = await this.root.send('BluetoothEmulation.addCharacteristic', { serviceId, characteristicUuid, properties });
+      if (properties.notify) await this.root.send('BluetoothEmulation.addDescriptor', { characteristicId, descriptorUuid: CONFIGURATION });
+    }
+  }
+
+  async characteristic({ characteristicId, type, data, writeType }) {
+    if (type === 'write') {
+      const bytes = [...Buffer.from(data, 'base64')];
+      await this.opened.evaluate((bytes) => window.inReach && window.otherBoard?.send(bytes), bytes);
+      this.packets.push(bytes.length);
+    }
+    if (writeType === 'write-without-response') return;
+    await this.root.send('BluetoothEmulation.simulateCharacteristicOperationResponse', { characteristicId, type, code: 0 }).catch(() => {});
+  }
+
+  /** Lets the page's time go on; what is written arrives in the step in which it was written. */
+  async run(ms) {
+    for (let left = ms; left > 0; left -= STEP) {
+      await this.opened.clock.runFor(STEP);
+      const arrived = async () => {
+        while (this.isInReach && (await this.opened.evaluate(() => window.written)) > this.packets.length) await new Promise((next) => setTimeout(next, 5));
+      };
+      await within('packets to arrive', arrived());
+    }
+  }
+
+  async until(what, isSo) {
+    let waits = true;
+    const goes = async () => {
+      while (waits && !(await isSo())) await this.run(STEP);
+    };
+    await within(what, goes()).finally(() => (waits = false));
+  }
+
+  /** Presses the button and picks the module, or nothing. */
+  async pick(isPicked = true) {
+    const prompted = new Promise((done) => this.prompts.once('DeviceAccess.deviceRequestPrompted', done));
+    await this.opened.locator('#radio').click();
+    const { id, devices } = await within('the browser to ask', prompted);
+    if (isPicked) await this.prompts.send('DeviceAccess.selectPrompt', { id, deviceId: devices[0].id });
+    else await this.prompts.send('DeviceAccess.cancelPrompt', { id });
+  }
+
+  /** Takes the module out of reach. */
+  async cut() {
+    this.isInReach = false;
+    await this.opened.evaluate(() => {
+      window.inReach = false;
+      window.otherBoard.send([...'OK+LOST'].map((letter) => letter.charCodeAt(0)));
+    });
+    await this.root.send('BluetoothEmulation.simulateGATTDisconnection', { address: ADDRESS });
+  }
+
+  async back() {
+    // Writes that failed have not come out.
+    await this.opened.evaluate((count) => (window.written = count), this.packets.length);
+    this.isInReach = true;
+  }
+
+  async end() {
+    await this.root.send('BluetoothEmulation.disable');
+  }
+}

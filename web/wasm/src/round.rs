@@ -1,0 +1,93 @@
+//! The path of one round of a routine, with the page's floor and servos.
+
+use lizard_robot::servo::FORWARD;
+use lizard_robot::{FRAMES_PER_SECOND, Place as Walked, Robot};
+use lizard_twin::Twin;
+use serde::Serialize;
+
+use crate::place::Place;
+
+/// Most frames of a path, two minutes: a step may wait for ever, and a routine may take hours.
+const MOST_FRAMES: usize = 6_000;
+
+/// Frames from one place of the path to the next, a tenth of a second.
+const FRAMES: usize = 5;
+
+/// The path of a round from standing.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RoundPath {
+    /// Places one after another; the last one is the end.
+    pub places: Vec<Place>,
+    /// Time of the path, s.
+    pub seconds: f64,
+    /// True if the round goes on beyond the path.
+    pub is_cut: bool,
+}
+
+impl RoundPath {
+    /// Goes through a routine once, with the floor and the servos of a twin, which does not move; none without the
+    /// routine.
+    #[must_use]
+    pub fn of(twin: &Twin, name: &str) -> Option<Self> {
+        let robot: &Robot = twin.robot();
+        let mut walker = Twin::new(robot, twin.servos());
+        walker.set_ground(*twin.ground());
+        let neutral: [f64; 4] = robot.neutral().into();
+        let mut sweeps = lizard_robot::Round::sweeps(robot, robot.routine(name)?);
+        let (mut places, mut frames, mut place) = (Vec::new(), 0, Walked::START);
+        for sweeps in sweeps.by_ref().take(MOST_FRAMES) {
+            if frames % FRAMES == 0 {
+                places.push(place.into());
+            }
+            frames += 1;
+            let angles = std::array::from_fn(|i| neutral[i] + FORWARD[i] * sweeps[i]);
+            place = walker.push_angles(angles).place;
+        }
+        places.push(place.into());
+        Some(Self {
+            places,
+            seconds: frames as f64 / FRAMES_PER_SECOND,
+            is_cut: sweeps.next().is_some(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use lizard_twin::ServoModel;
+
+    use super::*;
+    use crate::paper::TEXT;
+
+    fn path(steps: &str) -> RoundPath {
+        let text = format!("{TEXT}\n[routine.one]\nsteps = [{steps}]\n");
+        let robot = Robot::parse(&text).expect("right");
+        RoundPath::of(&Twin::new(&robot, ServoModel::Ideal), "one").expect("there")
+    }
+
+    #[test]
+    fn a_path_leads_as_far_as_its_gaits() {
+        let square = path("\"walk 3\", \"left 6\", \"walk 3\"");
+        let Some(Place { x, y, heading }) = square.places.last() else {
+            panic!("no end")
+        };
+        // 34.17 mm and 15.34 deg a cycle; the changes between the gaits move it by some mm, too.
+        let turned = (6.0_f64 * 15.34).to_radians();
+        let ahead = 3.0 * 34.17;
+        assert!((heading - 6.0 * 15.34).abs() < 3.0, "{heading}");
+        assert!((y - ahead * (1.0 + turned.cos())).abs() < 8.0, "{y}");
+        assert!((x + ahead * turned.sin()).abs() < 8.0, "{x}");
+        assert!((12.0..14.0).contains(&square.seconds), "{}", square.seconds);
+        assert!(!square.is_cut);
+    }
+
+    #[test]
+    fn a_path_without_an_end_is_cut() {
+        let long = path("\"walk 2\", \"stand 999 s\"");
+        assert!(long.is_cut);
+        assert_eq!(long.seconds, 120.0);
+        let walked = path("\"walk 2\", \"stand 1 s\"");
+        let end = |path: &RoundPath| path.places.last().expect("an end").y;
+        assert!((end(&long) - end(&walked)).abs() < 0.1);
+    }
+}
