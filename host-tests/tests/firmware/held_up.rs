@@ -195,7 +195,7 @@ fn a_falling_edge_that_is_missed_is_made_when_the_next_slot_begins() {
                     "{what}"
                 );
                 // No other servo misses its turn.
-                let edges = servo_edges(&walk.bench.uno);
+                let edges = servo_edges(&walk.bench);
                 let mut rises = edges.iter().filter(|edge| edge.high).map(|edge| edge.pin);
                 assert!(rises.any(|pin| pin == rise));
                 let next = (1..8).map(|n| pins[(servo + n) % 4]);
@@ -217,7 +217,7 @@ fn after_milliseconds_without_interrupts_no_pulse_is_short_and_none_lasts_beyond
             walk.bench.uno.hold(length);
             walk.bench.run_ms(30);
             let pins = walk.bench.pins();
-            let edges = servo_edges(&walk.bench.uno);
+            let edges = servo_edges(&walk.bench);
             assert_eq!(most_pins_high(&edges), 1);
             for (pin, neutral) in pins.into_iter().zip(neutral_widths()) {
                 for pulse in walk.bench.uno.pulses(pin) {

@@ -3,7 +3,6 @@
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::{Pin, Pulse};
 
-use crate::pulses::servo_edges;
 use crate::robot;
 
 /// The LED.
@@ -21,8 +20,7 @@ pub fn pulses_in(bench: &mut FirmwareBench, ms: u64) -> [Vec<Pulse>; 4] {
 
 /// The pulses of A1 to A4 among the edges that nobody has taken.
 pub fn pulses(bench: &FirmwareBench) -> [Vec<Pulse>; 4] {
-    let edges = servo_edges(&bench.uno);
-    bench.pins().map(|pin| simulated_uno::pulses(&edges, pin))
+    bench.pins().map(|pin| bench.uno.pulses(pin))
 }
 
 /// The widths that the servos get now, cycles; 0 without a pulse.

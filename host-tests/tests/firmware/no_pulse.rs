@@ -56,7 +56,7 @@ fn after_the_switch_no_pulse_begins_the_one_under_way_ends_as_planned_and_the_ti
             walk.bench.uno.poke(switch, 0);
             let frames = Status::of(&mut walk.bench).number("frames");
             walk.bench.run_ms(1000);
-            for edge in crate::pulses::servo_edges(&walk.bench.uno) {
+            for edge in crate::pulses::servo_edges(&walk.bench) {
                 // One cycle is that of the store under way.
                 assert!(!edge.high || edge.cycle <= switched + 1, "{n}: {edge:?}");
             }

@@ -25,7 +25,7 @@ fn edges_after(left: &[(u16, u8)], fidelity: Fidelity) -> Vec<Edge> {
     bench.run_ms(200);
     bench.send("stand");
     bench.run_ms(800);
-    servo_edges(&bench.uno)
+    servo_edges(&bench)
 }
 
 #[test]

@@ -1,17 +1,17 @@
 //! Pulses to the cycle, whatever the serial line does.
 
 use lizard_host::sim::core_run;
-use lizard_host::sim::frame::{FRAME, Frame, servo_pins};
+use lizard_host::sim::frame::{FRAME, Frame};
 use lizard_host_tests::{FirmwareBench, robot};
-use simulated_uno::{Edge, Fidelity, Uno, most_pins_high};
+use simulated_uno::{Edge, Fidelity, most_pins_high};
 
 use crate::{SECOND, Status, awake, end_flood, first_moving_gait, for_each, in_both};
 
 /// The servos' edges among those of the last frames.
-pub fn servo_edges(uno: &Uno) -> Vec<Edge> {
-    let pins = servo_pins(robot());
+pub fn servo_edges(bench: &FirmwareBench) -> Vec<Edge> {
+    let pins = bench.pins();
     let of_servo = |edge: &Edge| pins.contains(&edge.pin);
-    uno.edges().into_iter().filter(of_servo).collect()
+    bench.uno.edges().into_iter().filter(of_servo).collect()
 }
 
 /// Checks the pulses' times: one of each servo in each frame, 20 ms
@@ -24,14 +24,14 @@ fn assert_in_step(bench: &FirmwareBench, frames: &[Frame]) {
             assert_eq!(start, frame.start + servo as u64 * FRAME / 5, "{frame:?}");
         }
     }
-    let edges = servo_edges(&bench.uno);
+    let edges = servo_edges(bench);
     assert_eq!(edges.len(), 8 * frames.len(), "a pulse too many or too few");
     assert_eq!(most_pins_high(&edges), 1);
 }
 
 /// A1's first pulse since power-on, on a bench that has not run for frames yet.
 pub fn first_pulse(bench: &FirmwareBench) -> u64 {
-    let edges = servo_edges(&bench.uno);
+    let edges = servo_edges(bench);
     edges.first().expect("the robot stands").cycle
 }
 

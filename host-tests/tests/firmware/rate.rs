@@ -112,7 +112,7 @@ fn no_pulse_moves_by_a_cycle_while_the_rate_is_sought() {
                 rates.insert(bench.uno.chip_baud() as u64);
             }
             assert_eq!(rates.len(), if is_sought { 4 } else { 1 });
-            servo_edges(&bench.uno)
+            servo_edges(&bench)
         });
         assert!(undisturbed.len() > 4_000);
         assert!(undisturbed == sought, "an edge is elsewhere");
