@@ -51,6 +51,25 @@ fn a_robot_answers_at_each_rate_after_a_few_lines_and_then_to_each() {
 }
 
 #[test]
+fn a_guessed_rate_does_not_obey_what_a_pose_at_another_rate_looks_like() {
+    let mut bench = awake(Fidelity::DataSheet);
+    bench.uno.set_baud(9_600.0);
+    let garbled = "err 1 the line came garbled, send it again";
+    let mut answers = Vec::new();
+    for _ in 0..12 {
+        let said = bench.lines().len();
+        bench.uno.send(b"cal\n");
+        bench.run_ms(350);
+        answers.extend(bench.lines()[said..].iter().map(|line| line.text.clone()));
+    }
+    let at_its_rate = answers.iter().filter(|answer| *answer == garbled).count();
+    assert!(at_its_rate >= 2, "{answers:?}");
+    assert!(answers.iter().all(|answer| !answer.starts_with("ok")));
+    ask_until_answered(&mut bench);
+    assert!(bench.say("cal").starts_with("ok"));
+}
+
+#[test]
 fn the_module_may_be_exchanged_for_one_of_any_other_rate() {
     for (first, _) in RATES {
         for (second, _) in RATES {

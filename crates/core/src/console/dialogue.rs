@@ -111,9 +111,10 @@ impl Console {
     #[inline(never)]
     fn obey(&mut self, control: &mut Control) -> Result<Option<Answer>, Answer> {
         let robot = control.motion().robot();
-        let command = command::parse(self.line.text(), robot);
-        if command.is_ok() {
-            self.finder.note_command();
+        let text = self.line.text();
+        let mut command = command::parse(text, robot);
+        if command.is_ok() && !self.finder.note_command(text.len()) {
+            command = Err(Misread::Garbled);
         }
         let reads = matches!(
             command,

@@ -29,9 +29,9 @@ use list::Mutant;
 /// Time after which tests count as hanging, s.
 const TIMEOUT: u32 = 1_800;
 
-/// Processor time after which a test program counts as hanging, s: one takes two minutes at most,
+/// Processor time after which a test program counts as hanging, s: one takes a minute and a half at most,
 /// whatever else the machine does.
-const CPU_TIMEOUT: u32 = 600;
+const CPU_TIMEOUT: u32 = 240;
 
 /// The root of the repository.
 fn root() -> PathBuf {

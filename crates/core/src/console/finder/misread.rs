@@ -9,6 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::vec::Vec;
 use std::{format, println, vec};
 
+use super::SHORTEST;
 use crate::console::word::Word;
 use crate::numbers::rate::Rate;
 
@@ -402,18 +403,16 @@ fn no_line_ends_at_a_receiver_that_is_faster_than_the_sender_of_any_bytes() {
 }
 
 #[test]
-fn no_command_is_read_at_a_slower_rate_but_one_that_only_prints() {
-    let cal = Text::taken().word("cal");
+fn no_command_that_may_come_first_is_read_at_a_slower_rate() {
+    let mut text = Text::taken();
+    let words = Word::ALL.iter().map(|word| word.text());
+    let is_short = |word: &&str| word.len() < SHORTEST;
+    let short: BTreeSet<usize> = words.filter(is_short).map(|word| text.word(word)).collect();
     for (sender, receiver) in pairs(true) {
-        let may = match (sender, receiver) {
-            // A pose with many digits may look like it.
-            (Rate::Half, Rate::Slowest) => BTreeSet::from([cal]),
-            _ => BTreeSet::new(),
-        };
-        assert_eq!(
-            commands_read(sender, receiver),
-            may,
-            "{sender:?} at {receiver:?}"
+        let read = commands_read(sender, receiver);
+        assert!(
+            read.is_subset(&short),
+            "{sender:?} at {receiver:?}: {read:?}"
         );
     }
 }

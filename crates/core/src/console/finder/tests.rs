@@ -37,7 +37,7 @@ fn text_of_any_kind_and_length_changes_no_rate() {
 fn a_rate_that_has_carried_a_command_stands_31_wrong_bytes_between_two_commands() {
     let mut finder = Finder::new(Rate::Slowest);
     for _ in 0..100 {
-        finder.note_command();
+        assert!(finder.note_command(4));
         assert_eq!(after(&mut finder, &[GARBLED; 31]), None);
     }
     assert_eq!(after(&mut finder, &[GARBLED]), Some(Rate::Fastest));
@@ -53,4 +53,17 @@ fn noise_without_a_pause_changes_the_rate_once_it_pauses() {
     let mut finder = Finder::new(Rate::Fastest);
     assert_eq!(after(&mut finder, &[GARBLED; 10_000]), Some(Rate::Half));
     assert_eq!(after(&mut finder, &[]), None, "and once only");
+}
+
+#[test]
+fn a_rate_that_is_guessed_carries_no_word_of_three_letters_first() {
+    for rate in Rate::ALL {
+        let mut finder = Finder::new(rate);
+        let is_of_usb = rate == Rate::Fastest;
+        assert_eq!(finder.note_command(3), is_of_usb, "{rate:?}");
+        assert!(finder.note_command(4));
+        assert!(finder.note_command(1), "{rate:?} is no guess any more");
+        assert_eq!(after(&mut finder, &[GARBLED; 28]), None);
+        assert_eq!(finder.note_command(3), is_of_usb, "{rate:?} is one again");
+    }
 }
