@@ -158,12 +158,18 @@ impl Radio {
     /// To be called every millisecond of the chip's time.
     pub fn exchange(&mut self, uno: &mut Uno) -> Vec<u8> {
         uno.set_baud(self.air.baud);
-        let ratio = uno.chip_baud() / self.air.baud;
-        let sent = uno.take_transmitted();
-        let sent: Vec<u8> = sent.iter().map(|it| sample_byte(it.byte, ratio)).collect();
-        let [to_uno, to_phone] = self.pass(&sent, uno.cycle());
+        let sent: Vec<u8> = uno.take_transmitted().iter().map(|it| it.byte).collect();
+        let heard = self.hear(&sent, uno.chip_baud());
+        let [to_uno, to_phone] = self.pass(&heard, uno.cycle());
         uno.send(&to_uno);
         to_phone
+    }
+
+    /// The bytes as the module hears them, whose rate may be another than the chip's, baud.
+    #[must_use]
+    pub fn hear(&self, sent: &[u8], chip_baud: f64) -> Vec<u8> {
+        let ratio = chip_baud / self.air.baud;
+        sent.iter().map(|byte| sample_byte(*byte, ratio)).collect()
     }
 
     /// Takes the bytes that the module has heard from the chip, and returns what has arrived by

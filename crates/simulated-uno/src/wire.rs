@@ -13,20 +13,36 @@ use crate::FREQUENCY;
 const FRAME: f64 = 10.0;
 /// The middle of the stop bit, where a receiver is done with a byte.
 const DONE: f64 = 9.5;
+/// Bytes of the fastest talker that a receiver of the slowest rate may take for one, and some more.
+const NEAR: usize = 16;
 
 /// A byte on the wire.
 #[derive(Debug, Clone, Copy)]
 struct Frame {
     /// The cycle at which its start bit begins.
     start: f64,
+    /// Cycles of a bit.
+    bit: f64,
     byte: u8,
 }
 
-/// A wire with two talkers of the same rate.
+impl Frame {
+    fn end(&self) -> f64 {
+        self.start + FRAME * self.bit
+    }
+
+    fn is_high(&self, at: f64) -> bool {
+        let place = ((at - self.start) / self.bit).floor();
+        let bits = 1u32 << 9 | u32::from(self.byte) << 1;
+        !(0.0..FRAME).contains(&place) || bits >> place as u32 & 1 == 1
+    }
+}
+
+/// A wire with two talkers, each with a rate of its own, and a receiver.
 #[derive(Debug)]
 pub struct Wire {
-    /// Cycles of a bit.
-    bit: f64,
+    /// Cycles of a bit of each talker.
+    bits: [f64; 2],
     /// The bytes of each talker, in order.
     talkers: [VecDeque<Frame>; 2],
     /// The cycle from which the receiver looks for the next byte.
@@ -34,11 +50,11 @@ pub struct Wire {
 }
 
 impl Wire {
-    /// A wire on which nobody talks.
+    /// A wire on which nobody talks, with the rates of both talkers, baud.
     #[must_use]
-    pub fn new(baud: f64) -> Self {
+    pub fn new(rates: [f64; 2]) -> Self {
         Self {
-            bit: FREQUENCY as f64 / baud,
+            bits: rates.map(|baud| FREQUENCY as f64 / baud),
             talkers: [VecDeque::new(), VecDeque::new()],
             free: f64::NEG_INFINITY,
         }
@@ -46,30 +62,34 @@ impl Wire {
 
     /// Queues bytes of a talker, 0 or 1, which sends them back to back from this cycle on.
     pub fn write(&mut self, talker: usize, bytes: &[u8], now: u64) {
+        let bit = self.bits[talker];
         for byte in bytes {
-            let last = self.talkers[talker].back();
-            let free = last.map_or(0.0, |frame| frame.start + FRAME * self.bit);
+            let free = self.talkers[talker].back().map_or(0.0, Frame::end);
             let start = free.max(now as f64);
-            self.talkers[talker].push_back(Frame { start, byte: *byte });
+            self.talkers[talker].push_back(Frame {
+                start,
+                bit,
+                byte: *byte,
+            });
         }
     }
 
-    /// The bytes that a receiver has read by now, since the last call; `None` for one without a
-    /// stop bit.
-    pub fn receive(&mut self, now: u64) -> Vec<Option<u8>> {
+    /// The bytes that a receiver of this rate has read by now, since the last call; `None` for one
+    /// without a stop bit.
+    pub fn receive(&mut self, now: u64, baud: f64) -> Vec<Option<u8>> {
+        let bit = FREQUENCY as f64 / baud;
         let mut received = Vec::new();
         while let Some(start) = self.next_fall() {
-            let done = start + DONE * self.bit;
+            let done = start + DONE * bit;
             if done > now as f64 {
                 break;
             }
-            let sampled = |place: u8| self.is_high(start + (f64::from(place) + 1.5) * self.bit);
+            let sampled = |place: u8| self.is_high(start + (f64::from(place) + 1.5) * bit);
             let byte = (0..8).fold(0, |byte, place| byte | u8::from(sampled(place)) << place);
             received.push(sampled(8).then_some(byte));
             self.free = done;
-            let end = FRAME * self.bit;
             for talker in &mut self.talkers {
-                while talker.front().is_some_and(|it| it.start + end <= done) {
+                while talker.front().is_some_and(|it| it.end() <= done) {
                     talker.pop_front();
                 }
             }
@@ -81,26 +101,27 @@ impl Wire {
     fn next_fall(&self) -> Option<f64> {
         let edges = self
             .near()
-            .flat_map(|it| (0..9).map(|place| it.start + f64::from(place) * self.bit));
-        // A little beside the edge, since the sums are rounded.
-        let beside = self.bit / 100.0;
+            .flat_map(|it| (0..9).map(|place| (it.start + f64::from(place) * it.bit, it.bit)));
         edges
-            .filter(|at| *at > self.free)
-            .filter(|at| self.is_high(at - beside) && !self.is_high(at + beside))
+            .filter(|(at, _)| *at > self.free)
+            .filter(|(at, bit)| {
+                // A little beside the edge, since the sums are rounded.
+                let beside = bit / 100.0;
+                self.is_high(at - beside) && !self.is_high(at + beside)
+            })
+            .map(|(at, _)| at)
             .min_by(f64::total_cmp)
     }
 
     /// The bytes that may be on the wire until the next one is read.
     fn near(&self) -> impl Iterator<Item = &Frame> {
-        self.talkers.iter().flat_map(|talker| talker.iter().take(4))
+        self.talkers
+            .iter()
+            .flat_map(|talker| talker.iter().take(NEAR))
     }
 
     fn is_high(&self, at: f64) -> bool {
-        self.near().all(|frame| {
-            let place = ((at - frame.start) / self.bit).floor();
-            let bits = 1u32 << 9 | u32::from(frame.byte) << 1;
-            !(0.0..FRAME).contains(&place) || bits >> place as u32 & 1 == 1
-        })
+        self.near().all(|frame| frame.is_high(at))
     }
 }
 
@@ -112,11 +133,11 @@ mod tests {
     const BYTE: u64 = 1389;
 
     fn received(writes: &[(usize, &[u8], u64)]) -> Vec<Option<u8>> {
-        let mut wire = Wire::new(115_200.0);
+        let mut wire = Wire::new([115_200.0; 2]);
         for (talker, bytes, at) in writes {
             wire.write(*talker, bytes, *at);
         }
-        wire.receive(1_000_000)
+        wire.receive(1_000_000, 115_200.0)
     }
 
     fn whole(text: &[u8]) -> Vec<Option<u8>> {
@@ -152,5 +173,29 @@ mod tests {
     fn a_byte_that_begins_in_anothers_stop_bit_takes_that_away() {
         let writes: [(usize, &[u8], u64); 2] = [(0, &[0xff], 0), (1, &[0x0f], BYTE - 138)];
         assert_eq!(received(&writes)[0], None);
+    }
+
+    #[test]
+    fn each_talker_is_read_at_its_own_rate_alone() {
+        let rates = [9_600.0, 57_600.0];
+        for (talker, rate) in rates.into_iter().enumerate() {
+            let mut wire = Wire::new(rates);
+            wire.write(talker, b"status\n", 500);
+            assert_eq!(
+                wire.receive(500 + 70 * (16_000_000 / rate as u64), rate),
+                whole(b"status\n")
+            );
+            wire.write(talker, b"status\n", 1_000_000);
+            let read = wire.receive(2_000_000, rates[1 - talker]);
+            assert!(!read.is_empty() && !read.contains(&Some(b'\n')), "{read:?}");
+        }
+    }
+
+    #[test]
+    fn a_fast_byte_at_a_slow_receiver_is_one_of_its_bits() {
+        let mut wire = Wire::new([115_200.0; 2]);
+        // Twelve bits of the sender are one of the receiver, whose middle is the sixth or seventh.
+        wire.write(0, &[0x00], 0);
+        assert_eq!(wire.receive(1_000_000, 9_600.0), [Some(0xff)]);
     }
 }

@@ -12,9 +12,6 @@ use simulated_uno::{Air, Radio, Uno, Wire};
 use super::record::{MS, Record, Span};
 use super::setup;
 
-/// The rate of the module and of the cable, baud.
-const BAUD: f64 = 115_200.0;
-
 /// One byte in so many loses its stop bit on the wire.
 const SPOILT: u16 = 300;
 
@@ -44,8 +41,8 @@ impl<'a> Drive<'a> {
         let began = Instant::now();
         Self {
             robot,
-            radio: Radio::new(Air { baud: BAUD, ..air }),
-            wire: Wire::new(BAUD),
+            radio: Radio::new(air),
+            wire: Wire::new([air.baud; 2]),
             session: Session::new(began, true, false).with_person(),
             began,
             random: Rng::with_seed(air.seed),
@@ -69,10 +66,13 @@ impl<'a> Drive<'a> {
     /// Passes on all bytes, with those that the board has just sent. To be called every
     /// millisecond.
     pub fn pass(&mut self, said: &[u8], uno: &mut Uno, record: &mut Record) {
-        let now = uno.cycle();
-        let [to_uno, to_phone] = self.radio.pass(said, now);
+        let (now, chip_baud) = (uno.cycle(), uno.chip_baud());
+        let heard = self.radio.hear(said, chip_baud);
+        let [to_uno, to_phone] = self.radio.pass(&heard, now);
         self.wire.write(RADIO, &to_uno, now);
-        for received in self.wire.receive(now) {
+        // The wire has read them at the chip's rate already.
+        uno.set_baud(chip_baud);
+        for received in self.wire.receive(now, chip_baud) {
             let is_spoilt = !self.has_left && self.random.u16(..SPOILT) == 0;
             match received.filter(|_| !is_spoilt) {
                 Some(byte) => uno.send(&[byte]),

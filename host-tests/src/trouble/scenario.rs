@@ -4,6 +4,7 @@
 use std::fmt;
 
 use fastrand::Rng;
+use lizard_core::numbers::rate::Rate;
 use lizard_host::sim::tour;
 use lizard_robot::Robot;
 use simulated_uno::{Air, CYCLES_PER_MS};
@@ -240,12 +241,13 @@ impl<'a> Script<'a> {
         if self.rng.u8(0..4) == 0 {
             self.add_noise();
         }
+        let rate = *self.rng.choice(&Rate::ALL).unwrap_or(&Rate::Fastest);
         let air = Air {
+            baud: f64::from(rate.baud()),
             loss: *self.rng.choice(&[0.0, 0.01, 0.1]).unwrap_or(&0.0),
             holds: *self.rng.choice(&[0, 1_000, 4_000]).unwrap_or(&0),
             says: self.rng.bool(),
             seed: self.rng.u64(..),
-            ..Air::default()
         };
         self.steps.push(Step::Drive(air));
         self.is_driven = true;
@@ -436,6 +438,7 @@ impl<'a> Script<'a> {
         // Ends the rest of a line that a reset, or the end of a link, has cut off, and spoils it.
         self.send("!");
         self.wait(150);
+        self.steps.push(Step::Find);
         self.say("status");
         let refused = [NOWHERE, "trim 1 90", "speed 5", "nonsense", "limit 2 1 2"];
         let refused = *self.rng.choice(&refused).unwrap_or(&"nonsense");

@@ -18,6 +18,9 @@ use super::step::Step;
 /// The longest wait for an answer, ms.
 const TIMEOUT_MS: u64 = 400;
 
+/// Questions until a robot is found: 5 at the slowest rate, and some that other rates have left.
+const ASKS: u32 = 12;
+
 /// The voltages of a good supply and of a weak one under load, mV.
 const GOOD: f64 = 5_000.0;
 const FALLEN: f64 = 2_400.0;
@@ -117,6 +120,7 @@ impl Stage<'_> {
                     drive.leave(now);
                 }
             }
+            Step::Find => self.find(),
             Step::Noise(cycles) => self.add_noise(*cycles),
             Step::Weak(on) => {
                 self.weak = *on;
@@ -135,6 +139,19 @@ impl Stage<'_> {
             None => self.uno.send(&bytes),
         }
         self.record.sent.push((now, line.to_owned()));
+    }
+
+    /// Asks for the status until it is answered.
+    fn find(&mut self) {
+        for _ in 0..ASKS {
+            let from = self.record.lines.len();
+            self.send("status");
+            self.run_to(self.uno.cycle() + TIMEOUT_MS * CYCLES_PER_MS);
+            let new = &self.record.lines[from..];
+            if new.iter().any(|line| line.text.starts_with("ok gait=")) {
+                return;
+            }
+        }
     }
 
     /// Puts bytes on the line that nobody has sent, half of the time without pause.

@@ -32,6 +32,8 @@ pub enum Step {
     Drive(Air),
     /// That person goes away with the phone.
     Leave,
+    /// Asks for the status until the robot, whose serial line may have another rate, answers.
+    Find,
     /// Puts noise on the serial line for this many cycles.
     Noise(u64),
 }
@@ -51,11 +53,13 @@ impl fmt::Display for Step {
             Self::Weak(true) => write!(f, "supply 2400 mV whenever three servos have pulses"),
             Self::Drive(air) => write!(
                 f,
-                "a person drives by radio: {:.0} % of the packets are lost, the link holds for {} ms{}",
+                "a person drives by radio at {} baud: {:.0} % of the packets are lost, the link holds for {} ms{}",
+                air.baud,
                 100.0 * air.loss,
                 air.holds,
                 if air.says { ", and says so" } else { "" }
             ),
+            Self::Find => write!(f, "ask for the status until there is an answer"),
             Self::Leave => write!(f, "the person goes away"),
             Self::Noise(cycles) => write!(f, "noise on the serial line for {}", Time(*cycles)),
             Self::Weak(false) => write!(f, "a strong supply again"),

@@ -5,27 +5,35 @@
 //! receiver can reach together, so it covers every command with every number, and every
 //! distance between the clocks of both.
 
+use std::borrow::ToOwned;
 use std::collections::{BTreeMap, BTreeSet};
+use std::string::String;
+use std::sync::LazyLock;
 use std::vec::Vec;
-use std::{format, println, vec};
+use std::{format, fs, println, vec};
 
 use super::SHORTEST;
 use crate::console::word::Word;
 use crate::numbers::rate::Rate;
 
-/// The gaits of robot.toml, as lines.
-const GAITS: [&str; 10] = [
-    "stand",
-    "walk",
-    "trot",
-    "crawl",
-    "back",
-    "left",
-    "right",
-    "arc left",
-    "arc right",
-    "look",
-];
+/// The names of all gaits of robots/, and a routine's, as lines.
+static GAITS: LazyLock<BTreeSet<String>> = LazyLock::new(|| {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots");
+    let files = fs::read_dir(folder).expect("the folder of robots");
+    let mut names = BTreeSet::from(["patrol".to_owned()]);
+    for file in files {
+        let text = fs::read_to_string(file.expect("a file").path()).expect("text");
+        let tables = text.lines().filter_map(|line| line.strip_prefix("[gait."));
+        let gaits = tables.filter_map(|table| table.strip_suffix(']'));
+        names.extend(
+            gaits
+                .filter(|name| !name.contains('.'))
+                .map(|name| name.replace('-', " ")),
+        );
+    }
+    assert!(names.len() > 25, "{names:?}");
+    names
+});
 
 /// The sender's clock is off by this share at most.
 const SENDER: f64 = 0.02;
@@ -104,7 +112,7 @@ impl Text {
     /// All commands, as programs and people write them.
     fn sent() -> Self {
         let mut text = Self::new();
-        for gait in GAITS {
+        for gait in &*GAITS {
             let name = text.word(gait);
             let blank = text.lead(&[name], *b" ");
             let counts = text.digits(&[blank], 3);
@@ -114,7 +122,7 @@ impl Text {
         for word in Word::ALL {
             let end = text.word(word.text());
             if *word == Word::Boot {
-                for argument in GAITS.iter().chain(&["rest"]) {
+                for argument in GAITS.iter().map(String::as_str).chain(["rest"]) {
                     let end = text.word(&format!("boot {argument}"));
                     text.ends.insert(end);
                 }
@@ -144,7 +152,7 @@ impl Text {
         let mut text = Self::new();
         for word in GAITS
             .iter()
-            .copied()
+            .map(String::as_str)
             .chain(Word::ALL.iter().map(|word| word.text()))
         {
             let end = text.word(word);
@@ -423,7 +431,7 @@ fn every_command_is_read_at_its_own_rate() {
     for rate in Rate::ALL {
         let read = commands_read(rate, rate);
         let words = Word::ALL.iter().map(|word| word.text());
-        for word in GAITS.into_iter().chain(words) {
+        for word in GAITS.iter().map(String::as_str).chain(words) {
             let end = text.word(word);
             let with_arguments = text.next[end][&b' '];
             let is_read = read.contains(&end) || read.contains(&with_arguments);
