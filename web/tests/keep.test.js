@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { after, afterEach, before, test } from 'node:test';
 
-import { advance, close, complaints, open, standing, tidy, type } from './browser.js';
+import { advance, close, complaints, open, standing, tidy, type, unfold } from './browser.js';
 
 before(open);
 afterEach(tidy);
@@ -11,7 +11,7 @@ after(close);
 
 async function opened(options) {
   const page = await standing(options);
-  await page.locator('#keep summary').click();
+  await unfold(page, '#keep');
   return page;
 }
 

@@ -5,7 +5,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
 
-import { address, close, complaints, open, page as load, standing, tidy } from './browser.js';
+import { address, close, complaints, open, page as load, standing, tidy, unfold } from './browser.js';
 
 const LARGE = new URL('../../robots/large.toml', import.meta.url).pathname;
 let folder;
@@ -24,7 +24,7 @@ const takes = (page, text) => page.waitForFunction((text) => window.lizard?.toml
 
 async function opened(options) {
   const page = await standing(options);
-  await page.locator('#robot-editor summary').click();
+  await unfold(page, '#robot-editor');
   return page;
 }
 
@@ -56,10 +56,10 @@ test('a text that is right becomes the robot, and is undone step by step', async
   }
   assert.equal(await page.evaluate(() => window.lizard.description.gaits.find(({ name }) => name === 'trot').period), 1.5);
   for (const text of [second, first]) {
-    await page.getByRole('button', { name: 'Undo' }).click();
+    await page.locator('#robot-undo').click();
     await takes(page, text);
   }
-  assert.ok(await page.getByRole('button', { name: 'Undo' }).isDisabled());
+  assert.ok(await page.locator('#robot-undo').isDisabled());
 });
 
 test('a file is opened, or dropped anywhere on the page', async () => {
@@ -115,7 +115,7 @@ test('the address is the robot that is shown, at every change', async () => {
   await other.evaluate(() => localStorage.clear());
   await other.goto(await page.evaluate(() => location.href));
   await takes(other, changed);
-  await page.getByRole('button', { name: 'Undo' }).click();
+  await page.locator('#robot-undo').click();
   await page.waitForFunction((plain) => location.href === plain, address());
   await page.locator('#robot').selectOption('large');
   await page.waitForFunction(() => location.hash === '#file=large');

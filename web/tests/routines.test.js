@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
 import { connected, until } from './board.js';
-import { address, advance, close, complaints, open, standing, tidy } from './browser.js';
+import { address, advance, close, complaints, open, standing, tidy, unfold } from './browser.js';
 
 before(open);
 afterEach(tidy);
@@ -13,7 +13,7 @@ const PATROL = ['stand 1 s', 'walk 2', 'left 3', 'look 1'];
 
 const text = (page, selector) => page.locator(selector).innerText();
 const toml = (page) => page.evaluate(() => window.lizard.toml);
-const unfold = (page) => page.locator('#routines summary').click();
+const unfold = (page) => unfold(page, '#routines');
 const gait = (page, name) => page.locator(`#gaits button[data-command="${name}"]`);
 const steps = (page) => page.locator('#routine-steps input').evaluateAll((inputs) => inputs.map(({ value }) => value));
 const step = (page, number) => page.getByLabel(`Step ${number}`, { exact: true });
@@ -187,7 +187,7 @@ test('steps are changed, moved, copied and deleted by keys alone, and each is un
 
 test('the list follows the text, and the text the list, with all its other lines', async () => {
   const page = await opened();
-  await page.locator('#robot-editor summary').click();
+  await unfold(page, '#robot-editor');
   const own = `${await toml(page)}repeat = 3 # rounds\n\n[routine.about]\nsteps = [\n  "left 12", # half a turn\n]\n`;
   await page.locator('#robot-text').fill(own);
   assert.deepEqual(await page.locator('#routine option').allInnerTexts(), ['patrol', 'about'], 'while it is typed');
@@ -356,7 +356,7 @@ test('a board that is unplugged while a routine is written says so, and gets it 
   assert.deepEqual(await written(page), ['walk 1'], 'the routine is still in the page');
   await until(page, 'it may be connected', () => page.locator('#connect').isEnabled());
   await page.evaluate(() => (window.same = true));
-  await page.getByRole('button', { name: 'Connect a board' }).click();
+  await page.locator('#connect').click();
   await until(page, 'it greets', async () => (await text(page, '#where')) === 'on a board on USB with this firmware and no robot in it: write this one');
   await press(page, 'Write it to the board');
   await until(page, 'it is written', async () => /^written and verified/.test(await text(page, '#routine-said')));

@@ -3,6 +3,7 @@ import type { Session } from '../session';
 import { WORDS } from '../words';
 import { calibration, type ServoSettings } from '../status';
 import { element } from './canvas';
+import { isShown } from './rooms';
 
 interface Row {
   trim: HTMLInputElement;
@@ -25,9 +26,8 @@ export class Calibrate {
     for (const word of [WORDS.load, WORDS.factory]) {
       element(`cal-${word}`).addEventListener('click', () => void this.set(word).then(() => this.read()));
     }
-    this.box.closest('details')?.addEventListener('toggle', (event) => {
-      if ((event.target as HTMLDetailsElement).open) void this.read();
-    });
+    const panel = element<HTMLDetailsElement>('calibrate');
+    panel.addEventListener('toggle', () => isShown(panel) && void this.read());
   }
 
   /** Reads the robot's settings and shows them. */

@@ -47,7 +47,6 @@ export class Drive {
     if (!answer) return;
     this.said.hidden = answer.ok;
     this.said.textContent = answer.ok ? '' : `${line}: ${answer.text.replace(/^err \d+ /, '')}`;
-    if (!answer.ok) this.said.scrollIntoView({ block: 'nearest' });
   }
 
   /** Takes another robot. */

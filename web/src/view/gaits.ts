@@ -4,6 +4,7 @@ import type { Session } from '../session';
 import { element } from './canvas';
 import { FasterView } from './faster';
 import { numberInput, putNumber, type Range } from './number';
+import { isShown } from './rooms';
 import { TrialView } from './trial';
 import type { Writer } from './writer';
 
@@ -69,7 +70,7 @@ export class GaitsView {
   /** Shows the session's robot if the panel is open; an edited gait stays. */
   showRobot(): void {
     this.faster.follow();
-    if (!this.panel.open) return;
+    if (!isShown(this.panel)) return;
     const { description, toml } = this.session();
     if (toml === this.toml) return;
     this.toml = toml;

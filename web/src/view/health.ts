@@ -2,10 +2,12 @@
 import type { Session } from '../session';
 import type { Status } from '../status';
 import { element } from './canvas';
+import { isShown } from './rooms';
 
 const PERIOD = 500;
 
 export class Health {
+  private readonly panel = element<HTMLDetailsElement>('power');
   private readonly list = element('health');
   private readonly values = new Map<string, HTMLElement>();
   private asking = false;
@@ -33,6 +35,7 @@ export class Health {
   }
 
   private show(status: Status): void {
+    if (!isShown(this.panel)) return;
     const shown: Record<string, string> = {
       fault: status.fault,
       guard: status.guard,

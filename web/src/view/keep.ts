@@ -10,6 +10,7 @@ import { save } from './download';
 import { short } from './drive';
 import type { Floor } from './floor';
 import { palette } from './palette';
+import { isShown } from './rooms';
 
 /** Film formats, the smallest first. */
 const FILMS = [
@@ -23,6 +24,7 @@ const FILMS = [
 const FRAME = 0.02;
 
 export class Keep {
+  private readonly panel = element<HTMLDetailsElement>('keep');
   private readonly moment = element<HTMLInputElement>('moment');
   private readonly mine = element<HTMLSelectElement>('mine');
   private readonly other = element<HTMLSelectElement>('other');
@@ -136,6 +138,7 @@ export class Keep {
 
   /** Updates the numbers, some times a second. */
   write(): void {
+    if (!isShown(this.panel)) return;
     const { recording, companion } = this;
     if (recording) {
       if (this.isRecording) this.moment.max = String(recording.seconds);
@@ -170,7 +173,6 @@ export class Keep {
     const { recording } = this;
     const from = recording && this.moment.valueAsNumber < recording.seconds - FRAME ? this.moment.valueAsNumber : 0;
     this.playing = on ? { since: performance.now(), from } : null;
-    if (on) this.floor.show();
     this.updateButtons();
   }
 
@@ -249,7 +251,6 @@ export class Keep {
       this.waiting = { mine: this.mine.value, other: this.other.value };
       this.updateButtons();
       this.floor.fitTwoRobots();
-      this.floor.show();
       await this.ask(this.mine.value);
     } catch (error) {
       this.say(`The second robot cannot start: ${sentence(error)}`);

@@ -1,8 +1,10 @@
 // The panel of margins: the distance of the pose from each singularity.
 import type { Description, Scene } from '../robot';
 import { element } from './canvas';
+import { isShown } from './rooms';
 
 export class MarginsView {
+  private readonly panel = element<HTMLDetailsElement>('margins-panel');
   private bars: { row: HTMLElement; fill: HTMLElement; value: HTMLElement; limit: number }[] = [];
 
   robot({ margins }: Description): void {
@@ -25,6 +27,7 @@ export class MarginsView {
   }
 
   draw(scene: Scene | null): void {
+    if (!isShown(this.panel)) return;
     this.bars.forEach(({ row, fill, limit }, n) => {
       const margin = scene?.margins[n]?.value;
       fill.style.transform = `scaleX(${Math.max(0, margin ?? 0).toFixed(3)})`;
@@ -34,6 +37,7 @@ export class MarginsView {
 
   /** Writes the numbers, which costs a layout. */
   write(scene: Scene | null): void {
+    if (!isShown(this.panel)) return;
     this.bars.forEach(({ value }, n) => {
       const text = scene?.margins[n]?.value.toFixed(3) ?? '–';
       if (value.textContent !== text) value.textContent = text;

@@ -3,6 +3,7 @@ import type { DrawnGait, End, Alternative, ReachArea } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
 import { numberInput, putNumber, type Range } from './number';
+import { isShown } from './rooms';
 import { TrialView } from './trial';
 import type { Writer } from './writer';
 
@@ -75,7 +76,7 @@ export class PathView {
 
   /** Shows the session's robot, if the panel is open; a drawn line stays. */
   showRobot(): void {
-    if (!this.panel.open) return;
+    if (!isShown(this.panel)) return;
     const { toml } = this.session();
     if (toml === this.toml) return;
     this.toml = toml;

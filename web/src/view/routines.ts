@@ -5,6 +5,7 @@ import type { Answer, Question } from '../routines/question';
 import { Recorder } from '../routines/recorder';
 import type { Session } from '../session';
 import { element } from './canvas';
+import { isShown } from './rooms';
 import type { RobotText } from './robot-text';
 import { NO_BOARD, type Writer } from './writer';
 
@@ -81,7 +82,7 @@ export class RoutinesView {
 
   /** Shows the routines of the text, if the panel is open. */
   show(): void {
-    if (!this.panel.open) return;
+    if (!isShown(this.panel)) return;
     const { value } = this.choice;
     this.routines = this.session().robot.routines(this.text.draft);
     this.choice.replaceChildren(...this.routines.map(({ name }) => new Option(name)));
@@ -94,7 +95,7 @@ export class RoutinesView {
 
   /** Predicts the path of the steps as they are shown. */
   predict(): void {
-    if (!this.panel.open) return;
+    if (!isShown(this.panel)) return;
     const { shown } = this;
     if (!shown) return this.draw(null);
     const { robot, floor, servos } = this.session();

@@ -3,6 +3,7 @@ import type { Description, Scene } from '../robot';
 import { FREQUENCY } from '../uno/board';
 import { element, surface } from './canvas';
 import { palette, servoColour } from './palette';
+import { isShown } from './rooms';
 
 /** Time span of the scope, cycles: three frames. */
 const SPAN = 0.06 * FREQUENCY;
@@ -19,6 +20,7 @@ function pinName(pin: number): string {
 }
 
 export class ScopeView {
+  private readonly panel = element<HTMLDetailsElement>('pulses');
   private readonly canvas = element<HTMLCanvasElement>('scope');
   private readonly rows: { width: HTMLElement; angle: HTMLElement }[] = [];
   private pins: number[] = [];
@@ -74,6 +76,7 @@ export class ScopeView {
 
   /** Updates the numbers, which costs a layout. */
   write(scene: Scene | null): void {
+    if (!isShown(this.panel)) return;
     this.rows.forEach(({ width, angle }, servo) => {
       const cycles = this.widths[servo];
       const text = !this.hasPulses ? '–' : cycles ? (cycles / CYCLES_PER_US).toFixed(2) : 'none';

@@ -6,6 +6,7 @@ import { Guide } from '../setup/guide';
 import { sentence } from '../trouble';
 import { GAITS, NOTHING_SAVED } from '../words';
 import { element } from './canvas';
+import { reveal } from './rooms';
 import { board } from './setup/board';
 import { drawing, PLACES } from './setup/drawing';
 import { firmware } from './setup/firmware';
@@ -84,7 +85,6 @@ export class Setup implements Tools {
   private begin(): void {
     this.reveal();
     this.enter(this.step);
-    this.box.scrollIntoView({ block: 'start' });
   }
 
   /** True while hands may be in the robot. */
@@ -95,6 +95,7 @@ export class Setup implements Tools {
   private reveal(): void {
     this.session.letGo();
     this.box.hidden = false;
+    reveal(this.box);
     element('setup-open').setAttribute('aria-expanded', 'true');
     element('setup-left').hidden = true;
   }
