@@ -27,6 +27,7 @@ import { Log } from './view/log';
 import { MapsView } from './view/maps';
 import { MarginsView } from './view/margins';
 import { Pace } from './view/pace';
+import { OwnRobot } from './view/own-robot';
 import { PartsView } from './view/parts';
 import { PathView } from './view/path';
 import { Remote } from './view/remote';
@@ -259,7 +260,14 @@ async function start(): Promise<void> {
       troubles.say('robot', sentence(error));
     }
   };
-  choice.onChange(() => void choose());
+  const own = new OwnRobot(now, troubles, (file) => (choice.show(file), choose()));
+  /** Loads another robot, which erases none. */
+  const replace = async (load: () => Promise<unknown>) => {
+    const before = kept.get();
+    await load();
+    own.replaced(before);
+  };
+  choice.onChange(() => void replace(choose));
 
   element('reset').addEventListener('click', () => void session.reset());
 
@@ -301,14 +309,15 @@ async function start(): Promise<void> {
     troubles.say('robot', said, remedy);
   }
   if (await text.fromAddress()) address.begin();
+  if (isAsked) own.replaced(before);
   addEventListener('popstate', ({ state }) => {
     const { hash } = location;
     openRoom(hash);
     // Back and forward change the room, and the robot stays.
     if (state === OWN) return address.follow();
     const file = partsOf(hash).get('file');
-    if (file === null) return void text.fromAddress(hash).then((isRight) => isRight && address.begin());
-    if (choice.show(file)) void choose();
+    if (file === null) return void replace(async () => (await text.fromAddress(hash)) && address.begin());
+    if (choice.show(file)) void replace(choose);
     else missing(file);
   });
   window.lizard = session;

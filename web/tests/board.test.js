@@ -67,7 +67,7 @@ test('a robot is chosen for a board that is connected, and the board stays', asy
   await opened.locator('#robot').selectOption('large');
   await opened.waitForFunction(() => window.lizard.file === 'large');
   assert.match(await text(opened, '#where'), /^on a board on USB with another robot, robot paper [0-9a-f]{8}: choose that one, or write this one$/);
-  await opened.getByRole('button', { name: 'Back to the simulation' }).waitFor();
+  await opened.locator('#connect', { hasText: 'Back to the simulation' }).waitFor();
   await opened.locator('#robot').selectOption('robot');
   await opened.waitForFunction(() => window.lizard.file === 'robot');
   assert.match(await text(opened, '#where'), /^on a board on USB, robot paper [0-9a-f]{8}$/);

@@ -134,6 +134,14 @@ function openRooms(opened) {
       return plain.apply(this, values);
     };
   }
+  const { waitFor } = prototype;
+  prototype.waitFor = async function (options = {}) {
+    if ((options.state ?? 'visible') === 'visible') {
+      await waitFor.call(this, { ...options, state: 'attached' });
+      await reveal(this);
+    }
+    return waitFor.call(this, options);
+  };
 }
 
 /** Address of the page. */

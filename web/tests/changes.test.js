@@ -100,7 +100,7 @@ test('changes of a file that is another now are not taken, and that is said', as
     localStorage.setItem(key, JSON.stringify({ ...kept, original: `${kept.original}\n` }));
   });
   // With the robot in the address nothing would be lost.
-  await opened.waitForFunction(() => location.hash !== '');
+  await opened.waitForFunction(() => location.hash.includes('robot='));
   await opened.goto(address());
   await opened.waitForFunction(() => window.lizard);
   await opened.locator('#trouble', { hasText: 'robot.toml is not the file of last time' }).waitFor();
@@ -125,6 +125,7 @@ test('the pace slider has what the robot has, after a typed line and after a res
 
 test('what moves nothing with rigid legs and ideal servos says so and cannot be set', async () => {
   const opened = await standing();
+  for (const panel of ['#world', '#power']) await unfold(opened, panel);
   const note = opened.getByText('The legs are rigid, the servos ideal, and the feet stand evenly: friction and mass cancel out');
   assert.equal(await note.isVisible(), false, 'the torque of real servos is not for nothing');
   assert.ok(await opened.getByLabel('Pad friction').isEnabled());

@@ -388,6 +388,17 @@ test('a dead band costs its share of the stroke, as predicted', async () => {
   near(went[1] / went[0], 39 / 40, 0.01, 'a degree of 40');
 });
 
+test('at half the pace the last cycle is as long as predicted', async () => {
+  const opened = await standing();
+  await type(opened, 'speed 50', 'ok speed 50');
+  await type(opened, 'walk', 'ok walk');
+  await advance(opened, 8000);
+  const number = async (id) => Number.parseFloat(await opened.locator(id).textContent());
+  await opened.waitForFunction(() => ['#cycle', '#predicted'].every((id) => document.querySelector(id).textContent.endsWith('mm')));
+  const [cycle, predicted] = [await number('#cycle'), await number('#predicted')];
+  assert.ok(Math.abs(cycle / predicted - 1) < 0.05, `${cycle} mm, predicted ${predicted}`);
+});
+
 test('nothing was complained of', () => {
   assert.deepEqual(complaints, []);
 });

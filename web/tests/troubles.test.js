@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { address, advance, blank, close, complaints, open, page, standing, tidy, type } from './browser.js';
+import { address, advance, blank, close, complaints, open, page, standing, tidy, type, unfold } from './browser.js';
 import { fakeSerial } from './fake-serial.js';
 
 before(open);
@@ -21,6 +21,7 @@ test('a robot file that cannot be read stays said while the robot of before goes
   assert.equal(await opened.locator('#robot').inputValue(), 'robot', 'the choice is the robot that is there');
   await type(opened, 'walk', 'ok walk');
   await advance(opened, 5000);
+  await unfold(opened, '#power');
   await opened.locator('#health dd', { hasText: 'power' }).waitFor();
   assert.ok(await said.isVisible(), 'good answers and the poll of the status do not take it away');
   assert.equal(await opened.evaluate(() => window.lizard.file), 'robot');
@@ -56,6 +57,7 @@ test('a port that is busy stays said until a person puts it away', async () => {
   const said = trouble(opened).getByText('No board is connected: Failed to open serial port.');
   await said.waitFor();
   await opened.clock.runFor(8000);
+  await unfold(opened, '#power');
   await opened.locator('#health dd', { hasText: 'power' }).waitFor();
   assert.ok(await said.isVisible());
   await opened.getByRole('button', { name: 'Dismiss' }).click();

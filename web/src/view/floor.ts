@@ -43,7 +43,7 @@ export class Floor {
   private following = true;
   /** The tracks of the robot and of the second robot. */
   private tracks: { x: number; y: number }[][] = [[], []];
-  /** True if it is drawn even out of sight, for a film or a picture. */
+  /** True if it is drawn even behind the robot in 3D, for a film or a picture. */
   unseen = false;
   /** The last drawn frame, for a picture as PNG or SVG. */
   private shown: [Plate, Frame | null, Frame | null] | null = null;
@@ -101,7 +101,7 @@ export class Floor {
 
   /** Draws the floor and the robots. */
   draw(plate: Plate, frame: Frame | null, second: Frame | null): void {
-    const area = surface(this.canvas, true, this.unseen);
+    const area = surface(this.canvas, true);
     if (!area) return;
     const { pen, width, height } = area;
     this.shown = [plate, frame, second];

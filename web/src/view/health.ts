@@ -2,6 +2,7 @@
 import type { Session } from '../session';
 import type { Status } from '../status';
 import { element } from './canvas';
+import { make } from './make';
 import { isShown } from './rooms';
 
 const PERIOD = 500;
@@ -13,11 +14,9 @@ export class Health {
   private asking = false;
 
   constructor(private readonly session: () => Session) {
-    for (const name of ['fault', 'guard', 'margin', 'vcc', 'late edges', 'bytes lost', 'began by', 'begun again']) {
-      const entry = this.list.appendChild(document.createElement('div'));
-      entry.appendChild(document.createElement('dt')).textContent = name;
-      const value = entry.appendChild(document.createElement('dd'));
-      value.textContent = '–';
+    for (const name of ['fault', 'guard', 'margin', 'vcc', 'late edges', 'bytes lost', 'last reset', 'restarts']) {
+      const value = make('dd', {}, '–');
+      this.list.append(make('div', {}, make('dt', {}, name), value));
       this.values.set(name, value);
     }
     setInterval(() => void this.ask(), PERIOD);
@@ -43,8 +42,8 @@ export class Health {
       vcc: status.vcc === null ? '–' : `${status.vcc.toFixed(2)} V`,
       'late edges': String(status.late),
       'bytes lost': String(status.lost),
-      'began by': status.reset,
-      'begun again': String(status.resets),
+      'last reset': status.reset,
+      restarts: String(status.resets),
     };
     for (const [name, text] of Object.entries(shown)) {
       const value = this.values.get(name);

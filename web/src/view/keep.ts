@@ -74,13 +74,7 @@ export class Keep {
     this.removeCompanion();
     const chosen = [this.mine.value, this.other.value];
     for (const list of [this.mine, this.other]) {
-      list.replaceChildren(
-        ...gaits.map(({ command }) => {
-          const option = document.createElement('option');
-          option.value = option.textContent = command;
-          return option;
-        }),
-      );
+      list.replaceChildren(...gaits.map(({ command }) => new Option(command)));
     }
     const known = gaits.map(({ command }) => command);
     const moving = gaits.filter(({ moves }) => moves).map(({ command }) => command);
@@ -176,7 +170,7 @@ export class Keep {
     this.updateButtons();
   }
 
-  /** Takes a picture of the next drawing, even out of sight. */
+  /** Takes a picture of the next drawing, even behind the robot in 3D. */
   private takePicture(take: () => void): void {
     this.onDrawn = take;
     this.floor.unseen = true;
@@ -274,7 +268,7 @@ export class Keep {
       button.disabled = !enabled;
     };
     set('record', isRecording ? 'Stop recording' : 'Record', isRecording);
-    set('replay', isSeen ? 'Back to the robot' : 'See it again', isSeen, has);
+    set('replay', isSeen ? 'Back to the robot' : 'Replay', isSeen, has);
     set('film', film ? 'Stop the film' : 'Film', film !== null, this.format !== undefined);
     element<HTMLButtonElement>('csv').disabled = !has;
     this.moment.disabled = !has;

@@ -1,6 +1,7 @@
 // The panel of margins: the distance of the pose from each singularity.
 import type { Description, Scene } from '../robot';
 import { element } from './canvas';
+import { make } from './make';
 import { isShown } from './rooms';
 
 export class MarginsView {
@@ -11,18 +12,11 @@ export class MarginsView {
     const list = element('margins');
     list.replaceChildren();
     this.bars = margins.map(({ name, limit }) => {
-      const row = list.appendChild(document.createElement('div'));
-      row.className = 'bar';
-      const add = (parent: HTMLElement, tag: string, kind = '') => {
-        const child = parent.appendChild(document.createElement(tag));
-        child.className = kind;
-        return child;
-      };
-      add(row, 'span').textContent = name.replace('_', ' ');
-      const track = add(row, 'div', 'track');
-      const fill = add(track, 'div', 'fill');
-      add(track, 'div', 'limit').style.left = `${limit * 100}%`;
-      return { row, fill, value: add(row, 'span'), limit };
+      const [fill, mark, value] = [make('div', { className: 'fill' }), make('div', { className: 'limit' }), make('span', {})];
+      mark.style.left = `${limit * 100}%`;
+      const row = make('div', { className: 'bar' }, make('span', {}, name.replace('_', ' ')), make('div', { className: 'track' }, fill, mark), value);
+      list.append(row);
+      return { row, fill, value, limit };
     });
   }
 

@@ -34,14 +34,11 @@ export class PartsView {
   /** The request of the last pose. */
   private asked = '';
   private stop: (() => void) | null = null;
-  /** True while the canvas is on the screen. */
-  private isVisible = false;
 
   constructor(private readonly session: () => Session) {
     this.button3d.addEventListener('click', () => this.set3d(!this.is3d));
     // The guide is about what the stage shows.
     this.panel.addEventListener('toggle', () => isShown(this.panel) && this.set3d(true));
-    new IntersectionObserver(([entry]) => (this.isVisible = entry?.isIntersecting ?? false)).observe(this.canvas);
     this.apart.addEventListener('input', () => this.show());
     this.list.addEventListener('change', () => this.pick(this.list.value === '' ? null : Number(this.list.value)));
     element('step-back').addEventListener('click', () => this.stepBy(-1));
@@ -70,7 +67,7 @@ export class PartsView {
     const { toml } = this.session();
     if (!this.is3d || toml === this.toml) return;
     this.toml = toml;
-    this.halt();
+    this.stop?.();
     void this.load(toml);
   }
 
@@ -110,15 +107,9 @@ export class PartsView {
   }
 
   private fill(model: Model): void {
-    const option = (value: string, text: string) => {
-      const made = document.createElement('option');
-      made.value = value;
-      made.textContent = text;
-      return made;
-    };
     const bodies = model.bodies.map(({ name }, number) => ({ name, number }));
     bodies.sort((a, b) => a.name.localeCompare(b.name));
-    this.list.replaceChildren(option('', 'none'), ...bodies.map(({ name, number }) => option(String(number), name)));
+    this.list.replaceChildren(new Option('none', ''), ...bodies.map(({ name, number }) => new Option(name, String(number))));
   }
 
   private stepBy(by: number): void {
@@ -165,7 +156,7 @@ export class PartsView {
   /** Called in every frame of the page. */
   draw(frame: Frame | null): void {
     const { space, solids } = this;
-    if (!space || !solids || !space.mayDraw() || !this.is3d || !this.isVisible) return;
+    if (!space || !solids || !space.mayDraw() || !this.is3d) return;
     const neutral = this.session().description.servos.map((servo) => servo.neutral);
     // The robot stands still while a step of the guide is shown.
     const moving = this.step === null && frame?.scene != null;
@@ -184,10 +175,11 @@ export class PartsView {
   }
 
   private async files(): Promise<void> {
-    if (this.stop) return this.halt();
+    // The button also stops the making.
+    if (this.stop) return this.stop();
     const { toml, file } = this.session();
     const bar = element<HTMLProgressElement>('parts-progress');
-    const words = { prove: 'Proving that no two parts meet', make: 'Making the files' };
+    const words = { prove: 'Proving that no two parts touch', make: 'Making the files' };
     bar.hidden = false;
     bar.removeAttribute('value');
     this.button.textContent = 'Stop';
@@ -221,11 +213,6 @@ export class PartsView {
       this.button.textContent = 'Download all files';
       if (stopped) this.say('files-said', 'Stopped; nothing was saved.');
     }
-  }
-
-  /** Stops the making of the files. */
-  private halt(): void {
-    this.stop?.();
   }
 
   private say(id: string, text: string): void {

@@ -5,6 +5,7 @@ import type { Answer, Question } from '../routines/question';
 import { Recorder } from '../routines/recorder';
 import type { Session } from '../session';
 import { element } from './canvas';
+import { make } from './make';
 import { isShown } from './rooms';
 import type { RobotText } from './robot-text';
 import { NO_BOARD, type Writer } from './writer';
@@ -219,21 +220,14 @@ export class RoutinesView {
 
   /** Makes the block of the step at a place. */
   private block(at: number): HTMLLIElement {
-    const block = document.createElement('li');
-    const grip = block.appendChild(document.createElement('span'));
-    grip.className = 'grip';
-    grip.setAttribute('aria-hidden', 'true');
-    grip.textContent = '⠿';
+    const grip = make('span', { className: 'grip', ariaHidden: 'true' }, '⠿');
     this.drag(grip, at);
-    const input = block.appendChild(document.createElement('input'));
-    Object.assign(input, { type: 'text', spellcheck: false, autocomplete: 'off', maxLength: 63 });
-    input.setAttribute('aria-label', `Step ${at + 1}`);
+    const input = make('input', { type: 'text', spellcheck: false, autocomplete: 'off', maxLength: 63, ariaLabel: `Step ${at + 1}` });
+    const block = make('li', {}, grip, input);
     input.addEventListener('change', () => void this.change(this.shown?.steps.with(at, input.value.trim()) ?? []));
     const button = (text: string, name: string, act: () => Promise<void>, next: () => number) => {
-      const made = block.appendChild(document.createElement('button'));
-      made.type = 'button';
-      made.textContent = text;
-      made.setAttribute('aria-label', `${name} ${at + 1}`);
+      const made = make('button', { type: 'button', ariaLabel: `${name} ${at + 1}` }, text);
+      block.append(made);
       // The step keeps the focus, wherever it goes.
       made.addEventListener('click', () => void act().then(() => this.button(next(), name)?.focus()));
     };

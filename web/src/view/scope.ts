@@ -2,6 +2,7 @@
 import type { Description, Scene } from '../robot';
 import { FREQUENCY } from '../uno/board';
 import { element, surface } from './canvas';
+import { make } from './make';
 import { palette, servoColour } from './palette';
 import { isShown } from './rooms';
 
@@ -38,18 +39,11 @@ export class ScopeView {
     body.replaceChildren();
     this.rows.length = 0;
     servos.forEach(({ name, pin }, servo) => {
-      const row = body.appendChild(document.createElement('tr'));
-      const cell = (text: string) => {
-        const td = row.appendChild(document.createElement('td'));
-        td.textContent = text;
-        return td;
-      };
-      const swatch = document.createElement('span');
-      swatch.className = 'swatch';
+      const swatch = make('span', { className: 'swatch' });
       swatch.style.background = `var(--a${servo + 1})`;
-      cell(name).prepend(swatch);
-      cell(pinName(pin));
-      this.rows.push({ width: cell('–'), angle: cell('–') });
+      const [width, angle] = [make('td', {}, '–'), make('td', {}, '–')];
+      body.append(make('tr', {}, make('td', {}, swatch, name), make('td', {}, pinName(pin)), width, angle));
+      this.rows.push({ width, angle });
     });
   }
 

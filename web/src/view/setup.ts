@@ -13,7 +13,7 @@ import { firmware } from './setup/firmware';
 import { horns } from './setup/horns';
 import { keep } from './setup/keep';
 import { Limits } from './setup/limits';
-import { button, row, words } from './setup/parts';
+import { button, make, row, words } from './make';
 import { Scale } from './setup/scale';
 import { Signs } from './setup/signs';
 import type { Step, Tools } from './setup/step';
@@ -63,9 +63,7 @@ export class Setup implements Tools {
     element('setup-back').addEventListener('click', () => this.moveBy(-1));
     element('setup-next').addEventListener('click', () => this.moveBy(1));
     for (const { name } of STEPS) {
-      const item = document.createElement('li');
-      item.append(button(name, () => this.go(name)));
-      this.steps.append(item);
+      this.steps.append(make('li', {}, button(name, () => this.go(name))));
     }
     PLACES.forEach((place, servo) => {
       const choose = () => {
