@@ -138,6 +138,8 @@ test('a board that restarts in the middle of an answer is followed again', async
 
 test('pulses that a board does not show are not made up', async () => {
   const opened = await connected('robot', 5000);
+  await unfold(opened, '#pulses');
+  await opened.clock.runFor(500);
   const cells = await opened.locator('#widths td:nth-child(3)').allInnerTexts();
   assert.deepEqual(cells, ['–', '–', '–', '–']);
   await opened.getByText('A board on USB does not show its pulses here.').waitFor();

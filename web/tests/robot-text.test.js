@@ -151,7 +151,8 @@ test('a link and the list of robots put the own robot aside, and a button brings
   await page.waitForFunction(() => window.lizard?.file === 'large');
   await back.click();
   await takes(page, own);
-  // In the same tab.
+  // In the same tab, once the address has followed.
+  await page.waitForFunction(() => location.hash.startsWith('#robot='));
   await page.evaluate(() => (location.hash = '#file=large'));
   await page.waitForFunction(() => window.lizard.file === 'large');
   await back.waitFor();

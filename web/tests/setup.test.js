@@ -9,7 +9,7 @@ import { after, afterEach, before, test } from 'node:test';
 import { promisify } from 'node:util';
 
 import { connected, until } from './board.js';
-import { PATIENCE, advance, close, complaints, open, page, sideways, standing, tidy } from './browser.js';
+import { PATIENCE, advance, close, complaints, open, page, sideways, standing, tidy, unfold } from './browser.js';
 import { fakeSerial } from './fake-serial.js';
 
 before(open);
@@ -354,6 +354,8 @@ test('without a board every step can be tried, by the keyboard alone', async () 
   assert.equal(await opened.evaluate(() => document.activeElement.textContent), 'Turn all servos to their middle', 'it stays where it was');
   await advance(opened, 500);
   await opened.keyboard.up('ArrowUp');
+  await unfold(opened, '#pulses');
+  await opened.waitForFunction(() => document.querySelector('#widths td:nth-child(3)').textContent !== '–');
   assert.deepEqual(await opened.locator('#widths td:nth-child(3)').allInnerTexts(), ['1500.00', '1500.00', '1500.00', '1500.00']);
 });
 

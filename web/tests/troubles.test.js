@@ -56,8 +56,8 @@ test('a port that is busy stays said until a person puts it away', async () => {
   await opened.locator('#connect').click();
   const said = trouble(opened).getByText('No board is connected: Failed to open serial port.');
   await said.waitFor();
-  await opened.clock.runFor(8000);
   await unfold(opened, '#power');
+  await opened.clock.runFor(8000);
   await opened.locator('#health dd', { hasText: 'power' }).waitFor();
   assert.ok(await said.isVisible());
   await opened.getByRole('button', { name: 'Dismiss' }).click();

@@ -11,7 +11,7 @@ const rooms = () => [...document.querySelectorAll<HTMLElement>('.room')];
 export function openRoom(hash: string): void {
   const asked = idOf(partsOf(hash).get('room') ?? FIRST);
   const room = rooms().find(({ id }) => id === asked) ?? rooms()[0];
-  if (!room?.hidden && document.title !== NAME) return;
+  if (!room || room.id === document.body.dataset.at) return;
   for (const each of rooms()) each.hidden = each !== room;
   for (const link of document.querySelectorAll<HTMLAnchorElement>('nav a')) {
     const isHere = idOf(partsOf(link.hash).get('room') ?? '') === room.id;
