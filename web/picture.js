@@ -28,7 +28,7 @@ for (let n = 0; n < PICTURES; n++) {
   await opened.screenshot({ path: join(folder, `${String(n).padStart(2, '0')}.png`) });
 }
 // A short search, and what it found on the screen.
-await opened.setViewportSize({ width: 1240, height: 1000 });
+await opened.setViewportSize({ width: 1240, height: 1300 });
 await opened.goto(`${address()}#room=gaits`);
 await opened.getByLabel('Rounds of 40 gaits').fill('1');
 await opened.getByRole('button', { name: 'Make it faster' }).click();

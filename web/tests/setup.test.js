@@ -20,8 +20,14 @@ after(close);
 const PINS = [9, 10, 11, 3];
 const setup = (opened) => opened.locator('#setup');
 const text = (opened, selector) => opened.locator(selector).innerText();
-const press = (opened, name) => setup(opened).getByRole('button', { name, exact: true }).click();
-const step = (opened, name) => setup(opened).getByRole('list', { name: 'Steps' }).getByRole('button', { name: new RegExp(`${name}$`) }).click();
+const press = async (opened, name) => {
+  await setup(opened).scrollIntoViewIfNeeded();
+  await setup(opened).getByRole('button', { name, exact: true }).click();
+};
+const step = async (opened, name) => {
+  await setup(opened).scrollIntoViewIfNeeded();
+  await setup(opened).getByRole('list', { name: 'Steps' }).getByRole('button', { name: new RegExp(`${name}$`) }).click();
+};
 const pulses = (opened) => opened.evaluate((pins) => pins.map((pin) => window.pulses[pin]), PINS);
 
 /** Lets time go on until this is said. */
