@@ -179,7 +179,7 @@ export class PartsView {
     if (this.stop) return this.stop();
     const { toml, file } = this.session();
     const bar = element<HTMLProgressElement>('parts-progress');
-    const words = { prove: 'Proving that no two parts touch', make: 'Making the files' };
+    const words = { prove: 'Proving that no two parts meet', make: 'Making the files' };
     bar.hidden = false;
     bar.removeAttribute('value');
     this.button.textContent = 'Stop';
