@@ -3,7 +3,7 @@
 import { mkdir } from 'node:fs/promises';
 import { join } from 'node:path';
 
-import { close, open, page } from './tests/browser.js';
+import { address, close, open, page } from './tests/browser.js';
 
 const [, , folder] = process.argv;
 /** A cycle of walk, after as many as it takes to be even; and pictures of one. */
@@ -13,6 +13,7 @@ await mkdir(folder, { recursive: true });
 await open();
 // Its clock is that of this script, so that all pictures are equally far apart and the view follows the robot.
 const opened = await page({ viewport: { width: 1240, height: 800 }, deviceScaleFactor: 0.75, colorScheme: 'light' }, () => {});
+await opened.goto(`${address()}#room=drive`);
 await opened.clock.runFor(3000);
 await opened.locator('#gaits button[data-command="walk"]').click();
 await opened.evaluate(() => {
@@ -27,12 +28,12 @@ for (let n = 0; n < PICTURES; n++) {
   await opened.screenshot({ path: join(folder, `${String(n).padStart(2, '0')}.png`) });
 }
 // A short search, and what it found on the screen.
-await opened.setViewportSize({ width: 1240, height: 1000 });
-await opened.locator('#gait-editor summary').click();
+await opened.setViewportSize({ width: 1240, height: 1300 });
+await opened.goto(`${address()}#room=gaits`);
 await opened.getByLabel('Rounds of 40 gaits').fill('1');
 await opened.getByRole('button', { name: 'Make it faster' }).click();
 await opened.waitForFunction(() => document.querySelector('#faster-said').textContent.startsWith('Faster on'));
-await opened.getByRole('button', { name: 'Take this gait' }).click();
+await opened.getByRole('button', { name: 'Use this gait' }).click();
 await opened.waitForFunction(() => document.querySelector('#gait-way').textContent === document.querySelector('#faster-rows tr:nth-child(2) td:last-child').textContent);
 await opened.locator('#gait-editor').screenshot({ path: join(folder, 'editor.png') });
 await close();

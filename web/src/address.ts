@@ -1,15 +1,15 @@
-// The page's address holds its robot, behind the # where no server sees it: a link is a robot, and so is a bookmark.
-import { linkTo } from './link-text';
+// The page's address holds a room and a robot, behind the # where no server sees them: a link is a robot, and so is a bookmark.
+import { packed } from './link-text';
 import type { Session } from './session';
 
-const FILE = '#file=';
 /** Changes closer together than this are written as one, ms: browsers refuse an address that changes too often. */
 const QUIET = 300;
 
-/** The file name in an address; null if it has none. */
-export function fileIn(hash: string): string | null {
-  return hash.startsWith(FILE) ? decodeURIComponent(hash.slice(FILE.length)) : null;
-}
+/** The parts behind the # of an address: `room`, and a robot as `file` or as `robot`, its compressed text. */
+export const partsOf = (hash: string) => new URLSearchParams(hash.slice(1));
+
+/** State of the entries of the browser's history that the page wrote: they name a room, and the robot of that time. */
+export const OWN = 'own';
 
 export class Address {
   private timer = 0;
@@ -40,10 +40,15 @@ export class Address {
 
   private async show(): Promise<void> {
     const { toml, original, file } = this.session();
-    const plain = location.href.split('#')[0] ?? location.href;
-    const own = file === '' || file === this.first ? plain : `${plain}${FILE}${encodeURIComponent(file)}`;
-    const address = toml === original ? own : await linkTo(toml);
+    const robot = toml === original ? null : await packed(toml);
     // The robot may have changed meanwhile; a later call then shows it.
-    if (this.session().toml === toml && address !== location.href) history.replaceState(null, '', address);
+    if (this.session().toml !== toml) return;
+    const parts = new URLSearchParams();
+    const room = partsOf(location.hash).get('room');
+    if (room) parts.set('room', room);
+    if (robot) parts.set('robot', robot);
+    else if (file !== '' && file !== this.first) parts.set('file', file);
+    const plain = location.href.split('#')[0] ?? '';
+    history.replaceState(OWN, '', parts.size > 0 ? `${plain}#${parts}` : plain);
   }
 }

@@ -17,27 +17,43 @@ export interface SavedChanges {
 
 /** Pages of another address on the same server have their own. */
 const KEY = `lizard ${location.pathname}`;
+const ASIDE = `${KEY} aside`;
+
+/** Robots that are put aside, at most; an older one is dropped. */
+const MOST_ASIDE = 8;
+
+function store(key: string, value: unknown): void {
+  try {
+    localStorage.setItem(key, JSON.stringify(value));
+  } catch (error) {
+    console.info(`Changes are not kept over a reload: ${String(error)}`);
+  }
+}
+
+/** Returns what is stored, where it can be used. */
+function stored(key: string): SavedChanges[] {
+  try {
+    const states = [JSON.parse(localStorage.getItem(key) ?? '[]')].flat() as (SavedChanges | null)[];
+    return states.flatMap((state) => {
+      if (!state || typeof state.toml !== 'string' || typeof state.file !== 'string') return [];
+      // An earlier page stored springs in another form, which is dropped.
+      const isKnown = typeof state.floor?.twist === 'number' && ['rigid', 'strut'].includes(state.floor.kind);
+      return [{ ...state, floor: isKnown ? state.floor : null }];
+    });
+  } catch {
+    return [];
+  }
+}
 
 export const kept = {
   /** Stores it; a browser without storage loses it at a reload. */
-  put(state: SavedChanges): void {
-    try {
-      localStorage.setItem(KEY, JSON.stringify(state));
-    } catch (error) {
-      console.info(`Changes are not kept over a reload: ${String(error)}`);
-    }
-  },
+  put: (state: SavedChanges) => store(KEY, state),
 
   /** The stored state; null if there is none that can be used. */
-  get(): SavedChanges | null {
-    try {
-      const state = JSON.parse(localStorage.getItem(KEY) ?? 'null') as SavedChanges | null;
-      if (!state || typeof state.toml !== 'string' || typeof state.file !== 'string') return null;
-      // An earlier page stored springs in another form, which is dropped.
-      const isKnown = typeof state.floor?.twist === 'number' && ['rigid', 'strut'].includes(state.floor.kind);
-      return { ...state, floor: isKnown ? state.floor : null };
-    } catch {
-      return null;
-    }
-  },
+  get: (): SavedChanges | null => stored(KEY)[0] ?? null,
+
+  /** Robots that were put aside, the latest first. */
+  aside: () => stored(ASIDE),
+
+  setAside: (robots: SavedChanges[]) => store(ASIDE, robots.slice(0, MOST_ASIDE)),
 };

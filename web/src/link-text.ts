@@ -1,6 +1,5 @@
 // A robot as a link: its robot.toml, compressed, behind the # of the page's address, where no server sees it.
 
-const KEY = '#robot=';
 /** The largest robot.toml that is accepted, in bytes; typical ones have a few thousand. */
 const MAX_BYTES = 200_000;
 
@@ -17,21 +16,20 @@ async function pipe(bytes: Uint8Array<ArrayBuffer>, stream: CompressionStream | 
   return new Uint8Array(await new Blob(pieces).arrayBuffer());
 }
 
-/** The link to a robot. */
-export async function linkTo(toml: string): Promise<string> {
-  const packed = await pipe(new TextEncoder().encode(toml), new CompressionStream('deflate-raw'));
-  const letters = btoa(String.fromCharCode(...packed));
+/** A robot.toml as the part `robot` of an address. */
+export async function packed(toml: string): Promise<string> {
+  const bytes = await pipe(new TextEncoder().encode(toml), new CompressionStream('deflate-raw'));
+  const letters = btoa(String.fromCharCode(...bytes));
   // base64url, which needs no escapes in an address.
-  return `${location.href.split('#')[0]}${KEY}${letters.replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '')}`;
+  return letters.replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
 }
 
-/** Reads the robot.toml behind the # of an address; null if there is none. Throws a sentence. */
-export async function robotIn(hash: string): Promise<string | null> {
-  if (!hash.startsWith(KEY)) return null;
+/** Reads the robot.toml of the part `robot`. Throws a sentence. */
+export async function unpacked(part: string): Promise<string> {
   try {
-    const letters = atob(hash.slice(KEY.length).replaceAll('-', '+').replaceAll('_', '/'));
-    const packed = Uint8Array.from(letters, (letter) => letter.charCodeAt(0));
-    return new TextDecoder('utf-8', { fatal: true }).decode(await pipe(packed, new DecompressionStream('deflate-raw')));
+    const letters = atob(part.replaceAll('-', '+').replaceAll('_', '/'));
+    const bytes = Uint8Array.from(letters, (letter) => letter.charCodeAt(0));
+    return new TextDecoder('utf-8', { fatal: true }).decode(await pipe(bytes, new DecompressionStream('deflate-raw')));
   } catch {
     throw new Error('The robot in the address is incomplete; was the whole link copied?');
   }

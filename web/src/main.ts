@@ -1,5 +1,5 @@
 // The page: a session, and the views that show it.
-import { Address, fileIn } from './address';
+import { Address, OWN, partsOf } from './address';
 import { run } from './clock';
 import { files } from './files';
 import { kept } from './kept';
@@ -27,10 +27,12 @@ import { Log } from './view/log';
 import { MapsView } from './view/maps';
 import { MarginsView } from './view/margins';
 import { Pace } from './view/pace';
+import { OwnRobot } from './view/own-robot';
 import { PartsView } from './view/parts';
 import { PathView } from './view/path';
 import { Remote } from './view/remote';
 import { RobotText } from './view/robot-text';
+import { openRoom } from './view/rooms';
 import { RoutinesView } from './view/routines';
 import { ScopeView } from './view/scope';
 import { Steer, gaitFor } from './view/steer';
@@ -258,7 +260,14 @@ async function start(): Promise<void> {
       troubles.say('robot', sentence(error));
     }
   };
-  choice.onChange(() => void choose());
+  const own = new OwnRobot(now, troubles, (file) => (choice.show(file), choose()));
+  /** Loads another robot, which erases none. */
+  const replace = async (load: () => Promise<unknown>) => {
+    const before = kept.get();
+    await load();
+    own.replaced(before);
+  };
+  choice.onChange(() => void replace(choose));
 
   element('reset').addEventListener('click', () => void session.reset());
 
@@ -286,26 +295,29 @@ async function start(): Promise<void> {
   });
 
   const before = kept.get();
-  const asked = fileIn(location.hash);
+  const asked = partsOf(location.hash).get('file');
   const wanted = asked ?? before?.file;
   const isThere = wanted === undefined || choice.show(wanted);
   await choose();
   const missing = (file: string) => troubles.say('robot', `This page has no ${file}.toml, which its address asks for.`);
   if (asked !== null && !isThere) missing(asked);
   // The robot in the address wins over a stored one.
-  const isAsked = location.hash !== '';
+  const isAsked = asked !== null || partsOf(location.hash).has('robot');
   if (before && session.file === before.file && !(await session.recall(before)) && !isAsked) {
     const remedy = { label: 'Download what was changed', act: () => void download(robot, before.toml, before.floor) };
     const said = `${before.file}.toml is not the file of last time, so what was changed of it then is not taken.`;
     troubles.say('robot', said, remedy);
   }
   if (await text.fromAddress()) address.begin();
-  addEventListener('hashchange', ({ newURL }) => {
-    // Not the page's own one, which may have followed the robot before this is heard.
-    const { hash } = new URL(newURL);
-    const file = fileIn(hash);
-    if (file === null) return void text.fromAddress(hash).then((isRight) => isRight && address.begin());
-    if (choice.show(file)) void choose();
+  if (isAsked) own.replaced(before);
+  addEventListener('popstate', ({ state }) => {
+    const { hash } = location;
+    openRoom(hash);
+    // Back and forward change the room, and the robot stays.
+    if (state === OWN) return address.follow();
+    const file = partsOf(hash).get('file');
+    if (file === null) return void replace(async () => (await text.fromAddress(hash)) && address.begin());
+    if (choice.show(file)) void replace(choose);
     else missing(file);
   });
   window.lizard = session;
@@ -325,7 +337,7 @@ async function start(): Promise<void> {
       steer.readGamepads();
       // Without a robot there is nothing to draw.
       if (!session.description) return;
-      floor.draw(session.description.plate, keep.shown(session.last), keep.beside);
+      if (!parts.is3d || floor.unseen) floor.draw(session.description.plate, keep.shown(session.last), keep.beside);
       keep.drawn();
       parts.draw(session.last);
       pictures += 1;
@@ -355,6 +367,7 @@ function whereOf(name: string, has: BoardBanner, hash: string): string {
   return robot.hash === hash ? `on a ${name}, ${known}` : `on a ${name} with another robot, ${known}: choose that one, or write this one`;
 }
 
+openRoom(location.hash);
 start().catch((error: unknown) => {
   element('where').textContent = 'The page cannot begin.';
   troubles.say('page', sentence(error));

@@ -42,8 +42,8 @@ const FULL_PACE = 100;
 const FRAME_SECONDS = 0.02;
 /** Longest part of the simulation between two moments of `clock`, ms. */
 const PART = 5;
-/** Seconds of path kept for measuring a cycle. */
-const KEPT_SECONDS = 12;
+/** Seconds of path kept for measuring a cycle: 3 s at a tenth of the pace. */
+const KEPT_SECONDS = 31;
 
 /** The fault of a robot that has heard nothing for as long as `deadman` says. */
 const LINK_FAULT = 'link';
@@ -108,6 +108,8 @@ export class Session {
   section: Uint8Array = new Uint8Array();
   last: Frame | null = null;
   gait = '';
+  /** The robot's pace, percent. */
+  private pace = FULL_PACE;
   volts = 5;
   /** The names of the inputs whose contacts are closed in the simulation. */
   readonly closed = new Set<string>();
@@ -445,7 +447,7 @@ export class Session {
     const command = doing.includes(word) ? word : word.replace(/ \d+$/, '');
     if (doing.includes(command)) this.doing(command);
     else if (word.startsWith(`${pose} `)) this.doing(pose);
-    else if (word.startsWith(`${speed} `)) this.listener.speed(Number(word.slice(speed.length)));
+    else if (word.startsWith(`${speed} `)) this.setPace(Number(word.slice(speed.length)));
     else if (line.startsWith('# boot: ')) this.doing(line.slice('# boot: '.length).replaceAll('-', ' '));
     else if (line.startsWith(GREETING)) this.greeted(line);
     else if (line.startsWith('# fault') || line === DONE) this.doing(stop);
@@ -455,7 +457,7 @@ export class Session {
     const { dialogue } = this;
     const beginning = ++this.beginnings;
     this.doing('stand');
-    this.listener.speed(FULL_PACE);
+    this.setPace(FULL_PACE);
     this.watching = false;
     this.deadman.forget();
     this.listener.trouble('board', null);
@@ -474,6 +476,13 @@ export class Session {
   private found(has: BoardBanner): void {
     this.there = has;
     this.listener.found(has);
+  }
+
+  private setPace(percent: number): void {
+    // A cycle at two paces is none.
+    if (percent !== this.pace) this.way = [];
+    this.pace = percent;
+    this.listener.speed(percent);
   }
 
   private doing(gait: string): void {
@@ -527,7 +536,7 @@ export class Session {
 
   /** Takes the robot's state when its line is read: some turns later it would be older than what the robot said then. */
   private state(read: Status): void {
-    if (read.speed !== null) this.listener.speed(read.speed);
+    if (read.speed !== null) this.setPace(read.speed);
     this.listener.trouble('fault', read.fault === LINK_FAULT && this.isReal ? 'The robot has stopped by itself: no line had reached it for too long.' : null);
     const gait = read.gait.replaceAll('-', ' ');
     // `center` is a pose for the robot, and a routine that rests is still under way.
@@ -646,7 +655,7 @@ export class Session {
     const now = this.way[this.way.length - 1];
     if (!gait?.moves || !now) return null;
     // The nearest known frame: a board on USB does not send every frame.
-    const begun = now.time - gait.period;
+    const begun = now.time - (gait.period * FULL_PACE) / this.pace;
     const from = this.way.findLastIndex(({ time }) => time <= begun + this.step / 2);
     if (from < 0) return null;
     const lags = this.way.slice(from + 1).flatMap(({ frame }) => frame.lag.map(Math.abs));

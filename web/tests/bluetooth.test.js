@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { close, complaints, openWithBluetooth, page, tidy } from './browser.js';
+import { close, complaints, openWithBluetooth, page, tidy, unfold } from './browser.js';
 import { HM10, NORDIC, Radio } from './radio.js';
 
 let radio;
@@ -72,8 +72,8 @@ test('a trim that was set out of reach is shown as the robot has it, once it is 
   const { opened } = radio;
   await radio.pick();
   await radio.until('it stands', async () => (await doing(opened)) === 'stand');
-  await opened.locator('details.calibrate summary').click();
-  const trim = opened.getByRole('group', { name: 'A1' }).getByLabel('trim');
+  await unfold(opened, '#calibrate');
+  const trim = opened.locator('#calibration fieldset').first().getByLabel('trim');
   await radio.until('it is read', () => trim.isVisible());
   await radio.cut();
   await trim.fill('5');

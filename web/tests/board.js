@@ -6,7 +6,7 @@ import { fakeSerial } from './fake-serial.js';
 export async function connected(robot, ms) {
   const opened = await page({}, fakeSerial);
   await opened.evaluate((robot) => (window.flashed = robot), robot);
-  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await opened.locator('#connect').click();
   await opened.waitForFunction(() => window.otherBoard);
   await opened.clock.runFor(ms);
   return opened;

@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { close, complaints, open, page, tidy } from './browser.js';
+import { close, complaints, open, page, tidy, unfold } from './browser.js';
 import { connected, until } from './board.js';
 import { fakeSerial } from './fake-serial.js';
 
@@ -43,7 +43,7 @@ test('a new UNO is named after some seconds, and is given the firmware by one bu
 test('a board that nothing answers from is asked about', async () => {
   const opened = await page({}, fakeSerial);
   await opened.evaluate(() => (window.flashed = null));
-  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await opened.locator('#connect').click();
   await opened.waitForFunction(() => window.otherBoard);
   await opened.evaluate(() => (window.otherBoard.send = () => {}));
   await opened.clock.runFor(9000);
@@ -53,7 +53,7 @@ test('a board that nothing answers from is asked about', async () => {
 test('a board that its port does not reset is asked what it does, and followed', async () => {
   const opened = await page({}, fakeSerial);
   await opened.evaluate(() => (window.awake = true));
-  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await opened.locator('#connect').click();
   await opened.waitForFunction(() => window.otherBoard);
   await opened.clock.runFor(5000);
   await opened.locator('#log div', { hasText: 'ok watch 2' }).waitFor();
@@ -67,7 +67,7 @@ test('a robot is chosen for a board that is connected, and the board stays', asy
   await opened.locator('#robot').selectOption('large');
   await opened.waitForFunction(() => window.lizard.file === 'large');
   assert.match(await text(opened, '#where'), /^on a board on USB with another robot, robot paper [0-9a-f]{8}: choose that one, or write this one$/);
-  await opened.getByRole('button', { name: 'Back to the simulation' }).waitFor();
+  await opened.locator('#connect', { hasText: 'Back to the simulation' }).waitFor();
   await opened.locator('#robot').selectOption('robot');
   await opened.waitForFunction(() => window.lizard.file === 'robot');
   assert.match(await text(opened, '#where'), /^on a board on USB, robot paper [0-9a-f]{8}$/);
@@ -77,7 +77,7 @@ test('a robot is chosen for a board that is connected, and the board stays', asy
 
 test('a board that is left has been stopped', async () => {
   const opened = await walking();
-  await opened.getByRole('button', { name: 'Back to the simulation' }).click();
+  await opened.locator('#connect').click();
   await opened.clock.runFor(1500);
   await opened.locator('#log div', { hasText: /^ok stop$/ }).waitFor();
   assert.match(await opened.evaluate(() => window.heard), /\nstop\n(deadman 0\n)?$/, 'the last that the board has heard');
@@ -87,7 +87,7 @@ test('a board that is left has been stopped', async () => {
 test('a board that does not say that it stops is spoken of', async () => {
   const opened = await walking();
   await opened.evaluate(() => (window.otherBoard.send = () => {}));
-  await opened.getByRole('button', { name: 'Back to the simulation' }).click();
+  await opened.locator('#connect').click();
   await opened.clock.runFor(3000);
   await opened.locator('#trouble', { hasText: 'did not say that it stops' }).waitFor();
 });
@@ -108,7 +108,7 @@ test('a page that is closed while a board walks stops it, and the browser asks',
 test('after a reset the board is followed again', async () => {
   const opened = await walking();
   const followed = await opened.locator('#log div', { hasText: /^ok watch 2$/ }).count();
-  await opened.getByRole('button', { name: 'reset' }).click();
+  await opened.locator('#reset').click();
   await said(opened, /^ok watch 2$/, followed + 1);
   const place = () => opened.evaluate(() => window.lizard.last.place.y);
   await opened.locator('#gaits button[data-command="walk"]').click();
@@ -138,6 +138,8 @@ test('a board that restarts in the middle of an answer is followed again', async
 
 test('pulses that a board does not show are not made up', async () => {
   const opened = await connected('robot', 5000);
+  await unfold(opened, '#pulses');
+  await opened.clock.runFor(500);
   const cells = await opened.locator('#widths td:nth-child(3)').allInnerTexts();
   assert.deepEqual(cells, ['–', '–', '–', '–']);
   await opened.getByText('A board on USB does not show its pulses here.').waitFor();
@@ -145,7 +147,7 @@ test('pulses that a board does not show are not made up', async () => {
 
 test('a HEX file of another program is named, and written only when a person says so', async () => {
   const opened = await connected('robot', 8000);
-  await opened.getByText('Flash', { exact: true }).click();
+  await unfold(opened, '#flash');
   // A program that loops for ever: rjmp .-2.
   const blink = ':02000000FFCF30\n:00000001FF\n';
   const choose = () =>
@@ -158,10 +160,10 @@ test('a HEX file of another program is named, and written only when a person say
   assert.notEqual(first, 0xff);
   await opened.clock.runFor(3000);
   assert.equal(await flash(), first, 'nothing is written yet');
-  await opened.getByRole('button', { name: 'Do not write it' }).click();
+  await opened.locator('#flash-no').click();
   assert.equal(await question.isVisible(), false);
   await choose();
-  await opened.getByRole('button', { name: 'Write it', exact: true }).click();
+  await opened.locator('#flash-yes').click();
   await until(opened, 'it is written', async () => /^(not )?written/.test(await text(opened, '#flash-said')));
   await opened.clock.runFor(3000);
   await opened.locator('#trouble', { hasText: 'is not this firmware: it does not greet.' }).waitFor();

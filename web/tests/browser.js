@@ -100,6 +100,50 @@ export async function close() {
   server?.close();
 }
 
+/** Opens the room of an element, and the panels around it, by the links and headings that a person would press. */
+async function reveal(locator) {
+  const [element] = await locator.elementHandles();
+  await element?.evaluate(async (element) => {
+    const room = element.closest('.room');
+    if (room?.hidden) {
+      const opened = new Promise((done) => addEventListener('hashchange', done, { once: true }));
+      document.querySelector(`a[href="#room=${room.id.replace('room-', '')}"]`).click();
+      await opened;
+    }
+    for (let panel = element.closest('details'); panel; panel = panel.parentElement.closest('details')) {
+      const summary = panel.querySelector('summary');
+      if (!panel.open && !summary.contains(element)) summary.click();
+    }
+  });
+}
+
+/** Unfolds a panel in its room, unless that is done. */
+export async function unfold(opened, panel) {
+  await reveal(opened.locator(`${panel} > :not(summary)`).first());
+}
+
+/** Whatever a test uses is in one of the rooms: the test is about the thing, and its room is opened for it. */
+function openRooms(opened) {
+  const prototype = Object.getPrototypeOf(opened.locator('body'));
+  if (prototype.opensRooms) return;
+  prototype.opensRooms = true;
+  for (const name of ['click', 'fill', 'selectOption', 'tap', 'press', 'focus', 'check', 'uncheck', 'boundingBox', 'screenshot', 'dragTo', 'hover', 'scrollIntoViewIfNeeded']) {
+    const plain = prototype[name];
+    prototype[name] = async function (...values) {
+      await reveal(this);
+      return plain.apply(this, values);
+    };
+  }
+  const { waitFor } = prototype;
+  prototype.waitFor = async function (options = {}) {
+    if ((options.state ?? 'visible') === 'visible') {
+      await waitFor.call(this, { ...options, state: 'attached' });
+      await reveal(this);
+    }
+    return waitFor.call(this, options);
+  };
+}
+
 /** Address of the page. */
 export const address = (of = server) => `http://127.0.0.1:${of.address().port}${FOLDER}`;
 
@@ -110,6 +154,7 @@ export const address = (of = server) => `http://127.0.0.1:${of.address().port}${
 export async function blank(options = {}) {
   const opened = await within('a new page', browser.newPage({ reducedMotion: 'reduce', serviceWorkers: 'block', ...options }));
   pages.push(opened);
+  openRooms(opened);
   limit(opened, 'page', ['evaluate', 'addInitScript', 'addScriptTag', 'addStyleTag']);
   limit(opened.clock, 'clock', ['install', 'pauseAt', 'runFor']);
   limit(opened.keyboard, 'keyboard', ['press', 'down', 'up']);
@@ -200,12 +245,15 @@ export async function stops(opened) {
   for (const key of ['x', 'y']) assert.ok(Math.abs(later[key] - stopped[key]) < 0.05, `${key}: ${stopped[key]} mm, then ${later[key]}`);
 }
 
-/** Types a line and waits for a line of the log that begins so. */
+/** Types a line and waits for a line of the log that begins so; the room that was open is open again afterwards. */
 export async function type(opened, line, answer) {
+  const room = await opened.evaluate(() => document.body.dataset.at);
   await opened.getByLabel('A line for the robot').fill(line);
   await opened.getByRole('button', { name: 'Send' }).click();
   await advance(opened, 300);
   const found = opened.locator('#log div', { hasText: answer }).last();
   await found.waitFor();
-  return found.innerText();
+  const text = await found.innerText();
+  await reveal(opened.locator(`#${room} h2`));
+  return text;
 }

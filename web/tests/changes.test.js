@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { after, afterEach, before, test } from 'node:test';
 
-import { address, advance, close, complaints, open, standing, tidy, type } from './browser.js';
+import { address, advance, close, complaints, open, standing, tidy, type, unfold } from './browser.js';
 
 before(open);
 afterEach(tidy);
@@ -41,7 +41,7 @@ async function changed() {
   await slide(opened, 'Pad friction', '0.5');
   await slide(opened, 'Friction back : ahead', '1.5');
   await slide(opened, 'Mass', '412');
-  await opened.getByText('Lengths', { exact: true }).click();
+  await unfold(opened, '#lengths-panel');
   const crank = opened.locator('input[name="leg.crank"]');
   await crank.fill('40');
   await crank.press('Enter');
@@ -68,7 +68,7 @@ test('the downloaded robot.toml has lengths, drive, feet, floor and mass', async
 
 test('a file of which nothing was changed is given as it is', async () => {
   const opened = await standing();
-  await opened.getByText('Lengths', { exact: true }).click();
+  await unfold(opened, '#lengths-panel');
   const own = await readFile(new URL('../dist/files/robot.toml', import.meta.url), 'utf8');
   assert.equal(await downloaded(opened), own);
 });
@@ -100,7 +100,7 @@ test('changes of a file that is another now are not taken, and that is said', as
     localStorage.setItem(key, JSON.stringify({ ...kept, original: `${kept.original}\n` }));
   });
   // With the robot in the address nothing would be lost.
-  await opened.waitForFunction(() => location.hash !== '');
+  await opened.waitForFunction(() => location.hash.includes('robot='));
   await opened.goto(address());
   await opened.waitForFunction(() => window.lizard);
   await opened.locator('#trouble', { hasText: 'robot.toml is not the file of last time' }).waitFor();
@@ -115,7 +115,7 @@ test('the pace slider has what the robot has, after a typed line and after a res
   await type(opened, 'speed 35', 'ok speed 35');
   const slider = opened.getByLabel('Pace');
   assert.equal(await slider.inputValue(), '35');
-  await opened.getByRole('button', { name: 'reset' }).click();
+  await opened.locator('#reset').click();
   // Nobody has asked for a status yet.
   await advance(opened, 2000);
   assert.equal(await slider.inputValue(), '100');
@@ -125,6 +125,7 @@ test('the pace slider has what the robot has, after a typed line and after a res
 
 test('what moves nothing with rigid legs and ideal servos says so and cannot be set', async () => {
   const opened = await standing();
+  for (const panel of ['#world', '#power']) await unfold(opened, panel);
   const note = opened.getByText('The legs are rigid, the servos ideal, and the feet stand evenly: friction and mass cancel out');
   assert.equal(await note.isVisible(), false, 'the torque of real servos is not for nothing');
   assert.ok(await opened.getByLabel('Pad friction').isEnabled());

@@ -6,7 +6,7 @@ import { join, resolve } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
 import { promisify } from 'node:util';
 
-import { advance, close, complaints, open, sideways, standing, tidy, within } from './browser.js';
+import { advance, close, complaints, open, sideways, standing, tidy, unfold, within } from './browser.js';
 
 const ROOT = new URL('../../', import.meta.url).pathname;
 
@@ -20,7 +20,7 @@ const predicted = (page) => page.waitForFunction(() => /mm$|undetermined/.test(d
 /** The gait editor with a gait of the robot in it, and a search of so many rounds set. */
 async function opened({ gait = 'walk', rounds = 1, seed = 3, rate = '' } = {}, options = {}) {
   const page = await standing(options);
-  await page.locator('#gait-editor summary').click();
+  await unfold(page, '#gait-editor');
   await predicted(page);
   await page.locator('#gait-from').selectOption({ label: gait });
   await page.getByLabel('Servos at most').fill(String(rate));
@@ -69,8 +69,8 @@ test('it finds the gait that lizard tune finds with the same seed, which is trie
   await advance(page, 3000);
   await page.waitForFunction(() => window.lizard.gait === 'mine');
   assert.ok((await page.evaluate(() => window.lizard.toml)).includes(known.fragment));
-  await page.locator('#robot-editor summary').click();
-  await page.getByRole('button', { name: 'Undo' }).click();
+  await unfold(page, '#robot-editor');
+  await page.locator('#robot-undo').click();
   await page.waitForFunction(() => !window.lizard.toml.includes('[gait.mine]'));
 });
 
@@ -98,7 +98,7 @@ test('a robot that is changed midway ends the search of the one of before', asyn
   const page = await opened({ rounds: 200 });
   await start(page);
   await tried(page, 1);
-  await page.locator('.lengths summary').click();
+  await unfold(page, '#lengths-panel');
   await page.locator('#lengths input[name="links.l12"]').fill('46');
   await page.keyboard.press('Enter');
   await page.waitForFunction(() => window.lizard.toml !== window.lizard.original);

@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { advance, close, complaints, open, standing, tidy } from './browser.js';
+import { advance, close, complaints, open, standing, tidy, unfold } from './browser.js';
 
 before(open);
 afterEach(tidy);
@@ -10,7 +10,7 @@ after(close);
 
 async function opened(options) {
   const page = await standing(options);
-  await page.locator('#gait-editor summary').click();
+  await unfold(page, '#gait-editor');
   await predicted(page);
   return page;
 }
@@ -109,8 +109,8 @@ test('a gait that is tried walks as far as was predicted, and stands in robot.to
   const toml = await page.evaluate(() => window.lizard.toml);
   assert.ok(toml.includes(await text(page, 'table')), toml.slice(-400));
   // The robot of before is one click away.
-  await page.locator('.lengths summary').click();
-  await page.getByRole('button', { name: 'Lengths of the file' }).click();
+  await unfold(page, '#lengths-panel');
+  await page.locator('#lengths-reset').click();
   await page.waitForFunction(() => !window.lizard.toml.includes('[gait.stride]'));
 });
 

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { after, afterEach, before, test } from 'node:test';
 
-import { advance, close, complaints, open, standing, tidy, type } from './browser.js';
+import { advance, close, complaints, open, standing, tidy, type, unfold } from './browser.js';
 
 before(open);
 afterEach(tidy);
@@ -11,7 +11,7 @@ after(close);
 
 async function opened(options) {
   const page = await standing(options);
-  await page.locator('#keep summary').click();
+  await unfold(page, '#keep');
   return page;
 }
 
@@ -74,12 +74,12 @@ test('a run is seen again from any moment, while the robot goes on', async () =>
   await page.getByText(/^1\.0 of [0-9.]+ s$/).waitFor();
   assert.equal(await button(page, 'Back to the robot').getAttribute('aria-pressed'), 'true');
   await button(page, 'Back to the robot').click();
-  await button(page, 'See it again').click();
+  await button(page, 'Replay').click();
   await page.waitForFunction(() => Number(document.querySelector('#moment').value) > 1.1);
   // Another robot has nothing to do with that run.
   await page.locator('#robot').selectOption('large');
   await page.waitForFunction(() => window.lizard.file === 'large');
-  assert.ok(await button(page, 'See it again').isDisabled());
+  assert.ok(await button(page, 'Replay').isDisabled());
 });
 
 test('pictures of the floor are points or lines, and a film moves', async () => {
@@ -124,7 +124,7 @@ test('two robots walk side by side, each as far as its gait leads alone', async 
   const stood = await written();
   await advance(page, 1000);
   assert.equal(await written(), stood, 'both have stopped');
-  await button(page, 'Alone again').click();
+  await button(page, 'Remove the second').click();
   assert.equal(await said.innerText(), '');
 });
 

@@ -40,7 +40,7 @@ for (const [letters, height] of [
       let predict;
       const asked = new Promise((done) => (predict = done));
       await opened.route(/predictor-worker/, (route) => asked.then(() => route.continue()));
-      await opened.goto(address());
+      await opened.goto(`${address()}#room=drive`);
       await opened.waitForFunction(() => document.querySelector('#floor').dataset.zoom);
       const first = await places(opened);
       assert.ok(first.length > 100);

@@ -208,7 +208,7 @@ test('an HC-05, which the system knows as a serial port, is driven as a radio', 
   const opened = await page({}, fakeSerial);
   const serialProfile = '00001101-0000-1000-8000-00805f9b34fb';
   await opened.evaluate((profile) => Object.assign(window, { awake: true, profile }), serialProfile);
-  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await opened.locator('#connect').click();
   await opened.waitForFunction(() => window.otherBoard);
   await until(opened, 'it is found', async () => (await text(opened, '#where')).startsWith('on a board on Bluetooth that has not restarted'));
   assert.deepEqual(await opened.evaluate(() => window.wanted.allowedBluetoothServiceClassIds), [serialProfile]);

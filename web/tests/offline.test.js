@@ -72,8 +72,8 @@ test('a newer page is offered, taken as a whole when a person says so, and the o
   const caches = () => opened.evaluate(() => window.caches.keys());
   const [first] = await caches();
   const page = await readFile(join(own, 'index.html'), 'utf8');
-  assert.ok(page.includes('<h1>lizard</h1>'));
-  await writeFile(join(own, 'index.html'), page.replace('<h1>lizard</h1>', '<h1>lizard, newer</h1>'));
+  assert.ok(page.includes('>lizard</a>'));
+  await writeFile(join(own, 'index.html'), page.replace('>lizard</a>', '>lizard, newer</a>'));
   writeServiceWorker(own);
   await opened.reload();
   await begun(opened);
@@ -92,7 +92,7 @@ test('a page of which a part is missing on the server is not taken, and the one 
   await kept(opened);
   const before = await opened.evaluate(() => window.caches.keys());
   const page = await readFile(join(own, 'index.html'), 'utf8');
-  await writeFile(join(own, 'index.html'), page.replace('<h1>lizard</h1>', '<h1>lizard, newer</h1>'));
+  await writeFile(join(own, 'index.html'), page.replace('>lizard</a>', '>lizard, newer</a>'));
   writeServiceWorker(own);
   // It was put there by halves: the list is new, the page is not.
   await writeFile(join(own, 'index.html'), page);

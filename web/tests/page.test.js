@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { after, afterEach, before, test } from 'node:test';
 
-import { advance, close, complaints, open, page, standing, stops, tidy, type } from './browser.js';
+import { advance, close, complaints, open, page, standing, stops, tidy, type, unfold } from './browser.js';
 import { fakeSerial } from './fake-serial.js';
 import { hexOf, imageOf } from './image.js';
 
@@ -113,7 +113,7 @@ test('changed lengths make other gaits', async () => {
   const opened = await standing();
   const before = (await ways(opened, 'walk')).predicted;
   const hash = await opened.evaluate(() => window.lizard.description.hash);
-  await opened.getByText('Lengths', { exact: true }).click();
+  await unfold(opened, '#lengths-panel');
   // A shorter leg makes shorter steps.
   const crank = opened.locator('input[name="leg.crank"]');
   await crank.fill('35');
@@ -137,7 +137,7 @@ test('changed lengths make other gaits', async () => {
   assert.equal(await base.inputValue(), '50', 'the box has what the file has');
   assert.equal((await ways(opened, 'walk')).predicted.forward, predicted.forward, 'the robot of before stays');
 
-  await opened.getByRole('button', { name: 'Lengths of the file' }).click();
+  await opened.locator('#lengths-reset').click();
   await has(45);
   assert.equal(await opened.evaluate(() => window.lizard.description.hash), hash);
   assert.equal(await crank.inputValue(), '45');
@@ -159,26 +159,26 @@ test('every robot of robots/ can be chosen, and is in the image that runs', asyn
 
 /** Moves the trim of A1 by the keyboard, saves, and resets the board. */
 async function calibrates(opened, forward) {
-  await opened.getByText('Calibrate', { exact: true }).click();
+  await unfold(opened, '#calibrate');
   await forward(500);
-  const trim = opened.getByRole('group', { name: 'A1' }).getByLabel('trim');
+  const trim = opened.locator('#calibration fieldset').first().getByLabel('trim');
   await trim.focus();
   for (let n = 0; n < 8; n++) await trim.press('ArrowRight');
   await forward(1500);
   await opened.locator('#log div', { hasText: /^ok trim 1 2$|^ok trim 1 2\.00$/ }).first().waitFor();
-  await opened.getByRole('button', { name: 'Save', exact: true }).click();
+  await opened.locator('#cal-save').click();
   await forward(2500);
   await opened.locator('#log div', { hasText: /^ok save$/ }).waitFor();
-  await opened.getByRole('button', { name: 'reset' }).click();
+  await opened.locator('#reset').click();
   await forward(4000);
-  await opened.getByRole('button', { name: 'Factory' }).click();
+  await opened.locator('#cal-factory').click();
   await forward(500);
-  await opened.getByRole('button', { name: 'Read' }).click();
+  await opened.locator('#cal-read').click();
   await forward(500);
   assert.equal(await trim.inputValue(), '0', 'factory takes it back');
-  await opened.getByRole('button', { name: 'Load' }).click();
+  await opened.locator('#cal-load').click();
   await forward(500);
-  await opened.getByRole('button', { name: 'Read' }).click();
+  await opened.locator('#cal-read').click();
   await forward(500);
   assert.equal(await trim.inputValue(), '2', 'it is kept over a reset');
 }
@@ -193,7 +193,7 @@ test('what boot is set to is done after a reset', async () => {
   await type(opened, 'boot walk', 'ok boot walk');
   await type(opened, 'save', '> save');
   await advance(opened, 2000);
-  await opened.getByRole('button', { name: 'reset' }).click();
+  await opened.locator('#reset').click();
   await advance(opened, 7000);
   await opened.locator('#log div', { hasText: '# boot: walk' }).waitFor();
   assert.ok((await ways(opened, 'walk')).measured.forward > 20, 'the page knows that it walks');
@@ -201,9 +201,9 @@ test('what boot is set to is done after a reset', async () => {
 
 test('a refused setting shows why and takes the slider back', async () => {
   const opened = await standing();
-  await opened.getByText('Calibrate', { exact: true }).click();
+  await unfold(opened, '#calibrate');
   await advance(opened, 500);
-  const least = opened.getByRole('group', { name: 'A1' }).getByLabel('from, deg');
+  const least = opened.locator('#calibration fieldset').first().getByLabel('from, deg');
   await least.fill('125');
   await least.press('Enter');
   await advance(opened, 1000);
@@ -213,11 +213,11 @@ test('a refused setting shows why and takes the slider back', async () => {
 
 /** Chooses the image of another robot, and waits until it is written and has begun. */
 async function flashes(opened, forward, where = '') {
-  await opened.getByText('Flash', { exact: true }).click();
+  await unfold(opened, '#flash');
   const buffer = Buffer.from(hexOf(await imageOf('large')));
   await opened.getByLabel('HEX file').setInputFiles({ name: 'large.hex', mimeType: 'text/plain', buffer });
   await opened.locator('#flash-what', { hasText: /^large\.hex, \d+ bytes\. It is lizard firmware\./ }).waitFor();
-  await opened.getByRole('button', { name: 'Write it', exact: true }).click();
+  await opened.locator('#flash-yes').click();
   const said = opened.locator('#flash-said');
   for (let n = 0; n < 400; n++) {
     await forward(100);
@@ -242,7 +242,7 @@ test('an image is flashed by the real boot loader', async () => {
 
 test('a HEX file that is none is refused before anything is written', async () => {
   const opened = await standing();
-  await opened.getByText('Flash', { exact: true }).click();
+  await unfold(opened, '#flash');
   const input = opened.getByLabel('HEX file');
   await input.setInputFiles({ name: 'x.hex', mimeType: 'text/plain', buffer: Buffer.from('hello\n') });
   await opened.locator('#flash-said', { hasText: 'not written: line 1 of the HEX file is no record' }).waitFor();
@@ -252,7 +252,7 @@ test('a HEX file that is none is refused before anything is written', async () =
 test('a board by Web Serial is driven, mirrored, calibrated and flashed', async () => {
   const opened = await page({}, fakeSerial);
   const forward = (ms) => opened.clock.runFor(ms);
-  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await opened.locator('#connect').click();
   await opened.waitForFunction(() => window.otherBoard);
   await forward(4000);
   assert.match(await text(opened, '#where'), /^on a board on USB, robot paper/);
@@ -266,14 +266,14 @@ test('a board by Web Serial is driven, mirrored, calibrated and flashed', async 
   await calibrates(opened, forward);
   assert.match(await flashes(opened, forward), / robot large /);
   assert.match(await text(opened, '#where'), /with another robot, robot large [0-9a-f]{8}:/);
-  await opened.getByRole('button', { name: 'Back to the simulation' }).click();
+  await opened.locator('#connect').click();
   await forward(2000);
   assert.match(await text(opened, '#where'), /^on a simulated UNO, robot paper/);
 });
 
 test('a board that is unplugged is said to be gone, and the simulation goes on', async () => {
   const opened = await page({}, fakeSerial);
-  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await opened.locator('#connect').click();
   await opened.waitForFunction(() => window.otherBoard);
   await opened.clock.runFor(4000);
   await opened.evaluate(() => window.unplug());
@@ -345,7 +345,7 @@ test('weak springs take of the way what the contact model says', async () => {
   await fromTheRight(opened, 'Mass', 0);
   const heavy = (await ways(opened, 'walk')).predicted;
   assert.ok(heavy.lag > 1.2 * light.lag, `${heavy.lag} deg with 1 kg, ${light.lag} deg`);
-  await opened.getByRole('button', { name: 'Values of robot.toml' }).click();
+  await opened.locator('#floor-reset').click();
   await advance(opened, 2500);
   const again = await ways(opened, 'walk');
   near(again.predicted.forward, rigid, 0.03, 'rigid again');
@@ -386,6 +386,17 @@ test('a dead band costs its share of the stroke, as predicted', async () => {
     went.push(measured.forward);
   }
   near(went[1] / went[0], 39 / 40, 0.01, 'a degree of 40');
+});
+
+test('at half the pace the last cycle is as long as predicted', async () => {
+  const opened = await standing();
+  await type(opened, 'speed 50', 'ok speed 50');
+  await type(opened, 'walk', 'ok walk');
+  await advance(opened, 8000);
+  const number = async (id) => Number.parseFloat(await opened.locator(id).textContent());
+  await opened.waitForFunction(() => ['#cycle', '#predicted'].every((id) => document.querySelector(id).textContent.endsWith('mm')));
+  const [cycle, predicted] = [await number('#cycle'), await number('#predicted')];
+  assert.ok(Math.abs(cycle / predicted - 1) < 0.05, `${cycle} mm, predicted ${predicted}`);
 });
 
 test('nothing was complained of', () => {

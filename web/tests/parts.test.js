@@ -11,7 +11,7 @@ import { gzipSync } from 'node:zlib';
 
 import { unzipSync } from 'fflate';
 
-import { advance, blank, address, close, complaints, open, standing, tidy, type, within } from './browser.js';
+import { advance, blank, address, close, complaints, open, standing, tidy, type, unfold, within } from './browser.js';
 
 const ROOT = new URL('../../', import.meta.url).pathname;
 /** First load of the page, compressed, bytes. */
@@ -35,7 +35,7 @@ const said = (page) => page.locator('#parts-said');
 
 async function opened(options) {
   const page = await standing(options);
-  await page.locator('#parts summary').click();
+  await unfold(page, '#parts');
   await page.getByText('Click a part for its name').waitFor();
   await page.locator('#parts').evaluate((panel) => panel.scrollIntoView());
   return page;
@@ -66,14 +66,14 @@ test('whoever opens the page loads no parts, and less than half a megabyte', asy
   assert.ok(sum < FIRST_LOAD, `${sum} bytes`);
   const early = names.filter((name) => /parts\.wasm|tune\.wasm|space|workshop|worker-.*parts/.test(name));
   assert.deepEqual(early, []);
-  await page.locator('#parts summary').click();
+  await unfold(page, '#parts');
   await page.getByText('Click a part for its name').waitFor();
   assert.ok(loaded.has('files/parts.wasm') && [...loaded.keys()].some((name) => name.includes('space')));
 });
 
 test('the archive has the files of lizard parts, byte for byte', async () => {
   const page = await standing();
-  await page.locator('#parts summary').click();
+  await unfold(page, '#parts');
   const download = page.waitForEvent('download');
   // All of them are kept as they are said, since a busy browser would be asked too late.
   await page.evaluate(() => {
@@ -102,7 +102,7 @@ test('what is being made can be stopped, and is then not saved', async () => {
   const page = await standing();
   let downloads = 0;
   page.on('download', () => (downloads += 1));
-  await page.locator('#parts summary').click();
+  await unfold(page, '#parts');
   // At once, since a slow browser would be told to stop what has ended.
   await page.evaluate(() => {
     const box = document.querySelector('#files-said');

@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { advance, close, complaints, open, sideways, standing, tidy } from './browser.js';
+import { advance, close, complaints, open, sideways, standing, tidy, unfold } from './browser.js';
 
 before(open);
 afterEach(tidy);
@@ -13,7 +13,7 @@ const isAsked = (page, id) => page.waitForFunction((id) => document.querySelecto
 
 async function opened(options) {
   const page = await standing(options);
-  await page.locator('#path-editor summary').click();
+  await unfold(page, '#path-editor');
   await isAsked(page, 'least');
   return page;
 }

@@ -5,7 +5,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
 
-import { address, close, complaints, open, page as load, standing, tidy } from './browser.js';
+import { address, close, complaints, open, page as load, standing, tidy, unfold } from './browser.js';
 
 const LARGE = new URL('../../robots/large.toml', import.meta.url).pathname;
 let folder;
@@ -24,7 +24,7 @@ const takes = (page, text) => page.waitForFunction((text) => window.lizard?.toml
 
 async function opened(options) {
   const page = await standing(options);
-  await page.locator('#robot-editor summary').click();
+  await unfold(page, '#robot-editor');
   return page;
 }
 
@@ -56,10 +56,10 @@ test('a text that is right becomes the robot, and is undone step by step', async
   }
   assert.equal(await page.evaluate(() => window.lizard.description.gaits.find(({ name }) => name === 'trot').period), 1.5);
   for (const text of [second, first]) {
-    await page.getByRole('button', { name: 'Undo' }).click();
+    await page.locator('#robot-undo').click();
     await takes(page, text);
   }
-  assert.ok(await page.getByRole('button', { name: 'Undo' }).isDisabled());
+  assert.ok(await page.locator('#robot-undo').isDisabled());
 });
 
 test('a file is opened, or dropped anywhere on the page', async () => {
@@ -105,20 +105,20 @@ test('a link is a robot, also over a reload', async () => {
 test('the address is the robot that is shown, at every change', async () => {
   const page = await opened();
   const first = await toml(page);
-  assert.equal(page.url(), address(), 'the robot of the page itself needs none');
+  assert.equal(page.url(), `${address()}#room=build`, 'the robot of the page itself needs none');
   const changed = first.replace('amplitude = 15.0', 'amplitude = 14.0');
   await box(page).fill(changed);
   await page.locator('#robot-take').click();
-  await page.waitForFunction(() => location.hash.startsWith('#robot='));
+  await page.waitForFunction(() => location.hash.startsWith('#room=build&robot='));
   // A page that knows nothing of the first has it from the address alone.
   const other = await load();
   await other.evaluate(() => localStorage.clear());
   await other.goto(await page.evaluate(() => location.href));
   await takes(other, changed);
-  await page.getByRole('button', { name: 'Undo' }).click();
-  await page.waitForFunction((plain) => location.href === plain, address());
+  await page.locator('#robot-undo').click();
+  await page.waitForFunction(() => location.hash === '#room=build');
   await page.locator('#robot').selectOption('large');
-  await page.waitForFunction(() => location.hash === '#file=large');
+  await page.waitForFunction(() => location.hash === '#room=build&file=large');
   await other.goto(await page.evaluate(() => location.href));
   await other.waitForFunction(() => window.lizard.file === 'large');
   // The address follows the robot again before the page hears of it.
@@ -136,6 +136,35 @@ test('a hostile file runs no script', async () => {
   await page.locator('#robot-take').click();
   await page.waitForFunction((text) => window.lizard.toml === text || !document.querySelector('#robot-refusal').hidden, hostile);
   assert.equal(await page.locator('img').count(), 0);
+});
+
+test('a link and the list of robots put the own robot aside, and a button brings it back', async () => {
+  const page = await opened();
+  const own = (await toml(page)).replace('amplitude = 15.0', 'amplitude = 14.0');
+  await box(page).fill(own);
+  await page.locator('#robot-take').click();
+  await takes(page, own);
+  const back = page.locator('#trouble').getByRole('button', { name: 'Back to my own robot' });
+  // A friend's link, which is opened in a tab of its own.
+  await page.goto('about:blank');
+  await page.goto(`${address()}#file=large`);
+  await page.waitForFunction(() => window.lizard?.file === 'large');
+  await back.click();
+  await takes(page, own);
+  // In the same tab, once the address has followed.
+  await page.waitForFunction(() => location.hash.startsWith('#robot='));
+  await page.evaluate(() => (location.hash = '#file=large'));
+  await page.waitForFunction(() => window.lizard.file === 'large');
+  await back.waitFor();
+  await page.reload();
+  await page.waitForFunction(() => window.lizard?.file === 'large');
+  await page.locator('#robot-own').click();
+  await takes(page, own);
+  await page.locator('#robot').selectOption('large');
+  await page.waitForFunction(() => window.lizard.file === 'large');
+  await back.click();
+  await takes(page, own);
+  assert.equal(await page.locator('#robot-own').isHidden(), true, 'none is left');
 });
 
 test('nothing was complained of', () => assert.deepEqual(complaints, []));

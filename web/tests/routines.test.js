@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
 import { connected, until } from './board.js';
-import { address, advance, close, complaints, open, standing, tidy } from './browser.js';
+import { address, advance, close, complaints, open, standing, tidy, unfold } from './browser.js';
 
 before(open);
 afterEach(tidy);
@@ -13,11 +13,13 @@ const PATROL = ['stand 1 s', 'walk 2', 'left 3', 'look 1'];
 
 const text = (page, selector) => page.locator(selector).innerText();
 const toml = (page) => page.evaluate(() => window.lizard.toml);
-const unfold = (page) => page.locator('#routines summary').click();
 const gait = (page, name) => page.locator(`#gaits button[data-command="${name}"]`);
 const steps = (page) => page.locator('#routine-steps input').evaluateAll((inputs) => inputs.map(({ value }) => value));
 const step = (page, number) => page.getByLabel(`Step ${number}`, { exact: true });
-const press = (page, name) => page.getByRole('button', { name, exact: true }).click();
+const press = async (page, name) => {
+  await unfold(page, '#routines');
+  await page.locator('#routines').getByRole('button', { name, exact: true }).click();
+};
 /** Until the steps are these ones. */
 const shows = (page, wanted) =>
   page.waitForFunction(
@@ -40,7 +42,7 @@ async function put(page, steps, name = 'patrol') {
 /** The panel with this routine, before a robot that stands. */
 async function opened(routine = PATROL, options = {}) {
   const page = await standing(options);
-  await unfold(page);
+  await unfold(page, '#routines');
   if (!routine) return page;
   await put(page, routine);
   await shows(page, routine);
@@ -127,7 +129,7 @@ test('what the robot said is recorded, and not what was pressed', async () => {
 
 test('a drive of a board is recorded by its own phase, also where its link was cut', async () => {
   const page = await connected('robot', 8000);
-  await unfold(page);
+  await unfold(page, '#routines');
   await press(page, 'Record a drive');
   const doing = (name) => until(page, `it does ${name}`, async () => (await page.evaluate(() => window.lizard.gait)) === name, 20);
   await gait(page, 'walk').click();
@@ -187,11 +189,12 @@ test('steps are changed, moved, copied and deleted by keys alone, and each is un
 
 test('the list follows the text, and the text the list, with all its other lines', async () => {
   const page = await opened();
-  await page.locator('#robot-editor summary').click();
+  await unfold(page, '#robot-editor');
   const own = `${await toml(page)}repeat = 3 # rounds\n\n[routine.about]\nsteps = [\n  "left 12", # half a turn\n]\n`;
   await page.locator('#robot-text').fill(own);
-  assert.deepEqual(await page.locator('#routine option').allInnerTexts(), ['patrol', 'about'], 'while it is typed');
-  await press(page, 'Use this text Ctrl Enter');
+  await unfold(page, '#routines');
+  assert.deepEqual(await page.locator('#routine option').allInnerTexts(), ['patrol', 'about'], 'before it is used');
+  await page.locator('#robot-take').click();
   await page.locator('#routine').selectOption('about');
   await shows(page, ['left 12']);
   await page.locator('#routine').selectOption('patrol');
@@ -302,7 +305,7 @@ test('a step that waits for ever, or many of them, do not hold the page up', asy
 
 test('a routine is written to a board, which patrols by its name and says that it is done', async () => {
   const page = await connected('robot', 8000);
-  await unfold(page);
+  await unfold(page, '#routines');
   await put(page, ['walk 2', 'rest 2 s', 'left 1']);
   await shows(page, ['walk 2', 'rest 2 s', 'left 1']);
   // The board has the robot without it until it is written.
@@ -345,7 +348,7 @@ test('a routine that rests is stopped when nobody sees the page any more', async
 
 test('a board that is unplugged while a routine is written says so, and gets it when it is back', async () => {
   const page = await connected('robot', 8000);
-  await unfold(page);
+  await unfold(page, '#routines');
   await put(page, ['walk 1']);
   await shows(page, ['walk 1']);
   await press(page, 'Write it to the board');
@@ -356,7 +359,7 @@ test('a board that is unplugged while a routine is written says so, and gets it 
   assert.deepEqual(await written(page), ['walk 1'], 'the routine is still in the page');
   await until(page, 'it may be connected', () => page.locator('#connect').isEnabled());
   await page.evaluate(() => (window.same = true));
-  await page.getByRole('button', { name: 'Connect a board' }).click();
+  await page.locator('#connect').click();
   await until(page, 'it greets', async () => (await text(page, '#where')) === 'on a board on USB with this firmware and no robot in it: write this one');
   await press(page, 'Write it to the board');
   await until(page, 'it is written', async () => /^written and verified/.test(await text(page, '#routine-said')));

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { after, afterEach, before, test } from 'node:test';
 
-import { address, advance, blank, close, complaints, open, page, sideways, standing, tidy, within } from './browser.js';
+import { address, advance, blank, close, complaints, open, page, sideways, standing, tidy, unfold, within } from './browser.js';
 
 before(open);
 afterEach(tidy);
@@ -39,6 +39,8 @@ for (const [name, options] of [
 ]) {
   test(`stop is on the screen of a phone ${name}, wherever it is scrolled to`, async () => {
     const opened = await standing(options);
+    for (const panel of ['#world', '#power', '#keep']) await unfold(opened, panel);
+    await opened.evaluate(() => scrollTo(0, 0));
     assert.ok(await isOnScreen(opened, '.stop'), 'at the top');
     await opened.evaluate(() => scrollTo(0, document.documentElement.scrollHeight));
     assert.ok((await opened.evaluate(() => scrollY)) > 500);
@@ -52,6 +54,7 @@ for (const [name, options] of [
 
   test(`a phone ${name} shows the robot and its buttons on one screen`, async () => {
     const opened = await standing(options);
+    await opened.goto(`${address()}#room=drive`);
     for (const selector of ['#floor', '#gaits', '#reset', '#speed']) {
       assert.ok(await isOnScreen(opened, selector), selector);
     }
@@ -62,6 +65,7 @@ for (const [name, options] of [
 
 test('a finger that moves up over the floor scrolls the page', async () => {
   const opened = await standing(PORTRAIT);
+  await opened.goto(`${address()}#room=gaits`);
   const follow = opened.getByRole('button', { name: 'Follow' });
   await swipe(opened, '#floor', 120, 0);
   assert.equal(await follow.getAttribute('aria-pressed'), 'false', 'a finger aside drags the floor');
@@ -78,6 +82,7 @@ const zoom = (opened) => opened.evaluate(() => Number(document.querySelector('#f
 
 test('the wheel scrolls the page, and zooms with Ctrl as far as the robot is to be seen', async () => {
   const opened = await standing({ viewport: { width: 1400, height: 700 } });
+  await opened.goto(`${address()}#room=gaits`);
   await opened.waitForFunction(() => document.querySelector('#floor').dataset.zoom);
   const first = await zoom(opened);
   const { left, top } = await place(opened, '#floor');
@@ -117,16 +122,17 @@ for (const [name, viewport] of [
 ]) {
   test(`${name} wide, with every panel open, nothing is beside the screen`, async () => {
     const opened = await standing({ viewport });
-    for (const panel of ['Lengths', 'Calibrate', 'Flash']) await opened.getByText(panel, { exact: true }).click();
-    await advance(opened, 500);
-    await opened.getByRole('group', { name: 'A4' }).waitFor();
-    const outside = await opened.evaluate(() =>
-      [...document.querySelectorAll('button, input, select, canvas, table')]
-        .filter((each) => each.getBoundingClientRect().right > document.documentElement.clientWidth + 0.5)
-        .map(({ id, textContent }) => id || textContent),
-    );
-    assert.equal(await sideways(opened), 0);
-    assert.deepEqual(outside, []);
+    for (const panel of ['#lengths-panel', '#calibrate', '#flash', '#world', '#gait-editor', '#maps']) {
+      await unfold(opened, panel);
+      await advance(opened, 500);
+      const outside = await opened.evaluate(() =>
+        [...document.querySelectorAll('button, input, select, canvas, table')]
+          .filter((each) => each.getBoundingClientRect().right > document.documentElement.clientWidth + 0.5)
+          .map(({ id, textContent }) => id || textContent),
+      );
+      assert.equal(await sideways(opened), 0);
+      assert.deepEqual(outside, []);
+    }
   });
 }
 

@@ -9,7 +9,7 @@ import { after, afterEach, before, test } from 'node:test';
 import { promisify } from 'node:util';
 
 import { connected, until } from './board.js';
-import { PATIENCE, advance, close, complaints, open, page, sideways, standing, tidy } from './browser.js';
+import { PATIENCE, advance, close, complaints, open, page, sideways, standing, tidy, unfold } from './browser.js';
 import { fakeSerial } from './fake-serial.js';
 
 before(open);
@@ -20,8 +20,14 @@ after(close);
 const PINS = [9, 10, 11, 3];
 const setup = (opened) => opened.locator('#setup');
 const text = (opened, selector) => opened.locator(selector).innerText();
-const press = (opened, name) => setup(opened).getByRole('button', { name, exact: true }).click();
-const step = (opened, name) => setup(opened).getByRole('list', { name: 'Steps' }).getByRole('button', { name: new RegExp(`${name}$`) }).click();
+const press = async (opened, name) => {
+  await setup(opened).scrollIntoViewIfNeeded();
+  await setup(opened).getByRole('button', { name, exact: true }).click();
+};
+const step = async (opened, name) => {
+  await setup(opened).scrollIntoViewIfNeeded();
+  await setup(opened).getByRole('list', { name: 'Steps' }).getByRole('button', { name: new RegExp(`${name}$`) }).click();
+};
 const pulses = (opened) => opened.evaluate((pins) => pins.map((pin) => window.pulses[pin]), PINS);
 
 /** Lets time go on until this is said. */
@@ -150,7 +156,7 @@ test('a board with another robot is told from this one, and is given this one al
 test('a board that answers nothing is asked about, and no step is a dead end', async () => {
   const opened = await page({}, fakeSerial);
   await opened.evaluate(() => (window.flashed = null));
-  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await opened.locator('#connect').click();
   await opened.waitForFunction(() => window.otherBoard);
   await opened.evaluate(() => (window.otherBoard.send = () => {}));
   await opened.clock.runFor(10000);
@@ -166,7 +172,7 @@ test('a board that answers nothing is asked about, and no step is a dead end', a
 test('a board that says bytes without a meaning is told from a robot', async () => {
   const opened = await page({}, fakeSerial);
   await opened.evaluate(() => (window.garbage = true));
-  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await opened.locator('#connect').click();
   await opened.waitForFunction(() => window.otherBoard);
   await until(opened, 'it is asked about', async () => setup(opened).getByText('answers neither as this firmware nor as a boot loader').isVisible());
   await does(opened, 'Write firmware and robot', /^not written: /);
@@ -180,7 +186,7 @@ test('a board that is unplugged at any step is said to be gone, and the path goe
   assert.equal(names.length, 9);
   for (const name of names) {
     await opened.evaluate(() => (window.otherBoard = undefined));
-    await opened.getByRole('button', { name: 'Connect a board' }).click();
+    await opened.locator('#connect').click();
     await opened.waitForFunction(() => window.otherBoard);
     await opened.clock.runFor(4500);
     await step(opened, name);
@@ -205,7 +211,7 @@ test('a board that is unplugged while it is written says so, and can be written 
   await until(opened, 'it is said', async () => /is not connected any more|not written/.test(await text(opened, '#setup-said')));
   await opened.evaluate(() => (window.otherBoard = undefined));
   await until(opened, 'it may be connected', () => opened.locator('#connect').isEnabled());
-  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await opened.locator('#connect').click();
   await opened.waitForFunction(() => window.otherBoard);
   await opened.clock.runFor(8000);
   await does(opened, 'Write firmware and robot', /^written and verified/);
@@ -246,7 +252,7 @@ test('the robot does not walk while somebody fits it together', async () => {
   await until(opened, 'it is left', async () => !(await setup(opened).isVisible()));
   await opened.locator('#gaits button[data-command="walk"]').click();
   await until(opened, 'it walks', async () => (await opened.evaluate(() => window.lizard.gait)) === 'walk');
-  await opened.getByRole('button', { name: 'Set up…' }).click();
+  await opened.locator('#setup-open').click();
   await until(opened, 'it is stopped', async () => (await opened.evaluate(() => window.lizard.gait)) !== 'walk');
 });
 
@@ -272,7 +278,7 @@ test('who leaves leaves the robot as it was, and comes back to the same step', a
   await until(opened, 'it is left', async () => !(await setup(opened).isVisible()));
   await opened.getByText('the robot has the calibration that it had before').waitFor();
   assert.deepEqual(await cal(opened), before);
-  await opened.getByRole('button', { name: 'Set up…' }).click();
+  await opened.locator('#setup-open').click();
   await setup(opened).getByText('5 of 9: Straighten the cranks').waitFor();
   // Proven signs stay proven unless they are taken back.
   await step(opened, 'Signs');
@@ -280,7 +286,7 @@ test('who leaves leaves the robot as it was, and comes back to the same step', a
   await press(opened, 'Yes');
   await press(opened, 'Leave');
   await until(opened, 'it is left', async () => !(await setup(opened).isVisible()));
-  await opened.getByRole('button', { name: 'Set up…' }).click();
+  await opened.locator('#setup-open').click();
   await step(opened, 'First walk');
   await setup(opened).getByText('Not proven yet: the sign of A2, A3, A4.').waitFor();
 });
@@ -329,7 +335,7 @@ test('a kept file is given to the robot, and one that is none says what is wrong
 
 test('without a board every step can be tried, by the keyboard alone', async () => {
   const opened = await standing();
-  await opened.getByRole('button', { name: 'Set up…' }).focus();
+  await opened.locator('#setup-open').focus();
   await opened.keyboard.press('Enter');
   assert.equal(await opened.evaluate(() => document.activeElement.id), 'setup-step');
   /** Goes to a control by the tab key, as far as there may be controls. */
@@ -354,6 +360,8 @@ test('without a board every step can be tried, by the keyboard alone', async () 
   assert.equal(await opened.evaluate(() => document.activeElement.textContent), 'Turn all servos to their middle', 'it stays where it was');
   await advance(opened, 500);
   await opened.keyboard.up('ArrowUp');
+  await unfold(opened, '#pulses');
+  await opened.waitForFunction(() => document.querySelector('#widths td:nth-child(3)').textContent !== '–');
   assert.deepEqual(await opened.locator('#widths td:nth-child(3)').allInnerTexts(), ['1500.00', '1500.00', '1500.00', '1500.00']);
 });
 
@@ -363,7 +371,7 @@ for (const [name, options] of [
 ]) {
   test(`every step fits on ${name} without scrolling sideways`, async () => {
     const opened = await standing(options);
-    await opened.getByRole('button', { name: 'Set up…' }).tap();
+    await opened.locator('#setup-open').tap();
     for (const button of await opened.locator('#setup-steps button').all()) {
       await button.tap();
       await advance(opened, 1500);

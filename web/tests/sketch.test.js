@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { advance, close, complaints, open, sideways, standing, tidy } from './browser.js';
+import { advance, close, complaints, open, sideways, standing, tidy, unfold } from './browser.js';
 
 before(open);
 afterEach(tidy);
@@ -10,7 +10,7 @@ after(close);
 
 async function opened(options) {
   const page = await standing(options);
-  await page.locator('#lengths-panel summary').click();
+  await unfold(page, '#lengths-panel');
   await page.locator('#sketch circle').first().waitFor();
   await page.locator('#sketch').evaluate((sketch) => sketch.scrollIntoView({ block: 'center' }));
   return page;
@@ -62,8 +62,8 @@ test('the point of the head is dragged, and both couplers follow', async () => {
   await page.locator('#gaits button[data-command="walk"]').click();
   await advance(page, 2000);
   assert.equal(await page.locator('#doing').innerText(), 'walk');
-  await page.locator('#robot-editor summary').click();
-  await page.getByRole('button', { name: 'Undo' }).click();
+  await unfold(page, '#robot-editor');
+  await page.locator('#robot-undo').click();
   await page.waitForFunction(() => window.lizard.description.lengths.find(({ key }) => key === 'links.l2').value === 50);
 });
 

@@ -177,4 +177,26 @@ test('a robot of other gaits is driven by its own', async () => {
   await doing(opened, 'stop');
 });
 
+test('after a click on the pace, on the list of robots or on the floor the arrows still drive; after Tab they do not', async () => {
+  const opened = await ready();
+  const pace = opened.locator('#speed');
+  for (const selector of ['#speed', '#floor', '#robot']) {
+    await opened.locator(selector).click();
+    if (selector === '#robot') await opened.keyboard.press('Escape');
+    const before = await opened.evaluate(() => [document.querySelector('#speed').value, document.querySelector('#robot').value]);
+    await opened.keyboard.down('ArrowUp');
+    await doing(opened, 'walk');
+    await opened.keyboard.up('ArrowUp');
+    await doing(opened, 'stop');
+    assert.deepEqual(await opened.evaluate(() => [document.querySelector('#speed').value, document.querySelector('#robot').value]), before, selector);
+  }
+  assert.equal(await opened.getByRole('button', { name: 'Follow' }).getAttribute('aria-pressed'), 'true', 'the view stays');
+  await opened.locator('#reset').focus();
+  await opened.keyboard.press('Tab');
+  const value = await pace.inputValue();
+  await opened.keyboard.press('ArrowLeft');
+  assert.notEqual(await pace.inputValue(), value);
+  assert.equal(await opened.locator('#doing').textContent(), 'stop');
+});
+
 test('nothing was complained of', () => assert.deepEqual(complaints, []));

@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { address, advance, blank, close, complaints, open, page, standing, tidy, type } from './browser.js';
+import { address, advance, blank, close, complaints, open, page, standing, tidy, type, unfold } from './browser.js';
 import { fakeSerial } from './fake-serial.js';
 
 before(open);
@@ -21,6 +21,7 @@ test('a robot file that cannot be read stays said while the robot of before goes
   assert.equal(await opened.locator('#robot').inputValue(), 'robot', 'the choice is the robot that is there');
   await type(opened, 'walk', 'ok walk');
   await advance(opened, 5000);
+  await unfold(opened, '#power');
   await opened.locator('#health dd', { hasText: 'power' }).waitFor();
   assert.ok(await said.isVisible(), 'good answers and the poll of the status do not take it away');
   assert.equal(await opened.evaluate(() => window.lizard.file), 'robot');
@@ -52,9 +53,10 @@ test('a port that is busy stays said until a person puts it away', async () => {
       throw new DOMException('Failed to open serial port.', 'NetworkError');
     };
   });
-  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await opened.locator('#connect').click();
   const said = trouble(opened).getByText('No board is connected: Failed to open serial port.');
   await said.waitFor();
+  await unfold(opened, '#power');
   await opened.clock.runFor(8000);
   await opened.locator('#health dd', { hasText: 'power' }).waitFor();
   assert.ok(await said.isVisible());
@@ -70,7 +72,7 @@ test('a person who picks no port is not told of a trouble', async () => {
       throw new DOMException('No port selected by the user.', 'NotFoundError');
     };
   });
-  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await opened.locator('#connect').click();
   await opened.waitForFunction(() => window.picked);
   await opened.clock.runFor(500);
   assert.equal(await trouble(opened).isVisible(), false);
@@ -85,7 +87,7 @@ test('a browser that may not use ports says why, and the simulation goes on', as
       throw new DOMException(why, 'SecurityError');
     };
   }, why);
-  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await opened.locator('#connect').click();
   await trouble(opened).getByText(`No board is connected: ${why}`).waitFor();
   assert.match(await text(opened, '#where'), /simulated UNO/);
 });
@@ -97,7 +99,7 @@ test('a browser without Web Serial says so to whoever only reads', async () => {
 
 test('a refused button says why beside the buttons, on a phone too', async () => {
   const opened = await standing({ viewport: { width: 390, height: 844 }, hasTouch: true });
-  await opened.getByRole('button', { name: 'rest', exact: true }).click();
+  await opened.locator('[data-command="rest"]').click();
   await advance(opened, 300);
   await opened.locator('#gaits button[data-command="walk"]').click();
   await advance(opened, 300);

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
 import { connected, until } from './board.js';
-import { close, complaints, open, page, standing, tidy } from './browser.js';
+import { close, complaints, open, page, standing, tidy, unfold } from './browser.js';
 import { fakeSerial } from './fake-serial.js';
 import { imageOf } from './image.js';
 
@@ -23,7 +23,7 @@ const robotAlone = (opened) => opened.locator('#flash-robot').click();
 const moved = (opened) => opened.evaluate(() => window.lizard.description.servos.map(({ pin }) => pin).filter((pin) => pin in window.pulses));
 
 async function panel(opened) {
-  await opened.getByText('Flash', { exact: true }).click();
+  await unfold(opened, '#flash');
   return opened;
 }
 
@@ -47,7 +47,7 @@ test('a robot is on a board in a second or two, and the firmware and what is sav
 
 test('a gait that was made is written to a board, and the board walks so', async () => {
   const opened = await connected('robot', 8000);
-  await opened.locator('#gait-editor summary').click();
+  await unfold(opened, '#gait-editor');
   await opened.waitForFunction(() => /mm$/.test(document.querySelector('#gait-way').textContent));
   await opened.locator('#gait-name').fill('stride');
   await opened.waitForFunction(() => document.querySelector('#gait-table').textContent.startsWith('[gait.stride]'));
@@ -65,7 +65,7 @@ test('a gait that was made is written to a board, and the board walks so', async
 
 test('a text that was edited is written to the board by one button', async () => {
   const opened = await connected('robot', 8000);
-  await opened.locator('#robot-editor summary').click();
+  await unfold(opened, '#robot-editor');
   const toml = (await opened.locator('#robot-text').inputValue()).replace('name = "paper"', 'name = "mine"').replace('period = 1.25', 'period = 1.5');
   await opened.locator('#robot-text').fill(toml);
   await opened.locator('#robot-write').click();
@@ -75,7 +75,7 @@ test('a text that was edited is written to the board by one button', async () =>
 
 test('without a board the buttons say what is missing', async () => {
   const opened = await standing();
-  await opened.locator('#robot-editor summary').click();
+  await unfold(opened, '#robot-editor');
   await opened.locator('#robot-write').click();
   await opened.locator('#robot-said', { hasText: 'No board is connected: Connect a board…' }).waitFor();
 });
@@ -97,7 +97,7 @@ async function unasked() {
     window.awake = true;
     window.flashed = 'large';
   });
-  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await opened.locator('#connect').click();
   await opened.waitForFunction(() => window.otherBoard);
   await opened.clock.runFor(5000);
   assert.match(await text(opened, '#where'), /that has not restarted/);
@@ -133,7 +133,7 @@ test('a board that is unplugged half way has no robot, says so, moves nothing, a
   await said(opened, /^not written: .*\. Only a part of the robot is on the board, which moves nothing until it is rewritten: try again$/);
   await until(opened, 'it may be connected', () => opened.locator('#connect').isEnabled());
   await opened.evaluate(() => (window.same = true));
-  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await opened.locator('#connect').click();
   await until(opened, 'it greets', async () => (await text(opened, '#where')) === 'on a board on USB with this firmware and no robot in it: write this one');
   await opened.clock.runFor(5000);
   assert.deepEqual(await moved(opened), []);
@@ -173,7 +173,7 @@ test('a board that is unplugged while the firmware is written does nothing, and 
   assert.deepEqual(await flash(opened, 0, 4), Buffer.from([0xff, 0xcf, 0xff, 0xcf]));
   await until(opened, 'it may be connected', () => opened.locator('#connect').isEnabled());
   await opened.evaluate(() => (window.same = true));
-  await opened.getByRole('button', { name: 'Connect a board' }).click();
+  await opened.locator('#connect').click();
   await until(opened, 'it is named', async () => /without this firmware$/.test(await text(opened, '#where')));
   await opened.locator('#flash-write').click();
   await said(opened, /^written and verified in [\d.]+ s$/);

@@ -98,13 +98,14 @@ export class Space {
     });
     canvas.addEventListener('pointercancel', () => (down = null));
     canvas.addEventListener('keydown', (event) => {
-      if (event.ctrlKey || event.metaKey || event.altKey || !this.key(event.key)) return;
+      if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || !this.press(event.key)) return;
       event.preventDefault();
       event.stopPropagation();
     });
   }
 
-  private key(key: string): boolean {
+  /** Turns or zooms the view as a key does; returns false for other keys. */
+  press(key: string): boolean {
     const ways: Record<string, [number, number, number]> = {
       ArrowLeft: [-TURN, 0, 1],
       ArrowRight: [TURN, 0, 1],

@@ -3,6 +3,8 @@ import type { Session } from '../session';
 import { WORDS } from '../words';
 import { calibration, type ServoSettings } from '../status';
 import { element } from './canvas';
+import { make } from './make';
+import { isShown } from './rooms';
 
 interface Row {
   trim: HTMLInputElement;
@@ -25,9 +27,8 @@ export class Calibrate {
     for (const word of [WORDS.load, WORDS.factory]) {
       element(`cal-${word}`).addEventListener('click', () => void this.set(word).then(() => this.read()));
     }
-    this.box.closest('details')?.addEventListener('toggle', (event) => {
-      if ((event.target as HTMLDetailsElement).open) void this.read();
-    });
+    const panel = element<HTMLDetailsElement>('calibrate');
+    panel.addEventListener('toggle', () => isShown(panel) && void this.read());
   }
 
   /** Reads the robot's settings and shows them. */
@@ -63,27 +64,21 @@ export class Calibrate {
 
   private build(): void {
     this.rows = [1, 2, 3, 4].map((servo) => {
-      const group = this.box.appendChild(document.createElement('fieldset'));
-      group.appendChild(document.createElement('legend')).textContent = `A${servo}`;
+      const group = make('fieldset', {}, make('legend', {}, `A${servo}`));
       const trim = this.trim(group, servo);
-      const numbers = group.appendChild(document.createElement('div'));
-      numbers.className = 'numbers';
+      const numbers = make('div', { className: 'numbers' });
+      group.append(numbers);
+      this.box.append(group);
       const number = (label: string, step: string) => {
-        const box = numbers.appendChild(document.createElement('label'));
-        box.append(label);
-        const input = box.appendChild(document.createElement('input'));
-        input.type = 'number';
-        input.step = step;
+        const input = make('input', { type: 'number', step });
+        numbers.append(make('label', {}, label, input));
         return input;
       };
       const least = number('from, deg', '1');
       const most = number('to, deg', '1');
       const scale = number('µs per deg', '0.01');
-      const box = numbers.appendChild(document.createElement('label'));
-      box.append('longer pulse turns it');
-      const dir = box.appendChild(document.createElement('select'));
-      dir.add(new Option('left (+)', '+'));
-      dir.add(new Option('right (−)', '-'));
+      const dir = make('select', {}, new Option('left (+)', '+'), new Option('right (−)', '-'));
+      numbers.append(make('label', {}, 'longer pulse turns it', dir));
       for (const input of [least, most]) {
         input.addEventListener('change', () => void this.set(`${WORDS.limit} ${servo} ${least.value} ${most.value}`));
       }
@@ -94,15 +89,9 @@ export class Calibrate {
   }
 
   private trim(group: HTMLElement, servo: number): HTMLInputElement {
-    const label = group.appendChild(document.createElement('label'));
-    label.className = 'slider';
-    label.append('trim ');
-    const trim = label.appendChild(document.createElement('input'));
-    trim.type = 'range';
-    trim.min = '-20';
-    trim.max = '20';
-    trim.step = '0.25';
-    const out = label.appendChild(document.createElement('output'));
+    const trim = make('input', { type: 'range', min: '-20', max: '20', step: '0.25' });
+    const out = make('output', {});
+    group.append(make('label', { className: 'slider' }, 'trim ', trim, out));
     const show = () => (out.textContent = `${Number(trim.value).toFixed(2)}°`);
     trim.addEventListener('input', show);
     trim.addEventListener('shown', show);

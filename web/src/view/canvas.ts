@@ -7,26 +7,11 @@ export interface Surface {
   height: number;
 }
 
-/** Canvases that are scrolled out of sight and need no painting. */
-const away = new WeakSet<Element>();
-const watched = new WeakSet<Element>();
-const watcher = new IntersectionObserver((entries) => {
-  for (const { target, isIntersecting } of entries) {
-    if (isIntersecting) away.delete(target);
-    else away.add(target);
-  }
-});
-
 /**
- * Returns the cleared canvas in CSS pixels; null while it is out of sight, unless it is being filmed (`unseen`). An
- * opaque canvas must be filled by the caller, which saves blending.
+ * Returns the cleared canvas in CSS pixels; null while its room or its panel is closed. An opaque canvas must be filled
+ * by the caller, which saves blending.
  */
-export function surface(canvas: HTMLCanvasElement, opaque = false, unseen = false): Surface | null {
-  if (!watched.has(canvas)) {
-    watched.add(canvas);
-    watcher.observe(canvas);
-  }
-  if (away.has(canvas) && !unseen) return null;
+export function surface(canvas: HTMLCanvasElement, opaque = false): Surface | null {
   const { clientWidth: width, clientHeight: height } = canvas;
   if (width === 0 || height === 0) return null;
   const scale = devicePixelRatio;

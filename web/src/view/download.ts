@@ -1,5 +1,6 @@
 // Saves files, and a robot.toml with the values of the page's sliders.
 import { type Floor, isRefused, type Refused, type Robot } from '../robot';
+import { make } from './make';
 
 /**
  * Saves a robot.toml with this floor, mass and leg drive; null leaves those of the text. If they cannot be
@@ -15,9 +16,7 @@ export function download(robot: Robot, toml: string, floor: Floor | null): Refus
 
 /** Saves a file. */
 export function save(name: string, pieces: BlobPart[], type: string): void {
-  const link = document.createElement('a');
-  link.href = URL.createObjectURL(new Blob(pieces, { type }));
-  link.download = name;
+  const link = make('a', { href: URL.createObjectURL(new Blob(pieces, { type })), download: name });
   link.click();
   URL.revokeObjectURL(link.href);
 }

@@ -3,6 +3,7 @@ import type { Description, GaitPrediction, Displacement } from '../robot';
 import type { Answer } from '../link/dialogue';
 import { WORDS } from '../words';
 import { element } from './canvas';
+import { make } from './make';
 
 /** Letters that fit on a button of the usual width. */
 const LONG = 13;
@@ -47,7 +48,6 @@ export class Drive {
     if (!answer) return;
     this.said.hidden = answer.ok;
     this.said.textContent = answer.ok ? '' : `${line}: ${answer.text.replace(/^err \d+ /, '')}`;
-    if (!answer.ok) this.said.scrollIntoView({ block: 'nearest' });
   }
 
   /** Takes another robot. */
@@ -55,16 +55,13 @@ export class Drive {
     this.list.replaceChildren();
     // The predictions count the gaits, which are the first.
     this.buttons = [...gaits, ...routines.map((command) => ({ command, moves: false }))].map(({ command, moves }) => {
-      const button = this.list.appendChild(document.createElement('button'));
-      button.type = 'button';
-      button.dataset.command = command;
-      button.append(command);
-      // A long name gets the room of two buttons.
-      button.classList.toggle('long', command.length > LONG);
-      const room = button.appendChild(document.createElement('small'));
+      const note = make('span', {});
+      const room = make('small', {}, note);
       if (moves) room.dataset.room = LONGEST;
-      const note = room.appendChild(document.createElement('span'));
-      button.setAttribute('aria-pressed', 'false');
+      // A long name gets the room of two buttons.
+      const button = make('button', { type: 'button', ariaPressed: 'false', className: command.length > LONG ? 'long' : '' }, command, room);
+      button.dataset.command = command;
+      this.list.append(button);
       return { command, button, note };
     });
     this.predictions.clear();

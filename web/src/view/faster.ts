@@ -4,6 +4,7 @@ import { type Answer, type Best, FasterSearch } from '../gaits/faster';
 import type { Bars, Trial } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
+import { tableRow } from './make';
 import { numberInput } from './number';
 import { figures } from './trial';
 
@@ -120,14 +121,7 @@ export class FasterView {
     this.best = best;
     const columns = [before, best.trial].map((trial) => figures(trial, best.comparison.unit));
     element('faster-rows').replaceChildren(
-      ...Object.entries(ROWS).map(([row, words]) => {
-        const line = document.createElement('tr');
-        const head = line.appendChild(document.createElement('th'));
-        head.scope = 'row';
-        head.textContent = words;
-        for (const column of columns) line.appendChild(document.createElement('td')).textContent = column[row as keyof typeof ROWS];
-        return line;
-      }),
+      ...Object.entries(ROWS).map(([row, words]) => tableRow([words, ...columns.map((column) => column[row as keyof typeof ROWS])])),
     );
     this.replaced = null;
     this.takeIt.textContent = WORDS.take;

@@ -3,6 +3,7 @@ import { hasConsole, imageOf } from '../link/stk500';
 import { BY_CABLE, type Session } from '../session';
 import { sentence } from '../trouble';
 import { element } from './canvas';
+import { reveal } from './rooms';
 import type { WriteContent, Writer } from './writer';
 
 export class FlashView {
@@ -48,8 +49,7 @@ export class FlashView {
 
   /** Scrolls to the panel and writes the page's robot. */
   write(what: WriteContent): void {
-    const panel = this.note.closest('details');
-    if (panel) panel.open = true;
+    reveal(this.note);
     this.said.scrollIntoView({ block: 'nearest' });
     this.forget();
     void this.writer.write(what, this);

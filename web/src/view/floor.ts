@@ -43,7 +43,7 @@ export class Floor {
   private following = true;
   /** The tracks of the robot and of the second robot. */
   private tracks: { x: number; y: number }[][] = [[], []];
-  /** True if it is drawn even out of sight, for a film or a picture. */
+  /** True if it is drawn even behind the robot in 3D, for a film or a picture. */
   unseen = false;
   /** The last drawn frame, for a picture as PNG or SVG. */
   private shown: [Plate, Frame | null, Frame | null] | null = null;
@@ -101,7 +101,7 @@ export class Floor {
 
   /** Draws the floor and the robots. */
   draw(plate: Plate, frame: Frame | null, second: Frame | null): void {
-    const area = surface(this.canvas, true, this.unseen);
+    const area = surface(this.canvas, true);
     if (!area) return;
     const { pen, width, height } = area;
     this.shown = [plate, frame, second];
@@ -125,11 +125,6 @@ export class Floor {
   fitTwoRobots(): void {
     this.fits = true;
     this.follow(true);
-  }
-
-  /** Scrolls to the floor. */
-  show(): void {
-    this.canvas.scrollIntoView({ block: 'nearest' });
   }
 
   /** Draws the last picture with another context in CSS pixels, for SVG; the caller adds the label of the scale. */
@@ -161,8 +156,7 @@ export class Floor {
       pen.restore();
     });
     pen.restore();
-    // On a narrow screen above the buttons.
-    return this.ruler(pen, width < 520 ? height - 46 : height);
+    return this.ruler(pen, height);
   }
 
   private grid(pen: CanvasRenderingContext2D, width: number, height: number): void {
@@ -202,7 +196,8 @@ export class Floor {
 
   private ruler(pen: CanvasRenderingContext2D, height: number): Label {
     const length = [10, 50, 100, 500].find((mm) => mm * this.zoom > 50) ?? 1000;
-    const [x, y] = [14, height - 22];
+    // Beside the stick.
+    const [x, y] = [124, height - 18];
     pen.strokeStyle = palette().ink;
     pen.lineWidth = 1.5;
     pen.beginPath();
@@ -264,7 +259,7 @@ export class Floor {
       Home: () => this.follow(true),
     };
     const move = moves[event.key];
-    if (!move) return;
+    if (!move || event.defaultPrevented) return;
     event.preventDefault();
     move();
   }

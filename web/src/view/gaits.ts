@@ -3,7 +3,9 @@ import type { Bars, Description, Four } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
 import { FasterView } from './faster';
+import { make, tableRow } from './make';
 import { numberInput, putNumber, type Range } from './number';
+import { isShown } from './rooms';
 import { TrialView } from './trial';
 import type { Writer } from './writer';
 
@@ -69,7 +71,7 @@ export class GaitsView {
   /** Shows the session's robot if the panel is open; an edited gait stays. */
   showRobot(): void {
     this.faster.follow();
-    if (!this.panel.open) return;
+    if (!isShown(this.panel)) return;
     const { description, toml } = this.session();
     if (toml === this.toml) return;
     this.toml = toml;
@@ -82,14 +84,7 @@ export class GaitsView {
     const chosen = this.from.value;
     const { robot } = this.session();
     const some = gaits.flatMap(({ name }, number) => (robot.bars(number) ? [{ name, number }] : []));
-    this.from.replaceChildren(
-      ...some.map(({ name, number }) => {
-        const option = document.createElement('option');
-        option.value = String(number);
-        option.textContent = name;
-        return option;
-      }),
-    );
+    this.from.replaceChildren(...some.map(({ name, number }) => new Option(name, String(number))));
     if (some.some(({ number }) => String(number) === chosen)) this.from.value = chosen;
   }
 
@@ -134,13 +129,10 @@ export class GaitsView {
     this.ends.push(end);
     this.drag(bar, (by, begun) => this.setLeg('start', leg, round(wrapped((begun.start[leg] ?? 0) + by), 0.005)));
     this.drag(end, (by, begun) => this.change({ duty: round(Math.min(0.95, Math.max(0.05, begun.duty + by)), 0.005) }));
-    const row = element('gait-legs').appendChild(document.createElement('tr'));
-    const head = row.appendChild(document.createElement('th'));
-    head.scope = 'row';
-    head.textContent = LEGS[leg] ?? '';
+    const row = element('gait-legs').appendChild(tableRow([LEGS[leg] ?? '']));
     for (const [key, label, list] of [['start', 'starts at', this.start], ['gain', 'share', this.gain]] as const) {
-      const input = row.appendChild(document.createElement('td')).appendChild(document.createElement('input'));
-      input.setAttribute('aria-label', `${LEGS[leg]} ${label}`);
+      const input = make('input', { ariaLabel: `${LEGS[leg]} ${label}` });
+      row.append(make('td', {}, input));
       numberInput(input, OF_LEGS[key], (value) => value !== null && this.setLeg(key, leg, value));
       list.push(input);
     }

@@ -2,20 +2,21 @@
 import type { Session } from '../session';
 import type { Status } from '../status';
 import { element } from './canvas';
+import { make } from './make';
+import { isShown } from './rooms';
 
 const PERIOD = 500;
 
 export class Health {
+  private readonly panel = element<HTMLDetailsElement>('power');
   private readonly list = element('health');
   private readonly values = new Map<string, HTMLElement>();
   private asking = false;
 
   constructor(private readonly session: () => Session) {
-    for (const name of ['fault', 'guard', 'margin', 'vcc', 'late edges', 'bytes lost', 'began by', 'begun again']) {
-      const entry = this.list.appendChild(document.createElement('div'));
-      entry.appendChild(document.createElement('dt')).textContent = name;
-      const value = entry.appendChild(document.createElement('dd'));
-      value.textContent = '–';
+    for (const name of ['fault', 'guard', 'margin', 'vcc', 'late edges', 'bytes lost', 'last reset', 'restarts']) {
+      const value = make('dd', {}, '–');
+      this.list.append(make('div', {}, make('dt', {}, name), value));
       this.values.set(name, value);
     }
     setInterval(() => void this.ask(), PERIOD);
@@ -33,6 +34,7 @@ export class Health {
   }
 
   private show(status: Status): void {
+    if (!isShown(this.panel)) return;
     const shown: Record<string, string> = {
       fault: status.fault,
       guard: status.guard,
@@ -40,8 +42,8 @@ export class Health {
       vcc: status.vcc === null ? '–' : `${status.vcc.toFixed(2)} V`,
       'late edges': String(status.late),
       'bytes lost': String(status.lost),
-      'began by': status.reset,
-      'begun again': String(status.resets),
+      'last reset': status.reset,
+      restarts: String(status.resets),
     };
     for (const [name, text] of Object.entries(shown)) {
       const value = this.values.get(name);

@@ -10,6 +10,7 @@ import { save } from './download';
 import { short } from './drive';
 import type { Floor } from './floor';
 import { palette } from './palette';
+import { isShown } from './rooms';
 
 /** Film formats, the smallest first. */
 const FILMS = [
@@ -23,6 +24,7 @@ const FILMS = [
 const FRAME = 0.02;
 
 export class Keep {
+  private readonly panel = element<HTMLDetailsElement>('keep');
   private readonly moment = element<HTMLInputElement>('moment');
   private readonly mine = element<HTMLSelectElement>('mine');
   private readonly other = element<HTMLSelectElement>('other');
@@ -72,13 +74,7 @@ export class Keep {
     this.removeCompanion();
     const chosen = [this.mine.value, this.other.value];
     for (const list of [this.mine, this.other]) {
-      list.replaceChildren(
-        ...gaits.map(({ command }) => {
-          const option = document.createElement('option');
-          option.value = option.textContent = command;
-          return option;
-        }),
-      );
+      list.replaceChildren(...gaits.map(({ command }) => new Option(command)));
     }
     const known = gaits.map(({ command }) => command);
     const moving = gaits.filter(({ moves }) => moves).map(({ command }) => command);
@@ -136,6 +132,7 @@ export class Keep {
 
   /** Updates the numbers, some times a second. */
   write(): void {
+    if (!isShown(this.panel)) return;
     const { recording, companion } = this;
     if (recording) {
       if (this.isRecording) this.moment.max = String(recording.seconds);
@@ -170,11 +167,10 @@ export class Keep {
     const { recording } = this;
     const from = recording && this.moment.valueAsNumber < recording.seconds - FRAME ? this.moment.valueAsNumber : 0;
     this.playing = on ? { since: performance.now(), from } : null;
-    if (on) this.floor.show();
     this.updateButtons();
   }
 
-  /** Takes a picture of the next drawing, even out of sight. */
+  /** Takes a picture of the next drawing, even behind the robot in 3D. */
   private takePicture(take: () => void): void {
     this.onDrawn = take;
     this.floor.unseen = true;
@@ -249,7 +245,6 @@ export class Keep {
       this.waiting = { mine: this.mine.value, other: this.other.value };
       this.updateButtons();
       this.floor.fitTwoRobots();
-      this.floor.show();
       await this.ask(this.mine.value);
     } catch (error) {
       this.say(`The second robot cannot start: ${sentence(error)}`);
@@ -273,7 +268,7 @@ export class Keep {
       button.disabled = !enabled;
     };
     set('record', isRecording ? 'Stop recording' : 'Record', isRecording);
-    set('replay', isSeen ? 'Back to the robot' : 'See it again', isSeen, has);
+    set('replay', isSeen ? 'Back to the robot' : 'Replay', isSeen, has);
     set('film', film ? 'Stop the film' : 'Film', film !== null, this.format !== undefined);
     element<HTMLButtonElement>('csv').disabled = !has;
     this.moment.disabled = !has;

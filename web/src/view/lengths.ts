@@ -3,6 +3,7 @@ import { isRefused, type Length, type Refused } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
 import { download } from './download';
+import { make } from './make';
 
 export class Lengths {
   private readonly list = element('lengths');
@@ -11,7 +12,7 @@ export class Lengths {
   private inputs = new Map<string, HTMLInputElement>();
 
   constructor(private readonly session: () => Session) {
-    element('lengths-reset').addEventListener('click', () => void this.reset());
+    element('lengths-reset').addEventListener('click', () => void this.session().restore());
     element('lengths-save').addEventListener('click', () => this.download());
   }
 
@@ -32,12 +33,8 @@ export class Lengths {
     this.list.replaceChildren();
     this.inputs.clear();
     for (const { key, label, unit } of lengths) {
-      const box = this.list.appendChild(document.createElement('label'));
-      box.append(`${label} (${key.replace('links.', '')}, ${unit})`);
-      const input = box.appendChild(document.createElement('input'));
-      input.type = 'number';
-      input.step = '0.5';
-      input.name = key;
+      const input = make('input', { type: 'number', step: '0.5', name: key });
+      this.list.append(make('label', {}, `${label} (${key.replace('links.', '')}, ${unit})`, input));
       input.addEventListener('change', () => void this.change(key));
       this.inputs.set(key, input);
     }
@@ -72,10 +69,6 @@ export class Lengths {
     }
     const stays = kept.map((length) => `${length.key} stays ${length.value} ${length.unit}`).join(', ');
     this.say(`${value} is refused, ${stays}: ${refused}`);
-  }
-
-  private async reset(): Promise<void> {
-    await this.session().restore();
   }
 
   private download(): void {

@@ -1,5 +1,6 @@
 // The console: the lines of the serial line, and an input.
 import { element } from './canvas';
+import { make } from './make';
 
 /** Most lines that are kept. */
 const MOST = 400;
@@ -41,9 +42,7 @@ export class Log {
     const { box } = this;
     // A reader who scrolled up is not disturbed.
     const atEnd = box.scrollHeight - box.scrollTop - box.clientHeight < 24;
-    const line = box.appendChild(document.createElement('div'));
-    line.className = kind;
-    line.textContent = text;
+    box.append(make('div', { className: kind }, text));
     while (box.childElementCount > MOST) box.firstElementChild?.remove();
     if (atEnd) box.scrollTop = box.scrollHeight;
   }

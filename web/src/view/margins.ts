@@ -1,30 +1,27 @@
 // The panel of margins: the distance of the pose from each singularity.
 import type { Description, Scene } from '../robot';
 import { element } from './canvas';
+import { make } from './make';
+import { isShown } from './rooms';
 
 export class MarginsView {
+  private readonly panel = element<HTMLDetailsElement>('margins-panel');
   private bars: { row: HTMLElement; fill: HTMLElement; value: HTMLElement; limit: number }[] = [];
 
   robot({ margins }: Description): void {
     const list = element('margins');
     list.replaceChildren();
     this.bars = margins.map(({ name, limit }) => {
-      const row = list.appendChild(document.createElement('div'));
-      row.className = 'bar';
-      const add = (parent: HTMLElement, tag: string, kind = '') => {
-        const child = parent.appendChild(document.createElement(tag));
-        child.className = kind;
-        return child;
-      };
-      add(row, 'span').textContent = name.replace('_', ' ');
-      const track = add(row, 'div', 'track');
-      const fill = add(track, 'div', 'fill');
-      add(track, 'div', 'limit').style.left = `${limit * 100}%`;
-      return { row, fill, value: add(row, 'span'), limit };
+      const [fill, mark, value] = [make('div', { className: 'fill' }), make('div', { className: 'limit' }), make('span', {})];
+      mark.style.left = `${limit * 100}%`;
+      const row = make('div', { className: 'bar' }, make('span', {}, name.replace('_', ' ')), make('div', { className: 'track' }, fill, mark), value);
+      list.append(row);
+      return { row, fill, value, limit };
     });
   }
 
   draw(scene: Scene | null): void {
+    if (!isShown(this.panel)) return;
     this.bars.forEach(({ row, fill, limit }, n) => {
       const margin = scene?.margins[n]?.value;
       fill.style.transform = `scaleX(${Math.max(0, margin ?? 0).toFixed(3)})`;
@@ -34,6 +31,7 @@ export class MarginsView {
 
   /** Writes the numbers, which costs a layout. */
   write(scene: Scene | null): void {
+    if (!isShown(this.panel)) return;
     this.bars.forEach(({ value }, n) => {
       const text = scene?.margins[n]?.value.toFixed(3) ?? '–';
       if (value.textContent !== text) value.textContent = text;

@@ -1,5 +1,5 @@
-// The panel of the parts: the robot in space, the guide step by step, and all files to print and to cut.
-// Nothing of it is loaded before the panel is opened.
+// The robot in 3D on the stage, and its panel: the parts, the guide step by step, and all files to print and to cut.
+// Nothing of it is loaded before 3D is shown or the panel is opened.
 import type { Model } from '../parts/model';
 import type { Space } from '../parts/space';
 import type { Progress, Solids } from '../parts/workshop';
@@ -9,6 +9,7 @@ import { sentence } from '../trouble';
 import { element } from './canvas';
 import { save } from './download';
 import { onPaletteChange } from './palette';
+import { isShown } from './rooms';
 
 const ORIGIN: Place = { x: 0, y: 0, heading: 0 };
 
@@ -17,6 +18,8 @@ const plain = (words: string) => words.replaceAll('**', '').replaceAll('`', '');
 
 export class PartsView {
   private readonly panel = element<HTMLDetailsElement>('parts');
+  private readonly view = element('solids');
+  private readonly button3d = element<HTMLButtonElement>('solid');
   private readonly canvas = element<HTMLCanvasElement>('space');
   private readonly apart = element<HTMLInputElement>('apart');
   private readonly list = element<HTMLSelectElement>('part');
@@ -31,28 +34,40 @@ export class PartsView {
   /** The request of the last pose. */
   private asked = '';
   private stop: (() => void) | null = null;
-  /** True while the panel is visible. */
-  private isVisible = false;
 
   constructor(private readonly session: () => Session) {
-    this.panel.addEventListener('toggle', () => this.showRobot());
-    new IntersectionObserver(([entry]) => (this.isVisible = entry?.isIntersecting ?? false)).observe(this.canvas);
+    this.button3d.addEventListener('click', () => this.set3d(!this.is3d));
+    // The guide is about what the stage shows.
+    this.panel.addEventListener('toggle', () => isShown(this.panel) && this.set3d(true));
     this.apart.addEventListener('input', () => this.show());
     this.list.addEventListener('change', () => this.pick(this.list.value === '' ? null : Number(this.list.value)));
     element('step-back').addEventListener('click', () => this.stepBy(-1));
     element('step-on').addEventListener('click', () => this.stepBy(1));
     element('step-all').addEventListener('click', () => this.toStep(null));
-    element('space-home').addEventListener('click', () => this.space?.home());
+    for (const [id, key] of [['zoom-in', '+'], ['zoom-out', '-'], ['home', 'Home']] as const) {
+      element(id).addEventListener('click', () => this.space?.press(key));
+    }
     this.button.addEventListener('click', () => void this.files());
     onPaletteChange(() => this.show());
   }
 
-  /** Takes the session's robot, if the panel is open. */
+  /** True while the stage shows the robot in 3D. */
+  get is3d(): boolean {
+    return !this.view.hidden;
+  }
+
+  private set3d(is3d: boolean): void {
+    this.view.hidden = !is3d;
+    this.button3d.setAttribute('aria-pressed', String(is3d));
+    this.showRobot();
+  }
+
+  /** Takes the session's robot, if it is shown in 3D. */
   showRobot(): void {
     const { toml } = this.session();
-    if (!this.panel.open || toml === this.toml) return;
+    if (!this.is3d || toml === this.toml) return;
     this.toml = toml;
-    this.halt();
+    this.stop?.();
     void this.load(toml);
   }
 
@@ -75,7 +90,7 @@ export class PartsView {
       this.pick(null);
     } catch (error) {
       if (toml !== this.toml) return;
-      // A failed download is tried again when the panel is opened again.
+      // A failed download is tried again when 3D is shown again.
       this.toml = '';
       this.say('parts-said', `There are no parts of this robot: ${sentence(error)}`);
     }
@@ -92,15 +107,9 @@ export class PartsView {
   }
 
   private fill(model: Model): void {
-    const option = (value: string, text: string) => {
-      const made = document.createElement('option');
-      made.value = value;
-      made.textContent = text;
-      return made;
-    };
     const bodies = model.bodies.map(({ name }, number) => ({ name, number }));
     bodies.sort((a, b) => a.name.localeCompare(b.name));
-    this.list.replaceChildren(option('', 'none'), ...bodies.map(({ name, number }) => option(String(number), name)));
+    this.list.replaceChildren(new Option('none', ''), ...bodies.map(({ name, number }) => new Option(name, String(number))));
   }
 
   private stepBy(by: number): void {
@@ -147,7 +156,7 @@ export class PartsView {
   /** Called in every frame of the page. */
   draw(frame: Frame | null): void {
     const { space, solids } = this;
-    if (!space || !solids || !space.mayDraw() || !this.panel.open || !this.isVisible) return;
+    if (!space || !solids || !space.mayDraw() || !this.is3d) return;
     const neutral = this.session().description.servos.map((servo) => servo.neutral);
     // The robot stands still while a step of the guide is shown.
     const moving = this.step === null && frame?.scene != null;
@@ -166,7 +175,8 @@ export class PartsView {
   }
 
   private async files(): Promise<void> {
-    if (this.stop) return this.halt();
+    // The button also stops the making.
+    if (this.stop) return this.stop();
     const { toml, file } = this.session();
     const bar = element<HTMLProgressElement>('parts-progress');
     const words = { prove: 'Proving that no two parts meet', make: 'Making the files' };
@@ -203,11 +213,6 @@ export class PartsView {
       this.button.textContent = 'Download all files';
       if (stopped) this.say('files-said', 'Stopped; nothing was saved.');
     }
-  }
-
-  /** Stops the making of the files. */
-  private halt(): void {
-    this.stop?.();
   }
 
   private say(id: string, text: string): void {

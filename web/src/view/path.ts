@@ -1,8 +1,9 @@
 // The panel in which a gesture is drawn: the point of head or tail goes round a closed line.
-import type { DrawnGait, End, Alternative, ReachArea } from '../robot';
+import type { DrawnGait, End, ReachArea } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
 import { numberInput, putNumber, type Range } from './number';
+import { isShown } from './rooms';
 import { TrialView } from './trial';
 import type { Writer } from './writer';
 
@@ -56,7 +57,7 @@ export class PathView {
     writer: Writer,
   ) {
     const made = () => (this.drawn.points.length === 0 ? null : this.drawn);
-    this.trial = new TrialView(module, session, ask, writer, { prefix: 'path', made, change: (what, value) => this.applyAlternative(what, value) });
+    this.trial = new TrialView(module, session, ask, writer, { prefix: 'path', made, change: (what, value) => what !== 'amplitude' && this.change({ [what]: value }) });
     this.panel.addEventListener('toggle', () => this.showRobot());
     this.end.addEventListener('change', () => {
       this.drawn = { ...this.drawn, end: this.end.value as End };
@@ -75,7 +76,7 @@ export class PathView {
 
   /** Shows the session's robot, if the panel is open; a drawn line stays. */
   showRobot(): void {
-    if (!this.panel.open) return;
+    if (!isShown(this.panel)) return;
     const { toml } = this.session();
     if (toml === this.toml) return;
     this.toml = toml;
@@ -98,10 +99,6 @@ export class PathView {
       this.change({ points, size: 1 });
     } else if (!isKept) this.change({ points: [], size: 1 });
     else this.change({});
-  }
-
-  private applyAlternative(what: Alternative, value: number): void {
-    if (what !== 'amplitude') this.change({ [what]: value });
   }
 
   private change(part: Partial<DrawnGait>): void {

@@ -1,16 +1,17 @@
 // The robot.toml as text: edited, opened, dropped into the box, undone, and shared as a link.
-import { linkTo, robotIn } from '../link-text';
+import { partsOf } from '../address';
+import { packed, unpacked } from '../link-text';
 import type { Refused } from '../robot';
 import type { Session } from '../session';
 import { sentence } from '../trouble';
 import { element } from './canvas';
+import { reveal } from './rooms';
 import { NO_BOARD, type Writer } from './writer';
 
 /** Number of robots that undo can restore. */
 const STEPS = 50;
 
 export class RobotText {
-  private readonly panel = element<HTMLDetailsElement>('robot-editor');
   private readonly box = element<HTMLTextAreaElement>('robot-text');
   private readonly undo = element<HTMLButtonElement>('robot-undo');
   /** The previous robots, the latest at the end. */
@@ -78,17 +79,18 @@ export class RobotText {
   /** Loads the robot in the page's address, if there is one; returns false if it is invalid. */
   async fromAddress(hash = location.hash): Promise<boolean> {
     try {
-      const toml = await robotIn(hash);
-      return toml === null || toml === this.session().toml || (await this.loadAndShow(toml));
+      const part = partsOf(hash).get('robot');
+      const toml = part === null ? this.session().toml : await unpacked(part);
+      return toml === this.session().toml || (await this.loadAndShow(toml));
     } catch (error) {
-      this.panel.open = true;
+      reveal(this.box);
       this.say({ refused: sentence(error), line: null, key: '' });
       return false;
     }
   }
 
   private async open(file: File): Promise<void> {
-    this.panel.open = true;
+    reveal(this.box);
     // A binary file is not shown in the box.
     const toml = file.size > 1_000_000 ? '' : await file.text();
     if (toml === '' || toml.includes('\0')) return this.say({ refused: `${file.name} is not a robot.toml.`, line: null, key: '' });
@@ -107,7 +109,7 @@ export class RobotText {
   /** Loads a text, and shows its mistake where it stands. */
   private async loadAndShow(toml: string): Promise<boolean> {
     if (await this.loadText(toml)) return true;
-    this.panel.open = true;
+    reveal(this.box);
     this.toLine();
     return false;
   }
@@ -137,8 +139,7 @@ export class RobotText {
 
   private async link(): Promise<void> {
     try {
-      const { toml } = this.session();
-      await navigator.clipboard.writeText(await linkTo(toml));
+      await navigator.clipboard.writeText(`${location.href.split('#')[0]}#robot=${await packed(this.session().toml)}`);
       element('robot-said').textContent = 'The link is copied: it opens this robot.';
     } catch (error) {
       element('robot-said').textContent = `The link could not be copied: ${sentence(error)}`;

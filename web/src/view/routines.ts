@@ -5,6 +5,8 @@ import type { Answer, Question } from '../routines/question';
 import { Recorder } from '../routines/recorder';
 import type { Session } from '../session';
 import { element } from './canvas';
+import { make } from './make';
+import { isShown } from './rooms';
 import type { RobotText } from './robot-text';
 import { NO_BOARD, type Writer } from './writer';
 
@@ -81,7 +83,7 @@ export class RoutinesView {
 
   /** Shows the routines of the text, if the panel is open. */
   show(): void {
-    if (!this.panel.open) return;
+    if (!isShown(this.panel)) return;
     const { value } = this.choice;
     this.routines = this.session().robot.routines(this.text.draft);
     this.choice.replaceChildren(...this.routines.map(({ name }) => new Option(name)));
@@ -94,7 +96,7 @@ export class RoutinesView {
 
   /** Predicts the path of the steps as they are shown. */
   predict(): void {
-    if (!this.panel.open) return;
+    if (!isShown(this.panel)) return;
     const { shown } = this;
     if (!shown) return this.draw(null);
     const { robot, floor, servos } = this.session();
@@ -218,21 +220,14 @@ export class RoutinesView {
 
   /** Makes the block of the step at a place. */
   private block(at: number): HTMLLIElement {
-    const block = document.createElement('li');
-    const grip = block.appendChild(document.createElement('span'));
-    grip.className = 'grip';
-    grip.setAttribute('aria-hidden', 'true');
-    grip.textContent = '⠿';
+    const grip = make('span', { className: 'grip', ariaHidden: 'true' }, '⠿');
     this.drag(grip, at);
-    const input = block.appendChild(document.createElement('input'));
-    Object.assign(input, { type: 'text', spellcheck: false, autocomplete: 'off', maxLength: 63 });
-    input.setAttribute('aria-label', `Step ${at + 1}`);
+    const input = make('input', { type: 'text', spellcheck: false, autocomplete: 'off', maxLength: 63, ariaLabel: `Step ${at + 1}` });
+    const block = make('li', {}, grip, input);
     input.addEventListener('change', () => void this.change(this.shown?.steps.with(at, input.value.trim()) ?? []));
     const button = (text: string, name: string, act: () => Promise<void>, next: () => number) => {
-      const made = block.appendChild(document.createElement('button'));
-      made.type = 'button';
-      made.textContent = text;
-      made.setAttribute('aria-label', `${name} ${at + 1}`);
+      const made = make('button', { type: 'button', ariaLabel: `${name} ${at + 1}` }, text);
+      block.append(made);
       // The step keeps the focus, wherever it goes.
       made.addEventListener('click', () => void act().then(() => this.button(next(), name)?.focus()));
     };

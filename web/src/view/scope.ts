@@ -2,7 +2,9 @@
 import type { Description, Scene } from '../robot';
 import { FREQUENCY } from '../uno/board';
 import { element, surface } from './canvas';
+import { make } from './make';
 import { palette, servoColour } from './palette';
+import { isShown } from './rooms';
 
 /** Time span of the scope, cycles: three frames. */
 const SPAN = 0.06 * FREQUENCY;
@@ -19,6 +21,7 @@ function pinName(pin: number): string {
 }
 
 export class ScopeView {
+  private readonly panel = element<HTMLDetailsElement>('pulses');
   private readonly canvas = element<HTMLCanvasElement>('scope');
   private readonly rows: { width: HTMLElement; angle: HTMLElement }[] = [];
   private pins: number[] = [];
@@ -36,18 +39,11 @@ export class ScopeView {
     body.replaceChildren();
     this.rows.length = 0;
     servos.forEach(({ name, pin }, servo) => {
-      const row = body.appendChild(document.createElement('tr'));
-      const cell = (text: string) => {
-        const td = row.appendChild(document.createElement('td'));
-        td.textContent = text;
-        return td;
-      };
-      const swatch = document.createElement('span');
-      swatch.className = 'swatch';
+      const swatch = make('span', { className: 'swatch' });
       swatch.style.background = `var(--a${servo + 1})`;
-      cell(name).prepend(swatch);
-      cell(pinName(pin));
-      this.rows.push({ width: cell('–'), angle: cell('–') });
+      const [width, angle] = [make('td', {}, '–'), make('td', {}, '–')];
+      body.append(make('tr', {}, make('td', {}, swatch, name), make('td', {}, pinName(pin)), width, angle));
+      this.rows.push({ width, angle });
     });
   }
 
@@ -74,6 +70,7 @@ export class ScopeView {
 
   /** Updates the numbers, which costs a layout. */
   write(scene: Scene | null): void {
+    if (!isShown(this.panel)) return;
     this.rows.forEach(({ width, angle }, servo) => {
       const cycles = this.widths[servo];
       const text = !this.hasPulses ? '–' : cycles ? (cycles / CYCLES_PER_US).toFixed(2) : 'none';

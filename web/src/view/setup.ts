@@ -6,13 +6,14 @@ import { Guide } from '../setup/guide';
 import { sentence } from '../trouble';
 import { GAITS, NOTHING_SAVED } from '../words';
 import { element } from './canvas';
+import { reveal } from './rooms';
 import { board } from './setup/board';
 import { drawing, PLACES } from './setup/drawing';
 import { firmware } from './setup/firmware';
 import { horns } from './setup/horns';
 import { keep } from './setup/keep';
 import { Limits } from './setup/limits';
-import { button, row, words } from './setup/parts';
+import { button, make, row, words } from './make';
 import { Scale } from './setup/scale';
 import { Signs } from './setup/signs';
 import type { Step, Tools } from './setup/step';
@@ -62,9 +63,7 @@ export class Setup implements Tools {
     element('setup-back').addEventListener('click', () => this.moveBy(-1));
     element('setup-next').addEventListener('click', () => this.moveBy(1));
     for (const { name } of STEPS) {
-      const item = document.createElement('li');
-      item.append(button(name, () => this.go(name)));
-      this.steps.append(item);
+      this.steps.append(make('li', {}, button(name, () => this.go(name))));
     }
     PLACES.forEach((place, servo) => {
       const choose = () => {
@@ -84,7 +83,6 @@ export class Setup implements Tools {
   private begin(): void {
     this.reveal();
     this.enter(this.step);
-    this.box.scrollIntoView({ block: 'start' });
   }
 
   /** True while hands may be in the robot. */
@@ -95,6 +93,7 @@ export class Setup implements Tools {
   private reveal(): void {
     this.session.letGo();
     this.box.hidden = false;
+    reveal(this.box);
     element('setup-open').setAttribute('aria-expanded', 'true');
     element('setup-left').hidden = true;
   }

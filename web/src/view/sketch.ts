@@ -5,6 +5,7 @@ import type { Session } from '../session';
 import { bars, type Joint, joints } from '../sketch/joints';
 import type { Answer, Edits, Question } from '../sketch/question';
 import { element } from './canvas';
+import { isShown } from './rooms';
 
 const SVG = 'http://www.w3.org/2000/svg';
 /** Movement below which a press is not a drag, screen points. */
@@ -35,7 +36,7 @@ export class Sketch {
 
   /** Draws the session's robot in its neutral pose, if the panel is open. */
   showRobot(): void {
-    if (!this.panel.open) return;
+    if (!isShown(this.panel)) return;
     const { toml } = this.session();
     if (toml === this.toml) return;
     this.toml = toml;

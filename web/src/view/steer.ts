@@ -79,6 +79,8 @@ export class Steer {
   /** False from a release until the gamepads' sticks are let go, so that a stick still held no longer drives. */
   private padCounts = true;
   private isPressed = false;
+  /** What the pointer pressed last, until Tab moves the focus. */
+  private touched: EventTarget | null = null;
   /** True while another window has the keyboard. */
   private isAway = false;
   /** The gait that was sent last; null while nothing is held. */
@@ -90,7 +92,9 @@ export class Steer {
     private readonly send: (line: string) => void,
     private readonly isBarred: () => boolean,
   ) {
-    document.addEventListener('keydown', (event) => this.key(event, true));
+    // Before a slider or a view, which would take an arrow for itself.
+    document.addEventListener('keydown', (event) => this.key(event, true), true);
+    document.addEventListener('pointerdown', ({ target }) => (this.touched = target), true);
     document.addEventListener('keyup', (event) => this.key(event, false));
     // A user in another window does not see the robot.
     addEventListener('blur', () => {
@@ -144,14 +148,16 @@ export class Steer {
   }
 
   private key(event: KeyboardEvent, down: boolean): void {
+    if (event.key === 'Tab') this.touched = null;
     if (!(event.code in KEYS)) return;
     if (!down) {
       if (this.held.delete(event.code)) this.follow();
       return;
     }
     const { target } = event;
-    // The keys belong to an input, a list, a slider, a view or the setup.
-    const taken = target instanceof Element && target.closest('input, select, textarea, canvas, [role="log"], #setup') !== null;
+    // The keys belong to where somebody types and to the setup; to a slider, a list or a view, if Tab led there.
+    const typed = 'textarea, [type="text"], [type="number"], #setup';
+    const taken = target instanceof Element && target.closest(target === this.touched ? typed : `${typed}, input, select, canvas, [role="log"]`) !== null;
     if (taken || event.ctrlKey || event.altKey || event.metaKey) return;
     event.preventDefault();
     if (event.repeat) return;

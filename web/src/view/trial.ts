@@ -5,6 +5,7 @@ import { LatestQuestion } from '../latest';
 import { type Alternative, isRefused, type EditedGait, type NoTrial, type Trial } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
+import { button } from './make';
 import { NO_BOARD, type Writer } from './writer';
 
 /** An editor of gaits, as its trial sees it. */
@@ -83,13 +84,7 @@ export class TrialView {
     this.element('no').hidden = refused === null;
     put('refusal', refused?.refused ?? '');
     this.element('instead').replaceChildren(
-      ...(refused?.instead ?? []).map(({ what, value }) => {
-        const button = document.createElement('button');
-        button.type = 'button';
-        button.textContent = OFFERS[what](value);
-        button.addEventListener('click', () => this.maker.change(what, value));
-        return button;
-      }),
+      ...(refused?.instead ?? []).map(({ what, value }) => button(OFFERS[what](value), () => this.maker.change(what, value))),
     );
     this.say('');
   }

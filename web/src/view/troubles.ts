@@ -1,6 +1,7 @@
 // The list of problems, one line for each cause. A line stays until its cause is gone or the user dismisses it.
 import type { Cause } from '../trouble';
 import { element } from './canvas';
+import { button, make, words } from './make';
 
 /** A button that solves a problem. */
 export interface Remedy {
@@ -23,16 +24,9 @@ export class Troubles {
   }
 
   private line(cause: Cause, sentence: string, remedy: Remedy | null): HTMLElement {
-    const line = this.box.appendChild(document.createElement('p'));
-    line.appendChild(document.createElement('span')).textContent = sentence;
-    const button = (label: string, act: () => void) => {
-      const made = line.appendChild(document.createElement('button'));
-      made.type = 'button';
-      made.textContent = label;
-      made.addEventListener('click', act);
-    };
-    if (remedy) button(remedy.label, remedy.act);
-    button('Dismiss', () => this.say(cause, null));
+    const buttons = [...(remedy ? [button(remedy.label, remedy.act)] : []), button('Dismiss', () => this.say(cause, null))];
+    const line = words(make('span', {}, sentence), ...buttons);
+    this.box.append(line);
     return line;
   }
 }

@@ -2,6 +2,7 @@
 import { type Floor, type Kind, lags, type ServoModel } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
+import { make } from './make';
 
 const round = (value: number, digits: number) => Number(value.toFixed(digits)).toString();
 
@@ -79,13 +80,9 @@ export class World {
   private showInputs(): void {
     const { description, closed } = this.session();
     const boxes = description.inputs.map(([name]) => {
-      const label = document.createElement('label');
-      const box = document.createElement('input');
-      box.type = 'checkbox';
-      box.checked = closed.has(name);
+      const box = make('input', { type: 'checkbox', checked: closed.has(name) });
       box.addEventListener('change', () => this.session().setContact(name, box.checked));
-      label.append(box, ` ${CONTACTS[name] ?? name}`);
-      return label;
+      return make('label', {}, box, ` ${CONTACTS[name] ?? name}`);
     });
     element('inputs').replaceChildren(...boxes);
     element('inputs').hidden = boxes.length === 0;

@@ -13,7 +13,7 @@ export interface Display {
 export type WriteContent = 'robot' | 'all' | Uint8Array;
 
 /** The message when no board is connected. */
-export const NO_BOARD = 'No board is connected: Connect a board… is at the top of the page. The simulated board has this robot already.';
+export const NO_BOARD = 'No board is connected: Connect a board… is in the room Board. The simulated board has this robot already.';
 
 const DOES = { comparing: 'comparing with the firmware on the board…', writing: 'writing…', verifying: 'verifying…' };
 

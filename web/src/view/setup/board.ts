@@ -2,7 +2,7 @@
 import { noBluetooth } from '../../link/bluetooth-link';
 import { hasSerial, NO_SERIAL } from '../../link/port-link';
 import type { Session } from '../../session';
-import { button, list, note, row, warning, words } from './parts';
+import { button, list, note, row, warning, words } from '../make';
 import type { Step } from './step';
 
 /** The name of the page's robot in sentences. */
@@ -41,7 +41,7 @@ export const board: Step = {
       ),
       hasSerial() ? row(button('Choose its port…', connect, true)) : warning(NO_SERIAL),
     ];
-    parts.push(note(noBluetooth() ?? 'A board that has this firmware already can also be reached by a Bluetooth LE module: Bluetooth… is at the top of the page.'));
+    parts.push(note(noBluetooth() ?? 'A board that has this firmware already can also be reached by a Bluetooth LE module: Bluetooth… is in this room.'));
     parts.push(note('Without a board, every step can be tried with the simulated one of this page.'));
     return parts;
   },

@@ -1,7 +1,7 @@
 // The step Firmware: writes firmware and robot through the boot loader.
 import { answerOf, nameOf } from './board';
 import { BY_CABLE } from '../../session';
-import { button, note, row, warning, words } from './parts';
+import { button, note, row, warning, words } from '../make';
 import type { Step } from './step';
 
 export const firmware: Step = {

@@ -1,5 +1,5 @@
 // The step Horns: each servo holds its middle while its crank is pressed on.
-import { button, list, note, row, words } from './parts';
+import { button, list, note, row, words } from '../make';
 import type { Step } from './step';
 
 export const horns: Step = {

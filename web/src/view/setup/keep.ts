@@ -1,7 +1,8 @@
 // The step Keep: saves the calibration in the board and as a file.
 import { fileOf } from '../../setup/calibration-file';
 import { nameOf } from './drawing';
-import { button, note, row, save, table, words } from './parts';
+import { save } from '../download';
+import { button, make, note, row, table, words } from '../make';
 import type { Step } from './step';
 
 export const keep: Step = {
@@ -24,21 +25,16 @@ export const keep: Step = {
         done('Keep');
         return 'Saved: the board begins with it from now on, also after new firmware.';
       });
-    const file = document.createElement('input');
-    file.type = 'file';
-    file.accept = '.toml';
+    const file = make('input', { type: 'file', accept: '.toml' });
     file.addEventListener('change', () => {
       const chosen = file.files?.[0];
       if (chosen) void chosen.text().then((text) => setCalibration(text, chosen.name));
     });
-    const label = document.createElement('label');
-    label.className = 'file';
-    label.append('Open a saved file ', file);
     return [
       table('Calibration of the robot', ['servo', 'sign', 'trim', 'limits', 'µs per °'], rows),
       words(guide.isChanged ? 'Not saved yet.' : isDone('Keep') ? 'The board has saved it.' : 'Nothing has changed since the board was connected.'),
-      row(button('Save in the board', store, guide.isChanged), button('Save as a file', () => save('calibration.toml', 'application/toml', fileOf(guide.has)))),
-      row(label),
+      row(button('Save in the board', store, guide.isChanged), button('Save as a file', () => save('calibration.toml', [fileOf(guide.has)], 'application/toml'))),
+      row(make('label', { className: 'file' }, 'Open a saved file ', file)),
       note('The file is the same as that of `lizard backup`. A file that you open takes effect at once; the button saves it in the board.'),
     ];
   },

@@ -1,7 +1,7 @@
 // The step Limits: a servo's travel before printed parts touch each other.
 import { angle } from '../../setup/calibration';
 import { nameOf, type SelectedServo } from './drawing';
-import { button, note, number, row, words } from './parts';
+import { button, note, number, row, words } from '../make';
 import type { Step, Tools } from './step';
 
 /** Turn of a servo for each press, deg. */

@@ -1,6 +1,6 @@
 // The step Scale: not every servo turns a degree for 10 us of pulse.
 import { nameOf, type SelectedServo } from './drawing';
-import { button, note, number, row, words } from './parts';
+import { button, note, number, row, words } from '../make';
 import type { Step, Tools } from './step';
 
 export class Scale implements Step {

@@ -1,7 +1,7 @@
 // The step Signs: a servo with a wrong sign stands on the other side of its neutral angle, and the guard would take
 // an unsafe pose for a safe one.
 import { nameOf, PLACES, type SelectedServo } from './drawing';
-import { button, note, row, words } from './parts';
+import { button, note, row, words } from '../make';
 import type { Step, Tools } from './step';
 
 const doneWord = (servo: number) => `sign ${servo}`;

@@ -1,6 +1,6 @@
 // The step Trims: each crank is straightened in small turns, which act at once.
 import { nameOf } from './drawing';
-import { button, note, row, words } from './parts';
+import { button, note, row, words } from '../make';
 import type { Step } from './step';
 
 /** Coarse and fine, deg counter-clockwise. */

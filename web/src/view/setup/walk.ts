@@ -1,5 +1,5 @@
 // The step First walk, before anything is saved.
-import { button, note, row, warning, words } from './parts';
+import { button, note, row, warning, words } from '../make';
 import { unproven } from './signs';
 import type { Step } from './step';
 

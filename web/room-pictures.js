@@ -1,0 +1,25 @@
+// Pictures of every room on a phone and on a desk, for whoever changes the page to look at: node web/room-pictures.js FOLDER [dark]
+import { mkdir } from 'node:fs/promises';
+import { join } from 'node:path';
+
+import { address, advance, close, open, standing } from './tests/browser.js';
+
+const [, , folder, colorScheme = 'light'] = process.argv;
+const ROOMS = ['start', 'drive', 'gaits', 'build', 'board', 'learn'];
+const SIZES = [[390, 844], [360, 640], [844, 390], [1280, 800]];
+
+await mkdir(folder, { recursive: true });
+await open();
+for (const [width, height] of SIZES) {
+  const isPhone = Math.min(width, height) < 500;
+  const opened = await standing({ viewport: { width, height }, colorScheme, hasTouch: isPhone, isMobile: isPhone });
+  await opened.evaluate(() => window.lizard.ask('walk'));
+  for (const room of ROOMS) {
+    await opened.goto(`${address()}#room=${room}`);
+    await advance(opened, 2000);
+    await opened.waitForTimeout(1500);
+    await opened.screenshot({ path: join(folder, `${room}-${width}x${height}.png`) });
+    if (width === 390 || width === 1280) await opened.screenshot({ path: join(folder, `${room}-${width}-whole.png`), fullPage: true });
+  }
+}
+await close();

@@ -1,0 +1,39 @@
+// Makes elements: paragraphs, buttons, number boxes, tables.
+
+type Child = Node | string;
+
+/** Makes an element with its properties and children. */
+export function make<K extends keyof HTMLElementTagNameMap>(tag: K, properties: Partial<HTMLElementTagNameMap[K]>, ...children: Child[]): HTMLElementTagNameMap[K] {
+  const made = Object.assign(document.createElement(tag), properties);
+  made.append(...children);
+  return made;
+}
+
+export const words = (...children: Child[]): HTMLElement => make('p', {}, ...children);
+export const note = (...children: Child[]): HTMLElement => make('p', { className: 'note' }, ...children);
+export const warning = (text: string): HTMLElement => make('p', { className: 'refusal' }, text);
+export const row = (...children: Child[]): HTMLElement => make('p', { className: 'actions' }, ...children);
+export const list = (...items: Child[]): HTMLElement => make('ul', {}, ...items.map((item) => make('li', {}, item)));
+
+export function button(label: string, act: () => void, isMain = false): HTMLButtonElement {
+  return make('button', { type: 'button', className: isMain ? 'main' : '', onclick: act }, label);
+}
+
+/** Makes a number box; `act` gets the number that the user enters. */
+export function number(label: string, value: number | null, step: string, act: (value: number) => void): HTMLElement {
+  const box = make('input', { type: 'number', step, value: String(value ?? '') });
+  box.addEventListener('change', () => Number.isFinite(box.valueAsNumber) && act(box.valueAsNumber));
+  return make('label', { className: 'number' }, label, ' ', box);
+}
+
+/** Makes a row of a table, whose first cell names it. */
+export function tableRow([head = '', ...cells]: string[]): HTMLElement {
+  return make('tr', {}, make('th', { scope: 'row' }, head), ...cells.map((text) => make('td', {}, text)));
+}
+
+/** Makes a table with a header row. */
+export function table(caption: string, head: string[], rows: string[][]): HTMLElement {
+  const heads = head.map((text) => make('th', { scope: 'col' }, text));
+  const name = make('caption', { className: 'hidden' }, caption);
+  return make('table', { className: 'settings' }, name, make('thead', {}, make('tr', {}, ...heads)), make('tbody', {}, ...rows.map(tableRow)));
+}

@@ -1,0 +1,39 @@
+// The rooms beside the stage. One is open; the part `room` of the address names it, so links and the browser's Back lead to it.
+import { partsOf } from '../address';
+
+const FIRST = 'start';
+const NAME = document.title;
+
+const idOf = (room: string) => `room-${room}`;
+const rooms = () => [...document.querySelectorAll<HTMLElement>('.room')];
+
+/** Opens the room that an address names, or the first one. */
+export function openRoom(hash: string): void {
+  const asked = idOf(partsOf(hash).get('room') ?? FIRST);
+  const room = rooms().find(({ id }) => id === asked) ?? rooms()[0];
+  if (!room || room.id === document.body.dataset.at) return;
+  for (const each of rooms()) each.hidden = each !== room;
+  for (const link of document.querySelectorAll<HTMLAnchorElement>('nav a')) {
+    const isHere = idOf(partsOf(link.hash).get('room') ?? '') === room.id;
+    if (isHere) link.setAttribute('aria-current', 'page');
+    else link.removeAttribute('aria-current');
+  }
+  document.body.dataset.at = room.id;
+  document.title = `${room.querySelector('h2')?.textContent}, ${NAME}`;
+  scrollTo(0, 0);
+  // Its panels show what they have missed.
+  for (const panel of room.querySelectorAll('details[open]')) panel.dispatchEvent(new Event('toggle'));
+}
+
+/** True if a panel is unfolded and its room is open; a panel that is not shown draws nothing. */
+export const isShown = (panel: HTMLDetailsElement) => panel.open && panel.closest<HTMLElement>('.room')?.hidden === false;
+
+/** Opens the room of an element, and its panel. */
+export function reveal(inside: HTMLElement): void {
+  const room = inside.closest('.room');
+  const panel = inside.closest('details');
+  if (panel) panel.open = true;
+  if (!room || room.id === document.body.dataset.at) return;
+  location.hash = `room=${room.id.slice(idOf('').length)}`;
+  openRoom(location.hash);
+}

@@ -1,0 +1,147 @@
+// The rooms beside the stage: each has an address, fits its screen, has stop in reach, and draws only while it is open.
+import assert from 'node:assert/strict';
+import { createRequire } from 'node:module';
+import { after, afterEach, before, test } from 'node:test';
+
+import { address, advance, close, complaints, open, page, sideways, standing, tidy, unfold } from './browser.js';
+
+before(open);
+afterEach(tidy);
+after(close);
+
+const AXE = createRequire(import.meta.url).resolve('axe-core/axe.min.js');
+const ROOMS = ['start', 'drive', 'gaits', 'build', 'board', 'learn'];
+/** What each room is for, which a phone shows without scrolling. */
+const ACTS = { start: '.doors', drive: '#speed', gaits: '#gait-try', build: '#sketch', board: '#setup-open', learn: '#learn-title' };
+const SIZES = [
+  { viewport: { width: 360, height: 640 }, hasTouch: true, isMobile: true },
+  { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true },
+  { viewport: { width: 1280, height: 720 } },
+];
+/** A thumb's reach from the corner of a phone, CSS pixels. */
+const REACH = 120;
+
+const link = (opened, room) => opened.locator(`nav a[href="#room=${room}"]`);
+const isOpen = (opened, room) => opened.waitForFunction((room) => [...document.querySelectorAll('.room:not([hidden])')].map(({ id }) => id).join() === `room-${room}`, room);
+const box = (opened, selector) => opened.evaluate((selector) => document.querySelector(selector).getBoundingClientRect().toJSON(), selector);
+
+for (const options of SIZES) {
+  const { width, height } = options.viewport;
+  test(`every room fits ${width} x ${height} pixels, with its act and stop on the screen, and without a fault of axe`, async () => {
+    const opened = await standing({ ...options, bypassCSP: true });
+    await opened.addScriptTag({ path: AXE });
+    for (const room of ROOMS) {
+      await opened.evaluate((room) => (location.hash = `room=${room}`), room);
+      await isOpen(opened, room);
+      await opened.waitForFunction(() => document.querySelector('#floor').dataset.zoom);
+      assert.equal(await sideways(opened), 0, room);
+      const [act, stop, bar] = await Promise.all([ACTS[room], '.stop', 'nav'].map((selector) => box(opened, selector)));
+      const bottom = options.hasTouch ? bar.top : height;
+      assert.ok(act.top >= 0 && act.bottom <= bottom + 1, `${room}: ${ACTS[room]} ends at ${act.bottom} of ${bottom}`);
+      assert.ok(stop.right <= width && stop.bottom <= height && Math.min(stop.width, stop.height) >= 44, room);
+      if (options.hasTouch) assert.ok(width - stop.left <= REACH && height - stop.top <= REACH, JSON.stringify(stop));
+      // Nothing lies over it, wherever the page is scrolled to.
+      await opened.evaluate(() => scrollTo(0, document.documentElement.scrollHeight));
+      assert.equal(await opened.evaluate(([x, y]) => document.elementFromPoint(x, y).className, [stop.left + stop.width / 2, stop.top + stop.height / 2]), 'stop', room);
+      const { violations } = await opened.evaluate(() => window.axe.run(document, { resultTypes: ['violations'] }));
+      assert.deepEqual(violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join('\n')}`), [], room);
+    }
+  });
+}
+
+test('an address opens its room, with the robot that it names, and the tabs, the title and Back follow', async () => {
+  const opened = await page();
+  await isOpen(opened, 'start');
+  await opened.goto(`${address()}#room=build&file=large`);
+  await isOpen(opened, 'build');
+  await opened.waitForFunction(() => window.lizard.file === 'large');
+  await link(opened, 'gaits').focus();
+  await opened.keyboard.press('Enter');
+  await isOpen(opened, 'gaits');
+  assert.equal(await link(opened, 'gaits').getAttribute('aria-current'), 'page');
+  assert.equal(await link(opened, 'build').getAttribute('aria-current'), null);
+  assert.equal(await opened.title(), 'Gaits and routines, lizard');
+  await opened.waitForFunction(() => location.hash === '#room=gaits&file=large');
+  await opened.goBack();
+  await isOpen(opened, 'build');
+  assert.equal(await link(opened, 'build').getAttribute('aria-current'), 'page');
+  await opened.goForward();
+  await isOpen(opened, 'gaits');
+  // A room that there is not.
+  await opened.goto(`${address()}#room=cellar`);
+  await isOpen(opened, 'start');
+});
+
+test('a robot that was changed stays when the browser goes back a room', async () => {
+  const opened = await page();
+  await link(opened, 'build').click();
+  await opened.locator('#lengths input[name="links.l12"]').fill('46');
+  await opened.keyboard.press('Enter');
+  await opened.waitForFunction(() => location.hash.startsWith('#room=build&robot='));
+  const first = await opened.evaluate(() => location.hash);
+  await link(opened, 'drive').click();
+  await isOpen(opened, 'drive');
+  await opened.locator('#lengths input[name="links.l12"]').fill('47');
+  await opened.keyboard.press('Enter');
+  await opened.waitForFunction((first) => location.hash.startsWith('#room=build&robot=') && location.hash !== first, first);
+  const toml = await opened.evaluate(() => window.lizard.toml);
+  await opened.goBack();
+  await isOpen(opened, 'drive');
+  await opened.goBack();
+  await isOpen(opened, 'build');
+  await opened.waitForTimeout(500);
+  assert.equal(await opened.evaluate(() => window.lizard.toml), toml);
+});
+
+test('the three doors of the first screen lead to rooms', async () => {
+  const opened = await page();
+  for (const [door, room] of [['Play', 'drive'], ['Build', 'build'], ['Connect', 'board']]) {
+    await opened.locator('.doors a', { hasText: door }).click();
+    await isOpen(opened, room);
+    await opened.goBack();
+    await isOpen(opened, 'start');
+  }
+});
+
+test('a room that is closed draws nothing, also where its panels are unfolded', async () => {
+  const opened = await standing();
+  for (const panel of ['#maps', '#margins-panel', '#pulses', '#keep', '#power', '#routines', '#path-editor', '#parts']) await unfold(opened, panel);
+  await opened.locator('#solid').click();
+  await link(opened, 'board').click();
+  await isOpen(opened, 'board');
+  await opened.evaluate(() => window.lizard.ask('walk'));
+  await opened.waitForFunction(() => document.querySelector('#cycle').textContent.endsWith('mm'));
+  const drawn = await opened.evaluate(async () => {
+    const drawn = [];
+    const hidden = [...document.querySelectorAll('.room[hidden]')];
+    const watcher = new MutationObserver((changes) => {
+      // What the robot says is kept.
+      for (const { target } of changes) if (!target.closest?.('#log') && !target.parentElement?.closest('#log')) drawn.push(target.id || target.nodeName);
+    });
+    for (const room of hidden) watcher.observe(room, { subtree: true, childList: true, attributes: true, characterData: true });
+    const { getContext } = HTMLCanvasElement.prototype;
+    HTMLCanvasElement.prototype.getContext = function (...values) {
+      if (this.closest('.room')) drawn.push(this.id);
+      return getContext.apply(this, values);
+    };
+    await new Promise((done) => setTimeout(done, 3000));
+    return drawn;
+  });
+  assert.deepEqual(drawn, []);
+});
+
+test('3D and the drawing from above are one press apart, and three.js is loaded for 3D alone', async () => {
+  const loaded = [];
+  const opened = await standing();
+  opened.on('request', (request) => loaded.push(new URL(request.url()).pathname));
+  for (const room of ROOMS.slice(1)) await link(opened, room).click();
+  assert.deepEqual(loaded.filter((path) => /space|parts/.test(path)), []);
+  await opened.locator('#solid').click();
+  await opened.waitForFunction(() => document.querySelector('#part').length > 10);
+  assert.ok(loaded.some((path) => /space/.test(path)));
+  assert.ok(await opened.locator('#space').isVisible());
+  await opened.locator('#solid').click();
+  assert.ok(!(await opened.locator('#space').isVisible()));
+});
+
+test('nothing was complained of', () => assert.deepEqual(complaints, []));
