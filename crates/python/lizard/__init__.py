@@ -8,7 +8,8 @@ right, A3 back right, A4 back left.
 from lizard._lizard import VERSION as __version__
 from lizard._lizard import RobotFileError
 from lizard.model import MARGINS, Gait, Mobility, Model, Solution, Travel, default_toml
-from lizard.robot import Frame, Robot, RobotError, Status
+from lizard.robot import Robot
+from lizard.status import Frame, RobotError, Status
 
 __all__ = [
     "MARGINS",

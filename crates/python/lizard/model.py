@@ -148,7 +148,7 @@ class Model:
     def solve(self, angles: ArrayLike) -> Solution:
         """Forward kinematics: every joint and margin for servo angles (..., 4), deg."""
         poses, shape = _rows(angles, 4)
-        made = self._robot.solve(poses).reshape(*shape, -1)
+        made = self._robot.solve(poses).reshape(*shape, 23)
         head, tail, couplers, directions, strokes, margins, safe = np.split(
             made, [2, 4, 8, 10, 12, 22], axis=-1
         )
@@ -187,7 +187,10 @@ class Model:
 
     def reasons(self, angles: ArrayLike) -> list[str]:
         """Sentences for what keeps the robot from a pose (4,), deg; none if it is safe."""
-        return self._robot.reasons(np.asarray(angles, float).tolist())
+        poses, shape = _rows(angles, 4)
+        if shape != ():
+            raise ValueError(f"one pose has four angles; these are {shape} poses")
+        return self._robot.reasons(poses[0].tolist())
 
     def pulses(self, angles: ArrayLike) -> Array:
         """Pulse widths (..., 4), us, for servo angles (..., 4), deg, without trims."""

@@ -6,12 +6,13 @@ import math
 import threading
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from queue import Empty, SimpleQueue
-from typing import NamedTuple, Self
+from typing import Self
 
 from lizard._ports import FRAME, Port, SerialPort, SimulatedPort
 from lizard.model import Model
+from lizard.status import Frame, RobotError, Status
+from lizard.status import angles as read_angles
 
 BAUD = 115_200
 BANNER = "# lizard "
@@ -21,8 +22,8 @@ ASKS = 8
 """Lines `status` to a board that sends no banner: it finds the rate by five, and a radio may lose some."""
 ANSWER = 2.0
 """Seconds for an answer; `save` takes a third of one."""
-STOPPING = 5.0
-"""Seconds for which `stop` is sent to a robot that does not answer."""
+INSISTING = 5.0
+"""Seconds for which a line that may be sent twice is sent to a robot that does not answer."""
 NO_PULSES = (7, 10)
 """Codes of `stop` that is refused: the servos rest, or the flash has no robot."""
 STANDING = 1.0
@@ -33,86 +34,8 @@ DRIVEN = 901
 """`deadman` while a program drives, ms: no person sets this number, so one that is found was left behind."""
 
 
-class RobotError(RuntimeError):
-    """The robot refuses a line, stops by itself, was reset, or does not answer."""
-
-    code: int | None = None
-    """Code of a refusal, as docs/console.md lists them."""
-
-
-class _Silent(RobotError):
-    """No answer in time."""
-
-
-class Frame(NamedTuple):
-    """A pose that the servos are sent to, and its time."""
-
-    time: float
-    """Seconds since the robot's start."""
-    pose: tuple[float, ...]
-    """Servo angles, deg."""
-
-
-@dataclass(frozen=True)
-class Status:
-    """The robot's answer to `status`; a field that it does not send is NaN, 0 or empty."""
-
-    gait: str
-    """A routine or gait, with dashes; `pose`, `stop` or `rest`."""
-    fault: str
-    """`none`, or the reason for which the robot has stopped by itself."""
-    guard: str
-    """`clear`, or `held` if the guard has stopped a move."""
-    reset: str
-    """Cause of the last start."""
-    pose: tuple[float, ...]
-    """Servo angles, deg."""
-    margin: float
-    """Smallest margin of the pose, a sine."""
-    phase: float
-    """Phase of the gait, 0 to 1."""
-    vcc: float
-    """Supply of the board, V."""
-    rail: float
-    """Supply of the servos, V."""
-    speed: int
-    """Percent of a gait's pace."""
-    frames: int
-    """Frames of 20 ms since the start."""
-    late: int
-    """Pulses' edges that came late."""
-    rx_lost: int
-    """Bytes that were lost."""
-    resets: int
-    """Resets since power-on."""
-
-    @staticmethod
-    def parse(answer: str) -> Status:
-        """Reads `ok gait=...`; fields that this version does not know are skipped."""
-        fields = dict(word.split("=", 1) for word in answer.split() if "=" in word)
-
-        def number(name: str) -> float:
-            return float(fields.get(name, "nan"))
-
-        def count(name: str) -> int:
-            return int(fields.get(name, "0"))
-
-        return Status(
-            gait=fields.get("gait", ""),
-            fault=fields.get("fault", ""),
-            guard=fields.get("guard", ""),
-            reset=fields.get("reset", ""),
-            pose=_angles(fields.get("pose", "")),
-            margin=number("margin"),
-            phase=number("phase"),
-            vcc=number("vcc"),
-            rail=number("rail"),
-            speed=count("speed"),
-            frames=count("frames"),
-            late=count("late"),
-            rx_lost=count("rx_lost"),
-            resets=count("resets"),
-        )
+class NoAnswer(RobotError):
+    """The robot has not answered in time."""
 
 
 class Robot:
@@ -209,6 +132,9 @@ class Robot:
             self._ended = None
             try:
                 self.ask(line)
+            except NoAnswer:
+                self._ended = ""  # If it goes, `deadman` stops it.
+                raise
             except RobotError:
                 self._ended = ""
                 self._restore_deadman()
@@ -240,15 +166,10 @@ class Robot:
             self._write("stop")  # ahead of the line that waits for its answer
             self._turn.acquire()
         try:
-            end = time.monotonic() + STOPPING
-            while True:
-                try:
-                    return self._end_gait("stop", ANSWER / 4)
-                except RobotError as error:
-                    if error.code in NO_PULSES:
-                        return None
-                    if not isinstance(error, _Silent) or time.monotonic() >= end:
-                        raise
+            self._end_gait("stop")
+        except RobotError as error:
+            if error.code not in NO_PULSES:
+                raise
         finally:
             self._turn.release()
 
@@ -292,10 +213,12 @@ class Robot:
 
     def status(self) -> Status:
         """Asks for the robot's state."""
-        return Status.parse(self.ask("status")[-1])
+        return Status.parse(self._insist("status")[-1])
 
     def watch(self, every: int = 1) -> Iterator[Frame]:
         """Yields the pose of every so many frames of 20 ms, until the loop over it ends."""
+        if every < 1:
+            raise ValueError(f"every so many frames: at least 1, not {every}")
         frames: SimpleQueue[Frame] = SimpleQueue()
         self._watchers.append(frames)
         try:
@@ -310,7 +233,7 @@ class Robot:
         finally:
             self._watchers.remove(frames)
             if self._gone is None and not self._closing.is_set():
-                self.ask("watch 0")
+                self._insist("watch 0")
 
     def ask(self, line: str) -> list[str]:
         """Sends a line of the console; returns the `#` lines before its answer, and the answer.
@@ -319,14 +242,26 @@ class Robot:
         """
         return self._ask(line, ANSWER)
 
-    def _end_gait(self, line: str, timeout: float = ANSWER) -> None:
+    def _end_gait(self, line: str) -> None:
         with self._turn:
-            self._ask(line, timeout)
+            self._insist(line)
             self._end(f"`{line}` has ended the gait")
             self._restore_deadman()
 
+    def _insist(self, line: str) -> list[str]:
+        """Sends a line until it is answered, because a radio may lose it."""
+        end = time.monotonic() + INSISTING
+        while True:
+            try:
+                return self._ask(line, ANSWER / 2)
+            except NoAnswer:
+                if time.monotonic() >= end:
+                    raise
+
     def _ask(self, line: str, timeout: float) -> list[str]:
         line = line.strip().lower()
+        if not (line.isascii() and line.isprintable() and line):
+            raise ValueError(f"a line of the console is ASCII, not {line!r}")
         word = line.split(" ")[0]
         ok = "ok gait=" if word == "status" else f"ok {word}"
         with self._turn:
@@ -343,7 +278,7 @@ class Robot:
                 return answer != ""
 
             if not self._wait(has_answer, timeout):
-                raise _Silent(f"the robot does not answer to `{line}`")
+                raise NoAnswer(f"the robot does not answer to `{line}`")
             if answer.startswith("err "):
                 code, reason = answer.split(" ", 2)[1:]
                 refusal = RobotError(f"the robot refuses `{line}`: {reason}")
@@ -378,19 +313,19 @@ class Robot:
         if self._driven is not None:
             return
         if self._own is None:
-            notes = self.ask("cal")
+            notes = self._insist("cal")
             own = next(
                 int(note.split()[-1]) for note in notes if note.startswith("# deadman ")
             )
             self._own = 0 if own == DRIVEN else own
         driven = min(self._own or DRIVEN, DRIVEN)
-        self.ask(f"deadman {driven}")
+        self._insist(f"deadman {driven}")
         self._driven = driven
 
     def _restore_deadman(self) -> None:
         with self._turn:
             if self._driven is not None:
-                self.ask(f"deadman {self._own}")
+                self._insist(f"deadman {self._own}")
                 self._driven = None
 
     def _keep_going(self) -> None:
@@ -444,7 +379,7 @@ class Robot:
         with self._news:
             if line.startswith("# t="):
                 fields = dict(word.split("=", 1) for word in line[2:].split())
-                frame = Frame(int(fields["t"]) * FRAME, _angles(fields["pose"]))
+                frame = Frame(int(fields["t"]) * FRAME, read_angles(fields["pose"]))
                 for watcher in self._watchers:
                     watcher.put(frame)
             elif line.startswith(BANNER):
@@ -461,7 +396,3 @@ class Robot:
             elif line:
                 self._answers.append(line)
             self._news.notify_all()
-
-
-def _angles(text: str) -> tuple[float, ...]:
-    return tuple(float(angle) for angle in text.split(",") if angle)

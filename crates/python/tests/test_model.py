@@ -84,6 +84,7 @@ def test_inverse_gives_back_the_points_in_any_shape(model):
     # In every mode each crank tip is a coupler's length from the point.
     modes = model.working_modes("head", solved.head)
     assert modes.shape == (3, 5, 4, 2)
+    assert model.solve(np.zeros((2, 0, 4))).margins.shape == (2, 0, 10)
     shafts = np.array([[-BASE / 2, BODY / 2], [BASE / 2, BODY / 2]])
     gaps = shafts + CRANK * unit(modes) - solved.head[..., None, None, :]
     np.testing.assert_allclose(np.linalg.norm(gaps, axis=-1), COUPLER, atol=1e-9)

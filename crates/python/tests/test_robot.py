@@ -112,6 +112,9 @@ def test_refusals_are_the_robots_own_words(robot):
     assert deadman(robot) == 0
     robot.rest()
     robot.stop()
+    for wrong in ("walk\nstop", "", "st\u00e4nd"):
+        with pytest.raises(ValueError, match="ASCII"):
+            robot.ask(wrong)
     with pytest.raises(lizard.RobotError, match="resting") as error:
         robot.walk()
     assert error.value.code == 7
