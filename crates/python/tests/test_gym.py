@@ -83,7 +83,7 @@ def test_a_grain_is_refused():
 def test_the_example_learns_a_gait_that_the_program_accepts(
     monkeypatch, program, tmp_path
 ):
-    for name, small in [("GENERATIONS", 3), ("FIRST", 24), ("TRIED", 8)]:
+    for name, small in [("GENERATIONS", 2), ("FIRST", 16), ("TRIED", 4)]:
         monkeypatch.setattr(learn_gait, name, small)
     file = tmp_path / "learned.toml"
     monkeypatch.setattr("sys.argv", ["learn_gait.py", str(file)])
