@@ -17,6 +17,10 @@ export LIZARD_ROBOT := $(abspath $(ROBOT))
 FOR_ROBOT := --robot $(LIZARD_ROBOT)
 endif
 
+# All packages but the Python module's, whose dependencies would give those of the others more features, so that
+# every one of them would be compiled twice.
+ALL := --workspace --exclude lizard-python
+
 # Cargo can use make's jobserver only in a rule that calls make, and warns in others.
 CARGO := MAKEFLAGS= cargo
 
@@ -27,7 +31,7 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help fit parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants other-robots explore fuzz package code-image docs docs-check install release release-test parallel-test plain-test clean trouble .fit .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .workspace .walks .test .bench .prove .physics .mutants .other-robots .explore .fuzz .package .code-image .docs .docs-check .install .release .release-test .parallel-test .plain-test .trouble
+.PHONY: help fit parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants other-robots explore fuzz package code-image docs docs-check install release release-test parallel-test plain-test python-test clean trouble .fit .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .workspace .walks .test .bench .prove .physics .mutants .other-robots .explore .fuzz .package .code-image .docs .docs-check .install .release .release-test .parallel-test .plain-test .python-test .trouble
 
 help: ## this list
 	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 15
@@ -91,6 +95,8 @@ parallel-test: ## long computations in parts by GNU parallel, merged, compared w
 	$(call prepared,.parallel-test)
 plain-test: ## the image's tests and the recorded pulses, linked by avr-gcc alone
 	$(call prepared,.plain-test)
+python-test: ## build the Python package's wheel, install it in target/python, test it there
+	$(call prepared,.python-test)
 clean: ## remove everything that was built
 	rm -rf target crates/target out dist tools/judge/node_modules web/node_modules web/tests/node_modules web/node/node_modules web/dist web/public
 
@@ -121,8 +127,8 @@ clean: ## remove everything that was built
 .flash-test: .firmware
 	@scripts/setup-flash
 	@scripts/setup-flash-test
-	@cd crates && cargo build --workspace --bin lizard --quiet
-	@cd crates && LIZARD=$(CURDIR)/$(HOST)/debug/lizard cargo test --workspace --features lizard-host-tests/flash --test flash --test flash_troubles --test lizard_flash --quiet -- --test-threads=1
+	@cd crates && cargo build $(ALL) --bin lizard --quiet
+	@cd crates && LIZARD=$(CURDIR)/$(HOST)/debug/lizard cargo test $(ALL) --features lizard-host-tests/flash --test flash --test flash_troubles --test lizard_flash --quiet -- --test-threads=1
 
 .web:
 	@scripts/setup-web
@@ -133,7 +139,7 @@ clean: ## remove everything that was built
 	@env -u LIZARD_ROBOT $(MAKE) .firmware ROBOT=
 	@scripts/setup-web --test
 	@scripts/build-web
-	@cd crates && cargo build --workspace --bin lizard --quiet
+	@cd crates && cargo build $(ALL) --bin lizard --quiet
 	@LIZARD=$(HOST)/debug/lizard $$(cat target/web-node) --test --test-concurrency=2 --test-timeout=900000 web/tests/*.test.js
 
 # The second line puts the program at the path that the documentation names.
@@ -152,7 +158,7 @@ clean: ## remove everything that was built
 	@$(HOST)/sim/lizard sim --elf $(ELF) $(FOR_ROBOT)
 
 # The tested packages: TESTS="-p lizard-host-tests" has those that run the image.
-TESTS ?= --workspace
+TESTS ?= $(ALL)
 
 # The tests, compiled beside the firmware: each has phases that keep one core busy.
 .tests:
@@ -180,7 +186,7 @@ WALKS := target/walks.log
 # FreeCAD and PrusaSlicer are large, so only this target installs them.
 .parts-test:
 	@scripts/setup-parts
-	@cd crates && cargo build --workspace --bin lizard --quiet
+	@cd crates && cargo build $(ALL) --bin lizard --quiet
 	@scripts/parts-test $(HOST)/debug/lizard
 
 .bench: .firmware .cli
@@ -189,7 +195,7 @@ WALKS := target/walks.log
 	@cd crates && cargo bench --quiet -p lizard-kinematics
 
 .prove:
-	@cd crates && cargo build --workspace --bin lizard --quiet
+	@cd crates && cargo build $(ALL) --bin lizard --quiet
 	@$(HOST)/debug/lizard prove $(FOR_ROBOT)
 
 .fit: .cli
@@ -198,7 +204,7 @@ WALKS := target/walks.log
 # Apart from the other tests, because only this target installs MuJoCo.
 .physics: .firmware
 	@scripts/setup-physics
-	@cd crates && cargo build --workspace --bin lizard --bin lizard-physics --quiet
+	@cd crates && cargo build $(ALL) --bin lizard --bin lizard-physics --quiet
 	@$(HOST)/debug/lizard mjcf target/physics/walk.xml --drive walk --elf $(ELF) $(FOR_ROBOT)
 	@target/physics/bin/python tools/physics/judge.py target/physics/walk.xml
 	@cd crates && ../$(HOST)/debug/lizard-physics $(if $(WRITE),--write,--one-in $(or $(ONE_IN),1))
@@ -237,7 +243,7 @@ WALKS := target/walks.log
 
 # Tests that `make test` leaves out; BLESS_GAITS=1 writes the pages.
 .docs-check:
-	@cd crates && $(CARGO) test --workspace --quiet --test robot -- docs:: --ignored
+	@cd crates && $(CARGO) test $(ALL) --quiet --test robot -- docs:: --ignored
 
 # Uncommitted changes are packaged, too, so that they can be tried before a commit.
 .package:
@@ -261,8 +267,14 @@ PREFIX ?= $(HOME)/.local
 	@scripts/release-test
 
 .parallel-test:
-	@cd crates && cargo build --workspace --bin lizard --quiet
+	@cd crates && cargo build $(ALL) --bin lizard --quiet
 	@scripts/parallel-test $(HOST)/debug/lizard
+
+# The program is the one with the simulator, whose board the package drives over a serial port.
+.python-test:
+	@scripts/setup-python
+	@cd crates && cargo build $(ALL) --bin lizard --quiet
+	@scripts/python-test $(HOST)/debug/lizard
 
 # The robot lies elsewhere then, which the tests have to know: they are built apart. Left out are
 # robots that have no room there.
@@ -278,10 +290,11 @@ PLAIN := $(CURDIR)/target/plain
 	@cargo fmt --check
 	@cd crates && cargo fmt --all --check
 	@RUSTC_BOOTSTRAP=1 cargo clippy --release -- -D warnings
-	@cd crates && cargo clippy --workspace --all-targets --features lizard-host-tests/flash --quiet -- -D warnings
+	@cd crates && cargo clippy $(ALL) --all-targets --features lizard-host-tests/flash --quiet -- -D warnings
 	@cd crates && cargo clippy -p lizard-host --no-default-features --features paper,console --quiet -- -D warnings
 	@cd crates && cargo clippy -p lizard-host --no-default-features --features simulator --quiet -- -D warnings
 	@cd crates && cargo clippy -p lizard-host --no-default-features --features parts --quiet -- -D warnings
+	@cd crates && cargo clippy -p lizard-python --quiet -- -D warnings
 	@cd crates && cargo clippy -p lizard-web --no-default-features --quiet -- -D warnings
-	@cd crates && RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --quiet
+	@cd crates && RUSTDOCFLAGS="-D warnings" cargo doc $(ALL) --no-deps --quiet
 	@echo "lint: clean"

@@ -7,13 +7,14 @@ use std::path::{Path, PathBuf};
 use lizard_host_tests::root;
 
 /// The crates whose modules are read.
-const CRATES: [&str; 13] = [
+const CRATES: [&str; 14] = [
     "crates/contact",
     "crates/core",
     "crates/host",
     "crates/kinematics",
     "crates/parts",
     "crates/pulses",
+    "crates/python",
     "crates/robot",
     "crates/simulated-uno",
     "crates/tune",

@@ -45,6 +45,7 @@ pub use measures::{
     Coil, FUSE, Horn, INPUTS, Inputs, LegPlace, LegPlan, Pad, Parts, Plate, Rail, SWITCH, Screw,
     Servo, ServoBody, ServoType, SpeedLimits, Supplies, healthy_rail_mv,
 };
+pub use reports::verdict;
 pub use reports::{
     Assumptions, Report, Round, Row, Sensitivity, ServoTable, SpringCost, UNDECIDED,
     WITHOUT_CONTACTS,

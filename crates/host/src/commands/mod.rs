@@ -12,6 +12,7 @@ mod known;
 pub mod merge;
 
 use std::ffi::OsString;
+use std::io::{self, Write};
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
@@ -203,6 +204,21 @@ pub fn run(words: Vec<OsString>) -> Result<(), Failure> {
     match parsed.and_then(|mut matches| Cli::from_arg_matches_mut(&mut matches)) {
         Ok(cli) => cli.command.run(),
         Err(error) => exit_with(&error),
+    }
+}
+
+/// Runs a command line, writes the sentence of its failure, and returns the exit code.
+#[must_use]
+pub fn run_and_report(words: Vec<OsString>) -> u8 {
+    match run(words) {
+        Ok(()) => 0,
+        Err(failure) if failure.is_silent() => 0,
+        Err(failure) => {
+            // It may quote a file or a board. A terminal that is gone is no reason to panic.
+            let words = readable_lines(&failure.to_string());
+            let _ = writeln!(io::stderr(), "lizard: {words}");
+            failure.exit_code()
+        }
     }
 }
 

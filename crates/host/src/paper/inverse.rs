@@ -1,11 +1,10 @@
 //! `lizard pose --head X Y --tail X Y`: the servo angles that put head and tail at given points.
 
 use lizard_kinematics::{AssemblyMode, Check, Elbow, End, InverseSolution, Pose, Vector};
-use lizard_robot::Robot;
+use lizard_robot::{Robot, verdict};
 use serde::Serialize;
 
 use crate::Failure;
-use crate::paper::verdict;
 use crate::shared::json;
 use crate::shared::number::tidy;
 

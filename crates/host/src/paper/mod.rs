@@ -12,4 +12,3 @@ mod poses;
 mod singularity;
 mod solve;
 mod velocity;
-mod verdict;

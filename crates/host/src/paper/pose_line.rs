@@ -3,11 +3,10 @@
 use std::fmt::Write as _;
 
 use lizard_kinematics::{Infeasible, Margins, Pose, Solution};
-use lizard_robot::Robot;
+use lizard_robot::{Robot, verdict};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use crate::paper::poses::Timed;
-use crate::paper::verdict;
 use crate::shared::number::tidy;
 
 /// One object of `lizard pose --json`. Everything that a pose without a

@@ -1,4 +1,4 @@
-//! Tables of a robot's gaits for people to read.
+//! Tables of a robot's gaits for people to read, and the reasons why a pose is refused.
 //!
 //! An author of a gait asks for three things: its distance from the limits, its movement, and
 //! the effect of another floor, other feet or softer legs. Each is a table.
@@ -9,6 +9,7 @@ mod round;
 mod sensitivity;
 mod servos;
 mod spring_cost;
+pub mod verdict;
 
 pub use assumptions::Assumptions;
 pub use report::{Report, Row, UNDECIDED, WITHOUT_CONTACTS};

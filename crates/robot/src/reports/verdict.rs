@@ -1,7 +1,9 @@
 //! The reasons why this robot may not take a pose: its limits, and its servos' travel.
 
 use lizard_kinematics::{Pose, Solution, wrap};
-use lizard_robot::{Robot, servo};
+
+use crate::measures::servo;
+use crate::robot::Robot;
 
 /// Every reason why the robot may not take a solved pose, each as a sentence;
 /// none if the pose is safe.

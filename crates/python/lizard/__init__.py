@@ -1,0 +1,28 @@
+"""A robotic lizard with four servos: its mathematics, and a board to drive.
+
+`Model` is a robot.toml, `Robot` a board. Angles are degrees in the chassis frame: x to the robot's right, y
+forward, counter-clockwise from +x, seen from above. Lengths are mm. Servos are in the order A1 front left, A2 front
+right, A3 back right, A4 back left.
+"""
+
+from lizard._lizard import VERSION as __version__
+from lizard._lizard import RobotFileError
+from lizard.model import MARGINS, Gait, Mobility, Model, Solution, Travel, default_toml
+from lizard.robot import Robot
+from lizard.status import Frame, RobotError, Status
+
+__all__ = [
+    "MARGINS",
+    "Frame",
+    "Gait",
+    "Mobility",
+    "Model",
+    "Robot",
+    "RobotError",
+    "RobotFileError",
+    "Solution",
+    "Status",
+    "Travel",
+    "__version__",
+    "default_toml",
+]

@@ -1,0 +1,63 @@
+"""Ends of a serial line: a real port, and a simulated board in real time."""
+
+from __future__ import annotations
+
+import threading
+import time
+from typing import Protocol
+
+import serial
+
+from lizard import _lizard
+
+FRAME = 0.02
+"""Seconds of a frame."""
+
+
+class Port(Protocol):
+    """A serial line. `read` waits a moment, and returns b"" if nothing has come."""
+
+    def read(self) -> bytes: ...
+    def write(self, data: bytes) -> None: ...
+    def close(self) -> None: ...
+
+
+class SerialPort:
+    """A port of this machine; raises OSError once it is gone."""
+
+    def __init__(self, name: str, baud: int) -> None:
+        self._serial = serial.Serial(name, baud, timeout=FRAME, exclusive=True)
+
+    def read(self) -> bytes:
+        return bytes(self._serial.read(self._serial.in_waiting or 1))
+
+    def write(self, data: bytes) -> None:
+        self._serial.write(data)
+
+    def close(self) -> None:
+        self._serial.close()
+
+
+class SimulatedPort:
+    """The firmware's core without a chip, a frame for each 20 ms of this machine's time."""
+
+    def __init__(self, robot: _lizard.Robot) -> None:
+        self.board = _lizard.Board(robot)
+        self._sent = bytearray()
+        self._lock = threading.Lock()
+        self._next = time.monotonic()
+
+    def read(self) -> bytes:
+        self._next += FRAME
+        time.sleep(max(0.0, self._next - time.monotonic()))
+        with self._lock:
+            data = bytes(self._sent)
+            self._sent.clear()
+        return self.board.frame(data).encode()
+
+    def write(self, data: bytes) -> None:
+        with self._lock:
+            self._sent += data
+
+    def close(self) -> None:
+        pass

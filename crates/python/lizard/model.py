@@ -1,0 +1,248 @@
+"""A robot.toml: kinematics of its linkage, and its gaits."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lizard import _lizard
+
+Array = NDArray[np.float64]
+
+MARGINS: tuple[str, ...] = tuple(_lizard.MARGINS)
+"""Names of the ten margins of a pose, in the order of `Solution.margins`."""
+
+
+class Travel(NamedTuple):
+    """Movement of the body; a part is NaN if it depends on a tie of two feet against two."""
+
+    forward: float
+    """mm"""
+    left: float
+    """mm"""
+    turn: float
+    """deg, counter-clockwise"""
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Joints of the linkage at poses of the shape (..., 4); NaN where a loop does not close."""
+
+    head: Array
+    """Point of the head, mm, (..., 2)."""
+    tail: Array
+    """Point of the tail, mm, (..., 2)."""
+    couplers: Array
+    """Couplers theta2, theta3 (head), theta6, theta7 (tail), deg, (..., 4)."""
+    directions: Array
+    """Directions of the left and the right slider, rear to front, deg, (..., 2)."""
+    strokes: Array
+    """Travels of the left and the right slider from nominal, mm, (..., 2)."""
+    margins: Array
+    """Sines named by `MARGINS`, (..., 10): 1 is best, 0 is singular, negative is another assembly."""
+    safe: NDArray[np.bool_]
+    """True where limits and servos allow the pose, (...)."""
+
+
+@dataclass(frozen=True)
+class Mobility:
+    """Degrees of freedom of the body at poses of the shape (..., 4), by the rank of its constraints."""
+
+    freedoms: NDArray[np.int_]
+    """Freedoms while the servos turn, (...): 4 away from singularities."""
+    loose: NDArray[np.int_]
+    """Freedoms while the servos hold, (...): more than 0 at a type-2 singularity."""
+
+
+@dataclass(frozen=True)
+class Gait:
+    """A gait that has passed every check, as the firmware sends it: a frame every 20 ms."""
+
+    name: str
+    period: float
+    """Time of a cycle, s."""
+    times: Array
+    """Time of each frame of a cycle, s, (n,)."""
+    angles: Array
+    """Servo angles in each frame, deg, (n, 4)."""
+    pulses: Array
+    """Pulse widths in each frame, us, (n, 4)."""
+    peak_speed: float
+    """Fastest turn of a servo over a frame, deg/s."""
+    least_margin: tuple[str, float]
+    """Name and value of the smallest margin in a cycle."""
+    _robot: _lizard.Robot
+
+    def predict(self, *, with_servos: bool = False) -> Travel:
+        """Predicts one cycle by the contact model: with ideal servos, or with those of robot.toml."""
+        return Travel(*self._robot.predict(self.name, with_servos))
+
+
+class Model:
+    """A robot whose every value and gait has been checked.
+
+    Arrays of poses have any shape that ends with 4, in servo order; arrays of points any that ends with 2.
+    """
+
+    def __init__(self, robot: _lizard.Robot) -> None:
+        self._robot = robot
+
+    @staticmethod
+    def from_toml(source: str | os.PathLike[str]) -> Model:
+        """Reads a file, or the text of one: a str with a line break is text.
+
+        Raises RobotFileError with the sentence of `lizard gaits`, its `file`, `line` and `key`.
+        """
+        if isinstance(source, str) and "\n" in source:
+            return Model(_lizard.Robot(source))
+        return Model(_lizard.Robot.load(os.fspath(source)))
+
+    @staticmethod
+    def default() -> Model:
+        """The robot of the paper, as the project's robot.toml has it."""
+        return Model(_lizard.Robot(default_toml()))
+
+    def with_gait(self, table: str) -> Model:
+        """The same body with `stand` and one other gait: its table `[gait.name]` of robot.toml.
+
+        Raises RobotFileError, as `from_toml` does.
+        """
+        return Model(self._robot.with_gait(table))
+
+    @property
+    def name(self) -> str:
+        """Name of the robot, which the firmware prints."""
+        return self._robot.name()
+
+    @property
+    def neutral(self) -> Array:
+        """Servo angles at which the horns are fitted, deg, (4,)."""
+        return np.array(self._robot.neutral())
+
+    @property
+    def travel(self) -> Array:
+        """Least and greatest sweep of each servo from neutral, deg, (4, 2)."""
+        return np.array(self._robot.travel())
+
+    @property
+    def gait_slew(self) -> float:
+        """Fastest turn of a servo that a gait may ask for, deg/s."""
+        return self._robot.gait_slew()
+
+    @property
+    def gaits(self) -> list[str]:
+        """Names of the gaits, in the order of the file."""
+        return self._robot.gaits()
+
+    def gait(self, name: str) -> Gait:
+        """Finds a gait by its name; raises KeyError with all names."""
+        period, speed, least, times, angles = self._robot.gait(name)
+        pulses = self._robot.pulses(angles)
+        name = name.replace(" ", "-")
+        return Gait(name, period, times, angles, pulses, speed, least, self._robot)
+
+    def solve(self, angles: ArrayLike) -> Solution:
+        """Forward kinematics: every joint and margin for servo angles (..., 4), deg."""
+        poses, shape = _rows(angles, 4)
+        made = self._robot.solve(poses).reshape(*shape, 23)
+        head, tail, couplers, directions, strokes, margins, safe = np.split(
+            made, [2, 4, 8, 10, 12, 22], axis=-1
+        )
+        is_safe = safe[..., 0] > 0
+        return Solution(head, tail, couplers, directions, strokes, margins, is_safe)
+
+    def inverse(
+        self, head: ArrayLike | None = None, tail: ArrayLike | None = None
+    ) -> Array:
+        """Inverse kinematics: servo angles (..., 4), deg, that put head and tail at points (..., 2), mm.
+
+        The elbows are outward, as the robot is built. The servos of an end that is not given are at neutral. The
+        two of an end whose point is out of reach are NaN.
+        """
+        parts = [
+            (ends, self.working_modes(name, points)[..., 0, :])
+            for ends, name, points in [([0, 1], "head", head), ([3, 2], "tail", tail)]
+            if points is not None
+        ]
+        shape = np.broadcast_shapes(*(part.shape[:-1] for _, part in parts))
+        angles = np.broadcast_to(self.neutral, (*shape, 4)).copy()
+        for ends, part in parts:
+            angles[..., ends] = part
+        return angles
+
+    def working_modes(self, end: str, points: ArrayLike) -> Array:
+        """All ways to put an end, "head" or "tail", at points (..., 2), mm: angles (..., 4, 2), deg.
+
+        The four modes are outward-outward, outward-inward, inward-outward, inward-inward, the left elbow first;
+        the two angles are those of the left and the right servo: A1, A2, or A4, A3. NaN where out of reach.
+        """
+        if end not in ("head", "tail"):
+            raise ValueError(f'the ends are "head" and "tail", not {end!r}')
+        rows, shape = _rows(points, 2)
+        return self._robot.inverse(end == "head", rows).reshape(*shape, 4, 2)
+
+    def reasons(self, angles: ArrayLike) -> list[str]:
+        """Sentences for what keeps the robot from a pose (4,), deg; none if it is safe."""
+        poses, shape = _rows(angles, 4)
+        if shape != ():
+            raise ValueError(f"one pose has four angles; these are {shape} poses")
+        return self._robot.reasons(poses[0].tolist())
+
+    def pulses(self, angles: ArrayLike) -> Array:
+        """Pulse widths (..., 4), us, for servo angles (..., 4), deg, without trims."""
+        poses, shape = _rows(angles, 4)
+        return self._robot.pulses(poses).reshape(*shape, 4)
+
+    def jacobians(self, angles: ArrayLike) -> tuple[Array, Array]:
+        """Derivatives K and K* of the eight loop equations, mm per radian, for servo angles (..., 4), deg.
+
+        K (..., 8, 4) is by theta1, theta4, theta8, theta5; K* (..., 8, 8) by theta2, theta3, theta6, theta7, and
+        direction and travel (mm per mm) of the left and of the right slider. K da + K* dp = 0.
+        """
+        poses, shape = _rows(angles, 4)
+        made = self._robot.matrices(poses)
+        active, passive = made[:, :32], made[:, 32:]
+        return active.reshape(*shape, 8, 4), passive.reshape(*shape, 8, 8)
+
+    def mobility(self, angles: ArrayLike) -> Mobility:
+        """Degrees of freedom of the body for servo angles (..., 4), deg; -1 where a loop does not close."""
+        active, passive = self.jacobians(angles)
+        closes = np.asarray(np.isfinite(passive).all(axis=(-2, -1)))
+        # Comparable with a sine: a pose typed with seven digits is singular.
+        scale = np.array([50.0, 50, 50, 50, 50, 1, 50, 1])
+        passive = np.where(closes[..., None, None], passive, 0) / scale
+        active = np.where(closes[..., None, None], active, 0) / 50
+        both = np.concatenate([active, passive], axis=-1)
+        freedoms, loose = (
+            count - np.linalg.matrix_rank(matrix, rtol=1e-7)
+            for count, matrix in [(12, both), (8, passive)]
+        )
+        return Mobility(np.where(closes, freedoms, -1), np.where(closes, loose, -1))
+
+    def section(self) -> bytes:
+        """The robot's section of flash, with the maps of certified cells."""
+        return self._robot.section()
+
+    def image(self, *, only_robot: bool = False) -> str:
+        """The image for a board as Intel HEX: the firmware with this robot, or the robot alone."""
+        return self._robot.image(only_robot)
+
+    def mjcf(self, *, shapes: bool = True) -> str:
+        """The model for MuJoCo, as `lizard mjcf` writes it; without shapes it is a fiftieth as long."""
+        return self._robot.mjcf(shapes)
+
+
+def default_toml() -> str:
+    """Text of the project's robot.toml, to be changed."""
+    return _lizard.DEFAULT
+
+
+def _rows(values: ArrayLike, width: int) -> tuple[Array, tuple[int, ...]]:
+    array = np.asarray(values, np.float64)
+    if array.ndim == 0 or array.shape[-1] != width:
+        raise ValueError(f"the last axis must have {width} numbers, not {array.shape}")
+    return np.ascontiguousarray(array.reshape(-1, width)), array.shape[:-1]

@@ -1,0 +1,89 @@
+"""What a robot answers: its state, its pose in a frame, and why it refuses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+
+class RobotError(RuntimeError):
+    """The robot refuses a line, stops by itself, was reset, or does not answer."""
+
+    code: int | None = None
+    """Code of a refusal, as docs/console.md lists them."""
+
+
+class Frame(NamedTuple):
+    """A pose that the servos are sent to, and its time."""
+
+    time: float
+    """Seconds since the robot's start."""
+    pose: tuple[float, ...]
+    """Servo angles, deg."""
+
+
+@dataclass(frozen=True)
+class Status:
+    """The robot's answer to `status`; a field that it does not send is NaN, 0 or empty."""
+
+    gait: str
+    """A routine or gait, with dashes; `pose`, `stop` or `rest`."""
+    fault: str
+    """`none`, or the reason for which the robot has stopped by itself."""
+    guard: str
+    """`clear`, or `held` if the guard has stopped a move."""
+    reset: str
+    """Cause of the last start."""
+    pose: tuple[float, ...]
+    """Servo angles, deg."""
+    margin: float
+    """Smallest margin of the pose, a sine."""
+    phase: float
+    """Phase of the gait, 0 to 1."""
+    vcc: float
+    """Supply of the board, V."""
+    rail: float
+    """Supply of the servos, V."""
+    speed: int
+    """Percent of a gait's pace."""
+    frames: int
+    """Frames of 20 ms since the start."""
+    late: int
+    """Pulses' edges that came late."""
+    rx_lost: int
+    """Bytes that were lost."""
+    resets: int
+    """Resets since power-on."""
+
+    @staticmethod
+    def parse(answer: str) -> Status:
+        """Reads `ok gait=...`; fields that this version does not know are skipped."""
+        fields = dict(word.split("=", 1) for word in answer.split() if "=" in word)
+
+        def number(name: str) -> float:
+            return float(fields.get(name, "nan"))
+
+        def count(name: str) -> int:
+            return int(fields.get(name, "0"))
+
+        return Status(
+            gait=fields.get("gait", ""),
+            fault=fields.get("fault", ""),
+            guard=fields.get("guard", ""),
+            reset=fields.get("reset", ""),
+            pose=angles(fields.get("pose", "")),
+            margin=number("margin"),
+            phase=number("phase"),
+            vcc=number("vcc"),
+            rail=number("rail"),
+            speed=count("speed"),
+            frames=count("frames"),
+            late=count("late"),
+            rx_lost=count("rx_lost"),
+            resets=count("resets"),
+        )
+
+
+def angles(text: str) -> tuple[float, ...]:
+    """Reads the angles of `pose=`."""
+    return tuple(float(angle) for angle in text.split(",") if angle)

@@ -1,0 +1,40 @@
+//! A simulated board: the firmware's core without a chip.
+
+use std::sync::{Mutex, PoisonError};
+
+use lizard_core::memory::restart::Cause;
+use lizard_core::virtual_board::Running;
+use pyo3::prelude::*;
+
+use crate::robot::Robot;
+
+/// The firmware's core with a robot, in frames of 20 ms.
+#[pyclass(frozen)]
+pub struct Board(Mutex<Running>);
+
+#[pymethods]
+impl Board {
+    /// The robot at power-on.
+    #[new]
+    fn new(robot: &Robot) -> Self {
+        Self(Mutex::new(Running::power_on(*robot.0.firmware())))
+    }
+
+    /// Runs a frame after these bytes of the serial line, and returns the text of the robot.
+    fn frame(&self, bytes: &[u8]) -> String {
+        // One by one, as on a serial line.
+        let mut running = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        for byte in bytes {
+            running.board.send(&[*byte]);
+            running.settle();
+        }
+        running.frame();
+        core::mem::take(&mut running.board.transmitter.text)
+    }
+
+    /// Resets the board, as its button does.
+    fn reset(&self) {
+        let mut running = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        running.reset(Cause::External);
+    }
+}

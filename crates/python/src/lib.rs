@@ -1,0 +1,43 @@
+//! The part of the Python package `lizard` that is in Rust: it turns arrays of numpy into calls
+//! of the crates.
+//!
+//! The users' classes are in `lizard/*.py`, where their shapes and units are documented. Here
+//! poses are rows of an array of two dimensions.
+//!
+//! # When not to use it
+//! From Rust take `lizard-kinematics` and `lizard-robot` directly.
+
+mod board;
+mod robot;
+
+use pyo3::prelude::*;
+
+/// The module `lizard._lizard`.
+#[pymodule]
+mod _lizard {
+    use super::{Bound, PyModule, PyModuleMethods, PyResult};
+
+    #[pymodule_export]
+    use super::board::Board;
+    #[pymodule_export]
+    use super::program;
+    #[pymodule_export]
+    use super::robot::{Robot, RobotFileError};
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        use lizard_kinematics::Check;
+        let margins = Check::TYPE2.iter().chain(&Check::TYPE1).chain(&Check::LEG);
+        let names: Vec<&str> = margins.map(|check| check.name()).collect();
+        module.add("MARGINS", names)?;
+        module.add("DEFAULT", include_str!("../../../robot.toml"))?;
+        module.add("VERSION", env!("CARGO_PKG_VERSION"))
+    }
+}
+
+/// Runs a line of the program `lizard`, and returns its exit code.
+#[pyfunction]
+fn program(py: Python<'_>, words: Vec<String>) -> u8 {
+    let words = words.into_iter().map(Into::into).collect();
+    py.detach(|| lizard_host::commands::run_and_report(words))
+}

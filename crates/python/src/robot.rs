@@ -1,0 +1,294 @@
+//! A checked robot.toml, computed for many poses at a time.
+
+use lizard_host::flash::file;
+use lizard_kinematics::{Check, End, Solution, Vector};
+use lizard_parts::{Assembly, Scene, mjcf};
+use lizard_robot::{CheckedGait, Error, Prediction, verdict};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
+use pyo3::exceptions::{PyKeyError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+
+pyo3::create_exception!(
+    _lizard,
+    RobotFileError,
+    PyValueError,
+    "A mistake in a robot.toml, with its `file`, `line` (None if it belongs to none) and `key`."
+);
+
+/// Columns of [`Robot::solve`]: head, tail, couplers, slider directions, travels, margins, safe.
+const COLUMNS: usize = 2 + 2 + 4 + 2 + 2 + 10 + 1;
+
+/// A robot whose every value and gait has been checked.
+#[pyclass(frozen)]
+pub struct Robot(pub lizard_robot::Robot);
+
+/// Rows of numbers for numpy.
+type Rows<'py> = PyResult<Bound<'py, PyArray2<f64>>>;
+
+#[pymethods]
+impl Robot {
+    /// Reads and checks the text of a robot.toml.
+    #[new]
+    fn parse(py: Python<'_>, text: &str) -> PyResult<Self> {
+        checked(py, py.detach(|| lizard_robot::Robot::parse(text)))
+    }
+
+    /// Reads and checks a file.
+    #[staticmethod]
+    fn load(py: Python<'_>, path: &str) -> PyResult<Self> {
+        checked(py, py.detach(|| lizard_robot::Robot::load(path)))
+    }
+
+    /// The same body with `stand` and the gait of this table alone.
+    fn with_gait(&self, py: Python<'_>, table: &str) -> PyResult<Self> {
+        checked(py, py.detach(|| self.0.with_gait(table)))
+    }
+
+    fn name(&self) -> &str {
+        self.0.name()
+    }
+
+    fn neutral(&self) -> [f64; 4] {
+        self.0.neutral().into()
+    }
+
+    /// The servos' travel from neutral, deg: the least and the most of each.
+    fn travel(&self) -> [(f64, f64); 4] {
+        self.0.servos().map(|servo| servo.travel())
+    }
+
+    /// The fastest turn of a servo in a gait, deg/s.
+    fn gait_slew(&self) -> f64 {
+        self.0.pace().gait_slew
+    }
+
+    /// All joints and margins of poses: a row of [`COLUMNS`] for each row of four angles. A row is
+    /// NaN, and its last column 0, if there is no solution.
+    fn solve<'py>(&self, py: Python<'py>, poses: PyReadonlyArray2<'py, f64>) -> Rows<'py> {
+        rows(py, &poses, |angles| self.row(angles))
+    }
+
+    /// K and K* of poses, each row after row: 8 x 4 and 8 x 8 numbers, NaN if there is no solution.
+    fn matrices<'py>(&self, py: Python<'py>, poses: PyReadonlyArray2<'py, f64>) -> Rows<'py> {
+        rows(py, &poses, |angles: [f64; 4]| {
+            let mut row = [f64::NAN; 96];
+            if let Ok(solution) = self.0.lizard().solve(&angles.into()) {
+                let (active, passive) = (solution.active_matrix(), solution.passive_matrix());
+                row[..32].copy_from_slice(active.as_flattened());
+                row[32..].copy_from_slice(passive.as_flattened());
+            }
+            row
+        })
+    }
+
+    /// The angles of the left and the right servo of an end for points of it (mm, chassis frame),
+    /// in all four working modes; NaN where a point is out of reach.
+    fn inverse<'py>(
+        &self,
+        py: Python<'py>,
+        head: bool,
+        points: PyReadonlyArray2<'py, f64>,
+    ) -> Rows<'py> {
+        let end = if head { End::Head } else { End::Tail };
+        let lizard = self.0.lizard();
+        rows(py, &points, |[x, y]: [f64; 2]| {
+            let found = lizard
+                .end(end)
+                .inverse(lizard.to_end(end, Vector::new(x, y)));
+            let angles = found.map(|modes| {
+                modes.map(|mode| [mode.theta_left, mode.theta_right].map(|a| end.mirror_angle(a)))
+            });
+            let mut row = [f64::NAN; 8];
+            if let Ok(angles) = angles {
+                row.copy_from_slice(angles.as_flattened());
+            }
+            row
+        })
+    }
+
+    /// The sentences for what keeps the robot from a pose; none if it is safe.
+    fn reasons(&self, angles: [f64; 4]) -> Vec<String> {
+        match self.0.lizard().solve(&angles.into()) {
+            Ok(solution) => verdict::reasons(&self.0, &solution),
+            Err(infeasible) => vec![infeasible.to_string()],
+        }
+    }
+
+    /// Pulse widths of servo angles, us.
+    fn pulses<'py>(&self, py: Python<'py>, poses: PyReadonlyArray2<'py, f64>) -> Rows<'py> {
+        rows(py, &poses, |angles: [f64; 4]| -> [f64; 4] {
+            core::array::from_fn(|i| self.0.servos()[i].pulse(angles[i]))
+        })
+    }
+
+    /// The gaits' names in the order of the file.
+    fn gaits(&self) -> Vec<&str> {
+        self.0.gaits().iter().map(CheckedGait::name).collect()
+    }
+
+    /// A gait's period (s), its fastest turn (deg/s), its least margin with its name, and the times
+    /// (s) and servo angles of the frames of a cycle.
+    #[expect(
+        clippy::type_complexity,
+        reason = "a tuple that Python takes apart at once"
+    )]
+    fn gait<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+    ) -> PyResult<(
+        f64,
+        f64,
+        (&'static str, f64),
+        Bound<'py, PyArray1<f64>>,
+        Bound<'py, PyArray2<f64>>,
+    )> {
+        let gait = self.find(name)?;
+        let (times, angles): (Vec<f64>, Vec<Vec<f64>>) = gait
+            .frames()
+            .map(|(seconds, phase)| (seconds, gait.table_angles(phase).to_vec()))
+            .unzip();
+        let audit = gait.audit();
+        let margins = [audit.type2, audit.type1, audit.leg];
+        let least = margins
+            .into_iter()
+            .reduce(|least, next| {
+                if next.value < least.value {
+                    next
+                } else {
+                    least
+                }
+            })
+            .map_or(("", f64::NAN), |least| {
+                (Check::name(least.what), least.value)
+            });
+        Ok((
+            gait.period(),
+            audit.peak.speed,
+            least,
+            PyArray1::from_vec(py, times),
+            PyArray2::from_vec2(py, &angles)?,
+        ))
+    }
+
+    /// The movement of one cycle: mm forward, mm to the left, deg counter-clockwise; NaN for what
+    /// depends on a tie of two feet against two.
+    fn predict(&self, py: Python<'_>, name: &str, with_servos: bool) -> PyResult<[f64; 3]> {
+        let gait = self.find(name)?;
+        let Prediction {
+            forward,
+            left,
+            turn,
+        } = py.detach(|| {
+            let ideal = self.0.predict(gait);
+            match with_servos {
+                true => ideal.keep_known(gait.driven(self.0.ground(), &self.0.motors(), 1.0)),
+                false => ideal,
+            }
+        });
+        Ok([forward, left, turn].map(|part| part.unwrap_or(f64::NAN)))
+    }
+
+    /// The robot's section of flash.
+    fn section<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
+        PyBytes::new(py, &py.detach(|| self.0.section()))
+    }
+
+    /// The image for a board as Intel HEX: the firmware with this robot, or the robot alone.
+    fn image(&self, py: Python<'_>, only_robot: bool) -> PyResult<String> {
+        let image = py.detach(|| match only_robot {
+            true => file::robot_alone(&self.0),
+            false => file::image(&self.0),
+        });
+        image.map(|image| image.to_hex()).map_err(refused)
+    }
+
+    /// The model for MuJoCo; without the parts' shapes it is a fiftieth as long.
+    fn mjcf(&self, py: Python<'_>, shapes: bool) -> PyResult<String> {
+        py.detach(|| {
+            let assembly = Assembly::new(&self.0);
+            assembly.measures_fit().map_err(refused)?;
+            let neutral = self.0.lizard().solve(&self.0.neutral()).map_err(refused)?;
+            let scene = Scene {
+                shapes,
+                ..Scene::of(&assembly)
+            };
+            mjcf(&assembly, &neutral, &scene).map_err(refused)
+        })
+    }
+}
+
+impl Robot {
+    fn find(&self, name: &str) -> PyResult<&CheckedGait> {
+        let unknown = || {
+            let all = self.gaits().join(", ");
+            PyKeyError::new_err(format!("there is no gait {name}; the gaits are {all}"))
+        };
+        self.0.gait(name).ok_or_else(unknown)
+    }
+
+    fn row(&self, angles: [f64; 4]) -> [f64; COLUMNS] {
+        let mut row = [f64::NAN; COLUMNS];
+        row[COLUMNS - 1] = 0.0;
+        if let Ok(s) = self.0.lizard().solve(&angles.into()) {
+            fill(&mut row, &s);
+            let is_safe = self.0.accepted(angles).is_some();
+            row[COLUMNS - 1] = f64::from(u8::from(is_safe));
+        }
+        row
+    }
+}
+
+/// Writes a solution into its row.
+fn fill(row: &mut [f64; COLUMNS], s: &Solution) {
+    let (head, tail, p) = (s.head_point(), s.tail_point(), s.passive());
+    let joints = [
+        head.x,
+        head.y,
+        tail.x,
+        tail.y,
+        p.theta2,
+        p.theta3,
+        p.theta6,
+        p.theta7,
+        p.phi_left,
+        p.phi_right,
+        p.s_left,
+        p.s_right,
+    ];
+    let values = joints
+        .into_iter()
+        .chain(s.margins.iter().map(|(_, value)| value));
+    for (cell, value) in row.iter_mut().zip(values) {
+        *cell = value;
+    }
+}
+
+/// Computes a row of `N` numbers for each row of `M`.
+fn rows<'py, const M: usize, const N: usize>(
+    py: Python<'py>,
+    given: &PyReadonlyArray2<'py, f64>,
+    compute: impl Fn([f64; M]) -> [f64; N],
+) -> Rows<'py> {
+    let given = given.as_array();
+    let row = |row: numpy::ndarray::ArrayView1<'_, f64>| compute(core::array::from_fn(|i| row[i]));
+    let made: Vec<f64> = given.rows().into_iter().flat_map(row).collect();
+    PyArray1::from_vec(py, made).reshape([given.nrows(), N])
+}
+
+fn checked(py: Python<'_>, robot: Result<lizard_robot::Robot, Error>) -> PyResult<Robot> {
+    robot.map(Robot).map_err(|error| {
+        let raised = RobotFileError::new_err(error.to_string());
+        let value = raised.value(py);
+        let place = value
+            .setattr("file", &error.file)
+            .and_then(|()| value.setattr("line", error.line))
+            .and_then(|()| value.setattr("key", &error.key));
+        place.err().unwrap_or(raised)
+    })
+}
+
+fn refused(error: impl core::fmt::Display) -> PyErr {
+    PyValueError::new_err(error.to_string())
+}

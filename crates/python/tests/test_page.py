@@ -1,0 +1,27 @@
+"""The examples of docs/python.md and of the README run as they are."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[3]
+EXAMPLES = [
+    (page, code)
+    for page in ("docs/python.md", "crates/python/README.md")
+    for code in re.findall(
+        r"^```python\n(.*?)^```", (ROOT / page).read_text(), re.DOTALL | re.MULTILINE
+    )
+]
+
+
+@pytest.mark.parametrize(("page", "code"), EXAMPLES)
+def test_an_example_runs(page, code):
+    ran = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
+    assert "print" not in code or ran.stdout
+
+
+def test_there_are_examples_of_everything():
+    assert len(EXAMPLES) == 5

@@ -1,0 +1,207 @@
+"""A robot that is driven: the core without a chip, and the firmware on a simulated UNO at a serial port.
+
+`LIZARD` names the program `lizard` that has the simulator of a UNO.
+"""
+
+import os
+import subprocess
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import lizard
+
+
+@pytest.fixture
+def robot() -> Iterator[lizard.Robot]:
+    with lizard.Robot.simulated() as robot:
+        yield robot
+
+
+def serve(link: Path, *options: str) -> subprocess.Popen[bytes]:
+    """Starts a simulated UNO behind a pseudo terminal."""
+    words = [os.environ["LIZARD"], "sim", "--pty", str(link), *options]
+    uno = subprocess.Popen(words, stdout=subprocess.DEVNULL)
+    while not link.exists():
+        assert uno.poll() is None
+        time.sleep(0.02)
+    return uno
+
+
+@pytest.fixture
+def port(tmp_path: Path) -> Iterator[Path]:
+    uno = serve(tmp_path / "uno")
+    yield tmp_path / "uno"
+    uno.kill()
+    uno.wait()
+
+
+def deadman(robot: lizard.Robot) -> int:
+    return int(robot.ask("cal")[-2].removeprefix("# deadman "))
+
+
+def test_a_walk_of_some_cycles_takes_their_time_and_ends_where_the_gait_begins(
+    robot, model
+):
+    begin = robot.status().frames
+    robot.walk(cycles=2)
+    status = robot.status()
+    seconds = (status.frames - begin) / 50
+    # The robot first goes to the gait's first pose, and brakes at the end.
+    assert 2.0 <= seconds < 3.2
+    assert (status.gait, status.fault) == ("stop", "none")
+    off = np.array(status.pose) - model.gait("walk").angles[0]
+    assert np.abs(off).max() < 15
+    assert deadman(robot) == 0
+
+
+def test_deadman_is_set_while_a_gait_goes_and_the_program_keeps_it_going(robot):
+    robot.ask("deadman 700")
+    robot.go("arc-left")
+    assert deadman(robot) == 700
+    time.sleep(2)
+    assert robot.status().gait == "arc-left"
+    robot.stop()
+    assert deadman(robot) == 700
+
+
+def test_a_program_that_sends_nothing_lets_the_robot_stop(robot):
+    robot.go("walk")
+    robot._closing.set()  # the threads end, as with a program that is killed
+    robot._keeper.join()
+    robot._listener.join()
+    board, said = robot._port.board, ""
+    for _ in range(60):
+        said += board.frame(b"")
+    said = board.frame(b"status\n")
+    assert "gait=walk" not in said and "gait=" in said
+
+
+def test_poses_are_reached_and_watched(robot, model):
+    target = tuple(np.round(model.neutral + [8, -8, 5, 5], 2))
+    frames: list[lizard.Frame] = []
+
+    def look() -> None:
+        for frame in robot.watch(2):
+            frames.append(frame)
+            if frame.pose == reached:
+                return
+
+    reached = tuple(float(angle) for angle in target)
+    watcher = threading.Thread(target=look)
+    watcher.start()
+    arrived = robot.pose(*target)
+    np.testing.assert_allclose(arrived, target, atol=0.011)
+    reached = arrived
+    watcher.join(5)
+    times = [frame.time for frame in frames]
+    np.testing.assert_allclose(np.diff(times), 0.04, atol=1e-9)
+    assert frames[0].pose != arrived and frames[-1].pose == arrived
+
+
+def test_refusals_are_the_robots_own_words(robot):
+    with pytest.raises(lizard.RobotError, match="A1 reaches") as error:
+        robot.pose(0, 0, 0, 0)
+    assert error.value.code == 3
+    with pytest.raises(lizard.RobotError, match="the robot refuses `wlak`: unknown"):
+        robot.go("wlak")
+    assert deadman(robot) == 0
+    robot.rest()
+    robot.stop()
+    for wrong in ("walk\nstop", "", "st\u00e4nd"):
+        with pytest.raises(ValueError, match="ASCII"):
+            robot.ask(wrong)
+    with pytest.raises(lizard.RobotError, match="resting") as error:
+        robot.walk()
+    assert error.value.code == 7
+    robot.stand()
+    assert robot.status().gait == "stand"
+
+
+def test_a_reset_while_driven_is_told_and_the_robot_can_be_driven_again(robot):
+    robot.walk()
+    robot._port.board.reset()
+    with pytest.raises(lizard.RobotError, match="the robot was reset"):
+        robot.wait()
+    status = robot.status()
+    assert (status.reset, status.resets) == ("external", 1)
+    robot.walk(cycles=1)
+
+
+def test_a_stop_from_another_thread_ends_the_wait(robot):
+    threading.Timer(0.5, robot.stop).start()
+    begin = time.monotonic()
+    with pytest.raises(lizard.RobotError, match="`stop` has ended the gait"):
+        robot.walk(cycles=20)
+    assert time.monotonic() - begin < 3
+    with pytest.raises(TimeoutError, match="still goes"):
+        robot.walk()
+        robot.wait(timeout=0.2)
+
+
+def test_a_block_that_fails_leaves_the_robot_stopped():
+    with pytest.raises(ZeroDivisionError), lizard.Robot.simulated() as robot:
+        robot.walk()
+        board = robot._port.board
+        _ = 1 / 0
+    said = board.frame(b"status\n")
+    assert "gait=stop" in said
+    with pytest.raises(lizard.RobotError, match="this robot is closed"):
+        robot.walk()
+
+
+def test_another_robot_has_its_own_gaits_and_routines():
+    routine = '[routine.round]\nsteps = ["walk 1", "stand 0.5 s"]\nrepeat = 1\n'
+    model = lizard.Model.from_toml(lizard.default_toml() + routine)
+    with lizard.Robot.simulated(model) as robot:
+        robot.go("round")
+        robot.wait(timeout=10)
+        assert robot.status().gait in ("stand", "stop")
+
+
+def test_the_firmware_at_a_serial_port_is_driven_alike(port):
+    with lizard.Robot(str(port)) as robot:
+        robot.walk(cycles=1)
+        assert robot.status().gait == "stop"
+        # Another program that opens the port resets the board.
+        robot.walk()
+        subprocess.run(["stty", "-F", str(port), "hupcl"], check=True)
+        assert robot.status().late == 0
+
+
+def test_a_board_that_is_unplugged_is_gone(tmp_path):
+    uno = serve(tmp_path / "uno")
+    with lizard.Robot(str(tmp_path / "uno")) as robot:
+        robot.walk()
+        uno.kill()
+        uno.wait()
+        with pytest.raises(ConnectionError, match="the board was unplugged"):
+            robot.wait()
+        with pytest.raises(ConnectionError):
+            robot.status()
+
+
+def test_a_radio_at_another_rate_is_driven_too(tmp_path):
+    uno = serve(tmp_path / "uno", "--radio", "9600")
+    try:
+        with lizard.Robot(str(tmp_path / "uno")) as robot:
+            robot.walk()
+            time.sleep(2)
+            assert robot.status().gait == "walk"
+    finally:
+        uno.kill()
+        uno.wait()
+
+
+def test_a_port_without_a_lizard_is_refused(tmp_path):
+    with pytest.raises(OSError, match="no-port"):
+        lizard.Robot(str(tmp_path / "no-port"))
+    master, other = os.openpty()
+    with pytest.raises(lizard.RobotError, match="nothing answers"):
+        lizard.Robot(os.ttyname(other))
+    os.close(master)
+    os.close(other)
