@@ -190,7 +190,7 @@ WALKS := target/walks.log
 	@scripts/parts-test $(HOST)/debug/lizard
 
 .bench: .firmware .cli
-	@$(LIZARD) bench --elf $(ELF) $(FOR_ROBOT)
+	@$(LIZARD) sim bench --elf $(ELF) $(FOR_ROBOT)
 	@echo
 	@cd crates && cargo bench --quiet -p lizard-kinematics
 
@@ -233,7 +233,8 @@ WALKS := target/walks.log
 	@cp out/parts/guide/robot.svg docs/robot.svg
 	@$(LIZARD) draw --wiring --robot robots/paper.toml --output docs/wiring.svg
 	@$(LIZARD) draw --horns --robot robots/paper.toml --output docs/horns.svg
-	@$(LIZARD) charts docs/charts
+	@$(LIZARD) draw charts docs/charts
+	@cd crates && BLESS_KEYS=1 cargo test -p lizard-robot --lib --quiet keys::
 	@cd crates && BLESS_PHYSICS=1 cargo test -p lizard-physics --test docs --test grains --test servos --quiet
 	@BLESS_GAITS=1 $(MAKE) .docs-check
 	@scripts/walk-through $(LIZARD)

@@ -52,7 +52,7 @@ async function cal(opened) {
   return (await opened.locator('#log div', { hasText: /^# A\d trim/ }).allInnerTexts()).slice(-4);
 }
 
-test('a new UNO becomes a robot that walks, is saved, and has a file that lizard restore takes', async () => {
+test('a new UNO becomes a robot that walks, is saved, and has a file that lizard calibrate restore takes', async () => {
   const opened = await connected(null, 8000);
   await setup(opened).getByText('2 of 9: Write the firmware').waitFor();
   await setup(opened).getByText('The board on USB is a UNO by its boot loader, and this firmware is not on it.').waitFor();
@@ -139,7 +139,7 @@ test('a new UNO becomes a robot that walks, is saved, and has a file that lizard
     await writeFile(kept, await readFile(file));
     const root = new URL('../..', import.meta.url).pathname;
     const robot = ['--sim', '--robot', 'robot.toml'];
-    const { stdout } = await promisify(execFile)(process.env.LIZARD, ['restore', kept, ...robot], { cwd: root, timeout: PATIENCE });
+    const { stdout } = await promisify(execFile)(process.env.LIZARD, ['calibrate', 'restore', kept, ...robot], { cwd: root, timeout: PATIENCE });
     assert.match(stdout, /has accepted and saved the calibration of .*/);
   } finally {
     await rm(folder, { recursive: true });

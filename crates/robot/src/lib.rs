@@ -25,6 +25,8 @@
 mod checks;
 mod file;
 mod gaits;
+#[cfg(test)]
+mod keys;
 mod measures;
 mod reports;
 mod robot;

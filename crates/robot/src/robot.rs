@@ -78,13 +78,7 @@ impl Robot {
     }
 
     fn read(table: &DeTable) -> Checked<Self> {
-        let root = Section::root(
-            table,
-            &[
-                "name", "links", "leg", "servo", "joints", "limits", "supply", "input", "body",
-                "feet", "ground", "parts", "gait", "routine",
-            ],
-        )?;
+        let root = Section::root(table, &KEYS)?;
         let name = name(&root)?;
         let mut measures = Measures::read(&root)?;
         let robot = Self::with_measures(name, measures.clone(), &root)?;
@@ -389,6 +383,12 @@ impl Robot {
         gait.predict(self.ground())
     }
 }
+
+/// The tables of the file, and the one key outside of them.
+pub(crate) const KEYS: [&str; 14] = [
+    "name", "links", "leg", "servo", "joints", "limits", "supply", "input", "body", "feet",
+    "ground", "parts", "gait", "routine",
+];
 
 /// Reads the robot's name at the top of the file.
 fn name<'a>(root: &Section<'a>) -> Checked<&'a str> {

@@ -1,4 +1,4 @@
-//! The firmware's costs: every budget of `lizard bench` that is counted in
+//! The firmware's costs: every budget of `lizard sim bench` that is counted in
 //! cycles or bytes.
 
 use lizard_host::bench::{Figures, rows};

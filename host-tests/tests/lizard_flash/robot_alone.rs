@@ -111,7 +111,15 @@ fn avrdude_writes_the_robot_that_lizard_image_has_made() {
     let folder = tempfile::tempdir().expect("a folder");
     let hex = folder.path().join("robot.hex").display().to_string();
     let lizard = std::env::var("LIZARD").expect("`make flash-test` compiles the program");
-    let words = ["image", "--only-robot", "--robot", name, "--output", &hex];
+    let words = [
+        "flash",
+        "image",
+        "--only-robot",
+        "--robot",
+        name,
+        "--output",
+        &hex,
+    ];
     let shell = Shell::start(&lizard, &words, &[]);
     end(&mut desk, &shell);
     let write = format!("flash:w:{hex}:i");

@@ -1,11 +1,11 @@
-// A calibration as a file: the TOML of `lizard backup`, which `lizard restore` takes as well.
+// A calibration as a file: the TOML of `lizard calibrate backup`, which `lizard calibrate restore` takes as well.
 import type { Four } from '../robot';
 import type { ServoSettings } from '../status';
 import type { Calibration } from './calibration';
 
-/** The value of the key `format`, as `lizard backup` writes it. */
+/** The value of the key `format`, as `lizard calibrate backup` writes it. */
 const FORMAT = 'lizard calibration 1';
-const HEAD = `# A lizard's calibration. \`lizard restore\` gives it back to the robot.
+const HEAD = `# A lizard's calibration. \`lizard calibrate restore\` gives it back to the robot.
 # Angles in degrees; trim and limit as the console has them, scale in us per degree.
 `;
 const NAMES = ['A1', 'A2', 'A3', 'A4'];
@@ -14,7 +14,7 @@ const NAME = /^[A-Za-z0-9 _-]{1,48}$/;
 
 /** Writes the text of the file. */
 export function fileOf({ boot, deadman, servos }: Calibration): string {
-  // `lizard restore` expects a float.
+  // `lizard calibrate restore` expects a float.
   const float = (value: number) => (Number.isInteger(value) ? value.toFixed(1) : String(value));
   const tables = servos.map(({ trim, limit, dir, scale }, place) =>
     [

@@ -10,6 +10,7 @@ use serde::Serialize;
 
 use crate::shared::json;
 use crate::shared::pose_args::ANGLES;
+use crate::shared::progress::Spinner;
 use crate::shared::suggestion::did_you_mean;
 use crate::{Failure, RobotFile};
 
@@ -37,7 +38,7 @@ pub struct Args {
     /// Print instead the servo angles of one gait over a cycle as CSV, with the header
     /// seconds,theta1,theta4,theta8,theta5: frames of 20 ms at full speed, degrees in the
     /// chassis frame, as `lizard pose` reads them
-    #[arg(long, value_name = "GAIT", conflicts_with = "json")]
+    #[arg(long, value_hint = clap::ValueHint::Other, value_name = "GAIT", conflicts_with = "json")]
     trace: Option<String>,
     /// Print instead how far each gait walks on other pads (friction backward over
     /// forward), with the legs mounted differently, and on other feet
@@ -65,11 +66,11 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     match args.trace {
         Some(name) => out.write_all(trace(&robot, &name)?.as_bytes())?,
-        None if args.sensitivity => write!(out, "{}", Sensitivity::of(&robot))?,
-        None if args.assumptions => write!(out, "{}", Assumptions::of(&robot))?,
-        None if args.servos => write!(out, "{}", ServoTable::of(&robot))?,
+        None if args.sensitivity => write!(out, "{}", computed(|| Sensitivity::of(&robot)))?,
+        None if args.assumptions => write!(out, "{}", computed(|| Assumptions::of(&robot)))?,
+        None if args.servos => write!(out, "{}", computed(|| ServoTable::of(&robot)))?,
         None if args.json => {
-            let report = Report::of(&robot);
+            let report = computed(|| Report::of(&robot));
             for row in &report.rows {
                 json::line(&mut out, &GaitLine::new(row))?;
             }
@@ -77,9 +78,15 @@ pub fn run(args: Args) -> Result<(), Failure> {
                 json::line(&mut out, &RoutineLine::new(round))?;
             }
         }
-        None => write!(out, "{}", Report::of(&robot))?,
+        None => write!(out, "{}", computed(|| Report::of(&robot)))?,
     }
     Ok(out.flush()?)
+}
+
+/// Computes a table, and shows meanwhile how long it takes.
+fn computed<T>(table: impl FnOnce() -> T) -> T {
+    let _spinner = Spinner::new("walking every gait");
+    table()
 }
 
 /// One cycle of a gait, frame by frame, as the firmware reads its table.

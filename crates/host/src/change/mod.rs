@@ -2,6 +2,7 @@
 //! ones, and prove that the firmware's guard holds for it.
 
 pub mod gaits;
+pub mod new;
 #[cfg(feature = "paper")]
 pub mod prove;
 #[cfg(all(feature = "simulator", feature = "paper"))]

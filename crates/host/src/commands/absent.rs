@@ -28,6 +28,33 @@ fn is_built(feature: &str) -> bool {
     features.contains(&(feature, true))
 }
 
+/// The commands that this build lacks, for the help; empty for a complete build.
+pub(super) fn list(known: &[Known]) -> String {
+    list_in_build(known, is_built)
+}
+
+fn list_in_build(known: &[Known], has: impl Fn(&str) -> bool) -> String {
+    let lacks = known
+        .iter()
+        .filter(|known| !known.needs.iter().all(|feature| has(feature)));
+    let names: Vec<String> = lacks.map(Known::name).collect();
+    if names.is_empty() {
+        return String::new();
+    }
+    let features = ["simulator", "paper", "console", "parts"];
+    let without = features.into_iter().filter(|feature| !has(feature));
+    let without: Vec<&str> = without.map(words).collect();
+    let on = match has("simulator") {
+        true => "",
+        false => " The simulator runs on Linux.",
+    };
+    format!(
+        "Not in this program: {}. It was built without {}.{on}\n\n",
+        names.join(", "),
+        without.join(" and ")
+    )
+}
+
 /// Explains why this build has no command of this name.
 #[cfg_attr(
     all(
@@ -42,6 +69,35 @@ pub(super) fn explain(typed: &[OsString], known: &[Known]) -> Failure {
     explain_in_build(typed, known, is_built)
 }
 
+/// The arguments of a command that this build lacks; nothing reads them.
+#[cfg(not(all(feature = "paper", feature = "simulator")))]
+#[derive(clap::Args)]
+pub struct Absent {
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
+    _words: Vec<OsString>,
+}
+
+#[cfg(not(all(feature = "paper", feature = "simulator")))]
+impl Absent {
+    /// Explains why this build has no command of this name.
+    #[must_use]
+    pub fn failure(name: &str, needs: &[&str]) -> Failure {
+        missing(name, needs, is_built)
+    }
+}
+
+fn missing(name: &str, needs: &[&str], has: impl Fn(&str) -> bool) -> Failure {
+    let without: Vec<&str> = needs
+        .iter()
+        .filter(|feature| !has(feature))
+        .map(|feature| words(feature))
+        .collect();
+    Failure::Input(format!(
+        "`lizard {name}` is missing: this program was built without {}; make cli builds all",
+        without.join(" and ")
+    ))
+}
+
 fn explain_in_build(typed: &[OsString], known: &[Known], has: impl Fn(&str) -> bool) -> Failure {
     let word = typed.first().map(|word| word.to_string_lossy());
     let word = word.as_deref().unwrap_or_default();
@@ -53,17 +109,7 @@ fn explain_in_build(typed: &[OsString], known: &[Known], has: impl Fn(&str) -> b
             "there is no command `{word}`{like}; lizard --help lists them"
         ));
     };
-    let without: Vec<&str> = known
-        .needs
-        .iter()
-        .filter(|feature| !has(feature))
-        .map(|feature| words(feature))
-        .collect();
-    Failure::Input(format!(
-        "`lizard {}` is missing: this program was built without {}; make cli builds all",
-        known.name(),
-        without.join(" and ")
-    ))
+    missing(&known.name(), known.needs, has)
 }
 
 #[cfg(test)]
@@ -84,16 +130,30 @@ mod tests {
             message("sim", &["paper"]),
             "`lizard sim` is missing: this program was built without the simulator; make cli builds all"
         );
-        assert!(message("backup", &[]).contains("without the commands for a board on USB;"));
+        assert!(message("ports", &[]).contains("without the commands for a board on USB;"));
         assert!(message("parts", &["console"]).contains("without the parts to print;"));
         assert!(message("monitor", &[]).starts_with("`lizard console` is missing: "));
+    }
+
+    #[test]
+    fn the_help_of_a_build_names_the_commands_that_it_lacks_and_that_of_a_complete_one_none() {
+        assert_eq!(list_in_build(KNOWN, |_| true), "");
+        assert_eq!(
+            list_in_build(KNOWN, |feature| feature != "simulator"),
+            "Not in this program: sim, twin, mjcf, tune. It was built without the simulator. The \
+             simulator runs on Linux.\n\n"
+        );
+        assert_eq!(
+            list_in_build(KNOWN, |feature| feature != "parts"),
+            "Not in this program: mjcf, parts, fit. It was built without the parts to print.\n\n"
+        );
     }
 
     #[test]
     fn of_two_features_only_the_absent_ones_are_named() {
         assert!(message("tune", &["simulator"]).contains("without the commands that compute;"));
         assert!(message("tune", &["paper"]).contains("without the simulator;"));
-        assert!(message("replay", &[]).contains("a board on USB and the simulator;"));
+        assert!(message("mjcf", &[]).contains("the simulator and the parts to print;"));
     }
 
     #[test]

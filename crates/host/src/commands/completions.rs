@@ -1,4 +1,4 @@
-//! `lizard completions` and `lizard man`: what a shell and `man` know of the program.
+//! `lizard completions` and `lizard completions man`: what a shell and `man` know of the program.
 
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -7,7 +7,7 @@ use clap::Command;
 use clap_complete::Shell;
 
 use crate::Failure;
-use crate::shared::files;
+use crate::shared::{files, robot_file};
 
 /// Print what a shell needs to complete commands and options
 #[derive(clap::Args, Debug)]
@@ -17,13 +17,14 @@ use crate::shared::files;
   lizard completions fish > ~/.config/fish/completions/lizard.fish")]
 pub struct CompletionsArgs {
     /// The shell to print the completions for
-    shell: Shell,
+    #[arg(required = true)]
+    shell: Option<Shell>,
 }
 
 /// Write a manual page for each command into a folder
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Example:
-  lizard man ~/.local/share/man/man1 && man lizard-console")]
+  lizard completions man ~/.local/share/man/man1 && man lizard-console")]
 pub struct ManArgs {
     /// The folder; it is created if it does not exist
     #[arg(value_name = "DIR")]
@@ -35,14 +36,45 @@ pub struct ManArgs {
 /// # Errors
 /// Standard output cannot be written.
 pub fn completions(args: CompletionsArgs, mut command: Command) -> Result<(), Failure> {
+    let shell = args.shell.expect("clap requires it");
     let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut command, "lizard", &mut script);
+    clap_complete::generate(shell, &mut command, "lizard", &mut script);
+    let script = String::from_utf8_lossy(&script);
     let mut out = io::stdout().lock();
-    out.write_all(&script)?;
+    out.write_all(offer_robots(&script).as_bytes())?;
     Ok(out.flush()?)
 }
 
-/// Runs `lizard man` for the program.
+/// Narrows what a script offers for `--robot` down to robot files and the program's own robots.
+/// clap knows only hints such as "a file".
+fn offer_robots(script: &str) -> String {
+    const BASH: &str = "COMPREPLY=($(compgen -f \"${cur}\"))";
+    let names = robot_file::names().join(" ");
+    let bash = format!(
+        "COMPREPLY=($(compgen -W '{names}' -- \"${{cur}}\") $(compgen -f -X '!*.toml' -- \
+         \"${{cur}}\") $(compgen -d -S / -- \"${{cur}}\"))"
+    );
+    let mut is_robot = false;
+    let lines = script.lines().map(|line| {
+        let narrowed = match line.trim_start() {
+            // The line after the option's name.
+            words if is_robot && words == BASH => line.replace(BASH, &bash),
+            words if words.starts_with("'--robot=") => {
+                line.replace(":_files'", ":_files -g \"*.toml\"'")
+            }
+            words if words.contains(" -l robot ") && words.ends_with(" -r -F") => {
+                let option = line.trim_end_matches(" -F");
+                format!("{option} -k -xa \"(__fish_complete_suffix .toml) {names}\"")
+            }
+            _ => line.to_owned(),
+        };
+        is_robot = line.trim() == "--robot)";
+        narrowed + "\n"
+    });
+    lines.collect()
+}
+
+/// Runs `lizard completions man` for the program.
 ///
 /// # Errors
 /// A file cannot be written.
@@ -51,10 +83,18 @@ pub fn man(args: ManArgs, command: Command) -> Result<(), Failure> {
     command.build();
     let mut count = 1;
     page(&args, "lizard", command.clone())?;
-    for sub in command.get_subcommands().filter(|sub| !sub.is_hide_set()) {
+    for sub in command.get_subcommands() {
         let name = format!("lizard-{}", sub.get_name());
         page(&args, &name, sub.clone())?;
         count += 1;
+        for below in sub.get_subcommands() {
+            page(
+                &args,
+                &format!("{name}-{}", below.get_name()),
+                below.clone(),
+            )?;
+            count += 1;
+        }
     }
     let folder = args.folder.display();
     writeln!(io::stdout(), "{count} manual pages are in {folder}")?;

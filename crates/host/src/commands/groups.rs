@@ -7,13 +7,15 @@ use std::fmt::Write as _;
 
 use clap::Command;
 
+use super::absent;
 use super::known::{Group, Known};
 
 /// Returns the command with a help that lists its subcommands in groups.
 pub(super) fn grouped(command: Command, known: &[Known]) -> Command {
     let list = list(&command, known);
+    let lacks = absent::list(known);
     command.help_template(format!(
-        "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{list}`lizard help COMMAND` explains one of them.\n\n{}\n{{options}}{{after-help}}",
+        "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{list}{lacks}`lizard help COMMAND` explains one of them.\n\n{}\n{{options}}{{after-help}}",
         heading("Options")
     ))
 }
@@ -37,10 +39,12 @@ fn list(command: &Command, known: &[Known]) -> String {
         for sub in subs {
             let about = sub.get_about().map(ToString::to_string).unwrap_or_default();
             let aliases: Vec<&str> = sub.get_visible_aliases().collect();
-            let also = match aliases.join(", ") {
+            let note = |word: &str, names: &[&str]| match names.join(", ") {
                 names if names.is_empty() => names,
-                names => format!(" [also: {names}]"),
+                names => format!(" [{word}: {names}]"),
             };
+            let below: Vec<&str> = sub.get_subcommands().map(Command::get_name).collect();
+            let also = note("also", &aliases) + &note("with", &below);
             // Braces would be placeholders of the template.
             let about = about.replace(['{', '}'], "");
             _ = writeln!(text, "  {:<width$}  {about}{also}", sub.get_name());

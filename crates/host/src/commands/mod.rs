@@ -10,6 +10,7 @@ pub mod completions;
 mod groups;
 mod known;
 pub mod merge;
+mod nested;
 
 use std::ffi::OsString;
 use std::io::{self, Write};
@@ -19,6 +20,7 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use crate::Failure;
 use crate::shared::plain::readable_lines;
 use known::{Group, Known};
+use nested::With;
 
 /// The table below, as [`Command`] and as [`KNOWN`].
 macro_rules! commands {
@@ -83,25 +85,24 @@ macro_rules! commands {
 
 commands! {
     Drive {
-        Flash(crate::drive::flash::Args) => crate::drive::flash::run, needs "console";
-        Image(crate::drive::image::Args) => crate::drive::image::run, needs "console";
-        Console(crate::drive::console::interactive::ConsoleArgs) => crate::drive::console::interactive::console, needs "console", also "monitor";
-        Calibrate(crate::drive::console::calibrate::Args) => crate::drive::console::calibrate::run, needs "console";
-        Backup(crate::drive::console::backup::BackupArgs) => crate::drive::console::backup::backup, needs "console";
-        Restore(crate::drive::console::backup::RestoreArgs) => crate::drive::console::backup::restore, needs "console";
-        Replay(crate::drive::console::replay::Args) => crate::drive::console::replay::run, needs "console" and "simulator";
+        Ports(crate::drive::ports::Args) => crate::drive::ports::run, needs "console";
+        Flash(With<crate::drive::flash::Args, nested::OfFlash>) => nested::flash, needs "console";
+        Info(crate::drive::console::info::Args) => crate::drive::console::info::run, needs "console";
+        Console(With<crate::drive::console::interactive::ConsoleArgs, nested::OfConsole>) => nested::console, needs "console", also "monitor";
+        Calibrate(With<crate::drive::console::calibrate::Args, nested::OfCalibrate>) => nested::calibrate, needs "console";
     }
     Simulate {
-        Sim(crate::simulate::sim::Args) => crate::simulate::sim::run, needs "simulator";
+        Sim(With<crate::simulate::sim::Args, nested::OfSim>) => nested::sim, needs "simulator";
         Twin(crate::simulate::twin::Args) => crate::simulate::twin::run, needs "simulator";
         Mjcf(crate::simulate::mjcf::Args) => crate::simulate::mjcf::run, needs "simulator" and "parts";
     }
     Build {
-        Draw(crate::make::draw::Args) => crate::make::draw::run;
+        Draw(With<crate::make::draw::Args, nested::OfDraw>) => nested::draw;
         Parts(crate::make::parts::Args) => crate::make::parts::run, needs "parts";
         Fit(crate::make::parts::fit::Args) => crate::make::parts::fit::run, needs "parts";
     }
     Change {
+        New(crate::change::new::Args) => crate::change::new::run;
         Gaits(crate::change::gaits::Args) => crate::change::gaits::run;
         Tune(crate::change::tune::Args) => crate::change::tune::run, needs "simulator" and "paper";
         Prove(crate::change::prove::Args) => crate::change::prove::run, needs "paper";
@@ -109,19 +110,16 @@ commands! {
     Paper {
         Pose(crate::paper::pose::Args) => crate::paper::pose::run, needs "paper";
         Design(crate::paper::design::Args) => crate::paper::design::run, needs "paper";
-        Charts(crate::paper::charts::Args) => crate::paper::charts::run, needs "paper";
         Errata(crate::paper::errata::Args) => crate::paper::errata::run, needs "paper";
     }
     Itself {
         Merge(merge::MergeArgs) => merge::merge;
-        Completions(completions::CompletionsArgs) => print_completions;
-        Man(completions::ManArgs) => write_manual;
-        Bench(crate::simulate::bench::Args) => crate::simulate::bench::run, needs "simulator";
+        Completions(With<completions::CompletionsArgs, nested::OfCompletions>) => completions_of_program;
     }
 }
 
 /// Commands of the previous version, and the words that replace them.
-const RENAMED: [(&str, &[&str]); 9] = [
+const RENAMED: [(&str, &[&str]); 16] = [
     ("solve", &["pose"]),
     ("fk", &["pose"]),
     ("inverse", &["pose"]),
@@ -131,6 +129,13 @@ const RENAMED: [(&str, &[&str]); 9] = [
     ("singularity", &["pose", "--show", "singularities"]),
     ("mobility", &["pose", "--show", "freedoms"]),
     ("record", &["console", "--record"]),
+    ("replay", &["console", "replay"]),
+    ("image", &["flash", "image"]),
+    ("backup", &["calibrate", "backup"]),
+    ("restore", &["calibrate", "restore"]),
+    ("charts", &["draw", "charts"]),
+    ("bench", &["sim", "bench"]),
+    ("man", &["completions", "man"]),
 ];
 
 /// Commands of the previous version that were removed.
@@ -166,12 +171,10 @@ fn translate_old_words(mut words: Vec<OsString>) -> Result<Vec<OsString>, Failur
     Ok(words)
 }
 
-fn print_completions(args: completions::CompletionsArgs) -> Result<(), Failure> {
-    completions::completions(args, program())
-}
-
-fn write_manual(args: completions::ManArgs) -> Result<(), Failure> {
-    completions::man(args, program())
+fn completions_of_program(
+    args: With<completions::CompletionsArgs, nested::OfCompletions>,
+) -> Result<(), Failure> {
+    nested::completions(args, program())
 }
 
 /// Compute, check, draw and simulate the four-servo robotic lizard.

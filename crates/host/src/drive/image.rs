@@ -1,4 +1,4 @@
-//! `lizard image`: the firmware with a robot as a file, for any program that writes boards.
+//! `lizard flash image`: the firmware with a robot as a file, for any program that writes boards.
 //!
 //! `lizard flash` writes a robot to a board. A user with another programmer, or with the board at
 //! another machine, needs a file.

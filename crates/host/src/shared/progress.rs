@@ -1,5 +1,7 @@
 //! Progress bars on standard error; they hide themselves if that is not a terminal.
 
+use std::time::Duration;
+
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// A bar of this length, drawn by a template of indicatif.
@@ -10,4 +12,23 @@ use indicatif::{ProgressBar, ProgressStyle};
 pub fn bar(length: usize, template: &str) -> ProgressBar {
     let style = ProgressStyle::with_template(template).expect("the template is well formed");
     ProgressBar::new(length as u64).with_style(style)
+}
+
+/// The time that a computation without steps has taken so far; cleared when it is dropped.
+pub struct Spinner(ProgressBar);
+
+impl Spinner {
+    /// Begins to show the time, after these words.
+    #[must_use]
+    pub fn new(words: &'static str) -> Self {
+        let spinner = bar(0, "{spinner} {msg}, {elapsed}").with_message(words);
+        spinner.enable_steady_tick(Duration::from_millis(100));
+        Self(spinner)
+    }
+}
+
+impl Drop for Spinner {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
 }

@@ -8,7 +8,7 @@ use crate::Failure;
 use crate::shared::files::{self, note_input};
 
 /// The robot.toml of this source tree, for use outside it.
-const BUILT_IN: &str = include_str!("../../../../robot.toml");
+pub(crate) const BUILT_IN: &str = include_str!("../../../../robot.toml");
 
 /// The robots of robots/, by their names.
 const NAMED: [(&str, &str); 5] = [
@@ -21,6 +21,11 @@ const NAMED: [(&str, &str); 5] = [
     ("paper", include_str!("../../../../robots/paper.toml")),
     ("unequal", include_str!("../../../../robots/unequal.toml")),
 ];
+
+/// The names of the robots inside the program.
+pub(crate) fn names() -> [&'static str; NAMED.len()] {
+    NAMED.map(|(name, _)| name)
+}
 
 /// A robot of robots/, for tests.
 #[cfg(test)]

@@ -37,7 +37,7 @@ pub struct Args {
     file: PathBuf,
     /// Also write the servo angles of three cycles of this gait, from the firmware's
     /// pulses
-    #[arg(long, value_name = "GAIT")]
+    #[arg(long, value_hint = clap::ValueHint::Other, value_name = "GAIT")]
     drive: Option<String>,
     /// The firmware for --drive: an ELF that has this robot in it [default: the one inside this
     /// program]

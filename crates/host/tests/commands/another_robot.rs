@@ -42,9 +42,9 @@ fn every_command_that_runs_an_image_refuses_an_elf_of_another_robot() {
         &["sim"][..],
         &["sim", "--pty"],
         &["twin"],
-        &["bench"],
+        &["sim", "bench"],
         &["console", "--sim"],
-        &["backup", "never.toml", "--sim"],
+        &["calibrate", "backup", "never.toml", "--sim"],
     ] {
         let with = ["--elf", &elf, "--robot", &robot];
         assert_eq!(

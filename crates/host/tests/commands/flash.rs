@@ -27,7 +27,11 @@ fn without_a_board_and_without_a_firmware_built_it_gets_as_far_as_the_port() {
 fn an_image_of_any_robot_is_made_in_an_empty_folder() {
     let folder = tempfile::tempdir().expect("a folder");
     for (name, options) in [("large", &[][..]), ("unequal", &["--only-robot"])] {
-        let arguments = [&["image", "--robot", name, "--output", "x.hex"], options].concat();
+        let arguments = [
+            &["flash", "image", "--robot", name, "--output", "x.hex"],
+            options,
+        ]
+        .concat();
         let begin = Instant::now();
         let made = run_in(folder.path(), &arguments, "");
         assert!(
@@ -42,7 +46,7 @@ fn an_image_of_any_robot_is_made_in_an_empty_folder() {
             "{output}"
         );
         let text = fs::read_to_string(folder.path().join("x.hex")).expect("it is written");
-        let piped = [&["image", "--robot", name], options].concat();
+        let piped = [&["flash", "image", "--robot", name], options].concat();
         let piped = run_in(folder.path(), &piped, "").success();
         assert!(piped == text, "the same goes to a pipe");
         // By another reader of Intel HEX than the one that wrote it.
@@ -59,7 +63,7 @@ fn an_image_of_any_robot_is_made_in_an_empty_folder() {
 fn a_robot_that_is_wrong_gives_no_image() {
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("x.toml"), "[servo]\n").expect("a file");
-    let arguments = ["image", "--robot", "x.toml", "--output", "x.hex"];
+    let arguments = ["flash", "image", "--robot", "x.toml", "--output", "x.hex"];
     let message = run_in(folder.path(), &arguments, "").refusal();
     assert!(message.contains("x.toml"), "{message}");
     assert!(!folder.path().join("x.hex").exists());

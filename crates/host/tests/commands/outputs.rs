@@ -32,18 +32,24 @@ fn no_command_writes_over_its_input_or_over_a_robot() {
     fs::create_dir(here.join("charts")).expect("a folder");
     fs::hard_link(here.join("my.toml"), here.join("charts/top-view.svg")).expect("another name");
     for (line, file) in [
-        ("image --robot my.toml --output my.toml", "my.toml"),
-        ("image --robot my.toml --output ./x/../my.toml", "my.toml"),
-        ("image --robot large --output robot.toml", "robot.toml"),
-        ("image --robot large --output broken", "broken"),
+        ("flash image --robot my.toml --output my.toml", "my.toml"),
+        (
+            "flash image --robot my.toml --output ./x/../my.toml",
+            "my.toml",
+        ),
+        (
+            "flash image --robot large --output robot.toml",
+            "robot.toml",
+        ),
+        ("flash image --robot large --output broken", "broken"),
         ("draw --robot my.toml --output my.toml", "my.toml"),
         ("draw --robot my.toml --output robot.toml", "robot.toml"),
         ("mjcf my.toml --robot my.toml", "my.toml"),
         ("mjcf robot.toml --robot my.toml", "robot.toml"),
-        ("replay a.jsonl --svg a.jsonl", "a.jsonl"),
+        ("console replay a.jsonl --svg a.jsonl", "a.jsonl"),
         ("sim --duration 4 --svg robot.toml", "robot.toml"),
         ("sim --script a.txt --svg a.txt", "a.txt"),
-        ("charts charts --robot my.toml", "top-view.svg"),
+        ("draw charts charts --robot my.toml", "top-view.svg"),
     ] {
         fs::create_dir_all(here.join("x")).expect("a folder");
         let Outcome {
@@ -62,9 +68,33 @@ fn no_command_writes_over_its_input_or_over_a_robot() {
 }
 
 #[test]
+fn a_new_robot_is_one_that_walks_and_replaces_no_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let here = folder.path();
+    let said = lizard(here, "new my.toml").success();
+    assert!(said.contains("lizard gaits --robot my.toml"), "{said}");
+    let file = here.join("my.toml");
+    let text = fs::read_to_string(&file).expect("it is written");
+    assert!(
+        text.contains("\n[gait.walk]\n") && text.contains("# "),
+        "{text}"
+    );
+    lizard(here, "gaits --robot my.toml").success();
+    fs::write(&file, "mine").expect("it is written");
+    let refusal = lizard(here, "new my.toml").refusal();
+    assert_eq!(
+        refusal,
+        "lizard: my.toml already exists and is left as it is; name a new file"
+    );
+    assert_eq!(fs::read_to_string(&file).expect("it is there"), "mine");
+    let outcome = lizard(here, "new no/folder/my.toml");
+    assert_eq!(outcome.code, Some(1), "{}", outcome.err);
+}
+
+#[test]
 fn an_image_makes_the_folders_that_it_needs() {
     let folder = tempfile::tempdir().expect("a folder");
-    let line = "image --robot large --output new/folder/x.hex";
+    let line = "flash image --robot large --output new/folder/x.hex";
     lizard(folder.path(), line).success();
     assert!(folder.path().join("new/folder/x.hex").is_file());
 }
@@ -74,7 +104,7 @@ fn an_image_makes_the_folders_that_it_needs() {
 fn a_command_that_is_killed_while_it_writes_leaves_nothing() {
     let folder = tempfile::tempdir().expect("a folder");
     // The system kills a program that writes more than 8 KiB into a file.
-    let line = "ulimit -c 0 -f 8; exec \"$0\" image --robot large --output x.hex";
+    let line = "ulimit -c 0 -f 8; exec \"$0\" flash image --robot large --output x.hex";
     let mut bash = Command::new("bash");
     bash.args(["-c", line, env!("CARGO_BIN_EXE_lizard")])
         .current_dir(folder.path());

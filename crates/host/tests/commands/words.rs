@@ -5,7 +5,7 @@ use std::process::Command;
 
 use lizard_time_limit::LIMIT;
 
-use crate::program::{robot, run, scratch};
+use crate::program::{robot, root, run, scratch};
 
 fn output(words: &[&str]) -> String {
     run(words).success()
@@ -37,14 +37,12 @@ fn help_has_every_command_under_what_it_is_for_and_the_owners_first() {
     ];
     let places = headings.map(|heading| help.find(&format!("\n{heading}:\n")).expect(heading));
     assert!(places.is_sorted(), "{help}");
-    assert!(
-        help.contains("\n  merge, completions, man, bench\n"),
-        "{help}"
-    );
+    assert!(help.contains("\n  merge, completions\n"), "{help}");
     let listed = headings[..5]
         .iter()
         .map(|heading| words_under(&help, heading).len());
-    assert!(listed.sum::<usize>() <= 20, "{help}");
+    // And the two for scripts.
+    assert!(listed.sum::<usize>() + 2 <= 20, "{help}");
     assert!(words_under(&help, "Drive the robot").contains(&"console".to_owned()));
     assert_eq!(output(&["help"]), help);
 }
@@ -57,7 +55,7 @@ fn a_roboticists_words_mean_the_same_commands() {
     );
     let help = output(&["help"]);
     let line = help.lines().find(|line| line.contains(" console "));
-    assert!(line.expect("console").ends_with("[also: monitor]"));
+    assert!(line.expect("console").contains("[also: monitor]"));
 }
 
 #[test]
@@ -69,6 +67,13 @@ fn a_word_of_the_version_before_does_the_same_and_names_the_new_one() {
         ("singularity --json", "pose --show singularities --json"),
         ("mobility --json", "pose --show freedoms --json"),
         ("record a.jsonl --help", "console --help"),
+        ("replay --help", "console replay --help"),
+        ("image --robot grain", "flash image --robot grain"),
+        ("backup --help", "calibrate backup --help"),
+        ("restore --help", "calibrate restore --help"),
+        ("charts --help", "draw charts --help"),
+        ("bench --help", "sim bench --help"),
+        ("man --help", "completions man --help"),
     ] {
         let [old, new] = [old, new].map(|line| run(&line.split(' ').collect::<Vec<_>>()));
         assert!(old.out == new.out, "{old:?}");
@@ -99,7 +104,7 @@ fn a_word_of_20_000_letters_is_not_repeated_in_full() {
         &["gaits", "--robot", &robot],
         &["sim", "--gait", &long],
         &["draw", "--theta1", &long],
-        &["restore", &long],
+        &["calibrate", "restore", &long],
     ] {
         let error = complaint(words);
         assert!(error.contains("xxx [..."), "{error}");
@@ -170,13 +175,30 @@ fn bash_completes_commands_and_options() {
         bash_completions(&script, "lizard sim --fidelity sto", 3),
         ["stock"]
     );
+    let robots = bash_completions(&script, "lizard gaits --robot la", 3);
+    assert_eq!(robots, ["large"]);
+    let root = root().display().to_string();
+    let files = bash_completions(&script, &format!("lizard gaits --robot {root}/rob"), 3);
+    assert_eq!(
+        files,
+        [format!("{root}/robot.toml"), format!("{root}/robots/")]
+    );
+    for (shell, offer) in [
+        ("zsh", ":_files -g \"*.toml\"' "),
+        ("fish", " -r -k -xa \"(__fish_complete_suffix .toml) grain "),
+    ] {
+        let text = output(&["completions", shell]);
+        assert!(text.contains(offer), "{shell}: {text}");
+    }
+    let gaits = bash_completions(&script, "lizard sim --gait ", 3);
+    assert_eq!(gaits, [""], "no files");
 }
 
 #[test]
 fn every_command_has_a_manual_page_that_names_its_options() {
     let folder = tempfile::tempdir().expect("a folder");
     let pages = folder.path().join("man1");
-    output(&["man", &pages.display().to_string()]);
+    output(&["completions", "man", &pages.display().to_string()]);
     let help = output(&["--help"]);
     let mut count = 0;
     for heading in [
@@ -194,14 +216,31 @@ fn every_command_has_a_manual_page_that_names_its_options() {
             count += 1;
         }
     }
-    assert!(count > 15, "{count}");
+    for below in ["calibrate-backup", "flash-image", "sim-bench"] {
+        assert!(pages.join(format!("lizard-{below}.1")).is_file(), "{below}");
+    }
+    assert!(count > 13, "{count}");
     let whole = std::fs::read_to_string(pages.join("lizard.1")).expect("it is there");
     assert!(whole.contains("lizard\\-console(1)"), "{whole}");
 }
 
 #[test]
+fn ports_are_a_list_for_scripts_and_for_people_never_nothing() {
+    let ports: serde_json::Value =
+        serde_json::from_str(&output(&["ports", "--json"])).expect("JSON");
+    let ports = ports.as_array().expect("an array");
+    let text = output(&["ports"]);
+    assert_eq!(
+        text.contains("no USB serial port"),
+        ports.is_empty(),
+        "{text}"
+    );
+    assert!(text.lines().count() >= ports.len().max(1), "{text}");
+}
+
+#[test]
 fn bench_without_a_build_says_what_it_needs_and_where_it_comes_from() {
-    let words = complaint(&["bench"]);
+    let words = complaint(&["sim", "bench"]);
     assert!(words.contains("`make firmware`"), "{words}");
-    assert!(words.contains("lizard bench --elf "), "{words}");
+    assert!(words.contains("lizard sim bench --elf "), "{words}");
 }

@@ -49,13 +49,13 @@ fn a_calibration_goes_to_a_file_and_back_and_a_refused_one_changes_nothing() {
     let here = folder.path();
     let uno = Uno::at(here);
     let port = uno.port();
-    let (_, error, code) = run(here, &["backup", "a.toml", &port], "");
+    let (_, error, code) = run(here, &["calibrate", "backup", "a.toml", &port], "");
     assert_eq!(code, Some(0), "{error}");
     let first = fs::read_to_string(here.join("a.toml")).expect("it was written");
 
     let changed = first.replacen("trim = 0.0", "trim = -1.75", 1);
     fs::write(here.join("b.toml"), &changed).expect("it is written");
-    let (out, error, code) = run(here, &["restore", "b.toml", &port], "");
+    let (out, error, code) = run(here, &["calibrate", "restore", "b.toml", &port], "");
     assert_eq!(code, Some(0), "{error}");
     assert!(
         out.ends_with("has accepted and saved the calibration of b.toml\n"),
@@ -65,7 +65,7 @@ fn a_calibration_goes_to_a_file_and_back_and_a_refused_one_changes_nothing() {
     let scale = first.lines().find(|line| line.starts_with("scale = "));
     let refused = changed.replacen(scale.expect("A1 has one"), "scale = 99.0", 1);
     fs::write(here.join("c.toml"), refused).expect("it is written");
-    let (out, error, code) = run(here, &["restore", "c.toml", &port], "");
+    let (out, error, code) = run(here, &["calibrate", "restore", "c.toml", &port], "");
     assert_eq!(code, Some(1), "{error}");
     assert!(
         error.contains("c.toml: the robot refuses `scale 1 99.00`: 3 scale must be 5..20"),
@@ -73,10 +73,33 @@ fn a_calibration_goes_to_a_file_and_back_and_a_refused_one_changes_nothing() {
     );
     assert_eq!(out, "");
 
-    let (_, error, code) = run(here, &["backup", "d.toml", &port], "");
+    let (_, error, code) = run(here, &["calibrate", "backup", "d.toml", &port], "");
     assert_eq!(code, Some(0), "{error}");
     let last = fs::read_to_string(here.join("d.toml")).expect("it was written");
     assert_eq!(last, changed, "what was saved last, after a reset");
+}
+
+#[test]
+fn info_says_what_a_board_has_and_leaves_its_settings() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let here = folder.path();
+    let uno = Uno::at(here);
+    let port = uno.port();
+    let saved = run(here, &["console", &port], "trim 3 -4.25\nboot rest\nsave\n");
+    assert_eq!(saved.2, Some(0), "{}", saved.1);
+    for _ in 0..2 {
+        let (out, error, code) = run(here, &["info", "--json", &port], "");
+        assert_eq!(code, Some(0), "{error}");
+        let board: serde_json::Value = serde_json::from_str(&out).expect("JSON");
+        assert_eq!(board["firmware"], env!("CARGO_PKG_VERSION"));
+        assert_eq!(board["robot"]["hash"].as_str().map(str::len), Some(8));
+        assert_eq!(board["fault"], serde_json::Value::Null);
+        assert_eq!(board["vcc"], 5.0);
+        assert_eq!(board["calibration"]["boot"], "rest");
+        assert_eq!(board["calibration"]["servo"]["A3"]["trim"], -4.25);
+    }
+    let (text, ..) = run(here, &["info", &port], "");
+    assert!(text.contains("\nA3          trim -4.25 deg, "), "{text}");
 }
 
 #[test]
@@ -146,7 +169,11 @@ fn a_kept_session_is_drawn_and_summed_up() {
     let status = LIMIT.end_of(&mut child).expect("it ends");
     assert_eq!(status.code(), Some(1), "a line was refused");
 
-    let (out, error, code) = run(here, &["replay", "a.jsonl", "--svg", "a.svg"], "");
+    let (out, error, code) = run(
+        here,
+        &["console", "replay", "a.jsonl", "--svg", "a.svg"],
+        "",
+    );
     assert_eq!(code, Some(0), "{error}");
     assert!(
         out.contains(" >  speed 50\n") || out.contains(" > speed 50\n"),
@@ -176,7 +203,11 @@ fn a_port_that_another_program_has_open_is_refused() {
     let uno = Uno::at(folder.path());
     let mut other = AtTerminal::start(lizard(folder.path(), &["console", &uno.port()]));
     other.wait_for("# lizard ");
-    let (_, error, code) = run(folder.path(), &["backup", "a.toml", &uno.port()], "");
+    let (_, error, code) = run(
+        folder.path(),
+        &["calibrate", "backup", "a.toml", &uno.port()],
+        "",
+    );
     let who = format!("is open in lizard (process {})", other.child.id());
     other.press("\x03");
     assert_eq!(code, Some(1));
@@ -191,7 +222,11 @@ fn a_board_that_is_not_a_lizard_is_described_by_its_output() {
         // Nobody may have it open.
         let _ = line.write_all(b"Grbl 1.1h ['$' for help]\r\n");
     });
-    let (_, error, code) = run(folder.path(), &["backup", "a.toml", &device.port], "");
+    let (_, error, code) = run(
+        folder.path(),
+        &["calibrate", "backup", "a.toml", &device.port],
+        "",
+    );
     device.stop();
     assert_eq!(code, Some(1), "{error}");
     let words = "this is not a lizard: it says `Grbl 1.1h ['$' for help]`";
@@ -236,28 +271,31 @@ fn wrong_input_is_a_sentence_and_starts_nothing() {
     };
     for (arguments, words) in [
         (
-            ["console", "/dev/no-such-port"],
+            &["console", "/dev/no-such-port"][..],
             "lizard: there is no /dev/no-such-port; USB serial ports of this machine: ",
         ),
         (
-            ["restore", "no.toml"],
+            &["calibrate", "restore", "no.toml"],
             "lizard: no.toml: line 1: this is not TOML: ",
         ),
         (
-            ["restore", "other.toml"],
+            &["calibrate", "restore", "other.toml"],
             "lizard: other.toml: the key format = \"lizard calibration 1\" is missing",
         ),
-        (["restore", "none.toml"], "lizard: cannot read none.toml: "),
         (
-            ["replay", "other.toml"],
+            &["calibrate", "restore", "none.toml"],
+            "lizard: cannot read none.toml: ",
+        ),
+        (
+            &["console", "replay", "other.toml"],
             "lizard: other.toml: this is not a session of `lizard console --record`: its first line has no",
         ),
         (
-            ["calibrate", "/dev/no-such-port"],
+            &["calibrate", "/dev/no-such-port"],
             "lizard: calibrate asks for single keys; run it in a terminal",
         ),
     ] {
-        let (error, code) = complaint(&arguments);
+        let (error, code) = complaint(arguments);
         assert!(error.starts_with(words), "{error}");
         assert_eq!(code, Some(2), "{error}");
     }

@@ -12,6 +12,8 @@ mod text;
 
 pub use error::Error;
 pub(crate) use error::{Checked, Fault, hint, short};
+#[cfg(test)]
+pub(crate) use reader::{KeyRead, READS};
 pub(crate) use reader::{Section, parse};
 pub use syntax::mistake;
 pub use text::LONGEST;

@@ -52,6 +52,28 @@ fn position(mut table: &DeTable, key: &str) -> Option<usize> {
     }
 }
 
+/// A read of a key, which the reference of all keys is made from.
+#[cfg(test)]
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum KeyRead {
+    /// A table may have this key.
+    Allowed,
+    /// The key is a table, or an array of tables.
+    Table,
+    /// The key is a number, or numbers, with a range, a unit, and a default if it may be left out.
+    Number {
+        range: (f64, f64),
+        unit: String,
+        default: Option<f64>,
+    },
+}
+
+#[cfg(test)]
+thread_local! {
+    /// The reads of this thread: full names, in order.
+    pub(crate) static READS: std::cell::RefCell<Vec<(String, KeyRead)>> = const { std::cell::RefCell::new(Vec::new()) };
+}
+
 /// One table of the file.
 pub(crate) struct Section<'a> {
     /// Full name of the table, such as `servo.A1`; empty for the file itself.
@@ -76,6 +98,8 @@ impl<'a> Section<'a> {
 
     /// Opens the table `name` with any keys.
     pub fn open(&self, name: &str) -> Checked<Self> {
+        #[cfg(test)]
+        self.note(name, KeyRead::Table);
         match self.value(name, "a table")? {
             DeValue::Table(table) => Ok(Self {
                 key: self.path(name),
@@ -87,6 +111,10 @@ impl<'a> Section<'a> {
 
     /// Refuses keys outside `allowed`.
     pub fn only(self, allowed: &[&str]) -> Checked<Self> {
+        #[cfg(test)]
+        for name in allowed {
+            self.note(name, KeyRead::Allowed);
+        }
         let unknown = |name: &&str| !allowed.contains(name);
         match self.names().into_iter().find(unknown) {
             Some(name) => {
@@ -136,6 +164,8 @@ impl<'a> Section<'a> {
 
     /// A number within `min` to `max`, both allowed.
     pub fn number(&self, name: &str, min: f64, max: f64, unit: &str) -> Checked<f64> {
+        #[cfg(test)]
+        self.note_number(name, (min, max), unit, None);
         const EXPECTED: &str = "a number";
         let value = self.value(name, EXPECTED)?;
         let value = number(value).ok_or_else(|| self.wrong_type(name, value, EXPECTED))?;
@@ -151,6 +181,8 @@ impl<'a> Section<'a> {
         max: f64,
         unit: &str,
     ) -> Checked<f64> {
+        #[cfg(test)]
+        self.note_number(name, (min, max), unit, Some(default));
         if self.has(name) {
             self.number(name, min, max, unit)
         } else {
@@ -183,6 +215,8 @@ impl<'a> Section<'a> {
         max: f64,
         unit: &str,
     ) -> Checked<[f64; N]> {
+        #[cfg(test)]
+        self.note_number(name, (min, max), unit, None);
         let expected = match N {
             2 => "an array of two numbers",
             _ => "an array of three numbers",
@@ -214,6 +248,8 @@ impl<'a> Section<'a> {
 
     /// An array of tables that may have only the keys `allowed`; empty if the key is left out.
     pub fn list(&self, name: &str, allowed: &[&str]) -> Checked<Vec<Section<'a>>> {
+        #[cfg(test)]
+        self.note(name, KeyRead::Table);
         const EXPECTED: &str = "an array of tables";
         if !self.has(name) {
             return Ok(Vec::new());
@@ -233,6 +269,22 @@ impl<'a> Section<'a> {
             }
         };
         items.iter().enumerate().map(section).collect()
+    }
+
+    #[cfg(test)]
+    fn note(&self, name: &str, read: KeyRead) {
+        READS.with_borrow_mut(|reads| reads.push((self.path(name), read)));
+    }
+
+    #[cfg(test)]
+    fn note_number(&self, name: &str, range: (f64, f64), unit: &str, default: Option<f64>) {
+        let unit = unit.to_owned();
+        let read = KeyRead::Number {
+            range,
+            unit,
+            default,
+        };
+        self.note(name, read);
     }
 
     fn value(&self, name: &str, expected: &str) -> Checked<&'a DeValue<'a>> {

@@ -35,7 +35,7 @@ export const keep: Step = {
       words(guide.isChanged ? 'Not saved yet.' : isDone('Keep') ? 'The board has saved it.' : 'Nothing has changed since the board was connected.'),
       row(button('Save in the board', store, guide.isChanged), button('Save as a file', () => save('calibration.toml', [fileOf(guide.has)], 'application/toml'))),
       row(make('label', { className: 'file' }, 'Open a saved file ', file)),
-      note('The file is the same as that of `lizard backup`. A file that you open takes effect at once; the button saves it in the board.'),
+      note('The file is the same as that of `lizard calibrate backup`. A file that you open takes effect at once; the button saves it in the board.'),
     ];
   },
 };

@@ -35,13 +35,13 @@ In a terminal or a file, what is not the table is a comment, so the output may b
 a robot.toml as it is.")]
 pub struct Args {
     /// The gait to improve; it goes straight ahead or turns on the spot
-    #[arg(long, value_name = "NAME", default_value = "walk")]
+    #[arg(long, value_hint = clap::ValueHint::Other, value_name = "NAME", default_value = "walk")]
     gait: String,
     /// Fastest turn of a servo, deg/s [default: as in that gait]
     #[arg(long, value_name = "DEG_PER_S", allow_negative_numbers = true)]
     rate: Option<f64>,
     /// The name for the gait that is found
-    #[arg(long, value_name = "NAME", default_value = "tuned")]
+    #[arg(long, value_hint = clap::ValueHint::Other, value_name = "NAME", default_value = "tuned")]
     name: String,
     /// Rounds of the search, 40 trials each
     #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 25, value_parser = clap::value_parser!(u32).range(1..=10_000))]

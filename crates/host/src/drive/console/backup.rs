@@ -1,4 +1,4 @@
-//! `lizard backup` and `lizard restore`: a calibration kept in a file.
+//! `lizard calibrate backup` and `lizard calibrate restore`: a calibration kept in a file.
 
 use std::io::{Read, Write};
 use std::path::PathBuf;
@@ -28,18 +28,18 @@ pub struct BackupArgs {
 /// old calibration.
 #[derive(clap::Args, Debug)]
 pub struct RestoreArgs {
-    /// A file that `lizard backup` wrote
+    /// A file that `lizard calibrate backup` wrote
     file: PathBuf,
     #[command(flatten)]
     connect: Connect,
 }
 
-/// Runs `lizard backup`.
+/// Runs `lizard calibrate backup`.
 ///
 /// # Errors
 /// No board, or the file cannot be written.
 pub fn backup(args: BackupArgs) -> Result<(), Failure> {
-    let finder = args.connect.finder("backup FILE")?;
+    let finder = args.connect.finder("calibrate backup FILE")?;
     let (mut board, _) = finder.open_and_greet()?;
     let set = Calibration::ask(&mut board.link).map_err(|error| board.failure(&error))?;
     files::write(&args.file, file::text(&set).as_bytes())?;
@@ -51,13 +51,13 @@ pub fn backup(args: BackupArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Runs `lizard restore`.
+/// Runs `lizard calibrate restore`.
 ///
 /// # Errors
 /// A wrong file, no board, or a robot that refuses.
 pub fn restore(args: RestoreArgs) -> Result<(), Failure> {
     let set = file::read(&args.file)?;
-    let finder = args.connect.finder("restore FILE")?;
+    let finder = args.connect.finder("calibrate restore FILE")?;
     let (mut board, _) = finder.open_and_greet()?;
     send_calibration(&set, &mut board.link)
         .map_err(|error| Failure::Impossible(format!("{}: {error}", args.file.display())))?;

@@ -10,7 +10,7 @@ use crate::shared::files;
 const FORMAT: &str = "lizard calibration 1";
 
 const HEAD: &str = "\
-# A lizard's calibration. `lizard restore` gives it back to the robot.
+# A lizard's calibration. `lizard calibrate restore` gives it back to the robot.
 # Angles in degrees; trim and limit as the console has them, scale in us per degree.
 
 ";

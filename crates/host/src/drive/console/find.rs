@@ -5,7 +5,7 @@ use serialport::{SerialPortInfo, SerialPortType};
 /// Vendors whose USB chips are on UNOs and their copies: Arduino under two numbers,
 /// and WCH, the maker of the CH340.
 const VENDORS: [u16; 3] = [ARDUINO[0], ARDUINO[1], 0x1a86];
-const ARDUINO: [u16; 2] = [0x2341, 0x2a03];
+pub(in crate::drive) const ARDUINO: [u16; 2] = [0x2341, 0x2a03];
 
 /// A USB serial port.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -14,6 +14,8 @@ pub struct UsbPort {
     pub name: String,
     /// The number of the vendor of its chip.
     pub vendor: u16,
+    /// The number that the vendor gave to the chip.
+    pub product_id: u16,
     /// The product name that the chip reports.
     pub product: Option<String>,
 }
@@ -65,6 +67,7 @@ fn usb(port: SerialPortInfo) -> Option<UsbPort> {
     Some(UsbPort {
         name: port.port_name,
         vendor: usb.vid,
+        product_id: usb.pid,
         product: usb.product,
     })
 }
@@ -121,6 +124,7 @@ mod tests {
         UsbPort {
             name: format!("/dev/{name}"),
             vendor,
+            product_id: 0x43,
             product: (vendor == 0x2341).then(|| "Arduino_Uno".to_owned()),
         }
     }

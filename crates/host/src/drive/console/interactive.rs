@@ -31,7 +31,7 @@ use crate::Failure;
 #[derive(clap::Args, Debug)]
 pub struct ConsoleArgs {
     /// A new file that records the session: commands, answers, the pose of every frame, and
-    /// faults, as a JSON object a line, each with its time in ms; `lizard replay` draws it
+    /// faults, as a JSON object a line, each with its time in ms; `lizard console replay` draws it
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     #[command(flatten)]

@@ -1,5 +1,5 @@
-//! The commands for a board on USB: `lizard console`, `calibrate`, `backup`, `restore`,
-//! `record`; and `replay`.
+//! The commands for a board on USB: `lizard console`, `info` and `calibrate`, with what is below
+//! them.
 //!
 //! The logic is separate from the terminal and from the serial port, so the tests need
 //! neither: they use the firmware's core on this machine, and scripted input.
@@ -14,6 +14,7 @@ pub mod double;
 pub mod file;
 pub mod find;
 mod history;
+pub mod info;
 pub mod interactive;
 pub mod link;
 pub mod port;

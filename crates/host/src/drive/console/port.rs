@@ -91,6 +91,19 @@ pub fn open(name: &str) -> Result<Box<dyn SerialPort>, PortError> {
     })
 }
 
+/// True if this user may open a port. It is not opened, since that resets a UNO.
+#[cfg(target_os = "linux")]
+pub(in crate::drive) fn may_open(name: &str) -> bool {
+    use rustix::fs::{Access, access};
+    access(name, Access::READ_OK | Access::WRITE_OK).is_ok()
+}
+
+/// True: other systems let every user open a port.
+#[cfg(not(target_os = "linux"))]
+pub(in crate::drive) fn may_open(_: &str) -> bool {
+    true
+}
+
 fn missing_port(name: &str) -> PortError {
     let ports = find::usb_ports();
     let ports: Vec<String> = ports.iter().map(ToString::to_string).collect();
@@ -119,7 +132,7 @@ fn lasting_holder(name: &str) -> Option<String> {
 
 /// Another program that has the port open, if the system tells: two programs at one port take
 /// bytes from each other. Processes of other users are not visible.
-fn holder(name: &str) -> Option<String> {
+pub(in crate::drive) fn holder(name: &str) -> Option<String> {
     let port = std::fs::canonicalize(name).ok()?;
     let own = std::process::id().to_string();
     let processes = std::fs::read_dir("/proc").ok()?;

@@ -199,6 +199,7 @@ mod tests {
         let at = |name: &str, vendor| UsbPort {
             name: name.to_owned(),
             vendor,
+            product_id: 0x43,
             product: None,
         };
         let ports = [at("/dev/ttyACM7", 0x2341), at("/dev/ttyUSB7", 0x1a86)];
@@ -217,6 +218,7 @@ mod tests {
         let port = |name: &str| UsbPort {
             name: name.to_owned(),
             vendor: 0x2341,
+            product_id: 0x43,
             product: None,
         };
         assert_eq!(

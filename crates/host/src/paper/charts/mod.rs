@@ -1,4 +1,4 @@
-//! `lizard charts`: the paper's figures, and those that it lacks, as SVG.
+//! `lizard draw charts`: the paper's figures, and those that it lacks, as SVG.
 
 mod performance;
 mod plot;
@@ -29,9 +29,9 @@ const RINGS: usize = 16;
 /// performance (over the whole design space), singularity (with the gaits'
 /// paths), stroke (slider travel in each gait), top-view (at neutral, or at the
 /// pose given).
-#[derive(clap::Args)]
+#[derive(clap::Args, Debug)]
 #[command(after_help = "Example:
-  lizard charts docs/charts")]
+  lizard draw charts docs/charts")]
 pub struct Args {
     /// Folder for the files; it is created if it does not exist
     #[arg(value_name = "DIR")]

@@ -12,11 +12,13 @@ mod synthesis;
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
 
+use indicatif::ParallelProgressIterator;
 use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::Failure;
 use crate::shared::json;
+use crate::shared::progress::bar;
 use equation::{Equation, Misses};
 use sample::Sample;
 
@@ -95,7 +97,10 @@ pub fn measure(samples: u32) -> Vec<Entry> {
     .into_iter()
     .flatten()
     .collect();
-    all.into_par_iter()
+    let progress = bar(all.len(), "equations {bar:40} {pos}/{len}");
+    let entries = all
+        .into_par_iter()
+        .progress_with(progress.clone())
         .map(|equation| {
             let printed = Misses::of(equation.miss, &samples);
             let corrected = equation
@@ -119,7 +124,9 @@ pub fn measure(samples: u32) -> Vec<Entry> {
                 corrected_holds: corrected.map(|misses| misses.holds()),
             }
         })
-        .collect()
+        .collect();
+    progress.finish_and_clear();
+    entries
 }
 
 impl Entry {

@@ -5,7 +5,7 @@
 //! `image`, `sim`, `twin`, `console --sim` and all others put the section of the selected robot
 //! behind that code. A build in some folder is never used implicitly. Developers of the
 //! firmware name their build: by `--elf` for a simulation, as `make sim` does, or by `--image`
-//! for a board. Only `lizard bench` always needs an ELF, because it times functions by their
+//! for a board. Only `lizard sim bench` always needs an ELF, because it times functions by their
 //! names.
 //!
 //! An ELF has a robot in it. If that is not the selected robot, one of the two is a mistake,

@@ -1,4 +1,4 @@
-//! `lizard bench`: what the firmware costs and how exact it is, compared with its budgets
+//! `lizard sim bench`: what the firmware costs and how exact it is, compared with its budgets
 //! and with the Arduino Servo library.
 
 mod budget;
@@ -61,7 +61,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let Some(elf) = args.elf else {
         return Err(Failure::Input(
             "functions are measured by their names, which the firmware inside this program does \
-             not have. Build it from the source with `make firmware`, then: lizard bench --elf \
+             not have. Build it from the source with `make firmware`, then: lizard sim bench --elf \
              target/avr-atmega328p/release/lizard.elf"
                 .to_owned(),
         ));

@@ -28,7 +28,7 @@ use simulated_uno::{Air, Radio};
 use simulated_uno::{FREQUENCY, Fidelity, State, Uno};
 
 use crate::shared::firmware::{self, Firmware};
-use crate::shared::progress::bar;
+use crate::shared::progress::{Spinner, bar};
 use crate::shared::suggestion::did_you_mean;
 use crate::shared::{files, json};
 use crate::{Failure, RobotFile};
@@ -51,7 +51,7 @@ pub struct Args {
     #[arg(long, value_name = "FILE")]
     elf: Option<PathBuf>,
     /// Play one gait of robot.toml
-    #[arg(long, value_name = "NAME", conflicts_with = "script")]
+    #[arg(long, value_hint = clap::ValueHint::Other, value_name = "NAME", conflicts_with = "script")]
     gait: Option<String>,
     /// Play a file with lines of the form `<ms since power-on> <command>`
     #[arg(long, value_name = "FILE")]
@@ -156,7 +156,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let mut kept = Vec::new();
     let recording = record(&mut uno, &robot, &script, &args, &mut kept)?;
 
-    let progress = analysis_progress();
+    let spinner = Spinner::new("looking at every frame");
     let spans = spans::spans(&script, &recording.answers);
     let commands = commands(&robot, &recording);
     let (robot, log) = (&robot, &recording.frames);
@@ -185,7 +185,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         dialogue: kept,
         frames,
     };
-    progress.finish_and_clear();
+    drop(spinner);
     let mut out = io::stdout().lock();
     if args.json {
         json::line(&mut out, &report)?;
@@ -301,10 +301,4 @@ pub(crate) fn simulated_time(end_ms: u64) -> ProgressBar {
         end_ms as usize,
         "{bar:40} {pos}/{len} ms simulated, {elapsed}",
     )
-}
-
-fn analysis_progress() -> ProgressBar {
-    let bar = ProgressBar::new_spinner().with_message("looking at every frame");
-    bar.enable_steady_tick(std::time::Duration::from_millis(100));
-    bar
 }

@@ -13,6 +13,7 @@ use lizard_twin::ServoModel;
 use simulated_uno::{Fidelity, State, Uno};
 
 use crate::shared::firmware;
+use crate::shared::progress::Spinner;
 use crate::shared::suggestion::did_you_mean;
 use crate::simulate::sim::script::{Script, Step};
 use crate::simulate::sim::session::{self, Event, Recording};
@@ -39,7 +40,7 @@ pub struct Args {
     #[arg(value_name = "SCRIPT")]
     script: Option<PathBuf>,
     /// Walk one gait of robot.toml, or one round of a routine
-    #[arg(long, value_name = "NAME", conflicts_with = "script")]
+    #[arg(long, value_hint = clap::ValueHint::Other, value_name = "NAME", conflicts_with = "script")]
     gait: Option<String>,
     /// The firmware: an ELF that has this robot in it [default: the one inside this
     /// program]
@@ -93,8 +94,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
         .steps
         .iter()
         .any(|step| step.command.starts_with("speed"));
+    let spinner = Spinner::new("walking every frame");
     let replay = Replay::of(&robot, &recording.frames, spans, model);
     let report = Report::of(&robot, &replay, paced);
+    drop(spinner);
 
     let mut out = io::stdout().lock();
     if args.json {

@@ -162,7 +162,7 @@ fn wrong_arguments_end_with_code_2_and_say_what_is_wrong() {
         ("design --chart --step 0", "it must be 0.002 to 0.2"),
         ("errata --samples 0", "0 is not in"),
         ("pose --robot no/such/robot.toml", "no/such/robot.toml"),
-        ("charts", "<DIR>"),
+        ("draw charts", "<DIR>"),
         ("walk", "walk"),
     ];
     for (args, message) in cases {
@@ -185,7 +185,7 @@ fn an_impossible_request_ends_with_code_1() {
             "singular",
         ),
         (
-            "charts /proc/no/such/folder",
+            "draw charts /proc/no/such/folder",
             "cannot write /proc/no/such/folder",
         ),
     ];

@@ -52,7 +52,7 @@ fn charts_come_as_svg_leave_nothing_else_and_are_those_of_the_docs() {
     let folder = std::env::temp_dir().join(format!("lizard-charts-{}", std::process::id()));
     let robot = root().join("robots/paper.toml");
     let (place, robot) = (folder.display(), robot.display());
-    let outcome = lizard(&format!("charts --json {place} --robot {robot}"), "");
+    let outcome = lizard(&format!("draw charts --json {place} --robot {robot}"), "");
     assert_eq!(outcome.code, Some(0), "{}", outcome.err);
     let mut names: Vec<String> = std::fs::read_dir(&folder)
         .unwrap()
@@ -76,7 +76,7 @@ fn charts_come_as_svg_leave_nothing_else_and_are_those_of_the_docs() {
         assert!(!svg.contains("NaN") && !svg.contains("inf"), "{name}");
         assert!(
             read(&format!("docs/charts/{name}")) == svg,
-            "docs/charts/{name} is out of date: lizard charts docs/charts --robot robots/paper.toml"
+            "docs/charts/{name} is out of date: lizard draw charts docs/charts --robot robots/paper.toml"
         );
     }
     std::fs::remove_dir_all(&folder).unwrap();
@@ -141,7 +141,7 @@ fn the_table_of_the_papers_figures_has_each_once_with_a_command_that_runs_and_a_
     let expected: Vec<String> = figures.chain(others).collect();
     let names: Vec<&str> = rows.iter().map(|row| row[0]).collect();
     assert_eq!(names, expected);
-    let charts = lizard("charts --help", "").success();
+    let charts = lizard("draw charts --help", "").success();
     for row in &rows {
         let [name, _, command, files, agrees] = row[..] else {
             panic!("{row:?}")

@@ -1,4 +1,4 @@
-//! `lizard replay`: a kept session printed, summed up and drawn.
+//! `lizard console replay`: a kept session printed, summed up and drawn.
 
 mod session;
 mod summary;
@@ -36,7 +36,7 @@ const CAPTION: Caption = Caption {
     axis: "time since the session began (s)",
 };
 
-/// Runs `lizard replay`.
+/// Runs `lizard console replay`.
 ///
 /// # Errors
 /// The file is not a session, or the picture cannot be written.

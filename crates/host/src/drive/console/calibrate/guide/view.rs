@@ -158,7 +158,7 @@ impl<P: Read + Write> Guide<'_, P> {
             Step::Saved => (
                 "done".to_owned(),
                 "The board has saved it and starts with it from now on.\n\
-                 `lizard backup FILE` keeps a copy on this machine."
+                 `lizard calibrate backup FILE` keeps a copy on this machine."
                     .to_owned(),
                 "Enter: end    b: back to change something",
             ),

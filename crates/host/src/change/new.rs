@@ -1,0 +1,41 @@
+//! `lizard new`: a robot.toml to begin with.
+
+use std::fs::File;
+use std::io::{self, ErrorKind, Write};
+use std::path::PathBuf;
+
+use crate::Failure;
+use crate::shared::{files, robot_file};
+
+/// Write a robot.toml to begin with: every key with a comment
+///
+/// It is the robot of the paper. A file that is already there is left as it is.
+#[derive(clap::Args, Debug)]
+#[command(after_help = "Examples:
+  lizard new my.toml && lizard gaits --robot my.toml
+  lizard new robot.toml    # in this folder and below, found without --robot")]
+pub struct Args {
+    /// The new file
+    file: PathBuf,
+}
+
+/// Writes the file.
+///
+/// # Errors
+/// It already exists, or cannot be made.
+pub fn run(args: Args) -> Result<(), Failure> {
+    let name = args.file.display();
+    let file = File::create_new(&args.file);
+    let written = file.and_then(|mut file| file.write_all(robot_file::BUILT_IN.as_bytes()));
+    written.map_err(|error| match error.kind() {
+        ErrorKind::AlreadyExists => Failure::Input(format!(
+            "{name} already exists and is left as it is; name a new file"
+        )),
+        _ => files::write_failure(&args.file, &error),
+    })?;
+    writeln!(
+        io::stdout(),
+        "{name} is the paper's robot; change it, then check it: lizard gaits --robot {name}"
+    )?;
+    Ok(())
+}

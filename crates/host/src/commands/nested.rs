@@ -1,0 +1,135 @@
+//! Commands with others below them, such as `lizard calibrate backup`.
+//!
+//! What does the same to a file as a command does to a board, or measures what another one runs,
+//! is below it, so that the list of commands stays short. The modules of the commands know
+//! nothing of this.
+
+use clap::{Args, Subcommand};
+
+#[cfg(feature = "console")]
+use crate::drive;
+use crate::make::draw;
+#[cfg(feature = "simulator")]
+use crate::simulate;
+use crate::{Failure, commands::completions};
+
+#[cfg(not(all(feature = "paper", feature = "simulator")))]
+use super::absent::Absent;
+
+// No documentation comments on the types of this file: clap would show them in place of those of the
+// arguments.
+#[derive(Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+pub struct With<A: Args, B: Subcommand> {
+    #[command(flatten)]
+    own: A,
+    #[command(subcommand)]
+    below: Option<B>,
+}
+
+#[cfg(feature = "console")]
+#[derive(Subcommand)]
+pub enum OfFlash {
+    Image(drive::image::Args),
+}
+
+/// Runs `lizard flash` or a command below it.
+#[cfg(feature = "console")]
+pub fn flash(args: With<drive::flash::Args, OfFlash>) -> Result<(), Failure> {
+    match args.below {
+        Some(OfFlash::Image(args)) => drive::image::run(args),
+        None => drive::flash::run(args.own),
+    }
+}
+
+#[cfg(feature = "console")]
+#[derive(Subcommand)]
+pub enum OfConsole {
+    #[cfg(feature = "simulator")]
+    Replay(drive::console::replay::Args),
+    /// Draw a recorded session: missing, this program was built without the simulator
+    #[cfg(not(feature = "simulator"))]
+    Replay(Absent),
+}
+
+/// Runs `lizard console` or a command below it.
+#[cfg(feature = "console")]
+pub fn console(
+    args: With<drive::console::interactive::ConsoleArgs, OfConsole>,
+) -> Result<(), Failure> {
+    match args.below {
+        #[cfg(feature = "simulator")]
+        Some(OfConsole::Replay(args)) => drive::console::replay::run(args),
+        #[cfg(not(feature = "simulator"))]
+        Some(OfConsole::Replay(_)) => Err(Absent::failure("console replay", &["simulator"])),
+        None => drive::console::interactive::console(args.own),
+    }
+}
+
+#[cfg(feature = "console")]
+#[derive(Subcommand)]
+pub enum OfCalibrate {
+    Backup(drive::console::backup::BackupArgs),
+    Restore(drive::console::backup::RestoreArgs),
+}
+
+/// Runs `lizard calibrate` or a command below it.
+#[cfg(feature = "console")]
+pub fn calibrate(args: With<drive::console::calibrate::Args, OfCalibrate>) -> Result<(), Failure> {
+    match args.below {
+        Some(OfCalibrate::Backup(args)) => drive::console::backup::backup(args),
+        Some(OfCalibrate::Restore(args)) => drive::console::backup::restore(args),
+        None => drive::console::calibrate::run(args.own),
+    }
+}
+
+#[cfg(feature = "simulator")]
+#[derive(Subcommand)]
+pub enum OfSim {
+    Bench(simulate::bench::Args),
+}
+
+/// Runs `lizard sim` or a command below it.
+#[cfg(feature = "simulator")]
+pub fn sim(args: With<simulate::sim::Args, OfSim>) -> Result<(), Failure> {
+    match args.below {
+        Some(OfSim::Bench(args)) => simulate::bench::run(args),
+        None => simulate::sim::run(args.own),
+    }
+}
+
+#[derive(Subcommand)]
+pub enum OfDraw {
+    #[cfg(feature = "paper")]
+    Charts(crate::paper::charts::Args),
+    /// Draw all charts: missing, this program was built without the commands that compute
+    #[cfg(not(feature = "paper"))]
+    Charts(Absent),
+}
+
+/// Runs `lizard draw` or a command below it.
+pub fn draw(args: With<draw::Args, OfDraw>) -> Result<(), Failure> {
+    match args.below {
+        #[cfg(feature = "paper")]
+        Some(OfDraw::Charts(args)) => crate::paper::charts::run(args),
+        #[cfg(not(feature = "paper"))]
+        Some(OfDraw::Charts(_)) => Err(Absent::failure("draw charts", &["paper"])),
+        None => draw::run(args.own),
+    }
+}
+
+#[derive(Subcommand)]
+pub enum OfCompletions {
+    Man(completions::ManArgs),
+}
+
+/// Runs `lizard completions` or a command below it for this program.
+pub fn completions(
+    args: With<completions::CompletionsArgs, OfCompletions>,
+    program: clap::Command,
+) -> Result<(), Failure> {
+    match args.below {
+        Some(OfCompletions::Man(args)) => completions::man(args, program),
+        None => completions::completions(args.own, program),
+    }
+}

@@ -1,0 +1,226 @@
+//! `lizard info`: what a board has.
+
+use std::fmt::Write as _;
+use std::io::{Read, Write};
+use std::time::Duration;
+
+use serde::Serialize;
+
+use super::calibration::Calibration;
+use super::connect::Connect;
+use super::link::{Link, LinkError};
+use super::status::Status;
+use crate::Failure;
+use crate::shared::json;
+
+/// Say what a board has: firmware, robot, calibration, fault
+///
+/// Only asks: nothing is written to the board. Opening the port resets a UNO, and its gait ends.
+#[derive(clap::Args, Debug)]
+pub struct Args {
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    connect: Connect,
+}
+
+/// The answers of a board, under the names of `--json`.
+#[derive(Debug, Serialize)]
+struct Board {
+    port: String,
+    /// The firmware's version; null if the board was not reset and so has not said it.
+    firmware: Option<String>,
+    /// The robot's name and hash; null if it has none, or has not said it.
+    robot: Option<Robot>,
+    gait: String,
+    fault: Option<String>,
+    /// Volts of the board, and of the servos where they are measured.
+    vcc: Option<f64>,
+    rail: Option<f64>,
+    /// Null on a board without a robot.
+    calibration: Option<Calibration>,
+}
+
+/// A robot as its board names it.
+#[derive(Debug, PartialEq, Serialize)]
+struct Robot {
+    name: String,
+    hash: String,
+}
+
+/// Asks a board and prints its answers.
+///
+/// # Errors
+/// No board, or none that answers as a lizard does.
+pub fn run(args: Args) -> Result<(), Failure> {
+    let finder = args.connect.finder("info")?;
+    let (mut board, banner) = finder.open_and_greet()?;
+    let asked = Board::ask(board.name.clone(), banner.as_deref(), &mut board.link);
+    let answers = asked.map_err(|error| board.failure(&error))?;
+    json::print_json_or(args.json, &answers, || answers.text())
+}
+
+impl Board {
+    fn ask<P: Read + Write>(
+        port: String,
+        banner: Option<&str>,
+        link: &mut Link<P>,
+    ) -> Result<Self, LinkError> {
+        let status = settled(link)?;
+        let calibration = match Calibration::ask(link) {
+            Ok(set) => Some(set),
+            Err(LinkError::Refused { .. }) => None,
+            Err(error) => return Err(error),
+        };
+        let (firmware, robot) = banner.map_or((None, None), parse_banner);
+        Ok(Self {
+            port,
+            firmware,
+            robot,
+            gait: status.gait,
+            fault: status.fault,
+            vcc: status.vcc,
+            rail: status.rail,
+            calibration,
+        })
+    }
+
+    fn text(&self) -> String {
+        let mut text = String::new();
+        let mut row = |name: &str, words: String| {
+            _ = writeln!(text, "{name:<12}{words}");
+        };
+        row("port", self.port.clone());
+        row(
+            "firmware",
+            match &self.firmware {
+                Some(version) => format!("lizard {version}"),
+                None => "not said: the board was not reset".to_owned(),
+            },
+        );
+        row(
+            "robot",
+            match (&self.robot, &self.firmware) {
+                (Some(robot), _) => format!("{} {}", robot.name, robot.hash),
+                (None, Some(_)) => "none: lizard flash --only-robot writes one".to_owned(),
+                (None, None) => "not said: the board was not reset".to_owned(),
+            },
+        );
+        row("gait", self.gait.clone());
+        row(
+            "fault",
+            self.fault.clone().unwrap_or_else(|| "none".to_owned()),
+        );
+        if let Some(volts) = self.vcc {
+            row("supply", format!("{volts:.2} V"));
+        }
+        if let Some(volts) = self.rail {
+            row("servos", format!("{volts:.2} V"));
+        }
+        if let Some(set) = &self.calibration {
+            row("boot", set.boot.clone());
+            row("deadman", format!("{} ms", set.deadman));
+            for (servo, name) in set.servo.all().into_iter().zip(["A1", "A2", "A3", "A4"]) {
+                let [from, to] = servo.limit;
+                let sign = servo.dir.sign();
+                row(
+                    name,
+                    format!(
+                        "trim {:.2} deg, limits {from:.2} to {to:.2} deg, direction {sign}, \
+                         {:.2} us/deg",
+                        servo.trim, servo.scale
+                    ),
+                );
+            }
+        }
+        text
+    }
+}
+
+/// Asks for the status. A board that has just been reset reports 0 V until its converter has run,
+/// so it is asked again, for a second.
+fn settled<P: Read + Write>(link: &mut Link<P>) -> Result<Status, LinkError> {
+    for _ in 0..9 {
+        let status = status(link)?;
+        if status.vcc != Some(0.0) {
+            return Ok(status);
+        }
+        link.pause(Duration::from_millis(100))?;
+    }
+    status(link)
+}
+
+fn status<P: Read + Write>(link: &mut Link<P>) -> Result<Status, LinkError> {
+    let answer = link.command("status")?.answer;
+    Status::parse(&answer).ok_or_else(|| LinkError::Unclear {
+        line: "status".to_owned(),
+        answer,
+    })
+}
+
+/// The version and the robot in the first line of a firmware.
+fn parse_banner(line: &str) -> (Option<String>, Option<Robot>) {
+    let line = line.split(',').next().unwrap_or(line);
+    let words: Vec<&str> = line.split(' ').collect();
+    match words[..] {
+        ["#", "lizard", version, "robot", name, hash] => {
+            let [name, hash] = [name, hash].map(str::to_owned);
+            (Some(version.to_owned()), Some(Robot { name, hash }))
+        }
+        ["#", "lizard", version, ..] => (Some(version.to_owned()), None),
+        _ => (None, None),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::double::{PAPER, robot};
+    use super::*;
+
+    #[test]
+    fn a_board_says_what_it_has_and_keeps_all_of_it() {
+        let mut link = robot();
+        link.command("trim 3 -4.25").expect("it is accepted");
+        let before = Calibration::ask(&mut link).expect("it answers");
+        let paper = lizard_robot::Robot::parse(PAPER).expect("it is right");
+        let hash = format!("{:08x}", paper.firmware().hash());
+        let banner = format!("# lizard 1.2.3 robot paper {hash}, send help for the commands");
+        let board = Board::ask("COM3".to_owned(), Some(&banner), &mut link).expect("it answers");
+        let text = board.text();
+        for line in [
+            "port        COM3\n".to_owned(),
+            "firmware    lizard 1.2.3\n".to_owned(),
+            format!("robot       paper {hash}\n"),
+            "fault       none\n".to_owned(),
+            "boot        stand\n".to_owned(),
+            "A3          trim -4.25 deg, limits ".to_owned(),
+        ] {
+            assert!(text.contains(&line), "{line:?} in {text}");
+        }
+        let after = Calibration::ask(&mut link).expect("it answers");
+        assert!(after.is_same(&before), "nothing was changed");
+    }
+
+    #[test]
+    fn the_first_line_is_read_with_a_robot_and_without_one() {
+        let robot = |name: &str, hash: &str| {
+            let [name, hash] = [name, hash].map(str::to_owned);
+            Some(Robot { name, hash })
+        };
+        let version = Some("0.2.0".to_owned());
+        for (line, expected) in [
+            (
+                "# lizard 0.2.0 robot paper 1a2b3c4d, send help for the commands",
+                (version.clone(), robot("paper", "1a2b3c4d")),
+            ),
+            (
+                "# lizard 0.2.0 without a robot, send help for the commands",
+                (version, None),
+            ),
+            ("hello", (None, None)),
+        ] {
+            assert_eq!(parse_banner(line), expected);
+        }
+    }
+}

@@ -1,0 +1,160 @@
+//! `lizard ports`: the serial ports of this machine, and the boards that may be at them.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+
+use super::console::find::{self, UsbPort};
+use super::console::port;
+use crate::Failure;
+use crate::shared::json;
+use crate::shared::plain::plain;
+
+/// List the USB serial ports: which chip each has, and if you may open it
+///
+/// Opens none of them, since that would reset the board. The chip says which board it may be:
+/// only `lizard info` asks the board itself.
+#[derive(clap::Args, Debug)]
+pub struct Args {
+    /// Print one JSON array, empty if there is no port
+    #[arg(long)]
+    json: bool,
+}
+
+/// A port under the names of `--json`.
+#[derive(Debug, Serialize)]
+struct Line {
+    port: String,
+    /// Four hexadecimal digits, as lsusb prints them.
+    vendor: String,
+    product: String,
+    /// The name that the chip gives itself.
+    name: Option<String>,
+    /// The known kind of chip.
+    chip: Option<&'static str>,
+    may_open: bool,
+    /// The program that has it open, if the system tells.
+    open_in: Option<String>,
+}
+
+impl Line {
+    fn of(found: UsbPort) -> Self {
+        Self {
+            vendor: format!("{:04x}", found.vendor),
+            product: format!("{:04x}", found.product_id),
+            chip: chip([found.vendor, found.product_id]),
+            may_open: port::may_open(&found.name),
+            open_in: port::holder(&found.name),
+            name: found.product.map(|name| plain(&name.replace('_', " "))),
+            port: found.name,
+        }
+    }
+}
+
+/// Words for a chip by its USB numbers: vendor and product.
+fn chip(ids: [u16; 2]) -> Option<&'static str> {
+    Some(match ids {
+        [vendor, 0x0001 | 0x0043 | 0x0243] if find::ARDUINO.contains(&vendor) => "an Arduino UNO",
+        [vendor, _] if find::ARDUINO.contains(&vendor) => "an Arduino, but no UNO R3",
+        [0x1a86, 0x7523 | 0x5523] => "a CH340: a copy of a UNO or a Nano",
+        [0x1a86, _] => "a chip of WCH: a copy of a UNO or a Nano",
+        [0x0403, 0x6001 | 0x6015] => "an FTDI: an older Nano, or an adapter",
+        [0x10c4, 0xea60] => "a CP210x: an adapter, seldom a UNO",
+        _ => return None,
+    })
+}
+
+/// Lists the ports.
+///
+/// # Errors
+/// Standard output cannot be written.
+pub fn run(args: Args) -> Result<(), Failure> {
+    let lines: Vec<Line> = find::usb_ports().into_iter().map(Line::of).collect();
+    json::print_json_or(args.json, &lines, || text(&lines))
+}
+
+fn text(lines: &[Line]) -> String {
+    if lines.is_empty() {
+        return "this machine has no USB serial port. Connect the UNO by a cable that carries data \
+                (some only charge). A virtual machine, a container or WSL sees it only after the \
+                port was passed to it. Without a board: lizard console --sim\n"
+            .to_owned();
+    }
+    let mut text = String::new();
+    for line in lines {
+        let name = line.name.as_deref().unwrap_or("no name");
+        let chip = line.chip.unwrap_or("a chip that no UNO has");
+        let Line {
+            port,
+            vendor,
+            product,
+            ..
+        } = line;
+        _ = write!(text, "{port}  {name} ({vendor}:{product}), {chip}");
+        if let Some(who) = &line.open_in {
+            _ = write!(text, "; open in {who}");
+        }
+        if !line.may_open {
+            text += "; you may not open it";
+        }
+        text.push('\n');
+    }
+    if let Some(line) = lines.iter().find(|line| !line.may_open) {
+        _ = writeln!(text, "{}", port::PortError::Forbidden(line.port.clone()));
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn line(vendor: u16, product_id: u16, product: Option<&str>) -> Line {
+        Line::of(UsbPort {
+            name: "/dev/no-such-port".to_owned(),
+            vendor,
+            product_id,
+            product: product.map(str::to_owned),
+        })
+    }
+
+    #[test]
+    fn a_port_says_what_its_chip_is_as_lsusb_names_it() {
+        let uno = line(0x2341, 0x0043, Some("Arduino_Uno\u{1b}"));
+        let copy = line(0x1a86, 0x7523, None);
+        let words = text(&[uno, copy]);
+        let words: Vec<&str> = words.lines().collect();
+        assert!(words[0].contains("Arduino Uno"), "{words:?}");
+        assert!(
+            words[0].contains("(2341:0043), an Arduino UNO"),
+            "{words:?}"
+        );
+        assert!(!words[0].contains('\u{1b}'), "{words:?}");
+        assert!(
+            words[1].contains("no name (1a86:7523), a CH340"),
+            "{words:?}"
+        );
+        assert!(chip([0x0483, 0x5740]).is_none(), "another maker's");
+    }
+
+    #[test]
+    fn a_port_that_may_not_be_opened_comes_with_the_remedy_and_one_that_is_open_with_its_program() {
+        let mut closed = line(0x2341, 0x0043, None);
+        closed.may_open = false;
+        closed.open_in = Some("screen (process 7)".to_owned());
+        let words = text(&[closed]);
+        assert!(
+            words.contains("; open in screen (process 7); you may not open it\n"),
+            "{words}"
+        );
+        assert!(words.contains("usermod -aG dialout"), "{words}");
+        let mut free = line(0x2341, 0x0043, None);
+        free.may_open = true;
+        assert!(!text(&[free]).contains("dialout"));
+    }
+
+    #[test]
+    fn without_a_port_it_says_what_to_do() {
+        assert!(text(&[]).contains("carries data") && text(&[]).contains("--sim"));
+    }
+}

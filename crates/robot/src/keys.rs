@@ -1,0 +1,227 @@
+//! The reference of all keys, docs/robot-toml.md, made from the reader.
+//!
+//! keys.txt has the meaning of each key. Its range, unit and default are those that the reader
+//! checks, noted while it reads a robot with every table.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
+
+use crate::file::{self, Error, KeyRead, READS, Section, short};
+use crate::gaits::{define, routine};
+use crate::measures::Measures;
+use crate::robot::KEYS;
+
+const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/robot-toml.md");
+const MARK: &str = "<!-- keys of robot.toml -->\n";
+
+/// A robot with every table, and with each key whose default the reader does not say.
+fn robot() -> String {
+    let more = "
+        [leg.drive]\nkind = \"strut\"
+        [joints]
+        [supply]
+        [supply.rail]\npin = \"A3\"\nratio = 2.0
+        [feet]
+        [parts]\npivot = [28.5, 10.0]\nfoot = [-3.5, 2.5]\nanchor = [22.0, 0.0]
+        battery = [31.0, 56.0, 16.0]
+        [parts.servo]
+        [parts.horn]
+        [parts.screw]
+        [parts.pad]
+        [parts.spring]
+        [input.button]\npin = \"A1\"
+        [input.nose]\npin = \"A2\"
+        [routine.patrol]\nsteps = [\"walk 1\"]
+        ";
+    let text = crate::testing::text("paper")
+        .replace("mass = 435.0", "mass = 435.0\ncentre = [0.0, 0.0]")
+        .replace("mount = ", "hip_forward = 55.0\nhip_side = 35.0\nmount = ")
+        .replace("[servo.A1]", "[servo]\nmodel = \"SG-90\"\n[servo.A1]");
+    text + &more
+        .lines()
+        .map(|line| format!("{}\n", line.trim()))
+        .collect::<String>()
+}
+
+/// The name of a key in keys.txt: names that the author gives and the four servos, legs and ends
+/// are one.
+fn plain(key: &str) -> String {
+    let names: Vec<&str> = key.split('.').collect();
+    let plain = names.iter().enumerate().map(|(place, name)| {
+        let name = name.split('[').next().unwrap_or(name);
+        match (place, name) {
+            (1, _) if ["gait", "routine"].contains(&names[0]) => "NAME",
+            (_, "A2" | "A3" | "A4") => "A1",
+            (3, "LF" | "RF" | "RH" | "LH") => "LF RF RH LH",
+            (2, "tail") => "head",
+            (3, "y") if names.len() > 4 => "x",
+            (_, name) => name,
+        }
+    });
+    plain.collect::<Vec<_>>().join(".")
+}
+
+/// The reader's own words for a key: values and default.
+#[derive(Default)]
+struct Words {
+    values: Option<String>,
+    default: Option<String>,
+}
+
+/// All keys that the reader knows, tables left out.
+fn keys() -> BTreeMap<String, Words> {
+    READS.with_borrow_mut(Vec::clear);
+    read(&robot()).expect("a robot with every key");
+    let reads = READS.with_borrow_mut(std::mem::take);
+    let mut keys = BTreeMap::<String, Words>::new();
+    for (key, read) in &reads {
+        let words = keys.entry(plain(key)).or_default();
+        if let KeyRead::Number {
+            range: (least, most),
+            unit,
+            default,
+        } = read
+        {
+            let unit = unit.trim_start_matches('(').trim_end_matches(')');
+            let [least, most] = [*least, *most].map(short);
+            words.values = Some(format!("{least} to {most}, {unit}"));
+            words.default = default.map(short).or(words.default.take());
+        }
+    }
+    let is_table = |read: &&(String, KeyRead)| matches!(read.1, KeyRead::Table);
+    for (table, _) in reads.iter().filter(is_table) {
+        // Harmonics are keys as well as tables.
+        if !table.ends_with(".x") && !table.ends_with(".y") {
+            keys.remove(&plain(table));
+        }
+    }
+    keys
+}
+
+/// A line of keys.txt.
+struct Line {
+    key: String,
+    cells: [&'static str; 4],
+}
+
+/// The tables of keys.txt: name, meaning, keys.
+fn tables() -> Vec<(&'static str, &'static str, Vec<Line>)> {
+    let mut tables: Vec<(_, _, Vec<Line>)> = Vec::new();
+    let lines = include_str!("keys.txt").lines();
+    for line in lines.filter(|line| !line.is_empty() && !line.starts_with("# ")) {
+        if let Some((name, meaning)) = line
+            .strip_prefix('[')
+            .and_then(|line| line.split_once("] "))
+        {
+            tables.push((name, meaning, Vec::new()));
+            continue;
+        }
+        let cells: Vec<&str> = line.split(" | ").collect();
+        let cells: [&str; 4] = cells.try_into().expect(line);
+        let (table, _, lines) = tables.last_mut().expect("a table comes first");
+        let key = match table.is_empty() {
+            true => cells[0].to_owned(),
+            false => format!("{table}.{}", cells[0]),
+        };
+        lines.push(Line { key, cells });
+    }
+    tables
+}
+
+#[test]
+fn every_key_that_is_read_is_in_the_reference_and_no_other() {
+    let read: BTreeSet<String> = keys().into_keys().collect();
+    let listed = tables().into_iter().flat_map(|(.., lines)| lines);
+    let listed: BTreeSet<String> = listed.map(|line| line.key).collect();
+    assert_eq!(
+        read.symmetric_difference(&listed).collect::<Vec<_>>(),
+        Vec::<&String>::new(),
+        "keys that are read are in src/keys.txt"
+    );
+    assert!(read.len() > 120, "{}", read.len());
+}
+
+#[test]
+fn the_page_of_keys_is_what_the_reader_checks() {
+    let keys = keys();
+    let mut text = String::new();
+    for (table, meaning, lines) in tables() {
+        match table {
+            "" => _ = write!(text, "## Top\n\n{meaning}\n\n"),
+            _ => _ = write!(text, "## [{table}]\n\n{meaning}\n\n"),
+        }
+        text += "| key | values | default | meaning |\n|---|---|---|---|\n";
+        for Line { key, cells } in lines {
+            let read = &keys[&key];
+            let [name, values, default, meaning] = cells;
+            let own = |cell: &str, words: &Option<String>| match (cell, words) {
+                (".", Some(words)) => words.clone(),
+                (".", None) => panic!("the reader does not say it: {key}"),
+                (cell, _) => cell.to_owned(),
+            };
+            let values = own(values, &read.values);
+            let default = own(default, &read.default);
+            _ = writeln!(text, "| `{name}` | {values} | {default} | {meaning} |");
+        }
+        text.push('\n');
+    }
+    let page = std::fs::read_to_string(PAGE).expect(PAGE);
+    let (head, _) = page.split_once(MARK).expect(MARK);
+    let now = format!("{head}{MARK}\n{}\n", text.trim_end());
+    if std::env::var_os("BLESS_KEYS").is_some() {
+        std::fs::write(PAGE, now).expect(PAGE);
+    } else {
+        assert!(
+            page == now,
+            "docs/robot-toml.md is out of date; run with BLESS_KEYS=1"
+        );
+    }
+}
+
+/// Reads measurements, gaits and routines, but makes no tables of them, which takes long.
+fn read(text: &str) -> Result<(), Error> {
+    file::parse(text, |table| {
+        let root = Section::root(table, &KEYS)?;
+        let body = Measures::read(&root)?;
+        let gaits = define::gaits(&root, &body)?;
+        let names: Vec<&str> = gaits.iter().map(|gait| gait.name.as_str()).collect();
+        routine::routines(&root, &names, &body.inputs).map(|_| ())
+    })
+}
+
+#[test]
+fn a_key_may_be_left_out_if_and_only_if_the_reference_says_so() {
+    let text = robot();
+    let mut count = 0;
+    for (table, _, lines) in tables() {
+        let start = match table {
+            "" => 0,
+            _ => match text.find(&format!("\n[{}]", table.replace("NAME", "walk"))) {
+                Some(start) => start + 1,
+                // Written as the value of a key.
+                None => continue,
+            },
+        };
+        for Line { cells, .. } in lines {
+            let end = text[start..]
+                .find("\n[")
+                .map_or(text.len(), |end| start + end);
+            let is_key = |line: &&str| line.split('=').next().unwrap_or("").trim() == cells[0];
+            let Some(line) = text[start..end].lines().find(is_key) else {
+                assert_ne!(cells[2], "needed", "{table}.{}", cells[0]);
+                continue;
+            };
+            let without = format!("{}{}", &text[..start], text[start..].replacen(line, "", 1));
+            let refused = read(&without).err().map(|error| error.to_string());
+            let is_needed = refused.is_some_and(|words| words.contains("is missing"));
+            assert_eq!(
+                is_needed,
+                cells[2].starts_with("needed"),
+                "{table}.{}",
+                cells[0]
+            );
+            count += 1;
+        }
+    }
+    assert!(count > 50, "{count}");
+}
