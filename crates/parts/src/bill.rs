@@ -318,7 +318,7 @@ impl fmt::Display for Bill {
             )?;
         }
         writeln!(f, "\nTo buy:\n\n{}", to_buy(&self.bought))?;
-        writeln!(f, "{}", self.prices())?;
+        writeln!(f, "{}\n\n{SERVOS}", self.prices())?;
         writeln!(
             f,
             "\nOnly to drive it without a cable, by radio:\n\n{}",
@@ -360,6 +360,9 @@ impl fmt::Display for Bill {
 /// The guide's words about the pads.
 const PADS: &str = "The pads are of TPU (95A), all four of one roll: the flat side on the bed, 100 % infill, layers of 0.1 mm. An edge \
                     catches on sharp terraces: smooth each dome with a thin film of flexible glue or silicone, and leave its hole open.";
+
+/// The guide's words about the servos.
+const SERVOS: &str = "Take plain analog servos, all four of one make: by the model, fast digital ones lose a quarter or more of `walk`.";
 
 /// Rows to buy as a table.
 #[must_use]

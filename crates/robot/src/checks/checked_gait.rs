@@ -191,12 +191,24 @@ impl CheckedGait {
     /// Follows the second cycle on this ground frame by frame as the firmware sends it, with servos
     /// that have these motors; `pace` is 1 for the gait's own.
     pub fn driven(&self, ground: &Ground, motors: &Motors, pace: f64) -> Travel {
+        self.driven_scaled(ground, motors, pace, 1.0)
+    }
+
+    /// Follows that cycle with servos that turn `scale` times as far as the firmware takes for
+    /// granted.
+    pub(crate) fn driven_scaled(
+        &self,
+        ground: &Ground,
+        motors: &Motors,
+        pace: f64,
+        scale: f64,
+    ) -> Travel {
         let frames = (self.period() / pace * FRAMES_PER_SECOND).round().max(1.0) as usize;
         let sweeps = |frame: usize| -> [f64; 4] {
             let seconds = frame as f64 / FRAMES_PER_SECOND * pace;
             let phase = (self.phase(seconds) * 65536.0).round() as i64;
             let steps = self.table_sweeps(phase.rem_euclid(65536) as u16);
-            std::array::from_fn(|i| FORWARD[i] * f64::from(steps[i]) / STEPS_PER_DEGREE)
+            std::array::from_fn(|i| scale * FORWARD[i] * f64::from(steps[i]) / STEPS_PER_DEGREE)
         };
         let mut walker = Walker::new(*ground, sweeps(0));
         let mut cycle = || {

@@ -50,6 +50,17 @@ const SG90: ServoType = ServoType {
 };
 
 impl ServoType {
+    /// A servo with a fast digital controller.
+    pub(crate) const DIGITAL: Self = Self {
+        model: "digital",
+        source: "assumed: an MG90S with half the rotor, full torque at 1 deg and a dead band of 2 us",
+        s_per_60_deg: 0.1,
+        dead_band_us: 2.0,
+        spin_up_ms: 10.0,
+        full_torque_deg: 1.0,
+        ..SG90
+    };
+
     /// The types that robot.toml can name.
     pub const ALL: [Self; 4] = [
         SG90,
@@ -67,15 +78,7 @@ impl ServoType {
             s_per_60_deg: 0.15,
             ..SG90
         },
-        Self {
-            model: "digital",
-            source: "assumed: an MG90S with half the rotor, full torque at 1 deg and a dead band of 2 us",
-            s_per_60_deg: 0.1,
-            dead_band_us: 2.0,
-            spin_up_ms: 10.0,
-            full_torque_deg: 1.0,
-            ..SG90
-        },
+        Self::DIGITAL,
     ];
 
     /// Reads the keys of `[servo]` beside its four tables; all may be left out.
