@@ -64,7 +64,11 @@ impl Desk {
     /// Waits until `text` is on the screen; the test fails if it never is.
     pub fn see(&mut self, shell: &Shell, text: &str) {
         let seen = self.until(|_| shell.screen().contains(text) || shell.has_ended());
-        let screen = shell.screen();
+        let screen = if shell.has_ended() {
+            shell.last_screen()
+        } else {
+            shell.screen()
+        };
         assert!(
             seen && screen.contains(text),
             "waited up to {LIMIT} for {text:?} in\n{screen}"
@@ -74,7 +78,11 @@ impl Desk {
     /// Runs the board until the program has ended. Returns the screen.
     pub fn end(&mut self, shell: &Shell) -> String {
         let ended = self.until(|_| shell.has_ended());
-        let screen = shell.screen();
+        let screen = if ended {
+            shell.last_screen()
+        } else {
+            shell.screen()
+        };
         assert!(ended, "waited {LIMIT} for the end of the upload:\n{screen}");
         screen
     }
