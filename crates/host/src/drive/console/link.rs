@@ -10,7 +10,7 @@ use std::io::{self, ErrorKind, Read, Write};
 use std::time::{Duration, Instant};
 
 /// The beginning of a robot's first line.
-const BANNER: &str = "# lizard ";
+pub const BANNER: &str = "# lizard ";
 /// Questions to a board that was not reset: it finds the port's rate by five lines at most, and
 /// a radio may lose some.
 const ASKS: u32 = 8;

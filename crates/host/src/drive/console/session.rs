@@ -12,6 +12,7 @@ use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
 use super::deadman::{self, Deadman};
+use super::link::BANNER;
 use super::recorder::Event;
 use super::status::Status;
 use crate::Failure;
@@ -265,7 +266,7 @@ impl Session {
         }
         if line.starts_with('#') {
             self.events.push(Event::of_note(line));
-            if line.starts_with("# lizard ") {
+            if line.starts_with(BANNER) {
                 // The board has restarted, and has forgotten the question.
                 self.waiting = None;
                 self.watch_due = self.watches;

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use lizard_robot::STILL_FRAMES;
 
 use super::super::calibration::Calibration;
-use super::super::link::{Link, LinkError};
+use super::super::link::{BANNER, Link, LinkError};
 use super::super::status::Status;
 use step::{STEPS, Step};
 pub use view::View;
@@ -143,7 +143,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     /// The connection breaks.
     pub fn idle(&mut self) -> Result<(), LinkError> {
         while let Some(line) = self.link.line(Duration::ZERO)? {
-            if line.starts_with("# lizard ") {
+            if line.starts_with(BANNER) {
                 self.message = "The board was reset: leave with q and begin again.".to_owned();
             } else if let Some(note) = line.strip_prefix("# ") {
                 self.message = format!("The robot says: {note}.");

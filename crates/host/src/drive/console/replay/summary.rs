@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 
+use super::super::link::BANNER;
 use super::super::recorder::Event;
 use super::super::status::Status;
 use super::session::Session;
@@ -85,7 +86,7 @@ pub(super) fn print(session: &Session, out: &mut impl Write) -> io::Result<()> {
 
 /// True if a note reports a problem. A banner in the middle of a session is a reset.
 fn is_trouble(note: &str) -> bool {
-    ["# fault: ", "# supply: ", "# held ", "# lizard "]
+    ["# fault: ", "# supply: ", "# held ", BANNER]
         .iter()
         .any(|start| note.starts_with(start))
 }
