@@ -21,7 +21,7 @@ const MORE_AFTER_COMMAND: i8 = 28;
 const SHORTEST: usize = 4;
 
 /// The present rate, and the wrong bytes at it.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct Finder {
     rate: Rate,
     /// Wrong bytes since the last command, from `-MORE_AFTER_COMMAND` on, or since the last change
@@ -29,6 +29,8 @@ pub struct Finder {
     wrong_bytes: i8,
     /// True if a byte came since the last frame.
     has_received: bool,
+    /// True for another rate than that of USB that has carried no command.
+    is_guess: bool,
 }
 
 impl Finder {
@@ -38,6 +40,7 @@ impl Finder {
             rate,
             wrong_bytes: 0,
             has_received: false,
+            is_guess: !matches!(rate, Rate::Fastest),
         }
     }
 
@@ -51,11 +54,12 @@ impl Finder {
 
     /// Takes a line of this length that is a command; returns false if it may be a misread one.
     pub fn note_command(&mut self, length: usize) -> bool {
-        let is_sure = self.rate == Rate::Fastest || self.wrong_bytes < 0 || length >= SHORTEST;
-        if is_sure {
-            self.wrong_bytes = -MORE_AFTER_COMMAND;
+        if self.is_guess && length < SHORTEST {
+            return false;
         }
-        is_sure
+        self.is_guess = false;
+        self.wrong_bytes = -MORE_AFTER_COMMAND;
+        true
     }
 
     /// Changes the rate if it must be a wrong one and nothing came in this frame; returns the new

@@ -62,8 +62,10 @@ fn a_rate_that_is_guessed_carries_no_word_of_three_letters_first() {
         let is_of_usb = rate == Rate::Fastest;
         assert_eq!(finder.note_command(3), is_of_usb, "{rate:?}");
         assert!(finder.note_command(4));
-        assert!(finder.note_command(1), "{rate:?} is no guess any more");
-        assert_eq!(after(&mut finder, &[GARBLED; 28]), None);
-        assert_eq!(finder.note_command(3), is_of_usb, "{rate:?} is one again");
+        for _ in 0..3 {
+            // Nor is it a guess again after noise that does not change it.
+            assert_eq!(after(&mut finder, &[GARBLED; 31]), None);
+            assert!(finder.note_command(1), "{rate:?} has carried a command");
+        }
     }
 }
