@@ -131,6 +131,22 @@ test('what the robot said is recorded, and not what was pressed', async () => {
   await page.getByText('Nothing is recorded: the robot has not walked.').waitFor();
 });
 
+test('as many cycles are recorded as were walked, at whatever phase of the gait before the walk began', async () => {
+  const page = await opened(null);
+  for (let tenth = 0; tenth < 10; tenth++) {
+    await press(page, 'Record a drive');
+    await page.evaluate(() => void window.lizard.ask('stand'));
+    await drives(page, 0.5 + 0.1 * tenth);
+    await page.evaluate(() => void window.lizard.ask('walk 2'));
+    await advance(page, 60);
+    await page.evaluate(() => void window.lizard.status());
+    await drives(page, 3);
+    await press(page, 'Stop recording');
+    assert.match(await text(page, '#routine-said'), /^Recorded: walk 2$/, `after ${tenth} tenths`);
+    await press(page, 'Drop it');
+  }
+});
+
 test('a drive of a board is recorded by its own phase, also where its link was cut', async () => {
   const page = await connected('robot', 8000);
   await unfold(page, '#routines');

@@ -58,6 +58,11 @@ export class Recorder {
   phase(said: number, at: number): void {
     this.count(at);
     const phase = this.known?.reversed ? (1 - said) % 1 : said;
+    // The count is never too low: on the way to its first pose the robot still says the phase of the gait before.
+    if (phase > this.cycles + SLACK) {
+      this.cycles = 0;
+      return;
+    }
     this.cycles = Math.floor(this.cycles + TOO_LOW - phase) + phase;
   }
 
