@@ -1,7 +1,7 @@
 //! Constants that stay in flash.
 //!
 //! An AVR has two address spaces. A Rust `static` lives in the one for data: it is copied
-//! to RAM at start, and this chip has 2 KiB of that. Tables and sentences belong in the
+//! to RAM at start, and this chip has 2 KiB of that. Tables and messages belong in the
 //! other, which only the `lpm` instruction reads. [`flash!`](crate::flash!) puts a
 //! constant there; a [`Flash`] is its address, and the only way to read it. On any other
 //! machine it is an ordinary reference, so the same code runs there, also with tables

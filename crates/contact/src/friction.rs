@@ -21,7 +21,7 @@ pub type Point = [f64; 2];
 pub(crate) type Twist = [f64; 3];
 
 /// Smallest rounding over the size of the slides.
-const SMALLEST: f64 = 1e-8;
+const MIN_ROUNDING: f64 = 1e-8;
 /// Stages from the first rounding, the size of the slides, to the last.
 const STAGES: i32 = 5;
 /// First stage if a guess of the solution is given.
@@ -33,7 +33,7 @@ const BALANCED: f64 = 1e-9;
 
 /// Smallest gain of a Newton step (over a pad's friction times the size of the slides) that
 /// floating point can show.
-const LEAST_GAIN: f64 = 1e-23;
+const MIN_GAIN: f64 = 1e-23;
 
 /// A distance that counts as zero, mm.
 const STILL: f64 = 1e-12;
@@ -139,9 +139,9 @@ impl Pads {
             ),
             None => ([0.0; 3], [0.0; 4], 0),
         };
-        let mut answers = [None, guess.map(|_| (size * SMALLEST, x, z))];
+        let mut answers = [None, guess.map(|_| (size * MIN_ROUNDING, x, z))];
         for stage in first..=STAGES {
-            let eps = size * SMALLEST.powf(f64::from(stage) / f64::from(STAGES));
+            let eps = size * MIN_ROUNDING.powf(f64::from(stage) / f64::from(STAGES));
             let around = |x, z| self.expand(&scale.displacement(self, x, z), eps, &scale);
             let mut here = around(x, z);
             // The slide of a pad that holds shrinks with the rounding, so the solutions of two
@@ -164,7 +164,7 @@ impl Pads {
                 let dx = solve(here.hessian, here.gradient);
                 let dz = here.legs.map(|leg| leg.step(dx));
                 let slope = dot(dx, here.gradient) + here.gained();
-                if slope < LEAST_GAIN * size {
+                if slope < MIN_GAIN * size {
                     break;
                 }
                 let at = |share: f64| {

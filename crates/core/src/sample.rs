@@ -280,8 +280,8 @@ pub fn side_of(side: &kinematics::Slider, stroke_min: f64, stroke_max: f64) -> S
     let all = side.base + side.front + side.rear + side.offset.abs();
     let across = side.front + side.rear + side.offset.abs();
     let fits = |scale: &Scale| {
-        all.max(side.nominal + stroke_max) * per_mm(*scale) < slider::LONGEST
-            && across * per_mm(*scale) < slider::LONGEST_ARMS
+        all.max(side.nominal + stroke_max) * per_mm(*scale) < slider::MAX_STEPS
+            && across * per_mm(*scale) < slider::MAX_ARM_STEPS
     };
     let scale = (0..=14).rev().map(|bits| Scale { bits }).find(fits);
     let scale = scale.expect("lengths of a robot");

@@ -56,7 +56,7 @@ const HALF_EIGHTH: f64 = 0.41421356237309503;
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// Angle from which the reduction by [`ROUND`] is no longer exact.
-const FAR: f64 = 1e15;
+const MAX_REDUCED: f64 = 1e15;
 
 /// A polynomial by Horner's rule.
 #[inline(always)]
@@ -109,7 +109,7 @@ pub fn sin_cos_all<const N: usize>(degrees: [f64; N]) -> ([f64; N], [f64; N]) {
     let mut degrees = degrees;
     let mut far = false;
     for angle in &degrees {
-        far |= angle.abs() >= FAR;
+        far |= angle.abs() >= MAX_REDUCED;
     }
     if far {
         reduce(&mut degrees);

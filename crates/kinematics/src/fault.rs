@@ -1,4 +1,4 @@
-//! The reasons why a position does not exist, as the sentences that the user sees.
+//! The reasons why a position does not exist, as the messages that the user sees.
 
 use core::fmt;
 

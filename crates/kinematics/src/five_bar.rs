@@ -19,7 +19,7 @@ use crate::vector::Vector;
 
 /// Gap between the crank tips, mm, below which the end point is undefined: rounding alone
 /// moves it by more than 0.1 mm.
-const LEAST_GAP: f64 = 1e-12;
+const MIN_GAP: f64 = 1e-12;
 
 /// Link lengths of a five-bar in mm, all above 0. Its frame has the origin in the
 /// middle of the base, x from the left shaft to the right one, y away from the
@@ -223,7 +223,7 @@ impl FiveBar {
             Err(Fault::Apart { gap: d, reach })
         } else if d < least {
             Err(Fault::Nested { gap: d, least })
-        } else if d < LEAST_GAP {
+        } else if d < MIN_GAP {
             Err(Fault::Coincident)
         } else if !probe.is_finite() {
             Err(Fault::NotFinite)

@@ -1,4 +1,4 @@
-//! The limits of a safe pose, and the sentence for each violation.
+//! The limits of a safe pose, and the message for each violation.
 
 use core::fmt;
 

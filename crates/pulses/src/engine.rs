@@ -2,8 +2,8 @@
 
 use crate::cells::{Byte, Counter, Word};
 #[cfg(any(test, target_arch = "avr"))]
-use crate::timing::LEAST_WIDTH;
-use crate::timing::{LEAD, most_width};
+use crate::timing::MIN_WIDTH;
+use crate::timing::{LEAD, max_width};
 
 /// The pulses of `SERVOS` servos, made of the variables that [`engine!`](crate::engine)
 /// defines. `SIZE` is `SERVOS` or the power of two above it.
@@ -55,7 +55,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     const TICK_SLOT: u8 = SERVOS as u8;
     /// The count at which a slot without a pulse is closed. It is late, so that main has the
     /// longest time in the slot with the tick.
-    const CLOSE: u16 = most_width(SERVOS);
+    const CLOSE: u16 = max_width(SERVOS);
     /// The falling edge of a slot without one.
     #[doc(hidden)]
     pub const NO_PULSE: u16 = Self::CLOSE + LEAD as u16;
@@ -66,8 +66,8 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     /// They are taken over together before the first slot opens; a second call before that
     /// replaces the first, which is then never played: see [`Engine::is_taken`]. If none
     /// comes, the last ones repeat. A width of 0, and any that a slot has no room for,
-    /// gives no pulse: see [`LEAST_WIDTH`](crate::LEAST_WIDTH) and
-    /// [`most_width`](crate::most_width).
+    /// gives no pulse: see [`MIN_WIDTH`](crate::MIN_WIDTH) and
+    /// [`max_width`](crate::max_width).
     #[inline(always)]
     pub fn submit<W: Into<u16>>(&self, widths: [W; SERVOS]) {
         // Take back what has not been played. From here to the end the handler
@@ -115,7 +115,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         let servo = usize::from(slot) & (SIZE - 1);
         let width = self.frames[usize::from(self.playing.get() & 1)][servo].get();
         // Checked here, immediately before it is used.
-        let fits = LEAST_WIDTH <= width && width <= Self::CLOSE;
+        let fits = MIN_WIDTH <= width && width <= Self::CLOSE;
         (slot != Self::TICK_SLOT && fits).then_some((servo, width))
     }
 
@@ -256,7 +256,7 @@ mod tests {
     fn a_width_too_long_for_a_slot_makes_no_pulse() {
         let variables = Variables::<8>::of::<6>();
         let engine = variables.engine::<6>();
-        let most = most_width(6);
+        let most = max_width(6);
         engine.submit([0, 999, 1_000, most, most + 1, u16::MAX]);
         let masks = frame(&engine).map(|(_, mask, _)| mask);
         assert_eq!(masks[..7], [0, 0, 3, 4, 0, 0, 0]);

@@ -9,7 +9,7 @@ pub const CYCLES_PER_US: u16 = 16;
 
 /// The shortest pulse that can be made, cycles: 62.5 us at either end of a slot are for
 /// the two handlers and whatever they have to wait for.
-pub const LEAST_WIDTH: u16 = MARGIN;
+pub const MIN_WIDTH: u16 = MARGIN;
 
 const MARGIN: u16 = 1_000;
 
@@ -59,7 +59,7 @@ pub const fn frame_cycles(servos: usize) -> u32 {
 /// # Panics
 /// As [`slot_cycles`].
 #[must_use]
-pub const fn most_width(servos: usize) -> u16 {
+pub const fn max_width(servos: usize) -> u16 {
     slot_cycles(servos) - MARGIN
 }
 
@@ -82,7 +82,7 @@ mod tests {
     fn a_slot_has_room_for_2_4_ms_for_any_number_of_servos() {
         for servos in 1..=8 {
             assert!(
-                most_width(servos) >= 2_400 * CYCLES_PER_US,
+                max_width(servos) >= 2_400 * CYCLES_PER_US,
                 "{servos} servos"
             );
             // Every 25 ms at least, every 8 ms at most: analogue servos take both.

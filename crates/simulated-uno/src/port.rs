@@ -40,12 +40,12 @@ use crate::{FREQUENCY, Radio, State, Uno};
 const TICK: Duration = Duration::from_millis(1);
 /// The longest time that the chip catches up after this program was held up. A longer one
 /// could make a watchdog fire before the other program has run.
-const MOST_CAUGHT_UP: Duration = Duration::from_millis(20);
+const MAX_CATCH_UP: Duration = Duration::from_millis(20);
 /// The most bytes on their way to the chip; others wait in the pseudo terminal, as in
 /// the driver of a USB port.
-const MOST_UNSENT: usize = 128;
+const MAX_UNSENT_BYTES: usize = 128;
 /// The most bytes kept for a program that does not read. Later ones are lost.
-const MOST_UNREAD: usize = 1 << 16;
+const MAX_UNREAD_BYTES: usize = 1 << 16;
 
 /// A serial port of this machine with a simulated UNO behind it. The port exists until
 /// this is dropped.
@@ -154,8 +154,8 @@ impl Port {
             None => self.pty.baud()?,
         };
         uno.set_baud(baud);
-        let room = MOST_UNSENT.saturating_sub(uno.unsent());
-        let mut bytes = [0; MOST_UNSENT];
+        let room = MAX_UNSENT_BYTES.saturating_sub(uno.unsent());
+        let mut bytes = [0; MAX_UNSENT_BYTES];
         let read = self.pty.read(&mut bytes[..room])?;
         match &mut self.radio {
             Some(radio) => radio.write(&bytes[..read], uno.cycle()),
@@ -176,7 +176,7 @@ impl Port {
         // Checked again, since this program may have been held up meanwhile.
         if self.open && self.pty.is_open()? {
             self.unread.extend(arrived);
-            self.unread.truncate(MOST_UNREAD);
+            self.unread.truncate(MAX_UNREAD_BYTES);
             let written = self.pty.write(&self.unread)?;
             self.unread.drain(..written);
         }
@@ -188,7 +188,7 @@ impl Port {
         let now = Instant::now();
         let (then, before) = *self.anchor.get_or_insert((now, cycle));
         let due = before + cycles(now - then);
-        let most = cycle + cycles(MOST_CAUGHT_UP);
+        let most = cycle + cycles(MAX_CATCH_UP);
         if due > most {
             self.anchor = Some((now, most));
         }

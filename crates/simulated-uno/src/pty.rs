@@ -28,7 +28,7 @@ use rustix::termios::{OptionalActions, QueueSelector, tcflush, tcgetattr, tcseta
 /// The speed until a program sets another.
 const BAUD: u32 = 115_200;
 /// The longest time from the start of a program to its execution, on a busy machine.
-const MOST_BEFORE_EXECUTION: Duration = Duration::from_secs(10);
+const MAX_START_TIME: Duration = Duration::from_secs(10);
 
 /// The port's state, and its changes since the last look.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -206,7 +206,7 @@ fn is_open(ours: &File) -> io::Result<bool> {
 
 /// Waits for a condition for as long as the start of a program may take; false if it never holds.
 fn wait_until(mut condition: impl FnMut() -> io::Result<bool>) -> io::Result<bool> {
-    let end = Instant::now() + MOST_BEFORE_EXECUTION;
+    let end = Instant::now() + MAX_START_TIME;
     while !condition()? {
         if Instant::now() > end {
             return Ok(false);

@@ -14,7 +14,7 @@ const JUDGES: usize = 16;
 /// First seed of the robots of the comparison, which the search has not used.
 const FRESH: u64 = 1 << 40;
 /// Slowest servos that walk, deg/s.
-const SLOWEST: f64 = 10.0;
+const MIN_SERVO_SPEED: f64 = 10.0;
 
 /// The error for a gait that cannot be tuned.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -25,7 +25,7 @@ pub enum NoTuning {
     /// Servos so slow that the robot does not walk, or faster than its limits allow.
     #[error(
         "{rate}: from {least} to {most} deg/s, which is limits.gait_slew in robot.toml",
-        least = SLOWEST
+        least = MIN_SERVO_SPEED
     )]
     Rate {
         /// The speed of the servos that was asked for, deg/s.
@@ -142,7 +142,7 @@ fn allowed(robot: &Robot, gait: &CheckedGait, asked: Option<f64>) -> Result<f64,
         return Ok(gait.audit().peak.speed);
     };
     let most = robot.pace().gait_slew;
-    if (SLOWEST..=most).contains(&rate) {
+    if (MIN_SERVO_SPEED..=most).contains(&rate) {
         return Ok(rate);
     }
     Err(NoTuning::Rate { rate, most })

@@ -42,8 +42,8 @@ impl Activity {
     /// The activity of a scenario by its number: one in three is a drive.
     #[must_use]
     pub fn of(number: u64) -> Self {
-        let place = (number % 12) as usize;
-        Self::ALL.get(place).copied().unwrap_or(Self::Driving)
+        let index = (number % 12) as usize;
+        Self::ALL.get(index).copied().unwrap_or(Self::Driving)
     }
 }
 

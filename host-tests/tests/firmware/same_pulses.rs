@@ -39,10 +39,10 @@ impl Random {
 /// A random command: mostly gaits, sometimes another one.
 fn command(random: &mut Random, robot: &Robot) -> String {
     let servo = 1 + random.random_below(4);
-    let neutral = |place: usize| (robot.servos()[place].neutral * 100.0).round() as i64;
+    let neutral = |index: usize| (robot.servos()[index].neutral * 100.0).round() as i64;
     let near = |random: &mut Random, reach: i64| {
-        let angle = |place: usize| {
-            let angle = neutral(place);
+        let angle = |index: usize| {
+            let angle = neutral(index);
             random.hundredths(angle - reach, angle + reach)
         };
         let angles: Vec<String> = (0..4).map(angle).collect();

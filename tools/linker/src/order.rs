@@ -13,13 +13,13 @@ const REACH: u32 = 4096 - 96;
 
 /// The cost of a call out of reach, in bytes beyond the reach, which cost 1 each: they only show
 /// the search in which direction an order improves.
-const FAR: u32 = 16_384;
+const OUT_OF_REACH_COST: u32 = 16_384;
 
 /// The number of orders tried.
 const TRIES: u32 = 600_000;
 
 /// The additional cost with which an order is accepted at first; at the end it is 0.
-const WORSE: u32 = 4 * FAR;
+const WORSE: u32 = 4 * OUT_OF_REACH_COST;
 
 /// The seed of the search; any number would do.
 const SEED: u64 = 1;
@@ -85,7 +85,8 @@ impl Pieces {
     /// The cost of an order.
     fn cost(&self, order: &[usize]) -> u64 {
         let far = self.bytes_beyond_reach(order).filter(|beyond| *beyond > 0);
-        far.map(|beyond| u64::from(FAR + beyond)).sum()
+        far.map(|beyond| u64::from(OUT_OF_REACH_COST + beyond))
+            .sum()
     }
 
     /// The number of bytes by which each call is out of reach; 0 within reach.

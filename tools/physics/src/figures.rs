@@ -71,7 +71,7 @@ impl Answers {
         }
     }
 
-    /// The sentence for a difference beyond the allowed one.
+    /// The message for a difference beyond the allowed one.
     #[must_use]
     pub fn disagreement(&self, case: Case) -> Option<String> {
         let (off, turned) = self.mujoco.distance_to(&self.model?);

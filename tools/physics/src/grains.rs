@@ -85,12 +85,12 @@ pub fn model(robot: &Robot, gait: &CheckedGait, ratio: f64) -> Option<Displaceme
 /// If the robot does not have the gaits.
 pub fn measure(robot: &Robot) -> Result<Grains, MujocoError> {
     let assembly = Assembly::new(robot);
-    let name = |gait: &str, place: usize| format!("{gait}-{place}");
+    let name = |gait: &str, index: usize| format!("{gait}-{index}");
     let gaits = GAITS.map(|(name, _)| robot.gait(name).expect(name));
     let mut jobs = Jobs::new()?;
     let scenes = gaits.iter().flat_map(|gait| {
         let ratios = RATIOS.into_iter().enumerate();
-        ratios.map(|(place, ratio)| scene(name(gait.name(), place), &assembly, gait, ratio))
+        ratios.map(|(index, ratio)| scene(name(gait.name(), index), &assembly, gait, ratio))
     });
     jobs.add(&assembly, scenes.map(|scene| (Legs::Rigid, scene)))?;
     let by_mujoco = jobs.start()?.done()?;
@@ -98,9 +98,9 @@ pub fn measure(robot: &Robot) -> Result<Grains, MujocoError> {
         let answers = RATIOS
             .into_iter()
             .enumerate()
-            .map(|(place, ratio)| Answers {
+            .map(|(index, ratio)| Answers {
                 model: model(robot, gait, ratio),
-                mujoco: by_mujoco[&name(gait.name(), place)],
+                mujoco: by_mujoco[&name(gait.name(), index)],
             });
         (gait.name().to_owned(), answers.collect())
     });
@@ -119,7 +119,7 @@ fn scene(name: String, assembly: &Assembly, gait: &CheckedGait, ratio: f64) -> S
     }
 }
 
-/// The sentences for answers of MuJoCo that are too far from the model's.
+/// The messages for answers of MuJoCo that are too far from the model's.
 #[must_use]
 pub fn disagreements(grains: &Grains) -> Vec<String> {
     let (mm, share, deg) = BOUND;

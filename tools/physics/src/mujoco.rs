@@ -33,7 +33,7 @@ pub enum MujocoError {
     Trouble {
         /// Robot, gait and case.
         file: String,
-        /// The judge's sentence.
+        /// The judge's message.
         trouble: String,
     },
     /// A part without a surface.

@@ -155,7 +155,7 @@ impl Variant {
         further.map_or(ALLOWED, |(_, share)| *share)
     }
 
-    /// The sentence for a gait in which the model differs from MuJoCo too much.
+    /// The message for a gait in which the model differs from MuJoCo too much.
     #[must_use]
     pub fn disagreement(&self, gait: &str, answers: &Answers) -> Option<String> {
         let (_, part) = GAITS.into_iter().find(|(name, _)| *name == gait)?;

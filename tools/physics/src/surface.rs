@@ -18,7 +18,7 @@ use crate::table::Part;
 pub const GAITS: [&str; 6] = ["walk", "trot", "crawl", "back", "arc-left", "left"];
 /// The least share of its distance that a gait, unless it is a turn, must keep on a surface
 /// that [`Surface::is_climbed`].
-pub const LEAST_KEPT: f64 = 0.85;
+pub const MIN_KEPT: f64 = 0.85;
 
 /// A kind of floor, or a fault of a foot on a level one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -108,11 +108,11 @@ const AHEAD: f64 = 25.0;
 
 fn edge(robot: &Robot, direction: f64, high: f64) -> Block {
     /// The length of what lies behind the edge, mm.
-    const LONG: f64 = 1000.0;
+    const STEP_LENGTH: f64 = 1000.0;
     let [forward, _] = robot.ground().feet.at([0.0; 4])[0];
     Block {
-        at: [0.0, direction * (forward.abs() + AHEAD + LONG / 2.0)],
-        size: [LONG, LONG, high],
+        at: [0.0, direction * (forward.abs() + AHEAD + STEP_LENGTH / 2.0)],
+        size: [STEP_LENGTH, STEP_LENGTH, high],
     }
 }
 
@@ -191,7 +191,7 @@ pub fn level(figures: &Figures, gait: &str) -> Displacement {
     answers.expect("figures.json has it").mujoco
 }
 
-/// The sentence for a gait that loses more of its distance than [`LEAST_KEPT`] allows.
+/// The message for a gait that loses more of its distance than [`MIN_KEPT`] allows.
 #[must_use]
 pub fn excess_loss(
     surface: Surface,
@@ -199,7 +199,7 @@ pub fn excess_loss(
     displacement: Displacement,
 ) -> Option<String> {
     let [was, is] = [level, displacement].map(|displacement| displacement.0[0]);
-    let fails = surface.is_climbed() && was.abs() > 1.0 && is / was < LEAST_KEPT;
+    let fails = surface.is_climbed() && was.abs() > 1.0 && is / was < MIN_KEPT;
     fails.then(|| format!("{is:.1} mm a cycle of {was:.1} on a level floor"))
 }
 

@@ -12,7 +12,7 @@ use serde::Serialize;
 /// A refusal: the reason why no parts can be made of a robot.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Refused {
-    /// The reason, as a sentence.
+    /// The reason, as a message.
     pub refused: String,
 }
 

@@ -17,9 +17,9 @@ const SAMPLES: usize = 256;
 /// Points of the line that is shown.
 const SHOWN: usize = 128;
 /// The smallest amplitude of a harmonic that is written, mm.
-const LEAST: f64 = 0.05;
+const MIN_AMPLITUDE: f64 = 0.05;
 /// Most harmonics that a robot.toml takes.
-const MOST_TERMS: usize = 16;
+const MAX_TERMS: usize = 16;
 
 /// A gait along a line that was drawn.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -52,7 +52,7 @@ impl DrawnGait {
         };
         let points: Vec<[f64; 2]> = self.points.iter().map(scaled).collect();
         let even = evenly(&points)?;
-        let terms = self.terms.clamp(1, MOST_TERMS);
+        let terms = self.terms.clamp(1, MAX_TERMS);
         let [(cx, x), (cy, y)] = [0, 1].map(|of| {
             let values: Vec<f64> = even.iter().map(|point| point[of]).collect();
             harmonics(&values, terms)
@@ -66,7 +66,7 @@ impl DrawnGait {
     pub fn table(&self, robot: &Robot) -> Option<String> {
         let path = self.smoothed(robot)?;
         let series = |terms: &[Harmonic]| {
-            let kept = terms.iter().filter(|term| term.amplitude >= LEAST);
+            let kept = terms.iter().filter(|term| term.amplitude >= MIN_AMPLITUDE);
             let text = |Harmonic {
                             k,
                             amplitude,

@@ -31,7 +31,7 @@ const CYCLES_PER_US: f64 = 16.0;
 pub struct Frame {
     /// The robot at the pose of its servos; none if a loop does not close.
     scene: Option<Scene>,
-    /// The sentence for the loop that does not close.
+    /// The message for the loop that does not close.
     fault: Option<String>,
     /// Place of the body.
     place: Place,
@@ -176,7 +176,7 @@ impl Page {
         let from = twin.robot().sweeps(self.targets);
         let to = twin.robot().sweeps(angles);
         let neutral: [f64; 4] = twin.robot().neutral().into();
-        let frames = frames.clamp(1, MOST_FRAMES);
+        let frames = frames.clamp(1, MAX_FRAMES);
         let mut slides = [0.0; 4];
         let mut part = |n: u32| {
             let share = f64::from(n) / f64::from(frames);
@@ -305,7 +305,7 @@ impl Page {
 }
 
 /// Most frames between two poses; after a longer pause the motion in between is unknown.
-const MOST_FRAMES: u32 = 50;
+const MAX_FRAMES: u32 = 50;
 
 fn frame(twin: &Twin, state: &State, slides: [f64; 4]) -> Frame {
     let scene = Scene::of(twin);

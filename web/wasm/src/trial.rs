@@ -13,9 +13,9 @@ use crate::drawn::DrawnGait;
 use crate::refused::Refused;
 
 /// The smallest gait that is offered: tenths of a deg, or hundredths of the drawn size.
-const LEAST: i64 = 5;
+const MIN_SIZE: i64 = 5;
 /// The longest period that is offered, in hundredths of a second.
-const LONGEST: i64 = 1000;
+const MAX_PERIOD: i64 = 1000;
 
 /// A gait that is being made.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -123,8 +123,8 @@ impl EditedGait {
                 }
             })
         };
-        let size = nearest((size * steps).ceil() as i64 - 1, LEAST, resized);
-        let period = nearest((period * 100.0).floor() as i64 + 1, LONGEST, slower);
+        let size = nearest((size * steps).ceil() as i64 - 1, MIN_SIZE, resized);
+        let period = nearest((period * 100.0).floor() as i64 + 1, MAX_PERIOD, slower);
         let instead = |what, value: Option<i64>, steps: f64| {
             value.map(|value| Alternative {
                 what,

@@ -18,7 +18,7 @@ const MORE_AFTER_COMMAND: i8 = 28;
 
 /// Length of the shortest command that is obeyed at a rate that has carried none, bytes. Some `pose`
 /// lines at 57 600 baud read as `cal` at 9600.
-const SHORTEST: usize = 4;
+const MIN_COMMAND_BYTES: usize = 4;
 
 /// The present rate, and the wrong bytes at it.
 #[derive(Clone, Copy, Debug)]
@@ -54,7 +54,7 @@ impl Finder {
 
     /// Takes a line of this length that is a command; returns false if it may be a misread one.
     pub fn note_command(&mut self, length: usize) -> bool {
-        if self.is_guess && length < SHORTEST {
+        if self.is_guess && length < MIN_COMMAND_BYTES {
             return false;
         }
         self.is_guess = false;

@@ -6,14 +6,14 @@
 use heapless::Vec;
 
 /// The longest line, in bytes without the line end.
-pub const LONGEST: usize = 63;
+pub const MAX_BYTES: usize = 63;
 
 /// The result of a line end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ended {
     /// A line, to be read with [`Line::text`].
     Line,
-    /// A line that was longer than [`LONGEST`]; all of it is dropped.
+    /// A line that was longer than [`MAX_BYTES`]; all of it is dropped.
     TooLong,
     /// A line with a garbled byte: its other bytes may form a command, but not the one that
     /// was sent.
@@ -27,7 +27,7 @@ pub const GARBLED: u8 = 0xff;
 /// The line that is being received.
 #[derive(Clone, Debug, Default)]
 pub struct Line {
-    bytes: Vec<u8, LONGEST>,
+    bytes: Vec<u8, MAX_BYTES>,
     overlong: bool,
     garbled: bool,
     ended: bool,
@@ -177,9 +177,9 @@ mod tests {
 
     #[test]
     fn a_line_with_a_garbled_byte_anywhere_is_dropped_despite_backspaces() {
-        for place in 0..8 {
+        for index in 0..8 {
             let mut bytes = b"speed 90".to_vec();
-            bytes[place] = GARBLED;
+            bytes[index] = GARBLED;
             for back in ["", "\x08", "\x08\x08\x08\x08\x08\x08\x08\x08\x08speed 90"] {
                 let mut line = Line::new();
                 let sent = [&bytes, back.as_bytes(), b"\rstop\r"].concat();

@@ -116,8 +116,8 @@ impl Word {
         let mut number = 0;
         // The rest of `written` after a word's beginning, if it begins so.
         let mut left = Some(written);
-        for place in 0..LIST.len() {
-            let character = CHARACTERS.at(place).load();
+        for index in 0..LIST.len() {
+            let character = CHARACTERS.at(index).load();
             left = match left {
                 Some([]) if character == BAR => return Some(WORDS.at(number).load()),
                 _ if character == BAR => {
@@ -141,12 +141,12 @@ impl Word {
     pub(crate) fn print_all<const YIELDING: usize>(out: &mut impl Output, robot: &Robot) {
         let mut number = 0;
         let mut is_printed = true;
-        for place in 0..LIST.len() - 1 {
-            let character = CHARACTERS.at(place).load();
+        for index in 0..LIST.len() - 1 {
+            let character = CHARACTERS.at(index).load();
             // Costs no instruction as long as no word yields.
             if YIELDING < Self::ALL.len() && character == BAR {
                 number += 1;
-                is_printed = number < YIELDING || !is_gait(place + 1, robot);
+                is_printed = number < YIELDING || !is_gait(index + 1, robot);
             }
             if is_printed {
                 out.byte(character);
@@ -155,10 +155,10 @@ impl Word {
     }
 }
 
-/// True if the word that begins at `place` is the name of a gait.
-fn is_gait(place: usize, robot: &Robot) -> bool {
+/// True if the word that begins at `index` is the name of a gait.
+fn is_gait(index: usize, robot: &Robot) -> bool {
     GaitId::all(robot.gait_count()).any(|id| {
-        let letters = (place..LIST.len()).map(|place| CHARACTERS.at(place).load());
+        let letters = (index..LIST.len()).map(|index| CHARACTERS.at(index).load());
         letters
             .take_while(|letter| *letter != BAR)
             .eq(robot.name(id))
@@ -200,7 +200,7 @@ mod tests {
     }
 
     /// All words, without those that are to be left out.
-    fn listed<const YIELDING: usize>(robot: &Robot, left_out: &[Word]) {
+    fn assert_lists_all_but<const YIELDING: usize>(robot: &Robot, left_out: &[Word]) {
         let words = Word::ALL.iter().filter(|word| !left_out.contains(word));
         let words: Vec<&str> = words.map(|word| word.text()).collect();
         let mut list = String::new();
@@ -211,16 +211,16 @@ mod tests {
     #[test]
     fn a_word_that_yields_is_left_out_where_a_gait_has_its_whole_name() {
         let robot = Sample::paper();
-        listed::<RESERVED>(&robot, &[]);
-        listed::<1>(&robot, &[]);
+        assert_lists_all_but::<RESERVED>(&robot, &[]);
+        assert_lists_all_but::<1>(&robot, &[]);
         let mut robot = robot;
         for name in ["stop", "trim", "deadman", "sav", "loads", "boot on"] {
             robot = robot.with_gait(name);
         }
         let all = [Word::Stop, Word::Trim, Word::Deadman];
-        listed::<RESERVED>(&robot, &[]);
-        listed::<1>(&robot, &all);
-        listed::<3>(&robot, &all[1..]);
-        listed::<9>(&robot, &all[2..]);
+        assert_lists_all_but::<RESERVED>(&robot, &[]);
+        assert_lists_all_but::<1>(&robot, &all);
+        assert_lists_all_but::<3>(&robot, &all[1..]);
+        assert_lists_all_but::<9>(&robot, &all[2..]);
     }
 }

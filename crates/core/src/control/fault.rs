@@ -132,10 +132,10 @@ mod tests {
 
     #[test]
     fn a_fault_flashes_as_often_as_its_code_says_and_pauses() {
-        for (place, fault) in ALL.into_iter().enumerate() {
-            assert_eq!(usize::from(fault.code()), place + 1);
+        for (index, fault) in ALL.into_iter().enumerate() {
+            assert_eq!(usize::from(fault.code()), index + 1);
             let mut led = Led::default();
-            runs(&mut led, None, 13 * (place + 1));
+            runs(&mut led, None, 13 * (index + 1));
             let runs = runs(&mut led, Some(fault), 1000);
             // Cut into patterns by the pauses.
             let mut flashes = 0;
@@ -152,7 +152,7 @@ mod tests {
                 }
             }
             assert!(patterns.len() >= 5, "{fault:?} {runs:?}");
-            assert!(patterns.iter().all(|n| *n == place + 1), "{fault:?}");
+            assert!(patterns.iter().all(|n| *n == index + 1), "{fault:?}");
         }
     }
 

@@ -91,8 +91,8 @@ const NOTICES: u8 = 7;
 
 impl Notice {
     /// The notice at a place of the order in which they are printed.
-    const fn at(place: u8) -> Self {
-        match place {
+    const fn at(index: u8) -> Self {
+        match index {
             0 => Self::Memory,
             1 => Self::NotKept,
             2 => Self::Fault,
@@ -265,12 +265,12 @@ impl Safety {
 
     /// The notice to print next, if any.
     pub const fn notice(&self) -> Option<Notice> {
-        let mut place = 0;
-        while place < NOTICES {
-            if self.notices & (1 << place) != 0 {
-                return Some(Notice::at(place));
+        let mut index = 0;
+        while index < NOTICES {
+            if self.notices & (1 << index) != 0 {
+                return Some(Notice::at(index));
             }
-            place += 1;
+            index += 1;
         }
         None
     }

@@ -99,12 +99,12 @@ impl Voltage {
             return 0;
         }
         let step = mul_unsigned(self.counts, 10) as u16;
-        quotient(self.product, step).min(MOST_HUNDREDTHS)
+        quotient(self.product, step).min(MAX_HUNDREDTHS)
     }
 }
 
 /// No reading of a supply that the chip survives gives more.
-const MOST_HUNDREDTHS: u16 = (1 << 13) - 1;
+const MAX_HUNDREDTHS: u16 = (1 << 13) - 1;
 
 impl Thresholds {
     /// The level of a voltage, with thresholds raised by `above`, mV.

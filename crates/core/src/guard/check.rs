@@ -28,8 +28,8 @@ const fn is_free(pin: u8) -> bool {
     pin.wrapping_sub(2) < 18 && pin != 13
 }
 
-/// The place of a field of the numbers, bytes from the section's beginning.
-macro_rules! place {
+/// The offset of a field of the numbers, bytes from the section's beginning.
+macro_rules! offset {
     ($($field:tt)*) => {
         NUMBERS + offset_of!(Numbers, $($field)*) as u16
     };
@@ -58,7 +58,7 @@ impl<'a> Robot<'a> {
         }
     }
 
-    /// Reads the two bytes at a place.
+    /// Reads the two bytes at an offset.
     #[inline(never)]
     fn word(&self, at: u16) -> u16 {
         self.section().read(at)
@@ -67,9 +67,9 @@ impl<'a> Robot<'a> {
     /// True if all pins are free ones of the board, each used once, and the rail's can measure.
     #[inline(always)]
     fn has_pins(&self) -> bool {
-        let rail = self.word(place!(rail)) as u8;
-        let mut servo = place!(pins);
-        while servo < place!(pins) + 4 {
+        let rail = self.word(offset!(rail)) as u8;
+        let mut servo = offset!(pins);
+        while servo < offset!(pins) + 4 {
             let pin = self.word(servo) as u8;
             if !is_free(pin) || self.users(pin) != 1 {
                 return false;
@@ -82,9 +82,9 @@ impl<'a> Robot<'a> {
     /// The number of servos, and the rail, that a pin has.
     #[inline(never)]
     fn users(&self, pin: u8) -> u8 {
-        let mut users = u8::from(self.word(place!(rail)) as u8 == pin);
-        let mut servo = place!(pins);
-        while servo < place!(pins) + 4 {
+        let mut users = u8::from(self.word(offset!(rail)) as u8 == pin);
+        let mut servo = offset!(pins);
+        while servo < offset!(pins) + 4 {
             users += u8::from(self.word(servo) as u8 == pin);
             servo += 1;
         }

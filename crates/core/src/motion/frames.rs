@@ -57,10 +57,10 @@ mod resume;
 const WAKE_APART: u8 = 5;
 
 /// The gaits' own pace, percent.
-const FULL: u8 = 100;
+const FULL_PERCENT: u8 = 100;
 
 /// The most that a weak supply allows, percent of the gaits' own pace.
-const SLOW: u8 = 50;
+const SLOW_PERCENT: u8 = 50;
 
 /// Frames from the first pulse until all four are awake and motion may begin.
 pub const AWAKE: u8 = 4 * WAKE_APART;
@@ -79,7 +79,7 @@ pub struct Motion {
     ended: bool,
     /// Percent of the gaits' own pace.
     speed: u8,
-    /// True while the supply limits the pace to [`SLOW`].
+    /// True while the supply limits the pace to [`SLOW_PERCENT`].
     slow: bool,
     /// True while the pulses move to a new calibration's widths.
     settling: bool,
@@ -93,7 +93,7 @@ impl Motion {
     /// The robot at power-on: waking, then standing.
     pub fn new(robot: Robot<'static>) -> Self {
         let mut motion = Self::unstarted(robot);
-        motion.speed = FULL;
+        motion.speed = FULL_PERCENT;
         motion.begin();
         for servo in Servo::all() {
             motion.calibrate(servo, motion.robot.servo(servo));
@@ -130,7 +130,7 @@ impl Motion {
     /// # Errors
     /// The reason why the flash holds no usable robot.
     pub fn take_robot(&mut self, flash: Region<'static>) -> Result<(), Damage> {
-        self.speed = FULL;
+        self.speed = FULL_PERCENT;
         self.stance.resting = true;
         self.robot = Robot::open(flash)?;
         Ok(())
@@ -275,11 +275,11 @@ impl Motion {
         let per_frame = self.robot.slew().per_frame;
         let mut under_way = false;
         let mut wakes_at = WAKE_APART;
-        for (place, pulse) in pulses.0.iter_mut().enumerate() {
-            let servo = &self.calibration[place];
-            let sent = &mut self.stance.sent.0[place];
+        for (index, pulse) in pulses.0.iter_mut().enumerate() {
+            let servo = &self.calibration[index];
+            let sent = &mut self.stance.sent.0[index];
             let sleeps = self.stance.awake < wakes_at;
-            let mut width = servo.width(self.stance.pose.0[place]);
+            let mut width = servo.width(self.stance.pose.0[index]);
             if self.settling && sent.0 != 0 {
                 // A servo's first pulse repeats its last one, also that of the previous
                 // run: a reset may have come while it was settling.
@@ -398,7 +398,7 @@ impl Motion {
                 gait, phase, pace, ..
             } => {
                 let percent = if self.slow {
-                    self.speed.min(SLOW)
+                    self.speed.min(SLOW_PERCENT)
                 } else {
                     self.speed
                 };

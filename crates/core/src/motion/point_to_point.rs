@@ -11,7 +11,7 @@ use crate::numbers::slew::Slew;
 
 /// The shortest move, in frames: even a small correction is not a jerk. With
 /// eight, no move changes a servo's speed faster than the gaits do.
-const SHORTEST: u16 = 8;
+const MIN_FRAMES: u16 = 8;
 
 /// The full duration of a move, Q15.
 const END: u16 = 1 << 15;
@@ -35,7 +35,7 @@ impl PointToPoint {
         Self {
             from: *from,
             to: *to,
-            step: END / frames.max(SHORTEST),
+            step: END / frames.max(MIN_FRAMES),
             elapsed: 0,
         }
     }

@@ -13,7 +13,7 @@ use lizard_avr::{Flash, flash};
 use crate::numbers::units::Sweep;
 
 /// The most rows that a map may have.
-pub const MOST_ROWS: usize = 64;
+pub const MAX_ROWS: usize = 64;
 
 /// Binary logarithm of the steps of a sweep (1/65536 turn) that a row is wide: 1.4 deg.
 pub const ROW_BITS: u32 = 8;
@@ -97,8 +97,8 @@ mod tests {
             row
         };
         let column = f64::from(column).div_euclid(128.0) as i32;
-        rows.iter().enumerate().any(|(place, [low, high])| {
-            i32::from(first) + place as i32 == row
+        rows.iter().enumerate().any(|(index, [low, high])| {
+            i32::from(first) + index as i32 == row
                 && (i32::from(*low)..=i32::from(*high)).contains(&column)
         })
     }
@@ -152,7 +152,7 @@ mod tests {
         for first in [-3, 0, -128, 122, 125] {
             agrees(first, &rows);
         }
-        let most: Vec<[i8; 2]> = (0..MOST_ROWS as i8).map(|n| [n - 40, n]).collect();
+        let most: Vec<[i8; 2]> = (0..MAX_ROWS as i8).map(|n| [n - 40, n]).collect();
         agrees(-32, &most);
     }
 

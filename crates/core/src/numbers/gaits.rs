@@ -6,13 +6,13 @@ use lizard_avr::Flash;
 pub const SAMPLES: usize = 64;
 
 /// The longest name of a gait: with it, `status` still is one line of the console.
-pub const LONGEST_NAME: usize = 48;
+pub const MAX_NAME_BYTES: usize = 48;
 
 /// The most gaits that a robot may have: a byte numbers them.
-pub const MOST_GAITS: usize = 255;
+pub const MAX_GAITS: usize = 255;
 
 /// The most waveforms that gaits may share: a byte numbers them.
-pub const MOST_WAVES: usize = 255;
+pub const MAX_WAVES: usize = 255;
 
 /// Samples over a cycle, 1/65536 turn at a gain of 1.
 pub type Wave = [i16; SAMPLES];
@@ -32,7 +32,7 @@ impl<'a> Name<'a> {
         Self {
             names,
             at: start,
-            left: length.min(LONGEST_NAME as u16) as u8,
+            left: length.min(MAX_NAME_BYTES as u16) as u8,
         }
     }
 
@@ -80,7 +80,7 @@ lizard_avr::plain! {
         pub channels: [Channel; 4],
         /// The place of its name's first byte among the names of its robot.
         pub name_start: u16,
-        /// The name's length, at most [`LONGEST_NAME`].
+        /// The name's length, at most [`MAX_NAME_BYTES`].
         pub name_length: u16,
     }
 }
@@ -175,8 +175,8 @@ impl GaitId {
     }
 
     /// The gait at a place.
-    pub const fn at(place: u8) -> Self {
-        Self(place)
+    pub const fn at(index: u8) -> Self {
+        Self(index)
     }
 
     /// The gait's place.
@@ -232,12 +232,12 @@ mod tests {
         let ids: Vec<GaitId> = GaitId::all(robot.gait_count()).collect();
         assert_eq!(ids.len(), GAITS.len());
         assert_eq!(ids[0], GaitId::STAND);
-        for (place, id) in ids.iter().enumerate() {
-            assert_eq!(id.index(), place);
-            assert_eq!(id.next(robot.gait_count()), ids.get(place + 1).copied());
+        for (index, id) in ids.iter().enumerate() {
+            assert_eq!(id.index(), index);
+            assert_eq!(id.next(robot.gait_count()), ids.get(index + 1).copied());
             let name = robot.name(*id);
-            assert_eq!(usize::from(name.length()), GAITS[place].len());
-            assert!(name.eq(GAITS[place].bytes()));
+            assert_eq!(usize::from(name.length()), GAITS[index].len());
+            assert!(name.eq(GAITS[index].bytes()));
         }
     }
 }

@@ -42,8 +42,8 @@ impl Servo {
     }
 
     /// The servo at a place of an array of four; past the end, the last one.
-    pub const fn at(place: usize) -> Self {
-        match place {
+    pub const fn at(index: usize) -> Self {
+        match index {
             0 => Self::A1,
             1 => Self::A2,
             2 => Self::A3,
@@ -104,8 +104,8 @@ mod tests {
 
     #[test]
     fn a_servo_is_at_its_place_and_the_last_one_past_the_end() {
-        for place in 0..4 {
-            assert_eq!(Servo::at(place).index(), place);
+        for index in 0..4 {
+            assert_eq!(Servo::at(index).index(), index);
         }
         assert_eq!([4, 255].map(Servo::at), [Servo::A4; 2]);
     }

@@ -83,7 +83,7 @@ impl<'a> Robot<'a> {
     pub fn label(&self) -> impl Iterator<Item = u8> + use<'a> {
         let section = self.section;
         let name = offset_of!(Header, name) as u16;
-        (name..name + section::LONGEST_NAME as u16)
+        (name..name + section::MAX_NAME_BYTES as u16)
             .map(move |at| section.read(at))
             .take_while(|byte| *byte != 0)
     }

@@ -54,7 +54,7 @@ pub const MAGIC: u32 = u32::from_le_bytes(*b"LZRD");
 pub use lizard_avr::{SPACE, START};
 
 /// The longest name of a robot.
-pub const LONGEST_NAME: usize = 18;
+pub const MAX_NAME_BYTES: usize = 18;
 
 lizard_avr::plain! {
     /// The first part of a section.
@@ -69,7 +69,7 @@ lizard_avr::plain! {
         /// [`Checksum`] of all bytes behind it.
         pub crc: u16,
         /// The robot's name, filled up with zeros.
-        pub name: [u8; LONGEST_NAME],
+        pub name: [u8; MAX_NAME_BYTES],
         /// The hash by which robots are told apart: CRC-32 of all but header and maps.
         pub hash: u32,
         /// The hash by which saved settings are matched with servos.

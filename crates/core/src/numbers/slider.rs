@@ -6,11 +6,11 @@ use crate::numbers::units::Scale;
 
 /// The longest that a side may be, in steps: the chassis, both arms and the offset
 /// together; and the slider.
-pub const LONGEST: f64 = 255.0 * 256.0;
+pub const MAX_STEPS: f64 = 255.0 * 256.0;
 
 /// The longest that both arms and the offset may be together, in steps: what they
 /// add up to has a sign.
-pub const LONGEST_ARMS: f64 = 127.0 * 256.0;
+pub const MAX_ARM_STEPS: f64 = 127.0 * 256.0;
 
 lizard_avr::plain! {
     /// One side of the body, lengths in steps of `scale`.

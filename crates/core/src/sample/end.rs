@@ -67,9 +67,9 @@ impl Loop {
         let scale = (0..=14)
             .rev()
             .map(|bits| Scale { bits })
-            .find(|scale| longest * per_mm(*scale) < bars::LONGEST)?;
+            .find(|scale| longest * per_mm(*scale) < bars::MAX_STEPS)?;
         let [a, b] = couplers.map(|mm| steps(mm, scale) as i16);
-        if a.min(b) < bars::SHORTEST_COUPLER {
+        if a.min(b) < bars::MIN_COUPLER {
             return None;
         }
         Some(Self {

@@ -126,8 +126,8 @@ impl Whole {
                     "part {name} has a different robot from another part"
                 ));
             }
-            let place = share.part.number as usize - 1;
-            if std::mem::replace(&mut seen[place], true) {
+            let index = share.part.number as usize - 1;
+            if std::mem::replace(&mut seen[index], true) {
                 return refused(format!("part {name} is given twice"));
             }
             whole.found.extend(share.found);

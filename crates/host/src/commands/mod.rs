@@ -210,7 +210,7 @@ pub fn run(words: Vec<OsString>) -> Result<(), Failure> {
     }
 }
 
-/// Runs a command line, writes the sentence of its failure, and returns the exit code.
+/// Runs a command line, writes the message of its failure, and returns the exit code.
 #[must_use]
 pub fn run_and_report(words: Vec<OsString>) -> u8 {
     match run(words) {

@@ -34,7 +34,7 @@ struct Mechanism {
     joints: Vec<Joint>,
     /// The driven links.
     driven: Vec<usize>,
-    /// The sentence for each group of links that moves although the driven ones are locked.
+    /// The message for each group of links that moves although the driven ones are locked.
     parts: &'static [(&'static [usize], &'static str)],
 }
 

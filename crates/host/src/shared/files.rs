@@ -31,11 +31,11 @@ pub fn note_input(path: &Path) -> &Path {
 /// # Errors
 /// It cannot be read, is not text, or does not end within 256 MiB, as a device may not.
 pub fn read_text(path: &Path) -> Result<String, Failure> {
-    const LONGEST: u64 = 256 << 20;
+    const MAX_BYTES: u64 = 256 << 20;
     let mut text = String::new();
     let read = File::open(note_input(path)).and_then(|file| {
-        match file.take(LONGEST + 1).read_to_string(&mut text)? as u64 {
-            0..=LONGEST => Ok(()),
+        match file.take(MAX_BYTES + 1).read_to_string(&mut text)? as u64 {
+            0..=MAX_BYTES => Ok(()),
             _ => Err(io::Error::other("it is longer than 256 MiB")),
         }
     });
@@ -101,7 +101,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     done.map_err(|error| write_failure(path, &error))
 }
 
-/// The sentence for a path that cannot be written.
+/// The message for a path that cannot be written.
 pub fn write_failure(path: &Path, error: &io::Error) -> Failure {
     let why = error.to_string();
     // tempfile adds the name of the temporary file, which means nothing to a user.

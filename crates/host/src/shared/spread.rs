@@ -19,7 +19,7 @@ use crate::shared::json;
 use crate::{Failure, RobotFile};
 
 /// The largest number of parts; no queue has a use for more.
-const MOST: u32 = 1_000_000;
+const MAX_PARTS: u32 = 1_000_000;
 
 /// One of several parts of a computation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -35,12 +35,12 @@ impl FromStr for Part {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("it must be as 2/8, from 1/8 to 8/8, of at most {MOST}");
+        let wrong = || format!("it must be as 2/8, from 1/8 to 8/8, of at most {MAX_PARTS}");
         let (number, of) = text.split_once('/').ok_or_else(wrong)?;
         let (Ok(number), Ok(of)) = (number.parse(), of.parse()) else {
             return Err(wrong());
         };
-        if (1..=MOST).contains(&of) && (1..=of).contains(&number) {
+        if (1..=MAX_PARTS).contains(&of) && (1..=of).contains(&number) {
             Ok(Self { number, of })
         } else {
             Err(wrong())
@@ -88,8 +88,8 @@ impl Part {
     ) -> Result<(), Failure> {
         let robot = robot.text()?;
         let mut found = BTreeMap::new();
-        for place in (0..pieces).filter(|place| self.has(*place)) {
-            found.insert(place, serde_json::to_value(one(place))?);
+        for index in (0..pieces).filter(|index| self.has(*index)) {
+            found.insert(index, serde_json::to_value(one(index))?);
         }
         let share = PartOutput {
             lizard: env!("CARGO_PKG_VERSION").to_owned(),
@@ -165,7 +165,7 @@ impl Spread {
             return Ok(None);
         };
         let values = merged.iter().zip(0..);
-        if merged.len() != count || values.clone().any(|((place, _), at)| *place != at) {
+        if merged.len() != count || values.clone().any(|((index, _), at)| *index != at) {
             return Err(other_pieces());
         }
         let of = |((_, value), _): ((&usize, &Value), usize)| T::deserialize(value);

@@ -259,7 +259,7 @@ fn of_a_board_that_falls_silent_the_lines_that_it_did_not_take_are_counted() {
 }
 
 #[test]
-fn wrong_input_is_a_sentence_and_starts_nothing() {
+fn wrong_input_is_a_message_and_starts_nothing() {
     let folder = tempfile::tempdir().expect("a folder");
     let here = folder.path();
     fs::write(here.join("no.toml"), "trim: 5\n").expect("it is written");

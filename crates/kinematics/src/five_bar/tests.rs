@@ -164,7 +164,7 @@ fn the_solver_works_where_the_papers_a_vanishes() {
 
 #[test]
 fn unreachable_points_and_bad_numbers_say_why() {
-    for (x, y, sentence) in [
+    for (x, y, message) in [
         (
             0.0,
             90.0,
@@ -178,7 +178,7 @@ fn unreachable_points_and_bad_numbers_say_why() {
         (f64::NAN, 5.0, "a value is not a finite number"),
     ] {
         let refused = HEAD.inverse(Vector::new(x, y)).unwrap_err();
-        assert_eq!(refused.to_string(), sentence);
+        assert_eq!(refused.to_string(), message);
     }
     let short = FiveBar::new([20.0, 30.0, 10.0, 15.0, 30.0]);
     assert_eq!(

@@ -128,10 +128,10 @@ mod tests {
     fn each_body_comes_once_and_after_its_parent() {
         for (slotted, play) in [(false, false), (true, false), (false, true), (true, true)] {
             let all = Node::all(slotted, play);
-            for (place, node) in all.iter().enumerate() {
-                assert!(!all[..place].contains(node), "{node:?}");
+            for (index, node) in all.iter().enumerate() {
+                assert!(!all[..index].contains(node), "{node:?}");
                 match node.parent(play) {
-                    Some(parent) => assert!(all[..place].contains(&parent), "{node:?}"),
+                    Some(parent) => assert!(all[..index].contains(&parent), "{node:?}"),
                     None => assert_eq!(*node, Node::Of(Mount::Chassis)),
                 }
             }

@@ -19,7 +19,7 @@ pub struct SpringCost {
 }
 
 /// Smallest movement of a cycle that counts: mm ahead, deg of turn.
-const LEAST_MOVEMENT: (f64, f64) = (1.0, 0.5);
+const MIN_MOVEMENT: (f64, f64) = (1.0, 0.5);
 
 impl SpringCost {
     /// Compares a gait on this ground with the same gait on rigid legs; none if legs do not lag.
@@ -35,8 +35,8 @@ impl SpringCost {
                 .filter(|rigid| rigid.abs() > least)
                 .map(|rigid| lagging / rigid)
         };
-        let ahead = part(walked.travel.forward, movement.forward, LEAST_MOVEMENT.0);
-        let turn = part(walked.travel.turn, movement.turn, LEAST_MOVEMENT.1);
+        let ahead = part(walked.travel.forward, movement.forward, MIN_MOVEMENT.0);
+        let turn = part(walked.travel.turn, movement.turn, MIN_MOVEMENT.1);
         Some(Self {
             movement: movement.keep_known(walked.travel),
             lag: walked.lag,

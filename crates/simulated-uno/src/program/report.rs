@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US, Edge, Pin, SerialByte, State, Uno, pulses};
 
 /// The longest line that waits for its end; longer ones are cut into pieces.
-const LONGEST: usize = 200;
+const MAX_LINE_BYTES: usize = 200;
 
 /// The serial text, line by line.
 #[derive(Default)]
@@ -24,7 +24,7 @@ impl Text {
             if byte.byte != b'\n' {
                 self.line.push(byte.byte);
             }
-            if byte.byte == b'\n' || self.line.len() == LONGEST {
+            if byte.byte == b'\n' || self.line.len() == MAX_LINE_BYTES {
                 self.print_line(out)?;
             }
         }

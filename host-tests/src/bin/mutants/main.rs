@@ -8,7 +8,7 @@
 //! mistaken firmware by LIZARD_ELF.
 //!
 //! Run it from the folder `host`. Arguments: parts of a file's name or of the
-//! sentence that says what is wrong; an entry that has one of them is tried. None: all.
+//! message that says what is wrong; an entry that has one of them is tried. None: all.
 //!
 //! With SAMPLE=60 it makes that many generated mistakes ([`fresh`]), drawn by SEED from the
 //! firmware's whole code, and prints the rate at which tests notice them, with its interval.
@@ -55,8 +55,8 @@ fn main() -> ExitCode {
     match outcome {
         Ok(0) => ExitCode::SUCCESS,
         Ok(_) => ExitCode::FAILURE,
-        Err(sentence) => {
-            eprintln!("mutants: {sentence}");
+        Err(message) => {
+            eprintln!("mutants: {message}");
             ExitCode::from(2)
         }
     }

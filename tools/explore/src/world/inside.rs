@@ -18,7 +18,7 @@ use crate::fingerprint;
 const ROUNDING: u16 = 2;
 
 /// Frames within which any motion of this robot ends.
-const LONG: u32 = 160;
+const MOTION_FRAMES: u32 = 160;
 
 /// Lines of which each tells a gait or a routine to go on for some time, less than those frames at half the pace.
 const COUNTED: [&str; 3] = ["walk 1", "trot 2", "round 1"];
@@ -169,7 +169,7 @@ impl World {
 
     fn stands_after(&self, answer: &str) -> Verdict {
         let mut later = self.running.clone();
-        for _ in 0..LONG {
+        for _ in 0..MOTION_FRAMES {
             later.frame();
         }
         let motion = later.motion();
@@ -188,7 +188,7 @@ impl World {
 
     fn ends_after(&self, answer: &str) -> Verdict {
         let mut later = self.running.clone();
-        later.run_without_reader(LONG);
+        later.run_without_reader(MOTION_FRAMES);
         if later.main.control().activity() != Activity::Stop {
             return broken(
                 Rule::Ends,

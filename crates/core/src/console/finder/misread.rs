@@ -12,7 +12,7 @@ use std::sync::LazyLock;
 use std::vec::Vec;
 use std::{format, fs, println, vec};
 
-use super::SHORTEST;
+use super::MIN_COMMAND_BYTES;
 use crate::console::word::Word;
 use crate::numbers::rate::Rate;
 
@@ -36,11 +36,11 @@ static GAITS: LazyLock<BTreeSet<String>> = LazyLock::new(|| {
 });
 
 /// The sender's clock is off by this share at most.
-const SENDER: f64 = 0.02;
+const CLOCK_ERROR: f64 = 0.02;
 
 /// The middle of a bit as a receiver of eight samples for a bit finds it: the start bit is seen
 /// up to a sample late, and of the samples 4, 5 and 6 the majority counts.
-const MIDDLE: [f64; 2] = [0.5, 0.625];
+const BIT_MIDDLE: [f64; 2] = [0.5, 0.625];
 
 /// A state machine of text: what may follow, and where a command may end.
 #[derive(Default)]
@@ -130,10 +130,10 @@ impl Text {
             }
             let mut ends = vec![end];
             // The example has as many arguments as the word takes.
-            for (place, example) in word.example().split(' ').skip(1).enumerate() {
+            for (index, example) in word.example().split(' ').skip(1).enumerate() {
                 let blank = text.lead(&ends, *b" ");
                 let whole = matches!(word, Word::Speed | Word::Watch | Word::Deadman);
-                ends = match (word, place) {
+                ends = match (word, index) {
                     (Word::Trim | Word::Limit | Word::Dir | Word::Scale, 0) => {
                         vec![text.lead(&[blank], *b"1234")]
                     }
@@ -238,19 +238,19 @@ impl Bits {
             next: vec![vec![0]],
             first: Vec::new(),
         };
-        let start = |place: usize| 1 + 10 * place;
+        let start = |index: usize| 1 + 10 * index;
         let followers = |at: usize| {
             let follows = bytes
                 .iter()
                 .enumerate()
                 .filter(move |(_, byte)| byte.0 == at);
-            follows.map(|(place, _)| start(place)).collect::<Vec<_>>()
+            follows.map(|(index, _)| start(index)).collect::<Vec<_>>()
         };
-        for (place, (_, byte, to)) in bytes.iter().enumerate() {
+        for (index, (_, byte, to)) in bytes.iter().enumerate() {
             let line = 1 << 9 | u16::from(*byte) << 1;
             bits.high.extend((0..10).map(|bit| line >> bit & 1 == 1));
             bits.next
-                .extend((1..10).map(|bit| vec![start(place) + bit]));
+                .extend((1..10).map(|bit| vec![start(index) + bit]));
             bits.next.push(to.map_or(vec![0], followers));
         }
         bits.first = followers(Text::START);
@@ -263,8 +263,8 @@ impl Bits {
         text.next[0] = (0..0x80).map(|byte| (byte, 0)).collect();
         let mut bits = Self::of(&text);
         bits.next[0].extend(bits.first.clone());
-        for place in 0..0x80 {
-            bits.next[10 + 10 * place].push(0);
+        for index in 0..0x80 {
+            bits.next[10 + 10 * index].push(0);
         }
         bits
     }
@@ -278,9 +278,9 @@ fn looks(sender: Rate, receiver: Rate) -> BTreeSet<[usize; 10]> {
     let ratio = f64::from(sender.baud()) / chip;
     let mut all = BTreeSet::new();
     for step in 0..=400 {
-        let ratio = ratio * (1.0 + SENDER * (f64::from(step) / 200.0 - 1.0));
+        let ratio = ratio * (1.0 + CLOCK_ERROR * (f64::from(step) / 200.0 - 1.0));
         for step in 0..=32 {
-            let middle = MIDDLE[0] + (MIDDLE[1] - MIDDLE[0]) * f64::from(step) / 32.0;
+            let middle = BIT_MIDDLE[0] + (BIT_MIDDLE[1] - BIT_MIDDLE[0]) * f64::from(step) / 32.0;
             all.insert(core::array::from_fn(|bit| {
                 ((bit as f64 + middle) * ratio) as usize
             }));
@@ -414,7 +414,7 @@ fn no_line_ends_at_a_receiver_that_is_faster_than_the_sender_of_any_bytes() {
 fn no_command_that_may_come_first_is_read_at_a_slower_rate() {
     let mut text = Text::taken();
     let words = Word::ALL.iter().map(|word| word.text());
-    let is_short = |word: &&str| word.len() < SHORTEST;
+    let is_short = |word: &&str| word.len() < MIN_COMMAND_BYTES;
     let short: BTreeSet<usize> = words.filter(is_short).map(|word| text.word(word)).collect();
     for (sender, receiver) in pairs(true) {
         let read = commands_read(sender, receiver);

@@ -105,7 +105,7 @@ impl Control {
         }
         let Step {
             kind,
-            gait: place,
+            gait: index,
             count,
         } = step;
         self.routine.step = number as u8 + 1;
@@ -122,7 +122,7 @@ impl Control {
             }
             _ => {
                 let cycles = if kind == Step::CYCLES { count } else { 0 };
-                self.motion.start_gait(GaitId::at(place), cycles);
+                self.motion.start_gait(GaitId::at(index), cycles);
             }
         }
     }

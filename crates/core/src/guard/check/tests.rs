@@ -58,8 +58,8 @@ fn a_pin_is_free_used_once_and_not_the_rails() {
     for rail in [0, 14, 19] {
         for servo in 0..4 {
             for pin in 0..=u8::MAX {
-                let changed = Changed::new().put(place!(rail), rail);
-                let opens = changed.put_byte(place!(pins) + servo, pin).opens();
+                let changed = Changed::new().put(offset!(rail), rail);
+                let opens = changed.put_byte(offset!(pins) + servo, pin).opens();
                 let used = others(servo).chain([rail as u8]).any(|other| other == pin);
                 let all_free = others(servo).all(|other| u16::from(other) != rail);
                 let wanted = is_free(pin) && !used && all_free;
@@ -71,7 +71,7 @@ fn a_pin_is_free_used_once_and_not_the_rails() {
     for rail in 0..=u8::MAX {
         let measures = (14..=19).contains(&rail) && !pins.contains(&rail);
         assert_eq!(
-            opens_with(place!(rail), rail.into()),
+            opens_with(offset!(rail), rail.into()),
             rail == 0 || measures,
             "{rail}"
         );

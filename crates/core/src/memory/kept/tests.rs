@@ -112,9 +112,9 @@ fn a_reset_between_any_two_stores_leaves_the_stance_before_or_the_new_one() {
             let torn = ram.with_reset_after(stores);
             store_stance(&torn, &stance(n), n as u8);
             let found = begin(&torn.after_the_reset(), None).before;
-            let place = usize::from(found == Some(stance(n)));
-            assert!(place == 1 || found == Some(stance(n - 1)), "{n} {stores}");
-            seen[place] += 1;
+            let index = usize::from(found == Some(stance(n)));
+            assert!(index == 1 || found == Some(stance(n - 1)), "{n} {stores}");
+            seen[index] += 1;
         }
         store_stance(&ram, &stance(n), n as u8);
     }

@@ -7,7 +7,7 @@ use crc::{CRC_32_ISO_HDLC, Crc};
 use lizard_avr::{Flash, Plain};
 
 use super::seal::sealed;
-use super::{CURVES, FORMAT, Header, LONGEST_NAME, MAGIC, MapHead, Numbers, Part, Place, REST};
+use super::{CURVES, FORMAT, Header, MAGIC, MAX_NAME_BYTES, MapHead, Numbers, Part, Place, REST};
 use crate::numbers::bars::Bars;
 use crate::numbers::calibration::Calibration;
 use crate::numbers::calibration::Reach;
@@ -27,7 +27,7 @@ static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 /// The numbers of a robot, from which a section is made.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Content {
-    /// At most [`LONGEST_NAME`] characters.
+    /// At most [`MAX_NAME_BYTES`] characters.
     pub name: String,
     /// The hash by which saved settings are matched with servos.
     pub servo_hash: u32,
@@ -201,7 +201,7 @@ impl Content {
         without_maps.maps = [MapHead { first: 0, rows: 0 }; 4];
         digest.update(without_maps.bytes());
         digest.update(&rest[..rest.len() - columns.len()]);
-        let mut name = [0; LONGEST_NAME];
+        let mut name = [0; MAX_NAME_BYTES];
         name[..self.name.len()].copy_from_slice(self.name.as_bytes());
         let header = Header {
             magic: MAGIC,

@@ -41,8 +41,8 @@ impl<'a> Walk<'a> {
     }
 
     /// Walks one piece by its index, below [`PIECES`].
-    pub fn piece(&self, place: usize, progress: &(dyn Fn(u64) + Sync)) -> Tally {
-        let (whole, cut) = (place / CUTS, place % CUTS);
+    pub fn piece(&self, index: usize, progress: &(dyn Fn(u64) + Sync)) -> Tally {
+        let (whole, cut) = (index / CUTS, index % CUTS);
         let of = |servos: [usize; 2]| servos.map(|servo| self.positions(servo));
         if let Some(end) = End::ALL.get(whole) {
             let walk = EndWalk::new(self.robot, self.guard, &self.maps, *end);

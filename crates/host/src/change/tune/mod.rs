@@ -146,8 +146,8 @@ fn search_all(tuning: &Tuning, args: &Args) -> Result<Option<BuiltGait>, Failure
     let rounds = args.rounds as usize;
     let kinds = args.spread.own(Kind::ALL.len());
     let bar = bar(kinds * trials(rounds), "{bar:40} {pos}/{len} gaits, {eta}");
-    let one = |place: usize| -> Vec<(f64, Vec<f64>)> {
-        let kind = Kind::ALL[place];
+    let one = |index: usize| -> Vec<(f64, Vec<f64>)> {
+        let kind = Kind::ALL[index];
         let mut search = tuning.search(kind);
         for _ in 0..=rounds {
             let judged = search.trials().par_iter().map(|parameters| {

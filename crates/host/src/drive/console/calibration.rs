@@ -86,8 +86,8 @@ impl Servos {
     }
 
     /// A servo by its place, 0 to 3.
-    pub fn at(&mut self, place: usize) -> &mut Servo {
-        match place {
+    pub fn at(&mut self, index: usize) -> &mut Servo {
+        match index {
             0 => &mut self.a1,
             1 => &mut self.a2,
             2 => &mut self.a3,
@@ -152,8 +152,8 @@ impl Calibration {
     #[must_use]
     pub fn commands(&self) -> Vec<String> {
         let mut lines = Vec::new();
-        for (place, servo) in self.servo.all().into_iter().enumerate() {
-            let n = place + 1;
+        for (index, servo) in self.servo.all().into_iter().enumerate() {
+            let n = index + 1;
             let [min, max] = servo.limit;
             lines.push(format!("dir {n} {}", servo.dir.sign()));
             lines.push(format!("scale {n} {:.2}", servo.scale));

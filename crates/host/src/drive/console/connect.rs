@@ -162,7 +162,7 @@ impl Connection {
     /// Waits for the banner; see [`Link::greet`].
     ///
     /// # Errors
-    /// No lizard answers; the sentence names the port.
+    /// No lizard answers; the message names the port.
     pub fn greet(&mut self) -> Result<Option<String>, Failure> {
         self.link.greet().map_err(|error| self.failure(&error))
     }

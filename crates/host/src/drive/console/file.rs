@@ -25,7 +25,7 @@ pub fn text(set: &Calibration) -> String {
 /// Reads the text of a calibration file.
 ///
 /// # Errors
-/// A sentence that names the key or the line.
+/// A message that names the key or the line.
 pub fn parse(text: &str) -> Result<Calibration, String> {
     let line = |error: &toml::de::Error| {
         let at = error.span().map_or(0, |span| span.start);

@@ -3,7 +3,7 @@
 //! The serial line loses nothing, but it does not mark the end of an answer, and a board
 //! may be reset, unplugged or not a lizard at all. So after each line the link waits for
 //! its one `ok` or `err`, and collects the lines that begin with `#` meanwhile. If
-//! nothing comes, it fails with a sentence.
+//! nothing comes, it fails with a message.
 
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};
@@ -18,7 +18,7 @@ const ASKS: u32 = 8;
 /// The beginning of an answer to `status`.
 const STATUS: &str = "ok gait=";
 /// Longer lines are cut: the firmware's are shorter, noise may be endless.
-const LONGEST: usize = 512;
+const MAX_LINE_BYTES: usize = 512;
 
 /// Time limits of a connection.
 #[derive(Debug, Clone, Copy)]
@@ -242,7 +242,7 @@ impl<P: Read + Write> Link<P> {
 
     fn take(&mut self, byte: u8) {
         if byte != b'\n' {
-            if self.partial.len() < LONGEST {
+            if self.partial.len() < MAX_LINE_BYTES {
                 self.partial.push(byte);
             }
             return;
@@ -437,7 +437,7 @@ mod tests {
         for byte in b"\x1b[2Jhi\r\n\r\n\n" {
             link.take(*byte);
         }
-        assert_eq!(link.lines[0].len(), LONGEST);
+        assert_eq!(link.lines[0].len(), MAX_LINE_BYTES);
         assert_eq!(link.lines[1], "\u{fffd}[2Jhi");
         assert_eq!(link.lines.len(), 2, "empty lines are none");
     }

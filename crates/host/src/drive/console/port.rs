@@ -1,4 +1,4 @@
-//! Opening a serial port, and saying in a sentence why it cannot be opened.
+//! Opening a serial port, and saying in a message why it cannot be opened.
 
 use std::io;
 use std::path::Path;
@@ -55,10 +55,10 @@ pub enum PortError {
 
 impl From<PortError> for crate::Failure {
     fn from(error: PortError) -> Self {
-        let sentence = error.to_string();
+        let message = error.to_string();
         match error {
-            PortError::Missing { .. } | PortError::NoPort(_) => Self::Input(sentence),
-            _ => Self::Impossible(sentence),
+            PortError::Missing { .. } | PortError::NoPort(_) => Self::Input(message),
+            _ => Self::Impossible(message),
         }
     }
 }

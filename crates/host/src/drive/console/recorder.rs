@@ -91,7 +91,7 @@ impl<W: Write> Recorder<W> {
     /// Writes an event. All but poses are in the file at once.
     ///
     /// # Errors
-    /// Writing failed; the sentence names the file.
+    /// Writing failed; the message names the file.
     pub fn write(&mut self, now: Instant, event: Event) -> Result<(), Failure> {
         let ms = now.saturating_duration_since(self.begin).as_millis() as u64;
         let is_pose = matches!(event, Event::Pose { .. });

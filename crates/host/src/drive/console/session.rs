@@ -24,7 +24,7 @@ const TIMEOUT: Duration = Duration::from_millis(2000);
 /// Time that an answer to the program's own `status` may take.
 const STATUS_TIMEOUT: Duration = Duration::from_millis(600);
 /// Time from one `stop` to the next while none is answered.
-const AGAIN: Duration = Duration::from_millis(250);
+const STOP_INTERVAL: Duration = Duration::from_millis(250);
 /// Time within which the answers to the other ones have come.
 const ECHOES: Duration = Duration::from_millis(500);
 /// Time without an answer to `stop` after which the user is told.
@@ -186,7 +186,7 @@ impl Session {
             if now < halt.next {
                 return None;
             }
-            halt.next = now + AGAIN;
+            halt.next = now + STOP_INTERVAL;
             halt.times += 1;
             self.echoes_until = now + ECHOES;
             return Some("stop".to_owned());
@@ -362,7 +362,7 @@ impl Session {
     /// Succeeds if the robot accepted all lines.
     ///
     /// # Errors
-    /// The robot refused a line; the sentence names the first one.
+    /// The robot refused a line; the message names the first one.
     pub fn verdict(&self) -> Result<(), Failure> {
         let Some((line, why)) = &self.first_failed else {
             return Ok(());

@@ -61,7 +61,7 @@ pub struct Args {
 /// Writes a board.
 ///
 /// # Errors
-/// No image, no board, or none that can be written; the sentence says what is in its flash.
+/// No image, no board, or none that can be written; the message says what is in its flash.
 pub fn run(args: Args) -> Result<(), Failure> {
     let image = match &args.image {
         Some(path) => file::read(path)?,
@@ -82,7 +82,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     };
     let board = SerialBoard::open(&port)?;
     eprintln!("lizard: calling the boot loader of the board at {name}");
-    let at = |sentence: String| Failure::Impossible(format!("{name}: {sentence}"));
+    let at = |message: String| Failure::Impossible(format!("{name}: {message}"));
     let board = write(board, &image, target).map_err(|error| at(error.to_string()))?;
     let banner = greet(board).map_err(|error| {
         at(format!(
@@ -150,7 +150,7 @@ fn write(board: SerialBoard, image: &Image, target: Target) -> Result<SerialBoar
     Ok(board)
 }
 
-/// A sentence about a finished upload.
+/// A message about a finished upload.
 fn summary(done: Done, time: Duration) -> String {
     let [written, kept] = [done.written, done.kept].map(|pages| pages * PAGE);
     let seconds = time.as_secs_f64();

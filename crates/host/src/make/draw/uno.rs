@@ -78,8 +78,8 @@ impl Uno {
                 .add(hole)
                 .add(self.label(self.pin(number), &name, is_used));
         }
-        for (place, name) in REFERENCES.1.iter().enumerate() {
-            let at = self.at(REFERENCES.0 + place as f64, UPPER_ROW);
+        for (index, name) in REFERENCES.1.iter().enumerate() {
+            let at = self.at(REFERENCES.0 + index as f64, UPPER_ROW);
             let is_used = at == self.ground();
             let mut hole = hole(at, is_used);
             if is_used {
@@ -87,8 +87,8 @@ impl Uno {
             }
             group = group.add(hole).add(self.label(at, name, is_used));
         }
-        for (place, name) in POWER.1.iter().enumerate() {
-            let at = self.at(POWER.0 + place as f64, LOWER_ROW);
+        for (index, name) in POWER.1.iter().enumerate() {
+            let at = self.at(POWER.0 + index as f64, LOWER_ROW);
             group = group.add(hole(at, false)).add(self.label(at, name, false));
         }
         let name = self.at(9.0, 11.2);

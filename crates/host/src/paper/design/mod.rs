@@ -310,7 +310,7 @@ fn ranking(
     let search = Search::new(args.step, demands, &progress, |count| {
         args.spread.own(count)
     });
-    let one = |place| search.piece(place);
+    let one = |index| search.piece(index);
     let pieces = args.spread.all(args, search.pieces(), one)?;
     progress.finish_and_clear();
     let Some(pieces) = pieces else {

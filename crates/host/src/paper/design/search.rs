@@ -94,8 +94,8 @@ impl<'a> Search<'a> {
 
     /// The designs of one piece that meet the demands.
     #[must_use]
-    pub fn piece(&self, place: usize) -> Vec<Design> {
-        let points = self.points.chunks(AT_ONCE).nth(place).unwrap_or_default();
+    pub fn piece(&self, index: usize) -> Vec<Design> {
+        let points = self.points.chunks(AT_ONCE).nth(index).unwrap_or_default();
         let designs = points.par_iter().filter_map(|point| {
             self.progress.inc(1);
             design(*point, &self.demands)

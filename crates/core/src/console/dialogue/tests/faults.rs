@@ -207,14 +207,14 @@ fn settings_that_were_not_saved_are_undone_at_the_slew_limit_after_a_reset() {
         let mut moved = 0;
         for _ in 0..200 {
             let pulses = dialogue.frame();
-            for (place, (pulse, before)) in pulses.0.iter().zip(&mut last.0).enumerate() {
+            for (index, (pulse, before)) in pulses.0.iter().zip(&mut last.0).enumerate() {
                 if pulse.0 == 0 {
                     continue;
                 }
-                let most = calibration[place].slew(Sample::odd().slew().per_frame);
+                let most = calibration[index].slew(Sample::odd().slew().per_frame);
                 let way = pulse.0.abs_diff(before.0);
-                assert!(way <= most + 1, "{setting} A{}: {way} of {most}", place + 1);
-                moved += usize::from(place == servo && way > 0);
+                assert!(way <= most + 1, "{setting} A{}: {way} of {most}", index + 1);
+                moved += usize::from(index == servo && way > 0);
                 *before = *pulse;
             }
         }

@@ -7,7 +7,7 @@ const CYCLES: u8 = Step::CYCLES;
 const FRAMES: u8 = Step::FRAMES;
 const REST: u8 = Step::REST;
 
-/// A step of every kind; `sway` twice, one behind the other.
+/// Steps for some cycles and for some time; two of `sway` in a row.
 const STEPS: [(u8, &str, u16); 5] = [
     (FRAMES, "stand", 30),
     (CYCLES, "sway", 2),
@@ -17,7 +17,7 @@ const STEPS: [(u8, &str, u16); 5] = [
 ];
 
 /// More frames than a round takes.
-const LONG: u32 = 1_500;
+const LONG_FRAMES: u32 = 1_500;
 
 fn robot(rounds: u16) -> Sample {
     Sample::odd().with_routine("patrol", rounds, &STEPS)
@@ -61,7 +61,7 @@ fn a_routine_goes_through_its_steps_and_says_once_that_it_is_done() {
         let mut dialogue = awake(robot(rounds));
         assert_eq!(dialogue.say("Patrol"), "ok patrol");
         assert_eq!(dialogue.status("gait"), "patrol");
-        let (gaits, printed) = course(&mut dialogue, LONG * u32::from(rounds));
+        let (gaits, printed) = course(&mut dialogue, LONG_FRAMES * u32::from(rounds));
         assert_eq!(printed, ["# done"]);
         let round = ["stand", "sway", "back", "sway left"];
         let (last, all) = gaits.split_last().expect("a course");
@@ -76,12 +76,12 @@ fn a_routine_goes_through_its_steps_and_says_once_that_it_is_done() {
 fn a_number_says_how_many_rounds_and_a_routine_without_an_end_has_none() {
     let mut counted = awake(robot(0));
     counted.say("patrol 2");
-    let (gaits, printed) = course(&mut counted, 3 * LONG);
+    let (gaits, printed) = course(&mut counted, 3 * LONG_FRAMES);
     assert_eq!(printed, ["# done"]);
     assert_eq!(gaits.iter().filter(|gait| *gait == "back").count(), 2);
     let mut endless = awake(robot(0));
     endless.say("patrol");
-    let (gaits, printed) = course(&mut endless, 20 * LONG);
+    let (gaits, printed) = course(&mut endless, 20 * LONG_FRAMES);
     assert!(printed.is_empty(), "{printed:?}");
     assert!(gaits.iter().filter(|gait| *gait == "back").count() > 20);
 }
@@ -171,7 +171,7 @@ fn a_low_supply_slows_a_routine_and_does_not_end_it() {
     supply(&mut dialogue, 4_400);
     dialogue.run(40);
     dialogue.say("patrol");
-    assert_eq!(course(&mut dialogue, 2 * LONG).1, ["# done"]);
+    assert_eq!(course(&mut dialogue, 2 * LONG_FRAMES).1, ["# done"]);
 }
 
 #[test]
@@ -179,7 +179,7 @@ fn the_guard_ends_a_routine_as_it_ends_a_gait() {
     let stray = [(CYCLES, "stray", 3), (CYCLES, "sway", 1)];
     let mut dialogue = awake(Sample::odd().with_routine("patrol", 0, &stray));
     dialogue.say("patrol");
-    let (gaits, printed) = course(&mut dialogue, LONG);
+    let (gaits, printed) = course(&mut dialogue, LONG_FRAMES);
     assert_eq!(gaits, ["stray", "Stop"]);
     assert_eq!(printed.len(), 1);
     assert!(printed[0].starts_with("# held"), "{printed:?}");
@@ -209,7 +209,7 @@ fn silence_ends_a_routine_that_a_talker_began_and_not_one_that_boot_began() {
         alone
     };
     let mut nobody = alone();
-    assert!(nobody.run(5 * LONG).is_empty(), "it goes on");
+    assert!(nobody.run(5 * LONG_FRAMES).is_empty(), "it goes on");
     // After a first line the next ones are expected within `deadman`.
     nobody.say("speed 90");
     assert_eq!(nobody.run(100).len(), 1);
@@ -217,7 +217,7 @@ fn silence_ends_a_routine_that_a_talker_began_and_not_one_that_boot_began() {
     // A line that is no command is nobody, and so is a byte.
     let mut noise = alone();
     noise.board.send(b"x");
-    assert!(noise.run(LONG).is_empty());
+    assert!(noise.run(LONG_FRAMES).is_empty());
     noise.board.send(b"x\r");
     assert_eq!(noise.run(100).len(), 1, "the refusal");
 }
@@ -233,7 +233,7 @@ fn a_rest_within_a_routine_ends_the_pulses_for_its_time_and_the_servos_wake_one_
     dialogue.say("patrol");
     let (mut dark, mut awake) = (0, Vec::new());
     let mut printed = Vec::new();
-    for _ in 0..LONG {
+    for _ in 0..LONG_FRAMES {
         printed.extend(dialogue.run(1));
         let pulses = dialogue.board.submitted().0;
         let count = pulses.iter().filter(|width| width.0 > 0).count();
@@ -264,11 +264,11 @@ fn a_routine_can_be_stopped_while_it_rests_and_its_last_rest_is_kept_in_the_memo
     for line in ["stop", "rest"] {
         let mut dialogue = resting();
         dialogue.accept(line);
-        assert!(dialogue.run(LONG).is_empty());
+        assert!(dialogue.run(LONG_FRAMES).is_empty());
         assert!(dialogue.motion().is_resting());
     }
     let mut dialogue = resting();
-    assert_eq!(dialogue.run(LONG), ["# done"]);
+    assert_eq!(dialogue.run(LONG_FRAMES), ["# done"]);
     assert!(dialogue.motion().is_resting());
     let pose = *dialogue.motion().pose();
     dialogue.lose_power(None);

@@ -55,7 +55,7 @@ fn status_names_what_the_robot_does() {
 #[test]
 fn the_longest_status_that_there_can_be_fits_a_line() {
     let name = "longest name of a gait that any robot may have..";
-    assert_eq!(name.len(), crate::numbers::gaits::LONGEST_NAME);
+    assert_eq!(name.len(), crate::numbers::gaits::MAX_NAME_BYTES);
     let robot = Sample::odd().with_gait(name);
     let mut dialogue = awake(robot);
     dialogue.board.late = u16::MAX;

@@ -67,10 +67,10 @@ fn every_gait_goes_as_many_cycles_as_it_was_told_to_two_frames_at_any_pace() {
 fn a_gait_of_the_shortest_period_ends_too() {
     for (forward, count) in [(true, 1), (false, 1), (true, 5), (false, 5)] {
         let robot = Sample::odd();
-        let place = robot.id("sway").index();
+        let index = robot.id("sway").index();
         let increment = CYCLE as i32 / 10;
         let robot = robot.with(|content| {
-            content.gaits[place].increment = if forward { increment } else { -increment };
+            content.gaits[index].increment = if forward { increment } else { -increment };
         });
         let mut motion = Motion::awake(robot);
         motion.start_for("sway", count);

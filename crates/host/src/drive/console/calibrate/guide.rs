@@ -177,8 +177,8 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     }
 
     fn go_to_step(&mut self, step: Step) -> Result<(), LinkError> {
-        let place = STEPS.iter().position(|at| *at == step);
-        self.enter_step(place.unwrap_or(self.at))
+        let index = STEPS.iter().position(|at| *at == step);
+        self.enter_step(index.unwrap_or(self.at))
     }
 
     fn enter_step(&mut self, to: usize) -> Result<(), LinkError> {

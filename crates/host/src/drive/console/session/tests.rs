@@ -104,7 +104,7 @@ fn stop_is_sent_until_it_is_answered_and_its_later_answers_belong_to_no_line() {
     for _ in 0..9 {
         assert_eq!(session.next_line(at).as_deref(), Some("stop"));
         assert_eq!(session.next_line(at), None);
-        at += AGAIN;
+        at += STOP_INTERVAL;
     }
     let printed = session.overdue(at).expect("the user is told");
     assert!(printed.contains("may go on"), "{printed}");
@@ -132,7 +132,10 @@ fn a_robot_that_refuses_to_stop_since_it_has_no_pulses_is_not_asked_again() {
         assert_eq!(session.next_line(now).as_deref(), Some("stop"));
         assert_eq!(session.receive(refusal).as_deref(), Some(refusal));
         session.queue("stand");
-        assert_eq!(session.next_line(now + AGAIN).as_deref(), Some("stand"));
+        assert_eq!(
+            session.next_line(now + STOP_INTERVAL).as_deref(),
+            Some("stand")
+        );
     }
 }
 
