@@ -130,7 +130,7 @@ pub fn all(robot: Robot<'static>) -> Vec<InitialState> {
     let mut foreign = saved(&memories);
     foreign.bytes_mut().rotate_left(1);
     let mut worn = saved(&memories);
-    worn.worn = true;
+    worn.is_worn = true;
     memories.extend([
         ("foreign bytes in the memory", foreign),
         ("a worn memory", worn),
@@ -141,7 +141,7 @@ pub fn all(robot: Robot<'static>) -> Vec<InitialState> {
     for (with, memory) in memories {
         for actions in DOES {
             let mut world = World::power_on(robot, memory.clone());
-            world.running.board.boot_loader = with == BEHIND_A_BOOT_LOADER;
+            world.running.board.has_boot_loader = with == BEHIND_A_BOOT_LOADER;
             if actions.iter().all(|action| world.apply(*action).is_ok()) {
                 let actions = actions.to_vec();
                 all.push(InitialState {

@@ -52,16 +52,16 @@ pub enum Misread {
     PoseRange(Servo),
 }
 
-/// The rarest report: every 200 s.
+/// The longest interval of `watch`, frames: 200 s.
 pub const MAX_WATCH_FRAMES: u16 = 10_000;
 
-/// The most cycles that a gait may be told to go.
+/// The largest count of cycles that a gait accepts.
 pub const MAX_CYCLES: u16 = 999;
 
 /// The longest time that `deadman` allows, a minute.
 pub const MAX_DEADMAN_MS: u16 = 60_000;
 
-/// Larger angles are taken for mistakes; a turn either way is enough.
+/// The largest angle, a turn either way: a larger one is taken for a mistake.
 const MAX_CENTIDEG: u16 = TURN_CENTIDEG as u16;
 
 /// The syntax of an argument.
@@ -82,7 +82,7 @@ enum Kind {
 #[derive(Clone, Copy)]
 struct Form {
     /// True if the first argument is a servo's number.
-    servo: bool,
+    takes_servo: bool,
     /// The number of arguments after it.
     count: u8,
     /// The syntax of each of them.
@@ -90,7 +90,7 @@ struct Form {
     /// The range of each, without its sign.
     least: u16,
     most: u16,
-    /// The message for arguments of another form.
+    /// The message for arguments that do not match this form.
     wants: Text,
     /// The message for an argument out of range.
     range: Text,
@@ -99,14 +99,14 @@ struct Form {
 flash! {
     /// All forms, in the order of [`form`].
     const FORMS: [Form; 8] = [
-        Form { servo: false, count: 4, kind: Kind::Degrees, least: 0, most: MAX_CENTIDEG, wants: Text::PoseWants, range: Text::Nothing },
-        Form { servo: false, count: 1, kind: Kind::Whole, least: 10, most: 100, wants: Text::SpeedWants, range: Text::SpeedRange },
-        Form { servo: false, count: 1, kind: Kind::Whole, least: 0, most: MAX_WATCH_FRAMES, wants: Text::WatchWants, range: Text::WatchRange },
-        Form { servo: true, count: 1, kind: Kind::Degrees, least: 0, most: 2000, wants: Text::TrimWants, range: Text::TrimRange },
-        Form { servo: true, count: 2, kind: Kind::Degrees, least: 0, most: MAX_CENTIDEG, wants: Text::LimitWants, range: Text::LimitRange },
-        Form { servo: true, count: 1, kind: Kind::Sign, least: 0, most: 1, wants: Text::DirWants, range: Text::Nothing },
-        Form { servo: true, count: 1, kind: Kind::Hundredths, least: 500, most: 2000, wants: Text::ScaleWants, range: Text::ScaleRange },
-        Form { servo: false, count: 1, kind: Kind::Whole, least: 0, most: MAX_DEADMAN_MS, wants: Text::DeadmanWants, range: Text::DeadmanRange },
+        Form { takes_servo: false, count: 4, kind: Kind::Degrees, least: 0, most: MAX_CENTIDEG, wants: Text::PoseWants, range: Text::Nothing },
+        Form { takes_servo: false, count: 1, kind: Kind::Whole, least: 10, most: 100, wants: Text::SpeedWants, range: Text::SpeedRange },
+        Form { takes_servo: false, count: 1, kind: Kind::Whole, least: 0, most: MAX_WATCH_FRAMES, wants: Text::WatchWants, range: Text::WatchRange },
+        Form { takes_servo: true, count: 1, kind: Kind::Degrees, least: 0, most: 2000, wants: Text::TrimWants, range: Text::TrimRange },
+        Form { takes_servo: true, count: 2, kind: Kind::Degrees, least: 0, most: MAX_CENTIDEG, wants: Text::LimitWants, range: Text::LimitRange },
+        Form { takes_servo: true, count: 1, kind: Kind::Sign, least: 0, most: 1, wants: Text::DirWants, range: Text::Nothing },
+        Form { takes_servo: true, count: 1, kind: Kind::Hundredths, least: 500, most: 2000, wants: Text::ScaleWants, range: Text::ScaleRange },
+        Form { takes_servo: false, count: 1, kind: Kind::Whole, least: 0, most: MAX_DEADMAN_MS, wants: Text::DeadmanWants, range: Text::DeadmanRange },
     ];
 }
 
@@ -128,7 +128,7 @@ const fn form(word: Word) -> Option<usize> {
 /// Reads a line that is trimmed, not empty and in lower case.
 ///
 /// # Errors
-/// The reason why the line is not a command.
+/// Returns the reason why the line is not a command.
 pub fn parse(line: &[u8], robot: &Robot) -> Result<Command, Misread> {
     parse_among::<RESERVED>(line, robot)
 }
@@ -223,7 +223,7 @@ impl Arguments {
     fn read(word: Word, mut words: Words, form: &Form) -> Result<Self, Misread> {
         let wants = Err(Misread::Wants(form.wants));
         let mut arguments = Self::NONE;
-        if form.servo {
+        if form.takes_servo {
             arguments.servo = match words.next() {
                 [digit @ b'1'..=b'4'] => Servo::at(usize::from(digit - b'1')),
                 _ => return wants,
@@ -279,7 +279,7 @@ impl<'a> Words<'a> {
     }
 }
 
-/// Finds the gait of this name, and reads the number of cycles behind it; 0 without one. Any
+/// Finds the gait of this name, and reads the number of cycles after it; 0 without one. Any
 /// blanks between words are accepted. If one gait's name is another's and a number, the longer
 /// name counts.
 #[inline(never)]
@@ -297,7 +297,7 @@ fn gait(line: &[u8], robot: &Robot) -> Result<(GaitId, u16), Misread> {
     read
 }
 
-/// Compares a line with a name, and reads the number behind it; 0 without one. Stops at the
+/// Compares a line with a name, and reads the number after it; 0 without one. Stops at the
 /// first byte that differs: there may be many names, and a frame may be due.
 #[inline(never)]
 fn compare(line: &[u8], name: Name) -> Result<u16, Misread> {

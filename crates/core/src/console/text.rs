@@ -218,7 +218,7 @@ impl Text {
     #[inline(never)]
     pub fn print(self, out: &mut impl Output) {
         let mut part = Part::of(self as u8);
-        // The rest of the message, behind the phrase that is being printed.
+        // The rest of the message, after the phrase that is being printed.
         let mut rest = Part::NONE;
         loop {
             if part.left == 0 {

@@ -53,20 +53,19 @@ macro_rules! words {
                 match self { $(Self::$name => $word),* }
             }
 
-            /// Its effect on the servos, declared only here. Rules and tests on
-            /// hosts ask here, or [`crate::console::command::effect`] for a whole line.
+            /// The word's effect on the servos, declared only here; for a whole line see
+            /// [`crate::console::command::effect`].
             pub const fn effect(self) -> Effect {
                 match self { $(Self::$name => Effect::$effect),* }
             }
 
-            /// A line that the paper's robot takes: the word, with arguments where it wants
-            /// some.
+            /// A line that the paper's robot accepts: the word, with any arguments it needs.
             pub const fn example(self) -> &'static str {
                 match self { $(Self::$name => concat!($word, $arguments)),* }
             }
         }
 
-        /// All words, each with a bar behind it.
+        /// All words, each followed by a bar.
         const LIST: &str = concat!($($word, "|"),*);
     };
 }
@@ -101,7 +100,7 @@ words! {
     }
 }
 
-/// The character behind each word of the list.
+/// The character after each word of the list.
 const BAR: u8 = b'|';
 
 flash! {
@@ -174,18 +173,18 @@ mod tests {
     use crate::sample::Sample;
 
     /// The words of the first versions, which every later version keeps.
-    const RESERVED_FOR_EVER: &str = "help|?|stop|rest|status|pose|speed|watch|trim|limit|dir|\
+    const FIRST_RESERVED: &str = "help|?|stop|rest|status|pose|speed|watch|trim|limit|dir|\
         scale|cal|center|save|load|factory|boot|deadman";
 
     #[test]
     fn the_reserved_words_are_those_of_the_first_versions_and_no_other() {
         let reserved = Word::ALL.iter().filter(|word| word.is_reserved());
         let reserved: Vec<&str> = reserved.map(|word| word.text()).collect();
-        assert_eq!(reserved.join("|"), RESERVED_FOR_EVER);
+        assert_eq!(reserved.join("|"), FIRST_RESERVED);
     }
 
     #[test]
-    fn every_word_that_is_listed_is_found_and_nothing_else_is() {
+    fn every_listed_word_is_found_and_nothing_else_is() {
         for word in Word::ALL {
             let text = word.text();
             assert_eq!(Word::find(text.as_bytes()), Some(*word), "{text}");
@@ -199,7 +198,7 @@ mod tests {
         }
     }
 
-    /// All words, without those that are to be left out.
+    /// Checks that the list has all words but those left out.
     fn assert_lists_all_but<const YIELDING: usize>(robot: &Robot, left_out: &[Word]) {
         let words = Word::ALL.iter().filter(|word| !left_out.contains(word));
         let words: Vec<&str> = words.map(|word| word.text()).collect();

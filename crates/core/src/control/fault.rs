@@ -21,7 +21,8 @@ pub enum Fault {
     Late,
     /// The stack has grown into the data.
     Stack,
-    /// Several resets in a row by a weak supply or, behind a boot loader, by the button.
+    /// Several resets in a row by a weak supply or, where a boot loader hides the cause, by the
+    /// button.
     BrownOut,
     /// There is no robot in the flash.
     Robot,
@@ -46,7 +47,7 @@ const BEAT: u8 = 32;
 /// The pattern that the LED shows.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Led {
-    /// Frames since its pattern began.
+    /// Frames since the pattern began.
     frames: u8,
     /// The pattern's code, 0 for the slow beat.
     code: u8,
@@ -156,9 +157,9 @@ mod tests {
         }
     }
 
-    /// A pattern may be interrupted at any frame, also beyond the end of the one that follows.
+    /// A pattern may be interrupted at any frame.
     #[test]
-    fn any_pattern_begins_at_once_at_any_place_of_any_other_and_goes_on() {
+    fn any_pattern_begins_at_once_at_any_frame_of_any_other_and_goes_on() {
         let shown: Vec<Option<Fault>> = ALL.into_iter().map(Some).chain([None]).collect();
         for before in &shown {
             for after in shown.iter().filter(|after| *after != before) {

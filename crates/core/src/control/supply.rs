@@ -53,9 +53,9 @@ pub struct Voltage {
 pub struct Supply {
     reading: Reading,
     level: Level,
-    /// Frames for which another level has been measured.
+    /// Consecutive frames that have measured another level.
     frames: u8,
-    /// The nearest of these levels to the present one.
+    /// The level nearest to the present one in those frames.
     nearest: Level,
     /// Number of readings so far, up to [`TO_WORSE`].
     readings: u8,
@@ -103,7 +103,7 @@ impl Voltage {
     }
 }
 
-/// No reading of a supply that the chip survives gives more.
+/// The largest voltage, hundredths of a volt: more than any supply that the chip survives.
 const MAX_HUNDREDTHS: u16 = (1 << 13) - 1;
 
 impl Thresholds {

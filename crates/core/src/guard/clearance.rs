@@ -21,7 +21,7 @@ use crate::numbers::units::Sine;
 /// The ten margins in the order in which they are checked.
 const MARGINS: usize = 10;
 
-/// The places of the first type-1 margin and of the first leg margin.
+/// The indices of the first type-1 margin and of the first leg margin.
 const TYPE1: usize = 2;
 const LEGS: usize = 6;
 

@@ -5,7 +5,7 @@
 use crate::numbers::couplers::Coupling;
 use crate::numbers::units::Scale;
 
-/// The longest that a loop's bars may be, in steps: l0 + l1 + l4, and each coupler.
+/// The largest length of l0 + l1 + l4, and of each coupler, in steps.
 pub const MAX_STEPS: f64 = 127.0 * 256.0;
 
 /// The shortest coupler, in steps.

@@ -58,8 +58,8 @@ impl Bars {
 }
 
 impl Loop {
-    /// Bars in mm, in the finest step that holds them; none if a coupler is too
-    /// short compared with the rest.
+    /// Bars in mm, in the finest step that holds them; `None` if a coupler is too short
+    /// compared with the rest.
     pub fn new(bars: &kinematics::FiveBar) -> Option<Self> {
         let [base, left, right] = [bars.base, bars.crank_left, bars.crank_right];
         let couplers = [bars.coupler_left, bars.coupler_right];
@@ -87,7 +87,7 @@ impl Loop {
             base,
             cranks: [left, right],
             couplers: [self.couplers.left, self.couplers.right],
-            near_stretched: true,
+            is_near_stretched: true,
         }
     }
 

@@ -94,7 +94,7 @@ fn five_bar(bars: &kinematics::FiveBar) -> Loop {
         base,
         cranks: [left, right],
         couplers: [a, b],
-        near_stretched: Couplers::is_near_stretched(a, b, furthest * furthest),
+        is_near_stretched: Couplers::is_near_stretched(a, b, furthest * furthest),
     }
 }
 
@@ -297,7 +297,7 @@ mod tests {
                 coupler_right: 50.0,
                 crank_right,
             };
-            assert_eq!(five_bar(&bars).near_stretched, near, "{bars:?}");
+            assert_eq!(five_bar(&bars).is_near_stretched, near, "{bars:?}");
         }
     }
 

@@ -75,7 +75,7 @@ impl World {
             return broken(Rule::Allowed, text);
         }
         if is_done && effect == Effect::Moves {
-            let stack = self.running.board.stack_is_intact;
+            let stack = self.running.board.is_stack_intact;
             if is_late {
                 self.observe(Event::Fault);
             }
@@ -200,7 +200,7 @@ impl World {
 
     /// Judges the pulses of a frame, in which main ran or not.
     pub(super) fn pulses(&mut self, main_ran: bool) -> Verdict {
-        self.observer.limits.keeps_memory = !self.running.board.memory.worn;
+        self.observer.limits.keeps_memory = !self.running.board.memory.is_worn;
         let widths = self.running.board.started_pulses().0.map(|width| width.0);
         let slew = self.robot().slew().per_frame;
         for (servo, calibration) in self.running.motion().calibration().iter().enumerate() {

@@ -63,7 +63,7 @@ impl Text {
         self.next.len() - 1
     }
 
-    /// Leads from states to a new one by each of these bytes.
+    /// Adds a state that each of these bytes leads to, from each of these states.
     fn lead(&mut self, from: &[usize], bytes: impl IntoIterator<Item = u8> + Clone) -> usize {
         let to = self.state();
         for at in from {
@@ -81,7 +81,7 @@ impl Text {
         })
     }
 
-    /// Digits, up to so many; returns the states in which the number may end.
+    /// Adds up to `most` digits; returns the states in which the number may end.
     fn digits(&mut self, from: &[usize], most: usize) -> Vec<usize> {
         let mut at = from.to_vec();
         let mut ends = Vec::new();
@@ -92,7 +92,7 @@ impl Text {
         ends
     }
 
-    /// Degrees or hundredths: a sign or none, up to three digits, up to two decimals.
+    /// Adds degrees or hundredths: an optional sign, up to three digits, up to two decimals.
     fn decimal(&mut self, blank: usize) -> Vec<usize> {
         let sign = self.lead(&[blank], *b"+-");
         let mut ends = self.digits(&[blank, sign], 3);
@@ -147,7 +147,7 @@ impl Text {
         text
     }
 
-    /// More than all that the parser takes: arguments of any length and number.
+    /// A superset of what the parser takes: arguments of any length and number.
     fn taken() -> Self {
         let mut text = Self::new();
         for word in GAITS
@@ -173,12 +173,12 @@ impl Text {
     }
 }
 
-/// What a receiver has of a line.
+/// A receiver's reading of a line so far.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Read {
     /// The beginning of a command, or all of it.
     Begun(usize),
-    /// The same, and so many bytes behind it with which no command goes on.
+    /// The same, followed by so many bytes that continue no command.
     Other(usize, u8),
     /// A line with a garbled byte.
     Garbled,
@@ -217,7 +217,7 @@ struct Bits {
 }
 
 impl Bits {
-    /// Text without pauses, and silence behind its end.
+    /// Text without pauses, and silence after its end.
     fn of(text: &Text) -> Self {
         let mut bytes: Vec<(usize, u8, Option<usize>)> = Vec::new();
         for (at, next) in text.next.iter().enumerate() {
@@ -271,7 +271,7 @@ impl Bits {
 }
 
 /// The bits of the sender at which a receiver looks, counted from its start edge: for every
-/// distance of the clocks and every place of the middle.
+/// difference of the clocks and every position of the middle.
 fn looks(sender: Rate, receiver: Rate) -> BTreeSet<[usize; 10]> {
     // The chip's own rate, as src/board/serial.rs has it.
     let chip = 2e6 / (2e6 / f64::from(receiver.baud())).round();
@@ -292,7 +292,7 @@ fn looks(sender: Rate, receiver: Rate) -> BTreeSet<[usize; 10]> {
 /// A receiver's state at a bit of the sender.
 type At = (Read, usize);
 
-/// Reads a byte from each of these start edges; returns the states behind it.
+/// Reads a byte from each of these start edges; returns the states after it.
 fn read_byte(edges: &BTreeSet<At>, bits: &Bits, text: &Text, look: [usize; 10]) -> BTreeSet<At> {
     let mut now: BTreeSet<(Read, usize, u16)> =
         edges.iter().map(|(read, at)| (*read, *at, 0)).collect();
@@ -344,7 +344,7 @@ fn edges_from(states: BTreeSet<At>, bits: &Bits) -> BTreeSet<At> {
     edges
 }
 
-/// All bytes and states that a receiver can reach from these edges on; the commands that it reads.
+/// The commands that a receiver can read at another rate, over all states that it can reach.
 fn commands_read(sender: Rate, receiver: Rate) -> BTreeSet<usize> {
     let (bits, text) = (Bits::of(&Text::sent()), Text::taken());
     let before = [

@@ -1,5 +1,5 @@
-//! Intact sections that would harm a servo or the board: a number at a time, each
-//! beside the nearest one that does not.
+//! Intact sections that would harm a servo or the board: one wrong number at a time, each
+//! next to the nearest harmless one.
 
 use std::vec::Vec;
 
@@ -26,7 +26,7 @@ impl Changed {
         self
     }
 
-    /// True if it is a robot's.
+    /// True if the guard accepts the section.
     fn opens(&self) -> bool {
         let mut section = self.0.clone();
         seal(&mut section);
@@ -40,7 +40,7 @@ impl Changed {
     }
 }
 
-/// True if the odd robot's section still opens with this word in that place.
+/// True if the odd robot's section still opens with this word at that offset.
 fn opens_with(at: u16, word: u16) -> bool {
     Changed::new().put(at, word).opens()
 }
@@ -79,7 +79,7 @@ fn a_pin_is_free_used_once_and_not_the_rails() {
 }
 
 #[test]
-fn a_servo_bears_the_pulses_of_its_travel_and_the_gaits_do_not_leave_it() {
+fn a_servo_tolerates_the_pulses_of_its_travel_and_gaits_stay_within_it() {
     for servo in 0..4 {
         let opens = |change: &dyn Fn(&mut Calibration)| {
             let mut content = Sample::odd().content.clone();

@@ -108,7 +108,7 @@ fn measured(robot: &Sample, pose: &Pose) -> Result<(), TestCaseError> {
         let bars = [&truth.head, &truth.tail][end];
         let bound = &bounds.ends[end];
         let is_leg = index >= 6;
-        if !is_leg && !bound.known {
+        if !is_leg && !bound.is_known {
             continue;
         }
         if index < 2 && bars.gap.x.abs() <= bound.along {
@@ -144,7 +144,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(5_000))]
 
     #[test]
-    fn every_margin_and_slider_is_measured_with_its_own_bars_and_servos(
+    fn every_margin_and_slider_uses_its_own_bars_and_servos(
         (robot, poses) in posed(),
     ) {
         for pose in &poses {
@@ -188,7 +188,7 @@ fn the_bounds_decide_nearly_every_pose_and_are_narrow_where_a_robot_stands() {
     assert!(decided > 1900, "{decided} of 2000");
 }
 
-/// Floating point calls it safe, the integers do not: a stroke that ends where the
+/// Floating point calls this sample safe, the integers do not: a stroke that ends where the
 /// slider stands is rounded inwards.
 #[test]
 fn a_sample_stands_safely_by_the_integers_and_not_only_in_floating_point() {
@@ -271,7 +271,7 @@ fn the_first_of_several_hazards_is_reported_margins_before_strokes() {
 }
 
 #[test]
-fn the_smallest_margin_is_found_at_every_place() {
+fn the_smallest_margin_is_found_at_every_index() {
     let (_, clear) = clear();
     for index in 0..10 {
         let mut clearance = clear;

@@ -36,7 +36,7 @@ proptest! {
         shorter in MIN_COUPLER..=MAX_COUPLER,
         longer in MIN_COUPLER..=MAX_COUPLER,
         likeness in 0u8..4,
-        exchanged: bool,
+        is_exchanged: bool,
         share in (0.0..1.0f64, 0u8..3),
     ) {
         // Equal, nearly equal, and any.
@@ -45,7 +45,7 @@ proptest! {
             1 => shorter + (longer % 100).min(MAX_COUPLER - shorter),
             _ => longer,
         };
-        let (left, right) = if exchanged { (longer, shorter) } else { (shorter, longer) };
+        let (left, right) = if is_exchanged { (longer, shorter) } else { (shorter, longer) };
         // Even over the range, and dense at either end.
         let share = match share {
             (share, 0) => share,

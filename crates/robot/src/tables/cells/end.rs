@@ -98,7 +98,7 @@ impl Condition for EndConditions {
         let range = [(apart - moved).max(0.0), apart + moved];
         let off = bounds::End::between(&self.bars, self.integers, range);
         let uncrossed = pose.gap.x - moved > off.along + HAIR;
-        if !(off.known && uncrossed) {
+        if !(off.is_known && uncrossed) {
             return Verdict::Open;
         }
         let turned = |coupler: f64| moved / (coupler * off.least);

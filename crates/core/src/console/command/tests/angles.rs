@@ -18,7 +18,7 @@ fn angle_read(index: usize, angle: &str) -> Result<i32, Misread> {
 }
 
 #[test]
-fn every_hundredth_of_a_degree_a_turn_either_way_is_read_and_told_again() {
+fn every_hundredth_of_a_degree_within_a_turn_is_read_and_printed_back() {
     for centideg in (-36_100..36_100)
         .step_by(3)
         .chain([-36_000, -1, 36_000, 36_001])
@@ -68,7 +68,7 @@ fn an_invalid_angle_is_refused() {
 }
 
 #[test]
-fn four_angles_go_to_the_servos_in_their_order_and_the_first_too_large_is_named() {
+fn angles_go_to_the_servos_in_order_and_the_first_too_large_is_named() {
     let Ok(Command::Order(Order::Pose(angles))) = read("pose 138.59   41.42\t318.60 221.44") else {
         panic!("a pose");
     };

@@ -40,7 +40,7 @@ fn a_wrong_count_is_refused_and_changes_nothing() {
 }
 
 #[test]
-fn whatever_stops_the_robot_ends_a_count_and_says_no_done() {
+fn whatever_stops_the_robot_ends_a_count_without_done() {
     let begun = || {
         let mut dialogue = standing();
         dialogue.say("sway 2");

@@ -11,7 +11,7 @@ const WAIT: u8 = Step::WAIT;
 const UNTIL: u8 = Step::UNTIL;
 const ENDLESS: u16 = Step::ENDLESS;
 
-/// A press, then a way that ends at a wall or after a while, then a turn.
+/// A press, then a walk that ends at a wall or after a while, then a turn.
 const PATROL: [(u8, &str, u16); 6] = [
     (UNTIL, "button", 0),
     (WAIT, "stand", ENDLESS),
@@ -24,7 +24,7 @@ const PATROL: [(u8, &str, u16); 6] = [
 /// Frames in which a contact counts as closed.
 const DEBOUNCED: u32 = 3;
 
-/// Frames of any step here that has an end, and more.
+/// More frames than any step here that has an end.
 const LONG_FRAMES: u32 = 600;
 
 fn begun(rounds: u16, steps: &[(u8, &str, u16)]) -> Dialogue {
@@ -55,7 +55,7 @@ fn gait(dialogue: &Dialogue) -> String {
     }
 }
 
-/// Frames until the robot does something else, and what that is; at most [`LONG_FRAMES`].
+/// Frames until the robot's activity changes, at most [`LONG_FRAMES`], and the new activity.
 fn change(dialogue: &mut Dialogue) -> (u32, String) {
     let before = gait(dialogue);
     for frames in 0..LONG_FRAMES {
@@ -68,7 +68,7 @@ fn change(dialogue: &mut Dialogue) -> (u32, String) {
 }
 
 #[test]
-fn a_robot_waits_for_its_button_walks_to_the_wall_and_turns_away_round_after_round() {
+fn a_robot_waits_for_its_button_walks_to_the_wall_and_turns_every_round() {
     let mut dialogue = begun(2, &PATROL);
     for _ in 0..2 {
         assert_eq!(dialogue.run(LONG_FRAMES), ["# waiting for button"]);
@@ -106,7 +106,7 @@ fn a_bouncing_contact_counts_once_it_has_held_for_three_frames() {
 }
 
 #[test]
-fn a_button_that_is_stuck_never_starts_the_robot_and_has_to_be_let_go_of_first() {
+fn a_stuck_button_never_starts_the_robot_and_has_to_be_released_first() {
     let mut dialogue = awake(Sample::odd().with_routine("patrol", 1, &PATROL));
     set(&mut dialogue, BUTTON, true);
     dialogue.accept("patrol");
@@ -190,7 +190,7 @@ fn a_press_during_a_step_that_does_not_wait_for_it_is_not_remembered() {
 }
 
 #[test]
-fn a_wait_behind_a_rest_gives_no_pulse_and_the_press_wakes_the_servos() {
+fn a_wait_after_a_rest_sends_no_pulse_and_the_press_wakes_the_servos() {
     let steps = [
         (REST, "stand", 10),
         (UNTIL, "button", 0),
@@ -331,7 +331,7 @@ fn only_the_pin_that_is_waited_for_gets_a_pull_up() {
 }
 
 #[test]
-fn a_pin_that_is_a_servos_the_rails_or_none_is_never_touched_whatever_the_section_says() {
+fn a_pin_of_a_servo_of_the_rail_or_of_none_is_never_touched() {
     let pins = Sample::odd().content.pins;
     for pin in 0..=127 {
         let robot = Sample::odd().with_routine("patrol", 1, &PATROL);
@@ -369,7 +369,7 @@ fn a_routine_whose_last_gait_has_a_time_or_a_contact_brakes_before_it_is_done() 
 }
 
 #[test]
-fn a_routine_may_wait_once_and_repeat_the_steps_behind_that() {
+fn a_routine_may_wait_once_and_repeat_the_steps_after_that() {
     let robot = Sample::odd().with_routine("patrol", 3, &PATROL);
     let robot = robot.with(|content| {
         let routine = content.gaits.last_mut().expect("the routine");

@@ -23,8 +23,7 @@ fn robot(rounds: u16) -> Sample {
     Sample::odd().with_routine("patrol", rounds, &STEPS)
 }
 
-/// The gaits of a robot in these frames, one after another, and the lines that it
-/// prints.
+/// The gaits of a robot in these frames, one after another, and the lines printed.
 fn course(dialogue: &mut Dialogue, frames: u32) -> (Vec<String>, Vec<String>) {
     let (mut gaits, mut printed): (Vec<String>, Vec<String>) = Default::default();
     for _ in 0..frames {
@@ -41,7 +40,7 @@ fn course(dialogue: &mut Dialogue, frames: u32) -> (Vec<String>, Vec<String>) {
 }
 
 /// Robots at many moments of the routine.
-fn everywhere(robot: fn() -> Sample) -> Vec<Dialogue> {
+fn at_every_step(robot: fn() -> Sample) -> Vec<Dialogue> {
     let mut dialogue = awake(robot());
     dialogue.say("patrol");
     let mut all = Vec::new();
@@ -107,8 +106,8 @@ fn help_boot_and_cal_know_a_routine_as_they_know_a_gait() {
             .contains(&"# boot patrol".to_string())
     );
     dialogue.accept("save");
-    let chip = dialogue.board.memory.clone();
-    let mut alone = Dialogue::with(*robot(1), chip, Restart::default());
+    let eeprom = dialogue.board.memory.clone();
+    let mut alone = Dialogue::with(*robot(1), eeprom, Restart::default());
     let printed = alone.run(150);
     assert_eq!(printed.last().map(String::as_str), Some("# boot: patrol"));
     assert_eq!(alone.status("gait"), "patrol");
@@ -118,7 +117,7 @@ fn help_boot_and_cal_know_a_routine_as_they_know_a_gait() {
 
 #[test]
 fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
-    for begun in everywhere(|| robot(0)) {
+    for begun in at_every_step(|| robot(0)) {
         for line in ["stop", "rest", "stand", "sway", "back 1", NEUTRAL] {
             let mut dialogue = begun.clone();
             dialogue.accept(line);
@@ -188,7 +187,7 @@ fn the_guard_ends_a_routine_as_it_ends_a_gait() {
 
 #[test]
 fn silence_ends_a_routine_that_a_talker_began_and_not_one_that_boot_began() {
-    for begun in everywhere(|| robot(0)) {
+    for begun in at_every_step(|| robot(0)) {
         let mut dialogue = begun;
         dialogue.say("deadman 200");
         let printed = dialogue.run(100);
@@ -202,9 +201,9 @@ fn silence_ends_a_routine_that_a_talker_began_and_not_one_that_boot_began() {
     dialogue.say("boot patrol");
     dialogue.say("deadman 200");
     dialogue.accept("save");
-    let chip = dialogue.board.memory.clone();
+    let eeprom = dialogue.board.memory.clone();
     let alone = || {
-        let mut alone = Dialogue::with(*robot(0), chip.clone(), Restart::default());
+        let mut alone = Dialogue::with(*robot(0), eeprom.clone(), Restart::default());
         alone.run(150);
         alone
     };
@@ -214,7 +213,7 @@ fn silence_ends_a_routine_that_a_talker_began_and_not_one_that_boot_began() {
     nobody.say("speed 90");
     assert_eq!(nobody.run(100).len(), 1);
     assert_eq!(nobody.status("fault"), "link");
-    // A line that is no command is nobody, and so is a byte.
+    // A line that is not a command counts as nobody, and so does a byte.
     let mut noise = alone();
     noise.board.send(b"x");
     assert!(noise.run(LONG_FRAMES).is_empty());
@@ -223,7 +222,7 @@ fn silence_ends_a_routine_that_a_talker_began_and_not_one_that_boot_began() {
 }
 
 #[test]
-fn a_rest_within_a_routine_ends_the_pulses_for_its_time_and_the_servos_wake_one_by_one() {
+fn a_rest_in_a_routine_ends_the_pulses_and_the_servos_wake_one_by_one() {
     let steps = [
         (CYCLES, "sway", 1),
         (REST, "stand", 50),
@@ -249,7 +248,7 @@ fn a_rest_within_a_routine_ends_the_pulses_for_its_time_and_the_servos_wake_one_
 }
 
 #[test]
-fn a_routine_can_be_stopped_while_it_rests_and_its_last_rest_is_kept_in_the_memory() {
+fn a_routine_can_be_stopped_while_it_rests_and_its_last_rest_is_saved() {
     let steps = [(CYCLES, "sway", 1), (REST, "stand", 50)];
     let resting = || {
         let mut dialogue = awake(Sample::odd().with_routine("patrol", 2, &steps));

@@ -26,7 +26,7 @@ fn stop_and_rest_change_nothing_while_it_rests() {
 }
 
 #[test]
-fn a_gait_or_a_pose_wakes_the_servos_where_they_were_left_before_anything_moves() {
+fn a_gait_or_a_pose_wakes_the_servos_where_they_were_left_first() {
     for pose in [false, true] {
         let mut motion = resting();
         let left = *motion.pose();
