@@ -24,10 +24,10 @@ pub(crate) type Twist = [f64; 3];
 const MIN_ROUNDING: f64 = 1e-8;
 /// Stages from the first rounding, the size of the slides, to the last.
 const STAGES: i32 = 5;
-/// First stage if a guess of the solution is given.
-const NEARLY: i32 = 2;
-/// Most Newton steps of a stage; five to eight are usual.
-const STEPS: usize = 40;
+/// The first stage if a guess of the solution is given.
+const FIRST_STAGE_NEAR: i32 = 2;
+/// The largest number of Newton steps in a stage; five to eight are usual.
+const MAX_STEPS: usize = 40;
 /// Largest force (over one pad's friction) that counts as balanced.
 const BALANCED: f64 = 1e-9;
 
@@ -35,7 +35,7 @@ const BALANCED: f64 = 1e-9;
 /// floating point can show.
 const MIN_GAIN: f64 = 1e-23;
 
-/// A distance that counts as zero, mm.
+/// The largest distance that counts as zero, mm.
 const STILL: f64 = 1e-12;
 
 /// The four pads in a small step.
@@ -49,9 +49,9 @@ pub(crate) struct Pads {
     pub ratio: f64,
     /// Load of each pad, over the mean.
     pub load: [f64; 4],
-    /// Drives of the legs that lag; none if legs are rigid.
+    /// Drives of the legs that lag; `None` if legs are rigid.
     pub compliance: Option<Compliance>,
-    /// Inertia of the body; none where time does not count.
+    /// Inertia of the body; `None` if time does not count.
     pub body: Option<Inertia>,
 }
 
@@ -135,7 +135,7 @@ impl Pads {
             Some(displacement) => (
                 scale.of_twist(displacement),
                 scale.of_lag(displacement),
-                NEARLY,
+                FIRST_STAGE_NEAR,
             ),
             None => ([0.0; 3], [0.0; 4], 0),
         };
@@ -155,7 +155,7 @@ impl Pads {
                     (x, z, here) = (next_x, next_z, there);
                 }
             }
-            for _ in 0..STEPS {
+            for _ in 0..MAX_STEPS {
                 let steep = here.gradient.into_iter();
                 let steep = steep.chain(here.legs.map(|leg| leg.slope));
                 if steep.map(f64::abs).all(|g| g < BALANCED * size) {

@@ -38,7 +38,7 @@ pub struct FiveBar {
     pub crank_right: f64,
 }
 
-/// On which side of the line from the left crank tip to the right one the end
+/// The side of the line from the left crank tip to the right one on which the end
 /// point lies. A mechanism cannot change it without passing a type-2
 /// singularity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -112,8 +112,8 @@ impl<T: Real> FiveBarPose<T> {
         self.right.cross(self.right_coupler)
     }
 
-    /// A number that is finite if, and only if, every number of the pose is: each of them is
-    /// in its sums and products.
+    /// A number that is finite if and only if every number of the pose is, since it sums and
+    /// multiplies them all.
     #[inline(always)]
     fn probe(&self) -> T {
         self.end_point.x + self.end_point.y + self.type2 + self.type1_left() + self.type1_right()
@@ -147,13 +147,12 @@ impl FiveBar {
     }
 
     /// The pose at two crank angles in degrees (own frame), in the assembly mode
-    /// that the robot is built in. Loop closure is below 1e-12 mm for lengths of
-    /// this size.
+    /// that the robot is built in. Loops of this size close within 1e-12 mm.
     ///
     /// # Errors
-    /// [`Fault::Apart`] and [`Fault::Nested`] where the couplers do not meet,
-    /// [`Fault::Coincident`] where the end point is free,
-    /// [`Fault::NotFinite`] for input that is not finite or that overflows.
+    /// Returns [`Fault::Apart`] and [`Fault::Nested`] where the couplers do not meet,
+    /// [`Fault::Coincident`] where the end point is free, [`Fault::NotFinite`] for input that is
+    /// not finite or that overflows.
     ///
     /// ```
     /// let head = lizard_kinematics::FiveBar::new([20.0, 30.0, 50.0, 50.0, 30.0]);
@@ -168,7 +167,7 @@ impl FiveBar {
     /// mode.
     ///
     /// # Errors
-    /// As [`FiveBar::forward`].
+    /// Fails as [`FiveBar::forward`] does.
     pub fn forward_in(
         &self,
         mode: AssemblyMode,
@@ -183,7 +182,7 @@ impl FiveBar {
     /// the sines and arc tangents.
     ///
     /// # Errors
-    /// As [`FiveBar::forward`].
+    /// Fails as [`FiveBar::forward`] does.
     #[inline]
     pub fn close(
         &self,

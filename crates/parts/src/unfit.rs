@@ -46,7 +46,7 @@ impl Assembly {
     /// the last takes seconds.
     ///
     /// # Errors
-    /// The first measure that does not fit, else the two parts that overlap most, else a
+    /// Returns the first measure that does not fit, else the two parts that overlap most, else a
     /// screw that cannot be reached.
     pub fn fits(&self) -> Result<(), Unfit> {
         self.measures_fit()?;
@@ -58,7 +58,7 @@ impl Assembly {
     /// Checks that the measures of robot.toml go together.
     ///
     /// # Errors
-    /// The first measure that does not fit.
+    /// Returns the first measure that does not fit.
     pub fn measures_fit(&self) -> Result<(), Unfit> {
         let (robot, stack) = (self.robot(), self.stack());
         let (parts, drive) = (robot.parts(), robot.drive());

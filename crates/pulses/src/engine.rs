@@ -25,7 +25,7 @@ pub struct Engine<'a, const SERVOS: usize, const SIZE: usize> {
     /// handler clears it when it takes the frame, main when it takes it back.
     pub fresh: &'a Byte,
     #[doc(hidden)]
-    /// The plan: number of the slot under way or, between slots, of the next. It starts
+    /// The plan: the number of the slot under way or, between slots, of the next. It starts
     /// with the tick, so that main gets going at once. TIMER1_COMPB writes the plan;
     /// TIMER1_COMPA takes a pulse out that it was late for.
     pub slot: &'a Byte,
@@ -42,10 +42,10 @@ pub struct Engine<'a, const SERVOS: usize, const SIZE: usize> {
     /// The pins that may go high: all, or none after [`Engine::hush`].
     pub allowed: &'a Byte,
     #[doc(hidden)]
-    /// Written only by TIMER1_COMPA.
+    /// The ticks so far, modulo 256; written only by TIMER1_COMPA.
     pub ticks: &'a Byte,
     #[doc(hidden)]
-    /// Counted in both handlers.
+    /// The late edges, counted in both handlers.
     pub late: &'a Counter,
 }
 
@@ -56,7 +56,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     /// The count at which a slot without a pulse is closed. It is late, so that main has the
     /// longest time in the slot with the tick.
     const CLOSE: u16 = max_width(SERVOS);
-    /// The falling edge of a slot without one.
+    /// The count of the falling edge in a slot without a pulse.
     #[doc(hidden)]
     pub const NO_PULSE: u16 = Self::CLOSE + LEAD as u16;
 
@@ -80,8 +80,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         self.fresh.set(1);
     }
 
-    /// True if the frame that was submitted last has been taken over, and before the
-    /// first one.
+    /// True if the frame submitted last, if any, has been taken over.
     ///
     /// Ask at every tick. False means that main was so late with the frame that it waits
     /// for the end of this tick's slot: a servo that must not leap gets no new frame for
@@ -94,8 +93,8 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
 
     /// Prevents all further pulses; one in progress ends as planned, within a slot. Call it before
     /// you reset the board, which would cut the pulse short and so send the servo to its end stop.
-    /// The tick continues. It is a single store, so it may be called anywhere, also in an
-    /// interrupt; only a reset ends its effect.
+    /// The tick continues. It is a single store, so it may be called anywhere, even in an
+    /// interrupt; only a reset ends the effect.
     #[inline(always)]
     pub fn hush(&self) {
         self.allowed.set(0);
@@ -263,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_is_taken_over_complete_and_only_at_its_beginning() {
+    fn a_frame_is_taken_over_whole_and_only_at_its_beginning() {
         let variables = Variables::<4>::of::<4>();
         let engine = variables.engine::<4>();
         engine.submit([20_000u16; 4]);

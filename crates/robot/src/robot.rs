@@ -45,8 +45,8 @@ impl Robot {
     /// Reads and checks a file.
     ///
     /// # Errors
-    /// If it cannot be read, is longer than [`crate::MAX_FILE_BYTES`], is not UTF-8 text,
-    /// or holds a mistake.
+    /// Fails if it cannot be read, is longer than [`crate::MAX_FILE_BYTES`], is not UTF-8 text, or
+    /// holds a mistake.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         let file = path.display().to_string();
@@ -59,7 +59,7 @@ impl Robot {
     /// Reads and checks the text of a robot.toml. A byte order mark at the start is skipped.
     ///
     /// # Errors
-    /// If the text holds a mistake.
+    /// Fails if the text holds a mistake.
     pub fn parse(text: &str) -> Result<Self, Error> {
         file::parse(text, Self::read)
     }
@@ -68,7 +68,7 @@ impl Robot {
     /// checks it. The other gaits are left out.
     ///
     /// # Errors
-    /// If the table holds a mistake, or the gait breaks a limit.
+    /// Fails if the table holds a mistake, or the gait breaks a limit.
     pub fn with_gait(&self, table: &str) -> Result<Self, Error> {
         const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
         file::parse(&format!("{STAND}{table}"), |table| {

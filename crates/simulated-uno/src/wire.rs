@@ -11,9 +11,9 @@ use crate::FREQUENCY;
 
 /// Bits of a byte: start, eight data bits, stop.
 const FRAME: f64 = 10.0;
-/// The middle of the stop bit, where a receiver is done with a byte.
+/// The middle of the stop bit, in bits, where a receiver is done with a byte.
 const STOP_BIT_MIDDLE: f64 = 9.5;
-/// Bytes of the fastest talker that a receiver of the slowest rate may take for one, and some more.
+/// More bytes of the fastest talker than a receiver of the slowest rate may take for one.
 const NEAR_BYTES: usize = 16;
 
 /// A byte on the wire.
@@ -105,7 +105,7 @@ impl Wire {
         edges
             .filter(|(at, _)| *at > self.free)
             .filter(|(at, bit)| {
-                // A little beside the edge, since the sums are rounded.
+                // A little after the edge, since the sums are rounded.
                 let beside = bit / 100.0;
                 self.is_high(at - beside) && !self.is_high(at + beside)
             })

@@ -45,7 +45,7 @@ impl Goal {
     /// Finds the goal of a gait by its movement on rigid legs.
     ///
     /// # Errors
-    /// For a gait that stands, goes along a curve, or depends on ties.
+    /// Fails for a gait that stands, goes along a curve, or depends on ties.
     pub fn of(gait: &CheckedGait, ground: &Ground) -> Result<Self, NoGoal> {
         let name = || gait.name().to_owned();
         let movement = gait.predict(&ground.rigid());

@@ -67,7 +67,7 @@ impl Tuning {
     /// that the robot's limits allow.
     ///
     /// # Errors
-    /// For a gait that neither goes straight nor turns on the spot, or a rate out of range.
+    /// Fails for a gait that neither goes straight nor turns on the spot, or a rate out of range.
     pub fn new(
         robot: &Robot,
         ground: &Ground,

@@ -246,7 +246,7 @@ impl<'a> Script<'a> {
             baud: f64::from(rate.baud()),
             loss: *self.rng.choice(&[0.0, 0.01, 0.1]).unwrap_or(&0.0),
             holds: *self.rng.choice(&[0, 1_000, 4_000]).unwrap_or(&0),
-            says: self.rng.bool(),
+            reports_link: self.rng.bool(),
             seed: self.rng.u64(..),
         };
         self.steps.push(Step::Drive(air));

@@ -57,7 +57,11 @@ impl fmt::Display for Step {
                 air.baud,
                 100.0 * air.loss,
                 air.holds,
-                if air.says { ", and says so" } else { "" }
+                if air.reports_link {
+                    ", and says so"
+                } else {
+                    ""
+                }
             ),
             Self::Find => write!(f, "ask for the status until there is an answer"),
             Self::Leave => write!(f, "the person goes away"),

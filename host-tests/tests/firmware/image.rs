@@ -15,7 +15,7 @@ fn image() -> Image {
 /// The functions whose path has one of these in it.
 fn functions_with(parts: &[&str]) -> Vec<String> {
     let image = image();
-    let functions = image.symbols().iter().filter(|symbol| symbol.function);
+    let functions = image.symbols().iter().filter(|symbol| symbol.is_function);
     let paths: Vec<String> = functions.map(|symbol| symbol.path()).collect();
     assert!(
         paths.iter().any(|path| path.ends_with("Control::frame")),
@@ -50,7 +50,7 @@ fn nothing_in_it_is_floating_point() {
     // avr-libc's and compiler-rt's routines: __addsf3, __muldf3, __floatsisf,
     // __fixunssfsi, __fp_split3 and their kin, and libm.
     let image = image();
-    let functions = image.symbols().iter().filter(|symbol| symbol.function);
+    let functions = image.symbols().iter().filter(|symbol| symbol.is_function);
     let is_float = |name: &str| {
         let bare = name.trim_start_matches('_');
         let helper = name.starts_with("__");

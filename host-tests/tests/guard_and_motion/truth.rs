@@ -92,7 +92,7 @@ impl Truth {
     /// At chassis angles in degrees.
     ///
     /// # Errors
-    /// A loop that does not close.
+    /// Fails for a loop that does not close.
     pub fn of(robot: &Robot, angles: [f64; 4]) -> Result<Self, Infeasible> {
         let solution = robot.lizard().solve(&angles.into())?;
         let across = [solution.head.gap.x, solution.tail.gap.x];

@@ -145,7 +145,7 @@ impl World {
     /// Applies an action.
     ///
     /// # Errors
-    /// The first rule that is broken by it.
+    /// Returns the first rule that is broken by it.
     pub fn apply(&mut self, action: Action) -> Verdict {
         let was_kept = self.observer.rests() && self.rest_is_kept();
         match action {

@@ -79,7 +79,7 @@ pub fn model(robot: &Robot, gait: &CheckedGait, ratio: f64) -> Option<Displaceme
 /// The answers of model and MuJoCo for every gait and ratio.
 ///
 /// # Errors
-/// MuJoCo gives no answer.
+/// Fails if MuJoCo gives no answer.
 ///
 /// # Panics
 /// If the robot does not have the gaits.
@@ -176,7 +176,7 @@ pub fn table(robot: &Robot, grains: &Grains) -> String {
 /// Stores the answers.
 ///
 /// # Errors
-/// The file cannot be written.
+/// Fails if the file cannot be written.
 pub fn store(grains: &Grains) -> std::io::Result<()> {
     std::fs::write(here().join("grains.json"), text(grains))
 }

@@ -150,7 +150,7 @@ impl Observer {
     /// Takes the first rule that was broken since the last call.
     ///
     /// # Errors
-    /// The broken rule.
+    /// Returns the broken rule.
     pub fn verdict(&mut self) -> Result<(), BrokenRule> {
         let mut broken = std::mem::take(&mut self.broken);
         if broken.is_empty() {

@@ -98,8 +98,8 @@ impl TimeLimit {
     /// read elsewhere.
     ///
     /// # Errors
-    /// The system's; [`ErrorKind::TimedOut`] with a message if it does not end
-    /// within the limit, when it is killed.
+    /// Returns the system's error; [`ErrorKind::TimedOut`] with a message if it does not end within
+    /// the limit, when it is killed.
     pub fn end_of(self, child: &mut Child) -> io::Result<ExitStatus> {
         let mut ended = Ok(None);
         self.wait_for(|| {
@@ -118,8 +118,8 @@ impl TimeLimit {
     /// Runs a program with `input` on its standard input, and returns its output.
     ///
     /// # Errors
-    /// It cannot be started; [`ErrorKind::TimedOut`] with a message if it, or a program that
-    /// it has started and that has its output, runs beyond the limit.
+    /// Fails if it cannot be started; [`ErrorKind::TimedOut`] with a message if it, or a program
+    /// that it has started and that has its output, runs beyond the limit.
     pub fn output(self, command: &mut Command, input: &[u8]) -> io::Result<Output> {
         let name = command.get_program().to_string_lossy().into_owned();
         let too_long = |what: &str| {

@@ -96,7 +96,7 @@ impl Model {
     /// Reads the model of a robot.toml.
     ///
     /// # Errors
-    /// A wrong robot.toml, or a robot of which no parts can be made.
+    /// Fails for a wrong robot.toml, or a robot of which no parts can be made.
     pub fn read(toml: &str) -> Result<Self, Refused> {
         let robot = Robot::parse(toml).map_err(Refused::of)?;
         let assembly = Assembly::new(&robot);
@@ -225,7 +225,7 @@ impl Model {
     /// None beyond the last.
     ///
     /// # Errors
-    /// A part whose layers make no body, a screw that cannot be reached.
+    /// Fails for a part whose layers make no body, a screw that cannot be reached.
     pub fn files(&self, number: usize) -> Result<Vec<File>, Refused> {
         let robot = self.assembly.robot();
         let count = self.made().count();
@@ -246,7 +246,7 @@ impl Model {
     /// Proves that no two parts meet at any pose that the guard accepts.
     ///
     /// # Errors
-    /// The two parts that meet.
+    /// Returns the two parts that meet.
     pub fn prove(&self, progress: impl FnMut(usize, usize)) -> Result<Proved, Refused> {
         let proof = self.assembly.prove(progress);
         let judged = proof.judge().map_err(lizard_parts::Unfit::from);

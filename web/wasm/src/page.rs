@@ -76,7 +76,7 @@ impl Page {
     /// Reads a robot.toml and puts the robot at the start of the floor, its servos at neutral.
     ///
     /// # Errors
-    /// The first mistake in the text; the previous robot stays.
+    /// Returns the first mistake in the text; the previous robot stays.
     pub fn read(&mut self, text: &str) -> Result<Description, Refused> {
         let robot = Robot::parse(text)?;
         let description = Description::of(&robot);
@@ -109,7 +109,7 @@ impl Page {
     /// Sets a number in the text of a robot.toml. The page's robot stays as it is.
     ///
     /// # Errors
-    /// If the text has no such number.
+    /// Fails if the text has no such number.
     pub fn edit(text: &str, key: &str, value: f64) -> Result<Edited, Refused> {
         Ok(Edited::of(with_number(text, key, value)?))
     }
@@ -118,7 +118,7 @@ impl Page {
     /// Values that do not change stay as they are written. The page's robot stays as it is.
     ///
     /// # Errors
-    /// If the text is not a robot, or one of the numbers cannot be added to it.
+    /// Fails if the text is not a robot, or one of the numbers cannot be added to it.
     pub fn edit_floor(text: &str, floor: Floor) -> Result<Edited, Refused> {
         let robot = Robot::parse(text)?;
         let own = Floor::of(&robot);
@@ -235,7 +235,7 @@ impl Page {
     /// Tries a gait on the page's robot; none without a robot or a line.
     ///
     /// # Errors
-    /// The first limit that the gait breaks, with possible values.
+    /// Returns the first limit that the gait breaks, with possible values.
     pub fn trial(&self, made: &EditedGait) -> Option<Result<Trial, NoTrial>> {
         made.trial(self.twin.as_ref()?)
     }
@@ -260,7 +260,7 @@ impl Page {
     /// Prepares the search of a faster gait for the page's robot; none without a robot.
     ///
     /// # Errors
-    /// The reason why there is nothing to search.
+    /// Returns the reason why there is nothing to search.
     #[cfg(feature = "tune")]
     pub fn make_faster(&mut self, wish: &SearchTask) -> Option<Result<SearchExtent, Refused>> {
         let begun = Faster::begin(self.twin.as_ref()?, wish);

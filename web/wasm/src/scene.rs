@@ -88,7 +88,7 @@ impl Scene {
     /// Computes the scene of a twin's present pose.
     ///
     /// # Errors
-    /// The message for the loop that does not close.
+    /// Returns the message for the loop that does not close.
     pub fn of(twin: &Twin) -> Result<Self, String> {
         let (robot, angles) = (twin.robot(), twin.angles());
         let pose = Pose::from(angles);

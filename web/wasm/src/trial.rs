@@ -88,7 +88,7 @@ impl EditedGait {
     /// no length.
     ///
     /// # Errors
-    /// The first limit that the gait breaks, with possible values.
+    /// Returns the first limit that the gait breaks, with possible values.
     #[must_use]
     pub fn trial(&self, twin: &Twin) -> Option<Result<Trial, NoTrial>> {
         let table = self.table(twin.robot())?;

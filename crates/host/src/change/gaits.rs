@@ -59,8 +59,7 @@ pub struct Args {
 /// Prints the table, the objects or the trace.
 ///
 /// # Errors
-/// A wrong robot.toml, a gait that it does not have, an output that cannot be
-/// written.
+/// Fails for a wrong robot.toml, a gait that it does not have, an output that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let mut out = std::io::stdout().lock();

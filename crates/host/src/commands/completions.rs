@@ -34,7 +34,7 @@ pub struct ManArgs {
 /// Runs `lizard completions` for the program.
 ///
 /// # Errors
-/// Standard output cannot be written.
+/// Fails if standard output cannot be written.
 pub fn completions(args: CompletionsArgs, mut command: Command) -> Result<(), Failure> {
     let shell = args.shell.expect("clap requires it");
     let mut script = Vec::new();
@@ -77,7 +77,7 @@ fn offer_robots(script: &str) -> String {
 /// Runs `lizard completions man` for the program.
 ///
 /// # Errors
-/// A file cannot be written.
+/// Fails if a file cannot be written.
 pub fn man(args: ManArgs, command: Command) -> Result<(), Failure> {
     let mut command = command.disable_help_subcommand(true);
     command.build();

@@ -30,7 +30,8 @@ pub struct MergeArgs {
 /// Reads all parts, and runs the command with what they have found.
 ///
 /// # Errors
-/// A part is missing, is given twice or differs from the others; and the command's own errors.
+/// Fails if a part is missing, is given twice or differs from the others; and the command's own
+/// errors.
 pub fn merge(args: MergeArgs) -> Result<(), Failure> {
     let whole = Whole::of(shares(&args.files)?)?;
     match whole.command.as_str() {

@@ -151,7 +151,7 @@ const REMOVED: [(&str, &str); 2] = [
 /// Translates a command line of the previous version.
 ///
 /// # Errors
-/// The command was removed.
+/// Fails if the command was removed.
 fn translate_old_words(mut words: Vec<OsString>) -> Result<Vec<OsString>, Failure> {
     let Some(word) = words.get(1).and_then(|word| word.to_str()) else {
         return Ok(words);
@@ -201,7 +201,7 @@ pub fn program() -> clap::Command {
 /// Runs a command line.
 ///
 /// # Errors
-/// Those of the command.
+/// Returns the errors of the command.
 pub fn run(words: Vec<OsString>) -> Result<(), Failure> {
     let parsed = program().try_get_matches_from(translate_old_words(words)?);
     match parsed.and_then(|mut matches| Cli::from_arg_matches_mut(&mut matches)) {

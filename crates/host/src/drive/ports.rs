@@ -67,7 +67,7 @@ fn chip(ids: [u16; 2]) -> Option<&'static str> {
 /// Lists the ports.
 ///
 /// # Errors
-/// Standard output cannot be written.
+/// Fails if standard output cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let lines: Vec<Line> = find::usb_ports().into_iter().map(Line::of).collect();
     json::print_json_or(args.json, &lines, || text(&lines))

@@ -73,7 +73,7 @@ impl<R: BufRead> Poses<R> {
     /// Reads the header, if there is one.
     ///
     /// # Errors
-    /// If the input is empty, cannot be read, or its header is wrong.
+    /// Fails if the input is empty, cannot be read, or its header is wrong.
     pub fn new(input: R) -> Result<Self, Failure> {
         let mut poses = Self {
             input,

@@ -22,7 +22,7 @@ const AHEAD: usize = 32;
 /// Solves a pose, or those of standard input if there is none.
 ///
 /// # Errors
-/// An invalid pose or line of the stream, or an output that cannot be written.
+/// Fails for an invalid pose or line of the stream, or an output that cannot be written.
 pub fn print(robot: &Robot, pose: Option<&Pose>, json: bool) -> Result<(), Failure> {
     match pose {
         Some(pose) => Ok(io::stdout().write_all(&solve_one(robot, pose, json)?)?),

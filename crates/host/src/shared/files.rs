@@ -29,7 +29,7 @@ pub fn note_input(path: &Path) -> &Path {
 /// The text of an input.
 ///
 /// # Errors
-/// It cannot be read, is not text, or does not end within 256 MiB, as a device may not.
+/// Fails if it cannot be read, is not text, or does not end within 256 MiB, as a device may not.
 pub fn read_text(path: &Path) -> Result<String, Failure> {
     const MAX_BYTES: u64 = 256 << 20;
     let mut text = String::new();
@@ -46,7 +46,7 @@ pub fn read_text(path: &Path) -> Result<String, Failure> {
 /// Checks that an output replaces neither an input nor a robot's description.
 ///
 /// # Errors
-/// It would.
+/// Fails if the output would replace one of them.
 pub fn check_replaceable(path: &Path) -> Result<(), Failure> {
     let read = READ.lock().unwrap_or_else(PoisonError::into_inner);
     let is_input = |input: &PathBuf| same_file::is_same_file(input, path).unwrap_or(false);
@@ -84,9 +84,9 @@ fn is_robot(path: &Path) -> bool {
 /// /dev/stdout or a named pipe, gets the bytes.
 ///
 /// # Errors
-/// The folder cannot be made or written to; or there is something at this path that is
-/// no ordinary file, such as a device or a folder: it would be replaced by a file. Or the file
-/// is an input or a robot ([`check_replaceable`]).
+/// Fails if the folder cannot be made or written to; or there is something at this path that is no
+/// ordinary file, such as a device or a folder: it would be replaced by a file. Or the file is an
+/// input or a robot ([`check_replaceable`]).
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     check_replaceable(path)?;
     let done = if is_stream(path) {

@@ -78,7 +78,7 @@ impl Part {
     /// Computes this part's pieces and prints them.
     ///
     /// # Errors
-    /// The robot cannot be read, or the output not written.
+    /// Fails if the robot cannot be read, or the output not written.
     pub fn print<C: Spreads, T: Serialize>(
         self,
         command: &C,
@@ -159,7 +159,7 @@ impl Spread {
     /// Returns the results of all parts in order, in a merge.
     ///
     /// # Errors
-    /// They belong to another computation.
+    /// Fails if they belong to another computation.
     pub fn read<T: DeserializeOwned>(&self, count: usize) -> Result<Option<Vec<T>>, Failure> {
         let Some(merged) = &self.merged else {
             return Ok(None);
@@ -177,7 +177,7 @@ impl Spread {
     /// a merge. With `--part`, prints the pieces of that part and returns `None`.
     ///
     /// # Errors
-    /// The output cannot be written, or the parts belong to another computation.
+    /// Fails if the output cannot be written, or the parts belong to another computation.
     pub fn all<T: Serialize + DeserializeOwned>(
         &self,
         command: &impl Spreads,

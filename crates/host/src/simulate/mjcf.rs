@@ -90,7 +90,7 @@ impl FromStr for LongFoot {
 /// Makes the model and writes it.
 ///
 /// # Errors
-/// A wrong robot.toml, a robot that cannot be built, no such gait, no firmware or another
+/// Fails for a wrong robot.toml, a robot that cannot be built, no such gait, no firmware or another
 /// robot's, a file that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;

@@ -52,7 +52,7 @@ from head to tail. docs/gaits.md says more about pads with a grain.";
 /// The guide as Markdown and HTML, with its pictures at a pose, usually neutral.
 ///
 /// # Errors
-/// [`Unfit::Blocked`] for a screw that cannot be reached.
+/// Returns [`Unfit::Blocked`] for a screw that cannot be reached.
 pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<File>, Unfit> {
     let mut steps = steps(assembly.robot().drive().strut().is_some());
     if assembly.robot().ground().ratio > 1.0 {

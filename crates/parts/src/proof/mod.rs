@@ -134,7 +134,7 @@ impl Proof {
     /// Decides whether the parts fit.
     ///
     /// # Errors
-    /// The two parts that overlap most, with the pose and the overlap; else two that come
+    /// Returns the two parts that overlap most, with the pose and the overlap; else two that come
     /// nearer than [`MIN_GAP_MM`].
     pub fn judge(&self) -> Result<(), Clash> {
         let apart = self

@@ -11,7 +11,7 @@ use crate::file::syntax::mistake;
 /// skipped.
 ///
 /// # Errors
-/// The first mistake in the text, with its line.
+/// Returns the first mistake in the text, with its line.
 pub(crate) fn parse<T>(text: &str, read: impl Fn(&DeTable) -> Checked<T>) -> Result<T, Error> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let file = "robot.toml".to_string();

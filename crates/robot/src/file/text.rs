@@ -10,7 +10,7 @@ pub const MAX_FILE_BYTES: u64 = 1 << 20;
 /// Reads a file of at most [`MAX_FILE_BYTES`] bytes.
 ///
 /// # Errors
-/// The message for a file that cannot be read, is too long, or is not UTF-8 text.
+/// Returns the message for a file that cannot be read, is too long, or is not UTF-8 text.
 pub(crate) fn read(path: &Path) -> Result<String, String> {
     let mut bytes = Vec::new();
     std::fs::File::open(path)

@@ -32,7 +32,7 @@ impl Tables {
     /// Builds the tables.
     ///
     /// # Errors
-    /// The first gait that the fixed point does not hold.
+    /// Returns the first gait that the fixed point does not hold.
     pub fn new(gaits: &[Gait]) -> Checked<Self> {
         let mut bank = WaveformBank::default();
         let mut parts = Vec::new();

@@ -147,7 +147,7 @@ fn enabling_an_interrupt_fires_its_flag_and_writing_a_flag_leaves_the_others() {
 }
 
 #[test]
-fn an_interrupt_that_is_enabled_while_its_flag_is_up_comes_after_that_instruction() {
+fn an_interrupt_enabled_while_its_flag_is_up_comes_after_that_instruction() {
     // sts 2, entry 4, jmp 3, out 1
     let image = assembler(
         "jmp start

@@ -126,7 +126,7 @@ impl Proof {
 /// Compares the guard with geometry and prints the result.
 ///
 /// # Errors
-/// A wrong robot.toml; a pose that is decided wrong.
+/// Fails for a wrong robot.toml; a pose that is decided wrong.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.spread.robot.load()?;
     let guard = robot.firmware();

@@ -76,8 +76,8 @@ impl Spreads for Args {
 /// Searches a gait and prints it.
 ///
 /// # Errors
-/// A wrong robot.toml; a gait that does not exist or cannot be tuned; an invalid rate or name; no
-/// gait that the limits allow; an output that cannot be written.
+/// Fails for a wrong robot.toml; a gait that does not exist or cannot be tuned; an invalid rate or
+/// name; no gait that the limits allow; an output that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.spread.robot.load()?;
     let Some(report) = tune(&robot, &args)? else {

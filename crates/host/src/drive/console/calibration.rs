@@ -100,7 +100,7 @@ impl Calibration {
     /// Asks a robot for its settings.
     ///
     /// # Errors
-    /// No answer, or one that is not understood.
+    /// Fails if there is no answer, or one that is not understood.
     pub fn ask<P: Read + Write>(link: &mut Link<P>) -> Result<Self, LinkError> {
         let reply = link.command("cal")?;
         Self::parse(&reply.notes).ok_or_else(|| LinkError::Unclear {
@@ -171,8 +171,7 @@ impl Calibration {
     /// again after the others, and once more from robot.toml's settings.
     ///
     /// # Errors
-    /// The first refusal of those that remain; the robot then has a part of the
-    /// settings.
+    /// Returns the first refusal of those that remain; the robot then has a part of the settings.
     pub fn apply<P: Read + Write>(&self, link: &mut Link<P>) -> Result<(), LinkError> {
         let mut lines = self.commands();
         let mut from_factory = false;

@@ -83,7 +83,7 @@ impl UsbPort {
 /// Chooses the one port with a UNO's USB chip, or else the only port.
 ///
 /// # Errors
-/// There is no port, or more than one.
+/// Fails if there is no port, or more than one.
 pub fn choose(ports: &[UsbPort], command: &'static str) -> Result<UsbPort, FindError> {
     let known = ports.iter().filter(|port| VENDORS.contains(&port.vendor));
     let known: Vec<&UsbPort> = known.collect();

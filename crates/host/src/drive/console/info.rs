@@ -52,7 +52,7 @@ struct Robot {
 /// Asks a board and prints its answers.
 ///
 /// # Errors
-/// No board, or none that answers as a lizard does.
+/// Fails if there is no board, or none that answers as a lizard does.
 pub fn run(args: Args) -> Result<(), Failure> {
     let finder = args.connect.finder("info")?;
     let (mut board, banner) = finder.open_and_greet()?;

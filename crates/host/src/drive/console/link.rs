@@ -123,7 +123,7 @@ impl<P: Read + Write> Link<P> {
     /// rate; then the result is `None`.
     ///
     /// # Errors
-    /// Nothing answers, or no lizard does.
+    /// Fails if nothing answers, or no lizard does.
     pub fn greet(&mut self) -> Result<Option<String>, LinkError> {
         let end = Instant::now() + self.timeouts.banner;
         let mut first = None;
@@ -149,7 +149,7 @@ impl<P: Read + Write> Link<P> {
     /// Sends a line without waiting for its answer.
     ///
     /// # Errors
-    /// The port is gone.
+    /// Fails if the port is gone.
     pub fn send(&mut self, line: &str) -> Result<(), LinkError> {
         let bytes = format!("{line}\n");
         self.port
@@ -161,7 +161,7 @@ impl<P: Read + Write> Link<P> {
     /// Sends a line and waits for its answer, `ok` or `err`.
     ///
     /// # Errors
-    /// No answer, or the port is gone.
+    /// Fails if there is no answer, or the port is gone.
     pub fn ask(&mut self, line: &str) -> Result<Reply, LinkError> {
         self.send(line)?;
         let end = Instant::now() + self.timeouts.answer;
@@ -178,7 +178,7 @@ impl<P: Read + Write> Link<P> {
     /// Sends a line that must be accepted; returns the `#` lines before the answer.
     ///
     /// # Errors
-    /// As [`Link::ask`], and if the robot refuses.
+    /// Fails as [`Link::ask`] does, or if the robot refuses.
     pub fn command(&mut self, line: &str) -> Result<Reply, LinkError> {
         let reply = self.ask(line)?;
         let line = line.to_owned();
@@ -196,7 +196,7 @@ impl<P: Read + Write> Link<P> {
     /// Waits for the next line, at most `wait`.
     ///
     /// # Errors
-    /// The port is gone.
+    /// Fails if the port is gone.
     pub fn line(&mut self, wait: Duration) -> Result<Option<String>, LinkError> {
         self.line_before(Instant::now() + wait)
     }
@@ -204,7 +204,7 @@ impl<P: Read + Write> Link<P> {
     /// Waits; lines that arrive meanwhile are dropped.
     ///
     /// # Errors
-    /// The port is gone.
+    /// Fails if the port is gone.
     pub fn pause(&mut self, time: Duration) -> Result<(), LinkError> {
         let end = Instant::now() + time;
         while self.line_before(end)?.is_some() {}

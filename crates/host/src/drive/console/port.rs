@@ -66,7 +66,7 @@ impl From<PortError> for crate::Failure {
 /// Opens a port for this program alone. Opening it resets a UNO.
 ///
 /// # Errors
-/// There is none, or it must not or cannot be opened.
+/// Fails if there is none, or it must not or cannot be opened.
 pub fn open(name: &str) -> Result<Box<dyn SerialPort>, PortError> {
     if cfg!(unix) && !Path::new(name).exists() {
         return Err(missing_port(name));

@@ -362,7 +362,7 @@ impl Session {
     /// Succeeds if the robot accepted all lines.
     ///
     /// # Errors
-    /// The robot refused a line; the message names the first one.
+    /// Fails if the robot refused a line; the message names the first one.
     pub fn verdict(&self) -> Result<(), Failure> {
         let Some((line, why)) = &self.first_failed else {
             return Ok(());

@@ -13,7 +13,7 @@ use crate::shared::firmware::CODE;
 /// The image of a robot: the code inside this program with this robot's section behind it.
 ///
 /// # Errors
-/// Never: a test makes one for every built-in robot.
+/// Never fails: a test makes one for every built-in robot.
 pub fn image(robot: &Robot) -> Result<Image, ImageError> {
     let mut bytes = Image::from_hex(CODE)?.bytes().to_vec();
     bytes.resize(START.into(), BLANK);
@@ -24,7 +24,7 @@ pub fn image(robot: &Robot) -> Result<Image, ImageError> {
 /// A robot's section alone.
 ///
 /// # Errors
-/// Never: a section has room.
+/// Never fails: a section has room.
 pub fn robot_alone(robot: &Robot) -> Result<Image, ImageError> {
     Image::robot_alone(robot.section())
 }
@@ -32,7 +32,7 @@ pub fn robot_alone(robot: &Robot) -> Result<Image, ImageError> {
 /// Reads an image from a file of Intel HEX.
 ///
 /// # Errors
-/// It cannot be read, or is not an image for a UNO.
+/// Fails if it cannot be read, or is not an image for a UNO.
 pub fn read(path: &Path) -> Result<Image, Failure> {
     let name = path.display();
     let text = files::read_text(path)?;

@@ -97,7 +97,7 @@ impl Image {
     /// An image of these bytes, from address 0 on.
     ///
     /// # Errors
-    /// There are no bytes, or too many.
+    /// Fails if there are no bytes, or too many.
     pub fn new(bytes: Vec<u8>) -> Result<Self, ImageError> {
         match bytes.len() {
             0 => Err(ImageError::NoStart),
@@ -109,7 +109,7 @@ impl Image {
     /// A robot's section without code.
     ///
     /// # Errors
-    /// It has no bytes, or too many.
+    /// Fails if it has no bytes, or too many.
     pub fn robot_alone(section: Vec<u8>) -> Result<Self, ImageError> {
         match ROBOT + section.len() {
             ROBOT => Err(ImageError::NoRobot),
@@ -130,7 +130,7 @@ impl Image {
     /// Reads Intel HEX.
     ///
     /// # Errors
-    /// The text is not Intel HEX, is cut off, contradicts itself, or is not for this chip.
+    /// Fails if the text is not Intel HEX, is cut off, contradicts itself, or is not for this chip.
     pub fn from_hex(text: &str) -> Result<Self, ImageError> {
         let mut flash = vec![None; BOOT];
         let mut base = 0;

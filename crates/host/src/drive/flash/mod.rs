@@ -61,7 +61,8 @@ pub struct Args {
 /// Writes a board.
 ///
 /// # Errors
-/// No image, no board, or none that can be written; the message says what is in its flash.
+/// Fails if there is no image, no board, or none that can be written; the message says what is in
+/// its flash.
 pub fn run(args: Args) -> Result<(), Failure> {
     let image = match &args.image {
         Some(path) => file::read(path)?,

@@ -25,7 +25,7 @@ impl SerialBoard {
     /// Opens a port for this program alone.
     ///
     /// # Errors
-    /// There is none, or it cannot be opened.
+    /// Fails if there is none, or it cannot be opened.
     pub fn open(name: &str) -> Result<Self, PortError> {
         Ok(Self {
             name: name.to_owned(),
@@ -52,7 +52,7 @@ impl SerialBoard {
     /// Sets the speed of the line.
     ///
     /// # Errors
-    /// The port is gone.
+    /// Fails if the port is gone.
     pub fn set_baud(&mut self, baud: u32) -> io::Result<()> {
         Ok(self.port()?.set_baud_rate(baud)?)
     }

@@ -69,7 +69,7 @@ pub trait Board: Read + Write {
     /// Resets the chip, which starts its boot loader, and sets the speed of the line.
     ///
     /// # Errors
-    /// The connection is gone.
+    /// Fails if the connection is gone.
     fn reset(&mut self, baud: u32) -> io::Result<()>;
 }
 
@@ -155,7 +155,7 @@ impl<B: Board> Loader<B> {
     /// Resets the board and calls a boot loader of this kind until it answers.
     ///
     /// # Errors
-    /// [`LoaderError::Silent`] if it never does.
+    /// Returns [`LoaderError::Silent`] if it never does.
     pub fn call(&mut self, kind: Kind) -> Result<(), LoaderError> {
         self.board.reset(kind.baud())?;
         // What the program said before the reset comes meanwhile, too.

@@ -55,7 +55,7 @@ impl Target {
     /// Checks that an image leaves the boot section alone, now that this loader has answered.
     ///
     /// # Errors
-    /// It does not, or it may not.
+    /// Fails if the board has no room, or may have none.
     pub fn has_room(self, image: &Image, loader: Kind) -> Result<(), TooLong> {
         let is_nano = self.model == Some(Model::Nano) || loader == Kind::AtmegaBoot;
         let in_doubt = !is_nano && self.model.is_none() && self.may_be_nano;

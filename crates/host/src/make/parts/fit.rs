@@ -103,7 +103,7 @@ fn complete_proof(questions: &Questions, known: Option<Vec<Answer>>) -> Proof {
 /// Proves that the parts fit and prints the clearances.
 ///
 /// # Errors
-/// A wrong robot.toml, measures that do not go together, parts that meet.
+/// Fails for a wrong robot.toml, measures that do not go together, parts that meet.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.spread.robot.load()?;
     let assembly = Assembly::new(&robot);

@@ -33,7 +33,7 @@ impl Proportions {
     /// (then r1 + r2 > r3 and the mechanism can be assembled), sum 0.9.
     ///
     /// # Errors
-    /// The message that says which constraint is broken.
+    /// Returns the message that says which constraint is broken.
     pub fn new(r1: f64, r2: f64, r3: f64) -> Result<Self, String> {
         for (name, value, most) in [("r1", r1, SUM), ("r2", r2, SUM), ("r3", r3, SUM / 2.0)] {
             if !(value > 0.0 && value < most) {

@@ -36,7 +36,7 @@ impl From<Unreadable> for Failure {
 /// Reads the program of an ELF or HEX file.
 ///
 /// # Errors
-/// It cannot be read, or is not a program of an AVR.
+/// Fails if it cannot be read, or is not a program of an AVR.
 pub fn read(elf: &Path) -> Result<Image, Unreadable> {
     Image::read(note_input(elf)).map_err(|error| Unreadable {
         elf: elf.to_owned(),
@@ -75,7 +75,7 @@ impl From<FirmwareError> for Failure {
 /// what it does.
 ///
 /// # Errors
-/// The file is missing, is not a program of an AVR, or has another robot in it.
+/// Fails if the file is missing, is not a program of an AVR, or has another robot in it.
 pub(crate) fn of_robot(
     elf: Option<&Path>,
     file: &RobotFile,
@@ -136,7 +136,7 @@ pub(crate) fn without_contacts(mut image: Image, robot: &Robot) -> Image {
 /// none.
 ///
 /// # Errors
-/// It cannot be read, or is not a program of an AVR.
+/// Fails if it cannot be read, or is not a program of an AVR.
 pub fn with_robot(path: &Path, robot: &Robot) -> Result<Image, Unreadable> {
     let mut image = read(path)?;
     if robot_in(&image.flash()).is_some() {

@@ -27,7 +27,7 @@ impl Exactness {
     /// bytes sent were commands.
     ///
     /// # Errors
-    /// The board has sent no pulse.
+    /// Fails if the board has sent no pulse.
     pub fn of(
         board: &mut SimulatedBoard,
         robot: &CoreRobot,

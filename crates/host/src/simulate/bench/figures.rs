@@ -123,7 +123,7 @@ impl Figures {
     /// Measures an ELF. `progress` receives the name of each measurement.
     ///
     /// # Errors
-    /// A firmware that cannot be loaded, dies, or does not answer.
+    /// Fails for a firmware that cannot be loaded, dies, or does not answer.
     pub fn measure(
         elf: &Path,
         robot: &Robot,

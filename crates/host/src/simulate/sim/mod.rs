@@ -122,7 +122,7 @@ fn seconds(text: &str) -> Result<f64, String> {
 /// Runs the firmware and prints the results.
 ///
 /// # Errors
-/// No firmware, a wrong script, a firmware that dies, a file that cannot be
+/// Fails without a firmware, for a wrong script, a firmware that dies, or a file that cannot be
 /// written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let fidelity = match args.fidelity {

@@ -54,7 +54,7 @@ impl Report<'_> {
     /// Prints the report for people, without the dialogue.
     ///
     /// # Errors
-    /// Writing failed.
+    /// Fails if writing fails.
     pub fn print(&self, out: &mut impl Write) -> io::Result<()> {
         self.print_servos(out)?;
         self.print_paths(out)?;

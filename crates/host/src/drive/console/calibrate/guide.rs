@@ -67,7 +67,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     /// Reads the robot's calibration, and lets it stand.
     ///
     /// # Errors
-    /// No answer, or the robot cannot stand.
+    /// Fails if there is no answer, or the robot cannot stand.
     pub fn new(link: &'a mut Link<P>) -> Result<Self, LinkError> {
         let before = Calibration::ask(link)?;
         link.command("stand")?;
@@ -97,7 +97,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     /// Handles a key; true when the user has finished or cancelled.
     ///
     /// # Errors
-    /// The connection breaks. A refusal is not an error: it is shown.
+    /// Fails if the connection breaks. A refusal is not an error: it is shown.
     pub fn key(&mut self, key: Key) -> Result<bool, LinkError> {
         self.message.clear();
         let done = match (key, self.step()) {
@@ -140,7 +140,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     /// Reads the robot's messages while no key is pressed.
     ///
     /// # Errors
-    /// The connection breaks.
+    /// Fails if the connection breaks.
     pub fn idle(&mut self) -> Result<(), LinkError> {
         while let Some(line) = self.link.line(Duration::ZERO)? {
             if line.starts_with(BANNER) {

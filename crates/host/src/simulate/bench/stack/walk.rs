@@ -218,8 +218,9 @@ impl<'a> Walk<'a> {
 
     /// An error of the function at `entry`.
     pub fn refuse(&self, entry: u32, address: u32, what: &'static str) -> StackError {
-        let before =
-            |symbol: &&simulated_uno::Symbol| symbol.function && u64::from(entry) >= symbol.address;
+        let before = |symbol: &&simulated_uno::Symbol| {
+            symbol.is_function && u64::from(entry) >= symbol.address
+        };
         let symbols = self.image.symbols().iter().filter(before);
         let nearest = symbols.max_by_key(|symbol| symbol.address);
         StackError {
