@@ -1,4 +1,4 @@
-//! `lizard completions` and `lizard completions man`: what a shell and `man` know of the program.
+//! `lizard completions` and `lizard completions man`: completions and manual pages.
 
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -45,8 +45,8 @@ pub fn completions(args: CompletionsArgs, mut command: Command) -> Result<(), Fa
     Ok(out.flush()?)
 }
 
-/// Narrows what a script offers for `--robot` down to robot files and the program's own robots.
-/// clap knows only hints such as "a file".
+/// Narrows a script's suggestions for `--robot` down to robot files and the program's own
+/// robots. clap knows only hints such as "a file".
 fn offer_robots(script: &str) -> String {
     const BASH: &str = "COMPREPLY=($(compgen -f \"${cur}\"))";
     let names = robot_file::names().join(" ");

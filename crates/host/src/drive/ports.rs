@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn a_port_that_may_not_be_opened_comes_with_the_remedy_and_one_that_is_open_with_its_program() {
+    fn a_forbidden_port_comes_with_the_remedy_and_an_open_one_with_its_program() {
         let mut closed = line(0x2341, 0x0043, None);
         closed.may_open = false;
         closed.open_in = Some("screen (process 7)".to_owned());

@@ -14,7 +14,7 @@ use super::tally::{Finding, MARGIN_BAND, Tally};
 /// Pieces of the whole walk: of both ends and of both sides.
 pub const PIECES: usize = 4 * CUTS;
 
-/// The walk of a robot's pairs with a guard: what all of its pieces need is computed once.
+/// The walk of a robot's pairs with a guard; values that all pieces need are computed once.
 pub struct Walk<'a> {
     robot: &'a Robot,
     guard: &'a CoreRobot,

@@ -197,15 +197,16 @@ mod tests {
 
     const PAPER: &str = include_str!("../../../../../robots/paper.toml");
 
-    fn run_tune(words: &str) -> Result<Comparison, String> {
+    fn run_tune(arguments: &str) -> Result<Comparison, String> {
         let robot = Robot::parse(PAPER).expect("right");
-        let line = Line::try_parse_from(std::iter::once("tune").chain(words.split_whitespace()));
+        let line =
+            Line::try_parse_from(std::iter::once("tune").chain(arguments.split_whitespace()));
         let args = line.map_err(|error| error.to_string())?.args;
         let report = tune(&robot, &args).map_err(|failure| failure.to_string())?;
         Ok(report.expect("all parts"))
     }
 
-    /// Of `lizard tune --rounds 1 --robot robots/paper.toml`, which docs/twin.md quotes.
+    /// Checks the figures of `lizard tune --rounds 1 --robot robots/paper.toml` in docs/twin.md.
     #[test]
     fn a_short_search_surpasses_walk_at_the_same_rate_as_the_docs_say() {
         let report = run_tune("--rounds 1").expect("it finds one");

@@ -85,7 +85,7 @@ impl Servos {
         [&self.a1, &self.a2, &self.a3, &self.a4]
     }
 
-    /// A servo by its place, 0 to 3.
+    /// A servo by its index, 0 to 3.
     pub fn at(&mut self, index: usize) -> &mut Servo {
         match index {
             0 => &mut self.a1,

@@ -28,7 +28,7 @@ pub struct Connect {
     robot: Option<PathBuf>,
 }
 
-/// The place to look for the board. It is searched again on each call, because a board that is
+/// The location of the board. It is searched again on each call, because a board that is
 /// plugged in again may get another port.
 #[derive(Debug)]
 pub struct Finder {
@@ -167,7 +167,7 @@ impl Connection {
         self.link.greet().map_err(|error| self.failure(&error))
     }
 
-    /// Converts the error to a sentence with the port's name.
+    /// Converts the error to a failure whose message has the port's name.
     #[must_use]
     pub fn failure(&self, error: &LinkError) -> Failure {
         Failure::Impossible(format!("{}: {error}", self.name))

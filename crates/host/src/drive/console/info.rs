@@ -1,4 +1,4 @@
-//! `lizard info`: what a board has.
+//! `lizard info`: the firmware, robot, calibration and fault of a board.
 
 use std::fmt::Write as _;
 use std::io::{Read, Write};

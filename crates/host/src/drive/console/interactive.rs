@@ -204,7 +204,7 @@ impl Dialogue {
         if self
             .session
             .status()
-            .is_some_and(super::status::Status::walks)
+            .is_some_and(super::status::Status::is_moving)
             && board.is_some()
             && !finder.is_simulated()
         {

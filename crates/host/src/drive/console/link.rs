@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 pub const BANNER: &str = "# lizard ";
 /// Questions to a board that was not reset: it finds the port's rate by five lines at most, and
 /// a radio may lose some.
-const ASKS: u32 = 8;
+const MAX_QUESTIONS: u32 = 8;
 
 /// The beginning of an answer to `status`.
 const STATUS: &str = "ok gait=";
@@ -133,7 +133,7 @@ impl<P: Read + Write> Link<P> {
             }
             first = first.or(Some(line));
         }
-        for _ in 0..ASKS {
+        for _ in 0..MAX_QUESTIONS {
             let end = Instant::now() + self.timeouts.answer / 4;
             self.send("status")?;
             while let Some(line) = self.line_before(end)? {
@@ -293,7 +293,7 @@ mod tests {
     struct Script {
         pieces: VecDeque<Option<&'static str>>,
         ready: VecDeque<u8>,
-        gone: bool,
+        is_gone: bool,
         sent: String,
     }
 
@@ -302,7 +302,7 @@ mod tests {
             let mut script = Self {
                 pieces: pieces.iter().copied().collect(),
                 ready: VecDeque::new(),
-                gone: false,
+                is_gone: false,
                 sent: String::new(),
             };
             script.next();
@@ -317,7 +317,7 @@ mod tests {
         fn next(&mut self) {
             match self.pieces.pop_front() {
                 Some(Some(piece)) => self.ready.extend(piece.bytes()),
-                Some(None) => self.gone = true,
+                Some(None) => self.is_gone = true,
                 None => {}
             }
         }
@@ -326,7 +326,7 @@ mod tests {
     impl Read for Script {
         fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
             if self.ready.is_empty() {
-                if self.gone {
+                if self.is_gone {
                     return Err(io::Error::from_raw_os_error(5));
                 }
                 return Err(ErrorKind::TimedOut.into());
@@ -352,7 +352,7 @@ mod tests {
     const HELLO: &str = "# lizard 0.2.0 robot paper 1a2b3c4d, send help for the commands\r\n";
 
     #[test]
-    fn a_banner_behind_what_a_reset_has_cut_off_is_one() {
+    fn a_banner_after_the_rest_of_a_cut_off_line_is_found() {
         for cut in ["", "ok wal", "# t=12 pose=138.5", "\u{fffd}x"] {
             let bytes = format!("{cut}# lizard 0.2.0 robot paper 1\r\n");
             let bytes: &'static str = bytes.leak();
@@ -367,7 +367,7 @@ mod tests {
     }
 
     #[test]
-    fn the_banner_is_found_behind_the_noise_of_an_opening() {
+    fn the_banner_is_found_after_the_noise_of_an_opening() {
         let mut link = Script::link(&[Some(
             "\u{fffd}\x00x\n# t=7 po\r\n# lizard 0.2.0 robot paper 1a\r\n",
         )]);

@@ -51,7 +51,7 @@ pub enum Event {
     Pose {
         /// Frames since power-on, 50 a second.
         frame: u64,
-        /// Degrees, chassis frame, A1 to A4.
+        /// Servo angles in degrees, chassis frame, A1 to A4.
         angles: [f64; 4],
     },
     /// The port has vanished.

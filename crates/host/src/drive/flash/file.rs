@@ -10,7 +10,7 @@ use crate::Failure;
 use crate::shared::files;
 use crate::shared::firmware::CODE;
 
-/// The image of a robot: the code inside this program with this robot's section behind it.
+/// The image of a robot: the code inside this program followed by this robot's section.
 ///
 /// # Errors
 /// Never fails: a test makes one for every built-in robot.
@@ -46,7 +46,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_robot_is_behind_the_same_code_or_alone() {
+    fn every_robot_follows_the_same_code_or_is_alone() {
         let code = Image::from_hex(CODE).expect("it is Intel HEX");
         let code = code.bytes();
         assert_eq!(Mark::find(code), Some(Mark::HERE));

@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn a_board_with_arduinos_usb_chip_is_not_a_nano_and_one_with_another_chip_may_be() {
+    fn only_a_board_without_arduinos_usb_chip_may_be_a_nano() {
         let at = |name: &str, vendor| UsbPort {
             name: name.to_owned(),
             vendor,
@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_board_it_says_what_to_connect_and_of_several_that_one_is_to_be_named() {
+    fn no_board_or_several_are_refused_with_the_remedy() {
         let words = |ports: &[UsbPort]| {
             let error = choose(ports).expect_err("there is not one");
             error.to_string()

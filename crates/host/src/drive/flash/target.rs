@@ -23,7 +23,7 @@ pub enum Model {
 pub struct Target {
     /// The model that the user has named.
     pub model: Option<Model>,
-    /// True if it has a USB chip that UNOs have as well as Nanos.
+    /// True if the board has a USB chip that both UNOs and Nanos have.
     pub may_be_nano: bool,
 }
 
@@ -36,7 +36,7 @@ pub struct Target {
     ". Gaits can be left out of robot.toml until it fits"
 })]
 pub struct TooLong {
-    /// The address behind the image's last byte.
+    /// The address after the image's last byte.
     end: usize,
     /// The board may also be a UNO.
     in_doubt: bool,

@@ -5,7 +5,7 @@ use std::io::{Read, Write};
 use crate::shared::ink::PLACES;
 
 use super::step::{STEPS, Step};
-use super::{FAR, Guide, PROOFS};
+use super::{Guide, SCALE_ANGLES, SIGN_ANGLES};
 
 /// The contents of the screen in one step.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -50,7 +50,7 @@ impl<P: Read + Write> Guide<'_, P> {
                 ("fit the horns".to_owned(), text, next)
             }
             Step::Sign(index) => {
-                let by = self.moved.unwrap_or(PROOFS[0]);
+                let by = self.moved.unwrap_or(SIGN_ANGLES[0]);
                 let sense = if by < 0.0 {
                     "clockwise"
                 } else {
@@ -93,7 +93,7 @@ impl<P: Read + Write> Guide<'_, P> {
                 "y: set them    Enter: leave them as they are    b: back    q: leave",
             ),
             Step::Scale(index) => {
-                let by = self.moved.unwrap_or(FAR[0]);
+                let by = self.moved.unwrap_or(SCALE_ANGLES[0]);
                 let text = format!(
                     "The space bar turns A{} alone by {:.0} degrees, so that its crank\n\
                      should point to {:.2} deg. If it does not, turn it there with the\n\
@@ -126,7 +126,7 @@ impl<P: Read + Write> Guide<'_, P> {
                 )
             }
             Step::Walk => {
-                let bar = match self.walks {
+                let bar = match self.is_walking {
                     true => "It walks. The space bar ends it.",
                     false => "The space bar starts it, and ends it.",
                 };
