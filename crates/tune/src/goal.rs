@@ -18,7 +18,7 @@ fn is_front(servo: usize) -> bool {
 /// The error for a gait without a goal, by its name.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum NoGoal {
-    /// Its movement depends on a tie between two pairs of feet.
+    /// The gait's movement depends on a tie between two pairs of feet.
     #[error("where the gait `{0}` leads is undecided: two feet pull against two; tune another one")]
     Undecided(String),
     /// It stands, or returns to its start.

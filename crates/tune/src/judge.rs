@@ -148,7 +148,7 @@ impl Judge {
         Variation::none(&self.ground).walked(&self.robot, gait, SERVOS)
     }
 
-    /// Computes the speed that 95 % of the robots exceed; none for a gait that does not lead
+    /// Computes the speed that 95 % of the robots exceed; `None` for a gait that does not lead
     /// straight to its goal on the robot itself.
     pub fn score(&self, gait: &CheckedGait) -> Option<f64> {
         // In fine steps, because a period may not be a whole number of frames.

@@ -106,7 +106,7 @@ impl Tuning {
         Search::new(&kind.begin(), self.seed.wrapping_add(kind as u64))
     }
 
-    /// Scores a gait by the speed that 95 % of the random robots exceed, mm/s or deg/s; none if
+    /// Scores a gait by the speed that 95 % of the random robots exceed, mm/s or deg/s; `None` if
     /// the robot's limits forbid it, or it leads elsewhere. Takes some hundredths of a second to
     /// some tenths.
     pub fn score(&self, kind: Kind, parameters: &[f64]) -> Option<f64> {

@@ -7,7 +7,7 @@ use std::fmt;
 pub enum Activity {
     /// It rests, or has just received `rest`.
     Resting,
-    /// Its servos wake after a rest.
+    /// The servos wake after a rest.
     Waking,
     /// It holds a pose or stands.
     Holding,

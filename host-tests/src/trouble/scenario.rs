@@ -23,7 +23,7 @@ pub(super) const NOWHERE: &str = "pose 0 0 0 0";
 pub struct Scenario {
     /// The seed of its random numbers.
     pub seed: u64,
-    /// Its number among those of the seed.
+    /// The scenario's number among those of the seed.
     pub number: u64,
     /// The robot's activity when trouble begins.
     pub activity: Activity,

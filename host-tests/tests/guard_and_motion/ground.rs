@@ -16,7 +16,7 @@ fn angles(robot: &Robot, pulses: Pulses) -> [f64; 4] {
 }
 
 /// The travel of one cycle, by the pulses that the core sends for a gait at a speed in
-/// percent. It begins where the gait's phase is next to 0. None where the guard bars
+/// percent. It begins where the gait's phase is next to 0. `None` where the guard bars
 /// the way to the gait's first pose.
 fn travel(named: &Named, gait: &CheckedGait, percent: f64) -> Option<Travel> {
     let robot = &named.robot;

@@ -29,7 +29,7 @@ const SEED: u64 = 1;
 pub struct Call {
     /// The piece that contains it.
     pub from: usize,
-    /// Its offset in that piece, bytes.
+    /// The offset in that piece, bytes.
     pub at: u32,
     /// The piece that it leads to.
     pub to: usize,

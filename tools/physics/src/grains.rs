@@ -61,7 +61,7 @@ pub fn text(grains: &Grains) -> String {
     format!("{{\n{}\n}}\n", gaits.collect::<Vec<_>>().join(",\n"))
 }
 
-/// The model's answer for level feet; none where it depends on ties.
+/// The model's answer for level feet; `None` where it depends on ties.
 #[must_use]
 pub fn model(robot: &Robot, gait: &CheckedGait, ratio: f64) -> Option<Displacement> {
     let ground = Ground {

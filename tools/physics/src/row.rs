@@ -19,7 +19,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// Its scene for MuJoCo under a name, and its legs.
+    /// The scene for MuJoCo under a name, and its legs.
     #[must_use]
     pub fn scene(&self, name: &str, assembly: &Assembly) -> (Legs, Scene) {
         let scene = scene_of(name, assembly, &self.gait, self.case);

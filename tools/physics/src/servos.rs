@@ -18,7 +18,7 @@ const ALLOWED: f64 = 0.10;
 /// The paper's robot with other servos, joints, mass and pads.
 #[derive(Clone, Copy, Debug)]
 pub struct Variant {
-    /// Its name in the table.
+    /// The variant's name in the table.
     pub name: &'static str,
     /// Keys of `[servo]` and of `[joints]`.
     servo: &'static str,

@@ -50,9 +50,9 @@ pub enum Event<'a> {
     /// A command that moves, freezes or rests the robot; `done` is true if it was accepted,
     /// false if refused, `None` if unknown.
     Order {
-        /// Its effect on the servos.
+        /// The command's effect on the servos.
         effect: Effect,
-        /// Its outcome.
+        /// The outcome of the command.
         done: Option<bool>,
     },
     /// Settings of the servos change.

@@ -33,15 +33,15 @@ pub struct BodyEntry {
     pub kind: &'static str,
     /// The index of the mount that it moves with.
     pub mount: usize,
-    /// The servo that it belongs to, 0 to 3; none for chassis and sides.
+    /// The servo that it belongs to, 0 to 3; `None` for chassis and sides.
     pub servo: Option<usize>,
     /// The step of the guide that adds it, from 1; 0 for none.
     pub step: usize,
     /// Lift in the guide's exploded picture, as a share.
     pub lift: f64,
-    /// The index of the printed part; none for bought bodies.
+    /// The index of the printed part; `None` for bought bodies.
     pub part: Option<usize>,
-    /// Its place in its mount's frame: the columns of a 4 x 4 matrix.
+    /// The solid's position in its mount's frame: the columns of a 4 x 4 matrix.
     pub place: [f64; 16],
     /// The index of its solid.
     pub solid: usize,
@@ -50,7 +50,7 @@ pub struct BodyEntry {
 /// A printed part.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PartEntry {
-    /// Its name.
+    /// The name.
     pub name: String,
     /// The name of its files, without folder and ending.
     pub file: String,

@@ -17,7 +17,7 @@ use crate::refused::Refused;
 pub struct SearchTask {
     /// The given gait.
     pub bars: Bars,
-    /// Largest speed of a servo, deg/s; none for that of the given gait.
+    /// Largest speed of a servo, deg/s; `None` for that of the given gait.
     pub rate: Option<f64>,
     /// Rounds of the search, as `lizard tune --rounds` has them.
     pub rounds: usize,

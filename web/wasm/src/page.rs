@@ -29,7 +29,7 @@ const CYCLES_PER_US: f64 = 16.0;
 /// A frame of the robot on the floor.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Frame {
-    /// The robot at the pose of its servos; none if a loop does not close.
+    /// The robot at the pose of its servos; `None` if a loop does not close.
     scene: Option<Scene>,
     /// The message for the loop that does not close.
     fault: Option<String>,
@@ -48,7 +48,7 @@ pub struct Frame {
 pub struct Edited {
     /// The changed text.
     text: String,
-    /// The refusal of the changed text; none if it is a robot.
+    /// The refusal of the changed text; `None` if it is a robot.
     refusal: Option<Refused>,
 }
 
@@ -99,7 +99,7 @@ impl Page {
         self.twin.as_ref().map(Twin::robot)
     }
 
-    /// Makes the robot's section of flash; none without a robot. Its maps of certified cells take
+    /// Makes the robot's section of flash; `None` without a robot. Its maps of certified cells take
     /// some hundredths of a second to prove.
     #[must_use]
     pub fn section(&self) -> Option<Vec<u8>> {
@@ -227,12 +227,12 @@ impl Page {
         Some(GaitPrediction::of(twin, gait))
     }
 
-    /// The bars of a gait; none if it stands or follows a path.
+    /// The bars of a gait; `None` if it stands or follows a path.
     pub fn bars(&self, gait: usize) -> Option<Bars> {
         self.robot()?.gaits().get(gait)?.bars()
     }
 
-    /// Tries a gait on the page's robot; none without a robot or a line.
+    /// Tries a gait on the page's robot; `None` without a robot or a line.
     ///
     /// # Errors
     /// Returns the first limit that the gait breaks, with possible values.
@@ -241,7 +241,7 @@ impl Page {
     }
 
     /// The text of the page's robot with a gait, in place of the gait of the same name or at the
-    /// end; none without a robot or a line.
+    /// end; `None` without a robot or a line.
     pub fn put_gait(&self, text: &str, made: &EditedGait) -> Option<String> {
         made.put_into(text, self.robot()?)
     }
@@ -252,12 +252,12 @@ impl Page {
         Edited::of(with_steps(text, name, steps))
     }
 
-    /// The path of one round of a routine on the present floor with the present servos; none without the routine.
+    /// The path of one round of a routine on the present floor with the present servos; `None` without the routine.
     pub fn round(&self, routine: &str) -> Option<RoundPath> {
         RoundPath::of(self.twin.as_ref()?, routine)
     }
 
-    /// Prepares the search of a faster gait for the page's robot; none without a robot.
+    /// Prepares the search of a faster gait for the page's robot; `None` without a robot.
     ///
     /// # Errors
     /// Returns the reason why there is nothing to search.

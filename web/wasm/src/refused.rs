@@ -9,7 +9,7 @@ use serde::Serialize;
 pub struct Refused {
     /// The message for the user.
     pub refused: String,
-    /// Line of the file, counted from 1; none if the refusal belongs to no line.
+    /// Line of the file, counted from 1; `None` if the refusal belongs to no line.
     pub line: Option<usize>,
     /// Full name of the key, such as `links.l2`; may be empty.
     pub key: String,

@@ -25,7 +25,7 @@ pub struct RoundPath {
 }
 
 impl RoundPath {
-    /// Goes through a routine once, with the floor and the servos of a twin, which does not move; none without the
+    /// Goes through a routine once, with the floor and the servos of a twin, which does not move; `None` without the
     /// routine.
     #[must_use]
     pub fn of(twin: &Twin, name: &str) -> Option<Self> {

@@ -78,7 +78,7 @@ pub struct Scene {
     pub margins: Vec<Margin>,
     /// The smallest margin.
     pub smallest: Margin,
-    /// The message for the limit that this pose breaks; none if it is allowed.
+    /// The message for the limit that this pose breaks; `None` if it is allowed.
     pub refusal: Option<String>,
     /// The points on the maps of singularities of head and tail.
     pub map: [MapPoint; 2],

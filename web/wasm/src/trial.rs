@@ -77,14 +77,14 @@ impl EditedGait {
     }
 
     /// The text of a robot.toml with this gait, in place of the gait of the same name or at the
-    /// end; none if its line has no length.
+    /// end; `None` if its line has no length.
     #[must_use]
     pub fn put_into(&self, text: &str, robot: &Robot) -> Option<String> {
         let (Self::DrawnGait(DrawnGait { name, .. }) | Self::Bars(Bars { name, .. })) = self;
         Some(edit::with_gait(text, name, &self.table(robot)?))
     }
 
-    /// Tries the gait with the robot, the floor and the servos of a twin; none if its line has
+    /// Tries the gait with the robot, the floor and the servos of a twin; `None` if its line has
     /// no length.
     ///
     /// # Errors

@@ -52,7 +52,7 @@ fn stream(robot: &Robot, json: bool) -> Result<(), Failure> {
     let mut poses = Poses::new(io::stdin().lock())?;
     let (solved, to_write) = mpsc::sync_channel::<Vec<u8>>(AHEAD);
     thread::scope(|scope| {
-        let heading = (!json).then(|| pose_line::heading(poses.timed()));
+        let heading = (!json).then(|| pose_line::heading(poses.has_time()));
         let writer = scope.spawn(move || write(to_write, heading));
         let read = solve_all(robot, json, &mut poses, &solved);
         drop(solved);

@@ -131,8 +131,8 @@ fn is_stream(_: &Path) -> bool {
     false
 }
 
-/// The file behind a path, after following links, and its permissions, if it exists.
-fn place(path: &Path) -> io::Result<(PathBuf, Option<Permissions>)> {
+/// Follows the links of a path; returns the file at the end and its permissions, if it exists.
+fn resolve(path: &Path) -> io::Result<(PathBuf, Option<Permissions>)> {
     match path.metadata() {
         Ok(there) if there.is_file() => Ok((path.canonicalize()?, Some(there.permissions()))),
         Ok(_) => Err(io::Error::other(
@@ -145,7 +145,7 @@ fn place(path: &Path) -> io::Result<(PathBuf, Option<Permissions>)> {
 }
 
 fn persist(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let (path, permissions) = place(path)?;
+    let (path, permissions) = resolve(path)?;
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
@@ -180,7 +180,7 @@ fn persist(path: &Path, bytes: &[u8]) -> io::Result<()> {
     Ok(())
 }
 
-/// A file in this folder that has no name yet, and is gone if the program is killed; none where
+/// A file in this folder that has no name yet, and is gone if the program is killed; `None` if
 /// the file system has no such files.
 #[cfg(target_os = "linux")]
 fn create_nameless(folder: &Path) -> Option<File> {
@@ -264,7 +264,7 @@ mod tests {
 
     #[test]
     #[cfg(unix)]
-    fn a_link_stays_one_and_the_file_at_its_end_is_replaced_with_its_permissions() {
+    fn a_link_stays_and_the_file_at_its_end_is_replaced_with_its_permissions() {
         use std::os::unix::fs::{PermissionsExt, symlink};
         let folder = tempfile::tempdir().expect("a folder");
         let [file, link, astray] = ["file", "link", "astray"].map(|name| folder.path().join(name));
@@ -294,7 +294,7 @@ mod tests {
 
     #[test]
     #[cfg(target_os = "linux")]
-    fn of_a_folder_that_takes_no_files_the_file_alone_is_named() {
+    fn in_a_folder_that_takes_no_files_the_file_alone_is_named() {
         let words = refusal(Path::new("/proc/self/a.toml"));
         assert!(
             words.starts_with("cannot write /proc/self/a.toml: "),

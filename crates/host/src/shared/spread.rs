@@ -63,8 +63,8 @@ impl From<Part> for String {
 }
 
 impl Part {
-    /// True if a piece belongs to this part. Pieces in a row go to different parts, because a
-    /// piece that takes long often has neighbours that do, too.
+    /// True if a piece belongs to this part. Neighbouring pieces go to different parts, because a
+    /// piece that takes long often has neighbours that do too.
     fn has(self, piece: usize) -> bool {
         piece % self.of as usize == self.number as usize - 1
     }
@@ -211,7 +211,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_piece_is_of_one_part() {
+    fn every_piece_belongs_to_one_part() {
         for of in [1, 2, 3, 7, 40] {
             for piece in 0..20 {
                 let parts = (1..=of).filter(|number| {

@@ -7,12 +7,12 @@ use lizard_time_limit::LIMIT;
 
 use crate::program::{robot, root, run, scratch};
 
-fn output(words: &[&str]) -> String {
-    run(words).success()
+fn output(arguments: &[&str]) -> String {
+    run(arguments).success()
 }
 
-fn complaint(words: &[&str]) -> String {
-    run(words).refusal()
+fn complaint(arguments: &[&str]) -> String {
+    run(arguments).refusal()
 }
 
 /// The first words of the lines under a heading of `lizard --help`.

@@ -302,7 +302,7 @@ fn wrong_input_is_a_message_and_starts_nothing() {
 }
 
 #[test]
-fn a_link_of_the_simulated_board_takes_no_other_links_place_and_goes_with_the_board() {
+fn a_link_of_the_simulated_board_replaces_no_other_and_goes_with_the_board() {
     let folder = tempfile::tempdir().expect("a folder");
     let (own, other) = (folder.path().join("uno"), folder.path().join("other"));
     std::os::unix::fs::symlink("a-file", &other).expect("a link");

@@ -20,7 +20,7 @@ use solid::Solid;
 /// A file to write.
 #[derive(Clone, Debug, PartialEq)]
 pub struct File {
-    /// Its path within the output folder, such as `stl/link-A1-A3.stl`.
+    /// The file's path within the output folder, such as `stl/link-A1-A3.stl`.
     pub path: String,
     /// The file's content.
     pub bytes: Vec<u8>,

@@ -96,7 +96,7 @@ impl Outline {
         self.pieces.iter().flatten()
     }
 
-    /// Its area, mm^2.
+    /// The enclosed area, mm^2.
     #[must_use]
     pub fn area(&self) -> f64 {
         self.loops().map(Loop::area).sum()
@@ -136,7 +136,7 @@ impl Loop {
         Self { sides }
     }
 
-    /// Its sides with their ends.
+    /// The sides with their ends.
     pub fn ends(&self) -> impl Iterator<Item = (Side, Vector)> {
         let n = self.sides.len();
         (0..n).map(move |i| (self.sides[i], self.sides[(i + 1) % n].from))

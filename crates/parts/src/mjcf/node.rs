@@ -62,7 +62,7 @@ impl Node {
         all
     }
 
-    /// Its parent; `None` for the chassis.
+    /// The node's parent; `None` for the chassis.
     pub fn parent(self, play: bool) -> Option<Self> {
         let chassis = Self::Of(Mount::Chassis);
         Some(match self {
@@ -80,7 +80,7 @@ impl Node {
         })
     }
 
-    /// Its motion on its parent.
+    /// The node's motion on its parent.
     pub fn freedom(self) -> Freedom {
         match self {
             Self::Of(Mount::Chassis) => Freedom::Free,
@@ -100,7 +100,7 @@ impl Node {
         }
     }
 
-    /// Its name, which is also that of its joint.
+    /// The node's name, which is also that of its joint.
     pub fn name(self) -> String {
         let of = |what: &str, name: &str| format!("{what} {name}");
         match self {

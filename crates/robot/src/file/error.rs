@@ -7,7 +7,7 @@ use std::fmt;
 pub struct Error {
     /// Name of the file as it was given.
     pub file: String,
-    /// Line of the key, counted from 1; none if the mistake belongs to no line.
+    /// Line of the key, counted from 1; `None` if the mistake belongs to no line.
     pub line: Option<usize>,
     /// Full name of the key, such as `servo.A1.pin`; empty for a mistake of the file.
     pub key: String,

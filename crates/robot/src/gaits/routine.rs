@@ -34,7 +34,7 @@ impl Routine {
         &self.name
     }
 
-    /// Its records in the section: a step, or an input and the step that it ends.
+    /// The records in the section: a step, or an input and the step that it ends.
     pub fn steps(&self) -> &[Step] {
         &self.steps
     }
@@ -50,12 +50,12 @@ impl Routine {
         self.count() < self.steps.len()
     }
 
-    /// How often it goes through its steps; None for ever.
+    /// How often it goes through its steps; `None` for ever.
     pub fn rounds(&self) -> Option<u16> {
         (self.rounds > 0).then_some(self.rounds)
     }
 
-    /// Its record in the section; `first` of all steps there is its first.
+    /// The record in the section; `first` of all steps there is its first.
     pub(crate) fn record(&self, first: usize, name_start: usize) -> Record {
         let mut record = Record {
             name_start: name_start as u16,

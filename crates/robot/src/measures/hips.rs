@@ -24,7 +24,7 @@ const SAME_LENGTH_MM: f64 = 0.005;
 const AHEAD_KEY: &str = "hip_forward";
 const SIDE_KEY: &str = "hip_side";
 
-/// The hips as `[leg]` gives them, mm; none if they follow from pivot and foot.
+/// The hips as `[leg]` gives them, mm; `None` if they follow from pivot and foot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Hips {
     ahead: Option<f64>,

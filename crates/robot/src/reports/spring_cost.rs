@@ -13,7 +13,7 @@ pub struct SpringCost {
     /// Largest lag of a leg behind its servo, deg.
     pub lag: f64,
     /// Movement of a cycle over that of rigid legs: ahead, or the turn of a gait that turns on
-    /// the spot, or the smaller of both. None if rigid legs go nowhere, or their movement depends
+    /// the spot, or the smaller of both. `None` if rigid legs go nowhere, or their movement depends
     /// on ties.
     pub share: Option<f64>,
 }
@@ -22,7 +22,7 @@ pub struct SpringCost {
 const MIN_MOVEMENT: (f64, f64) = (1.0, 0.5);
 
 impl SpringCost {
-    /// Compares a gait on this ground with the same gait on rigid legs; none if legs do not lag.
+    /// Compares a gait on this ground with the same gait on rigid legs; `None` if legs do not lag.
     #[must_use]
     pub fn of(gait: &CheckedGait, ground: &Ground) -> Option<Self> {
         if !ground.drive.lags() {

@@ -126,7 +126,7 @@ struct WaveformBank {
 
 impl WaveformBank {
     /// Finds or adds the waveform of a stride; `forward` is the sense in which
-    /// the servo moves its foot forward. None if the stride sweeps half a turn.
+    /// the servo moves its foot forward. `None` if the stride sweeps half a turn.
     fn find(&mut self, stride: &Stride, forward: f64) -> Option<Part> {
         let (waveform, shift, sign) = canonical(&stride.waveform);
         let samples = samples(&waveform);

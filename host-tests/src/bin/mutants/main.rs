@@ -166,7 +166,7 @@ fn text(path: &Path) -> Result<String, String> {
 /// A copy of the tree to make mistakes in, with build folders of its own.
 struct Scratch {
     folder: PathBuf,
-    /// Its files.
+    /// The files of the copy.
     files: Vec<String>,
 }
 
@@ -202,7 +202,7 @@ impl Scratch {
         written.map_err(|error| format!("{}: {error}", path.display()))
     }
 
-    /// Builds the firmware of the copy; none where the compiler refuses it.
+    /// Builds the firmware of the copy; `None` where the compiler refuses it.
     fn firmware(&self) -> Result<Option<PathBuf>, String> {
         let build = self.folder.join("build");
         let status = Command::new("cargo")

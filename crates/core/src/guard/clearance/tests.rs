@@ -59,7 +59,7 @@ impl Bounds {
 }
 
 /// True if the exact value is clear of all its limits by more than the errors, or
-/// beyond one of them; None in between.
+/// beyond one of them; `None` in between.
 fn truth(robot: &Sample, pose: &Pose) -> Option<bool> {
     let bounds = Bounds::of(robot, pose);
     let Some(solution) = robot.solve(pose) else {

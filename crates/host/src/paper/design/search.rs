@@ -112,8 +112,8 @@ pub fn ranked(pieces: Vec<Vec<Design>>) -> Vec<Design> {
     designs
 }
 
-/// The best design with some proportions; none if it cannot sweep as far as demanded, or has too
-/// short a link.
+/// The best design with some proportions; `None` if it cannot sweep as far as demanded, or has
+/// too short a link.
 pub fn design(proportions: Proportions, demands: &Demands) -> Option<Design> {
     let d = proportions.scale_for_base(demands.base);
     let bars = proportions.at_scale(d);

@@ -15,7 +15,7 @@ use crate::{Failure, RobotFile};
 pub struct Firmware {
     /// The file's path, or a note that it is this program's own image.
     pub name: String,
-    /// The code with the robot behind it.
+    /// The code followed by the robot.
     pub image: Image,
 }
 
@@ -112,7 +112,7 @@ pub(crate) fn code_bytes(image: &Image, robot: &Robot) -> u32 {
     end.unwrap_or_else(|| image.flash_used() - robot.section().len() as u32)
 }
 
-/// The code inside this program with this robot behind it.
+/// The code inside this program followed by this robot.
 ///
 /// # Panics
 /// Never: a test reads that code, and a robot's section has room.
@@ -123,7 +123,7 @@ pub fn image_with(robot: &Robot) -> Image {
     image
 }
 
-/// The image with this robot in it, whose routines wait for nobody: see [`Robot::without_contacts`].
+/// The image with this robot in it, whose routines wait for no contact: see [`Robot::without_contacts`].
 ///
 /// # Panics
 /// Never: the section is as long as that of the robot.

@@ -181,7 +181,7 @@ pub struct Ram {
 }
 
 impl Ram {
-    /// The RAM of a UNO's program; none if the image does not say where its data ends.
+    /// The RAM of a UNO's program; `None` if the image does not say where its data ends.
     #[must_use]
     pub fn of(uno: &Uno) -> Option<Self> {
         let static_ram = uno.image().static_ram();

@@ -28,7 +28,7 @@ pub struct DialogueLine {
     pub ms: f64,
     /// The sender of the line.
     pub from: Sender,
-    /// Its text without the line end.
+    /// The text without the line end.
     pub text: String,
 }
 
