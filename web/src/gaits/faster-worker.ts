@@ -1,6 +1,6 @@
 // The worker of FasterSearch: its own instance of the robot in WebAssembly, which tries one gait after another.
 import { isRefused, Robot, type Trial } from '../robot';
-import { sentence } from '../trouble';
+import { messageOf } from '../trouble';
 import type { Answer, Best, Question } from './faster';
 
 /** Gaits between two reports of the best so far: one population of the search. */
@@ -16,7 +16,7 @@ const turn = () => new Promise((next) => setTimeout(next));
 
 addEventListener('message', ({ data }: MessageEvent<Question | 'stop'>) => {
   if (data === 'stop') isStopped = true;
-  else void search(data).catch((error: unknown) => say({ of: 'end', refused: sentence(error) }));
+  else void search(data).catch((error: unknown) => say({ of: 'end', refused: messageOf(error) }));
 });
 
 async function search({ module, toml, floor, servos, wish }: Question): Promise<void> {

@@ -32,7 +32,7 @@ function worker(): Worker {
   return new Worker(new URL('./worker.ts', import.meta.url), { type: 'module' });
 }
 
-/** Asks a worker and calls `onAnswer` with each answer, up to the last. Throws the sentence of a refusal. */
+/** Asks a worker and calls `onAnswer` with each answer, up to the last. Throws the message of a refusal. */
 function asked<T extends Answer>(of: Worker, question: Question, onAnswer: (answer: Answer) => void = () => {}): Promise<T> {
   return new Promise((resolve, reject) => {
     const listen = ({ data }: MessageEvent<Answer>) => {
@@ -55,7 +55,7 @@ export class Solids {
 
   private constructor() {}
 
-  /** Makes the solids of a robot.toml. Throws the sentence of a robot that cannot be built. */
+  /** Makes the solids of a robot.toml. Throws the message of a robot that cannot be built. */
   static async of(toml: string): Promise<{ solids: Solids; model: Model; meshes: Solid[] }> {
     const solids = new Solids();
     try {

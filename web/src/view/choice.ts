@@ -19,7 +19,7 @@ export class Choice {
     if (tests.childElementCount > 0) this.list.append(tests);
   }
 
-  /** Lists the robots beside the page. Throws a sentence if they are missing. */
+  /** Lists the robots beside the page. Throws an error for the user if they are missing. */
   static async load(): Promise<Choice> {
     const robots = await files.robots();
     // A file that cannot be read is reported when it is chosen.
@@ -45,7 +45,7 @@ export class Choice {
   }
 
   /** True if the user may choose. */
-  set enabled(may: boolean) {
-    this.list.disabled = !may;
+  set enabled(isEnabled: boolean) {
+    this.list.disabled = !isEnabled;
   }
 }

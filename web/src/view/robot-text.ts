@@ -3,7 +3,7 @@ import { partsOf } from '../address';
 import { packed, unpacked } from '../link-text';
 import type { Refused } from '../robot';
 import type { Session } from '../session';
-import { sentence } from '../trouble';
+import { messageOf } from '../trouble';
 import { element } from './canvas';
 import { reveal } from './rooms';
 import { NO_BOARD, type Writer } from './writer';
@@ -84,7 +84,7 @@ export class RobotText {
       return toml === this.session().toml || (await this.loadAndShow(toml));
     } catch (error) {
       reveal(this.box);
-      this.say({ refused: sentence(error), line: null, key: '' });
+      this.say({ refused: messageOf(error), line: null, key: '' });
       return false;
     }
   }
@@ -142,7 +142,7 @@ export class RobotText {
       await navigator.clipboard.writeText(`${location.href.split('#')[0]}#robot=${await packed(this.session().toml)}`);
       element('robot-said').textContent = 'The link is copied: it opens this robot.';
     } catch (error) {
-      element('robot-said').textContent = `The link could not be copied: ${sentence(error)}`;
+      element('robot-said').textContent = `The link could not be copied: ${messageOf(error)}`;
     }
   }
 
