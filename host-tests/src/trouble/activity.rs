@@ -5,23 +5,23 @@ use std::fmt;
 /// The robot's activity when trouble begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Activity {
-    /// It rests, or has just received `rest`.
+    /// The robot rests, or has just received `rest`.
     Resting,
     /// The servos wake after a rest.
     Waking,
-    /// It holds a pose or stands.
+    /// The robot holds a pose or stands.
     Holding,
-    /// It goes from one pose to another.
+    /// The robot goes from one pose to another.
     Moving,
-    /// It walks.
+    /// The robot walks.
     Cycling,
-    /// It writes the EEPROM.
+    /// The robot writes the EEPROM.
     Saving,
     /// The program has just begun.
     Starting,
-    /// It answers a question.
+    /// The robot answers a question.
     Talking,
-    /// A person drives it by radio.
+    /// A person drives the robot by radio.
     Driving,
 }
 

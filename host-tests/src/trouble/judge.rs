@@ -116,7 +116,7 @@ pub fn events(record: &Record) -> Vec<(Time, Event<'_>)> {
         add(received.cycle, Event::Line { is_command });
         let saved = received.text == "save" && record.is_saved(received.cycle);
         if saved || received.text == "save" || received.effect == Effect::Calibrates {
-            add(received.cycle, Event::Calibrated { saved });
+            add(received.cycle, Event::Calibrated { is_saved: saved });
         }
     }
     for (received, done) in record.orders() {

@@ -28,14 +28,14 @@ pub struct Scenario {
     /// The robot's activity when trouble begins.
     pub activity: Activity,
     /// True if a boot loader has cleared the chip's record of a reset.
-    pub boot_loader: bool,
+    pub has_boot_loader: bool,
     /// The steps, in order.
     pub steps: Vec<Step>,
 }
 
 impl fmt::Display for Scenario {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let loader = if self.boot_loader { "a" } else { "no" };
+        let loader = if self.has_boot_loader { "a" } else { "no" };
         writeln!(
             f,
             "scenario {} of seed {} ({}, {loader} boot loader), from power-on:",
@@ -64,7 +64,7 @@ impl Scenario {
             seed,
             number,
             activity,
-            boot_loader: rng.bool(),
+            has_boot_loader: rng.bool(),
             steps,
         }
     }
@@ -197,8 +197,8 @@ impl<'a> Script<'a> {
         self.wait_up_to(250);
     }
 
-    fn start_program(&mut self, at_power_on: bool) {
-        if !at_power_on {
+    fn start_program(&mut self, is_power_on: bool) {
+        if !is_power_on {
             match self.rng.u8(0..4) {
                 0 => self.say("rest"),
                 1 => {

@@ -65,7 +65,7 @@ fn no_frame_is_late_for_any_robot_in_any_gait_under_any_flood() {
 }
 
 #[test]
-fn no_step_of_main_keeps_a_frame_waiting_for_too_long_however_many_gaits_there_are() {
+fn no_step_of_main_delays_a_frame_too_long_however_many_gaits_there_are() {
     /// The cycles of every robot's other commands, of which `factory` takes the longest.
     const OTHERS: usize = 34_000;
     let (text, robot) = random_robot(&mut rng(2_000));

@@ -152,7 +152,7 @@ fn digest(name: &str) -> (u64, u64) {
 }
 
 #[test]
-fn ten_minutes_of_random_commands_give_every_robot_the_pulses_that_were_recorded() {
+fn ten_minutes_of_random_commands_give_every_robot_its_recorded_pulses() {
     // Recorded when waveforms had 64 samples for the first time (commit d99bebe), which changed
     // widths and nothing else: there are as many edges as on the last firmware that had each robot
     // compiled into it (commit e49c5b5). The large robot is the paper's, four thirds as large: its

@@ -168,7 +168,7 @@ fn any_bytes_at_all_get_at_most_one_answer_for_a_line() {
 }
 
 #[test]
-fn a_line_with_a_garbled_byte_is_refused_wherever_it_is_and_the_byte_is_counted() {
+fn a_line_with_a_garbled_byte_anywhere_is_refused_and_the_byte_counted() {
     in_both(|fidelity| {
         let mut bench = awake(fidelity);
         let line = b"speed 90";

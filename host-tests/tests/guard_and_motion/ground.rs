@@ -103,7 +103,7 @@ fn the_pulses_of_every_gait_lead_where_the_same_gait_in_floating_point_does() {
 // The predictions in floating point are compared with independent figures in the tests
 // of crates/robot/.
 #[test]
-fn the_pulses_of_the_papers_gaits_lead_there_within_a_third_of_a_millimetre_at_any_pace() {
+fn the_pulses_of_the_papers_gaits_lead_there_within_a_third_of_a_millimetre() {
     let named = Named {
         name: "paper.toml".into(),
         robot: paper().clone(),

@@ -171,7 +171,7 @@ fn poses(rng: &mut Rng, robot: &Robot) -> impl Iterator<Item = Pose> {
 }
 
 #[test]
-fn of_every_robot_the_guard_measures_every_margin_and_decides_every_pose_as_floating_point_does() {
+fn the_guard_measures_every_margin_and_decides_as_floating_point_does() {
     let mut named = [0; 12];
     for (n, Named { name, robot }) in robots().iter().enumerate() {
         let mut findings = Findings::default();

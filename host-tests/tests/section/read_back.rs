@@ -322,7 +322,7 @@ fn accepts(robot: &Robot, pair: usize, pose: &Pose) -> bool {
 }
 
 #[test]
-fn every_certified_cell_is_one_in_which_the_exact_guard_accepts_what_the_map_is_of() {
+fn in_every_certified_cell_the_exact_guard_accepts_the_maps_conditions() {
     let mut checked = 0;
     let mut with_maps = 0;
     for (named, section) in sections() {
@@ -359,7 +359,7 @@ fn every_certified_cell_is_one_in_which_the_exact_guard_accepts_what_the_map_is_
 }
 
 #[test]
-fn a_pose_is_certified_where_all_four_maps_hold_it_and_then_the_guard_accepts_it() {
+fn a_pose_in_all_four_maps_is_certified_and_the_guard_accepts_it() {
     let rng = &mut rng(153);
     for (named, section) in sections() {
         let flash = Region::new(section);

@@ -34,7 +34,7 @@ pub struct SearchResult {
     /// Actions of the longest sequence.
     pub longest: usize,
     /// True if no state is left to explore.
-    pub closed: bool,
+    pub is_complete: bool,
     /// The broken rules, each with its count and its first sequence.
     pub broken: BTreeMap<Rule, (usize, String)>,
 }
@@ -105,7 +105,7 @@ pub fn search(robot: Robot<'static>, most: usize) -> SearchResult {
             .collect();
     }
     panic::set_hook(hook);
-    found.closed = now.is_empty();
+    found.is_complete = now.is_empty();
     found.states = states.into_inner();
     found
 }

@@ -19,7 +19,7 @@ const OUT_OF_REACH_COST: u32 = 16_384;
 const TRIES: u32 = 600_000;
 
 /// The additional cost with which an order is accepted at first; at the end it is 0.
-const WORSE: u32 = 4 * OUT_OF_REACH_COST;
+const MAX_EXTRA_COST: u32 = 4 * OUT_OF_REACH_COST;
 
 /// The seed of the search; any number would do.
 const SEED: u64 = 1;
@@ -59,7 +59,7 @@ impl Pieces {
             if least == 0 || movable < 2 {
                 break;
             }
-            let worse = u64::from(WORSE) * u64::from(left) / u64::from(TRIES);
+            let worse = u64::from(MAX_EXTRA_COST) * u64::from(left) / u64::from(TRIES);
             let [from, to] = [0; 2].map(|_| random.usize(..movable));
             move_piece(&mut order, from, to);
             let cost = self.cost(&order);
@@ -104,7 +104,7 @@ impl Pieces {
     }
 }
 
-/// Moves a piece from one place to another.
+/// Moves a piece from one index to another.
 fn move_piece(order: &mut [usize], from: usize, to: usize) {
     if from < to {
         order[from..=to].rotate_left(1);

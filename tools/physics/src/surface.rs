@@ -16,7 +16,7 @@ use crate::table::Part;
 
 /// The gaits of the paper's robot that are walked; the others mirror one of these.
 pub const GAITS: [&str; 6] = ["walk", "trot", "crawl", "back", "arc-left", "left"];
-/// The least share of its distance that a gait, unless it is a turn, must keep on a surface
+/// The smallest share of its distance that a gait, unless it is a turn, must keep on a surface
 /// that [`Surface::is_climbed`].
 pub const MIN_KEPT: f64 = 0.85;
 
@@ -107,7 +107,7 @@ fn mm(tenths: u8) -> f64 {
 const AHEAD: f64 = 25.0;
 
 fn edge(robot: &Robot, direction: f64, high: f64) -> Block {
-    /// The length of what lies behind the edge, mm.
+    /// The length of the floor beyond the edge, mm.
     const STEP_LENGTH: f64 = 1000.0;
     let [forward, _] = robot.ground().feet.at([0.0; 4])[0];
     Block {

@@ -58,7 +58,7 @@ pub enum Event<'a> {
     /// Settings of the servos change.
     Calibrated {
         /// True if the settings in use are saved.
-        saved: bool,
+        is_saved: bool,
     },
     /// The answer to a line.
     Answer {

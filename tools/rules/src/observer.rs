@@ -269,9 +269,9 @@ impl Observer {
                 }
             }
             Event::Order { effect, done } => self.order(effect, done),
-            Event::Calibrated { saved } => {
-                self.is_unsaved = !saved;
-                if !saved {
+            Event::Calibrated { is_saved } => {
+                self.is_unsaved = !is_saved;
+                if !is_saved {
                     for servo in &mut self.servos {
                         servo.is_calibrated = true;
                     }

@@ -5,7 +5,7 @@
 pub struct Mutant {
     /// The file, from the root of the tree.
     pub file: String,
-    /// A message that names the mistake.
+    /// The description of the mistake.
     pub wrong: String,
     /// Part of the names of the tests that are run first.
     pub test: Option<String>,

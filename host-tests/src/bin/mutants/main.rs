@@ -8,7 +8,7 @@
 //! mistaken firmware by LIZARD_ELF.
 //!
 //! Run it from the folder `host`. Arguments: parts of a file's name or of the
-//! message that says what is wrong; an entry that has one of them is tried. None: all.
+//! description of the mistake; entries that contain one of them are tried, without arguments all.
 //!
 //! With SAMPLE=60 it makes that many generated mistakes ([`fresh`]), drawn by SEED from the
 //! firmware's whole code, and prints the rate at which tests notice them, with its interval.

@@ -55,7 +55,7 @@ impl World {
         let is_late = self.observer.is_unreported() && self.running.board.late > 0;
         self.order(effect, Some(is_done));
         if is_done && effect == Effect::Calibrates {
-            self.observe(Event::Calibrated { saved: false });
+            self.observe(Event::Calibrated { is_saved: false });
         }
         let asked = self.now;
         self.observe(Event::Answer {
