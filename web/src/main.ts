@@ -80,6 +80,7 @@ async function start(): Promise<void> {
     () => drive.choices(),
     (line) => void drive.ask(line),
     isBarred,
+    () => pace.percent,
   );
   const pace = new Pace((line) => drive.ask(line));
   const predictor = new Predictor(module, (gait, prediction) => {
