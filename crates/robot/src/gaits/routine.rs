@@ -9,13 +9,13 @@ use crate::gaits::define::{check_keys, check_name};
 use crate::measures::{INPUTS, Inputs};
 use crate::units::FRAMES_PER_SECOND;
 
-/// The most steps of a routine.
+/// The largest number of steps of a routine.
 const MAX_STEPS: usize = 99;
 
 /// The longest time of a step, s.
 const MAX_SECONDS: f64 = 999.0;
 
-/// What `repeat` may be beside a number.
+/// The word for a `repeat` without end.
 const FOR_EVER: &str = "for ever";
 
 /// A routine whose every step has been checked.
@@ -50,7 +50,7 @@ impl Routine {
         self.count() < self.steps.len()
     }
 
-    /// How often it goes through its steps; `None` for ever.
+    /// The number of rounds; `None` without end.
     pub fn rounds(&self) -> Option<u16> {
         (self.rounds > 0).then_some(self.rounds)
     }

@@ -280,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn a_loop_is_near_stretched_if_its_tips_can_part_beyond_three_quarters_of_its_reach() {
+    fn a_loop_is_near_stretched_beyond_three_quarters_of_its_reach() {
         // Squared; so where base and cranks exceed .866 of both couplers.
         for (bars, near) in [
             ([20.0, 30.0, 30.0], false),

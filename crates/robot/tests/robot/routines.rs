@@ -72,7 +72,7 @@ steps = ["arc left 2", "arc-left 2.5 s", "  arc  left   999 ", "rest 0.02 s", "s
 }
 
 #[test]
-fn the_core_finds_in_the_section_what_the_file_says_behind_the_gaits_which_stay() {
+fn the_core_finds_the_routines_of_the_file_after_the_unchanged_gaits() {
     let robot = with(&format!("{PATROL}[routine.other]\nsteps = [\"right 2\"]\n")).expect("two");
     let core = robot.core();
     let gaits = robot.gaits().len();
@@ -237,7 +237,7 @@ fn a_name_that_is_taken_or_no_name_is_refused() {
 }
 
 #[test]
-fn a_round_takes_its_cycles_and_the_changes_between_them_and_leads_as_far_as_its_gaits() {
+fn a_round_takes_its_cycles_and_changes_and_leads_as_far_as_its_gaits() {
     let robot = with(
         "[routine.ahead]\nsteps = [\"walk 10\"]\n[routine.about]\nsteps = [\"left 5\", \"stand 2 s\"]\nrepeat = \"for ever\"\n[routine.gaze]\nsteps = [\"look 1\"]",
     )

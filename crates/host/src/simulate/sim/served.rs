@@ -125,7 +125,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_empty_board_is_not_reported_as_a_crash_and_a_crash_does_not_name_the_simulator() {
+    fn an_empty_board_is_no_crash_and_a_crash_does_not_name_the_simulator() {
         let crashed = State::Crashed {
             pc: 0x7fe4,
             message: "avr_sadly_crashed".to_owned(),
