@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::thread;
 
-use lizard_host_tests::trouble::{Activity, Scenario, campaign};
+use lizard_host_tests::trouble::{Activity, Scenario, campaign, play};
 use lizard_host_tests::{FirmwareBench, patrolling, seed};
 
 /// Number of scenarios: four of thirteen are drives, and each other activity has one.
@@ -38,4 +38,20 @@ fn a_scenario_is_made_of_its_seed_and_number_alone() {
         assert_eq!(scenario, Scenario::of(7, number, patrolling()));
         assert_ne!(scenario.steps, Scenario::of(8, number, patrolling()).steps);
     }
+}
+
+#[test]
+fn most_patrols_of_the_scenarios_get_as_far_as_the_wait_for_a_wall() {
+    let image = FirmwareBench::image_with(patrolling());
+    let all = (0..COUNT).map(|number| Scenario::of(seed(), number, patrolling()));
+    let patrols = all.filter(|scenario| scenario.activity == Activity::Patrolling);
+    let walks = |scenario: &Scenario| {
+        let record = play(&image, patrolling(), scenario);
+        record
+            .lines
+            .iter()
+            .any(|line| line.text == "# waiting for nose")
+    };
+    let walked = patrols.filter(walks).count() as u64;
+    assert!(walked > COUNT / 13 / 2, "{walked}");
 }

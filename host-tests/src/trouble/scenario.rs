@@ -245,7 +245,12 @@ impl<'a> Script<'a> {
         self.say(PATROL);
         if self.rng.u8(0..4) > 0 {
             self.wait(150);
-            self.press();
+            for is_closed in [true, false] {
+                let button = self.robot.inputs().button;
+                self.steps
+                    .extend(button.map(|pin| Step::Contact(pin, is_closed)));
+                self.wait(100);
+            }
         }
         for _ in 0..self.rng.u8(0..5) {
             self.wait_up_to(1_500);
