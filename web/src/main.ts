@@ -12,11 +12,13 @@ import { lags, Robot } from './robot';
 import { type BoardBanner, Session } from './session';
 import { sentence } from './trouble';
 import { Alarm } from './view/alarm';
+import { BoardRobot } from './view/board-robot';
 import { Calibrate } from './view/calibrate';
 import { element } from './view/canvas';
 import { Choice } from './view/choice';
 import { download } from './view/download';
 import { Drive, short } from './view/drive';
+import { FitView } from './view/fit';
 import { FlashView } from './view/flash';
 import { Floor } from './view/floor';
 import { GaitsView } from './view/gaits';
@@ -80,6 +82,7 @@ async function start(): Promise<void> {
     () => drive.choices(),
     (line) => void drive.ask(line),
     isBarred,
+    () => pace.percent,
   );
   const pace = new Pace((line) => drive.ask(line));
   const predictor = new Predictor(module, (gait, prediction) => {
@@ -106,6 +109,7 @@ async function start(): Promise<void> {
   const world = new World(now, predict);
   const health = new Health(now);
   const lengths = new Lengths(now);
+  const fit = new FitView(now);
   const sketch = new Sketch(module, now);
   const parts = new PartsView(now);
   const keep = new Keep(module, now, floor, (line) => drive.ask(line), () => pace.percent);
@@ -129,6 +133,14 @@ async function start(): Promise<void> {
   const flash = new FlashView(now, writer);
   const setup: Setup = new Setup(now, writer, () => connectBoard());
 
+  const boardRobot = new BoardRobot(now, module, troubles, ({ file, toml }) => {
+    choice.show(file);
+    void replace(async () => {
+      await choose();
+      if (session.toml !== toml) await session.change(toml);
+    });
+  });
+
   const session: Session = new Session(robot, {
     robot(description) {
       scope.robot(description);
@@ -140,6 +152,7 @@ async function start(): Promise<void> {
       const strange = unknownWords([...drive.words], description.words);
       if (strange.length > 0) troubles.say('page', `The core does not know these words of the page: ${strange.join(', ')}.`);
       lengths.showRobot(description.lengths);
+      fit.showRobot(description.lengths);
       sketch.showRobot();
       setup.update();
       floor.clear();
@@ -152,6 +165,7 @@ async function start(): Promise<void> {
       text.showRobot();
       keep.showRobot(description);
       predict();
+      void boardRobot.follow();
     },
     frame(frame, widths, seconds) {
       floor.addToTrack(frame.place);
@@ -183,6 +197,7 @@ async function start(): Promise<void> {
     found(has) {
       element('where').textContent = whereOf(session.link.name, has, session.description.hash);
       setup.update();
+      void boardRobot.follow();
       // On a slow machine the predictions come before the robot's banner.
       begin();
     },
@@ -260,14 +275,14 @@ async function start(): Promise<void> {
       troubles.say('robot', sentence(error));
     }
   };
-  const own = new OwnRobot(now, troubles, (file) => (choice.show(file), choose()));
+  const own = new OwnRobot(now, troubles, (file) => (choice.show(file), choose()), (names) => choice.showOwn(names));
   /** Loads another robot, which erases none. */
   const replace = async (load: () => Promise<unknown>) => {
     const before = kept.get();
     await load();
     own.replaced(before);
   };
-  choice.onChange(() => void replace(choose));
+  choice.onChange(() => void (choice.chosenOwn === null ? replace(choose) : own.restore(choice.chosenOwn)));
 
   element('reset').addEventListener('click', () => void session.reset());
 

@@ -5,7 +5,10 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
 
-import { address, close, complaints, open, page as load, standing, tidy, unfold } from './browser.js';
+import jsQR from 'jsqr';
+import { parse } from 'smol-toml';
+
+import { address, close, complaints, open, page as load, standing, tidy, unfold, until } from './browser.js';
 
 const LARGE = new URL('../../robots/large.toml', import.meta.url).pathname;
 let folder;
@@ -44,7 +47,7 @@ test('a text that is wrong is refused with its line, and the robot of before sta
   assert.equal(await box(page).inputValue(), wrong, 'nothing that was typed is lost');
 });
 
-test('a text that is right becomes the robot, and is undone step by step', async () => {
+test('a text that is right becomes the robot, and is undone and done again step by step', async () => {
   const page = await opened();
   const first = await toml(page);
   const second = first.replace('amplitude = 15.0', 'amplitude = 14.0');
@@ -60,6 +63,22 @@ test('a text that is right becomes the robot, and is undone step by step', async
     await takes(page, text);
   }
   assert.ok(await page.locator('#robot-undo').isDisabled());
+  const redo = page.locator('#robot-redo');
+  for (const text of [second, third]) {
+    await redo.click();
+    await takes(page, text);
+  }
+  assert.ok(await redo.isDisabled());
+  // A change after an undo is another way on.
+  await page.locator('#robot-undo').click();
+  await takes(page, second);
+  assert.ok(await redo.isEnabled());
+  await box(page).fill(first);
+  await box(page).press('Control+Enter');
+  await takes(page, first);
+  assert.ok(await redo.isDisabled());
+  await page.locator('#robot-undo').click();
+  await takes(page, second);
 });
 
 test('a file is opened, or dropped anywhere on the page', async () => {
@@ -81,7 +100,31 @@ test('a file is opened, or dropped anywhere on the page', async () => {
   assert.equal(await toml(page), other);
 });
 
-test('a link is a robot, also over a reload', async () => {
+/** Until the page has the robot of a text, which may have lost its comments on the way. */
+async function arrives(page, wanted) {
+  await page.waitForFunction((name) => window.lizard?.toml.includes(`name = "${name}"`), parse(wanted).name);
+  assert.deepEqual(parse(await toml(page)), parse(wanted));
+}
+
+/** The text of the QR code that is drawn, as a camera sees it. */
+async function scanned(page) {
+  const { data, side } = await page.locator('#robot-drawn svg').evaluate(async (svg) => {
+    const side = 3 * svg.viewBox.baseVal.width;
+    const drawn = svg.cloneNode(true);
+    for (const name of ['width', 'height']) drawn.setAttribute(name, side);
+    const picture = new Image();
+    picture.src = `data:image/svg+xml,${encodeURIComponent(new XMLSerializer().serializeToString(drawn))}`;
+    await picture.decode();
+    const canvas = new OffscreenCanvas(side, side).getContext('2d');
+    canvas.fillStyle = 'white';
+    canvas.fillRect(0, 0, side, side);
+    canvas.drawImage(picture, 0, 0);
+    return { data: Array.from(canvas.getImageData(0, 0, side, side).data), side };
+  });
+  return jsQR.default(Uint8ClampedArray.from(data), side, side)?.data;
+}
+
+test('a link is a robot, also over a reload, and a phone reads it from the screen', async () => {
   const page = await opened();
   await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
   const large = await readFile(LARGE, 'utf8');
@@ -90,16 +133,45 @@ test('a link is a robot, also over a reload', async () => {
   await page.getByRole('button', { name: 'Copy a link' }).click();
   await page.getByText('The link is copied').waitFor();
   const link = await page.evaluate(() => navigator.clipboard.readText());
-  assert.ok(link.startsWith(`${address()}#robot=`) && link.length < 8000, `${link.length} letters`);
+  assert.ok(link.startsWith(`${address()}#robot=`) && link.length < 1900, `${link.length} letters`);
   const other = await load();
   assert.notEqual(await toml(other), large);
   await other.goto(link);
-  await takes(other, large);
+  await arrives(other, large);
   await other.reload();
-  await takes(other, large);
+  await arrives(other, large);
   // Half of a link is not a robot, and says so.
   await other.goto(link.slice(0, -200));
   await other.getByText('The robot in the address is incomplete').waitFor();
+
+  const code = page.getByRole('button', { name: 'QR code' });
+  await code.click();
+  await page.getByRole('img', { name: 'QR code' }).waitFor();
+  assert.equal(await scanned(page), link);
+  await page.getByText('a phone reaches the page only where a web server serves it').waitFor();
+  await code.click();
+  assert.equal(await page.locator('#robot-drawn svg').count(), 0);
+  // The code of a robot goes with its robot.
+  await code.click();
+  await page.getByRole('img', { name: 'QR code' }).waitFor();
+  await box(page).fill(large.replace('name = "large"', 'name = "other"'));
+  await page.locator('#robot-take').click();
+  await page.waitForFunction(() => document.querySelector('#robot-drawn svg') === null);
+});
+
+test('a link keeps each # that is no comment', async () => {
+  const page = await opened();
+  await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
+  const text = `# one\n${(await toml(page)).replace('name = "paper"', 'name = "paper" # "two"')}\n  # three # "four"\n`;
+  await box(page).fill(text);
+  await page.locator('#robot-take').click();
+  await takes(page, text);
+  await page.getByRole('button', { name: 'Copy a link' }).click();
+  await page.getByText('The link is copied').waitFor();
+  const other = await load();
+  await other.goto(await page.evaluate(() => navigator.clipboard.readText()));
+  await arrives(other, text);
+  assert.doesNotMatch(await toml(other), /one|three/);
 });
 
 test('the address is the robot that is shown, at every change', async () => {
@@ -165,6 +237,40 @@ test('a link and the list of robots put the own robot aside, and a button brings
   await back.click();
   await takes(page, own);
   assert.equal(await page.locator('#robot-own').isHidden(), true, 'none is left');
+});
+
+test('own robots stand in the list by their names, and each comes back as it was', async () => {
+  const page = await opened();
+  const first = await toml(page);
+  const own = (name) => first.replace('name = "paper"', `name = "${name}"`);
+  const list = page.locator('#robot');
+  const names = () => page.locator('#robot optgroup[label="your own"] option').allInnerTexts();
+  for (const name of ['anna', 'bert']) {
+    await list.selectOption('large');
+    await page.waitForFunction(() => window.lizard.file === 'large');
+    await list.selectOption('robot');
+    await page.waitForFunction(() => window.lizard.file === 'robot');
+    await box(page).fill(own(name));
+    await page.locator('#robot-take').click();
+    await takes(page, own(name));
+  }
+  assert.deepEqual(await names(), ['anna']);
+  await list.selectOption({ label: 'anna' });
+  await takes(page, own('anna'));
+  // The address follows a little later, and wins over what is stored.
+  await until(page, async (wanted) => {
+    const part = new URLSearchParams(location.hash.slice(1)).get('robot') ?? '';
+    const bytes = Uint8Array.from(atob(part.replaceAll('-', '+').replaceAll('_', '/')), (letter) => letter.charCodeAt(0));
+    const text = new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate-raw'))).text();
+    return (await text.catch(() => '')) === wanted;
+  }, own('anna'));
+  assert.deepEqual(await names(), ['bert'], 'what was shown is put aside');
+  await page.reload();
+  await takes(page, own('anna'));
+  assert.deepEqual(await names(), ['bert']);
+  await list.selectOption({ label: 'bert' });
+  await takes(page, own('bert'));
+  assert.deepEqual(await names(), ['anna']);
 });
 
 test('nothing was complained of', () => assert.deepEqual(complaints, []));

@@ -1,6 +1,6 @@
 // The robot.toml as text: edited, opened, dropped into the box, undone, and shared as a link.
 import { partsOf } from '../address';
-import { packed, unpacked } from '../link-text';
+import { linkTo, unpacked } from '../link-text';
 import type { Refused } from '../robot';
 import type { Session } from '../session';
 import { sentence } from '../trouble';
@@ -14,8 +14,11 @@ const STEPS = 50;
 export class RobotText {
   private readonly box = element<HTMLTextAreaElement>('robot-text');
   private readonly undo = element<HTMLButtonElement>('robot-undo');
+  private readonly redo = element<HTMLButtonElement>('robot-redo');
   /** The previous robots, the latest at the end. */
   private before: string[] = [];
+  /** The robots that were undone, the latest at the end. */
+  private undone: string[] = [];
   private shown = '';
   /** The mistake of the text; null while it is the session's robot. */
   refused: Refused | null = null;
@@ -35,8 +38,10 @@ export class RobotText {
     });
     this.box.addEventListener('input', onText);
     this.undo.addEventListener('click', () => void this.back());
+    this.redo.addEventListener('click', () => void this.again());
     element('robot-line').addEventListener('click', () => this.toLine());
-    element('robot-link').addEventListener('click', () => void this.link());
+    element('robot-link').addEventListener('click', () => void this.copyLink());
+    element('robot-code').addEventListener('click', () => void this.showCode());
     const opener = element<HTMLInputElement>('robot-open');
     opener.addEventListener('change', () => {
       const file = opener.files?.[0];
@@ -61,6 +66,7 @@ export class RobotText {
     // While a file of the list is being read it has no name; then there is nothing to undo.
     if (file === '') this.before = [];
     else if (this.shown !== '' && this.shown !== toml) this.before = [...this.before.slice(1 - STEPS), this.shown];
+    if (this.shown !== toml) this.undone = [];
     this.shown = toml;
     this.box.value = toml;
     this.say(null);
@@ -127,23 +133,57 @@ export class RobotText {
   /** Restores the robot before the last change; a text with a mistake never was one. */
   async back(): Promise<void> {
     if (this.refused) return this.showRobot();
-    const last = this.before.at(-1);
-    if (last === undefined) return;
-    const kept = this.before.slice(0, -1);
-    const refused = await this.session().change(last);
-    if (refused) return this.say(refused);
-    // An undo is not recorded as a step.
-    this.before = kept;
-    this.say(null);
+    const { before, undone, shown } = this;
+    const last = before.at(-1);
+    if (last !== undefined) await this.restore(last, before.slice(0, -1), [...undone, shown]);
   }
 
-  private async link(): Promise<void> {
+  /** Restores the robot that was undone last. */
+  private async again(): Promise<void> {
+    const { before, undone, shown } = this;
+    const next = undone.at(-1);
+    if (next !== undefined) await this.restore(next, [...before, shown], undone.slice(0, -1));
+  }
+
+  /** Makes a robot of before the session's, with these steps on its two sides. */
+  private async restore(toml: string, before: string[], undone: string[]): Promise<void> {
+    const now = { before: this.before, undone: this.undone, shown: this.shown };
+    // It is no new step.
+    Object.assign(this, { before, undone, shown: toml });
+    const refused = await this.session().change(toml);
+    if (!refused) return;
+    Object.assign(this, now);
+    this.say(refused);
+  }
+
+  private async copyLink(): Promise<void> {
     try {
-      await navigator.clipboard.writeText(`${location.href.split('#')[0]}#robot=${await packed(this.session().toml)}`);
-      element('robot-said').textContent = 'The link is copied: it opens this robot.';
+      await navigator.clipboard.writeText(await linkTo(this.session().toml));
+      this.tell('The link is copied: it opens this robot, without the comments of its text.');
     } catch (error) {
-      element('robot-said').textContent = `The link could not be copied: ${sentence(error)}`;
+      this.tell(`The link could not be copied: ${sentence(error)}`);
     }
+  }
+
+  /** Shows the link to the robot as a QR code, or puts it away. */
+  private async showCode(): Promise<void> {
+    const drawn = element('robot-drawn');
+    const isShown = drawn.childElementCount === 0;
+    element('robot-code').setAttribute('aria-pressed', String(isShown));
+    drawn.replaceChildren();
+    if (!isShown) return this.tell('');
+    try {
+      const { qrCode } = await import('./qr-code');
+      drawn.replaceChildren(qrCode(await linkTo(this.session().toml)));
+      const isHere = ['localhost', '127.0.0.1', '[::1]'].includes(location.hostname);
+      this.tell(isHere ? 'This address is this computer’s own: a phone reaches the page only where a web server serves it.' : 'A phone’s camera opens this robot.');
+    } catch (error) {
+      this.tell(`No code can be drawn: ${sentence(error)}`);
+    }
+  }
+
+  private tell(text: string): void {
+    element('robot-said').textContent = text;
   }
 
   private toLine(): void {
@@ -163,9 +203,13 @@ export class RobotText {
     const button = element('robot-line');
     button.hidden = refused?.line == null;
     button.textContent = `Go to line ${refused?.line}`;
-    element('robot-said').textContent = '';
+    this.tell('');
+    // A code that was drawn is another robot's.
+    element('robot-drawn').replaceChildren();
+    element('robot-code').setAttribute('aria-pressed', 'false');
     this.box.setAttribute('aria-invalid', String(refused !== null));
     this.undo.disabled = !this.canUndo;
+    this.redo.disabled = this.undone.length === 0;
     this.onText();
   }
 }
