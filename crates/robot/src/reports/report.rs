@@ -108,7 +108,7 @@ impl Report {
         let width = widest(self.rounds.iter().map(|round| round.name.as_str()));
         writeln!(
             f,
-            "\n{:width$}                  one round, mm and deg   by its servos",
+            "\n{:width$}                  ideal servos, mm and deg   by its servos",
             ""
         )?;
         writeln!(
@@ -155,7 +155,7 @@ impl fmt::Display for Report {
         let width = widest(self.rows.iter().map(|row| row.name.as_str()));
         writeln!(
             f,
-            "{:width$}  cycle      fastest  table error, deg      smallest margins       slider, mm    one cycle, mm and deg   by its servos{}",
+            "{:width$}  cycle      fastest  table error, deg      smallest margins       slider, mm ideal servos, mm and deg   by its servos{}",
             "",
             if lags { "   drive, deg and %" } else { "" }
         )?;
