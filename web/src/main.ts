@@ -188,6 +188,7 @@ async function start(): Promise<void> {
     },
     speed(percent) {
       pace.show(percent);
+      drive.speed(percent);
       routines.speed(percent);
     },
     state({ phase }) {
