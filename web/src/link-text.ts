@@ -24,6 +24,21 @@ export async function packed(toml: string): Promise<string> {
   return letters.replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
 }
 
+/**
+ * A robot.toml without its comments, which would be most of a link's letters; unchanged where what is left would be another
+ * robot, as with a # in a text of several lines.
+ */
+async function withoutComments(toml: string): Promise<string> {
+  const { parse } = await import('smol-toml');
+  const short = toml.replaceAll(/^[ \t]*#.*\n/gm, '').replaceAll(/[ \t]+#[^"'\n]*$/gm, '');
+  return JSON.stringify(parse(short)) === JSON.stringify(parse(toml)) ? short : toml;
+}
+
+/** A link to this page that opens a robot, short enough for a chat or a QR code. */
+export async function linkTo(toml: string): Promise<string> {
+  return `${location.href.split('#')[0]}#robot=${await packed(await withoutComments(toml))}`;
+}
+
 /** Reads the robot.toml of the part `robot`. Throws a sentence. */
 export async function unpacked(part: string): Promise<string> {
   try {

@@ -12,6 +12,7 @@ import { lags, Robot } from './robot';
 import { type BoardBanner, Session } from './session';
 import { sentence } from './trouble';
 import { Alarm } from './view/alarm';
+import { BoardRobot } from './view/board-robot';
 import { Calibrate } from './view/calibrate';
 import { element } from './view/canvas';
 import { Choice } from './view/choice';
@@ -80,6 +81,7 @@ async function start(): Promise<void> {
     () => drive.choices(),
     (line) => void drive.ask(line),
     isBarred,
+    () => pace.percent,
   );
   const pace = new Pace((line) => drive.ask(line));
   const predictor = new Predictor(module, (gait, prediction) => {
@@ -129,6 +131,14 @@ async function start(): Promise<void> {
   const flash = new FlashView(now, writer);
   const setup: Setup = new Setup(now, writer, () => connectBoard());
 
+  const boardRobot = new BoardRobot(now, module, troubles, ({ file, toml }) => {
+    choice.show(file);
+    void replace(async () => {
+      await choose();
+      if (session.toml !== toml) await session.change(toml);
+    });
+  });
+
   const session: Session = new Session(robot, {
     robot(description) {
       scope.robot(description);
@@ -152,6 +162,7 @@ async function start(): Promise<void> {
       text.showRobot();
       keep.showRobot(description);
       predict();
+      void boardRobot.follow();
     },
     frame(frame, widths, seconds) {
       floor.addToTrack(frame.place);
@@ -183,6 +194,7 @@ async function start(): Promise<void> {
     found(has) {
       element('where').textContent = whereOf(session.link.name, has, session.description.hash);
       setup.update();
+      void boardRobot.follow();
       // On a slow machine the predictions come before the robot's banner.
       begin();
     },

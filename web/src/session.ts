@@ -255,6 +255,11 @@ export class Session {
     return isBanner(this.there) && this.there.robot?.hash === this.description.hash;
   }
 
+  /** The board's robot by its banner, where it is not the page's. */
+  get otherRobot(): { name: string; hash: string } | null {
+    return isBanner(this.there) && !this.hasThis ? this.there.robot : null;
+  }
+
   /** Time since the robot last said something, s. */
   get age(): number {
     return (performance.now() - this.heard) / 1000;

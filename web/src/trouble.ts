@@ -2,11 +2,11 @@
 
 /**
  * `robot`: a robot's file. `own`: the user's robot was put aside. `line`: a line without an answer. `port`: the port of a board, or the board
- * is gone. `board`: a board without this firmware. `fault`: the robot
+ * is gone. `board`: a board without this firmware. `other`: a board with another robot. `fault`: the robot
  * has stopped by itself. `simulation`: the simulated UNO has
  * stopped. `page`: the page cannot start.
  */
-export type Cause = 'robot' | 'own' | 'line' | 'port' | 'board' | 'fault' | 'simulation' | 'page';
+export type Cause = 'robot' | 'own' | 'line' | 'port' | 'board' | 'other' | 'fault' | 'simulation' | 'page';
 
 /** The sentence of anything thrown. */
 export function sentence(error: unknown): string {

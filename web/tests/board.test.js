@@ -75,6 +75,27 @@ test('a robot is chosen for a board that is connected, and the board stays', asy
   assert.ok(await opened.evaluate(() => window.lizard.isReal && window.lizard.last.place.y > 1), 'it is still followed');
 });
 
+test('a board with another robot of the list is said to be drawn as this one, and its own is one press away', async () => {
+  const opened = await connected('large', 8000);
+  const offer = opened.locator('#trouble').getByRole('button', { name: 'Show large' });
+  await offer.waitFor();
+  assert.match(await text(opened, '#trouble'), /^The board on USB has another robot, large, and is drawn and predicted here as robot\.toml\./);
+  await offer.click();
+  await opened.waitForFunction(() => window.lizard.file === 'large' && window.lizard.hasThis);
+  assert.match(await text(opened, '#where'), /^on a board on USB, robot large [0-9a-f]{8}$/);
+  await opened.locator('#trouble', { hasText: 'another robot' }).waitFor({ state: 'detached' });
+  assert.equal(await opened.evaluate(() => window.lizard.isReal), true);
+  // Its own lengths are in no file any more.
+  await opened.evaluate(() => window.lizard.change(window.lizard.toml.replace('name = "large"', 'name = "longer"').replace('period = 1.25', 'period = 1.3')).then(() => null));
+  await opened.locator('#trouble', { hasText: 'is drawn and predicted here as large.toml with your changes' }).waitFor();
+  await opened.evaluate(() => {
+    const { lizard } = window;
+    lizard.there.robot.hash = '00000000';
+    return lizard.change(lizard.toml.replace('period = 1.3', 'period = 1.35')).then(() => null);
+  });
+  await opened.locator('#trouble', { hasText: 'This page does not know it: open its robot.toml in Build, or write this one.' }).waitFor();
+});
+
 test('a board that is left has been stopped', async () => {
   const opened = await walking();
   await opened.locator('#connect').click();

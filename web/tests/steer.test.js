@@ -68,6 +68,37 @@ test('the stick on the screen walks where it is held', async () => {
   await doing(opened, 'stop');
 });
 
+test('half a stick goes at half the pace, and the pace is the old one when it is let go', async () => {
+  const opened = await ready();
+  await opened.evaluate(() => {
+    window.pad = { axes: [0, 0], buttons: [{ pressed: false }] };
+    navigator.getGamepads = () => [window.pad];
+    return window.lizard.ask('speed 80').then(() => null);
+  });
+  const paces = async (percent) => opened.waitForFunction((text) => document.querySelector('#speed-out').textContent === text, `${percent} %`);
+  const push = (ahead, pressed = false) => opened.evaluate(([ahead, pressed]) => (window.pad = { axes: [0, -ahead], buttons: [{ pressed }] }), [ahead, pressed]);
+  await paces(80);
+  await push(0.5);
+  await doing(opened, 'walk');
+  await paces(40);
+  // A thumb that trembles at the border does not change the pace with each picture.
+  await push(0.7);
+  await advance(opened, 500);
+  await paces(40);
+  await push(1);
+  await paces(80);
+  await push(0.5);
+  await paces(40);
+  await push(0);
+  await doing(opened, 'stop');
+  await paces(80);
+  await push(0.5);
+  await paces(40);
+  await push(0.5, true);
+  await doing(opened, 'stop');
+  await paces(80);
+});
+
 test('a page that is left does not walk on', async () => {
   const opened = await ready();
   await opened.keyboard.down('w');

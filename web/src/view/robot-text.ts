@@ -1,6 +1,6 @@
 // The robot.toml as text: edited, opened, dropped into the box, undone, and shared as a link.
 import { partsOf } from '../address';
-import { packed, unpacked } from '../link-text';
+import { linkTo, unpacked } from '../link-text';
 import type { Refused } from '../robot';
 import type { Session } from '../session';
 import { sentence } from '../trouble';
@@ -36,7 +36,8 @@ export class RobotText {
     this.box.addEventListener('input', onText);
     this.undo.addEventListener('click', () => void this.back());
     element('robot-line').addEventListener('click', () => this.toLine());
-    element('robot-link').addEventListener('click', () => void this.link());
+    element('robot-link').addEventListener('click', () => void this.copyLink());
+    element('robot-code').addEventListener('click', () => void this.showCode());
     const opener = element<HTMLInputElement>('robot-open');
     opener.addEventListener('change', () => {
       const file = opener.files?.[0];
@@ -137,13 +138,34 @@ export class RobotText {
     this.say(null);
   }
 
-  private async link(): Promise<void> {
+  private async copyLink(): Promise<void> {
     try {
-      await navigator.clipboard.writeText(`${location.href.split('#')[0]}#robot=${await packed(this.session().toml)}`);
-      element('robot-said').textContent = 'The link is copied: it opens this robot.';
+      await navigator.clipboard.writeText(await linkTo(this.session().toml));
+      this.tell('The link is copied: it opens this robot, without the comments of its text.');
     } catch (error) {
-      element('robot-said').textContent = `The link could not be copied: ${sentence(error)}`;
+      this.tell(`The link could not be copied: ${sentence(error)}`);
     }
+  }
+
+  /** Shows the link to the robot as a QR code, or puts it away. */
+  private async showCode(): Promise<void> {
+    const drawn = element('robot-drawn');
+    const isShown = drawn.childElementCount === 0;
+    element('robot-code').setAttribute('aria-pressed', String(isShown));
+    drawn.replaceChildren();
+    if (!isShown) return this.tell('');
+    try {
+      const { qrCode } = await import('./qr-code');
+      drawn.replaceChildren(qrCode(await linkTo(this.session().toml)));
+      const isHere = ['localhost', '127.0.0.1', '[::1]'].includes(location.hostname);
+      this.tell(isHere ? 'This address is this computer’s own: a phone reaches the page only where a web server serves it.' : 'A phone’s camera opens this robot.');
+    } catch (error) {
+      this.tell(`No code can be drawn: ${sentence(error)}`);
+    }
+  }
+
+  private tell(text: string): void {
+    element('robot-said').textContent = text;
   }
 
   private toLine(): void {
@@ -163,7 +185,10 @@ export class RobotText {
     const button = element('robot-line');
     button.hidden = refused?.line == null;
     button.textContent = `Go to line ${refused?.line}`;
-    element('robot-said').textContent = '';
+    this.tell('');
+    // A code that was drawn is another robot's.
+    element('robot-drawn').replaceChildren();
+    element('robot-code').setAttribute('aria-pressed', 'false');
     this.box.setAttribute('aria-invalid', String(refused !== null));
     this.undo.disabled = !this.canUndo;
     this.onText();

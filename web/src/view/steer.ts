@@ -18,6 +18,11 @@ export interface Choice {
 
 /** Dead zone of a stick. */
 const DEAD = 0.35;
+/** Deflection of a stick below which the robot goes at half its pace, and from which at the whole again. */
+const HALF = 0.65;
+const WHOLE = 0.75;
+/** Lowest pace of the robot, percent. */
+const MIN_PACE = 10;
 /** The buttons of a gamepad's cross, in the browser's order; any other button stops the robot. */
 const CROSS: Record<number, Direction> = {
   12: { ahead: 1, left: 0 },
@@ -85,12 +90,15 @@ export class Steer {
   private isAway = false;
   /** The gait that was sent last; null while nothing is held. */
   private walking: string | null = null;
+  /** The pace to go back to, percent, while a stick asks for half of it. */
+  private wholePace: number | null = null;
 
-  /** Takes functions that list the robot's gaits, that send a line, and that say when nobody may drive. */
+  /** Takes functions that list the robot's gaits, that send a line, that say when nobody may drive, and the robot's pace, percent. */
   constructor(
     private readonly choices: () => Choice[],
     private readonly send: (line: string) => void,
     private readonly isBarred: () => boolean,
+    private readonly pace: () => number,
   ) {
     // Before a slider or a view, which would take an arrow for itself.
     document.addEventListener('keydown', (event) => this.key(event, true), true);
@@ -127,8 +135,8 @@ export class Steer {
       });
     }
     if (isPressed && !this.isPressed) {
-      this.release(false);
       this.send(WORDS.stop);
+      this.release(false);
     }
     this.isPressed = isPressed;
     if (this.walking && this.isBarred()) this.release();
@@ -182,12 +190,22 @@ export class Steer {
       direction.ahead += KEYS[code]?.ahead ?? 0;
       direction.left += KEYS[code]?.left ?? 0;
     }
-    const nothing = this.isBarred() || Math.hypot(direction.ahead, direction.left) < DEAD;
+    const size = Math.hypot(direction.ahead, direction.left);
+    const nothing = this.isBarred() || size < DEAD;
+    const isHalf = !nothing && size < (this.wholePace === null ? HALF : WHOLE);
+    if (isHalf && this.wholePace === null) {
+      this.wholePace = this.pace();
+      this.send(`${WORDS.speed} ${Math.max(MIN_PACE, Math.round(this.wholePace / 2))}`);
+    }
     const gait = nothing ? null : gaitFor(direction, this.choices());
-    // No gait for this direction: the current one goes on.
-    if (gait === this.walking || (!nothing && gait === null)) return;
-    if (gait === null && this.walking === null) return;
-    this.walking = gait;
-    this.send(gait ?? WORDS.stop);
+    // Without a gait for this direction the current one goes on.
+    if (gait !== this.walking && (nothing || gait !== null)) {
+      this.walking = gait;
+      this.send(gait ?? WORDS.stop);
+    }
+    if (!isHalf && this.wholePace !== null) {
+      this.send(`${WORDS.speed} ${this.wholePace}`);
+      this.wholePace = null;
+    }
   }
 }

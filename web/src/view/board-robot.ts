@@ -1,0 +1,54 @@
+// A board with another robot than the page's, which would be drawn and predicted as this one: its own is looked for and offered.
+import { files } from '../files';
+import { kept } from '../kept';
+import { isRefused, Robot } from '../robot';
+import type { Session } from '../session';
+import { nameOf } from './setup/board';
+import type { Troubles } from './troubles';
+
+/** A robot that the page can show: a file of the list, with the user's text where that is another. */
+interface Known {
+  file: string;
+  toml: string;
+}
+
+export class BoardRobot {
+  /** A reader of its own, since reading a robot makes it the reader's. */
+  private reader: Promise<Robot> | null = null;
+
+  /** `show` makes a robot the page's. */
+  constructor(
+    private readonly session: () => Session,
+    private readonly module: WebAssembly.Module,
+    private readonly troubles: Troubles,
+    private readonly show: (known: Known) => void,
+  ) {}
+
+  /** Says that the board's robot is another one, or that it is this one after all. */
+  async follow(): Promise<void> {
+    const session = this.session();
+    const other = session.otherRobot;
+    if (!session.isReal || !other) return this.troubles.say('other', null);
+    const known = await this.find(other.hash);
+    if (session.otherRobot?.hash !== other.hash) return;
+    const has = `The ${session.link.name} has another robot, ${other.name}, and is drawn and predicted here as ${nameOf(session)}.`;
+    if (!known) return this.troubles.say('other', `${has} This page does not know it: open its robot.toml in Build, or write this one.`);
+    this.troubles.say('other', has, { label: `Show ${other.name}`, act: () => this.show(known) });
+  }
+
+  /** Looks for a robot among the user's own ones and the files of the list. */
+  private async find(hash: string): Promise<Known | null> {
+    const reader = await (this.reader ??= Robot.load(this.module));
+    const isIt = (toml: string) => {
+      const read = reader.read(toml);
+      return !isRefused(read) && read.hash === hash;
+    };
+    const own = kept.aside().find(({ toml }) => isIt(toml));
+    if (own) return own;
+    for (const file of await files.robots()) {
+      const toml = await files.toml(file).catch(() => '');
+      if (isIt(toml)) return { file, toml };
+    }
+    return null;
+  }
+}

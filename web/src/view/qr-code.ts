@@ -1,0 +1,19 @@
+// A text as a QR code, for a phone's camera.
+import { encode } from 'uqr';
+
+/** Empty border, modules (ISO/IEC 18004, 9.1). */
+const BORDER = 4;
+
+/** Draws a text as a QR code. Throws if it is too long for one. */
+export function qrCode(text: string): SVGSVGElement {
+  const { size, data } = encode(text, { ecc: 'L', border: BORDER });
+  const namespace = 'http://www.w3.org/2000/svg';
+  const svg = document.createElementNS(namespace, 'svg');
+  svg.setAttribute('viewBox', `0 0 ${size} ${size}`);
+  svg.setAttribute('role', 'img');
+  svg.setAttribute('aria-label', 'QR code of the link to this robot');
+  const dark = document.createElementNS(namespace, 'path');
+  dark.setAttribute('d', data.flatMap((row, y) => row.map((isDark, x) => (isDark ? `M${x} ${y}h1v1h-1z` : ''))).join(''));
+  svg.append(dark);
+  return svg;
+}
