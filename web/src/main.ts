@@ -18,6 +18,7 @@ import { element } from './view/canvas';
 import { Choice } from './view/choice';
 import { download } from './view/download';
 import { Drive, short } from './view/drive';
+import { FitView } from './view/fit';
 import { FlashView } from './view/flash';
 import { Floor } from './view/floor';
 import { GaitsView } from './view/gaits';
@@ -108,6 +109,7 @@ async function start(): Promise<void> {
   const world = new World(now, predict);
   const health = new Health(now);
   const lengths = new Lengths(now);
+  const fit = new FitView(now);
   const sketch = new Sketch(module, now);
   const parts = new PartsView(now);
   const keep = new Keep(module, now, floor, (line) => drive.ask(line), () => pace.percent);
@@ -150,6 +152,7 @@ async function start(): Promise<void> {
       const strange = unknownWords([...drive.words], description.words);
       if (strange.length > 0) troubles.say('page', `The core does not know these words of the page: ${strange.join(', ')}.`);
       lengths.showRobot(description.lengths);
+      fit.showRobot(description.lengths);
       sketch.showRobot();
       setup.update();
       floor.clear();

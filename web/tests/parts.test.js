@@ -2,7 +2,7 @@
 // and whoever does not open their panel pays nothing for them.
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
-import { mkdtemp, readFile, readdir, rm } from 'node:fs/promises';
+import { mkdtemp, readFile, readdir, rm, writeFile } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
@@ -52,6 +52,40 @@ async function click(page, across, down) {
 async function fromAbove(page) {
   for (let n = 0; n < 12; n++) await page.locator('#space').press('ArrowUp');
 }
+
+test('lengths that cannot be printed are told at once, with the nearest that can, as the program says it', async () => {
+  const page = await standing();
+  await unfold(page, '#lengths-panel');
+  const length = page.locator('#lengths input[name="leg.crank"]');
+  await length.fill('46');
+  await length.press('Enter');
+  await page.locator('#fit-said', { hasText: /^The parts fit: no two come nearer than \d\.\d\d mm\.$/ }).waitFor();
+  await length.fill('52');
+  await length.press('Enter');
+  await page.locator('#fit-said', { hasText: /^These lengths cannot be printed: .* overlap by [\d.]+ mm/ }).waitFor();
+  const use = page.locator('#fit-use');
+  await use.waitFor();
+  const nearest = Number(/ ([\d.]+)$/.exec(await use.innerText())[1]);
+  assert.ok(nearest > 46 && nearest < 52, `${nearest} mm`);
+
+  const parts = async (mm) => {
+    const path = join(folder, 'robot.toml');
+    const toml = await page.evaluate((mm) => {
+      const { robot, toml } = window.lizard;
+      return ['leg.crank', 'leg.follower'].reduce((text, key) => robot.edit(text, key, mm).text, toml);
+    }, mm);
+    await writeFile(path, toml);
+    const made = promisify(execFile)(resolve(ROOT, process.env.LIZARD), ['parts', join(folder, 'tried'), '--robot', path]);
+    return within('lizard parts', made.then(() => 'made', ({ stderr }) => stderr));
+  };
+  assert.equal(await parts(nearest), 'made');
+  assert.match(await parts(nearest + 0.5), /overlap|may come as near as/);
+
+  await use.click();
+  await page.locator('#fit-said', { hasText: /^The parts fit/ }).waitFor();
+  assert.equal(await length.inputValue(), String(nearest));
+  assert.equal(await use.isHidden(), true);
+});
 
 test('whoever opens the page loads no parts, and less than half a megabyte', async () => {
   const page = await blank();

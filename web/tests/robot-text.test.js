@@ -47,7 +47,7 @@ test('a text that is wrong is refused with its line, and the robot of before sta
   assert.equal(await box(page).inputValue(), wrong, 'nothing that was typed is lost');
 });
 
-test('a text that is right becomes the robot, and is undone step by step', async () => {
+test('a text that is right becomes the robot, and is undone and done again step by step', async () => {
   const page = await opened();
   const first = await toml(page);
   const second = first.replace('amplitude = 15.0', 'amplitude = 14.0');
@@ -63,6 +63,22 @@ test('a text that is right becomes the robot, and is undone step by step', async
     await takes(page, text);
   }
   assert.ok(await page.locator('#robot-undo').isDisabled());
+  const redo = page.locator('#robot-redo');
+  for (const text of [second, third]) {
+    await redo.click();
+    await takes(page, text);
+  }
+  assert.ok(await redo.isDisabled());
+  // A change after an undo is another way on.
+  await page.locator('#robot-undo').click();
+  await takes(page, second);
+  assert.ok(await redo.isEnabled());
+  await box(page).fill(first);
+  await box(page).press('Control+Enter');
+  await takes(page, first);
+  assert.ok(await redo.isDisabled());
+  await page.locator('#robot-undo').click();
+  await takes(page, second);
 });
 
 test('a file is opened, or dropped anywhere on the page', async () => {

@@ -26,6 +26,9 @@ async function answer(question: Question): Promise<void> {
     case 'pose':
       say({ of: 'pose', places: known?.pose(question.angles, question.lags) ?? null });
       break;
+    case 'fit':
+      say({ of: 'fit', least: (await PartsModel.read(question.module, question.toml)).prove() });
+      break;
     case 'files': {
       const parts = await PartsModel.read(question.module, question.toml, (done, all) => {
         say({ of: 'progress', doing: 'prove', done, all });

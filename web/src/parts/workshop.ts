@@ -5,11 +5,13 @@ import type { Model, Solid } from './model';
 export type Question =
   | { ask: 'model'; module: WebAssembly.Module; toml: string }
   | { ask: 'pose'; angles: number[]; lags: number[] }
+  | { ask: 'fit'; module: WebAssembly.Module; toml: string }
   | { ask: 'files'; module: WebAssembly.Module; toml: string };
 
 export type Answer =
   | { of: 'model'; model: Model; solids: Solid[] }
   | { of: 'pose'; places: Float64Array | null }
+  | { of: 'fit'; least: number | null }
   | { of: 'progress'; doing: 'prove' | 'make'; done: number; all: number }
   | { of: 'files'; zip: Uint8Array<ArrayBuffer>; count: number; least: number | null }
   | { of: Question['ask']; refused: string };
@@ -32,14 +34,17 @@ function worker(): Worker {
   return new Worker(new URL('./worker.ts', import.meta.url), { type: 'module' });
 }
 
-/** Asks a worker and calls `onAnswer` with each answer, up to the last. Throws the sentence of a refusal. */
+/** Thrown for parts that cannot be made, or do not fit; the message says why. */
+export class NoParts extends Error {}
+
+/** Asks a worker and calls `onAnswer` with each answer, up to the last. Throws {@link NoParts}. */
 function asked<T extends Answer>(of: Worker, question: Question, onAnswer: (answer: Answer) => void = () => {}): Promise<T> {
   return new Promise((resolve, reject) => {
     const listen = ({ data }: MessageEvent<Answer>) => {
       onAnswer(data);
       if (data.of !== question.ask) return;
       of.removeEventListener('message', listen);
-      if ('refused' in data) reject(new Error(data.refused));
+      if ('refused' in data) reject(new NoParts(data.refused));
       else resolve(data as T);
     };
     of.addEventListener('message', listen);
@@ -83,6 +88,13 @@ export class Solids {
   end(): void {
     this.worker.terminate();
   }
+}
+
+/** Proves that the parts of a robot.toml fit: the least distance of two, mm. Throws {@link NoParts}; `stop` ends it without an answer. */
+export function fit(toml: string): { fits: Promise<number | null>; stop: () => void } {
+  const prover = worker();
+  const proved = files.parts().then((module) => asked<{ of: 'fit'; least: number | null }>(prover, { ask: 'fit', module, toml }));
+  return { fits: proved.then(({ least }) => least).finally(() => prover.terminate()), stop: () => prover.terminate() };
 }
 
 /** Proves that the parts fit, makes all files and packs them. `stop` ends it without an answer. */

@@ -14,8 +14,11 @@ const STEPS = 50;
 export class RobotText {
   private readonly box = element<HTMLTextAreaElement>('robot-text');
   private readonly undo = element<HTMLButtonElement>('robot-undo');
+  private readonly redo = element<HTMLButtonElement>('robot-redo');
   /** The previous robots, the latest at the end. */
   private before: string[] = [];
+  /** The robots that were undone, the latest at the end. */
+  private undone: string[] = [];
   private shown = '';
   /** The mistake of the text; null while it is the session's robot. */
   refused: Refused | null = null;
@@ -35,6 +38,7 @@ export class RobotText {
     });
     this.box.addEventListener('input', onText);
     this.undo.addEventListener('click', () => void this.back());
+    this.redo.addEventListener('click', () => void this.again());
     element('robot-line').addEventListener('click', () => this.toLine());
     element('robot-link').addEventListener('click', () => void this.copyLink());
     element('robot-code').addEventListener('click', () => void this.showCode());
@@ -62,6 +66,7 @@ export class RobotText {
     // While a file of the list is being read it has no name; then there is nothing to undo.
     if (file === '') this.before = [];
     else if (this.shown !== '' && this.shown !== toml) this.before = [...this.before.slice(1 - STEPS), this.shown];
+    if (this.shown !== toml) this.undone = [];
     this.shown = toml;
     this.box.value = toml;
     this.say(null);
@@ -128,14 +133,27 @@ export class RobotText {
   /** Restores the robot before the last change; a text with a mistake never was one. */
   async back(): Promise<void> {
     if (this.refused) return this.showRobot();
-    const last = this.before.at(-1);
-    if (last === undefined) return;
-    const kept = this.before.slice(0, -1);
-    const refused = await this.session().change(last);
-    if (refused) return this.say(refused);
-    // An undo is not recorded as a step.
-    this.before = kept;
-    this.say(null);
+    const { before, undone, shown } = this;
+    const last = before.at(-1);
+    if (last !== undefined) await this.restore(last, before.slice(0, -1), [...undone, shown]);
+  }
+
+  /** Restores the robot that was undone last. */
+  private async again(): Promise<void> {
+    const { before, undone, shown } = this;
+    const next = undone.at(-1);
+    if (next !== undefined) await this.restore(next, [...before, shown], undone.slice(0, -1));
+  }
+
+  /** Makes a robot of before the session's, with these steps on its two sides. */
+  private async restore(toml: string, before: string[], undone: string[]): Promise<void> {
+    const now = { before: this.before, undone: this.undone, shown: this.shown };
+    // It is no new step.
+    Object.assign(this, { before, undone, shown: toml });
+    const refused = await this.session().change(toml);
+    if (!refused) return;
+    Object.assign(this, now);
+    this.say(refused);
   }
 
   private async copyLink(): Promise<void> {
@@ -191,6 +209,7 @@ export class RobotText {
     element('robot-code').setAttribute('aria-pressed', 'false');
     this.box.setAttribute('aria-invalid', String(refused !== null));
     this.undo.disabled = !this.canUndo;
+    this.redo.disabled = this.undone.length === 0;
     this.onText();
   }
 }
