@@ -203,6 +203,7 @@ async function start(): Promise<void> {
     },
     speed(percent) {
       pace.show(percent);
+      drive.speed(percent);
       routines.speed(percent);
     },
     state({ phase }) {

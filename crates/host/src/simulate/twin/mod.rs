@@ -96,7 +96,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         .any(|step| step.command.starts_with("speed"));
     let spinner = Spinner::new("walking every frame");
     let replay = Replay::of(&robot, &recording.frames, spans, model);
-    let report = Report::of(&robot, &replay, paced);
+    let report = Report::of(&robot, &replay, model, paced);
     drop(spinner);
 
     let mut out = io::stdout().lock();
