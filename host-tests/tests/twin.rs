@@ -20,7 +20,11 @@ fn walk_all(model: ServoModel) -> Replay {
         steps.push(Step { ms, command });
         ms += 1000 + (3000.0 * gait.period()).ceil() as u64;
     }
-    let script = Script { steps, end_ms: ms };
+    let script = Script {
+        steps,
+        end_ms: ms,
+        ..Script::default()
+    };
     let mut uno = Uno::with_image(FirmwareBench::image(), Fidelity::DataSheet);
     supplies::connect(&mut uno, robot());
     let recording = play(&mut uno, servo_pins(robot()), &script, false, |_| Ok(()));
@@ -31,7 +35,8 @@ fn walk_all(model: ServoModel) -> Replay {
 
 #[test]
 fn the_image_moves_the_body_as_its_gaits_predict() {
-    let report = Report::of(robot(), &walk_all(ServoModel::Ideal), false);
+    let model = ServoModel::Ideal;
+    let report = Report::of(robot(), &walk_all(model), model, false);
     let cycles: Vec<_> = report
         .rows
         .iter()

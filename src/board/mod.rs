@@ -153,7 +153,7 @@ impl Board for Uno {
 
     #[inline(always)]
     fn set_led(&mut self, is_on: bool) {
-        led::set(on);
+        led::set(is_on);
     }
 
     #[inline(always)]

@@ -157,8 +157,8 @@ export interface GaitPrediction extends Displacement {
   /** Largest lag, deg. */
   lag: number | null;
   share: number | null;
-  /** Largest share of a servo's torque-speed line; null with ideal servos. */
-  line: number | null;
+  /** Largest share of a servo's torque-speed line at equal steps of the pace up to the gait's own; null with ideal servos. */
+  lines: number[] | null;
 }
 
 /** A routine as it is written, right or wrong. */

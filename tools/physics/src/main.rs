@@ -125,12 +125,8 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     let (before, mut surfaces) = (surface::stored(), Surfaces::new());
     for (index, (gait, surface)) in uneven.iter().enumerate() {
         let displacement = by_mujoco[&name(SURFACE, index)];
-        let mut words = Vec::new();
-        words.extend(surface::excess_loss(
-            *surface,
-            surface::level(&kept, gait),
-            displacement,
-        ));
+        let level = surface::level(&kept, gait);
+        let mut words = surface::excess_losses(*surface, level, displacement);
         if !write {
             let was = before
                 .get(*gait)

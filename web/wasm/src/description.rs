@@ -370,6 +370,9 @@ impl Movement {
     }
 }
 
+/// The steps of the page's slider up to the gait's own pace.
+const PACES: usize = 20;
+
 /// The prediction of a cycle of a gait.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct GaitPrediction {
@@ -380,8 +383,8 @@ pub struct GaitPrediction {
     pub lag: Option<f64>,
     /// The movement over that of rigid legs; `None` if legs are rigid, or rigid legs go nowhere.
     pub share: Option<f64>,
-    /// Largest share of a servo's torque-speed line; none with ideal servos.
-    pub line: Option<f64>,
+    /// Largest share of a servo's line at each step of the pace; none with ideal servos.
+    pub lines: Option<[f64; PACES]>,
 }
 
 impl GaitPrediction {
@@ -394,13 +397,15 @@ impl GaitPrediction {
         };
         let movement = prediction.movement;
         let went = twin.cycle(gait).travel();
+        let effort = Effort::of(gait, twin.ground(), &motors);
+        let line = |step: usize| effort.line_share((step + 1) as f64 / PACES as f64, 1.0);
         Self {
             movement: Movement {
                 forward: movement.forward.and(Some(went.forward)),
                 left: movement.left.and(Some(went.left)),
                 turn: movement.turn.and(Some(went.turn)),
             },
-            line: Some(Effort::of(gait, twin.ground(), &motors).line_share(1.0, 1.0)),
+            lines: Some(std::array::from_fn(line)),
             ..prediction
         }
     }
@@ -416,13 +421,13 @@ impl GaitPrediction {
                 movement: movement.into(),
                 lag: Some(lag),
                 share,
-                line: None,
+                lines: None,
             },
             None => Self {
                 movement: gait.predict(ground).into(),
                 lag: None,
                 share: None,
-                line: None,
+                lines: None,
             },
         }
     }

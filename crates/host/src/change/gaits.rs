@@ -157,6 +157,7 @@ struct RoutineLine<'a> {
     seconds: f64,
     /// Displacement of one round, as that of a gait.
     predicted: Predicted,
+    by_servos: Predicted,
 }
 
 impl<'a> RoutineLine<'a> {
@@ -167,6 +168,7 @@ impl<'a> RoutineLine<'a> {
             repeat: round.rounds,
             seconds: round.seconds,
             predicted: round.movement.into(),
+            by_servos: round.driven.into(),
         }
     }
 }

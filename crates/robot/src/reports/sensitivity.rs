@@ -92,7 +92,9 @@ impl Sensitivity {
 
 impl fmt::Display for Sensitivity {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("One cycle: mm ahead, and deg counter-clockwise where it turns.\n")?;
+        f.write_str(
+            "One cycle with ideal servos: mm ahead, and deg counter-clockwise where it turns.\n",
+        )?;
         let width = widest(self.rows.iter().map(|(name, _)| name.as_str()));
         let mut is_decided = true;
         for (table, (head, values, _)) in CHANGES.iter().enumerate() {

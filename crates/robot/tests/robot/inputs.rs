@@ -238,6 +238,7 @@ fn the_patrol_of_the_docs_waits_once_and_then_repeats_from_its_second_step() {
     let patrol = blocks
         .find(|block| block.contains("[input."))
         .expect("it is there");
+    assert!(include_str!("../../../../docs/quickstart.md").contains(patrol));
     let robot = with(patrol).expect("a robot");
     let [routine] = robot.routines() else {
         panic!("one routine");

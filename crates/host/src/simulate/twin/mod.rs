@@ -97,7 +97,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         .any(|step| step.command.starts_with("speed"));
     let spinner = Spinner::new("walking every frame");
     let replay = Replay::of(&robot, &recording.frames, spans, model);
-    let report = Report::of(&robot, &replay, paced);
+    let report = Report::of(&robot, &replay, model, paced);
     drop(spinner);
 
     let mut out = io::stdout().lock();
@@ -167,6 +167,7 @@ fn a_round(robot: &Robot, routine: &Routine) -> Script {
             step(ms + STAND_MS, "stop"),
         ],
         end_ms: ms + 2 * STAND_MS,
+        ..Script::default()
     }
 }
 
@@ -207,5 +208,6 @@ pub(crate) fn walk_script(robot: &Robot, gaits: &[&str]) -> Script {
     Script {
         steps,
         end_ms: ms + STAND_MS,
+        ..Script::default()
     }
 }
