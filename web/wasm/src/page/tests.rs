@@ -154,7 +154,10 @@ fn servos_with_a_dead_band_are_predicted_to_lose_it() {
         assert!(copy > 1.3 * own, "a weaker servo uses more: {copy} {own}");
     }
     // docs/gaits.md has these two, of half the pace and of all of it.
-    assert!((own[9] - 0.45).abs() < 0.005 && (own[19] - 0.72).abs() < 0.005, "{own:?}");
+    assert!(
+        (own[9] - 0.45).abs() < 0.005 && (own[19] - 0.72).abs() < 0.005,
+        "{own:?}"
+    );
 }
 
 #[test]
