@@ -10,6 +10,7 @@ use std::sync::LazyLock;
 
 use lizard_host::board::{BoardError, SimulatedBoard};
 use lizard_host::sim::frame::Frame;
+use lizard_robot::Robot;
 use simulated_uno::{Call, Fidelity, Image, Uno};
 
 use crate::robots::{robot, root};
@@ -33,12 +34,19 @@ impl FirmwareBench {
     /// If there is no firmware.
     #[must_use]
     pub fn image() -> Image {
-        static IMAGE: LazyLock<Image> = LazyLock::new(|| {
-            let elf = FirmwareBench::elf();
-            lizard_host::firmware::with_robot(&elf, robot())
-                .unwrap_or_else(|error| panic!("{}: {error}; make firmware", elf.display()))
-        });
+        static IMAGE: LazyLock<Image> = LazyLock::new(|| FirmwareBench::image_with(robot()));
         IMAGE.clone()
+    }
+
+    /// The same image with another robot in it.
+    ///
+    /// # Panics
+    /// If there is no firmware.
+    #[must_use]
+    pub fn image_with(robot: &Robot) -> Image {
+        let elf = Self::elf();
+        lizard_host::firmware::with_robot(&elf, robot)
+            .unwrap_or_else(|error| panic!("{}: {error}; make firmware", elf.display()))
     }
 
     /// Powers the board on, by the data sheet, and waits for the banner.

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 use fastrand::Rng;
+use lizard_host::patrol::with_patrol;
 use lizard_robot::Robot;
 
 use crate::random_robot::random_robot;
@@ -34,11 +35,26 @@ pub fn root() -> PathBuf {
 /// If the file is missing or wrong.
 #[must_use]
 pub fn robot() -> &'static Robot {
+    static ROBOT: LazyLock<Robot> = LazyLock::new(|| load(&file()));
+    &ROBOT
+}
+
+/// The robot under test with two inputs and a routine.
+///
+/// # Panics
+/// If it has no room for them.
+#[must_use]
+pub fn patrolling() -> &'static Robot {
     static ROBOT: LazyLock<Robot> = LazyLock::new(|| {
-        let given = std::env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
-        load(&root().join(given.unwrap_or_else(|| "robot.toml".into())))
+        let text = std::fs::read_to_string(file()).expect("a robot.toml");
+        with_patrol(&text).unwrap_or_else(|error| panic!("{error}"))
     });
     &ROBOT
+}
+
+fn file() -> PathBuf {
+    let given = std::env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
+    root().join(given.unwrap_or_else(|| "robot.toml".into()))
 }
 
 /// The paper's robot, for tests that hold its figures.

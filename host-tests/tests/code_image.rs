@@ -69,6 +69,7 @@ fn record_minute(image: Image) -> Recording {
             })
             .to_vec(),
         end_ms: 60_000,
+        ..Script::default()
     };
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     supplies::connect(&mut uno, robot());

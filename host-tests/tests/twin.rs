@@ -20,7 +20,11 @@ fn walk_all(model: ServoModel) -> Replay {
         steps.push(Step { ms, command });
         ms += 1000 + (3000.0 * gait.period()).ceil() as u64;
     }
-    let script = Script { steps, end_ms: ms };
+    let script = Script {
+        steps,
+        end_ms: ms,
+        ..Script::default()
+    };
     let mut uno = Uno::with_image(FirmwareBench::image(), Fidelity::DataSheet);
     supplies::connect(&mut uno, robot());
     let recording = play(&mut uno, servo_pins(robot()), &script, false, |_| Ok(()));

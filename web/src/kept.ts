@@ -1,5 +1,5 @@
 // Keeps the user's changes across a reload, in the browser's storage.
-import type { Floor } from './robot';
+import type { Bars, Floor } from './robot';
 
 /** A robot and the user's changes to it. */
 export interface SavedChanges {
@@ -18,6 +18,7 @@ export interface SavedChanges {
 /** Pages of another address on the same server have their own. */
 const KEY = `lizard ${location.pathname}`;
 const ASIDE = `${KEY} aside`;
+const GAIT = `${KEY} gait`;
 
 /** Robots that are put aside, at most; an older one is dropped. */
 const MOST_ASIDE = 8;
@@ -45,6 +46,13 @@ function stored(key: string): SavedChanges[] {
   }
 }
 
+/** True if a stored value is a gait; its numbers are checked as a robot's are. */
+function isGait(value: unknown): value is Bars {
+  const { name, held, period, duty, amplitude, start, gain } = (value ?? {}) as Partial<Bars>;
+  const numbers = [period, duty, amplitude, ...(start ?? []), ...(gain ?? [])];
+  return typeof name === 'string' && typeof held === 'boolean' && numbers.length === 11 && numbers.every(Number.isFinite);
+}
+
 export const kept = {
   /** Stores it; a browser without storage loses it at a reload. */
   put: (state: SavedChanges) => store(KEY, state),
@@ -56,4 +64,16 @@ export const kept = {
   aside: () => stored(ASIDE),
 
   setAside: (robots: SavedChanges[]) => store(ASIDE, robots.slice(0, MOST_ASIDE)),
+
+  /** The gait that is being made; null if there is none that can be used. */
+  gait: (): Bars | null => {
+    try {
+      const gait: unknown = JSON.parse(localStorage.getItem(GAIT) ?? 'null');
+      return isGait(gait) ? gait : null;
+    } catch {
+      return null;
+    }
+  },
+
+  putGait: (gait: Bars) => store(GAIT, gait),
 };

@@ -276,14 +276,14 @@ async function start(): Promise<void> {
       troubles.say('robot', sentence(error));
     }
   };
-  const own = new OwnRobot(now, troubles, (file) => (choice.show(file), choose()));
+  const own = new OwnRobot(now, troubles, (file) => (choice.show(file), choose()), (names) => choice.showOwn(names));
   /** Loads another robot, which erases none. */
   const replace = async (load: () => Promise<unknown>) => {
     const before = kept.get();
     await load();
     own.replaced(before);
   };
-  choice.onChange(() => void replace(choose));
+  choice.onChange(() => void (choice.chosenOwn === null ? replace(choose) : own.restore(choice.chosenOwn)));
 
   element('reset').addEventListener('click', () => void session.reset());
 

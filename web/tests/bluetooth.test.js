@@ -123,14 +123,37 @@ test('a machine without Bluetooth says so', async () => {
 });
 
 test('a browser that may not use Bluetooth says where to allow it', async () => {
-  radio = await Radio.near(HM10);
+  radio = await Radio.near(HM10, { allowed: false, robot: false });
   const { opened } = radio;
-  await opened.evaluate(() => {
-    navigator.bluetooth.requestDevice = () =>
-      Promise.reject(new DOMException('User denied the browser permission to scan for Bluetooth devices.', 'NotFoundError'));
-  });
   await opened.locator('#radio').click();
   await opened.locator('#trouble', { hasText: 'The browser may not use Bluetooth: allow it in its settings' }).waitFor();
+  assert.match(await text(opened, '#trouble'), /disallowed by permissions policy/, 'the browser itself has refused it');
+});
+
+test('a phone whose screen goes off stops its robot with its last line', async () => {
+  const opened = await driven(HM10);
+  await radio.run(1000);
+  const at = await opened.evaluate(() => {
+    Object.defineProperty(document, 'hidden', { value: true });
+    document.dispatchEvent(new Event('visibilitychange'));
+    return window.boardMs();
+  });
+  await radio.run(60);
+  await radio.sleep(3000);
+  const { last, heard } = await opened.evaluate(() => ({ last: window.movedAt, heard: window.heard }));
+  assert.match(heard, /stop\n(deadman 0\n)?$/);
+  assert.ok(last - at < 400, `it moved for ${last - at} ms`);
+});
+
+test('a phone that sleeps without a word leaves a robot that stands still, and is told of it when it wakes', async () => {
+  const opened = await driven(HM10);
+  const at = await opened.evaluate(() => window.boardMs());
+  await radio.sleep(3000);
+  const last = await opened.evaluate(() => window.movedAt);
+  assert.ok(last - at > 300 && last - at <= 901 + 40, `it moved for ${last - at} ms`);
+  await opened.clock.fastForward(3000);
+  await radio.until('it is said', async () => (await text(opened, '#trouble')).includes('no line had reached it for too long'));
+  assert.equal(await doing(opened), 'stop');
 });
 
 test('an iPhone is told which browser can, before anything is pressed', async () => {

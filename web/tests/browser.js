@@ -57,6 +57,8 @@ export const complaints = [];
 let browser;
 let server;
 const pages = [];
+/** The servers of single tests. */
+const servers = [];
 
 /** The browser's own session of its DevTools protocol. */
 export const devTools = () => browser.newBrowserCDPSession();
@@ -64,13 +66,15 @@ export const devTools = () => browser.newBrowserCDPSession();
 /** Closes the pages of a test, which would go on walking. */
 export async function tidy() {
   await within('the pages to close', Promise.all(pages.splice(0).map((opened) => opened.close())));
+  for (const strict of servers.splice(0)) strict.close();
 }
 
-/** A web server with a folder's files, below a path of its own; `asked` has the path of each request. */
-export async function serve(folder, asked = []) {
+/** A web server with a folder's files and these headers, below a path of its own; `asked` has the path of each request. */
+export async function serve(folder, asked = [], headers = {}) {
   const made = createServer(async (request, response) => {
     const path = request.url.split('?')[0].replace(FOLDER, '/');
     asked.push(path);
+    for (const [name, value] of Object.entries(headers)) response.setHeader(name, value);
     const file = join(folder, normalize(path === '/' ? '/index.html' : path));
     try {
       const bytes = await readFile(file);
@@ -182,15 +186,17 @@ export function until(opened, question, value) {
 
 /**
  * The page, loaded; `before` runs in it before anything else, and then its timers only run when
- * the test says so.
+ * the test says so. `at` is its address.
  */
-export async function page(options = {}, before = undefined) {
+export async function page(options = {}, before = undefined, at = address()) {
   const opened = await blank(options);
   opened.on('console', (message) => {
     // Said of the pages that are to have their files from the server.
     if (message.text() === 'Service Worker registration blocked by Playwright') return;
     // Without a graphics chip the browser's own painter says of itself that it is slow.
     if (message.text().includes('GL Driver Message (OpenGL, Performance')) return;
+    // What a test forbids.
+    if (message.text().startsWith('Permissions policy violation:')) return;
     if (message.text().startsWith('Web Bluetooth is experimental on this platform')) return;
     if (['error', 'warning'].includes(message.type())) complaints.push(message.text());
   });
@@ -211,9 +217,16 @@ export async function page(options = {}, before = undefined) {
     await opened.clock.pauseAt(1000);
     await opened.addInitScript(before);
   }
-  await opened.goto(address());
+  await opened.goto(at);
   await opened.waitForFunction(() => window.lizard);
   return opened;
+}
+
+/** The page from a server that forbids it one of the browser's features, such as `serial`: the browser itself refuses it. */
+export async function forbidden(feature, before) {
+  const strict = await serve(DIST, [], { 'permissions-policy': `${feature}=()` });
+  servers.push(strict);
+  return page({}, before, address(strict));
 }
 
 /** Lets the simulation run, as fast as it goes. */

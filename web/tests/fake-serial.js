@@ -5,7 +5,7 @@
  * `window.same` has the port open the board that it had before;
  * `window.awake` has it run for four seconds and not be reset by its port; `window.pick` throws in place of a choice
  * of the port; `window.garbage` has the board say bytes without a meaning; `window.profile` is the Bluetooth service of a port that is no
- * cable. `window.pulses` has the last width of
+ * cable; `window.baud` is the rate at which that port talks to the board. `window.pulses` has the last width of
  * each pin, us; `window.vendor` is the USB vendor of its chip.
  */
 export function fakeSerial() {
@@ -29,6 +29,7 @@ export function fakeSerial() {
       const { board: first } = window.lizard.link;
       const name = window.flashed === undefined ? 'robot' : window.flashed;
       if (!window.same) board = new first.constructor(name && (await image(name)), await (await fetch('files/optiboot.hex')).text());
+      if (window.baud) board.baud = window.baud;
       // Bytes that it sends before the port is open are lost.
       if (window.awake) board.run(16_000 * 4000);
       let out;

@@ -55,6 +55,27 @@ test('a bar and its end are dragged, and the numbers follow', async () => {
   await page.waitForFunction((way) => document.querySelector('#gait-way').textContent === way, before);
 });
 
+test('a gait that is being made is there after a reload, and a stored one that is none is dropped', async () => {
+  const page = await opened();
+  await page.locator('#gait-name').fill('waddle');
+  await page.getByLabel('LF starts at').fill('0.35');
+  await page.reload();
+  await page.waitForFunction(() => window.lizard);
+  await unfold(page, '#gait-editor');
+  await predicted(page);
+  assert.equal(await page.locator('#gait-name').inputValue(), 'waddle');
+  assert.equal(await page.getByLabel('LF starts at').inputValue(), '0.35');
+  assert.match(await text(page, 'table'), /^\[gait\.waddle\]/);
+  for (const stored of ['{', '3', '{"name":"x","held":false,"period":1,"duty":0.5,"amplitude":20,"start":[0,0,0],"gain":[1,1,1,1]}']) {
+    await page.evaluate((stored) => localStorage.setItem(`lizard ${location.pathname} gait`, stored), stored);
+    await page.reload();
+    await page.waitForFunction(() => window.lizard);
+    await unfold(page, '#gait-editor');
+    await predicted(page);
+    assert.match(await text(page, 'table'), /^\[gait\.mine\]/);
+  }
+});
+
 test('what would break a limit is refused, and a button has the nearest value that would do', async () => {
   const page = await opened();
   await page.locator('#gait-amplitude').fill('40');

@@ -204,15 +204,17 @@ test('a deadman that a page has left behind is not taken for the robot\'s own', 
   assert.match(await heard(opened), /stop\n[^]*deadman 0\n(status\n)*$/);
 });
 
-test('an HC-05, which the system knows as a serial port, is driven as a radio', async () => {
+test('an HC-05 at 9600 baud, which the system knows as a serial port, is driven as a radio', async () => {
   const opened = await page({}, fakeSerial);
   const serialProfile = '00001101-0000-1000-8000-00805f9b34fb';
-  await opened.evaluate((profile) => Object.assign(window, { awake: true, profile }), serialProfile);
+  await opened.evaluate((profile) => Object.assign(window, { awake: true, baud: 9600, profile }), serialProfile);
   await opened.locator('#connect').click();
   await opened.waitForFunction(() => window.otherBoard);
   await until(opened, 'it is found', async () => (await text(opened, '#where')).startsWith('on a board on Bluetooth that has not restarted'));
   assert.deepEqual(await opened.evaluate(() => window.wanted.allowedBluetoothServiceClassIds), [serialProfile]);
-  assert.match(await heard(opened), /^status\nwatch 10\n/, 'it is not waited for a reset');
+  assert.match(await heard(opened), /^(status\n)+watch 10\n/, 'it is not waited for a reset');
+  const rate = await opened.evaluate(() => window.otherBoard.uno.usart.baudRate);
+  assert.ok(Math.abs(rate / 9600 - 1) < 0.03, `the chip has found the rate: ${rate} baud`);
   assert.ok(await opened.locator('#flash-write').isDisabled());
   await opened.locator('#gaits button[data-command="walk"]').click();
   await until(opened, 'it walks', async () => (await text(opened, '#doing')) === 'walk');

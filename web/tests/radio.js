@@ -1,7 +1,7 @@
 // A Bluetooth module near the browser, by Chromium's own emulation, with a simulated UNO at its serial line. What
 // the page writes comes out of the emulation; what the robot says is given to the page as the event that a
 // notification is, since the emulation has none.
-import { devTools, page, within } from './browser.js';
+import { devTools, forbidden, page, within } from './browser.js';
 
 const uuid = (short) => `0000${short}-0000-1000-8000-00805f9b34fb`;
 export const HM10 = { name: 'HMSoft', service: uuid('ffe0'), to: 'ffe1', characteristics: { [uuid('ffe1')]: ['notify', 'writeWithoutResponse'] } };
@@ -48,10 +48,14 @@ function inPage() {
     const out = [];
     board.onByte = (byte) => out.push(byte);
     window.moved = 0;
+    window.boardMs = () => board.cycle / 16_000;
     const widths = {};
     const pins = window.lizard.description.servos.map(({ pin }) => pin);
     board.onPulse = (pin, rise, width) => {
-      if (pins.includes(pin) && Math.abs(widths[pin] - width) > 16) window.moved = performance.now();
+      if (pins.includes(pin) && Math.abs(widths[pin] - width) > 16) {
+        window.moved = performance.now();
+        window.movedAt = window.boardMs();
+      }
       widths[pin] = width;
     };
     window.heard = '';
@@ -74,9 +78,9 @@ export class Radio {
     Object.assign(this, { opened, root, prompts, module });
   }
 
-  /** The page with such a module near by; `adapter` is the state of the browser's own radio. */
-  static async near(module, { adapter = 'powered-on', robot = true } = {}) {
-    const opened = await page({}, inPage);
+  /** The page with such a module near by; `adapter` is the state of the browser's own radio, and `allowed` if it may use that. */
+  static async near(module, { adapter = 'powered-on', robot = true, allowed = true } = {}) {
+    const opened = allowed ? await page({}, inPage) : await forbidden('bluetooth', inPage);
     const root = await devTools();
     await root.send('BluetoothEmulation.enable', { state: adapter, leSupported: true });
     const radio = new Radio(opened, root, await opened.context().newCDPSession(opened), module);
@@ -151,6 +155,13 @@ export class Radio {
     const { id, devices } = await within('the browser to ask', prompted);
     if (isPicked) await this.prompts.send('DeviceAccess.selectPrompt', { id, deviceId: devices[0].id });
     else await this.prompts.send('DeviceAccess.cancelPrompt', { id });
+  }
+
+  /** A phone that sleeps: none of the page's timers runs, while the robot goes on. */
+  async sleep(ms) {
+    await this.opened.evaluate((ms) => {
+      for (let left = ms; left > 0; left -= 2) window.otherBoard.run(16_000 * 2);
+    }, ms);
   }
 
   /** Takes the module out of reach. */

@@ -8,7 +8,7 @@ import { after, afterEach, before, test } from 'node:test';
 import jsQR from 'jsqr';
 import { parse } from 'smol-toml';
 
-import { address, close, complaints, open, page as load, standing, tidy, unfold } from './browser.js';
+import { address, close, complaints, open, page as load, standing, tidy, unfold, until } from './browser.js';
 
 const LARGE = new URL('../../robots/large.toml', import.meta.url).pathname;
 let folder;
@@ -237,6 +237,40 @@ test('a link and the list of robots put the own robot aside, and a button brings
   await back.click();
   await takes(page, own);
   assert.equal(await page.locator('#robot-own').isHidden(), true, 'none is left');
+});
+
+test('own robots stand in the list by their names, and each comes back as it was', async () => {
+  const page = await opened();
+  const first = await toml(page);
+  const own = (name) => first.replace('name = "paper"', `name = "${name}"`);
+  const list = page.locator('#robot');
+  const names = () => page.locator('#robot optgroup[label="your own"] option').allInnerTexts();
+  for (const name of ['anna', 'bert']) {
+    await list.selectOption('large');
+    await page.waitForFunction(() => window.lizard.file === 'large');
+    await list.selectOption('robot');
+    await page.waitForFunction(() => window.lizard.file === 'robot');
+    await box(page).fill(own(name));
+    await page.locator('#robot-take').click();
+    await takes(page, own(name));
+  }
+  assert.deepEqual(await names(), ['anna']);
+  await list.selectOption({ label: 'anna' });
+  await takes(page, own('anna'));
+  // The address follows a little later, and wins over what is stored.
+  await until(page, async (wanted) => {
+    const part = new URLSearchParams(location.hash.slice(1)).get('robot') ?? '';
+    const bytes = Uint8Array.from(atob(part.replaceAll('-', '+').replaceAll('_', '/')), (letter) => letter.charCodeAt(0));
+    const text = new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate-raw'))).text();
+    return (await text.catch(() => '')) === wanted;
+  }, own('anna'));
+  assert.deepEqual(await names(), ['bert'], 'what was shown is put aside');
+  await page.reload();
+  await takes(page, own('anna'));
+  assert.deepEqual(await names(), ['bert']);
+  await list.selectOption({ label: 'bert' });
+  await takes(page, own('bert'));
+  assert.deepEqual(await names(), ['anna']);
 });
 
 test('nothing was complained of', () => assert.deepEqual(complaints, []));

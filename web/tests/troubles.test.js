@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { address, advance, blank, close, complaints, open, page, standing, tidy, type, unfold } from './browser.js';
+import { address, advance, blank, close, complaints, forbidden, open, page, standing, tidy, type, unfold } from './browser.js';
 import { fakeSerial } from './fake-serial.js';
 
 before(open);
@@ -80,15 +80,10 @@ test('a person who picks no port is not told of a trouble', async () => {
 });
 
 test('a browser that may not use ports says why, and the simulation goes on', async () => {
-  const opened = await page({}, fakeSerial);
-  const why = 'Access to the feature "serial" is disallowed by permissions policy.';
-  await opened.evaluate((why) => {
-    window.pick = () => {
-      throw new DOMException(why, 'SecurityError');
-    };
-  }, why);
+  const opened = await forbidden('serial');
   await opened.locator('#connect').click();
-  await trouble(opened).getByText(`No board is connected: ${why}`).waitFor();
+  await trouble(opened).getByText('Access to the feature "serial" is disallowed by permissions policy.').waitFor();
+  assert.match(await trouble(opened).innerText(), /^No board is connected: /);
   assert.match(await text(opened, '#where'), /simulated UNO/);
 });
 

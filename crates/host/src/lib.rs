@@ -28,4 +28,4 @@ pub use paper::errata;
 #[cfg(any(feature = "simulator", feature = "console"))]
 pub use shared::firmware;
 #[cfg(feature = "simulator")]
-pub use simulate::{bench, board, sim, twin};
+pub use simulate::{bench, board, patrol, sim, twin};

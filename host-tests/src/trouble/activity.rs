@@ -21,13 +21,15 @@ pub enum Activity {
     Starting,
     /// It answers a question.
     Talking,
+    /// It goes through its routine, and its contacts close and open.
+    Patrolling,
     /// A person drives it by radio.
     Driving,
 }
 
 impl Activity {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Resting,
         Self::Waking,
         Self::Holding,
@@ -36,13 +38,14 @@ impl Activity {
         Self::Saving,
         Self::Starting,
         Self::Talking,
+        Self::Patrolling,
         Self::Driving,
     ];
 
-    /// The activity of a scenario by its number: one in three is a drive.
+    /// The activity of a scenario by its number: four in thirteen are drives.
     #[must_use]
     pub fn of(number: u64) -> Self {
-        let place = (number % 12) as usize;
+        let place = (number % 13) as usize;
         Self::ALL.get(place).copied().unwrap_or(Self::Driving)
     }
 }

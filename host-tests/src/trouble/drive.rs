@@ -4,6 +4,7 @@
 use std::time::{Duration, Instant};
 
 use fastrand::Rng;
+use lizard_host::patrol::PATROL;
 use lizard_host::session::Session;
 use lizard_host::sim::tour;
 use lizard_robot::Robot;
@@ -133,7 +134,8 @@ impl<'a> Drive<'a> {
             4 => setup::trim(&mut self.random),
             5 | 6 => "stand".to_owned(),
             7 => "rest".to_owned(),
-            8..12 => format!("{gait} {}", self.random.u8(1..40)),
+            8 | 9 => PATROL.to_owned(),
+            10..14 => format!("{gait} {}", self.random.u8(1..40)),
             _ => gait,
         }
     }

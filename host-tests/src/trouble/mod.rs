@@ -2,7 +2,8 @@
 //!
 //! Tests of single features miss faults where two features interact. So main stalls for 1
 //! to 300 ms at random cycles of everything that the robot does; resets, power cuts and
-//! dips of the supply come between. In one scenario of three a person drives by radio meanwhile. Only what can be seen from outside is judged: pulses,
+//! dips of the supply come between. Its robot has a routine and inputs, which are pressed. In four
+//! of thirteen scenarios a person drives by radio meanwhile. Only what can be seen from outside is judged: pulses,
 //! lines, the LED, writes to the EEPROM. A scenario follows from its seed and
 //! number alone, so one that fails can be played again.
 

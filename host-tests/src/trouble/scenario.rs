@@ -1,10 +1,13 @@
 //! Random scenarios: an activity, trouble that begins at a random cycle of it, and questions and
 //! orders afterwards.
 
+mod troubles;
+
 use std::fmt;
 
 use fastrand::Rng;
 use lizard_core::numbers::rate::Rate;
+use lizard_host::patrol::PATROL;
 use lizard_host::sim::tour;
 use lizard_robot::Robot;
 use simulated_uno::{Air, CYCLES_PER_MS};
@@ -172,6 +175,7 @@ impl<'a> Script<'a> {
             Activity::Saving => self.start_saving(),
             Activity::Starting => self.start_program(at_power_on),
             Activity::Talking => self.start_talking(),
+            Activity::Patrolling => self.start_patrol(),
             Activity::Driving => self.start_drive(),
         }
     }
@@ -236,6 +240,38 @@ impl<'a> Script<'a> {
         self.wait_up_to(120);
     }
 
+    /// Starts the routine, and often presses the button that it waits for; then others.
+    fn start_patrol(&mut self) {
+        self.say(PATROL);
+        if self.rng.u8(0..4) > 0 {
+            self.wait(150);
+            for is_closed in [true, false] {
+                let button = self.robot.inputs().button;
+                self.steps
+                    .extend(button.map(|pin| Step::Contact(pin, is_closed)));
+                self.wait(100);
+            }
+        }
+        for _ in 0..self.rng.u8(0..5) {
+            self.wait_up_to(1_500);
+            self.press();
+        }
+        self.wait_up_to(2_000);
+    }
+
+    /// Presses an input for a random time, which may be too short to count or last to the end.
+    fn press(&mut self) {
+        let inputs: Vec<(&str, u8)> = self.robot.inputs().each().collect();
+        let Some((_, pin)) = self.rng.choice(&inputs).copied() else {
+            return;
+        };
+        self.steps.push(Step::Contact(pin, true));
+        self.wait_up_to(200);
+        if self.rng.u8(0..8) > 0 {
+            self.steps.push(Step::Contact(pin, false));
+        }
+    }
+
     /// Has a person drive by radio, perhaps after noise at a module without a phone.
     fn start_drive(&mut self) {
         if self.rng.u8(0..4) == 0 {
@@ -260,10 +296,14 @@ impl<'a> Script<'a> {
             self.wait_up_to(3_000);
             let gait = self.gait();
             let lines = [
-                "status", "help", "cal", "speed 70", "nonsense", "stop", &gait,
+                "status", "help", "cal", "speed 70", "nonsense", "stop", &gait, PATROL,
             ];
             let line = *self.rng.choice(&lines).unwrap_or(&"status");
             self.send(line);
+            if self.rng.u8(0..3) == 0 {
+                self.wait_up_to(300);
+                self.press();
+            }
         }
     }
 
@@ -288,142 +328,6 @@ impl<'a> Script<'a> {
         self.steps.push(Step::Wait(cycles));
         self.steps.push(Step::Reset);
         self.wait(600);
-    }
-
-    /// Adds a trouble of a random kind, until it is over.
-    fn add_trouble(&mut self, activity: Activity) {
-        match self.rng.u8(0..100) {
-            0..50 => self.add_stall(),
-            50..54 => {
-                self.add_stall();
-                self.wait_up_to(60);
-                self.add_stall();
-            }
-            54..64 => self.steps.push(Step::Reset),
-            64..72 => {
-                self.steps.push(Step::Reset);
-                self.wait_up_to(5);
-                self.steps.push(Step::Reset);
-            }
-            72..80 => self.add_dip(),
-            80..84 => self.add_sag(),
-            84 | 85 => self.add_low_supply(),
-            86..92 => self.add_stall_with_trouble(),
-            92 => self.add_adjustment(),
-            93 => {
-                let cycles = self.rng.u64(100..20_000);
-                self.steps.push(Step::Hold(cycles));
-                self.wait(40);
-            }
-            94 => self.steps.push(Step::PowerCycle),
-            95 => self.add_two_faults(),
-            _ => self.add_weak_supply(activity),
-        }
-    }
-
-    /// Stalls main for 1 to 300 ms, and waits: a hang may end 250 ms after it began.
-    fn add_stall(&mut self) {
-        let cycles = self.rng.u64(MS..300 * MS);
-        self.steps.push(Step::Stall(cycles));
-        self.steps.push(Step::Wait(cycles));
-    }
-
-    /// Lowers the supply for a while, perhaps below the minimum of the chip, or of its RAM.
-    fn add_dip(&mut self) {
-        let mv = match self.rng.u8(0..8) {
-            0 => self.rng.u16(500..1_250),
-            1..4 => self.rng.u16(1_900..2_650),
-            _ => self.rng.u16(2_800..4_600),
-        };
-        let ms = *self.rng.choice(&[5, 60, 400]).unwrap_or(&5);
-        self.steps.push(Step::Supply(mv));
-        self.wait_up_to(ms);
-        self.steps.push(Step::Supply(5_000));
-    }
-
-    /// The supply's levels for writing, moving and pulses, mV.
-    fn levels(&self) -> [u16; 3] {
-        let board = self.robot.supplies().board;
-        board.map(|volts| (1_000.0 * volts) as u16)
-    }
-
-    /// Lowers the supply, and for a moment even more.
-    fn add_sag(&mut self) {
-        let [slow, stop, rest] = self.levels();
-        let first = self.rng.u16(stop - 50..slow + 50);
-        let second = self.rng.u16(rest - 400..stop);
-        self.steps.push(Step::Supply(first));
-        // Often a reading or two before the first level would count.
-        self.wait(50);
-        self.wait_up_to(100);
-        self.steps.push(Step::Supply(second));
-        self.wait_up_to(60);
-        self.steps.push(Step::Supply(5_000));
-    }
-
-    /// Lowers the supply for long to a level that allows moving and not writing, and orders both.
-    fn add_low_supply(&mut self) {
-        let [slow, stop, _] = self.levels();
-        let mv = self.rng.u16(stop + 50..slow - 50);
-        self.steps.push(Step::Supply(mv));
-        self.wait(250);
-        for line in ["rest", "stand", "save"] {
-            self.wait_up_to(200);
-            self.say(line);
-        }
-        self.wait(100);
-        self.steps.push(Step::Supply(5_000));
-    }
-
-    /// Adds another trouble while main is stalled.
-    fn add_stall_with_trouble(&mut self) {
-        let ms = self.rng.u64(20..300);
-        self.steps.push(Step::Stall(ms * MS));
-        self.wait_up_to(ms);
-        match self.rng.u8(0..3) {
-            0 => self.steps.push(Step::Reset),
-            1 => self.add_dip(),
-            _ => self.add_sag(),
-        }
-        self.wait(ms);
-    }
-
-    /// Changes settings while the robot moves.
-    fn add_adjustment(&mut self) {
-        let gait = self.gait();
-        self.send(gait);
-        for _ in 0..6 {
-            self.wait_up_to(700);
-            let line = setup::adjustment(self.rng);
-            self.send(line);
-        }
-        self.wait(700);
-    }
-
-    /// Adds a hang, and then a supply that is low for long.
-    fn add_two_faults(&mut self) {
-        self.steps.push(Step::Stall(300 * MS));
-        self.wait(300);
-        self.wait_up_to(2_000);
-        let mv = self.levels()[1] - 100;
-        self.steps.push(Step::Supply(mv));
-        self.wait(5_000);
-        self.say("status");
-        self.steps.push(Step::Supply(5_000));
-    }
-
-    /// Adds a supply that three servos pull down, for so long that a robot which never gives up
-    /// shows it. The servos wake by an order, a start, or both.
-    fn add_weak_supply(&mut self, activity: Activity) {
-        self.steps.push(Step::Weak(true));
-        match activity {
-            Activity::Resting => self.send("stand"),
-            Activity::Waking | Activity::Starting => {}
-            _ => self.steps.push(Step::Reset),
-        }
-        self.wait(6_000);
-        self.say("status");
-        self.steps.push(Step::Weak(false));
     }
 
     /// Waits, asks for the status, orders, and asks again.

@@ -2,6 +2,7 @@
 //! deadman, a travel.
 
 use fastrand::Rng;
+use lizard_host::patrol::PATROL;
 use lizard_robot::Robot;
 use simulated_uno::CYCLES_PER_MS;
 
@@ -66,7 +67,10 @@ pub fn settings(rng: &mut Rng, robot: &Robot) -> Vec<Step> {
         2 => vec![say(format!("dir {} -", rng.u8(1..=4))), wait(150)],
         // Saved settings.
         3 => vec![say(trim(rng)), wait(150), say("save")],
-        4 => vec![say("boot walk"), say("save")],
+        4 => {
+            let boot = if rng.bool() { "walk" } else { PATROL };
+            vec![say(format!("boot {boot}")), say("save")]
+        }
         5 => vec![say("boot rest"), say("save")],
         6 => vec![say(format!("deadman {}", rng.u16(100..2_000)))],
         // A narrower travel is saved than the one in use.

@@ -120,6 +120,7 @@ impl Stage<'_> {
                     drive.leave(now);
                 }
             }
+            Step::Contact(pin, is_closed) => self.uno.set_contact(Pin::arduino(*pin), *is_closed),
             Step::Find => self.find(),
             Step::Noise(cycles) => self.add_noise(*cycles),
             Step::Weak(on) => {

@@ -32,6 +32,8 @@ pub enum Step {
     Drive(Air),
     /// That person goes away with the phone.
     Leave,
+    /// Closes the contact at this pin, by its Arduino number, if true; opens it if false.
+    Contact(u8, bool),
     /// Asks for the status until the robot, whose serial line may have another rate, answers.
     Find,
     /// Puts noise on the serial line for this many cycles.
@@ -59,6 +61,8 @@ impl fmt::Display for Step {
                 air.holds,
                 if air.says { ", and says so" } else { "" }
             ),
+            Self::Contact(pin, true) => write!(f, "the contact at pin {pin} closes"),
+            Self::Contact(pin, false) => write!(f, "the contact at pin {pin} opens"),
             Self::Find => write!(f, "ask for the status until there is an answer"),
             Self::Leave => write!(f, "the person goes away"),
             Self::Noise(cycles) => write!(f, "noise on the serial line for {}", Time(*cycles)),

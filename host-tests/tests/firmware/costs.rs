@@ -2,14 +2,15 @@
 //! cycles or bytes.
 
 use lizard_host::bench::{Figures, rows};
-use lizard_host_tests::{FRAME, FirmwareBench, robot};
+use lizard_host_tests::{FRAME, FirmwareBench, patrolling, robot};
 use simulated_uno::Fidelity;
 
 use crate::{SECOND, first_moving_gait, robot_after};
 
 #[test]
 fn every_budget_is_met() {
-    let figures = Figures::measure(&FirmwareBench::elf(), robot(), |_| {}).expect("it runs");
+    let figures = Figures::measure(&FirmwareBench::elf(), robot(), Some(patrolling()), |_| {});
+    let figures = figures.expect("it runs");
     let mut missed = Vec::new();
     for row in rows(&figures).iter().filter(|row| !row.wall_clock) {
         println!(
@@ -24,6 +25,7 @@ fn every_budget_is_met() {
     // A measurement that found nothing would meet most budgets.
     assert!(figures.serial_interrupt > 50 && figures.tick_latency > figures.tick_worst);
     assert!(figures.servo_interrupts > 1000.0);
+    assert!(figures.routine_mean.is_some_and(|mean| mean > 1_000.0));
     // No run gets deeper than the code allows, and the worst is not far away.
     let unseen = i32::from(figures.stack_spare) - figures.stack_margin;
     println!("{unseen} bytes of stack that no run has used");

@@ -46,6 +46,7 @@ fn script_of_all_lines(apart: u64) -> Script {
     Script {
         steps,
         end_ms: 600_000,
+        ..Script::default()
     }
 }
 

@@ -6,6 +6,8 @@ use lizard_core::console::word::Word;
 use lizard_core::memory::restart::Cause;
 use lizard_core::numbers::rate::Rate;
 
+use crate::small::{BUTTON, NOSE};
+
 /// An event that the search applies to the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
@@ -34,8 +36,8 @@ pub enum Action {
     Reset(Cause),
     /// Power is lost and comes back; a byte that was being written has this value.
     LosePower(Option<u8>),
-    /// If true, every contact closes; if false, every contact opens.
-    Contacts(bool),
+    /// If true, the contact at this pin closes; if false, it opens.
+    Contact(u8, bool),
     /// If true, nobody reads the robot's output from now on; if false, somebody reads it again.
     StopReading(bool),
 }
@@ -92,7 +94,7 @@ impl Action {
         };
         let others = Word::ALL.iter().filter(|word| !is_tried(word));
         all.extend(LINES.map(Self::Say));
-        all.extend([Rate::Fastest, Rate::Slowest].map(Self::SendAt));
+        all.extend(Rate::ALL.map(Self::SendAt));
         all.extend(others.map(|word| Self::Say(word.example())));
         // The last hand-over was 16 ms ago. With these lengths main is late for
         // nothing, for one hand-over, for three, for five; or the watchdog interrupts
@@ -103,7 +105,8 @@ impl Action {
         all.extend([Self::Late, Self::Stack]);
         all.extend([Cause::External, Cause::BrownOut].map(Self::Reset));
         all.extend([None, Some(0x00), Some(0x5a), Some(0xff)].map(Self::LosePower));
-        all.extend([Self::Contacts(true), Self::Contacts(false)]);
+        all.extend([BUTTON, NOSE].map(|pin| Self::Contact(pin, true)));
+        all.extend([BUTTON, NOSE].map(|pin| Self::Contact(pin, false)));
         all.extend([Self::StopReading(true), Self::StopReading(false)]);
         all
     }
@@ -129,8 +132,14 @@ impl fmt::Display for Action {
             Self::LosePower(Some(byte)) => {
                 write!(f, "power is lost in a write, the byte is {byte:#04x}")
             }
-            Self::Contacts(true) => f.write_str("every contact closes"),
-            Self::Contacts(false) => f.write_str("every contact opens"),
+            Self::Contact(pin, closed) => {
+                let contact = if *pin == BUTTON { "button" } else { "nose" };
+                write!(
+                    f,
+                    "the {contact} {}",
+                    if *closed { "closes" } else { "opens" }
+                )
+            }
             Self::StopReading(true) => f.write_str("nobody listens any more"),
             Self::StopReading(false) => f.write_str("somebody listens again"),
         }

@@ -16,6 +16,11 @@ const PER_FRAME: u16 = 364;
 /// The travel that every gait stays within.
 const NEED: i16 = 1_000;
 
+/// Arduino numbers of the contacts' pins, A1 and A2.
+pub const BUTTON: u8 = 15;
+/// See [`BUTTON`].
+pub const NOSE: u8 = 16;
+
 /// The paper's robot with `stand`, `walk`, `trot` and `stray`, which leaves safe ground, and
 /// two routines without an end: `round` walks and stands, `patrol` waits for a button, walks up to a
 /// wall, and turns away.
@@ -68,7 +73,7 @@ pub fn small() -> Robot<'static> {
         "round",
         &[(Step::CYCLES, walk, 1), (Step::FRAMES, 0, 10)],
     );
-    let (button, nose) = (Input::button(15).byte(), Input::nose(16).byte());
+    let (button, nose) = (Input::button(BUTTON).byte(), Input::nose(NOSE).byte());
     let patrol = [
         (Step::UNTIL, button, 0),
         (Step::WAIT, 0, Step::ENDLESS),

@@ -16,6 +16,7 @@ use lizard_rules::{BrokenRule, Event, MS, Observer, Rule, Time, led};
 
 use crate::action::Action;
 use crate::fingerprint::{self, Print};
+use crate::small::{BUTTON, NOSE};
 
 /// The verdict of the rules.
 pub type Verdict = Result<(), BrokenRule>;
@@ -107,7 +108,8 @@ impl World {
             board.restart().before.is_some(),
             board.unread() > 0,
             board.is_fresh(),
-            board.closed != 0,
+            board.closed & 1 << BUTTON != 0,
+            board.closed & 1 << NOSE != 0,
             self.is_weak,
             self.is_late,
             self.known > 0,
@@ -137,7 +139,7 @@ impl World {
             Action::Weak(weak) => weak != self.is_weak,
             Action::Late => board.late < 3,
             Action::Stack => board.stack_is_intact,
-            Action::Contacts(closed) => closed != (board.closed != 0),
+            Action::Contact(pin, closed) => closed != (board.closed & 1 << pin != 0),
             Action::StopReading(deaf) => deaf != board.transmitter.held,
         }
     }
@@ -186,7 +188,7 @@ impl World {
                 self.running.lose_power(torn);
                 self.note_restart(Cause::Power);
             }
-            Action::Contacts(closed) => self.contacts(closed)?,
+            Action::Contact(pin, closed) => self.contact(pin, closed)?,
             Action::StopReading(deaf) => self.running.board.transmitter.held = deaf,
         }
         let robot_rests = self.running.motion().is_resting();

@@ -80,7 +80,8 @@ export class BluetoothLink implements Link {
   static async open(): Promise<BluetoothLink | null> {
     const radio = bluetooth();
     if (!radio) throw new Error(noBluetooth() ?? '');
-    if (!(await radio.getAvailability())) throw new Error('This machine has no Bluetooth, or it is switched off.');
+    // A page that may not use it is told that there is none.
+    const isThere = await radio.getAvailability();
     const filters = [...LINES.map(({ service }) => ({ services: [service] })), ...NAMES.map((namePrefix) => ({ namePrefix }))];
     let device: Device;
     try {
@@ -89,6 +90,7 @@ export class BluetoothLink implements Link {
       // The error of a chooser closed without a choice. Without the system's permission a browser gives the same
       // error with another message.
       const isChoice = error instanceof DOMException && error.name === 'NotFoundError';
+      if (isChoice && !isThere) throw new Error('This machine has no Bluetooth, or it is switched off.');
       if (isChoice && !/permission|denied/i.test(error.message)) return null;
       throw new Error(`The browser may not use Bluetooth: allow it in its settings, and in those of the system. It says: ${String(error)}`);
     }

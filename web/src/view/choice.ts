@@ -4,6 +4,7 @@ import { element } from './canvas';
 
 export class Choice {
   private readonly list = element<HTMLSelectElement>('robot');
+  private readonly own = document.createElement('optgroup');
 
   private constructor(
     private readonly robots: string[],
@@ -17,6 +18,20 @@ export class Choice {
       else this.list.add(option);
     });
     if (tests.childElementCount > 0) this.list.append(tests);
+    this.own.label = 'your own';
+  }
+
+  /** Lists the names of the user's own robots. */
+  showOwn(names: string[]): void {
+    this.own.replaceChildren(...names.map((name) => new Option(name, '')));
+    if (names.length > 0) this.list.prepend(this.own);
+    else this.own.remove();
+  }
+
+  /** The number of the chosen robot among the user's own ones; null for a file. */
+  get chosenOwn(): number | null {
+    const number = [...this.own.children].indexOf(this.list.selectedOptions[0]);
+    return number < 0 ? null : number;
   }
 
   /** Lists the robots beside the page. Throws a sentence if they are missing. */

@@ -1,4 +1,5 @@
 // The gait editor: the circle is the cycle, and each leg is a bar on it.
+import { kept } from '../kept';
 import type { Bars, Description, Four } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
@@ -45,7 +46,7 @@ export class GaitsView {
   private readonly ends: SVGCircleElement[] = [];
   private readonly trial: TrialView;
   private readonly faster: FasterView;
-  private gait: Bars | null = null;
+  private gait: Bars | null = kept.gait();
   private toml = '';
 
   constructor(
@@ -76,8 +77,9 @@ export class GaitsView {
     if (toml === this.toml) return;
     this.toml = toml;
     this.fill(description);
-    if (this.gait && this.from.value !== '') this.trial.predict();
-    else this.choose();
+    if (!this.gait || this.from.value === '') return this.choose();
+    this.show();
+    this.trial.predict();
   }
 
   private fill({ gaits }: Description): void {
@@ -100,6 +102,7 @@ export class GaitsView {
   private change(part: Partial<Bars>): void {
     if (!this.gait) return;
     this.gait = { ...this.gait, ...part };
+    kept.putGait(this.gait);
     this.show();
     this.trial.predict();
   }

@@ -6,37 +6,50 @@ import type { Troubles } from './troubles';
 
 const BACK = 'Back to my own robot';
 
+/** The name in a robot.toml. */
+const nameIn = (toml: string) => /^name\s*=\s*["'](.+?)["']/m.exec(toml)?.[1] ?? 'robot';
+
 export class OwnRobot {
   private readonly button = element<HTMLButtonElement>('robot-own');
 
-  /** `choose` loads a robot of the list by its file name. */
+  /** `choose` loads a robot of the list by its file name; `list` shows the names of the robots that are put aside. */
   constructor(
     private readonly session: () => Session,
     private readonly troubles: Troubles,
     private readonly choose: (file: string) => Promise<void>,
+    private readonly list: (names: string[]) => void,
   ) {
     this.button.addEventListener('click', () => void this.restore());
     this.button.textContent = BACK;
-    this.button.hidden = kept.aside().length === 0;
+    this.setAside(kept.aside());
   }
 
   /** Puts the changed robot of before aside, if another one has replaced it, and offers it. */
   replaced(before: SavedChanges | null): void {
     if (!before || before.toml === before.original || before.toml === this.session().toml) return;
-    kept.setAside([before, ...kept.aside().filter(({ toml }) => toml !== before.toml)]);
-    this.button.hidden = false;
-    this.troubles.say('own', 'This is another robot. Your own one is put aside, and stays in Build, at robot.toml.', { label: BACK, act: () => void this.restore() });
+    this.setAside([before, ...kept.aside().filter(({ toml }) => toml !== before.toml)]);
+    this.troubles.say('own', 'This is another robot. Your own one is put aside, and stays in the list of robots.', { label: BACK, act: () => void this.restore() });
   }
 
-  private async restore(): Promise<void> {
-    const [own, ...others] = kept.aside();
+  /** Makes a robot that was put aside the page's, and puts the one of before aside. */
+  async restore(number = 0): Promise<void> {
+    const all = kept.aside();
+    const own = all[number];
     this.troubles.say('own', null);
     if (!own) return;
+    const before = kept.get();
     await this.choose(own.file);
     const session = this.session();
     // Its file may be another one by now.
     if (!(await session.recall(own)) && (await session.change(own.toml))) return;
-    kept.setAside(others);
-    this.button.hidden = others.length === 0;
+    this.setAside(all.filter((_, n) => n !== number));
+    this.replaced(before);
+  }
+
+  private setAside(robots: SavedChanges[]): void {
+    kept.setAside(robots);
+    const now = kept.aside();
+    this.button.hidden = now.length === 0;
+    this.list(now.map(({ toml }) => nameIn(toml)));
   }
 }

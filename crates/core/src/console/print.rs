@@ -149,7 +149,7 @@ fn margin(out: &mut impl Output, motion: &Motion) {
 }
 
 /// Prints ` late=0 rx_lost=0 guard=clear fault=none reset=power resets=0 vcc=5.02 rail=5.91`;
-/// the rail only if it is measured.
+/// no voltage before the first reading, and the rail only where it is measured.
 #[inline(never)]
 fn health(out: &mut impl Output, control: &Control, counters: Counters) {
     digits::count(out, Text::StatusLate, counters.late.into());
@@ -169,12 +169,12 @@ fn health(out: &mut impl Output, control: &Control, counters: Counters) {
     cause_word(control.cause()).print(out);
     digits::count(out, Text::StatusResets, control.resets().into());
     let robot = control.motion().robot();
+    let reading = control.safety().supply().reading();
     // Only a robot says by which reference a voltage is to be computed.
-    if robot.is_none() {
+    if robot.is_none() || reading.reference == 0 {
         return;
     }
     let supplies = robot.supplies();
-    let reading = control.safety().supply().reading();
     let board = Voltage::of_board(reading, &supplies);
     digits::field(out, Text::StatusVcc, board.hundredths());
     if supplies.rail_reference != 0 {

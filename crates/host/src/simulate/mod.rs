@@ -5,5 +5,6 @@ pub mod bench;
 pub mod board;
 #[cfg(feature = "parts")]
 pub mod mjcf;
+pub mod patrol;
 pub mod sim;
 pub mod twin;

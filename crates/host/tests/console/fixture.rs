@@ -55,9 +55,18 @@ pub struct Uno {
 
 impl Uno {
     pub fn at(folder: &Path) -> Self {
+        Self::with(folder, &[])
+    }
+
+    /// A board behind a radio module, which loses a packet now and then.
+    pub fn by_radio(folder: &Path) -> Self {
+        Self::with(folder, &["--radio", "115200"])
+    }
+
+    fn with(folder: &Path, options: &[&str]) -> Self {
         let link = folder.join("uno");
         let name = link.display().to_string();
-        let child = lizard(folder, &["sim", "--pty", &name])
+        let child = lizard(folder, &[&["sim", "--pty", &name], options].concat())
             .stdout(Stdio::null())
             .spawn()
             .expect("the program starts");

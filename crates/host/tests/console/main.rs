@@ -302,6 +302,38 @@ fn wrong_input_is_a_sentence_and_starts_nothing() {
 }
 
 #[test]
+fn a_script_by_radio_drives_with_deadman_and_its_end_stops_the_robot() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let uno = Uno::by_radio(folder.path());
+    // What the air loses is said once more.
+    let say = |lines: &str, expected: &[&str]| {
+        let mut text = String::new();
+        LIMIT.expect("the script to be heard", || {
+            // Nobody is heard for longer than deadman says.
+            std::thread::sleep(std::time::Duration::from_millis(1_500));
+            text = run(folder.path(), &["console", &uno.port()], lines).0;
+            expected.iter().all(|words| text.contains(words))
+        });
+        text
+    };
+    say(
+        "stand\nwalk\ncal\n",
+        &[
+            "not reset",
+            "ok walk",
+            "# deadman 0",
+            "(the robot stops by itself now",
+        ],
+    );
+    say("status\n", &["ok gait=stop", "fault=link"]);
+    let stopped = say(
+        "walk\nstop\nstatus\n",
+        &["ok walk", "ok stop", "ok gait=stop"],
+    );
+    assert!(!stopped.contains("fault=link"), "{stopped}");
+}
+
+#[test]
 fn a_link_of_the_simulated_board_takes_no_other_links_place_and_goes_with_the_board() {
     let folder = tempfile::tempdir().expect("a folder");
     let (own, other) = (folder.path().join("uno"), folder.path().join("other"));

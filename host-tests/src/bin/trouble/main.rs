@@ -10,7 +10,7 @@ use std::thread;
 use std::time::Instant;
 
 use lizard_host_tests::trouble::{Scenario, campaign, events, judge};
-use lizard_host_tests::{FirmwareBench, robot};
+use lizard_host_tests::{FirmwareBench, patrolling};
 use lizard_rules::{Event, MS, Time};
 use simulated_uno::{FREQUENCY, Image};
 
@@ -26,7 +26,7 @@ fn number(name: &str) -> Option<u64> {
 }
 
 fn main() -> ExitCode {
-    let image = FirmwareBench::image();
+    let image = FirmwareBench::image_with(patrolling());
     let seed = number("SEED").unwrap_or(1);
     if let Some(only) = number("ONLY") {
         return play_scenario(&image, seed, only);
@@ -34,16 +34,23 @@ fn main() -> ExitCode {
     let count = number("COUNT").unwrap_or(10_000);
     let threads = thread::available_parallelism().map_or(1, |n| n.get());
     let begin = Instant::now();
-    let summary = campaign(&image, robot(), seed, count, threads, |done, failure| {
-        if let Some(failure) = failure {
-            let number = failure.scenario.number;
-            let (activity, broken) = (failure.scenario.activity, &failure.broken[0]);
-            println!("scenario {number} ({activity}): broken: {broken}");
-        } else if done.is_multiple_of(100) && std::io::stdout().is_terminal() {
-            print!("{done} of {count}\r");
-            _ = std::io::stdout().flush();
-        }
-    });
+    let summary = campaign(
+        &image,
+        patrolling(),
+        seed,
+        count,
+        threads,
+        |done, failure| {
+            if let Some(failure) = failure {
+                let number = failure.scenario.number;
+                let (activity, broken) = (failure.scenario.activity, &failure.broken[0]);
+                println!("scenario {number} ({activity}): broken: {broken}");
+            } else if done.is_multiple_of(100) && std::io::stdout().is_terminal() {
+                print!("{done} of {count}\r");
+                _ = std::io::stdout().flush();
+            }
+        },
+    );
     for failure in summary.failures.iter().take(PRINTED) {
         println!(
             "\n{failure}  alone: make trouble SEED={seed} ONLY={}",
@@ -63,9 +70,9 @@ fn main() -> ExitCode {
 
 /// Plays one scenario and prints its events.
 fn play_scenario(image: &Image, seed: u64, number: u64) -> ExitCode {
-    let scenario = Scenario::of(seed, number, robot());
+    let scenario = Scenario::of(seed, number, patrolling());
     print!("{scenario}");
-    let record = lizard_host_tests::trouble::play(image, robot(), &scenario);
+    let record = lizard_host_tests::trouble::play(image, patrolling(), &scenario);
     let mut last = [Time::MIN / 2; 4];
     for (at, event) in events(&record) {
         let is_reported = match event {
@@ -81,7 +88,7 @@ fn play_scenario(image: &Image, seed: u64, number: u64) -> ExitCode {
             println!("{:10.3} ms  {event:?}", at as f64 / MS as f64);
         }
     }
-    match judge(image, robot(), &scenario).1 {
+    match judge(image, patrolling(), &scenario).1 {
         None => {
             println!("every rule holds");
             ExitCode::SUCCESS

@@ -135,11 +135,12 @@ impl World {
         Ok(())
     }
 
-    /// Closes or opens every contact. Unless a routine is under way, the robot goes on as if nothing
+    /// Closes or opens a contact. Unless a routine is under way, the robot goes on as if nothing
     /// had happened.
-    pub(super) fn contacts(&mut self, closed: bool) -> Verdict {
+    pub(super) fn contact(&mut self, pin: u8, closed: bool) -> Verdict {
         let mut without = self.running.clone();
-        self.running.board.closed = if closed { u32::MAX } else { 0 };
+        let others = self.running.board.closed & !(1 << pin);
+        self.running.board.closed = others | u32::from(closed) << pin;
         let robot = self.robot();
         let activity = self.running.main.control().activity();
         if matches!(activity, Activity::Gait(id) if robot.gait(id).is_routine()) {

@@ -37,14 +37,13 @@ pub(super) struct Deadman {
 }
 
 impl Deadman {
-    /// The steps before and after a line of the user; `walks` is true if the robot
-    /// walks.
-    pub(super) fn around(&mut self, line: &str, walks: bool) -> (&'static [Step], &'static [Step]) {
+    /// The steps before and after a line of the user.
+    pub(super) fn around(&mut self, line: &str) -> (&'static [Step], &'static [Step]) {
         let line = line.to_ascii_lowercase();
         let word = line.split_whitespace().next().unwrap_or_default();
         if matches!(word, "cal" | "save") && self.is_set {
-            let after = if walks { &[Step::Set][..] } else { &[] };
-            return (&[Step::Lend], after);
+            // The robot may have begun to walk since its last status.
+            return (&[Step::Lend], &[Step::Set]);
         }
         if word == "stand" || Word::find(word.as_bytes()).is_some() || self.is_set {
             return (&[], &[]);

@@ -138,12 +138,12 @@ impl Board {
     }
 }
 
-/// Asks for the status. A board that has just been reset reports 0 V until its converter has run,
-/// so it is asked again, for a second.
+/// Asks for the status. A robot that has just been reset says no voltage until its converter has
+/// run, so it is asked again, for a second.
 fn settled<P: Read + Write>(link: &mut Link<P>) -> Result<Status, LinkError> {
     for _ in 0..9 {
         let status = status(link)?;
-        if status.vcc != Some(0.0) {
+        if status.vcc.is_some() || status.pose.is_none() {
             return Ok(status);
         }
         link.pause(Duration::from_millis(100))?;

@@ -27,7 +27,8 @@ use crate::Failure;
 /// end the program. The line at the bottom shows gait, pose, smallest margin, supply and faults.
 /// For that the program asks the robot for its `status` twice a second, so `boot` does not
 /// act. While you drive, `deadman` is set: a robot out of reach stops by itself. If standard input is a file or a pipe, its lines are sent one
-/// after another, and the exit code is 1 if the robot refuses one.
+/// after another, and the exit code is 1 if the robot refuses one; by radio, the robot stops
+/// when they have ended.
 #[derive(clap::Args, Debug)]
 pub struct ConsoleArgs {
     /// A new file that records the session: commands, answers, the pose of every frame, and
@@ -74,6 +75,7 @@ fn dialogue(finder: &Finder, file: Option<PathBuf>) -> Result<(), Failure> {
         recorder.write(Instant::now(), event)?;
         dialogue.recorder = Some(recorder);
     }
+    let resets = banner.is_some();
     let first = banner.unwrap_or_else(|| "(the board was not reset and continues)".to_owned());
     if io::stdin().is_terminal() && io::stdout().is_terminal() {
         match dialogue.with_terminal(finder, board, &first) {
@@ -82,7 +84,7 @@ fn dialogue(finder: &Finder, file: Option<PathBuf>) -> Result<(), Failure> {
             ended => ended,
         }
     } else {
-        dialogue.with_script(board, &first)
+        dialogue.with_script(board, &first, resets)
     }
 }
 
@@ -130,18 +132,29 @@ impl Dialogue {
         }
     }
 
-    fn with_script(mut self, mut board: Connection, first: &str) -> Result<(), Failure> {
+    /// Sends the lines of standard input. A port that does not reset the board may be a radio's:
+    /// there `deadman` is set as for a person, and stays while the robot walks.
+    fn with_script(
+        mut self,
+        mut board: Connection,
+        first: &str,
+        resets: bool,
+    ) -> Result<(), Failure> {
         let mut out = io::stdout();
         writeln!(out, "{first}")?;
-        // A script needs only the answers, unless it is recorded.
-        self.session = Session::new(
-            Instant::now(),
-            self.recorder.is_some(),
-            self.recorder.is_some(),
-        );
+        if resets {
+            // A script needs only the answers, unless it is recorded.
+            let is_recorded = self.recorder.is_some();
+            self.session = Session::new(Instant::now(), is_recorded, is_recorded);
+        }
         let lines = lines_of_stdin();
         let mut ended = false;
-        while !(ended && self.session.is_idle()) {
+        let mut asks_last = !resets;
+        while !(ended && self.session.is_idle()) || asks_last {
+            if ended && self.session.is_idle() {
+                asks_last = false;
+                self.session.poll(Instant::now());
+            }
             while !ended {
                 match lines.try_recv() {
                     Ok(line) if line.trim().is_empty() => {}
@@ -152,6 +165,12 @@ impl Dialogue {
             }
             let shown = self.turn(&mut board, |line| writeln!(out, "{line}"));
             shown.map_err(|error| failure(error, &board))?;
+        }
+        if self.session.is_driven() {
+            writeln!(
+                out,
+                "(the robot stops by itself now, since nobody drives it any more)"
+            )?;
         }
         if let Some(recorder) = &mut self.recorder {
             recorder.flush()?;

@@ -148,9 +148,8 @@ impl Session {
         if line.split_whitespace().next() == Some("watch") {
             self.watches = false;
         }
-        let walks = self.status.as_ref().is_some_and(Status::walks);
         let (before, after) = match &mut self.deadman {
-            Some(deadman) => deadman.around(line, walks),
+            Some(deadman) => deadman.around(line),
             None => (&[][..], &[][..]),
         };
         self.queue
@@ -165,6 +164,17 @@ impl Session {
     pub fn last_line(&mut self) -> Option<String> {
         let deadman = self.deadman.as_mut().filter(|deadman| deadman.is_set)?;
         deadman.line(deadman::Step::Restore)
+    }
+
+    /// Asks for the status as soon as no other line waits.
+    pub fn poll(&mut self, now: Instant) {
+        self.next_poll = now;
+    }
+
+    /// True while `deadman` is set because the robot walks, or is about to.
+    #[must_use]
+    pub fn is_driven(&self) -> bool {
+        self.deadman.as_ref().is_some_and(|deadman| deadman.is_set)
     }
 
     /// Stops the robot. A line that waits would have it walk on, so it is dropped.
@@ -200,8 +210,12 @@ impl Session {
         } else if let Some((question, line)) = self.queued() {
             (question, line)
         } else if self.polls && now >= self.next_poll {
-            let drives = self.deadman.as_ref().is_some_and(|it| it.is_set);
-            self.next_poll = now + if drives { deadman::LINE } else { POLL };
+            let lines = if self.is_driven() {
+                deadman::LINE
+            } else {
+                POLL
+            };
+            self.next_poll = now + lines;
             (Question::Status, "status".to_owned())
         } else {
             return None;
@@ -231,7 +245,12 @@ impl Session {
     /// Drops what waits, since the robot has not confirmed its `deadman`: a gait would go on out of
     /// reach.
     fn unsure(&mut self) -> Option<String> {
-        self.queue.clear();
+        for queued in std::mem::take(&mut self.queue) {
+            if let Queued::Line(line) = queued {
+                self.sent += 1;
+                self.fail(line, "not sent");
+            }
+        }
         if let Some(deadman) = &mut self.deadman {
             deadman.is_set = false;
         }

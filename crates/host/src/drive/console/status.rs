@@ -18,7 +18,7 @@ pub struct Status {
     pub held: bool,
     /// The fault's name, if there is one.
     pub fault: Option<String>,
-    /// Supply of the board, volts.
+    /// Supply of the board, volts, once it is measured.
     pub vcc: Option<f64>,
     /// Supply of the servos, volts, if it is measured.
     pub rail: Option<f64>,

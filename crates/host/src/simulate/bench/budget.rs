@@ -102,6 +102,8 @@ pub fn rows(figures: &Figures) -> Vec<Row> {
         row("control tick, mean in any gait", "cycles", f.tick_mean, AtMost(tick_mean), None),
         row("  of which the guard", "cycles", f.guard, Bound::None, Some("35 400, float solve")),
         row("control tick, worst", "cycles", count(f.tick_worst), AtMost(tick_worst), None),
+        row("  in a routine, mean", "cycles", f.routine_mean, AtMost(tick_mean), None),
+        row("  in a routine, worst", "cycles", whole(f.routine_worst), AtMost(tick_worst), None),
         row("tick to frame, line saturated", "cycles", count(f.tick_latency), AtMost(IN_TIME), None),
         row("any other step, worst", "cycles", count(f.step), AtMost(LEFT_TO_MAIN * IN_TIME - tick_worst), None),
         row("main, mean per frame of a gait", "cycles", f.main, Bound::None, None),

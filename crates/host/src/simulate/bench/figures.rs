@@ -5,13 +5,14 @@ use std::path::Path;
 use std::time::Instant;
 
 use lizard_robot::Robot;
-use simulated_uno::{Call, Fidelity};
+use simulated_uno::{Call, Fidelity, Pin};
 
 use super::exactness::Exactness;
 use super::stack::StackDepth;
 use crate::Failure;
 use crate::shared::firmware;
 use crate::simulate::board::{BoardError, SimulatedBoard};
+use crate::simulate::patrol::PATROL;
 use crate::simulate::sim::frame::FRAME;
 use crate::simulate::sim::tour;
 
@@ -39,6 +40,10 @@ pub struct Figures {
     pub tick_mean: Option<f64>,
     /// The most cycles of a control tick in any motion, interrupts left out.
     pub tick_worst: u64,
+    /// Mean cycles of the control tick in a routine with inputs, interrupts left out.
+    pub routine_mean: Option<f64>,
+    /// The most cycles of it.
+    pub routine_worst: Option<u64>,
     /// The most cycles from the tick to the end of its computation while the
     /// serial line is saturated both ways, interrupts and answers included.
     pub tick_latency: u64,
@@ -120,13 +125,15 @@ const ENTRY: u64 = 7;
 const LONG: u64 = 600_000;
 
 impl Figures {
-    /// Measures an ELF. `progress` receives the name of each measurement.
+    /// Measures an ELF, with a robot and with the same robot on patrol, where it has
+    /// room for one. `progress` receives the name of each measurement.
     ///
     /// # Errors
     /// A firmware that cannot be loaded, dies, or does not answer.
     pub fn measure(
         elf: &Path,
         robot: &Robot,
+        patrolling: Option<&Robot>,
         progress: impl Fn(&'static str),
     ) -> Result<Self, Failure> {
         let gaits: Vec<String> = tour::gaits(robot).into_iter().map(command).collect();
@@ -154,6 +161,8 @@ impl Figures {
         progress("the control tick in every motion");
         let ticks = times(awake()?, TICK, &motions(robot))?;
         let in_gaits = ticks.iter().take(robot.gaits().len());
+        progress("the control tick in a routine");
+        let in_routine = patrolling.map(|robot| patrol(elf, robot)).transpose()?;
         progress("the guard");
         let guard = mean(&times(awake()?, GUARD, &[gait])?.concat());
         progress("the control tick on a saturated line");
@@ -179,12 +188,9 @@ impl Figures {
             stack_spare: session.uno.stack_spare().min(flooded.uno.stack_spare()),
             stack_margin: stack.margin(),
             tick_mean: of_gait(in_gaits.map(|calls| mean(calls)).fold(0.0, f64::max)),
-            tick_worst: ticks
-                .iter()
-                .flatten()
-                .map(Call::own_cycles)
-                .max()
-                .unwrap_or(0),
+            tick_worst: worst(&ticks.concat()),
+            routine_mean: in_routine.as_deref().map(mean),
+            routine_worst: in_routine.as_deref().map(worst),
             tick_latency,
             step,
             guard: of_gait(guard),
@@ -374,9 +380,31 @@ fn longest(
         board.uno.send(line.as_bytes());
         board.uno.send(b"\n");
         let calls = board.time_calls(function, 400)?;
-        most = most.max(calls.iter().map(Call::own_cycles).max().unwrap_or(0));
+        most = most.max(worst(&calls));
     }
     Ok(most)
+}
+
+/// The ticks of half a minute of a patrol, in which the button and then the nose are pressed now
+/// and again.
+fn patrol(elf: &Path, robot: &Robot) -> Result<Vec<Call>, BoardError> {
+    let mut board = SimulatedBoard::power_on(elf, Fidelity::DataSheet, robot)?;
+    board.run_ms(1000)?;
+    board.say(PATROL)?;
+    let mut calls = Vec::new();
+    for _ in 0..5 {
+        for (_, pin) in robot.inputs().each() {
+            for is_closed in [true, false] {
+                board.uno.set_contact(Pin::arduino(pin), is_closed);
+                calls.extend(board.time_calls(TICK, 1500)?);
+            }
+        }
+    }
+    Ok(calls)
+}
+
+fn worst(calls: &[Call]) -> u64 {
+    calls.iter().map(Call::own_cycles).max().unwrap_or(0)
 }
 
 fn mean(calls: &[Call]) -> f64 {

@@ -12,6 +12,7 @@ use std::path::PathBuf;
 
 use crate::shared::firmware;
 use crate::shared::progress::bar;
+use crate::simulate::patrol::with_patrol;
 use crate::{Failure, RobotFile};
 
 pub use budget::{Bound, Row, rows};
@@ -68,9 +69,12 @@ pub fn run(args: Args) -> Result<(), Failure> {
     };
     let robot = args.robot.load()?;
     firmware::of_robot(Some(&elf), &args.robot, &robot)?;
+    let patrolling = with_patrol(&args.robot.text()?).ok();
     let progress = bar(0, "{spinner} {msg}, {elapsed}");
     progress.enable_steady_tick(std::time::Duration::from_millis(100));
-    let figures = Figures::measure(&elf, &robot, |step| progress.set_message(step))?;
+    let figures = Figures::measure(&elf, &robot, patrolling.as_ref(), |step| {
+        progress.set_message(step);
+    })?;
     progress.finish_and_clear();
 
     let rows = rows(&figures);

@@ -13,9 +13,10 @@
 use lizard_core::console::LONGEST_LINE;
 use lizard_core::numbers::robot::Robot;
 use lizard_core::virtual_board::{Converter, Running, Transmitter, VirtualBoard};
-use simulated_uno::SerialByte;
+use simulated_uno::{CYCLES_PER_MS, SerialByte};
 
 use super::frame::{FRAME, SLOT};
+use super::press::Change;
 use super::supplies;
 
 /// Cycles that the UNO takes to send a byte: 10 bits, 17 * 8 cycles each.
@@ -88,6 +89,19 @@ pub struct Commands {
 /// frames from there on. Exact except for the lines of [`undecided`].
 #[must_use]
 pub fn play(robot: Robot<'static>, received: &[SerialByte], first: u64, count: usize) -> Commands {
+    play_with_contacts(robot, received, &[], first, count)
+}
+
+/// The same with contacts that close and open.
+#[must_use]
+pub fn play_with_contacts(
+    robot: Robot<'static>,
+    received: &[SerialByte],
+    contacts: &[Change],
+    first: u64,
+    count: usize,
+) -> Commands {
+    let mut contacts = contacts.iter().peekable();
     let silent = frames_before_waking(robot);
     let mut run = CoreRun::new(robot);
     let mut received = received.iter().peekable();
@@ -109,6 +123,15 @@ pub fn play(robot: Robot<'static>, received: &[SerialByte], first: u64, count: u
             } else {
                 break;
             }
+        }
+        while let Some(change) = contacts.next_if(|change| change.ms * CYCLES_PER_MS < tick) {
+            let bit = 1 << change.pin;
+            let closed = &mut run.running.board.closed;
+            *closed = if change.is_closed {
+                *closed | bit
+            } else {
+                *closed & !bit
+            };
         }
         let pulses = run.tick(tick);
         if frame >= silent {

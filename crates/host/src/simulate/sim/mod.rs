@@ -8,6 +8,7 @@ pub mod footfall;
 pub mod frame;
 pub mod frame_log;
 pub mod lines;
+pub mod press;
 mod report;
 pub mod script;
 #[cfg(target_os = "linux")]
@@ -34,6 +35,7 @@ use crate::shared::{files, json};
 use crate::{Failure, RobotFile};
 use analysis::Run;
 use dialogue::Printer;
+use press::{Change, Press};
 use report::{Ram, Report};
 use script::Script;
 use session::{DialogueLine, Event, Recording};
@@ -59,6 +61,10 @@ pub struct Args {
     /// Simulated time in seconds [default: 12, or a second after the script]
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     duration: Option<f64>,
+    /// Press a robot's input for 0.2 s, or from a time to another, in seconds since power-on:
+    /// `button@2`, `nose@5.5-8`; may be repeated
+    #[arg(long, value_name = "NAME@SECONDS")]
+    press: Vec<Press>,
     /// Print every line of the dialogue, including long runs of `# t=` lines
     #[arg(long)]
     all: bool,
@@ -130,6 +136,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         FidelityArg::Stock => Fidelity::Stock,
     };
     let robot = args.robot.load()?;
+    let contacts = press::changes(&args.press, &robot)?;
     #[cfg(target_os = "linux")]
     if let Some(link) = &args.pty {
         let mut uno = match &args.boot_loader {
@@ -147,9 +154,12 @@ pub fn run(args: Args) -> Result<(), Failure> {
                 ..Air::default()
             })
         });
-        return served::until_interrupted(uno, link.as_deref(), radio);
+        return served::until_interrupted(uno, link.as_deref(), radio, &contacts);
     }
-    let script = script(&args, &robot)?;
+    let script = Script {
+        contacts,
+        ..script(&args, &robot)?
+    };
     let Firmware { name, image } = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?;
     let mut uno = Uno::with_image(image, fidelity);
     supplies::connect(&mut uno, &robot);
@@ -158,7 +168,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 
     let spinner = Spinner::new("looking at every frame");
     let spans = spans::spans(&script, &recording.answers);
-    let commands = commands(&robot, &recording);
+    let commands = commands(&robot, &recording, &script.contacts);
     let (robot, log) = (&robot, &recording.frames);
     let frames = Run { robot, log };
     let picture = timeline::draw(frames, &spans, &timeline::SIMULATED);
@@ -228,11 +238,12 @@ fn record(
 
 /// The widths that the firmware's core asks for, if the firmware's banner says
 /// that it was built from the same core and tables as this program.
-fn commands(robot: &Robot, recording: &Recording) -> Option<Vec<[u16; 4]>> {
+fn commands(robot: &Robot, recording: &Recording, contacts: &[Change]) -> Option<Vec<[u16; 4]>> {
     let log = &recording.frames;
-    let commands = core_run::play(
+    let commands = core_run::play_with_contacts(
         *robot.firmware(),
         &recording.received_by_uno,
+        contacts,
         log.first,
         log.widths.len(),
     );

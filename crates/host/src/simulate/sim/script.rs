@@ -1,5 +1,7 @@
 //! A script: commands for the robot, each with its time.
 
+use super::press::Change;
+
 /// A command at a time.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Step {
@@ -10,10 +12,12 @@ pub struct Step {
 }
 
 /// Commands in order of time.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Script {
     /// The commands in order of time.
     pub steps: Vec<Step>,
+    /// The changes of the robot's contacts, in order of time.
+    pub contacts: Vec<Change>,
     /// The end of the run, ms since power-on.
     pub end_ms: u64,
 }
@@ -64,7 +68,11 @@ impl Script {
         steps.push(step(ms - CLOSE_MS, "stop"));
         steps.push(step(ms - CLOSE_MS / 2 - 200, "status"));
         steps.push(step(ms - CLOSE_MS / 2, "rest"));
-        Self { steps, end_ms: ms }
+        Self {
+            steps,
+            end_ms: ms,
+            ..Self::default()
+        }
     }
 
     /// Reads lines `<ms> <command>`. Blank lines and lines that begin with `#`
@@ -99,7 +107,11 @@ impl Script {
             steps.push(step(ms, command));
         }
         let end_ms = steps.last().map_or(0, |last| last.ms) + 1000;
-        Ok(Self { steps, end_ms })
+        Ok(Self {
+            steps,
+            end_ms,
+            ..Self::default()
+        })
     }
 }
 
@@ -127,7 +139,8 @@ mod tests {
             script,
             Ok(Script {
                 steps,
-                end_ms: 2500
+                end_ms: 2500,
+                ..Script::default()
             })
         );
     }

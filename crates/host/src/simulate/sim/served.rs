@@ -11,6 +11,7 @@ use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 use simulated_uno::{Fidelity, Image, Port, Radio, State, Uno};
 
+use super::press::Change;
 use crate::Failure;
 use crate::shared::files::{self, note_input};
 
@@ -24,7 +25,7 @@ pub(super) fn as_sold(boot_loader: &Path, fidelity: Fidelity) -> Result<Uno, Fai
     Ok(Uno::with_boot_loader(image, fidelity))
 }
 
-/// Serves the UNO until the program is ended, by cable or by radio. `link` becomes a symbolic link to
+/// Serves the UNO until the program is ended, by cable or by radio, and presses its contacts. `link` becomes a symbolic link to
 /// the port, whose own name differs from run to run, and is removed at the end.
 ///
 /// # Errors
@@ -33,6 +34,7 @@ pub(super) fn until_interrupted(
     mut uno: Uno,
     link: Option<&Path>,
     radio: Option<Radio>,
+    contacts: &[Change],
 ) -> Result<(), Failure> {
     let mut port = Port::new().map_err(|error| {
         Failure::Impossible(format!("this machine gives no pseudo terminal: {error}"))
@@ -57,9 +59,19 @@ pub(super) fn until_interrupted(
     writeln!(out, "the simulated UNO is at {}", name.display())?;
     writeln!(out, "{opening}; Ctrl-C ends it")?;
     let mut told = State::Alive;
+    let mut contacts = contacts.iter().peekable();
     loop {
-        port.serve(&mut uno, Duration::from_secs(1))
-            .map_err(|error| Failure::Impossible(format!("the pseudo terminal: {error}")))?;
+        while let Some(change) = contacts.next_if(|change| change.ms as f64 <= uno.ms()) {
+            change.apply(&mut uno);
+        }
+        let left = contacts
+            .peek()
+            .map_or(f64::MAX, |change| change.ms as f64 - uno.ms());
+        port.serve(
+            &mut uno,
+            Duration::from_secs_f64(left.clamp(1.0, 1_000.0) / 1_000.0),
+        )
+        .map_err(|error| Failure::Impossible(format!("the pseudo terminal: {error}")))?;
         uno.take_edges();
         uno.take_marks();
         if *uno.state() != told {

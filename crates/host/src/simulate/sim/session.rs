@@ -82,13 +82,22 @@ pub fn play(
     };
     let mut pulses = FrameReader::new(pins, frames);
     let mut steps = script.steps.iter().peekable();
+    let mut contacts = script.contacts.iter().peekable();
     let mut ms = 0;
     while ms < script.end_ms && *uno.state() == State::Alive {
         let until = (ms + FRAME / CYCLES_PER_MS).min(script.end_ms);
-        while let Some(step) = steps.next_if(|step| step.ms < until) {
-            uno.run_until_cycle(step.ms * CYCLES_PER_MS);
-            dialogue.receive(uno)?;
-            dialogue.send(uno, &step.command)?;
+        loop {
+            let command = steps.peek().map_or(until, |step| step.ms);
+            if let Some(contact) = contacts.next_if(|contact| contact.ms < until.min(command)) {
+                uno.run_until_cycle(contact.ms * CYCLES_PER_MS);
+                contact.apply(uno);
+            } else if let Some(step) = steps.next_if(|step| step.ms < until) {
+                uno.run_until_cycle(step.ms * CYCLES_PER_MS);
+                dialogue.receive(uno)?;
+                dialogue.send(uno, &step.command)?;
+            } else {
+                break;
+            }
         }
         uno.run_until_cycle(until * CYCLES_PER_MS);
         dialogue.receive(uno)?;

@@ -166,6 +166,7 @@ fn a_round(robot: &Robot, routine: &Routine) -> Script {
             step(ms + STAND_MS, "stop"),
         ],
         end_ms: ms + 2 * STAND_MS,
+        ..Script::default()
     }
 }
 
@@ -206,5 +207,6 @@ pub(crate) fn walk_script(robot: &Robot, gaits: &[&str]) -> Script {
     Script {
         steps,
         end_ms: ms + STAND_MS,
+        ..Script::default()
     }
 }

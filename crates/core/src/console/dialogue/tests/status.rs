@@ -36,6 +36,17 @@ fn status_tells_everything_as_key_and_value() {
 }
 
 #[test]
+fn a_voltage_is_left_out_until_it_is_measured() {
+    let mut dialogue = Dialogue::power_on(*Sample::odd());
+    dialogue.lines();
+    let line = dialogue.say("status");
+    assert!(line.ends_with(" resets=0"), "{line}");
+    dialogue.run(4);
+    assert_eq!(dialogue.status("vcc"), "5.00");
+    assert_eq!(dialogue.status("rail"), "6.00");
+}
+
+#[test]
 fn status_names_what_the_robot_does() {
     let mut dialogue = standing();
     assert_eq!(dialogue.status("gait"), "stand");

@@ -180,7 +180,12 @@ impl Session {
         }
         answers.resize(steps.len(), None);
         let end_ms = self.end_ms();
-        spans::spans(&Script { steps, end_ms }, &answers)
+        let script = Script {
+            steps,
+            end_ms,
+            ..Script::default()
+        };
+        spans::spans(&script, &answers)
     }
 }
 

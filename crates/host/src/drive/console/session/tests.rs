@@ -245,6 +245,25 @@ fn while_a_person_drives_deadman_is_set_and_a_line_goes_out_in_every_third_of_it
 }
 
 #[test]
+fn a_robot_that_has_just_begun_to_walk_has_deadman_again_after_a_question_for_its_own() {
+    let now = Instant::now();
+    let mut session = Session::new(now, false, false).with_person();
+    for line in ["walk", "cal"] {
+        session.queue(line);
+    }
+    let lines = sent(&mut session, now, 500, robot);
+    let expected = [
+        "cal",
+        "deadman 700",
+        "walk",
+        "deadman 700",
+        "cal",
+        "deadman 700",
+    ];
+    assert_eq!(words(&lines), expected);
+}
+
+#[test]
 fn a_robot_that_has_stopped_gets_its_own_deadman_back() {
     let now = Instant::now();
     let mut session = Session::new(now, true, false).with_person();
@@ -293,6 +312,7 @@ fn no_gait_begins_while_the_robot_has_not_confirmed_its_deadman() {
     let printed = session.overdue(later).expect("it is said");
     assert!(printed.contains("not sent"), "{printed}");
     assert_eq!(session.next_line(later), None, "walk is not sent");
+    assert!(session.verdict().is_err(), "a script learns it");
     session.queue("walk");
     assert_eq!(session.next_line(later).as_deref(), Some("deadman 901"));
 }

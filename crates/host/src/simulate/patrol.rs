@@ -1,0 +1,60 @@
+//! A routine through all gaits of a robot, with inputs: for measurements and for trouble.
+
+use lizard_robot::{Error, Robot};
+
+use super::sim::tour;
+
+/// The name of the routine.
+pub const PATROL: &str = "patrol";
+
+/// Gaits of a patrol besides the first.
+const MOST: usize = 8;
+
+/// The pins that are tried for the contacts of a robot without inputs.
+const PINS: [&str; 8] = ["A1", "A2", "A3", "A4", "A5", "D12", "D8", "D7"];
+
+/// The robot of this text, with a button, a nose and the routine [`PATROL`], which waits for
+/// the button, walks up to a wall and goes through every gait; unless it has one of this name.
+///
+/// # Errors
+/// The text is no robot, or has no room for a routine.
+pub fn with_patrol(text: &str) -> Result<Robot, Error> {
+    let robot = Robot::parse(text)?;
+    if robot.routine(PATROL).is_some() {
+        return Ok(robot);
+    }
+    let mut text = text.to_owned();
+    for name in ["button", "nose"] {
+        if robot.inputs().each().any(|(own, _)| own == name) {
+            continue;
+        }
+        let with = |pin: &str| format!("{text}\n[input.{name}]\npin = \"{pin}\"\n");
+        let free = PINS.iter().find(|pin| Robot::parse(&with(pin)).is_ok());
+        text = with(free.unwrap_or(&PINS[0]));
+    }
+    let gaits: Vec<String> = tour::moving(&robot)
+        .iter()
+        .map(|name| name.replace('-', " "))
+        .collect();
+    let first = gaits.first().map_or("stand 1 s", String::as_str);
+    let mut steps = vec!["wait button".to_owned(), format!("{first} until nose")];
+    let others = gaits.iter().skip(1).take(MOST);
+    steps.extend(others.map(|gait| format!("{gait} 1 until button")));
+    Robot::parse(&format!(
+        "{text}\n[routine.{PATROL}]\nsteps = {steps:?}\nrepeat = \"for ever\"\nrepeat_from = 2\n"
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shared::robot_file;
+
+    #[test]
+    fn a_patrol_has_both_inputs_and_goes_through_the_gaits() {
+        let patrolling = with_patrol(robot_file::BUILT_IN).expect("a robot");
+        let inputs: Vec<&str> = patrolling.inputs().each().map(|(name, _)| name).collect();
+        assert_eq!(inputs, ["button", "nose"]);
+        assert!(patrolling.routine(PATROL).is_some_and(|it| it.has_inputs()));
+    }
+}

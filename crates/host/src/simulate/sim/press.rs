@@ -1,0 +1,101 @@
+//! Presses of a robot's inputs at given times.
+
+use std::str::FromStr;
+
+use lizard_robot::Robot;
+use simulated_uno::{Pin, Uno};
+
+use crate::Failure;
+
+/// The length of a press whose end is not given, ms.
+const SHORT: u64 = 200;
+
+/// A contact that is closed for some time, as in `button@2` or `nose@5.5-8`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Press {
+    input: String,
+    /// Milliseconds since power-on, as is the end.
+    from: u64,
+    to: u64,
+}
+
+/// A contact that closes or opens.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Change {
+    /// Milliseconds since power-on.
+    pub ms: u64,
+    /// Arduino number of the contact's pin.
+    pub pin: u8,
+    /// True if it closes.
+    pub is_closed: bool,
+}
+
+impl Change {
+    /// Closes or opens the contact.
+    pub fn apply(&self, uno: &mut Uno) {
+        uno.set_contact(Pin::arduino(self.pin), self.is_closed);
+    }
+}
+
+impl FromStr for Press {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let form = || "it is not NAME@SECONDS or NAME@FROM-TO".to_owned();
+        let (input, times) = text.split_once('@').ok_or_else(form)?;
+        let ms = |text| super::seconds(text).map(|seconds| (1_000.0 * seconds) as u64);
+        let (from, to) = match times.split_once('-') {
+            Some((from, to)) => (ms(from)?, ms(to)?),
+            None => (ms(times)?, ms(times)? + SHORT),
+        };
+        if to <= from {
+            return Err("it ends before it begins".to_owned());
+        }
+        let input = input.to_owned();
+        Ok(Self { input, from, to })
+    }
+}
+
+/// The changes of a robot's contacts, in order of time.
+///
+/// # Errors
+/// An input that the robot does not have.
+pub fn changes(presses: &[Press], robot: &Robot) -> Result<Vec<Change>, Failure> {
+    let mut all = Vec::new();
+    for press in presses {
+        let mut inputs = robot.inputs().each();
+        let Some((_, pin)) = inputs.find(|(name, _)| *name == press.input) else {
+            let name = &press.input;
+            let sentence = format!("robot.toml has no [input.{name}] for --press");
+            return Err(Failure::Input(sentence));
+        };
+        let change = |ms, is_closed| Change { ms, pin, is_closed };
+        all.extend([change(press.from, true), change(press.to, false)]);
+    }
+    all.sort_by_key(|change| (change.ms, change.is_closed));
+    Ok(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn press(input: &str, from: u64, to: u64) -> Press {
+        let input = input.to_owned();
+        Press { input, from, to }
+    }
+
+    #[test]
+    fn a_press_is_a_name_and_a_time_or_a_span() {
+        assert_eq!("button@2".parse(), Ok(press("button", 2_000, 2_200)));
+        assert_eq!("nose@5.5-8".parse(), Ok(press("nose", 5_500, 8_000)));
+        for (wrong, why) in [
+            ("button", "it is not NAME@SECONDS or NAME@FROM-TO"),
+            ("button@soon", "it is not a number"),
+            ("button@3-2", "it ends before it begins"),
+            ("button@-1-2", "it is not a number"),
+        ] {
+            assert_eq!(wrong.parse::<Press>(), Err(why.to_owned()), "{wrong}");
+        }
+    }
+}

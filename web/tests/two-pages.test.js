@@ -1,0 +1,82 @@
+// Two pages on one robot: one has the board's cable, the other a module at the same serial line.
+import assert from 'node:assert/strict';
+import { after, afterEach, before, test } from 'node:test';
+
+import { connected } from './board.js';
+import { close, complaints, open, page, tidy, within } from './browser.js';
+
+before(open);
+afterEach(tidy);
+after(close);
+
+const text = (opened, selector) => opened.locator(selector).innerText();
+const doing = (opened) => text(opened, '#doing');
+const walk = (opened) => opened.locator('#gaits button[data-command="walk"]').click();
+
+/** A port whose bytes a test carries; runs in the page before anything else. */
+function farSerial() {
+  window.toBoard = [];
+  let out;
+  const port = {
+    async open() {
+      port.readable = new ReadableStream({ start: (controller) => (out = controller) });
+      port.writable = new WritableStream({ write: (bytes) => void window.toBoard.push(...bytes) });
+    },
+    getInfo: () => ({ bluetoothServiceClassId: '00001101-0000-1000-8000-00805f9b34fb' }),
+    async setSignals() {},
+    async close() {},
+  };
+  window.hear = (bytes) => out?.enqueue(Uint8Array.from(bytes));
+  Object.defineProperty(navigator, 'serial', { value: { requestPort: async () => port } });
+}
+
+/** Both pages, and what lets the time of both go on until something is so. */
+async function two() {
+  const first = await connected('robot', 8000);
+  await first.evaluate(() => {
+    const { otherBoard } = window;
+    const { onByte } = otherBoard;
+    window.spoken = [];
+    otherBoard.onByte = (byte) => {
+      window.spoken.push(byte);
+      onByte(byte);
+    };
+  });
+  const second = await page({}, farSerial);
+  const step = async () => {
+    await first.clock.runFor(20);
+    const spoken = await first.evaluate(() => window.spoken.splice(0));
+    await second.evaluate((bytes) => window.hear(bytes), spoken);
+    await second.clock.runFor(20);
+    const bytes = await second.evaluate(() => window.toBoard.splice(0));
+    await first.evaluate((bytes) => bytes.length > 0 && window.otherBoard.send(bytes), bytes);
+  };
+  const until = async (what, isSo) => {
+    let waits = true;
+    const goes = async () => {
+      while (waits && !(await isSo())) await step();
+    };
+    await within(what, goes()).finally(() => (waits = false));
+  };
+  await second.locator('#connect').click();
+  await until('the second page finds the robot', async () => (await text(second, '#where')).includes('on Bluetooth'));
+  return { first, second, until };
+}
+
+test('each of two pages shows what the robot does and stops what the other has begun', async () => {
+  const { first, second, until } = await two();
+  for (const [driver, other] of [
+    [first, second],
+    [second, first],
+  ]) {
+    await walk(driver);
+    for (const opened of [driver, other]) await until('it is seen to walk', async () => (await doing(opened)) === 'walk');
+    await other.keyboard.press('Escape');
+    for (const opened of [driver, other]) await until('it is seen to stop', async () => (await doing(opened)) === 'stop');
+  }
+  const settled = async () => /deadman 0\n[^]*deadman 0\n[^]*$/.test(await first.evaluate(() => window.heard));
+  await until('each driver has given the deadman back', settled);
+  for (const opened of [first, second]) assert.equal(await opened.locator('#alarm').isVisible(), false);
+});
+
+test('nothing was complained of', () => assert.deepEqual(complaints, []));
