@@ -34,7 +34,7 @@ export interface Length {
 
 export interface Description {
   hash: string;
-  /** Its name, as in a banner. */
+  /** The robot's name, as in a banner. */
   name: string;
   /** The firmware version that it fits. */
   version: string;
@@ -51,7 +51,7 @@ export interface Description {
   supply: [number, number, number];
   /** The converter's channel of the servos' rail, and the volts there. */
   rail: [number, number] | null;
-  /** Its inputs: name, and Arduino number of the pin. */
+  /** The inputs: name, and Arduino number of the pin. */
   inputs: [string, number][];
   floor: Floor;
   models: ServoModel[];

@@ -126,12 +126,12 @@ fn mm(tenths: u8) -> f64 {
 const AHEAD: f64 = 25.0;
 
 fn edge(robot: &Robot, direction: f64, high: f64) -> Block {
-    /// The length of what lies behind the edge, mm.
-    const LONG: f64 = 1000.0;
+    /// The length of the floor beyond the edge, mm.
+    const STEP_LENGTH: f64 = 1000.0;
     let [forward, _] = robot.ground().feet.at([0.0; 4])[0];
     Block {
-        at: [0.0, direction * (forward.abs() + AHEAD + LONG / 2.0)],
-        size: [LONG, LONG, high],
+        at: [0.0, direction * (forward.abs() + AHEAD + STEP_LENGTH / 2.0)],
+        size: [STEP_LENGTH, STEP_LENGTH, high],
     }
 }
 
@@ -218,7 +218,7 @@ fn least(surface: Surface, part: Part) -> Option<f64> {
     }
 }
 
-/// The sentences for a gait that loses more of its distance or its turn than a surface allows.
+/// The messages for a gait that loses more of its distance or its turn than a surface allows.
 #[must_use]
 pub fn excess_losses(
     surface: Surface,

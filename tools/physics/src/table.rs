@@ -8,7 +8,7 @@ use crate::case::{Case, Feet, Legs};
 use crate::figures::{Displacement, Figures};
 
 /// A displacement below this counts as none: mm and deg.
-const NONE: (f64, f64) = (1.0, 0.5);
+const MIN_DISPLACEMENT: (f64, f64) = (1.0, 0.5);
 
 /// The part of a displacement that a gait is for.
 #[derive(Clone, Copy)]
@@ -22,10 +22,10 @@ impl Part {
     pub(crate) fn of(displacement: Displacement) -> Vec<Self> {
         let [ahead, _, turn] = displacement.0.map(f64::abs);
         let mut parts = Vec::new();
-        if ahead > NONE.0 || turn <= NONE.1 {
+        if ahead > MIN_DISPLACEMENT.0 || turn <= MIN_DISPLACEMENT.1 {
             parts.push(Self::Ahead);
         }
-        if turn > NONE.1 {
+        if turn > MIN_DISPLACEMENT.1 {
             parts.push(Self::Turn);
         }
         parts

@@ -122,7 +122,7 @@ fn the_stored_answers_of_the_model_are_up_to_date() {
     let mut count = 0;
     for row in rows(&robot) {
         let answers = kept.get("paper", &row.gait, row.case).expect("it is kept");
-        assert_eq!(answers.model.is_some(), row.decided, "{}", row.gait);
+        assert_eq!(answers.model.is_some(), row.is_decided, "{}", row.gait);
         let (Some(was), Some(is)) = (answers.model, row.model(&robot)) else {
             continue;
         };
@@ -134,7 +134,7 @@ fn the_stored_answers_of_the_model_are_up_to_date() {
 }
 
 #[test]
-fn a_foot_a_millimetre_too_long_costs_every_gait_less_than_a_tenth_of_its_distance() {
+fn a_foot_a_millimetre_too_long_costs_less_than_a_tenth_of_the_distance() {
     let kept = Figures::stored();
     let case = |feet| Case {
         legs: Legs::Rigid,

@@ -127,10 +127,10 @@ fn named(section: &Section) -> Checked<ServoType> {
         .find(|own| plain(own.model) == plain(word));
     known.copied().ok_or_else(|| {
         let hint = hint(word, &ServoType::ALL.map(|own| own.model));
-        let sentence = format!(
+        let message = format!(
             "is \"{word}\"; for a servo without a name here write stall_kg_cm and s_per_60_deg of its data sheet instead; {hint}"
         );
-        section.fault("model", sentence)
+        section.fault("model", message)
     })
 }
 

@@ -24,7 +24,7 @@ pub struct Row {
     pub error: TableError,
     /// Movement of one cycle by the contact model.
     pub movement: Prediction,
-    /// Effect of the legs' drive; none if legs are rigid without play.
+    /// Effect of the legs' drive; `None` if legs are rigid without play.
     pub spring_cost: Option<SpringCost>,
     /// The largest share of its line that a servo uses, on the servos' own supply.
     pub line: f64,

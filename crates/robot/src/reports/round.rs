@@ -18,7 +18,7 @@ pub struct Round {
     pub name: String,
     /// The number of its steps.
     pub steps: usize,
-    /// How often it goes through them; None for ever.
+    /// The number of rounds; `None` without end.
     pub rounds: Option<u16>,
     /// True if a contact may end one of its steps.
     pub has_inputs: bool,

@@ -64,7 +64,7 @@ fn check(path: &str, page: &str, now: &str) {
     }
 }
 
-/// Pulls of the springs in the table of slotted struts, N; none for rigid struts.
+/// Pulls of the springs in the table of slotted struts, N; `None` for rigid struts.
 const PULLS: [Option<f64>; 6] = [Some(0.5), Some(1.0), Some(2.0), Some(3.0), Some(5.0), None];
 
 /// Makes a row of the table of slotted struts, whose springs have the rate of the paper's coil.

@@ -7,7 +7,7 @@ use lizard_tune::{Comparison, SPREAD};
 /// Prints the comparison as a piece of a robot.toml: all but the table is comment.
 ///
 /// # Errors
-/// Writing failed.
+/// Fails if writing fails.
 pub fn print(of: &Comparison, out: &mut impl Write) -> io::Result<()> {
     let Comparison {
         unit,

@@ -160,7 +160,7 @@ impl Report {
     /// One object a line.
     ///
     /// # Errors
-    /// Writing failed.
+    /// Fails if writing fails.
     pub fn json(&self, out: &mut impl Write) -> io::Result<()> {
         for row in &self.rows {
             json::line(out, row)?;
@@ -172,7 +172,7 @@ impl Report {
     /// body.
     ///
     /// # Errors
-    /// Writing failed.
+    /// Fails if writing fails.
     pub fn print(&self, out: &mut impl Write) -> io::Result<()> {
         let springs = self.rows.iter().any(|row| row.lag > 0.0);
         let width = self
