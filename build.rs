@@ -1,5 +1,5 @@
 //! Turns robot.toml, or the file that LIZARD_ROBOT names, into the robot's section of flash.
-//! An invalid value or gait ends the build with a sentence that explains it; the report on
+//! An invalid value or gait ends the build with a message that explains it; the report on
 //! the gaits is written to `gaits.txt` beside the firmware.
 
 use std::path::{Path, PathBuf};
@@ -51,9 +51,9 @@ fn write(path: &Path, bytes: &[u8]) {
     }
 }
 
-/// Ends the build. `cargo::error` puts the sentence first, before the list of
+/// Ends the build. `cargo::error` puts the message first, before the list of
 /// what else the script printed.
-fn stop(sentence: &str) -> ! {
-    println!("cargo::error={sentence}");
+fn stop(message: &str) -> ! {
+    println!("cargo::error={message}");
     exit(1)
 }

@@ -2,8 +2,8 @@
 
 use lizard_core::numbers::mark::{LENGTH, Mark};
 
-/// Nothing but the linker reads it: what is in this section comes first behind the interrupt
-/// vectors, at [`lizard_core::numbers::mark::AT`], and a test looks for it there.
+/// Nothing but the linker reads it: this section comes first after the interrupt vectors,
+/// at [`lizard_core::numbers::mark::AT`], and a test looks for it there.
 #[used]
 #[unsafe(no_mangle)]
 #[unsafe(link_section = ".progmem.gcc.mark")]

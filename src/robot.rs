@@ -1,4 +1,4 @@
-//! The robot's section, which lies behind the code in flash.
+//! The robot's section, which lies after the code in flash.
 //!
 //! The code is the same for any lizard. The robot is a separate section
 //! ([`lizard_core::numbers::section`]) at a fixed address. The program reads it from there, so

@@ -25,7 +25,7 @@ const LAST_CYCLES: u64 = 1_000;
 /// does: simavr counts from the first cycle of the instruction that starts it, avr8js
 /// from its last. The bytes are sent so much later, too, so that they meet the firmware
 /// in the same state; then the two agree to the cycle, or not at all.
-pub const LATER: i64 = 1;
+pub const AVR8JS_LAG: i64 = 1;
 
 /// A pulse and the pin that it is on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -98,7 +98,7 @@ pub struct Verdict {
 /// run ends.
 ///
 /// # Errors
-/// A sentence: what is missing, or what avr8js cannot simulate.
+/// Returns a message: what is missing, or what avr8js cannot simulate.
 pub fn judge(
     image: &Image,
     received: &[SerialByte],
@@ -117,7 +117,7 @@ pub fn judge(
         script += &format!("analogue {} {mv}\n", pin.number());
     }
     for SerialByte { cycle, byte } in received {
-        script += &format!("{} {byte:02x}\n", cycle.saturating_add_signed(LATER));
+        script += &format!("{} {byte:02x}\n", cycle.saturating_add_signed(AVR8JS_LAG));
     }
     script += &format!("end {end}\n");
     let printed = done(
@@ -135,7 +135,7 @@ pub fn judge(
 /// corrected.
 ///
 /// # Errors
-/// A missing program, or the tests that fail.
+/// Fails for a missing program, or the tests that fail.
 pub fn own_tests() -> Result<String, String> {
     let folder = judge_folder().join("test");
     let files = std::fs::read_dir(&folder).map_err(|error| error.to_string())?;
@@ -239,7 +239,7 @@ impl fmt::Display for Agreement {
 /// which of its cycles an instruction reaches a peripheral, hence the constant.
 ///
 /// # Errors
-/// The first difference, in a sentence.
+/// Returns the first difference, in a message.
 pub fn compare_pulses(
     simavr: &Account,
     avr8js: &Account,
@@ -286,7 +286,7 @@ pub fn compare_pulses(
 /// Compares the bytes of the console.
 ///
 /// # Errors
-/// The first difference, in a sentence.
+/// Returns the first difference, in a message.
 pub fn compare_console(simavr: &Account, avr8js: &Account) -> Result<Agreement, String> {
     let (Some(first), Some(other)) = (simavr.sent.first(), avr8js.sent.first()) else {
         return Err("one of them is silent".into());

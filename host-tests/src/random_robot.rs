@@ -87,7 +87,7 @@ struct Body {
 }
 
 impl Body {
-    /// A robot that stands; None where no safe neutral pose was found.
+    /// A robot that stands; `None` where no safe neutral pose was found.
     fn random(rng: &mut Rng) -> Option<Self> {
         let scale = 0.3 * (4.0f64 / 0.3).powf(rng.f64());
         let mut length = |least: f64, most: f64| round(scale * random_between(rng, least, most));
@@ -209,7 +209,7 @@ impl Body {
     }
 }
 
-/// A safe neutral pose with some room around it, deg; None if there is none near.
+/// A safe neutral pose with some room around it, deg; `None` if there is none near.
 fn neutral(rng: &mut Rng, lizard: &Lizard, limits: &Limits) -> Option<[f64; 4]> {
     /// Distance of every margin from its limit.
     const ROOM: f64 = 0.12;

@@ -15,7 +15,7 @@ const RANDOM: u64 = 8;
 /// A robot and its origin.
 #[derive(Debug)]
 pub struct Named {
-    /// Its file, or its seed.
+    /// The robot's file, or its seed.
     pub name: String,
     /// The robot.
     pub robot: Robot,

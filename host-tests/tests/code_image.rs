@@ -119,7 +119,7 @@ fn the_code_inside_the_program_is_what_the_source_builds() {
 }
 
 #[test]
-fn the_code_inside_the_program_is_code_alone_and_walks_with_a_robot_behind_it() {
+fn the_code_inside_the_program_is_code_alone_and_walks_with_a_robot_after_it() {
     let recording = record_minute(embedded_image());
     let banner = recording.banner.expect("a banner");
     let its = lizard_host::firmware::label(robot().firmware());

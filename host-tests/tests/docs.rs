@@ -202,7 +202,7 @@ fn files_with_word(path: &Path, word: &str) -> BTreeSet<PathBuf> {
 /// `center` serves as the example, since the word means nothing else; `deadman` is also in
 /// sentences.
 #[test]
-fn the_files_of_a_console_command_are_those_that_know_one_and_no_more_than_seven() {
+fn a_console_command_has_at_most_seven_files_and_the_docs_name_them() {
     let page = fs::read_to_string(root().join("CONTRIBUTING.md")).expect("CONTRIBUTING.md");
     let (_, list) = page.split_once("**A console command.**").expect("its list");
     let (list, _) = list.split_once("**A gait.**").expect("the next list");

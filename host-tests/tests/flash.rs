@@ -1,5 +1,5 @@
 //! README's `make flash`: cargo, ravedude and avrdude write the image to a new board. The board is
-//! simulated, with the boot loader of a stock UNO in flash, behind a pseudo terminal and in real
+//! simulated, with the boot loader of a stock UNO in flash, at a pseudo terminal and in real
 //! time.
 //!
 //! `make flash-test` runs these tests after it has installed the tools.
@@ -115,18 +115,18 @@ fn a_saved_calibration_is_in_effect_after_the_next_upload() {
 fn a_byte_that_the_flash_does_not_keep_ends_the_upload() {
     let mut desk = Desk::with_a_new_board();
     let shell = make_flash(&desk);
-    let mut worn = false;
+    let mut is_worn = false;
     // Once the image's first page is written, one bit of it changes.
     let ended = desk.until(|uno| {
-        if !worn && uno.flash()[0x100] != 0xff {
+        if !is_worn && uno.flash()[0x100] != 0xff {
             uno.set_flash(0x11, &[uno.flash()[0x11] ^ 0x10]);
-            worn = true;
+            is_worn = true;
         }
         shell.has_ended()
     });
     let screen = shell.screen();
     assert!(ended, "waited {LIMIT} for the end of the upload:\n{screen}");
-    assert!(worn, "nothing was written:\n{screen}");
+    assert!(is_worn, "nothing was written:\n{screen}");
     assert!(screen.contains("verification"), "{screen}");
     assert!(screen.contains("flash: it did not work"), "{screen}");
     assert!(!screen.contains("# lizard"), "no console:\n{screen}");

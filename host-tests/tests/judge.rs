@@ -5,7 +5,7 @@ use std::thread;
 
 use lizard_host::sim::frame::servo_pins;
 use lizard_host_tests::judge::{
-    Account, LATER, PinPulse, compare_console, compare_pulses, judge, own_tests,
+    AVR8JS_LAG, Account, PinPulse, compare_console, compare_pulses, judge, own_tests,
 };
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin, SerialByte};
@@ -52,7 +52,7 @@ fn check_agreement(bench: &mut FirmwareBench, what: &str, apart: Apart) {
     let pulses = compare_pulses(&simavr, &verdict.account, &servo_pins(robot()));
     let pulses = pulses.unwrap_or_else(|difference| panic!("{what}: {difference}"));
     assert_eq!(
-        pulses.offset, LATER,
+        pulses.offset, AVR8JS_LAG,
         "{what}: the pulses' cycle in the slot"
     );
     let limit = match apart {

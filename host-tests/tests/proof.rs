@@ -25,7 +25,7 @@ fn files() -> Vec<PathBuf> {
 }
 
 #[test]
-fn no_pair_of_positions_outside_the_band_or_in_a_cell_is_decided_wrong_for_any_robot() {
+fn no_pair_of_positions_outside_the_band_or_in_a_cell_is_decided_wrong() {
     for (number, file) in (0..).zip(files()) {
         // Another share of the pairs for each robot, and for each seed.
         let share = PairSample {

@@ -196,7 +196,7 @@ fn code_without_a_bound_is_refused() {
 }
 
 #[test]
-fn a_handler_that_lets_others_in_and_never_returns_lies_below_the_deepest_of_them() {
+fn a_handler_that_lets_others_in_forever_lies_below_the_deepest_of_them() {
     let image = assembler(
         "jmp start
         .org 0x2c

@@ -35,7 +35,8 @@ fn walk_all(model: ServoModel) -> Replay {
 
 #[test]
 fn the_image_moves_the_body_as_its_gaits_predict() {
-    let report = Report::of(robot(), &walk_all(ServoModel::Ideal), false);
+    let model = ServoModel::Ideal;
+    let report = Report::of(robot(), &walk_all(model), model, false);
     let cycles: Vec<_> = report
         .rows
         .iter()

@@ -50,7 +50,7 @@ fn cell(at: usize) -> &'static Byte {
 }
 
 /// Returns the cause of the reset and the state from before it, and marks the program as
-/// running. Once, with interrupts off, before the watchdog starts.
+/// running. To be called once, with interrupts off, before the watchdog starts.
 pub fn restart(cpu: &CPU) -> Restart {
     let register = cpu.mcusr.read();
     // Several may be set; none is where a boot loader has cleared them.

@@ -137,7 +137,7 @@ impl Board for Uno {
     }
 
     #[inline(always)]
-    fn stack_is_intact(&self) -> bool {
+    fn is_stack_intact(&self) -> bool {
         stack::is_intact()
     }
 
@@ -152,8 +152,8 @@ impl Board for Uno {
     }
 
     #[inline(always)]
-    fn set_led(&mut self, on: bool) {
-        led::set(on);
+    fn set_led(&mut self, is_on: bool) {
+        led::set(is_on);
     }
 
     #[inline(always)]

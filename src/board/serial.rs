@@ -81,7 +81,7 @@ impl<const N: usize> Ring<N> {
         }
         let tail = self.tail.get();
         let byte = self.bytes[usize::from(tail & Self::MASK)].get();
-        // The byte before the tail: the place is free once the tail has moved.
+        // The byte before the tail: its slot is free once the tail has moved.
         self.tail.set(tail.wrapping_add(1));
         Some(byte)
     }

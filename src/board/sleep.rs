@@ -11,14 +11,14 @@ use avr_device::interrupt;
 
 use super::{pulses, serial};
 
-/// Chooses idle, the sleep in which the timer and the USART run on. Once.
+/// Chooses idle, the sleep in which the timer and the USART run on. To be called once.
 pub fn start(cpu: CPU) {
     cpu.smcr.write(|w| w.sm().idle().se().set_bit());
 }
 
-/// Returns when the tick is no longer `seen`, a byte waits to be read or the last
-/// byte to be sent is on its way, for then there is room for the next line; sleeps
-/// until then. Interrupts are off for fewer than 40 cycles at a time.
+/// Sleeps until the tick is no longer `seen`, a byte waits to be read, or the last byte to
+/// be sent is on its way, which leaves room for the next line. Interrupts are off for fewer
+/// than 40 cycles at a time.
 pub fn until_tick_or_byte(seen: u8) {
     let sending = serial::sending();
     loop {

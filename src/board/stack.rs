@@ -32,7 +32,7 @@ fn word() -> &'static [Byte; 4] {
     unsafe { &WORD }
 }
 
-/// Writes the guard word. Once.
+/// Writes the guard word. To be called once.
 pub fn start() {
     // Byte by byte: the loop over both arrays takes four times as much flash.
     let [a, b, c, d] = word();

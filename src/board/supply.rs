@@ -9,7 +9,7 @@
 use avr_device::atmega328p::ADC;
 use lizard_core::control::supply::Reading;
 
-/// AVcc is what is compared with; then the channel.
+/// The value of ADMUX for AVcc as the reference, to which the channel is added.
 const AVCC: u8 = 0x40;
 
 /// The channel of the chip's reference.
@@ -22,7 +22,7 @@ const A0: u8 = 14;
 const ON: u8 = 0x87;
 const START: u8 = 0x40;
 
-/// The converter, and what it has read.
+/// The converter, and its readings.
 pub struct Converter {
     registers: ADC,
     reading: Reading,

@@ -1,11 +1,11 @@
-// The page's address holds a room and a robot, behind the # where no server sees them: a link is a robot, and so is a bookmark.
+// The page's address holds a room and a robot, after the # where no server sees them: a link is a robot, and so is a bookmark.
 import { packed } from './link-text';
 import type { Session } from './session';
 
 /** Changes closer together than this are written as one, ms: browsers refuse an address that changes too often. */
 const QUIET = 300;
 
-/** The parts behind the # of an address: `room`, and a robot as `file` or as `robot`, its compressed text. */
+/** The parts after the # of an address: `room`, and a robot as `file` or as `robot`, its compressed text. */
 export const partsOf = (hash: string) => new URLSearchParams(hash.slice(1));
 
 /** State of the entries of the browser's history that the page wrote: they name a room, and the robot of that time. */

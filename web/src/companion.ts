@@ -13,7 +13,7 @@ export class Companion {
     private readonly volts: number,
   ) {}
 
-  /** Creates a companion that stands at the start, with the mass and the floor of the page's robot. Throws a sentence. */
+  /** Creates a companion that stands at the start, with the mass and the floor of the page's robot. Throws an error for the user. */
   static async create(module: WebAssembly.Module, toml: string, floor: Floor, servos: string, volts: number): Promise<Companion> {
     const robot = await Robot.load(module);
     const read = robot.read(toml);

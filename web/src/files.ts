@@ -1,6 +1,6 @@
 // The files that `make web` puts beside the page: robots, the firmware's code, the boot loader.
 
-/** The sentence in the first comment of a robot.toml that is meant for tests. */
+/** The text in the first comment of a robot.toml that is meant for tests. */
 const FOR_TESTS = /\bIt is for the tests\b/;
 
 /** Returns true for a robot.toml that is meant for tests. */

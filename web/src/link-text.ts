@@ -1,4 +1,4 @@
-// A robot as a link: its robot.toml, compressed, behind the # of the page's address, where no server sees it.
+// A robot as a link: its robot.toml, compressed, after the # of the page's address, where no server sees it.
 
 /** The largest robot.toml that is accepted, in bytes; typical ones have a few thousand. */
 const MAX_BYTES = 200_000;
@@ -39,7 +39,7 @@ export async function linkTo(toml: string): Promise<string> {
   return `${location.href.split('#')[0]}#robot=${await packed(await withoutComments(toml))}`;
 }
 
-/** Reads the robot.toml of the part `robot`. Throws a sentence. */
+/** Reads the robot.toml of the part `robot`. Throws an error for the user. */
 export async function unpacked(part: string): Promise<string> {
   try {
     const letters = atob(part.replaceAll('-', '+').replaceAll('_', '/'));

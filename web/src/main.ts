@@ -10,7 +10,7 @@ import { keepOffline } from './offline';
 import { Predictor } from './predictor';
 import { lags, Robot } from './robot';
 import { type BoardBanner, Session } from './session';
-import { sentence } from './trouble';
+import { messageOf } from './trouble';
 import { Alarm } from './view/alarm';
 import { BoardRobot } from './view/board-robot';
 import { Calibrate } from './view/calibrate';
@@ -203,6 +203,7 @@ async function start(): Promise<void> {
     },
     speed(percent) {
       pace.show(percent);
+      drive.speed(percent);
       routines.speed(percent);
     },
     state({ phase }) {
@@ -272,7 +273,7 @@ async function start(): Promise<void> {
     } catch (error) {
       choice.show(session.file);
       if (!session.link) element('where').textContent = 'No robot could be read.';
-      troubles.say('robot', sentence(error));
+      troubles.say('robot', messageOf(error));
     }
   };
   const own = new OwnRobot(now, troubles, (file) => (choice.show(file), choose()), (names) => choice.showOwn(names));
@@ -295,7 +296,7 @@ async function start(): Promise<void> {
       if (session.isReal) await session.disconnect();
       else if (await session.connect(await open())) setup.openNeededStep();
     } catch (error) {
-      troubles.say('port', `No board is connected: ${sentence(error)}`);
+      troubles.say('port', `No board is connected: ${messageOf(error)}`);
     }
   }
   connect.addEventListener('click', () => void connectBoard());
@@ -372,7 +373,7 @@ async function start(): Promise<void> {
   );
 }
 
-/** The sentence that names the board and its robot. */
+/** The message that names the board and its robot. */
 function whereOf(name: string, has: BoardBanner, hash: string): string {
   if (has === null) return `on a ${name} without this firmware`;
   if (has === 'unknown') return `on a ${name} that has not restarted: press its reset button to see which robot it has`;
@@ -385,5 +386,5 @@ function whereOf(name: string, has: BoardBanner, hash: string): string {
 openRoom(location.hash);
 start().catch((error: unknown) => {
   element('where').textContent = 'The page cannot begin.';
-  troubles.say('page', sentence(error));
+  troubles.say('page', messageOf(error));
 });

@@ -1,7 +1,7 @@
 /// <reference types="vite/client" />
 // The page without a network: a service worker (service-worker.js) stores all files, and a newer page is loaded only when
 // the user says so, never while the robot walks.
-import { sentence } from './trouble';
+import { messageOf } from './trouble';
 
 /** Stores the page on this machine. Calls `fresh` when a newer page is ready, with the function that loads it. */
 export async function keepOffline(fresh: (take: () => void) => void): Promise<void> {
@@ -22,6 +22,6 @@ export async function keepOffline(fresh: (take: () => void) => void): Promise<vo
     offer();
     registration.addEventListener('updatefound', () => registration.installing?.addEventListener('statechange', offer));
   } catch (error) {
-    console.info(`The page is not kept for use without a network: ${sentence(error)}`);
+    console.info(`The page is not kept for use without a network: ${messageOf(error)}`);
   }
 }

@@ -34,7 +34,7 @@ export interface Length {
 
 export interface Description {
   hash: string;
-  /** Its name, as in a banner. */
+  /** The robot's name, as in a banner. */
   name: string;
   /** The firmware version that it fits. */
   version: string;
@@ -51,7 +51,7 @@ export interface Description {
   supply: [number, number, number];
   /** The converter's channel of the servos' rail, and the volts there. */
   rail: [number, number] | null;
-  /** Its inputs: name, and Arduino number of the pin. */
+  /** The inputs: name, and Arduino number of the pin. */
   inputs: [string, number][];
   floor: Floor;
   models: ServoModel[];
@@ -157,8 +157,8 @@ export interface GaitPrediction extends Displacement {
   /** Largest lag, deg. */
   lag: number | null;
   share: number | null;
-  /** Largest share of a servo's torque-speed line; null with ideal servos. */
-  line: number | null;
+  /** Largest share of a servo's torque-speed line at equal steps of the pace up to the gait's own; null with ideal servos. */
+  lines: number[] | null;
 }
 
 /** A routine as it is written, right or wrong. */

@@ -17,7 +17,7 @@ import {
   type Robot,
 } from './robot';
 import { type Banner, banner, type Status, status, reportedPose } from './status';
-import { type Cause, sentence } from './trouble';
+import { type Cause, messageOf } from './trouble';
 import { SimulatedBoard } from './uno/board';
 import { GAITS, WORDS } from './words';
 
@@ -65,7 +65,7 @@ export interface Listener {
   received(line: string): void;
   /** Called when the robot does something else: a gait or a command. */
   doing(gait: string): void;
-  /** Called when it is known what the board has. */
+  /** Called when the board's firmware and robot are known. */
   found(has: BoardBanner): void;
   /** Called with the robot's pace, percent. */
   speed(percent: number): void;
@@ -80,7 +80,7 @@ export interface Listener {
   /** Called when `stop` begins to be sent, and when the robot has answered it. */
   stopping(isStopping: boolean): void;
   /** Called with the current problem, or null once it is solved. */
-  trouble(cause: Cause, sentence: string | null): void;
+  trouble(cause: Cause, message: string | null): void;
 }
 
 /** The last cycle: mm forward and left in the frame of its start, turn and largest lag of a leg, deg. */
@@ -124,7 +124,7 @@ export class Session {
   private drives = 0;
   /** Number of stops so far. */
   private stops = 0;
-  /** When the robot last said something, on the page's clock, ms. */
+  /** The time of the robot's last line, on the page's clock, ms. */
   private heard = performance.now();
   /** Banners received: a board that restarts has lost its unsaved settings. */
   beginnings = 0;
@@ -153,7 +153,7 @@ export class Session {
   ) {}
 
   /**
-   * Loads a robot of the files on a new simulated UNO; a board on USB stays connected. Throws a sentence, and then the
+   * Loads a robot of the files on a new simulated UNO; a board on USB stays connected. Throws an error for the user, and then the
    * previous robot stays.
    */
   async choose(name: string): Promise<void> {
@@ -245,7 +245,7 @@ export class Session {
     return this.there !== undefined && this.there !== null;
   }
 
-  /** What the other end has; undefined until that is known. */
+  /** The firmware and robot at the other end; undefined until known. */
   get has(): BoardBanner | undefined {
     return this.there;
   }
@@ -284,7 +284,7 @@ export class Session {
     this.simulated?.supply(this.volts);
   }
 
-  /** Takes a board that the user has picked and identifies it; returns true if it is still there. Throws a sentence. */
+  /** Takes a board that the user has picked and identifies it; returns true if it is still there. Throws an error for the user. */
   async connect(link: Link | null): Promise<boolean> {
     if (!link) return false;
     link.onGone = (why) => {
@@ -348,7 +348,7 @@ export class Session {
       await identify(link);
       this.hasLoader = true;
     } catch (error) {
-      said = `The board does not speak as this firmware does, and asked for its boot loader ${sentence(error)}. Is it the right port, and a UNO?`;
+      said = `The board does not speak as this firmware does, and asked for its boot loader ${messageOf(error)}. Is it the right port, and a UNO?`;
     } finally {
       if (this.link === link) this.listen();
     }
@@ -390,7 +390,7 @@ export class Session {
     return known ? known.moves : !['', '?', GAITS.stand, ...Object.values<string>(WORDS)].includes(word);
   }
 
-  /** Gives a robot that does not walk, and is not about to, its own `deadman` back. */
+  /** Restores the robot's own `deadman` once it does not walk and is not about to. */
   private rests(): void {
     if (this.drives === 0 && !this.walksAlone) this.deadman.end();
   }
@@ -484,7 +484,7 @@ export class Session {
   }
 
   private setPace(percent: number): void {
-    // A cycle at two paces is none.
+    // A cycle at two paces does not count.
     if (percent !== this.pace) this.way = [];
     this.pace = percent;
     this.listener.speed(percent);
@@ -513,7 +513,7 @@ export class Session {
         if (stops !== this.stops) return null;
         if (!isSure) throw new Error(`"${line}" was not sent, since the robot has not confirmed that it stops when it hears nothing`);
       }
-      // What the robot prints and keeps is its own setting.
+      // The robot prints and keeps its own setting.
       const isOwn = deadman.isSet && [WORDS.cal, WORDS.save].some((word) => word === command);
       if (isOwn) deadman.end();
       const asked = this.dialogue.ask(line, quiet, timeout);
@@ -524,7 +524,7 @@ export class Session {
       return answer;
     } catch (error) {
       // A quiet line is asked again, and meanwhile the page shows that the robot is silent.
-      if (!quiet && !(error instanceof DroppedQuestion)) this.listener.trouble('line', `${sentence(error)}.`);
+      if (!quiet && !(error instanceof DroppedQuestion)) this.listener.trouble('line', `${messageOf(error)}.`);
       return null;
     } finally {
       if (isDrive) {
@@ -546,7 +546,7 @@ export class Session {
     const gait = read.gait.replaceAll('-', ' ');
     // `center` is a pose for the robot, and a routine that rests is still under way.
     const isKnown = (gait === WORDS.pose && this.gait === WORDS.center) || (gait === WORDS.rest && this.isRoutine && read.fault === 'none');
-    // What the page has not heard, as when its link was cut.
+    // An activity that the page has not heard of, as when its link was cut.
     if (gait !== this.gait && !isKnown) this.doing(gait);
     this.listener.state(read);
   }
@@ -559,13 +559,13 @@ export class Session {
     await this.link.reset();
   }
 
-  /** Writes an image by the boot loader and starts it. Throws a sentence. */
+  /** Writes an image by the boot loader and starts it. Throws an error for the user. */
   async flash(image: Uint8Array, progress: Progress): Promise<void> {
     await this.write({ at: 0, bytes: image }, progress, null);
   }
 
   /**
-   * Writes the page's robot behind the board's firmware and starts it. Throws a sentence; an `Unfit` if that
+   * Writes the page's robot after the board's firmware and starts it. Throws an error for the user; an `Unfit` if that
    * firmware is not the page's, and then nothing was written.
    */
   async flashRobot(progress: Progress): Promise<void> {
@@ -628,7 +628,7 @@ export class Session {
         simulated?.advance(part);
       }
     } catch (error) {
-      this.listener.trouble('simulation', `The simulated UNO has stopped: ${sentence(error)}`);
+      this.listener.trouble('simulation', `The simulated UNO has stopped: ${messageOf(error)}`);
       throw error;
     }
   }

@@ -37,8 +37,8 @@ export const PATIENCE = Number(process.env.PATIENCE ?? 300_000);
 export function within(what, promise) {
   let timer;
   const late = new Promise((_, fail) => {
-    const sentence = `waited ${PATIENCE / 1000} s for ${what}`;
-    timer = setTimeout(() => fail(new Error(sentence)), PATIENCE);
+    const message = `waited ${PATIENCE / 1000} s for ${what}`;
+    timer = setTimeout(() => fail(new Error(message)), PATIENCE);
   });
   return Promise.race([promise, late]).finally(() => clearTimeout(timer));
 }

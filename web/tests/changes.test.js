@@ -123,6 +123,22 @@ test('the pace slider has what the robot has, after a typed line and after a res
   assert.match(await type(opened, 'status', 'ok gait=stand'), / speed=100( |$)/);
 });
 
+test("the share of the servos' line is that of the robot's pace", async () => {
+  const opened = await standing();
+  await unfold(opened, '#power');
+  const note = async (pace) => {
+    const line = opened.locator('#line-note', { hasText: `line at ${pace} % of its pace` });
+    await line.waitFor();
+    return Number((await line.innerText()).match(/, (\d\.\d\d) of/)[1]);
+  };
+  await advance(opened, 3000);
+  const full = await note(100);
+  await type(opened, 'speed 50', 'ok speed 50');
+  const half = await note(50);
+  // docs/gaits.md: the hardest gait uses 0.81 and 0.50.
+  assert.deepEqual([full, half], [0.81, 0.5]);
+});
+
 test('what moves nothing with rigid legs and ideal servos says so and cannot be set', async () => {
   const opened = await standing();
   for (const panel of ['#world', '#power']) await unfold(opened, panel);

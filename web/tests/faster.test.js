@@ -116,7 +116,7 @@ test('a gait that cannot be made faster says so', async () => {
   assert.ok(await page.locator('#faster-result').isHidden());
 });
 
-test('what cannot be searched is refused in a sentence, and a number out of range is not taken', async () => {
+test('what cannot be searched is refused with a message, and a number out of range is not taken', async () => {
   const page = await opened({ gait: 'arc-left' });
   await start(page);
   await ended(page);

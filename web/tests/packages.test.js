@@ -8,11 +8,11 @@ import { test } from 'node:test';
 
 const SCRIPT = new URL('../../scripts/packages.sh', import.meta.url).pathname;
 
-/** Runs scripts/packages.sh with an apt-get that fails a number of times with a sentence. */
-async function updates(times, sentence, wait) {
+/** Runs scripts/packages.sh with an apt-get that fails a number of times with a message. */
+async function updates(times, message, wait) {
   const folder = await mkdtemp(join(tmpdir(), 'lizard-apt-'));
   try {
-    const apt = `#!/bin/sh\nn=$(cat ${folder}/n)\necho $((n + 1)) > ${folder}/n\n[ $n -lt ${times} ] || exit 0\necho '${sentence}'\nexit 100\n`;
+    const apt = `#!/bin/sh\nn=$(cat ${folder}/n)\necho $((n + 1)) > ${folder}/n\n[ $n -lt ${times} ] || exit 0\necho '${message}'\nexit 100\n`;
     await writeFile(join(folder, 'n'), '0\n');
     await writeFile(join(folder, 'apt-get'), apt);
     await chmod(join(folder, 'apt-get'), 0o755);

@@ -169,10 +169,10 @@ test('the guide is gone through step by step', async () => {
   const page = await opened();
   const guide = await readFile(join(folder, 'guide/guide.md'), 'utf8');
   const titles = [...guide.matchAll(/^## ([0-9]+)\. (.*)$/gm)];
-  assert.equal(titles.length, 14);
+  assert.equal(titles.length, 15);
   for (const [, number, title] of titles) {
     await page.getByRole('button', { name: 'Next step' }).click();
-    assert.equal(await page.locator('#step-title').innerText(), `${number} of 14: ${title}`);
+    assert.equal(await page.locator('#step-title').innerText(), `${number} of 15: ${title}`);
   }
   assert.ok(await page.getByRole('button', { name: 'Next step' }).isDisabled());
   await page.getByRole('button', { name: 'Whole robot' }).click();

@@ -272,15 +272,15 @@ test('a mistake is named at its block with its line and its step, and the robot 
   await step(page, 2).fill('wolk 4');
   await page.keyboard.press('Enter');
   const block = page.locator('#routine-steps li', { has: step(page, 2) });
-  const sentence = `robot.toml:${line}: routine.patrol.steps: step 2, "wolk 4", names the gait "wolk", which does not exist; did you mean "walk"?`;
-  await block.getByText(sentence).waitFor();
+  const message = `robot.toml:${line}: routine.patrol.steps: step 2, "wolk 4", names the gait "wolk", which does not exist; did you mean "walk"?`;
+  await block.getByText(message).waitFor();
   assert.deepEqual(await page.locator('#routine-steps input[aria-invalid="true"]').evaluateAll((all) => all.map(({ value }) => value)), ['wolk 4']);
   assert.equal(await toml(page), before);
   assert.ok((await page.locator('#routine-start').isDisabled()) && (await page.locator('#routine-write').isDisabled()));
   assert.equal(await page.locator('#robot-editor').getAttribute('open'), null, 'nobody is led away');
   // What is not known goes with its block, letter by letter.
   await press(page, 'Move down step 2');
-  await page.locator('#routine-steps li', { has: step(page, 3) }).getByText(sentence.replace('step 2', 'step 3')).waitFor();
+  await page.locator('#routine-steps li', { has: step(page, 3) }).getByText(message.replace('step 2', 'step 3')).waitFor();
   await shows(page, ['stand 1 s', 'left 3', 'wolk 4', 'look 1']);
   await page.locator('#routine-undo').click();
   await shows(page, PATROL);

@@ -325,9 +325,9 @@ test('a kept file is given to the robot, and one that is none says what is wrong
     ['c.toml', KEPT.replace('"stand"', '"stand\\nsave"'), /^c\.toml: boot: .* is not the name of a gait$/],
     ['d.toml', KEPT.replace('scale = 10.0', 'scale = 99.0'), /^The robot refuses "scale 1 99\.00": scale must be 5\.\.20/],
   ];
-  for (const [name, body, sentence] of wrong) {
+  for (const [name, body, message] of wrong) {
     await choose(name, body);
-    await said(opened, sentence);
+    await said(opened, message);
     assert.deepEqual(await cal(opened), before, `${name} changes nothing`);
   }
   assert.equal(await opened.evaluate(() => window.strange), undefined);

@@ -1,11 +1,11 @@
 //! Constants that stay in flash.
 //!
 //! An AVR has two address spaces. A Rust `static` lives in the one for data: it is copied
-//! to RAM at start, and this chip has 2 KiB of that. Tables and sentences belong in the
+//! to RAM at start, and this chip has 2 KiB of that. Tables and messages belong in the
 //! other, which only the `lpm` instruction reads. [`flash!`](crate::flash!) puts a
 //! constant there; a [`Flash`] is its address, and the only way to read it. On any other
-//! machine it is an ordinary reference, so the same code runs there, also with tables
-//! that are made at run time.
+//! machine it is an ordinary reference, so the same code runs there, even with tables
+//! made at run time.
 //!
 //! Reads are total: an index past the end reads the last element, so that there is no
 //! panic path. (The crate avr-progmem does the same job, but it needs a nightly compiler
@@ -131,8 +131,8 @@ impl<'a, T> Flash<'a, [T]> {
         self.len() == 0
     }
 
-    /// The element at `index`, still in flash; past the end, the last one; of an
-    /// empty slice, none.
+    /// The element at `index`, still in flash; past the end, the last one; `None` for an
+    /// empty slice.
     #[inline]
     pub const fn get(self, index: usize) -> Option<Flash<'a, T>> {
         if self.is_empty() {

@@ -1,4 +1,4 @@
-//! A region of flash behind the program, which is not part of it.
+//! A region of flash after the program, which is not part of it.
 //!
 //! Data that is written without a compiler lies at a fixed address. On the AVR that
 //! address is a constant of the program, so a region takes no RAM and reading it costs
@@ -8,13 +8,13 @@
 use crate::{Flash, Plain};
 
 /// True in a build whose code is longer, because avr-gcc alone links it. It is for simulators,
-/// so its region may end where the flash does, behind a UNO's boot loader.
+/// so the region may end where the flash does, beyond a UNO's boot loader.
 const IS_PLAIN: bool = match option_env!("LIZARD_PLAIN_LINK") {
     Some(set) => matches!(set.as_bytes(), b"1"),
     None => false,
 };
 
-/// The region's first address, behind 27.5 KiB of code. The region ends where the boot loader
+/// The region's first address, after 27.5 KiB of code. The region ends where the boot loader
 /// of an Arduino UNO begins.
 pub const START: u16 = if IS_PLAIN { 0x7780 } else { 0x6e00 };
 
@@ -63,19 +63,19 @@ impl<'a> Region<'a> {
     /// Reads the value whose bytes begin at `at`; zeros if it is not completely inside. Tests
     /// panic in that case, unless the region is empty.
     pub fn read<T: Plain>(self, at: u16) -> T {
-        self.must_have(at, size_of::<T>());
+        self.assert_has(at, size_of::<T>());
         Flash::from(self.bytes).read(at.into())
     }
 
-    /// `count` values whose bytes begin at `at`; none if they are not completely inside.
+    /// `count` values whose bytes begin at `at`; empty if they are not completely inside.
     pub fn values<T: Plain>(self, at: u16, count: u16) -> Flash<'a, [T]> {
         let length = usize::from(count) * size_of::<T>();
-        self.must_have(at, length);
+        self.assert_has(at, length);
         let part = Flash::from(self.bytes).part(at.into(), length);
         part.map_or(Flash::EMPTY, Flash::of)
     }
 
-    fn must_have(self, at: u16, length: usize) {
+    fn assert_has(self, at: u16, length: usize) {
         debug_assert!(
             self.bytes.is_empty() || usize::from(at) + length <= self.bytes.len(),
             "{length} bytes at {at} are not in a region of {}",

@@ -44,7 +44,7 @@ impl Drive {
         self.kind != Kind::Rigid || self.play > 0.0
     }
 
-    /// The slotted strut; none for another kind.
+    /// The slotted strut; `None` for another kind.
     #[must_use]
     pub fn strut(&self) -> Option<&Strut> {
         match &self.kind {

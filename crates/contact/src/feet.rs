@@ -9,7 +9,7 @@ pub const GRAVITY: f64 = 9.80665;
 /// The geometry of the feet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Feet {
-    /// Distance of the hips ahead of and behind the chassis centre, mm.
+    /// The distance of the front hips ahead of the chassis centre, and of the hind ones behind, mm.
     pub hip_forward: f64,
     /// Distances of the front and of the hind hips to either side, mm.
     pub hip_side: [f64; 2],
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn a_foot_goes_along_its_circle() {
+    fn a_foot_moves_along_its_circle() {
         let feet = Feet {
             hip_forward: 55.0,
             hip_side: [35.0; 2],

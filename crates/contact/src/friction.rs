@@ -21,21 +21,21 @@ pub type Point = [f64; 2];
 pub(crate) type Twist = [f64; 3];
 
 /// Smallest rounding over the size of the slides.
-const SMALLEST: f64 = 1e-8;
+const MIN_ROUNDING: f64 = 1e-8;
 /// Stages from the first rounding, the size of the slides, to the last.
 const STAGES: i32 = 5;
-/// First stage if a guess of the solution is given.
-const NEARLY: i32 = 2;
-/// Most Newton steps of a stage; five to eight are usual.
-const STEPS: usize = 40;
+/// The first stage if a guess of the solution is given.
+const FIRST_STAGE_NEAR: i32 = 2;
+/// The largest number of Newton steps in a stage; five to eight are usual.
+const MAX_STEPS: usize = 40;
 /// Largest force (over one pad's friction) that counts as balanced.
 const BALANCED: f64 = 1e-9;
 
 /// Smallest gain of a Newton step (over a pad's friction times the size of the slides) that
 /// floating point can show.
-const LEAST_GAIN: f64 = 1e-23;
+const MIN_GAIN: f64 = 1e-23;
 
-/// A distance that counts as zero, mm.
+/// The largest distance that counts as zero, mm.
 const STILL: f64 = 1e-12;
 
 /// The four pads in a small step.
@@ -49,9 +49,9 @@ pub(crate) struct Pads {
     pub ratio: f64,
     /// Load of each pad, over the mean.
     pub load: [f64; 4],
-    /// Drives of the legs that lag; none if legs are rigid.
+    /// Drives of the legs that lag; `None` if legs are rigid.
     pub compliance: Option<Compliance>,
-    /// Inertia of the body; none where time does not count.
+    /// Inertia of the body; `None` if time does not count.
     pub body: Option<Inertia>,
 }
 
@@ -135,13 +135,13 @@ impl Pads {
             Some(displacement) => (
                 scale.of_twist(displacement),
                 scale.of_lag(displacement),
-                NEARLY,
+                FIRST_STAGE_NEAR,
             ),
             None => ([0.0; 3], [0.0; 4], 0),
         };
-        let mut answers = [None, guess.map(|_| (size * SMALLEST, x, z))];
+        let mut answers = [None, guess.map(|_| (size * MIN_ROUNDING, x, z))];
         for stage in first..=STAGES {
-            let eps = size * SMALLEST.powf(f64::from(stage) / f64::from(STAGES));
+            let eps = size * MIN_ROUNDING.powf(f64::from(stage) / f64::from(STAGES));
             let around = |x, z| self.expand(&scale.displacement(self, x, z), eps, &scale);
             let mut here = around(x, z);
             // The slide of a pad that holds shrinks with the rounding, so the solutions of two
@@ -155,7 +155,7 @@ impl Pads {
                     (x, z, here) = (next_x, next_z, there);
                 }
             }
-            for _ in 0..STEPS {
+            for _ in 0..MAX_STEPS {
                 let steep = here.gradient.into_iter();
                 let steep = steep.chain(here.legs.map(|leg| leg.slope));
                 if steep.map(f64::abs).all(|g| g < BALANCED * size) {
@@ -164,7 +164,7 @@ impl Pads {
                 let dx = solve(here.hessian, here.gradient);
                 let dz = here.legs.map(|leg| leg.step(dx));
                 let slope = dot(dx, here.gradient) + here.gained();
-                if slope < LEAST_GAIN * size {
+                if slope < MIN_GAIN * size {
                     break;
                 }
                 let at = |share: f64| {

@@ -1,6 +1,6 @@
 //! The four legs in servo order: the place of each, and the sense in which it turns.
 
-/// The end of each leg, servo order: 1 in front, -1 behind.
+/// The end of each leg in servo order: 1 for the front, -1 for the rear.
 pub const FRONT: [f64; 4] = [1.0, 1.0, -1.0, -1.0];
 /// The side of each leg, servo order: 1 on the left, -1 on the right.
 pub const LEFT: [f64; 4] = [1.0, -1.0, -1.0, 1.0];

@@ -72,7 +72,7 @@ const STEP: f64 = 0.0025;
 const SWING: f64 = 0.25;
 
 impl Motors {
-    /// The step of time in which the motors are followed, s: a light rotor with a high gain swings
+    /// The time step of the simulation of the motors, s: a light rotor with a high gain swings
     /// fast, and a long step would damp it.
     pub(crate) fn step(&self) -> f64 {
         let swing = |motor: &Motor| match motor.spin_up > 0.0 {
@@ -213,7 +213,7 @@ impl MotorStep {
     }
 }
 
-/// Most rounds of a balance; a bisection alone would need as many.
+/// The largest number of rounds of a balance, as many as a bisection alone would need.
 const ROUNDS: usize = 60;
 
 #[cfg(test)]
@@ -309,7 +309,7 @@ mod tests {
     }
 
     #[test]
-    fn dry_friction_of_the_joints_is_a_load_and_holds_a_servo_that_cannot_overcome_it() {
+    fn dry_friction_of_the_joints_is_a_load_and_may_hold_a_servo() {
         let free = ground(0.1, 0.001);
         let drag = |drag| Joints { drag, ..JOINTS };
         let after = |joints| turned(free, &motors(SG90, joints), 1000.0, 0.4).servos()[0];

@@ -80,7 +80,7 @@ impl Stance {
                 false => *pressure <= ZERO_LOAD,
             })
         };
-        // A robot that falls over fits none of these cases.
+        // A robot that falls over matches none of these cases.
         let (stands, pressures) = cases.iter().find(is_consistent).unwrap_or(&cases[0]);
         std::array::from_fn(|i| {
             if stands[i] {

@@ -13,7 +13,7 @@ use crate::place::Place;
 
 /// Largest sweep of a step, deg. A larger one is divided into equal steps.
 const PART: f64 = 0.5;
-/// Most rounds of a step. The pads are taken in the middle of a step, which depends on the lags
+/// The largest number of rounds of a step. The pads are taken in the middle of a step, which depends on the lags
 /// after it; each round improves the middle.
 const ROUNDS: usize = 4;
 /// Largest change of a lag in a round that counts as settled, rad.

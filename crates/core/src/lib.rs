@@ -20,7 +20,7 @@
 //!
 //! | room | contents |
 //! |---|---|
-//! | [`console`] | bytes, lines, commands, sentences |
+//! | [`console`] | bytes, lines, commands, messages |
 //! | [`control`] | orders, refusals, the [`control::supervisor`]'s table, faults, supplies |
 //! | [`motion`] | gaits, moves between poses, and the changes from one to the next |
 //! | [`guard`] | the geometry: margins to the singularities, strokes, the limit that a pose breaks |
@@ -59,7 +59,7 @@
 //!    fault ends in a robot that stands still and says why.
 //! 2. **Exact.** A pulse is right to the cycle, and a frame on the host equals the chip's
 //!    to the bit.
-//! 3. **Plain.** A type for a thing, an enum for a choice, a sentence for a refusal.
+//! 3. **Plain.** A type for a thing, an enum for a choice, a message for a refusal.
 //! 4. **Small.** Flash and RAM come last: a type that costs a few bytes stays, as long as
 //!    the program fits.
 //!

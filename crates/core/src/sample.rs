@@ -168,9 +168,9 @@ impl Sample {
         Self::new(Measures::odd())
     }
 
-    /// See [`Measures::random`]. Each stands safely in its neutral pose by the
-    /// integers, as every robot must that a firmware is built for: floating point calls
-    /// some safe that the integers do not, within their roundings.
+    /// See [`Measures::random`]. Each stands safely in its neutral pose by the integers, as
+    /// every robot of a firmware must: within their roundings, floating point calls some
+    /// poses safe that the integers do not.
     pub fn random() -> impl Strategy<Value = Self> {
         Measures::random()
             .prop_map(Self::new)
@@ -237,7 +237,7 @@ impl Sample {
         pose.angles(&self.neutral()).map(degrees)
     }
 
-    /// The truth about a pose; none where a loop does not close.
+    /// The exact solution of a pose; `None` where a loop does not close.
     pub fn solve(&self, pose: &Pose) -> Option<kinematics::Solution> {
         let angles = self.degrees(pose);
         self.measures.lizard.solve(&angles.into()).ok()
@@ -260,7 +260,7 @@ impl Robot<'_> {
     }
 }
 
-/// A robot by its section, which is kept until the tests end.
+/// The robot of a section, which is kept until the tests end.
 fn read(content: &Content) -> Robot<'static> {
     Robot::unchecked(Region::new(Vec::leak(content.section()))).expect("a whole section")
 }
@@ -280,8 +280,8 @@ pub fn side_of(side: &kinematics::Slider, stroke_min: f64, stroke_max: f64) -> S
     let all = side.base + side.front + side.rear + side.offset.abs();
     let across = side.front + side.rear + side.offset.abs();
     let fits = |scale: &Scale| {
-        all.max(side.nominal + stroke_max) * per_mm(*scale) < slider::LONGEST
-            && across * per_mm(*scale) < slider::LONGEST_ARMS
+        all.max(side.nominal + stroke_max) * per_mm(*scale) < slider::MAX_STEPS
+            && across * per_mm(*scale) < slider::MAX_ARM_STEPS
     };
     let scale = (0..=14).rev().map(|bits| Scale { bits }).find(fits);
     let scale = scale.expect("lengths of a robot");
@@ -305,7 +305,7 @@ pub const WELL: Health = Health {
         rail: 393,
     },
     late: 0,
-    stack_is_intact: true,
+    is_stack_intact: true,
     is_closed: false,
 };
 

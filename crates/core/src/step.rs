@@ -30,24 +30,23 @@ pub trait Board {
     /// The memory that keeps its bytes without power.
     type Memory: Memory;
 
-    /// Bytes that the writer takes without waiting when the line has taken all before;
-    /// at least [`LONGEST_LINE`], for a line is written when there is room for all of
-    /// it.
+    /// Bytes that an idle writer takes without waiting; at least [`LONGEST_LINE`], since a
+    /// line is written only when there is room for all of it.
     const ROOM: u8;
 
     /// Steps of a pulse's width in a microsecond; the core counts in 1/16 us.
     const CYCLES_PER_US: u16;
 
     /// Connects the servos A1 to A4 to these pins, and the measured rail, if there is
-    /// one, by their Arduino numbers; 14 to 19 are A0 to A5. Once, before the first
+    /// one, by their Arduino numbers; 14 to 19 are A0 to A5. Called once, before the first
     /// pulses.
     fn connect(&mut self, servos: [u8; 4], rail: Option<u8>);
 
     /// Ticks since power-on, modulo 256; one every 20 ms.
     fn ticks(&self) -> u8;
 
-    /// True if the pulses handed over last have been taken over, and before the first:
-    /// then the clock and all that makes pulses are alive.
+    /// True if the pulses handed over last, if any, have been taken over: then the clock
+    /// and all that makes pulses are alive.
     fn is_taken(&self) -> bool;
 
     /// Hands over the pulses of the next frame, in place of any that have not been taken
@@ -69,7 +68,7 @@ pub trait Board {
     fn supply(&mut self) -> Reading;
 
     /// True while the stack has not grown into the data.
-    fn stack_is_intact(&self) -> bool;
+    fn is_stack_intact(&self) -> bool;
 
     /// True while the contact between this pin, by its Arduino number, and ground is closed.
     /// Switches the pin's pull-up on.
@@ -79,7 +78,7 @@ pub trait Board {
     fn memory(&mut self) -> &mut Self::Memory;
 
     /// Switches the LED on or off.
-    fn set_led(&mut self, on: bool);
+    fn set_led(&mut self, is_on: bool);
 
     /// Bytes that the writer takes at this moment without waiting.
     fn room(&self) -> u8;
@@ -98,8 +97,7 @@ pub trait Board {
     fn counters(&self) -> Counters;
 }
 
-/// The robot, the console at its serial line, and the tick that it has computed a frame
-/// for.
+/// The robot, its console at the serial line, and the tick of its last frame.
 #[derive(Clone, Debug)]
 pub struct Main {
     control: Control,
@@ -135,8 +133,8 @@ impl Main {
         }
     }
 
-    /// Begins on a board, with the robot at the beginning of `flash`. Once, before the
-    /// first step.
+    /// Begins on a board, with the robot at the beginning of `flash`. To be called once, before
+    /// the first step.
     #[inline(always)]
     pub fn begin<B: Board>(&mut self, flash: Region<'static>, board: &mut B) {
         const {
@@ -177,7 +175,7 @@ impl Main {
             let health = Health {
                 supply: board.supply(),
                 late: board.counters().late,
-                stack_is_intact: board.stack_is_intact(),
+                is_stack_intact: board.is_stack_intact(),
                 is_closed: match self.control.input().pin() {
                     0 => false,
                     pin => board.is_closed(pin),
@@ -291,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn of_several_ticks_at_once_one_gets_its_frame_also_across_the_end_of_the_count() {
+    fn of_several_ticks_at_once_one_gets_a_frame_even_if_the_count_wraps() {
         let mut running = begun(250, "");
         running.settle();
         for frames in 1..=300 {
@@ -305,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_that_waits_to_be_played_is_followed_and_only_the_end_of_the_pulses_replaces_it() {
+    fn only_the_end_of_the_pulses_replaces_a_frame_that_waits_to_be_played() {
         for rests in [false, true] {
             let mut running = begun(0, "");
             running.run(100);
@@ -356,7 +354,7 @@ mod tests {
     }
 
     #[test]
-    fn the_led_beats_slowly_and_flashes_once_a_while_when_the_guard_holds_the_robot() {
+    fn the_led_beats_slowly_and_flashes_while_the_guard_holds_the_robot() {
         let mut running = begun(0, "stray\r");
         let (mut leds, mut held_since) = (Vec::new(), 0);
         for frame in 1..400 {
@@ -385,7 +383,7 @@ mod tests {
         for _ in 0..100 {
             let pulses = running.frame();
             let kept = running.board.stored_stance().expect("a stance");
-            assert!(!kept.resting);
+            assert!(!kept.is_resting);
             assert_eq!(kept.pose, *running.motion().pose());
             for (sent, pulse) in kept.sent.0.iter().zip(pulses.0) {
                 assert!(pulse.0 == 0 || pulse == *sent);
@@ -394,7 +392,7 @@ mod tests {
         running.say("rest");
         running.frame();
         let kept = running.board.stored_stance().expect("a stance");
-        assert!(kept.resting);
+        assert!(kept.is_resting);
         assert_eq!(kept.pose, *running.motion().pose());
     }
 
@@ -422,7 +420,7 @@ mod tests {
     }
 
     #[test]
-    fn of_a_line_that_began_at_another_rate_the_end_is_not_obeyed_and_the_next_line_is() {
+    fn the_rest_of_a_line_begun_at_another_rate_is_not_obeyed_but_the_next_is() {
         let mut running = Running::power_on(*Sample::odd());
         running.run(10);
         running
@@ -457,7 +455,7 @@ mod tests {
                 .any(|line| line.starts_with("# fault: a pulse came late")),
             "{printed:?}"
         );
-        running.board.stack_is_intact = false;
+        running.board.is_stack_intact = false;
         let printed = running.run(1);
         assert!(
             printed

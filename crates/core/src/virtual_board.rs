@@ -1,4 +1,4 @@
-//! The one board for hosts: it does what the UNO's registers, pins and interrupts do, but
+//! The board for hosts: it does what the UNO's registers, pins and interrupts do, but
 //! has none.
 //!
 //! Every program that runs the core on a host (tests, the fuzzer, the page in a browser,
@@ -66,16 +66,16 @@ pub struct VirtualBoard {
     ticks: u8,
     submitted: Pulses,
     /// True while the submitted frame waits to be taken over.
-    fresh: bool,
+    is_fresh: bool,
     playing: Pulses,
     begun: Pulses,
-    lit: bool,
+    is_lit: bool,
     received: VecDeque<u8>,
     lost: u16,
     /// Edges that came late.
     pub late: u16,
     /// True while the stack has not grown into the data.
-    pub stack_is_intact: bool,
+    pub is_stack_intact: bool,
     /// The pins whose contacts are closed, a bit for each Arduino number.
     pub closed: u32,
     /// The pins whose pull-ups are on.
@@ -89,13 +89,13 @@ pub struct VirtualBoard {
     /// The bytes that survive a reset.
     pub ram: Ram,
     /// True if a boot loader hides the chip's cause of a reset.
-    pub boot_loader: bool,
+    pub has_boot_loader: bool,
     restart: Restart,
     /// The rate of the serial line.
     pub rate: Rate,
     /// Milliseconds since the watchdog was fed.
     unfed: u16,
-    hushed: bool,
+    is_hushed: bool,
     /// The servos' pins and the rail's, once main has named them.
     connected: Option<([u8; 4], Option<u8>)>,
 }
@@ -114,25 +114,25 @@ impl VirtualBoard {
             ms: FRAME_MS - 1,
             ticks: 0,
             submitted: Pulses::default(),
-            fresh: false,
+            is_fresh: false,
             playing: Pulses::default(),
             begun: Pulses::default(),
-            lit: false,
+            is_lit: false,
             received: VecDeque::new(),
             lost: 0,
             late: 0,
-            stack_is_intact: true,
+            is_stack_intact: true,
             closed: 0,
             pulled_up: 0,
             transmitter: Transmitter::default(),
             memory,
             converter: Converter::default(),
             ram: Ram::default(),
-            boot_loader: false,
+            has_boot_loader: false,
             restart: Restart::NONE,
             rate: Rate::Fastest,
             unfed: 0,
-            hushed: false,
+            is_hushed: false,
             connected: None,
         }
     }
@@ -163,7 +163,7 @@ impl VirtualBoard {
         for _ in 0..ms {
             self.unfed = self.unfed.saturating_add(1);
             if self.unfed == WATCHDOG_MS {
-                self.hushed = true;
+                self.is_hushed = true;
                 self.ram.mark_hung();
             }
             if self.unfed >= 2 * WATCHDOG_MS {
@@ -187,7 +187,7 @@ impl VirtualBoard {
                 self.take_over();
             }
             let width = self.playing.0[servo];
-            if !self.hushed && self.connected.is_some() && WIDTHS.contains(&width.0) {
+            if !self.is_hushed && self.connected.is_some() && WIDTHS.contains(&width.0) {
                 self.begun.0[servo] = width;
             }
         }
@@ -200,9 +200,9 @@ impl VirtualBoard {
     }
 
     fn take_over(&mut self) {
-        if self.fresh {
+        if self.is_fresh {
             self.playing = self.submitted;
-            self.fresh = false;
+            self.is_fresh = false;
         }
         self.begun = Pulses([Width(0); 4]);
     }
@@ -216,7 +216,7 @@ impl VirtualBoard {
     /// Resets the processor: its state is lost, and main has to begin again.
     pub fn reset(&mut self, cause: Cause) {
         let power_on = cause == Cause::Power;
-        let reported = (!self.boot_loader).then_some(cause);
+        let reported = (!self.has_boot_loader).then_some(cause);
         let ram = core::mem::take(&mut self.ram);
         let mut memory = core::mem::take(&mut self.memory);
         // A start takes longer than a write of the memory.
@@ -224,7 +224,7 @@ impl VirtualBoard {
         *self = Self {
             transmitter: core::mem::take(&mut self.transmitter).reset(),
             converter: core::mem::take(&mut self.converter).reset(),
-            boot_loader: self.boot_loader,
+            has_boot_loader: self.has_boot_loader,
             closed: self.closed,
             restart: ram.begin(reported),
             ram,
@@ -238,7 +238,7 @@ impl VirtualBoard {
     }
 
     /// Turns the power off and on. A byte that was being written to the memory gets the value
-    /// `torn`, since it may hold anything.
+    /// `torn`: it may hold anything.
     pub fn lose_power(&mut self, torn: Option<u8>) {
         if let Some(byte) = torn {
             self.memory.cut_power(byte);
@@ -277,7 +277,7 @@ impl VirtualBoard {
     /// True while that frame waits to be taken over.
     #[must_use]
     pub const fn is_fresh(&self) -> bool {
-        self.fresh
+        self.is_fresh
     }
 
     /// The pulses that have begun since the last hand-over.
@@ -289,7 +289,7 @@ impl VirtualBoard {
     /// True while the LED is lit.
     #[must_use]
     pub const fn is_lit(&self) -> bool {
-        self.lit
+        self.is_lit
     }
 
     /// Milliseconds since the watchdog was fed.
@@ -307,7 +307,7 @@ impl VirtualBoard {
     /// True once the watchdog has ended the pulses.
     #[must_use]
     pub const fn is_hushed(&self) -> bool {
-        self.hushed
+        self.is_hushed
     }
 }
 
@@ -327,12 +327,12 @@ impl Board for VirtualBoard {
     }
 
     fn is_taken(&self) -> bool {
-        !self.fresh
+        !self.is_fresh
     }
 
     fn submit(&mut self, pulses: Pulses) {
         self.submitted = pulses;
-        self.fresh = true;
+        self.is_fresh = true;
     }
 
     fn feed(&mut self) {
@@ -351,8 +351,8 @@ impl Board for VirtualBoard {
         self.converter.next()
     }
 
-    fn stack_is_intact(&self) -> bool {
-        self.stack_is_intact
+    fn is_stack_intact(&self) -> bool {
+        self.is_stack_intact
     }
 
     fn is_closed(&mut self, pin: u8) -> bool {
@@ -364,8 +364,8 @@ impl Board for VirtualBoard {
         &mut self.memory
     }
 
-    fn set_led(&mut self, on: bool) {
-        self.lit = on;
+    fn set_led(&mut self, is_on: bool) {
+        self.is_lit = is_on;
     }
 
     fn room(&self) -> u8 {

@@ -51,12 +51,12 @@ const ATAN: [f64; 11] = [
 /// tan 22.5 degrees.
 const HALF_EIGHTH: f64 = 0.41421356237309503;
 
-/// Adding and subtracting it rounds to a whole number; the last bits of the sum
-/// are those of that number. 1.5 * 2^52.
+/// 1.5 * 2^52: adding and subtracting it rounds to a whole number, and the last bits of
+/// the sum are those of that number.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// Angle from which the reduction by [`ROUND`] is no longer exact.
-const FAR: f64 = 1e15;
+const MAX_REDUCED: f64 = 1e15;
 
 /// A polynomial by Horner's rule.
 #[inline(always)]
@@ -109,7 +109,7 @@ pub fn sin_cos_all<const N: usize>(degrees: [f64; N]) -> ([f64; N], [f64; N]) {
     let mut degrees = degrees;
     let mut far = false;
     for angle in &degrees {
-        far |= angle.abs() >= FAR;
+        far |= angle.abs() >= MAX_REDUCED;
     }
     if far {
         reduce(&mut degrees);
@@ -216,7 +216,7 @@ mod tests {
         }
 
         #[test]
-        fn quarter_turns_change_nothing_but_places_and_signs(
+        fn quarter_turns_change_only_order_and_signs(
             degrees in -44.99..44.99f64, turns in -1_000_000..1_000_000i32,
         ) {
             // On a grid on which adding the turns is exact, and short of 45 degrees,

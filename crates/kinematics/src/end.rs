@@ -24,7 +24,7 @@ impl End {
     /// Both ends, the head first.
     pub const ALL: [Self; 2] = [Self::Head, Self::Tail];
 
-    /// Its name in robot.toml and in messages: `head`, `tail`.
+    /// The end's name in robot.toml and in messages: `head`, `tail`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Head => "head",
@@ -46,7 +46,7 @@ impl End {
         if servo < 2 { Self::Head } else { Self::Tail }
     }
 
-    /// Direction of its y axis in the chassis frame: 1 forward, -1 backward.
+    /// The direction of the end's y axis in the chassis frame: 1 forward, -1 backward.
     /// Angles, rates and y coordinates change frame by this factor.
     pub const fn sign(self) -> f64 {
         match self {

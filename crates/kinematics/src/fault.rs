@@ -1,4 +1,4 @@
-//! The reasons why a position does not exist, as the sentences that the user sees.
+//! The reasons why a position does not exist, as the messages that the user sees.
 
 use core::fmt;
 
@@ -49,7 +49,7 @@ pub enum Fault {
     /// A point is outside the ring that one crank and its coupler reach.
     OutOfReach {
         /// True for the left crank, seen along the five-bar's own y axis.
-        left: bool,
+        is_left: bool,
         /// Distance of the point from that crank's shaft.
         distance: f64,
         /// Nearest distance that it reaches.
@@ -80,14 +80,14 @@ impl fmt::Display for Fault {
                 f.write_str("singular: the crank tips coincide, the end point is free on a circle")
             }
             Self::OutOfReach {
-                left,
+                is_left,
                 distance,
                 least,
                 most,
             } => write!(
                 f,
                 "the point is {distance:.3} mm from the {} shaft, which reaches {least:.3} to {most:.3} mm",
-                if left { "left" } else { "right" }
+                if is_left { "left" } else { "right" }
             ),
             Self::OnShaft => {
                 f.write_str("singular: the point lies on a shaft, any crank angle will do")

@@ -19,7 +19,7 @@ use crate::vector::Vector;
 
 /// Gap between the crank tips, mm, below which the end point is undefined: rounding alone
 /// moves it by more than 0.1 mm.
-const LEAST_GAP: f64 = 1e-12;
+const MIN_GAP: f64 = 1e-12;
 
 /// Link lengths of a five-bar in mm, all above 0. Its frame has the origin in the
 /// middle of the base, x from the left shaft to the right one, y away from the
@@ -38,7 +38,7 @@ pub struct FiveBar {
     pub crank_right: f64,
 }
 
-/// On which side of the line from the left crank tip to the right one the end
+/// The side of the line from the left crank tip to the right one on which the end
 /// point lies. A mechanism cannot change it without passing a type-2
 /// singularity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -112,8 +112,8 @@ impl<T: Real> FiveBarPose<T> {
         self.right.cross(self.right_coupler)
     }
 
-    /// A number that is finite if, and only if, every number of the pose is: each of them is
-    /// in its sums and products.
+    /// A number that is finite if and only if every number of the pose is, since it sums and
+    /// multiplies them all.
     #[inline(always)]
     fn probe(&self) -> T {
         self.end_point.x + self.end_point.y + self.type2 + self.type1_left() + self.type1_right()
@@ -147,13 +147,12 @@ impl FiveBar {
     }
 
     /// The pose at two crank angles in degrees (own frame), in the assembly mode
-    /// that the robot is built in. Loop closure is below 1e-12 mm for lengths of
-    /// this size.
+    /// that the robot is built in. Loops of this size close within 1e-12 mm.
     ///
     /// # Errors
-    /// [`Fault::Apart`] and [`Fault::Nested`] where the couplers do not meet,
-    /// [`Fault::Coincident`] where the end point is free,
-    /// [`Fault::NotFinite`] for input that is not finite or that overflows.
+    /// Returns [`Fault::Apart`] and [`Fault::Nested`] where the couplers do not meet,
+    /// [`Fault::Coincident`] where the end point is free, [`Fault::NotFinite`] for input that is
+    /// not finite or that overflows.
     ///
     /// ```
     /// let head = lizard_kinematics::FiveBar::new([20.0, 30.0, 50.0, 50.0, 30.0]);
@@ -168,7 +167,7 @@ impl FiveBar {
     /// mode.
     ///
     /// # Errors
-    /// As [`FiveBar::forward`].
+    /// Fails as [`FiveBar::forward`] does.
     pub fn forward_in(
         &self,
         mode: AssemblyMode,
@@ -183,7 +182,7 @@ impl FiveBar {
     /// the sines and arc tangents.
     ///
     /// # Errors
-    /// As [`FiveBar::forward`].
+    /// Fails as [`FiveBar::forward`] does.
     #[inline]
     pub fn close(
         &self,
@@ -223,7 +222,7 @@ impl FiveBar {
             Err(Fault::Apart { gap: d, reach })
         } else if d < least {
             Err(Fault::Nested { gap: d, least })
-        } else if d < LEAST_GAP {
+        } else if d < MIN_GAP {
             Err(Fault::Coincident)
         } else if !probe.is_finite() {
             Err(Fault::NotFinite)

@@ -43,8 +43,8 @@
 //!
 //!     // What no linkage can do is an error that names the place.
 //!     let error = lizard.point_angles(End::Head, Vector::new(0.0, 500.0)).unwrap_err();
-//!     let sentence = "head: the point is 500.100 mm from the left shaft, which reaches 20.000 to 80.000 mm";
-//!     assert_eq!(error.to_string(), sentence);
+//!     let message = "head: the point is 500.100 mm from the left shaft, which reaches 20.000 to 80.000 mm";
+//!     assert_eq!(error.to_string(), message);
 //!     Ok(())
 //! }
 //! ```

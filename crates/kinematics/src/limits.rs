@@ -1,4 +1,4 @@
-//! The limits of a safe pose, and the sentence for each violation.
+//! The limits of a safe pose, and the message for each violation.
 
 use core::fmt;
 
@@ -28,7 +28,7 @@ pub struct Limits {
 pub struct Violation {
     /// The condition that is out of bounds.
     pub what: Check,
-    /// Its value: a sine for margins, mm for stroke and crossing.
+    /// The value of the condition: a sine for margins, mm for stroke and crossing.
     pub value: f64,
     /// The violated limit, in the same unit.
     pub limit: f64,
@@ -81,8 +81,8 @@ impl Limits {
         limit.map(|limit| Violation { what, value, limit })
     }
 
-    /// Every limit that a solved pose breaks; none if it is safe. This is the only
-    /// definition of a safe pose.
+    /// Every limit that a solved pose breaks; empty if it is safe. This is the only definition
+    /// of a safe pose.
     ///
     /// Besides margins and strokes it requires that the crank tips are not crossed
     /// (K2 > 0): beyond d = 0 lies a second region with good margins, which the

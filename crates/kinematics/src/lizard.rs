@@ -208,7 +208,7 @@ impl Lizard {
     /// Solves the complete robot at a pose.
     ///
     /// # Errors
-    /// The first loop that does not close, with the reason: see [`FiveBar::forward`] and
+    /// Returns the first loop that does not close, with the reason: see [`FiveBar::forward`] and
     /// [`Slider::forward`].
     #[inline]
     pub fn solve(&self, pose: &Pose) -> Result<Solution, Infeasible> {
@@ -286,7 +286,7 @@ impl Lizard {
     /// The margins at a pose; no arc tangents are taken.
     ///
     /// # Errors
-    /// As [`Lizard::solve`].
+    /// Fails as [`Lizard::solve`] does.
     pub fn margins(&self, pose: &Pose) -> Result<Margins, Infeasible> {
         self.solve(pose).map(|solution| solution.margins)
     }
@@ -296,7 +296,7 @@ impl Lizard {
     /// outward elbows. In servo order: A1, A2 or A3, A4.
     ///
     /// # Errors
-    /// As [`FiveBar::inverse`].
+    /// Fails as [`FiveBar::inverse`] does.
     pub fn point_angles(&self, end: End, point: Vector) -> Result<[f64; 2], Infeasible> {
         let part = Part::End(end);
         let found = self.end(end).inverse(point);

@@ -24,7 +24,7 @@ impl Side {
     /// Both sides, the left first.
     pub const ALL: [Self; 2] = [Self::Left, Self::Right];
 
-    /// Its name in messages: `left`, `right`.
+    /// The side's name in messages: `left`, `right`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Left => "left",

@@ -37,8 +37,8 @@ impl FiveBar {
     /// Every singular position with this left crank angle (degrees), on the
     /// assembly mode that the robot is built in; at most ten.
     ///
-    /// Coinciding crank tips are single points of the plane, which no crank
-    /// angle but theirs finds: see [`FiveBar::coinciding_tips`].
+    /// Coinciding crank tips are isolated, so that only their own crank angles find
+    /// them: see [`FiveBar::coinciding_tips`].
     pub fn singular_with(&self, theta_left: f64) -> impl Iterator<Item = SingularPose> + use<> {
         let bars = *self;
         let left = Vector::direction(theta_left);
@@ -96,9 +96,9 @@ impl FiveBar {
             .map(move |tip| (tip - shaft).angle())
     }
 
-    /// A candidate's margin vanishes in the robot's own assembly mode; the
-    /// other shares the circles but not the arms. A couplers' candidate may
-    /// miss its closure by rounding and counts.
+    /// True if the candidate's margin vanishes in the robot's own assembly mode; the other
+    /// mode shares the circles but not the arms. A candidate of the couplers whose loop
+    /// fails to close only by rounding counts.
     fn is_singular(&self, pose: &SingularPose) -> bool {
         match self.forward_in(AssemblyMode::Ahead, pose.theta_left, pose.theta_right) {
             Err(_) => pose.kind == Singularity::Couplers,
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn the_crank_tips_coincide_where_the_paper_never_looks() {
+    fn the_crank_tips_coincide_outside_the_papers_range() {
         let poses: Vec<_> = HEAD.coinciding_tips().collect();
         assert_eq!(poses.len(), 2);
         for pose in poses {

@@ -64,8 +64,8 @@ impl Slider {
     /// the left, theta13 and theta16 on the right).
     ///
     /// # Errors
-    /// [`Fault::Collapsed`] where the arm tips coincide, [`Fault::NotFinite`] for
-    /// input that is not finite or that overflows.
+    /// Returns [`Fault::Collapsed`] where the arm tips coincide, [`Fault::NotFinite`] for input
+    /// that is not finite or that overflows.
     pub fn forward(&self, theta_rear: f64, theta_front: f64) -> Result<SliderPose, Fault> {
         let [rear, front] = [theta_rear, theta_front].map(Vector::direction);
         self.close(rear, front)
@@ -74,7 +74,7 @@ impl Slider {
     /// The slider between arms of two directions of length one.
     ///
     /// # Errors
-    /// As [`Slider::forward`].
+    /// Fails as [`Slider::forward`] does.
     #[inline]
     pub fn close(&self, rear: Vector, front: Vector) -> Result<SliderPose, Fault> {
         let pose = self.shape(rear, front);

@@ -45,7 +45,7 @@ impl Workspace {
         })
     }
 
-    /// Its area in mm^2, above and below the base together.
+    /// The area in mm^2, above and below the base together.
     pub fn area(&self) -> f64 {
         let apart = 2.0 * self.half_base;
         let (r, s) = (self.inner, self.outer);

@@ -76,5 +76,5 @@ pub use order::steps::{ExtraView, Stage, Step, TurningPlace, steps};
 pub use part::{Part, PrintToBody};
 pub use price::Price;
 pub use proof::clearance::Clearance;
-pub use proof::{Answer, Clash, ENOUGH, LEAST, NearestPair, Proof, Questions};
+pub use proof::{Answer, Clash, ENOUGH, MIN_GAP_MM, NearestPair, Proof, Questions};
 pub use unfit::Unfit;

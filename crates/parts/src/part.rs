@@ -23,7 +23,7 @@ pub struct Part {
     pub name: String,
     /// Names of the bodies that it is printed for.
     pub bodies: Vec<String>,
-    /// Its layers as printed: from z = 0 up, the larger face below.
+    /// The layers as printed: from z = 0 up, the larger face below.
     pub prisms: Vec<Prism>,
     /// True if it is printed on its back.
     pub turned: bool,
@@ -62,7 +62,7 @@ impl Part {
         self.name.replace(' ', "-")
     }
 
-    /// Its layers as printed, with its mark, and the number of holes that are closed in
+    /// The layers as printed, with the mark, and the number of holes that are closed in
     /// them because they would begin in the air.
     #[must_use]
     pub fn printed(&self) -> (Vec<Prism>, usize) {
@@ -87,7 +87,7 @@ impl Part {
         }
     }
 
-    /// Its volume, mm^3.
+    /// The part's volume, mm^3.
     #[must_use]
     pub fn volume(&self) -> f64 {
         volume(&self.prisms)

@@ -39,7 +39,7 @@ impl Price {
         }
     }
 
-    /// The sentence that says what the classes mean.
+    /// The message that says what the classes mean.
     #[must_use]
     pub fn meaning() -> String {
         let classes = Self::ALL.map(|class| {

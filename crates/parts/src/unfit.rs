@@ -11,7 +11,7 @@ use crate::order::reach::Blocked;
 use crate::order::steps::steps;
 use crate::proof::Clash;
 
-/// A reason why a robot cannot be built, as the sentence that the user sees.
+/// A reason why a robot cannot be built, as the message that the user sees.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Unfit {
     /// Two parts that collide, or come too near to each other.
@@ -46,7 +46,7 @@ impl Assembly {
     /// the last takes seconds.
     ///
     /// # Errors
-    /// The first measure that does not fit, else the two parts that overlap most, else a
+    /// Returns the first measure that does not fit, else the two parts that overlap most, else a
     /// screw that cannot be reached.
     pub fn fits(&self) -> Result<(), Unfit> {
         self.measures_fit()?;
@@ -58,11 +58,11 @@ impl Assembly {
     /// Checks that the measures of robot.toml go together.
     ///
     /// # Errors
-    /// The first measure that does not fit.
+    /// Returns the first measure that does not fit.
     pub fn measures_fit(&self) -> Result<(), Unfit> {
         let (robot, stack) = (self.robot(), self.stack());
         let (parts, drive) = (robot.parts(), robot.drive());
-        let refuse = |sentence: String| Err(Unfit::Measure(sentence));
+        let refuse = |message: String| Err(Unfit::Measure(message));
         let least = parts.screw.head + 2.0 * parts.fit + 1.2;
         if parts.bar < least {
             return refuse(format!(

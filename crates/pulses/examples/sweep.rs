@@ -42,7 +42,7 @@ mod servos {
 /// The last received bytes, and their number modulo 256: the handler advances the count, and
 /// main follows it.
 static RING: [Byte; 16] = [const { Byte::new(0) }; 16];
-static CAME: Byte = Byte::new(0);
+static RECEIVED: Byte = Byte::new(0);
 
 /// The width of a servo in a frame: 1000 to 2000 us and back, by steps of this many cycles
 /// that no two servos move in the same way.
@@ -85,7 +85,7 @@ fn main() -> ! {
                 unsafe { chip.PORTB.pinb.write(|w| w.bits(1 << 5)) };
             }
         }
-        if CAME.get() != echoed && chip.USART0.ucsr0a.read().udre0().bit_is_set() {
+        if RECEIVED.get() != echoed && chip.USART0.ucsr0a.read().udre0().bit_is_set() {
             let byte = RING[usize::from(echoed & 15)].get();
             echoed = echoed.wrapping_add(1);
             chip.USART0.udr0.write(|w| w.bits(byte));
@@ -97,7 +97,7 @@ fn main() -> ! {
 fn USART_RX() {
     // SAFETY: only this handler reads UDR0.
     let byte = unsafe { &*USART0::ptr() }.udr0.read().bits();
-    let came = CAME.get();
+    let came = RECEIVED.get();
     RING[usize::from(came & 15)].set(byte);
-    CAME.set(came.wrapping_add(1));
+    RECEIVED.set(came.wrapping_add(1));
 }

@@ -2,8 +2,8 @@
 
 use crate::cells::{Byte, Counter, Word};
 #[cfg(any(test, target_arch = "avr"))]
-use crate::timing::LEAST_WIDTH;
-use crate::timing::{LEAD, most_width};
+use crate::timing::MIN_WIDTH;
+use crate::timing::{LEAD, max_width};
 
 /// The pulses of `SERVOS` servos, made of the variables that [`engine!`](crate::engine)
 /// defines. `SIZE` is `SERVOS` or the power of two above it.
@@ -25,7 +25,7 @@ pub struct Engine<'a, const SERVOS: usize, const SIZE: usize> {
     /// handler clears it when it takes the frame, main when it takes it back.
     pub fresh: &'a Byte,
     #[doc(hidden)]
-    /// The plan: number of the slot under way or, between slots, of the next. It starts
+    /// The plan: the number of the slot under way or, between slots, of the next. It starts
     /// with the tick, so that main gets going at once. TIMER1_COMPB writes the plan;
     /// TIMER1_COMPA takes a pulse out that it was late for.
     pub slot: &'a Byte,
@@ -42,10 +42,10 @@ pub struct Engine<'a, const SERVOS: usize, const SIZE: usize> {
     /// The pins that may go high: all, or none after [`Engine::hush`].
     pub allowed: &'a Byte,
     #[doc(hidden)]
-    /// Written only by TIMER1_COMPA.
+    /// The ticks so far, modulo 256; written only by TIMER1_COMPA.
     pub ticks: &'a Byte,
     #[doc(hidden)]
-    /// Counted in both handlers.
+    /// The late edges, counted in both handlers.
     pub late: &'a Counter,
 }
 
@@ -55,8 +55,8 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     const TICK_SLOT: u8 = SERVOS as u8;
     /// The count at which a slot without a pulse is closed. It is late, so that main has the
     /// longest time in the slot with the tick.
-    const CLOSE: u16 = most_width(SERVOS);
-    /// The falling edge of a slot without one.
+    const CLOSE: u16 = max_width(SERVOS);
+    /// The count of the falling edge in a slot without a pulse.
     #[doc(hidden)]
     pub const NO_PULSE: u16 = Self::CLOSE + LEAD as u16;
 
@@ -66,8 +66,8 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     /// They are taken over together before the first slot opens; a second call before that
     /// replaces the first, which is then never played: see [`Engine::is_taken`]. If none
     /// comes, the last ones repeat. A width of 0, and any that a slot has no room for,
-    /// gives no pulse: see [`LEAST_WIDTH`](crate::LEAST_WIDTH) and
-    /// [`most_width`](crate::most_width).
+    /// gives no pulse: see [`MIN_WIDTH`](crate::MIN_WIDTH) and
+    /// [`max_width`](crate::max_width).
     #[inline(always)]
     pub fn submit<W: Into<u16>>(&self, widths: [W; SERVOS]) {
         // Take back what has not been played. From here to the end the handler
@@ -80,8 +80,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         self.fresh.set(1);
     }
 
-    /// True if the frame that was submitted last has been taken over, and before the
-    /// first one.
+    /// True if the frame submitted last, if any, has been taken over.
     ///
     /// Ask at every tick. False means that main was so late with the frame that it waits
     /// for the end of this tick's slot: a servo that must not leap gets no new frame for
@@ -94,8 +93,8 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
 
     /// Prevents all further pulses; one in progress ends as planned, within a slot. Call it before
     /// you reset the board, which would cut the pulse short and so send the servo to its end stop.
-    /// The tick continues. It is a single store, so it may be called anywhere, also in an
-    /// interrupt; only a reset ends its effect.
+    /// The tick continues. It is a single store, so it may be called anywhere, even in an
+    /// interrupt; only a reset ends the effect.
     #[inline(always)]
     pub fn hush(&self) {
         self.allowed.set(0);
@@ -115,7 +114,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         let servo = usize::from(slot) & (SIZE - 1);
         let width = self.frames[usize::from(self.playing.get() & 1)][servo].get();
         // Checked here, immediately before it is used.
-        let fits = LEAST_WIDTH <= width && width <= Self::CLOSE;
+        let fits = MIN_WIDTH <= width && width <= Self::CLOSE;
         (slot != Self::TICK_SLOT && fits).then_some((servo, width))
     }
 
@@ -256,14 +255,14 @@ mod tests {
     fn a_width_too_long_for_a_slot_makes_no_pulse() {
         let variables = Variables::<8>::of::<6>();
         let engine = variables.engine::<6>();
-        let most = most_width(6);
+        let most = max_width(6);
         engine.submit([0, 999, 1_000, most, most + 1, u16::MAX]);
         let masks = frame(&engine).map(|(_, mask, _)| mask);
         assert_eq!(masks[..7], [0, 0, 3, 4, 0, 0, 0]);
     }
 
     #[test]
-    fn a_frame_is_taken_over_complete_and_only_at_its_beginning() {
+    fn a_frame_is_taken_over_whole_and_only_at_its_beginning() {
         let variables = Variables::<4>::of::<4>();
         let engine = variables.engine::<4>();
         engine.submit([20_000u16; 4]);

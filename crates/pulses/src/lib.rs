@@ -93,7 +93,7 @@ mod timing;
 
 pub use engine::Engine;
 pub use pin::Pin;
-pub use timing::{CYCLES_PER_US, LEAD, LEAST_WIDTH, frame_cycles, most_width, slot_cycles};
+pub use timing::{CYCLES_PER_US, LEAD, MIN_WIDTH, frame_cycles, max_width, slot_cycles};
 
 /// Makes the module in which it stands the owner of Timer1 and of the pins of one to eight
 /// servos. It then has the functions `start`, `submit`, `is_taken`, `hush`, `ticks` and

@@ -6,9 +6,9 @@
 /// A pin of an Arduino UNO or Nano.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pin {
-    /// Data address of its PORT register; DDR is one below (data sheet, 14.4).
+    /// The data address of the pin's PORT register; DDR is one below (data sheet, 14.4).
     pub(crate) port: u8,
-    /// Its bit in that register.
+    /// The pin's bit in that register.
     pub(crate) mask: u8,
 }
 
@@ -29,13 +29,13 @@ impl Pin {
         })
     }
 
-    /// Data address of its PORT register.
+    /// The data address of the pin's PORT register.
     #[must_use]
     pub const fn port(self) -> u8 {
         self.port
     }
 
-    /// Its bit in that register.
+    /// The pin's bit in the PORT register.
     #[must_use]
     pub const fn mask(self) -> u8 {
         self.mask

@@ -2,9 +2,9 @@
 
 use core::arch::asm;
 
-/// Stores `low`, with the bits of `change` set if it is on time for that, in `port`
-/// a fixed number of cycles after Timer1 counts `count`, given low byte first; at
-/// once if it is too late. Returns 0xff if it was on time, else 0.
+/// Stores `low` in `port` a fixed number of cycles after Timer1 counts `count` (low byte
+/// first), or at once if that is past. Sets the bits of `change` only if it is on time.
+/// Returns 0xff if it was on time, else 0.
 ///
 /// A falling edge uses this with a `change` of 0: the instructions are the same, so
 /// their cost cancels out of the width.

@@ -1,33 +1,33 @@
 //! The lengths of slots, frames and pulses.
 
-/// Cycles from a compare match to the moment from which its edge follows at a
-/// fixed distance. At most 255, because the wait is counted in a byte.
+/// Cycles from a compare match to the moment after which the edge follows at a fixed
+/// distance. At most 255, because the wait is counted in a byte.
 pub const LEAD: u8 = 220;
 
-/// Timer1 counts every cycle of a CPU of 16 MHz.
+/// CPU cycles in a microsecond, each counted by Timer1: the CPU runs at 16 MHz.
 pub const CYCLES_PER_US: u16 = 16;
 
 /// The shortest pulse that can be made, cycles: 62.5 us at either end of a slot are for
 /// the two handlers and whatever they have to wait for.
-pub const LEAST_WIDTH: u16 = MARGIN;
+pub const MIN_WIDTH: u16 = MARGIN;
 
 const MARGIN: u16 = 1_000;
 
 /// The 20 ms that a servo expects from one pulse to the next.
 const FRAME_CYCLES: u32 = 320_000;
 
-/// 2.5 ms. The longest pulse of a slot is then 2.4375 ms, beyond any servo's travel.
-const SHORTEST_SLOT: u32 = 40_000;
+/// The shortest slot, 2.5 ms: its longest pulse, 2.4375 ms, is beyond any servo's travel.
+const MIN_SLOT_CYCLES: u32 = 40_000;
 
-/// 4 ms, the length of a slot with four servos.
-const LONGEST_SLOT: u32 = 64_000;
+/// The longest slot, 4 ms, as with four servos.
+const MAX_SLOT_CYCLES: u32 = 64_000;
 
 /// Cycles of a slot with this many servos: 20 ms shared by them and the slot of the tick.
 /// But 2.5 ms at least, so that with eight servos a frame takes 22.5 ms, and 4 ms at most,
 /// so that it takes 16 ms with three.
 ///
 /// # Panics
-/// With no servo, or more than eight; while the program is compiled.
+/// If there is no servo or more than eight, while the program is compiled.
 #[must_use]
 pub const fn slot_cycles(servos: usize) -> u16 {
     assert!(
@@ -36,11 +36,11 @@ pub const fn slot_cycles(servos: usize) -> u16 {
     );
     let even = FRAME_CYCLES / (servos as u32 + 1);
     // With less than four servos a slot would not fit 16 bits.
-    if even > LONGEST_SLOT {
-        return LONGEST_SLOT as u16;
+    if even > MAX_SLOT_CYCLES {
+        return MAX_SLOT_CYCLES as u16;
     }
-    if even < SHORTEST_SLOT {
-        return SHORTEST_SLOT as u16;
+    if even < MIN_SLOT_CYCLES {
+        return MIN_SLOT_CYCLES as u16;
     }
     even as u16
 }
@@ -59,7 +59,7 @@ pub const fn frame_cycles(servos: usize) -> u32 {
 /// # Panics
 /// As [`slot_cycles`].
 #[must_use]
-pub const fn most_width(servos: usize) -> u16 {
+pub const fn max_width(servos: usize) -> u16 {
     slot_cycles(servos) - MARGIN
 }
 
@@ -82,7 +82,7 @@ mod tests {
     fn a_slot_has_room_for_2_4_ms_for_any_number_of_servos() {
         for servos in 1..=8 {
             assert!(
-                most_width(servos) >= 2_400 * CYCLES_PER_US,
+                max_width(servos) >= 2_400 * CYCLES_PER_US,
                 "{servos} servos"
             );
             // Every 25 ms at least, every 8 ms at most: analogue servos take both.

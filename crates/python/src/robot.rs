@@ -107,7 +107,7 @@ impl Robot {
         })
     }
 
-    /// The sentences for what keeps the robot from a pose; none if it is safe.
+    /// The messages for what keeps the robot from a pose; none if it is safe.
     fn reasons(&self, angles: [f64; 4]) -> Vec<String> {
         match self.0.lizard().solve(&angles.into()) {
             Ok(solution) => verdict::reasons(&self.0, &solution),

@@ -47,9 +47,9 @@ fn robot() -> String {
 /// are one.
 fn plain(key: &str) -> String {
     let names: Vec<&str> = key.split('.').collect();
-    let plain = names.iter().enumerate().map(|(place, name)| {
+    let plain = names.iter().enumerate().map(|(index, name)| {
         let name = name.split('[').next().unwrap_or(name);
-        match (place, name) {
+        match (index, name) {
             (1, _) if ["gait", "routine"].contains(&names[0]) => "NAME",
             (_, "A2" | "A3" | "A4") => "A1",
             (3, "LF" | "RF" | "RH" | "LH") => "LF RF RH LH",

@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 use lizard_avr::Region;
 use lizard_contact::{Drive, Ground, Motors, Prediction, Strut, Travel};
 use lizard_core::numbers::gaits::{Gait, Step};
-use lizard_core::numbers::section::{Content, LONGEST_NAME, SPACE};
+use lizard_core::numbers::section::{Content, MAX_NAME_BYTES, SPACE};
 use lizard_kinematics::{Limits, Lizard, Pose, Solution, wrap};
 use toml::de::DeTable;
 
@@ -45,8 +45,8 @@ impl Robot {
     /// Reads and checks a file.
     ///
     /// # Errors
-    /// If it cannot be read, is longer than [`crate::LONGEST`], is not UTF-8 text,
-    /// or holds a mistake.
+    /// Fails if it cannot be read, is longer than [`crate::MAX_FILE_BYTES`], is not UTF-8 text, or
+    /// holds a mistake.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         let file = path.display().to_string();
@@ -59,7 +59,7 @@ impl Robot {
     /// Reads and checks the text of a robot.toml. A byte order mark at the start is skipped.
     ///
     /// # Errors
-    /// If the text holds a mistake.
+    /// Fails if the text holds a mistake.
     pub fn parse(text: &str) -> Result<Self, Error> {
         file::parse(text, Self::read)
     }
@@ -68,7 +68,7 @@ impl Robot {
     /// checks it. The other gaits are left out.
     ///
     /// # Errors
-    /// If the table holds a mistake, or the gait breaks a limit.
+    /// Fails if the table holds a mistake, or the gait breaks a limit.
     pub fn with_gait(&self, table: &str) -> Result<Self, Error> {
         const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
         file::parse(&format!("{STAND}{table}"), |table| {
@@ -112,9 +112,9 @@ impl Robot {
         let section: Arc<[u8]> = content.section().into();
         let flash = Region::new(&section);
         let impossible = || {
-            let sentence =
+            let message =
                 "the firmware would not take this robot: its numbers cannot be worked with";
-            Fault::new("", sentence)
+            Fault::new("", message)
         };
         let unchecked =
             lizard_core::numbers::robot::Robot::unchecked(flash).ok_or_else(impossible)?;
@@ -397,10 +397,10 @@ fn name<'a>(root: &Section<'a>) -> Checked<&'a str> {
     }
     let name = root.text("name")?;
     let letters = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
-    if name.is_empty() || name.len() > LONGEST_NAME || !name.chars().all(letters) {
-        let sentence =
-            format!("must be at most {LONGEST_NAME} lower-case letters, digits and dashes");
-        return Err(Fault::new("name", sentence));
+    if name.is_empty() || name.len() > MAX_NAME_BYTES || !name.chars().all(letters) {
+        let message =
+            format!("must be at most {MAX_NAME_BYTES} lower-case letters, digits and dashes");
+        return Err(Fault::new("name", message));
     }
     Ok(name)
 }
@@ -422,8 +422,8 @@ fn too_large(content: &Content, bytes: usize) -> Fault {
         0 => String::new(),
         _ => format!(", {routines} of them routines, whose steps take {of_steps}"),
     };
-    let sentence = format!(
+    let message = format!(
         "the robot takes {over} bytes more than the {SPACE} that the board has for it; {waves} waveforms take {of_waves}, {gaits} gaits and their names {of_gaits}{and_routines}: leave out gaits, first those whose waveform no other has"
     );
-    Fault::new("gait", sentence)
+    Fault::new("gait", message)
 }

@@ -39,8 +39,12 @@ pub fn assembler(source: &str) -> Image {
 #[must_use]
 pub fn assembler_at(address: u16, source: &str) -> Image {
     let source = format!("#define __SFR_OFFSET 0\n#include <avr/io.h>\n{source}\n");
-    let place = format!("-Wl,--section-start=.text={address:#x}");
-    build(&source, "S", &["-nostartfiles", "-nostdlib", &place])
+    let section_start = format!("-Wl,--section-start=.text={address:#x}");
+    build(
+        &source,
+        "S",
+        &["-nostartfiles", "-nostdlib", &section_start],
+    )
 }
 
 /// Runs avr-gcc for the UNO's chip at 16 MHz, with these flags and input files, so that it

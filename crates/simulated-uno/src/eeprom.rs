@@ -40,7 +40,7 @@ pub struct EepromOperation {
     /// will have if the power does not fail.
     pub new: u8,
     /// True if the power failed during the operation.
-    pub torn: bool,
+    pub is_torn: bool,
 }
 
 /// The moment at which the power fails.

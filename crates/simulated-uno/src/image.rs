@@ -15,7 +15,7 @@ pub const SRAM_END: u16 = 0x0900;
 
 /// The longest file that is read, bytes; much longer than code of 32 KiB with all its debug
 /// information.
-const LONGEST_FILE: u64 = 4 << 20;
+const MAX_FILE_BYTES: u64 = 4 << 20;
 
 /// The address of SRAM in the single address space of avr-gcc's linker script.
 const DATA_SPACE: u64 = 0x80_0000;
@@ -37,7 +37,7 @@ pub enum LoadError {
     #[error("not an ELF file of an AVR: {0}")]
     Elf(#[from] object::read::Error),
     /// The file is longer than any firmware.
-    #[error("not an ELF file of an AVR: it is longer than {} MiB", LONGEST_FILE >> 20)]
+    #[error("not an ELF file of an AVR: it is longer than {} MiB", MAX_FILE_BYTES >> 20)]
     TooLong,
     /// The ELF file is for another machine.
     #[error("not an ELF file of an AVR")]
@@ -47,7 +47,7 @@ pub enum LoadError {
     TooLarge {
         /// The address of the segment.
         address: u64,
-        /// Its size in bytes.
+        /// The size in bytes.
         size: u64,
     },
     /// The file has no code.
@@ -76,7 +76,7 @@ pub struct Symbol {
     /// The size in bytes, 0 if the compiler does not give it.
     pub size: u64,
     /// True for a function.
-    pub function: bool,
+    pub is_function: bool,
 }
 
 impl Symbol {
@@ -133,8 +133,8 @@ impl Image {
         };
         let mut bytes = Vec::new();
         let file = std::fs::File::open(path).map_err(failure)?;
-        let limited = file.take(LONGEST_FILE + 1).read_to_end(&mut bytes);
-        if limited.map_err(failure)? as u64 > LONGEST_FILE {
+        let limited = file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes);
+        if limited.map_err(failure)? as u64 > MAX_FILE_BYTES {
             return Err(LoadError::TooLong);
         }
         #[cfg(feature = "hex")]
@@ -196,7 +196,7 @@ impl Image {
                 name: name.to_owned(),
                 address: symbol.address(),
                 size: symbol.size(),
-                function: symbol.kind() == SymbolKind::Text,
+                is_function: symbol.kind() == SymbolKind::Text,
             });
         }
         Ok(Self {
@@ -254,7 +254,7 @@ impl Image {
     /// it) or more than one.
     #[must_use]
     pub fn function(&self, path: &str) -> Option<&Symbol> {
-        self.unique_symbol(path, |symbol| symbol.function)
+        self.unique_symbol(path, |symbol| symbol.is_function)
     }
 
     /// The data address of the one variable whose path ends with `path`, such as
@@ -293,7 +293,7 @@ impl Image {
     /// has in the range: data that is exchanged without a compiler.
     ///
     /// # Errors
-    /// [`LoadError::TooLarge`] if the range is not inside flash or is too short for them.
+    /// Returns [`LoadError::TooLarge`] if the range is not inside flash or is too short for them.
     pub fn replace(&mut self, range: Range<u32>, bytes: &[u8]) -> Result<(), LoadError> {
         let size = bytes.len() as u64;
         if range.end > FLASH_SIZE || u64::from(range.start) + size > u64::from(range.end) {

@@ -40,12 +40,12 @@ use crate::{FREQUENCY, Radio, State, Uno};
 const TICK: Duration = Duration::from_millis(1);
 /// The longest time that the chip catches up after this program was held up. A longer one
 /// could make a watchdog fire before the other program has run.
-const MOST_CAUGHT_UP: Duration = Duration::from_millis(20);
-/// The most bytes on their way to the chip; others wait in the pseudo terminal, as in
+const MAX_CATCH_UP: Duration = Duration::from_millis(20);
+/// The largest number of bytes on their way to the chip; others wait in the pseudo terminal, as in
 /// the driver of a USB port.
-const MOST_UNSENT: usize = 128;
-/// The most bytes kept for a program that does not read. Later ones are lost.
-const MOST_UNREAD: usize = 1 << 16;
+const MAX_UNSENT_BYTES: usize = 128;
+/// The largest number of bytes kept for a program that does not read. Later ones are lost.
+const MAX_UNREAD_BYTES: usize = 1 << 16;
 
 /// A serial port of this machine with a simulated UNO behind it. The port exists until
 /// this is dropped.
@@ -54,7 +54,7 @@ pub struct Port {
     pty: Pty,
     /// The chip's bytes that wait for room in the pseudo terminal.
     unread: Vec<u8>,
-    open: bool,
+    is_open: bool,
     /// The module between the port and the chip, in place of a cable.
     radio: Option<Radio>,
     /// The wall clock's time and the chip's cycle at the same moment.
@@ -65,12 +65,12 @@ impl Port {
     /// Makes a port that no program has open.
     ///
     /// # Errors
-    /// The system has no pseudo terminals left.
+    /// Fails if the system has no pseudo terminals left.
     pub fn new() -> io::Result<Self> {
         Ok(Self {
             pty: Pty::new()?,
             unread: Vec::new(),
-            open: false,
+            is_open: false,
             radio: None,
             anchor: None,
         })
@@ -92,7 +92,7 @@ impl Port {
     /// True if a program had the port open at the last check.
     #[must_use]
     pub fn is_open(&self) -> bool {
-        self.open
+        self.is_open
     }
 
     /// Lets `uno` run in real time for `time` of the wall clock, and passes bytes
@@ -103,7 +103,7 @@ impl Port {
     /// four servos. The bytes of the serial line are not kept.
     ///
     /// # Errors
-    /// The system's, at the pseudo terminal.
+    /// Returns the system's error at the pseudo terminal.
     pub fn serve(&mut self, uno: &mut Uno, time: Duration) -> io::Result<()> {
         let end = Instant::now() + time;
         while Instant::now() < end {
@@ -117,7 +117,7 @@ impl Port {
     /// the UNO every millisecond and should take its edges; it must not block.
     ///
     /// # Errors
-    /// The system cannot start a thread.
+    /// Fails if the system cannot start a thread.
     pub fn in_background(
         mut self,
         mut uno: Uno,
@@ -141,8 +141,8 @@ impl Port {
 
     fn tick(&mut self, uno: &mut Uno) -> io::Result<()> {
         let look = self.pty.look()?;
-        self.open = look.open;
-        if look.opened {
+        self.is_open = look.is_open;
+        if look.was_opened {
             self.unread.clear();
             if self.radio.is_none() {
                 uno.take_transmitted();
@@ -154,8 +154,8 @@ impl Port {
             None => self.pty.baud()?,
         };
         uno.set_baud(baud);
-        let room = MOST_UNSENT.saturating_sub(uno.unsent());
-        let mut bytes = [0; MOST_UNSENT];
+        let room = MAX_UNSENT_BYTES.saturating_sub(uno.unsent());
+        let mut bytes = [0; MAX_UNSENT_BYTES];
         let read = self.pty.read(&mut bytes[..room])?;
         match &mut self.radio {
             Some(radio) => radio.write(&bytes[..read], uno.cycle()),
@@ -174,9 +174,9 @@ impl Port {
             }
         };
         // Checked again, since this program may have been held up meanwhile.
-        if self.open && self.pty.is_open()? {
+        if self.is_open && self.pty.is_open()? {
             self.unread.extend(arrived);
-            self.unread.truncate(MOST_UNREAD);
+            self.unread.truncate(MAX_UNREAD_BYTES);
             let written = self.pty.write(&self.unread)?;
             self.unread.drain(..written);
         }
@@ -188,7 +188,7 @@ impl Port {
         let now = Instant::now();
         let (then, before) = *self.anchor.get_or_insert((now, cycle));
         let due = before + cycles(now - then);
-        let most = cycle + cycles(MOST_CAUGHT_UP);
+        let most = cycle + cycles(MAX_CATCH_UP);
         if due > most {
             self.anchor = Some((now, most));
         }
@@ -219,7 +219,7 @@ impl Background {
     /// Ends the thread and the port; returns the UNO in its present state.
     ///
     /// # Errors
-    /// The error that had ended the thread: see [`Port::serve`].
+    /// Returns the error that had ended the thread: see [`Port::serve`].
     ///
     /// # Panics
     /// If `watch` panicked.

@@ -28,15 +28,15 @@ use rustix::termios::{OptionalActions, QueueSelector, tcflush, tcgetattr, tcseta
 /// The speed until a program sets another.
 const BAUD: u32 = 115_200;
 /// The longest time from the start of a program to its execution, on a busy machine.
-const MOST_BEFORE_EXECUTION: Duration = Duration::from_secs(10);
+const MAX_START_TIME: Duration = Duration::from_secs(10);
 
 /// The port's state, and its changes since the last look.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Look {
     /// True while a program has it open.
-    pub(crate) open: bool,
+    pub(crate) is_open: bool,
     /// True if it has been opened after having been closed.
-    pub(crate) opened: bool,
+    pub(crate) was_opened: bool,
 }
 
 /// A pseudo terminal. It exists until this is dropped.
@@ -47,8 +47,8 @@ pub(crate) struct Pty {
     path: PathBuf,
     /// True if it was open at the last look.
     was_open: bool,
-    /// True if a program has closed the port and it is open all the same. The system may report
-    /// another opening only at the next look.
+    /// True if a program has closed the port but it is still open. The system may report another
+    /// opening only at the next look.
     in_doubt: bool,
 }
 
@@ -56,8 +56,8 @@ impl Pty {
     /// Makes a pseudo terminal that passes bytes on unchanged.
     ///
     /// # Errors
-    /// The system has none left, or no /dev/pts; [`ErrorKind::TimedOut`] if a program
-    /// that was started meanwhile keeps it open.
+    /// Fails if the system has none left, or no /dev/pts; [`ErrorKind::TimedOut`] if a program that
+    /// was started meanwhile keeps it open.
     pub(crate) fn new() -> io::Result<Self> {
         let ours = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
         unlockpt(&ours)?;
@@ -99,7 +99,7 @@ impl Pty {
     /// before it.
     ///
     /// # Errors
-    /// The system is out of memory.
+    /// Fails if the system is out of memory.
     pub(crate) fn look(&mut self) -> io::Result<Look> {
         let was_open = self.was_open;
         let (mut closed, mut opened) = (!was_open || self.in_doubt, false);
@@ -123,13 +123,16 @@ impl Pty {
         }
         self.was_open = open;
         self.in_doubt = closing && open && !opened;
-        Ok(Look { open, opened })
+        Ok(Look {
+            is_open: open,
+            was_opened: opened,
+        })
     }
 
     /// True if a program has it open at this moment.
     ///
     /// # Errors
-    /// The system is out of memory.
+    /// Fails if the system is out of memory.
     pub(crate) fn is_open(&self) -> io::Result<bool> {
         is_open(&self.ours)
     }
@@ -168,7 +171,7 @@ impl Pty {
     /// The speed last set by a program, in baud.
     ///
     /// # Errors
-    /// The system's, at the pseudo terminal.
+    /// Returns the system's error at the pseudo terminal.
     pub(crate) fn baud(&self) -> io::Result<f64> {
         // Linux returns the settings of the other end. Speed 0 makes a modem hang up.
         Ok(match tcgetattr(&self.ours)?.output_speed() {
@@ -180,7 +183,7 @@ impl Pty {
     /// Reads bytes that programs have written; 0 if there are none.
     ///
     /// # Errors
-    /// The system's, at the pseudo terminal.
+    /// Returns the system's error at the pseudo terminal.
     pub(crate) fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         match self.ours.read(into) {
             // EIO: no program has it open and nothing is left to read.
@@ -192,7 +195,7 @@ impl Pty {
     /// Writes to the program that has it open; returns the number of bytes accepted.
     ///
     /// # Errors
-    /// The system's, at the pseudo terminal.
+    /// Returns the system's error at the pseudo terminal.
     pub(crate) fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         or_nothing(self.ours.write(bytes))
     }
@@ -206,7 +209,7 @@ fn is_open(ours: &File) -> io::Result<bool> {
 
 /// Waits for a condition for as long as the start of a program may take; false if it never holds.
 fn wait_until(mut condition: impl FnMut() -> io::Result<bool>) -> io::Result<bool> {
-    let end = Instant::now() + MOST_BEFORE_EXECUTION;
+    let end = Instant::now() + MAX_START_TIME;
     while !condition()? {
         if Instant::now() > end {
             return Ok(false);

@@ -23,14 +23,14 @@ use std::collections::VecDeque;
 use crate::serial::sample_byte;
 use crate::{CYCLES_PER_MS, Uno};
 
-/// Most bytes of a packet.
-const PACKET: usize = 20;
+/// The largest number of bytes in a packet.
+const PACKET_BYTES: usize = 20;
 /// Time that a packet takes, ms.
-const DELAY: std::ops::Range<f64> = 7.5..100.0;
+const DELAY_MS: std::ops::Range<f64> = 7.5..100.0;
 /// Time for which a module gathers bytes of the chip, ms.
-const GATHERS: u64 = 20;
+const GATHERING_MS: u64 = 20;
 /// Time for which a link stays away, ms.
-const AWAY: std::ops::Range<u64> = 200..5000;
+const OUTAGE_MS: std::ops::Range<u64> = 200..5000;
 
 /// The air between a module and a phone.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,19 +42,19 @@ pub struct Air {
     /// The mean time from one end of the link to the next, ms; 0: it does not end.
     pub holds: u64,
     /// True if the module says in the line when the link begins and ends.
-    pub says: bool,
-    /// Where the random numbers begin: the same seed, the same air.
+    pub reports_link: bool,
+    /// The seed of the random numbers.
     pub seed: u64,
 }
 
 impl Default for Air {
-    /// A module out of its bag, in a room.
+    /// A new module, in a room.
     fn default() -> Self {
         Self {
             baud: 9600.0,
             loss: 0.01,
             holds: 20_000,
-            says: true,
+            reports_link: true,
             seed: 0,
         }
     }
@@ -69,8 +69,8 @@ struct Flight {
 
 impl Flight {
     fn send(&mut self, bytes: &[u8], now: u64, air: Air, random: &mut fastrand::Rng) {
-        for packet in bytes.chunks(PACKET) {
-            let delay = DELAY.start + random.f64() * (DELAY.end - DELAY.start);
+        for packet in bytes.chunks(PACKET_BYTES) {
+            let delay = DELAY_MS.start + random.f64() * (DELAY_MS.end - DELAY_MS.start);
             let last = self.packets.back().map_or(0, |(due, _)| *due);
             let due = last.max(now + (delay * CYCLES_PER_MS as f64) as u64);
             if random.f64() >= air.loss {
@@ -107,7 +107,7 @@ pub struct Radio {
     gathered: (Vec<u8>, u64),
     /// The cycle of the next end of the link, or of its next beginning.
     turns: Option<u64>,
-    in_reach: bool,
+    is_in_reach: bool,
     has_left: bool,
 }
 
@@ -122,7 +122,7 @@ impl Radio {
             to_phone: Flight::default(),
             gathered: (Vec::new(), 0),
             turns: None,
-            in_reach: true,
+            is_in_reach: true,
             has_left: false,
         };
         radio.turns = radio.holds(0);
@@ -131,8 +131,8 @@ impl Radio {
 
     /// True while the link is there.
     #[must_use]
-    pub fn in_reach(&self) -> bool {
-        self.in_reach
+    pub fn is_in_reach(&self) -> bool {
+        self.is_in_reach
     }
 
     /// The rate of the module's serial line, baud.
@@ -143,7 +143,7 @@ impl Radio {
 
     /// Sends the phone's bytes at a cycle of the chip. Out of reach they are lost.
     pub fn write(&mut self, bytes: &[u8], now: u64) {
-        if self.in_reach {
+        if self.is_in_reach {
             self.to_uno.send(bytes, now, self.air, &mut self.random);
         }
     }
@@ -151,43 +151,43 @@ impl Radio {
     /// Ends the link for good: the phone leaves.
     pub fn leave(&mut self, now: u64) {
         self.has_left = true;
-        self.turns = self.in_reach.then_some(now);
+        self.turns = self.is_in_reach.then_some(now);
     }
 
-    /// Passes on what has arrived by now: to the chip, and to the phone, whose bytes it returns.
+    /// Delivers the bytes that have arrived at the chip by now, and returns those for the phone.
     /// To be called every millisecond of the chip's time.
     pub fn exchange(&mut self, uno: &mut Uno) -> Vec<u8> {
         uno.set_baud(self.air.baud);
         let sent: Vec<u8> = uno.take_transmitted().iter().map(|it| it.byte).collect();
-        let heard = self.hear(&sent, uno.chip_baud());
-        let [to_uno, to_phone] = self.pass(&heard, uno.cycle());
+        let received = self.received_bytes(&sent, uno.chip_baud());
+        let [to_uno, to_phone] = self.pass(&received, uno.cycle());
         uno.send(&to_uno);
         to_phone
     }
 
-    /// The bytes as the module hears them, whose rate may be another than the chip's, baud.
+    /// The bytes as the module receives them, at its own rate, from a chip at another, baud.
     #[must_use]
-    pub fn hear(&self, sent: &[u8], chip_baud: f64) -> Vec<u8> {
+    pub fn received_bytes(&self, sent: &[u8], chip_baud: f64) -> Vec<u8> {
         let ratio = chip_baud / self.air.baud;
         sent.iter().map(|byte| sample_byte(*byte, ratio)).collect()
     }
 
-    /// Takes the bytes that the module has heard from the chip, and returns what has arrived by
-    /// now at the chip and at the phone.
-    pub fn pass(&mut self, heard: &[u8], now: u64) -> [Vec<u8>; 2] {
+    /// Takes the bytes that the module has received from the chip, and returns the bytes that have
+    /// arrived by now at the chip and at the phone.
+    pub fn pass(&mut self, received: &[u8], now: u64) -> [Vec<u8>; 2] {
         if self.turns.is_some_and(|turn| turn <= now) {
             return self.turn(now);
         }
         let to_uno = self.to_uno.arrive(now);
-        if !self.in_reach {
+        if !self.is_in_reach {
             return [to_uno, Vec::new()];
         }
         let (bytes, since) = &mut self.gathered;
         if bytes.is_empty() {
             *since = now;
         }
-        bytes.extend(heard);
-        if bytes.len() >= PACKET || now >= *since + GATHERS * CYCLES_PER_MS {
+        bytes.extend(received);
+        if bytes.len() >= PACKET_BYTES || now >= *since + GATHERING_MS * CYCLES_PER_MS {
             let bytes = std::mem::take(bytes);
             self.to_phone.send(&bytes, now, self.air, &mut self.random);
         }
@@ -196,21 +196,21 @@ impl Radio {
 
     /// Ends the link, or begins it again.
     fn turn(&mut self, now: u64) -> [Vec<u8>; 2] {
-        self.in_reach = !self.in_reach;
+        self.is_in_reach = !self.is_in_reach;
         let mut to_uno = self.to_uno.cut(&mut self.random);
-        if self.air.says {
-            to_uno.extend(if self.in_reach {
+        if self.air.reports_link {
+            to_uno.extend(if self.is_in_reach {
                 b"OK+CONN"
             } else {
                 b"OK+LOST"
             });
         }
-        if self.in_reach {
+        if self.is_in_reach {
             self.turns = self.holds(now);
             return [to_uno, Vec::new()];
         }
         self.gathered.0.clear();
-        let back = now + self.random.u64(AWAY) * CYCLES_PER_MS;
+        let back = now + self.random.u64(OUTAGE_MS) * CYCLES_PER_MS;
         self.turns = (!self.has_left).then_some(back);
         [to_uno, self.to_phone.cut(&mut self.random)]
     }

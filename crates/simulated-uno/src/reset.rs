@@ -59,12 +59,12 @@ impl Uno {
     /// start: it clears MCUSR, so that the firmware cannot see the cause of the reset,
     /// and switches the watchdog off. It takes no time here; the real
     /// one waits a second after an external reset. If no cycle has passed yet, the setting
-    /// applies to the present start, too. Off unless set. In
+    /// also applies to the present start. Off unless set. In
     /// [`Fidelity::Stock`](crate::Fidelity) the watchdog stays on.
-    pub fn set_boot_loader(&mut self, on: bool) {
+    pub fn set_boot_loader(&mut self, is_present: bool) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a flag, and
         // restarts a chip that has not begun.
-        unsafe { ffi::uno_set_boot_loader(self.raw, on) }
+        unsafe { ffi::uno_set_boot_loader(self.raw, is_present) }
     }
 
     /// Seeds the noise that the next [`Uno::power_cycle`] leaves in SRAM and in r0

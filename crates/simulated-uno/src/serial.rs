@@ -23,7 +23,7 @@ impl Uno {
 
     /// Sends a line with its end, `\n`, and returns the next complete line that the UNO sends,
     /// without its end. `None` if it sends none within a second of the chip's time, or if
-    /// the firmware runs no more.
+    /// the firmware has stopped.
     ///
     /// Takes all that the UNO has transmitted, before and meanwhile, as
     /// [`Uno::take_transmitted`] does. A line that the UNO began earlier counts as the

@@ -138,7 +138,7 @@ impl Uno {
     }
 
     /// Runs until the predicate holds, which is checked every `step` cycles; true if it does. False
-    /// if `limit` cycles have passed, or the firmware runs no more.
+    /// if `limit` cycles have passed, or the firmware has stopped.
     pub fn run_until(
         &mut self,
         limit: u64,

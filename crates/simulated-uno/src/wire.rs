@@ -11,10 +11,10 @@ use crate::FREQUENCY;
 
 /// Bits of a byte: start, eight data bits, stop.
 const FRAME: f64 = 10.0;
-/// The middle of the stop bit, where a receiver is done with a byte.
-const DONE: f64 = 9.5;
-/// Bytes of the fastest talker that a receiver of the slowest rate may take for one, and some more.
-const NEAR: usize = 16;
+/// The middle of the stop bit, in bits, where a receiver is done with a byte.
+const STOP_BIT_MIDDLE: f64 = 9.5;
+/// More bytes of the fastest talker than a receiver of the slowest rate may take for one.
+const NEAR_BYTES: usize = 16;
 
 /// A byte on the wire.
 #[derive(Debug, Clone, Copy)]
@@ -32,9 +32,9 @@ impl Frame {
     }
 
     fn is_high(&self, at: f64) -> bool {
-        let place = ((at - self.start) / self.bit).floor();
+        let index = ((at - self.start) / self.bit).floor();
         let bits = 1u32 << 9 | u32::from(self.byte) << 1;
-        !(0.0..FRAME).contains(&place) || bits >> place as u32 & 1 == 1
+        !(0.0..FRAME).contains(&index) || bits >> index as u32 & 1 == 1
     }
 }
 
@@ -80,12 +80,12 @@ impl Wire {
         let bit = FREQUENCY as f64 / baud;
         let mut received = Vec::new();
         while let Some(start) = self.next_fall() {
-            let done = start + DONE * bit;
+            let done = start + STOP_BIT_MIDDLE * bit;
             if done > now as f64 {
                 break;
             }
-            let sampled = |place: u8| self.is_high(start + (f64::from(place) + 1.5) * bit);
-            let byte = (0..8).fold(0, |byte, place| byte | u8::from(sampled(place)) << place);
+            let sampled = |index: u8| self.is_high(start + (f64::from(index) + 1.5) * bit);
+            let byte = (0..8).fold(0, |byte, index| byte | u8::from(sampled(index)) << index);
             received.push(sampled(8).then_some(byte));
             self.free = done;
             for talker in &mut self.talkers {
@@ -101,11 +101,11 @@ impl Wire {
     fn next_fall(&self) -> Option<f64> {
         let edges = self
             .near()
-            .flat_map(|it| (0..9).map(|place| (it.start + f64::from(place) * it.bit, it.bit)));
+            .flat_map(|it| (0..9).map(|index| (it.start + f64::from(index) * it.bit, it.bit)));
         edges
             .filter(|(at, _)| *at > self.free)
             .filter(|(at, bit)| {
-                // A little beside the edge, since the sums are rounded.
+                // A little after the edge, since the sums are rounded.
                 let beside = bit / 100.0;
                 self.is_high(at - beside) && !self.is_high(at + beside)
             })
@@ -117,7 +117,7 @@ impl Wire {
     fn near(&self) -> impl Iterator<Item = &Frame> {
         self.talkers
             .iter()
-            .flat_map(|talker| talker.iter().take(NEAR))
+            .flat_map(|talker| talker.iter().take(NEAR_BYTES))
     }
 
     fn is_high(&self, at: f64) -> bool {

@@ -26,7 +26,7 @@ const HELLO: &str = r#"
 const READER: &str = r#"exec 3<>"$0"; head -c 2 <&3"#;
 
 /// Openings, and at least as many other programs meanwhile.
-const LEAST: usize = 150;
+const MIN_OPENINGS: usize = 150;
 
 static STARTED: AtomicUsize = AtomicUsize::new(0);
 static OVER: AtomicBool = AtomicBool::new(false);
@@ -46,7 +46,7 @@ fn every_opening_by_another_program_resets_the_chip_once() {
     let port = Port::new().expect("a pseudo terminal");
     let board = port.in_background(uno, |_| {}).expect("a thread");
     let mut openings = 0;
-    while openings < LEAST || STARTED.load(Ordering::Relaxed) < LEAST {
+    while openings < MIN_OPENINGS || STARTED.load(Ordering::Relaxed) < MIN_OPENINGS {
         let at_work = others.iter().all(|other| !other.is_finished());
         assert!(at_work, "no more programs are started");
         openings += 1;

@@ -142,7 +142,7 @@ fn lines_are_sent_at_their_time_and_answers_printed_with_theirs() {
 }
 
 #[test]
-fn each_fault_is_reported_in_a_sentence() {
+fn each_fault_is_reported_in_a_message() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("half.hex");
     fs::write(&file, ":02000000FFCF30\n").expect("it is written");

@@ -5,7 +5,7 @@ use lizard_robot::{CheckedGait, Ground, Travel};
 use thiserror::Error;
 
 /// Smallest movement of a cycle that counts: mm, deg.
-const LEAST_MOVEMENT: (f64, f64) = (1.0, 0.5);
+const MIN_MOVEMENT: (f64, f64) = (1.0, 0.5);
 
 fn is_left(servo: usize) -> bool {
     LEGS[servo].starts_with('L')
@@ -18,7 +18,7 @@ fn is_front(servo: usize) -> bool {
 /// The error for a gait without a goal, by its name.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum NoGoal {
-    /// Its movement depends on a tie between two pairs of feet.
+    /// The gait's movement depends on a tie between two pairs of feet.
     #[error("where the gait `{0}` leads is undecided: two feet pull against two; tune another one")]
     Undecided(String),
     /// It stands, or returns to its start.
@@ -45,7 +45,7 @@ impl Goal {
     /// Finds the goal of a gait by its movement on rigid legs.
     ///
     /// # Errors
-    /// For a gait that stands, goes along a curve, or depends on ties.
+    /// Fails for a gait that stands, goes along a curve, or depends on ties.
     pub fn of(gait: &CheckedGait, ground: &Ground) -> Result<Self, NoGoal> {
         let name = || gait.name().to_owned();
         let movement = gait.predict(&ground.rigid());
@@ -53,10 +53,7 @@ impl Goal {
             return Err(NoGoal::Undecided(name()));
         };
         let goes = |value: f64, least: f64| value.abs() >= least;
-        match (
-            goes(forward, LEAST_MOVEMENT.0),
-            goes(turn, LEAST_MOVEMENT.1),
-        ) {
+        match (goes(forward, MIN_MOVEMENT.0), goes(turn, MIN_MOVEMENT.1)) {
             (true, false) => Ok(Self::Ahead(forward.signum())),
             (false, true) => Ok(Self::Turn(turn.signum())),
             (false, false) => Err(NoGoal::Nowhere(name())),
@@ -76,9 +73,9 @@ impl Goal {
     pub fn is_true_to(self, movement: &Travel) -> bool {
         match self {
             Self::Ahead(_) => {
-                movement.turn.abs() < LEAST_MOVEMENT.1 && movement.left.abs() < LEAST_MOVEMENT.0
+                movement.turn.abs() < MIN_MOVEMENT.1 && movement.left.abs() < MIN_MOVEMENT.0
             }
-            Self::Turn(_) => movement.forward.hypot(movement.left) < LEAST_MOVEMENT.0,
+            Self::Turn(_) => movement.forward.hypot(movement.left) < MIN_MOVEMENT.0,
         }
     }
 

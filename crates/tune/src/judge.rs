@@ -5,7 +5,7 @@ use lizard_robot::{Bars, CheckedGait, Ground, Robot, Travel};
 use lizard_twin::ServoModel;
 
 use crate::goal::Goal;
-use crate::plan::{Kind, LONGEST, Space, planned};
+use crate::plan::{Kind, MAX_PERIOD_S, Space, planned};
 use crate::variation::{Variation, quantiles};
 
 /// Bounds of the search for a robot's largest amplitude, deg.
@@ -13,11 +13,11 @@ const WIDTHS: (f64, f64) = (5.0, 80.0);
 /// The servos of the random robots: small strides lose a larger share to their dead band.
 const SERVOS: ServoModel = ServoModel::SG90;
 /// A period at which no servo is too fast, for measuring their speed, s.
-const SLOW: f64 = 3.0;
+const SLOW_PERIOD_S: f64 = 3.0;
 /// Rounds of fitting the period to the rate.
 const FITS: usize = 3;
 /// The share of the robots that may be slower than the score.
-const SLOWEST: f64 = 0.05;
+const SLOWEST_SHARE: f64 = 0.05;
 
 /// A gait with its period and its table for robot.toml.
 #[derive(Debug, Clone)]
@@ -41,10 +41,10 @@ impl BuiltGait {
             Some(Self { robot, table })
         };
         let mut fits: Option<Self> = None;
-        let mut built = build(SLOW)?;
+        let mut built = build(SLOW_PERIOD_S)?;
         for _ in 0..FITS {
             let period = round_period(built.gait().period() * built.peak() / rate);
-            if period > LONGEST {
+            if period > MAX_PERIOD_S {
                 return None;
             }
             built = build(period)?;
@@ -148,14 +148,14 @@ impl Judge {
         Variation::none(&self.ground).walked(&self.robot, gait, SERVOS)
     }
 
-    /// Computes the speed that 95 % of the robots exceed; none for a gait that does not lead
+    /// Computes the speed that 95 % of the robots exceed; `None` for a gait that does not lead
     /// straight to its goal on the robot itself.
     pub fn score(&self, gait: &CheckedGait) -> Option<f64> {
         // In fine steps, because a period may not be a whole number of frames.
         if !self.goal.is_true_to(&self.cycle(gait)) {
             return None;
         }
-        let [slowest] = quantiles(self.speeds(gait, gait.period()), [SLOWEST]);
+        let [slowest] = quantiles(self.speeds(gait, gait.period()), [SLOWEST_SHARE]);
         Some(slowest)
     }
 }

@@ -39,13 +39,13 @@ impl Kind {
 }
 
 /// The smallest amplitude that is tried, deg.
-const NARROWEST: f64 = 5.0;
+const MIN_AMPLITUDE: f64 = 5.0;
 /// Duties that are tried: below one half two feet never out-vote the others.
 const DUTIES: (f64, f64) = (0.5, 0.95);
 /// Largest reduction of one pair's amplitude against the other's, as a share.
 const BALANCE: f64 = 0.5;
 /// The longest cycle that robot.toml takes, s.
-pub const LONGEST: f64 = 60.0;
+pub const MAX_PERIOD_S: f64 = 60.0;
 
 /// The space of the search.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -96,9 +96,9 @@ pub fn planned(kind: Kind, space: Space, name: &str, parameters: &[f64]) -> Bars
     Bars {
         name: name.to_string(),
         held: kind == Kind::Held,
-        period: LONGEST,
+        period: MAX_PERIOD_S,
         duty,
-        amplitude: rounded(between(amplitude, (NARROWEST, widest)), 1),
+        amplitude: rounded(between(amplitude, (MIN_AMPLITUDE, widest)), 1),
         start,
         gain: std::array::from_fn(gain),
     }

@@ -30,7 +30,7 @@ pub const fn trials(rounds: usize) -> usize {
 struct Member {
     /// Parameters, each 0 to 1.
     parameters: Vec<f64>,
-    /// Score; none if the member is refused.
+    /// Score; `None` if the member is refused.
     score: Option<f64>,
 }
 

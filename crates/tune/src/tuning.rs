@@ -14,7 +14,7 @@ const JUDGES: usize = 16;
 /// First seed of the robots of the comparison, which the search has not used.
 const FRESH: u64 = 1 << 40;
 /// Slowest servos that walk, deg/s.
-const SLOWEST: f64 = 10.0;
+const MIN_SERVO_SPEED: f64 = 10.0;
 
 /// The error for a gait that cannot be tuned.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -25,7 +25,7 @@ pub enum NoTuning {
     /// Servos so slow that the robot does not walk, or faster than its limits allow.
     #[error(
         "{rate}: from {least} to {most} deg/s, which is limits.gait_slew in robot.toml",
-        least = SLOWEST
+        least = MIN_SERVO_SPEED
     )]
     Rate {
         /// The speed of the servos that was asked for, deg/s.
@@ -67,7 +67,7 @@ impl Tuning {
     /// that the robot's limits allow.
     ///
     /// # Errors
-    /// For a gait that neither goes straight nor turns on the spot, or a rate out of range.
+    /// Fails for a gait that neither goes straight nor turns on the spot, or a rate out of range.
     pub fn new(
         robot: &Robot,
         ground: &Ground,
@@ -106,7 +106,7 @@ impl Tuning {
         Search::new(&kind.begin(), self.seed.wrapping_add(kind as u64))
     }
 
-    /// Scores a gait by the speed that 95 % of the random robots exceed, mm/s or deg/s; none if
+    /// Scores a gait by the speed that 95 % of the random robots exceed, mm/s or deg/s; `None` if
     /// the robot's limits forbid it, or it leads elsewhere. Takes some hundredths of a second to
     /// some tenths.
     pub fn score(&self, kind: Kind, parameters: &[f64]) -> Option<f64> {
@@ -142,7 +142,7 @@ fn allowed(robot: &Robot, gait: &CheckedGait, asked: Option<f64>) -> Result<f64,
         return Ok(gait.audit().peak.speed);
     };
     let most = robot.pace().gait_slew;
-    if (SLOWEST..=most).contains(&rate) {
+    if (MIN_SERVO_SPEED..=most).contains(&rate) {
         return Ok(rate);
     }
     Err(NoTuning::Rate { rate, most })

@@ -14,10 +14,10 @@ use crate::FRAME;
 pub enum ServoModel {
     /// They follow their pulses at once and exactly.
     Ideal,
-    /// Their rate and their dead band are limited, whatever they carry. A search walks with them
+    /// Rate and dead band are limited, whatever the servos carry. A search walks with them
     /// because they take a fraction of the time.
     Unloaded(Unloaded),
-    /// Their motors have torque, rate and a rotor, and the pads resist.
+    /// The motors have torque, rate and a rotor, and the pads resist.
     Motors(Motors),
 }
 

@@ -21,7 +21,7 @@ pub struct Shape {
 
 impl Shape {
     /// Computes the joints at servo angles (deg, chassis frame), with legs at these sweeps from
-    /// neutral (deg, foot forward positive), all in servo order; none if a loop does not close.
+    /// neutral (deg, foot forward positive), all in servo order; `None` if a loop does not close.
     #[must_use]
     pub fn of(robot: &Robot, angles: [f64; 4], legs: [f64; 4]) -> Option<Self> {
         let solved = robot.lizard().solve(&angles.into()).ok()?;

@@ -26,9 +26,9 @@ pub struct State {
     pub slip: [f64; 4],
     /// Load of each foot, N.
     pub loads: [f64; 4],
-    /// Margins of the pose; none if a loop does not close.
+    /// Margins of the pose; `None` if a loop does not close.
     pub margins: Option<Margins>,
-    /// Slider travel from nominal, left and right, mm; none if a loop does not close.
+    /// Slider travel from nominal, left and right, mm; `None` if a loop does not close.
     pub strokes: Option<[f64; 2]>,
 }
 

@@ -34,7 +34,7 @@ impl Twin {
         }
     }
 
-    /// Follows a frame of 20 ms: the width of each servo's pulse in us, none without a pulse. A
+    /// Follows a frame of 20 ms: the width of each servo's pulse in us, `None` without a pulse. A
     /// servo without a pulse does not turn, because its gears hold it.
     pub fn push(&mut self, pulses: [Option<f64>; 4]) -> State {
         let servos = self.robot.servos();
@@ -112,7 +112,7 @@ impl Twin {
         &self.robot
     }
 
-    /// The present joints, chassis frame; none if a loop does not close.
+    /// The present joints, chassis frame; `None` if a loop does not close.
     #[must_use]
     pub fn shape(&self) -> Option<Shape> {
         Shape::of(&self.robot, self.angles(), self.legs())

@@ -5,25 +5,25 @@ use std::fmt;
 /// The robot's activity when trouble begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Activity {
-    /// It rests, or has just received `rest`.
+    /// The robot rests, or has just received `rest`.
     Resting,
-    /// Its servos wake after a rest.
+    /// The servos wake after a rest.
     Waking,
-    /// It holds a pose or stands.
+    /// The robot holds a pose or stands.
     Holding,
-    /// It goes from one pose to another.
+    /// The robot goes from one pose to another.
     Moving,
-    /// It walks.
+    /// The robot walks.
     Cycling,
-    /// It writes the EEPROM.
+    /// The robot writes the EEPROM.
     Saving,
     /// The program has just begun.
     Starting,
-    /// It answers a question.
+    /// The robot answers a question.
     Talking,
-    /// It goes through its routine, and its contacts close and open.
+    /// The robot goes through its routine, and its contacts close and open.
     Patrolling,
-    /// A person drives it by radio.
+    /// A person drives the robot by radio.
     Driving,
 }
 
@@ -45,8 +45,8 @@ impl Activity {
     /// The activity of a scenario by its number: four in thirteen are drives.
     #[must_use]
     pub fn of(number: u64) -> Self {
-        let place = (number % 13) as usize;
-        Self::ALL.get(place).copied().unwrap_or(Self::Driving)
+        let index = (number % 13) as usize;
+        Self::ALL.get(index).copied().unwrap_or(Self::Driving)
     }
 }
 

@@ -68,8 +68,8 @@ impl<'a> Drive<'a> {
     /// millisecond.
     pub fn pass(&mut self, said: &[u8], uno: &mut Uno, record: &mut Record) {
         let (now, chip_baud) = (uno.cycle(), uno.chip_baud());
-        let heard = self.radio.hear(said, chip_baud);
-        let [to_uno, to_phone] = self.radio.pass(&heard, now);
+        let received = self.radio.received_bytes(said, chip_baud);
+        let [to_uno, to_phone] = self.radio.pass(&received, now);
         self.wire.write(RADIO, &to_uno, now);
         // The wire has read them at the chip's rate already.
         uno.set_baud(chip_baud);
@@ -85,7 +85,7 @@ impl<'a> Drive<'a> {
             return;
         }
         self.talk(now, record);
-        if self.radio.in_reach() {
+        if self.radio.is_in_reach() {
             match record.reached.last_mut() {
                 Some(span) if span.end + 2 * MS > now => span.end = now,
                 _ => record.reached.push(Span {

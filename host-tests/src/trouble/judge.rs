@@ -9,7 +9,7 @@ use simulated_uno::{Pin, ResetCause, State};
 
 use super::record::{Exchange, MS, Record, Span};
 use super::scenario::Scenario;
-use super::setup::WIDE;
+use super::setup::WIDE_SCALE;
 
 /// The LED.
 const LED: Pin = Pin::d(13);
@@ -27,7 +27,7 @@ fn limits(robot: &Robot, scenario: &Scenario) -> Limits {
         steps.any(|step| step.to_string().contains(text))
     };
     // With other numbers of a servo: the largest of both.
-    let wide = if mentions("scale ") { WIDE } else { "0" };
+    let wide = if mentions("scale ") { WIDE_SCALE } else { "0" };
     let wide: f64 = wide.parse().expect("a number");
     let servos = robot.servos().each_ref();
     Limits {
@@ -116,7 +116,7 @@ pub fn events(record: &Record) -> Vec<(Time, Event<'_>)> {
         add(received.cycle, Event::Line { is_command });
         let saved = received.text == "save" && record.is_saved(received.cycle);
         if saved || received.text == "save" || received.effect == Effect::Calibrates {
-            add(received.cycle, Event::Calibrated { saved });
+            add(received.cycle, Event::Calibrated { is_saved: saved });
         }
     }
     for (received, done) in record.orders() {

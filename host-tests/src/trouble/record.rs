@@ -33,7 +33,7 @@ pub struct Exchange {
     pub asked: u64,
     /// The line.
     pub line: String,
-    /// Its effect on the servos, if it is carried out.
+    /// The line's effect on the servos, if it is carried out.
     pub effect: Effect,
     /// The answer: the first line after it that is not information, if there is one.
     pub answer: Option<Line>,
@@ -64,7 +64,7 @@ pub struct Received {
     pub cycle: u64,
     /// The line.
     pub text: String,
-    /// Its effect on the servos, if it is carried out.
+    /// The line's effect on the servos, if it is carried out.
     pub effect: Effect,
     /// True if it is a command, and arrived undamaged.
     pub is_command: bool,

@@ -26,19 +26,19 @@ pub(super) const NOWHERE: &str = "pose 0 0 0 0";
 pub struct Scenario {
     /// The seed of its random numbers.
     pub seed: u64,
-    /// Its number among those of the seed.
+    /// The scenario's number among those of the seed.
     pub number: u64,
     /// The robot's activity when trouble begins.
     pub activity: Activity,
     /// True if a boot loader has cleared the chip's record of a reset.
-    pub boot_loader: bool,
+    pub has_boot_loader: bool,
     /// The steps, in order.
     pub steps: Vec<Step>,
 }
 
 impl fmt::Display for Scenario {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let loader = if self.boot_loader { "a" } else { "no" };
+        let loader = if self.has_boot_loader { "a" } else { "no" };
         writeln!(
             f,
             "scenario {} of seed {} ({}, {loader} boot loader), from power-on:",
@@ -67,7 +67,7 @@ impl Scenario {
             seed,
             number,
             activity,
-            boot_loader: rng.bool(),
+            has_boot_loader: rng.bool(),
             steps,
         }
     }
@@ -201,8 +201,8 @@ impl<'a> Script<'a> {
         self.wait_up_to(250);
     }
 
-    fn start_program(&mut self, at_power_on: bool) {
-        if !at_power_on {
+    fn start_program(&mut self, is_power_on: bool) {
+        if !is_power_on {
             match self.rng.u8(0..4) {
                 0 => self.say("rest"),
                 1 => {
@@ -282,7 +282,7 @@ impl<'a> Script<'a> {
             baud: f64::from(rate.baud()),
             loss: *self.rng.choice(&[0.0, 0.01, 0.1]).unwrap_or(&0.0),
             holds: *self.rng.choice(&[0, 1_000, 4_000]).unwrap_or(&0),
-            says: self.rng.bool(),
+            reports_link: self.rng.bool(),
             seed: self.rng.u64(..),
         };
         self.steps.push(Step::Drive(air));

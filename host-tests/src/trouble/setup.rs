@@ -41,14 +41,14 @@ fn travel(servo: usize, degrees: f64, robot: &Robot) -> String {
 }
 
 /// us per degree, far from robot.toml's.
-pub const WIDE: &str = "17.77";
+pub const WIDE_SCALE: &str = "17.77";
 
 /// A line that makes main settle the servos again.
 pub fn adjustment(rng: &mut Rng) -> String {
     match rng.u8(0..5) {
         0 => "load".into(),
         1 => "factory".into(),
-        2 => format!("scale {} {WIDE}", rng.u8(1..=4)),
+        2 => format!("scale {} {WIDE_SCALE}", rng.u8(1..=4)),
         3 => format!(
             "dir {} {}",
             rng.u8(1..=4),
@@ -94,7 +94,7 @@ pub fn settings(rng: &mut Rng, robot: &Robot) -> Vec<Step> {
         }
         // Every number of every servo changes.
         8 => {
-            let scales = (1..=4).map(|servo| say(format!("scale {servo} {WIDE}")));
+            let scales = (1..=4).map(|servo| say(format!("scale {servo} {WIDE_SCALE}")));
             let trims = (1..=4).map(|servo| say(format!("trim {servo} 3.3")));
             let mut steps: Vec<Step> = scales.chain(trims).collect();
             steps.extend([wait(300), say("save"), wait(50)]);

@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 use lizard_core::console::command::{effect, parse};
-use lizard_core::console::line::{GARBLED, LONGEST};
+use lizard_core::console::line::{GARBLED, MAX_BYTES};
 use lizard_core::console::word::Effect;
 use lizard_host::sim::frame::servo_pins;
 use lizard_host::sim::lines::LineReader;
@@ -18,15 +18,15 @@ use super::step::Step;
 /// The longest wait for an answer, ms.
 const TIMEOUT_MS: u64 = 400;
 
-/// Questions until a robot is found: 5 at the slowest rate, and some that other rates have left.
-const ASKS: u32 = 12;
+/// The largest number of questions until a robot is found: 5 at the slowest rate, and some more.
+const MAX_QUESTIONS: u32 = 12;
 
 /// The voltages of a good supply and of a weak one under load, mV.
-const GOOD: f64 = 5_000.0;
-const FALLEN: f64 = 2_400.0;
+const GOOD_MV: f64 = 5_000.0;
+const FALLEN_MV: f64 = 2_400.0;
 
 /// The voltage below which the chip is held in reset, mV, with its largest hysteresis.
-const BROWN_OUT: f64 = 2_725.0;
+const BROWN_OUT_MV: f64 = 2_725.0;
 
 /// Cycles of a byte on the line.
 const BYTE: u64 = 1_389;
@@ -44,7 +44,7 @@ struct Stage<'a> {
     noise: Rng,
     record: Record,
     starts: usize,
-    weak: bool,
+    is_weak: bool,
     /// The cycle at which each servo's latest pulse began.
     latest: [Option<u64>; 4],
 }
@@ -54,7 +54,7 @@ struct Stage<'a> {
 pub fn play(image: &Image, robot: &Robot, scenario: &Scenario) -> Record {
     let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
     supplies::connect(&mut uno, robot);
-    uno.set_boot_loader(scenario.boot_loader);
+    uno.set_boot_loader(scenario.has_boot_loader);
     uno.set_noise_seed(scenario.number);
     let mut stage = Stage {
         robot,
@@ -65,10 +65,10 @@ pub fn play(image: &Image, robot: &Robot, scenario: &Scenario) -> Record {
         noise: Rng::with_seed(scenario.number),
         record: Record::default(),
         starts: 1,
-        weak: false,
+        is_weak: false,
         latest: [None; 4],
     };
-    stage.record.supply.push((0, GOOD));
+    stage.record.supply.push((0, GOOD_MV));
     for step in &scenario.steps {
         stage.perform(step);
     }
@@ -124,9 +124,9 @@ impl Stage<'_> {
             Step::Find => self.find(),
             Step::Noise(cycles) => self.add_noise(*cycles),
             Step::Weak(on) => {
-                self.weak = *on;
+                self.is_weak = *on;
                 if !on {
-                    self.set_supply(GOOD);
+                    self.set_supply(GOOD_MV);
                 }
             }
         }
@@ -144,7 +144,7 @@ impl Stage<'_> {
 
     /// Asks for the status until it is answered.
     fn find(&mut self) {
-        for _ in 0..ASKS {
+        for _ in 0..MAX_QUESTIONS {
             let from = self.record.lines.len();
             self.send("status");
             self.run_to(self.uno.cycle() + TIMEOUT_MS * CYCLES_PER_MS);
@@ -216,7 +216,7 @@ impl Stage<'_> {
         }
         self.uno.set_supply_mv(mv);
         self.record.supply.push((now, mv));
-        if mv < BROWN_OUT {
+        if mv < BROWN_OUT_MV {
             self.record.cuts.push(now);
         }
     }
@@ -231,7 +231,7 @@ impl Stage<'_> {
                 .stalls
                 .last()
                 .is_some_and(|stall| stall.end > now);
-            let piece = if stalled || self.weak || self.drive.is_some() {
+            let piece = if stalled || self.is_weak || self.drive.is_some() {
                 CYCLES_PER_MS
             } else {
                 until - now
@@ -269,7 +269,7 @@ impl Stage<'_> {
                 stall.end = stall.end.min(now);
             }
         }
-        if self.weak {
+        if self.is_weak {
             let since = self.uno.cycle().saturating_sub(RECENT);
             let awake = self
                 .latest
@@ -277,7 +277,7 @@ impl Stage<'_> {
                 .flatten()
                 .filter(|at| **at >= since)
                 .count();
-            self.set_supply(if awake >= 3 { FALLEN } else { GOOD });
+            self.set_supply(if awake >= 3 { FALLEN_MV } else { GOOD_MV });
         }
     }
 
@@ -309,7 +309,7 @@ impl Stage<'_> {
 
 /// A line by its bytes, and the cycle at which its end arrived.
 fn received(bytes: &[u8], cycle: u64, robot: &Robot) -> Received {
-    let is_whole = bytes.len() <= LONGEST && !bytes.contains(&GARBLED);
+    let is_whole = bytes.len() <= MAX_BYTES && !bytes.contains(&GARBLED);
     let text = String::from_utf8_lossy(bytes.trim_ascii()).to_ascii_lowercase();
     let is_known = parse(text.as_bytes(), robot.firmware()).is_ok();
     Received {

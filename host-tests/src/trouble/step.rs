@@ -59,7 +59,11 @@ impl fmt::Display for Step {
                 air.baud,
                 100.0 * air.loss,
                 air.holds,
-                if air.says { ", and says so" } else { "" }
+                if air.reports_link {
+                    ", and says so"
+                } else {
+                    ""
+                }
             ),
             Self::Contact(pin, true) => write!(f, "the contact at pin {pin} closes"),
             Self::Contact(pin, false) => write!(f, "the contact at pin {pin} opens"),

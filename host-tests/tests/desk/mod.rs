@@ -1,5 +1,5 @@
 //! A new board at a serial port of this machine, for programs that write boards: a
-//! simulated UNO, with the boot loader of a stock UNO or of an old Nano in flash, behind a pseudo
+//! simulated UNO, with the boot loader of a stock UNO or of an old Nano in flash, at a pseudo
 //! terminal and in real time.
 
 use std::path::PathBuf;

@@ -221,7 +221,7 @@ fn every_pulse_of_a_walk_is_exact_while_the_memory_is_written() {
 }
 
 #[test]
-fn boot_begins_its_gait_three_seconds_after_power_on_unless_a_byte_comes_before() {
+fn boot_begins_its_gait_three_seconds_after_power_on_unless_a_byte_comes() {
     in_both(|fidelity| {
         let mut bench = awake(fidelity);
         let gait = first_moving_gait();
@@ -259,7 +259,7 @@ fn order_nearby_pose(bench: &mut lizard_host_tests::FirmwareBench) -> [u64; 4] {
 }
 
 #[test]
-fn power_on_begins_where_the_robot_rested_one_servo_after_another_without_a_leap() {
+fn power_on_wakes_the_servos_one_by_one_where_the_robot_rested() {
     in_both(|fidelity| {
         let mut bench = awake(fidelity);
         let rested = order_nearby_pose(&mut bench);
@@ -286,7 +286,7 @@ fn power_on_begins_where_the_robot_rested_one_servo_after_another_without_a_leap
 }
 
 #[test]
-fn a_power_cut_while_the_pose_of_a_rest_is_written_gives_that_pose_or_the_neutral_one() {
+fn a_power_cut_while_a_rest_is_saved_gives_that_pose_or_the_neutral_one() {
     let mut bench = awake(Fidelity::DataSheet);
     let blank = bench.uno.eeprom();
     let rested = order_nearby_pose(&mut bench);

@@ -94,7 +94,7 @@ fn refused_poses() -> Vec<(String, u8)> {
                 min + by < sweep && sweep < max - by
             })
         };
-        let place = if !within(-0.1) {
+        let index = if !within(-0.1) {
             0
         } else if !within(0.1) {
             continue;
@@ -109,7 +109,7 @@ fn refused_poses() -> Vec<(String, u8)> {
                 _ => continue,
             }
         };
-        found[place].get_or_insert_with(|| pose_at(sweeps));
+        found[index].get_or_insert_with(|| pose_at(sweeps));
         if found.iter().all(Option::is_some) {
             break;
         }

@@ -1,4 +1,4 @@
-//! The faults that stop a motion: each with its word, its sentence and its flashes.
+//! The faults that stop a motion: each with its word, its message and its flashes.
 
 use lizard_host::sim::frame::FRAME;
 use lizard_host_tests::FirmwareBench;
@@ -10,14 +10,14 @@ use crate::{Status, first_moving_gait, robot_after};
 
 /// Checks a fault's effects: nothing moves, `status` and one line name it, the LED flashes so
 /// many times.
-fn assert_stopped(bench: &mut FirmwareBench, word: &str, sentence: &str, code: usize) {
+fn assert_stopped(bench: &mut FirmwareBench, word: &str, message: &str, code: usize) {
     let status = Status::of(bench);
     assert_eq!((status.text("gait"), status.text("fault")), ("stop", word));
     let held = widths_now(bench);
     for (pulses, width) in pulses_in(bench, 1000).iter().zip(held) {
         assert!(pulses.len() >= 49 && pulses.iter().all(|pulse| pulse.width == width));
     }
-    let line = format!("# fault: {sentence}");
+    let line = format!("# fault: {message}");
     let printed = bench.lines().iter().filter(|printed| printed.text == line);
     assert_eq!(printed.count(), 1, "{line}");
     let flashes = flashes(bench, 12);
@@ -47,8 +47,8 @@ fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says() {
         stopped.is_some_and(|ms| (2_190..2_260).contains(&ms)),
         "{stopped:?}"
     );
-    let sentence = "no line for as long as deadman says, stopped";
-    assert_stopped(&mut bench, "link", sentence, 3);
+    let message = "no line for as long as deadman says, stopped";
+    assert_stopped(&mut bench, "link", message, 3);
     assert_eq!(
         bench.say(&first_moving_gait()),
         format!("ok {}", first_moving_gait())
@@ -86,8 +86,8 @@ fn a_late_edge_stops_the_motion_and_its_pulse_is_dropped() {
         "{:?}",
         edges[0]
     );
-    let sentence = "a pulse came late, stopped";
-    assert_stopped(&mut walk.bench, "late", sentence, 5);
+    let message = "a pulse came late, stopped";
+    assert_stopped(&mut walk.bench, "late", message, 5);
     assert_eq!(Status::of(&mut walk.bench).number("late"), 1.0);
 }
 
@@ -99,8 +99,8 @@ fn a_stack_that_has_reached_the_data_stops_the_motion_for_good() {
         let was = walk.bench.uno.peek(guard);
         walk.bench.uno.poke(guard, was ^ 0x10);
         walk.bench.run_ms(100);
-        let sentence = "the stack has grown into the data, stopped";
-        assert_stopped(&mut walk.bench, "stack", sentence, 6);
+        let message = "the stack has grown into the data, stopped";
+        assert_stopped(&mut walk.bench, "stack", message, 6);
         // Whatever the data says now is not to be trusted: it does not move again.
         walk.bench.say(&first_moving_gait());
         walk.bench.run_ms(100);

@@ -206,7 +206,7 @@ fn a_falling_edge_that_is_missed_is_made_when_the_next_slot_begins() {
 }
 
 #[test]
-fn after_milliseconds_without_interrupts_no_pulse_is_short_and_none_lasts_beyond_its_slot() {
+fn milliseconds_without_interrupts_shorten_no_pulse_nor_exceed_its_slot() {
     in_both(|fidelity| {
         let mut walk = Walk::stand(fidelity);
         let mut rng = Rng::with_seed(5);

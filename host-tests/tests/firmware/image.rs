@@ -15,7 +15,7 @@ fn image() -> Image {
 /// The functions whose path has one of these in it.
 fn functions_with(parts: &[&str]) -> Vec<String> {
     let image = image();
-    let functions = image.symbols().iter().filter(|symbol| symbol.function);
+    let functions = image.symbols().iter().filter(|symbol| symbol.is_function);
     let paths: Vec<String> = functions.map(|symbol| symbol.path()).collect();
     assert!(
         paths.iter().any(|path| path.ends_with("Control::frame")),
@@ -50,7 +50,7 @@ fn nothing_in_it_is_floating_point() {
     // avr-libc's and compiler-rt's routines: __addsf3, __muldf3, __floatsisf,
     // __fixunssfsi, __fp_split3 and their kin, and libm.
     let image = image();
-    let functions = image.symbols().iter().filter(|symbol| symbol.function);
+    let functions = image.symbols().iter().filter(|symbol| symbol.is_function);
     let is_float = |name: &str| {
         let bare = name.trim_start_matches('_');
         let helper = name.starts_with("__");
@@ -76,7 +76,7 @@ fn nothing_in_it_is_floating_point() {
 }
 
 #[test]
-fn tables_and_sentences_stay_in_flash() {
+fn tables_and_messages_stay_in_flash() {
     let bench = awake(Fidelity::DataSheet);
     let ram: Vec<u8> = (SRAM_START..SRAM_END)
         .map(|at| bench.uno.peek(at))
@@ -98,7 +98,7 @@ fn tables_and_sentences_stay_in_flash() {
         }
     }
     // None of these has been said yet.
-    for sentence in [
+    for message in [
         "unknown command",
         "must be",
         "margin of",
@@ -106,7 +106,7 @@ fn tables_and_sentences_stay_in_flash() {
         "percent",
         "status",
     ] {
-        assert!(!holds(sentence.as_bytes()), "{sentence:?} is in RAM");
+        assert!(!holds(message.as_bytes()), "{message:?} is in RAM");
     }
     assert!(holds(b"# lizard"), "the banner is where it was sent from");
 }
@@ -158,24 +158,21 @@ fn an_image_without_room_is_refused_with_the_excess_and_what_is_largest() {
         (run.status.success(), printed)
     };
     assert_eq!(printed("unused", 0), (true, String::new()));
-    let (fits, sentence) = printed("__robot_start", code - 300);
+    let (fits, message) = printed("__robot_start", code - 300);
     assert!(!fits);
-    let lines: Vec<&str> = sentence.lines().collect();
+    let lines: Vec<&str> = message.lines().collect();
     let excess = format!(
         "the firmware does not fit: its code has {code} bytes, 300 more than the {} in front",
         code - 300
     );
-    assert!(lines[0].starts_with(&excess), "{sentence}");
-    assert_eq!(lines.len(), 1 + 10, "{sentence}");
-    assert!(lines[1].ends_with("::controller::frame"), "{sentence}");
+    assert!(lines[0].starts_with(&excess), "{message}");
+    assert_eq!(lines.len(), 1 + 10, "{message}");
+    assert!(lines[1].ends_with("::controller::frame"), "{message}");
     let start = image
         .symbol("__robot_start")
         .expect("it is in the ELF")
         .address;
-    let (fits, sentence) = printed("__robot_end", start + 300);
+    let (fits, message) = printed("__robot_end", start + 300);
     assert!(!fits);
-    assert!(
-        sentence.starts_with("the robot does not fit: "),
-        "{sentence}"
-    );
+    assert!(message.starts_with("the robot does not fit: "), "{message}");
 }

@@ -104,7 +104,7 @@ fn stands(bench: &mut FirmwareBench) -> bool {
 }
 
 #[test]
-fn switched_on_and_pressed_the_robot_patrols_and_turns_away_from_walls_with_no_computer() {
+fn after_power_on_and_a_press_the_robot_patrols_without_a_computer() {
     in_both(|fidelity| {
         let mut bench = awake(robot(), fidelity);
         bench.say("boot patrol");
@@ -168,7 +168,7 @@ fn a_button_that_is_stuck_or_only_touched_starts_nothing() {
 }
 
 #[test]
-fn a_reset_a_hang_a_rest_and_a_weak_supply_end_the_patrol_and_no_press_begins_it_again() {
+fn reset_hang_rest_or_weak_supply_end_the_patrol_and_no_press_restarts_it() {
     for begin in [waiting, walking] {
         type Event = fn(&mut FirmwareBench);
         let events: [(&str, Event); 5] = [

@@ -29,8 +29,8 @@ fn line(rng: &mut Rng) -> String {
         let gait = &robot().gaits()[rng.usize(..robot().gaits().len())];
         gait.name().replace('-', " ")
     };
-    let place = rng.usize(..4);
-    let servo = place + 1;
+    let index = rng.usize(..4);
+    let servo = index + 1;
     match rng.u8(..24) {
         0..5 => gait(rng),
         5 => "stop".into(),
@@ -51,8 +51,8 @@ fn line(rng: &mut Rng) -> String {
         },
         14 | 15 => format!("trim {servo} {}", number(rng, -20.0, 20.0)),
         16 => {
-            let least = angle(rng, place);
-            format!("limit {servo} {least} {}", angle(rng, place))
+            let least = angle(rng, index);
+            format!("limit {servo} {least} {}", angle(rng, index))
         }
         17 => format!("dir {servo} {}", ['+', '-'][rng.usize(..2)]),
         18 => format!("scale {servo} {}", number(rng, 5.0, 20.0)),

@@ -44,7 +44,7 @@ fn a_width_that_a_slot_has_no_room_for_gives_no_pulse() {
 }
 
 #[test]
-fn after_the_switch_no_pulse_begins_the_one_under_way_ends_as_planned_and_the_tick_goes_on() {
+fn after_the_switch_only_the_pulse_under_way_ends_and_the_tick_goes_on() {
     in_both(|fidelity| {
         // Moments in every part of a frame: before, in and after each pulse.
         for n in 0..40 {

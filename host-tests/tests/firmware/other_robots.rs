@@ -1,6 +1,6 @@
 //! Random robots: with any pins, directions and gaits, no frame is late.
 
-use lizard_core::numbers::gaits::LONGEST_NAME;
+use lizard_core::numbers::gaits::MAX_NAME_BYTES;
 use lizard_host::bench::longest_step;
 use lizard_host::board::SimulatedBoard;
 use lizard_host::sim::core_run;
@@ -51,7 +51,7 @@ fn no_frame_is_late_for_any_robot_in_any_gait_under_any_flood() {
             // Of three, one as it is, one with many gaits and one with long names.
             match n % 3 {
                 1 => robot = with_many_gaits(&text, 10),
-                2 => robot = with_many_gaits(&text, LONGEST_NAME),
+                2 => robot = with_many_gaits(&text, MAX_NAME_BYTES),
                 _ => {}
             }
             let what = format!("robot {n}");
@@ -65,11 +65,11 @@ fn no_frame_is_late_for_any_robot_in_any_gait_under_any_flood() {
 }
 
 #[test]
-fn no_step_of_main_keeps_a_frame_waiting_for_too_long_however_many_gaits_there_are() {
+fn no_step_of_main_delays_a_frame_too_long_however_many_gaits_there_are() {
     /// The cycles of every robot's other commands, of which `factory` takes the longest.
     const OTHERS: usize = 34_000;
     let (text, robot) = random_robot(&mut rng(2_000));
-    let lengths = [10, 24, LONGEST_NAME];
+    let lengths = [10, 24, MAX_NAME_BYTES];
     for robot in lengths
         .map(|length| with_many_gaits(&text, length))
         .iter()

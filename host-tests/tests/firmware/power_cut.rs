@@ -99,7 +99,7 @@ fn a_power_cut_at_any_byte_of_a_save_torn_in_any_way_leaves_the_old_or_the_new()
 }
 
 #[test]
-fn the_running_image_loses_power_in_every_operation_of_a_save_and_has_the_old_or_the_new() {
+fn a_power_cut_in_any_operation_of_a_running_save_leaves_the_old_or_the_new() {
     let mut saved = Saved::new();
     let before = saved.before;
     let count = saved.save().len() as u64;
@@ -132,7 +132,7 @@ fn the_running_image_loses_power_in_every_operation_of_a_save_and_has_the_old_or
 }
 
 #[test]
-fn a_bit_that_changes_anywhere_gives_the_settings_the_other_copy_or_the_defaults() {
+fn any_flipped_bit_gives_the_settings_the_other_copy_or_the_defaults() {
     let mut saved = Saved::new();
     saved.save();
     let contents = saved.bench.uno.eeprom();

@@ -39,10 +39,10 @@ impl Random {
 /// A random command: mostly gaits, sometimes another one.
 fn command(random: &mut Random, robot: &Robot) -> String {
     let servo = 1 + random.random_below(4);
-    let neutral = |place: usize| (robot.servos()[place].neutral * 100.0).round() as i64;
+    let neutral = |index: usize| (robot.servos()[index].neutral * 100.0).round() as i64;
     let near = |random: &mut Random, reach: i64| {
-        let angle = |place: usize| {
-            let angle = neutral(place);
+        let angle = |index: usize| {
+            let angle = neutral(index);
             random.hundredths(angle - reach, angle + reach)
         };
         let angles: Vec<String> = (0..4).map(angle).collect();
@@ -152,7 +152,7 @@ fn digest(name: &str) -> (u64, u64) {
 }
 
 #[test]
-fn ten_minutes_of_random_commands_give_every_robot_the_pulses_that_were_recorded() {
+fn ten_minutes_of_random_commands_give_every_robot_its_recorded_pulses() {
     // Recorded when waveforms had 64 samples for the first time (commit d99bebe), which changed
     // widths and nothing else: there are as many edges as on the last firmware that had each robot
     // compiled into it (commit e49c5b5). The large robot is the paper's, four thirds as large: its

@@ -168,19 +168,19 @@ fn any_bytes_at_all_get_at_most_one_answer_for_a_line() {
 }
 
 #[test]
-fn a_line_with_a_garbled_byte_is_refused_wherever_it_is_and_the_byte_is_counted() {
+fn a_line_with_a_garbled_byte_anywhere_is_refused_and_the_byte_counted() {
     in_both(|fidelity| {
         let mut bench = awake(fidelity);
         let line = b"speed 90";
-        for place in 0..line.len() {
-            bench.uno.send(&line[..place]);
-            bench.uno.send_with_framing_error(&line[place..=place]);
-            bench.uno.send(&line[place + 1..]);
+        for index in 0..line.len() {
+            bench.uno.send(&line[..index]);
+            bench.uno.send_with_framing_error(&line[index..=index]);
+            bench.uno.send(&line[index + 1..]);
             bench.uno.send(b"\n");
             bench.run_ms(20);
             let printed = bench.lines().last().map(|line| line.text.clone());
             let refused = "err 1 the line came garbled, send it again";
-            assert_eq!(printed.as_deref(), Some(refused), "byte {place}");
+            assert_eq!(printed.as_deref(), Some(refused), "byte {index}");
         }
         let status = Status::of(&mut bench);
         assert_eq!(

@@ -70,7 +70,7 @@ fn a_frame_is_played_whole_or_not_at_all_wherever_main_stops_in_the_hand_over() 
 }
 
 #[test]
-fn a_rest_in_place_of_a_frame_that_waits_ends_all_pulses_or_none_wherever_main_stops() {
+fn a_rest_instead_of_a_waiting_frame_ends_all_pulses_or_none() {
     let mut walk = Walk::begin(Fidelity::DataSheet);
     for n in 0..160 {
         let frame = walk.next_frame();

@@ -15,7 +15,7 @@ use lizard_host_tests::{FirmwareBench, robot};
 /// The longest that simavr runs. It sleeps as long as the chip does, and a busy machine is slower.
 const TIMEOUT: Duration = Duration::from_secs(200);
 
-/// The gait that the robot walks: its first behind `stand`.
+/// The gait that the robot walks: the first after `stand`.
 fn gait() -> String {
     robot().gaits()[1].name().replace('-', " ")
 }
@@ -207,7 +207,7 @@ fn the_elf_file_walks_in_debians_simavr() {
 /// A HEX file cannot tell simavr the voltage, and it takes 3.3 V: too little for servos, which
 /// the firmware says.
 #[test]
-fn the_hex_files_start_with_their_robot_in_debians_simavr_and_say_that_it_has_too_little_voltage() {
+fn the_hex_files_start_in_debians_simavr_and_report_its_low_voltage() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     let elf = FirmwareBench::elf();

@@ -41,7 +41,7 @@ fn run_until_reset(bench: &mut FirmwareBench) -> u64 {
 }
 
 #[test]
-fn main_that_hangs_is_reset_and_the_robot_is_held_in_its_pose_without_a_wrong_pulse() {
+fn a_main_that_hangs_is_reset_and_the_robot_held_without_a_wrong_pulse() {
     let (mut bench, widths) = hold_pose();
     for n in 0..40u64 {
         // At any place in a frame.
@@ -79,7 +79,7 @@ fn main_that_hangs_is_reset_and_the_robot_is_held_in_its_pose_without_a_wrong_pu
 }
 
 #[test]
-fn a_hang_in_a_walk_ends_in_the_pose_of_the_last_frame_and_nothing_moves_until_told_to() {
+fn a_hang_in_a_walk_ends_in_the_pose_of_the_last_frame_until_an_order() {
     for hang_ms in [3, 137, 411, 893] {
         let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
         bench.run_ms(hang_ms);
@@ -150,22 +150,22 @@ fn a_robot_that_works_is_never_reset() {
 }
 
 /// A board that has just begun, with or without a boot loader.
-fn fresh_board(boot_loader: bool) -> FirmwareBench {
+fn fresh_board(has_boot_loader: bool) -> FirmwareBench {
     let mut bench = FirmwareBench::power_on(Fidelity::DataSheet);
-    bench.uno.set_boot_loader(boot_loader);
+    bench.uno.set_boot_loader(has_boot_loader);
     bench.run_ms(700);
     bench
 }
 
 #[test]
 fn every_cause_of_a_reset_is_reported_and_resets_are_counted() {
-    for boot_loader in [false, true] {
-        let mut bench = fresh_board(boot_loader);
+    for has_boot_loader in [false, true] {
+        let mut bench = fresh_board(has_boot_loader);
         let expect = |bench: &mut FirmwareBench, cause: &str, resets: f64| {
             bench.uno.run_ms(700);
             let status = Status::of(bench);
             let reported = (status.text("reset"), status.number("resets"));
-            assert_eq!(reported, (cause, resets), "boot loader: {boot_loader}");
+            assert_eq!(reported, (cause, resets), "boot loader: {has_boot_loader}");
         };
         expect(&mut bench, "power", 0.0);
         bench.uno.reset();
@@ -177,7 +177,11 @@ fn every_cause_of_a_reset_is_reported_and_resets_are_counted() {
         bench.uno.run_ms(5);
         bench.uno.set_supply_mv(5_000.0);
         // The boot loader clears the chip's record of the cause; the RAM was kept.
-        let dip = if boot_loader { "external" } else { "brownout" };
+        let dip = if has_boot_loader {
+            "external"
+        } else {
+            "brownout"
+        };
         expect(&mut bench, dip, 3.0);
         bench.uno.reset();
         expect(&mut bench, "external", 4.0);

@@ -284,9 +284,9 @@ pub fn final_activity(robot: &Robot, command: &str) -> Option<Activity> {
         .gaits()
         .iter()
         .position(|gait| gait_command(gait) == command);
-    let id = |place: usize| {
+    let id = |index: usize| {
         GaitId::all(robot.gaits().len())
-            .nth(place)
+            .nth(index)
             .map(Activity::Gait)
     };
     match command {

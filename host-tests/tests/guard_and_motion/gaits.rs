@@ -58,7 +58,7 @@ fn the_core_has_the_gaits_of_the_file_in_its_order() {
 }
 
 #[test]
-fn tables_are_within_a_tenth_of_a_degree_of_every_gait_at_every_phase_and_safe_there() {
+fn tables_are_within_the_promised_error_of_every_gait_and_safe_at_every_phase() {
     let mut worst = 0.0f64;
     for (n, (Named { name, robot }, float, gait)) in gaits().enumerate() {
         // Of random robots every 13th phase, another one for each gait.
@@ -96,7 +96,7 @@ fn tables_are_within_a_tenth_of_a_degree_of_every_gait_at_every_phase_and_safe_t
 }
 
 #[test]
-fn a_leg_of_a_wave_pushes_back_from_its_start_for_its_duty_and_returns_in_the_rest() {
+fn a_leg_of_a_wave_pushes_back_for_its_duty_and_returns_in_the_rest() {
     let mut legs = 0;
     for (Named { name, robot }, float, gait) in gaits() {
         for (servo, stride) in float.strides().iter().enumerate() {
@@ -291,7 +291,7 @@ fn the_wrap_of_the_phase_is_as_smooth_as_the_rest_of_the_cycle() {
 }
 
 #[test]
-fn gaits_of_the_paper_that_look_the_same_from_both_sides_half_a_cycle_apart_are_so() {
+fn the_papers_symmetric_gaits_mirror_themselves_half_a_cycle_apart() {
     for name in ["walk", "trot"] {
         let gait = gait_named(paper(), name).expect("a gait of the paper's robot");
         for phase in phases() {

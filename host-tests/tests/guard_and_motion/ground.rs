@@ -16,7 +16,7 @@ fn angles(robot: &Robot, pulses: Pulses) -> [f64; 4] {
 }
 
 /// The travel of one cycle, by the pulses that the core sends for a gait at a speed in
-/// percent. It begins where the gait's phase is next to 0. None where the guard bars
+/// percent. It begins where the gait's phase is next to 0. `None` where the guard bars
 /// the way to the gait's first pose.
 fn travel(named: &Named, gait: &CheckedGait, percent: f64) -> Option<Travel> {
     let robot = &named.robot;
@@ -103,7 +103,7 @@ fn the_pulses_of_every_gait_lead_where_the_same_gait_in_floating_point_does() {
 // The predictions in floating point are compared with independent figures in the tests
 // of crates/robot/.
 #[test]
-fn the_pulses_of_the_papers_gaits_lead_there_within_a_third_of_a_millimetre_at_any_pace() {
+fn the_pulses_of_the_papers_gaits_lead_there_within_a_third_of_a_millimetre() {
     let named = Named {
         name: "paper.toml".into(),
         robot: paper().clone(),

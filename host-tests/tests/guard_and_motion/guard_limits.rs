@@ -12,7 +12,7 @@ use crate::truth::{MARGINS, per_mm, sine};
 /// The limit that robot.toml gives for each of the ten margins.
 fn limits(robot: &Robot) -> [f64; 10] {
     let limits = robot.limits();
-    std::array::from_fn(|place| match place {
+    std::array::from_fn(|index| match index {
         0..2 => limits.type2,
         2..6 => limits.type1,
         _ => limits.leg,
@@ -40,10 +40,10 @@ fn a_value_at_its_limit_is_safe_and_the_next_one_below_is_named() {
     for Named { name, robot } in robots() {
         let firmware = robot.firmware();
         assert_eq!(at_the_limit(robot).hazard(firmware), None, "{name}");
-        for (place, margin) in MARGINS.into_iter().enumerate() {
+        for (index, margin) in MARGINS.into_iter().enumerate() {
             let mut core = at_the_limit(robot);
-            let value = Sine(core.margins[place].0 - 1);
-            core.margins[place] = value;
+            let value = Sine(core.margins[index].0 - 1);
+            core.margins[index] = value;
             let hazard = Some(Hazard::Margin { margin, value });
             assert_eq!(core.hazard(firmware), hazard, "{name}");
         }
@@ -54,7 +54,7 @@ fn a_value_at_its_limit_is_safe_and_the_next_one_below_is_named() {
 fn a_slider_at_an_end_of_its_stroke_is_safe_and_a_hair_beyond_is_named() {
     for Named { name, robot } in robots() {
         let firmware = robot.firmware();
-        for (place, side) in Side::ALL.into_iter().enumerate() {
+        for (index, side) in Side::ALL.into_iter().enumerate() {
             let slider = firmware.side(side);
             let [min_sq, max_sq] = [slider.min, slider.max].map(|steps| u32::from(steps).pow(2));
             for (length_sq, safe) in [
@@ -64,7 +64,7 @@ fn a_slider_at_an_end_of_its_stroke_is_safe_and_a_hair_beyond_is_named() {
                 (max_sq + 1, false),
             ] {
                 let mut core = at_the_limit(robot);
-                core.sliders_sq[place] = length_sq;
+                core.sliders_sq[index] = length_sq;
                 let named = match core.hazard(firmware) {
                     None => None,
                     Some(Hazard::Stroke { side, .. }) => Some(side),

@@ -12,7 +12,7 @@ use lizard_host_tests::{Named, rng, robots};
 use lizard_robot::Robot;
 
 use crate::truth::{
-    ENDS, LEAST_TYPE2, MARGINS, Spread, Truth, angles, any_pose, is_safe, open_end, per_mm,
+    ENDS, MARGINS, MIN_TYPE2, Spread, Truth, angles, any_pose, is_safe, open_end, per_mm,
     pose_within, sine,
 };
 
@@ -46,12 +46,12 @@ impl Findings {
         let firmware = robot.firmware();
         let core = Clearance::of(firmware, pose);
         let hazard = core.hazard(firmware);
-        let named = hazard.map(place);
+        let named = hazard.map(index_of);
         match named {
             None => self.safe += 1,
-            Some(place) => {
+            Some(index) => {
                 self.refused += 1;
-                self.named[place] += 1;
+                self.named[index] += 1;
             }
         }
         let truth = match Truth::of(robot, angles(firmware, pose)) {
@@ -61,7 +61,7 @@ impl Findings {
                 let end =
                     open_end(&fault).expect("the sliders of these robots always have a length");
                 assert!(
-                    named.is_some_and(|place| place <= end),
+                    named.is_some_and(|index| index <= end),
                     "{pose:?}: {fault}, {hazard:?}"
                 );
                 return;
@@ -92,27 +92,27 @@ impl Findings {
 
     /// Compares every value with the truth.
     fn compare(&mut self, robot: &Robot, core: &Clearance, truth: &Truth) {
-        for (place, (value, meant)) in core.margins.iter().zip(truth.margins).enumerate() {
-            let end = ENDS.get(place).copied();
+        for (index, (value, meant)) in core.margins.iter().zip(truth.margins).enumerate() {
+            let end = ENDS.get(index).copied();
             if let Some(end) = end
-                && (truth.margins[end] < LEAST_TYPE2 || truth.is_at_crossing(end))
+                && (truth.margins[end] < MIN_TYPE2 || truth.is_at_crossing(end))
             {
                 // The guard only has to detect that case.
-                let most = LEAST_TYPE2 + truth.bands[end];
+                let most = MIN_TYPE2 + truth.bands[end];
                 assert!(
                     truth.is_at_crossing(end) || sine(core.margins[end]) < most,
                     "{truth:?}"
                 );
                 continue;
             }
-            let spread = match place {
+            let spread = match index {
                 0..2 => &mut self.type2,
                 2..6 => &mut self.type1,
                 _ => &mut self.leg,
             };
             let off = sine(*value) - meant;
             spread.add(off);
-            self.in_bands[place] = self.in_bands[place].max(off.abs() / truth.bands[place]);
+            self.in_bands[index] = self.in_bands[index].max(off.abs() / truth.bands[index]);
         }
         for (side, (length_sq, travel)) in Side::ALL
             .into_iter()
@@ -152,11 +152,11 @@ impl Findings {
 }
 
 /// The place of the condition that a hazard names, among twelve.
-fn place(hazard: Hazard) -> usize {
+fn index_of(hazard: Hazard) -> usize {
     match hazard {
         Hazard::Margin { margin, .. } => {
-            let place = MARGINS.iter().position(|known| *known == margin);
-            place.expect("one of ten")
+            let index = MARGINS.iter().position(|known| *known == margin);
+            index.expect("one of ten")
         }
         Hazard::Stroke { side, .. } => 10 + side as usize,
         Hazard::Travel(_) => unreachable!("a clearance knows no travel"),
@@ -171,7 +171,7 @@ fn poses(rng: &mut Rng, robot: &Robot) -> impl Iterator<Item = Pose> {
 }
 
 #[test]
-fn of_every_robot_the_guard_measures_every_margin_and_decides_every_pose_as_floating_point_does() {
+fn the_guard_measures_every_margin_and_decides_as_floating_point_does() {
     let mut named = [0; 12];
     for (n, Named { name, robot }) in robots().iter().enumerate() {
         let mut findings = Findings::default();
@@ -235,8 +235,8 @@ fn a_reason_carries_the_value_that_broke_the_limit() {
             match core.hazard(robot.firmware()) {
                 None => {}
                 Some(Hazard::Margin { margin, value }) => {
-                    let place = MARGINS.iter().position(|known| *known == margin);
-                    assert_eq!(value, core.margins[place.expect("one of ten")], "{name}");
+                    let index = MARGINS.iter().position(|known| *known == margin);
+                    assert_eq!(value, core.margins[index.expect("one of ten")], "{name}");
                     reasons[0] += 1;
                 }
                 Some(Hazard::Travel(_)) => unreachable!("a clearance knows no travel"),

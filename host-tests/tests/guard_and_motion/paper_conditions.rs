@@ -90,7 +90,7 @@ fn the_conditions_printed_in_the_paper_would_stop_every_gait() {
 }
 
 #[test]
-fn the_condition_printed_in_the_paper_is_blind_to_the_real_singularity_and_the_guard_is_not() {
+fn the_papers_condition_misses_the_real_singularity_and_the_guard_does_not() {
     let mut best = 0.0f64;
     for around in 0..360 {
         let (dy, dx) = f64::from(around).to_radians().sin_cos();

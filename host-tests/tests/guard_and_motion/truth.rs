@@ -19,7 +19,7 @@ use lizard_robot::{CoreRobot, Robot};
 pub const MARGIN_BAND: f64 = 0.002;
 /// The least type-2 limit that robot.toml may set; below it the guard only has to
 /// know that it is below.
-pub const LEAST_TYPE2: f64 = 0.1;
+pub const MIN_TYPE2: f64 = 0.1;
 
 /// The ten margins in the order in which the guard checks them.
 pub const MARGINS: [Margin; 10] = [
@@ -92,7 +92,7 @@ impl Truth {
     /// At chassis angles in degrees.
     ///
     /// # Errors
-    /// A loop that does not close.
+    /// Fails for a loop that does not close.
     pub fn of(robot: &Robot, angles: [f64; 4]) -> Result<Self, Infeasible> {
         let solution = robot.lizard().solve(&angles.into())?;
         let across = [solution.head.gap.x, solution.tail.gap.x];
@@ -111,7 +111,7 @@ impl Truth {
         let leg = MARGIN_BAND;
         let mut broken = [false; 12];
         for violation in robot.limits().violations(&solution) {
-            broken[place(violation.what)] = true;
+            broken[index_of(violation.what)] = true;
         }
         Ok(Self {
             broken,
@@ -148,16 +148,16 @@ impl Truth {
             stroke_min,
             stroke_max,
         } = self.limits;
-        std::array::from_fn(|place| match place {
+        std::array::from_fn(|index| match index {
             0..2 => {
-                let margin = (self.margins[place].abs() - type2) / self.bands[place];
-                margin.min(self.across[place] / self.bands[12 + place])
+                let margin = (self.margins[index].abs() - type2) / self.bands[index];
+                margin.min(self.across[index] / self.bands[12 + index])
             }
-            2..6 => (self.margins[place] - type1) / self.bands[place],
-            6..10 => (self.margins[place] - leg) / self.bands[place],
+            2..6 => (self.margins[index] - type1) / self.bands[index],
+            6..10 => (self.margins[index] - leg) / self.bands[index],
             _ => {
-                let travel = self.travels[place - 10];
-                (travel - stroke_min).min(stroke_max - travel) / self.bands[place]
+                let travel = self.travels[index - 10];
+                (travel - stroke_min).min(stroke_max - travel) / self.bands[index]
             }
         })
     }
@@ -169,7 +169,7 @@ impl Truth {
 }
 
 /// The place of a condition among twelve: margins, strokes.
-fn place(check: Check) -> usize {
+fn index_of(check: Check) -> usize {
     let among = |checks: &[Check]| checks.iter().position(|known| *known == check);
     let kinds: [(usize, &[Check]); 5] = [
         (0, &Check::TYPE2),
@@ -178,10 +178,10 @@ fn place(check: Check) -> usize {
         (10, &Check::STROKE),
         (0, &Check::UNCROSSED),
     ];
-    let mut places = kinds
+    let mut indices = kinds
         .into_iter()
         .filter_map(|(first, kind)| Some(first + among(kind)?));
-    places.next().expect("every condition is of one kind")
+    indices.next().expect("every condition is of one kind")
 }
 
 /// The largest errors of an end's margins: type-2, type-1 left and right. Besides the

@@ -37,7 +37,7 @@ fn an_old_nano_is_found_at_its_own_speed_written_and_started() {
 }
 
 #[test]
-fn a_robot_that_does_not_fit_an_old_nano_is_refused_and_its_boot_loader_is_whole() {
+fn a_robot_too_large_for_an_old_nano_is_refused_and_its_boot_loader_kept() {
     let mut desk = old_nano();
     let before = desk.uno.flash().to_vec();
     let shell = lizard_flash(&desk, &["--robot", "own-gaits"]);

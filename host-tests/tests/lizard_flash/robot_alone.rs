@@ -1,4 +1,4 @@
-//! A robot that is written alone, behind the firmware that the board has.
+//! A robot that is written alone, after the firmware that the board has.
 
 use super::*;
 
@@ -46,7 +46,7 @@ fn a_robot_alone_is_written_behind_the_firmware_and_the_trims_are_kept() {
 }
 
 #[test]
-fn a_board_unplugged_while_a_robot_is_written_has_no_robot_until_the_next_upload() {
+fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
     let (name, other) = another();
     let mut desk = with_firmware();
     let words = ["--only-robot", "--robot", name];

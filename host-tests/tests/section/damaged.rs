@@ -1,6 +1,6 @@
 //! A damaged section is not a robot, and one with a valid checksum can harm no servo. The
 //! core runs here with checks that the chip has no room for: a number that overflows, or a byte
-//! that is read behind the section's end, ends the test.
+//! that is read beyond the section's end, ends the test.
 
 use std::mem::offset_of;
 
@@ -247,7 +247,7 @@ fn a_robot_whose_servo_cannot_reach_its_neutral_angle_is_refused() {
     }
 }
 
-/// Changes a number at random: one for servos, pins or limits, or one behind all
+/// Changes a number at random: one for servos, pins or limits, or one after all
 /// these, in curves, gaits, waveforms or maps. The device trusts the bars and the places
 /// of the parts, which the host that made the section has checked.
 fn change(rng: &mut Rng, section: &mut [u8]) {

@@ -71,16 +71,16 @@ fn the_name_the_pins_and_the_supplies() {
 #[test]
 fn the_servos() {
     for_each_robot(|name, robot, toml, _| {
-        for (place, servo) in toml.servos().iter().enumerate() {
-            let one = Servo::ALL[place];
+        for (index, servo) in toml.servos().iter().enumerate() {
+            let one = Servo::ALL[index];
             let neutral = f64::from(robot.neutral_of(one).0) / STEPS_PER_DEGREE;
             assert!(
                 (neutral - servo.neutral).abs() <= 0.501 / STEPS_PER_DEGREE,
                 "{name}"
             );
-            assert_eq!(robot.neutral()[place], robot.neutral_of(one));
+            assert_eq!(robot.neutral()[index], robot.neutral_of(one));
             let read = robot.servo(one);
-            assert_eq!(robot.calibration()[place], read);
+            assert_eq!(robot.calibration()[index], read);
             let us = |sweep: i32| servo.neutral_us + servo.us_per_degree * degrees(sweep);
             for sweep in read.min.0..=read.max.0 {
                 let off = f64::from(read.width(Sweep(sweep)).0) - 16.0 * us(sweep.into());
@@ -119,8 +119,8 @@ fn the_limits_the_slew_limit_and_what_the_gaits_need() {
         for gait in toml.gaits() {
             for phase in 0..4096 {
                 let angles = gait.angles(f64::from(phase) / 4096.0);
-                for (place, widest) in widest.iter_mut().enumerate() {
-                    let sweep = angles[place] - toml.servos()[place].neutral;
+                for (index, widest) in widest.iter_mut().enumerate() {
+                    let sweep = angles[index] - toml.servos()[index].neutral;
                     let sweep = (sweep + 180.0).rem_euclid(360.0) - 180.0;
                     *widest = [widest[0].min(sweep), widest[1].max(sweep)];
                 }
@@ -272,11 +272,11 @@ fn the_gaits_their_names_and_their_waveforms_at_every_phase() {
             for step in 0..8192 {
                 let pose = numbers.pose(robot.waves(), step << 11);
                 let exact = gait.angles(f64::from(step) / 8192.0);
-                for (place, angle) in pose.angles(&robot.neutral()).into_iter().enumerate() {
+                for (index, angle) in pose.angles(&robot.neutral()).into_iter().enumerate() {
                     let angle = f64::from(angle.0) / STEPS_PER_DEGREE;
-                    let off = (angle - exact[place] + 180.0).rem_euclid(360.0) - 180.0;
+                    let off = (angle - exact[index] + 180.0).rem_euclid(360.0) - 180.0;
                     // The error of a table, and half a step of the neutral angle.
-                    assert!(off.abs() <= 0.504, "{what} A{} at {step}: {off}", place + 1);
+                    assert!(off.abs() <= 0.504, "{what} A{} at {step}: {off}", index + 1);
                 }
             }
         }
@@ -308,10 +308,10 @@ fn accepts(robot: &Robot, pair: usize, pose: &Pose) -> bool {
     let clearance = Clearance::of(robot, pose);
     let limits = robot.limits();
     let margins = |type2: usize, first: usize| {
-        let least = |place: usize, limit: Sine| clearance.margins[place] >= limit;
+        let least = |index: usize, limit: Sine| clearance.margins[index] >= limit;
         least(type2, limits.type2)
             && (first..first + 2)
-                .all(|place| least(2 + place, limits.type1) && least(6 + place, limits.leg))
+                .all(|index| least(2 + index, limits.type1) && least(6 + index, limits.leg))
     };
     match pair {
         0 => margins(0, 0),
@@ -322,7 +322,7 @@ fn accepts(robot: &Robot, pair: usize, pose: &Pose) -> bool {
 }
 
 #[test]
-fn every_certified_cell_is_one_in_which_the_exact_guard_accepts_what_the_map_is_of() {
+fn in_every_certified_cell_the_exact_guard_accepts_the_maps_conditions() {
     let mut checked = 0;
     let mut with_maps = 0;
     for (named, section) in sections() {
@@ -359,7 +359,7 @@ fn every_certified_cell_is_one_in_which_the_exact_guard_accepts_what_the_map_is_
 }
 
 #[test]
-fn a_pose_is_certified_where_all_four_maps_hold_it_and_then_the_guard_accepts_it() {
+fn a_pose_in_all_four_maps_is_certified_and_the_guard_accepts_it() {
     let rng = &mut rng(153);
     for (named, section) in sections() {
         let flash = Region::new(section);

@@ -4,7 +4,7 @@ use std::fs;
 
 use lizard_host_tests::avr_gcc::{assembler, compile_c_with_edited_object};
 use lizard_host_tests::root;
-use lizard_linker::frame::FIRST;
+use lizard_linker::frame::FIRST_REGISTERS;
 use lizard_linker::{ROUTINES, shrink};
 use simulated_uno::{Fidelity, Image, Uno};
 
@@ -214,7 +214,7 @@ fn program(first: u8, room: u8) -> String {
 
 #[test]
 fn every_shared_beginning_and_its_end_leave_registers_and_stack_as_they_were() {
-    for first in FIRST {
+    for first in FIRST_REGISTERS {
         for room in [0, 1, 5, 63, 64, 200, 255] {
             let image = assembler(&program(first, room));
             let mut uno = Uno::with_image(image, Fidelity::DataSheet);

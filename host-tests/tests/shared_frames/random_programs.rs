@@ -1,6 +1,6 @@
 //! Random C functions compute the same whether the linker rewrote them or not.
 //!
-//! Their arguments, up to 30 bytes, are more than fit into registers (18), their arrays lie on
+//! The arguments, up to 30 bytes, are more than fit into registers (18), their arrays lie on
 //! the stack, they call one another, and a timer interrupts them.
 
 use std::cell::Cell;

@@ -18,7 +18,7 @@ use lizard_time_limit::LIMIT;
 use rustix::process::{Pid, Signal, kill_process_group};
 
 /// The time before Ctrl-C is pressed again.
-const AGAIN: Duration = Duration::from_secs(1);
+const CTRL_C_INTERVAL: Duration = Duration::from_secs(1);
 
 pub struct Shell {
     line: String,
@@ -94,7 +94,7 @@ impl Shell {
             if self.has_ended() {
                 return true;
             }
-            if pressed.is_none_or(|then| then.elapsed() > AGAIN) {
+            if pressed.is_none_or(|then| then.elapsed() > CTRL_C_INTERVAL) {
                 self.signal(Signal::INT);
                 pressed = Some(Instant::now());
             }

@@ -72,11 +72,11 @@ const MEMORIES: [(&str, &[Action]); 5] = [
     ),
 ];
 
-/// A power-on behind a boot loader, which hides the cause of the reset.
-const BEHIND_A_BOOT_LOADER: &str = "a boot loader and a blank memory";
+/// A power-on with a boot loader, which hides the cause of the reset.
+const WITH_BOOT_LOADER: &str = "a boot loader and a blank memory";
 
 /// The robot's actions before the search begins.
-const DOES: [&[Action]; 11] = [
+const ACTIVITIES: [&[Action]; 11] = [
     &[],
     &[Frames(160)],
     &[Frames(160), Say("walk"), Frames(25)],
@@ -130,18 +130,18 @@ pub fn all(robot: Robot<'static>) -> Vec<InitialState> {
     let mut foreign = saved(&memories);
     foreign.bytes_mut().rotate_left(1);
     let mut worn = saved(&memories);
-    worn.worn = true;
+    worn.is_worn = true;
     memories.extend([
         ("foreign bytes in the memory", foreign),
         ("a worn memory", worn),
         ("saved settings that cut the gaits off", cut_off(&robot)),
     ]);
-    memories.push((BEHIND_A_BOOT_LOADER, Eeprom::blank()));
+    memories.push((WITH_BOOT_LOADER, Eeprom::blank()));
     let mut all = Vec::new();
     for (with, memory) in memories {
-        for actions in DOES {
+        for actions in ACTIVITIES {
             let mut world = World::power_on(robot, memory.clone());
-            world.running.board.boot_loader = with == BEHIND_A_BOOT_LOADER;
+            world.running.board.has_boot_loader = with == WITH_BOOT_LOADER;
             if actions.iter().all(|action| world.apply(*action).is_ok()) {
                 let actions = actions.to_vec();
                 all.push(InitialState {

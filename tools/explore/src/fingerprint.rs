@@ -44,7 +44,7 @@ const RULES: &[Field] = &[
     ("Stance", "pose", Coarse(|sweep| sweep >> 10)),
     ("Stance", "awake", Coarse(|frames| frames.div_ceil(5))),
     ("Led", "frames", Skip),
-    ("Safety", "lit", Skip),
+    ("Safety", "is_lit", Skip),
     ("Safety", "late", Skip),
     // The observer also counts this, where it matters.
     ("Safety", "silence", Skip),
@@ -69,7 +69,7 @@ const A_LINE_CAME: &[Field] = &[
     ("Console", "answer", Skip),
     ("Finder", "wrong_bytes", Skip),
     ("Finder", "has_received", Skip),
-    ("Console", "greeted", Skip),
+    ("Console", "has_greeted", Skip),
     ("Safety", "silence", Skip),
     ("Safety", "boot", Skip),
     // A command shows that a program opened the port, which resets the board.

@@ -21,7 +21,11 @@ fn main() -> ExitCode {
         found.tried,
         begun.elapsed().as_secs_f64(),
         found.longest,
-        if found.closed { "closed" } else { "not closed" },
+        if found.is_complete {
+            "closed"
+        } else {
+            "not closed"
+        },
     );
     for (rule, (times, sequence)) in &found.broken {
         println!("\nBROKEN {times} times: {}\n{sequence}", rule.sentence());

@@ -34,7 +34,7 @@ pub struct SearchResult {
     /// Actions of the longest sequence.
     pub longest: usize,
     /// True if no state is left to explore.
-    pub closed: bool,
+    pub is_complete: bool,
     /// The broken rules, each with its count and its first sequence.
     pub broken: BTreeMap<Rule, (usize, String)>,
 }
@@ -55,13 +55,13 @@ pub fn search(robot: Robot<'static>, most: usize) -> SearchResult {
     let mut steps: Vec<Step> = Vec::new();
     let mut found = SearchResult::default();
     let mut now: Vec<(World, u32)> = Vec::new();
-    for (place, beginning) in begun.iter().enumerate() {
+    for (index, beginning) in begun.iter().enumerate() {
         steps.push(Step {
             from: u32::MAX,
             action: 0,
         });
         if is_new(&known, beginning.world.print()) {
-            now.push((beginning.world.clone(), place as u32));
+            now.push((beginning.world.clone(), index as u32));
         }
     }
     let states = AtomicUsize::new(now.len());
@@ -105,7 +105,7 @@ pub fn search(robot: Robot<'static>, most: usize) -> SearchResult {
             .collect();
     }
     panic::set_hook(hook);
-    found.closed = now.is_empty();
+    found.is_complete = now.is_empty();
     found.states = states.into_inner();
     found
 }

@@ -59,7 +59,7 @@ impl World {
     #[must_use]
     pub fn power_on(robot: Robot<'static>, mut memory: Eeprom) -> Self {
         memory.slowness = 4;
-        memory.timed = true;
+        memory.is_timed = true;
         let mut world = Self {
             running: Running::with(robot, memory, Restart::default()),
             observer: Observer::new(inside::limits(&robot)),
@@ -98,13 +98,13 @@ impl World {
         print.add(u64::from(board.rate as u8) << 2 | u64::from(self.sender as u8));
         let truth = board.converter.truth();
         let flags = [
-            board.memory.worn,
-            board.boot_loader,
+            board.memory.is_worn,
+            board.has_boot_loader,
             board.memory.under_way().is_some(),
             board.is_hushed(),
-            board.stack_is_intact,
+            board.is_stack_intact,
             board.converter.is_complete(),
-            board.transmitter.held,
+            board.transmitter.is_held,
             board.restart().before.is_some(),
             board.unread() > 0,
             board.is_fresh(),
@@ -126,7 +126,7 @@ impl World {
         let board = &self.running.board;
         match action {
             Action::Say(_) | Action::Noise => {
-                board.unread() == 0 && !board.transmitter.held && !self.running.is_over()
+                board.unread() == 0 && !board.transmitter.is_held && !self.running.is_over()
             }
             Action::Step => self.running.has_output() || self.running.main.control().is_writing(),
             Action::Frames(_)
@@ -138,16 +138,16 @@ impl World {
             Action::SendAt(rate) => rate != self.sender,
             Action::Weak(weak) => weak != self.is_weak,
             Action::Late => board.late < 3,
-            Action::Stack => board.stack_is_intact,
+            Action::Stack => board.is_stack_intact,
             Action::Contact(pin, closed) => closed != (board.closed & 1 << pin != 0),
-            Action::StopReading(deaf) => deaf != board.transmitter.held,
+            Action::StopReading(deaf) => deaf != board.transmitter.is_held,
         }
     }
 
     /// Applies an action.
     ///
     /// # Errors
-    /// The first rule that is broken by it.
+    /// Returns the first rule that is broken by it.
     pub fn apply(&mut self, action: Action) -> Verdict {
         let was_kept = self.observer.rests() && self.rest_is_kept();
         match action {
@@ -179,7 +179,7 @@ impl World {
                 self.frame()?;
             }
             Action::Stack => {
-                self.running.board.stack_is_intact = false;
+                self.running.board.is_stack_intact = false;
                 self.observe(Event::Fault);
                 self.frame()?;
             }
@@ -189,7 +189,7 @@ impl World {
                 self.note_restart(Cause::Power);
             }
             Action::Contact(pin, closed) => self.contact(pin, closed)?,
-            Action::StopReading(deaf) => self.running.board.transmitter.held = deaf,
+            Action::StopReading(deaf) => self.running.board.transmitter.is_held = deaf,
         }
         let robot_rests = self.running.motion().is_resting();
         if was_kept && robot_rests && !self.rest_is_kept() {
@@ -266,7 +266,7 @@ impl World {
     /// Checks that a robot that is asked at one rate answers in the end.
     fn is_found(&self) -> Verdict {
         let mut asked = self.running.clone();
-        asked.board.transmitter.held = false;
+        asked.board.transmitter.is_held = false;
         for _ in 0..FOUND_AFTER {
             if asked.is_over() {
                 return Ok(());
@@ -342,7 +342,7 @@ impl World {
     /// Tells the observer about `boot` although nobody reads the output.
     fn predict_boot(&mut self) {
         let mut heard = self.running.clone();
-        heard.board.transmitter.held = false;
+        heard.board.transmitter.is_held = false;
         heard.settle();
         let lines = heard.board.transmitter.text.lines();
         for line in lines.filter(|line| line.starts_with("# boot: ")) {
@@ -363,7 +363,7 @@ impl World {
                 edges.push((self.now, is_lit));
             }
         }
-        if count < 100 || self.running.board.transmitter.held {
+        if count < 100 || self.running.board.transmitter.is_held {
             return Ok(());
         }
         if self.observer.has_unanswered_lines() {
@@ -393,7 +393,7 @@ impl World {
         let since = self.now;
         let rested = self.running.motion().is_resting();
         self.running.frame();
-        if self.running.board.transmitter.held && self.running.motion().is_resting() != rested {
+        if self.running.board.transmitter.is_held && self.running.motion().is_resting() != rested {
             self.predict_boot();
         }
         self.pulses(true)?;
@@ -403,7 +403,7 @@ impl World {
         // It was decided at the beginning of the frame.
         self.listen(since + MS)?;
         self.judge_writes()?;
-        let is_heard = !self.running.board.transmitter.held && !self.running.is_over();
+        let is_heard = !self.running.board.transmitter.is_held && !self.running.is_over();
         if is_heard && !self.is_late {
             self.observer.check_reported();
         }

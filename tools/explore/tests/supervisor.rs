@@ -10,7 +10,7 @@ fn no_short_sequence_of_actions_breaks_a_rule() {
     let robot = small();
     let found = search(robot, STATES);
     assert!(
-        found.states >= STATES || found.closed,
+        found.states >= STATES || found.is_complete,
         "{} states",
         found.states
     );

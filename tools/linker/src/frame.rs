@@ -51,9 +51,9 @@ const SAVED: [u8; 18] = [
 ];
 
 /// The lowest register of each routine.
-pub const FIRST: [u8; 9] = [2, 4, 6, 8, 10, 12, 14, 16, 18];
+pub const FIRST_REGISTERS: [u8; 9] = [2, 4, 6, 8, 10, 12, 14, 16, 18];
 
-/// The routines of one of [`FIRST`].
+/// The routines of one of [`FIRST_REGISTERS`].
 #[derive(Debug, Clone, Copy)]
 pub struct Routines {
     /// `__frame_save_K`.
@@ -65,7 +65,7 @@ pub struct Routines {
 /// The stack frame of a function that has one of the known forms.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Frame {
-    /// The index in [`FIRST`] of the routine that saves all its registers.
+    /// The index in [`FIRST_REGISTERS`] of the routine that saves all its registers.
     pub first: usize,
     /// The size of the variables, bytes.
     pub room: u8,
@@ -93,8 +93,8 @@ impl Frame {
             return None;
         }
         let lowest = lowest.min(18);
-        let first = FIRST.iter().rposition(|first| *first <= lowest)?;
-        let is_known = |register: &u8| *register >= FIRST[first];
+        let first = FIRST_REGISTERS.iter().rposition(|first| *first <= lowest)?;
+        let is_known = |register: &u8| *register >= FIRST_REGISTERS[first];
         let is_same = registers
             .iter()
             .eq(SAVED.iter().filter(|register| is_known(register)));

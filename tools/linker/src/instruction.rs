@@ -102,7 +102,7 @@ pub fn has_frame_pointer(code: u16) -> bool {
     }
 }
 
-/// True if execution may continue behind the last instruction of a function. It does not after a
+/// True if execution may continue after the last instruction of a function. It does not after a
 /// call: a compiler ends a function only with a call that never returns.
 pub const fn falls_through(code: u16) -> bool {
     let is_return = code == RET || code == RETI;

@@ -12,8 +12,8 @@ use lizard_linker::{ROUTINES, shrink};
 fn main() -> ExitCode {
     match run() {
         Ok(code) => code,
-        Err(sentence) => {
-            eprintln!("{sentence}");
+        Err(message) => {
+            eprintln!("{message}");
             ExitCode::FAILURE
         }
     }

@@ -8,7 +8,7 @@ use object::elf;
 use crate::branch;
 use crate::code::Code;
 use crate::edit::{Edit, Edits, Reference};
-use crate::frame::{FIRST, Frame, Routines};
+use crate::frame::{FIRST_REGISTERS, Frame, Routines};
 
 mod layout;
 
@@ -86,7 +86,7 @@ impl Object<'_> {
         }
     }
 
-    /// Adds symbols for the routines of [`FIRST`], which are in another object.
+    /// Adds symbols for the routines of [`FIRST_REGISTERS`], which are in another object.
     fn routines(&mut self) -> Vec<Routines> {
         let mut undefined = |name: String| {
             let symbol = self.0.symbols.add();
@@ -98,7 +98,7 @@ impl Object<'_> {
             save: undefined(format!("__frame_save_{first}")),
             restore: undefined(format!("__frame_restore_{first}")),
         };
-        FIRST.iter().map(&mut of).collect()
+        FIRST_REGISTERS.iter().map(&mut of).collect()
     }
 
     /// The sections that are one function each, in their order. Interrupt handlers and assembly

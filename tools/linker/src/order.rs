@@ -13,13 +13,13 @@ const REACH: u32 = 4096 - 96;
 
 /// The cost of a call out of reach, in bytes beyond the reach, which cost 1 each: they only show
 /// the search in which direction an order improves.
-const FAR: u32 = 16_384;
+const OUT_OF_REACH_COST: u32 = 16_384;
 
 /// The number of orders tried.
 const TRIES: u32 = 600_000;
 
 /// The additional cost with which an order is accepted at first; at the end it is 0.
-const WORSE: u32 = 4 * FAR;
+const MAX_EXTRA_COST: u32 = 4 * OUT_OF_REACH_COST;
 
 /// The seed of the search; any number would do.
 const SEED: u64 = 1;
@@ -29,7 +29,7 @@ const SEED: u64 = 1;
 pub struct Call {
     /// The piece that contains it.
     pub from: usize,
-    /// Its offset in that piece, bytes.
+    /// The offset in that piece, bytes.
     pub at: u32,
     /// The piece that it leads to.
     pub to: usize,
@@ -59,7 +59,7 @@ impl Pieces {
             if least == 0 || movable < 2 {
                 break;
             }
-            let worse = u64::from(WORSE) * u64::from(left) / u64::from(TRIES);
+            let worse = u64::from(MAX_EXTRA_COST) * u64::from(left) / u64::from(TRIES);
             let [from, to] = [0; 2].map(|_| random.usize(..movable));
             move_piece(&mut order, from, to);
             let cost = self.cost(&order);
@@ -85,7 +85,8 @@ impl Pieces {
     /// The cost of an order.
     fn cost(&self, order: &[usize]) -> u64 {
         let far = self.bytes_beyond_reach(order).filter(|beyond| *beyond > 0);
-        far.map(|beyond| u64::from(FAR + beyond)).sum()
+        far.map(|beyond| u64::from(OUT_OF_REACH_COST + beyond))
+            .sum()
     }
 
     /// The number of bytes by which each call is out of reach; 0 within reach.
@@ -103,7 +104,7 @@ impl Pieces {
     }
 }
 
-/// Moves a piece from one place to another.
+/// Moves a piece from one index to another.
 fn move_piece(order: &mut [usize], from: usize, to: usize) {
     if from < to {
         order[from..=to].rotate_left(1);

@@ -36,7 +36,7 @@ impl From<Travel> for Displacement {
 /// The answers of the model and of MuJoCo for a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Answers {
-    /// The contact model's; none where two feet pull against two, so that the smallest
+    /// The contact model's; `None` where two feet pull against two, so that the smallest
     /// difference between the pads decides.
     pub model: Option<Displacement>,
     /// MuJoCo's, for the robot as `lizard mjcf` writes it.
@@ -71,7 +71,7 @@ impl Answers {
         }
     }
 
-    /// The sentence for a difference beyond the allowed one.
+    /// The message for a difference beyond the allowed one.
     #[must_use]
     pub fn disagreement(&self, case: Case) -> Option<String> {
         let (off, turned) = self.mujoco.distance_to(&self.model?);

@@ -61,7 +61,7 @@ pub fn text(grains: &Grains) -> String {
     format!("{{\n{}\n}}\n", gaits.collect::<Vec<_>>().join(",\n"))
 }
 
-/// The model's answer for level feet; none where it depends on ties.
+/// The model's answer for level feet; `None` where it depends on ties.
 #[must_use]
 pub fn model(robot: &Robot, gait: &CheckedGait, ratio: f64) -> Option<Displacement> {
     let ground = Ground {
@@ -79,18 +79,18 @@ pub fn model(robot: &Robot, gait: &CheckedGait, ratio: f64) -> Option<Displaceme
 /// The answers of model and MuJoCo for every gait and ratio.
 ///
 /// # Errors
-/// MuJoCo gives no answer.
+/// Fails if MuJoCo gives no answer.
 ///
 /// # Panics
 /// If the robot does not have the gaits.
 pub fn measure(robot: &Robot) -> Result<Grains, MujocoError> {
     let assembly = Assembly::new(robot);
-    let name = |gait: &str, place: usize| format!("{gait}-{place}");
+    let name = |gait: &str, index: usize| format!("{gait}-{index}");
     let gaits = GAITS.map(|(name, _)| robot.gait(name).expect(name));
     let mut jobs = Jobs::new()?;
     let scenes = gaits.iter().flat_map(|gait| {
         let ratios = RATIOS.into_iter().enumerate();
-        ratios.map(|(place, ratio)| scene(name(gait.name(), place), &assembly, gait, ratio))
+        ratios.map(|(index, ratio)| scene(name(gait.name(), index), &assembly, gait, ratio))
     });
     jobs.add(&assembly, scenes.map(|scene| (Legs::Rigid, scene)))?;
     let by_mujoco = jobs.start()?.done()?;
@@ -98,9 +98,9 @@ pub fn measure(robot: &Robot) -> Result<Grains, MujocoError> {
         let answers = RATIOS
             .into_iter()
             .enumerate()
-            .map(|(place, ratio)| Answers {
+            .map(|(index, ratio)| Answers {
                 model: model(robot, gait, ratio),
-                mujoco: by_mujoco[&name(gait.name(), place)],
+                mujoco: by_mujoco[&name(gait.name(), index)],
             });
         (gait.name().to_owned(), answers.collect())
     });
@@ -119,7 +119,7 @@ fn scene(name: String, assembly: &Assembly, gait: &CheckedGait, ratio: f64) -> S
     }
 }
 
-/// The sentences for answers of MuJoCo that are too far from the model's.
+/// The messages for answers of MuJoCo that are too far from the model's.
 #[must_use]
 pub fn disagreements(grains: &Grains) -> Vec<String> {
     let (mm, share, deg) = BOUND;
@@ -176,7 +176,7 @@ pub fn table(robot: &Robot, grains: &Grains) -> String {
 /// Stores the answers.
 ///
 /// # Errors
-/// The file cannot be written.
+/// Fails if the file cannot be written.
 pub fn store(grains: &Grains) -> std::io::Result<()> {
     std::fs::write(here().join("grains.json"), text(grains))
 }

@@ -15,8 +15,8 @@ use lizard_robot::Robot;
 
 /// A difference from the stored answer, mm and deg, beyond which the model, the engine or the robot
 /// must have changed.
-const SAME: (f64, f64) = (0.6, 0.4);
-/// The sentence for an answer of which no other is stored.
+const TOLERANCES: (f64, f64) = (0.6, 0.4);
+/// The message for an answer of which no other is stored.
 const NOT_KEPT: &str = "no figures are kept; `make physics WRITE=1` keeps these";
 /// The beginnings of the files' names of walks on other floors and with other servos.
 const SURFACE: &str = "surface";
@@ -53,8 +53,8 @@ fn main() -> ExitCode {
 }
 
 /// The file's name for a row of a robot.
-fn name(robot: &str, place: usize) -> String {
-    format!("{robot}-{place}")
+fn name(robot: &str, index: usize) -> String {
+    format!("{robot}-{index}")
 }
 
 /// Walks every `one_in`-th gait, or with `None` all gaits, and stores their answers. Returns the
@@ -78,22 +78,22 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     for ((of, robot), rows) in robots.iter().zip(&all) {
         let assembly = Assembly::new(robot);
         let named = rows.iter().enumerate();
-        let walks = named.map(|(place, row)| row.scene(&name(of, place), &assembly));
+        let walks = named.map(|(index, row)| row.scene(&name(of, index), &assembly));
         jobs.add(&assembly, walks)?;
     }
     let kept = Figures::stored();
     let paper = Assembly::new(&robot("paper"));
-    let walks = uneven.iter().enumerate().map(|(place, (gait, surface))| {
+    let walks = uneven.iter().enumerate().map(|(index, (gait, surface))| {
         let level = surface::level(&kept, gait);
-        let scene = surface.scene(&name(SURFACE, place), &paper, gait, level);
+        let scene = surface.scene(&name(SURFACE, index), &paper, gait, level);
         (Legs::Rigid, scene)
     });
     jobs.add(&paper, walks)?;
     let driven = Variant::ALL.map(|variant| servos::GAITS.map(|(gait, _)| (variant, gait)));
     let driven: Vec<(Variant, &str)> = driven.concat().into_iter().filter(|_| is_one()).collect();
-    for (place, (variant, gait)) in driven.iter().enumerate() {
+    for (index, (variant, gait)) in driven.iter().enumerate() {
         let assembly = Assembly::new(&variant.robot());
-        let scene = variant.scene(&name(SERVOS, place), &assembly, gait);
+        let scene = variant.scene(&name(SERVOS, index), &assembly, gait);
         jobs.add(&assembly, std::iter::once((Legs::Rigid, scene)))?;
     }
     println!(
@@ -104,10 +104,10 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
 
     let (mut found, mut faults) = (Figures::default(), Vec::new());
     for ((of, robot), rows) in robots.iter().zip(&all) {
-        for (place, row) in rows.iter().enumerate() {
+        for (index, row) in rows.iter().enumerate() {
             let answers = Answers {
                 model: row.model(robot),
-                mujoco: by_mujoco[&name(of, place)],
+                mujoco: by_mujoco[&name(of, index)],
             };
             let mut words: Vec<String> = answers.disagreement(row.case).into_iter().collect();
             if !write {
@@ -123,14 +123,10 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         println!("\n{}", table(of, robot, &found));
     }
     let (before, mut surfaces) = (surface::stored(), Surfaces::new());
-    for (place, (gait, surface)) in uneven.iter().enumerate() {
-        let displacement = by_mujoco[&name(SURFACE, place)];
-        let mut words = Vec::new();
-        words.extend(surface::excess_loss(
-            *surface,
-            surface::level(&kept, gait),
-            displacement,
-        ));
+    for (index, (gait, surface)) in uneven.iter().enumerate() {
+        let displacement = by_mujoco[&name(SURFACE, index)];
+        let level = surface::level(&kept, gait);
+        let mut words = surface::excess_losses(*surface, level, displacement);
         if !write {
             let was = before
                 .get(*gait)
@@ -147,10 +143,10 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     }
     println!("\n{}", surfaces_table(&kept, &surfaces));
     let (before, mut by_servos) = (servos::kept(), Servos::new());
-    for (place, (variant, gait)) in driven.iter().enumerate() {
+    for (index, (variant, gait)) in driven.iter().enumerate() {
         let answers = Answers {
             model: Some(variant.model(gait)),
-            mujoco: by_mujoco[&name(SERVOS, place)],
+            mujoco: by_mujoco[&name(SERVOS, index)],
         };
         let mut words: Vec<String> = variant.disagreement(gait, &answers).into_iter().collect();
         if !write {
@@ -189,13 +185,13 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     Ok(faults)
 }
 
-/// The sentences for answers on pads with a grain that differ from the stored ones.
+/// The messages for answers on pads with a grain that differ from the stored ones.
 fn other(kept: &Grains, now: &Grains) -> Vec<String> {
     let each = now.iter().flat_map(|(gait, answers)| {
         let kept = kept.get(gait).map_or(&[][..], Vec::as_slice);
         let pairs = answers.iter().zip(grains::RATIOS).enumerate();
-        pairs.flat_map(move |(place, (answers, ratio))| {
-            let words = describe_changes(kept.get(place), answers);
+        pairs.flat_map(move |(index, (answers, ratio))| {
+            let words = describe_changes(kept.get(index), answers);
             let what = move |words| format!("grain: {gait} (r {ratio}): {words}");
             words.into_iter().map(what)
         })
@@ -203,7 +199,7 @@ fn other(kept: &Grains, now: &Grains) -> Vec<String> {
     each.collect()
 }
 
-/// The sentences for answers that differ from the stored ones.
+/// The messages for answers that differ from the stored ones.
 fn describe_changes(kept: Option<&Answers>, now: &Answers) -> Vec<String> {
     let Some(before) = kept else {
         return vec![NOT_KEPT.to_owned()];
@@ -222,10 +218,10 @@ fn describe_changes(kept: Option<&Answers>, now: &Answers) -> Vec<String> {
         .collect()
 }
 
-/// The sentence for an answer that differs from the stored one.
+/// The message for an answer that differs from the stored one.
 fn differs(who: &str, before: Displacement, now: Displacement) -> Option<String> {
     let (mm, deg) = before.distance_to(&now);
-    (mm > SAME.0 || deg > SAME.1).then(|| {
+    (mm > TOLERANCES.0 || deg > TOLERANCES.1).then(|| {
         format!("{who} differs by {mm:.1} mm and {deg:.1} deg from what is kept; if that is meant, `make physics WRITE=1`")
     })
 }

@@ -16,7 +16,7 @@ use crate::here;
 /// The reason why MuJoCo gives no answer.
 #[derive(Debug, thiserror::Error)]
 pub enum MujocoError {
-    /// Python does not start.
+    /// Fails if Python does not start.
     #[error("target/physics/bin/python does not start: {0}; `make physics` sets it up")]
     Start(io::Error),
     /// A file cannot be written, or the answer cannot be read.
@@ -33,7 +33,7 @@ pub enum MujocoError {
     Trouble {
         /// Robot, gait and case.
         file: String,
-        /// The judge's sentence.
+        /// The judge's message.
         trouble: String,
     },
     /// A part without a surface.
@@ -65,7 +65,7 @@ impl Jobs {
     /// Makes an empty list of walks.
     ///
     /// # Errors
-    /// The folder for the files cannot be made.
+    /// Fails if the folder for the files cannot be made.
     pub fn new() -> Result<Self, MujocoError> {
         Ok(Self {
             folder: tempfile::tempdir()?,
@@ -82,7 +82,7 @@ impl Jobs {
     /// Adds a robot's walks, each with its legs and a scene under a name of its own.
     ///
     /// # Errors
-    /// A file cannot be made or written.
+    /// Fails if a file cannot be made or written.
     pub fn add(
         &mut self,
         assembly: &Assembly,
@@ -108,7 +108,7 @@ impl Jobs {
     /// Starts the judge.
     ///
     /// # Errors
-    /// Python does not start.
+    /// Fails if Python does not start.
     pub fn start(self) -> Result<RunningJudge, MujocoError> {
         let judge = Command::new(here().join("../../target/physics/bin/python"))
             .arg(here().join("judge.py"))
@@ -149,7 +149,7 @@ impl RunningJudge {
     /// Waits for all walks and returns their displacements by name.
     ///
     /// # Errors
-    /// The judge ended early, or MuJoCo warned of a walk.
+    /// Fails if the judge ended early, or MuJoCo warned of a walk.
     pub fn done(self) -> Result<BTreeMap<String, Displacement>, MujocoError> {
         let output = self.judge.wait_with_output()?;
         if !output.status.success() {

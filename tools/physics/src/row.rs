@@ -14,12 +14,12 @@ pub struct Row {
     pub gait: String,
     /// The legs and feet.
     pub case: Case,
-    /// True if it does not depend on ties, so that the contact model has an answer.
-    pub decided: bool,
+    /// True if the gait does not depend on ties, so that the contact model has an answer.
+    pub is_decided: bool,
 }
 
 impl Row {
-    /// Its scene for MuJoCo under a name, and its legs.
+    /// The scene for MuJoCo under a name, and its legs.
     #[must_use]
     pub fn scene(&self, name: &str, assembly: &Assembly) -> (Legs, Scene) {
         let scene = scene_of(name, assembly, &self.gait, self.case);
@@ -34,7 +34,7 @@ impl Row {
     pub fn model(&self, robot: &Robot) -> Option<Displacement> {
         let gait = robot.gait(&self.gait).expect("it is the robot's");
         let walked = || gait.walked(&self.case.ground(robot)).travel;
-        self.decided.then(|| walked().into())
+        self.is_decided.then(|| walked().into())
     }
 }
 
@@ -55,7 +55,7 @@ fn rows_of(robot: &Robot, gait: &CheckedGait) -> Vec<Row> {
     let row = |case| Row {
         gait: gait.name().to_owned(),
         case,
-        decided,
+        is_decided: decided,
     };
     cases.map(row).collect()
 }

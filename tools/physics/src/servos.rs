@@ -18,7 +18,7 @@ const ALLOWED: f64 = 0.10;
 /// The paper's robot with other servos, joints, mass and pads.
 #[derive(Clone, Copy, Debug)]
 pub struct Variant {
-    /// Its name in the table.
+    /// The variant's name in the table.
     pub name: &'static str,
     /// Keys of `[servo]` and of `[joints]`.
     servo: &'static str,
@@ -155,7 +155,7 @@ impl Variant {
         further.map_or(ALLOWED, |(_, share)| *share)
     }
 
-    /// The sentence for a gait in which the model differs from MuJoCo too much.
+    /// The message for a gait in which the model differs from MuJoCo too much.
     #[must_use]
     pub fn disagreement(&self, gait: &str, answers: &Answers) -> Option<String> {
         let (_, part) = GAITS.into_iter().find(|(name, _)| *name == gait)?;

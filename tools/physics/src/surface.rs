@@ -14,11 +14,17 @@ use crate::figures::{Displacement, Figures};
 use crate::mujoco::scene_of;
 use crate::table::Part;
 
-/// The gaits of the paper's robot that are walked; the others mirror one of these.
-pub const GAITS: [&str; 6] = ["walk", "trot", "crawl", "back", "arc-left", "left"];
-/// The least share of its distance that a gait, unless it is a turn, must keep on a surface
-/// that [`Surface::is_climbed`].
-pub const LEAST_KEPT: f64 = 0.85;
+/// The gaits of the paper's robot that are walked.
+pub const GAITS: [&str; 8] = [
+    "walk",
+    "trot",
+    "crawl",
+    "back",
+    "arc-left",
+    "arc-right",
+    "left",
+    "right",
+];
 
 /// A kind of floor, or a fault of a foot on a level one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,6 +58,19 @@ impl Surface {
     #[must_use]
     pub fn is_climbed(self) -> bool {
         matches!(self, Self::Edge(_) | Self::Blocks(_))
+    }
+
+    /// The least share of its distance that a gait must keep here, if it goes ahead or back.
+    #[must_use]
+    pub fn least_way(self) -> Option<f64> {
+        self.is_climbed().then_some(0.85)
+    }
+
+    /// The least share of its angle that a gait must keep here, if it turns. A lost pad is a fault
+    /// to be mended: it halves some turns.
+    #[must_use]
+    pub fn least_turn(self) -> Option<f64> {
+        (self != Self::NoPad).then_some(0.75)
     }
 
     /// The number of cycles to walk: with most gaits all four feet pass an edge in six.
@@ -107,12 +126,12 @@ fn mm(tenths: u8) -> f64 {
 const AHEAD: f64 = 25.0;
 
 fn edge(robot: &Robot, direction: f64, high: f64) -> Block {
-    /// The length of what lies behind the edge, mm.
-    const LONG: f64 = 1000.0;
+    /// The length of the floor beyond the edge, mm.
+    const STEP_LENGTH: f64 = 1000.0;
     let [forward, _] = robot.ground().feet.at([0.0; 4])[0];
     Block {
-        at: [0.0, direction * (forward.abs() + AHEAD + LONG / 2.0)],
-        size: [LONG, LONG, high],
+        at: [0.0, direction * (forward.abs() + AHEAD + STEP_LENGTH / 2.0)],
+        size: [STEP_LENGTH, STEP_LENGTH, high],
     }
 }
 
@@ -191,16 +210,30 @@ pub fn level(figures: &Figures, gait: &str) -> Displacement {
     answers.expect("figures.json has it").mujoco
 }
 
-/// The sentence for a gait that loses more of its distance than [`LEAST_KEPT`] allows.
+/// The least share of a displacement's part that a gait must keep on a surface.
+fn least(surface: Surface, part: Part) -> Option<f64> {
+    match part {
+        Part::Ahead => surface.least_way(),
+        Part::Turn => surface.least_turn(),
+    }
+}
+
+/// The messages for a gait that loses more of its distance or its turn than a surface allows.
 #[must_use]
-pub fn excess_loss(
+pub fn excess_losses(
     surface: Surface,
     level: Displacement,
     displacement: Displacement,
-) -> Option<String> {
-    let [was, is] = [level, displacement].map(|displacement| displacement.0[0]);
-    let fails = surface.is_climbed() && was.abs() > 1.0 && is / was < LEAST_KEPT;
-    fails.then(|| format!("{is:.1} mm a cycle of {was:.1} on a level floor"))
+) -> Vec<String> {
+    let loss = |part: Part| {
+        let [was, is] = [level, displacement].map(|displacement| part.value(displacement));
+        let unit = part.unit();
+        let least = least(surface, part)?;
+        (is / was < least).then(|| {
+            format!("{is:.1} {unit} a cycle of {was:.1} on a level floor; {least:.2} must be kept")
+        })
+    };
+    Part::of(level).into_iter().filter_map(loss).collect()
 }
 
 /// The table of all surfaces, as Markdown.
@@ -222,6 +255,13 @@ pub fn surfaces_table(figures: &Figures, surfaces: &Surfaces) -> String {
             let (flat, displacements) = (cell(flat), displacements.concat());
             _ = writeln!(text, "| {gait}, {} |{flat}{displacements}", part.unit());
         }
+    }
+    for (name, part) in [("a way", Part::Ahead), ("a turn", Part::Turn)] {
+        let bars = Surface::ALL.map(|surface| match least(surface, part) {
+            Some(share) => format!(" {:.0} % |", 100.0 * share),
+            None => " - |".to_owned(),
+        });
+        _ = writeln!(text, "| at least, of {name} | 100 % |{}", bars.concat());
     }
     text
 }

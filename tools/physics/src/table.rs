@@ -8,7 +8,7 @@ use crate::case::{Case, Feet, Legs};
 use crate::figures::{Displacement, Figures};
 
 /// A displacement below this counts as none: mm and deg.
-const NONE: (f64, f64) = (1.0, 0.5);
+const MIN_DISPLACEMENT: (f64, f64) = (1.0, 0.5);
 
 /// The part of a displacement that a gait is for.
 #[derive(Clone, Copy)]
@@ -22,10 +22,10 @@ impl Part {
     pub(crate) fn of(displacement: Displacement) -> Vec<Self> {
         let [ahead, _, turn] = displacement.0.map(f64::abs);
         let mut parts = Vec::new();
-        if ahead > NONE.0 || turn <= NONE.1 {
+        if ahead > MIN_DISPLACEMENT.0 || turn <= MIN_DISPLACEMENT.1 {
             parts.push(Self::Ahead);
         }
-        if turn > NONE.1 {
+        if turn > MIN_DISPLACEMENT.1 {
             parts.push(Self::Turn);
         }
         parts
@@ -112,11 +112,12 @@ fn gaits(robot: &Robot) -> impl Iterator<Item = &str> {
     moving.map(|gait| gait.name())
 }
 
-/// The displacement by a cycle of each gait, as Markdown: the model's prediction for level feet,
-/// MuJoCo's answer, and the range of both with a foot 1.0 mm too long.
+/// The displacement by a cycle of each gait, as Markdown: the model's prediction for level feet
+/// with ideal servos and with the robot's, MuJoCo's answer, and the range of the first and the last
+/// with a foot 1.0 mm too long.
 #[must_use]
 pub fn spread(name: &str, robot: &Robot, figures: &Figures) -> String {
-    let mut text = "| gait | cycle, s | predicted | MuJoCo | both, a foot 1.0 mm too long |\n|---|---|---|---|---|\n".to_owned();
+    let mut text = "| gait | cycle, s | ideal servos | its servos | MuJoCo | ideal servos and MuJoCo, a foot 1.0 mm too long |\n|---|---|---|---|---|---|\n".to_owned();
     for gait in robot.gaits().iter().filter(|gait| gait.moves()) {
         let of = |feet: Feet| {
             let legs = Legs::Rigid;
@@ -136,10 +137,11 @@ pub fn spread(name: &str, robot: &Robot, figures: &Figures) -> String {
         };
         _ = writeln!(
             text,
-            "| {} | {} | {} | {} | {} |",
+            "| {} | {} | {} | {} | {} | {} |",
             gait.name(),
             gait.period(),
             cell(&[model]),
+            cell(&[gait.driven(robot.ground(), &robot.motors(), 1.0).into()]),
             cell(&[level.mujoco]),
             cell(&[rocks, long.mujoco])
         );

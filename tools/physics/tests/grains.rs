@@ -8,8 +8,8 @@ use lizard_physics::{here, robot};
 /// Speeds of a gait at a ratio, by the model and by MuJoCo: mm/s ahead or deg/s of turn.
 fn speeds(kept: &Grains, gait: &str, ratio: f64, part: usize) -> Vec<f64> {
     let period = robot(grains::ROBOT).gait(gait).expect(gait).period();
-    let place = RATIOS.iter().position(|known| *known == ratio);
-    let answers = kept[gait][place.expect("a ratio of the table")];
+    let index = RATIOS.iter().position(|known| *known == ratio);
+    let answers = kept[gait][index.expect("a ratio of the table")];
     let displacements = answers.model.into_iter().chain([answers.mujoco]);
     displacements
         .map(|displacement| displacement.0[part] / period)

@@ -50,15 +50,15 @@ pub enum Event<'a> {
     /// A command that moves, freezes or rests the robot; `done` is true if it was accepted,
     /// false if refused, `None` if unknown.
     Order {
-        /// Its effect on the servos.
+        /// The command's effect on the servos.
         effect: Effect,
-        /// Its outcome.
+        /// The outcome of the command.
         done: Option<bool>,
     },
     /// Settings of the servos change.
     Calibrated {
         /// True if the settings in use are saved.
-        saved: bool,
+        is_saved: bool,
     },
     /// The answer to a line.
     Answer {

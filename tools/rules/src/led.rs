@@ -11,7 +11,7 @@ const FAULTS: [&str; 8] = [
 /// The code of a fault, by its word in `status`.
 ///
 /// # Errors
-/// The word names no fault.
+/// Fails if the word names no fault.
 pub fn code(fault: &str) -> Result<u8, String> {
     let code = FAULTS.iter().position(|word| *word == fault);
     code.map(|code| code as u8)
@@ -22,7 +22,7 @@ pub fn code(fault: &str) -> Result<u8, String> {
 /// `edges` are the LED's changes: a time, and true if it was switched on.
 ///
 /// # Errors
-/// The first part of a pattern that belongs to no fault or to another one.
+/// Returns the first part of a pattern that belongs to no fault or to another one.
 pub fn check_pattern(edges: &[(Time, bool)], from: Time, to: Time, code: u8) -> Result<(), String> {
     let mut flashes = None;
     for pair in edges.windows(2) {

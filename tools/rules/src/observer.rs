@@ -150,7 +150,7 @@ impl Observer {
     /// Takes the first rule that was broken since the last call.
     ///
     /// # Errors
-    /// The broken rule.
+    /// Returns the broken rule.
     pub fn verdict(&mut self) -> Result<(), BrokenRule> {
         let mut broken = std::mem::take(&mut self.broken);
         if broken.is_empty() {
@@ -269,9 +269,9 @@ impl Observer {
                 }
             }
             Event::Order { effect, done } => self.order(effect, done),
-            Event::Calibrated { saved } => {
-                self.is_unsaved = !saved;
-                if !saved {
+            Event::Calibrated { is_saved } => {
+                self.is_unsaved = !is_saved;
+                if !is_saved {
                     for servo in &mut self.servos {
                         servo.is_calibrated = true;
                     }

@@ -8,7 +8,7 @@ use crate::observer::Observer;
 use crate::rule::Rule;
 
 /// Longest time between two pulses; beyond it a frame was left out.
-const GONE: Time = 30 * MS;
+const MAX_PULSE_GAP: Time = 30 * MS;
 
 /// The most that a gait outlasts the time of `deadman`.
 const LATE: Time = 40 * MS;
@@ -25,7 +25,7 @@ const BOOT: Time = 2_975 * MS;
 
 /// Pulses that begin so close to each other begin in one frame, or in two that follow:
 /// servos are to wake 0.1 s apart.
-const TOGETHER: Time = 75 * MS;
+const MIN_WAKE_GAP: Time = 75 * MS;
 
 /// From the end of the pulses to the reset of a hang: the watchdog's second stage and a
 /// frame.
@@ -188,7 +188,7 @@ impl Observer {
             let seen = format!("{name} gets {} cycles", pulse.width);
             self.fail(Rule::Travel, seen);
         }
-        let begins = at - servo.at > GONE;
+        let begins = at - servo.at > MAX_PULSE_GAP;
         if begins {
             self.judge_first_pulse(pulse);
         }
@@ -263,7 +263,7 @@ impl Observer {
             self.fail(Rule::Held, seen);
         }
         let (last, last_after_hang) = self.last_begin;
-        if at - last < TOGETHER && !(is_after_hang && last_after_hang) {
+        if at - last < MIN_WAKE_GAP && !(is_after_hang && last_after_hang) {
             let ms = (at - last) / MS;
             self.fail(Rule::OneByOne, format!("{name}, {ms} ms after another"));
         }

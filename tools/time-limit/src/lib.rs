@@ -1,6 +1,6 @@
 //! Waits with a time limit. A test that waits for another program, a port or a thread
 //! hangs if that never answers, and so does the whole run. Here every wait
-//! has a limit, after which the test fails with a sentence that names the missing event.
+//! has a limit, after which the test fails with a message that names the missing event.
 //!
 //! The limit does not measure speed: a machine may be busy, and only a test that hangs
 //! should fail. All waits use one limit, [`LIMIT`]. Do not use it outside of tests, or to
@@ -98,8 +98,8 @@ impl TimeLimit {
     /// read elsewhere.
     ///
     /// # Errors
-    /// The system's; [`ErrorKind::TimedOut`] with a sentence if it does not end
-    /// within the limit, when it is killed.
+    /// Returns the system's error; [`ErrorKind::TimedOut`] with a message if it does not end within
+    /// the limit, when it is killed.
     pub fn end_of(self, child: &mut Child) -> io::Result<ExitStatus> {
         let mut ended = Ok(None);
         self.wait_for(|| {
@@ -111,20 +111,20 @@ impl TimeLimit {
         }
         child.kill()?;
         child.wait()?;
-        let sentence = format!("waited {self} for the end of process {}", child.id());
-        Err(io::Error::new(ErrorKind::TimedOut, sentence))
+        let message = format!("waited {self} for the end of process {}", child.id());
+        Err(io::Error::new(ErrorKind::TimedOut, message))
     }
 
     /// Runs a program with `input` on its standard input, and returns its output.
     ///
     /// # Errors
-    /// It cannot be started; [`ErrorKind::TimedOut`] with a sentence if it, or a program that
-    /// it has started and that has its output, runs beyond the limit.
+    /// Fails if it cannot be started; [`ErrorKind::TimedOut`] with a message if it, or a program
+    /// that it has started and that has its output, runs beyond the limit.
     pub fn output(self, command: &mut Command, input: &[u8]) -> io::Result<Output> {
         let name = command.get_program().to_string_lossy().into_owned();
         let too_long = |what: &str| {
-            let sentence = format!("waited {self} for the end of {what}`{name}`");
-            io::Error::new(ErrorKind::TimedOut, sentence)
+            let message = format!("waited {self} for the end of {what}`{name}`");
+            io::Error::new(ErrorKind::TimedOut, message)
         };
         let mut child = command
             .stdin(Stdio::piped())

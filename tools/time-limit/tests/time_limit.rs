@@ -1,4 +1,4 @@
-//! Waits that hang fail with a sentence, and all other waits succeed.
+//! Waits that hang fail with a message, and all other waits succeed.
 #![cfg(unix)] // by the programs that are everywhere there
 
 use std::io::ErrorKind;
@@ -11,8 +11,8 @@ use lizard_time_limit::{LIMIT, TimeLimit};
 
 const SHORT: TimeLimit = TimeLimit::new(Duration::from_millis(100));
 
-/// The sentence with which this fails.
-fn sentence<T>(wait: impl FnOnce() -> T) -> String {
+/// The message with which this fails.
+fn panic_message<T>(wait: impl FnOnce() -> T) -> String {
     let panic = catch_unwind(AssertUnwindSafe(wait))
         .err()
         .expect("it fails");
@@ -30,7 +30,7 @@ fn shell(script: &str) -> Command {
 
 #[test]
 fn a_condition_that_never_holds_fails_with_what_was_waited_for() {
-    let words = sentence(|| SHORT.expect("the cows", || false));
+    let words = panic_message(|| SHORT.expect("the cows", || false));
     assert_eq!(words, "waited 100ms for the cows");
     assert!(!SHORT.wait_for(|| false));
 }
@@ -50,14 +50,14 @@ fn a_condition_is_checked_until_it_holds() {
 #[test]
 fn work_that_blocks_fails_with_what_was_waited_for() {
     let (_send, receive) = mpsc::channel::<()>();
-    let words = sentence(|| SHORT.within("a word of nobody", move || receive.recv()));
+    let words = panic_message(|| SHORT.within("a word of nobody", move || receive.recv()));
     assert_eq!(words, "waited 100ms for a word of nobody");
 }
 
 #[test]
 fn work_that_ends_gives_its_result_or_its_own_failure() {
     assert_eq!(LIMIT.within("a sum", || 2 + 2), 4);
-    let words = sentence(|| LIMIT.within("a sum", || panic!("no sum")));
+    let words = panic_message(|| LIMIT.within("a sum", || panic!("no sum")));
     assert_eq!(words, "no sum");
 }
 

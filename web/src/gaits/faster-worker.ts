@@ -1,6 +1,6 @@
 // The worker of FasterSearch: its own instance of the robot in WebAssembly, which tries one gait after another.
 import { isRefused, Robot, type Trial } from '../robot';
-import { sentence } from '../trouble';
+import { messageOf } from '../trouble';
 import type { Answer, Best, Question } from './faster';
 
 /** Gaits between two reports of the best so far: one population of the search. */
@@ -16,28 +16,28 @@ const turn = () => new Promise((next) => setTimeout(next));
 
 addEventListener('message', ({ data }: MessageEvent<Question | 'stop'>) => {
   if (data === 'stop') isStopped = true;
-  else void search(data).catch((error: unknown) => say({ of: 'end', refused: sentence(error) }));
+  else void search(data).catch((error: unknown) => say({ of: 'end', refused: messageOf(error) }));
 });
 
 async function search({ module, toml, floor, servos, wish }: Question): Promise<void> {
-  const page = await Robot.load(module);
-  page.read(toml);
-  page.setFloor(floor);
-  page.setServos(servos);
-  const begun = page.makeFaster(wish);
+  const robot = await Robot.load(module);
+  robot.read(toml);
+  robot.setFloor(floor);
+  robot.setServos(servos);
+  const begun = robot.makeFaster(wish);
   if (isRefused(begun)) return say({ of: 'end', refused: begun.refused });
-  say({ of: 'begun', ...begun, before: page.trial(wish.bars) as Trial });
+  say({ of: 'begun', ...begun, before: robot.trial(wish.bars) as Trial });
   const best = (robots: number): Best | null => {
-    const found = page.fasterFound(robots);
+    const found = robot.fasterFound(robots);
     // The search only returns gaits within the robot's limits.
-    return found && { ...found, trial: page.trial(found.bars) as Trial };
+    return found && { ...found, trial: robot.trial(found.bars) as Trial };
   };
   let shown = -Infinity;
   let done = 0;
   while (done < begun.all) {
     await turn();
     if (isStopped) break;
-    const tried = page.fasterStep();
+    const tried = robot.fasterStep();
     done = tried.done;
     say({ of: 'tried', done });
     if (done % LOOK !== 0 || done === begun.all || tried.best === null || tried.best <= shown) continue;

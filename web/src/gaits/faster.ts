@@ -1,6 +1,6 @@
 // A search for a gait that walks faster than the edited one, in a worker of its own that ends with the search.
 import type { Bars, Floor, Found, Trial, SearchTask } from '../robot';
-import { sentence } from '../trouble';
+import { messageOf } from '../trouble';
 
 export interface Question {
   module: WebAssembly.Module;
@@ -44,7 +44,7 @@ export class FasterSearch {
       (module) => this.worker.postMessage({ ...question, module } satisfies Question),
       (error: unknown) => {
         this.drop();
-        onAnswer({ of: 'end', refused: sentence(error) });
+        onAnswer({ of: 'end', refused: messageOf(error) });
       },
     );
   }

@@ -36,7 +36,7 @@ const LINES = [
 ];
 /** The beginnings of the names of modules that do not say which service they have. */
 const NAMES = ['HM', 'BT05', 'MLT-BT05', 'CC41', 'AT-09', 'JDY'];
-/** Most bytes of a packet. */
+/** The largest number of bytes in a packet. */
 const PACKET = 20;
 /** Time from one attempt to reach a module to the next, ms. */
 const RETRY = 500;
@@ -46,11 +46,11 @@ function bluetooth(): Bluetooth | undefined {
 }
 
 const isApple = /iPhone|iPad/.test(navigator.userAgent) || (navigator.platform === 'MacIntel' && navigator.maxTouchPoints > 1);
-/** What somebody with an iPhone can do; null on another device. */
+/** Advice for a user with an iPhone; null on another device. */
 export const ON_IPHONE =
   isApple && !bluetooth() ? 'On an iPhone or iPad neither Safari nor Chrome can reach a robot. The browser Bluefy can, by a Bluetooth LE module.' : null;
 
-/** The reason why this browser reaches no Bluetooth module; null if it can. */
+/** The reason why this browser cannot reach a Bluetooth module; null if it can. */
 export function noBluetooth(): string | null {
   if (bluetooth()) return null;
   return (
@@ -76,7 +76,7 @@ export class BluetoothLink implements Link {
     return `board at ${this.device.name || 'a Bluetooth module'}`;
   }
 
-  /** Lets the user pick a module and connects to it; null if the user picks none. Throws a sentence. */
+  /** Lets the user pick a module and connects to it; null if the user picks none. Throws an error for the user. */
   static async open(): Promise<BluetoothLink | null> {
     const radio = bluetooth();
     if (!radio) throw new Error(noBluetooth() ?? '');
@@ -151,7 +151,7 @@ export class BluetoothLink implements Link {
 
   async close(): Promise<void> {
     this.isClosing = true;
-    // What was sent goes out before the link ends.
+    // Bytes that were sent go out before the link ends.
     await Promise.race([this.packets.catch(() => {}), sleep(RETRY)]);
     this.device.gatt.disconnect();
   }

@@ -11,7 +11,7 @@ const LINES = 3;
 export class Deadman {
   /** The robot's own setting, ms; null until it is read. */
   private own: number | null = null;
-  /** There from the line that sets it until the one that takes it back: true once the robot has confirmed it. */
+  /** Present from the line that sets it until the one that takes it back; true once the robot has confirmed it. */
   private set: Promise<boolean> | null = null;
 
   constructor(private readonly dialogue: Dialogue) {}
@@ -40,7 +40,7 @@ export class Deadman {
     if (ms !== undefined) this.own = Number(ms) === DRIVEN ? 0 : Number(ms);
   }
 
-  /** Takes note of a person's own line. */
+  /** Notes a person's own line. */
   follow(line: string, isOk: boolean): void {
     if (!isOk) return;
     const [word, ms] = line.split(/\s+/);
@@ -53,7 +53,7 @@ export class Deadman {
     this.dialogue.keepAlive(null);
   }
 
-  /** Gives the robot its own setting back. */
+  /** Restores the robot's own setting. */
   end(): void {
     this.letGo();
     if (!this.isSet) return;

@@ -6,21 +6,21 @@ import type { Link } from './link';
 
 /** The beginning of the firmware's first line. */
 export const GREETING = '# lizard ';
-/** Most characters of a line that the console accepts. */
+/** The largest number of characters in a line that the console accepts. */
 export const LONGEST_LINE = 63;
-/** The robot's lines are shorter than this; longer ones are noise and are cut. */
+/** The largest length of a robot's line; longer ones are noise and are cut. */
 const LONGEST = 500;
 /** Time within which an answer must come, ms. */
 const TIMEOUT = 3000;
 /** Time from one `stop` to the next while none is answered, ms. */
 const AGAIN = 250;
-/** Time within which the answers to the other ones have come, ms. */
+/** Time within which the answers to earlier `stop` lines have come, ms. */
 const ECHOES = 500;
 /** Time without the answer that is due after which a robot counts as silent, ms. */
 export const SILENCE = 800;
-/** What a Bluetooth module says into the line when its link begins and ends. */
+/** The words that a Bluetooth module puts into the line when its link begins and ends. */
 const MODULE = /OK\+(CONN|LOST)/g;
-/** What a robot without pulses answers to `stop`: it rests, or its flash has no robot. */
+/** The answers to `stop` of a robot without pulses: it rests, or its flash has no robot. */
 const CANNOT_MOVE = /^err (7|10) /;
 /** A line of the answer to `cal`. */
 const SETTING = /^# (A[1-4]|boot|deadman) /;
@@ -82,7 +82,7 @@ export class Dialogue {
   private readonly waiting: Question[] = [];
   private asked: Question | null = null;
   private stop: Stop | null = null;
-  /** There while answers to repeated `stop` lines may come, which belong to no other line. */
+  /** Present while answers to repeated `stop` lines may come, which belong to no other line. */
   private echoes: Promise<void> | null = null;
   private isSilent = false;
   /** The line that is sent beside all others. */
@@ -90,7 +90,7 @@ export class Dialogue {
   /** The answer to the last such line. */
   private beaten = '';
   private notes: string[] = [];
-  /** Whether the line serves another purpose. */
+  /** True while the line serves another purpose. */
   over = false;
 
   constructor(

@@ -1,6 +1,6 @@
 // The link to a board by Web Serial, which Chromium browsers and newer Firefox have, over https or on localhost: on USB,
-// or behind an HC-05, a Bluetooth module that the system knows as a serial port.
-import { sentence } from '../trouble';
+// or through an HC-05, a Bluetooth module that the system knows as a serial port.
+import { messageOf } from '../trouble';
 import { sleep, type Link } from './link';
 
 /** The parts of Web Serial that the page uses; TypeScript's library does not declare them. */
@@ -58,7 +58,7 @@ export class PortLink implements Link {
     return usbVendorId !== undefined && !ARDUINO.includes(usbVendorId);
   }
 
-  /** Lets the user pick a port and opens it, which resets a UNO; null if the user picks none. Throws a sentence. */
+  /** Lets the user pick a port and opens it, which resets a UNO; null if the user picks none. Throws an error for the user. */
   static async open(): Promise<PortLink | null> {
     const ports = serial();
     if (!ports) throw new Error(NO_SERIAL);
@@ -73,7 +73,7 @@ export class PortLink implements Link {
     try {
       await port.open({ baudRate: BAUD, bufferSize: 4096 });
     } catch (error) {
-      throw new Error(`${sentence(error)} Another program may have the port: close that, and connect again.`);
+      throw new Error(`${messageOf(error)} Another program may have the port: close that, and connect again.`);
     }
     const link = new PortLink(port);
     void link.listen();

@@ -37,7 +37,7 @@ export type Progress = (done: number, of: number, what: 'comparing' | 'writing' 
 /** Thrown if the board's firmware does not match; nothing was written. */
 export class Unfit extends Error {}
 
-/** The bytes of a HEX file up to its end, in whole pages. Throws a sentence. */
+/** The bytes of a HEX file up to its end, in whole pages. Throws an error for the user. */
 export function imageOf(hex: string): Uint8Array {
   const flash = new Uint8Array(FLASH_SIZE).fill(0xff);
   load(hex, flash);
@@ -71,7 +71,7 @@ class Loader {
     this.received = [];
   }
 
-  /** Receives `count` bytes. Throws a sentence. */
+  /** Receives `count` bytes. Throws an error for the user. */
   async take(count: number, timeout: number): Promise<number[]> {
     let late = false;
     void this.link.wait(timeout).then(() => {
@@ -109,7 +109,7 @@ async function call(link: Link, loader: Loader): Promise<void> {
   }
 }
 
-/** Resets the board and calls its boot loader. Throws a sentence unless the chip is an ATmega328P. */
+/** Resets the board and calls its boot loader. Throws an error for the user unless the chip is an ATmega328P. */
 async function begin(link: Link): Promise<Loader> {
   const loader = new Loader(link);
   await link.reset();
@@ -124,7 +124,7 @@ async function begin(link: Link): Promise<Loader> {
 
 /**
  * Resets the board, asks its boot loader for the chip, and starts the program on the board. No other code may use the
- * link meanwhile. Throws a sentence if the board is not a UNO.
+ * link meanwhile. Throws an error for the user if the board is not a UNO.
  */
 export async function identify(link: Link): Promise<void> {
   const loader = await begin(link);
@@ -146,7 +146,7 @@ function inPages({ bytes }: Piece): Uint8Array {
 
 /**
  * Resets the board, writes a piece of its flash, reads it back and starts the board. If `required` is given and the
- * board does not have it, nothing is written. No other code may use the link meanwhile. Throws a sentence.
+ * board does not have it, nothing is written. No other code may use the link meanwhile. Throws an error for the user.
  */
 export async function flash(link: Link, piece: Piece, progress: Progress, required: Piece | null = null): Promise<void> {
   const loader = await begin(link);
@@ -157,7 +157,7 @@ export async function flash(link: Link, piece: Piece, progress: Progress, requir
     for (let at = 0; at < bytes.length; at += PAGE) {
       await goTo(wanted.at + at);
       const read = await loader.command([READ_PAGE, 0, PAGE, FLASH], PAGE);
-      // Bytes behind the end do not count.
+      // Bytes after the end do not count.
       const wrong = read.findIndex((byte, i) => at + i < wanted.bytes.length && byte !== bytes[at + i]);
       if (wrong >= 0) return wanted.at + at + wrong;
       progress(at + PAGE, bytes.length, what);

@@ -7,7 +7,7 @@ export interface Body {
   kind: string;
   /** The body that it moves with, an index of the places of a pose. */
   mount: number;
-  /** Its servo, 0 to 3; null for a body of the chassis or of a side. */
+  /** The body's servo, 0 to 3; null for a body of the chassis or of a side. */
   servo: number | null;
   /** The step of the guide that adds it, from 1. */
   step: number;
@@ -15,7 +15,7 @@ export interface Body {
   lift: number;
   /** Index of the printed part; null for a bought one. */
   part: number | null;
-  /** Its place in its mount's frame: the columns of a 4 x 4 matrix. */
+  /** The position in the mount's frame: the columns of a 4 x 4 matrix. */
   place: number[];
   /** Index of its solid. */
   solid: number;
@@ -63,7 +63,7 @@ interface Exports {
   parts_files(number: number): number;
 }
 
-/** Thrown for a robot whose parts cannot be made; its message is the sentence. */
+/** Thrown for a robot whose parts cannot be made; its message is for the user. */
 export class Unfit extends Error {}
 
 export class PartsModel {

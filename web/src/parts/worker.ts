@@ -1,7 +1,7 @@
 // The worker of Workshop: the parts in WebAssembly.
 import { zipSync } from 'fflate';
 
-import { sentence } from '../trouble';
+import { messageOf } from '../trouble';
 import { PartsModel } from './model';
 import type { Answer, Question } from './workshop';
 
@@ -10,7 +10,7 @@ let known: PartsModel | null = null;
 const say = (answer: Answer, give: Transferable[] = []) => postMessage(answer, { transfer: give });
 
 addEventListener('message', ({ data }: MessageEvent<Question>) => {
-  void answer(data).catch((error: unknown) => say({ of: data.ask, refused: sentence(error) }));
+  void answer(data).catch((error: unknown) => say({ of: data.ask, refused: messageOf(error) }));
 });
 
 async function answer(question: Question): Promise<void> {

@@ -60,7 +60,7 @@ export class Solids {
 
   private constructor() {}
 
-  /** Makes the solids of a robot.toml. Throws the sentence of a robot that cannot be built. */
+  /** Makes the solids of a robot.toml. Throws the message of a robot that cannot be built. */
   static async of(toml: string): Promise<{ solids: Solids; model: Model; meshes: Solid[] }> {
     const solids = new Solids();
     try {

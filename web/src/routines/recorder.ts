@@ -1,4 +1,4 @@
-// A drive as the steps of a routine, by what the robot said: its gaits, its pace, the phase of its cycle. Moments are
+// A drive as the steps of a routine, from the robot's reports: its gaits, its pace, the phase of its cycle. Moments are
 // in seconds of `Session.clock`.
 import type { Gait } from '../robot';
 import { GAITS, WORDS } from '../words';
@@ -7,11 +7,11 @@ import { GAITS, WORDS } from '../words';
 const PAUSE = 0.5;
 /** Shortest step, s. */
 const SHORTEST = 0.1;
-/** Error of a count of cycles since the last phase that the robot said. */
+/** Error of a count of cycles since the last phase that the robot reported. */
 const SLACK = 0.05;
 /** A phase is that of the cycle nearest to the count, which is rather too high: a gait begins with the way to its first pose. */
 const TOO_LOW = 0.4;
-/** What the robot does between gaits; a routine has only `stand` for it. */
+/** The robot's activities between gaits; a routine has only `stand` for them. */
 const PAUSES: string[] = ['', GAITS.stand, WORDS.stop, WORDS.pose, WORDS.center];
 
 interface Part {
@@ -22,7 +22,7 @@ interface Part {
 }
 
 const isPause = ({ name }: Part) => name === GAITS.stand;
-/** True for what is too short to be a step. */
+/** True for a part that is too short to be a step. */
 const isShort = (part: Part) => part.seconds < (isPause(part) ? PAUSE : SHORTEST);
 
 export class Recorder {
@@ -31,7 +31,7 @@ export class Recorder {
   private cycles = 0;
   private counted: number;
 
-  /** Begins with what the robot does and with its pace, percent. */
+  /** Begins with the robot's activity and its pace, percent. */
   constructor(
     private readonly gaits: Gait[],
     private gait: string,
@@ -41,20 +41,20 @@ export class Recorder {
     this.counted = since;
   }
 
-  /** Takes what the robot does now. */
+  /** Takes the robot's present activity. */
   doing(gait: string, at: number): void {
     if (gait === this.gait) return;
     this.parts = this.closed(at);
     [this.gait, this.since, this.counted, this.cycles] = [gait, at, at, 0];
   }
 
-  /** Takes another pace, percent. */
+  /** Takes a new pace, percent. */
   speed(percent: number, at: number): void {
     this.count(at);
     this.pace = percent;
   }
 
-  /** Takes the phase that the robot says of its gait. */
+  /** Takes the reported phase of the robot's gait. */
   phase(said: number, at: number): void {
     this.count(at);
     const phase = this.known?.reversed ? (1 - said) % 1 : said;
@@ -85,7 +85,7 @@ export class Recorder {
     this.counted = at;
   }
 
-  /** All parts, with what the robot does until now as the last one. */
+  /** All parts, the present activity as the last one. */
   private closed(at: number): Part[] {
     this.count(at);
     const { parts, gait, known } = this;

@@ -29,7 +29,7 @@ export function fileOf({ boot, deadman, servos }: Calibration): string {
   return [HEAD, `format = "${FORMAT}"`, `boot = "${boot}"`, `deadman = ${deadman}`, '', ...tables].join('\n');
 }
 
-/** Reads the text of such a file. Throws a sentence that names the line or the key. */
+/** Reads the text of such a file. Throws an error that names the line or the key. */
 export async function calibrationIn(text: string): Promise<Calibration> {
   // Loaded when a file is opened, which is rare.
   const { parse, TomlError } = await import('smol-toml');

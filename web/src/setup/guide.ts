@@ -44,7 +44,7 @@ export class Guide {
     this.beginnings = session.beginnings;
   }
 
-  /** Reads the robot's calibration; nothing moves. Throws a sentence. */
+  /** Reads the robot's calibration; nothing moves. Throws an error for the user. */
   static async begin(session: Session): Promise<Guide> {
     const has = calibrationOf((await sendLine(session, WORDS.cal)).notes);
     if (!has) throw new Error('The robot does not say its calibration as this page knows it: write this firmware first.');

@@ -1,11 +1,11 @@
-// A robot that does not answer: what the page shows of it is old, and it may walk on. So this is said large.
+// A robot that does not answer: the page shows an old state of it, and it may walk on. So a large alarm says so.
 import { SILENCE } from '../link/dialogue';
 import { element } from './canvas';
 
 export class Alarm {
   private readonly box = element('alarm');
   private isStopping = false;
-  /** When the line was sent that has no answer, on the page's clock, ms. */
+  /** The time at which the unanswered line was sent, on the page's clock, ms. */
   private since = 0;
 
   silent(isSilent: boolean): void {
@@ -20,7 +20,7 @@ export class Alarm {
     this.write();
   }
 
-  /** Writes for how long no answer has come. */
+  /** Writes the time since the unanswered line. */
   write(): void {
     if (this.box.hidden) return;
     const said = this.isStopping ? 'No answer: it may walk on. "stop" is sent until it answers.' : 'No answer from the robot.';

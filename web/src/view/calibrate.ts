@@ -18,7 +18,7 @@ export class Calibrate {
   private readonly box = element('calibration');
   private readonly said = element('cal-said');
   private rows: Row[] = [];
-  /** True from a line without an answer on: what is shown may not be what the robot has. */
+  /** True after a line without an answer: the shown settings may not be the robot's. */
   private isUnsure = false;
 
   constructor(private readonly session: () => Session) {

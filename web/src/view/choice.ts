@@ -34,7 +34,7 @@ export class Choice {
     return number < 0 ? null : number;
   }
 
-  /** Lists the robots beside the page. Throws a sentence if they are missing. */
+  /** Lists the robots beside the page. Throws an error for the user if they are missing. */
   static async load(): Promise<Choice> {
     const robots = await files.robots();
     // A file that cannot be read is reported when it is chosen.
@@ -60,7 +60,7 @@ export class Choice {
   }
 
   /** True if the user may choose. */
-  set enabled(may: boolean) {
-    this.list.disabled = !may;
+  set enabled(isEnabled: boolean) {
+    this.list.disabled = !isEnabled;
   }
 }

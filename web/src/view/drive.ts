@@ -26,6 +26,8 @@ export class Drive {
   private readonly list = element('gaits');
   private buttons: { command: string; button: HTMLButtonElement; note: HTMLElement }[] = [];
   private readonly predictions = new Map<string, GaitPrediction>();
+  /** The robot's pace, percent. */
+  private pace = 100;
 
   private readonly said = element('drive-said');
   /** The commands of the buttons in index.html, which every robot has. */
@@ -77,16 +79,24 @@ export class Drive {
     this.showLine();
   }
 
-  /** Shows the gait that asks most of the servos. */
+  /** Takes the robot's pace, percent. */
+  speed(percent: number): void {
+    if (percent === this.pace) return;
+    this.pace = percent;
+    this.showLine();
+  }
+
+  /** Shows the gait that asks most of the servos at the robot's pace. */
   private showLine(): void {
     let [hardest, most] = ['', 0];
-    for (const [command, { line }] of this.predictions) {
-      if (line !== null && line > most) [hardest, most] = [command, line];
+    for (const [command, { lines }] of this.predictions) {
+      const line = lines?.[Math.ceil((this.pace * lines.length) / 100) - 1] ?? 0;
+      if (line > most) [hardest, most] = [command, line];
     }
     const note = element('line-note');
     note.classList.toggle('warning', most >= TIGHT);
-    const meaning = most >= 1 ? ': they fall behind their pulses; send speed 50' : most >= TIGHT ? ': little is left' : '';
-    note.textContent = hardest === '' ? '' : `${hardest} asks most of its servos, ${most.toFixed(2)} of their torque-speed line${meaning}.`;
+    const meaning = most >= 1 ? ': they fall behind their pulses; a slower pace asks less' : most >= TIGHT ? ': little is left' : '';
+    note.textContent = hardest === '' ? '' : `${hardest} asks most of its servos, ${most.toFixed(2)} of their torque-speed line at ${this.pace} % of its pace${meaning}.`;
   }
 
   /** The prediction for a command; null until it is known. */

@@ -1,7 +1,7 @@
 // The parts after a change of lengths: a worker proves that they fit, and where they do not, looks for the nearest lengths that do.
 import { isRefused, type Length } from '../robot';
 import type { Session } from '../session';
-import { sentence } from '../trouble';
+import { messageOf } from '../trouble';
 import { element } from './canvas';
 
 /** Time after a change until its parts are made, ms: a joint that is dragged makes many. */
@@ -33,7 +33,7 @@ export class FitView {
     if (file === '' || toml === original || document.body.dataset.at !== 'room-build') this.fitting = wanted;
     const changed = [...wanted].filter(([key, value]) => this.fitting.get(key) !== value);
     if (changed.length === 0) return;
-    const check = () => this.check(wanted, new Map(changed)).catch((error: unknown) => this.say(`The parts could not be checked: ${sentence(error)}.`));
+    const check = () => this.check(wanted, new Map(changed)).catch((error: unknown) => this.say(`The parts could not be checked: ${messageOf(error)}.`));
     this.timer = setTimeout(() => void check(), QUIET);
   }
 

@@ -1,7 +1,7 @@
 // The panel that writes firmware and robot through the board's boot loader.
 import { hasConsole, imageOf } from '../link/stk500';
 import { BY_CABLE, type Session } from '../session';
-import { sentence } from '../trouble';
+import { messageOf } from '../trouble';
 import { element } from './canvas';
 import { reveal } from './rooms';
 import type { WriteContent, Writer } from './writer';
@@ -62,7 +62,7 @@ export class FlashView {
     try {
       this.chosen = imageOf(await file.text());
     } catch (error) {
-      this.said.textContent = `not written: ${sentence(error)}`;
+      this.said.textContent = `not written: ${messageOf(error)}`;
       return;
     }
     const what = hasConsole(this.chosen)

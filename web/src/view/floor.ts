@@ -43,7 +43,7 @@ export class Floor {
   private following = true;
   /** The tracks of the robot and of the second robot. */
   private tracks: { x: number; y: number }[][] = [[], []];
-  /** True if it is drawn even behind the robot in 3D, for a film or a picture. */
+  /** True if the floor is drawn even behind the robot in 3D, for a film or a picture. */
   unseen = false;
   /** The last drawn frame, for a picture as PNG or SVG. */
   private shown: [Plate, Frame | null, Frame | null] | null = null;

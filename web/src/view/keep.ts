@@ -3,7 +3,7 @@ import { Companion } from '../companion';
 import { LONGEST, Recording } from '../recording';
 import type { Description, Four, Frame } from '../robot';
 import type { Session } from '../session';
-import { sentence } from '../trouble';
+import { messageOf } from '../trouble';
 import { WORDS } from '../words';
 import { element } from './canvas';
 import { save } from './download';
@@ -222,7 +222,7 @@ export class Keep {
       text.textContent = label.text;
       save('floor.svg', [pen.getSerializedSvg()], 'image/svg+xml');
     } catch (error) {
-      this.say(`The picture cannot be made: ${sentence(error)}`);
+      this.say(`The picture cannot be made: ${messageOf(error)}`);
     }
   }
 
@@ -247,7 +247,7 @@ export class Keep {
       this.floor.fitTwoRobots();
       await this.ask(this.mine.value);
     } catch (error) {
-      this.say(`The second robot cannot start: ${sentence(error)}`);
+      this.say(`The second robot cannot start: ${messageOf(error)}`);
     }
   }
 

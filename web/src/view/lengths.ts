@@ -77,8 +77,8 @@ export class Lengths {
     if (refused) this.say(`This robot.toml has not what Legs, feet and floor are set to: ${refused.refused}`);
   }
 
-  private say(sentence: string | null): void {
-    this.refusal.hidden = sentence === null;
-    this.refusal.textContent = sentence ?? '';
+  private say(message: string | null): void {
+    this.refusal.hidden = message === null;
+    this.refusal.textContent = message ?? '';
   }
 }

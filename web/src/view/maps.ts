@@ -1,4 +1,4 @@
-// The maps of singularities of head and tail, and where the robot is on them.
+// The maps of singularities of head and tail, and the robot's position on them.
 import type { Robot, Scene, SingularityMap } from '../robot';
 import { element, surface } from './canvas';
 import { onPaletteChange, palette } from './palette';

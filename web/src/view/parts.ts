@@ -5,7 +5,7 @@ import type { Space } from '../parts/space';
 import type { Progress, Solids } from '../parts/workshop';
 import type { Frame, Place } from '../robot';
 import type { Session } from '../session';
-import { sentence } from '../trouble';
+import { messageOf } from '../trouble';
 import { element } from './canvas';
 import { save } from './download';
 import { onPaletteChange } from './palette';
@@ -92,7 +92,7 @@ export class PartsView {
       if (toml !== this.toml) return;
       // A failed download is tried again when 3D is shown again.
       this.toml = '';
-      this.say('parts-said', `There are no parts of this robot: ${sentence(error)}`);
+      this.say('parts-said', `There are no parts of this robot: ${messageOf(error)}`);
     }
   }
 
@@ -206,7 +206,7 @@ export class PartsView {
       const least = all.least === null ? '' : ` No two parts come nearer than ${all.least.toFixed(2)} mm at any pose that the guard accepts.`;
       this.say('files-said', `${all.count} files.${least}`);
     } catch (error) {
-      this.say('files-said', `No files are made: ${sentence(error)}`);
+      this.say('files-said', `No files are made: ${messageOf(error)}`);
     } finally {
       this.stop = null;
       bar.hidden = true;

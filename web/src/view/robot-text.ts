@@ -3,7 +3,7 @@ import { partsOf } from '../address';
 import { linkTo, unpacked } from '../link-text';
 import type { Refused } from '../robot';
 import type { Session } from '../session';
-import { sentence } from '../trouble';
+import { messageOf } from '../trouble';
 import { element } from './canvas';
 import { reveal } from './rooms';
 import { NO_BOARD, type Writer } from './writer';
@@ -90,7 +90,7 @@ export class RobotText {
       return toml === this.session().toml || (await this.loadAndShow(toml));
     } catch (error) {
       reveal(this.box);
-      this.say({ refused: sentence(error), line: null, key: '' });
+      this.say({ refused: messageOf(error), line: null, key: '' });
       return false;
     }
   }
@@ -145,10 +145,10 @@ export class RobotText {
     if (next !== undefined) await this.restore(next, [...before, shown], undone.slice(0, -1));
   }
 
-  /** Makes a robot of before the session's, with these steps on its two sides. */
+  /** Makes an earlier robot the session's, with the steps before it and the undone ones. */
   private async restore(toml: string, before: string[], undone: string[]): Promise<void> {
     const now = { before: this.before, undone: this.undone, shown: this.shown };
-    // It is no new step.
+    // A restored robot is not recorded as a step.
     Object.assign(this, { before, undone, shown: toml });
     const refused = await this.session().change(toml);
     if (!refused) return;
@@ -161,7 +161,7 @@ export class RobotText {
       await navigator.clipboard.writeText(await linkTo(this.session().toml));
       this.tell('The link is copied: it opens this robot, without the comments of its text.');
     } catch (error) {
-      this.tell(`The link could not be copied: ${sentence(error)}`);
+      this.tell(`The link could not be copied: ${messageOf(error)}`);
     }
   }
 
@@ -178,7 +178,7 @@ export class RobotText {
       const isHere = ['localhost', '127.0.0.1', '[::1]'].includes(location.hostname);
       this.tell(isHere ? 'This address is this computer’s own: a phone reaches the page only where a web server serves it.' : 'A phone’s camera opens this robot.');
     } catch (error) {
-      this.tell(`No code can be drawn: ${sentence(error)}`);
+      this.tell(`No code can be drawn: ${messageOf(error)}`);
     }
   }
 

@@ -65,7 +65,7 @@ export class RoutinesView {
     if (this.recorder) this.record();
   }
 
-  /** Takes what the robot does. */
+  /** Takes the robot's activity. */
   doing(gait: string): void {
     this.recorder?.doing(gait, this.session().clock);
     this.tell();
@@ -274,7 +274,7 @@ export class RoutinesView {
   private draw(path: RoundPath | null): void {
     const end = path?.places.at(-1) ?? null;
     this.path.toggleAttribute('hidden', end === null);
-    element('routine-round').textContent = path && end ? sentence(path, end) : '';
+    element('routine-round').textContent = path && end ? describeRound(path, end) : '';
     if (!path || !end) return;
     const [xs, ys] = [path.places.map(({ x }) => x), path.places.map(({ y }) => -y)];
     const side = (values: number[]) => {
@@ -298,7 +298,7 @@ function mistaken({ refused }: Refused): number | null {
   return number === undefined ? null : Number(number) - 1;
 }
 
-function sentence({ seconds, is_cut }: RoundPath, { x, y, heading }: Place): string {
+function describeRound({ seconds, is_cut }: RoundPath, { x, y, heading }: Place): string {
   const what = is_cut ? `The first ${seconds.toFixed(0)} s of a round` : `A round takes ${seconds.toFixed(1)} s and`;
   const aside = `${round(Math.abs(x))} mm to the ${x > 0 ? 'right' : 'left'}`;
   return `${what} ${is_cut ? 'end' : 'ends'} ${round(y)} mm ahead and ${aside} of its start, turned by ${round(heading)}°.`;

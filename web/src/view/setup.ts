@@ -3,7 +3,7 @@ import type { Link } from '../link/link';
 import type { Session } from '../session';
 import { calibrationIn } from '../setup/calibration-file';
 import { Guide } from '../setup/guide';
-import { sentence } from '../trouble';
+import { messageOf } from '../trouble';
 import { GAITS, NOTHING_SAVED } from '../words';
 import { element } from './canvas';
 import { reveal } from './rooms';
@@ -161,7 +161,7 @@ export class Setup implements Tools {
       try {
         if (await guide.takeBack()) said = 'The first connection was left: the robot has the calibration that it had before.';
       } catch (error) {
-        said = `The first connection was left, and the robot may have a calibration that is not saved, until its reset: ${sentence(error)}`;
+        said = `The first connection was left, and the robot may have a calibration that is not saved, until its reset: ${messageOf(error)}`;
       }
     }
     this.box.hidden = true;
@@ -199,7 +199,7 @@ export class Setup implements Tools {
   readonly setCalibration = (text: string, name: string): void => {
     this.act(async () => {
       const set = await calibrationIn(text).catch((error: unknown) => {
-        throw new Error(`${name}: ${sentence(error)}`);
+        throw new Error(`${name}: ${messageOf(error)}`);
       });
       const guide = await this.asked();
       await guide.setCalibration(set);
@@ -230,7 +230,7 @@ export class Setup implements Tools {
     this.hold(true);
     this.say('');
     this.under = work()
-      .catch(sentence)
+      .catch(messageOf)
       .then((said) => {
         if (number !== this.work) return;
         this.hold(false);

@@ -84,7 +84,7 @@ export class Steer {
   /** False from a release until the gamepads' sticks are let go, so that a stick still held no longer drives. */
   private padCounts = true;
   private isPressed = false;
-  /** What the pointer pressed last, until Tab moves the focus. */
+  /** The element that the pointer pressed last, until Tab moves the focus. */
   private touched: EventTarget | null = null;
   /** True while another window has the keyboard. */
   private isAway = false;

@@ -13,19 +13,19 @@ export class Troubles {
   private readonly box = element('trouble');
   private readonly lines = new Map<Cause, HTMLElement>();
 
-  /** Shows the sentence for a cause, replacing the last one; null removes it. */
-  say(cause: Cause, sentence: string | null, remedy: Remedy | null = null): void {
+  /** Shows the message for a cause, replacing the last one; null removes it. */
+  say(cause: Cause, message: string | null, remedy: Remedy | null = null): void {
     const before = this.lines.get(cause);
-    if (sentence !== null && before?.firstChild?.textContent === sentence) return;
+    if (message !== null && before?.firstChild?.textContent === message) return;
     before?.remove();
     this.lines.delete(cause);
-    if (sentence !== null) this.lines.set(cause, this.line(cause, sentence, remedy));
+    if (message !== null) this.lines.set(cause, this.line(cause, message, remedy));
     this.box.hidden = this.lines.size === 0;
   }
 
-  private line(cause: Cause, sentence: string, remedy: Remedy | null): HTMLElement {
+  private line(cause: Cause, message: string, remedy: Remedy | null): HTMLElement {
     const buttons = [...(remedy ? [button(remedy.label, remedy.act)] : []), button('Dismiss', () => this.say(cause, null))];
-    const line = words(make('span', {}, sentence), ...buttons);
+    const line = words(make('span', {}, message), ...buttons);
     this.box.append(line);
     return line;
   }

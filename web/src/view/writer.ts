@@ -1,7 +1,7 @@
 // Writes firmware or robot to a board, and shows progress and result in every display.
 import { Unfit } from '../link/stk500';
 import type { Session } from '../session';
-import { sentence } from '../trouble';
+import { messageOf } from '../trouble';
 
 /** The elements that show the progress. */
 export interface Display {
@@ -58,7 +58,7 @@ export class Writer {
       const where = isReal ? '' : ` to the ${name}`;
       said.textContent = `written${where} and verified in ${written(performance.now() - begun)}`;
     } catch (error) {
-      said.textContent = `not written: ${sentence(error)}${isTouched && !(error instanceof Unfit) ? TORN[what === 'robot' ? 'robot' : 'all'] : ''}`;
+      said.textContent = `not written: ${messageOf(error)}${isTouched && !(error instanceof Unfit) ? TORN[what === 'robot' ? 'robot' : 'all'] : ''}`;
     }
     progress.hidden = true;
     this.isWriting = false;

@@ -12,7 +12,7 @@ use serde::Serialize;
 /// A refusal: the reason why no parts can be made of a robot.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Refused {
-    /// The reason, as a sentence.
+    /// The reason, as a message.
     pub refused: String,
 }
 
@@ -33,15 +33,15 @@ pub struct BodyEntry {
     pub kind: &'static str,
     /// The index of the mount that it moves with.
     pub mount: usize,
-    /// The servo that it belongs to, 0 to 3; none for chassis and sides.
+    /// The servo that it belongs to, 0 to 3; `None` for chassis and sides.
     pub servo: Option<usize>,
     /// The step of the guide that adds it, from 1; 0 for none.
     pub step: usize,
     /// Lift in the guide's exploded picture, as a share.
     pub lift: f64,
-    /// The index of the printed part; none for bought bodies.
+    /// The index of the printed part; `None` for bought bodies.
     pub part: Option<usize>,
-    /// Its place in its mount's frame: the columns of a 4 x 4 matrix.
+    /// The solid's position in its mount's frame: the columns of a 4 x 4 matrix.
     pub place: [f64; 16],
     /// The index of its solid.
     pub solid: usize,
@@ -50,7 +50,7 @@ pub struct BodyEntry {
 /// A printed part.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PartEntry {
-    /// Its name.
+    /// The name.
     pub name: String,
     /// The name of its files, without folder and ending.
     pub file: String,
@@ -96,7 +96,7 @@ impl Model {
     /// Reads the model of a robot.toml.
     ///
     /// # Errors
-    /// A wrong robot.toml, or a robot of which no parts can be made.
+    /// Fails for a wrong robot.toml, or a robot of which no parts can be made.
     pub fn read(toml: &str) -> Result<Self, Refused> {
         let robot = Robot::parse(toml).map_err(Refused::of)?;
         let assembly = Assembly::new(&robot);
@@ -225,7 +225,7 @@ impl Model {
     /// None beyond the last.
     ///
     /// # Errors
-    /// A part whose layers make no body, a screw that cannot be reached.
+    /// Fails for a part whose layers make no body, a screw that cannot be reached.
     pub fn files(&self, number: usize) -> Result<Vec<File>, Refused> {
         let robot = self.assembly.robot();
         let count = self.made().count();
@@ -246,7 +246,7 @@ impl Model {
     /// Proves that no two parts meet at any pose that the guard accepts.
     ///
     /// # Errors
-    /// The two parts that meet.
+    /// Returns the two parts that meet.
     pub fn prove(&self, progress: impl FnMut(usize, usize)) -> Result<Proved, Refused> {
         let proof = self.assembly.prove(progress);
         let judged = proof.judge().map_err(lizard_parts::Unfit::from);

@@ -13,7 +13,7 @@ impl Model {
     /// of each body that is bought.
     ///
     /// # Errors
-    /// A part whose layers make no body.
+    /// Fails for a part whose layers make no body.
     pub fn solids(&self) -> Result<Vec<u8>, Refused> {
         let mut bytes = Vec::new();
         for part in self.needed() {

@@ -79,7 +79,7 @@ const IDEAL: &str = "ideal";
 pub struct ModelEntry {
     /// Name of the model.
     pub name: &'static str,
-    /// Torque at a stall, kg cm, and time for 60 deg, s, both at a supply in V; none for ideal
+    /// Torque at a stall, kg cm, and time for 60 deg, s, both at a supply in V; `None` for ideal
     /// servos.
     pub figures: Option<[f64; 3]>,
 }
@@ -101,7 +101,7 @@ impl ModelEntry {
     }
 }
 
-/// The servos of this name on a robot; none for an unknown name.
+/// The servos of this name on a robot; `None` for an unknown name.
 pub(crate) fn servo_model(robot: &Robot, name: &str) -> Option<ServoModel> {
     match name {
         OWN => Some(ServoModel::of(robot)),
@@ -171,7 +171,7 @@ pub struct Description {
     pub stroke: (f64, f64),
     /// Voltages below which the board slows down, stops and rests.
     pub supply: [f64; 3],
-    /// Channel of the converter that measures the servos' rail, and the volts there; none if it is
+    /// Channel of the converter that measures the servos' rail, and the volts there; `None` if it is
     /// not measured.
     pub rail: Option<(u8, f64)>,
     /// The inputs: name, and Arduino number of the pin.
@@ -329,11 +329,11 @@ fn lengths(robot: &Robot) -> Vec<LinkEntry> {
 /// The movement of a cycle as the page reads it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Movement {
-    /// Ahead, mm; none if it is undetermined.
+    /// Ahead, mm; `None` if it is undetermined.
     forward: Option<f64>,
-    /// To the left, mm; none if it is undetermined.
+    /// To the left, mm; `None` if it is undetermined.
     left: Option<f64>,
-    /// Counter-clockwise, deg; none if it is undetermined.
+    /// Counter-clockwise, deg; `None` if it is undetermined.
     turn: Option<f64>,
 }
 
@@ -363,12 +363,15 @@ impl From<Prediction> for Movement {
 }
 
 impl Movement {
-    /// The movement ahead, mm; none if it is undetermined.
+    /// The movement ahead, mm; `None` if it is undetermined.
     #[must_use]
     pub fn forward(&self) -> Option<f64> {
         self.forward
     }
 }
+
+/// The steps of the page's slider up to the gait's own pace.
+const PACES: usize = 20;
 
 /// The prediction of a cycle of a gait.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -376,12 +379,12 @@ pub struct GaitPrediction {
     /// Movement of the body.
     #[serde(flatten)]
     pub movement: Movement,
-    /// Largest lag of a leg, deg; none if legs are rigid.
+    /// Largest lag of a leg, deg; `None` if legs are rigid.
     pub lag: Option<f64>,
-    /// Its movement over that of rigid legs; none if legs are rigid, or rigid legs go nowhere.
+    /// The movement over that of rigid legs; `None` if legs are rigid, or rigid legs go nowhere.
     pub share: Option<f64>,
-    /// Largest share of a servo's torque-speed line; none with ideal servos.
-    pub line: Option<f64>,
+    /// Largest share of a servo's line at each step of the pace; none with ideal servos.
+    pub lines: Option<[f64; PACES]>,
 }
 
 impl GaitPrediction {
@@ -394,13 +397,15 @@ impl GaitPrediction {
         };
         let movement = prediction.movement;
         let went = twin.cycle(gait).travel();
+        let effort = Effort::of(gait, twin.ground(), &motors);
+        let line = |step: usize| effort.line_share((step + 1) as f64 / PACES as f64, 1.0);
         Self {
             movement: Movement {
                 forward: movement.forward.and(Some(went.forward)),
                 left: movement.left.and(Some(went.left)),
                 turn: movement.turn.and(Some(went.turn)),
             },
-            line: Some(Effort::of(gait, twin.ground(), &motors).line_share(1.0, 1.0)),
+            lines: Some(std::array::from_fn(line)),
             ..prediction
         }
     }
@@ -416,13 +421,13 @@ impl GaitPrediction {
                 movement: movement.into(),
                 lag: Some(lag),
                 share,
-                line: None,
+                lines: None,
             },
             None => Self {
                 movement: gait.predict(ground).into(),
                 lag: None,
                 share: None,
-                line: None,
+                lines: None,
             },
         }
     }

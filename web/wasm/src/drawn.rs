@@ -17,9 +17,9 @@ const SAMPLES: usize = 256;
 /// Points of the line that is shown.
 const SHOWN: usize = 128;
 /// The smallest amplitude of a harmonic that is written, mm.
-const LEAST: f64 = 0.05;
+const MIN_AMPLITUDE: f64 = 0.05;
 /// Most harmonics that a robot.toml takes.
-const MOST_TERMS: usize = 16;
+const MAX_TERMS: usize = 16;
 
 /// A gait along a line that was drawn.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -43,7 +43,7 @@ impl DrawnGait {
         End::ALL.into_iter().find(|end| end.name() == self.end)
     }
 
-    /// The path that the point follows; none if the line has no length.
+    /// The path that the point follows; `None` if the line has no length.
     fn smoothed(&self, robot: &Robot) -> Option<Path> {
         let neutral = neutral(robot, self.end()?);
         let scaled = |[x, y]: &[f64; 2]| {
@@ -52,7 +52,7 @@ impl DrawnGait {
         };
         let points: Vec<[f64; 2]> = self.points.iter().map(scaled).collect();
         let even = evenly(&points)?;
-        let terms = self.terms.clamp(1, MOST_TERMS);
+        let terms = self.terms.clamp(1, MAX_TERMS);
         let [(cx, x), (cy, y)] = [0, 1].map(|of| {
             let values: Vec<f64> = even.iter().map(|point| point[of]).collect();
             harmonics(&values, terms)
@@ -61,12 +61,12 @@ impl DrawnGait {
         Some(Path { centre, x, y })
     }
 
-    /// Writes the gait as tables of robot.toml; none if the line has no length.
+    /// Writes the gait as tables of robot.toml; `None` if the line has no length.
     #[must_use]
     pub fn table(&self, robot: &Robot) -> Option<String> {
         let path = self.smoothed(robot)?;
         let series = |terms: &[Harmonic]| {
-            let kept = terms.iter().filter(|term| term.amplitude >= LEAST);
+            let kept = terms.iter().filter(|term| term.amplitude >= MIN_AMPLITUDE);
             let text = |Harmonic {
                             k,
                             amplitude,
@@ -85,7 +85,7 @@ impl DrawnGait {
         ))
     }
 
-    /// Points of the line that the point follows, mm in the end's own frame; none if the
+    /// Points of the line that the point follows, mm in the end's own frame; `None` if the
     /// line has no length.
     #[must_use]
     pub fn path(&self, robot: &Robot) -> Option<Vec<[f64; 2]>> {
@@ -121,7 +121,7 @@ fn harmonics(values: &[f64], terms: usize) -> (f64, Vec<Harmonic>) {
     (mean(&|value, _| value), (1..=terms).map(term).collect())
 }
 
-/// Samples a closed line at even distances along it; none if the line has no length.
+/// Samples a closed line at even distances along it; `None` if the line has no length.
 fn evenly(points: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
     let next = |i: usize| points[(i + 1) % points.len()];
     let length = |i: usize| (next(i)[0] - points[i][0]).hypot(next(i)[1] - points[i][1]);

@@ -17,7 +17,7 @@ use crate::refused::Refused;
 pub struct SearchTask {
     /// The given gait.
     pub bars: Bars,
-    /// Largest speed of a servo, deg/s; none for that of the given gait.
+    /// Largest speed of a servo, deg/s; `None` for that of the given gait.
     pub rate: Option<f64>,
     /// Rounds of the search, as `lizard tune --rounds` has them.
     pub rounds: usize,
@@ -73,7 +73,7 @@ impl Faster {
     /// Prepares a search with the robot and the floor of a twin. Takes as long as a few trials.
     ///
     /// # Errors
-    /// The limit that the given gait breaks, or the reason why it cannot be made faster.
+    /// Returns the limit that the given gait breaks, or the reason why it cannot be made faster.
     pub fn begin(twin: &Twin, wish: &SearchTask) -> Result<Self, Refused> {
         let refusal = |key: &str, refused: String| Refused {
             refused,

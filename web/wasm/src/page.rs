@@ -29,9 +29,9 @@ const CYCLES_PER_US: f64 = 16.0;
 /// A frame of the robot on the floor.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Frame {
-    /// The robot at the pose of its servos; none if a loop does not close.
+    /// The robot at the pose of its servos; `None` if a loop does not close.
     scene: Option<Scene>,
-    /// The sentence for the loop that does not close.
+    /// The message for the loop that does not close.
     fault: Option<String>,
     /// Place of the body.
     place: Place,
@@ -48,7 +48,7 @@ pub struct Frame {
 pub struct Edited {
     /// The changed text.
     text: String,
-    /// The refusal of the changed text; none if it is a robot.
+    /// The refusal of the changed text; `None` if it is a robot.
     refusal: Option<Refused>,
 }
 
@@ -76,7 +76,7 @@ impl Page {
     /// Reads a robot.toml and puts the robot at the start of the floor, its servos at neutral.
     ///
     /// # Errors
-    /// The first mistake in the text; the previous robot stays.
+    /// Returns the first mistake in the text; the previous robot stays.
     pub fn read(&mut self, text: &str) -> Result<Description, Refused> {
         let robot = Robot::parse(text)?;
         let description = Description::of(&robot);
@@ -99,7 +99,7 @@ impl Page {
         self.twin.as_ref().map(Twin::robot)
     }
 
-    /// Makes the robot's section of flash; none without a robot. Its maps of certified cells take
+    /// Makes the robot's section of flash; `None` without a robot. Its maps of certified cells take
     /// some hundredths of a second to prove.
     #[must_use]
     pub fn section(&self) -> Option<Vec<u8>> {
@@ -109,7 +109,7 @@ impl Page {
     /// Sets a number in the text of a robot.toml. The page's robot stays as it is.
     ///
     /// # Errors
-    /// If the text has no such number.
+    /// Fails if the text has no such number.
     pub fn edit(text: &str, key: &str, value: f64) -> Result<Edited, Refused> {
         Ok(Edited::of(with_number(text, key, value)?))
     }
@@ -118,7 +118,7 @@ impl Page {
     /// Values that do not change stay as they are written. The page's robot stays as it is.
     ///
     /// # Errors
-    /// If the text is not a robot, or one of the numbers cannot be added to it.
+    /// Fails if the text is not a robot, or one of the numbers cannot be added to it.
     pub fn edit_floor(text: &str, floor: Floor) -> Result<Edited, Refused> {
         let robot = Robot::parse(text)?;
         let own = Floor::of(&robot);
@@ -176,7 +176,7 @@ impl Page {
         let from = twin.robot().sweeps(self.targets);
         let to = twin.robot().sweeps(angles);
         let neutral: [f64; 4] = twin.robot().neutral().into();
-        let frames = frames.clamp(1, MOST_FRAMES);
+        let frames = frames.clamp(1, MAX_FRAMES);
         let mut slides = [0.0; 4];
         let mut part = |n: u32| {
             let share = f64::from(n) / f64::from(frames);
@@ -227,21 +227,21 @@ impl Page {
         Some(GaitPrediction::of(twin, gait))
     }
 
-    /// The bars of a gait; none if it stands or follows a path.
+    /// The bars of a gait; `None` if it stands or follows a path.
     pub fn bars(&self, gait: usize) -> Option<Bars> {
         self.robot()?.gaits().get(gait)?.bars()
     }
 
-    /// Tries a gait on the page's robot; none without a robot or a line.
+    /// Tries a gait on the page's robot; `None` without a robot or a line.
     ///
     /// # Errors
-    /// The first limit that the gait breaks, with possible values.
+    /// Returns the first limit that the gait breaks, with possible values.
     pub fn trial(&self, made: &EditedGait) -> Option<Result<Trial, NoTrial>> {
         made.trial(self.twin.as_ref()?)
     }
 
     /// The text of the page's robot with a gait, in place of the gait of the same name or at the
-    /// end; none without a robot or a line.
+    /// end; `None` without a robot or a line.
     pub fn put_gait(&self, text: &str, made: &EditedGait) -> Option<String> {
         made.put_into(text, self.robot()?)
     }
@@ -252,15 +252,15 @@ impl Page {
         Edited::of(with_steps(text, name, steps))
     }
 
-    /// The path of one round of a routine on the present floor with the present servos; none without the routine.
+    /// The path of one round of a routine on the present floor with the present servos; `None` without the routine.
     pub fn round(&self, routine: &str) -> Option<RoundPath> {
         RoundPath::of(self.twin.as_ref()?, routine)
     }
 
-    /// Prepares the search of a faster gait for the page's robot; none without a robot.
+    /// Prepares the search of a faster gait for the page's robot; `None` without a robot.
     ///
     /// # Errors
-    /// The reason why there is nothing to search.
+    /// Returns the reason why there is nothing to search.
     #[cfg(feature = "tune")]
     pub fn make_faster(&mut self, wish: &SearchTask) -> Option<Result<SearchExtent, Refused>> {
         let begun = Faster::begin(self.twin.as_ref()?, wish);
@@ -305,7 +305,7 @@ impl Page {
 }
 
 /// Most frames between two poses; after a longer pause the motion in between is unknown.
-const MOST_FRAMES: u32 = 50;
+const MAX_FRAMES: u32 = 50;
 
 fn frame(twin: &Twin, state: &State, slides: [f64; 4]) -> Frame {
     let scene = Scene::of(twin);

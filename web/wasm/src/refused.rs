@@ -4,12 +4,12 @@ use lizard_robot::Error;
 use lizard_robot::edit::NoSuchKey;
 use serde::Serialize;
 
-/// A refusal: the sentence that the user sees, and its key.
+/// A refusal: the message that the user sees, and its key.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Refused {
-    /// The sentence for the user.
+    /// The message for the user.
     pub refused: String,
-    /// Line of the file, counted from 1; none if the refusal belongs to no line.
+    /// Line of the file, counted from 1; `None` if the refusal belongs to no line.
     pub line: Option<usize>,
     /// Full name of the key, such as `links.l2`; may be empty.
     pub key: String,

@@ -12,7 +12,7 @@ const POINTS: i32 = 160;
 /// Number of points that are kept around the allowed ones.
 const RIM: i32 = 2;
 /// Largest distance of two points that count as the same, mm.
-const NEAR: f64 = 1e-6;
+const SAME_POINT_MM: f64 = 1e-6;
 
 /// The room of an end's point: mm in the end's own frame, from the middle of its base, outward
 /// positive in y.
@@ -100,7 +100,7 @@ fn allows(robot: &Robot, end: End, [x, y]: [f64; 2]) -> bool {
     // The cranks may put the point on their other side instead.
     robot.accepted(angles).is_some_and(|solution| {
         let there = solution.end(end).end_point;
-        (there.x - x).hypot(there.y - y) < NEAR
+        (there.x - x).hypot(there.y - y) < SAME_POINT_MM
     })
 }
 

@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::place::Place;
 
 /// Most frames of a path, two minutes: a step may wait for ever, and a routine may take hours.
-const MOST_FRAMES: usize = 6_000;
+const MAX_FRAMES: usize = 6_000;
 
 /// Frames from one place of the path to the next, a tenth of a second.
 const FRAMES: usize = 5;
@@ -25,7 +25,7 @@ pub struct RoundPath {
 }
 
 impl RoundPath {
-    /// Goes through a routine once, with the floor and the servos of a twin, which does not move; none without the
+    /// Goes through a routine once, with the floor and the servos of a twin, which does not move; `None` without the
     /// routine.
     #[must_use]
     pub fn of(twin: &Twin, name: &str) -> Option<Self> {
@@ -35,7 +35,7 @@ impl RoundPath {
         let neutral: [f64; 4] = robot.neutral().into();
         let mut sweeps = lizard_robot::Round::sweeps(robot, robot.routine(name)?);
         let (mut places, mut frames, mut place) = (Vec::new(), 0, Walked::START);
-        for sweeps in sweeps.by_ref().take(MOST_FRAMES) {
+        for sweeps in sweeps.by_ref().take(MAX_FRAMES) {
             if frames % FRAMES == 0 {
                 places.push(place.into());
             }

@@ -78,7 +78,7 @@ pub struct Scene {
     pub margins: Vec<Margin>,
     /// The smallest margin.
     pub smallest: Margin,
-    /// The sentence for the limit that this pose breaks; none if it is allowed.
+    /// The message for the limit that this pose breaks; `None` if it is allowed.
     pub refusal: Option<String>,
     /// The points on the maps of singularities of head and tail.
     pub map: [MapPoint; 2],
@@ -88,7 +88,7 @@ impl Scene {
     /// Computes the scene of a twin's present pose.
     ///
     /// # Errors
-    /// The sentence for the loop that does not close.
+    /// Returns the message for the loop that does not close.
     pub fn of(twin: &Twin) -> Result<Self, String> {
         let (robot, angles) = (twin.robot(), twin.angles());
         let pose = Pose::from(angles);

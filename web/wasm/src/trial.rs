@@ -13,9 +13,9 @@ use crate::drawn::DrawnGait;
 use crate::refused::Refused;
 
 /// The smallest gait that is offered: tenths of a deg, or hundredths of the drawn size.
-const LEAST: i64 = 5;
+const MIN_SIZE: i64 = 5;
 /// The longest period that is offered, in hundredths of a second.
-const LONGEST: i64 = 1000;
+const MAX_PERIOD: i64 = 1000;
 
 /// A gait that is being made.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -77,18 +77,18 @@ impl EditedGait {
     }
 
     /// The text of a robot.toml with this gait, in place of the gait of the same name or at the
-    /// end; none if its line has no length.
+    /// end; `None` if its line has no length.
     #[must_use]
     pub fn put_into(&self, text: &str, robot: &Robot) -> Option<String> {
         let (Self::DrawnGait(DrawnGait { name, .. }) | Self::Bars(Bars { name, .. })) = self;
         Some(edit::with_gait(text, name, &self.table(robot)?))
     }
 
-    /// Tries the gait with the robot, the floor and the servos of a twin; none if its line has
+    /// Tries the gait with the robot, the floor and the servos of a twin; `None` if its line has
     /// no length.
     ///
     /// # Errors
-    /// The first limit that the gait breaks, with possible values.
+    /// Returns the first limit that the gait breaks, with possible values.
     #[must_use]
     pub fn trial(&self, twin: &Twin) -> Option<Result<Trial, NoTrial>> {
         let table = self.table(twin.robot())?;
@@ -123,8 +123,8 @@ impl EditedGait {
                 }
             })
         };
-        let size = nearest((size * steps).ceil() as i64 - 1, LEAST, resized);
-        let period = nearest((period * 100.0).floor() as i64 + 1, LONGEST, slower);
+        let size = nearest((size * steps).ceil() as i64 - 1, MIN_SIZE, resized);
+        let period = nearest((period * 100.0).floor() as i64 + 1, MAX_PERIOD, slower);
         let instead = |what, value: Option<i64>, steps: f64| {
             value.map(|value| Alternative {
                 what,

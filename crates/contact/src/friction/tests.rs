@@ -45,7 +45,7 @@ fn cost(pads: &Pads, displacement: &Displacement) -> f64 {
 /// balance, prove how far its cost is from the least. Returns their imbalance
 /// and that distance.
 fn certificate(pads: &Pads, displacement: &Displacement) -> ([f64; 3], f64) {
-    let eps = largest(&pads.swing) * SMALLEST;
+    let eps = largest(&pads.swing) * MIN_ROUNDING;
     let (mut work, mut net) = (0.0, [0.0; 3]);
     for (i, slide) in pads.slides(displacement).into_iter().enumerate() {
         let w = pads.weight(slide);

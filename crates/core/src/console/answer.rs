@@ -12,7 +12,7 @@ use crate::numbers::gaits::GaitId;
 // Starts at 1, since `None` has to be zero: see `Main::new`.
 #[repr(u8)]
 pub enum Answer {
-    /// `ok` and the line as it was understood.
+    /// `ok` and the line as the console understood it.
     Done = 1,
     /// The gaits from this one on, as many as fit in a line.
     Gaits(GaitId),
@@ -25,7 +25,7 @@ pub enum Answer {
     /// `ok`, the motion and its pose; the next answer continues the line. It is written in
     /// three parts, so that a frame waits for one of them at most.
     Status,
-    /// The margin, which takes the guard most of a frame's time; the pace; the frames.
+    /// The margin, whose measurement takes most of a frame; the pace; the frame count.
     Margin,
     /// Counters, faults, restarts and supplies.
     Health,

@@ -43,26 +43,26 @@ pub enum Misread {
     Surplus,
     /// The first words of a gait's name, without the others.
     Incomplete,
-    /// An argument is missing, malformed or superfluous; the sentence describes the correct
+    /// An argument is missing, malformed or superfluous; the message describes the correct
     /// arguments.
     Wants(Text),
-    /// An argument is out of range; the sentence gives the range.
+    /// An argument is out of range; the message gives the range.
     Range(Text),
     /// The angle of this servo is more than a turn.
     PoseRange(Servo),
 }
 
-/// The rarest report: every 200 s.
-pub const WATCH_MOST: u16 = 10_000;
+/// The longest interval of `watch`, frames: 200 s.
+pub const MAX_WATCH_FRAMES: u16 = 10_000;
 
-/// The most cycles that a gait may be told to go.
-pub const COUNT_MOST: u16 = 999;
+/// The largest count of cycles that a gait accepts.
+pub const MAX_CYCLES: u16 = 999;
 
 /// The longest time that `deadman` allows, a minute.
-pub const DEADMAN_MOST: u16 = 60_000;
+pub const MAX_DEADMAN_MS: u16 = 60_000;
 
-/// Larger angles are taken for mistakes; a turn either way is enough.
-const LARGEST_ANGLE: u16 = TURN_CENTIDEG as u16;
+/// The largest angle, a turn either way: a larger one is taken for a mistake.
+const MAX_CENTIDEG: u16 = TURN_CENTIDEG as u16;
 
 /// The syntax of an argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,7 +82,7 @@ enum Kind {
 #[derive(Clone, Copy)]
 struct Form {
     /// True if the first argument is a servo's number.
-    servo: bool,
+    takes_servo: bool,
     /// The number of arguments after it.
     count: u8,
     /// The syntax of each of them.
@@ -90,23 +90,23 @@ struct Form {
     /// The range of each, without its sign.
     least: u16,
     most: u16,
-    /// The sentence for arguments of another form.
+    /// The message for arguments that do not match this form.
     wants: Text,
-    /// The sentence for an argument out of range.
+    /// The message for an argument out of range.
     range: Text,
 }
 
 flash! {
     /// All forms, in the order of [`form`].
     const FORMS: [Form; 8] = [
-        Form { servo: false, count: 4, kind: Kind::Degrees, least: 0, most: LARGEST_ANGLE, wants: Text::PoseWants, range: Text::Nothing },
-        Form { servo: false, count: 1, kind: Kind::Whole, least: 10, most: 100, wants: Text::SpeedWants, range: Text::SpeedRange },
-        Form { servo: false, count: 1, kind: Kind::Whole, least: 0, most: WATCH_MOST, wants: Text::WatchWants, range: Text::WatchRange },
-        Form { servo: true, count: 1, kind: Kind::Degrees, least: 0, most: 2000, wants: Text::TrimWants, range: Text::TrimRange },
-        Form { servo: true, count: 2, kind: Kind::Degrees, least: 0, most: LARGEST_ANGLE, wants: Text::LimitWants, range: Text::LimitRange },
-        Form { servo: true, count: 1, kind: Kind::Sign, least: 0, most: 1, wants: Text::DirWants, range: Text::Nothing },
-        Form { servo: true, count: 1, kind: Kind::Hundredths, least: 500, most: 2000, wants: Text::ScaleWants, range: Text::ScaleRange },
-        Form { servo: false, count: 1, kind: Kind::Whole, least: 0, most: DEADMAN_MOST, wants: Text::DeadmanWants, range: Text::DeadmanRange },
+        Form { takes_servo: false, count: 4, kind: Kind::Degrees, least: 0, most: MAX_CENTIDEG, wants: Text::PoseWants, range: Text::Nothing },
+        Form { takes_servo: false, count: 1, kind: Kind::Whole, least: 10, most: 100, wants: Text::SpeedWants, range: Text::SpeedRange },
+        Form { takes_servo: false, count: 1, kind: Kind::Whole, least: 0, most: MAX_WATCH_FRAMES, wants: Text::WatchWants, range: Text::WatchRange },
+        Form { takes_servo: true, count: 1, kind: Kind::Degrees, least: 0, most: 2000, wants: Text::TrimWants, range: Text::TrimRange },
+        Form { takes_servo: true, count: 2, kind: Kind::Degrees, least: 0, most: MAX_CENTIDEG, wants: Text::LimitWants, range: Text::LimitRange },
+        Form { takes_servo: true, count: 1, kind: Kind::Sign, least: 0, most: 1, wants: Text::DirWants, range: Text::Nothing },
+        Form { takes_servo: true, count: 1, kind: Kind::Hundredths, least: 500, most: 2000, wants: Text::ScaleWants, range: Text::ScaleRange },
+        Form { takes_servo: false, count: 1, kind: Kind::Whole, least: 0, most: MAX_DEADMAN_MS, wants: Text::DeadmanWants, range: Text::DeadmanRange },
     ];
 }
 
@@ -128,7 +128,7 @@ const fn form(word: Word) -> Option<usize> {
 /// Reads a line that is trimmed, not empty and in lower case.
 ///
 /// # Errors
-/// The reason why the line is not a command.
+/// Returns the reason why the line is not a command.
 pub fn parse(line: &[u8], robot: &Robot) -> Result<Command, Misread> {
     parse_among::<RESERVED>(line, robot)
 }
@@ -152,7 +152,7 @@ fn parse_among<const YIELDING: usize>(line: &[u8], robot: &Robot) -> Result<Comm
         return Ok(Command::Order(Order::Gait(gait, cycles)));
     };
     let Arguments { servo, numbers } = match form(word) {
-        Some(place) => Arguments::read(word, words, &FORMS.at(place).load())?,
+        Some(index) => Arguments::read(word, words, &FORMS.at(index).load())?,
         None if word != Word::Boot && !words.is_done() => return Err(Misread::Surplus),
         None => Arguments::NONE,
     };
@@ -223,14 +223,14 @@ impl Arguments {
     fn read(word: Word, mut words: Words, form: &Form) -> Result<Self, Misread> {
         let wants = Err(Misread::Wants(form.wants));
         let mut arguments = Self::NONE;
-        if form.servo {
+        if form.takes_servo {
             arguments.servo = match words.next() {
                 [digit @ b'1'..=b'4'] => Servo::at(usize::from(digit - b'1')),
                 _ => return wants,
             };
         }
         let mut beyond = None;
-        for (place, number) in (0..form.count).zip(&mut arguments.numbers) {
+        for (index, number) in (0..form.count).zip(&mut arguments.numbers) {
             let Some((size, negative)) = number_of(words.next(), form.kind) else {
                 return wants;
             };
@@ -243,13 +243,13 @@ impl Arguments {
                 within &= !negative;
             }
             if !within {
-                beyond = beyond.or(Some(place));
+                beyond = beyond.or(Some(index));
             }
         }
         match beyond {
             _ if !words.is_done() => wants,
-            Some(place) if word == Word::Pose => {
-                Err(Misread::PoseRange(Servo::at(usize::from(place))))
+            Some(index) if word == Word::Pose => {
+                Err(Misread::PoseRange(Servo::at(usize::from(index))))
             }
             Some(_) => Err(Misread::Range(form.range)),
             None => Ok(arguments),
@@ -279,7 +279,7 @@ impl<'a> Words<'a> {
     }
 }
 
-/// Finds the gait of this name, and reads the number of cycles behind it; 0 without one. Any
+/// Finds the gait of this name, and reads the number of cycles after it; 0 without one. Any
 /// blanks between words are accepted. If one gait's name is another's and a number, the longer
 /// name counts.
 #[inline(never)]
@@ -297,7 +297,7 @@ fn gait(line: &[u8], robot: &Robot) -> Result<(GaitId, u16), Misread> {
     read
 }
 
-/// Compares a line with a name, and reads the number behind it; 0 without one. Stops at the
+/// Compares a line with a name, and reads the number after it; 0 without one. Stops at the
 /// first byte that differs: there may be many names, and a frame may be due.
 #[inline(never)]
 fn compare(line: &[u8], name: Name) -> Result<u16, Misread> {
@@ -320,7 +320,7 @@ fn compare(line: &[u8], name: Name) -> Result<u16, Misread> {
     let mut words = Words(rest);
     let number = number_of(words.next(), Kind::Whole);
     match number {
-        Some((cycles @ 1..=COUNT_MOST, _)) if words.is_done() => Ok(cycles),
+        Some((cycles @ 1..=MAX_CYCLES, _)) if words.is_done() => Ok(cycles),
         _ => Err(Misread::Wants(Text::CountWants)),
     }
 }

@@ -25,7 +25,7 @@ use crate::numbers::rate::Rate;
 /// `status` whose every number has all its digits.
 pub const LONGEST_LINE: u8 = 250;
 
-/// A line that waits to be written.
+/// A line that waits to be written, in order of priority.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Pending {
     /// The firmware's version and the robot's name, once after power-on.
@@ -36,7 +36,7 @@ enum Pending {
     Notice(Notice),
     /// The reason why the guard holds the robot.
     Held,
-    /// The pose, as `watch` asked for it.
+    /// The pose report that `watch` asked for.
     Report,
 }
 
@@ -45,7 +45,7 @@ enum Pending {
 pub struct Console {
     line: Line,
     finder: Finder,
-    greeted: bool,
+    has_greeted: bool,
     answer: Option<Answer>,
     watch: Watch,
 }
@@ -62,7 +62,7 @@ impl Console {
         Self {
             line: Line::new(),
             finder: Finder::new(Rate::Fastest),
-            greeted: false,
+            has_greeted: false,
             answer: None,
             watch: Watch::every(0),
         }
@@ -124,7 +124,7 @@ impl Console {
             return Err(Answer::Refused(Refusal::NoRobot));
         }
         let command = command.map_err(Answer::Misread)?;
-        // Noise and the rest of a line are nobody's, so `deadman` does not wait for them.
+        // Noise or the rest of a line comes from nobody, so `deadman` ignores it.
         control.note_command();
         Ok(match command {
             Command::Help => Some(Answer::Gaits(GaitId::STAND)),
@@ -151,14 +151,14 @@ impl Console {
 
     /// Writes one waiting line, if any, at most [`LONGEST_LINE`] bytes: the banner, once after
     /// power-on; an answer or a part of it; a notice; the reason why the guard holds
-    /// the robot; or the pose, as `watch` asked for it. The longest line, `status`, is written
+    /// the robot; or the pose report of `watch`. The longest line, `status`, is written
     /// in parts, one with each call.
     #[inline(never)]
     pub fn write_line(&mut self, control: &mut Control, out: &mut impl Output, counters: Counters) {
         match self.next_pending(control) {
             None => return,
             Some(Pending::Banner) => {
-                self.greeted = true;
+                self.has_greeted = true;
                 print::banner(out, control.motion().robot());
             }
             Some(Pending::Answer(answer)) => {
@@ -168,7 +168,7 @@ impl Console {
                 }
             }
             Some(Pending::Notice(notice)) => {
-                control.written(notice);
+                control.note_printed(notice);
                 print::notice(out, notice, control);
             }
             Some(Pending::Held) => {
@@ -178,7 +178,7 @@ impl Console {
                 }
             }
             Some(Pending::Report) => {
-                self.watch.due = false;
+                self.watch.is_due = false;
                 Text::WatchTime.print(out);
                 digits::number(out, control.motion().frames(), 0);
                 print::pose(out, control.motion());
@@ -190,7 +190,7 @@ impl Console {
 
     /// The output to write next, in a fixed order of priority.
     const fn next_pending(&self, control: &Control) -> Option<Pending> {
-        if !self.greeted {
+        if !self.has_greeted {
             Some(Pending::Banner)
         } else if let Some(answer) = self.answer {
             Some(Pending::Answer(answer))
@@ -198,7 +198,7 @@ impl Console {
             Some(Pending::Notice(notice))
         } else if control.has_hold_reason() {
             Some(Pending::Held)
-        } else if self.watch.due {
+        } else if self.watch.is_due {
             Some(Pending::Report)
         } else {
             None

@@ -27,7 +27,7 @@ pub fn angles(out: &mut impl Output, pose: &Pose, robot: &Robot) {
     }
 }
 
-/// Prints a number, the last `decimals` of its digits behind a point.
+/// Prints a number, the last `decimals` of its digits after a point.
 pub fn number(out: &mut impl Output, value: u32, decimals: usize) {
     let mut rest = value;
     let mut begun = false;
@@ -70,7 +70,7 @@ pub fn count(out: &mut impl Output, text: Text, count: u32) {
     number(out, count, 0)
 }
 
-/// Prints a number that may be negative, `decimals` behind the point.
+/// Prints a number that may be negative, with `decimals` decimals.
 pub fn signed(out: &mut impl Output, value: i32, decimals: usize) {
     if value < 0 {
         out.byte(b'-');

@@ -1,7 +1,7 @@
 //! Finds the rate at which others send.
 //!
-//! A radio module has a rate of its own, and nothing but the bytes themselves tells which. At a
-//! wrong rate most bytes come garbled or are none that a text has. After a few of them the next
+//! A radio module has a rate of its own, which only the bytes themselves reveal. At a
+//! wrong rate most bytes come garbled or occur in no text. After a few of them the next
 //! slower rate is tried. Up to the sender's own rate, the receiver is then always the faster of
 //! the two, which never reads the end of a line.
 //!
@@ -12,13 +12,13 @@ use crate::numbers::rate::Rate;
 /// Wrong bytes after which a rate is left.
 const WRONG_BYTES: i8 = 4;
 
-/// Wrong bytes more for a rate that has carried a command: noise, or somebody else who sends,
+/// Additional wrong bytes for a rate that has carried a command: noise, or another sender,
 /// must not cut off a robot that is being driven.
 const MORE_AFTER_COMMAND: i8 = 28;
 
 /// Length of the shortest command that is obeyed at a rate that has carried none, bytes. Some `pose`
 /// lines at 57 600 baud read as `cal` at 9600.
-const SHORTEST: usize = 4;
+const MIN_COMMAND_BYTES: usize = 4;
 
 /// The present rate, and the wrong bytes at it.
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +29,7 @@ pub struct Finder {
     wrong_bytes: i8,
     /// True if a byte came since the last frame.
     has_received: bool,
-    /// True for another rate than that of USB that has carried no command.
+    /// True for a rate other than USB's that has not carried a command.
     is_guess: bool,
 }
 
@@ -44,7 +44,7 @@ impl Finder {
         }
     }
 
-    /// Takes a byte; [`crate::console::line::GARBLED`], as each that is not ASCII, is wrong.
+    /// Takes a byte; any that is not ASCII is wrong, so [`crate::console::line::GARBLED`] is.
     pub fn note_byte(&mut self, byte: u8) {
         self.has_received = true;
         if !byte.is_ascii() && self.wrong_bytes < WRONG_BYTES {
@@ -52,9 +52,9 @@ impl Finder {
         }
     }
 
-    /// Takes a line of this length that is a command; returns false if it may be a misread one.
+    /// Takes a command of this length; returns false if it may be a misread one.
     pub fn note_command(&mut self, length: usize) -> bool {
-        if self.is_guess && length < SHORTEST {
+        if self.is_guess && length < MIN_COMMAND_BYTES {
             return false;
         }
         self.is_guess = false;
@@ -62,8 +62,7 @@ impl Finder {
         true
     }
 
-    /// Changes the rate if it must be a wrong one and nothing came in this frame; returns the new
-    /// one.
+    /// Changes the rate if it must be wrong and nothing came in this frame; returns the new one.
     pub fn frame(&mut self) -> Option<Rate> {
         let is_pause = !core::mem::take(&mut self.has_received);
         if !is_pause || self.wrong_bytes < WRONG_BYTES {

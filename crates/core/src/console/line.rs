@@ -6,14 +6,14 @@
 use heapless::Vec;
 
 /// The longest line, in bytes without the line end.
-pub const LONGEST: usize = 63;
+pub const MAX_BYTES: usize = 63;
 
 /// The result of a line end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ended {
     /// A line, to be read with [`Line::text`].
     Line,
-    /// A line that was longer than [`LONGEST`]; all of it is dropped.
+    /// A line that was longer than [`MAX_BYTES`]; all of it is dropped.
     TooLong,
     /// A line with a garbled byte: its other bytes may form a command, but not the one that
     /// was sent.
@@ -27,10 +27,10 @@ pub const GARBLED: u8 = 0xff;
 /// The line that is being received.
 #[derive(Clone, Debug, Default)]
 pub struct Line {
-    bytes: Vec<u8, LONGEST>,
-    overlong: bool,
-    garbled: bool,
-    ended: bool,
+    bytes: Vec<u8, MAX_BYTES>,
+    is_overlong: bool,
+    is_garbled: bool,
+    has_ended: bool,
 }
 
 impl Line {
@@ -38,15 +38,15 @@ impl Line {
     pub const fn new() -> Self {
         Self {
             bytes: Vec::new(),
-            overlong: false,
-            garbled: false,
-            ended: false,
+            is_overlong: false,
+            is_garbled: false,
+            has_ended: false,
         }
     }
 
     /// Takes a byte. After a line has ended, the next byte begins a new one.
     pub fn push(&mut self, byte: u8) -> Option<Ended> {
-        if self.ended {
+        if self.has_ended {
             *self = Self::new();
         }
         match byte {
@@ -56,13 +56,13 @@ impl Line {
                 self.bytes.pop();
                 None
             }
-            // No text of a command has such a byte, but most lines of another rate do.
+            // No command has such a byte, but most lines sent at another rate do.
             0x80.. => {
-                self.garbled = true;
+                self.is_garbled = true;
                 None
             }
             _ => {
-                self.overlong |= self.bytes.push(byte.to_ascii_lowercase()).is_err();
+                self.is_overlong |= self.bytes.push(byte.to_ascii_lowercase()).is_err();
                 None
             }
         }
@@ -74,10 +74,10 @@ impl Line {
     }
 
     fn end(&mut self) -> Option<Ended> {
-        self.ended = true;
-        if self.garbled {
+        self.has_ended = true;
+        if self.is_garbled {
             Some(Ended::Garbled)
-        } else if self.overlong {
+        } else if self.is_overlong {
             Some(Ended::TooLong)
         } else if self.text().is_empty() {
             None
@@ -112,7 +112,7 @@ mod tests {
         ended
     }
 
-    /// The same lines, split by a simple second implementation.
+    /// The same lines, split by a simpler second implementation.
     fn expected(bytes: &[u8]) -> Vec<Option<String>> {
         let mut lines = Vec::new();
         for line in bytes.split(|byte| matches!(byte, b'\r' | b'\n')) {
@@ -177,9 +177,9 @@ mod tests {
 
     #[test]
     fn a_line_with_a_garbled_byte_anywhere_is_dropped_despite_backspaces() {
-        for place in 0..8 {
+        for index in 0..8 {
             let mut bytes = b"speed 90".to_vec();
-            bytes[place] = GARBLED;
+            bytes[index] = GARBLED;
             for back in ["", "\x08", "\x08\x08\x08\x08\x08\x08\x08\x08\x08speed 90"] {
                 let mut line = Line::new();
                 let sent = [&bytes, back.as_bytes(), b"\rstop\r"].concat();
@@ -194,7 +194,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(2000))]
 
         #[test]
-        fn random_bytes_are_split_like_by_a_simple_second_implementation(
+        fn random_bytes_are_split_as_by_a_simpler_second_implementation(
             pieces in prop::collection::vec(
                 prop_oneof![
                     prop::collection::vec(any::<u8>(), 0..40),

@@ -1,6 +1,6 @@
 //! The console: lines in, answers out.
 //!
-//! The top room. It knows bytes, lines and sentences, gives [orders](crate::control::order)
+//! The top room. It knows bytes, lines and messages, gives [orders](crate::control::order)
 //! to the robot and prints the answers. A board without a serial line needs none of it.
 
 pub mod answer;

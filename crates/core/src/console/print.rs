@@ -245,7 +245,7 @@ pub(super) fn notice(out: &mut impl Output, notice: Notice, control: &Control) {
             match control.damage() {
                 Some(Damage::Format) => Text::WhyRobotFormat,
                 Some(Damage::Damaged | Damage::Impossible) => Text::WhyRobotDamaged,
-                _ => fault.map_or(Text::FaultNone, fault_sentence),
+                _ => fault.map_or(Text::FaultNone, fault_message),
             }
             .print(out)
         }
@@ -328,8 +328,8 @@ const fn fault_word(fault: Fault) -> Text {
     }
 }
 
-/// The sentence that announces a fault.
-const fn fault_sentence(fault: Fault) -> Text {
+/// The message that announces a fault.
+const fn fault_message(fault: Fault) -> Text {
     match fault {
         Fault::Guard => Text::WhyGuard,
         Fault::Supply => Text::WhySupply,

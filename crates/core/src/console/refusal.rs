@@ -178,9 +178,9 @@ mod tests {
     }
 
     #[test]
-    fn every_error_has_its_code_and_its_sentence() {
+    fn every_error_has_its_code_and_its_message() {
         use Misread::{PoseRange, Range, Wants};
-        for (misread, sentence) in [
+        for (misread, message) in [
             (
                 Misread::Unknown,
                 "1 unknown command, send help for the list",
@@ -205,7 +205,7 @@ mod tests {
             (PoseRange(Servo::A1), "3 A1 reaches 61.37..215.36"),
             (Misread::TooLong, "6 a line has at most 63 characters"),
         ] {
-            assert_eq!(printed(|motion, out| misread.print(motion, out)), sentence);
+            assert_eq!(printed(|motion, out| misread.print(motion, out)), message);
         }
         assert_eq!(
             refusal_text(Refusal::Resting),
@@ -213,14 +213,14 @@ mod tests {
         );
         // The ends of the travel, in whole steps within it: A1 turns 71 deg clockwise of
         // 132.37 and 83 the other way; the servo of A2 is reversed.
-        for (servo, sentence) in [
+        for (servo, message) in [
             (Servo::A2, "3 A2 reaches 341.92..135.91"),
             (Servo::A3, "3 A3 reaches 235.64..18.64"),
             (Servo::A4, "3 A4 reaches 134.18..307.18"),
         ] {
             assert_eq!(
                 refusal_text(Refusal::Unsafe(Hazard::Travel(servo))),
-                sentence
+                message
             );
         }
     }
@@ -228,7 +228,7 @@ mod tests {
     #[test]
     fn every_hazard_is_reported_with_its_value_and_limit() {
         use Margin::{Leg, Type1, Type2};
-        for (margin, value, sentence) in [
+        for (margin, value, message) in [
             (
                 Type2(End::Head),
                 1000,
@@ -269,7 +269,7 @@ mod tests {
             let hazard = Hazard::Margin { margin, value };
             assert_eq!(
                 refusal_text(Refusal::Unsafe(hazard)),
-                format!("4 {sentence}")
+                format!("4 {message}")
             );
         }
         // Nominal 91 mm on the left and 98 mm on the right, 256 steps each.
@@ -277,7 +277,7 @@ mod tests {
             Sample::odd().content.sides.map(|side| side.scale.bits),
             [8, 8]
         );
-        for (side, mm, sentence) in [
+        for (side, mm, message) in [
             (
                 Side::Left,
                 131,
@@ -293,7 +293,7 @@ mod tests {
             let hazard = Hazard::Stroke { side, length };
             assert_eq!(
                 refusal_text(Refusal::Unsafe(hazard)),
-                format!("5 {sentence}")
+                format!("5 {message}")
             );
         }
     }

@@ -1,8 +1,8 @@
-//! Every sentence that the robot prints, kept in flash.
+//! Every message that the robot prints, kept in flash.
 //!
 //! A string literal of an AVR program is copied to its 2 KiB of RAM at start. The
-//! sentences here stay in flash and are packed: a character has a code of four or eight
-//! bits, and so has a phrase that several sentences share. They are unpacked one by one
+//! messages here stay in flash and are packed: a character has a code of four or eight
+//! bits, and so has a phrase that several messages share. They are unpacked one by one
 //! when they are printed.
 
 use lizard_avr::flash;
@@ -10,14 +10,14 @@ use lizard_avr::flash;
 use crate::console::output::Output;
 
 macro_rules! texts {
-    ($($name:ident = $sentence:expr;)*) => {
-        /// A sentence, or a part of one.
+    ($($name:ident = $message:expr;)*) => {
+        /// A message, or a part of one.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(u8)]
-        #[allow(missing_docs, reason = "each name is followed by its sentence")]
+        #[allow(missing_docs, reason = "each name is followed by its message")]
         pub enum Text { $($name),* }
 
-        const SENTENCES: &[&str] = &[$($sentence),*];
+        const MESSAGES: &[&str] = &[$($message),*];
     };
 }
 
@@ -156,7 +156,7 @@ texts! {
     NothingSaved = "nothing is saved that could be loaded";
 }
 
-/// Phrases that occur in several sentences, stored once.
+/// Phrases that occur in several messages, stored once.
 const PHRASES: &[&str] = &[
     " wants a servo 1..4 and ",
     ", robot.toml's is in use",
@@ -189,36 +189,36 @@ const PHRASES: &[&str] = &[
     "he",
 ];
 
-/// Every character of the sentences, the commonest first.
+/// Every character of the messages, the commonest first.
 const ALPHABET: &[u8; 45] = b" eotsarnldipmgcw0uh.=fb:vk1y2-,x6#z?_3+54'789";
 
 /// The number of characters with a code of four bits; no longer code begins with one of
 /// these.
-const SHORT: u8 = 12;
+const SHORT_CODES: u8 = 12;
 
-const COUNT: usize = SENTENCES.len();
+const COUNT: usize = MESSAGES.len();
 
-/// The number of packed strings: the sentences first, then the phrases.
+/// The number of packed strings: the messages first, then the phrases.
 const STRINGS: usize = COUNT + PHRASES.len();
 
 /// Strings in a block: only the start of each block is stored, besides each string's length.
-const BLOCK: usize = 16;
+const BLOCK_STRINGS: usize = 16;
 
 const PACKED: Packed = pack();
 
 flash! {
     const NIBBLES: [u8; PACKED.count.div_ceil(2)] = *PACKED.nibbles.first_chunk().unwrap();
     const LENGTHS: [u8; STRINGS] = PACKED.lengths;
-    const BLOCKS: [u16; STRINGS.div_ceil(BLOCK)] = PACKED.blocks;
+    const BLOCKS: [u16; STRINGS.div_ceil(BLOCK_STRINGS)] = PACKED.blocks;
     const CHARACTERS: [u8; ALPHABET.len()] = *ALPHABET;
 }
 
 impl Text {
-    /// Prints the sentence.
+    /// Prints the message.
     #[inline(never)]
     pub fn print(self, out: &mut impl Output) {
         let mut part = Part::of(self as u8);
-        // The rest of the sentence, behind the phrase that is being printed.
+        // The rest of the message, after the phrase that is being printed.
         let mut rest = Part::NONE;
         loop {
             if part.left == 0 {
@@ -229,8 +229,8 @@ impl Text {
                 return;
             }
             let mut code = part.next();
-            if code >= SHORT {
-                code = SHORT + (code - SHORT) * 16 + part.next();
+            if code >= SHORT_CODES {
+                code = SHORT_CODES + (code - SHORT_CODES) * 16 + part.next();
             }
             match code.checked_sub(ALPHABET.len() as u8) {
                 None => {
@@ -245,9 +245,9 @@ impl Text {
         }
     }
 
-    /// The length of the sentence in bytes.
+    /// The length of the message in bytes.
     pub const fn length(self) -> u8 {
-        SENTENCES[self as usize].len() as u8
+        MESSAGES[self as usize].len() as u8
     }
 }
 
@@ -261,13 +261,13 @@ struct Part {
 impl Part {
     const NONE: Self = Self { at: 0, left: 0 };
 
-    /// All nibbles of a sentence or a phrase.
+    /// All nibbles of a message or a phrase.
     #[inline(never)]
     fn of(string: u8) -> Self {
         let string = usize::from(string);
         let length = |string| LENGTHS.at(string).load();
-        let mut at = BLOCKS.at(string / BLOCK).load();
-        for before in string / BLOCK * BLOCK..string {
+        let mut at = BLOCKS.at(string / BLOCK_STRINGS).load();
+        for before in string / BLOCK_STRINGS * BLOCK_STRINGS..string {
             at += u16::from(length(before));
         }
         Self {
@@ -289,14 +289,14 @@ impl Part {
 
 /// All strings as nibbles; the first of each pair is in the lower half of a byte.
 struct Packed {
-    nibbles: [u8; MOST],
+    nibbles: [u8; BUFFER_BYTES],
     count: usize,
     lengths: [u8; STRINGS],
-    blocks: [u16; STRINGS.div_ceil(BLOCK)],
+    blocks: [u16; STRINGS.div_ceil(BLOCK_STRINGS)],
 }
 
 /// The size of the compiler's buffer, in bytes: more than the strings need.
-const MOST: usize = 4096;
+const BUFFER_BYTES: usize = 4096;
 
 impl Packed {
     const fn push(&mut self, nibble: u8) {
@@ -306,23 +306,23 @@ impl Packed {
 
     /// Appends a character's code, or a phrase's after those of all characters.
     const fn append(&mut self, code: usize) {
-        assert!(code < SHORT as usize + (16 - SHORT as usize) * 16);
+        assert!(code < SHORT_CODES as usize + (16 - SHORT_CODES as usize) * 16);
         let code = code as u8;
-        if code < SHORT {
+        if code < SHORT_CODES {
             self.push(code);
         } else {
-            self.push(SHORT + (code - SHORT) / 16);
-            self.push((code - SHORT) % 16);
+            self.push(SHORT_CODES + (code - SHORT_CODES) / 16);
+            self.push((code - SHORT_CODES) % 16);
         }
     }
 }
 
-/// Packs all strings, in the compiler: sentences with codes for phrases, and the phrases letter
+/// Packs all strings, in the compiler: messages with codes for phrases, and the phrases letter
 /// by letter.
 #[allow(long_running_const_eval, reason = "a second at most")]
 const fn pack() -> Packed {
     let mut packed = Packed {
-        nibbles: [0; MOST],
+        nibbles: [0; BUFFER_BYTES],
         count: 0,
         lengths: [0; STRINGS],
         blocks: [0; _],
@@ -330,14 +330,14 @@ const fn pack() -> Packed {
     let mut string = 0;
     while string < STRINGS {
         let begin = packed.count;
-        if string % BLOCK == 0 {
-            packed.blocks[string / BLOCK] = begin as u16;
+        if string % BLOCK_STRINGS == 0 {
+            packed.blocks[string / BLOCK_STRINGS] = begin as u16;
         }
         let is_phrase = string >= COUNT;
         let text = if is_phrase {
             PHRASES[string - COUNT].as_bytes()
         } else {
-            SENTENCES[string].as_bytes()
+            MESSAGES[string].as_bytes()
         };
         let mut rest = text;
         while let [first, after @ ..] = rest {
@@ -395,7 +395,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_sentence_is_printed_whole_and_has_its_length() {
+    fn a_message_is_printed_whole_and_has_its_length() {
         for (text, expected) in [
             (Text::Banner, "# lizard "),
             (Text::Version, env!("CARGO_PKG_VERSION")),
@@ -410,10 +410,10 @@ mod tests {
     }
 
     #[test]
-    fn every_sentence_is_one_line_without_control_characters() {
-        for sentence in SENTENCES {
+    fn every_message_is_one_line_without_control_characters() {
+        for message in MESSAGES {
             assert!(
-                sentence
+                message
                     .bytes()
                     .all(|byte| byte == b' ' || byte.is_ascii_graphic())
             );

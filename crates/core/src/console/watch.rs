@@ -1,4 +1,4 @@
-//! Pose reports, as `watch` asks for them.
+//! The pose reports that `watch` asks for.
 
 /// The timer of the pose reports.
 #[derive(Clone, Copy, Debug)]
@@ -8,16 +8,16 @@ pub(super) struct Watch {
     /// Frames until the next report.
     left: u16,
     /// True while a report waits to be written.
-    pub(super) due: bool,
+    pub(super) is_due: bool,
 }
 
 impl Watch {
-    /// Reports every this many frames, the first after as many.
+    /// Reports once every so many frames, the first after as many.
     pub(super) const fn every(frames: u16) -> Self {
         Self {
             every: frames,
             left: frames,
-            due: false,
+            is_due: false,
         }
     }
 
@@ -26,7 +26,7 @@ impl Watch {
             self.left -= 1;
             if self.left == 0 {
                 self.left = self.every;
-                self.due = true;
+                self.is_due = true;
             }
         }
     }

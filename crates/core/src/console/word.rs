@@ -53,20 +53,19 @@ macro_rules! words {
                 match self { $(Self::$name => $word),* }
             }
 
-            /// Its effect on the servos, declared only here. Rules and tests on
-            /// hosts ask here, or [`crate::console::command::effect`] for a whole line.
+            /// The word's effect on the servos, declared only here; for a whole line see
+            /// [`crate::console::command::effect`].
             pub const fn effect(self) -> Effect {
                 match self { $(Self::$name => Effect::$effect),* }
             }
 
-            /// A line that the paper's robot takes: the word, with arguments where it wants
-            /// some.
+            /// A line that the paper's robot accepts: the word, with any arguments it needs.
             pub const fn example(self) -> &'static str {
                 match self { $(Self::$name => concat!($word, $arguments)),* }
             }
         }
 
-        /// All words, each with a bar behind it.
+        /// All words, each followed by a bar.
         const LIST: &str = concat!($($word, "|"),*);
     };
 }
@@ -101,7 +100,7 @@ words! {
     }
 }
 
-/// The character behind each word of the list.
+/// The character after each word of the list.
 const BAR: u8 = b'|';
 
 flash! {
@@ -116,8 +115,8 @@ impl Word {
         let mut number = 0;
         // The rest of `written` after a word's beginning, if it begins so.
         let mut left = Some(written);
-        for place in 0..LIST.len() {
-            let character = CHARACTERS.at(place).load();
+        for index in 0..LIST.len() {
+            let character = CHARACTERS.at(index).load();
             left = match left {
                 Some([]) if character == BAR => return Some(WORDS.at(number).load()),
                 _ if character == BAR => {
@@ -141,12 +140,12 @@ impl Word {
     pub(crate) fn print_all<const YIELDING: usize>(out: &mut impl Output, robot: &Robot) {
         let mut number = 0;
         let mut is_printed = true;
-        for place in 0..LIST.len() - 1 {
-            let character = CHARACTERS.at(place).load();
+        for index in 0..LIST.len() - 1 {
+            let character = CHARACTERS.at(index).load();
             // Costs no instruction as long as no word yields.
             if YIELDING < Self::ALL.len() && character == BAR {
                 number += 1;
-                is_printed = number < YIELDING || !is_gait(place + 1, robot);
+                is_printed = number < YIELDING || !is_gait(index + 1, robot);
             }
             if is_printed {
                 out.byte(character);
@@ -155,10 +154,10 @@ impl Word {
     }
 }
 
-/// True if the word that begins at `place` is the name of a gait.
-fn is_gait(place: usize, robot: &Robot) -> bool {
+/// True if the word that begins at `index` is the name of a gait.
+fn is_gait(index: usize, robot: &Robot) -> bool {
     GaitId::all(robot.gait_count()).any(|id| {
-        let letters = (place..LIST.len()).map(|place| CHARACTERS.at(place).load());
+        let letters = (index..LIST.len()).map(|index| CHARACTERS.at(index).load());
         letters
             .take_while(|letter| *letter != BAR)
             .eq(robot.name(id))
@@ -174,18 +173,18 @@ mod tests {
     use crate::sample::Sample;
 
     /// The words of the first versions, which every later version keeps.
-    const RESERVED_FOR_EVER: &str = "help|?|stop|rest|status|pose|speed|watch|trim|limit|dir|\
+    const FIRST_RESERVED: &str = "help|?|stop|rest|status|pose|speed|watch|trim|limit|dir|\
         scale|cal|center|save|load|factory|boot|deadman";
 
     #[test]
     fn the_reserved_words_are_those_of_the_first_versions_and_no_other() {
         let reserved = Word::ALL.iter().filter(|word| word.is_reserved());
         let reserved: Vec<&str> = reserved.map(|word| word.text()).collect();
-        assert_eq!(reserved.join("|"), RESERVED_FOR_EVER);
+        assert_eq!(reserved.join("|"), FIRST_RESERVED);
     }
 
     #[test]
-    fn every_word_that_is_listed_is_found_and_nothing_else_is() {
+    fn every_listed_word_is_found_and_nothing_else_is() {
         for word in Word::ALL {
             let text = word.text();
             assert_eq!(Word::find(text.as_bytes()), Some(*word), "{text}");
@@ -199,8 +198,8 @@ mod tests {
         }
     }
 
-    /// All words, without those that are to be left out.
-    fn listed<const YIELDING: usize>(robot: &Robot, left_out: &[Word]) {
+    /// Checks that the list has all words but those left out.
+    fn assert_lists_all_but<const YIELDING: usize>(robot: &Robot, left_out: &[Word]) {
         let words = Word::ALL.iter().filter(|word| !left_out.contains(word));
         let words: Vec<&str> = words.map(|word| word.text()).collect();
         let mut list = String::new();
@@ -211,16 +210,16 @@ mod tests {
     #[test]
     fn a_word_that_yields_is_left_out_where_a_gait_has_its_whole_name() {
         let robot = Sample::paper();
-        listed::<RESERVED>(&robot, &[]);
-        listed::<1>(&robot, &[]);
+        assert_lists_all_but::<RESERVED>(&robot, &[]);
+        assert_lists_all_but::<1>(&robot, &[]);
         let mut robot = robot;
         for name in ["stop", "trim", "deadman", "sav", "loads", "boot on"] {
             robot = robot.with_gait(name);
         }
         let all = [Word::Stop, Word::Trim, Word::Deadman];
-        listed::<RESERVED>(&robot, &[]);
-        listed::<1>(&robot, &all);
-        listed::<3>(&robot, &all[1..]);
-        listed::<9>(&robot, &all[2..]);
+        assert_lists_all_but::<RESERVED>(&robot, &[]);
+        assert_lists_all_but::<1>(&robot, &all);
+        assert_lists_all_but::<3>(&robot, &all[1..]);
+        assert_lists_all_but::<9>(&robot, &all[2..]);
     }
 }

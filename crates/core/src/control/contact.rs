@@ -1,11 +1,11 @@
-//! The contact that a step of a routine waits for: a push button, or the switch of a feeler.
+//! The contact that a step of a routine waits for: a push button, or a feeler's switch.
 //!
 //! Contacts bounce for some milliseconds, and long wires pick up noise. So a level counts once
-//! it has held in three successive frames, at most 60 ms after it came.
+//! it has held for three successive frames, at most 60 ms after it began.
 //!
 //! A button that is stuck must not start the robot. So a wait for a contact ends when it closes, and
 //! not because it is closed: it must have been open since the wait began. A step that
-//! goes on until there is an obstacle has to end also if that is there already.
+//! goes on until there is an obstacle also has to end if the obstacle is there already.
 
 use crate::numbers::gaits::Input;
 
@@ -18,39 +18,39 @@ const READY: u8 = 0b1000;
 /// The contact that is awaited, and its levels in the last frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Contact {
-    /// The input at which the contact is.
+    /// The contact's input.
     pub input: Input,
-    seen: u8,
+    history: u8,
 }
 
 impl Contact {
     /// No contact: none of its frames ends a step.
     pub const NONE: Self = Self {
         input: Input::NONE,
-        seen: 0,
+        history: 0,
     };
 
     /// A contact that has to close, from open.
     pub const fn closing(input: Input) -> Self {
         Self {
             input,
-            seen: LEVELS,
+            history: LEVELS,
         }
     }
 
     /// A contact that has to be closed.
     pub const fn closed(input: Input) -> Self {
-        Self { input, seen: 0 }
+        Self { input, history: 0 }
     }
 
     /// Takes the level of a frame; true once the contact has closed.
     pub fn frame(&mut self, is_closed: bool) -> bool {
-        if self.seen & LEVELS == 0 {
-            self.seen |= READY;
+        if self.history & LEVELS == 0 {
+            self.history |= READY;
         }
-        let levels = self.seen << 1 | u8::from(is_closed);
-        self.seen = self.seen & READY | levels & LEVELS;
-        self.seen == READY | LEVELS
+        let levels = self.history << 1 | u8::from(is_closed);
+        self.history = self.history & READY | levels & LEVELS;
+        self.history == READY | LEVELS
     }
 }
 
@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn a_contact_that_is_closed_from_the_start_ends_a_way_and_no_wait_until_it_was_open() {
+    fn a_contact_closed_from_the_start_ends_a_walk_but_no_wait_until_it_was_open() {
         let input = Input::nose(16);
         assert_eq!(closes(Contact::closed(input), "###"), [2]);
         let stuck: String = "#".repeat(1000);

@@ -1,4 +1,4 @@
-//! The robot as a whole: carries out orders, computes frames, and reacts to faults.
+//! The robot as a whole: it carries out orders, computes frames, and reacts to faults.
 //!
 //! A console on a serial line, or something else, gives orders to the robot and learns
 //! which of them are refused. Fifty times a second the robot computes a frame and watches
@@ -33,10 +33,10 @@ mod job;
 mod routine;
 
 /// Frames without a reset after which the supply counts as good again: 30 s.
-const STEADY: u32 = 1500;
+const GOOD_SUPPLY_FRAMES: u32 = 1500;
 
-/// Frames after a start in which all servos wake: 0.6 s.
-const WAKES: u32 = 30;
+/// Frames after a start within which all servos wake: 0.6 s.
+const WAKING_FRAMES: u32 = 30;
 
 /// The robot: its motion, settings, safety, and the EEPROM operation in progress.
 #[derive(Clone, Debug)]
@@ -120,7 +120,7 @@ impl Control {
         self.calibrate();
         let before = match &restart.before {
             None => Before::Nothing,
-            Some(stance) if stance.resting => Before::Rested,
+            Some(stance) if stance.is_resting => Before::Rested,
             Some(_) => Before::Held,
         };
         let brown_outs = restart.brown_outs.min(BROWN_OUTS - 1);
@@ -229,13 +229,13 @@ impl Control {
             self.safety.notify(Notice::Done);
         }
         let frames = self.motion.frames();
-        if frames == STEADY {
+        if frames == GOOD_SUPPLY_FRAMES {
             self.brown_outs = 0;
         }
-        // Opening the port resets the board, and then a line comes. By radio lines come always: a
-        // supply is to blame that breaks down while the servos wake.
+        // Opening the port resets the board, and then a line comes. By radio, lines come at any
+        // time, so a reset while the servos wake still counts against the supply.
         let is_external = self.may_be_supply && self.cause == Cause::External;
-        if is_external && self.is_heard && frames > WAKES {
+        if is_external && self.is_heard && frames > WAKING_FRAMES {
             self.may_be_supply = false;
             self.brown_outs = self.brown_outs.saturating_sub(1);
         }
@@ -271,8 +271,8 @@ impl Control {
     }
 
     /// Notes that a notice has been printed.
-    pub fn written(&mut self, notice: Notice) {
-        self.safety.written(notice);
+    pub fn note_printed(&mut self, notice: Notice) {
+        self.safety.note_printed(notice);
     }
 
     /// The voltage of the supply that allows less.
@@ -290,8 +290,8 @@ impl Control {
         }
     }
 
-    /// The robot's state, as a column of the supervisor's table. A routine walks also while it
-    /// stands or rests: it goes on by itself.
+    /// The robot's state, as a column of the supervisor's table. A routine counts as walking
+    /// even while it stands or rests, since it goes on by itself.
     fn state(&self) -> State {
         if self.routine.is_under_way() {
             return State::Walking;
@@ -349,7 +349,7 @@ impl Control {
     /// Carries out an order.
     ///
     /// # Errors
-    /// The refusal; then nothing has changed.
+    /// Returns the reason of the refusal; nothing has changed.
     #[inline(never)]
     pub fn execute(&mut self, order: &Order) -> Result<Accepted, Refusal> {
         if self.motion.robot().is_none() {
@@ -408,7 +408,7 @@ impl Control {
     /// Looks the order up in the supervisor's table; false if there is nothing to do.
     ///
     /// # Errors
-    /// The refusal.
+    /// Returns the reason of the refusal.
     #[inline(never)]
     fn check_allowed(&self, event: Event) -> Result<bool, Refusal> {
         match self.safety.response(event, self.state()) {
@@ -435,8 +435,8 @@ impl Control {
         self.motion.stop();
     }
 
-    /// Notes that an order begins a motion: it ends the routine, clears the fault, and the saved rest pose is
-    /// no longer true.
+    /// Notes that an order begins a motion: ends the routine, clears the fault, and invalidates
+    /// the saved rest pose.
     fn note_motion(&mut self) {
         self.routine = Routine::NONE;
         self.safety.clear();

@@ -21,7 +21,8 @@ pub enum Fault {
     Late,
     /// The stack has grown into the data.
     Stack,
-    /// Several resets in a row by a weak supply or, behind a boot loader, by the button.
+    /// Several resets in a row by a weak supply or, where a boot loader hides the cause, by the
+    /// button.
     BrownOut,
     /// There is no robot in the flash.
     Robot,
@@ -46,7 +47,7 @@ const BEAT: u8 = 32;
 /// The pattern that the LED shows.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Led {
-    /// Frames since its pattern began.
+    /// Frames since the pattern began.
     frames: u8,
     /// The pattern's code, 0 for the slow beat.
     code: u8,
@@ -132,10 +133,10 @@ mod tests {
 
     #[test]
     fn a_fault_flashes_as_often_as_its_code_says_and_pauses() {
-        for (place, fault) in ALL.into_iter().enumerate() {
-            assert_eq!(usize::from(fault.code()), place + 1);
+        for (index, fault) in ALL.into_iter().enumerate() {
+            assert_eq!(usize::from(fault.code()), index + 1);
             let mut led = Led::default();
-            runs(&mut led, None, 13 * (place + 1));
+            runs(&mut led, None, 13 * (index + 1));
             let runs = runs(&mut led, Some(fault), 1000);
             // Cut into patterns by the pauses.
             let mut flashes = 0;
@@ -152,13 +153,13 @@ mod tests {
                 }
             }
             assert!(patterns.len() >= 5, "{fault:?} {runs:?}");
-            assert!(patterns.iter().all(|n| *n == place + 1), "{fault:?}");
+            assert!(patterns.iter().all(|n| *n == index + 1), "{fault:?}");
         }
     }
 
-    /// A pattern may be interrupted at any frame, also beyond the end of the one that follows.
+    /// A pattern may be interrupted at any frame.
     #[test]
-    fn any_pattern_begins_at_once_at_any_place_of_any_other_and_goes_on() {
+    fn any_pattern_begins_at_once_at_any_frame_of_any_other_and_goes_on() {
         let shown: Vec<Option<Fault>> = ALL.into_iter().map(Some).chain([None]).collect();
         for before in &shown {
             for after in shown.iter().filter(|after| *after != before) {

@@ -8,7 +8,7 @@ use crate::numbers::units::{Angle, Sweep};
 /// An order, its arguments within their ranges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
-    /// Change to a gait, for so many cycles if that is not 0; `stand` also wakes the servos.
+    /// Change to a gait, for so many cycles, 0 for no limit; `stand` also wakes the servos.
     Gait(GaitId, u16),
     /// Go to a pose, given as chassis angles in servo order.
     Pose([Angle; 4]),
@@ -18,11 +18,11 @@ pub enum Order {
     Stop,
     /// End the pulses.
     Rest,
-    /// The pace of gaits, 10..=100 percent of their own.
+    /// Set the pace of gaits, 10..=100 percent of their own.
     Speed(u8),
-    /// A setting of a servo.
+    /// Change a setting of a servo.
     Set(Servo, Setting),
-    /// The action three seconds after power-on.
+    /// Set the action three seconds after power-on.
     Boot(Boot),
     /// End a gait when no line has been received for so many milliseconds; 0: never.
     Deadman(u16),
@@ -43,7 +43,7 @@ pub enum Setting {
     Direct(bool),
     /// Hundredths of a microsecond per degree, 500..=2000.
     Scale(u16),
-    /// The ends of its travel as chassis angles, clockwise end first.
+    /// The ends of the travel as chassis angles, clockwise end first.
     Limit(Angle, Angle),
 }
 

@@ -16,10 +16,10 @@ use crate::numbers::units::FRAMES_PER_SECOND;
 pub struct Health {
     /// The last reading of the supplies.
     pub supply: Reading,
-    /// Pulse edges that came late, so far.
+    /// Pulse edges that have come late so far.
     pub late: u16,
     /// True while the stack has not grown into the data.
-    pub stack_is_intact: bool,
+    pub is_stack_intact: bool,
     /// True while the contact at the pin that the control waits for is closed.
     pub is_closed: bool,
 }
@@ -30,7 +30,7 @@ impl Default for Health {
         Self {
             supply: Reading::default(),
             late: 0,
-            stack_is_intact: true,
+            is_stack_intact: true,
             is_closed: false,
         }
     }
@@ -55,7 +55,7 @@ pub struct Safety {
     supply: Supply,
     fault: Option<Fault>,
     led: Led,
-    lit: bool,
+    is_lit: bool,
     /// Late edges that have been handled as faults.
     late: u16,
     /// Milliseconds since the last line, up to 65535.
@@ -80,7 +80,7 @@ pub enum Notice {
     Supply,
     /// The `boot` action begins.
     Boot,
-    /// A gait has gone as far as its count said.
+    /// A gait has completed its count.
     Done,
     /// A step of a routine waits for an input.
     Waiting,
@@ -90,9 +90,9 @@ pub enum Notice {
 const NOTICES: u8 = 7;
 
 impl Notice {
-    /// The notice at a place of the order in which they are printed.
-    const fn at(place: u8) -> Self {
-        match place {
+    /// The notice at an index, in the order in which they are printed.
+    const fn at(index: u8) -> Self {
+        match index {
             0 => Self::Memory,
             1 => Self::NotKept,
             2 => Self::Fault,
@@ -123,7 +123,7 @@ impl Safety {
             supply: Supply::new(),
             fault: None,
             led: Led::new(),
-            lit: false,
+            is_lit: false,
             late: 0,
             silence: 0,
             boot: 0,
@@ -143,7 +143,7 @@ impl Safety {
 
     /// True while the LED is lit.
     pub const fn is_lit(&self) -> bool {
-        self.lit
+        self.is_lit
     }
 
     /// True if the supply limits gaits to half their pace.
@@ -156,7 +156,7 @@ impl Safety {
         self.supply.measured() == Some(Level::Good)
     }
 
-    /// True if the EEPROM may be written at this moment: also not during a dip.
+    /// True if the EEPROM may be written at this moment, so not during a dip.
     pub fn allows_writing_now(&self) -> bool {
         self.allows_writing() && self.supply.is_steady()
     }
@@ -204,7 +204,7 @@ impl Safety {
             self.late = health.late;
             reaction = reaction.max(self.handle(Event::LateEdge, state));
         }
-        if !health.stack_is_intact && self.fault != Some(Fault::Stack) {
+        if !health.is_stack_intact && self.fault != Some(Fault::Stack) {
             reaction = reaction.max(self.handle(Event::Stack, state));
         }
         reaction
@@ -226,14 +226,14 @@ impl Safety {
         }
     }
 
-    /// Advances the LED by a frame; `guard` is true while the guard holds the robot.
-    pub fn advance_led(&mut self, guard: bool) {
-        let fault = if guard {
+    /// Advances the LED by a frame; `is_guarded` is true while the guard holds the robot.
+    pub fn advance_led(&mut self, is_guarded: bool) {
+        let fault = if is_guarded {
             Some(Fault::Guard)
         } else {
             self.fault
         };
-        self.lit = self.led.frame(fault);
+        self.is_lit = self.led.frame(fault);
     }
 
     /// Records a fault and has it printed.
@@ -265,18 +265,18 @@ impl Safety {
 
     /// The notice to print next, if any.
     pub const fn notice(&self) -> Option<Notice> {
-        let mut place = 0;
-        while place < NOTICES {
-            if self.notices & (1 << place) != 0 {
-                return Some(Notice::at(place));
+        let mut index = 0;
+        while index < NOTICES {
+            if self.notices & (1 << index) != 0 {
+                return Some(Notice::at(index));
             }
-            place += 1;
+            index += 1;
         }
         None
     }
 
     /// Notes that a notice has been printed.
-    pub fn written(&mut self, notice: Notice) {
+    pub fn note_printed(&mut self, notice: Notice) {
         self.notices &= !(1 << notice as u8);
     }
 }

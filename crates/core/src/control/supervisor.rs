@@ -13,7 +13,7 @@ use crate::memory::restart::Cause;
 pub enum State {
     /// The servos get no pulses.
     Resting,
-    /// It stands, holds a pose or moves to one.
+    /// The robot stands, holds a pose or moves to one.
     Still,
     /// A gait other than `stand` is running, or the robot is changing to one.
     Walking,

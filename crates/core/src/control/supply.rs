@@ -53,9 +53,9 @@ pub struct Voltage {
 pub struct Supply {
     reading: Reading,
     level: Level,
-    /// Frames for which another level has been measured.
+    /// Consecutive frames that have measured another level.
     frames: u8,
-    /// The nearest of these levels to the present one.
+    /// The level nearest to the present one in those frames.
     nearest: Level,
     /// Number of readings so far, up to [`TO_WORSE`].
     readings: u8,
@@ -99,12 +99,12 @@ impl Voltage {
             return 0;
         }
         let step = mul_unsigned(self.counts, 10) as u16;
-        quotient(self.product, step).min(MOST_HUNDREDTHS)
+        quotient(self.product, step).min(MAX_HUNDREDTHS)
     }
 }
 
-/// No reading of a supply that the chip survives gives more.
-const MOST_HUNDREDTHS: u16 = (1 << 13) - 1;
+/// The largest voltage, hundredths of a volt: more than any supply that the chip survives.
+const MAX_HUNDREDTHS: u16 = (1 << 13) - 1;
 
 impl Thresholds {
     /// The level of a voltage, with thresholds raised by `above`, mV.

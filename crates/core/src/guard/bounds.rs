@@ -62,10 +62,10 @@ pub const DIRECTION: f64 = 4.5e-5;
 /// The step of a margin.
 pub const Q15: f64 = 1.0 / 32768.0;
 
-/// The step of what is read from a table.
+/// The step of a value read from a table.
 const Q10: f64 = 1.0 / 1024.0;
 
-/// Below this type-2 margin the tables may have no value. Where the rise is read over
+/// The type-2 margin below which the tables may have no value. Where the rise is read over
 /// `R - s`, that is at `R - s = R / 4096`, where the sine is
 /// `sqrt((R - s)(s - N)) / 2ab <= sqrt(R / 4096 . 4ab) / 2ab`, at most .05 with couplers
 /// of a ratio of 8, the largest that their steps allow; over `s - N` at `N / 1024`, where
@@ -107,7 +107,7 @@ pub struct LeanError {
 }
 
 impl LeanError {
-    /// For couplers of whole steps whose tips' squared distance, U^2, is in a range.
+    /// The error for couplers of whole steps, with the tips' squared distance, U^2, in a range.
     pub fn of(left: i16, right: i16, [low, high]: [f64; 2]) -> Self {
         let (a, b) = (f64::from(left) / 2.0, f64::from(right) / 2.0);
         let reach = (a + b).powi(2).floor();
@@ -232,12 +232,12 @@ pub struct End {
     /// The smallest true type-2 margin of the range, a sine; 0 where a loop of it does
     /// not close.
     pub least: f64,
-    /// Above this true type-2 margin the tables have a value.
-    pub known: bool,
+    /// True if the tables have a value at every true type-2 margin of the range.
+    pub is_known: bool,
 }
 
 impl End {
-    /// For true bars, the integers that were made of them, and crank angles in the
+    /// The errors for true bars, the integers made of them, and crank angles in the
     /// frame of the end, deg. Where the loop does not close, `type2` is the largest
     /// that the integers may take the margin for.
     pub fn of(bars: &kinematics::FiveBar, integers: impl Into<Bars>, angles: [f64; 2]) -> Self {
@@ -259,7 +259,7 @@ impl End {
         Self::at(bars, integers.into(), [2.0; 2], [near, far])
     }
 
-    /// For the sums of the directions' `|cos|` and `|sin|`.
+    /// The errors for given sums of the directions' `|cos|` and `|sin|`.
     fn at(
         bars: &kinematics::FiveBar,
         integers: Bars,
@@ -329,7 +329,7 @@ impl End {
             type1_right: type1(right),
             along: e_x / to_u,
             least: m,
-            known: closes && low >= KNOWN,
+            is_known: closes && low >= KNOWN,
         }
     }
 
@@ -363,7 +363,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(4000))]
 
-        /// The truth of a single pair is compared in [`crate::guard::clearance`] and
+        /// A single pair is compared in [`crate::guard::clearance`] and
         /// [`crate::guard::five_bar`].
         #[test]
         fn a_bound_over_a_range_holds_at_every_pair_of_angles_in_it(
@@ -386,10 +386,10 @@ mod tests {
             let here = End::of(&bars, &robot.ends[0], [a1, a2]);
             let all = End::between(&bars, &robot.ends[0], range);
             prop_assert!(all.least <= truth.type2 + 1e-12);
-            if !all.known {
+            if !all.is_known {
                 return Ok(());
             }
-            prop_assert!(here.known);
+            prop_assert!(here.is_known);
             for (what, here, all) in [
                 ("type-2", here.type2, all.type2),
                 ("type-1 left", here.type1_left, all.type1_left),

@@ -1,4 +1,4 @@
-//! The checks of a section behind its CRC: no number of it may harm a servo or the board.
+//! The checks of a section beyond its CRC: no number in it may harm a servo or the board.
 //!
 //! A section whose CRC is right was sealed by a host, and that host has checked every number
 //! and every sample of every gait. So the device trusts the numbers, except those that reach
@@ -28,8 +28,8 @@ const fn is_free(pin: u8) -> bool {
     pin.wrapping_sub(2) < 18 && pin != 13
 }
 
-/// The place of a field of the numbers, bytes from the section's beginning.
-macro_rules! place {
+/// The offset of a field of the numbers, bytes from the section's beginning.
+macro_rules! offset {
     ($($field:tt)*) => {
         NUMBERS + offset_of!(Numbers, $($field)*) as u16
     };
@@ -39,7 +39,7 @@ impl<'a> Robot<'a> {
     /// The robot whose section is at the beginning of `flash`.
     ///
     /// # Errors
-    /// The reason why the section is not a usable robot.
+    /// Returns the reason why the section is not a usable robot.
     #[inline(never)]
     pub fn open(flash: Region<'a>) -> Result<Self, Damage> {
         let length = section::find(flash)?;
@@ -58,7 +58,7 @@ impl<'a> Robot<'a> {
         }
     }
 
-    /// Reads the two bytes at a place.
+    /// Reads the two bytes at an offset.
     #[inline(never)]
     fn word(&self, at: u16) -> u16 {
         self.section().read(at)
@@ -67,11 +67,11 @@ impl<'a> Robot<'a> {
     /// True if all pins are free ones of the board, each used once, and the rail's can measure.
     #[inline(always)]
     fn has_pins(&self) -> bool {
-        let rail = self.word(place!(rail)) as u8;
-        let mut servo = place!(pins);
-        while servo < place!(pins) + 4 {
+        let rail = self.word(offset!(rail)) as u8;
+        let mut servo = offset!(pins);
+        while servo < offset!(pins) + 4 {
             let pin = self.word(servo) as u8;
-            if !is_free(pin) || self.users(pin) != 1 {
+            if !is_free(pin) || self.count_users(pin) != 1 {
                 return false;
             }
             servo += 1;
@@ -79,23 +79,23 @@ impl<'a> Robot<'a> {
         rail == 0 || rail.wrapping_sub(14) < 6
     }
 
-    /// The number of servos, and the rail, that a pin has.
+    /// The number of uses of a pin, by servos and the rail.
     #[inline(never)]
-    fn users(&self, pin: u8) -> u8 {
-        let mut users = u8::from(self.word(place!(rail)) as u8 == pin);
-        let mut servo = place!(pins);
-        while servo < place!(pins) + 4 {
+    fn count_users(&self, pin: u8) -> u8 {
+        let mut users = u8::from(self.word(offset!(rail)) as u8 == pin);
+        let mut servo = offset!(pins);
+        while servo < offset!(pins) + 4 {
             users += u8::from(self.word(servo) as u8 == pin);
             servo += 1;
         }
         users
     }
 
-    /// The input of a record of the kind [`Step::UNTIL`]; none if its pin is not free, since its
-    /// pull-up would be a servo's pulse.
+    /// The input of a record of the kind [`Step::UNTIL`]; [`Input::NONE`] if its pin is not free,
+    /// since its pull-up would drive a servo.
     pub(crate) fn input(&self, step: &Step) -> Input {
         let input = Input::of(step);
-        match is_free(input.pin()) && self.users(input.pin()) == 0 {
+        match is_free(input.pin()) && self.count_users(input.pin()) == 0 {
             true => input,
             false => Input::NONE,
         }

@@ -21,7 +21,7 @@ use crate::numbers::units::Sine;
 /// The ten margins in the order in which they are checked.
 const MARGINS: usize = 10;
 
-/// The places of the first type-1 margin and of the first leg margin.
+/// The indices of the first type-1 margin and of the first leg margin.
 const TYPE1: usize = 2;
 const LEGS: usize = 6;
 
@@ -74,14 +74,14 @@ impl Clearance {
             clippy::needless_range_loop,
             reason = "an iterator costs 36 bytes of flash here"
         )]
-        for place in 0..cranks.len() {
-            let servo = Servo::at(place);
-            let mut crank = Direction::of(robot.neutral_of(servo).swept(pose.0[place]));
+        for index in 0..cranks.len() {
+            let servo = Servo::at(index);
+            let mut crank = Direction::of(robot.neutral_of(servo).swept(pose.0[index]));
             if servo.is_rear() {
                 crank.sin = -crank.sin;
             }
-            cranks[place] = crank;
-            clearance.margins[LEGS + place] = Sine(crank.sin);
+            cranks[index] = crank;
+            clearance.margins[LEGS + index] = Sine(crank.sin);
         }
         for end in End::ALL {
             clearance.measure_end(robot, end, &cranks);
@@ -115,15 +115,15 @@ impl Clearance {
     #[inline(never)]
     pub fn hazard(&self, robot: &Robot) -> Option<Hazard> {
         let limits = robot.limits();
-        for (place, value) in self.margins.iter().enumerate() {
-            let least = match place {
+        for (index, value) in self.margins.iter().enumerate() {
+            let least = match index {
                 ..TYPE1 => limits.type2,
                 TYPE1..LEGS => limits.type1,
                 _ => limits.leg,
             };
             if *value < least {
                 return Some(Hazard::Margin {
-                    margin: ORDER.at(place).load(),
+                    margin: ORDER.at(index).load(),
                     value: *value,
                 });
             }

@@ -18,8 +18,8 @@ pub enum Margin {
 }
 
 impl Margin {
-    /// False if the value is a mere placeholder: if an end's couplers are nearly in line, or
-    /// do not meet, the guard knows only that the type-2 margin is below a tenth. See
+    /// True if the value was measured. If an end's couplers are nearly in line, or do not meet,
+    /// the guard knows only that the type-2 margin is below a tenth. See
     /// [`crate::guard::five_bar::FiveBar::margins`].
     pub fn is_known(self, value: Sine) -> bool {
         !matches!(self, Self::Type2(_)) || value != Sine(0)

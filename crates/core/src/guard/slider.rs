@@ -2,7 +2,7 @@
 //!
 //! Between the arm of a front crank and the arm of the rear crank on the same
 //! side lies a slider of two halves (the RRPRR five-bar). It has no singularity
-//! of its own, since its block of the passive Jacobian is just its length; but its
+//! of its own, since its block of the passive Jacobian is just its length; but the
 //! halves can be pulled apart or run into each other.
 
 use lizard_avr::{mul, mul_unsigned};
@@ -70,18 +70,18 @@ mod tests {
             side in sides(),
             front: u16,
             rear: u16,
-            mirrored: bool,
+            is_mirrored: bool,
         ) {
             let integers = side_of(&side, -10.0, 10.0);
             let [front, rear] = [front, rear].map(Angle);
             // Cranks in the frame of their end; the slider's rear one in the tail's.
-            let got = if mirrored {
+            let got = if is_mirrored {
                 let [front, rear] = [front, rear].map(|angle| Direction::of(angle).mirrored());
                 integers.mirrored().length_sq(&front, &rear)
             } else {
                 integers.length_sq(&Direction::of(front), &Direction::of(rear))
             };
-            let (of, turn) = if mirrored {
+            let (of, turn) = if is_mirrored {
                 (kinematics::Side::Right, -90.0)
             } else {
                 (kinematics::Side::Left, 90.0)

@@ -79,8 +79,8 @@ impl Adjustment {
     }
 
     /// Sets the sense of turning.
-    pub fn set_direct(&mut self, direct: bool) {
-        if self.is_direct() != direct {
+    pub fn set_direct(&mut self, is_direct: bool) {
+        if self.is_direct() != is_direct {
             self.gain = self.gain.wrapping_neg();
         }
     }

@@ -33,7 +33,7 @@ pub enum Outcome {
     Latest,
     /// No settings were ever saved.
     Blank,
-    /// One copy is valid, the other is damaged and may have been the later one.
+    /// One copy is valid, the other is damaged and may have been the newer one.
     Other,
     /// No copy is valid.
     Damaged,
@@ -95,8 +95,7 @@ pub fn read<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Ou
     }
 }
 
-/// Loads the settings to use: those saved last if the gaits can be walked with them, else
-/// robot.toml's.
+/// Loads the settings to use: those saved last if all gaits work with them, else robot.toml's.
 #[inline(never)]
 pub fn load<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Outcome {
     let mut outcome = read(robot, memory, settings);
@@ -110,7 +109,7 @@ pub fn load<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Ou
     outcome
 }
 
-/// Starts writing the settings over the older of the two copies. None if the newer one holds
+/// Starts writing the settings over the older of the two copies; `None` if the newer one holds
 /// the same settings.
 pub fn save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<Writing> {
     let copies = Copies::check(memory);

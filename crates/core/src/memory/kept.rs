@@ -27,7 +27,7 @@ use crate::numbers::rate::Rate;
 /// The number of cells.
 pub const CELLS: usize = COPIES + 2 * COPY;
 
-/// Bytes that a reset leaves alone. At first each may hold anything.
+/// Bytes that survive a reset. At power-on each may hold anything.
 pub trait Cells {
     /// The byte in a cell below [`CELLS`].
     fn get(&self, at: usize) -> u8;
@@ -53,14 +53,14 @@ const ALIVE: u8 = 0x96;
 const RUNNING: u8 = 0x5c;
 const HUNG: u8 = 0xa3;
 
-/// In a copy's first byte, beside the frames since pulses began: there are none.
+/// The flag in a copy's first byte, besides the frames since pulses began: no pulses.
 const RESTING: u8 = 0x80;
 
-/// The value of that byte if nothing is kept.
+/// The value of that byte in a copy that holds nothing.
 const NOTHING: u8 = 0x7f;
 
 /// Returns the cause of the reset and the state from before it, and marks the program as
-/// running. `reported` is the cause that the chip reports, or None if a boot loader has
+/// running. `reported` is the cause that the chip reports, or `None` if a boot loader has
 /// cleared it. To be called once, before the watchdog starts.
 #[inline(never)]
 pub fn begin<C: Cells>(cells: &C, reported: Option<Cause>) -> Restart {
@@ -106,7 +106,7 @@ pub fn begin<C: Cells>(cells: &C, reported: Option<Cause>) -> Restart {
 pub fn store_stance<C: Cells>(cells: &C, stance: &Stance, brown_outs: u8) {
     let turn = !cells.get(WHOLE) & 1;
     let mut copy = Copy::of(cells, turn);
-    copy.put(stance.awake | if stance.resting { RESTING } else { 0 });
+    copy.put(stance.awake | if stance.is_resting { RESTING } else { 0 });
     copy.put(brown_outs);
     for sweep in &stance.pose.0 {
         copy.put_word(sweep.0 as u16);
@@ -128,14 +128,14 @@ pub fn mark_hung<C: Cells>(cells: &C) {
     cells.set(STATE, HUNG);
 }
 
-/// Reads the valid copy, if there is one.
+/// Reads the valid copy, if there is one, into `restart`.
 #[inline(never)]
 fn take<C: Cells>(cells: &C, restart: &mut Restart) {
     let mut copy = Copy::of(cells, cells.get(WHOLE) & 1);
     let state = copy.take();
     let brown_outs = copy.take();
     let mut stance = Stance {
-        resting: state & RESTING != 0,
+        is_resting: state & RESTING != 0,
         awake: state & !RESTING,
         ..Stance::RESTING
     };

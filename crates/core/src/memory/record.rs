@@ -22,7 +22,7 @@ pub trait Memory {
 /// The size of a memory in bytes.
 pub const SIZE: usize = 1024;
 
-/// Bytes of a record's content.
+/// The number of bytes in a record's content.
 pub const CONTENT: usize = 42;
 
 // Whether the step is even distinguishes the CRC's two bytes.
@@ -31,7 +31,7 @@ const _: () = assert!(CONTENT.is_multiple_of(2));
 /// The content of a record.
 pub type Content = [u8; CONTENT];
 
-/// Bytes of a record: the mark, the content, the CRC.
+/// The number of bytes in a record: the mark, the content, the CRC.
 pub const LENGTH: u16 = CONTENT as u16 + 3;
 
 /// The first byte of a valid record.
@@ -62,11 +62,11 @@ pub enum Progress {
     Going,
     /// The memory holds what it should.
     Done,
-    /// The memory does not keep what is written.
+    /// The memory does not keep what was written.
     Failed,
 }
 
-/// The progress of the byte of a step.
+/// The progress of a step's byte.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 // Starts at 1, since `None` has to be zero: see `Main::new`.
 #[repr(u8)]
@@ -184,7 +184,7 @@ mod tests {
     use super::*;
     use crate::virtual_board::Eeprom;
 
-    const PLACE: Address = Address(64);
+    const ADDRESS: Address = Address(64);
 
     fn content() -> impl Strategy<Value = Content> {
         any::<u64>().prop_map(|seed| {
@@ -199,10 +199,10 @@ mod tests {
     }
 
     /// Writes a record to its end.
-    fn write(chip: &mut Eeprom, content: &Content) -> Progress {
-        let mut writing = PLACE.write();
+    fn write(eeprom: &mut Eeprom, content: &Content) -> Progress {
+        let mut writing = ADDRESS.write();
         for _ in 0..10_000 {
-            match writing.step(content, chip) {
+            match writing.step(content, eeprom) {
                 Progress::Going => {}
                 ended => return ended,
             }
@@ -210,10 +210,10 @@ mod tests {
         panic!("it never ends");
     }
 
-    fn read(chip: &Eeprom) -> (RecordState, Content) {
+    fn read(eeprom: &Eeprom) -> (RecordState, Content) {
         let mut content = [0; CONTENT];
-        PLACE.fetch(chip, &mut content);
-        (PLACE.check(chip), content)
+        ADDRESS.fetch(eeprom, &mut content);
+        (ADDRESS.check(eeprom), content)
     }
 
     proptest! {
@@ -225,23 +225,23 @@ mod tests {
             second in content(),
             slowness in 0u16..4,
         ) {
-            let mut chip = Eeprom::blank();
-            chip.slowness = slowness;
+            let mut eeprom = Eeprom::blank();
+            eeprom.slowness = slowness;
             prop_assert_eq!(read(&Eeprom::blank()).0, RecordState::Blank);
             for content in [first, second] {
-                prop_assert_eq!(write(&mut chip, &content), Progress::Done);
-                chip.slowness = 0;
-                let chip = Eeprom::with(*chip.bytes());
-                prop_assert_eq!(read(&chip), (RecordState::Whole, content));
+                prop_assert_eq!(write(&mut eeprom, &content), Progress::Done);
+                eeprom.slowness = 0;
+                let eeprom = Eeprom::with(*eeprom.bytes());
+                prop_assert_eq!(read(&eeprom), (RecordState::Whole, content));
             }
             let beside = |at: &usize| !(64..64 + usize::from(LENGTH)).contains(at);
-            prop_assert!((0..1024).filter(beside).all(|at| chip.bytes()[at] == ERASED));
+            prop_assert!((0..1024).filter(beside).all(|at| eeprom.bytes()[at] == ERASED));
         }
 
         #[test]
         fn the_crc_is_that_of_the_catalogue(content in content()) {
-            let mut chip = Eeprom::blank();
-            write(&mut chip, &content);
+            let mut eeprom = Eeprom::blank();
+            write(&mut eeprom, &content);
             // CRC-16/IBM-3740, bit by bit.
             let mut crc = 0xffffu16;
             for byte in content {
@@ -250,22 +250,22 @@ mod tests {
                     crc = if crc & 0x8000 == 0 { crc << 1 } else { (crc << 1) ^ 0x1021 };
                 }
             }
-            prop_assert_eq!(&chip.bytes()[64 + 43..][..2], &crc.to_le_bytes());
+            prop_assert_eq!(&eeprom.bytes()[64 + 43..][..2], &crc.to_le_bytes());
         }
     }
 
     #[test]
-    fn writing_the_same_again_touches_the_mark_alone_and_other_bytes_only_where_they_differ() {
-        let mut chip = Eeprom::blank();
+    fn rewriting_touches_only_the_mark_and_bytes_that_differ() {
+        let mut eeprom = Eeprom::blank();
         let mut content = [7; CONTENT];
-        write(&mut chip, &content);
-        chip.log.clear();
-        write(&mut chip, &content);
-        assert_eq!(chip.log, [(64, WHOLE, ERASED), (64, ERASED, WHOLE)]);
-        chip.log.clear();
+        write(&mut eeprom, &content);
+        eeprom.log.clear();
+        write(&mut eeprom, &content);
+        assert_eq!(eeprom.log, [(64, WHOLE, ERASED), (64, ERASED, WHOLE)]);
+        eeprom.log.clear();
         content[5] = 8;
-        write(&mut chip, &content);
-        let addresses: Vec<u16> = chip.log.iter().map(|(address, ..)| *address).collect();
+        write(&mut eeprom, &content);
+        let addresses: Vec<u16> = eeprom.log.iter().map(|(address, ..)| *address).collect();
         assert_eq!(addresses[0], 64);
         assert_eq!(addresses[1], 64 + 6);
         assert_eq!(addresses.last(), Some(&64));
@@ -276,21 +276,21 @@ mod tests {
     }
 
     #[test]
-    fn a_memory_that_keeps_nothing_is_found_out() {
-        let mut chip = Eeprom::blank();
-        chip.worn = true;
-        assert_eq!(write(&mut chip, &[1; CONTENT]), Progress::Failed);
+    fn a_memory_that_keeps_nothing_is_detected() {
+        let mut eeprom = Eeprom::blank();
+        eeprom.is_worn = true;
+        assert_eq!(write(&mut eeprom, &[1; CONTENT]), Progress::Failed);
     }
 
     #[test]
     fn a_removed_record_is_not_read_and_its_bytes_stay() {
-        let mut chip = Eeprom::blank();
-        write(&mut chip, &[3; CONTENT]);
-        let before = *chip.bytes();
-        let mut writing = PLACE.invalidate();
-        while writing.step(&[0; CONTENT], &mut chip) == Progress::Going {}
-        assert_eq!(read(&chip).0, RecordState::Damaged);
-        assert_eq!(chip.bytes()[64], ERASED);
-        assert_eq!(chip.bytes()[65..], before[65..]);
+        let mut eeprom = Eeprom::blank();
+        write(&mut eeprom, &[3; CONTENT]);
+        let before = *eeprom.bytes();
+        let mut writing = ADDRESS.invalidate();
+        while writing.step(&[0; CONTENT], &mut eeprom) == Progress::Going {}
+        assert_eq!(read(&eeprom).0, RecordState::Damaged);
+        assert_eq!(eeprom.bytes()[64], ERASED);
+        assert_eq!(eeprom.bytes()[65..], before[65..]);
     }
 }

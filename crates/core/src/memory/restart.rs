@@ -31,7 +31,7 @@ impl Cause {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Stance {
     /// True while the servos get no pulses.
-    pub resting: bool,
+    pub is_resting: bool,
     /// Frames since pulses began, up to [`crate::motion::AWAKE`]; servos wake one
     /// after the other.
     pub awake: u8,
@@ -65,7 +65,7 @@ pub struct Restart {
 impl Stance {
     /// Servos that have never had pulses.
     pub const RESTING: Self = Self {
-        resting: true,
+        is_resting: true,
         awake: 0,
         pose: Pose::NEUTRAL,
         sent: Pulses([Width(0); 4]),

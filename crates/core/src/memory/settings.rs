@@ -1,5 +1,5 @@
 //! All settings that a person may change and the robot keeps: the servos' adjustments,
-//! what the robot does after power-on, and how long it walks without a line.
+//! the action after power-on, and how long a gait goes on without a line.
 //!
 //! In RAM the settings have the same bytes as in the EEPROM, so neither saving nor
 //! loading converts anything.
@@ -25,7 +25,7 @@ use crate::numbers::units::Sweep;
 /// The format of the bytes, increased when their meaning changes.
 pub const FORMAT: u8 = 1;
 
-/// The place of the turn, the number of the save.
+/// The offset of the turn, the number of the save.
 pub const TURN: usize = 1;
 const HASH: usize = 2;
 const SERVOS: usize = 6;

@@ -57,10 +57,10 @@ mod resume;
 const WAKE_APART: u8 = 5;
 
 /// The gaits' own pace, percent.
-const FULL: u8 = 100;
+const FULL_PERCENT: u8 = 100;
 
-/// The most that a weak supply allows, percent of the gaits' own pace.
-const SLOW: u8 = 50;
+/// The largest pace that a weak supply allows, percent of the gaits' own.
+const SLOW_PERCENT: u8 = 50;
 
 /// Frames from the first pulse until all four are awake and motion may begin.
 pub const AWAKE: u8 = 4 * WAKE_APART;
@@ -71,19 +71,19 @@ pub struct Motion {
     robot: Robot<'static>,
     calibration: [Calibration; 4],
     state: State,
-    /// The target once the present motion has come to a stop. None while the robot rests.
+    /// The target once the present motion has come to a stop; `None` while the robot rests.
     next: Option<Target>,
     /// The count of the gait that is under way or comes next.
     count: Count,
-    /// True in the frame in which a count is over.
-    ended: bool,
+    /// True in the frame in which a gait has ended.
+    has_ended: bool,
     /// Percent of the gaits' own pace.
     speed: u8,
-    /// True while the supply limits the pace to [`SLOW`].
-    slow: bool,
+    /// True while the supply limits the pace to [`SLOW_PERCENT`].
+    is_slow: bool,
     /// True while the pulses move to a new calibration's widths.
-    settling: bool,
-    /// The servos' state; `resting` is true in [`State::Resting`] only.
+    is_settling: bool,
+    /// The servos' state; `is_resting` is true in [`State::Resting`] only.
     stance: Stance,
     hazard: Option<Hazard>,
     frames: u32,
@@ -93,7 +93,7 @@ impl Motion {
     /// The robot at power-on: waking, then standing.
     pub fn new(robot: Robot<'static>) -> Self {
         let mut motion = Self::unstarted(robot);
-        motion.speed = FULL;
+        motion.speed = FULL_PERCENT;
         motion.begin();
         for servo in Servo::all() {
             motion.calibrate(servo, motion.robot.servo(servo));
@@ -111,12 +111,12 @@ impl Motion {
             robot,
             next: None,
             count: Count::NONE,
-            ended: false,
+            has_ended: false,
             speed: 0,
-            slow: false,
-            settling: false,
+            is_slow: false,
+            is_settling: false,
             stance: Stance {
-                resting: false,
+                is_resting: false,
                 ..Stance::RESTING
             },
             hazard: None,
@@ -128,17 +128,17 @@ impl Motion {
     /// follow.
     ///
     /// # Errors
-    /// The reason why the flash holds no usable robot.
+    /// Returns the reason why the flash holds no usable robot.
     pub fn take_robot(&mut self, flash: Region<'static>) -> Result<(), Damage> {
-        self.speed = FULL;
-        self.stance.resting = true;
+        self.speed = FULL_PERCENT;
+        self.stance.is_resting = true;
         self.robot = Robot::open(flash)?;
         Ok(())
     }
 
     /// Wakes the servos, to stand.
     pub fn begin(&mut self) {
-        self.stance.resting = false;
+        self.stance.is_resting = false;
         self.state = State::cycling(&self.robot, GaitId::STAND);
     }
 
@@ -147,17 +147,17 @@ impl Motion {
         &self.robot
     }
 
-    /// Its servos' pulses and travel.
+    /// The servos' pulses and travel.
     pub const fn calibration(&self) -> &[Calibration; 4] {
         &self.calibration
     }
 
-    /// Takes another calibration of a servo; [`Motion::settle`] has to follow.
+    /// Replaces the calibration of a servo; [`Motion::settle`] has to follow.
     pub fn calibrate(&mut self, servo: Servo, calibration: Calibration) {
         *servo.of_mut(&mut self.calibration) = calibration;
     }
 
-    /// Takes another calibration of all servos; [`Motion::settle`] has to follow.
+    /// Replaces the calibration of all servos; [`Motion::settle`] has to follow.
     pub fn calibrate_all(&mut self, calibration: &[Calibration; 4]) {
         self.calibration = *calibration;
     }
@@ -168,7 +168,7 @@ impl Motion {
         if let State::Moving { pace, .. } | State::Cycling { pace, .. } = &mut self.state {
             *pace = 0;
         }
-        self.settling = true;
+        self.is_settling = true;
     }
 
     /// True if the robot's pose or target is beyond a servo's travel in another
@@ -192,7 +192,7 @@ impl Motion {
     }
 
     /// Starts a gait by a move to its first pose. A gait that is already under way continues.
-    /// After so many cycles from there it brakes, and its last pose is held; 0 cycles do not end.
+    /// It brakes after `cycles` more, and its last pose is held; 0 means without end.
     #[inline(never)]
     pub fn start_gait(&mut self, id: GaitId, cycles: u16) {
         if self.activity() != Activity::Gait(id) {
@@ -204,8 +204,8 @@ impl Motion {
         self.count.covered = 0;
     }
 
-    /// Brakes a gait or the way to it, and holds the pose in which that stands still. Returns false
-    /// if there is none to end.
+    /// Brakes a gait, or the move to it, and holds the pose in which that stands still. Returns
+    /// false if there is none to end.
     #[inline(never)]
     pub fn end_gait(&mut self) -> bool {
         let moves = self.next.is_some()
@@ -216,15 +216,15 @@ impl Motion {
         moves
     }
 
-    /// True if a gait has ended in the last frame, by its count or otherwise, and the robot stands still.
+    /// True if a gait ended in the last frame and the robot stands still.
     pub const fn has_ended(&self) -> bool {
-        self.ended
+        self.has_ended
     }
 
     /// Goes to a pose within the servos' travel.
     ///
     /// # Errors
-    /// The limit that the pose breaks; then nothing has changed.
+    /// Returns the limit that the pose breaks; nothing has changed.
     pub fn go_to(&mut self, pose: &Pose) -> Result<(), Hazard> {
         match self.hazard_of(pose) {
             Some(hazard) => Err(hazard),
@@ -238,7 +238,7 @@ impl Motion {
     /// Freezes the pose in the next frame.
     pub fn stop(&mut self) {
         if !matches!(self.state, State::Resting) {
-            self.freeze(State::Holding { asked: false });
+            self.freeze(State::Holding { is_ordered: false });
         }
     }
 
@@ -253,14 +253,14 @@ impl Motion {
     }
 
     /// Limits gaits to half their pace, or ends the limit.
-    pub fn set_slow(&mut self, slow: bool) {
-        self.slow = slow;
+    pub fn set_slow(&mut self, is_slow: bool) {
+        self.is_slow = is_slow;
     }
 
     /// Computes the pulses of the next frame.
     pub fn tick(&mut self) -> Pulses {
         self.frames = self.frames.wrapping_add(1);
-        self.ended = false;
+        self.has_ended = false;
         let mut pulses = Pulses::default();
         if matches!(self.state, State::Resting) {
             return pulses;
@@ -268,19 +268,19 @@ impl Motion {
         let before = self.stance.awake;
         if before < AWAKE {
             self.stance.awake = before + 1;
-        } else if !self.settling {
+        } else if !self.is_settling {
             self.proceed();
         }
         // While they settle, pulses change by at most the slew limit of a frame.
         let per_frame = self.robot.slew().per_frame;
         let mut under_way = false;
         let mut wakes_at = WAKE_APART;
-        for (place, pulse) in pulses.0.iter_mut().enumerate() {
-            let servo = &self.calibration[place];
-            let sent = &mut self.stance.sent.0[place];
+        for (index, pulse) in pulses.0.iter_mut().enumerate() {
+            let servo = &self.calibration[index];
+            let sent = &mut self.stance.sent.0[index];
             let sleeps = self.stance.awake < wakes_at;
-            let mut width = servo.width(self.stance.pose.0[place]);
-            if self.settling && sent.0 != 0 {
+            let mut width = servo.width(self.stance.pose.0[index]);
+            if self.is_settling && sent.0 != 0 {
                 // A servo's first pulse repeats its last one, also that of the previous
                 // run: a reset may have come while it was settling.
                 let slept = before < wakes_at;
@@ -297,7 +297,7 @@ impl Motion {
             }
             wakes_at += WAKE_APART;
         }
-        self.settling = under_way;
+        self.is_settling = under_way;
         pulses
     }
 
@@ -307,8 +307,8 @@ impl Motion {
             (Some(Target::Gait(id)), _) => Activity::Gait(id),
             (Some(Target::Pose(_)), _) => Activity::Pose,
             (None, State::Resting) => Activity::Rest,
-            (None, State::Holding { asked: true }) => Activity::Pose,
-            (None, State::Holding { asked: false }) => Activity::Stop,
+            (None, State::Holding { is_ordered: true }) => Activity::Pose,
+            (None, State::Holding { is_ordered: false }) => Activity::Stop,
             (None, State::Moving { gait: None, .. }) => Activity::Pose,
             (None, State::Moving { gait: Some(id), .. })
             | (None | Some(Target::End), State::Cycling { id, .. }) => Activity::Gait(id),
@@ -365,18 +365,18 @@ impl Motion {
 
     fn head_for(&mut self, target: Target) {
         if matches!(self.state, State::Resting) {
-            self.state = State::Holding { asked: false };
-            self.stance.resting = false;
+            self.state = State::Holding { is_ordered: false };
+            self.stance.is_resting = false;
             self.stance.awake = 0;
             // The servos are still where their last pulses turned them, if they had any;
             // settings that have changed since must not make them leap.
-            self.settling = true;
+            self.is_settling = true;
         }
         self.next = Some(target);
     }
 
     fn freeze(&mut self, state: State) {
-        self.stance.resting = matches!(state, State::Resting);
+        self.stance.is_resting = matches!(state, State::Resting);
         self.state = state;
         self.next = None;
     }
@@ -397,8 +397,8 @@ impl Motion {
             State::Cycling {
                 gait, phase, pace, ..
             } => {
-                let percent = if self.slow {
-                    self.speed.min(SLOW)
+                let percent = if self.is_slow {
+                    self.speed.min(SLOW_PERCENT)
                 } else {
                     self.speed
                 };
@@ -416,7 +416,7 @@ impl Motion {
         };
         let hazard = self.hazard_of(&pose);
         if hazard.is_some() {
-            self.freeze(State::Holding { asked: false });
+            self.freeze(State::Holding { is_ordered: false });
             self.hazard = hazard;
             return;
         }
@@ -425,7 +425,7 @@ impl Motion {
             && path.arrived()
         {
             self.state = match gait {
-                None => State::Holding { asked: true },
+                None => State::Holding { is_ordered: true },
                 Some(id) => {
                     self.count.phase = 0;
                     State::cycling(&self.robot, *id)
@@ -455,8 +455,8 @@ impl Motion {
             Target::Pose(pose) => (pose, None),
             Target::Gait(id) => (self.robot.gait(id).pose(self.robot.waves(), 0), Some(id)),
             Target::End => {
-                self.ended = true;
-                return self.freeze(State::Holding { asked: false });
+                self.has_ended = true;
+                return self.freeze(State::Holding { is_ordered: false });
             }
         };
         self.state = State::Moving {

@@ -3,8 +3,8 @@
 //! Feet are never lifted; each leg swings and drags its pad. The shape of the swing and
 //! the order of the legs make the robot go, so a gait is a waveform read at four offsets
 //! with four gains. Waveforms are tables of 64 samples in flash; between samples a
-//! straight line is within half a degree of the real curve, less than a hobby servo resolves. The host that makes the tables
-//! checks that.
+//! straight line is within half a degree of the real curve, less than a hobby servo resolves.
+//! The host that makes the tables checks that.
 
 use lizard_avr::{Flash, mul};
 

@@ -9,9 +9,9 @@ use lizard_avr::{mul, mul_unsigned};
 use crate::numbers::pose::Pose;
 use crate::numbers::slew::Slew;
 
-/// The shortest move, in frames: even a small correction is not a jerk. With
+/// The shortest move, in frames, so that even a small correction is no jerk. With
 /// eight, no move changes a servo's speed faster than the gaits do.
-const SHORTEST: u16 = 8;
+const MIN_FRAMES: u16 = 8;
 
 /// The full duration of a move, Q15.
 const END: u16 = 1 << 15;
@@ -35,7 +35,7 @@ impl PointToPoint {
         Self {
             from: *from,
             to: *to,
-            step: END / frames.max(SHORTEST),
+            step: END / frames.max(MIN_FRAMES),
             elapsed: 0,
         }
     }
@@ -161,7 +161,7 @@ mod tests {
         }
 
         #[test]
-        fn all_servos_have_the_same_share_of_their_way_behind_them(
+        fn all_servos_have_covered_the_same_share_of_their_way(
             from: [i16; 4],
             to: [i16; 4],
             slew in slews(),

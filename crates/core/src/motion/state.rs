@@ -40,14 +40,14 @@ pub enum State {
     Resting,
     /// Holding the last pose.
     Holding {
-        /// True if a command asked for the pose, false if the robot was stopped in it.
-        asked: bool,
+        /// True if a command ordered the pose, false if the robot was stopped in it.
+        is_ordered: bool,
     },
     /// Following a point-to-point move.
     Moving {
         path: PointToPoint,
         pace: u16,
-        /// The gait that begins at its end; without one, the pose is held.
+        /// The gait that begins at the end of the move; without one, the pose is held.
         gait: Option<GaitId>,
     },
     /// Cycling through a gait.

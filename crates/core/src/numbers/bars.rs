@@ -5,11 +5,11 @@
 use crate::numbers::couplers::Coupling;
 use crate::numbers::units::Scale;
 
-/// The longest that a loop's bars may be, in steps: l0 + l1 + l4, and each coupler.
-pub const LONGEST: f64 = 127.0 * 256.0;
+/// The largest length of l0 + l1 + l4, and of each coupler, in steps.
+pub const MAX_STEPS: f64 = 127.0 * 256.0;
 
 /// The shortest coupler, in steps.
-pub const SHORTEST_COUPLER: i16 = 4097;
+pub const MIN_COUPLER: i16 = 4097;
 
 lizard_avr::plain! {
     /// The bars of one loop, and factors that follow from them. Lengths are in steps of `scale`;
@@ -52,13 +52,13 @@ impl Bars {
     };
 
     /// A loop with these bars, in steps: the distance between the shafts, the left
-    /// and the right crank, which are at most [`LONGEST`] together; and two
+    /// and the right crank, which are at most [`MAX_STEPS`] together; and two
     /// couplers.
     ///
     /// # Panics
-    /// If a coupler is shorter than [`SHORTEST_COUPLER`].
+    /// If a coupler is shorter than [`MIN_COUPLER`].
     pub const fn new([base, left, right]: [i16; 3], [a, b]: [i16; 2], scale: Scale) -> Self {
-        assert!(a >= SHORTEST_COUPLER && b >= SHORTEST_COUPLER);
+        assert!(a >= MIN_COUPLER && b >= MIN_COUPLER);
         let half_sum = (a as u32 + b as u32) / 2;
         let square_shift = 17 - (half_sum * half_sum).leading_zeros() as u16;
         let mut area = (a as u64 * b as u64) >> square_shift;

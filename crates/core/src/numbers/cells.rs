@@ -13,7 +13,7 @@ use lizard_avr::{Flash, flash};
 use crate::numbers::units::Sweep;
 
 /// The most rows that a map may have.
-pub const MOST_ROWS: usize = 64;
+pub const MAX_ROWS: usize = 64;
 
 /// Binary logarithm of the steps of a sweep (1/65536 turn) that a row is wide: 1.4 deg.
 pub const ROW_BITS: u32 = 8;
@@ -25,12 +25,12 @@ flash! {
     const NO_ROWS: [[i8; 2]; 0] = [];
 }
 
-/// The cells of one pair of servos in which everything is safe that depends on the two:
-/// rows among those of several maps.
+/// The certified cells of one pair of servos, as rows among those of several maps. In them,
+/// every condition that depends on the two holds.
 #[derive(Clone, Copy)]
 pub struct Cells<'a> {
     first: i8,
-    /// The place of its first row, and the number of its rows.
+    /// The index of the first row, and the number of rows.
     begin: u16,
     count: u8,
     rows: Flash<'a, [[i8; 2]]>,
@@ -57,13 +57,13 @@ impl<'a> Cells<'a> {
         }
     }
 
-    /// A map of all of these rows, at most 255.
+    /// A map of all these rows, at most 255.
     pub const fn new(first: i8, rows: Flash<'a, [[i8; 2]]>) -> Self {
         Self::from_rows(first, 0, rows.len() as u8, rows)
     }
 
-    /// True where a cell holds this pair of sweeps. A column that is no `i8`, a
-    /// quarter of a turn from neutral, is in no cell.
+    /// True if a cell holds this pair of sweeps. A column beyond an `i8`, a quarter of a
+    /// turn from neutral, is in no cell.
     #[inline(always)]
     pub fn contains(&self, row: Sweep, column: Sweep) -> bool {
         let row = ((row.0 >> ROW_BITS) as i8).wrapping_sub(self.first) as u8;
@@ -90,15 +90,15 @@ mod tests {
     /// The same question answered by division and without a shortcut.
     fn contains_by_division(first: i8, rows: &[[i8; 2]], row: i16, column: i16) -> bool {
         let row = f64::from(row).div_euclid(256.0) as i32;
-        // A turn has 256 rows, and the one behind the last is the first.
+        // A turn has 256 rows, and the one after the last is the first.
         let row = if row < i32::from(first) {
             row + 256
         } else {
             row
         };
         let column = f64::from(column).div_euclid(128.0) as i32;
-        rows.iter().enumerate().any(|(place, [low, high])| {
-            i32::from(first) + place as i32 == row
+        rows.iter().enumerate().any(|(index, [low, high])| {
+            i32::from(first) + index as i32 == row
                 && (i32::from(*low)..=i32::from(*high)).contains(&column)
         })
     }
@@ -152,7 +152,7 @@ mod tests {
         for first in [-3, 0, -128, 122, 125] {
             agrees(first, &rows);
         }
-        let most: Vec<[i8; 2]> = (0..MOST_ROWS as i8).map(|n| [n - 40, n]).collect();
+        let most: Vec<[i8; 2]> = (0..MAX_ROWS as i8).map(|n| [n - 40, n]).collect();
         agrees(-32, &most);
     }
 

@@ -85,17 +85,17 @@ impl Coupling {
         }
     }
 
-    /// Length of the left coupler.
+    /// The length of the left coupler.
     pub const fn left(&self) -> i16 {
         self.left
     }
 
-    /// Length of the right coupler.
+    /// The length of the right coupler.
     pub const fn right(&self) -> i16 {
         self.right
     }
 
-    /// Result of [`Couplers::differ_much`] for these couplers.
+    /// True if [`Couplers::differ_much`] for these couplers.
     pub const fn differs_much(&self) -> bool {
         2 * self.least_sq > self.reach_sq >> OCTAVES
     }
@@ -138,7 +138,7 @@ impl<'a> Couplers<'a> {
     }
 
     /// The lean at a squared distance of the crank tips in steps of 1/4 of the
-    /// bars' squared ones. None where the couplers do not close the loop, or so
+    /// bars' squared ones. `None` where the couplers do not close the loop, or so
     /// near to that, or to coinciding crank tips, that the type-2 margin is below
     /// a tenth, the least limit that a robot may have.
     #[inline(always)]

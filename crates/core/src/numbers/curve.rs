@@ -42,13 +42,13 @@ impl<'a> Curve<'a> {
         }
     }
 
-    /// The value of a function that never rises, rounded up; None below the table's first
+    /// The value of a function that never rises, rounded up; `None` below the table's first
     /// octave, where the argument is less than 1/1024 of the largest one's octave.
     pub fn falling(&self, argument: u32) -> Option<i16> {
         self.read(argument, 0)
     }
 
-    /// The value of any function, rounded to nearest; None as for [`Curve::falling`].
+    /// The value of any function, rounded to nearest; `None` as for [`Curve::falling`].
     pub fn at(&self, argument: u32) -> Option<i16> {
         self.read(argument, 0x8000)
     }

@@ -5,14 +5,14 @@ use lizard_avr::Flash;
 /// Samples of a waveform.
 pub const SAMPLES: usize = 64;
 
-/// The longest name of a gait: with it, `status` still is one line of the console.
-pub const LONGEST_NAME: usize = 48;
+/// The longest name of a gait, with which `status` still fits a line of the console.
+pub const MAX_NAME_BYTES: usize = 48;
 
 /// The most gaits that a robot may have: a byte numbers them.
-pub const MOST_GAITS: usize = 255;
+pub const MAX_GAITS: usize = 255;
 
 /// The most waveforms that gaits may share: a byte numbers them.
-pub const MOST_WAVES: usize = 255;
+pub const MAX_WAVES: usize = 255;
 
 /// Samples over a cycle, 1/65536 turn at a gain of 1.
 pub type Wave = [i16; SAMPLES];
@@ -32,7 +32,7 @@ impl<'a> Name<'a> {
         Self {
             names,
             at: start,
-            left: length.min(LONGEST_NAME as u16) as u8,
+            left: length.min(MAX_NAME_BYTES as u16) as u8,
         }
     }
 
@@ -61,7 +61,7 @@ lizard_avr::plain! {
         pub wave: u16,
         /// The lead of the servo's phase over that of the gait, 1/65536 cycle.
         pub offset: u16,
-        /// Factor of the waveform, Q14, counter-clockwise positive.
+        /// The factor of the waveform, Q14, counter-clockwise positive.
         pub gain: i16,
     }
 }
@@ -73,14 +73,14 @@ lizard_avr::plain! {
         /// Phase in 1/2^24 cycle for each frame at full pace; negative where the
         /// table is read backwards. 0 for a routine.
         pub increment: i32,
-        /// The channels of the four servos. Of a routine the offset of the first is the place of
-        /// its first [`Step`] in the section, that of the second their number, that of the
-        /// third how often it repeats them, 0 for ever, that of the fourth the number of the one
-        /// at which each round but the first begins.
+        /// The channels of the four servos. In a routine the first offset is the address of the
+        /// first [`Step`] in the section, the second the number of steps, the third the number
+        /// of rounds, 0 without end, and the fourth the number of the step at which each round
+        /// but the first begins.
         pub channels: [Channel; 4],
-        /// The place of its name's first byte among the names of its robot.
+        /// The index of the name's first byte among the names of the robot.
         pub name_start: u16,
-        /// The name's length, at most [`LONGEST_NAME`].
+        /// The name's length, at most [`MAX_NAME_BYTES`].
         pub name_length: u16,
     }
 }
@@ -89,11 +89,11 @@ lizard_avr::plain! {
     /// A step of a routine.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Step {
-        /// What it does, one of the constants of [`Step`].
+        /// The kind of step, one of the constants of [`Step`].
         pub kind: u8,
-        /// The place of its gait; of [`Step::UNTIL`] the [`Input`].
+        /// The index of the gait; of [`Step::UNTIL`] the [`Input`].
         pub gait: u8,
-        /// How long it takes, in cycles of the gait or in frames; [`Step::ENDLESS`] frames do not end.
+        /// The duration in cycles of the gait or in frames; [`Step::ENDLESS`] frames do not end.
         pub count: u16,
     }
 }
@@ -154,14 +154,14 @@ impl Input {
         self.0 & Self::NOSE != 0
     }
 
-    /// Arduino number of the pin, 0 if there is no input.
+    /// The Arduino number of the pin, 0 if there is no input.
     pub const fn pin(self) -> u8 {
         self.0 & !Self::NOSE
     }
 }
 
-/// A gait or a routine by its place in the section: the gaits in the order of robot.toml, and then
-/// the routines. Place 0 is `stand`.
+/// A gait or a routine by its index in the section: the gaits in the order of robot.toml, then
+/// the routines. Index 0 is `stand`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GaitId(u8);
 
@@ -174,12 +174,12 @@ impl GaitId {
         (0..count as u8).map(Self)
     }
 
-    /// The gait at a place.
-    pub const fn at(place: u8) -> Self {
-        Self(place)
+    /// The gait at an index.
+    pub const fn at(index: u8) -> Self {
+        Self(index)
     }
 
-    /// The gait's place.
+    /// The gait's index.
     pub const fn index(self) -> usize {
         self.0 as usize
     }
@@ -232,12 +232,12 @@ mod tests {
         let ids: Vec<GaitId> = GaitId::all(robot.gait_count()).collect();
         assert_eq!(ids.len(), GAITS.len());
         assert_eq!(ids[0], GaitId::STAND);
-        for (place, id) in ids.iter().enumerate() {
-            assert_eq!(id.index(), place);
-            assert_eq!(id.next(robot.gait_count()), ids.get(place + 1).copied());
+        for (index, id) in ids.iter().enumerate() {
+            assert_eq!(id.index(), index);
+            assert_eq!(id.next(robot.gait_count()), ids.get(index + 1).copied());
             let name = robot.name(*id);
-            assert_eq!(usize::from(name.length()), GAITS[place].len());
-            assert!(name.eq(GAITS[place].bytes()));
+            assert_eq!(usize::from(name.length()), GAITS[index].len());
+            assert!(name.eq(GAITS[index].bytes()));
         }
     }
 }

@@ -6,11 +6,11 @@ lizard_avr::plain! {
     /// The smallest margins allowed; a margin at its limit is safe.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Limits {
-        /// Between the couplers of head and tail, at least a tenth.
+        /// The margin between the couplers of head and tail, at least a tenth.
         pub type2: Sine,
-        /// Between each crank and its coupler, not negative.
+        /// The margin between each crank and its coupler, not negative.
         pub type1: Sine,
-        /// Of each parallelogram leg, not negative.
+        /// The margin of each parallelogram leg, not negative.
         pub leg: Sine,
     }
 }

@@ -1,8 +1,8 @@
-//! The mark of the code: which sections it reads, to be seen before it runs.
+//! The mark of the code, by which others see what sections it reads before it runs.
 //!
 //! A program that writes a robot alone talks to the boot loader, while the firmware does not
-//! run and cannot be asked. What it writes is of use only to code that reads this format. So
-//! the code has a mark at a place that never changes: behind the interrupt vectors, in the first
+//! run and cannot be asked. The robot is of use only to code that reads its format. So
+//! the code has a mark at a fixed address: after the interrupt vectors, in the first
 //! page of flash. Whatever else is written to a board overwrites that page, so no other
 //! program can have the mark of an older one.
 //!
@@ -17,7 +17,7 @@
 
 use crate::numbers::section::{FORMAT, MAGIC};
 
-/// The mark's address in flash: behind the 26 vectors of an ATmega328P, 4 bytes each (data sheet,
+/// The mark's address in flash: after the 26 vectors of an ATmega328P, 4 bytes each (data sheet,
 /// table 12-6).
 pub const AT: usize = 26 * 4;
 
@@ -27,9 +27,9 @@ pub const LENGTH: usize = 10;
 /// The mark: format and version of the code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mark {
-    /// [`FORMAT`] of the sections that it reads.
+    /// The [`FORMAT`] of the sections that the code reads.
     pub format: u16,
-    /// The firmware's version, as 0, 2 and 0.
+    /// The firmware's version, such as 0, 2 and 0.
     pub version: [u8; 3],
 }
 
@@ -53,7 +53,7 @@ impl Mark {
         [a, b, c, d, low, high, major, minor, patch, 0]
     }
 
-    /// Reads the mark of a flash that begins with a lizard's code; None for any other.
+    /// Reads the mark of a flash that begins with a lizard's code; `None` for any other.
     #[must_use]
     pub fn find(flash: &[u8]) -> Option<Self> {
         let bytes = flash.get(AT..AT + LENGTH)?;

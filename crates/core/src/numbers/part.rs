@@ -41,9 +41,9 @@ impl Servo {
         (0..4).map(Self::at)
     }
 
-    /// The servo at a place of an array of four; past the end, the last one.
-    pub const fn at(place: usize) -> Self {
-        match place {
+    /// The servo at an index of an array of four; past the end, the last one.
+    pub const fn at(index: usize) -> Self {
+        match index {
             0 => Self::A1,
             1 => Self::A2,
             2 => Self::A3,
@@ -56,7 +56,7 @@ impl Servo {
         matches!(self, Self::A3 | Self::A4)
     }
 
-    /// The servo's place in an array of four.
+    /// The servo's index in an array of four.
     pub const fn index(self) -> usize {
         self as usize
     }
@@ -103,9 +103,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_servo_is_at_its_place_and_the_last_one_past_the_end() {
-        for place in 0..4 {
-            assert_eq!(Servo::at(place).index(), place);
+    fn a_servo_is_at_its_index_and_the_last_one_past_the_end() {
+        for index in 0..4 {
+            assert_eq!(Servo::at(index).index(), index);
         }
         assert_eq!([4, 255].map(Servo::at), [Servo::A4; 2]);
     }

@@ -42,9 +42,9 @@ impl Pose {
 
     /// The first servo whose travel does not reach its sweep.
     pub fn beyond(&self, calibration: &[Calibration; 4]) -> Option<Servo> {
-        for (place, servo) in calibration.iter().enumerate() {
-            if !servo.reaches(self.0[place]) {
-                return Some(Servo::at(place));
+        for (index, servo) in calibration.iter().enumerate() {
+            if !servo.reaches(self.0[index]) {
+                return Some(Servo::at(index));
             }
         }
         None
@@ -96,9 +96,9 @@ mod tests {
             (robot, mut pose) in posed(),
             beyond: [bool; 4],
         ) {
-            for (place, beyond) in beyond.into_iter().enumerate() {
+            for (index, beyond) in beyond.into_iter().enumerate() {
                 if beyond {
-                    pose.0[place] = Sweep(robot.calibration()[place].max.0 + 1);
+                    pose.0[index] = Sweep(robot.calibration()[index].max.0 + 1);
                 }
             }
             let first = beyond.iter().position(|beyond| *beyond).map(Servo::at);
@@ -108,9 +108,9 @@ mod tests {
         #[test]
         fn every_servo_gets_the_pulse_of_its_own_calibration((robot, pose) in posed()) {
             let pulses = pose.pulses(&robot.calibration());
-            for place in 0..4 {
-                let width = robot.calibration()[place].width(pose.0[place]);
-                prop_assert_eq!(pulses.0[place], width);
+            for index in 0..4 {
+                let width = robot.calibration()[index].width(pose.0[index]);
+                prop_assert_eq!(pulses.0[index], width);
             }
         }
 
@@ -119,7 +119,7 @@ mod tests {
             from: [i16; 4],
             to: [i16; 4],
         ) {
-            let ways = (0..4).map(|place| from[place].abs_diff(to[place]));
+            let ways = (0..4).map(|index| from[index].abs_diff(to[index]));
             let [from, to] = [from, to].map(|sweeps| Pose(sweeps.map(Sweep)));
             prop_assert_eq!(Some(from.farthest(&to)), ways.max());
             prop_assert_eq!(from.farthest(&to), to.farthest(&from));

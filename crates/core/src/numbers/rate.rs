@@ -1,6 +1,6 @@
 //! The rates of the serial line.
 
-/// A rate of the serial line, from the fastest to the slowest. Its number is kept over a reset.
+/// A rate of the serial line, from the fastest to the slowest. The number survives a reset.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Rate {

@@ -63,7 +63,7 @@ impl<'a> Robot<'a> {
         Some(Self::at(flash.first(length)))
     }
 
-    /// True if there is no robot.
+    /// True for no robot.
     pub const fn is_none(&self) -> bool {
         !self.is_there
     }
@@ -73,7 +73,7 @@ impl<'a> Robot<'a> {
         self.section
     }
 
-    /// Reads the number at `offset` bytes behind the beginning of [`Numbers`].
+    /// Reads the number at `offset` bytes from the beginning of [`Numbers`].
     #[inline(always)]
     fn number<T: Plain>(&self, offset: usize) -> T {
         self.section.read(NUMBERS + offset as u16)
@@ -83,7 +83,7 @@ impl<'a> Robot<'a> {
     pub fn label(&self) -> impl Iterator<Item = u8> + use<'a> {
         let section = self.section;
         let name = offset_of!(Header, name) as u16;
-        (name..name + section::LONGEST_NAME as u16)
+        (name..name + section::MAX_NAME_BYTES as u16)
             .map(move |at| section.read(at))
             .take_while(|byte| *byte != 0)
     }
@@ -98,12 +98,12 @@ impl<'a> Robot<'a> {
         self.section.read(offset_of!(Header, servo_hash) as u16)
     }
 
-    /// Arduino numbers of the servos' pins, A1 to A4; 14 to 19 are A0 to A5.
+    /// The Arduino numbers of the servos' pins, A1 to A4; 14 to 19 are A0 to A5.
     pub fn pins(&self) -> [u8; 4] {
         self.number(offset_of!(Numbers, pins))
     }
 
-    /// Arduino number of the pin where the servos' rail is measured, 14 to 19.
+    /// The Arduino number of the pin where the servos' rail is measured, 14 to 19.
     pub fn rail_pin(&self) -> Option<u8> {
         match self.number::<u16>(offset_of!(Numbers, rail)) {
             0 => None,
@@ -187,7 +187,7 @@ impl<'a> Robot<'a> {
         }
     }
 
-    /// The place of a part and the number of its elements.
+    /// The address of a part and the number of its elements.
     pub(crate) fn place(&self, part: Part) -> Place {
         self.number(offset_of!(Numbers, parts) + part as usize * size_of::<Place>())
     }

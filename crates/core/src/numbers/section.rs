@@ -1,14 +1,14 @@
-//! The robot's section of flash: all that robot.toml says to the firmware, as data.
+//! The robot's section of flash: all that robot.toml tells the firmware, as data.
 //!
-//! The firmware is one image for any lizard. What differs from robot to robot lies behind it, at
-//! a fixed address, and can be written without a compiler. What is in a flash may be anything: an
-//! erased one, half of an upload, a section of another version, a byte that changed over the
-//! years. So nothing of it is trusted before [`crate::numbers::robot::Robot::open`] has checked
+//! The firmware is one image for any lizard. What differs from robot to robot lies after it, at
+//! a fixed address, and can be written without a compiler. That flash may hold anything: erased
+//! bytes, half an upload, a section of another version, a byte that changed over the
+//! years. So nothing in it is trusted before [`crate::numbers::robot::Robot::open`] has checked
 //! header, length and CRC, and every index and count.
 //!
 //! | part | bytes | what |
 //! |---|---|---|
-//! | [`Header`] | 36 | magic, [`FORMAT`], length, checksum of all behind it, name, hash of the numbers, hash of the servos |
+//! | [`Header`] | 36 | magic, [`FORMAT`], length, checksum of the rest, name, hash of the numbers, hash of the servos |
 //! | [`Numbers`] | 232 | see there |
 //! | curves | 354 each | of the head's couplers and, where they are others, the tail's: rise, and those of stretched, folded and skew that [`Numbers::curves`] names |
 //! | gaits | 32 each | [`crate::numbers::gaits::Gait`]; routines are the last |
@@ -54,7 +54,7 @@ pub const MAGIC: u32 = u32::from_le_bytes(*b"LZRD");
 pub use lizard_avr::{SPACE, START};
 
 /// The longest name of a robot.
-pub const LONGEST_NAME: usize = 18;
+pub const MAX_NAME_BYTES: usize = 18;
 
 lizard_avr::plain! {
     /// The first part of a section.
@@ -66,10 +66,10 @@ lizard_avr::plain! {
         pub format: u16,
         /// Bytes of the section, this header among them.
         pub length: u16,
-        /// [`Checksum`] of all bytes behind it.
+        /// The [`Checksum`] of all bytes after it.
         pub crc: u16,
         /// The robot's name, filled up with zeros.
-        pub name: [u8; LONGEST_NAME],
+        pub name: [u8; MAX_NAME_BYTES],
         /// The hash by which robots are told apart: CRC-32 of all but header and maps.
         pub hash: u32,
         /// The hash by which saved settings are matched with servos.
@@ -87,9 +87,9 @@ lizard_avr::plain! {
         pub sides: [Slider; 2],
         /// The servos' angles in the neutral pose.
         pub neutral: [Angle; 4],
-        /// Their pulses and travel.
+        /// The servos' pulses and travel.
         pub calibration: [Calibration; 4],
-        /// The sweeps that the gaits need of them.
+        /// The sweeps that the gaits need of the servos.
         pub reach: [Reach; 4],
         /// The smallest margins that are allowed.
         pub limits: Limits,
@@ -97,15 +97,14 @@ lizard_avr::plain! {
         pub slew: Slew,
         /// The supplies and their thresholds.
         pub supplies: Supplies,
-        /// The places of the curves of the couplers of head and tail: rise, stretched, folded,
-        /// skew; 0 for one that they do not need.
+        /// The addresses of the couplers' curves for head and tail: rise, stretched, folded,
+        /// skew; 0 for one that is not needed.
         pub curves: [[u16; CURVES]; 2],
         /// The parts, in the order of [`Part`].
         pub parts: [Place; PARTS],
-        /// Arduino number of the pin where the servos' rail is measured; 0 where it is
-        /// not.
+        /// The Arduino number of the pin where the servos' rail is measured; 0 if it is not.
         pub rail: u16,
-        /// Arduino numbers of the servos' pins; 14 to 19 are A0 to A5.
+        /// The Arduino numbers of the servos' pins; 14 to 19 are A0 to A5.
         pub pins: [u8; 4],
         /// The heads of the maps of head, tail, left and right. The last of the numbers,
         /// because the hash is not of them.
@@ -113,7 +112,7 @@ lizard_avr::plain! {
     }
 }
 
-/// The places of the numbers and of the first byte behind them.
+/// The offsets of the numbers and of the first byte after them.
 pub(crate) const NUMBERS: u16 = size_of::<Header>() as u16;
 pub(crate) const REST: u16 = NUMBERS + size_of::<Numbers>() as u16;
 
@@ -137,7 +136,7 @@ pub enum Part {
 pub const PARTS: usize = 4;
 
 lizard_avr::plain! {
-    /// The place of a part of the section.
+/// The address and size of a part of the section.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Place {
         /// Bytes from the section's beginning.
@@ -179,7 +178,7 @@ const CHECKED: usize = offset_of!(Header, name);
 /// The length of the section at the beginning of a region, once its CRC is checked.
 ///
 /// # Errors
-/// [`Damage::Missing`], [`Damage::Format`] or [`Damage::Damaged`].
+/// Returns [`Damage::Missing`], [`Damage::Format`] or [`Damage::Damaged`].
 #[inline(never)]
 pub fn find(flash: Region) -> Result<u16, Damage> {
     if flash.size() < NUMBERS {

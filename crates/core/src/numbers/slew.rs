@@ -1,4 +1,4 @@
-//! The slew limit: how fast servos may turn when the robot goes from one pose to another.
+//! The slew limit: the speed of servos when the robot goes from one pose to another.
 
 lizard_avr::plain! {
     /// The slew limit of a move.

@@ -4,33 +4,31 @@ use lizard_avr::mul_unsigned;
 
 use crate::numbers::units::Scale;
 
-/// The longest that a side may be, in steps: the chassis, both arms and the offset
-/// together; and the slider.
-pub const LONGEST: f64 = 255.0 * 256.0;
+/// The largest length of a side, in steps: chassis, arms and offset together; and the slider.
+pub const MAX_STEPS: f64 = 255.0 * 256.0;
 
-/// The longest that both arms and the offset may be together, in steps: what they
-/// add up to has a sign.
-pub const LONGEST_ARMS: f64 = 127.0 * 256.0;
+/// The largest sum of both arms and the offset, in steps: the sum is signed.
+pub const MAX_ARM_STEPS: f64 = 127.0 * 256.0;
 
 lizard_avr::plain! {
     /// One side of the body, lengths in steps of `scale`.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Slider {
-        /// The steps of all lengths.
+        /// The step of all lengths.
         pub scale: Scale,
-        /// Front shaft's x less the rear shaft's.
+        /// The front shaft's x less the rear shaft's.
         pub offset: i16,
-        /// Distance between the two shafts along y.
+        /// The distance between the two shafts along y.
         pub base: u16,
-        /// Arm at the front crank, at a right angle to it.
+        /// The arm at the front crank, at a right angle to it.
         pub front: i16,
-        /// Arm at the rear crank, at a right angle to it.
+        /// The arm at the rear crank, at a right angle to it.
         pub rear: i16,
         /// The slider's nominal length.
         pub nominal: u16,
-        /// The shortest that its stroke allows.
+        /// The shortest length within the stroke.
         pub min: u16,
-        /// The longest that its stroke allows.
+        /// The longest length within the stroke.
         pub max: u16,
     }
 }
@@ -48,7 +46,7 @@ impl Slider {
         max: 0,
     };
 
-    /// True where a squared length is within the stroke.
+    /// True if a squared length is within the stroke.
     pub fn allows(&self, length_sq: u32) -> bool {
         let square = |length| mul_unsigned(length, length);
         square(self.min) <= length_sq && length_sq <= square(self.max)

@@ -4,11 +4,11 @@ lizard_avr::plain! {
     /// Voltages of one supply below which the robot reacts, mV, falling.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Thresholds {
-        /// Below it, gaits are limited to half their pace and the EEPROM is not written.
+        /// The voltage below which gaits slow to half their pace and the EEPROM is not written.
         pub slow: u16,
-        /// Below it, the robot freezes.
+        /// The voltage below which the robot freezes.
         pub stop: u16,
-        /// Below it, the pulses end.
+        /// The voltage below which the pulses end.
         pub rest: u16,
     }
 }

@@ -33,13 +33,13 @@ pub const TURN: i32 = 1 << 16;
 /// 1.0 in Q15, one past the largest sine.
 pub const ONE_Q15: i32 = 1 << 15;
 
-/// 1.0 in Q14, as gains have it.
+/// 1.0 in Q14, the format of gains.
 pub const ONE_Q14: i32 = 1 << 14;
 
 /// One gait cycle, as a phase.
 pub const CYCLE: u32 = 1 << 24;
 
-/// One gait cycle, in the steps that tables tell apart.
+/// One gait cycle, in the steps by which tables are read.
 pub const CYCLE16: u32 = 1 << 16;
 
 /// An angle in the chassis frame, 1/65536 turn.
@@ -93,7 +93,7 @@ impl Angle {
     #[inline(never)]
     pub fn from_centideg(centideg: i32) -> Self {
         let size = centideg.unsigned_abs() as u16;
-        // A whole turn is none. 65536/36000 is 1 + 53769/65536 to within a fifth of a
+        // A whole turn counts as none. 65536/36000 is 1 + 53769/65536 to within a fifth of a
         // step over the turn.
         let size = if size == TURN_CENTIDEG as u16 {
             0
@@ -108,8 +108,8 @@ impl Angle {
         })
     }
 
-    /// In hundredths of a degree, 0..36000. Exact inverse of
-    /// [`Angle::from_centideg`], whose step is the finer one.
+    /// The angle in hundredths of a degree, 0..36000: the exact inverse of
+    /// [`Angle::from_centideg`], since the step of an angle is finer.
     pub fn centideg(self) -> u16 {
         // The last step of a turn is 359.9945 deg, which does not round to 360.
         ((mul_unsigned(self.0, TURN_CENTIDEG as u16) + 0x8000) >> 16) as u16
@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn every_length_in_every_scale_is_printed_to_the_nearest_hundredth_of_a_millimetre() {
+    fn every_length_is_printed_to_the_nearest_hundredth_of_a_millimetre() {
         for bits in 0..=14 {
             let scale = Scale { bits };
             for length in (-65_535..=65_535)
@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn a_phase_is_printed_in_thousandths_rounded_down_so_it_never_reads_as_a_whole_cycle() {
+    fn a_phase_is_printed_rounded_down_and_never_as_a_whole_cycle() {
         for phase in (0..CYCLE).step_by(97).chain([CYCLE - 1]) {
             let exact = f64::from(phase) * 1000.0 / f64::from(CYCLE);
             let told = thousandths_from_phase(phase);

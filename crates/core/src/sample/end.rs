@@ -58,8 +58,8 @@ impl Bars {
 }
 
 impl Loop {
-    /// Bars in mm, in the finest step that holds them; none if a coupler is too
-    /// short compared with the rest.
+    /// Bars in mm, in the finest step that holds them; `None` if a coupler is too short
+    /// compared with the rest.
     pub fn new(bars: &kinematics::FiveBar) -> Option<Self> {
         let [base, left, right] = [bars.base, bars.crank_left, bars.crank_right];
         let couplers = [bars.coupler_left, bars.coupler_right];
@@ -67,9 +67,9 @@ impl Loop {
         let scale = (0..=14)
             .rev()
             .map(|bits| Scale { bits })
-            .find(|scale| longest * per_mm(*scale) < bars::LONGEST)?;
+            .find(|scale| longest * per_mm(*scale) < bars::MAX_STEPS)?;
         let [a, b] = couplers.map(|mm| steps(mm, scale) as i16);
-        if a.min(b) < bars::SHORTEST_COUPLER {
+        if a.min(b) < bars::MIN_COUPLER {
             return None;
         }
         Some(Self {
@@ -87,7 +87,7 @@ impl Loop {
             base,
             cranks: [left, right],
             couplers: [self.couplers.left, self.couplers.right],
-            near_stretched: true,
+            is_near_stretched: true,
         }
     }
 

@@ -161,8 +161,8 @@ impl Servo {
 /// (chassis, rear arm, rear and front half of the slider, front arm).
 fn lizard(head: [f64; 5], tail: [f64; 5], left: [f64; 5], right: [f64; 5]) -> Lizard {
     let mut links = [0.0; 20];
-    for (place, part) in [head, tail, left, right].iter().enumerate() {
-        links[5 * place..][..5].copy_from_slice(part);
+    for (index, part) in [head, tail, left, right].iter().enumerate() {
+        links[5 * index..][..5].copy_from_slice(part);
     }
     Lizard {
         links: Links::from(links),

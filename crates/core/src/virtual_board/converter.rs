@@ -8,21 +8,21 @@ use crate::numbers::supplies::Supplies;
 pub struct Converter {
     /// The present supplies.
     truth: Reading,
-    /// True if the servos' rail is measured, too.
-    rail: bool,
+    /// True if the servos' rail is measured too.
+    has_rail: bool,
     read: Reading,
     /// Frames since power-on, up to a complete measurement; then the part that is under way.
     frames: u8,
-    complete: bool,
+    is_complete: bool,
 }
 
 impl Converter {
     /// A converter with these supplies, with the servos' rail or without.
     #[must_use]
-    pub fn new(truth: Reading, rail: bool) -> Self {
+    pub fn new(truth: Reading, has_rail: bool) -> Self {
         Self {
             truth,
-            rail,
+            has_rail,
             ..Self::default()
         }
     }
@@ -41,11 +41,11 @@ impl Converter {
     /// True once every voltage has been measured since the program began.
     #[must_use]
     pub const fn is_complete(&self) -> bool {
-        self.complete
+        self.is_complete
     }
 
     pub(super) fn reset(self) -> Self {
-        Self::new(self.truth, self.rail)
+        Self::new(self.truth, self.has_rail)
     }
 
     /// The last complete reading, or nothing; begins the next measurement.
@@ -53,17 +53,17 @@ impl Converter {
         match self.frames {
             1 => {
                 self.read.reference = self.truth.reference;
-                self.complete |= !self.rail;
+                self.is_complete |= !self.has_rail;
             }
             3 => {
                 self.read.rail = self.truth.rail;
-                self.complete = true;
+                self.is_complete = true;
             }
             _ => {}
         }
-        let period = if self.rail { 4 } else { 2 };
+        let period = if self.has_rail { 4 } else { 2 };
         self.frames = (self.frames + 1) % period;
-        if self.complete {
+        if self.is_complete {
             self.read
         } else {
             Reading::default()
@@ -71,7 +71,7 @@ impl Converter {
     }
 }
 
-/// The converter's reading of a supply, and of a rail behind its divider, mV.
+/// The converter's reading of a supply, and of a rail through its divider, mV.
 #[must_use]
 pub fn reading(supplies: &Supplies, board: u32, rail: u32) -> Reading {
     let board = u64::from(board);

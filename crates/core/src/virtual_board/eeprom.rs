@@ -11,18 +11,18 @@ use crate::memory::record::{ERASED, Memory, SIZE};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Eeprom {
     bytes: Arc<[u8; SIZE]>,
-    /// The number of polls after a write until it is ready again; or, if it is `timed`,
+    /// The number of polls after a write until it is ready again; or, if it is `is_timed`,
     /// milliseconds.
     pub slowness: u16,
-    /// True if time makes it ready, as on the chip, and not polls.
-    pub timed: bool,
-    /// True if it is worn out, so that writes change nothing.
-    pub worn: bool,
-    /// Every byte written: address, old value, new value.
+    /// True if time makes the EEPROM ready, as on the chip, and not polls.
+    pub is_timed: bool,
+    /// True if the EEPROM is worn out, so that writes change nothing.
+    pub is_worn: bool,
+    /// Every write of a byte: address, old value, new value.
     pub log: Vec<(u16, u8, u8)>,
     busy: Cell<u16>,
-    /// True if it was polled while it was not ready.
-    polled_busy: Cell<bool>,
+    /// True if the EEPROM was polled while it was not ready.
+    was_polled_busy: Cell<bool>,
     /// The byte that is being written.
     under_way: Cell<Option<u16>>,
 }
@@ -36,7 +36,7 @@ impl Default for Eeprom {
 impl Hash for Eeprom {
     fn hash<H: Hasher>(&self, state: &mut H) {
         self.bytes.hash(state);
-        self.worn.hash(state);
+        self.is_worn.hash(state);
         self.log.hash(state);
         self.busy.get().hash(state);
         self.under_way.get().hash(state);
@@ -56,11 +56,11 @@ impl Eeprom {
         Self {
             bytes: Arc::new(bytes),
             slowness: 0,
-            timed: false,
-            worn: false,
+            is_timed: false,
+            is_worn: false,
             log: Vec::new(),
             busy: Cell::new(0),
-            polled_busy: Cell::new(false),
+            was_polled_busy: Cell::new(false),
             under_way: Cell::new(None),
         }
     }
@@ -85,12 +85,12 @@ impl Eeprom {
     /// True if it was polled while busy since the last call and only time makes it ready.
     #[must_use]
     pub fn was_polled_busy(&self) -> bool {
-        self.polled_busy.take()
+        self.was_polled_busy.take()
     }
 
     /// Lets a millisecond pass.
     pub(super) fn pass_time(&mut self) {
-        let busy = self.busy.get().saturating_sub(u16::from(self.timed));
+        let busy = self.busy.get().saturating_sub(u16::from(self.is_timed));
         self.busy.set(busy);
         if busy == 0 {
             self.under_way.set(None);
@@ -115,8 +115,8 @@ impl Eeprom {
 impl Memory for Eeprom {
     fn is_ready(&self) -> bool {
         let busy = self.busy.get();
-        if self.timed {
-            self.polled_busy.set(busy > 0);
+        if self.is_timed {
+            self.was_polled_busy.set(busy > 0);
         } else {
             self.busy.set(busy.saturating_sub(1));
         }
@@ -136,7 +136,7 @@ impl Memory for Eeprom {
         let before = self.bytes[usize::from(address)];
         assert_ne!(before, byte, "written for nothing");
         self.log.push((address, before, byte));
-        if !self.worn {
+        if !self.is_worn {
             self.bytes_mut()[usize::from(address)] = byte;
         }
         self.busy.set(self.slowness);

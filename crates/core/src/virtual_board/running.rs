@@ -108,11 +108,11 @@ impl Running {
 
     /// Runs frames while nobody reads the output.
     pub fn run_without_reader(&mut self, frames: u32) {
-        self.board.transmitter.held = true;
+        self.board.transmitter.is_held = true;
         for _ in 0..frames {
             self.frame();
         }
-        self.board.transmitter.held = false;
+        self.board.transmitter.is_held = false;
     }
 
     /// Reads every line that waits, and checks its form.
@@ -144,8 +144,7 @@ impl Running {
         lines
     }
 
-    /// Sends a line and returns the final line of its answer. What is told behind that can still be
-    /// read.
+    /// Sends a line and returns the final line of its answer. Lines after that can still be read.
     ///
     /// # Panics
     /// If the answer does not end with exactly one final line.

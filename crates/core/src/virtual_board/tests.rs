@@ -114,7 +114,7 @@ fn a_slow_listener_leaves_less_room_until_time_passes() {
     assert_eq!(transmitter.room(), 55);
     transmitter.pass_time(10);
     assert_eq!(transmitter.room(), 65);
-    transmitter.held = true;
+    transmitter.is_held = true;
     assert_eq!(transmitter.room(), 0);
     assert_eq!(Transmitter::default().room(), 255);
 }

@@ -15,7 +15,7 @@ pub struct Transmitter {
     /// The text that was written and not read yet.
     pub text: String,
     /// True while nobody reads the line, so that it never gets free.
-    pub held: bool,
+    pub is_held: bool,
     /// CPU cycles for a byte; 0 for a line without delay.
     per_byte: u64,
     /// Bytes that it accepts before a writer has to wait.
@@ -36,7 +36,7 @@ impl Default for Transmitter {
 impl Hash for Transmitter {
     fn hash<H: Hasher>(&self, state: &mut H) {
         self.text.hash(state);
-        self.held.hash(state);
+        self.is_held.hash(state);
         self.left().hash(state);
     }
 }
@@ -47,7 +47,7 @@ impl Transmitter {
     pub const fn new(per_byte: u64, capacity: u64) -> Self {
         Self {
             text: String::new(),
-            held: false,
+            is_held: false,
             per_byte,
             capacity,
             now: 0,
@@ -79,7 +79,7 @@ impl Transmitter {
     /// Bytes that it takes without waiting, at most 255.
     #[must_use]
     pub fn room(&self) -> u8 {
-        if self.held {
+        if self.is_held {
             return 0;
         }
         let queued = self.left().div_ceil(self.per_byte.max(1));

@@ -1,4 +1,4 @@
-//! `lizard gaits`: what the check of every gait found, and how far each gait walks.
+//! `lizard gaits`: the results of checking every gait, and the distance that each walks.
 
 use std::io::Write;
 
@@ -59,8 +59,7 @@ pub struct Args {
 /// Prints the table, the objects or the trace.
 ///
 /// # Errors
-/// A wrong robot.toml, a gait that it does not have, an output that cannot be
-/// written.
+/// Fails for a wrong robot.toml, a gait that it does not have, an output that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let mut out = std::io::stdout().lock();
@@ -83,7 +82,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     Ok(out.flush()?)
 }
 
-/// Computes a table, and shows meanwhile how long it takes.
+/// Computes a table while a spinner shows the elapsed time.
 fn computed<T>(table: impl FnOnce() -> T) -> T {
     let _spinner = Spinner::new("walking every gait");
     table()
@@ -152,12 +151,13 @@ struct Predicted {
 struct RoutineLine<'a> {
     routine: &'a str,
     steps: usize,
-    /// null for ever
+    /// Null for a routine without an end.
     repeat: Option<u16>,
     /// Duration of one round from standing, s.
     seconds: f64,
     /// Displacement of one round, as that of a gait.
     predicted: Predicted,
+    by_servos: Predicted,
 }
 
 impl<'a> RoutineLine<'a> {
@@ -168,6 +168,7 @@ impl<'a> RoutineLine<'a> {
             repeat: round.rounds,
             seconds: round.seconds,
             predicted: round.movement.into(),
+            by_servos: round.driven.into(),
         }
     }
 }

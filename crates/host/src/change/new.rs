@@ -22,7 +22,7 @@ pub struct Args {
 /// Writes the file.
 ///
 /// # Errors
-/// It already exists, or cannot be made.
+/// Fails if it already exists, or cannot be made.
 pub fn run(args: Args) -> Result<(), Failure> {
     let name = args.file.display();
     let file = File::create_new(&args.file);

@@ -6,7 +6,7 @@ use super::known::Known;
 use crate::Failure;
 use crate::shared::suggestion::did_you_mean;
 
-/// The description of the commands that need this feature.
+/// Describes the commands that need this feature.
 pub(super) fn words(feature: &str) -> &'static str {
     match feature {
         "simulator" => "the simulator",
@@ -74,7 +74,7 @@ pub(super) fn explain(typed: &[OsString], known: &[Known]) -> Failure {
 #[derive(clap::Args)]
 pub struct Absent {
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
-    _words: Vec<OsString>,
+    _arguments: Vec<OsString>,
 }
 
 #[cfg(not(all(feature = "paper", feature = "simulator")))]
@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn the_help_of_a_build_names_the_commands_that_it_lacks_and_that_of_a_complete_one_none() {
+    fn the_help_names_exactly_the_commands_that_a_build_lacks() {
         assert_eq!(list_in_build(KNOWN, |_| true), "");
         assert_eq!(
             list_in_build(KNOWN, |feature| feature != "simulator"),

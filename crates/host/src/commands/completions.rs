@@ -1,4 +1,4 @@
-//! `lizard completions` and `lizard completions man`: what a shell and `man` know of the program.
+//! `lizard completions` and `lizard completions man`: completions and manual pages.
 
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -34,7 +34,7 @@ pub struct ManArgs {
 /// Runs `lizard completions` for the program.
 ///
 /// # Errors
-/// Standard output cannot be written.
+/// Fails if standard output cannot be written.
 pub fn completions(args: CompletionsArgs, mut command: Command) -> Result<(), Failure> {
     let shell = args.shell.expect("clap requires it");
     let mut script = Vec::new();
@@ -45,8 +45,8 @@ pub fn completions(args: CompletionsArgs, mut command: Command) -> Result<(), Fa
     Ok(out.flush()?)
 }
 
-/// Narrows what a script offers for `--robot` down to robot files and the program's own robots.
-/// clap knows only hints such as "a file".
+/// Narrows a script's suggestions for `--robot` down to robot files and the program's own
+/// robots. clap knows only hints such as "a file".
 fn offer_robots(script: &str) -> String {
     const BASH: &str = "COMPREPLY=($(compgen -f \"${cur}\"))";
     let names = robot_file::names().join(" ");
@@ -77,7 +77,7 @@ fn offer_robots(script: &str) -> String {
 /// Runs `lizard completions man` for the program.
 ///
 /// # Errors
-/// A file cannot be written.
+/// Fails if a file cannot be written.
 pub fn man(args: ManArgs, command: Command) -> Result<(), Failure> {
     let mut command = command.disable_help_subcommand(true);
     command.build();

@@ -20,9 +20,9 @@ pub(super) fn grouped(command: Command, known: &[Known]) -> Command {
     ))
 }
 
-fn heading(words: &str) -> String {
+fn heading(text: &str) -> String {
     let style = *clap::builder::Styles::styled().get_header();
-    format!("{style}{words}:{style:#}")
+    format!("{style}{text}:{style:#}")
 }
 
 /// Lists every subcommand once, under its heading.

@@ -47,14 +47,14 @@ pub(super) struct Known {
     pub(super) group: Group,
     /// The command's variant of the enum of commands.
     pub(super) variant: &'static str,
-    /// Other words for the same command.
+    /// Aliases of the command.
     pub(super) also: &'static [&'static str],
     /// The cargo features that it needs.
     pub(super) needs: &'static [&'static str],
 }
 
 impl Known {
-    /// The word that is typed.
+    /// The name that the user types.
     pub(super) fn name(&self) -> String {
         self.variant.to_lowercase()
     }

@@ -30,7 +30,8 @@ pub struct MergeArgs {
 /// Reads all parts, and runs the command with what they have found.
 ///
 /// # Errors
-/// A part is missing, is given twice or differs from the others; and the command's own errors.
+/// Fails if a part is missing, is given twice or differs from the others; and the command's own
+/// errors.
 pub fn merge(args: MergeArgs) -> Result<(), Failure> {
     let whole = Whole::of(shares(&args.files)?)?;
     match whole.command.as_str() {
@@ -126,8 +127,8 @@ impl Whole {
                     "part {name} has a different robot from another part"
                 ));
             }
-            let place = share.part.number as usize - 1;
-            if std::mem::replace(&mut seen[place], true) {
+            let index = share.part.number as usize - 1;
+            if std::mem::replace(&mut seen[index], true) {
                 return refused(format!("part {name} is given twice"));
             }
             whole.found.extend(share.found);

@@ -151,10 +151,10 @@ const REMOVED: [(&str, &str); 2] = [
 /// Translates a command line of the previous version.
 ///
 /// # Errors
-/// The command was removed.
-fn translate_old_words(mut words: Vec<OsString>) -> Result<Vec<OsString>, Failure> {
-    let Some(word) = words.get(1).and_then(|word| word.to_str()) else {
-        return Ok(words);
+/// Fails if the command was removed.
+fn translate_old_arguments(mut arguments: Vec<OsString>) -> Result<Vec<OsString>, Failure> {
+    let Some(word) = arguments.get(1).and_then(|word| word.to_str()) else {
+        return Ok(arguments);
     };
     if let Some((word, instead)) = REMOVED.iter().find(|(old, _)| *old == word) {
         return Err(Failure::Input(format!(
@@ -166,9 +166,9 @@ fn translate_old_words(mut words: Vec<OsString>) -> Result<Vec<OsString>, Failur
             "lizard: `{old}` is `lizard {}` now; the next version will not know the old word",
             new.join(" ")
         );
-        words.splice(1..2, new.iter().map(OsString::from));
+        arguments.splice(1..2, new.iter().map(OsString::from));
     }
-    Ok(words)
+    Ok(arguments)
 }
 
 fn completions_of_program(
@@ -201,25 +201,25 @@ pub fn program() -> clap::Command {
 /// Runs a command line.
 ///
 /// # Errors
-/// Those of the command.
-pub fn run(words: Vec<OsString>) -> Result<(), Failure> {
-    let parsed = program().try_get_matches_from(translate_old_words(words)?);
+/// Returns the errors of the command.
+pub fn run(arguments: Vec<OsString>) -> Result<(), Failure> {
+    let parsed = program().try_get_matches_from(translate_old_arguments(arguments)?);
     match parsed.and_then(|mut matches| Cli::from_arg_matches_mut(&mut matches)) {
         Ok(cli) => cli.command.run(),
         Err(error) => exit_with(&error),
     }
 }
 
-/// Runs a command line, writes the sentence of its failure, and returns the exit code.
+/// Runs a command line, writes the message of its failure, and returns the exit code.
 #[must_use]
-pub fn run_and_report(words: Vec<OsString>) -> u8 {
-    match run(words) {
+pub fn run_and_report(arguments: Vec<OsString>) -> u8 {
+    match run(arguments) {
         Ok(()) => 0,
         Err(failure) if failure.is_silent() => 0,
         Err(failure) => {
             // It may quote a file or a board. A terminal that is gone is no reason to panic.
-            let words = readable_lines(&failure.to_string());
-            let _ = writeln!(io::stderr(), "lizard: {words}");
+            let message = readable_lines(&failure.to_string());
+            let _ = writeln!(io::stderr(), "lizard: {message}");
             failure.exit_code()
         }
     }
@@ -291,11 +291,12 @@ mod tests {
             ("lizard console solve", "lizard console solve"),
         ] {
             assert_eq!(
-                translate_old_words(words(old)).expect("it is known"),
+                translate_old_arguments(words(old)).expect("it is known"),
                 words(new)
             );
         }
-        let gone = translate_old_words(words("lizard spring --wire 0.6")).expect_err("it is gone");
+        let gone =
+            translate_old_arguments(words("lizard spring --wire 0.6")).expect_err("it is gone");
         assert!(gone.to_string().contains("[leg.drive]"), "{gone}");
     }
 

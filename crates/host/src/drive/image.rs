@@ -31,7 +31,7 @@ pub struct Args {
 /// Makes the image.
 ///
 /// # Errors
-/// The robot is wrong, or the file cannot be written.
+/// Fails if the robot is wrong, or the file cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     if args.output.is_none() && io::stdout().is_terminal() {
         return Err(Failure::Input(

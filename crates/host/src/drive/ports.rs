@@ -67,7 +67,7 @@ fn chip(ids: [u16; 2]) -> Option<&'static str> {
 /// Lists the ports.
 ///
 /// # Errors
-/// Standard output cannot be written.
+/// Fails if standard output cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let lines: Vec<Line> = find::usb_ports().into_iter().map(Line::of).collect();
     json::print_json_or(args.json, &lines, || text(&lines))
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn a_port_that_may_not_be_opened_comes_with_the_remedy_and_one_that_is_open_with_its_program() {
+    fn a_forbidden_port_comes_with_the_remedy_and_an_open_one_with_its_program() {
         let mut closed = line(0x2341, 0x0043, None);
         closed.may_open = false;
         closed.open_in = Some("screen (process 7)".to_owned());

@@ -57,7 +57,7 @@ struct ModeSolution {
 /// Prints the servo angles that put head and tail at these points, mm.
 ///
 /// # Errors
-/// A point out of reach, an output that cannot be written.
+/// Fails for a point out of reach, an output that cannot be written.
 pub fn print(robot: &Robot, ends: [Option<Vector>; 2], json: bool) -> Result<(), Failure> {
     let [head, tail] = ends;
     let head = head.map(|point| solve(robot, End::Head, point));

@@ -34,7 +34,7 @@ struct Mechanism {
     joints: Vec<Joint>,
     /// The driven links.
     driven: Vec<usize>,
-    /// The sentence for each group of links that moves although the driven ones are locked.
+    /// The message for each group of links that moves although the driven ones are locked.
     parts: &'static [(&'static [usize], &'static str)],
 }
 
@@ -75,7 +75,7 @@ struct Report {
 /// Prints the degrees of freedom of body and legs.
 ///
 /// # Errors
-/// An output that cannot be written.
+/// Fails for an output that cannot be written.
 pub fn print(lizard: &Lizard, solution: &Solution, json: bool) -> Result<(), Failure> {
     let legs = ["leg LF (A1)", "leg RF (A2)", "leg RH (A3)", "leg LH (A4)"];
     let mut all = vec![body(lizard, solution)];

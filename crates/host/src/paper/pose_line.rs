@@ -107,8 +107,8 @@ impl PoseLine {
 }
 
 /// The heading of [`row`], in the same columns.
-pub fn heading(timed: bool) -> String {
-    let seconds = if timed { " seconds |" } else { "" };
+pub fn heading(has_time: bool) -> String {
+    let seconds = if has_time { " seconds |" } else { "" };
     format!(
         "{seconds} {:>8} {:>8} {:>8} {:>8} | {:>8} {:>8} {:>8} {:>8} | {:>17} {:>17} | {:>7} {:>7} | {:17} | safe, or why not",
         "theta1",

@@ -44,7 +44,7 @@ const SERVO_ORDER: [Column; 4] = [
 ];
 
 /// Longer lines are not poses, and are not read to their end.
-const LONGEST_LINE: u64 = 1024;
+const MAX_LINE_BYTES: u64 = 1024;
 
 /// A line of the stream.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,21 +66,21 @@ pub struct Poses<R> {
     /// The meaning of each field of a line.
     columns: Vec<Column>,
     /// True while the first line read still needs an answer.
-    waiting: bool,
+    is_unanswered: bool,
 }
 
 impl<R: BufRead> Poses<R> {
     /// Reads the header, if there is one.
     ///
     /// # Errors
-    /// If the input is empty, cannot be read, or its header is wrong.
+    /// Fails if the input is empty, cannot be read, or its header is wrong.
     pub fn new(input: R) -> Result<Self, Failure> {
         let mut poses = Self {
             input,
             line: Vec::new(),
             number: 0,
             columns: SERVO_ORDER.to_vec(),
-            waiting: false,
+            is_unanswered: false,
         };
         let wanted = ANGLES.join(",");
         if !poses.advance()? {
@@ -92,7 +92,7 @@ impl<R: BufRead> Poses<R> {
         let names: Vec<&str> = text.split(',').map(trim_quotes).collect();
         // A header has no numbers; the first line of bare poses has.
         if names.iter().any(|name| name.parse::<f64>().is_ok()) {
-            poses.waiting = true;
+            poses.is_unanswered = true;
             return Ok(poses);
         }
         let number = poses.number;
@@ -121,7 +121,7 @@ impl<R: BufRead> Poses<R> {
     }
 
     /// True if the lines have a time.
-    pub fn timed(&self) -> bool {
+    pub fn has_time(&self) -> bool {
         self.columns.contains(&Column::Seconds)
     }
 
@@ -130,15 +130,15 @@ impl<R: BufRead> Poses<R> {
         loop {
             self.line.clear();
             let read = (&mut self.input)
-                .take(LONGEST_LINE)
+                .take(MAX_LINE_BYTES)
                 .read_until(b'\n', &mut self.line)?;
             if read == 0 {
                 return Ok(false);
             }
             self.number += 1;
-            if read as u64 == LONGEST_LINE && !self.line.ends_with(b"\n") {
+            if read as u64 == MAX_LINE_BYTES && !self.line.ends_with(b"\n") {
                 return Err(Failure::Input(format!(
-                    "line {}, column 1: longer than {LONGEST_LINE} bytes",
+                    "line {}, column 1: longer than {MAX_LINE_BYTES} bytes",
                     self.number
                 )));
             }
@@ -216,7 +216,7 @@ impl<R: BufRead> Iterator for Poses<R> {
     type Item = Result<Timed, Failure>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        if std::mem::take(&mut self.waiting) {
+        if std::mem::take(&mut self.is_unanswered) {
             return Some(self.parse());
         }
         match self.advance() {

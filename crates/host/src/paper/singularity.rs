@@ -101,7 +101,7 @@ struct Nearest {
 /// Prints the matrices and the nearest singularities.
 ///
 /// # Errors
-/// An output that cannot be written.
+/// Fails for an output that cannot be written.
 pub fn print(robot: &Robot, solution: &Solution, json: bool) -> Result<(), Failure> {
     let report = report(robot, solution);
     json::print_json_or(json, &report, || text(&report))

@@ -22,7 +22,7 @@ const AHEAD: usize = 32;
 /// Solves a pose, or those of standard input if there is none.
 ///
 /// # Errors
-/// An invalid pose or line of the stream, or an output that cannot be written.
+/// Fails for an invalid pose or line of the stream, or an output that cannot be written.
 pub fn print(robot: &Robot, pose: Option<&Pose>, json: bool) -> Result<(), Failure> {
     match pose {
         Some(pose) => Ok(io::stdout().write_all(&solve_one(robot, pose, json)?)?),
@@ -52,7 +52,7 @@ fn stream(robot: &Robot, json: bool) -> Result<(), Failure> {
     let mut poses = Poses::new(io::stdin().lock())?;
     let (solved, to_write) = mpsc::sync_channel::<Vec<u8>>(AHEAD);
     thread::scope(|scope| {
-        let heading = (!json).then(|| pose_line::heading(poses.timed()));
+        let heading = (!json).then(|| pose_line::heading(poses.has_time()));
         let writer = scope.spawn(move || write(to_write, heading));
         let read = solve_all(robot, json, &mut poses, &solved);
         drop(solved);

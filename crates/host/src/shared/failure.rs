@@ -1,4 +1,4 @@
-//! The failure that ends the program: a sentence for the user, and an exit code.
+//! The failure that ends the program: a message for the user, and an exit code.
 
 use std::io;
 

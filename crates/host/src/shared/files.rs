@@ -29,13 +29,13 @@ pub fn note_input(path: &Path) -> &Path {
 /// The text of an input.
 ///
 /// # Errors
-/// It cannot be read, is not text, or does not end within 256 MiB, as a device may not.
+/// Fails if it cannot be read, is not text, or does not end within 256 MiB, as a device may not.
 pub fn read_text(path: &Path) -> Result<String, Failure> {
-    const LONGEST: u64 = 256 << 20;
+    const MAX_BYTES: u64 = 256 << 20;
     let mut text = String::new();
     let read = File::open(note_input(path)).and_then(|file| {
-        match file.take(LONGEST + 1).read_to_string(&mut text)? as u64 {
-            0..=LONGEST => Ok(()),
+        match file.take(MAX_BYTES + 1).read_to_string(&mut text)? as u64 {
+            0..=MAX_BYTES => Ok(()),
             _ => Err(io::Error::other("it is longer than 256 MiB")),
         }
     });
@@ -46,7 +46,7 @@ pub fn read_text(path: &Path) -> Result<String, Failure> {
 /// Checks that an output replaces neither an input nor a robot's description.
 ///
 /// # Errors
-/// It would.
+/// Fails if the output would replace one of them.
 pub fn check_replaceable(path: &Path) -> Result<(), Failure> {
     let read = READ.lock().unwrap_or_else(PoisonError::into_inner);
     let is_input = |input: &PathBuf| same_file::is_same_file(input, path).unwrap_or(false);
@@ -84,9 +84,9 @@ fn is_robot(path: &Path) -> bool {
 /// /dev/stdout or a named pipe, gets the bytes.
 ///
 /// # Errors
-/// The folder cannot be made or written to; or there is something at this path that is
-/// no ordinary file, such as a device or a folder: it would be replaced by a file. Or the file
-/// is an input or a robot ([`check_replaceable`]).
+/// Fails if the folder cannot be made or written to; or there is something at this path that is no
+/// ordinary file, such as a device or a folder: it would be replaced by a file. Or the file is an
+/// input or a robot ([`check_replaceable`]).
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     check_replaceable(path)?;
     let done = if is_stream(path) {
@@ -101,7 +101,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     done.map_err(|error| write_failure(path, &error))
 }
 
-/// The sentence for a path that cannot be written.
+/// The message for a path that cannot be written.
 pub fn write_failure(path: &Path, error: &io::Error) -> Failure {
     let why = error.to_string();
     // tempfile adds the name of the temporary file, which means nothing to a user.
@@ -131,8 +131,8 @@ fn is_stream(_: &Path) -> bool {
     false
 }
 
-/// The file behind a path, after following links, and its permissions, if it exists.
-fn place(path: &Path) -> io::Result<(PathBuf, Option<Permissions>)> {
+/// Follows the links of a path; returns the file at the end and its permissions, if it exists.
+fn resolve(path: &Path) -> io::Result<(PathBuf, Option<Permissions>)> {
     match path.metadata() {
         Ok(there) if there.is_file() => Ok((path.canonicalize()?, Some(there.permissions()))),
         Ok(_) => Err(io::Error::other(
@@ -145,7 +145,7 @@ fn place(path: &Path) -> io::Result<(PathBuf, Option<Permissions>)> {
 }
 
 fn persist(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let (path, permissions) = place(path)?;
+    let (path, permissions) = resolve(path)?;
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
@@ -180,7 +180,7 @@ fn persist(path: &Path, bytes: &[u8]) -> io::Result<()> {
     Ok(())
 }
 
-/// A file in this folder that has no name yet, and is gone if the program is killed; none where
+/// A file in this folder that has no name yet, and is gone if the program is killed; `None` if
 /// the file system has no such files.
 #[cfg(target_os = "linux")]
 fn create_nameless(folder: &Path) -> Option<File> {
@@ -264,7 +264,7 @@ mod tests {
 
     #[test]
     #[cfg(unix)]
-    fn a_link_stays_one_and_the_file_at_its_end_is_replaced_with_its_permissions() {
+    fn a_link_stays_and_the_file_at_its_end_is_replaced_with_its_permissions() {
         use std::os::unix::fs::{PermissionsExt, symlink};
         let folder = tempfile::tempdir().expect("a folder");
         let [file, link, astray] = ["file", "link", "astray"].map(|name| folder.path().join(name));
@@ -294,7 +294,7 @@ mod tests {
 
     #[test]
     #[cfg(target_os = "linux")]
-    fn of_a_folder_that_takes_no_files_the_file_alone_is_named() {
+    fn in_a_folder_that_takes_no_files_the_file_alone_is_named() {
         let words = refusal(Path::new("/proc/self/a.toml"));
         assert!(
             words.starts_with("cannot write /proc/self/a.toml: "),

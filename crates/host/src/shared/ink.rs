@@ -7,7 +7,7 @@ use svg::{Document, Node};
 /// Servos A1 to A4, and their legs: three of Okabe and Ito's colours and a purple
 /// of Tol's, which the colour-blind can tell apart too.
 pub const SERVO: [&str; 4] = ["#0072b2", "#d55e00", "#009e73", "#aa4499"];
-/// Places of the servos on the robot.
+/// Positions of the servos on the robot.
 pub const PLACES: [&str; 4] = ["front left", "front right", "back right", "back left"];
 /// Text and axes.
 pub const DARK: &str = "#222222";
@@ -32,20 +32,20 @@ const FONTS: &str = "Helvetica, Arial, 'DejaVu Sans', sans-serif";
 pub enum Anchor {
     /// The text begins there.
     Start,
-    /// Its middle is there.
+    /// The middle of the text is there.
     Middle,
     /// The text ends there.
     End,
 }
 
 /// A line of text; `y` is its base line.
-pub fn text(words: &str, at: (f64, f64), size: f64, colour: &str, anchor: Anchor) -> Text {
+pub fn text(content: &str, at: (f64, f64), size: f64, colour: &str, anchor: Anchor) -> Text {
     let anchor = match anchor {
         Anchor::Start => "start",
         Anchor::Middle => "middle",
         Anchor::End => "end",
     };
-    Text::new(words)
+    Text::new(content)
         .set("x", fixed(at.0))
         .set("y", fixed(at.1))
         .set("font-size", size)
@@ -55,24 +55,24 @@ pub fn text(words: &str, at: (f64, f64), size: f64, colour: &str, anchor: Anchor
 }
 
 /// Dark text that starts at a point.
-pub fn text_start(words: &str, at: (f64, f64), size: f64) -> Text {
-    text(words, at, size, DARK, Anchor::Start)
+pub fn text_start(content: &str, at: (f64, f64), size: f64) -> Text {
+    text(content, at, size, DARK, Anchor::Start)
 }
 
 /// Dark text about a point.
-pub fn text_middle(words: &str, at: (f64, f64), size: f64) -> Text {
-    text(words, at, size, DARK, Anchor::Middle)
+pub fn text_middle(content: &str, at: (f64, f64), size: f64) -> Text {
+    text(content, at, size, DARK, Anchor::Middle)
 }
 
 /// Dark text that ends at a point.
-pub fn text_end(words: &str, at: (f64, f64), size: f64) -> Text {
-    text(words, at, size, DARK, Anchor::End)
+pub fn text_end(content: &str, at: (f64, f64), size: f64) -> Text {
+    text(content, at, size, DARK, Anchor::End)
 }
 
 /// A picture's title and the line below it.
-pub fn title(group: Group, left: f64, words: &str, note: &str) -> Group {
+pub fn title(group: Group, left: f64, heading: &str, note: &str) -> Group {
     group
-        .add(text_start(words, (left, 40.0), 24.0).set("font-weight", "bold"))
+        .add(text_start(heading, (left, 40.0), 24.0).set("font-weight", "bold"))
         .add(text(note, (left, 66.0), 15.0, GREY, Anchor::Start))
 }
 
@@ -148,7 +148,7 @@ pub fn curve(points: &[(f64, f64)], colour: &str, width: f64) -> Polyline {
         .set("stroke-linecap", "round")
 }
 
-/// A hundredth of a pixel is enough, and keeps files small and equal on all machines.
+/// Rounds to a hundredth of a pixel, which keeps files small and equal on all machines.
 pub fn fixed(value: f64) -> f64 {
     (value * 100.0).round() / 100.0
 }

@@ -7,7 +7,7 @@ use serde::Serialize;
 /// Prints a value as JSON, or else as this text.
 ///
 /// # Errors
-/// Standard output cannot be written.
+/// Fails if standard output cannot be written.
 pub fn print_json_or(
     json: bool,
     value: &impl Serialize,
@@ -24,7 +24,7 @@ pub fn print_json_or(
 /// Writes one value as one line of JSON.
 ///
 /// # Errors
-/// Writing failed.
+/// Fails if writing fails.
 pub fn line(out: &mut impl Write, value: &impl Serialize) -> io::Result<()> {
     serde_json::to_writer(&mut *out, value)?;
     writeln!(out)

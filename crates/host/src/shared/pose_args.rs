@@ -42,7 +42,7 @@ impl Quantity {
     /// A number within the bounds.
     ///
     /// # Errors
-    /// If the text is not a number, or one out of bounds; NaN and infinity are.
+    /// Fails if the text is not a number, or one out of bounds; NaN and infinity are out of bounds.
     pub fn parse(self, text: &str) -> Result<f64, NumberFault> {
         match text.parse::<f64>() {
             Ok(value) if value.abs() <= self.most => Ok(value),

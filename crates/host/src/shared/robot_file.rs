@@ -60,7 +60,7 @@ impl RobotFile {
     /// The text of the robot file.
     ///
     /// # Errors
-    /// It is missing or no text.
+    /// Fails if it is missing or no text.
     pub(crate) fn text(&self) -> Result<String, Failure> {
         if let Some(text) = &self.text {
             return Ok(text.clone());
@@ -81,7 +81,7 @@ impl RobotFile {
     /// Reads and checks the robot.
     ///
     /// # Errors
-    /// The file is missing or wrong.
+    /// Fails if the file is missing or wrong.
     pub fn load(&self) -> Result<Robot, Failure> {
         if let Some(text) = &self.text {
             return Ok(Robot::parse(text)?);
@@ -101,7 +101,7 @@ impl RobotFile {
     /// The name of the robot's source for messages.
     ///
     /// # Errors
-    /// The current folder was removed.
+    /// Fails if the current folder was removed.
     pub fn name(&self) -> Result<String, Failure> {
         Ok(match (self.found()?, &self.path) {
             (Found::File(path), _) => path.display().to_string(),
@@ -139,7 +139,7 @@ enum Found {
 /// The current folder.
 ///
 /// # Errors
-/// It was removed, or may not be read.
+/// Fails if it was removed, or may not be read.
 pub(crate) fn here() -> Result<PathBuf, Failure> {
     std::env::current_dir()
         .map_err(|error| Failure::Impossible(format!("this folder has no path: {error}")))

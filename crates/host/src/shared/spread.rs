@@ -19,7 +19,7 @@ use crate::shared::json;
 use crate::{Failure, RobotFile};
 
 /// The largest number of parts; no queue has a use for more.
-const MOST: u32 = 1_000_000;
+const MAX_PARTS: u32 = 1_000_000;
 
 /// One of several parts of a computation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -35,12 +35,12 @@ impl FromStr for Part {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("it must be as 2/8, from 1/8 to 8/8, of at most {MOST}");
+        let wrong = || format!("it must be as 2/8, from 1/8 to 8/8, of at most {MAX_PARTS}");
         let (number, of) = text.split_once('/').ok_or_else(wrong)?;
         let (Ok(number), Ok(of)) = (number.parse(), of.parse()) else {
             return Err(wrong());
         };
-        if (1..=MOST).contains(&of) && (1..=of).contains(&number) {
+        if (1..=MAX_PARTS).contains(&of) && (1..=of).contains(&number) {
             Ok(Self { number, of })
         } else {
             Err(wrong())
@@ -63,8 +63,8 @@ impl From<Part> for String {
 }
 
 impl Part {
-    /// True if a piece belongs to this part. Pieces in a row go to different parts, because a
-    /// piece that takes long often has neighbours that do, too.
+    /// True if a piece belongs to this part. Neighbouring pieces go to different parts, because a
+    /// piece that takes long often has neighbours that do too.
     fn has(self, piece: usize) -> bool {
         piece % self.of as usize == self.number as usize - 1
     }
@@ -78,7 +78,7 @@ impl Part {
     /// Computes this part's pieces and prints them.
     ///
     /// # Errors
-    /// The robot cannot be read, or the output not written.
+    /// Fails if the robot cannot be read, or the output not written.
     pub fn print<C: Spreads, T: Serialize>(
         self,
         command: &C,
@@ -88,8 +88,8 @@ impl Part {
     ) -> Result<(), Failure> {
         let robot = robot.text()?;
         let mut found = BTreeMap::new();
-        for place in (0..pieces).filter(|place| self.has(*place)) {
-            found.insert(place, serde_json::to_value(one(place))?);
+        for index in (0..pieces).filter(|index| self.has(*index)) {
+            found.insert(index, serde_json::to_value(one(index))?);
         }
         let share = PartOutput {
             lizard: env!("CARGO_PKG_VERSION").to_owned(),
@@ -159,13 +159,13 @@ impl Spread {
     /// Returns the results of all parts in order, in a merge.
     ///
     /// # Errors
-    /// They belong to another computation.
+    /// Fails if they belong to another computation.
     pub fn read<T: DeserializeOwned>(&self, count: usize) -> Result<Option<Vec<T>>, Failure> {
         let Some(merged) = &self.merged else {
             return Ok(None);
         };
         let values = merged.iter().zip(0..);
-        if merged.len() != count || values.clone().any(|((place, _), at)| *place != at) {
+        if merged.len() != count || values.clone().any(|((index, _), at)| *index != at) {
             return Err(other_pieces());
         }
         let of = |((_, value), _): ((&usize, &Value), usize)| T::deserialize(value);
@@ -177,7 +177,7 @@ impl Spread {
     /// a merge. With `--part`, prints the pieces of that part and returns `None`.
     ///
     /// # Errors
-    /// The output cannot be written, or the parts belong to another computation.
+    /// Fails if the output cannot be written, or the parts belong to another computation.
     pub fn all<T: Serialize + DeserializeOwned>(
         &self,
         command: &impl Spreads,
@@ -211,7 +211,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_piece_is_of_one_part() {
+    fn every_piece_belongs_to_one_part() {
         for of in [1, 2, 3, 7, 40] {
             for piece in 0..20 {
                 let parts = (1..=of).filter(|number| {

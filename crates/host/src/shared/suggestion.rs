@@ -2,7 +2,7 @@
 
 /// The similarity of two words, 0 to 1, from which one counts as a mistyped form of the other;
 /// the same value as clap's for commands and options.
-const LIKE: f64 = 0.7;
+const MIN_SIMILARITY: f64 = 0.7;
 
 /// The end of a sentence: `; did you mean NAME?` with the name most like the word; nothing if
 /// none is like it.
@@ -11,7 +11,7 @@ pub fn did_you_mean<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) ->
     let like = names
         .into_iter()
         .map(|name| (strsim::jaro(word, name), name))
-        .filter(|(like, _)| *like > LIKE);
+        .filter(|(like, _)| *like > MIN_SIMILARITY);
     let most = like.max_by(|a, b| a.0.total_cmp(&b.0));
     most.map_or_else(String::new, |(_, name)| format!("; did you mean `{name}`?"))
 }
@@ -21,7 +21,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_name_most_like_the_word_is_suggested_and_none_that_is_unlike() {
+    fn the_most_similar_name_is_suggested_and_no_dissimilar_one() {
         let names = ["stand", "walk", "arc-left", "arc-right"];
         assert_eq!(did_you_mean("wlak", names), "; did you mean `walk`?");
         assert_eq!(

@@ -94,7 +94,7 @@ impl SimulatedBoard {
     /// Powers a robot's board on, its supplies in good order; not a cycle has passed.
     ///
     /// # Errors
-    /// The ELF file is missing or wrong.
+    /// Fails if the ELF file is missing or wrong.
     pub fn power_on(elf: &Path, fidelity: Fidelity, robot: &Robot) -> Result<Self, BoardError> {
         let image = firmware::with_robot(elf, robot)?;
         Ok(Self::with_image(image, fidelity, robot))
@@ -144,7 +144,7 @@ impl SimulatedBoard {
     /// information. What came before is in [`SimulatedBoard::lines`].
     ///
     /// # Errors
-    /// No answer within 200 ms after the line has been sent.
+    /// Fails if there is no answer within 200 ms after the line has been sent.
     pub fn say(&mut self, line: &str) -> Result<String, BoardError> {
         Ok(self.ask(line)?.1)
     }
@@ -227,7 +227,7 @@ impl SimulatedBoard {
     /// Lets time pass.
     ///
     /// # Errors
-    /// The firmware crashes, halts or is reset meanwhile.
+    /// Fails if the firmware crashes, halts or is reset meanwhile.
     pub fn run_ms(&mut self, ms: u64) -> Result<(), BoardError> {
         self.run_until(self.uno.cycle() + ms * CYCLES_PER_MS)
     }
@@ -251,7 +251,7 @@ impl SimulatedBoard {
     /// as in `Control::frame`.
     ///
     /// # Errors
-    /// The ELF has no such function, or more than one.
+    /// Fails if the ELF has no such function, or more than one.
     pub fn time_calls(&mut self, function: &str, ms: u64) -> Result<Vec<Call>, BoardError> {
         let symbol = self.uno.image().function(function);
         let symbol = symbol.ok_or_else(|| BoardError::Function(function.to_owned()))?;
@@ -269,7 +269,7 @@ impl SimulatedBoard {
     /// Cycle of A1's first pulse among the edges not taken yet.
     ///
     /// # Errors
-    /// There is none.
+    /// Fails if there is none.
     pub fn first_pulse(&self) -> Result<u64, BoardError> {
         let pulses = self.uno.pulses(self.pins[0]);
         let first = pulses.first().map(|pulse| pulse.start);

@@ -16,7 +16,7 @@ use crate::simulate::twin;
 use crate::{Failure, RobotFile};
 
 /// The largest length error of a foot, mm; beyond it, its screw or its leaf ends.
-const MOST: f64 = 5.0;
+const MAX_FOOT_ERROR_MM: f64 = 5.0;
 
 /// Write the robot for MuJoCo, a physics engine: bodies, masses, joints, feet, servos
 ///
@@ -67,7 +67,7 @@ enum LongFootError {
     Leg(String),
     #[error("`{0}` is not a number of mm")]
     Number(String),
-    #[error("a foot may be off by at most {MOST} mm either way, and {0} mm is more")]
+    #[error("a foot may be off by at most {MAX_FOOT_ERROR_MM} mm either way, and {0} mm is more")]
     Far(f64),
 }
 
@@ -80,7 +80,7 @@ impl FromStr for LongFoot {
         let leg = known.ok_or_else(|| LongFootError::Leg(leg.to_owned()))?;
         let number = mm.parse().ok().filter(|mm: &f64| mm.is_finite());
         let mm = number.ok_or_else(|| LongFootError::Number(mm.to_owned()))?;
-        match mm.abs() <= MOST {
+        match mm.abs() <= MAX_FOOT_ERROR_MM {
             true => Ok(Self { leg, mm }),
             false => Err(LongFootError::Far(mm)),
         }
@@ -90,7 +90,7 @@ impl FromStr for LongFoot {
 /// Makes the model and writes it.
 ///
 /// # Errors
-/// A wrong robot.toml, a robot that cannot be built, no such gait, no firmware or another
+/// Fails for a wrong robot.toml, a robot that cannot be built, no such gait, no firmware or another
 /// robot's, a file that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn an_invalid_long_foot_is_refused_in_a_sentence() {
+    fn an_invalid_long_foot_is_refused_with_a_message() {
         let refused = |text: &str| text.parse::<LongFoot>().expect_err(text).to_string();
         assert_eq!(
             refused("0.6"),

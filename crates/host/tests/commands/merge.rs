@@ -4,13 +4,13 @@
 
 use crate::program::{lizard, paper};
 
-fn complaint(words: &str, input: &str) -> String {
-    lizard(words, input).refusal()
+fn complaint(arguments: &str, input: &str) -> String {
+    lizard(arguments, input).refusal()
 }
 
 /// The output of all parts, the last one first.
-fn parts(words: &str, of: usize) -> String {
-    let part = |number| lizard(&format!("{words} --part {number}/{of}"), "").success();
+fn parts(arguments: &str, of: usize) -> String {
+    let part = |number| lizard(&format!("{arguments} --part {number}/{of}"), "").success();
     (1..=of).rev().map(part).collect()
 }
 

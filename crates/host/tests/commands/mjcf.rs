@@ -37,7 +37,7 @@ fn a_stream_gets_the_file_and_nothing_else() {
 }
 
 #[test]
-fn wrong_input_is_refused_in_a_sentence_and_no_file_is_written() {
+fn wrong_input_is_refused_with_a_message_and_no_file_is_written() {
     let file = fresh_path("wrong.xml");
     let path = file.display().to_string();
     let refusal = |words: &[&str]| run(&[&["mjcf", &path], words].concat()).refusal();

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use crate::program::{Outcome, read, robot, run, scratch};
 
-fn make(folder: &Path, words: &[&str]) -> Outcome {
+fn make(folder: &Path, arguments: &[&str]) -> Outcome {
     let folder = folder.display().to_string();
-    run(&[&["parts", &folder], words].concat())
+    run(&[&["parts", &folder], arguments].concat())
 }
 
 /// A path without a folder.

@@ -95,14 +95,14 @@ pub fn lizard(line: &str, input: impl AsRef<[u8]>) -> Outcome {
 }
 
 /// Runs the program in a folder for files of tests.
-pub fn run(words: &[&str]) -> Outcome {
-    run_in(scratch(), words, "")
+pub fn run(arguments: &[&str]) -> Outcome {
+    run_in(scratch(), arguments, "")
 }
 
 /// Runs the program in a folder with this standard input.
-pub fn run_in(folder: &Path, words: &[&str], input: impl AsRef<[u8]>) -> Outcome {
+pub fn run_in(folder: &Path, arguments: &[&str], input: impl AsRef<[u8]>) -> Outcome {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
-    command.args(words).current_dir(folder);
+    command.args(arguments).current_dir(folder);
     // A program that stops at bad input closes its end; that is not a failure here.
     let output = LIMIT.output(&mut command, input.as_ref());
     let output = output.expect("lizard ends");

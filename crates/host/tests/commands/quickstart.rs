@@ -71,8 +71,8 @@ fn every_line_of_the_quickstart_is_answered_as_it_shows() {
 }
 
 #[test]
-fn every_sentence_in_the_table_of_troubles_is_one_of_the_firmware() {
-    let (page, sentences) = (
+fn every_message_in_the_table_of_troubles_is_one_of_the_firmware() {
+    let (page, messages) = (
         read("docs/quickstart.md"),
         read("crates/core/src/console/text.rs"),
     );
@@ -95,7 +95,7 @@ fn every_sentence_in_the_table_of_troubles_is_one_of_the_firmware() {
                 .split("...")
                 .map(|words| words.trim_matches([' ', ',']))
             {
-                assert!(sentences.contains(words), "nothing says {words:?}");
+                assert!(messages.contains(words), "nothing says {words:?}");
             }
         }
     }

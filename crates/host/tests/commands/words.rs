@@ -7,12 +7,12 @@ use lizard_time_limit::LIMIT;
 
 use crate::program::{robot, root, run, scratch};
 
-fn output(words: &[&str]) -> String {
-    run(words).success()
+fn output(arguments: &[&str]) -> String {
+    run(arguments).success()
 }
 
-fn complaint(words: &[&str]) -> String {
-    run(words).refusal()
+fn complaint(arguments: &[&str]) -> String {
+    run(arguments).refusal()
 }
 
 /// The first words of the lines under a heading of `lizard --help`.
@@ -144,13 +144,13 @@ fn a_mistyped_word_is_answered_with_the_one_that_was_meant() {
 
 /// The completions that bash offers after some words, from the script alone.
 #[cfg(unix)]
-fn bash_completions(script: &Path, words: &str, place: usize) -> Vec<String> {
+fn bash_completions(script: &Path, words: &str, index: usize) -> Vec<String> {
     let line = format!(
-        ". {}; COMP_WORDS=({words}); COMP_CWORD={place}; COMP_LINE='{words}'; \
-         _lizard lizard \"${{COMP_WORDS[{place}]}}\" \"${{COMP_WORDS[{}]}}\"; \
+        ". {}; COMP_WORDS=({words}); COMP_CWORD={index}; COMP_LINE='{words}'; \
+         _lizard lizard \"${{COMP_WORDS[{index}]}}\" \"${{COMP_WORDS[{}]}}\"; \
          printf '%s\\n' \"${{COMPREPLY[@]}}\"",
         script.display(),
-        place - 1
+        index - 1
     );
     let mut bash = Command::new("bash");
     bash.args(["--norc", "-c", &line]);

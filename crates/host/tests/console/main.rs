@@ -259,7 +259,7 @@ fn of_a_board_that_falls_silent_the_lines_that_it_did_not_take_are_counted() {
 }
 
 #[test]
-fn wrong_input_is_a_sentence_and_starts_nothing() {
+fn wrong_input_is_a_message_and_starts_nothing() {
     let folder = tempfile::tempdir().expect("a folder");
     let here = folder.path();
     fs::write(here.join("no.toml"), "trim: 5\n").expect("it is written");
@@ -334,7 +334,7 @@ fn a_script_by_radio_drives_with_deadman_and_its_end_stops_the_robot() {
 }
 
 #[test]
-fn a_link_of_the_simulated_board_takes_no_other_links_place_and_goes_with_the_board() {
+fn a_link_of_the_simulated_board_replaces_no_other_and_goes_with_the_board() {
     let folder = tempfile::tempdir().expect("a folder");
     let (own, other) = (folder.path().join("uno"), folder.path().join("other"));
     std::os::unix::fs::symlink("a-file", &other).expect("a link");

@@ -15,13 +15,13 @@ type Number = FBig<HalfEven, 2>;
 const BITS: usize = 256;
 /// Share by which the interval of nodes is longer than the arguments need, for
 /// arguments that rounding has pushed over its end.
-const WIDER: f64 = 1e-4;
+const MARGIN_SHARE: f64 = 1e-4;
 /// Points at which an error is measured.
 const POINTS: u32 = 2000;
 
 /// A polynomial that stands for part of a function.
 pub struct Polynomial {
-    /// Its name in `src/angle.rs`.
+    /// The polynomial's name in `src/angle.rs`.
     pub name: &'static str,
     /// Number of coefficients.
     terms: u32,
@@ -77,7 +77,7 @@ impl Polynomial {
     /// The coefficients, the constant first.
     pub fn coefficients(&self) -> Vec<f64> {
         let limit = (self.limit)();
-        let longest = &limit * &limit * (number(1) + exact_number(WIDER));
+        let longest = &limit * &limit * (number(1) + exact_number(MARGIN_SHARE));
         let half = longest / number(2);
         let nodes: Vec<Number> = (0..self.terms)
             .map(|k| {

@@ -45,7 +45,7 @@ impl WorkingMode {
     }
 }
 
-/// One of the four ways to put the end point somewhere.
+/// One of the four solutions that put the end point at a given point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InverseSolution {
     /// The bends of both arms.
@@ -67,9 +67,9 @@ impl FiveBar {
     /// l4, l3 belong.
     ///
     /// # Errors
-    /// [`Fault::OutOfReach`] where an arm does not reach the point,
-    /// [`Fault::OnShaft`] where a crank's angle is free, [`Fault::NotFinite`] for
-    /// input that is not finite or that overflows.
+    /// Returns [`Fault::OutOfReach`] where an arm does not reach the point, [`Fault::OnShaft`]
+    /// where a crank's angle is free, [`Fault::NotFinite`] for input that is not finite or that
+    /// overflows.
     pub fn inverse(&self, point: Vector) -> Result<[InverseSolution; 4], Fault> {
         let arms = self.arms(point)?;
         let solution = |working_mode: WorkingMode| {
@@ -88,7 +88,7 @@ impl FiveBar {
     /// outward: the inverse without its arc tangents.
     ///
     /// # Errors
-    /// As [`FiveBar::inverse`] and [`FiveBar::forward`].
+    /// Fails as [`FiveBar::inverse`] and [`FiveBar::forward`] do.
     pub fn reach(&self, point: Vector) -> Result<FiveBarPose, Fault> {
         let (left, right, mode) = self.arms(point)?.directions(WorkingMode::OUTWARD);
         self.close(mode, left, right)
@@ -152,7 +152,7 @@ fn crank_directions(
     to_point: Vector,
     crank: f64,
     coupler: f64,
-    left: bool,
+    is_left: bool,
 ) -> Result<[Vector; 2], Fault> {
     let distance = to_point.length();
     let (least, most) = ((crank - coupler).abs(), crank + coupler);
@@ -163,7 +163,7 @@ fn crank_directions(
     let slack = most * 4.0 * f64::EPSILON;
     if distance > most + slack || distance < least - slack {
         return Err(Fault::OutOfReach {
-            left,
+            is_left,
             distance,
             least,
             most,

@@ -13,7 +13,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 4096, ..ProptestConfig::default() })]
 
     #[test]
-    fn every_loop_that_closes_closes_to_a_billionth_of_a_millimetre(
+    fn every_loop_that_closes_does_so_to_a_billionth_of_a_millimetre(
         bars in any_five_bar(), left in -720.0..720.0f64, right in -720.0..720.0f64,
     ) {
         for mode in [AssemblyMode::Ahead, AssemblyMode::Behind] {
@@ -30,7 +30,7 @@ proptest! {
     }
 
     #[test]
-    fn it_finds_a_position_exactly_where_the_law_of_cosines_does(
+    fn the_solver_finds_a_position_exactly_where_the_law_of_cosines_does(
         bars in any_five_bar(), left in -180.0..180.0f64, right in -180.0..180.0f64,
     ) {
         match (bars.forward(left, right), end_point(&bars, left, right)) {
@@ -60,7 +60,7 @@ proptest! {
     }
 
     #[test]
-    fn margins_are_the_sines_that_their_names_say(
+    fn margins_are_the_sines_of_their_definitions(
         bars in any_five_bar(), left in -180.0..180.0f64, right in -180.0..180.0f64,
     ) {
         if let Ok(pose) = bars.forward(left, right) {
@@ -164,7 +164,7 @@ fn the_solver_works_where_the_papers_a_vanishes() {
 
 #[test]
 fn unreachable_points_and_bad_numbers_say_why() {
-    for (x, y, sentence) in [
+    for (x, y, message) in [
         (
             0.0,
             90.0,
@@ -178,7 +178,7 @@ fn unreachable_points_and_bad_numbers_say_why() {
         (f64::NAN, 5.0, "a value is not a finite number"),
     ] {
         let refused = HEAD.inverse(Vector::new(x, y)).unwrap_err();
-        assert_eq!(refused.to_string(), sentence);
+        assert_eq!(refused.to_string(), message);
     }
     let short = FiveBar::new([20.0, 30.0, 10.0, 15.0, 30.0]);
     assert_eq!(

@@ -12,8 +12,8 @@ fn sine_between(a: Vector, b: Vector) -> f64 {
     (a.x * b.y - a.y * b.x) / (a.x.hypot(a.y) * b.x.hypot(b.y))
 }
 
-/// The values of all conditions by name, in the chassis frame; none where a loop
-/// does not close.
+/// The values of all conditions by name, in the chassis frame; `None` where a loop does not
+/// close.
 fn truth(robot: &Lizard, [t1, t4, t8, t5]: [f64; 4]) -> Option<BTreeMap<&'static str, f64>> {
     let l = &robot.links;
     let y = l.l10 / 2.0;
@@ -48,7 +48,7 @@ fn truth(robot: &Lizard, [t1, t4, t8, t5]: [f64; 4]) -> Option<BTreeMap<&'static
     ]))
 }
 
-/// Limits that differ for every kind.
+/// Limits that are different for every kind.
 fn any_limits() -> impl Strategy<Value = Limits> {
     let any = [0.05..0.9, 0.05..0.9, 0.05..0.9, -40.0..0.0, 0.0..60.0f64];
     any.prop_map(|values| Limits {

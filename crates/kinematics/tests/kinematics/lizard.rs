@@ -14,7 +14,7 @@ const LIMITS: Limits = Limits {
     stroke_max: 45.0,
 };
 
-/// The limits that the paper's robot breaks at a pose, as sentences.
+/// The limits that the paper's robot breaks at a pose, as messages.
 fn violations(pose: [f64; 4]) -> Vec<String> {
     let solution = lizard().solve(&pose.into()).unwrap();
     let broken = LIMITS.violations(&solution);
@@ -102,7 +102,7 @@ fn head_and_tail_angles_lead_back_to_the_points() {
 }
 
 #[test]
-fn each_broken_limit_has_its_sentence() {
+fn each_broken_limit_has_its_message() {
     let [_, a2, a3, a4] = NEUTRAL;
     let leg = "margin leg_lf 0.070 is below 0.300";
     let arm = "margin type1_a1 -0.317 is below 0.300";
@@ -110,14 +110,14 @@ fn each_broken_limit_has_its_sentence() {
     let crossed = "head crank tips are crossed: -18.57 mm from left to right";
     // Beyond a leg's change point, where its sine is as large but negative.
     let beyond = "margin leg_rf -0.319 is below 0.300";
-    for (pose, sentence) in [
+    for (pose, message) in [
         ([176.0, a2, a3, a4], leg),
         ([60.0, 60.0, a3, a4], arm),
         ([88.0, a2, a3, 272.0], slider),
         ([50.0, 130.0, a3, a4], crossed),
         ([138.59, 341.41, 318.59, 221.41], beyond),
     ] {
-        assert_eq!(violations(pose), [sentence]);
+        assert_eq!(violations(pose), [message]);
     }
 }
 

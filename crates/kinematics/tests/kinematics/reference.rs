@@ -46,7 +46,7 @@ pub fn loop_gap(bars: &FiveBar, degrees: [f64; 4]) -> [f64; 2] {
     ]
 }
 
-/// theta2, theta3 in degrees by Newton from a start, or None if it wanders off.
+/// theta2, theta3 in degrees by Newton from a start, or `None` if it wanders off.
 pub fn newton(bars: &FiveBar, cranks: [f64; 2], start: [f64; 2]) -> Option<[f64; 2]> {
     let [mut t2, mut t3] = start;
     for _ in 0..60 {
@@ -67,7 +67,7 @@ pub fn newton(bars: &FiveBar, cranks: [f64; 2], start: [f64; 2]) -> Option<[f64;
 }
 
 /// The end point by the law of cosines at the left crank tip, left of the line
-/// between the tips; None if the circles miss each other.
+/// between the tips; `None` if the circles miss each other.
 pub fn end_point(bars: &FiveBar, theta_left: f64, theta_right: f64) -> Option<[f64; 2]> {
     let (a, b) = (theta_left * PI / 180.0, theta_right * PI / 180.0);
     let (half, l1, l4) = (bars.base / 2.0, bars.crank_left, bars.crank_right);
@@ -123,7 +123,7 @@ pub fn cis(degrees: f64) -> Vector {
 }
 
 /// The point in which a link of length `r` on `a` meets a link of length `s` on `b`, to
-/// the left of the line from `a` to `b`, by the law of cosines; None if they miss each
+/// the left of the line from `a` to `b`, by the law of cosines; `None` if they miss each
 /// other.
 pub fn meeting(a: Vector, r: f64, b: Vector, s: f64) -> Option<Vector> {
     let d = (b.x - a.x).hypot(b.y - a.y);

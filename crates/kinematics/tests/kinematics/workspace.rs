@@ -46,7 +46,7 @@ proptest! {
     }
 
     #[test]
-    fn the_inscribed_circle_is_as_large_as_the_distance_to_what_cannot_be_reached_allows(
+    fn the_inscribed_circle_is_as_large_as_the_unreachable_points_allow(
         bars in symmetrical_bars(),
     ) {
         let workspace = Workspace::of(&bars);

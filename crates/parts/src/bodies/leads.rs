@@ -17,7 +17,7 @@ use crate::layers::shape::Shape;
 /// Width and thickness of a lead, mm.
 pub const LEAD: [f64; 2] = [4.0, 1.2];
 /// Width of a notch beyond that of a lead, mm.
-const WIDER: f64 = 1.0;
+const NOTCH_PLAY: f64 = 1.0;
 /// From the bottom of the case to the lead's lower edge, and the height that it takes, mm.
 const LEAVES: [f64; 2] = [3.0, 4.0];
 /// Length that stands out of the case before the fold, mm.
@@ -33,7 +33,7 @@ pub fn notch(body: &ServoBody, middle: Vector, fit: f64, outward: f64) -> Shape 
     let reach = body.length / 2.0 + LEAD[1] + fit;
     // It begins within the case's own opening.
     let from = body.length / 2.0 - 2.0;
-    let half = (LEAD[0] + WIDER) / 2.0;
+    let half = (LEAD[0] + NOTCH_PLAY) / 2.0;
     let corner = |x: f64, y: f64| middle + Vector::new(x, outward * y);
     let [left, right] = [-half, half].map(|x| [from, reach].map(|y| corner(x, y)));
     Shape::hull(&[left, right].concat(), 0.0)

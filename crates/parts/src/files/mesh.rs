@@ -51,7 +51,7 @@ impl Mesh {
         maker.mesh
     }
 
-    /// Its volume, mm^3.
+    /// The volume, mm^3.
     #[must_use]
     pub fn volume(&self) -> f64 {
         let volumes = self.triangles.iter().map(|&triangle| {

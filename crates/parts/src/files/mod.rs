@@ -20,7 +20,7 @@ use solid::Solid;
 /// A file to write.
 #[derive(Clone, Debug, PartialEq)]
 pub struct File {
-    /// Its path within the output folder, such as `stl/link-A1-A3.stl`.
+    /// The file's path within the output folder, such as `stl/link-A1-A3.stl`.
     pub path: String,
     /// The file's content.
     pub bytes: Vec<u8>,
@@ -40,7 +40,7 @@ impl File {
 /// The files of a part: STEP and STL, and DXF and SVG if it can be cut from a sheet.
 ///
 /// # Errors
-/// [`Unfit::Surface`] for a part whose layers do not make a body.
+/// Returns [`Unfit::Surface`] for a part whose layers do not make a body.
 pub fn part_files(part: &Part, kerf: f64) -> Result<Vec<File>, Unfit> {
     let solid = Solid::of(&part.prisms);
     let printed = Solid::of(&part.printed().0);

@@ -25,7 +25,7 @@ pub struct Sheet {
 pub struct Layer {
     /// `CUT`, or for example `POCKET_1.90_TOP` for pockets 1.9 mm deep from above.
     pub name: String,
-    /// Its closed lines.
+    /// The closed lines of the sheet.
     pub loops: Vec<Loop>,
 }
 

@@ -12,7 +12,7 @@ use cavalier_contours::polyline::{PlineSegIntr, PlineVertex, pline_seg_intr};
 use lizard_kinematics::Vector;
 
 use crate::layers::body::Prism;
-use crate::layers::outline::{Loop, Outline, SAME, Side};
+use crate::layers::outline::{Loop, Outline, SAME_POINT_MM, Side};
 
 /// The surface of a part, as edges and faces.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -118,7 +118,7 @@ struct SolidBuilder {
 }
 
 fn place(points: &mut Vec<Vector>, point: Vector) -> usize {
-    let near = |other: &Vector| (*other - point).square() < SAME * SAME;
+    let near = |other: &Vector| (*other - point).square() < SAME_POINT_MM * SAME_POINT_MM;
     points.iter().position(near).unwrap_or_else(|| {
         points.push(point);
         points.len() - 1
@@ -141,7 +141,7 @@ impl SolidBuilder {
                 let way = |cut| (progress(side, to, cut), place(points, cut));
                 let mut along: Vec<(f64, usize)> = cuts.into_iter().map(way).collect();
                 along[0].0 = 0.0;
-                along[1].0 = progress(side, to, to).max(SAME);
+                along[1].0 = progress(side, to, to).max(SAME_POINT_MM);
                 along.sort_by(|a, b| a.0.total_cmp(&b.0));
                 along.dedup_by_key(|(_, point)| *point);
                 let whole = along.len() == 2;
@@ -334,7 +334,13 @@ fn bulge_of(angle: f64, like: f64) -> f64 {
 /// Adds the points in which two sides meet.
 fn meetings(a: Side, a_end: Vector, b: Side, b_end: Vector, found: &mut Vec<Vector>) {
     let end = |at: Vector| PlineVertex::new(at.x, at.y, 0.0);
-    let points = match pline_seg_intr(a.vertex(), end(a_end), b.vertex(), end(b_end), SAME) {
+    let points = match pline_seg_intr(
+        a.vertex(),
+        end(a_end),
+        b.vertex(),
+        end(b_end),
+        SAME_POINT_MM,
+    ) {
         PlineSegIntr::NoIntersect => [None, None],
         PlineSegIntr::TangentIntersect { point } | PlineSegIntr::OneIntersect { point } => {
             [Some(point), None]

@@ -92,10 +92,10 @@ pub fn names(
 /// The servos' names at their places, and the names of both ends.
 pub fn places(assembly: &Assembly, pose: &Solution) -> Vec<Label> {
     /// Height of the links, mm.
-    const HIGH: f64 = 18.0;
+    const LINK_HEIGHT: f64 = 18.0;
     let label = |at: Vector, text: &str| Label {
         at,
-        z: HIGH,
+        z: LINK_HEIGHT,
         text: text.to_owned(),
         beside: false,
     };

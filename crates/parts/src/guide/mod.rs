@@ -23,7 +23,7 @@ use crate::guide::html::html;
 use crate::guide::ink::Label;
 use crate::guide::picture::{PictureBody, View, picture};
 use crate::layers::body::{Body, Mount};
-use crate::layers::roof::LAYER;
+use crate::layers::roof::LAYER_MM;
 use crate::order::reach::AccessPose;
 use crate::order::steps::{ExtraView, Step, TurningPlace, steps};
 use crate::part::Part;
@@ -32,7 +32,7 @@ use crate::unfit::Unfit;
 /// Lift of new parts in the exploded pictures, mm.
 const LIFT: f64 = 45.0;
 /// Width of a picture without the names next to it, pixels.
-const WIDE: f64 = 950.0;
+const PICTURE_WIDTH: f64 = 950.0;
 /// The servo of the corner that is printed first and shown in close views: A1.
 pub const CORNER: usize = 0;
 
@@ -52,7 +52,7 @@ from head to tail. docs/gaits.md says more about pads with a grain.";
 /// The guide as Markdown and HTML, with its pictures at a pose, usually neutral.
 ///
 /// # Errors
-/// [`Unfit::Blocked`] for a screw that cannot be reached.
+/// Returns [`Unfit::Blocked`] for a screw that cannot be reached.
 pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<File>, Unfit> {
     let mut steps = steps(assembly.robot().drive().strut().is_some());
     if assembly.robot().ground().ratio > 1.0 {
@@ -128,7 +128,7 @@ fn drilled(parts: &[Part]) -> String {
     };
     let list: Vec<_> = parts.iter().filter_map(holes).collect();
     format!(
-        "Where a sunk pocket lies below in printing, the hole in its roof is closed by one layer of {LAYER} mm; open it with a drill of 3 mm, \
+        "Where a sunk pocket lies below in printing, the hole in its roof is closed by one layer of {LAYER_MM} mm; open it with a drill of 3 mm, \
          or a screw: {}. Parts that are alike but for left and right have the numbers of their servos engraved: 13 is for A1 and A3.",
         list.join(", ")
     )
@@ -148,7 +148,7 @@ impl Scene<'_> {
     /// The pictures of the step: the word in the file's name, the caption, and the drawing.
     fn pictures(&self) -> Vec<(&'static str, &'static str, String)> {
         let view = View {
-            width: WIDE,
+            width: PICTURE_WIDTH,
             ..View::default()
         };
         let below = |azimuth: f64, view: View| View {

@@ -48,15 +48,15 @@ pub enum Fitting {
 /// The facts about a fitting.
 #[derive(Clone, Copy, Debug)]
 pub struct Facts {
-    /// Its name as a body; several of one kind get a number.
+    /// The name as a body; several of one kind get a number.
     pub name: &'static str,
-    /// Its mass, g, as shops give it.
+    /// The mass, g, as shops give it.
     pub grams: f64,
     /// The room for it: to the right, forward, up, mm.
     pub size: [f64; 3],
     /// What to buy, without rating and size.
     pub what: &'static str,
-    /// Its place on the robot.
+    /// The position on the robot.
     pub place: &'static str,
     /// What fastens it there.
     pub hold: &'static str,
@@ -255,13 +255,13 @@ impl Fitting {
         }
     }
 
-    /// Its name as a body.
+    /// The name as a body.
     #[must_use]
     pub fn name(self) -> &'static str {
         self.facts().name
     }
 
-    /// Its line in the list to buy; empty for a piece of another strip, and for an option.
+    /// The line in the list to buy; empty for a piece of another strip, and for an option.
     #[must_use]
     pub fn what(self) -> String {
         let Facts { what, size, .. } = self.facts();

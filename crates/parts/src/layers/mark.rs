@@ -44,8 +44,8 @@ fn lines(digit: char) -> &'static [[(f64, f64); 2]] {
 pub fn strokes(text: &str, at: Vector) -> Vec<Shape> {
     let [wide, high] = DIGIT;
     let mut strokes = Vec::new();
-    for (place, digit) in text.chars().enumerate() {
-        let left = at + Vector::new(NEXT * place as f64, 0.0);
+    for (index, digit) in text.chars().enumerate() {
+        let left = at + Vector::new(NEXT * index as f64, 0.0);
         let point = |(x, y): (f64, f64)| left + Vector::new(x * wide, y * high);
         let bars = lines(digit).iter();
         strokes.extend(bars.map(|[from, to]| Shape::bar(point(*from), point(*to), LINE)));

@@ -25,7 +25,7 @@ pub(crate) fn bounds(points: impl Iterator<Item = Vector>) -> [Vector; 2] {
 }
 
 /// Points nearer to each other than this count as one, mm.
-pub(crate) const SAME: f64 = 1e-5;
+pub(crate) const SAME_POINT_MM: f64 = 1e-5;
 
 /// A closed line of straight sides and arcs, with the material on its left:
 /// counter-clockwise around a part, clockwise around a hole.
@@ -96,7 +96,7 @@ impl Outline {
         self.pieces.iter().flatten()
     }
 
-    /// Its area, mm^2.
+    /// The enclosed area, mm^2.
     #[must_use]
     pub fn area(&self) -> f64 {
         self.loops().map(Loop::area).sum()
@@ -119,7 +119,9 @@ impl Outline {
 
 impl Loop {
     fn of(line: &Polyline<f64>, outer: bool) -> Self {
-        let mut line = line.remove_redundant(SAME).unwrap_or_else(|| line.clone());
+        let mut line = line
+            .remove_redundant(SAME_POINT_MM)
+            .unwrap_or_else(|| line.clone());
         if (line.area() > 0.0) != outer {
             line.invert_direction_mut();
         }
@@ -134,7 +136,7 @@ impl Loop {
         Self { sides }
     }
 
-    /// Its sides with their ends.
+    /// The sides with their ends.
     pub fn ends(&self) -> impl Iterator<Item = (Side, Vector)> {
         let n = self.sides.len();
         (0..n).map(move |i| (self.sides[i], self.sides[(i + 1) % n].from))
@@ -147,7 +149,7 @@ impl Loop {
         let (centre, radius) = arcs.next()??;
         let same = |arc: Option<(Vector, f64)>| {
             let near = |(at, size): (Vector, f64)| {
-                (at - centre).length() < SAME && (size - radius).abs() < SAME
+                (at - centre).length() < SAME_POINT_MM && (size - radius).abs() < SAME_POINT_MM
             };
             arc.is_some_and(near)
         };

@@ -12,11 +12,11 @@ use crate::layers::outline::{Loop, Outline};
 use crate::layers::shape::Shape;
 
 /// Height of a printer's layer, mm. A hole is closed by one layer.
-pub const LAYER: f64 = 0.2;
+pub const LAYER_MM: f64 = 0.2;
 /// Distance around a hole at which its support is searched, mm.
 const BESIDE: f64 = 0.3;
 /// Heights that differ by less are the same, mm.
-const SAME: f64 = 1e-6;
+const SAME_HEIGHT_MM: f64 = 1e-6;
 
 /// Layers in which the holes that would begin in the air are closed, and their number.
 #[must_use]
@@ -35,7 +35,7 @@ pub fn closed(prisms: &[Prism]) -> (Vec<Prism>, usize) {
             count += 1;
             layers = layers.iter().flat_map(|layer| split(layer, high)).collect();
             for layer in &mut layers {
-                if layer.z[0] > low - SAME && layer.z[1] < high + SAME {
+                if layer.z[0] > low - SAME_HEIGHT_MM && layer.z[1] < high + SAME_HEIGHT_MM {
                     layer.cut.retain(|other| other != hole);
                 }
             }
@@ -47,14 +47,14 @@ pub fn closed(prisms: &[Prism]) -> (Vec<Prism>, usize) {
 /// Top of the first printed layer above a height. A slicer samples each layer in its
 /// middle.
 fn skin(low: f64) -> f64 {
-    let first = ((low - LAYER / 2.0 + SAME) / LAYER).floor() + 1.0;
-    LAYER * (first + 1.0)
+    let first = ((low - LAYER_MM / 2.0 + SAME_HEIGHT_MM) / LAYER_MM).floor() + 1.0;
+    LAYER_MM * (first + 1.0)
 }
 
 /// A layer cut in two at a height, if that height is within it.
 fn split(layer: &Prism, at: f64) -> Vec<Prism> {
     let [low, high] = layer.z;
-    match at < low + SAME || at > high - SAME {
+    match at < low + SAME_HEIGHT_MM || at > high - SAME_HEIGHT_MM {
         true => vec![layer.clone()],
         false => vec![layer.at([low, at]), layer.at([at, high])],
     }
@@ -94,7 +94,7 @@ mod tests {
         for low in [2.0, 4.1, 1.33, 3.0, 0.85] {
             let high = skin(low);
             // Slicers look at 0.1, 0.3, 0.5 mm and so on.
-            let seen = (0..100).map(|i| 0.1 + LAYER * f64::from(i));
+            let seen = (0..100).map(|i| 0.1 + LAYER_MM * f64::from(i));
             let count = seen.filter(|z| low + 1e-9 < *z && *z < high - 1e-9).count();
             assert_eq!(count, 1, "{low} {high}");
             assert!(high - low < 0.31 && high - low > 0.09, "{low} {high}");

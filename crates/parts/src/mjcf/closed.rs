@@ -9,7 +9,7 @@ use crate::mjcf::node::Node;
 /// A joint that a constraint closes: a point that two bodies share.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Closed {
-    /// Its name, such as `end head`.
+    /// The name, such as `end head`.
     pub name: String,
     /// The two bodies that share the point.
     pub bodies: [Node; 2],

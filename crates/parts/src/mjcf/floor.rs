@@ -16,9 +16,9 @@ pub struct Floor {
 /// A block on the floor, beside the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Block {
-    /// Its middle: to the right and forward of the robot's place at the start, mm.
+    /// The middle: to the right and forward of the robot's place at the start, mm.
     pub at: [f64; 2],
-    /// Its size to the right, forward and up, mm.
+    /// The size to the right, forward and up, mm.
     pub size: [f64; 3],
 }
 

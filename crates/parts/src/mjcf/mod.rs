@@ -40,7 +40,7 @@ use writer::Writer;
 /// The file of a scene.
 ///
 /// # Errors
-/// [`Unfit::Surface`] for a part whose layers do not make a body.
+/// Returns [`Unfit::Surface`] for a part whose layers do not make a body.
 pub fn mjcf(assembly: &Assembly, neutral: &Solution, scene: &Scene) -> Result<String, Unfit> {
     Ok(Pieces::of(assembly, scene)?.mjcf(neutral, scene))
 }
@@ -56,7 +56,7 @@ impl<'a> Pieces<'a> {
     /// Makes the shapes and masses for a scene.
     ///
     /// # Errors
-    /// As [`mjcf`].
+    /// Fails as [`mjcf`] does.
     pub fn of(assembly: &'a Assembly, scene: &Scene) -> Result<Self, Unfit> {
         let pieces = pieces(assembly, scene)?;
         Ok(Self { assembly, pieces })

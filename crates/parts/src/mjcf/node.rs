@@ -62,7 +62,7 @@ impl Node {
         all
     }
 
-    /// Its parent; `None` for the chassis.
+    /// The node's parent; `None` for the chassis.
     pub fn parent(self, play: bool) -> Option<Self> {
         let chassis = Self::Of(Mount::Chassis);
         Some(match self {
@@ -80,7 +80,7 @@ impl Node {
         })
     }
 
-    /// Its motion on its parent.
+    /// The node's motion on its parent.
     pub fn freedom(self) -> Freedom {
         match self {
             Self::Of(Mount::Chassis) => Freedom::Free,
@@ -100,7 +100,7 @@ impl Node {
         }
     }
 
-    /// Its name, which is also that of its joint.
+    /// The node's name, which is also that of its joint.
     pub fn name(self) -> String {
         let of = |what: &str, name: &str| format!("{what} {name}");
         match self {
@@ -128,10 +128,10 @@ mod tests {
     fn each_body_comes_once_and_after_its_parent() {
         for (slotted, play) in [(false, false), (true, false), (false, true), (true, true)] {
             let all = Node::all(slotted, play);
-            for (place, node) in all.iter().enumerate() {
-                assert!(!all[..place].contains(node), "{node:?}");
+            for (index, node) in all.iter().enumerate() {
+                assert!(!all[..index].contains(node), "{node:?}");
                 match node.parent(play) {
-                    Some(parent) => assert!(all[..place].contains(&parent), "{node:?}"),
+                    Some(parent) => assert!(all[..index].contains(&parent), "{node:?}"),
                     None => assert_eq!(*node, Node::Of(Mount::Chassis)),
                 }
             }

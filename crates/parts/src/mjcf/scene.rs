@@ -85,8 +85,8 @@ pub struct Course {
 
 /// Time from neutral to the gait's first pose, and time to wait there for the body to come
 /// to rest, s.
-const APPROACH: f64 = 0.4;
-const REST: f64 = 0.3;
+const APPROACH_S: f64 = 0.4;
+const SETTLE_S: f64 = 0.3;
 
 impl Course {
     /// Some cycles of a gait at its own pace, after a slow approach from neutral, with the
@@ -101,13 +101,13 @@ impl Course {
             std::array::from_fn(|i| lizard_kinematics::wrap(angles[i] - robot.servos()[i].neutral))
         };
         let start = sweeps(angles(0.0));
-        let begin = APPROACH + REST;
+        let begin = APPROACH_S + SETTLE_S;
         let period = gait.period();
         let seconds = begin + f64::from(cycles) * period;
         let targets = |frame: usize| {
             let now = frame as f64 / FRAMES_PER_SECOND;
             match now < begin {
-                true => start.map(|sweep| sweep * (now / APPROACH).min(1.0)),
+                true => start.map(|sweep| sweep * (now / APPROACH_S).min(1.0)),
                 false => sweeps(angles(now - begin)),
             }
         };

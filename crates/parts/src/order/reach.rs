@@ -279,7 +279,7 @@ impl Assembly {
     /// reached; none if all can be at neutral.
     ///
     /// # Errors
-    /// A screw that cannot be reached at any of the poses tried.
+    /// Fails for a screw that cannot be reached at any of the poses tried.
     pub fn access_poses(&self, steps: &[Step]) -> Result<Vec<AccessPose>, Blocked> {
         let mut access_poses: Vec<AccessPose> = Vec::new();
         let neutral = self.robot().neutral();

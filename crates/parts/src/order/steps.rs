@@ -135,6 +135,7 @@ pub fn steps(slotted: bool) -> Vec<Step> {
         level(),
         console("The first walk"),
         console("A radio module, if you want one"),
+        console("A button and an obstacle switch, if you want them"),
     ]
 }
 

@@ -48,7 +48,7 @@ impl<const N: usize> Region<N> {
         }
     }
 
-    /// Its two halves, cut across one servo's angle.
+    /// The region's two halves, cut across one servo's angle.
     pub fn halves(&self, servo: usize) -> [Self; 2] {
         [-0.5, 0.5].map(|share| {
             let mut part = *self;

@@ -37,7 +37,7 @@ use search::Found;
 use shape_pairs::Task;
 
 /// Least distance of parts that are not made to meet, mm: more than the error of a printer.
-pub const LEAST: f64 = 0.2;
+pub const MIN_GAP_MM: f64 = 0.2;
 /// Overlap of parts made to meet that still counts as touching, mm.
 const TOUCH: f64 = 0.02;
 
@@ -85,7 +85,7 @@ pub enum Clash {
     #[error("{0}")]
     Overlap(Box<Clearance>),
     /// Two parts that come too near to each other.
-    #[error("{0}, which is less than {LEAST} mm")]
+    #[error("{0}, which is less than {MIN_GAP_MM} mm")]
     Narrow(Box<Clearance>),
     /// Two parts that may overlap at poses that the guard hardly accepts.
     #[error("{0}")]
@@ -134,10 +134,13 @@ impl Proof {
     /// Decides whether the parts fit.
     ///
     /// # Errors
-    /// The two parts that overlap most, with the pose and the overlap; else two that come
-    /// nearer than [`LEAST`].
+    /// Returns the two parts that overlap most, with the pose and the overlap; else two that come
+    /// nearer than [`MIN_GAP_MM`].
     pub fn judge(&self) -> Result<(), Clash> {
-        let apart = self.apart.iter().map(|near| (near.clash(LEAST), near.mm()));
+        let apart = self
+            .apart
+            .iter()
+            .map(|near| (near.clash(MIN_GAP_MM), near.mm()));
         let meeting = self
             .meeting
             .iter()
@@ -192,13 +195,13 @@ impl<'a> Questions<'a> {
 
     /// Answers one question, by its index below [`Questions::count`].
     #[must_use]
-    pub fn one(&self, place: usize) -> Answer {
-        self.within(place, search::MANY)
+    pub fn one(&self, index: usize) -> Answer {
+        self.within(index, search::MAX_REGIONS)
     }
 
     /// Answers one question after at most `most` regions.
-    fn within(&self, place: usize, most: u64) -> Answer {
-        let mut task = self.tasks[place].clone();
+    fn within(&self, index: usize, most: u64) -> Answer {
+        let mut task = self.tasks[index].clone();
         let pinned = match task.meet {
             true => self.assembly.take_joint(&mut task, &self.joints),
             false => None,
@@ -219,7 +222,7 @@ impl<'a> Questions<'a> {
         mut known: impl FnMut(usize) -> Option<Answer>,
         mut progress: impl FnMut(usize, usize),
     ) -> Proof {
-        let mut most = search::MANY;
+        let mut most = search::MAX_REGIONS;
         let mut proof = Proof {
             apart: Vec::new(),
             meeting: Vec::new(),
@@ -228,11 +231,11 @@ impl<'a> Questions<'a> {
             regions: 0,
         };
         let count = self.count();
-        for (place, task) in self.tasks.iter().enumerate() {
-            progress(place, count);
+        for (index, task) in self.tasks.iter().enumerate() {
+            progress(index, count);
             let answer = match most {
-                search::MANY => known(place).unwrap_or_else(|| self.one(place)),
-                fewer => self.within(place, fewer),
+                search::MAX_REGIONS => known(index).unwrap_or_else(|| self.one(index)),
+                fewer => self.within(index, fewer),
             };
             proof.meeting.extend(answer.pinned);
             let Some((near, regions)) = answer.nearest else {
@@ -247,7 +250,7 @@ impl<'a> Questions<'a> {
             }
             // One clash is enough, and if parts hardly fit, each question takes long.
             match clash {
-                Some(Clash::Unsure(_)) => most = search::MANY / 10,
+                Some(Clash::Unsure(_)) => most = search::MAX_REGIONS / 10,
                 Some(_) if !self.seen => break,
                 _ => {}
             }

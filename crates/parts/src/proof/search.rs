@@ -20,16 +20,16 @@ pub const ENOUGH: f64 = 2.0;
 /// A bound of the rounding error of a distance, mm.
 const ROUNDING: f64 = 1e-6;
 /// Tolerance between lower and upper bound at which the search ends, mm and as a share.
-const NEAR: f64 = 0.01;
+const TOLERANCE: f64 = 0.01;
 const SHARE: f64 = 0.05;
 /// The share for parts made to meet, of which only the sign of the gap matters.
 const SHARE_MEETING: f64 = 0.5;
 /// Regions narrower than this are not halved, deg.
-const NARROW: f64 = 0.002;
+const MIN_HALF_WIDTH: f64 = 0.002;
 /// The largest number of regions checked.
-pub const MANY: u64 = 100_000;
+pub const MAX_REGIONS: u64 = 100_000;
 /// The largest number once an overlap is known: its exact depth does not matter.
-const FEW: u64 = 1_000;
+const MAX_REGIONS_OVERLAPPING: u64 = 1_000;
 
 /// The result of a search for the least distance.
 #[derive(Clone, Debug)]
@@ -117,11 +117,15 @@ impl<const N: usize> Search<'_, N> {
         let mut parts: BTreeMap<_, _> = first.map(|part| (key(&part), part)).collect();
         while let Some((_, part)) = parts.pop_first() {
             let high = self.high();
-            if part.low >= high - NEAR - share * high.abs() {
+            if part.low >= high - TOLERANCE - share * high.abs() {
                 return self.found(part.low.min(high), None);
             }
-            let most = if high < 0.0 { FEW } else { most };
-            if part.region.half.iter().all(|half| *half < NARROW) || self.regions >= most {
+            let most = if high < 0.0 {
+                MAX_REGIONS_OVERLAPPING
+            } else {
+                most
+            };
+            if part.region.half.iter().all(|half| *half < MIN_HALF_WIDTH) || self.regions >= most {
                 return self.found(part.low, Some(&part));
             }
             for half in part.region.halves(part.across) {
@@ -201,7 +205,7 @@ impl<const N: usize> Search<'_, N> {
                 }
             }
         }
-        if nearest.0 < self.high() - NEAR / 4.0
+        if nearest.0 < self.high() - TOLERANCE / 4.0
             && let Some(pose) = self.guard.pose(self.angles(&region))
         {
             self.seen = Some((pose, nearest.0));
@@ -230,8 +234,8 @@ fn tightened<const N: usize>(
 /// The servo that a place depends on most.
 fn across<const N: usize>(bounds: &Placement<Slope<N>>, region: &Region<N>) -> usize {
     /// The length at which a turn is counted, mm.
-    const LEVER: f64 = 30.0;
-    let (at, turn) = (bounds.at, bounds.turn * LEVER);
+    const LEVER_MM: f64 = 30.0;
+    let (at, turn) = (bounds.at, bounds.turn * LEVER_MM);
     let numbers = [at.x, at.y, turn.x, turn.y];
     let weight = |servo: usize| {
         let half = region.half[servo];

@@ -8,14 +8,14 @@ use lizard_kinematics::Vector;
 
 use super::guard::{Guard, Region};
 use super::slope::Slope;
-use super::{LEAST, TOUCH, sweep};
+use super::{MIN_GAP_MM, TOUCH, sweep};
 use crate::bodies::assembly::Assembly;
 use crate::layers::body::{Body, Mount, Prism};
 use crate::layers::placement::Placement;
 use crate::layers::shape::Shape;
 
 /// Difference below which heights count as equal, mm.
-const SAME: f64 = 1e-6;
+const SAME_HEIGHT_MM: f64 = 1e-6;
 
 /// A pair of shapes of two bodies.
 #[derive(Clone, Debug)]
@@ -50,7 +50,7 @@ pub struct Task {
 impl Task {
     /// Least distance that its pairs must keep, mm.
     pub fn least(&self) -> f64 {
-        if self.meet { -TOUCH } else { LEAST }
+        if self.meet { -TOUCH } else { MIN_GAP_MM }
     }
 
     /// The servos on which the relative place of the two mounts depends.
@@ -105,10 +105,14 @@ fn shape_pairs(i: usize, a: &Body, j: usize, b: &Body, within: f64) -> Vec<Shape
     for p in &a.prisms {
         for q in &b.prisms {
             let gap = (p.z[0] - q.z[1]).max(q.z[0] - p.z[1]);
-            if gap > within - SAME {
+            if gap > within - SAME_HEIGHT_MM {
                 continue;
             }
-            let gap = if gap < -SAME { 0.0 } else { gap.max(SAME) };
+            let gap = if gap < -SAME_HEIGHT_MM {
+                0.0
+            } else {
+                gap.max(SAME_HEIGHT_MM)
+            };
             for first in &p.add {
                 for second in &q.add {
                     shape_pairs.push(ShapePair {
@@ -153,14 +157,14 @@ impl ShapePair {
     /// is not pinned.
     pub fn pinned(&self, places: &[Placement]) -> Option<f64> {
         /// A bound of the rounding error of a joint's place, mm.
-        const SAME: f64 = 1e-6;
+        const ROUNDING_MM: f64 = 1e-6;
         let centre = |shape: &Shape| match shape.points[..] {
             [centre] => Some(centre),
             _ => None,
         };
         let stays = |first: Vector, second: Vector| {
             let off = |place: &Placement| (place.map(second) - first).length();
-            places.iter().all(|place| off(place) < SAME)
+            places.iter().all(|place| off(place) < ROUNDING_MM)
         };
         let air = |pin: &Shape, holes: &[Shape], stays: &dyn Fn(Vector, Vector) -> bool| {
             let middle = centre(pin)?;

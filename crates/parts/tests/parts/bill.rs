@@ -87,7 +87,7 @@ fn prices_are_on_every_row_to_buy_and_add_up() {
 }
 
 #[test]
-fn the_inputs_of_a_robot_are_options_of_its_bill_and_change_neither_sum_nor_mass() {
+fn inputs_are_options_of_the_bill_and_change_neither_sum_nor_mass() {
     let (_, without) = bill("paper");
     assert!(without.inputs.is_empty() && !without.to_string().contains("inputs"));
     let tables = "[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A2\"\n";

@@ -90,7 +90,7 @@ fn pins_meet_the_holes_of_the_parts_that_they_hold() {
 }
 
 #[test]
-fn a_robot_that_does_not_fit_is_refused_in_one_sentence() {
+fn a_robot_that_does_not_fit_is_refused_with_one_message() {
     let bar = "parts.bar is 6 mm, but the head of a screw and a wall on each side need 7.3 mm";
     let spring = "leg strut LF is 30.2 mm from screw to screw, but its spring is 40.0 mm long";
     // The pivot that the paper's figures suggest is under the servo's link.

@@ -19,7 +19,7 @@ fn sorted(mut size: [f64; 3]) -> [f64; 3] {
 }
 
 #[test]
-fn both_products_that_are_named_for_a_fitting_go_into_the_room_that_its_body_takes() {
+fn both_products_named_for_a_fitting_go_into_the_room_of_its_body() {
     for name in ROBOTS {
         let assembly = assembly(name, "");
         for fitting in Fitting::ALL {

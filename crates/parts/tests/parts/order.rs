@@ -128,9 +128,9 @@ fn a_screw_that_nothing_lets_pass_refuses_the_robot() {
     });
     let refused = covered.access_poses(&order(&covered)).expect_err("a lid");
     assert_eq!(refused.by, "deck lid");
-    let sentence = Unfit::from(refused).to_string();
+    let message = Unfit::from(refused).to_string();
     let blocked = "at step 3 of the guide: deck lid is in the way, at every pose";
-    assert!(sentence.contains(blocked), "{sentence}");
+    assert!(message.contains(blocked), "{message}");
 }
 
 #[test]

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use lizard_kinematics::{Side, Solution, Vector};
-use lizard_parts::{Assembly, Body, Clash, ENOUGH, LEAST, Mount, Shape};
+use lizard_parts::{Assembly, Body, Clash, ENOUGH, MIN_GAP_MM, Mount, Shape};
 use lizard_robot::Robot;
 
 use crate::{GRAIN, ROBOTS, assembly as with, body, slotted as assembly};
@@ -243,9 +243,9 @@ fn parts_that_come_too_near_are_refused_with_their_pose() {
     // So far as the guard lets the servo turn, the strut comes to the servo's screws.
     let near = assembly("paper", "[parts]\nanchor = [22.0, 5.0]");
     let found = clash(&near, |body| body.name.starts_with("strut"));
-    let sentence = found.to_string();
-    assert!(sentence.contains("strut"), "{sentence}");
-    assert!(sentence.contains(" pose "), "{sentence}");
+    let message = found.to_string();
+    assert!(message.contains("strut"), "{message}");
+    assert!(message.contains(" pose "), "{message}");
 }
 
 /// The bounds of a shape along x, shifted.
@@ -313,5 +313,5 @@ fn a_struts_screw_has_air_in_its_slot_all_the_way() {
 
 #[test]
 fn the_least_distance_exceeds_a_printers_error() {
-    assert!(LEAST >= assembly("paper", "").robot().parts().fit);
+    assert!(MIN_GAP_MM >= assembly("paper", "").robot().parts().fit);
 }

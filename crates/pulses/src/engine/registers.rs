@@ -33,7 +33,7 @@ fn port(address: u8) -> *mut u8 {
 /// Stores to a register.
 ///
 /// # Safety
-/// It is one of Timer1's.
+/// The register is one of Timer1's.
 #[inline(always)]
 unsafe fn set<T>(register: usize, value: T) {
     // SAFETY: as the caller says.

@@ -1,5 +1,5 @@
 //! Four servos on pins 9, 10, 11 and 3 of an Arduino UNO move to and fro once in two seconds, each a
-//! quarter of the way behind the one before it.
+//! quarter of a cycle after the one before it.
 
 #![no_std]
 #![no_main]

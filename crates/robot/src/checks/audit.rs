@@ -88,8 +88,8 @@ impl LeastMargin {
 /// Checks a gait against the limits of its robot.
 ///
 /// # Errors
-/// The sentence for the first travel or loop that a sample breaks; else, over all samples, for
-/// the worst violation of the first limit broken; else for the pose that the firmware's guard
+/// Returns the message for the first travel or loop that a sample breaks; else, over all samples,
+/// for the worst violation of the first limit broken; else for the pose that the firmware's guard
 /// would stop at; else for a frame that is too fast, or a table that is too coarse.
 pub(crate) fn check(
     gait: &Gait,

@@ -85,7 +85,7 @@ impl CheckedGait {
         &self.gait.strides
     }
 
-    /// The gait as bars; none if it stands or follows a path.
+    /// The gait as bars; `None` if it stands or follows a path.
     pub fn bars(&self) -> Option<Bars> {
         self.moves().then(|| Bars::of(&self.gait)).flatten()
     }

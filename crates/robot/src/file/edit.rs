@@ -38,7 +38,7 @@ impl std::fmt::Display for NoSuchKey {
 /// last line of its table, and a missing table at the end of the text.
 ///
 /// # Errors
-/// If the text is not TOML or has no number at this key.
+/// Fails if the text is not TOML or has no number at this key.
 pub fn with_number(text: &str, key: &str, value: f64) -> Result<String, NoSuchKey> {
     with_value(text, key, &format!("{value:?}"), |value| {
         matches!(value, DeValue::Float(_) | DeValue::Integer(_))
@@ -48,7 +48,7 @@ pub fn with_number(text: &str, key: &str, value: f64) -> Result<String, NoSuchKe
 /// Sets the string of a key, as [`with_number`] sets a number.
 ///
 /// # Errors
-/// If the text is not TOML or has no string at this key.
+/// Fails if the text is not TOML or has no string at this key.
 pub fn with_word(text: &str, key: &str, word: &str) -> Result<String, NoSuchKey> {
     with_value(text, key, &format!("\"{word}\""), |value| {
         matches!(value, DeValue::String(_))
@@ -96,7 +96,7 @@ fn with_value(
 /// Removes the line of a key that may be left out. Without the key the text stays as it is.
 ///
 /// # Errors
-/// If the key is in a table that is written on one line.
+/// Fails if the key is in a table that is written on one line.
 pub fn without(text: &str, key: &str) -> Result<String, NoSuchKey> {
     let missing = || NoSuchKey(key.to_string());
     let document = DeTable::parse(text).map_err(|_| missing())?;

@@ -1,4 +1,4 @@
-//! Mistakes in robot.toml: the sentence that its author reads, and its place in the file.
+//! Mistakes in robot.toml: the message that its author reads, and its place in the file.
 
 use std::fmt;
 
@@ -7,11 +7,11 @@ use std::fmt;
 pub struct Error {
     /// Name of the file as it was given.
     pub file: String,
-    /// Line of the key, counted from 1; none if the mistake belongs to no line.
+    /// Line of the key, counted from 1; `None` if the mistake belongs to no line.
     pub line: Option<usize>,
     /// Full name of the key, such as `servo.A1.pin`; empty for a mistake of the file.
     pub key: String,
-    /// The sentence without file, line and key.
+    /// The message without file, line and key.
     pub problem: String,
     pub(crate) is_clause: bool,
 }
@@ -48,7 +48,7 @@ pub(crate) struct Fault {
 pub(crate) type Checked<T> = Result<T, Fault>;
 
 impl Fault {
-    /// A mistake whose sentence has the key as its subject: "`key` is 3; it must be ...".
+    /// A mistake whose message has the key as its subject: "`key` is 3; it must be ...".
     pub fn new(key: impl Into<String>, problem: impl Into<String>) -> Self {
         Self {
             key: key.into(),
@@ -57,7 +57,7 @@ impl Fault {
         }
     }
 
-    /// A mistake whose sentence has a subject of its own: "`key`: the point ...".
+    /// A mistake whose message has a subject of its own: "`key`: the point ...".
     pub fn clause(key: impl Into<String>, problem: impl Into<String>) -> Self {
         Self {
             is_clause: true,

@@ -1,4 +1,4 @@
-//! robot.toml as a file: its text, its tables, and the sentence for every mistake in them.
+//! robot.toml as a file: its text, its tables, and the message for every mistake in them.
 //!
 //! People write robot.toml by hand, so most files have mistakes at first. A mistake should
 //! cost one look: the error names the file, the line, the key, the mistake and its
@@ -16,5 +16,5 @@ pub(crate) use error::{Checked, Fault, hint, short};
 pub(crate) use reader::{KeyRead, READS};
 pub(crate) use reader::{Section, parse};
 pub use syntax::mistake;
-pub use text::LONGEST;
+pub use text::MAX_FILE_BYTES;
 pub(crate) use text::read;

@@ -11,15 +11,15 @@ use crate::file::syntax::mistake;
 /// skipped.
 ///
 /// # Errors
-/// The first mistake in the text, with its line.
+/// Returns the first mistake in the text, with its line.
 pub(crate) fn parse<T>(text: &str, read: impl Fn(&DeTable) -> Checked<T>) -> Result<T, Error> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let file = "robot.toml".to_string();
     let line_of = |at: usize| text[..at].matches('\n').count() + 1;
     let document = DeTable::parse(text).map_err(|fault| {
         let at = fault.span().map(|span| span.start);
-        let sentence = mistake(text, at.unwrap_or(text.len()), fault.message());
-        Fault::new("", sentence).in_file(file.clone(), at.map(line_of))
+        let message = mistake(text, at.unwrap_or(text.len()), fault.message());
+        Fault::new("", message).in_file(file.clone(), at.map(line_of))
     })?;
     let table = document.get_ref();
     read(table).map_err(|fault| {
@@ -129,8 +129,8 @@ impl<'a> Section<'a> {
     pub fn moved(&self, names: &[&str], instead: &str) -> Checked<()> {
         match names.iter().find(|name| self.has(name)) {
             Some(name) => {
-                let sentence = format!("is not read any more; write {instead}");
-                Err(self.fault(name, sentence))
+                let message = format!("is not read any more; write {instead}");
+                Err(self.fault(name, message))
             }
             None => Ok(()),
         }
@@ -195,8 +195,8 @@ impl<'a> Section<'a> {
         if value < limit {
             return Ok(());
         }
-        let sentence = format!("is {value}; it must be less than {other}, which is {limit}");
-        Err(self.fault(name, sentence))
+        let message = format!("is {value}; it must be less than {other}, which is {limit}");
+        Err(self.fault(name, message))
     }
 
     /// A string.
@@ -227,8 +227,8 @@ impl<'a> Section<'a> {
         };
         let numbers: Option<Vec<f64>> = array.iter().map(|item| number(item.get_ref())).collect();
         let Some(Ok(numbers)) = numbers.map(<[f64; N]>::try_from) else {
-            let sentence = format!("is an array of {}; it must be {expected}", array.len());
-            return Err(self.fault(name, sentence));
+            let message = format!("is an array of {}; it must be {expected}", array.len());
+            return Err(self.fault(name, message));
         };
         for value in numbers {
             self.within(name, value, (min, max), unit)?;

@@ -3,9 +3,9 @@
 //! A parser says which token it expected, in the words of its grammar. But the author has left
 //! out a value, or written a comma for the point or a unit behind a number, and wants to read
 //! that. So this module checks the line for such mistakes. If it finds none, the parser's
-//! sentence stays.
+//! message stays.
 
-/// Makes the sentence for a mistake at byte `at` of a text; `message` is the parser's own.
+/// Makes the message for a mistake at byte `at` of a text; `message` is the parser's own.
 #[must_use]
 pub fn mistake(text: &str, at: usize, message: &str) -> String {
     let number = text.get(..at).map_or(0, |text| text.matches('\n').count());
@@ -22,13 +22,13 @@ pub fn mistake(text: &str, at: usize, message: &str) -> String {
 fn without_comment(line: &str) -> &str {
     let mut quoted = None;
     let mut escaped = false;
-    for (place, c) in line.char_indices() {
+    for (index, c) in line.char_indices() {
         match (quoted, c) {
             _ if escaped => escaped = false,
             (Some('"'), '\\') => escaped = true,
             (Some(mark), c) if c == mark => quoted = None,
             (None, '"' | '\'') => quoted = Some(c),
-            (None, '#') => return line[..place].trim(),
+            (None, '#') => return line[..index].trim(),
             _ => {}
         }
     }
@@ -40,7 +40,7 @@ fn heading(line: &str) -> Option<&str> {
     line.strip_prefix('[')?.strip_suffix(']').map(str::trim)
 }
 
-/// The sentence for a table or a key that occurs a second time in this line.
+/// The message for a table or a key that occurs a second time in this line.
 fn twice(lines: &[&str], number: usize) -> Option<String> {
     let before = lines.get(..number)?;
     let line = lines.get(number)?;
@@ -68,7 +68,7 @@ fn twice(lines: &[&str], number: usize) -> Option<String> {
     ))
 }
 
-/// The sentence for a mistake within one line.
+/// The message for a mistake within one line.
 fn in_line(line: &str) -> Option<String> {
     if line.starts_with('[') && !line.contains('=') && !line.ends_with(']') {
         return Some(format!("`{line}` lacks the ] behind the table's name"));
@@ -87,7 +87,7 @@ fn in_line(line: &str) -> Option<String> {
     number(value).or_else(|| word(value))
 }
 
-/// The sentence for a number that is not written as in TOML.
+/// The message for a number that is not written as in TOML.
 fn number(value: &str) -> Option<String> {
     let is_number =
         |text: &str| text.parse::<f64>().is_ok() && !text.starts_with(char::is_alphabetic);
@@ -124,7 +124,7 @@ fn number(value: &str) -> Option<String> {
     })
 }
 
-/// The sentence for a word without quotation marks.
+/// The message for a word without quotation marks.
 fn word(value: &str) -> Option<String> {
     let plain = |c: char| c.is_alphanumeric() || "_-. ".contains(c);
     let is_word = value.starts_with(char::is_alphabetic) && value.chars().all(plain);
@@ -137,8 +137,8 @@ fn word(value: &str) -> Option<String> {
 mod tests {
     use super::mistake;
 
-    /// The sentence for a text whose last line has the mistake.
-    fn sentence(text: &str) -> String {
+    /// The message for a text whose last line has the mistake.
+    fn message_for(text: &str) -> String {
         let at = text.trim_end().rfind('\n').map_or(0, |end| end + 1);
         mistake(text, at, "expected newline")
     }
@@ -171,8 +171,11 @@ mod tests {
             ("pin = D9", "`D9` lacks its quotation marks; write \"D9\""),
             ("[links", "`[links` lacks the ] behind the table's name"),
         ] {
-            assert_eq!(sentence(line), expected);
-            assert_eq!(sentence(&format!("[links]\nl0 = 20.0\n{line}\n")), expected);
+            assert_eq!(message_for(line), expected);
+            assert_eq!(
+                message_for(&format!("[links]\nl0 = 20.0\n{line}\n")),
+                expected
+            );
         }
     }
 
@@ -193,10 +196,10 @@ mod tests {
     }
 
     #[test]
-    fn any_other_mistake_keeps_the_parsers_sentence() {
+    fn any_other_mistake_keeps_the_parsers_message() {
         for line in ["l1 = \"a", "l1 = [1, 2", "l1 = 1 2", "= 3", "l1 = 'it''s'"] {
             assert_eq!(
-                sentence(line),
+                message_for(line),
                 "this is not TOML: expected newline",
                 "{line}"
             );

@@ -5,19 +5,19 @@ use std::path::Path;
 
 /// The largest robot file that is read, bytes. A real one has some thousands; a device or a
 /// pipe may never end.
-pub const LONGEST: u64 = 1 << 20;
+pub const MAX_FILE_BYTES: u64 = 1 << 20;
 
-/// Reads a file of at most [`LONGEST`] bytes.
+/// Reads a file of at most [`MAX_FILE_BYTES`] bytes.
 ///
 /// # Errors
-/// The sentence for a file that cannot be read, is too long, or is not UTF-8 text.
+/// Returns the message for a file that cannot be read, is too long, or is not UTF-8 text.
 pub(crate) fn read(path: &Path) -> Result<String, String> {
     let mut bytes = Vec::new();
     std::fs::File::open(path)
-        .and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes))
+        .and_then(|file| file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes))
         .map_err(|fault| format!("cannot be read: {fault}"))?;
-    if bytes.len() as u64 > LONGEST {
-        let mib = LONGEST >> 20;
+    if bytes.len() as u64 > MAX_FILE_BYTES {
+        let mib = MAX_FILE_BYTES >> 20;
         return Err(format!(
             "is longer than {mib} MiB, so it is not a robot file"
         ));

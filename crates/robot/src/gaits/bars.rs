@@ -27,7 +27,7 @@ pub struct Bars {
 }
 
 impl Bars {
-    /// Converts a moving gait to bars; none if it follows a path. A reversed gait becomes the bars
+    /// Converts a moving gait to bars; `None` if it follows a path. A reversed gait becomes the bars
     /// of the same movement.
     pub(crate) fn of(gait: &Gait) -> Option<Self> {
         let largest = |most: f64, leg: f64| most.max(leg.abs());

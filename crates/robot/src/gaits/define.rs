@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use lizard_core::console::word::Word;
 use lizard_core::memory::settings::key;
-use lizard_core::numbers::gaits::{LONGEST_NAME, MOST_GAITS};
+use lizard_core::numbers::gaits::{MAX_GAITS, MAX_NAME_BYTES};
 use lizard_kinematics::End;
 
 use crate::file::{Checked, Fault, Section, hint};
@@ -40,18 +40,18 @@ pub(crate) fn gaits(root: &Section, body: &Measures) -> Checked<Vec<Gait>> {
     for name in &names {
         check_name(name, "gait").map_err(|problem| section.fault(name, problem))?;
     }
-    if names.len() > MOST_GAITS {
+    if names.len() > MAX_GAITS {
         let found = names.len();
-        let sentence = format!(
-            "holds {found} gaits; the firmware numbers them with a byte, so leave at most {MOST_GAITS}"
+        let message = format!(
+            "holds {found} gaits; the firmware numbers them with a byte, so leave at most {MAX_GAITS}"
         );
-        return Err(Fault::new("gait", sentence));
+        return Err(Fault::new("gait", message));
     }
     check_keys(&section, &names)?;
     if names.first() != Some(&"stand") {
-        let sentence =
+        let message =
             "the first gait must be stand, the neutral pose that the robot takes at power-on";
-        return Err(Fault::clause("gait", sentence));
+        return Err(Fault::clause("gait", message));
     }
     let mut resolver = Resolver {
         section,
@@ -70,8 +70,8 @@ pub(crate) fn gaits(root: &Section, body: &Measures) -> Checked<Vec<Gait>> {
     if gaits[0].strides.iter().all(still) {
         Ok(gaits)
     } else {
-        let sentence = "must be the neutral pose that the robot takes at power-on: waveform = \"still\" and a period";
-        Err(Fault::new("gait.stand", sentence))
+        let message = "must be the neutral pose that the robot takes at power-on: waveform = \"still\" and a period";
+        Err(Fault::new("gait.stand", message))
     }
 }
 
@@ -84,10 +84,10 @@ pub(super) fn check_keys(section: &Section, names: &[&str]) -> Checked<()> {
             .bytes()
             .map(|byte| if byte == b'-' { b' ' } else { byte });
         if let Some(other) = known.insert(key(written), *name) {
-            let sentence = format!(
+            let message = format!(
                 "is not a gait name: the memory would take it for {other} when `boot` begins it, so one of them needs another name"
             );
-            return Err(section.fault(name, sentence));
+            return Err(section.fault(name, message));
         }
     }
     Ok(())
@@ -101,10 +101,10 @@ pub(super) fn check_name(name: &str, kind: &str) -> Result<(), String> {
             "it must be lower-case letters, digits and dashes, a letter first".to_string(),
         );
     }
-    if name.len() > LONGEST_NAME {
+    if name.len() > MAX_NAME_BYTES {
         let length = name.len();
         return refused(format!(
-            "it has {length} characters, but `status` must fit into a line of the console with it, so it may have {LONGEST_NAME}"
+            "it has {length} characters, but `status` must fit into a line of the console with it, so it may have {MAX_NAME_BYTES}"
         ));
     }
     if name.ends_with('-') || name.contains("--") {
@@ -155,13 +155,13 @@ impl<'a> Resolver<'a> {
         let base = table.text(reference)?;
         if !self.names.contains(&base) {
             let hint = hint(base, &self.names);
-            let sentence = format!("names the gait \"{base}\", which does not exist; {hint}");
-            return Err(table.fault(reference, sentence));
+            let message = format!("names the gait \"{base}\", which does not exist; {hint}");
+            return Err(table.fault(reference, message));
         }
         if self.chain.contains(&base) {
             let circle = [self.chain.as_slice(), &[base]].concat().join(" -> ");
-            let sentence = format!("the gaits refer to each other in a circle: {circle}");
-            return Err(Fault::clause(table.path(reference), sentence));
+            let message = format!("the gaits refer to each other in a circle: {circle}");
+            return Err(Fault::clause(table.path(reference), message));
         }
         let mut gait = self.resolve(base)?;
         match reference {
@@ -187,9 +187,9 @@ fn definition_key(table: &Section) -> Checked<&'static str> {
     match definitions.as_slice() {
         [definition] => Ok(definition),
         _ => {
-            let sentence =
+            let message =
                 "needs exactly one of waveform, a path (head, tail), reverse, mirror, like";
-            Err(Fault::new(table.key.clone(), sentence))
+            Err(Fault::new(table.key.clone(), message))
         }
     }
 }

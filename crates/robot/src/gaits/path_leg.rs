@@ -26,7 +26,7 @@ impl PathLeg {
     /// neutral angles, deg.
     ///
     /// # Errors
-    /// The sentence for a point of the path that is out of reach.
+    /// Returns the message for a point of the path that is out of reach.
     pub(crate) fn pair(
         lizard: Lizard,
         neutral: [f64; 4],

@@ -1,21 +1,21 @@
 //! Routines of robot.toml: gaits one after another, each for some cycles or some time or until a
 //! contact closes, rests, and waits for a button.
 
-use lizard_core::console::command::COUNT_MOST;
-use lizard_core::numbers::gaits::{Gait as Record, MOST_GAITS, Step};
+use lizard_core::console::command::MAX_CYCLES;
+use lizard_core::numbers::gaits::{Gait as Record, MAX_GAITS, Step};
 
 use crate::file::{Checked, Fault, Section, hint};
 use crate::gaits::define::{check_keys, check_name};
 use crate::measures::{INPUTS, Inputs};
 use crate::units::FRAMES_PER_SECOND;
 
-/// The most steps of a routine.
-const MOST_STEPS: usize = 99;
+/// The largest number of steps of a routine.
+const MAX_STEPS: usize = 99;
 
 /// The longest time of a step, s.
-const LONGEST: f64 = 999.0;
+const MAX_SECONDS: f64 = 999.0;
 
-/// What `repeat` may be beside a number.
+/// The word for a `repeat` without end.
 const FOR_EVER: &str = "for ever";
 
 /// A routine whose every step has been checked.
@@ -34,7 +34,7 @@ impl Routine {
         &self.name
     }
 
-    /// Its records in the section: a step, or an input and the step that it ends.
+    /// The records in the section: a step, or an input and the step that it ends.
     pub fn steps(&self) -> &[Step] {
         &self.steps
     }
@@ -50,12 +50,12 @@ impl Routine {
         self.count() < self.steps.len()
     }
 
-    /// How often it goes through its steps; None for ever.
+    /// The number of rounds; `None` without end.
     pub fn rounds(&self) -> Option<u16> {
         (self.rounds > 0).then_some(self.rounds)
     }
 
-    /// Its record in the section; `first` of all steps there is its first.
+    /// The record in the section; `first` of all steps there is its first.
     pub(crate) fn record(&self, first: usize, name_start: usize) -> Record {
         let mut record = Record {
             name_start: name_start as u16,
@@ -82,12 +82,12 @@ pub(crate) fn routines(root: &Section, gaits: &[&str], inputs: &Inputs) -> Check
     }
     let all: Vec<&str> = gaits.iter().chain(&names).copied().collect();
     check_keys(&section, &all)?;
-    if all.len() > MOST_GAITS {
+    if all.len() > MAX_GAITS {
         let found = all.len();
-        let sentence = format!(
-            "and gait are {found} together; the firmware numbers them with a byte, so leave at most {MOST_GAITS}"
+        let message = format!(
+            "and gait are {found} together; the firmware numbers them with a byte, so leave at most {MAX_GAITS}"
         );
-        return Err(Fault::new("routine", sentence));
+        return Err(Fault::new("routine", message));
     }
     let read = |name: &&str| routine(&section, name, gaits, &names, inputs);
     names.iter().map(read).collect()
@@ -102,15 +102,15 @@ fn routine(
 ) -> Checked<Routine> {
     let one = section.section(name, &["steps", "repeat", "repeat_from"])?;
     let texts = one.words("steps")?;
-    if texts.is_empty() || texts.len() > MOST_STEPS {
+    if texts.is_empty() || texts.len() > MAX_STEPS {
         let found = texts.len();
-        let sentence = format!("has {found} steps; it must have 1 to {MOST_STEPS}");
-        return Err(one.fault("steps", sentence));
+        let message = format!("has {found} steps; it must have 1 to {MAX_STEPS}");
+        return Err(one.fault("steps", message));
     }
-    let read = |(place, text): (usize, &&str)| {
+    let read = |(index, text): (usize, &&str)| {
         let fault = |problem| {
-            let sentence = format!("step {}, \"{text}\", {problem}", place + 1);
-            Fault::clause(one.path("steps"), sentence)
+            let message = format!("step {}, \"{text}\", {problem}", index + 1);
+            Fault::clause(one.path("steps"), message)
         };
         records(text, name, gaits, routines, inputs).map_err(fault)
     };
@@ -119,8 +119,8 @@ fn routine(
     let unit = "(a step)";
     let from = one.number_or("repeat_from", 1.0, 1.0, steps.len() as f64, unit)?;
     if from.fract() != 0.0 {
-        let sentence = format!("is {from}; it must be the number of a step");
-        return Err(one.fault("repeat_from", sentence));
+        let message = format!("is {from}; it must be the number of a step");
+        return Err(one.fault("repeat_from", message));
     }
     Ok(Routine {
         name: name.to_string(),
@@ -134,12 +134,12 @@ fn rounds(one: &Section) -> Checked<u16> {
     if one.text("repeat").is_ok_and(|text| text == FOR_EVER) {
         return Ok(0);
     }
-    let most = f64::from(COUNT_MOST);
+    let most = f64::from(MAX_CYCLES);
     let unit = format!("or \"{FOR_EVER}\"");
     let rounds = one.number_or("repeat", 1.0, 1.0, most, &unit)?;
     if rounds.fract() != 0.0 {
-        let sentence = format!("is {rounds}; it must be a whole number {unit}");
-        return Err(one.fault("repeat", sentence));
+        let message = format!("is {rounds}; it must be a whole number {unit}");
+        return Err(one.fault("repeat", message));
     }
     Ok(rounds as u16)
 }
@@ -204,11 +204,11 @@ fn step(
         words => (words, None),
     };
     if words == ["rest"] {
-        let least = if has_input { Step::ENDLESS } else { 1 };
+        let unlimited = if has_input { Step::ENDLESS } else { 1 };
         return Ok(Step {
             kind: Step::REST,
             gait: 0,
-            count: frames.unwrap_or(least),
+            count: frames.unwrap_or(unlimited),
         });
     }
     let (words, count) = match (words, frames) {
@@ -235,9 +235,9 @@ fn step(
     }
     let kind = Step::CYCLES;
     match count.parse() {
-        Ok(count @ 1..=COUNT_MOST) => Ok(Step { kind, gait, count }),
+        Ok(count @ 1..=MAX_CYCLES) => Ok(Step { kind, gait, count }),
         _ => Err(format!(
-            "must say how long: cycles, as \"{name} 3\", a whole number of 1 to {COUNT_MOST}, or a time, as \"{name} 2 s\""
+            "must say how long: cycles, as \"{name} 3\", a whole number of 1 to {MAX_CYCLES}, or a time, as \"{name} 2 s\""
         )),
     }
 }
@@ -245,11 +245,11 @@ fn step(
 fn frames(time: &str) -> Result<u16, String> {
     let seconds: f64 = time.parse().unwrap_or(f64::NAN);
     let least = 1.0 / FRAMES_PER_SECOND;
-    if (least..=LONGEST).contains(&seconds) {
+    if (least..=MAX_SECONDS).contains(&seconds) {
         Ok((seconds * FRAMES_PER_SECOND).round() as u16)
     } else {
         Err(format!(
-            "has a time that is not within {least} to {LONGEST} s"
+            "has a time that is not within {least} to {MAX_SECONDS} s"
         ))
     }
 }

@@ -28,8 +28,8 @@ pub(crate) fn read(
         false => KINDS[0].0,
     };
     if word == "spring" {
-        let sentence = "is \"spring\", which no part is; write \"strut\" with the force and rate of its spring, or \"rigid\"";
-        return Err(section.fault("kind", sentence));
+        let message = "is \"spring\", which no part is; write \"strut\" with the force and rate of its spring, or \"rigid\"";
+        return Err(section.fault("kind", message));
     }
     let section = section.only(&KEYS)?;
     let Some((_, own)) = KINDS.into_iter().find(|(known, _)| *known == word) else {

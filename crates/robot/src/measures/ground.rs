@@ -36,10 +36,10 @@ fn body(root: &Section, feet: &Feet) -> Checked<Body> {
     match loads.iter().position(|load| *load <= 0.0) {
         Some(foot) => {
             let foot = LEGS[foot];
-            let sentence = format!(
+            let message = format!(
                 "is so far from the middle that foot {foot} is in the air at neutral; all four must carry"
             );
-            Err(section.fault("centre", sentence))
+            Err(section.fault("centre", message))
         }
         None => Ok(body),
     }

@@ -19,12 +19,12 @@ const FOOT: [f64; 2] = [-3.5, 2.5];
 const AHEAD: (f64, f64) = (1.0, 500.0);
 const SIDE: (f64, f64) = (0.0, 500.0);
 /// Largest difference of two lengths that count as equal, mm.
-const SAME: f64 = 0.005;
+const SAME_LENGTH_MM: f64 = 0.005;
 
 const AHEAD_KEY: &str = "hip_forward";
 const SIDE_KEY: &str = "hip_side";
 
-/// The hips as `[leg]` gives them, mm; none if they follow from pivot and foot.
+/// The hips as `[leg]` gives them, mm; `None` if they follow from pivot and foot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Hips {
     ahead: Option<f64>,
@@ -56,7 +56,7 @@ impl Hips {
         });
         let placed = |given: Option<f64>, follows: f64, key: &str, (min, max)| {
             let problem = match given {
-                Some(value) if parts.foot.is_none() || (value - follows).abs() < SAME => {
+                Some(value) if parts.foot.is_none() || (value - follows).abs() < SAME_LENGTH_MM => {
                     return Ok(value);
                 }
                 Some(value) => format!(

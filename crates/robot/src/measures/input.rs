@@ -42,8 +42,8 @@ impl Inputs {
             let one = section.section(name, &["pin"])?;
             let pin = free_pin(&one)?;
             if let Some((_, owner)) = taken.iter().find(|(other, _)| *other == pin) {
-                let sentence = format!("is \"{}\", which {owner} already has", one.text("pin")?);
-                return Err(one.fault("pin", sentence));
+                let message = format!("is \"{}\", which {owner} already has", one.text("pin")?);
+                return Err(one.fault("pin", message));
             }
             taken.push((pin, format!("input.{name}")));
             Ok(Some(pin))

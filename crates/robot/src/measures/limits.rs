@@ -7,7 +7,7 @@ use crate::measures::scale::LONGEST_BAR;
 use crate::measures::servo::SpeedLimits;
 
 /// The smallest speed limit, deg/s: a slower move would overflow the firmware's count of frames.
-const SLOWEST: f64 = 10.0;
+const MIN_SPEED: f64 = 10.0;
 
 /// Reads `[limits]`.
 pub(crate) fn read(root: &Section) -> Checked<(Limits, SpeedLimits)> {
@@ -37,7 +37,7 @@ pub(crate) fn read(root: &Section) -> Checked<(Limits, SpeedLimits)> {
         "stroke_max",
         limits.stroke_max,
     )?;
-    let speed = |name| section.number(name, SLOWEST, 1000.0, "deg/s");
+    let speed = |name| section.number(name, MIN_SPEED, 1000.0, "deg/s");
     Ok((
         limits,
         SpeedLimits {

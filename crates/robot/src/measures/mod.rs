@@ -33,7 +33,7 @@ pub(crate) use strut::{hung, of_coil};
 pub use supply::{FUSE, Rail, SWITCH, Supplies, healthy_rail_mv};
 
 use lizard_contact::{Ground, Joints};
-use lizard_core::numbers::bars::SHORTEST_COUPLER;
+use lizard_core::numbers::bars::MIN_COUPLER;
 use lizard_kinematics::{End, Leg, Limits, Links, Lizard, Side};
 
 use crate::file::{Checked, Fault, Section};
@@ -117,18 +117,18 @@ impl Measures {
         ] {
             let bars = self.lizard.end(end);
             let per_mm = scale::steps_per_mm(scale::of_loop(&bars));
-            let least = f64::from(SHORTEST_COUPLER) / per_mm;
+            let least = f64::from(MIN_COUPLER) / per_mm;
             for (key, value) in names
                 .into_iter()
                 .zip([bars.coupler_left, bars.coupler_right])
             {
                 if value < least {
-                    // Rounded up, so that the length in the sentence is long enough.
+                    // Rounded up, so that the length in the message is long enough.
                     let least = (10.0 * least).ceil() / 10.0;
-                    let sentence = format!(
+                    let message = format!(
                         "is {value} mm, which is short beside the rest of its loop; the firmware's 16-bit integers ask for at least {least:.1} mm, or for shorter cranks and a shorter base"
                     );
-                    return Err(Fault::new(key, sentence));
+                    return Err(Fault::new(key, message));
                 }
             }
         }
@@ -150,8 +150,8 @@ impl Measures {
     /// Refuses a robot whose neutral pose breaks a limit.
     fn check_neutral(&self) -> Checked<()> {
         let fault = |text: String| {
-            let sentence = format!("the neutral pose is not safe: {text}");
-            Err(Fault::clause("servo", sentence))
+            let message = format!("the neutral pose is not safe: {text}");
+            Err(Fault::clause("servo", message))
         };
         match self.lizard.solve(&self.neutral().into()) {
             Err(infeasible) => fault(infeasible.to_string()),
@@ -228,6 +228,6 @@ fn equal(key: &str, value: f64, other: &str, other_value: f64, why: &str) -> Che
     if value == other_value {
         return Ok(());
     }
-    let sentence = format!("is {value}, but {other} is {other_value}; {why}");
-    Err(Fault::new(key, sentence))
+    let message = format!("is {value}, but {other} is {other_value}; {why}");
+    Err(Fault::new(key, message))
 }

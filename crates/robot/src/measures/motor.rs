@@ -36,10 +36,11 @@ pub struct ServoType {
     pub full_torque_deg: f64,
 }
 
-/// The default: an SG-90 by its data sheet.
+/// The default: an SG-90 by Tower Pro's data sheet, but with the longer time that sellers print
+/// (0.12 s instead of 0.1 s).
 const SG90: ServoType = ServoType {
     model: "SG-90",
-    source: "data sheet; rotor and full torque assumed",
+    source: "Tower Pro's data sheet, the time by sellers; rotor and full torque assumed",
     stall_kg_cm: 1.8,
     s_per_60_deg: 0.12,
     at_volts: 4.8,
@@ -66,14 +67,14 @@ impl ServoType {
         SG90,
         Self {
             model: "MG90S",
-            source: "data sheet; rotor and full torque assumed",
+            source: "Tower Pro's data sheet; rotor and full torque assumed",
             s_per_60_deg: 0.1,
             dead_band_us: 5.0,
             ..SG90
         },
         Self {
             model: "copy",
-            source: "assumed: a cheap copy with two thirds of an SG-90's torque and four fifths of its rate",
+            source: "the least torque that sellers print for an SG-90; the rest assumed, four fifths of its rate",
             stall_kg_cm: 1.2,
             s_per_60_deg: 0.15,
             ..SG90
@@ -126,10 +127,10 @@ fn named(section: &Section) -> Checked<ServoType> {
         .find(|own| plain(own.model) == plain(word));
     known.copied().ok_or_else(|| {
         let hint = hint(word, &ServoType::ALL.map(|own| own.model));
-        let sentence = format!(
+        let message = format!(
             "is \"{word}\"; for a servo without a name here write stall_kg_cm and s_per_60_deg of its data sheet instead; {hint}"
         );
-        section.fault("model", sentence)
+        section.fault("model", message)
     })
 }
 

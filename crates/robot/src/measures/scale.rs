@@ -9,8 +9,8 @@ use lizard_kinematics::{FiveBar, Slider};
 pub(crate) const LONGEST_BAR: f64 = 1000.0;
 
 // Every mechanism in a robot.toml fits at some scale.
-const _: () = assert!(3.0 * LONGEST_BAR < bars::LONGEST);
-const _: () = assert!(4.0 * LONGEST_BAR < slider::LONGEST_ARMS);
+const _: () = assert!(3.0 * LONGEST_BAR < bars::MAX_STEPS);
+const _: () = assert!(4.0 * LONGEST_BAR < slider::MAX_ARM_STEPS);
 
 /// The number of steps of a scale in a millimetre.
 pub(crate) fn steps_per_mm(scale: Scale) -> f64 {
@@ -21,9 +21,9 @@ pub(crate) fn steps_per_mm(scale: Scale) -> f64 {
 pub(crate) fn of_loop(bars: &FiveBar) -> Scale {
     let all = bars.base + bars.crank_left + bars.crank_right;
     finest(&[
-        (all, bars::LONGEST),
-        (bars.coupler_left, bars::LONGEST),
-        (bars.coupler_right, bars::LONGEST),
+        (all, bars::MAX_STEPS),
+        (bars.coupler_left, bars::MAX_STEPS),
+        (bars.coupler_right, bars::MAX_STEPS),
     ])
 }
 
@@ -31,9 +31,9 @@ pub(crate) fn of_loop(bars: &FiveBar) -> Scale {
 pub(crate) fn of_side(side: &Slider, stroke_max: f64) -> Scale {
     let arms = side.front + side.rear + side.offset.abs();
     finest(&[
-        (side.base + arms, slider::LONGEST),
-        (arms, slider::LONGEST_ARMS),
-        (side.nominal + stroke_max.max(0.0), slider::LONGEST),
+        (side.base + arms, slider::MAX_STEPS),
+        (arms, slider::MAX_ARM_STEPS),
+        (side.nominal + stroke_max.max(0.0), slider::MAX_STEPS),
     ])
 }
 

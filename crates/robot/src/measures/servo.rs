@@ -105,10 +105,10 @@ pub(crate) fn pin(name: &str) -> Option<u8> {
 pub(crate) fn free_pin(section: &Section) -> Checked<u8> {
     let text = section.text("pin")?;
     pin(text).ok_or_else(|| {
-        let sentence = format!(
+        let message = format!(
             "is \"{text}\"; it must be one of D2 to D12 or A0 to A5 (D0 and D1 are the serial line, D13 is the LED)"
         );
-        section.fault("pin", sentence)
+        section.fault("pin", message)
     })
 }
 
@@ -162,11 +162,11 @@ fn servo(section: &Section) -> Checked<Servo> {
     let pin = free_pin(section)?;
     let us_per_degree = section.number("us_per_degree", -f64::MAX, f64::MAX, "us")?;
     if !(GAINS.0..=GAINS.1).contains(&us_per_degree.abs()) {
-        let sentence = format!(
+        let message = format!(
             "is {}; it must be within 1 to 22 us, or -22 to -1 where a longer pulse turns the horn clockwise",
             short(us_per_degree)
         );
-        return Err(section.fault("us_per_degree", sentence));
+        return Err(section.fault("us_per_degree", message));
     }
     let servo = Servo {
         pin,

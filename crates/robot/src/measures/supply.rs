@@ -38,7 +38,7 @@ pub struct Supplies {
     pub reference: f64,
     /// Thresholds of the board's supply, V.
     pub board: [f64; 3],
-    /// The servos' rail; none if it is not measured.
+    /// The servos' rail; `None` if it is not measured.
     pub rail: Option<Rail>,
 }
 
@@ -118,7 +118,7 @@ const NO_RAIL: Thresholds = Thresholds {
 };
 
 /// The voltage of a healthy servos' rail at its divided pin, mV: for simulations, since a rail
-/// of 0 V ends the pulses. The rail has 5 V, or well above its thresholds. None if no rail is
+/// of 0 V ends the pulses. The rail has 5 V, or well above its thresholds. `None` if no rail is
 /// measured.
 pub fn healthy_rail_mv(supplies: &CoreSupplies) -> Option<f64> {
     const RESERVE: f64 = 500.0;

@@ -12,7 +12,7 @@ use crate::robot::Robot;
 /// Smallest change of a movement that counts, percent.
 const COUNTS: f64 = 10.0;
 /// Smallest movement of a cycle that counts: mm ahead, deg of turn.
-const LEAST_MOVEMENT: (f64, f64) = (1.0, 0.5);
+const MIN_MOVEMENT: (f64, f64) = (1.0, 0.5);
 /// Movements that differ by less belong to a gait and its mirror image or its reverse: mm,
 /// deg.
 const ALIKE: f64 = 0.02;
@@ -295,8 +295,7 @@ fn different(
             let off = |a: f64, b: f64| (a.abs() - b.abs()).abs() < ALIKE;
             off(movement.forward, other.forward) && off(movement.turn, other.turn)
         };
-        let leads =
-            movement.forward.abs() > LEAST_MOVEMENT.0 || movement.turn.abs() > LEAST_MOVEMENT.1;
+        let leads = movement.forward.abs() > MIN_MOVEMENT.0 || movement.turn.abs() > MIN_MOVEMENT.1;
         if leads && !gaits.iter().any(alike) {
             gaits.push((gait, movement));
         }

@@ -24,7 +24,7 @@ pub struct Row {
     pub error: TableError,
     /// Movement of one cycle by the contact model.
     pub movement: Prediction,
-    /// Effect of the legs' drive; none if legs are rigid without play.
+    /// Effect of the legs' drive; `None` if legs are rigid without play.
     pub spring_cost: Option<SpringCost>,
     /// The largest share of its line that a servo uses, on the servos' own supply.
     pub line: f64,
@@ -106,10 +106,14 @@ impl Report {
             return Ok(());
         }
         let width = widest(self.rounds.iter().map(|round| round.name.as_str()));
-        writeln!(f, "\n{:width$}                  one round, mm and deg", "")?;
         writeln!(
             f,
-            "{:width$} steps repeat      s   ahead   left    turn",
+            "\n{:width$}                  ideal servos, mm and deg   by its servos",
+            ""
+        )?;
+        writeln!(
+            f,
+            "{:width$} steps repeat      s   ahead   left    turn   ahead   left    turn",
             "routine"
         )?;
         for round in &self.rounds {
@@ -119,16 +123,17 @@ impl Report {
                 rounds,
                 seconds,
                 movement,
+                driven,
                 ..
             } = round;
             let rounds = rounds.map_or("for ever".to_string(), |rounds| rounds.to_string());
-            writeln!(
-                f,
-                "{name:<width$} {steps:>5} {rounds:>6} {seconds:>6.1} {:>7} {:>6} {:>7}",
-                known(movement.forward, 1),
-                known(movement.left, 1),
-                known(movement.turn, 1)
-            )?;
+            write!(f, "{name:<width$} {steps:>5} {rounds:>6} {seconds:>6.1}")?;
+            for way in [movement, driven] {
+                let [forward, left, turn] =
+                    [way.forward, way.left, way.turn].map(|part| known(part, 1));
+                write!(f, " {forward:>7} {left:>6} {turn:>7}")?;
+            }
+            writeln!(f)?;
         }
         Ok(())
     }
@@ -150,7 +155,7 @@ impl fmt::Display for Report {
         let width = widest(self.rows.iter().map(|row| row.name.as_str()));
         writeln!(
             f,
-            "{:width$}  cycle      fastest  table error, deg      smallest margins       slider, mm    one cycle, mm and deg   by its servos{}",
+            "{:width$}  cycle      fastest  table error, deg      smallest margins       slider, mm ideal servos, mm and deg   by its servos{}",
             "",
             if lags { "   drive, deg and %" } else { "" }
         )?;

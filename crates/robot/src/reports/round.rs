@@ -3,7 +3,7 @@
 //! Changes from one gait to the next take time and move the robot, too. So the firmware's core
 //! goes through the routine here, frame by frame, and the contact model follows its poses.
 
-use lizard_contact::Prediction;
+use lizard_contact::{Prediction, Travel, Walker};
 use lizard_core::virtual_board::Running;
 
 use crate::gaits::Routine;
@@ -18,7 +18,7 @@ pub struct Round {
     pub name: String,
     /// The number of its steps.
     pub steps: usize,
-    /// How often it goes through them; None for ever.
+    /// The number of rounds; `None` without end.
     pub rounds: Option<u16>,
     /// True if a contact may end one of its steps.
     pub has_inputs: bool,
@@ -26,6 +26,8 @@ pub struct Round {
     pub seconds: f64,
     /// Movement in one round by the contact model; a part that depends on a tie is none.
     pub movement: Prediction,
+    /// The same with the servos as they are.
+    pub driven: Prediction,
 }
 
 impl Round {
@@ -38,6 +40,7 @@ impl Round {
         let seconds = (sweeps.len() - 1) as f64 / FRAMES_PER_SECOND;
         // Ties are between pads, so rigid legs show them.
         let known = robot.ground().rigid().predict(sweeps.iter().copied());
+        let driven = known.keep_known(driven(robot, &sweeps));
         let movement = known.keep_known(robot.ground().travel(sweeps));
         Self {
             name: routine.name().to_string(),
@@ -46,6 +49,7 @@ impl Round {
             has_inputs: routine.has_inputs(),
             seconds,
             movement,
+            driven,
         }
     }
 
@@ -68,5 +72,18 @@ impl Round {
     }
 }
 
+/// Follows these sweeps frame by frame with the robot's servos, until they have come to rest.
+fn driven(robot: &Robot, sweeps: &[[f64; 4]]) -> Travel {
+    let (motors, start) = (robot.motors(), sweeps[0]);
+    let end = sweeps.last().copied().unwrap_or(start);
+    let mut walker = Walker::new(*robot.ground(), start);
+    for sweeps in sweeps[1..].iter().chain(&[end; SETTLES]) {
+        walker.drive(sweeps.map(Some), 1.0 / FRAMES_PER_SECOND, &motors);
+    }
+    walker.place().travel()
+}
+
+/// Frames in which a servo that lags behind its last pulse comes to rest.
+const SETTLES: usize = 25;
 /// Frames in which a robot whose power comes on has woken and stands.
 const STANDS: u32 = 60;

@@ -9,7 +9,7 @@ use crate::reports::report::{UNDECIDED, known, widest};
 use crate::robot::Robot;
 
 /// Excess length of the front left foot in the table of other feet, mm.
-const LONG: f64 = 0.6;
+const EXCESS_MM: f64 = 0.6;
 
 /// A value that is changed: its name, its values, and the ground with one of them.
 type Change = (&'static str, &'static [f64], fn(&Ground, f64) -> Ground);
@@ -39,7 +39,7 @@ const CHANGES: [Change; 5] = [
     }),
     // The last are leaves of 2 mm.
     ("feet, N/mm", &[1.0, 2.0, 3.3], |ground, stiffness| {
-        standing(ground, stiffness, LONG)
+        standing(ground, stiffness, EXCESS_MM)
     }),
     ("play, +-deg", &[1.0, 2.0], |ground, play| Ground {
         drive: Drive {
@@ -92,7 +92,9 @@ impl Sensitivity {
 
 impl fmt::Display for Sensitivity {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("One cycle: mm ahead, and deg counter-clockwise where it turns.\n")?;
+        f.write_str(
+            "One cycle with ideal servos: mm ahead, and deg counter-clockwise where it turns.\n",
+        )?;
         let width = widest(self.rows.iter().map(|(name, _)| name.as_str()));
         let mut is_decided = true;
         for (table, (head, values, _)) in CHANGES.iter().enumerate() {
@@ -102,7 +104,7 @@ impl fmt::Display for Sensitivity {
                     let leaf = self.leaf;
                     writeln!(f, "The front left foot too long, on feet of {leaf} N/mm:")?;
                 }
-                "feet, N/mm" => writeln!(f, "Too long by {LONG} mm, on other feet:")?,
+                "feet, N/mm" => writeln!(f, "Too long by {EXCESS_MM} mm, on other feet:")?,
                 _ => {}
             }
             write!(f, "{head:<width$}")?;

@@ -13,16 +13,16 @@ pub struct SpringCost {
     /// Largest lag of a leg behind its servo, deg.
     pub lag: f64,
     /// Movement of a cycle over that of rigid legs: ahead, or the turn of a gait that turns on
-    /// the spot, or the smaller of both. None if rigid legs go nowhere, or their movement depends
+    /// the spot, or the smaller of both. `None` if rigid legs go nowhere, or their movement depends
     /// on ties.
     pub share: Option<f64>,
 }
 
 /// Smallest movement of a cycle that counts: mm ahead, deg of turn.
-const LEAST_MOVEMENT: (f64, f64) = (1.0, 0.5);
+const MIN_MOVEMENT: (f64, f64) = (1.0, 0.5);
 
 impl SpringCost {
-    /// Compares a gait on this ground with the same gait on rigid legs; none if legs do not lag.
+    /// Compares a gait on this ground with the same gait on rigid legs; `None` if legs do not lag.
     #[must_use]
     pub fn of(gait: &CheckedGait, ground: &Ground) -> Option<Self> {
         if !ground.drive.lags() {
@@ -35,8 +35,8 @@ impl SpringCost {
                 .filter(|rigid| rigid.abs() > least)
                 .map(|rigid| lagging / rigid)
         };
-        let ahead = part(walked.travel.forward, movement.forward, LEAST_MOVEMENT.0);
-        let turn = part(walked.travel.turn, movement.turn, LEAST_MOVEMENT.1);
+        let ahead = part(walked.travel.forward, movement.forward, MIN_MOVEMENT.0);
+        let turn = part(walked.travel.turn, movement.turn, MIN_MOVEMENT.1);
         Some(Self {
             movement: movement.keep_known(walked.travel),
             lag: walked.lag,

@@ -5,7 +5,7 @@ use lizard_kinematics::{Pose, Solution, wrap};
 use crate::measures::servo;
 use crate::robot::Robot;
 
-/// Every reason why the robot may not take a solved pose, each as a sentence;
+/// Every reason why the robot may not take a solved pose, each as a message;
 /// none if the pose is safe.
 pub fn reasons(robot: &Robot, solution: &Solution) -> Vec<String> {
     let limits = robot.limits().violations(solution);
@@ -15,13 +15,13 @@ pub fn reasons(robot: &Robot, solution: &Solution) -> Vec<String> {
         .collect()
 }
 
-/// A sentence for each servo that cannot reach its angle of a pose.
+/// A message for each servo that cannot reach its angle of a pose.
 pub fn out_of_travel(robot: &Robot, pose: &Pose) -> impl Iterator<Item = String> {
     let angles = <[f64; 4]>::from(*pose);
     (0..4).filter_map(move |i| beyond(robot, i, angles[i]))
 }
 
-/// A sentence if a servo (0 to 3) cannot reach an angle (deg, chassis frame).
+/// A message if a servo (0 to 3) cannot reach an angle (deg, chassis frame).
 pub fn beyond(robot: &Robot, servo: usize, angle: f64) -> Option<String> {
     let of = &robot.servos()[servo];
     (!of.reaches(angle)).then(|| {

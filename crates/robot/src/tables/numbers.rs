@@ -94,7 +94,7 @@ fn five_bar(bars: &kinematics::FiveBar) -> Loop {
         base,
         cranks: [left, right],
         couplers: [a, b],
-        near_stretched: Couplers::is_near_stretched(a, b, furthest * furthest),
+        is_near_stretched: Couplers::is_near_stretched(a, b, furthest * furthest),
     }
 }
 
@@ -280,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn a_loop_is_near_stretched_if_its_tips_can_part_beyond_three_quarters_of_its_reach() {
+    fn a_loop_is_near_stretched_beyond_three_quarters_of_its_reach() {
         // Squared; so where base and cranks exceed .866 of both couplers.
         for (bars, near) in [
             ([20.0, 30.0, 30.0], false),
@@ -297,7 +297,7 @@ mod tests {
                 coupler_right: 50.0,
                 crank_right,
             };
-            assert_eq!(five_bar(&bars).near_stretched, near, "{bars:?}");
+            assert_eq!(five_bar(&bars).is_near_stretched, near, "{bars:?}");
         }
     }
 

@@ -5,7 +5,7 @@
 //! [`lizard_core::numbers::gaits`].
 
 use lizard_avr::Flash;
-use lizard_core::numbers::gaits::{Channel, Gait as TableGait, MOST_WAVES, SAMPLES, Wave};
+use lizard_core::numbers::gaits::{Channel, Gait as TableGait, MAX_WAVES, SAMPLES, Wave};
 use lizard_core::numbers::units::CYCLE;
 
 use crate::file::{Checked, Fault};
@@ -15,7 +15,7 @@ use crate::units::{FRAMES_PER_SECOND, ONE_Q14, PHASES, STEPS_PER_DEGREE};
 
 /// Two waveforms that differ by less than this (deg) share a table: a third of
 /// an angle step.
-const SAME: f64 = 0.002;
+const SAME_DEG: f64 = 0.002;
 
 /// The tables that the firmware reads to walk.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -32,7 +32,7 @@ impl Tables {
     /// Builds the tables.
     ///
     /// # Errors
-    /// The first gait that the fixed point does not hold.
+    /// Returns the first gait that the fixed point does not hold.
     pub fn new(gaits: &[Gait]) -> Checked<Self> {
         let mut bank = WaveformBank::default();
         let mut parts = Vec::new();
@@ -40,16 +40,16 @@ impl Tables {
             let key = format!("gait.{}", gait.name);
             for ((stride, forward), name) in gait.strides.iter().zip(FORWARD).zip(NAMES) {
                 let Some(part) = bank.find(stride, forward) else {
-                    let sentence = format!("servo {name} would sweep half a turn or more");
-                    return Err(Fault::clause(key, sentence));
+                    let message = format!("servo {name} would sweep half a turn or more");
+                    return Err(Fault::clause(key, message));
                 };
                 parts.push(part);
             }
-            if bank.samples.len() > MOST_WAVES {
-                let sentence = format!(
-                    "needs one waveform too many: the firmware numbers them with a byte, so gaits may share {MOST_WAVES}; those that differ only in amplitude, start, gain, period or direction share one"
+            if bank.samples.len() > MAX_WAVES {
+                let message = format!(
+                    "needs one waveform too many: the firmware numbers them with a byte, so gaits may share {MAX_WAVES}; those that differ only in amplitude, start, gain, period or direction share one"
                 );
-                return Err(Fault::new(key, sentence));
+                return Err(Fault::new(key, message));
             }
         }
         let largest = bank.largest(&parts);
@@ -126,7 +126,7 @@ struct WaveformBank {
 
 impl WaveformBank {
     /// Finds or adds the waveform of a stride; `forward` is the sense in which
-    /// the servo moves its foot forward. None if the stride sweeps half a turn.
+    /// the servo moves its foot forward. `None` if the stride sweeps half a turn.
     fn find(&mut self, stride: &Stride, forward: f64) -> Option<Part> {
         let (waveform, shift, sign) = canonical(&stride.waveform);
         let samples = samples(&waveform);
@@ -145,7 +145,7 @@ impl WaveformBank {
         let ahead = -stride.start - shift;
         let samples = samples.map(|value| value / peak);
         let found = self.samples.iter().enumerate().find_map(|(wave, known)| {
-            let rotation = same(known, &samples, SAME / amplitude.abs())?;
+            let rotation = same(known, &samples, SAME_DEG / amplitude.abs())?;
             Some(Part {
                 wave,
                 ahead: ahead + rotation as f64 / SAMPLES as f64,
@@ -217,8 +217,8 @@ mod tests {
     fn a_reversed_gait_is_its_table_with_the_phase_turned_round() {
         let robot = robot("own-gaits");
         let gait = |name: &str| {
-            let place = robot.gait(name).expect(name).index();
-            robot.firmware().gait(id(&robot, place))
+            let index = robot.gait(name).expect(name).index();
+            robot.firmware().gait(id(&robot, index))
         };
         for (forth, back) in [("stroll", "stroll-back"), ("veer-right", "veer-right-back")] {
             let (forth, back) = (gait(forth), gait(back));
@@ -245,9 +245,9 @@ mod tests {
         }
     }
 
-    fn id(robot: &Robot, place: usize) -> lizard_core::numbers::gaits::GaitId {
+    fn id(robot: &Robot, index: usize) -> lizard_core::numbers::gaits::GaitId {
         lizard_core::numbers::gaits::GaitId::all(robot.gaits().len())
-            .nth(place)
+            .nth(index)
             .expect("a gait")
     }
 

@@ -64,7 +64,7 @@ fn check(path: &str, page: &str, now: &str) {
     }
 }
 
-/// Pulls of the springs in the table of slotted struts, N; none for rigid struts.
+/// Pulls of the springs in the table of slotted struts, N; `None` for rigid struts.
 const PULLS: [Option<f64>; 6] = [Some(0.5), Some(1.0), Some(2.0), Some(3.0), Some(5.0), None];
 
 /// Makes a row of the table of slotted struts, whose springs have the rate of the paper's coil.
@@ -90,7 +90,7 @@ fn the_page_on_the_twin_shows_the_cost_of_springs() {
     let ground = paper().ground();
     let (grip, leg) = (ground.grip(), ground.feet.reach);
     let text = format!(
-        "The parts weigh {} g. With a friction of {} that gives {grip:.2} N for each pad, and {:.1} N mm at a leg of {leg} mm.\n\n\
+        "The parts weigh {} g. With a friction of {} that gives {grip:.2} N for each pad, and {:.1} N mm at a leg of {leg} mm. The servos are ideal.\n\n\
          | pull in a slotted strut, N | 0.5 | 1 | 2 | 3 | 5 | rigid |\n|---|---|---|---|---|---|---|\n\
          | lag in `walk`, deg |{}\n| `walk`, mm in a cycle |{}\n| `trot`, mm in a cycle |{}\n| `left`, deg in a cycle |{}\n",
         ground.body.mass,

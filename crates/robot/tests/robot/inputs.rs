@@ -12,7 +12,7 @@ fn with(tables: &str) -> Result<Robot, Error> {
     Robot::parse(&format!("{}\n\n{tables}", paper_text().trim_end()))
 }
 
-/// The sentence for these tables, with its line counted from their first one.
+/// The message for these tables, with its line counted from their first one.
 fn refusal(tables: &str) -> String {
     let error = with(tables).map(|_| ()).expect_err(tables);
     let before = paper_text().trim_end().lines().count() + 1;
@@ -93,7 +93,7 @@ fn inputs_that_no_step_uses_change_no_byte_of_the_section() {
 #[test]
 fn every_free_pin_is_an_input_and_a_taken_one_is_refused_with_its_owner() {
     let rail = "[supply.rail]\npin = \"A3\"\nratio = 2.0\n";
-    for (pin, sentence) in [
+    for (pin, message) in [
         ("D9", ", which servo.A1 already has"),
         ("D3", ", which servo.A4 already has"),
         ("A3", ", which supply.rail already has"),
@@ -124,7 +124,7 @@ fn every_free_pin_is_an_input_and_a_taken_one_is_refused_with_its_owner() {
     ] {
         for name in ["button", "nose"] {
             let found = refusal(&format!("[input.{name}]\npin = \"{pin}\"\n{rail}"));
-            assert_eq!(found, format!("2: input.{name}.pin is \"{pin}\"{sentence}"));
+            assert_eq!(found, format!("2: input.{name}.pin is \"{pin}\"{message}"));
         }
     }
     let free = [
@@ -143,7 +143,7 @@ fn every_free_pin_is_an_input_and_a_taken_one_is_refused_with_its_owner() {
 
 #[test]
 fn a_mistake_in_an_input_or_its_step_is_told_with_its_line_and_its_step() {
-    for (tables, sentence) in [
+    for (tables, message) in [
         (
             "[input.knob]\npin = \"A1\"",
             "1: input.knob is not a known key; allowed are button, nose",
@@ -157,9 +157,9 @@ fn a_mistake_in_an_input_or_its_step_is_told_with_its_line_and_its_step() {
             "1: input.nose.pin is missing; it must be a string",
         ),
     ] {
-        assert_eq!(refusal(tables), sentence);
+        assert_eq!(refusal(tables), message);
     }
-    for (step, sentence) in [
+    for (step, message) in [
         ("wait", "must say for what, as \"wait button\""),
         ("walk until", "must say until what, as \"walk until nose\""),
         (
@@ -194,15 +194,15 @@ fn a_mistake_in_an_input_or_its_step_is_told_with_its_line_and_its_step() {
         let found = refusal(&format!(
             "{INPUTS}[routine.one]\nsteps = [\"walk 1\", \"{step}\"]"
         ));
-        let expected = format!("6: routine.one.steps: step 2, \"{step}\", {sentence}");
+        let expected = format!("6: routine.one.steps: step 2, \"{step}\", {message}");
         assert_eq!(found, expected);
     }
     let found = refusal("[routine.one]\nsteps = [\"wait nose\"]");
-    let sentence =
+    let message =
         "names the input \"nose\", which has no pin; [input.nose] must have one, as pin = \"A1\"";
     assert_eq!(
         found,
-        format!("2: routine.one.steps: step 1, \"wait nose\", {sentence}")
+        format!("2: routine.one.steps: step 1, \"wait nose\", {message}")
     );
 }
 
@@ -238,6 +238,7 @@ fn the_patrol_of_the_docs_waits_once_and_then_repeats_from_its_second_step() {
     let patrol = blocks
         .find(|block| block.contains("[input."))
         .expect("it is there");
+    assert!(include_str!("../../../../docs/quickstart.md").contains(patrol));
     let robot = with(patrol).expect("a robot");
     let [routine] = robot.routines() else {
         panic!("one routine");

@@ -1,4 +1,4 @@
-//! Mistakes that an author of robot.toml may make, and the sentence for each.
+//! Mistakes that an author of robot.toml may make, and the message for each.
 
 use lizard_robot::Robot;
 
@@ -10,8 +10,8 @@ struct Mistake {
     from: String,
     /// The text in its place.
     to: String,
-    /// The sentence after the file's name and line.
-    sentence: String,
+    /// The message after the file's name and line.
+    message: String,
 }
 
 /// Reads mistakes.txt.
@@ -26,22 +26,22 @@ fn mistakes() -> impl Iterator<Item = Mistake> {
         Mistake {
             from: lines('-'),
             to: lines('+'),
-            sentence: lines('='),
+            message: lines('='),
         }
     })
 }
 
 #[test]
-fn every_mistake_gets_its_sentence() {
+fn every_mistake_gets_its_message() {
     assert!(mistakes().count() > 100);
-    for Mistake { from, to, sentence } in mistakes() {
+    for Mistake { from, to, message } in mistakes() {
         let error = paper_with(&from, &to)
             .err()
             .unwrap_or_else(|| panic!("{to:?} was accepted"));
         let line = error.line.expect("a line");
         assert_eq!(
             error.to_string(),
-            format!("robot.toml:{line}: {sentence}"),
+            format!("robot.toml:{line}: {message}"),
             "for {to:?}"
         );
     }
@@ -102,7 +102,7 @@ fn a_file_that_is_not_text_is_refused_without_reading_all_of_it() {
         "FILE: is not UTF-8 text: line 2 holds other bytes"
     );
     let mut long = paper_text().into_bytes();
-    long.resize(lizard_robot::LONGEST as usize, b'\n');
+    long.resize(lizard_robot::MAX_FILE_BYTES as usize, b'\n');
     let long = file("long", &long);
     assert!(Robot::load(&long).is_ok(), "1 MiB is allowed");
     for path in [latin, long] {

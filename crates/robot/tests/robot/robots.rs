@@ -71,11 +71,11 @@ fn an_audit_has_the_least_margins_of_all_phases() {
         for phase in (0..=u16::MAX).step_by(64) {
             let pose = gait.table_angles(phase).into();
             let s = robot.lizard().solve(&pose).expect("it closes");
-            for (place, margins) in [&s.margins.type2[..], &s.margins.type1, &s.margins.leg]
+            for (index, margins) in [&s.margins.type2[..], &s.margins.type1, &s.margins.leg]
                 .into_iter()
                 .enumerate()
             {
-                least_margins[place] = margins.iter().fold(least_margins[place], |a, b| a.min(*b));
+                least_margins[index] = margins.iter().fold(least_margins[index], |a, b| a.min(*b));
             }
             least = least.min(s.left.s).min(s.right.s);
             most = most.max(s.left.s).max(s.right.s);
@@ -140,8 +140,8 @@ fn stand_is_the_neutral_pose_to_the_last_step() {
 #[test]
 fn every_gait_has_its_place_its_name_and_its_travel() {
     each(|file, robot| {
-        for (place, gait) in robot.gaits().iter().enumerate() {
-            assert_eq!(gait.index(), place);
+        for (index, gait) in robot.gaits().iter().enumerate() {
+            assert_eq!(gait.index(), index);
             let spoken = gait.name().replace('-', " ");
             assert_eq!(robot.gait(&spoken), Some(gait), "{file}");
             for phase in (0..=u16::MAX).step_by(64) {

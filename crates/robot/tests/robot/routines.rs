@@ -10,7 +10,7 @@ fn with(tables: &str) -> Result<Robot, Error> {
     Robot::parse(&format!("{}\n\n{tables}", paper_text().trim_end()))
 }
 
-/// The sentence for a routine `patrol` with these lines.
+/// The message for a routine `patrol` with these lines.
 fn refusal(lines: &str) -> String {
     let refused = with(&format!("[routine.patrol]\n{lines}"));
     refused.map(|_| ()).expect_err(lines).to_string()
@@ -72,15 +72,15 @@ steps = ["arc left 2", "arc-left 2.5 s", "  arc  left   999 ", "rest 0.02 s", "s
 }
 
 #[test]
-fn the_core_finds_in_the_section_what_the_file_says_behind_the_gaits_which_stay() {
+fn the_core_finds_the_routines_of_the_file_after_the_unchanged_gaits() {
     let robot = with(&format!("{PATROL}[routine.other]\nsteps = [\"right 2\"]\n")).expect("two");
     let core = robot.core();
     let gaits = robot.gaits().len();
     assert_eq!(core.gait_count(), gaits + 2);
     let ids: Vec<_> = lizard_core::numbers::gaits::GaitId::all(core.gait_count()).collect();
-    for (place, id) in ids.iter().enumerate() {
-        assert_eq!(core.gait(*id).is_routine(), place >= gaits);
-        if place < gaits {
+    for (index, id) in ids.iter().enumerate() {
+        assert_eq!(core.gait(*id).is_routine(), index >= gaits);
+        if index < gaits {
             let same = paper().core().gait(*id);
             assert_eq!(core.gait(*id), same);
         }
@@ -113,7 +113,7 @@ fn eight_routines_of_sixteen_steps_fit_beside_the_papers_gaits_and_their_maps() 
 
 #[test]
 fn a_mistake_is_told_with_its_line_and_its_step() {
-    for (lines, sentence) in [
+    for (lines, message) in [
         (
             "steps = [\"walk 1\", \"wolk 4\"]",
             "step 2, \"wolk 4\", names the gait \"wolk\", which does not exist; did you mean \"walk\"?",
@@ -157,10 +157,10 @@ fn a_mistake_is_told_with_its_line_and_its_step() {
     ] {
         // The routine's table follows the file and a blank line, and its first key that.
         let line = paper_text().lines().count() + 3;
-        let expected = format!("robot.toml:{line}: routine.patrol.steps: {sentence}");
+        let expected = format!("robot.toml:{line}: routine.patrol.steps: {message}");
         assert_eq!(refusal(lines), expected);
     }
-    for (lines, sentence) in [
+    for (lines, message) in [
         (
             "steps = []",
             "routine.patrol.steps has 0 steps; it must have 1 to 99",
@@ -199,7 +199,7 @@ fn a_mistake_is_told_with_its_line_and_its_step() {
         ),
     ] {
         let found = refusal(lines);
-        assert!(found.ends_with(sentence), "{found}");
+        assert!(found.ends_with(message), "{found}");
         assert!(found.starts_with("robot.toml:"), "{found}");
     }
     let many = "\"walk 1\", ".repeat(100);
@@ -212,7 +212,7 @@ fn a_mistake_is_told_with_its_line_and_its_step() {
 
 #[test]
 fn a_name_that_is_taken_or_no_name_is_refused() {
-    for (name, sentence) in [
+    for (name, message) in [
         (
             "walk",
             "routine.walk has the name of a gait; give it another one",
@@ -232,12 +232,12 @@ fn a_name_that_is_taken_or_no_name_is_refused() {
     ] {
         let found = with(&format!("[routine.{name}]\nsteps = [\"walk 1\"]"));
         let found = found.map(|_| ()).expect_err(name).to_string();
-        assert!(found.ends_with(sentence), "{found}");
+        assert!(found.ends_with(message), "{found}");
     }
 }
 
 #[test]
-fn a_round_takes_its_cycles_and_the_changes_between_them_and_leads_as_far_as_its_gaits() {
+fn a_round_takes_its_cycles_and_changes_and_leads_as_far_as_its_gaits() {
     let robot = with(
         "[routine.ahead]\nsteps = [\"walk 10\"]\n[routine.about]\nsteps = [\"left 5\", \"stand 2 s\"]\nrepeat = \"for ever\"\n[routine.gaze]\nsteps = [\"look 1\"]",
     )

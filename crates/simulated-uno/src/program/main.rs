@@ -47,9 +47,9 @@ struct Line {
 }
 
 fn line(argument: &str) -> Result<Line, String> {
-    let sentence = "a line has its time in ms before it, as in 500:walk";
-    let (ms, text) = argument.split_once(':').ok_or(sentence)?;
-    let ms = ms.parse().map_err(|_| sentence)?;
+    let message = "a line has its time in ms before it, as in 500:walk";
+    let (ms, text) = argument.split_once(':').ok_or(message)?;
+    let ms = ms.parse().map_err(|_| message)?;
     let text = text.to_owned();
     Ok(Line { ms, text })
 }

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US, Edge, Pin, SerialByte, State, Uno, pulses};
 
 /// The longest line that waits for its end; longer ones are cut into pieces.
-const LONGEST: usize = 200;
+const MAX_LINE_BYTES: usize = 200;
 
 /// The serial text, line by line.
 #[derive(Default)]
@@ -24,7 +24,7 @@ impl Text {
             if byte.byte != b'\n' {
                 self.line.push(byte.byte);
             }
-            if byte.byte == b'\n' || self.line.len() == LONGEST {
+            if byte.byte == b'\n' || self.line.len() == MAX_LINE_BYTES {
                 self.print_line(out)?;
             }
         }
@@ -61,13 +61,13 @@ pub fn shown(text: &str) -> String {
 }
 
 /// Prints the pulses of all pins that had any: a line for each pin, or for each pulse.
-pub fn pins(edges: &[Edge], every: bool, out: &mut impl Write) -> io::Result<()> {
+pub fn pins(edges: &[Edge], shows_all: bool, out: &mut impl Write) -> io::Result<()> {
     let us = |cycles: u64| cycles as f64 / CYCLES_PER_US as f64;
     writeln!(out)?;
     if edges.is_empty() {
         return writeln!(out, "No pin from D2 to A5 has moved.");
     }
-    match every {
+    match shows_all {
         true => writeln!(out, "pin      start ms      width us")?,
         false => writeln!(out, "pin    pulses  shortest us   longest us    period us")?,
     }
@@ -81,7 +81,7 @@ pub fn pins(edges: &[Edge], every: bool, out: &mut impl Write) -> io::Result<()>
             continue;
         };
         let (first, last) = (pulses[0].start, pulses[pulses.len() - 1].start);
-        if every {
+        if shows_all {
             for pulse in &pulses {
                 let start = pulse.start as f64 / CYCLES_PER_MS as f64;
                 writeln!(out, "{pin:<4} {start:>12.4} {:>13.4}", us(pulse.width))?;

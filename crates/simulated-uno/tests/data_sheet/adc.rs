@@ -90,7 +90,7 @@ fn a_digital_pin_has_no_voltage_to_set() {
 
 #[test]
 fn conversions_have_the_results_of_the_data_sheet() {
-    for (sentence, body, volts, expected) in [
+    for (message, body, volts, expected) in [
         (
             "each analogue pin is measured on its own channel, and too much reads 1023",
             "for (unsigned char i = 0; i < 6; i++) { ADMUX = 0x40 | i; convert(); }",
@@ -118,13 +118,13 @@ fn conversions_have_the_results_of_the_data_sheet() {
             &[512],
         ),
     ] {
-        assert_eq!(results_of(body, volts), expected, "{sentence}");
+        assert_eq!(results_of(body, volts), expected, "{message}");
     }
 }
 
 #[test]
 fn registers_read_as_the_data_sheet_says() {
-    for (sentence, body, volts, expected) in [
+    for (message, body, volts, expected) in [
         (
             // "ADSC will read as one as long as a conversion is in progress. When the
             // conversion is complete, it returns to zero. Writing zero to this bit has no
@@ -176,7 +176,7 @@ fn registers_read_as_the_data_sheet_says() {
     ] {
         let mut uno = run_once(body, volts);
         uno.run_ms(2);
-        assert_eq!(marks(&uno), expected, "{sentence}");
+        assert_eq!(marks(&uno), expected, "{message}");
     }
 }
 

@@ -162,7 +162,7 @@ fn power_on_into_a_supply_that_is_too_low_waits_for_it() {
 }
 
 #[test]
-fn a_ramp_reaches_a_firmware_that_sleeps_for_ever() {
+fn a_ramp_reaches_a_firmware_that_sleeps_forever() {
     let mut uno =
         with("int main(void) { GPIOR0 = MCUSR; SMCR = 1; asm volatile (\"sleep\"); for (;;) {} }");
     uno.ramp_supply_mv(2000.0, CYCLES_PER_MS);

@@ -20,7 +20,7 @@ int main(void) {
 }";
 
 #[test]
-fn a_closed_contact_makes_its_pin_low_and_the_pull_up_makes_it_high_again_also_after_a_reset() {
+fn a_closed_contact_pulls_its_pin_low_and_the_pull_up_raises_it_again() {
     let image = avr_gcc::c(PROGRAM);
     let pins = [Pin::d(4), Pin::d(8), Pin::a(1)];
     for fidelity in BOTH {

@@ -60,7 +60,7 @@ fn a_new_eeprom_is_erased_and_holds_1024_bytes_that_tests_may_set() {
 
 #[test]
 fn registers_read_as_the_data_sheet_says() {
-    for (sentence, body, expected) in [
+    for (message, body, expected) in [
         (
             // "EEAR9:0": the others always read as zero (8.6.1).
             "an address has ten bits",
@@ -92,8 +92,8 @@ fn registers_read_as_the_data_sheet_says() {
         ),
     ] {
         let uno = run_once(body, 10);
-        assert_eq!(marks(&uno), expected, "{sentence}");
-        assert!(uno.eeprom_operations().len() <= 1, "{sentence}");
+        assert_eq!(marks(&uno), expected, "{message}");
+        assert!(uno.eeprom_operations().len() <= 1, "{message}");
     }
 }
 
@@ -140,7 +140,7 @@ fn hardware_clears_eempe_after_four_cycles() {
 
 #[test]
 fn nothing_is_written_without_the_timed_sequence() {
-    for (sentence, source) in [
+    for (message, source) in [
         ("EEPE alone has no effect", "sbi EECR, EEPE"),
         (
             // "Write a logical one to the EEMPE bit while writing a zero to EEPE" (8.6.3).
@@ -154,7 +154,7 @@ fn nothing_is_written_without_the_timed_sequence() {
         ),
     ] {
         let uno = run(source, ATOMIC + 100);
-        assert!(uno.eeprom_operations().is_empty(), "{sentence}");
+        assert!(uno.eeprom_operations().is_empty(), "{message}");
     }
 }
 

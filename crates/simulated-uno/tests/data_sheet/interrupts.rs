@@ -109,7 +109,7 @@ fn one_instruction_runs_after_sei_before_an_interrupt_that_waits() {
 
 #[test]
 fn enabling_an_interrupt_fires_its_flag_and_writing_a_flag_leaves_the_others() {
-    for (sentence, program, expected, stock) in [
+    for (message, program, expected, stock) in [
         (
             "an interrupt that is enabled fires if its flag is set",
             "ISR(TIMER1_OVF_vect) { GPIOR0 = 1; }
@@ -141,13 +141,13 @@ fn enabling_an_interrupt_fires_its_flag_and_writing_a_flag_leaves_the_others() {
             "#include <avr/io.h>\n#include <avr/interrupt.h>\n{program}"
         ));
         let [by_simavr, by_data_sheet] = both_after(100_000, &image).map(|uno| marks(&uno));
-        assert_eq!(by_data_sheet, expected, "{sentence}");
+        assert_eq!(by_data_sheet, expected, "{message}");
         assert_eq!(by_simavr, stock, "{FIXED}");
     }
 }
 
 #[test]
-fn an_interrupt_that_is_enabled_while_its_flag_is_up_comes_after_that_instruction() {
+fn an_interrupt_enabled_while_its_flag_is_up_comes_after_that_instruction() {
     // sts 2, entry 4, jmp 3, out 1
     let image = assembler(
         "jmp start

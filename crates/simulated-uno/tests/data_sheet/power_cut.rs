@@ -28,7 +28,7 @@ fn a_power_cut_in_the_erase_leaves_the_old_byte_with_some_bits_raised() {
         assert_eq!(uno.eeprom()[..2], [0xa6 | ones, 0xff]);
         let operations = uno.eeprom_operations();
         assert_eq!(operations.len(), 1);
-        assert!(operations[0].torn);
+        assert!(operations[0].is_torn);
         assert_eq!(operations[0].new, 0xa6 | ones);
         let after = uno.cycle() - operations[0].cycle;
         assert!(after.abs_diff(ATOMIC / 4) < 10, "{after}");
@@ -43,7 +43,10 @@ fn a_power_cut_in_the_write_leaves_the_new_byte_with_some_bits_still_erased() {
         assert_eq!(*uno.run_ms(20), State::Off);
         assert_eq!(uno.eeprom()[..2], [0x35, 0x5c | ones]);
         let operations = uno.eeprom_operations();
-        assert_eq!([operations[0].torn, operations[1].torn], [false, true]);
+        assert_eq!(
+            [operations[0].is_torn, operations[1].is_torn],
+            [false, true]
+        );
         let after = uno.cycle() - operations[1].cycle;
         assert!(after.abs_diff(ATOMIC / 4 * 3) < 10, "{after}");
     }

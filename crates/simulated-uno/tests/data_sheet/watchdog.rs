@@ -6,7 +6,7 @@ use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, ResetCause, State, Uno};
 use super::{FIXED, after, after_ms, distances, mark_cycles, marks, uno};
 
 /// 2 048 cycles of the 128 kHz oscillator: the shortest time-out.
-const SHORTEST: u64 = 16 * CYCLES_PER_MS;
+const MIN_TIMEOUT: u64 = 16 * CYCLES_PER_MS;
 
 /// Cycles of the watchdog's resets.
 fn watchdog_resets(uno: &Uno) -> Vec<u64> {
@@ -67,20 +67,20 @@ fn every_prescaler_gives_the_time_out_of_table_11_2() {
 
 #[test]
 fn the_time_runs_from_the_last_wdr_or_from_where_the_watchdog_was_switched_on() {
-    for (sentence, body, ms, mark, expected) in [
+    for (message, body, ms, mark, expected) in [
         (
             "wdr restarts the time",
             "set(8); for (unsigned char i = 0; i < 10; i++) { _delay_ms(15); GPIOR0 = i; wdr(); }",
             175,
             9,
-            SHORTEST..SHORTEST + 5,
+            MIN_TIMEOUT..MIN_TIMEOUT + 5,
         ),
         (
             "a watchdog that was off starts with its full time",
             "_delay_ms(40); GPIOR0 = 1; set(8);",
             57,
             0,
-            SHORTEST..SHORTEST + 12,
+            MIN_TIMEOUT..MIN_TIMEOUT + 12,
         ),
         (
             // "The Watchdog Timer should be reset before any change of the WDP bits, since
@@ -94,7 +94,7 @@ fn the_time_runs_from_the_last_wdr_or_from_where_the_watchdog_was_switched_on() 
         ),
     ] {
         let elapsed = to_the_bite(&run_once(body, ms), mark);
-        assert!(expected.contains(&elapsed), "{sentence}: {elapsed}");
+        assert!(expected.contains(&elapsed), "{message}: {elapsed}");
     }
 }
 
@@ -128,7 +128,7 @@ fn wde_is_cleared_only_within_four_cycles_after_wdce() {
 
 #[test]
 fn wdtcsr_reads_as_the_data_sheet_says() {
-    for (sentence, body, ms, expected) in [
+    for (message, body, ms, expected) in [
         (
             "WDE is not cleared nor the prescaler changed without the sequence",
             "WDTCSR = 8; WDTCSR = 0; WDTCSR = 0x27; GPIOR0 = WDTCSR;",
@@ -162,7 +162,7 @@ fn wdtcsr_reads_as_the_data_sheet_says() {
             &[0xc0, 0xc0, 0x40],
         ),
     ] {
-        assert_eq!(marks(&run_once(body, ms)), expected, "{sentence}");
+        assert_eq!(marks(&run_once(body, ms)), expected, "{message}");
     }
     let never_cleared = run_once("WDTCSR = 8; WDTCSR = 0; WDTCSR = 0x27;", 17);
     assert_eq!(watchdog_resets(&never_cleared).len(), 1);
@@ -185,7 +185,7 @@ fn the_interrupt_mode_never_resets_and_stays_on() {
         int main(void) { SMCR = 1; MCUSR = 0; set(0x40); sei(); for (;;) asm volatile (\"sleep\"); }";
     let uno = run(body, 100);
     assert_eq!(marks(&uno), [0x40; 6], "WDIE still set, WDIF cleared");
-    assert_eq!(distances(&mark_cycles(&uno)), [SHORTEST; 5]);
+    assert_eq!(distances(&mark_cycles(&uno)), [MIN_TIMEOUT; 5]);
     assert!(watchdog_resets(&uno).is_empty());
 }
 
@@ -201,7 +201,10 @@ fn interrupt_and_reset_mode_warns_first_and_then_resets() {
     let uno = run(body, 40);
     assert_eq!(marks(&uno), [0x08]);
     let elapsed = to_the_bite(&uno, 0);
-    assert!((SHORTEST - 100..SHORTEST).contains(&elapsed), "{elapsed}");
+    assert!(
+        (MIN_TIMEOUT - 100..MIN_TIMEOUT).contains(&elapsed),
+        "{elapsed}"
+    );
 }
 
 #[test]
@@ -214,7 +217,7 @@ fn an_interrupt_that_is_not_executed_before_the_next_time_out_ends_in_a_reset() 
     let uno = run(body, 40);
     let elapsed = to_the_bite(&uno, 0);
     assert!(
-        (2 * SHORTEST..2 * SHORTEST + 12).contains(&elapsed),
+        (2 * MIN_TIMEOUT..2 * MIN_TIMEOUT + 12).contains(&elapsed),
         "{elapsed}"
     );
 }
@@ -232,8 +235,8 @@ fn after_its_reset_the_watchdog_stays_on_at_16_ms_until_wdrf_is_cleared() {
     assert_eq!(marks(&uno), [8, 8, 8, 8, 8, 8]);
     let bites = watchdog_resets(&uno);
     // To the end of the instruction in which the time is over.
-    assert!((bites[1] - bites[0]).abs_diff(SHORTEST) < 3, "{bites:?}");
-    assert!((bites[2] - bites[1]).abs_diff(SHORTEST) < 3, "{bites:?}");
+    assert!((bites[1] - bites[0]).abs_diff(MIN_TIMEOUT) < 3, "{bites:?}");
+    assert!((bites[2] - bites[1]).abs_diff(MIN_TIMEOUT) < 3, "{bites:?}");
 
     let cleared = run(
         "int main(void) {

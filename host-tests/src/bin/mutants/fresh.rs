@@ -100,7 +100,7 @@ pub fn all(file: &str, text: &str) -> Vec<Mutant> {
     mutants
 }
 
-/// Returns every changed form of a line of code, each with a word about it.
+/// Returns every changed form of a line of code, each with a description.
 fn changes(line: &str) -> Vec<(String, String)> {
     let code = line.split("//").next().unwrap_or_default();
     let trimmed = code.trim();
@@ -138,7 +138,7 @@ fn changes(line: &str) -> Vec<(String, String)> {
     changes
 }
 
-/// The decimal numbers of a line of code, each with its place.
+/// The decimal numbers of a line of code, each with its index.
 fn numbers(code: &str) -> Vec<(usize, &str)> {
     let mut found = Vec::new();
     let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '.';

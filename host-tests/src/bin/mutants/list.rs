@@ -5,7 +5,7 @@
 pub struct Mutant {
     /// The file, from the root of the tree.
     pub file: String,
-    /// A sentence that names the mistake.
+    /// The description of the mistake.
     pub wrong: String,
     /// Part of the names of the tests that are run first.
     pub test: Option<String>,
@@ -25,7 +25,7 @@ impl Mutant {
     /// The file's text with the mistake in it.
     ///
     /// # Errors
-    /// The old text is not in the file, or more than once.
+    /// Fails if the old text is not in the file, or more than once.
     pub fn make(&self, text: &str) -> Result<String, String> {
         match text.matches(&self.old).count() {
             1 => Ok(text.replace(&self.old, &self.new)),
@@ -38,7 +38,7 @@ impl Mutant {
 /// Reads the entries of `mutants.txt`.
 ///
 /// # Errors
-/// An unknown line, or an entry without a file, a mistake or texts.
+/// Fails for an unknown line, or an entry without a file, a mistake or texts.
 pub fn read(list: &str) -> Result<Vec<Mutant>, String> {
     let mut mutants = Vec::new();
     let mut open: Option<Mutant> = None;

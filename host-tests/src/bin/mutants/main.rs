@@ -8,7 +8,7 @@
 //! mistaken firmware by LIZARD_ELF.
 //!
 //! Run it from the folder `host`. Arguments: parts of a file's name or of the
-//! sentence that says what is wrong; an entry that has one of them is tried. None: all.
+//! description of the mistake; entries that contain one of them are tried, without arguments all.
 //!
 //! With SAMPLE=60 it makes that many generated mistakes ([`fresh`]), drawn by SEED from the
 //! firmware's whole code, and prints the rate at which tests notice them, with its interval.
@@ -55,8 +55,8 @@ fn main() -> ExitCode {
     match outcome {
         Ok(0) => ExitCode::SUCCESS,
         Ok(_) => ExitCode::FAILURE,
-        Err(sentence) => {
-            eprintln!("mutants: {sentence}");
+        Err(message) => {
+            eprintln!("mutants: {message}");
             ExitCode::from(2)
         }
     }
@@ -166,7 +166,7 @@ fn text(path: &Path) -> Result<String, String> {
 /// A copy of the tree to make mistakes in, with build folders of its own.
 struct Scratch {
     folder: PathBuf,
-    /// Its files.
+    /// The files of the copy.
     files: Vec<String>,
 }
 
@@ -202,7 +202,7 @@ impl Scratch {
         written.map_err(|error| format!("{}: {error}", path.display()))
     }
 
-    /// Builds the firmware of the copy; none where the compiler refuses it.
+    /// Builds the firmware of the copy; `None` where the compiler refuses it.
     fn firmware(&self) -> Result<Option<PathBuf>, String> {
         let build = self.folder.join("build");
         let status = Command::new("cargo")

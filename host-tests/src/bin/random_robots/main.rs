@@ -1,9 +1,8 @@
 //! `make other-robots`: writes random robots as files like robot.toml, for the
 //! image's tests to run on each.
 //!
-//! Arguments: a folder, a seed, how many. The same seed writes the same robots. They
-//! include each feature that is too rare in the files of `robots/`; otherwise none is
-//! written.
+//! Arguments: a folder, a seed, a count. The same seed writes the same robots. Ten or more
+//! must include each feature that is too rare in the files of `robots/`, or none is written.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -19,8 +18,8 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     match run(&arguments) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(sentence) => {
-            eprintln!("other-robots: {sentence}");
+        Err(message) => {
+            eprintln!("other-robots: {message}");
             ExitCode::FAILURE
         }
     }

@@ -18,7 +18,7 @@ use crate::fingerprint;
 const ROUNDING: u16 = 2;
 
 /// Frames within which any motion of this robot ends.
-const LONG: u32 = 160;
+const MOTION_FRAMES: u32 = 160;
 
 /// Lines of which each tells a gait or a routine to go on for some time, less than those frames at half the pace.
 const COUNTED: [&str; 3] = ["walk 1", "trot 2", "round 1"];
@@ -55,7 +55,7 @@ impl World {
         let is_late = self.observer.is_unreported() && self.running.board.late > 0;
         self.order(effect, Some(is_done));
         if is_done && effect == Effect::Calibrates {
-            self.observe(Event::Calibrated { saved: false });
+            self.observe(Event::Calibrated { is_saved: false });
         }
         let asked = self.now;
         self.observe(Event::Answer {
@@ -75,7 +75,7 @@ impl World {
             return broken(Rule::Allowed, text);
         }
         if is_done && effect == Effect::Moves {
-            let stack = self.running.board.stack_is_intact;
+            let stack = self.running.board.is_stack_intact;
             if is_late {
                 self.observe(Event::Fault);
             }
@@ -170,7 +170,7 @@ impl World {
 
     fn stands_after(&self, answer: &str) -> Verdict {
         let mut later = self.running.clone();
-        for _ in 0..LONG {
+        for _ in 0..MOTION_FRAMES {
             later.frame();
         }
         let motion = later.motion();
@@ -189,7 +189,7 @@ impl World {
 
     fn ends_after(&self, answer: &str) -> Verdict {
         let mut later = self.running.clone();
-        later.run_without_reader(LONG);
+        later.run_without_reader(MOTION_FRAMES);
         if later.main.control().activity() != Activity::Stop {
             return broken(
                 Rule::Ends,
@@ -201,7 +201,7 @@ impl World {
 
     /// Judges the pulses of a frame, in which main ran or not.
     pub(super) fn pulses(&mut self, main_ran: bool) -> Verdict {
-        self.observer.limits.keeps_memory = !self.running.board.memory.worn;
+        self.observer.limits.keeps_memory = !self.running.board.memory.is_worn;
         let widths = self.running.board.started_pulses().0.map(|width| width.0);
         let slew = self.robot().slew().per_frame;
         for (servo, calibration) in self.running.motion().calibration().iter().enumerate() {

@@ -42,7 +42,7 @@ impl Object<'_> {
         if !codes().all(may_move) {
             return 0;
         }
-        // The pieces are the functions; the routines with the sections that stay behind them; and
+        // The pieces are the functions; the routines with the sections that stay after them; and
         // all other files.
         let [middle, others] = [functions.len(), functions.len() + 1];
         let piece = |section: SectionId| functions.iter().position(|other| *other == section);

@@ -5,12 +5,12 @@ import type { Session } from '../../session';
 import { button, list, note, row, warning, words } from '../make';
 import type { Step } from './step';
 
-/** The name of the page's robot in sentences. */
+/** The name of the page's robot in messages. */
 export function nameOf({ file, toml, original }: Session): string {
   return toml === original ? `${file}.toml` : `${file}.toml with your changes`;
 }
 
-/** The sentence that identifies the board. */
+/** The message that identifies the board. */
 export function answerOf(session: Session): string {
   const { link, has } = session;
   if (has === undefined) return `The ${link.name} has not said yet what it is.`;

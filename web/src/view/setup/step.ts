@@ -15,7 +15,7 @@ export interface Tools {
   connect(): void;
   /** Writes the page's robot, alone or with the firmware. */
   write(what: WriteContent): void;
-  /** Runs an action at the robot; shows the returned sentence or the reason of a failure. */
+  /** Runs an action at the robot; shows the returned message or the reason of a failure. */
   run(act: (guide: Guide) => Promise<string>): void;
   /** Sets the calibration of a file, unsaved. */
   setCalibration(text: string, name: string): void;

@@ -143,7 +143,7 @@ fn a_printed_body_is_that_of_its_part_and_in_one_step() {
 }
 
 #[test]
-fn a_robot_that_no_part_can_be_of_is_refused_with_the_sentence_of_lizard_parts() {
+fn a_robot_that_no_part_can_be_of_is_refused_with_the_message_of_lizard_parts() {
     let low = format!("{PAPER}\n[parts]\nheight = 10.0");
     let refused = Model::read(&low).err().expect("refused");
     assert!(

@@ -144,13 +144,20 @@ fn servos_with_a_dead_band_are_predicted_to_lose_it() {
     assert!((sg90 / ideal - 39.0 / 40.0).abs() < 0.02, "{sg90} {ideal}");
     page.set_servos("copy");
     let copy = page.predict(walk).expect("decided");
-    let line = copy.line.expect("a share");
+    let copy = copy.lines.expect("shares");
     page.set_servos("own");
     let own = page
         .predict(walk)
-        .and_then(|movement| movement.line)
-        .expect("a share");
-    assert!(line > 1.3 * own, "a weaker servo uses more: {line} {own}");
+        .and_then(|movement| movement.lines)
+        .expect("shares");
+    for (copy, own) in copy.into_iter().zip(own) {
+        assert!(copy > 1.3 * own, "a weaker servo uses more: {copy} {own}");
+    }
+    // docs/gaits.md has these two, of half the pace and of all of it.
+    assert!(
+        (own[9] - 0.45).abs() < 0.005 && (own[19] - 0.72).abs() < 0.005,
+        "{own:?}"
+    );
 }
 
 #[test]

@@ -51,9 +51,9 @@ fn every_word_is_its_command() {
     }
 }
 
-/// Parses a line by three consoles: one in which gaits have priority over every word, one over
-/// those from `cal` on, and one over none.
-fn yielding(line: &str, robot: &Robot) -> [Result<Command, Misread>; 3] {
+/// Parses a line in three consoles: gaits take priority over every word, over the words from
+/// `cal` on, and over none.
+fn parse_by_priority(line: &str, robot: &Robot) -> [Result<Command, Misread>; 3] {
     const CAL: usize = Word::Cal as usize;
     const NONE: usize = Word::ALL.len();
     let line = line.as_bytes();
@@ -71,11 +71,19 @@ fn a_word_that_yields_is_a_command_unless_a_gait_has_its_name() {
         let (text, example) = (word.text(), word.example());
         let command = parse(example.as_bytes(), &robot);
         assert!(command.is_ok(), "{example}");
-        assert_eq!(yielding(example, &robot), [command; 3], "{example}");
+        assert_eq!(
+            parse_by_priority(example, &robot),
+            [command; 3],
+            "{example}"
+        );
 
         let longer = std::format!("{text} on");
         let other = Sample::paper().with_gait(&longer);
-        assert_eq!(yielding(example, &other), [command; 3], "{example}");
+        assert_eq!(
+            parse_by_priority(example, &other),
+            [command; 3],
+            "{example}"
+        );
 
         let named = Sample::paper().with_gait(text).with_gait(&longer);
         let since = [0, Word::Cal as usize, Word::ALL.len()];
@@ -89,7 +97,7 @@ fn a_word_that_yields_is_a_command_unless_a_gait_has_its_name() {
         ] {
             let as_word = parse(line.as_bytes(), &robot);
             let expected = since.map(|since| if number < since { as_word } else { as_gait });
-            assert_eq!(yielding(line, &named), expected, "{line}");
+            assert_eq!(parse_by_priority(line, &named), expected, "{line}");
         }
     }
 }
@@ -123,7 +131,7 @@ fn every_setting_is_read_with_its_servo() {
 }
 
 #[test]
-fn an_argument_that_is_missing_malformed_or_too_much_is_answered_by_what_is_wanted() {
+fn a_missing_malformed_or_surplus_argument_is_answered_by_the_syntax() {
     for (wants, lines) in [
         (
             Text::TrimWants,
@@ -158,7 +166,7 @@ fn an_argument_that_is_missing_malformed_or_too_much_is_answered_by_what_is_want
 }
 
 #[test]
-fn a_setting_out_of_its_range_is_answered_by_the_range() {
+fn a_setting_out_of_range_is_answered_by_the_range() {
     for (range, lines) in [
         (
             Text::TrimRange,
@@ -212,7 +220,7 @@ fn a_name_that_is_too_short_or_too_long_is_not_recognised() {
 }
 
 #[test]
-fn the_first_words_of_a_longer_name_want_one_more() {
+fn the_first_words_of_a_longer_name_are_incomplete() {
     let robot = Sample::odd().with_gait("arc to left");
     let read = |line: &str| parse(line.as_bytes(), &robot);
     assert_eq!(read("arc"), Err(Misread::Incomplete));

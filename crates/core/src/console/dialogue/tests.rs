@@ -34,7 +34,7 @@ use dialogue::{Dialogue, awake, neutral, pairs, standing, supply, widths};
 const NEUTRAL: &str = "pose 132.37 47.91 309.64 226.18";
 
 #[test]
-fn the_banner_names_version_and_tables_once() {
+fn the_banner_names_version_and_robot_once() {
     for hash in [0, 0x1f0a_9c3e, 0x0000_00f0, u32::MAX, 0x9999_9999] {
         let mut dialogue = Dialogue::power_on(Sample::odd().with_hash(hash));
         let version = env!("CARGO_PKG_VERSION");
@@ -82,7 +82,7 @@ fn help_lists_every_gait_and_every_command_and_may_be_asked_twice() {
 }
 
 #[test]
-fn many_or_long_gait_names_take_several_lines_of_help_each_full_and_none_too_long() {
+fn many_or_long_gait_names_fill_several_lines_of_help_and_none_is_too_long() {
     for (count, length) in [
         (4, 48),
         (40, 5),
@@ -155,7 +155,7 @@ fn the_guards_reason_is_printed_once_and_stays_in_status() {
 }
 
 #[test]
-fn the_reason_is_still_told_when_stand_comes_before_it_could_be() {
+fn the_reason_is_still_printed_if_stand_comes_before_it_could_be() {
     let mut dialogue = guarded();
     dialogue.board.send(b"stand\r");
     dialogue.run_without_reader(3);

@@ -12,7 +12,7 @@ use std::sync::LazyLock;
 use std::vec::Vec;
 use std::{format, fs, println, vec};
 
-use super::SHORTEST;
+use super::MIN_COMMAND_BYTES;
 use crate::console::word::Word;
 use crate::numbers::rate::Rate;
 
@@ -36,11 +36,11 @@ static GAITS: LazyLock<BTreeSet<String>> = LazyLock::new(|| {
 });
 
 /// The sender's clock is off by this share at most.
-const SENDER: f64 = 0.02;
+const CLOCK_ERROR: f64 = 0.02;
 
 /// The middle of a bit as a receiver of eight samples for a bit finds it: the start bit is seen
 /// up to a sample late, and of the samples 4, 5 and 6 the majority counts.
-const MIDDLE: [f64; 2] = [0.5, 0.625];
+const BIT_MIDDLE: [f64; 2] = [0.5, 0.625];
 
 /// A state machine of text: what may follow, and where a command may end.
 #[derive(Default)]
@@ -63,7 +63,7 @@ impl Text {
         self.next.len() - 1
     }
 
-    /// Leads from states to a new one by each of these bytes.
+    /// Adds a state that each of these bytes leads to, from each of these states.
     fn lead(&mut self, from: &[usize], bytes: impl IntoIterator<Item = u8> + Clone) -> usize {
         let to = self.state();
         for at in from {
@@ -81,7 +81,7 @@ impl Text {
         })
     }
 
-    /// Digits, up to so many; returns the states in which the number may end.
+    /// Adds up to `most` digits; returns the states in which the number may end.
     fn digits(&mut self, from: &[usize], most: usize) -> Vec<usize> {
         let mut at = from.to_vec();
         let mut ends = Vec::new();
@@ -92,7 +92,7 @@ impl Text {
         ends
     }
 
-    /// Degrees or hundredths: a sign or none, up to three digits, up to two decimals.
+    /// Adds degrees or hundredths: an optional sign, up to three digits, up to two decimals.
     fn decimal(&mut self, blank: usize) -> Vec<usize> {
         let sign = self.lead(&[blank], *b"+-");
         let mut ends = self.digits(&[blank, sign], 3);
@@ -130,10 +130,10 @@ impl Text {
             }
             let mut ends = vec![end];
             // The example has as many arguments as the word takes.
-            for (place, example) in word.example().split(' ').skip(1).enumerate() {
+            for (index, example) in word.example().split(' ').skip(1).enumerate() {
                 let blank = text.lead(&ends, *b" ");
                 let whole = matches!(word, Word::Speed | Word::Watch | Word::Deadman);
-                ends = match (word, place) {
+                ends = match (word, index) {
                     (Word::Trim | Word::Limit | Word::Dir | Word::Scale, 0) => {
                         vec![text.lead(&[blank], *b"1234")]
                     }
@@ -147,7 +147,7 @@ impl Text {
         text
     }
 
-    /// More than all that the parser takes: arguments of any length and number.
+    /// A superset of what the parser takes: arguments of any length and number.
     fn taken() -> Self {
         let mut text = Self::new();
         for word in GAITS
@@ -173,12 +173,12 @@ impl Text {
     }
 }
 
-/// What a receiver has of a line.
+/// A receiver's reading of a line so far.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Read {
     /// The beginning of a command, or all of it.
     Begun(usize),
-    /// The same, and so many bytes behind it with which no command goes on.
+    /// The same, followed by so many bytes that continue no command.
     Other(usize, u8),
     /// A line with a garbled byte.
     Garbled,
@@ -217,7 +217,7 @@ struct Bits {
 }
 
 impl Bits {
-    /// Text without pauses, and silence behind its end.
+    /// Text without pauses, and silence after its end.
     fn of(text: &Text) -> Self {
         let mut bytes: Vec<(usize, u8, Option<usize>)> = Vec::new();
         for (at, next) in text.next.iter().enumerate() {
@@ -238,19 +238,19 @@ impl Bits {
             next: vec![vec![0]],
             first: Vec::new(),
         };
-        let start = |place: usize| 1 + 10 * place;
+        let start = |index: usize| 1 + 10 * index;
         let followers = |at: usize| {
             let follows = bytes
                 .iter()
                 .enumerate()
                 .filter(move |(_, byte)| byte.0 == at);
-            follows.map(|(place, _)| start(place)).collect::<Vec<_>>()
+            follows.map(|(index, _)| start(index)).collect::<Vec<_>>()
         };
-        for (place, (_, byte, to)) in bytes.iter().enumerate() {
+        for (index, (_, byte, to)) in bytes.iter().enumerate() {
             let line = 1 << 9 | u16::from(*byte) << 1;
             bits.high.extend((0..10).map(|bit| line >> bit & 1 == 1));
             bits.next
-                .extend((1..10).map(|bit| vec![start(place) + bit]));
+                .extend((1..10).map(|bit| vec![start(index) + bit]));
             bits.next.push(to.map_or(vec![0], followers));
         }
         bits.first = followers(Text::START);
@@ -263,24 +263,24 @@ impl Bits {
         text.next[0] = (0..0x80).map(|byte| (byte, 0)).collect();
         let mut bits = Self::of(&text);
         bits.next[0].extend(bits.first.clone());
-        for place in 0..0x80 {
-            bits.next[10 + 10 * place].push(0);
+        for index in 0..0x80 {
+            bits.next[10 + 10 * index].push(0);
         }
         bits
     }
 }
 
 /// The bits of the sender at which a receiver looks, counted from its start edge: for every
-/// distance of the clocks and every place of the middle.
+/// difference of the clocks and every position of the middle.
 fn looks(sender: Rate, receiver: Rate) -> BTreeSet<[usize; 10]> {
     // The chip's own rate, as src/board/serial.rs has it.
     let chip = 2e6 / (2e6 / f64::from(receiver.baud())).round();
     let ratio = f64::from(sender.baud()) / chip;
     let mut all = BTreeSet::new();
     for step in 0..=400 {
-        let ratio = ratio * (1.0 + SENDER * (f64::from(step) / 200.0 - 1.0));
+        let ratio = ratio * (1.0 + CLOCK_ERROR * (f64::from(step) / 200.0 - 1.0));
         for step in 0..=32 {
-            let middle = MIDDLE[0] + (MIDDLE[1] - MIDDLE[0]) * f64::from(step) / 32.0;
+            let middle = BIT_MIDDLE[0] + (BIT_MIDDLE[1] - BIT_MIDDLE[0]) * f64::from(step) / 32.0;
             all.insert(core::array::from_fn(|bit| {
                 ((bit as f64 + middle) * ratio) as usize
             }));
@@ -292,7 +292,7 @@ fn looks(sender: Rate, receiver: Rate) -> BTreeSet<[usize; 10]> {
 /// A receiver's state at a bit of the sender.
 type At = (Read, usize);
 
-/// Reads a byte from each of these start edges; returns the states behind it.
+/// Reads a byte from each of these start edges; returns the states after it.
 fn read_byte(edges: &BTreeSet<At>, bits: &Bits, text: &Text, look: [usize; 10]) -> BTreeSet<At> {
     let mut now: BTreeSet<(Read, usize, u16)> =
         edges.iter().map(|(read, at)| (*read, *at, 0)).collect();
@@ -344,7 +344,7 @@ fn edges_from(states: BTreeSet<At>, bits: &Bits) -> BTreeSet<At> {
     edges
 }
 
-/// All bytes and states that a receiver can reach from these edges on; the commands that it reads.
+/// The commands that a receiver can read at another rate, over all states that it can reach.
 fn commands_read(sender: Rate, receiver: Rate) -> BTreeSet<usize> {
     let (bits, text) = (Bits::of(&Text::sent()), Text::taken());
     let before = [
@@ -414,7 +414,7 @@ fn no_line_ends_at_a_receiver_that_is_faster_than_the_sender_of_any_bytes() {
 fn no_command_that_may_come_first_is_read_at_a_slower_rate() {
     let mut text = Text::taken();
     let words = Word::ALL.iter().map(|word| word.text());
-    let is_short = |word: &&str| word.len() < SHORTEST;
+    let is_short = |word: &&str| word.len() < MIN_COMMAND_BYTES;
     let short: BTreeSet<usize> = words.filter(is_short).map(|word| text.word(word)).collect();
     for (sender, receiver) in pairs(true) {
         let read = commands_read(sender, receiver);

@@ -3,7 +3,7 @@
 use super::*;
 use crate::console::line::GARBLED;
 
-/// A finder after these bytes, with a pause behind them; the rate it changes to, if any.
+/// Gives a finder these bytes and a pause; returns the rate it changes to, if any.
 fn after(finder: &mut Finder, bytes: &[u8]) -> Option<Rate> {
     for byte in bytes {
         finder.note_byte(*byte);
@@ -34,7 +34,7 @@ fn text_of_any_kind_and_length_changes_no_rate() {
 }
 
 #[test]
-fn a_rate_that_has_carried_a_command_stands_31_wrong_bytes_between_two_commands() {
+fn a_rate_that_has_carried_a_command_survives_31_wrong_bytes() {
     let mut finder = Finder::new(Rate::Slowest);
     for _ in 0..100 {
         assert!(finder.note_command(4));
@@ -56,7 +56,7 @@ fn noise_without_a_pause_changes_the_rate_once_it_pauses() {
 }
 
 #[test]
-fn a_rate_that_is_guessed_carries_no_word_of_three_letters_first() {
+fn a_guessed_rate_is_not_confirmed_by_a_word_of_three_letters() {
     for rate in Rate::ALL {
         let mut finder = Finder::new(rate);
         let is_of_usb = rate == Rate::Fastest;

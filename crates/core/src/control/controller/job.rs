@@ -1,4 +1,4 @@
-//! The work to do on the memory, a byte at a time between the frames.
+//! EEPROM operations, a byte at a time between the frames.
 //!
 //! A byte takes 3.4 ms to write. So no order waits for it: main asks for the next step
 //! when it has nothing more urgent to do, and takes no input meanwhile. A weak supply may

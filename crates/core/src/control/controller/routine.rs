@@ -16,9 +16,9 @@ pub(super) struct Routine {
     pub id: GaitId,
     /// The number of the next step.
     step: u8,
-    /// Rounds that are not over yet; 0 for ever.
+    /// Rounds that are not over yet; 0 for a routine without an end.
     left: u16,
-    /// Frames after which its step is over; 0 if the end of a gait's count is awaited,
+    /// Frames until the step is over; 0 if the end of a gait's count is awaited,
     /// [`Step::ENDLESS`] if only a contact ends it.
     wait: u16,
 }
@@ -37,8 +37,7 @@ impl Routine {
 }
 
 impl Control {
-    /// Begins a gait for so many cycles, or a routine for so many rounds; 0 for as many as it has
-    /// by itself.
+    /// Begins a gait for so many cycles, or a routine for so many rounds; 0 for its default.
     #[inline(never)]
     pub(super) fn start(&mut self, id: GaitId, count: u16) {
         let gait = self.motion.robot().gait(id);
@@ -53,7 +52,7 @@ impl Control {
         }
     }
 
-    /// Goes on with the routine after a frame, in which the awaited contact had this level.
+    /// Continues the routine after a frame in which the awaited contact had this level.
     #[inline(never)]
     pub(super) fn go_on(&mut self, is_closed: bool) {
         if self.motion.hazard().is_some() {
@@ -105,7 +104,7 @@ impl Control {
         }
         let Step {
             kind,
-            gait: place,
+            gait: index,
             count,
         } = step;
         self.routine.step = number as u8 + 1;
@@ -122,7 +121,7 @@ impl Control {
             }
             _ => {
                 let cycles = if kind == Step::CYCLES { count } else { 0 };
-                self.motion.start_gait(GaitId::at(place), cycles);
+                self.motion.start_gait(GaitId::at(index), cycles);
             }
         }
     }

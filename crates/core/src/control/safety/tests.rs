@@ -33,14 +33,14 @@ fn at(volts: f64) -> Health {
 fn notices(safety: &mut Safety) -> std::vec::Vec<Notice> {
     let mut printed = std::vec::Vec::new();
     while let Some(notice) = safety.notice() {
-        safety.written(notice);
+        safety.note_printed(notice);
         printed.push(notice);
     }
     printed
 }
 
 #[test]
-fn while_all_is_well_nothing_is_asked_for_and_nothing_said() {
+fn while_all_is_well_no_reaction_and_no_notice_follows() {
     let mut safety = without_boot();
     for _ in 0..1000 {
         assert_eq!(frame(&mut safety, &WELL), Reaction::None);
@@ -51,7 +51,7 @@ fn while_all_is_well_nothing_is_asked_for_and_nothing_said() {
 }
 
 #[test]
-fn before_the_supply_has_been_measured_a_robot_may_move_and_not_write() {
+fn before_the_supply_has_been_measured_a_robot_may_move_but_not_write() {
     let mut safety = without_boot();
     for _ in 0..20 {
         frame(&mut safety, &Health::default());
@@ -73,7 +73,7 @@ fn before_the_supply_has_been_measured_a_robot_may_move_and_not_write() {
 }
 
 #[test]
-fn boot_is_asked_for_once_three_seconds_after_power_on() {
+fn boot_is_requested_once_three_seconds_after_power_on() {
     let mut safety = Safety::default();
     for number in 1..=1000 {
         let order = frame(&mut safety, &WELL);
@@ -87,7 +87,7 @@ fn boot_is_asked_for_once_three_seconds_after_power_on() {
 }
 
 #[test]
-fn a_byte_calls_boot_off_and_so_does_a_fault_or_a_low_supply() {
+fn a_byte_a_fault_or_a_low_supply_cancels_boot() {
     let boots = |disturb: fn(&mut Safety)| {
         let mut safety = Safety::default();
         let mut booted = false;
@@ -135,7 +135,7 @@ fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says_and_no_sooner()
 }
 
 #[test]
-fn no_deadman_and_no_gait_mean_no_fault_of_the_link() {
+fn without_deadman_or_gait_silence_is_no_fault() {
     let mut safety = without_boot();
     let supplies = supplies();
     for _ in 0..5000 {
@@ -204,7 +204,7 @@ fn each_late_edge_stops_the_robot_and_is_reported() {
 fn a_stack_in_the_data_stops_and_goes_on_doing_so_after_every_motion() {
     let mut safety = without_boot();
     let health = Health {
-        stack_is_intact: false,
+        is_stack_intact: false,
         ..WELL
     };
     for _ in 0..3 {
@@ -228,7 +228,7 @@ fn of_two_reactions_at_once_the_stronger_one_counts() {
 }
 
 #[test]
-fn notes_come_once_each_and_in_a_fixed_order() {
+fn notices_come_once_each_and_in_a_fixed_order() {
     let mut safety = without_boot();
     for notice in [
         Notice::Boot,

@@ -146,7 +146,7 @@ fn the_reaction_never_relaxes_as_the_supply_sinks() {
 }
 
 #[test]
-fn servos_wake_only_where_nothing_held_them_and_are_taken_over_only_where_something_did() {
+fn servos_wake_only_if_nothing_held_them_and_are_taken_over_only_if_held() {
     for cause in Cause::ALL {
         for brown_outs in 0..=BROWN_OUTS {
             for before in Before::ALL {

@@ -72,7 +72,7 @@ fn every_voltage_is_printed_with_two_decimals() {
 
 proptest! {
     #[test]
-    fn a_voltage_is_below_what_it_is_below(reference in 100u16..1023, mv in 0u16..9000) {
+    fn comparing_a_voltage_agrees_with_floating_point(reference in 100u16..1023, mv in 0u16..9000) {
         let voltage = Voltage::of_board(Reading { reference, rail: 0 }, &SUPPLIES);
         let exact = 1024.0 * 1100.0 / f64::from(reference);
         prop_assert_eq!(voltage.is_below(mv), exact < f64::from(mv));
@@ -80,7 +80,7 @@ proptest! {
 }
 
 #[test]
-fn a_falling_supply_slows_then_stops_then_ends_the_pulses_each_after_six_frames() {
+fn a_falling_supply_reaches_each_level_after_six_frames() {
     let mut supply = Supply::default();
     assert_eq!(until(&mut supply, 5.0).0, 0);
     for (volts, level) in [
@@ -96,7 +96,7 @@ fn a_falling_supply_slows_then_stops_then_ends_the_pulses_each_after_six_frames(
 }
 
 #[test]
-fn one_reading_decides_nothing_what_held_for_all_six_frames_counts() {
+fn one_reading_decides_nothing_and_six_frames_do() {
     for (others, one, level) in [
         (4.45, 3.5, Level::Slow),
         (4.25, 3.5, Level::Stop),

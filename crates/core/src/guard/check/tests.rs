@@ -1,5 +1,5 @@
-//! Intact sections that would harm a servo or the board: a number at a time, each
-//! beside the nearest one that does not.
+//! Intact sections that would harm a servo or the board: one wrong number at a time, each
+//! next to the nearest harmless one.
 
 use std::vec::Vec;
 
@@ -26,7 +26,7 @@ impl Changed {
         self
     }
 
-    /// True if it is a robot's.
+    /// True if the guard accepts the section.
     fn opens(&self) -> bool {
         let mut section = self.0.clone();
         seal(&mut section);
@@ -40,7 +40,7 @@ impl Changed {
     }
 }
 
-/// True if the odd robot's section still opens with this word in that place.
+/// True if the odd robot's section still opens with this word at that offset.
 fn opens_with(at: u16, word: u16) -> bool {
     Changed::new().put(at, word).opens()
 }
@@ -58,8 +58,8 @@ fn a_pin_is_free_used_once_and_not_the_rails() {
     for rail in [0, 14, 19] {
         for servo in 0..4 {
             for pin in 0..=u8::MAX {
-                let changed = Changed::new().put(place!(rail), rail);
-                let opens = changed.put_byte(place!(pins) + servo, pin).opens();
+                let changed = Changed::new().put(offset!(rail), rail);
+                let opens = changed.put_byte(offset!(pins) + servo, pin).opens();
                 let used = others(servo).chain([rail as u8]).any(|other| other == pin);
                 let all_free = others(servo).all(|other| u16::from(other) != rail);
                 let wanted = is_free(pin) && !used && all_free;
@@ -71,7 +71,7 @@ fn a_pin_is_free_used_once_and_not_the_rails() {
     for rail in 0..=u8::MAX {
         let measures = (14..=19).contains(&rail) && !pins.contains(&rail);
         assert_eq!(
-            opens_with(place!(rail), rail.into()),
+            opens_with(offset!(rail), rail.into()),
             rail == 0 || measures,
             "{rail}"
         );
@@ -79,7 +79,7 @@ fn a_pin_is_free_used_once_and_not_the_rails() {
 }
 
 #[test]
-fn a_servo_bears_the_pulses_of_its_travel_and_the_gaits_do_not_leave_it() {
+fn a_servo_tolerates_the_pulses_of_its_travel_and_gaits_stay_within_it() {
     for servo in 0..4 {
         let opens = |change: &dyn Fn(&mut Calibration)| {
             let mut content = Sample::odd().content.clone();

@@ -35,11 +35,11 @@ impl Bounds {
     fn of(robot: &Sample, pose: &Pose) -> Self {
         let [a1, a2, a3, a4] = robot.degrees(pose);
         let lizard = robot.measures.lizard;
-        let end = |place: usize, end, angles| {
-            bounds::End::of(&lizard.end(end), &robot.ends[place], angles)
+        let end = |index: usize, end, angles| {
+            bounds::End::of(&lizard.end(end), &robot.ends[index], angles)
         };
         let side =
-            |place: usize, side| bounds::slider(&lizard.side(side), &robot.content.sides[place]);
+            |index: usize, side| bounds::slider(&lizard.side(side), &robot.content.sides[index]);
         Self {
             ends: [
                 end(0, kinematics::End::Head, [a1, a2]),
@@ -59,7 +59,7 @@ impl Bounds {
 }
 
 /// True if the exact value is clear of all its limits by more than the errors, or
-/// beyond one of them; None in between.
+/// beyond one of them; `None` in between.
 fn truth(robot: &Sample, pose: &Pose) -> Option<bool> {
     let bounds = Bounds::of(robot, pose);
     let Some(solution) = robot.solve(pose) else {
@@ -100,41 +100,41 @@ fn measured(robot: &Sample, pose: &Pose) -> Result<(), TestCaseError> {
         return Ok(());
     };
     let bounds = Bounds::of(robot, pose);
-    for (place, (what, exact)) in truth.margins.iter().enumerate() {
-        let end = match place {
-            0 | 1 => place,
-            place => kinematics::End::of_servo((place - 2) % 4) as usize,
+    for (index, (what, exact)) in truth.margins.iter().enumerate() {
+        let end = match index {
+            0 | 1 => index,
+            index => kinematics::End::of_servo((index - 2) % 4) as usize,
         };
         let bars = [&truth.head, &truth.tail][end];
         let bound = &bounds.ends[end];
-        let is_leg = place >= 6;
-        if !is_leg && !bound.known {
+        let is_leg = index >= 6;
+        if !is_leg && !bound.is_known {
             continue;
         }
-        if place < 2 && bars.gap.x.abs() <= bound.along {
+        if index < 2 && bars.gap.x.abs() <= bound.along {
             continue;
         }
-        let exact = if place < 2 && bars.gap.x < 0.0 {
+        let exact = if index < 2 && bars.gap.x < 0.0 {
             -exact
         } else {
             exact
         };
-        let most = match place {
+        let most = match index {
             0..2 => bound.type2,
             2 | 5 => bound.type1_left,
             3 | 4 => bound.type1_right,
             _ => DIRECTION,
         };
-        let off = sine(got.margins[place]) - exact;
+        let off = sine(got.margins[index]) - exact;
         prop_assert!(off.abs() <= most, "{what} is off by {off} of {most}");
     }
-    for (place, exact) in [truth.left.d, truth.right.d].into_iter().enumerate() {
-        let length = f64::from(got.sliders_sq[place]).sqrt();
-        let off = length / per_mm(robot.content.sides[place].scale) - exact;
-        let most = bounds.sliders[place];
+    for (index, exact) in [truth.left.d, truth.right.d].into_iter().enumerate() {
+        let length = f64::from(got.sliders_sq[index]).sqrt();
+        let off = length / per_mm(robot.content.sides[index].scale) - exact;
+        let most = bounds.sliders[index];
         prop_assert!(
             off.abs() <= most,
-            "slider {place} is off by {off} of {most}"
+            "slider {index} is off by {off} of {most}"
         );
     }
     Ok(())
@@ -144,7 +144,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(5_000))]
 
     #[test]
-    fn every_margin_and_slider_is_measured_with_its_own_bars_and_servos(
+    fn every_margin_and_slider_uses_its_own_bars_and_servos(
         (robot, poses) in posed(),
     ) {
         for pose in &poses {
@@ -188,7 +188,7 @@ fn the_bounds_decide_nearly_every_pose_and_are_narrow_where_a_robot_stands() {
     assert!(decided > 1900, "{decided} of 2000");
 }
 
-/// Floating point calls it safe, the integers do not: a stroke that ends where the
+/// Floating point calls this sample safe, the integers do not: a stroke that ends where the
 /// slider stands is rounded inwards.
 #[test]
 fn a_sample_stands_safely_by_the_integers_and_not_only_in_floating_point() {
@@ -229,12 +229,12 @@ fn margins(limits: &Limits) -> [(Margin, Sine); 10] {
 #[test]
 fn a_margin_at_its_limit_is_safe_and_one_step_below_it_is_not() {
     let (robot, clear) = clear();
-    for (place, (margin, limit)) in margins(&robot.limits()).into_iter().enumerate() {
+    for (index, (margin, limit)) in margins(&robot.limits()).into_iter().enumerate() {
         let mut at = clear;
-        at.margins[place] = limit;
+        at.margins[index] = limit;
         assert_eq!(at.hazard(&robot), None, "{margin:?}");
         let value = Sine(limit.0 - 1);
-        at.margins[place] = value;
+        at.margins[index] = value;
         assert_eq!(at.hazard(&robot), Some(Hazard::Margin { margin, value }));
     }
 }
@@ -242,11 +242,11 @@ fn a_margin_at_its_limit_is_safe_and_one_step_below_it_is_not() {
 #[test]
 fn a_slider_at_either_end_of_its_stroke_is_safe_and_one_step_beyond_is_not() {
     let (robot, clear) = clear();
-    for (place, side) in Side::ALL.into_iter().enumerate() {
-        let Slider { min, max, .. } = robot.content.sides[place];
+    for (index, side) in Side::ALL.into_iter().enumerate() {
+        let Slider { min, max, .. } = robot.content.sides[index];
         for (length, allowed) in [(min, true), (min - 1, false), (max, true), (max + 1, false)] {
             let mut at = clear;
-            at.sliders_sq[place] = u32::from(length) * u32::from(length);
+            at.sliders_sq[index] = u32::from(length) * u32::from(length);
             let expected = (!allowed).then_some(Hazard::Stroke { side, length });
             assert_eq!(at.hazard(&robot), expected);
         }
@@ -257,26 +257,26 @@ fn a_slider_at_either_end_of_its_stroke_is_safe_and_one_step_beyond_is_not() {
 fn the_first_of_several_hazards_is_reported_margins_before_strokes() {
     let (robot, mut clearance) = clear();
     let mut expected: Vec<Hazard> = Vec::new();
-    for (place, side) in Side::ALL.into_iter().enumerate().rev() {
-        clearance.sliders_sq[place] = 100;
+    for (index, side) in Side::ALL.into_iter().enumerate().rev() {
+        clearance.sliders_sq[index] = 100;
         expected.push(Hazard::Stroke { side, length: 10 });
         assert_eq!(clearance.hazard(&robot).as_ref(), expected.last());
     }
-    for (place, (margin, _)) in margins(&robot.limits()).into_iter().enumerate().rev() {
+    for (index, (margin, _)) in margins(&robot.limits()).into_iter().enumerate().rev() {
         let value = Sine(-1);
-        clearance.margins[place] = value;
+        clearance.margins[index] = value;
         expected.push(Hazard::Margin { margin, value });
         assert_eq!(clearance.hazard(&robot).as_ref(), expected.last());
     }
 }
 
 #[test]
-fn the_smallest_margin_is_found_at_every_place() {
+fn the_smallest_margin_is_found_at_every_index() {
     let (_, clear) = clear();
-    for place in 0..10 {
+    for index in 0..10 {
         let mut clearance = clear;
-        clearance.margins[place] = Sine(-20_000 + place as i16);
-        assert_eq!(clearance.smallest(), Sine(-20_000 + place as i16));
+        clearance.margins[index] = Sine(-20_000 + index as i16);
+        assert_eq!(clearance.smallest(), Sine(-20_000 + index as i16));
     }
 }
 

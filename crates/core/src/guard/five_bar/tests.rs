@@ -65,7 +65,7 @@ proptest! {
             // All margins are zero, and a refusal says "below 0.1".
             prop_assert!(pose.type2 < 0.1, "nothing is known of {}", pose.type2);
         }
-        if !bound.known {
+        if !bound.is_known {
             // The margin may be too small, or all of them zero.
             return Ok(());
         }

@@ -1,4 +1,4 @@
-//! Saved settings, cut off, torn and flipped.
+//! Saved settings whose writes were cut off or torn, and whose bits flipped.
 
 use std::vec::Vec;
 
@@ -15,7 +15,7 @@ fn robot() -> Sample {
     Sample::odd()
 }
 
-/// Settings that differ in everything, the `n`-th of them.
+/// The `n`-th of several settings that differ in everything.
 fn settings(robot: &Sample, n: i16) -> Settings {
     let mut settings = Settings::of(robot);
     for servo in Servo::ALL {
@@ -32,11 +32,11 @@ fn settings(robot: &Sample, n: i16) -> Settings {
 }
 
 /// Saves settings as the console does.
-fn save_all(settings: &Settings, chip: &mut Eeprom) -> Settings {
+fn save_all(settings: &Settings, eeprom: &mut Eeprom) -> Settings {
     let mut kept = *settings;
-    if let Some(mut writing) = save(&mut kept, chip) {
+    if let Some(mut writing) = save(&mut kept, eeprom) {
         loop {
-            match writing.step(kept.bytes(), chip) {
+            match writing.step(kept.bytes(), eeprom) {
                 Progress::Going => {}
                 Progress::Done => break,
                 Progress::Failed => panic!("worn"),
@@ -46,9 +46,9 @@ fn save_all(settings: &Settings, chip: &mut Eeprom) -> Settings {
     kept
 }
 
-fn loaded(robot: &Sample, chip: &Eeprom) -> (Settings, Outcome) {
+fn loaded(robot: &Sample, eeprom: &Eeprom) -> (Settings, Outcome) {
     let mut settings = Settings::of(robot);
-    let outcome = load(robot, chip, &mut settings);
+    let outcome = load(robot, eeprom, &mut settings);
     (settings, outcome)
 }
 
@@ -62,33 +62,33 @@ fn without_turn(settings: &Settings) -> Settings {
 #[test]
 fn the_last_of_a_thousand_saves_is_loaded() {
     let robot = robot();
-    let mut chip = Eeprom::blank();
+    let mut eeprom = Eeprom::blank();
     assert_eq!(
-        loaded(&robot, &chip),
+        loaded(&robot, &eeprom),
         (Settings::of(&robot), Outcome::Blank)
     );
     for n in 0..1000 {
         let new = settings(&robot, n % 70);
-        let kept = save_all(&new, &mut chip);
+        let kept = save_all(&new, &mut eeprom);
         assert_eq!(without_turn(&kept), without_turn(&new));
-        assert_eq!(loaded(&robot, &chip), (kept, Outcome::Latest), "{n}");
+        assert_eq!(loaded(&robot, &eeprom), (kept, Outcome::Latest), "{n}");
     }
 }
 
 #[test]
 fn unchanged_bytes_are_not_written_again() {
     let robot = robot();
-    let mut chip = Eeprom::blank();
-    save_all(&settings(&robot, 3), &mut chip);
-    chip.log.clear();
-    save_all(&settings(&robot, 3), &mut chip);
-    assert!(chip.log.is_empty());
-    // And only bytes that differ from the copy before the last one.
-    save_all(&settings(&robot, 4), &mut chip);
-    chip.log.clear();
-    save_all(&settings(&robot, 5), &mut chip);
-    assert!(chip.log.len() < usize::from(LENGTH));
-    assert!(chip.log.iter().all(|(_, old, new)| old != new));
+    let mut eeprom = Eeprom::blank();
+    save_all(&settings(&robot, 3), &mut eeprom);
+    eeprom.log.clear();
+    save_all(&settings(&robot, 3), &mut eeprom);
+    assert!(eeprom.log.is_empty());
+    // A save writes only bytes that differ from the copy before the last one.
+    save_all(&settings(&robot, 4), &mut eeprom);
+    eeprom.log.clear();
+    save_all(&settings(&robot, 5), &mut eeprom);
+    assert!(eeprom.log.len() < usize::from(LENGTH));
+    assert!(eeprom.log.iter().all(|(_, old, new)| old != new));
 }
 
 /// The values of a byte after power failed during its write: the erase has raised
@@ -98,23 +98,23 @@ fn torn(old: u8, new: u8) -> impl Iterator<Item = u8> {
 }
 
 #[test]
-fn a_power_cut_at_any_byte_leaves_the_old_settings_or_the_new_whole() {
+fn a_power_cut_at_any_byte_leaves_the_old_settings_or_the_new() {
     let robot = robot();
     for saved_before in 0..4 {
-        let mut chip = Eeprom::blank();
+        let mut eeprom = Eeprom::blank();
         let mut old = (Settings::of(&robot), Outcome::Blank);
         for n in 0..saved_before {
-            save_all(&settings(&robot, 10 + n), &mut chip);
-            old = loaded(&robot, &chip);
+            save_all(&settings(&robot, 10 + n), &mut eeprom);
+            old = loaded(&robot, &eeprom);
         }
-        let before = *chip.bytes();
-        chip.log.clear();
-        let new = save_all(&settings(&robot, 60), &mut chip);
-        assert!(chip.log.len() > 10);
+        let before = *eeprom.bytes();
+        eeprom.log.clear();
+        let new = save_all(&settings(&robot, 60), &mut eeprom);
+        assert!(eeprom.log.len() > 10);
         let mut olds = 0;
-        for (count, (address, from, to)) in chip.log.iter().enumerate() {
+        for (count, (address, from, to)) in eeprom.log.iter().enumerate() {
             let mut bytes = before;
-            for (address, _, byte) in &chip.log[..count] {
+            for (address, _, byte) in &eeprom.log[..count] {
                 bytes[usize::from(*address)] = *byte;
             }
             for byte in torn(*from, *to) {
@@ -134,15 +134,15 @@ fn a_power_cut_at_any_byte_leaves_the_old_settings_or_the_new_whole() {
 #[test]
 fn a_save_after_a_power_cut_is_complete_whatever_the_cut_left() {
     let robot = robot();
-    let mut chip = Eeprom::blank();
-    save_all(&settings(&robot, 1), &mut chip);
-    save_all(&settings(&robot, 2), &mut chip);
-    let before = *chip.bytes();
-    chip.log.clear();
-    save_all(&settings(&robot, 3), &mut chip);
-    for count in 0..chip.log.len() {
+    let mut eeprom = Eeprom::blank();
+    save_all(&settings(&robot, 1), &mut eeprom);
+    save_all(&settings(&robot, 2), &mut eeprom);
+    let before = *eeprom.bytes();
+    eeprom.log.clear();
+    save_all(&settings(&robot, 3), &mut eeprom);
+    for count in 0..eeprom.log.len() {
         let mut cut = Eeprom::with(before);
-        for (address, _, byte) in &chip.log[..count] {
+        for (address, _, byte) in &eeprom.log[..count] {
             cut.bytes_mut()[usize::from(*address)] = *byte;
         }
         let new = save_all(&settings(&robot, 4), &mut cut);
@@ -151,14 +151,14 @@ fn a_save_after_a_power_cut_is_complete_whatever_the_cut_left() {
 }
 
 #[test]
-fn any_bit_flipped_leaves_the_last_settings_the_ones_before_or_robot_tomls() {
+fn any_flipped_bit_leaves_the_last_settings_the_previous_or_robot_tomls() {
     let robot = robot();
-    let mut chip = Eeprom::blank();
-    let before = save_all(&settings(&robot, 1), &mut chip);
-    let last = save_all(&settings(&robot, 2), &mut chip);
+    let mut eeprom = Eeprom::blank();
+    let before = save_all(&settings(&robot, 1), &mut eeprom);
+    let last = save_all(&settings(&robot, 2), &mut eeprom);
     let (mut lasts, mut befores) = (0, 0);
     for bit in 0..8 * 1024 {
-        let mut bytes = *chip.bytes();
+        let mut bytes = *eeprom.bytes();
         bytes[bit / 8] ^= 1 << (bit % 8);
         let (settings, outcome) = loaded(&robot, &Eeprom::with(bytes));
         if settings == last {
@@ -173,12 +173,12 @@ fn any_bit_flipped_leaves_the_last_settings_the_ones_before_or_robot_tomls() {
 }
 
 #[test]
-fn any_bit_flipped_of_the_only_copy_leaves_it_or_robot_tomls() {
+fn any_flipped_bit_of_the_only_copy_leaves_it_or_robot_tomls() {
     let robot = robot();
-    let mut chip = Eeprom::blank();
-    let only = save_all(&settings(&robot, 1), &mut chip);
+    let mut eeprom = Eeprom::blank();
+    let only = save_all(&settings(&robot, 1), &mut eeprom);
     for bit in 0..8 * 1024 {
-        let mut bytes = *chip.bytes();
+        let mut bytes = *eeprom.bytes();
         bytes[bit / 8] ^= 1 << (bit % 8);
         let found = loaded(&robot, &Eeprom::with(bytes));
         let own = bit / 8 < 45;
@@ -195,53 +195,53 @@ fn any_bit_flipped_of_the_only_copy_leaves_it_or_robot_tomls() {
 #[test]
 fn settings_for_other_servos_or_of_another_format_are_not_used() {
     let robot = robot();
-    let mut chip = Eeprom::blank();
-    save_all(&settings(&robot, 1), &mut chip);
+    let mut eeprom = Eeprom::blank();
+    save_all(&settings(&robot, 1), &mut eeprom);
     let other = robot
         .clone()
         .with(|content| content.servo_hash ^= 0x0001_0000);
-    let found = loaded(&other, &chip);
+    let found = loaded(&other, &eeprom);
     assert_eq!(found, (Settings::of(&other), Outcome::Foreign));
     let mut format = *settings(&robot, 1).bytes();
     format[0] = 2;
-    save_all(&Settings::from_bytes(format), &mut chip);
-    assert_eq!(loaded(&robot, &chip).1, Outcome::Foreign);
-    // What is saved then counts.
-    let own = save_all(&settings(&other, 5), &mut chip);
-    let (now, _) = loaded(&other, &chip);
+    save_all(&Settings::from_bytes(format), &mut eeprom);
+    assert_eq!(loaded(&robot, &eeprom).1, Outcome::Foreign);
+    // Settings saved after that count.
+    let own = save_all(&settings(&other, 5), &mut eeprom);
+    let (now, _) = loaded(&other, &eeprom);
     assert_eq!(now, own);
 }
 
 #[test]
 fn every_bit_of_the_servos_hash_tells_other_servos() {
     let robot = robot();
-    let mut chip = Eeprom::blank();
-    save_all(&settings(&robot, 1), &mut chip);
+    let mut eeprom = Eeprom::blank();
+    save_all(&settings(&robot, 1), &mut eeprom);
     for bit in 0..32 {
         let other = robot.clone().with(|content| content.servo_hash ^= 1 << bit);
-        assert_eq!(loaded(&other, &chip).1, Outcome::Foreign, "bit {bit}");
+        assert_eq!(loaded(&other, &eeprom).1, Outcome::Foreign, "bit {bit}");
     }
-    assert_eq!(loaded(&robot, &chip).1, Outcome::Latest);
+    assert_eq!(loaded(&robot, &eeprom).1, Outcome::Latest);
 }
 
 #[test]
 fn settings_with_which_a_gait_leaves_the_travel_are_not_used() {
     let robot = robot();
-    let mut chip = Eeprom::blank();
+    let mut eeprom = Eeprom::blank();
     let mut narrow = settings(&robot, 1);
     let mut set = narrow.servo(Servo::A3);
     set.max = Sweep(robot.reach(Servo::A3).max.0 - 1);
     narrow.set_servo(Servo::A3, set);
-    save_all(&narrow, &mut chip);
-    let found = loaded(&robot, &chip);
+    save_all(&narrow, &mut eeprom);
+    let found = loaded(&robot, &eeprom);
     assert_eq!(found, (Settings::of(&robot), Outcome::Unfit));
 }
 
 #[test]
 fn a_boot_gait_is_found_by_its_name_and_a_gait_that_is_gone_is_stand() {
     let robot = robot();
-    let mut chip = Eeprom::blank();
-    let kept = save_all(&settings(&robot, 1), &mut chip);
+    let mut eeprom = Eeprom::blank();
+    let kept = save_all(&settings(&robot, 1), &mut eeprom);
     assert_eq!(kept.boot(&robot), Boot::Gait(robot.id("sway left")));
     let fewer = robot.clone().with(|content| _ = content.gaits.remove(1));
     assert_eq!(kept.boot(&fewer), Boot::Gait(fewer.id("sway left")));
@@ -255,29 +255,29 @@ fn a_boot_gait_is_found_by_its_name_and_a_gait_that_is_gone_is_stand() {
 #[test]
 fn a_rest_is_remembered_until_it_is_forgotten_and_only_by_its_own_robot() {
     let robot = robot();
-    let mut chip = Eeprom::blank();
-    assert_eq!(last_rest_pose(&robot, &chip), None);
+    let mut eeprom = Eeprom::blank();
+    assert_eq!(last_rest_pose(&robot, &eeprom), None);
     for sweeps in [[0, 1, -2, 30_000], [-100, 4000, 17, -32_768]] {
         let there = Pose(sweeps.map(Sweep));
         let kept = Settings::of_pose(&there, &robot);
         let mut writing = RESTED.write();
-        while writing.step(kept.bytes(), &mut chip) == Progress::Going {}
-        assert_eq!(last_rest_pose(&robot, &chip), Some(there));
+        while writing.step(kept.bytes(), &mut eeprom) == Progress::Going {}
+        assert_eq!(last_rest_pose(&robot, &eeprom), Some(there));
         let other = robot.clone().with(|content| content.servo_hash = 7);
-        assert_eq!(last_rest_pose(&other, &chip), None);
+        assert_eq!(last_rest_pose(&other, &eeprom), None);
     }
     let mut writing = RESTED.invalidate();
-    while writing.step(&[0; CONTENT], &mut chip) == Progress::Going {}
-    assert_eq!(last_rest_pose(&robot, &chip), None);
+    while writing.step(&[0; CONTENT], &mut eeprom) == Progress::Going {}
+    assert_eq!(last_rest_pose(&robot, &eeprom), None);
     let outside = |at: &u16| !(128..128 + LENGTH).contains(at);
-    let touched: Vec<u16> = chip
+    let touched: Vec<u16> = eeprom
         .log
         .iter()
         .map(|(at, ..)| *at)
         .filter(outside)
         .collect();
     assert!(touched.is_empty());
-    assert_eq!(chip.bytes()[128], ERASED);
+    assert_eq!(eeprom.bytes()[128], ERASED);
 }
 
 #[test]

@@ -9,7 +9,7 @@ use super::*;
 use crate::numbers::pose::{Pose, Pulses};
 use crate::numbers::units::{Sweep, Width};
 
-/// RAM that keeps what it holds, and a reset after this many stores.
+/// RAM that survives a reset, and a reset after a number of stores.
 struct Ram {
     bytes: RefCell<Vec<u8>>,
     /// Number of stores until the reset; later ones are lost.
@@ -70,7 +70,7 @@ const CAUSES: [Option<Cause>; 4] = [
 
 fn stance(n: i16) -> Stance {
     Stance {
-        resting: n % 3 == 0,
+        is_resting: n % 3 == 0,
         awake: (n % 21) as u8,
         pose: Pose([n, -n, 7 * n, -32_768 + n].map(Sweep)),
         sent: Pulses([24_000, 1 + n as u16, 65_535 - n as u16, 0].map(Width)),
@@ -87,7 +87,7 @@ fn kept_state_survives_a_reset_but_not_a_loss_of_power() {
             let restart = begin(&again, reported);
             assert_eq!(restart.before, Some(stance(n)));
             assert_eq!(restart.brown_outs, n as u8);
-            // A second reset, before the program has kept anything.
+            // A second reset, before the program has stored anything.
             assert_eq!(begin(&again, reported).before, Some(stance(n)));
         }
         let off = ram.after_the_reset();
@@ -112,9 +112,9 @@ fn a_reset_between_any_two_stores_leaves_the_stance_before_or_the_new_one() {
             let torn = ram.with_reset_after(stores);
             store_stance(&torn, &stance(n), n as u8);
             let found = begin(&torn.after_the_reset(), None).before;
-            let place = usize::from(found == Some(stance(n)));
-            assert!(place == 1 || found == Some(stance(n - 1)), "{n} {stores}");
-            seen[place] += 1;
+            let index = usize::from(found == Some(stance(n)));
+            assert!(index == 1 || found == Some(stance(n - 1)), "{n} {stores}");
+            seen[index] += 1;
         }
         store_stance(&ram, &stance(n), n as u8);
     }

@@ -30,8 +30,7 @@ impl Count {
 }
 
 impl Motion {
-    /// Counts the phase that the last frame covered. At the end of the count the gait has to
-    /// brake.
+    /// Counts the phase that the last frame covered, and brakes the gait at the end of the count.
     #[inline(never)]
     pub(super) fn count(&mut self) {
         let State::Cycling { gait, phase, .. } = &self.state else {

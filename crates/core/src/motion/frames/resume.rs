@@ -1,4 +1,4 @@
-//! The first frames after a reset: the servos wake in the pose that they have.
+//! The first frames after a reset: the servos wake in the pose in which they are.
 //!
 //! A servo does not report its angle. A robot that rested or was held until the reset is where
 //! its saved stance says, so that it need not leap to the neutral pose.
@@ -19,7 +19,7 @@ impl Motion {
             && self.may_hold(pose)
         {
             self.stance.pose = *pose;
-            self.state = State::Holding { asked: false };
+            self.state = State::Holding { is_ordered: false };
             self.next = Some(Target::Gait(GaitId::STAND));
         }
     }
@@ -38,17 +38,17 @@ impl Motion {
 
     /// Resumes servos that were held until a reset, with the pulses that they had; false if
     /// their pose is unsafe or beyond the travel. All that had pulses get them at once. If
-    /// the robot is to `stand`, the servos wake one after the other, to spare the supply,
+    /// the robot `will_stand`, the servos wake one after the other, to spare the supply,
     /// and then it stands.
     #[inline(never)]
-    pub fn resume(&mut self, stance: &Stance, stand: bool) -> bool {
+    pub fn resume(&mut self, stance: &Stance, will_stand: bool) -> bool {
         if !self.may_hold(&stance.pose) {
             return false;
         }
         self.stance.pose = stance.pose;
         self.stance.sent = stance.sent;
-        self.freeze(State::Holding { asked: false });
-        if stand {
+        self.freeze(State::Holding { is_ordered: false });
+        if will_stand {
             self.next = Some(Target::Gait(GaitId::STAND));
         } else {
             // The next servo to wake waits as long as after any other.

@@ -1,4 +1,4 @@
-//! The transition table of the module, row by row, and what no frame may do.
+//! The transition table of the module, row by row, and the invariants of every frame.
 
 use std::vec::Vec;
 
@@ -151,7 +151,7 @@ fn a_move_that_arrives_at_a_pose_holds_it() {
     motion.head_for_pose(THERE);
     motion.run(LONG_ENOUGH);
     assert_eq!(motion.pose(), &Pose(THERE.map(Sweep)));
-    assert_eq!(motion.state, State::Holding { asked: true });
+    assert_eq!(motion.state, State::Holding { is_ordered: true });
 }
 
 #[test]
@@ -195,7 +195,7 @@ fn another_pose_or_gait_lets_a_move_brake_on_its_line_before_it_turns_aside() {
             pace = pace.saturating_sub(147);
             assert!(motion.is_moving() && motion.next.is_some());
             assert_eq!(motion.pace(), pace);
-            // Still on the line: every servo has the same share behind it.
+            // Still on the line: every servo has covered the same share.
             let share = |n: usize| f64::from(motion.pose().0[n].0) / f64::from(FAR[n]);
             assert!((share(0) - share(3)).abs() < 0.002);
         }
@@ -207,7 +207,7 @@ fn another_pose_or_gait_lets_a_move_brake_on_its_line_before_it_turns_aside() {
 }
 
 #[test]
-fn the_gait_that_a_move_leads_to_just_goes_on_when_it_is_asked_for_again() {
+fn a_move_to_a_gait_goes_on_when_that_gait_is_ordered_again() {
     let build = || {
         let mut motion = Motion::standing();
         motion.head_for_pose(THERE);
@@ -225,7 +225,7 @@ fn the_gait_that_a_move_leads_to_just_goes_on_when_it_is_asked_for_again() {
 // Cycling.
 
 #[test]
-fn the_same_gait_asked_for_again_goes_on_in_the_middle_of_its_cycle() {
+fn the_same_gait_ordered_again_goes_on_in_the_middle_of_its_cycle() {
     for name in GAITS.into_iter().filter(|name| *name != "stray") {
         let build = || Motion::in_gait(name, 60);
         let mut asked = build();

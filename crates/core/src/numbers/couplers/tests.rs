@@ -3,13 +3,13 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::numbers::bars::SHORTEST_COUPLER;
+use crate::numbers::bars::MIN_COUPLER;
 use crate::numbers::curve::ENTRIES;
 use crate::sample::Bars;
 use crate::sample::bounds::{self, KNOWN};
 
 /// The longest coupler that a loop's step allows.
-const LONGEST: i16 = 32_511;
+const MAX_COUPLER: i16 = 32_511;
 
 /// Rise and skew of couplers of these lengths with their crank tips at the
 /// distance whose quarter square is `tips_sq`, straight from the triangle.
@@ -33,19 +33,19 @@ proptest! {
 
     #[test]
     fn the_lean_is_the_triangles_from_folded_to_stretched_couplers(
-        shorter in SHORTEST_COUPLER..=LONGEST,
-        longer in SHORTEST_COUPLER..=LONGEST,
+        shorter in MIN_COUPLER..=MAX_COUPLER,
+        longer in MIN_COUPLER..=MAX_COUPLER,
         likeness in 0u8..4,
-        exchanged: bool,
+        is_exchanged: bool,
         share in (0.0..1.0f64, 0u8..3),
     ) {
         // Equal, nearly equal, and any.
         let longer = match likeness {
             0 => shorter,
-            1 => shorter + (longer % 100).min(LONGEST - shorter),
+            1 => shorter + (longer % 100).min(MAX_COUPLER - shorter),
             _ => longer,
         };
-        let (left, right) = if exchanged { (longer, shorter) } else { (shorter, longer) };
+        let (left, right) = if is_exchanged { (longer, shorter) } else { (shorter, longer) };
         // Even over the range, and dense at either end.
         let share = match share {
             (share, 0) => share,
@@ -85,8 +85,8 @@ proptest! {
 
     #[test]
     fn couplers_that_do_not_meet_have_no_lean(
-        left in SHORTEST_COUPLER..=LONGEST,
-        right in SHORTEST_COUPLER..=LONGEST,
+        left in MIN_COUPLER..=MAX_COUPLER,
+        right in MIN_COUPLER..=MAX_COUPLER,
         beyond in 0u32..1 << 28,
     ) {
         let bars = Bars::new(left, right);

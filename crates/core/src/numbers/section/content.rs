@@ -7,7 +7,7 @@ use crc::{CRC_32_ISO_HDLC, Crc};
 use lizard_avr::{Flash, Plain};
 
 use super::seal::sealed;
-use super::{CURVES, FORMAT, Header, LONGEST_NAME, MAGIC, MapHead, Numbers, Part, Place, REST};
+use super::{CURVES, FORMAT, Header, MAGIC, MAX_NAME_BYTES, MapHead, Numbers, Part, Place, REST};
 use crate::numbers::bars::Bars;
 use crate::numbers::calibration::Calibration;
 use crate::numbers::calibration::Reach;
@@ -27,19 +27,19 @@ static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 /// The numbers of a robot, from which a section is made.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Content {
-    /// At most [`LONGEST_NAME`] characters.
+    /// The robot's name, at most [`MAX_NAME_BYTES`] characters.
     pub name: String,
     /// The hash by which saved settings are matched with servos.
     pub servo_hash: u32,
-    /// Arduino numbers of the servos' pins, A1 to A4; 14 to 19 are A0 to A5.
+    /// The Arduino numbers of the servos' pins, A1 to A4; 14 to 19 are A0 to A5.
     pub pins: [u8; 4],
-    /// Arduino number of the pin where the servos' rail is measured.
+    /// The Arduino number of the pin where the servos' rail is measured.
     pub rail: Option<u8>,
     /// The servos' angles in the neutral pose.
     pub neutral: [Angle; 4],
-    /// Their pulses and travel.
+    /// The servos' pulses and travel.
     pub calibration: [Calibration; 4],
-    /// The sweeps that the gaits need of them.
+    /// The sweeps that the gaits need of the servos.
     pub reach: [Reach; 4],
     /// The smallest margins that are allowed.
     pub limits: Limits,
@@ -51,14 +51,14 @@ pub struct Content {
     pub ends: [Loop; 2],
     /// The sliders left and right.
     pub sides: [Slider; 2],
-    /// The gaits; `stand` is the first. Then the routines, whose first step is given by its
-    /// place among all steps.
+    /// The gaits, `stand` first, then the routines, whose first step is given by its index
+    /// among all steps.
     pub gaits: Vec<Gait>,
     /// The steps of the routines.
     pub steps: Vec<Step>,
     /// The names of gaits and routines, one after the other.
     pub names: Vec<u8>,
-    /// Their waveforms.
+    /// The waveforms of the gaits.
     pub waves: Vec<Wave>,
     /// The certified cells of head, tail, left and right.
     pub maps: [Map; 4],
@@ -76,7 +76,7 @@ pub struct Loop {
     /// The left coupler and the right one.
     pub couplers: [i16; 2],
     /// True if the crank tips can part so far that the couplers are nearly stretched.
-    pub near_stretched: bool,
+    pub is_near_stretched: bool,
 }
 
 /// A map of certified cells, see [`crate::numbers::cells::Cells`].
@@ -84,8 +84,8 @@ pub struct Loop {
 pub struct Map {
     /// The first row.
     pub first: i8,
-    /// The first and the last column of each row; the greater one first where no cell of
-    /// a row is certified.
+    /// The first and the last column of each row; in a row without certified cells the
+    /// greater one first.
     pub rows: Vec<[i8; 2]>,
 }
 
@@ -105,12 +105,12 @@ impl Loop {
         Bars::new([self.base, left, right], self.couplers, self.scale)
     }
 
-    /// The curves that its couplers need: rise, stretched, folded, skew.
+    /// The curves that the couplers need: rise, stretched, folded, skew.
     fn tables(&self) -> [Option<Table>; CURVES] {
         let [a, b] = self.couplers;
         [
             Some(couplers::rise(a, b)),
-            self.near_stretched.then(|| couplers::stretched(a, b)),
+            self.is_near_stretched.then(|| couplers::stretched(a, b)),
             Couplers::differ_much(a, b).then(|| couplers::folded(a, b)),
             (a != b).then(|| couplers::skew(a, b)),
         ]
@@ -118,7 +118,7 @@ impl Loop {
 }
 
 impl Content {
-    /// Bytes of the section, which may be more than fits a board; [`Content::section`] sometimes
+    /// The size of the section in bytes, which may exceed a board; [`Content::section`] sometimes
     /// needs one more, see [`super::seal()`].
     #[must_use]
     pub fn length(&self) -> usize {
@@ -134,7 +134,7 @@ impl Content {
             + rows * size_of::<[i8; 2]>()
     }
 
-    /// The section. Its length may be more than fits a board: see [`super::SPACE`].
+    /// The bytes of the section, which may exceed a board: see [`super::SPACE`].
     ///
     /// # Panics
     /// If a map has more than 255 rows, or the section more than 65 535 bytes.
@@ -201,7 +201,7 @@ impl Content {
         without_maps.maps = [MapHead { first: 0, rows: 0 }; 4];
         digest.update(without_maps.bytes());
         digest.update(&rest[..rest.len() - columns.len()]);
-        let mut name = [0; LONGEST_NAME];
+        let mut name = [0; MAX_NAME_BYTES];
         name[..self.name.len()].copy_from_slice(self.name.as_bytes());
         let header = Header {
             magic: MAGIC,
@@ -215,7 +215,7 @@ impl Content {
         sealed([header.bytes(), numbers.bytes(), &rest].concat())
     }
 
-    /// Appends the curves of both ends, equal ones only once; returns the place of each.
+    /// Appends the curves of both ends, equal ones only once; returns the address of each.
     fn curves(&self, rest: &mut Vec<u8>) -> [[u16; CURVES]; 2] {
         let mut written: Vec<(Table, u16)> = Vec::new();
         self.ends.each_ref().map(|end| {

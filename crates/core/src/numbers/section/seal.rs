@@ -2,7 +2,7 @@
 //!
 //! A checksum of sixteen bits misses one change in 65 536. Two kinds of change are likely: a
 //! write that ended early, at any of thousands of bytes, so that erased flash follows what was
-//! written; and a flipped bit of the length. None of these may be missed. So `sealed` tries
+//! written; and a flipped bit of the length. Neither may be missed. So `sealed` tries
 //! them all, and adds a byte where the checksum would miss one.
 
 use core::mem::offset_of;
@@ -14,7 +14,7 @@ use crate::numbers::checksum::Checksum;
 /// A byte of erased flash.
 const ERASED: u8 = 0xff;
 
-/// The place of the length and that of the checksum, which covers all bytes behind it.
+/// The offsets of the length and of the checksum, which covers all bytes after it.
 const LENGTH: usize = offset_of!(Header, length);
 const CRC: usize = offset_of!(Header, crc);
 
@@ -58,10 +58,10 @@ fn sums(bytes: &[u8]) -> Vec<Checksum> {
     sums
 }
 
-/// True if a proper beginning of the bytes, with erased flash behind it, has the sum of all
+/// True if a proper prefix of the bytes, followed by erased flash, has the sum of all
 /// of them. The last bytes may equal erased flash themselves.
 fn a_beginning_passes(bytes: &[u8], sums: &[Checksum]) -> bool {
-    // The sum that a beginning must have, so that the erased bytes behind it lead to the sum
+    // The sum that a prefix must have, so that the erased bytes after it lead to the sum
     // of all bytes.
     let mut needed = sums[bytes.len()];
     let mut is_whole = true;
@@ -86,7 +86,7 @@ const fn before(sum: Checksum, byte: u8) -> Checksum {
     Checksum((high as u16) << 8 | low)
 }
 
-/// True if a length that is one bit off gives the same sum, with erased flash behind the
+/// True if a length that is one bit off gives the same sum, with erased flash after the
 /// section. No board accepts more than [`SPACE`] bytes.
 fn another_length_passes(length: u16, sums: &[Checksum]) -> bool {
     let own = sums[usize::from(length) - CHECKED];

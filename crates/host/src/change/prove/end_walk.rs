@@ -59,7 +59,7 @@ impl<'a> EndWalk<'a> {
             eight_by_eight(columns(share, row, right.fixed.len()), |eight, count| {
                 let other = lanes(&right.exact, eight);
                 let pose = self.exact.shape(AssemblyMode::Ahead, crank, other);
-                let closes = self.exact.closes(&pose);
+                let are_closed = self.exact.closes(&pose);
                 let Lanes(type2) = pose.type2;
                 let Lanes(type1_left) = pose.type1_left();
                 let Lanes(type1_right) = pose.type1_right();
@@ -67,7 +67,7 @@ impl<'a> EndWalk<'a> {
                 for lane in 0..count {
                     let column = eight[lane];
                     let truth = EndTruth {
-                        closes: closes[lane],
+                        is_closed: are_closed[lane],
                         type2: type2[lane],
                         type1: [type1_left[lane], type1_right[lane]],
                         across: across[lane],
@@ -123,7 +123,7 @@ impl<'a> EndWalk<'a> {
             type1_right,
         } = margins;
         // Where the couplers fold, no other margin matters.
-        if truth.closes && truth.type2 > self.limits[0] - self.margin_band {
+        if truth.is_closed && truth.type2 > self.limits[0] - self.margin_band {
             Tally::raise(&mut tally.type2, (sine(type2.0).abs() - truth.type2).abs());
             for (fixed, exact) in [type1_left, type1_right].into_iter().zip(truth.type1) {
                 Tally::raise(&mut tally.type1, (sine(fixed.0) - exact).abs());
@@ -160,7 +160,7 @@ impl<'a> EndWalk<'a> {
 
 /// An end at a pair of angles, in floating point.
 struct EndTruth {
-    closes: bool,
+    is_closed: bool,
     type2: f64,
     type1: [f64; 2],
     /// The distance from the left crank tip to the right one across the end, mm.
@@ -168,11 +168,11 @@ struct EndTruth {
 }
 
 impl EndTruth {
-    /// The clearances: of the least margin above its limit, a sine; and of the crank tips from
+    /// The clearances: of the smallest margin above its limit, a sine; and of the crank tips from
     /// crossing, mm.
     #[inline(always)]
     fn clear_by(&self, [least2, least1]: [f64; 2]) -> (f64, f64) {
-        if !self.closes {
+        if !self.is_closed {
             return (-least2, self.across);
         }
         let type1 = self.type1[0].min(self.type1[1]) - least1;

@@ -87,7 +87,7 @@ impl Proof {
         progress: &(dyn Fn(u64) + Sync),
     ) -> Self {
         let walk = walk::Walk::new(robot, guard, share);
-        let piece = |place| walk.piece(place, progress);
+        let piece = |index| walk.piece(index, progress);
         Self::from_tallies(robot, guard, (0..walk::PIECES).map(piece).collect())
     }
 
@@ -126,7 +126,7 @@ impl Proof {
 /// Compares the guard with geometry and prints the result.
 ///
 /// # Errors
-/// A wrong robot.toml; a pose that is decided wrong.
+/// Fails for a wrong robot.toml; a pose that is decided wrong.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.spread.robot.load()?;
     let guard = robot.firmware();
@@ -140,7 +140,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         "{bar:40} {percent} % of all rows, {eta} left",
     );
     let walk = walk::Walk::new(&robot, guard, share);
-    let piece = |place| walk.piece(place, &|rows| bar.inc(rows));
+    let piece = |index| walk.piece(index, &|rows| bar.inc(rows));
     let pieces = args.spread.all(&args, walk::PIECES, piece)?;
     bar.finish_and_clear();
     let Some(pieces) = pieces else {

@@ -1,4 +1,4 @@
-//! Every position of a servo, as the firmware and as floating point see it.
+//! Every position of a servo, in the firmware's integers and in floating point.
 
 use lizard_core::guard::trig::Direction;
 use lizard_core::numbers::units::Sweep;

@@ -38,10 +38,10 @@ pub struct Tally {
     pub leg: Option<f64>,
     /// Largest error of a slider's travel, mm.
     pub travel: Option<f64>,
-    /// Farthest from a margin's limit that the decisions differ.
+    /// The largest distance from a margin's limit at which the decisions differ.
     pub margin_band: Option<f64>,
-    /// Farthest from the end of a stroke, or from the crossing of the crank tips,
-    /// that the decisions differ, mm.
+    /// The largest distance from the end of a stroke, or from the crossing of the crank tips,
+    /// at which the decisions differ, mm.
     pub length_band: Option<f64>,
     /// Pairs outside the band that are decided wrong.
     pub wrong: u64,
@@ -95,12 +95,12 @@ impl Tally {
     #[cold]
     pub fn record_difference(
         &mut self,
-        length: bool,
+        is_length: bool,
         by: f64,
         band: f64,
         example: impl FnOnce() -> String,
     ) {
-        let widest = if length {
+        let widest = if is_length {
             &mut self.length_band
         } else {
             &mut self.margin_band

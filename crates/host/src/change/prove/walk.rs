@@ -14,7 +14,7 @@ use super::tally::{Finding, MARGIN_BAND, Tally};
 /// Pieces of the whole walk: of both ends and of both sides.
 pub const PIECES: usize = 4 * CUTS;
 
-/// The walk of a robot's pairs with a guard: what all of its pieces need is computed once.
+/// The walk of a robot's pairs with a guard; values that all pieces need are computed once.
 pub struct Walk<'a> {
     robot: &'a Robot,
     guard: &'a CoreRobot,
@@ -41,8 +41,8 @@ impl<'a> Walk<'a> {
     }
 
     /// Walks one piece by its index, below [`PIECES`].
-    pub fn piece(&self, place: usize, progress: &(dyn Fn(u64) + Sync)) -> Tally {
-        let (whole, cut) = (place / CUTS, place % CUTS);
+    pub fn piece(&self, index: usize, progress: &(dyn Fn(u64) + Sync)) -> Tally {
+        let (whole, cut) = (index / CUTS, index % CUTS);
         let of = |servos: [usize; 2]| servos.map(|servo| self.positions(servo));
         if let Some(end) = End::ALL.get(whole) {
             let walk = EndWalk::new(self.robot, self.guard, &self.maps, *end);

@@ -76,8 +76,8 @@ impl Spreads for Args {
 /// Searches a gait and prints it.
 ///
 /// # Errors
-/// A wrong robot.toml; a gait that does not exist or cannot be tuned; an invalid rate or name; no
-/// gait that the limits allow; an output that cannot be written.
+/// Fails for a wrong robot.toml; a gait that does not exist or cannot be tuned; an invalid rate or
+/// name; no gait that the limits allow; an output that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.spread.robot.load()?;
     let Some(report) = tune(&robot, &args)? else {
@@ -146,8 +146,8 @@ fn search_all(tuning: &Tuning, args: &Args) -> Result<Option<BuiltGait>, Failure
     let rounds = args.rounds as usize;
     let kinds = args.spread.own(Kind::ALL.len());
     let bar = bar(kinds * trials(rounds), "{bar:40} {pos}/{len} gaits, {eta}");
-    let one = |place: usize| -> Vec<(f64, Vec<f64>)> {
-        let kind = Kind::ALL[place];
+    let one = |index: usize| -> Vec<(f64, Vec<f64>)> {
+        let kind = Kind::ALL[index];
         let mut search = tuning.search(kind);
         for _ in 0..=rounds {
             let judged = search.trials().par_iter().map(|parameters| {
@@ -197,15 +197,16 @@ mod tests {
 
     const PAPER: &str = include_str!("../../../../../robots/paper.toml");
 
-    fn run_tune(words: &str) -> Result<Comparison, String> {
+    fn run_tune(arguments: &str) -> Result<Comparison, String> {
         let robot = Robot::parse(PAPER).expect("right");
-        let line = Line::try_parse_from(std::iter::once("tune").chain(words.split_whitespace()));
+        let line =
+            Line::try_parse_from(std::iter::once("tune").chain(arguments.split_whitespace()));
         let args = line.map_err(|error| error.to_string())?.args;
         let report = tune(&robot, &args).map_err(|failure| failure.to_string())?;
         Ok(report.expect("all parts"))
     }
 
-    /// Of `lizard tune --rounds 1 --robot robots/paper.toml`, which docs/twin.md quotes.
+    /// Checks the figures of `lizard tune --rounds 1 --robot robots/paper.toml` in docs/twin.md.
     #[test]
     fn a_short_search_surpasses_walk_at_the_same_rate_as_the_docs_say() {
         let report = run_tune("--rounds 1").expect("it finds one");

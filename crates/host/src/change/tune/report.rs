@@ -7,7 +7,7 @@ use lizard_tune::{Comparison, SPREAD};
 /// Prints the comparison as a piece of a robot.toml: all but the table is comment.
 ///
 /// # Errors
-/// Writing failed.
+/// Fails if writing fails.
 pub fn print(of: &Comparison, out: &mut impl Write) -> io::Result<()> {
     let Comparison {
         unit,
@@ -27,7 +27,7 @@ pub fn print(of: &Comparison, out: &mut impl Write) -> io::Result<()> {
         .fold(8, usize::max);
     writeln!(
         out,
-        "# {:width$}  cycle, s   deg/s  least margin      predicted   SG-90     5 %    50 %    95 %",
+        "# {:width$}  cycle, s   deg/s  least margin          ideal   SG-90     5 %    50 %    95 %",
         "gait"
     )?;
     for row in [&of.gait, &of.tuned] {

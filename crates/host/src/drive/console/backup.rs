@@ -37,7 +37,7 @@ pub struct RestoreArgs {
 /// Runs `lizard calibrate backup`.
 ///
 /// # Errors
-/// No board, or the file cannot be written.
+/// Fails if there is no board, or the file cannot be written.
 pub fn backup(args: BackupArgs) -> Result<(), Failure> {
     let finder = args.connect.finder("calibrate backup FILE")?;
     let (mut board, _) = finder.open_and_greet()?;
@@ -54,7 +54,7 @@ pub fn backup(args: BackupArgs) -> Result<(), Failure> {
 /// Runs `lizard calibrate restore`.
 ///
 /// # Errors
-/// A wrong file, no board, or a robot that refuses.
+/// Fails for a wrong file, without a board, or if the robot refuses.
 pub fn restore(args: RestoreArgs) -> Result<(), Failure> {
     let set = file::read(&args.file)?;
     let finder = args.connect.finder("calibrate restore FILE")?;
@@ -87,7 +87,7 @@ pub enum SendError {
 /// its old settings.
 ///
 /// # Errors
-/// A refusal, or a connection that breaks.
+/// Fails for a refusal, or a connection that breaks.
 pub fn send_calibration<P: Read + Write>(
     set: &Calibration,
     link: &mut Link<P>,

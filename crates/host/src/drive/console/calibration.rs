@@ -85,9 +85,9 @@ impl Servos {
         [&self.a1, &self.a2, &self.a3, &self.a4]
     }
 
-    /// A servo by its place, 0 to 3.
-    pub fn at(&mut self, place: usize) -> &mut Servo {
-        match place {
+    /// A servo by its index, 0 to 3.
+    pub fn at(&mut self, index: usize) -> &mut Servo {
+        match index {
             0 => &mut self.a1,
             1 => &mut self.a2,
             2 => &mut self.a3,
@@ -100,7 +100,7 @@ impl Calibration {
     /// Asks a robot for its settings.
     ///
     /// # Errors
-    /// No answer, or one that is not understood.
+    /// Fails if there is no answer, or one that is not understood.
     pub fn ask<P: Read + Write>(link: &mut Link<P>) -> Result<Self, LinkError> {
         let reply = link.command("cal")?;
         Self::parse(&reply.notes).ok_or_else(|| LinkError::Unclear {
@@ -152,8 +152,8 @@ impl Calibration {
     #[must_use]
     pub fn commands(&self) -> Vec<String> {
         let mut lines = Vec::new();
-        for (place, servo) in self.servo.all().into_iter().enumerate() {
-            let n = place + 1;
+        for (index, servo) in self.servo.all().into_iter().enumerate() {
+            let n = index + 1;
             let [min, max] = servo.limit;
             lines.push(format!("dir {n} {}", servo.dir.sign()));
             lines.push(format!("scale {n} {:.2}", servo.scale));
@@ -171,8 +171,7 @@ impl Calibration {
     /// again after the others, and once more from robot.toml's settings.
     ///
     /// # Errors
-    /// The first refusal of those that remain; the robot then has a part of the
-    /// settings.
+    /// Returns the first refusal of those that remain; the robot then has a part of the settings.
     pub fn apply<P: Read + Write>(&self, link: &mut Link<P>) -> Result<(), LinkError> {
         let mut lines = self.commands();
         let mut from_factory = false;

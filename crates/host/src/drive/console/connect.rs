@@ -28,7 +28,7 @@ pub struct Connect {
     robot: Option<PathBuf>,
 }
 
-/// The place to look for the board. It is searched again on each call, because a board that is
+/// The location of the board. It is searched again on each call, because a board that is
 /// plugged in again may get another port.
 #[derive(Debug)]
 pub struct Finder {
@@ -50,7 +50,7 @@ impl Connect {
     /// Chooses the place to look for the board; starts the simulated UNO if it is selected.
     ///
     /// # Errors
-    /// No firmware for it, or no pseudo terminal.
+    /// Fails if there is no firmware for it, or no pseudo terminal.
     pub fn finder(self, command: &'static str) -> Result<Finder, Failure> {
         if self.sim {
             let robot = RobotFile::at(self.robot);
@@ -106,7 +106,7 @@ impl Finder {
     /// Opens the port, which resets the board. [`Connection::greet`] comes next.
     ///
     /// # Errors
-    /// No board, more than one, or its port cannot be opened.
+    /// Fails if there is no board, more than one, or its port cannot be opened.
     pub fn open(&self) -> Result<Connection, Failure> {
         let (port, name) = match &self.port {
             Some(port) => (port.clone(), self.name_of(port)),
@@ -126,7 +126,7 @@ impl Finder {
     /// Opens the port, says on standard error which, and waits for the banner.
     ///
     /// # Errors
-    /// As [`Finder::open`], or no lizard answers.
+    /// Fails as [`Finder::open`] does, or if no lizard answers.
     pub fn open_and_greet(&self) -> Result<(Connection, Option<String>), Failure> {
         let mut board = self.open()?;
         eprintln!("lizard: waiting for the board at {}", board.name);
@@ -162,12 +162,12 @@ impl Connection {
     /// Waits for the banner; see [`Link::greet`].
     ///
     /// # Errors
-    /// No lizard answers; the sentence names the port.
+    /// Fails if no lizard answers; the message names the port.
     pub fn greet(&mut self) -> Result<Option<String>, Failure> {
         self.link.greet().map_err(|error| self.failure(&error))
     }
 
-    /// Converts the error to a sentence with the port's name.
+    /// Converts the error to a failure whose message has the port's name.
     #[must_use]
     pub fn failure(&self, error: &LinkError) -> Failure {
         Failure::Impossible(format!("{}: {error}", self.name))

@@ -10,7 +10,7 @@ use lizard_core::console::word::Word;
 
 /// `deadman` while a person drives, ms. A person sets round numbers, so this one was left by a
 /// program that was ended.
-const DRIVEN: u16 = 901;
+const DRIVEN_MS: u16 = 901;
 /// Time between two lines that keep the robot walking: two of three may be lost, and a
 /// robot's own setting may be somewhat shorter.
 pub(super) const LINE: Duration = Duration::from_millis(200);
@@ -28,7 +28,7 @@ pub(super) enum Step {
     Restore,
 }
 
-/// The robot's own `deadman`, and true while this program has replaced it.
+/// The robot's own `deadman`, and its replacement while a person drives.
 #[derive(Debug, Default)]
 pub(super) struct Deadman {
     /// The robot's own setting, ms, once it is read.
@@ -60,8 +60,8 @@ impl Deadman {
         let own = self.own.unwrap_or(0);
         let ms = match step {
             Step::Read => return Some("cal".to_owned()),
-            Step::Set if own == 0 => DRIVEN,
-            Step::Set => own.min(DRIVEN),
+            Step::Set if own == 0 => DRIVEN_MS,
+            Step::Set => own.min(DRIVEN_MS),
             Step::Lend => own,
             Step::Restore => {
                 self.is_set = false;
@@ -77,14 +77,14 @@ impl Deadman {
             .strip_prefix("# deadman ")
             .and_then(|ms| ms.parse().ok())
         {
-            self.own = Some(if ms == DRIVEN { 0 } else { ms });
+            self.own = Some(if ms == DRIVEN_MS { 0 } else { ms });
         }
         ["# A", "# boot ", "# deadman "]
             .iter()
             .any(|begin| line.starts_with(begin))
     }
 
-    /// Takes note of a user's line that the robot has accepted.
+    /// Notes a user's line that the robot has accepted.
     pub(super) fn follow(&mut self, line: &str) {
         let line = line.to_ascii_lowercase();
         match line.split_whitespace().collect::<Vec<_>>()[..] {

@@ -25,7 +25,7 @@ pub fn text(set: &Calibration) -> String {
 /// Reads the text of a calibration file.
 ///
 /// # Errors
-/// A sentence that names the key or the line.
+/// Returns a message that names the key or the line.
 pub fn parse(text: &str) -> Result<Calibration, String> {
     let line = |error: &toml::de::Error| {
         let at = error.span().map_or(0, |span| span.start);
@@ -78,7 +78,7 @@ pub fn parse(text: &str) -> Result<Calibration, String> {
 /// Reads a file.
 ///
 /// # Errors
-/// It cannot be read, or is not a calibration.
+/// Fails if it cannot be read, or is not a calibration.
 pub fn read(path: &Path) -> Result<Calibration, Failure> {
     let name = path.display();
     let text = files::read_text(path)?;

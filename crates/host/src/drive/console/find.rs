@@ -23,7 +23,7 @@ pub struct UsbPort {
 /// The reason why no port could be chosen.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FindError {
-    /// There is none.
+    /// There is no port.
     #[error(
         "no board found: this machine has no USB serial port. Connect the UNO by a cable that \
          carries data (some only charge), or name its port: lizard {command} /dev/ttyACM0; \
@@ -33,7 +33,7 @@ pub enum FindError {
         /// The subcommand, with the arguments before the port.
         command: &'static str,
     },
-    /// There is more than one.
+    /// There is more than one port.
     #[error("several boards found: {}. Say which one: lizard {command} {}", list(.ports), .ports[0].name)]
     Several {
         /// The subcommand, with the arguments before the port.
@@ -73,7 +73,7 @@ fn usb(port: SerialPortInfo) -> Option<UsbPort> {
 }
 
 impl UsbPort {
-    /// True if its chip has one of Arduino's vendor numbers.
+    /// True if the chip has one of Arduino's vendor numbers.
     #[must_use]
     pub fn is_arduinos(&self) -> bool {
         ARDUINO.contains(&self.vendor)
@@ -83,7 +83,7 @@ impl UsbPort {
 /// Chooses the one port with a UNO's USB chip, or else the only port.
 ///
 /// # Errors
-/// There is no port, or more than one.
+/// Fails if there is no port, or more than one.
 pub fn choose(ports: &[UsbPort], command: &'static str) -> Result<UsbPort, FindError> {
     let known = ports.iter().filter(|port| VENDORS.contains(&port.vendor));
     let known: Vec<&UsbPort> = known.collect();

@@ -1,4 +1,4 @@
-//! `lizard info`: what a board has.
+//! `lizard info`: the firmware, robot, calibration and fault of a board.
 
 use std::fmt::Write as _;
 use std::io::{Read, Write};
@@ -52,7 +52,7 @@ struct Robot {
 /// Asks a board and prints its answers.
 ///
 /// # Errors
-/// No board, or none that answers as a lizard does.
+/// Fails if there is no board, or none that answers as a lizard does.
 pub fn run(args: Args) -> Result<(), Failure> {
     let finder = args.connect.finder("info")?;
     let (mut board, banner) = finder.open_and_greet()?;

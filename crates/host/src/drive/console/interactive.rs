@@ -49,7 +49,8 @@ const RETRY: Duration = Duration::from_millis(300);
 /// Runs `lizard console`.
 ///
 /// # Errors
-/// No board, the terminal fails, or the file is there already or cannot be written.
+/// Fails if there is no board, the terminal fails, or the file is there already or cannot be
+/// written.
 pub fn console(args: ConsoleArgs) -> Result<(), Failure> {
     if let Some(file) = args.record.as_ref().filter(|file| file.exists()) {
         recorder::create(file)?;
@@ -222,7 +223,7 @@ impl Dialogue {
         if self
             .session
             .status()
-            .is_some_and(super::status::Status::walks)
+            .is_some_and(super::status::Status::is_moving)
             && board.is_some()
             && !finder.is_simulated()
         {

@@ -3,7 +3,7 @@
 //! The serial line loses nothing, but it does not mark the end of an answer, and a board
 //! may be reset, unplugged or not a lizard at all. So after each line the link waits for
 //! its one `ok` or `err`, and collects the lines that begin with `#` meanwhile. If
-//! nothing comes, it fails with a sentence.
+//! nothing comes, it fails with a message.
 
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};
@@ -13,12 +13,12 @@ use std::time::{Duration, Instant};
 pub const BANNER: &str = "# lizard ";
 /// Questions to a board that was not reset: it finds the port's rate by five lines at most, and
 /// a radio may lose some.
-const ASKS: u32 = 8;
+const MAX_QUESTIONS: u32 = 8;
 
 /// The beginning of an answer to `status`.
 const STATUS: &str = "ok gait=";
 /// Longer lines are cut: the firmware's are shorter, noise may be endless.
-const LONGEST: usize = 512;
+const MAX_LINE_BYTES: usize = 512;
 
 /// Time limits of a connection.
 #[derive(Debug, Clone, Copy)]
@@ -123,7 +123,7 @@ impl<P: Read + Write> Link<P> {
     /// rate; then the result is `None`.
     ///
     /// # Errors
-    /// Nothing answers, or no lizard does.
+    /// Fails if nothing answers, or no lizard does.
     pub fn greet(&mut self) -> Result<Option<String>, LinkError> {
         let end = Instant::now() + self.timeouts.banner;
         let mut first = None;
@@ -133,7 +133,7 @@ impl<P: Read + Write> Link<P> {
             }
             first = first.or(Some(line));
         }
-        for _ in 0..ASKS {
+        for _ in 0..MAX_QUESTIONS {
             let end = Instant::now() + self.timeouts.answer / 4;
             self.send("status")?;
             while let Some(line) = self.line_before(end)? {
@@ -149,7 +149,7 @@ impl<P: Read + Write> Link<P> {
     /// Sends a line without waiting for its answer.
     ///
     /// # Errors
-    /// The port is gone.
+    /// Fails if the port is gone.
     pub fn send(&mut self, line: &str) -> Result<(), LinkError> {
         let bytes = format!("{line}\n");
         self.port
@@ -161,7 +161,7 @@ impl<P: Read + Write> Link<P> {
     /// Sends a line and waits for its answer, `ok` or `err`.
     ///
     /// # Errors
-    /// No answer, or the port is gone.
+    /// Fails if there is no answer, or the port is gone.
     pub fn ask(&mut self, line: &str) -> Result<Reply, LinkError> {
         self.send(line)?;
         let end = Instant::now() + self.timeouts.answer;
@@ -178,7 +178,7 @@ impl<P: Read + Write> Link<P> {
     /// Sends a line that must be accepted; returns the `#` lines before the answer.
     ///
     /// # Errors
-    /// As [`Link::ask`], and if the robot refuses.
+    /// Fails as [`Link::ask`] does, or if the robot refuses.
     pub fn command(&mut self, line: &str) -> Result<Reply, LinkError> {
         let reply = self.ask(line)?;
         let line = line.to_owned();
@@ -196,7 +196,7 @@ impl<P: Read + Write> Link<P> {
     /// Waits for the next line, at most `wait`.
     ///
     /// # Errors
-    /// The port is gone.
+    /// Fails if the port is gone.
     pub fn line(&mut self, wait: Duration) -> Result<Option<String>, LinkError> {
         self.line_before(Instant::now() + wait)
     }
@@ -204,7 +204,7 @@ impl<P: Read + Write> Link<P> {
     /// Waits; lines that arrive meanwhile are dropped.
     ///
     /// # Errors
-    /// The port is gone.
+    /// Fails if the port is gone.
     pub fn pause(&mut self, time: Duration) -> Result<(), LinkError> {
         let end = Instant::now() + time;
         while self.line_before(end)?.is_some() {}
@@ -242,7 +242,7 @@ impl<P: Read + Write> Link<P> {
 
     fn take(&mut self, byte: u8) {
         if byte != b'\n' {
-            if self.partial.len() < LONGEST {
+            if self.partial.len() < MAX_LINE_BYTES {
                 self.partial.push(byte);
             }
             return;
@@ -293,7 +293,7 @@ mod tests {
     struct Script {
         pieces: VecDeque<Option<&'static str>>,
         ready: VecDeque<u8>,
-        gone: bool,
+        is_gone: bool,
         sent: String,
     }
 
@@ -302,7 +302,7 @@ mod tests {
             let mut script = Self {
                 pieces: pieces.iter().copied().collect(),
                 ready: VecDeque::new(),
-                gone: false,
+                is_gone: false,
                 sent: String::new(),
             };
             script.next();
@@ -317,7 +317,7 @@ mod tests {
         fn next(&mut self) {
             match self.pieces.pop_front() {
                 Some(Some(piece)) => self.ready.extend(piece.bytes()),
-                Some(None) => self.gone = true,
+                Some(None) => self.is_gone = true,
                 None => {}
             }
         }
@@ -326,7 +326,7 @@ mod tests {
     impl Read for Script {
         fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
             if self.ready.is_empty() {
-                if self.gone {
+                if self.is_gone {
                     return Err(io::Error::from_raw_os_error(5));
                 }
                 return Err(ErrorKind::TimedOut.into());
@@ -352,7 +352,7 @@ mod tests {
     const HELLO: &str = "# lizard 0.2.0 robot paper 1a2b3c4d, send help for the commands\r\n";
 
     #[test]
-    fn a_banner_behind_what_a_reset_has_cut_off_is_one() {
+    fn a_banner_after_the_rest_of_a_cut_off_line_is_found() {
         for cut in ["", "ok wal", "# t=12 pose=138.5", "\u{fffd}x"] {
             let bytes = format!("{cut}# lizard 0.2.0 robot paper 1\r\n");
             let bytes: &'static str = bytes.leak();
@@ -367,7 +367,7 @@ mod tests {
     }
 
     #[test]
-    fn the_banner_is_found_behind_the_noise_of_an_opening() {
+    fn the_banner_is_found_after_the_noise_of_an_opening() {
         let mut link = Script::link(&[Some(
             "\u{fffd}\x00x\n# t=7 po\r\n# lizard 0.2.0 robot paper 1a\r\n",
         )]);
@@ -437,7 +437,7 @@ mod tests {
         for byte in b"\x1b[2Jhi\r\n\r\n\n" {
             link.take(*byte);
         }
-        assert_eq!(link.lines[0].len(), LONGEST);
+        assert_eq!(link.lines[0].len(), MAX_LINE_BYTES);
         assert_eq!(link.lines[1], "\u{fffd}[2Jhi");
         assert_eq!(link.lines.len(), 2, "empty lines are none");
     }

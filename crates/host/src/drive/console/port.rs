@@ -1,4 +1,4 @@
-//! Opening a serial port, and saying in a sentence why it cannot be opened.
+//! Opens a serial port, or explains why it cannot be opened.
 
 use std::io;
 use std::path::Path;
@@ -11,9 +11,9 @@ use super::find;
 /// The console's speed.
 pub const BAUD: u32 = 115_200;
 /// Time that a read waits for a byte; a loop over it repeats that often.
-const READ: Duration = Duration::from_millis(5);
+const READ_TIMEOUT: Duration = Duration::from_millis(5);
 /// Time that another program may take to close the port.
-const CLOSING: Duration = Duration::from_secs(1);
+const CLOSING_TIME: Duration = Duration::from_secs(1);
 
 /// The reason why a port cannot be opened.
 #[derive(Debug, thiserror::Error)]
@@ -55,10 +55,10 @@ pub enum PortError {
 
 impl From<PortError> for crate::Failure {
     fn from(error: PortError) -> Self {
-        let sentence = error.to_string();
+        let message = error.to_string();
         match error {
-            PortError::Missing { .. } | PortError::NoPort(_) => Self::Input(sentence),
-            _ => Self::Impossible(sentence),
+            PortError::Missing { .. } | PortError::NoPort(_) => Self::Input(message),
+            _ => Self::Impossible(message),
         }
     }
 }
@@ -66,7 +66,7 @@ impl From<PortError> for crate::Failure {
 /// Opens a port for this program alone. Opening it resets a UNO.
 ///
 /// # Errors
-/// There is none, or it must not or cannot be opened.
+/// Fails if there is none, or it must not or cannot be opened.
 pub fn open(name: &str) -> Result<Box<dyn SerialPort>, PortError> {
     if cfg!(unix) && !Path::new(name).exists() {
         return Err(missing_port(name));
@@ -78,7 +78,7 @@ pub fn open(name: &str) -> Result<Box<dyn SerialPort>, PortError> {
     if let Some(who) = lasting_holder(name) {
         return Err(busy(who));
     }
-    let opened = serialport::new(name, BAUD).timeout(READ).open();
+    let opened = serialport::new(name, BAUD).timeout(READ_TIMEOUT).open();
     opened.map_err(|error| match error.kind() {
         ErrorKind::Io(io::ErrorKind::PermissionDenied) => PortError::Forbidden(name.to_owned()),
         ErrorKind::Io(io::ErrorKind::NotFound) => missing_port(name),
@@ -123,10 +123,10 @@ fn lasting_holder(name: &str) -> Option<String> {
     let begin = Instant::now();
     loop {
         let holder = holder(name)?;
-        if begin.elapsed() > CLOSING {
+        if begin.elapsed() > CLOSING_TIME {
             return Some(holder);
         }
-        std::thread::sleep(READ);
+        std::thread::sleep(READ_TIMEOUT);
     }
 }
 

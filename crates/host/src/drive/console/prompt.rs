@@ -4,8 +4,8 @@ use crossterm::event::{Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use tui_input::Input;
 use tui_input::backend::crossterm::EventHandler;
 
-/// Lines that are remembered.
-const REMEMBERED: usize = 500;
+/// The number of lines kept in the history.
+const MAX_HISTORY: usize = 500;
 
 /// The effect of a key.
 #[derive(Debug, PartialEq, Eq)]
@@ -25,7 +25,7 @@ pub enum Outcome {
 pub struct Prompt {
     input: Input,
     history: Vec<String>,
-    /// Place in the history; its end is the line being typed.
+    /// The index in the history; its length stands for the line being typed.
     at: usize,
     /// The unfinished line, while an older one is shown.
     draft: String,
@@ -91,7 +91,7 @@ impl Prompt {
         let line = self.input.value_and_reset().trim().to_owned();
         if !line.is_empty() && self.history.last() != Some(&line) {
             self.history.push(line.clone());
-            let surplus = self.history.len().saturating_sub(REMEMBERED);
+            let surplus = self.history.len().saturating_sub(MAX_HISTORY);
             self.history.drain(..surplus);
         }
         self.at = self.history.len();

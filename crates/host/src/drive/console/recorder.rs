@@ -51,7 +51,7 @@ pub enum Event {
     Pose {
         /// Frames since power-on, 50 a second.
         frame: u64,
-        /// Degrees, chassis frame, A1 to A4.
+        /// Servo angles in degrees, chassis frame, A1 to A4.
         angles: [f64; 4],
     },
     /// The port has vanished.
@@ -70,7 +70,7 @@ pub struct Recorder<W: Write> {
 /// A new file for a session.
 ///
 /// # Errors
-/// It already exists, or cannot be made.
+/// Fails if it already exists, or cannot be made.
 pub fn create(path: &Path) -> Result<Recorder<BufWriter<File>>, Failure> {
     let name = path.display().to_string();
     match File::create_new(path) {
@@ -91,7 +91,7 @@ impl<W: Write> Recorder<W> {
     /// Writes an event. All but poses are in the file at once.
     ///
     /// # Errors
-    /// Writing failed; the sentence names the file.
+    /// Fails if writing fails; the message names the file.
     pub fn write(&mut self, now: Instant, event: Event) -> Result<(), Failure> {
         let ms = now.saturating_duration_since(self.begin).as_millis() as u64;
         let is_pose = matches!(event, Event::Pose { .. });
@@ -103,7 +103,7 @@ impl<W: Write> Recorder<W> {
     /// Flushes all lines into the file.
     ///
     /// # Errors
-    /// As [`Recorder::write`].
+    /// Fails as [`Recorder::write`] does.
     pub fn flush(&mut self) -> Result<(), Failure> {
         self.out.flush().map_err(|error| self.write_failure(&error))
     }

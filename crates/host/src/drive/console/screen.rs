@@ -25,7 +25,7 @@ impl Screen {
     /// Takes over the terminal.
     ///
     /// # Errors
-    /// Standard output is not a terminal.
+    /// Fails if standard output is not a terminal.
     pub fn new() -> io::Result<Self> {
         let mut screen = Self {
             out: io::stdout(),
@@ -39,7 +39,7 @@ impl Screen {
     /// Takes over the terminal again, after [`Screen::leave`].
     ///
     /// # Errors
-    /// The terminal is gone.
+    /// Fails if the terminal is gone.
     pub fn enter(&mut self) -> io::Result<()> {
         super::terminal::end_when_gone();
         terminal::enable_raw_mode()?;
@@ -49,7 +49,7 @@ impl Screen {
     /// Restores the terminal.
     ///
     /// # Errors
-    /// The terminal is gone.
+    /// Fails if the terminal is gone.
     pub fn leave(&mut self) -> io::Result<()> {
         self.erase()?;
         execute!(self.out, event::DisableBracketedPaste)?;
@@ -59,7 +59,7 @@ impl Screen {
     /// Prints a line above the two at the bottom.
     ///
     /// # Errors
-    /// Writing failed.
+    /// Fails if writing fails.
     pub fn print(&mut self, line: &str) -> io::Result<()> {
         self.erase()?;
         queue!(self.out, Print(line), Print("\r\n"))?;
@@ -69,7 +69,7 @@ impl Screen {
     /// Draws the two lines at the bottom, if they have changed.
     ///
     /// # Errors
-    /// Writing failed.
+    /// Fails if writing fails.
     pub fn draw(&mut self, status: &str, prompt: &Prompt) -> io::Result<()> {
         let (width, _) = terminal::size()?;
         // A line that fills its last column would wrap.

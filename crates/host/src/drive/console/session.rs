@@ -24,9 +24,9 @@ const TIMEOUT: Duration = Duration::from_millis(2000);
 /// Time that an answer to the program's own `status` may take.
 const STATUS_TIMEOUT: Duration = Duration::from_millis(600);
 /// Time from one `stop` to the next while none is answered.
-const AGAIN: Duration = Duration::from_millis(250);
-/// Time within which the answers to the other ones have come.
-const ECHOES: Duration = Duration::from_millis(500);
+const STOP_INTERVAL: Duration = Duration::from_millis(250);
+/// Time within which the answers to earlier `stop` lines have come.
+const LATE_ANSWERS: Duration = Duration::from_millis(500);
 /// Time without an answer to `stop` after which the user is told.
 const SILENCE: Duration = Duration::from_millis(800);
 
@@ -60,7 +60,7 @@ impl Question {
         }
     }
 
-    /// True if this answer can be its own; one that came too late is not.
+    /// True if this answer can belong to the question; one that came too late does not.
     fn is_answered_by(&self, answer: &str) -> bool {
         let line = match self {
             Self::Line(line) | Self::Deadman(line) => line.to_ascii_lowercase(),
@@ -96,13 +96,13 @@ pub struct Session {
     /// Until then, answers to repeated `stop` lines may come.
     echoes_until: Instant,
     queue: VecDeque<Queued>,
-    /// There if a person drives.
+    /// The handling of `deadman`, if a person drives.
     deadman: Option<Deadman>,
-    polls: bool,
+    polls_status: bool,
     next_poll: Instant,
     /// True while the program asks for poses by `watch`, until the user does.
-    watches: bool,
-    watch_due: bool,
+    watches_poses: bool,
+    is_watch_due: bool,
     status: Option<Status>,
     events: Vec<Event>,
     sent: usize,
@@ -112,10 +112,10 @@ pub struct Session {
 }
 
 impl Session {
-    /// A new dialogue. `polls`: ask for the status; `watches`: ask for
-    /// every pose.
+    /// A new dialogue. `polls_status`: ask for the status; `watches_poses`: ask
+    /// for every pose.
     #[must_use]
-    pub fn new(now: Instant, polls: bool, watches: bool) -> Self {
+    pub fn new(now: Instant, polls_status: bool, watches_poses: bool) -> Self {
         Self {
             waiting: None,
             halt: None,
@@ -123,10 +123,10 @@ impl Session {
             echoes_until: now,
             queue: VecDeque::new(),
             deadman: None,
-            polls,
+            polls_status,
             next_poll: now,
-            watches,
-            watch_due: watches,
+            watches_poses,
+            is_watch_due: watches_poses,
             status: None,
             events: Vec::new(),
             sent: 0,
@@ -146,7 +146,7 @@ impl Session {
     /// Queues a line of the user.
     pub fn queue(&mut self, line: &str) {
         if line.split_whitespace().next() == Some("watch") {
-            self.watches = false;
+            self.watches_poses = false;
         }
         let (before, after) = match &mut self.deadman {
             Some(deadman) => deadman.around(line),
@@ -159,8 +159,8 @@ impl Session {
             .extend(after.iter().copied().map(Queued::Deadman));
     }
 
-    /// The line that gives the robot its own `deadman` back before the program leaves it, so
-    /// that it goes on with its gait.
+    /// The line that restores the robot's own `deadman` before the program ends, so that the
+    /// robot goes on with its gait.
     pub fn last_line(&mut self) -> Option<String> {
         let deadman = self.deadman.as_mut().filter(|deadman| deadman.is_set)?;
         deadman.line(deadman::Step::Restore)
@@ -196,20 +196,20 @@ impl Session {
             if now < halt.next {
                 return None;
             }
-            halt.next = now + AGAIN;
+            halt.next = now + STOP_INTERVAL;
             halt.times += 1;
-            self.echoes_until = now + ECHOES;
+            self.echoes_until = now + LATE_ANSWERS;
             return Some("stop".to_owned());
         }
         if self.waiting.is_some() || now < self.echoes_until {
             return None;
         }
-        let (question, line) = if self.watch_due {
-            self.watch_due = false;
+        let (question, line) = if self.is_watch_due {
+            self.is_watch_due = false;
             (Question::Watch, "watch 1".to_owned())
         } else if let Some((question, line)) = self.queued() {
             (question, line)
-        } else if self.polls && now >= self.next_poll {
+        } else if self.polls_status && now >= self.next_poll {
             let lines = if self.is_driven() {
                 deadman::LINE
             } else {
@@ -242,9 +242,9 @@ impl Session {
         None
     }
 
-    /// Drops what waits, since the robot has not confirmed its `deadman`: a gait would go on out of
-    /// reach.
-    fn unsure(&mut self) -> Option<String> {
+    /// Drops the waiting lines, since the robot has not confirmed its `deadman`: a gait would go on
+    /// out of reach.
+    fn drop_unconfirmed(&mut self) -> Option<String> {
         for queued in std::mem::take(&mut self.queue) {
             if let Queued::Line(line) = queued {
                 self.sent += 1;
@@ -258,9 +258,9 @@ impl Session {
         Some(words.to_owned())
     }
 
-    /// Gives a robot that does not walk, and is not about to, its own `deadman` back.
+    /// Restores the robot's own `deadman` once it does not walk and is not about to.
     fn end_drive(&mut self) {
-        let walks = self.status.as_ref().is_some_and(Status::walks);
+        let walks = self.status.as_ref().is_some_and(Status::is_moving);
         if let Some(deadman) = &self.deadman
             && deadman.is_set
             && !walks
@@ -276,7 +276,7 @@ impl Session {
         let shown = Some(line.to_owned());
         let stands = self.halt.is_some() && cannot_move(line);
         if (line == "ok stop" || stands) && !self.asks_to_stop() {
-            return self.stopped(line).then_some(shown).flatten();
+            return self.take_stop_answer(line).then_some(shown).flatten();
         }
         if let (Some((Question::Deadman(_), _)), Some(deadman)) = (&self.waiting, &mut self.deadman)
             && deadman.take_answer_line(line)
@@ -288,10 +288,10 @@ impl Session {
             if line.starts_with(BANNER) {
                 // The board has restarted, and has forgotten the question.
                 self.waiting = None;
-                self.watch_due = self.watches;
+                self.is_watch_due = self.watches_poses;
                 self.deadman = self.deadman.take().map(|_| Deadman::default());
             }
-            return shown.filter(|_| !(self.watches && line.starts_with("# t=")));
+            return shown.filter(|_| !(self.watches_poses && line.starts_with("# t=")));
         }
         self.is_silent = false;
         let status = Status::parse(line);
@@ -307,7 +307,7 @@ impl Session {
             }
             Some((Question::Deadman(_), _)) => {
                 if line.starts_with("err ") {
-                    return self.unsure();
+                    return self.drop_unconfirmed();
                 }
                 return None;
             }
@@ -330,7 +330,7 @@ impl Session {
     }
 
     /// Takes an answer to `stop`; false if one came before, so that it belongs to no line.
-    fn stopped(&mut self, line: &str) -> bool {
+    fn take_stop_answer(&mut self, line: &str) -> bool {
         let Some(halt) = self.halt.take() else {
             return false;
         };
@@ -364,7 +364,7 @@ impl Session {
                 self.fail(line, "no answer");
                 message
             }
-            Question::Deadman(_) => return self.unsure(),
+            Question::Deadman(_) => return self.drop_unconfirmed(),
             Question::Status | Question::Watch if self.is_silent => return None,
             Question::Status | Question::Watch => {
                 self.is_silent = true;
@@ -381,7 +381,7 @@ impl Session {
     /// Succeeds if the robot accepted all lines.
     ///
     /// # Errors
-    /// The robot refused a line; the sentence names the first one.
+    /// Fails if the robot refused a line; the message names the first one.
     pub fn verdict(&self) -> Result<(), Failure> {
         let Some((line, why)) = &self.first_failed else {
             return Ok(());

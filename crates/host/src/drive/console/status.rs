@@ -8,14 +8,14 @@ const NO_ROBOT: &str = "robot";
 pub struct Status {
     /// A gait with dashes for blanks, or pose, stop, rest.
     pub gait: String,
-    /// Servo angles, degrees, chassis frame; none without a robot in the flash.
+    /// Servo angles, degrees, chassis frame; `None` without a robot in the flash.
     pub pose: Option<[f64; 4]>,
     /// Frames since power-on.
     pub frames: u64,
-    /// The smallest margin; none without a robot in the flash.
+    /// The smallest margin; `None` without a robot in the flash.
     pub margin: Option<f64>,
     /// True if the guard holds the robot.
-    pub held: bool,
+    pub is_held: bool,
     /// The fault's name, if there is one.
     pub fault: Option<String>,
     /// Supply of the board, volts, once it is measured.
@@ -53,7 +53,7 @@ impl Status {
             pose,
             frames: value("frames").and_then(|n| n.parse().ok()).unwrap_or(0),
             margin,
-            held: value("guard") == Some("held"),
+            is_held: value("guard") == Some("held"),
             fault: value("fault")
                 .filter(|name| *name != "none")
                 .map(str::to_owned),
@@ -66,7 +66,7 @@ impl Status {
 
     /// True if the servos turn, or may turn at any moment.
     #[must_use]
-    pub fn walks(&self) -> bool {
+    pub fn is_moving(&self) -> bool {
         !matches!(self.gait.as_str(), "stand" | "pose" | "stop" | "rest")
     }
 
@@ -86,7 +86,7 @@ impl Status {
         if let Some(rail) = self.rail {
             line += &format!("  servos {rail:.2} V");
         }
-        match (&self.fault, self.held) {
+        match (&self.fault, self.is_held) {
             (Some(fault), _) => line += &format!("  FAULT {fault}"),
             (None, true) => line += "  HELD by the guard",
             (None, false) => line += "  no fault",
@@ -118,7 +118,7 @@ mod tests {
     #[test]
     fn a_status_is_read_and_shortened() {
         let status = Status::parse(WALKS).expect("it is a status");
-        assert!(status.walks());
+        assert!(status.is_moving());
         assert_eq!(
             status.line(),
             "arc-left  A1..A4 138.6 41.4 318.6 221.4  margin 0.81  5.02 V  servos 5.91 V  \

@@ -37,7 +37,7 @@ pub fn end_when_gone() {
 /// have been restored before.
 ///
 /// # Errors
-/// The system refuses.
+/// Fails if the system refuses.
 #[cfg(unix)]
 pub fn stop() -> io::Result<()> {
     signal_hook::low_level::emulate_default_handler(signal_hook::consts::SIGTSTP)
@@ -46,7 +46,7 @@ pub fn stop() -> io::Result<()> {
 /// Does nothing: only Unix can suspend a program.
 ///
 /// # Errors
-/// None.
+/// Never fails.
 #[cfg(not(unix))]
 pub fn stop() -> io::Result<()> {
     Ok(())

@@ -21,7 +21,7 @@ pub struct Double {
     /// The number of calls that are ignored after each reset.
     pub ignored_calls: usize,
     /// True if the loader never answers.
-    pub mute: bool,
+    pub is_mute: bool,
     /// The number of the byte to the board that is lost, counted from 0.
     pub lost_to: Option<usize>,
     /// The number of the byte from the board that is lost, counted from 0.
@@ -35,14 +35,14 @@ pub struct Double {
     /// The number of resets so far.
     pub resets: usize,
     /// True if the last command started the program in flash.
-    pub left: bool,
+    pub was_left: bool,
     /// The number of bytes sent to the board so far, lost ones included.
     pub received: usize,
     /// The number of bytes sent by the board so far, lost ones included.
     pub sent: usize,
     /// The number of bytes that ATmegaBOOT did not understand since the reset.
     errors: usize,
-    listening: bool,
+    is_listening: bool,
     calls_to_ignore: usize,
     address: usize,
     command: Vec<u8>,
@@ -70,17 +70,17 @@ impl Double {
             signature: [0x1e, 0x95, 0x0f],
             garbage: Vec::new(),
             ignored_calls: 0,
-            mute: false,
+            is_mute: false,
             lost_to: None,
             lost_from: None,
             worn: None,
             unplugged_after: None,
             written: Vec::new(),
             resets: 0,
-            left: false,
+            was_left: false,
             received: 0,
             sent: 0,
-            listening: false,
+            is_listening: false,
             calls_to_ignore: 0,
             address: 0,
             command: Vec::new(),
@@ -118,12 +118,12 @@ impl Double {
         if command[length - 1] != b' ' && self.kind == Kind::AtmegaBoot {
             self.errors += 1;
             // MAX_ERROR_COUNT: the program starts.
-            self.listening = self.errors < 5;
+            self.is_listening = self.errors < 5;
             return;
         }
         if command[length - 1] != b' ' {
             // verifySpace(): the watchdog resets the chip, and the program starts.
-            self.listening = false;
+            self.is_listening = false;
             return;
         }
         let mut answer = vec![0x14];
@@ -141,8 +141,8 @@ impl Double {
             b'd' => self.write_page(&command[4..length - 1]),
             b'Q' => {
                 // ATmegaBOOT listens on, until nobody says anything for a while.
-                self.listening = self.kind == Kind::AtmegaBoot;
-                self.left = true;
+                self.is_listening = self.kind == Kind::AtmegaBoot;
+                self.was_left = true;
             }
             _ => {}
         }
@@ -170,9 +170,9 @@ impl Board for Double {
     fn reset(&mut self, baud: u32) -> io::Result<()> {
         self.resets += 1;
         self.errors = 0;
-        self.listening = !self.mute && baud == self.kind.baud();
+        self.is_listening = !self.is_mute && baud == self.kind.baud();
         self.calls_to_ignore = self.ignored_calls;
-        self.left = false;
+        self.was_left = false;
         self.command.clear();
         self.out.clear();
         self.out.extend(&self.garbage);
@@ -205,7 +205,7 @@ impl Write for Double {
         for byte in bytes {
             let lost = self.lost_to == Some(self.received);
             self.received += 1;
-            if lost || !self.listening {
+            if lost || !self.is_listening {
                 continue;
             }
             self.command.push(*byte);

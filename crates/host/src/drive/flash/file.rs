@@ -10,10 +10,10 @@ use crate::Failure;
 use crate::shared::files;
 use crate::shared::firmware::CODE;
 
-/// The image of a robot: the code inside this program with this robot's section behind it.
+/// The image of a robot: the code inside this program followed by this robot's section.
 ///
 /// # Errors
-/// Never: a test makes one for every built-in robot.
+/// Never fails: a test makes one for every built-in robot.
 pub fn image(robot: &Robot) -> Result<Image, ImageError> {
     let mut bytes = Image::from_hex(CODE)?.bytes().to_vec();
     bytes.resize(START.into(), BLANK);
@@ -24,7 +24,7 @@ pub fn image(robot: &Robot) -> Result<Image, ImageError> {
 /// A robot's section alone.
 ///
 /// # Errors
-/// Never: a section has room.
+/// Never fails: a section has room.
 pub fn robot_alone(robot: &Robot) -> Result<Image, ImageError> {
     Image::robot_alone(robot.section())
 }
@@ -32,7 +32,7 @@ pub fn robot_alone(robot: &Robot) -> Result<Image, ImageError> {
 /// Reads an image from a file of Intel HEX.
 ///
 /// # Errors
-/// It cannot be read, or is not an image for a UNO.
+/// Fails if it cannot be read, or is not an image for a UNO.
 pub fn read(path: &Path) -> Result<Image, Failure> {
     let name = path.display();
     let text = files::read_text(path)?;
@@ -46,7 +46,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_robot_is_behind_the_same_code_or_alone() {
+    fn every_robot_follows_the_same_code_or_is_alone() {
         let code = Image::from_hex(CODE).expect("it is Intel HEX");
         let code = code.bytes();
         assert_eq!(Mark::find(code), Some(Mark::HERE));

@@ -22,7 +22,7 @@ const ROBOT: usize = START as usize;
 pub struct FlashContents {
     /// The program in flash.
     pub program: Program,
-    /// The robot behind it, if it is a lizard's code.
+    /// The robot after the code, if that is a lizard's.
     pub robot: TheirRobot,
     /// True if flash holds the image already.
     pub has_image: bool,
@@ -40,16 +40,16 @@ pub enum Program {
         /// The version mark in the code.
         mark: Mark,
         /// True if it differs from the code to be written, even if the version is the same.
-        differs: bool,
+        is_different: bool,
     },
     /// A program that is not lizard firmware.
     Other {
-        /// The size up to the last byte; none if only the first page was read.
+        /// The size up to the last byte; `None` if only the first page was read.
         bytes: Option<usize>,
     },
 }
 
-/// The robot behind a lizard's code.
+/// The robot after a lizard's code.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum TheirRobot {
     /// Nothing was ever written there.
@@ -71,7 +71,7 @@ impl FlashContents {
         let program = match Mark::find(flash) {
             Some(mark) => Program::Lizard {
                 mark,
-                differs: !code.clone().all(|page| is_there(&page)),
+                is_different: !code.clone().all(|page| is_there(&page)),
             },
             None if flash[..2] == IDLE && is_blank(&flash[2..PAGE]) => Program::Half,
             None if image.is_robot_alone() && is_blank(&flash[..PAGE]) => Program::Blank,
@@ -83,7 +83,7 @@ impl FlashContents {
                 },
             },
         };
-        // A robot behind another program is one that nobody reads.
+        // Nothing reads a robot after another program.
         let has_code = matches!(program, Program::Lizard { .. }) || !image.is_robot_alone();
         let has_image = has_code && pages.iter().all(|page| is_there(&page));
         let robot = match robot_in(flash) {
@@ -114,9 +114,9 @@ impl fmt::Display for FlashContents {
             Program::Other { bytes: Some(bytes) } => {
                 write!(f, "another program, of {bytes} bytes")?;
             }
-            Program::Lizard { mark, differs } => {
+            Program::Lizard { mark, is_different } => {
                 let [major, minor, patch] = mark.version;
-                if differs && mark == Mark::HERE {
+                if is_different && mark == Mark::HERE {
                     f.write_str("another build of ")?;
                 }
                 write!(f, "lizard {major}.{minor}.{patch}")?;

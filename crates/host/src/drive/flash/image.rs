@@ -19,7 +19,7 @@ pub const NANO_BOOT: usize = 0x7800;
 pub const BLANK: u8 = 0xff;
 
 /// Bytes of a line of Intel HEX, as avr-objcopy has them.
-const LINE: usize = 16;
+const LINE_BYTES: usize = 16;
 
 /// The firmware with its robot, or a robot alone.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -97,7 +97,7 @@ impl Image {
     /// An image of these bytes, from address 0 on.
     ///
     /// # Errors
-    /// There are no bytes, or too many.
+    /// Fails if there are no bytes, or too many.
     pub fn new(bytes: Vec<u8>) -> Result<Self, ImageError> {
         match bytes.len() {
             0 => Err(ImageError::NoStart),
@@ -109,7 +109,7 @@ impl Image {
     /// A robot's section without code.
     ///
     /// # Errors
-    /// It has no bytes, or too many.
+    /// Fails if it has no bytes, or too many.
     pub fn robot_alone(section: Vec<u8>) -> Result<Self, ImageError> {
         match ROBOT + section.len() {
             ROBOT => Err(ImageError::NoRobot),
@@ -130,7 +130,7 @@ impl Image {
     /// Reads Intel HEX.
     ///
     /// # Errors
-    /// The text is not Intel HEX, is cut off, contradicts itself, or is not for this chip.
+    /// Fails if the text is not Intel HEX, is cut off, contradicts itself, or is not for this chip.
     pub fn from_hex(text: &str) -> Result<Self, ImageError> {
         let mut flash = vec![None; BOOT];
         let mut base = 0;
@@ -172,9 +172,9 @@ impl Image {
     #[must_use]
     pub fn to_hex(&self) -> String {
         let mut records = Vec::new();
-        for (index, line) in self.bytes.chunks(LINE).enumerate() {
+        for (index, line) in self.bytes.chunks(LINE_BYTES).enumerate() {
             records.push(Record::Data {
-                offset: (self.start + index * LINE) as u16,
+                offset: (self.start + index * LINE_BYTES) as u16,
                 value: line.to_vec(),
             });
         }
@@ -183,19 +183,19 @@ impl Image {
         text.expect("short lines and one end")
     }
 
-    /// Its bytes as flash holds them, from its first to its last.
+    /// The image's bytes as flash holds them, from first to last.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 
-    /// Address behind its last byte.
+    /// The address after the last byte.
     #[must_use]
     pub fn end(&self) -> usize {
         self.start + self.bytes.len()
     }
 
-    /// Its pages in the order of their addresses.
+    /// The image's pages in the order of their addresses.
     #[must_use]
     pub fn pages(&self) -> Vec<Page> {
         let page = |(index, part): (usize, &[u8])| {
@@ -276,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn a_page_that_is_filled_in_part_is_blank_behind_it() {
+    fn a_partly_filled_page_is_blank_after_the_image() {
         let image = Image::new(vec![5; 130]).expect("it fits");
         let pages = image.pages();
         assert_eq!([pages[0].address, pages[1].address], [0, 128]);

@@ -61,7 +61,8 @@ pub struct Args {
 /// Writes a board.
 ///
 /// # Errors
-/// No image, no board, or none that can be written; the sentence says what is in its flash.
+/// Fails if there is no image, no board, or none that can be written; the message says what is in
+/// its flash.
 pub fn run(args: Args) -> Result<(), Failure> {
     let image = match &args.image {
         Some(path) => file::read(path)?,
@@ -82,7 +83,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     };
     let board = SerialBoard::open(&port)?;
     eprintln!("lizard: calling the boot loader of the board at {name}");
-    let at = |sentence: String| Failure::Impossible(format!("{name}: {sentence}"));
+    let at = |message: String| Failure::Impossible(format!("{name}: {message}"));
     let board = write(board, &image, target).map_err(|error| at(error.to_string()))?;
     let banner = greet(board).map_err(|error| {
         at(format!(
@@ -150,7 +151,7 @@ fn write(board: SerialBoard, image: &Image, target: Target) -> Result<SerialBoar
     Ok(board)
 }
 
-/// A sentence about a finished upload.
+/// A message about a finished upload.
 fn summary(done: Done, time: Duration) -> String {
     let [written, kept] = [done.written, done.kept].map(|pages| pages * PAGE);
     let seconds = time.as_secs_f64();
@@ -195,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn a_board_with_arduinos_usb_chip_is_not_a_nano_and_one_with_another_chip_may_be() {
+    fn only_a_board_without_arduinos_usb_chip_may_be_a_nano() {
         let at = |name: &str, vendor| UsbPort {
             name: name.to_owned(),
             vendor,
@@ -209,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_board_it_says_what_to_connect_and_of_several_that_one_is_to_be_named() {
+    fn no_board_or_several_are_refused_with_the_remedy() {
         let words = |ports: &[UsbPort]| {
             let error = choose(ports).expect_err("there is not one");
             error.to_string()

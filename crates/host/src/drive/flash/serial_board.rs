@@ -10,7 +10,7 @@ use super::stk500::Board;
 use crate::drive::console::port::{self, PortError};
 
 /// Time for which the reset line is pulled.
-const PULL: Duration = Duration::from_millis(50);
+const RESET_TIME: Duration = Duration::from_millis(50);
 
 /// A port that can be reopened.
 pub struct SerialBoard {
@@ -18,19 +18,19 @@ pub struct SerialBoard {
     /// `None` only between closing and reopening.
     port: Option<Box<dyn SerialPort>>,
     /// True just after opening, which resets a board as well.
-    fresh: bool,
+    is_fresh: bool,
 }
 
 impl SerialBoard {
     /// Opens a port for this program alone.
     ///
     /// # Errors
-    /// There is none, or it cannot be opened.
+    /// Fails if there is none, or it cannot be opened.
     pub fn open(name: &str) -> Result<Self, PortError> {
         Ok(Self {
             name: name.to_owned(),
             port: Some(port::open(name)?),
-            fresh: true,
+            is_fresh: true,
         })
     }
 
@@ -44,7 +44,7 @@ impl SerialBoard {
         for level in [false, true] {
             port.write_data_terminal_ready(level)?;
             port.write_request_to_send(level)?;
-            sleep(PULL);
+            sleep(RESET_TIME);
         }
         Ok(())
     }
@@ -52,14 +52,14 @@ impl SerialBoard {
     /// Sets the speed of the line.
     ///
     /// # Errors
-    /// The port is gone.
+    /// Fails if the port is gone.
     pub fn set_baud(&mut self, baud: u32) -> io::Result<()> {
         Ok(self.port()?.set_baud_rate(baud)?)
     }
 
     fn open_again(&mut self) -> io::Result<()> {
         self.port = None;
-        sleep(PULL);
+        sleep(RESET_TIME);
         let opened = port::open(&self.name).map_err(|error| match error {
             PortError::Missing { .. } => ErrorKind::NotFound.into(),
             error => io::Error::other(error.to_string()),
@@ -71,7 +71,7 @@ impl SerialBoard {
 
 impl Board for SerialBoard {
     fn reset(&mut self, baud: u32) -> io::Result<()> {
-        let fresh = std::mem::take(&mut self.fresh);
+        let fresh = std::mem::take(&mut self.is_fresh);
         match self.toggle_reset() {
             Ok(()) => {}
             // A pseudo terminal, as a simulated board has it, has no such lines; but opening it

@@ -53,7 +53,7 @@ impl Kind {
         }
     }
 
-    /// Its first byte in flash.
+    /// The address of the loader's first byte in flash.
     #[must_use]
     pub fn start(self) -> usize {
         match self {
@@ -69,7 +69,7 @@ pub trait Board: Read + Write {
     /// Resets the chip, which starts its boot loader, and sets the speed of the line.
     ///
     /// # Errors
-    /// The connection is gone.
+    /// Fails if the connection is gone.
     fn reset(&mut self, baud: u32) -> io::Result<()>;
 }
 
@@ -155,15 +155,15 @@ impl<B: Board> Loader<B> {
     /// Resets the board and calls a boot loader of this kind until it answers.
     ///
     /// # Errors
-    /// [`LoaderError::Silent`] if it never does.
+    /// Returns [`LoaderError::Silent`] if it never does.
     pub fn call(&mut self, kind: Kind) -> Result<(), LoaderError> {
         self.board.reset(kind.baud())?;
         // What the program said before the reset comes meanwhile, too.
-        self.pass_over(self.timeouts.blinks)?;
+        self.skip(self.timeouts.blinks)?;
         for _ in 0..CALLS {
             self.board.write_all(&[GET_SYNC, END])?;
             if self.finds_answer(self.timeouts.call)? {
-                return self.pass_over(self.timeouts.quiet);
+                return self.skip(self.timeouts.quiet);
             }
         }
         Err(LoaderError::Silent)
@@ -227,7 +227,7 @@ impl<B: Board> Loader<B> {
         Ok(())
     }
 
-    /// Searches for [`IN_SYNC`] and [`OK`] behind any other bytes.
+    /// Searches for [`IN_SYNC`] and [`OK`] after any other bytes.
     fn finds_answer(&mut self, time: Duration) -> Result<bool, LoaderError> {
         let end = Instant::now() + time;
         let mut last = 0;
@@ -248,7 +248,7 @@ impl<B: Board> Loader<B> {
     }
 
     /// Waits, and drops all bytes received meanwhile.
-    fn pass_over(&mut self, time: Duration) -> Result<(), LoaderError> {
+    fn skip(&mut self, time: Duration) -> Result<(), LoaderError> {
         let end = Instant::now() + time;
         let mut bytes = [0; 256];
         loop {

@@ -23,7 +23,7 @@ pub enum Model {
 pub struct Target {
     /// The model that the user has named.
     pub model: Option<Model>,
-    /// True if it has a USB chip that UNOs have as well as Nanos.
+    /// True if the board has a USB chip that both UNOs and Nanos have.
     pub may_be_nano: bool,
 }
 
@@ -36,7 +36,7 @@ pub struct Target {
     ". Gaits can be left out of robot.toml until it fits"
 })]
 pub struct TooLong {
-    /// The address behind the image's last byte.
+    /// The address after the image's last byte.
     end: usize,
     /// The board may also be a UNO.
     in_doubt: bool,
@@ -55,7 +55,7 @@ impl Target {
     /// Checks that an image leaves the boot section alone, now that this loader has answered.
     ///
     /// # Errors
-    /// It does not, or it may not.
+    /// Fails if the board has no room, or may have none.
     pub fn has_room(self, image: &Image, loader: Kind) -> Result<(), TooLong> {
         let is_nano = self.model == Some(Model::Nano) || loader == Kind::AtmegaBoot;
         let in_doubt = !is_nano && self.model.is_none() && self.may_be_nano;

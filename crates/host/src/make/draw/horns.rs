@@ -212,8 +212,8 @@ fn example(robot: &Robot) -> Group {
         ))
         // A tooth's width on the other side, where nothing else is.
         .add(tooth(placed - 9.0 * TOOTH));
-    for (place, words) in lines.iter().enumerate() {
-        let at = (LEFT, SPLINE.1 + 102.0 + 19.0 * place as f64);
+    for (index, words) in lines.iter().enumerate() {
+        let at = (LEFT, SPLINE.1 + 102.0 + 19.0 * index as f64);
         let mut line = text_start(words, at, 14.0);
         if words.starts_with("trim") {
             line = line.set("font-weight", "bold");

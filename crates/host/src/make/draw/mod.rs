@@ -45,7 +45,7 @@ pub struct Args {
 /// Draws the robot.
 ///
 /// # Errors
-/// A pose that the robot cannot have, or a file that cannot be written.
+/// Fails for a pose that the robot cannot have, or a file that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     if args.output.is_none() && io::stdout().is_terminal() {
         return Err(Failure::Input(

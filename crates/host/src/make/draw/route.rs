@@ -35,14 +35,14 @@ pub fn between_rows(from: &[(f64, f64)], to: &[(f64, f64)], height: f64) -> Vec<
 }
 
 /// The end of a path that comes down at the right of a board and goes to a pin in its
-/// lower row; `place` counts such wires from the board outwards.
-pub fn below(corner: (f64, f64), place: usize, pin: (f64, f64)) -> Path {
-    let (x, y) = beside(corner, place);
+/// lower row; `index` counts such wires from the board outwards.
+pub fn below(corner: (f64, f64), index: usize, pin: (f64, f64)) -> Path {
+    let (x, y) = beside(corner, index);
     vec![(x, y), (pin.0, y), pin]
 }
 
 /// The corner of such a wire: `corner` is the board's, at its lower right.
-pub fn beside(corner: (f64, f64), place: usize) -> (f64, f64) {
-    let off = GAP * (place as f64 + 1.0);
+pub fn beside(corner: (f64, f64), index: usize) -> (f64, f64) {
+    let off = GAP * (index as f64 + 1.0);
     (corner.0 + off, corner.1 + off)
 }

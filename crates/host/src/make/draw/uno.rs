@@ -22,16 +22,16 @@ const LOWER_ROW: f64 = 1.0;
 const POWER: (f64, [&str; 7]) = (12.0, ["IOREF", "RESET", "3.3V", "5V", "GND", "GND", "VIN"]);
 const REFERENCES: (f64, [&str; 4]) = (7.4, ["SCL", "SDA", "AREF", "GND"]);
 
-/// Places of D13, D7 and A0, from which the other pins are counted, in tenths of an inch from
+/// Positions of D13, D7 and A0, from which the other pins are counted, in tenths of an inch from
 /// the left edge.
 const D13: f64 = 11.4;
 const D7: f64 = 18.0;
 const A0: f64 = 20.0;
 
-/// The UNO's place on a page.
+/// The UNO's position on a page.
 #[derive(Clone, Copy, Debug)]
 pub struct Uno {
-    /// Its upper left corner.
+    /// The board's upper left corner.
     pub corner: (f64, f64),
 }
 
@@ -78,8 +78,8 @@ impl Uno {
                 .add(hole)
                 .add(self.label(self.pin(number), &name, is_used));
         }
-        for (place, name) in REFERENCES.1.iter().enumerate() {
-            let at = self.at(REFERENCES.0 + place as f64, UPPER_ROW);
+        for (index, name) in REFERENCES.1.iter().enumerate() {
+            let at = self.at(REFERENCES.0 + index as f64, UPPER_ROW);
             let is_used = at == self.ground();
             let mut hole = hole(at, is_used);
             if is_used {
@@ -87,8 +87,8 @@ impl Uno {
             }
             group = group.add(hole).add(self.label(at, name, is_used));
         }
-        for (place, name) in POWER.1.iter().enumerate() {
-            let at = self.at(POWER.0 + place as f64, LOWER_ROW);
+        for (index, name) in POWER.1.iter().enumerate() {
+            let at = self.at(POWER.0 + index as f64, LOWER_ROW);
             group = group.add(hole(at, false)).add(self.label(at, name, false));
         }
         let name = self.at(9.0, 11.2);
@@ -136,7 +136,7 @@ impl Uno {
         }
     }
 
-    /// A place on the page, from tenths of an inch of the board.
+    /// A point on the page, from tenths of an inch of the board.
     fn at(&self, right: f64, up: f64) -> (f64, f64) {
         (
             self.corner.0 + right * PITCH,

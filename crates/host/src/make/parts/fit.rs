@@ -94,7 +94,7 @@ pub(super) fn proof(assembly: &Assembly) -> Proof {
 /// The proof, of answers that are known or else are found here.
 fn complete_proof(questions: &Questions, known: Option<Vec<Answer>>) -> Proof {
     let bar = bar(questions.count(), PAIRS);
-    let known = |place: usize| known.as_ref()?.get(place).cloned();
+    let known = |index: usize| known.as_ref()?.get(index).cloned();
     let proof = questions.answer(known, |done, _| bar.set_position(done as u64));
     bar.finish_and_clear();
     proof
@@ -103,7 +103,7 @@ fn complete_proof(questions: &Questions, known: Option<Vec<Answer>>) -> Proof {
 /// Proves that the parts fit and prints the clearances.
 ///
 /// # Errors
-/// A wrong robot.toml, measures that do not go together, parts that meet.
+/// Fails for a wrong robot.toml, measures that do not go together, parts that meet.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.spread.robot.load()?;
     let assembly = Assembly::new(&robot);
@@ -112,9 +112,9 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let count = questions.count();
     if let Some(part) = args.spread.part() {
         let bar = bar(part.count(count), PAIRS);
-        let one = |place| {
+        let one = |index| {
             bar.inc(1);
-            questions.one(place)
+            questions.one(index)
         };
         part.print(&args, &args.spread.robot, count, one)?;
         bar.finish_and_clear();
@@ -144,7 +144,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 
 fn print(proof: &Proof, all: bool, out: &mut impl Write) -> io::Result<()> {
     /// Rows that are printed without --all.
-    const FEW: usize = 10;
+    const SHOWN_ROWS: usize = 10;
     writeln!(
         out,
         "proved   seen   parts                                          at A1 A2 A3 A4, deg"
@@ -155,7 +155,11 @@ fn print(proof: &Proof, all: bool, out: &mut impl Write) -> io::Result<()> {
             .iter()
             .filter(|near| near.proved < ENOUGH * 0.9)
             .collect();
-        let shown = if all { near.len() } else { FEW.min(near.len()) };
+        let shown = if all {
+            near.len()
+        } else {
+            SHOWN_ROWS.min(near.len())
+        };
         for near in &near[..shown] {
             row(near, out)?;
         }

@@ -70,7 +70,7 @@ impl From<Unfit> for Failure {
 /// Makes all files and writes them.
 ///
 /// # Errors
-/// A wrong robot.toml, parts that do not fit, a folder or a file that cannot be written.
+/// Fails for a wrong robot.toml, parts that do not fit, a folder or a file that cannot be written.
 /// Nothing is written unless all of it could be made.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;

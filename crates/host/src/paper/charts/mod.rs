@@ -54,7 +54,7 @@ struct Drawn {
 /// Draws all charts and writes them.
 ///
 /// # Errors
-/// A wrong robot.toml, a folder or a file that cannot be written.
+/// Fails for a wrong robot.toml, a folder or a file that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let pose = args.pose.get().unwrap_or_else(|| robot.neutral());

@@ -18,7 +18,7 @@ const AXES: [Axis<'static>; 2] = [
     Axis::new(40.0, "x, mm to the right of the plate's middle"),
     Axis::new(40.0, "y, mm ahead of it"),
 ];
-/// The drawn square reaches this far, and its cells are this wide, mm.
+/// Half the width of the drawn square, and the width of its cells, mm.
 const REACH: f64 = 160.0;
 const CELL: f64 = 2.0;
 /// Servo angles are tried in a range about neutral, in steps, deg.
@@ -55,7 +55,7 @@ pub fn reach(robot: &Robot) -> String {
             (sliders.contains(&found), SLIDERS[1]),
             (tail.contains(&found), TAIL[1]),
             (free.contains(&found), SLIDERS[0]),
-            (in_tail(robot, at), TAIL[0]),
+            (is_in_tail(robot, at), TAIL[0]),
         ];
         colours
             .into_iter()
@@ -64,10 +64,10 @@ pub fn reach(robot: &Robot) -> String {
     });
     for servo in 0..4 {
         let whole = feet(robot, servo, (-180..=180).map(f64::from), false);
-        let guarded = feet(robot, servo, (-RANGE..=RANGE).map(f64::from), true);
+        let is_guarded = feet(robot, servo, (-RANGE..=RANGE).map(f64::from), true);
         group = group
             .add(plot.curve(&whole, GREY, 1.2).set("stroke-dasharray", "5 4"))
-            .add(plot.curve(&guarded, LEGS, 4.0))
+            .add(plot.curve(&is_guarded, LEGS, 4.0))
             .add(
                 plot.curve(&walked(robot, servo), DARK, 8.0)
                     .set("stroke-opacity", 0.55),
@@ -176,7 +176,7 @@ fn free_sliders(robot: &Robot) -> Cells {
 }
 
 /// True if both arms of the tail reach a point of the chassis frame behind its base.
-fn in_tail(robot: &Robot, at: Vector) -> bool {
+fn is_in_tail(robot: &Robot, at: Vector) -> bool {
     let [left, right] = End::Tail.servos();
     let shafts = robot.lizard().shafts();
     let from = at - (shafts[left] + shafts[right]) * 0.5;
@@ -189,13 +189,13 @@ fn feet(
     robot: &Robot,
     servo: usize,
     turns: impl Iterator<Item = f64>,
-    guarded: bool,
+    is_guarded: bool,
 ) -> Vec<(f64, f64)> {
     let place = |turn: f64| {
         let mut turns = [0.0; 4];
         turns[servo] = turn;
         let angles = turned(robot, turns);
-        let is_in = !guarded || robot.accepted(angles).is_some();
+        let is_in = !is_guarded || robot.accepted(angles).is_some();
         is_in.then(|| foot(robot, servo, angles[servo]))
     };
     turns.filter_map(place).collect()
@@ -228,7 +228,7 @@ mod tests {
         let poses = accepted(&robot, |a, b| [0.0, 0.0, a, b]);
         assert!(poses.len() > 300, "{}", poses.len());
         for pose in poses {
-            assert!(in_tail(&robot, pose.tail_point()), "{pose:?}");
+            assert!(is_in_tail(&robot, pose.tail_point()), "{pose:?}");
         }
         let (sliders, free) = (accepted_sliders(&robot), free_sliders(&robot));
         let outside = sliders.difference(&free).count();
@@ -244,7 +244,7 @@ mod tests {
         // The tail's upper half, as `lizard design` has it for the head.
         let step = |i: i32| f64::from(i) - 160.5;
         let all = (0..321).flat_map(|i| (0..321).map(move |j| Vector::new(step(i), step(j))));
-        let area = all.filter(|at| in_tail(&robot, *at)).count() as f64;
+        let area = all.filter(|at| is_in_tail(&robot, *at)).count() as f64;
         assert!((area / 7446.3 - 1.0).abs() < 0.01, "{area}");
         // The middle of a slider is half the sum of two arms of 30 mm: in a disc of 30 mm.
         for (x, y) in free_sliders(&robot) {

@@ -111,7 +111,7 @@ fn base(text: &str) -> Result<f64, String> {
 /// Prints the synthesis, the charts or the ranking.
 ///
 /// # Errors
-/// A wrong robot.toml, proportions that make no mechanism, an output that cannot be
+/// Fails for a wrong robot.toml, proportions that make no mechanism, an output that cannot be
 /// written.
 pub fn run(args: Args) -> Result<(), Failure> {
     if args.spread.part().is_some() && !args.search {
@@ -310,7 +310,7 @@ fn ranking(
     let search = Search::new(args.step, demands, &progress, |count| {
         args.spread.own(count)
     });
-    let one = |place| search.piece(place);
+    let one = |index| search.piece(index);
     let pieces = args.spread.all(args, search.pieces(), one)?;
     progress.finish_and_clear();
     let Some(pieces) = pieces else {

@@ -16,7 +16,7 @@ pub struct Performance {
     pub r_mic: f64,
     /// Height of its centre over the base.
     pub y_mic: f64,
-    /// The index over that circle; none without a circle.
+    /// The index over that circle; `None` without a circle.
     pub lci: Option<Conditioning>,
 }
 

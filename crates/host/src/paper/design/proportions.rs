@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub const SUM: f64 = 0.9;
 
 /// The shortest link that a design may have; shorter ones make D overflow.
-const SHORTEST: f64 = 0.001;
+const MIN_LINK: f64 = 0.001;
 
 /// A point of the design space.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -33,7 +33,7 @@ impl Proportions {
     /// (then r1 + r2 > r3 and the mechanism can be assembled), sum 0.9.
     ///
     /// # Errors
-    /// The sentence that says which constraint is broken.
+    /// Returns the message that says which constraint is broken.
     pub fn new(r1: f64, r2: f64, r3: f64) -> Result<Self, String> {
         for (name, value, most) in [("r1", r1, SUM), ("r2", r2, SUM), ("r3", r3, SUM / 2.0)] {
             if !(value > 0.0 && value < most) {
@@ -41,9 +41,9 @@ impl Proportions {
                     "{name} is {value}, it must lie between 0 and {most}"
                 ));
             }
-            if value < SHORTEST {
+            if value < MIN_LINK {
                 return Err(format!(
-                    "{name} is {value:.1e}, too short to build: it must be at least {SHORTEST}"
+                    "{name} is {value:.1e}, too short to build: it must be at least {MIN_LINK}"
                 ));
             }
         }

@@ -94,8 +94,8 @@ impl<'a> Search<'a> {
 
     /// The designs of one piece that meet the demands.
     #[must_use]
-    pub fn piece(&self, place: usize) -> Vec<Design> {
-        let points = self.points.chunks(AT_ONCE).nth(place).unwrap_or_default();
+    pub fn piece(&self, index: usize) -> Vec<Design> {
+        let points = self.points.chunks(AT_ONCE).nth(index).unwrap_or_default();
         let designs = points.par_iter().filter_map(|point| {
             self.progress.inc(1);
             design(*point, &self.demands)
@@ -112,8 +112,8 @@ pub fn ranked(pieces: Vec<Vec<Design>>) -> Vec<Design> {
     designs
 }
 
-/// The best design with some proportions; none if it cannot sweep as far as demanded, or has too
-/// short a link.
+/// The best design with some proportions; `None` if it cannot sweep as far as demanded, or has
+/// too short a link.
 pub fn design(proportions: Proportions, demands: &Demands) -> Option<Design> {
     let d = proportions.scale_for_base(demands.base);
     let bars = proportions.at_scale(d);

@@ -70,7 +70,7 @@ pub struct Entry {
 /// Measures every equation and prints the table.
 ///
 /// # Errors
-/// An output that cannot be written.
+/// Fails for an output that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let entries = measure(args.samples);
     let mut out = io::stdout().lock();

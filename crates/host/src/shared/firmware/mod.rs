@@ -1,6 +1,6 @@
 //! The choice of a firmware and its robot.
 //!
-//! The firmware is one image for any lizard: its robot is a section of flash behind the code.
+//! The firmware is one image for any lizard: its robot is a section of flash after the code.
 //! The code is inside this program, so a robot.toml is all that a user needs: `lizard flash`,
 //! `image`, `sim`, `twin`, `console --sim` and all others put the section of the selected robot
 //! behind that code. A build in some folder is never used implicitly. Developers of the

@@ -15,7 +15,7 @@ use crate::{Failure, RobotFile};
 pub struct Firmware {
     /// The file's path, or a note that it is this program's own image.
     pub name: String,
-    /// The code with the robot behind it.
+    /// The code followed by the robot.
     pub image: Image,
 }
 
@@ -36,7 +36,7 @@ impl From<Unreadable> for Failure {
 /// Reads the program of an ELF or HEX file.
 ///
 /// # Errors
-/// It cannot be read, or is not a program of an AVR.
+/// Fails if it cannot be read, or is not a program of an AVR.
 pub fn read(elf: &Path) -> Result<Image, Unreadable> {
     Image::read(note_input(elf)).map_err(|error| Unreadable {
         elf: elf.to_owned(),
@@ -75,7 +75,7 @@ impl From<FirmwareError> for Failure {
 /// what it does.
 ///
 /// # Errors
-/// The file is missing, is not a program of an AVR, or has another robot in it.
+/// Fails if the file is missing, is not a program of an AVR, or has another robot in it.
 pub(crate) fn of_robot(
     elf: Option<&Path>,
     file: &RobotFile,
@@ -112,7 +112,7 @@ pub(crate) fn code_bytes(image: &Image, robot: &Robot) -> u32 {
     end.unwrap_or_else(|| image.flash_used() - robot.section().len() as u32)
 }
 
-/// The code inside this program with this robot behind it.
+/// The code inside this program followed by this robot.
 ///
 /// # Panics
 /// Never: a test reads that code, and a robot's section has room.
@@ -123,7 +123,7 @@ pub fn image_with(robot: &Robot) -> Image {
     image
 }
 
-/// The image with this robot in it, whose routines wait for nobody: see [`Robot::without_contacts`].
+/// The image with this robot in it, whose routines wait for no contact: see [`Robot::without_contacts`].
 ///
 /// # Panics
 /// Never: the section is as long as that of the robot.
@@ -136,7 +136,7 @@ pub(crate) fn without_contacts(mut image: Image, robot: &Robot) -> Image {
 /// none.
 ///
 /// # Errors
-/// It cannot be read, or is not a program of an AVR.
+/// Fails if it cannot be read, or is not a program of an AVR.
 pub fn with_robot(path: &Path, robot: &Robot) -> Result<Image, Unreadable> {
     let mut image = read(path)?;
     if robot_in(&image.flash()).is_some() {

@@ -65,9 +65,9 @@ const TICK_WITHOUT_MAPS: [f64; 2] = [20_000.0, 20_000.0];
 /// they need before they read the timer.
 const BESIDE_SERVOS: f64 = 160.0;
 /// Wall time that ten simulated minutes may take, s.
-const LONGEST_RUN: f64 = 60.0;
+const MAX_RUN_S: f64 = 60.0;
 /// Ten minutes, s.
-const LONG: f64 = 600.0;
+const LONG_RUN_S: f64 = 600.0;
 
 /// The table of all figures.
 #[must_use]
@@ -115,8 +115,8 @@ pub fn rows(figures: &Figures) -> Vec<Row> {
         row("static RAM", "bytes", count(f.static_ram.into()), AtMost(900.0), Some("365")),
         row("between stack and static RAM", "bytes", count(f.stack_spare.into()), AtLeast(400.0), None),
         row("  with the deepest stack", "bytes", Some(f.stack_margin.into()), AtLeast(400.0), None),
-        wall("ten simulated minutes", "s", f.wall, AtMost(LONGEST_RUN)),
-        wall("  times faster than a board", "", LONG / f.wall, Bound::None),
+        wall("ten simulated minutes", "s", f.wall, AtMost(MAX_RUN_S)),
+        wall("  times faster than a board", "", LONG_RUN_S / f.wall, Bound::None),
     ];
     table
 }

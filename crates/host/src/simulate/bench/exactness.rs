@@ -18,7 +18,7 @@ pub struct Exactness {
     pub period: u64,
     /// The most servo pins high at once.
     pub pins_high: u32,
-    /// The step in which widths vary, cycles; none if they do not vary.
+    /// The step in which widths vary, cycles; `None` if they do not vary.
     pub step: Option<u64>,
 }
 
@@ -27,7 +27,7 @@ impl Exactness {
     /// bytes sent were commands.
     ///
     /// # Errors
-    /// The board has sent no pulse.
+    /// Fails if the board has sent no pulse.
     pub fn of(
         board: &mut SimulatedBoard,
         robot: &CoreRobot,

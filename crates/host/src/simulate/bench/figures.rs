@@ -122,14 +122,14 @@ const SERIAL_VECTORS: [u8; 2] = [18, 19];
 /// and 3 of the jump in the vector table.
 const ENTRY: u64 = 7;
 /// Ten minutes, ms.
-const LONG: u64 = 600_000;
+const LONG_RUN_MS: u64 = 600_000;
 
 impl Figures {
     /// Measures an ELF, with a robot and with the same robot on patrol, where it has
     /// room for one. `progress` receives the name of each measurement.
     ///
     /// # Errors
-    /// A firmware that cannot be loaded, dies, or does not answer.
+    /// Fails for a firmware that cannot be loaded, dies, or does not answer.
     pub fn measure(
         elf: &Path,
         robot: &Robot,
@@ -173,7 +173,7 @@ impl Figures {
         let serial_interrupt = longest_serial(awake, turn)?;
         progress("ten minutes of a gait");
         let begin = Instant::now();
-        let long = Steady::of(awake()?, gait, LONG)?;
+        let long = Steady::of(awake()?, gait, LONG_RUN_MS)?;
         let wall = begin.elapsed().as_secs_f64();
 
         let frames = idle.cycles as f64 / FRAME as f64;

@@ -57,7 +57,7 @@ impl<'a> Judged<'a> {
 /// Measures the firmware and prints the table.
 ///
 /// # Errors
-/// No firmware, a firmware that dies or does not answer, a broken budget.
+/// Fails without a firmware, if it dies or does not answer, or for a broken budget.
 pub fn run(args: Args) -> Result<(), Failure> {
     let Some(elf) = args.elf else {
         return Err(Failure::Input(

@@ -8,7 +8,7 @@ use crate::shared::number::grouped;
 /// Prints the table.
 ///
 /// # Errors
-/// Writing failed.
+/// Fails if writing fails.
 pub fn print(rows: &[Row], gait: Option<&str>, out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,

@@ -19,7 +19,7 @@ pub struct ServoFrame {
     pub seconds: f64,
     /// Servo angles in degrees, chassis frame; `None` while the robot rests.
     pub angles: Option<[f64; 4]>,
-    /// Their sweeps from neutral in degrees, foot forward positive.
+    /// The servos' sweeps from neutral in degrees, foot forward positive.
     #[serde(skip)]
     pub sweeps: Option<[f64; 4]>,
 }
@@ -29,9 +29,9 @@ pub struct ServoFrame {
 pub struct ServoReport {
     /// A1 to A4.
     pub servo: &'static str,
-    /// Its leg: L or R, F or H for hind.
+    /// The servo's leg: L or R, F or H for hind.
     pub leg: &'static str,
-    /// Its pin, `D9` or `A0`.
+    /// The servo's pin, `D9` or `A0`.
     pub pin: String,
     /// Number of pulses.
     pub pulses: usize,
@@ -80,12 +80,12 @@ pub struct CommandPath {
     pub from: f64,
     /// The end, seconds since power-on.
     pub to: f64,
-    /// Distance forward from its own beginning, mm; none if it depends on a tie, two feet
+    /// Distance forward from its own beginning, mm; `None` if it depends on a tie, two feet
     /// against two.
     pub forward: Option<f64>,
-    /// Distance to the left, mm; none if it depends on a tie.
+    /// Distance to the left, mm; `None` if it depends on a tie.
     pub left: Option<f64>,
-    /// Turn counter-clockwise, deg; none if it depends on a tie.
+    /// Turn counter-clockwise, deg; `None` if it depends on a tie.
     pub turn: Option<f64>,
 }
 

@@ -27,7 +27,7 @@ impl Printer {
     /// Prints a line.
     ///
     /// # Errors
-    /// Writing failed.
+    /// Fails if writing fails.
     pub fn print(&mut self, line: &DialogueLine, out: &mut impl Write) -> io::Result<()> {
         let watch = line.from == Sender::Robot && line.text.starts_with("# t=");
         if watch && !self.all {
@@ -54,7 +54,7 @@ impl Printer {
     /// Says how many lines were left out, if any.
     ///
     /// # Errors
-    /// Writing failed.
+    /// Fails if writing fails.
     pub fn finish(&mut self, out: &mut impl Write) -> io::Result<()> {
         let left_out = std::mem::take(&mut self.run).saturating_sub(SHOWN);
         if left_out > 0 {

@@ -31,7 +31,7 @@ pub struct FootSpan {
     pub to: f64,
 }
 
-/// The movements of a servo's foot, in order of time. None while it rests.
+/// The movements of a servo's foot, in order of time. `None` while it rests.
 #[must_use]
 pub fn foot_spans(
     instants: impl Iterator<Item = ServoFrame> + Clone,

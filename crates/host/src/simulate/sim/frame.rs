@@ -15,7 +15,7 @@ pub(super) const SLOT: u64 = FRAME / 5;
 pub struct Frame {
     /// Cycle at which A1's pulse starts, or would start.
     pub start: u64,
-    /// Cycle at which each pulse starts; none without a pulse.
+    /// Cycle at which each pulse starts; `None` without a pulse.
     pub starts: [Option<u64>; 4],
     /// Width of each pulse in cycles of 62.5 ns.
     pub widths: [Option<u64>; 4],

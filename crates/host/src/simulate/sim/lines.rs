@@ -7,7 +7,7 @@ use simulated_uno::SerialByte;
 pub struct Line {
     /// The cycle at which the line ended.
     pub cycle: u64,
-    /// Its text without the line end.
+    /// The text without the line end.
     pub text: String,
 }
 

@@ -115,12 +115,12 @@ enum FidelityArg {
 }
 
 /// Longest run, seconds: a day.
-const LONGEST: f64 = 86_400.0;
+const MAX_SECONDS: f64 = 86_400.0;
 
 fn seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(value) if value > 0.0 && value <= LONGEST => Ok(value),
-        Ok(_) => Err(format!("it must be above 0 and at most {LONGEST}")),
+        Ok(value) if value > 0.0 && value <= MAX_SECONDS => Ok(value),
+        Ok(_) => Err(format!("it must be above 0 and at most {MAX_SECONDS}")),
         Err(_) => Err("it is not a number".to_owned()),
     }
 }
@@ -128,7 +128,7 @@ fn seconds(text: &str) -> Result<f64, String> {
 /// Runs the firmware and prints the results.
 ///
 /// # Errors
-/// No firmware, a wrong script, a firmware that dies, a file that cannot be
+/// Fails without a firmware, for a wrong script, a firmware that dies, or a file that cannot be
 /// written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let fidelity = match args.fidelity {

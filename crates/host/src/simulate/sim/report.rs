@@ -54,7 +54,7 @@ impl Report<'_> {
     /// Prints the report for people, without the dialogue.
     ///
     /// # Errors
-    /// Writing failed.
+    /// Fails if writing fails.
     pub fn print(&self, out: &mut impl Write) -> io::Result<()> {
         self.print_servos(out)?;
         self.print_paths(out)?;
@@ -181,7 +181,7 @@ pub struct Ram {
 }
 
 impl Ram {
-    /// The RAM of a UNO's program; none if the image does not say where its data ends.
+    /// The RAM of a UNO's program; `None` if the image does not say where its data ends.
     #[must_use]
     pub fn of(uno: &Uno) -> Option<Self> {
         let static_ram = uno.image().static_ram();

@@ -79,7 +79,7 @@ impl Script {
     /// are skipped, and so is a byte order mark. The run ends a second after the last command.
     ///
     /// # Errors
-    /// A line without a time or a command, or out of order.
+    /// Fails for a line without a time or a command, or out of order.
     pub fn parse(text: &str) -> Result<Self, ScriptError> {
         let mut steps: Vec<Step> = Vec::new();
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);

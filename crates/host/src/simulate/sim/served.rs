@@ -18,7 +18,7 @@ use crate::shared::files::{self, note_input};
 /// A board as sold, with this boot loader in flash and nothing else.
 ///
 /// # Errors
-/// The file is missing or no AVR program.
+/// Fails if the file is missing or no AVR program.
 pub(super) fn as_sold(boot_loader: &Path, fidelity: Fidelity) -> Result<Uno, Failure> {
     let image = Image::read(note_input(boot_loader))
         .map_err(|error| Failure::Input(format!("{}: {error}", boot_loader.display())))?;
@@ -29,7 +29,7 @@ pub(super) fn as_sold(boot_loader: &Path, fidelity: Fidelity) -> Result<Uno, Fai
 /// the port, whose own name differs from run to run, and is removed at the end.
 ///
 /// # Errors
-/// No pseudo terminal, or `link` is something else already.
+/// Fails if there is no pseudo terminal, or `link` is something else already.
 pub(super) fn until_interrupted(
     mut uno: Uno,
     link: Option<&Path>,
@@ -137,7 +137,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_empty_board_is_not_reported_as_a_crash_and_a_crash_does_not_name_the_simulator() {
+    fn an_empty_board_is_no_crash_and_a_crash_does_not_name_the_simulator() {
         let crashed = State::Crashed {
             pc: 0x7fe4,
             message: "avr_sadly_crashed".to_owned(),

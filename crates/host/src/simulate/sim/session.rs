@@ -28,7 +28,7 @@ pub struct DialogueLine {
     pub ms: f64,
     /// The sender of the line.
     pub from: Sender,
-    /// Its text without the line end.
+    /// The text without the line end.
     pub text: String,
 }
 
@@ -64,7 +64,7 @@ pub struct Recording {
 /// gets what happens, in order of time.
 ///
 /// # Errors
-/// Those of `on_event`, which end the run.
+/// Returns the errors of `on_event`, which end the run.
 pub fn play(
     uno: &mut Uno,
     pins: [Pin; 4],

@@ -14,7 +14,7 @@ const BOARD: f64 = 5_000.0;
 /// Parts of the supply that the converter tells apart.
 const FULL_SCALE: f64 = 1_024.0;
 
-/// The analogue pin that measures the servos' rail, and the voltage there, mV. None if
+/// The analogue pin that measures the servos' rail, and the voltage there, mV. `None` if
 /// none does.
 #[must_use]
 pub fn at_pin(robot: &Robot) -> Option<(Pin, u16)> {

@@ -73,7 +73,8 @@ enum ServoArg {
 /// Runs the firmware, walks the robot and prints the report.
 ///
 /// # Errors
-/// No firmware, a wrong script, a firmware that dies, a file that cannot be written.
+/// Fails without a firmware, for a wrong script, a firmware that dies, or a file that cannot be
+/// written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let script = script(&args, &robot)?;
@@ -96,7 +97,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         .any(|step| step.command.starts_with("speed"));
     let spinner = Spinner::new("walking every frame");
     let replay = Replay::of(&robot, &recording.frames, spans, model);
-    let report = Report::of(&robot, &replay, paced);
+    let report = Report::of(&robot, &replay, model, paced);
     drop(spinner);
 
     let mut out = io::stdout().lock();
@@ -117,7 +118,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 /// Plays the script silently.
 ///
 /// # Errors
-/// The firmware ends before the script does.
+/// Fails if the firmware ends before the script does.
 pub(crate) fn record(uno: &mut Uno, robot: &Robot, script: &Script) -> Result<Recording, Failure> {
     supplies::connect(uno, robot);
     let bar = simulated_time(script.end_ms);

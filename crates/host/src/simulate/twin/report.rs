@@ -2,8 +2,8 @@
 
 use std::io::{self, Write};
 
-use lizard_robot::{Prediction, Robot, SpringCost, Travel, UNDECIDED};
-use lizard_twin::Tally;
+use lizard_robot::{Prediction, Robot, Round, SpringCost, Travel, UNDECIDED};
+use lizard_twin::{ServoModel, Tally};
 use serde::Serialize;
 
 use super::replay::Replay;
@@ -27,6 +27,8 @@ pub struct Row {
     pub way: PathParts,
     /// The gait's last complete cycle, and its prediction.
     pub cycle: Option<Cycle>,
+    /// The path of a routine's one round that `lizard gaits` predicts for these servos.
+    pub round: Option<PathParts>,
     /// The remaining figures are of the last complete cycle if there is one, else of all
     /// frames: the distance that each foot slid over the floor, mm, servo order.
     pub foot_slip: [f64; 4],
@@ -67,6 +69,26 @@ pub struct Cycle {
     pub share_of_rigid: Option<f64>,
 }
 
+impl From<Prediction> for PathParts {
+    fn from(way: Prediction) -> Self {
+        Self {
+            forward: way.forward,
+            left: way.left,
+            turn: way.turn,
+        }
+    }
+}
+
+/// The prediction of a routine's round by these servos, if a command goes through one.
+fn round(robot: &Robot, command: &str, model: ServoModel) -> Option<Prediction> {
+    let routine = robot.routine(command.strip_suffix(" 1")?)?;
+    let round = Round::of(robot, routine);
+    Some(match model {
+        ServoModel::Motors(_) => round.driven,
+        ServoModel::Ideal | ServoModel::Unloaded(_) => round.movement,
+    })
+}
+
 impl PathParts {
     fn of(travel: Travel, known: Option<&Prediction>) -> Self {
         let keep = |part: fn(&Prediction) -> Option<f64>, value: f64| match known {
@@ -85,7 +107,7 @@ impl Report {
     /// Sums up a replay. With `paced`, gaits went at other speeds than their own, and
     /// their cycles are not reported.
     #[must_use]
-    pub fn of(robot: &Robot, replay: &Replay, paced: bool) -> Self {
+    pub fn of(robot: &Robot, replay: &Replay, model: ServoModel, paced: bool) -> Self {
         let rows = replay
             .stages
             .iter()
@@ -98,7 +120,8 @@ impl Report {
             let last = cycle
                 .as_ref()
                 .map(|(_, frames)| replay.tally(frames.clone()));
-            let known = prediction.as_ref();
+            let round = round(robot, &stage.command, model).filter(|_| !paced);
+            let known = prediction.as_ref().or(round.as_ref());
             let seconds = |n: usize| replay.first + n as f64 * lizard_twin::FRAME;
             let of: &Tally = last.as_ref().unwrap_or(&whole);
             Row {
@@ -107,17 +130,15 @@ impl Report {
                 way: PathParts::of(whole.travel(), known),
                 cycle: last.zip(cycle).map(|(tally, (gait, _))| Cycle {
                     way: PathParts::of(tally.travel(), known),
-                    predicted: known.map_or(PathParts::of(tally.travel(), None), |way| PathParts {
-                        forward: way.forward,
-                        left: way.left,
-                        turn: way.turn,
-                    }),
+                    predicted: known
+                        .map_or(PathParts::of(tally.travel(), None), |way| (*way).into()),
                     speed: known.and_then(|way| way.forward).map(|_| {
                         let travel = tally.travel();
                         travel.forward.hypot(travel.left) / tally.seconds()
                     }),
                     share_of_rigid: SpringCost::of(gait, robot.ground()).and_then(|on| on.share),
                 }),
+                round: round.map(Into::into),
                 foot_slip: of.slip,
                 lag: of.lag,
                 margin: of.margin.map(|(check, value)| (check.name(), value)),
@@ -134,7 +155,7 @@ impl Report {
     /// One object a line.
     ///
     /// # Errors
-    /// Writing failed.
+    /// Fails if writing fails.
     pub fn json(&self, out: &mut impl Write) -> io::Result<()> {
         for row in &self.rows {
             json::line(out, row)?;
@@ -146,7 +167,7 @@ impl Report {
     /// body.
     ///
     /// # Errors
-    /// Writing failed.
+    /// Fails if writing fails.
     pub fn print(&self, out: &mut impl Write) -> io::Result<()> {
         let springs = self.rows.iter().any(|row| row.lag > 0.0);
         let width = self
@@ -156,7 +177,7 @@ impl Report {
             .fold(10, usize::max);
         writeln!(
             out,
-            "{:width$}   one cycle, mm and deg        predicted                  speed  feet slid  least margin       slider, mm   servos{}",
+            "{:width$}   one cycle, mm and deg        by ideal servos            speed  feet slid  least margin       slider, mm   servos{}",
             "",
             if springs { "    springs" } else { "" }
         )?;
@@ -205,12 +226,13 @@ impl Report {
             }
             writeln!(
                 out,
-                "\n{} from {from:.2} to {to:.2} s: ahead {} mm, left {} mm, turn {} deg",
+                "\n{} from {from:.2} to {to:.2} s: {}",
                 row.command,
-                format_part(way.forward, 1),
-                format_part(way.left, 1),
-                format_part(way.turn, 1)
+                sentence(way)
             )?;
+            if let Some(round) = &row.round {
+                writeln!(out, "predicted: {}", sentence(round))?;
+            }
         }
         let undecided =
             |way: &PathParts| way.forward.is_none() || way.left.is_none() || way.turn.is_none();
@@ -219,6 +241,12 @@ impl Report {
         }
         Ok(())
     }
+}
+
+/// A path in words.
+fn sentence(way: &PathParts) -> String {
+    let [forward, left, turn] = [way.forward, way.left, way.turn].map(|part| format_part(part, 1));
+    format!("ahead {forward} mm, left {left} mm, turn {turn} deg")
 }
 
 /// A part of a path with its sign, except for zero; a dash if it is unknown.

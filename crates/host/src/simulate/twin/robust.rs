@@ -32,7 +32,7 @@ struct Spread {
 /// Walks every gait of the run `times` times.
 ///
 /// # Errors
-/// Writing failed.
+/// Fails if writing fails.
 pub fn run(
     robot: &Robot,
     replay: &Replay,

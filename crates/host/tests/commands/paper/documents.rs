@@ -127,7 +127,7 @@ fn table_1_of_the_paper_is_in_its_robot_but_for_the_link_that_it_names_twice() {
 }
 
 #[test]
-fn the_table_of_the_papers_figures_has_each_once_with_a_command_that_runs_and_a_file() {
+fn the_table_of_the_papers_figures_has_each_once_with_command_and_file() {
     let page = read("docs/paper.md");
     let (_, table) = page.split_once("| in the paper |").expect("the table");
     let rows: Vec<Vec<&str>> = table

@@ -108,7 +108,7 @@ fn count_and_rank_give_four_freedoms_and_one_for_each_leg() {
 }
 
 #[test]
-fn the_determinant_is_the_product_of_its_blocks_and_the_nearest_singularity_is_one() {
+fn the_determinant_is_that_of_its_blocks_and_the_nearest_pose_is_singular() {
     let report = lizard(
         &paper(
             "pose --show singularities --json --theta1 120 --theta4 70 --theta5 230 --theta8 310",

@@ -237,7 +237,7 @@ fn the_trace_of_every_gait_can_be_solved_and_is_safe() {
 
 #[test]
 fn an_angle_that_a_servo_cannot_reach_is_not_safe() {
-    // A3 reaches 10 degrees to one side only, by trim and width.
+    // A3 reaches only 20 degrees to one side: 400 us at 20 us per degree.
     let robot = RobotFile::with(
         "short-travel",
         &[(

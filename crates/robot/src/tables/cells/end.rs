@@ -98,7 +98,7 @@ impl Condition for EndConditions {
         let range = [(apart - moved).max(0.0), apart + moved];
         let off = bounds::End::between(&self.bars, self.integers, range);
         let uncrossed = pose.gap.x - moved > off.along + HAIR;
-        if !(off.known && uncrossed) {
+        if !(off.is_known && uncrossed) {
             return Verdict::Open;
         }
         let turned = |coupler: f64| moved / (coupler * off.least);
@@ -146,7 +146,7 @@ mod tests {
     type Limit = fn(&mut EndConditions) -> &mut f64;
 
     #[test]
-    fn a_single_pose_is_proved_if_it_is_clear_of_each_limit_by_what_the_integers_may_be_off_by() {
+    fn a_single_pose_is_proved_if_clear_of_each_limit_by_the_rounding_error() {
         let (mut rule, cell) = standing();
         // Without limits every pose passes.
         assert_eq!(rule.judge(&cell), Verdict::Kept);

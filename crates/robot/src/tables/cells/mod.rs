@@ -14,7 +14,7 @@ mod side;
 use std::ops::RangeInclusive;
 
 use lizard_core::numbers::calibration::Calibration;
-use lizard_core::numbers::cells::{COLUMN_BITS, MOST_ROWS, ROW_BITS};
+use lizard_core::numbers::cells::{COLUMN_BITS, MAX_ROWS, ROW_BITS};
 use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::section::{Content, Map};
 use lizard_core::numbers::units::Angle;
@@ -67,7 +67,7 @@ fn map(rule: &impl Condition, numbers: &Content) -> Map {
         neutral: numbers.neutral[servo],
         travel: numbers.calibration[servo],
     });
-    let most = MOST_ROWS as i32 / 2;
+    let most = MAX_ROWS as i32 / 2;
     let rows = row.cells(ROW_BITS, -most..=most - 1);
     let columns = column.cells(COLUMN_BITS, i8::MIN.into()..=i8::MAX.into());
     let first = *rows.start();

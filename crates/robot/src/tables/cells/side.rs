@@ -73,8 +73,7 @@ mod tests {
     use crate::testing::robot;
 
     #[test]
-    fn a_single_pose_is_proved_if_its_slider_is_clear_of_either_end_by_what_the_integers_may_be_off_by()
-     {
+    fn a_single_pose_is_proved_if_its_slider_clears_both_ends_by_the_rounding() {
         let robot = robot("unequal");
         let numbers = robot.content();
         for side in Side::ALL {

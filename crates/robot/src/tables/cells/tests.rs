@@ -45,11 +45,11 @@ fn random() -> impl Strategy<Value = Measures> {
     let all = (end(), end(), 90.0..200.0, side(), side(), limits, servos);
     all.prop_map(move |(head, tail, base, left, right, limits, servos)| {
         let mut links = [0.0; 20];
-        for (place, (l0, l1, l2, l3, l4)) in [head, tail].into_iter().enumerate() {
-            links[5 * place..][..5].copy_from_slice(&[l0, l1, l2, l3, l4]);
+        for (index, (l0, l1, l2, l3, l4)) in [head, tail].into_iter().enumerate() {
+            links[5 * index..][..5].copy_from_slice(&[l0, l1, l2, l3, l4]);
         }
-        for (place, (l11, l12, l13, l14)) in [left, right].into_iter().enumerate() {
-            links[10 + 5 * place..][..5].copy_from_slice(&[base, l11, l12, l13, l14]);
+        for (index, (l11, l12, l13, l14)) in [left, right].into_iter().enumerate() {
+            links[10 + 5 * index..][..5].copy_from_slice(&[base, l11, l12, l13, l14]);
         }
         let (type2, type1, leg, stroke_min, stroke_max) = limits;
         let neutral = [130.0, 50.0, 310.0, 230.0];
@@ -150,7 +150,7 @@ impl Subject {
                 margins,
                 slider,
             } = part;
-            assert!(map.rows.len() <= MOST_ROWS);
+            assert!(map.rows.len() <= MAX_ROWS);
             for (row, [first, last]) in (i32::from(map.first)..).zip(&map.rows) {
                 for column in i32::from(*first)..=i32::from(*last) {
                     cells += 1;
@@ -245,15 +245,15 @@ fn a_stricter_limit_than_that_of_the_maps_is_broken_in_a_cell() {
         |limits| limits.stroke_min += 1.0,
         |limits| limits.stroke_max -= 1.0,
     ];
-    for (place, stricter) in stricter.into_iter().enumerate() {
+    for (index, stricter) in stricter.into_iter().enumerate() {
         let mut changed = measures(&robot);
         stricter(&mut changed.limits);
         let own = Subject::still("of its own", &changed);
         let maps = robot.cell_maps();
-        assert_ne!(own.maps, maps, "limit {place}");
+        assert_ne!(own.maps, maps, "limit {index}");
         let mixed = Subject { maps, ..own };
         let checked = mixed.check(&mut TestRunner::deterministic());
-        assert!(checked.is_err(), "limit {place}");
+        assert!(checked.is_err(), "limit {index}");
     }
 }
 
@@ -261,7 +261,7 @@ fn a_stricter_limit_than_that_of_the_maps_is_broken_in_a_cell() {
 fn maps_fit_into_a_section_and_begin_and_end_with_a_cell() {
     for (name, robot) in all() {
         for Part { map, .. } in Subject::of(name, &robot).parts() {
-            assert!(map.rows.len() <= MOST_ROWS, "{name}");
+            assert!(map.rows.len() <= MAX_ROWS, "{name}");
             let [first, .., last] = map.rows.as_slice() else {
                 panic!("{name}: a map of {} rows", map.rows.len());
             };

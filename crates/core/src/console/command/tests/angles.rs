@@ -3,22 +3,22 @@
 use super::*;
 
 /// `pose` with one angle among three others.
-fn pose_with(place: usize, angle: &str) -> String {
+fn pose_with(index: usize, angle: &str) -> String {
     let mut words = ["138.59", "41.41", "318.59", "221.41"].map(ToString::to_string);
-    words[place] = angle.to_string();
+    words[index] = angle.to_string();
     format!("pose {}", words.join(" "))
 }
 
-fn angle_read(place: usize, angle: &str) -> Result<i32, Misread> {
-    match with_shared_robot(|robot| parse(pose_with(place, angle).as_bytes(), robot)) {
-        Ok(Command::Order(Order::Pose(angles))) => Ok(angles[place].centideg().into()),
+fn angle_read(index: usize, angle: &str) -> Result<i32, Misread> {
+    match with_shared_robot(|robot| parse(pose_with(index, angle).as_bytes(), robot)) {
+        Ok(Command::Order(Order::Pose(angles))) => Ok(angles[index].centideg().into()),
         Ok(other) => panic!("{other:?}"),
         Err(misread) => Err(misread),
     }
 }
 
 #[test]
-fn every_hundredth_of_a_degree_a_turn_either_way_is_read_and_told_again() {
+fn every_hundredth_of_a_degree_within_a_turn_is_read_and_printed_back() {
     for centideg in (-36_100..36_100)
         .step_by(3)
         .chain([-36_000, -1, 36_000, 36_001])
@@ -26,13 +26,13 @@ fn every_hundredth_of_a_degree_a_turn_either_way_is_read_and_told_again() {
         let sign = if centideg < 0 { "-" } else { "" };
         let size: i32 = i32::abs(centideg);
         let angle = format!("{sign}{}.{:02}", size / 100, size % 100);
-        let place = size as usize % 4;
+        let index = size as usize % 4;
         let expected = if size > 36_000 {
-            Err(Misread::PoseRange(Servo::at(place)))
+            Err(Misread::PoseRange(Servo::at(index)))
         } else {
             Ok(centideg.rem_euclid(36_000))
         };
-        assert_eq!(angle_read(place, &angle), expected, "{angle}");
+        assert_eq!(angle_read(index, &angle), expected, "{angle}");
     }
 }
 
@@ -68,7 +68,7 @@ fn an_invalid_angle_is_refused() {
 }
 
 #[test]
-fn four_angles_go_to_the_servos_in_their_order_and_the_first_too_large_is_named() {
+fn angles_go_to_the_servos_in_order_and_the_first_too_large_is_named() {
     let Ok(Command::Order(Order::Pose(angles))) = read("pose 138.59   41.42\t318.60 221.44") else {
         panic!("a pose");
     };

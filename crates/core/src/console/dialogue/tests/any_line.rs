@@ -41,8 +41,8 @@ fn bytes() -> impl Strategy<Value = Vec<u8>> {
     prop::collection::vec(piece, 0..12).prop_map(|pieces| pieces.concat())
 }
 
-/// The number of final lines that must answer these bytes.
-fn owed(bytes: &[u8]) -> usize {
+/// The number of final lines with which the robot must answer these bytes.
+fn count_answers_due(bytes: &[u8]) -> usize {
     let mut line = Line::new();
     bytes
         .iter()
@@ -63,7 +63,7 @@ proptest! {
             printed.into_iter().filter(|line| is_final(line)).collect()
         };
         let once = finals(at_once.send(&bytes));
-        prop_assert_eq!(once.len(), owed(&bytes));
+        prop_assert_eq!(once.len(), count_answers_due(&bytes));
         let mut printed = Vec::new();
         for byte in &bytes {
             printed.extend(apart.send(&[*byte]));

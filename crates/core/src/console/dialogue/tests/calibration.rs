@@ -71,13 +71,13 @@ fn only_saved_settings_survive_power_off() {
 fn load_before_the_first_save_and_a_worn_memory_are_refused() {
     let mut dialogue = standing();
     dialogue.refuse("load", "9 nothing is saved that could be loaded");
-    dialogue.board.memory.worn = true;
+    dialogue.board.memory.is_worn = true;
     dialogue.refuse("save", "9 the memory does not keep what is written");
     dialogue.accept("stand");
 }
 
 #[test]
-fn a_calibration_takes_effect_at_once_within_the_slew_limit_and_without_moving_the_rest() {
+fn a_calibration_moves_only_its_servo_at_once_within_the_slew_limit() {
     for change in [
         "trim 1 20",
         "trim 1 -12.5",
@@ -125,7 +125,7 @@ fn a_calibration_takes_effect_at_once_within_the_slew_limit_and_without_moving_t
 }
 
 #[test]
-fn a_calibration_in_a_gait_halts_it_until_the_pulses_have_settled_and_it_goes_on() {
+fn a_calibration_during_a_gait_halts_it_until_the_pulses_have_settled() {
     let mut dialogue = standing();
     dialogue.say("sway");
     dialogue.run(120);
@@ -142,7 +142,7 @@ fn a_calibration_in_a_gait_halts_it_until_the_pulses_have_settled_and_it_goes_on
 }
 
 #[test]
-fn a_calibration_that_gaits_or_the_pose_cannot_bear_is_refused_and_changes_nothing() {
+fn a_calibration_too_narrow_for_gaits_or_pose_is_refused_and_changes_nothing() {
     let mut dialogue = standing();
     let before = cal(&mut dialogue);
     for line in [
@@ -190,9 +190,9 @@ fn a_factory_or_a_load_that_is_refused_changes_nothing() {
     other.refuse("load", "9 nothing is saved that could be loaded");
     assert_eq!(cal(&mut other), before);
     // Settings for other servos are not loaded, and the current ones stay.
-    let mut chip = standing();
-    chip.say("save");
-    other.board.memory = chip.board.memory.clone();
+    let mut dialogue = standing();
+    dialogue.say("save");
+    other.board.memory = dialogue.board.memory.clone();
     other.board.memory.bytes_mut()[44] ^= 1;
     other.refuse("load", "9 ");
     assert_eq!(cal(&mut other), before);
@@ -212,7 +212,7 @@ fn a_factory_or_a_load_that_is_refused_changes_nothing() {
 }
 
 #[test]
-fn settings_that_cut_a_gait_off_are_not_loaded_and_change_nothing() {
+fn settings_too_narrow_for_a_gait_are_not_loaded_and_change_nothing() {
     for servo in Servo::ALL {
         for (beyond, served) in [(1, true), (-1, false)] {
             let mut dialogue = standing();

@@ -4,7 +4,7 @@ use super::*;
 
 /// Frames within which three cycles of `sway` end, the move to it and the braking
 /// included.
-const LONG: u32 = 400;
+const LONG_FRAMES: u32 = 400;
 
 #[test]
 fn a_count_ends_with_one_line_and_the_robot_holds_its_last_pose() {
@@ -12,26 +12,26 @@ fn a_count_ends_with_one_line_and_the_robot_holds_its_last_pose() {
         let mut dialogue = standing();
         assert_eq!(dialogue.say(&format!("{name}  2")), format!("ok {name}  2"));
         assert_eq!(dialogue.status("gait"), name.replace(' ', "-"));
-        assert_eq!(dialogue.run(LONG), ["# done"]);
+        assert_eq!(dialogue.run(LONG_FRAMES), ["# done"]);
         assert_eq!(
             (dialogue.status("gait"), dialogue.status("fault")),
             ("stop".into(), "none".into())
         );
         let held = dialogue.frame();
-        assert!(dialogue.run(LONG).is_empty());
+        assert!(dialogue.run(LONG_FRAMES).is_empty());
         assert_eq!(dialogue.frame(), held);
     }
     let mut dialogue = standing();
     dialogue.say("sway");
-    assert!(dialogue.run(5 * LONG).is_empty(), "no count, no end");
+    assert!(dialogue.run(5 * LONG_FRAMES).is_empty(), "no count, no end");
 }
 
 #[test]
 fn a_wrong_count_is_refused_and_changes_nothing() {
     let mut dialogue = standing();
-    let sentence = "a gait takes a count, 1..999";
+    let message = "a gait takes a count, 1..999";
     for line in ["sway 0", "sway 1000", "sway 2x", "sway 1 1"] {
-        dialogue.refuse(line, &format!("2 {sentence}"));
+        dialogue.refuse(line, &format!("2 {message}"));
         assert_eq!(dialogue.status("gait"), "stand");
     }
     dialogue.say("rest");
@@ -40,7 +40,7 @@ fn a_wrong_count_is_refused_and_changes_nothing() {
 }
 
 #[test]
-fn whatever_stops_the_robot_ends_a_count_and_says_no_done() {
+fn whatever_stops_the_robot_ends_a_count_without_done() {
     let begun = || {
         let mut dialogue = standing();
         dialogue.say("sway 2");
@@ -50,21 +50,21 @@ fn whatever_stops_the_robot_ends_a_count_and_says_no_done() {
     for line in ["stop", "rest", "stand", NEUTRAL, "sway"] {
         let mut dialogue = begun();
         dialogue.say(line);
-        assert!(dialogue.run(LONG).is_empty(), "{line}");
+        assert!(dialogue.run(LONG_FRAMES).is_empty(), "{line}");
     }
     let mut silent = begun();
     silent.say("deadman 100");
-    let printed = silent.run(LONG);
+    let printed = silent.run(LONG_FRAMES);
     assert_eq!(printed.len(), 1, "{printed:?}");
     assert!(printed[0].starts_with("# fault: no line"), "{printed:?}");
     let mut weak = begun();
     supply(&mut weak, 4_200);
-    let printed = weak.run(LONG);
+    let printed = weak.run(LONG_FRAMES);
     assert!(!printed.contains(&"# done".to_string()), "{printed:?}");
     assert_eq!(weak.status("fault"), "supply");
     let mut unsafe_one = standing();
     unsafe_one.say("stray 9");
-    let printed = unsafe_one.run(5 * LONG);
+    let printed = unsafe_one.run(5 * LONG_FRAMES);
     assert_eq!(printed.len(), 1, "{printed:?}");
     assert!(printed[0].starts_with("# held"), "{printed:?}");
 }
@@ -96,7 +96,7 @@ fn a_reset_ends_a_count() {
         dialogue.say("sway 2");
         dialogue.run(60);
         dialogue.reset(cause);
-        let printed = dialogue.run(LONG);
+        let printed = dialogue.run(LONG_FRAMES);
         assert!(!printed.contains(&"# done".to_string()), "{printed:?}");
         assert!(["stand", "stop"].contains(&dialogue.status("gait").as_str()));
     }

@@ -8,14 +8,14 @@ fn boot_is_carried_out_three_seconds_after_power_on_unless_a_byte_comes() {
     for boot in ["sway left", "rest"] {
         dialogue.say(&format!("boot {boot}"));
         dialogue.accept("save");
-        let chip = dialogue.board.memory.clone();
-        let mut alone = Dialogue::with(*Sample::odd(), chip.clone(), Restart::default());
+        let eeprom = dialogue.board.memory.clone();
+        let mut alone = Dialogue::with(*Sample::odd(), eeprom.clone(), Restart::default());
         let printed = alone.run(149);
         assert_eq!(printed.len(), 1, "{printed:?}");
         assert_eq!(alone.motion().activity(), Activity::Gait(GaitId::STAND));
         assert_eq!(alone.run(1), [format!("# boot: {boot}")]);
         assert_eq!(alone.status("gait"), boot.replace(' ', "-"));
-        let mut watched = Dialogue::with(*Sample::odd(), chip, Restart::default());
+        let mut watched = Dialogue::with(*Sample::odd(), eeprom, Restart::default());
         watched.run(100);
         watched.board.send(b" ");
         watched.run(400);
@@ -46,7 +46,7 @@ fn a_gait_ends_when_the_link_is_lost_and_the_robot_reports_it() {
 }
 
 #[test]
-fn lines_that_are_no_commands_do_not_keep_a_gait_going() {
+fn lines_that_are_not_commands_do_not_keep_a_gait_going() {
     let lines: [&[u8]; 4] = [
         b"OK+CONN",
         b"walk 0",
@@ -68,7 +68,7 @@ fn lines_that_are_no_commands_do_not_keep_a_gait_going() {
 }
 
 #[test]
-fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses_and_nothing_restarts() {
+fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
     let mut dialogue = standing();
     dialogue.say("sway");
     dialogue.run(150);
@@ -115,7 +115,7 @@ fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses_and_nothin
 fn held(sweeps: [i16; 4]) -> Stance {
     let pose = Pose(sweeps.map(crate::numbers::units::Sweep));
     Stance {
-        resting: false,
+        is_resting: false,
         awake: crate::motion::AWAKE,
         pose,
         sent: pose.pulses(&Sample::odd().calibration()),
@@ -153,7 +153,7 @@ fn after_a_hang_the_robot_holds_its_pose_and_reports_the_hang() {
 }
 
 #[test]
-fn a_pose_that_is_not_safe_or_not_reached_is_not_taken_over_and_the_robot_rests() {
+fn an_unsafe_or_unreachable_pose_is_not_taken_over_and_the_robot_rests() {
     for sweeps in [[30_000, 0, 0, 0], [-6803, 7663, 0, 0]] {
         for cause in [Cause::Watchdog, Cause::External] {
             let restart = Restart {
@@ -177,13 +177,13 @@ fn a_pose_beyond_a_travel_that_was_saved_narrower_is_not_taken_over() {
     let mut dialogue = standing();
     assert!(dialogue.say("limit 1 115 160").starts_with("ok "));
     dialogue.accept("save");
-    let chip = dialogue.board.memory.clone();
+    let eeprom = dialogue.board.memory.clone();
     // 132.37 deg plus 30 is safe, but beyond 160.
     let beyond = held([5461, 0, 0, 0]);
     let mut within = Dialogue::with(*Sample::odd(), Eeprom::blank(), hung(1, beyond));
     within.run(10);
     assert_eq!(within.status("gait"), "stop");
-    let mut narrow = Dialogue::with(*Sample::odd(), chip, hung(1, beyond));
+    let mut narrow = Dialogue::with(*Sample::odd(), eeprom, hung(1, beyond));
     narrow.run(10);
     assert_eq!(narrow.status("gait"), "rest");
 }
@@ -207,14 +207,14 @@ fn settings_that_were_not_saved_are_undone_at_the_slew_limit_after_a_reset() {
         let mut moved = 0;
         for _ in 0..200 {
             let pulses = dialogue.frame();
-            for (place, (pulse, before)) in pulses.0.iter().zip(&mut last.0).enumerate() {
+            for (index, (pulse, before)) in pulses.0.iter().zip(&mut last.0).enumerate() {
                 if pulse.0 == 0 {
                     continue;
                 }
-                let most = calibration[place].slew(Sample::odd().slew().per_frame);
+                let most = calibration[index].slew(Sample::odd().slew().per_frame);
                 let way = pulse.0.abs_diff(before.0);
-                assert!(way <= most + 1, "{setting} A{}: {way} of {most}", place + 1);
-                moved += usize::from(place == servo && way > 0);
+                assert!(way <= most + 1, "{setting} A{}: {way} of {most}", index + 1);
+                moved += usize::from(index == servo && way > 0);
                 *before = *pulse;
             }
         }
@@ -283,20 +283,20 @@ fn the_pose_of_a_rest_that_a_reset_cut_off_reaches_the_memory_after_it() {
         dialogue.say("pose 140 50 311 224.5");
         dialogue.run(150);
         dialogue.board.memory.slowness = 4;
-        dialogue.board.memory.timed = true;
+        dialogue.board.memory.is_timed = true;
         dialogue.board.send(b"rest\r");
         dialogue.frame();
         dialogue.reset(cause);
         assert_eq!(dialogue.board.memory.bytes()[128], 0xff, "{cause:?}");
         dialogue.run(100);
-        let chip = dialogue.board.memory.clone();
-        let mut again = Dialogue::with(*Sample::odd(), chip, Restart::NONE);
+        let eeprom = dialogue.board.memory.clone();
+        let mut again = Dialogue::with(*Sample::odd(), eeprom, Restart::NONE);
         assert_eq!(again.status("pose"), "140.00,50.00,311.00,224.50");
     }
 }
 
 #[test]
-fn brown_outs_or_presses_in_a_row_end_in_a_rest_that_says_why_until_a_motion_is_ordered() {
+fn repeated_brown_outs_or_presses_end_in_a_rest_until_a_motion_is_ordered() {
     // A boot loader hides which of the two it was.
     for (boot_loader, cause) in [
         (false, Cause::BrownOut),
@@ -304,7 +304,7 @@ fn brown_outs_or_presses_in_a_row_end_in_a_rest_that_says_why_until_a_motion_is_
         (true, Cause::External),
     ] {
         let mut dialogue = standing();
-        dialogue.board.boot_loader = boot_loader;
+        dialogue.board.has_boot_loader = boot_loader;
         dialogue.lines();
         for resets in 1..=5 {
             dialogue.reset(cause);
@@ -332,9 +332,9 @@ fn brown_outs_or_presses_in_a_row_end_in_a_rest_that_says_why_until_a_motion_is_
 }
 
 #[test]
-fn opening_the_port_many_times_and_sending_a_line_does_not_count_as_a_weak_supply() {
+fn opening_the_port_and_sending_a_line_does_not_count_as_a_weak_supply() {
     let mut dialogue = standing();
-    dialogue.board.boot_loader = true;
+    dialogue.board.has_boot_loader = true;
     for _ in 0..20 {
         dialogue.reset(Cause::External);
         dialogue.run(30);
@@ -344,9 +344,9 @@ fn opening_the_port_many_times_and_sending_a_line_does_not_count_as_a_weak_suppl
 }
 
 #[test]
-fn lines_by_radio_do_not_excuse_a_supply_that_breaks_down_while_the_servos_wake() {
+fn lines_by_radio_do_not_excuse_a_supply_that_fails_while_servos_wake() {
     let mut dialogue = standing();
-    dialogue.board.boot_loader = true;
+    dialogue.board.has_boot_loader = true;
     for resets in 1..=3 {
         dialogue.reset(Cause::External);
         dialogue.run(5);

@@ -11,7 +11,7 @@ const WAIT: u8 = Step::WAIT;
 const UNTIL: u8 = Step::UNTIL;
 const ENDLESS: u16 = Step::ENDLESS;
 
-/// A press, then a way that ends at a wall or after a while, then a turn.
+/// A press, then a walk that ends at a wall or after a while, then a turn.
 const PATROL: [(u8, &str, u16); 6] = [
     (UNTIL, "button", 0),
     (WAIT, "stand", ENDLESS),
@@ -24,8 +24,8 @@ const PATROL: [(u8, &str, u16); 6] = [
 /// Frames in which a contact counts as closed.
 const DEBOUNCED: u32 = 3;
 
-/// Frames of any step here that has an end, and more.
-const LONG: u32 = 600;
+/// More frames than any step here that has an end.
+const LONG_FRAMES: u32 = 600;
 
 fn begun(rounds: u16, steps: &[(u8, &str, u16)]) -> Dialogue {
     let mut dialogue = awake(Sample::odd().with_routine("patrol", rounds, steps));
@@ -55,23 +55,23 @@ fn gait(dialogue: &Dialogue) -> String {
     }
 }
 
-/// Frames until the robot does something else, and what that is; at most [`LONG`].
+/// Frames until the robot's activity changes, at most [`LONG_FRAMES`], and the new activity.
 fn change(dialogue: &mut Dialogue) -> (u32, String) {
     let before = gait(dialogue);
-    for frames in 0..LONG {
+    for frames in 0..LONG_FRAMES {
         if gait(dialogue) != before {
             return (frames, gait(dialogue));
         }
         dialogue.run(1);
     }
-    (LONG, before)
+    (LONG_FRAMES, before)
 }
 
 #[test]
-fn a_robot_waits_for_its_button_walks_to_the_wall_and_turns_away_round_after_round() {
+fn a_robot_waits_for_its_button_walks_to_the_wall_and_turns_every_round() {
     let mut dialogue = begun(2, &PATROL);
     for _ in 0..2 {
-        assert_eq!(dialogue.run(LONG), ["# waiting for button"]);
+        assert_eq!(dialogue.run(LONG_FRAMES), ["# waiting for button"]);
         assert_eq!(
             (gait(&dialogue), dialogue.status("gait")),
             ("Stop".into(), "patrol".into())
@@ -81,20 +81,20 @@ fn a_robot_waits_for_its_button_walks_to_the_wall_and_turns_away_round_after_rou
             ["# waiting for nose"]
         );
         assert_eq!(gait(&dialogue), "sway");
-        assert!(dialogue.run(3 * LONG).is_empty(), "no wall, no end");
+        assert!(dialogue.run(3 * LONG_FRAMES).is_empty(), "no wall, no end");
         assert_eq!(gait(&dialogue), "sway");
         assert!(press(&mut dialogue, NOSE, DEBOUNCED).is_empty());
         assert_eq!(gait(&dialogue), "back");
         assert_eq!(change(&mut dialogue).1, "sway left");
     }
-    assert_eq!(dialogue.run(LONG), ["# done"]);
+    assert_eq!(dialogue.run(LONG_FRAMES), ["# done"]);
     assert_eq!(dialogue.status("gait"), "stop");
 }
 
 #[test]
 fn a_bouncing_contact_counts_once_it_has_held_for_three_frames() {
     let mut dialogue = begun(1, &PATROL);
-    dialogue.run(LONG);
+    dialogue.run(LONG_FRAMES);
     for _ in 0..20 {
         press(&mut dialogue, BUTTON, DEBOUNCED - 1);
         dialogue.run(1);
@@ -106,15 +106,15 @@ fn a_bouncing_contact_counts_once_it_has_held_for_three_frames() {
 }
 
 #[test]
-fn a_button_that_is_stuck_never_starts_the_robot_and_has_to_be_let_go_of_first() {
+fn a_stuck_button_never_starts_the_robot_and_has_to_be_released_first() {
     let mut dialogue = awake(Sample::odd().with_routine("patrol", 1, &PATROL));
     set(&mut dialogue, BUTTON, true);
     dialogue.accept("patrol");
-    assert_eq!(dialogue.run(5 * LONG), ["# waiting for button"]);
+    assert_eq!(dialogue.run(5 * LONG_FRAMES), ["# waiting for button"]);
     assert_eq!(gait(&dialogue), "Stop");
     set(&mut dialogue, BUTTON, false);
     dialogue.run(DEBOUNCED - 1);
-    press(&mut dialogue, BUTTON, LONG);
+    press(&mut dialogue, BUTTON, LONG_FRAMES);
     assert_eq!(gait(&dialogue), "Stop", "too short to have been open");
     dialogue.run(DEBOUNCED);
     press(&mut dialogue, BUTTON, DEBOUNCED);
@@ -124,7 +124,7 @@ fn a_button_that_is_stuck_never_starts_the_robot_and_has_to_be_let_go_of_first()
 #[test]
 fn a_wall_that_is_there_already_ends_the_way_at_once() {
     let mut dialogue = begun(1, &PATROL);
-    dialogue.run(LONG);
+    dialogue.run(LONG_FRAMES);
     set(&mut dialogue, NOSE, true);
     press(&mut dialogue, BUTTON, DEBOUNCED);
     assert_eq!(change(&mut dialogue), (DEBOUNCED, "back".to_string()));
@@ -178,7 +178,11 @@ fn a_press_during_a_step_that_does_not_wait_for_it_is_not_remembered() {
         let mut dialogue = begun(1, &steps);
         dialogue.run(20);
         assert!(press(&mut dialogue, BUTTON, 50).is_empty());
-        assert_eq!(dialogue.run(LONG), ["# waiting for button"], "{step:?}");
+        assert_eq!(
+            dialogue.run(LONG_FRAMES),
+            ["# waiting for button"],
+            "{step:?}"
+        );
         assert!(["Stop", "Rest"].contains(&gait(&dialogue).as_str()));
         press(&mut dialogue, BUTTON, DEBOUNCED);
         assert_eq!(gait(&dialogue), "back");
@@ -186,7 +190,7 @@ fn a_press_during_a_step_that_does_not_wait_for_it_is_not_remembered() {
 }
 
 #[test]
-fn a_wait_behind_a_rest_gives_no_pulse_and_the_press_wakes_the_servos() {
+fn a_wait_after_a_rest_sends_no_pulse_and_the_press_wakes_the_servos() {
     let steps = [
         (REST, "stand", 10),
         (UNTIL, "button", 0),
@@ -195,12 +199,12 @@ fn a_wait_behind_a_rest_gives_no_pulse_and_the_press_wakes_the_servos() {
     ];
     let mut dialogue = begun(1, &steps);
     dialogue.run(20);
-    for _ in 0..LONG {
+    for _ in 0..LONG_FRAMES {
         assert_eq!(dialogue.frame(), Pulses::default());
     }
     press(&mut dialogue, BUTTON, DEBOUNCED);
     assert_eq!(gait(&dialogue), "back");
-    assert_eq!(dialogue.run(LONG), ["# done"]);
+    assert_eq!(dialogue.run(LONG_FRAMES), ["# done"]);
 }
 
 #[test]
@@ -300,7 +304,7 @@ fn boot_waits_for_the_button_as_long_as_it_takes_and_deadman_does_not_end_that()
     }
     let robot = *Sample::odd().with_routine("patrol", 0, &PATROL);
     let mut alone = Dialogue::with(robot, dialogue.board.memory.clone(), Restart::default());
-    let said = alone.run(10 * LONG);
+    let said = alone.run(10 * LONG_FRAMES);
     assert_eq!(
         said[said.len() - 2..],
         ["# boot: patrol", "# waiting for button"]
@@ -308,7 +312,7 @@ fn boot_waits_for_the_button_as_long_as_it_takes_and_deadman_does_not_end_that()
     let said = press(&mut alone, BUTTON, DEBOUNCED);
     assert_eq!(said, ["# waiting for nose"]);
     assert_eq!(gait(&alone), "sway");
-    assert!(alone.run(10 * LONG).is_empty());
+    assert!(alone.run(10 * LONG_FRAMES).is_empty());
 }
 
 #[test]
@@ -327,7 +331,7 @@ fn only_the_pin_that_is_waited_for_gets_a_pull_up() {
 }
 
 #[test]
-fn a_pin_that_is_a_servos_the_rails_or_none_is_never_touched_whatever_the_section_says() {
+fn a_pin_of_a_servo_of_the_rail_or_of_none_is_never_touched() {
     let pins = Sample::odd().content.pins;
     for pin in 0..=127 {
         let robot = Sample::odd().with_routine("patrol", 1, &PATROL);
@@ -359,13 +363,13 @@ fn a_routine_whose_last_gait_has_a_time_or_a_contact_brakes_before_it_is_done() 
         assert_eq!(dialogue.run(20), ["# done"]);
         assert_eq!(dialogue.status("gait"), "stop");
         let held = widths(&mut dialogue);
-        assert!(dialogue.run(LONG).is_empty());
+        assert!(dialogue.run(LONG_FRAMES).is_empty());
         assert_eq!(widths(&mut dialogue), held);
     }
 }
 
 #[test]
-fn a_routine_may_wait_once_and_repeat_the_steps_behind_that() {
+fn a_routine_may_wait_once_and_repeat_the_steps_after_that() {
     let robot = Sample::odd().with_routine("patrol", 3, &PATROL);
     let robot = robot.with(|content| {
         let routine = content.gaits.last_mut().expect("the routine");
@@ -373,7 +377,7 @@ fn a_routine_may_wait_once_and_repeat_the_steps_behind_that() {
     });
     let mut dialogue = awake(robot);
     dialogue.accept("patrol");
-    assert_eq!(dialogue.run(LONG), ["# waiting for button"]);
+    assert_eq!(dialogue.run(LONG_FRAMES), ["# waiting for button"]);
     press(&mut dialogue, BUTTON, DEBOUNCED);
     for _ in 0..3 {
         assert_eq!(gait(&dialogue), "sway");

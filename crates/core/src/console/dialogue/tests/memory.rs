@@ -8,8 +8,8 @@ fn nothing_is_written_before_the_supply_has_been_measured_or_while_it_is_low() {
     dialogue.say("rest");
     dialogue.run(2);
     assert_eq!(dialogue.board.memory.bytes()[128], 0xa5);
-    let chip = dialogue.board.memory.clone();
-    let mut again = Dialogue::with(*Sample::odd(), chip, Restart::NONE);
+    let eeprom = dialogue.board.memory.clone();
+    let mut again = Dialogue::with(*Sample::odd(), eeprom, Restart::NONE);
     let writes = again.board.memory.log.len();
     for _ in 0..60 {
         again.lines();
@@ -58,8 +58,8 @@ fn a_save_during_a_low_supply_is_refused_and_the_old_settings_stay() {
         printed.contains(&"err 8 the supply is too low".to_string()),
         "{printed:?}"
     );
-    let chip = dialogue.board.memory.clone();
-    let again = Dialogue::with(*Sample::odd(), chip, Restart::NONE);
+    let eeprom = dialogue.board.memory.clone();
+    let again = Dialogue::with(*Sample::odd(), eeprom, Restart::NONE);
     assert_eq!(again.main.control().settings().deadman(), 1000);
 }
 
@@ -76,7 +76,7 @@ fn repeated_rests_write_nothing_and_a_worn_cell_is_reported() {
     assert_eq!(dialogue.board.memory.log.len(), writes);
     dialogue.say("stand");
     dialogue.run(50);
-    dialogue.board.memory.worn = true;
+    dialogue.board.memory.is_worn = true;
     dialogue.board.send(b"rest\r");
     let printed = dialogue.run(3);
     let told = "# memory: does not keep the pose of this rest";
@@ -89,8 +89,8 @@ fn a_robot_that_rested_wakes_where_it_rested_and_then_stands_without_a_leap() {
     dialogue.say("pose 140 50 311 224.5");
     dialogue.run(150);
     dialogue.say("rest");
-    let chip = dialogue.board.memory.clone();
-    let mut again = Dialogue::with(*Sample::odd(), chip.clone(), Restart::default());
+    let eeprom = dialogue.board.memory.clone();
+    let mut again = Dialogue::with(*Sample::odd(), eeprom.clone(), Restart::default());
     again.lines();
     assert_eq!(again.status("pose"), "140.00,50.00,311.00,224.50");
     let there = again.motion().pose().pulses(again.motion().calibration());

@@ -7,7 +7,7 @@ const CYCLES: u8 = Step::CYCLES;
 const FRAMES: u8 = Step::FRAMES;
 const REST: u8 = Step::REST;
 
-/// A step of every kind; `sway` twice, one behind the other.
+/// Steps for some cycles and for some time; two of `sway` in a row.
 const STEPS: [(u8, &str, u16); 5] = [
     (FRAMES, "stand", 30),
     (CYCLES, "sway", 2),
@@ -17,14 +17,13 @@ const STEPS: [(u8, &str, u16); 5] = [
 ];
 
 /// More frames than a round takes.
-const LONG: u32 = 1_500;
+const LONG_FRAMES: u32 = 1_500;
 
 fn robot(rounds: u16) -> Sample {
     Sample::odd().with_routine("patrol", rounds, &STEPS)
 }
 
-/// The gaits of a robot in these frames, one after another, and the lines that it
-/// prints.
+/// The gaits of a robot in these frames, one after another, and the lines printed.
 fn course(dialogue: &mut Dialogue, frames: u32) -> (Vec<String>, Vec<String>) {
     let (mut gaits, mut printed): (Vec<String>, Vec<String>) = Default::default();
     for _ in 0..frames {
@@ -41,7 +40,7 @@ fn course(dialogue: &mut Dialogue, frames: u32) -> (Vec<String>, Vec<String>) {
 }
 
 /// Robots at many moments of the routine.
-fn everywhere(robot: fn() -> Sample) -> Vec<Dialogue> {
+fn at_every_step(robot: fn() -> Sample) -> Vec<Dialogue> {
     let mut dialogue = awake(robot());
     dialogue.say("patrol");
     let mut all = Vec::new();
@@ -61,7 +60,7 @@ fn a_routine_goes_through_its_steps_and_says_once_that_it_is_done() {
         let mut dialogue = awake(robot(rounds));
         assert_eq!(dialogue.say("Patrol"), "ok patrol");
         assert_eq!(dialogue.status("gait"), "patrol");
-        let (gaits, printed) = course(&mut dialogue, LONG * u32::from(rounds));
+        let (gaits, printed) = course(&mut dialogue, LONG_FRAMES * u32::from(rounds));
         assert_eq!(printed, ["# done"]);
         let round = ["stand", "sway", "back", "sway left"];
         let (last, all) = gaits.split_last().expect("a course");
@@ -76,12 +75,12 @@ fn a_routine_goes_through_its_steps_and_says_once_that_it_is_done() {
 fn a_number_says_how_many_rounds_and_a_routine_without_an_end_has_none() {
     let mut counted = awake(robot(0));
     counted.say("patrol 2");
-    let (gaits, printed) = course(&mut counted, 3 * LONG);
+    let (gaits, printed) = course(&mut counted, 3 * LONG_FRAMES);
     assert_eq!(printed, ["# done"]);
     assert_eq!(gaits.iter().filter(|gait| *gait == "back").count(), 2);
     let mut endless = awake(robot(0));
     endless.say("patrol");
-    let (gaits, printed) = course(&mut endless, 20 * LONG);
+    let (gaits, printed) = course(&mut endless, 20 * LONG_FRAMES);
     assert!(printed.is_empty(), "{printed:?}");
     assert!(gaits.iter().filter(|gait| *gait == "back").count() > 20);
 }
@@ -107,8 +106,8 @@ fn help_boot_and_cal_know_a_routine_as_they_know_a_gait() {
             .contains(&"# boot patrol".to_string())
     );
     dialogue.accept("save");
-    let chip = dialogue.board.memory.clone();
-    let mut alone = Dialogue::with(*robot(1), chip, Restart::default());
+    let eeprom = dialogue.board.memory.clone();
+    let mut alone = Dialogue::with(*robot(1), eeprom, Restart::default());
     let printed = alone.run(150);
     assert_eq!(printed.last().map(String::as_str), Some("# boot: patrol"));
     assert_eq!(alone.status("gait"), "patrol");
@@ -118,7 +117,7 @@ fn help_boot_and_cal_know_a_routine_as_they_know_a_gait() {
 
 #[test]
 fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
-    for begun in everywhere(|| robot(0)) {
+    for begun in at_every_step(|| robot(0)) {
         for line in ["stop", "rest", "stand", "sway", "back 1", NEUTRAL] {
             let mut dialogue = begun.clone();
             dialogue.accept(line);
@@ -171,7 +170,7 @@ fn a_low_supply_slows_a_routine_and_does_not_end_it() {
     supply(&mut dialogue, 4_400);
     dialogue.run(40);
     dialogue.say("patrol");
-    assert_eq!(course(&mut dialogue, 2 * LONG).1, ["# done"]);
+    assert_eq!(course(&mut dialogue, 2 * LONG_FRAMES).1, ["# done"]);
 }
 
 #[test]
@@ -179,7 +178,7 @@ fn the_guard_ends_a_routine_as_it_ends_a_gait() {
     let stray = [(CYCLES, "stray", 3), (CYCLES, "sway", 1)];
     let mut dialogue = awake(Sample::odd().with_routine("patrol", 0, &stray));
     dialogue.say("patrol");
-    let (gaits, printed) = course(&mut dialogue, LONG);
+    let (gaits, printed) = course(&mut dialogue, LONG_FRAMES);
     assert_eq!(gaits, ["stray", "Stop"]);
     assert_eq!(printed.len(), 1);
     assert!(printed[0].starts_with("# held"), "{printed:?}");
@@ -188,7 +187,7 @@ fn the_guard_ends_a_routine_as_it_ends_a_gait() {
 
 #[test]
 fn silence_ends_a_routine_that_a_talker_began_and_not_one_that_boot_began() {
-    for begun in everywhere(|| robot(0)) {
+    for begun in at_every_step(|| robot(0)) {
         let mut dialogue = begun;
         dialogue.say("deadman 200");
         let printed = dialogue.run(100);
@@ -202,28 +201,28 @@ fn silence_ends_a_routine_that_a_talker_began_and_not_one_that_boot_began() {
     dialogue.say("boot patrol");
     dialogue.say("deadman 200");
     dialogue.accept("save");
-    let chip = dialogue.board.memory.clone();
+    let eeprom = dialogue.board.memory.clone();
     let alone = || {
-        let mut alone = Dialogue::with(*robot(0), chip.clone(), Restart::default());
+        let mut alone = Dialogue::with(*robot(0), eeprom.clone(), Restart::default());
         alone.run(150);
         alone
     };
     let mut nobody = alone();
-    assert!(nobody.run(5 * LONG).is_empty(), "it goes on");
+    assert!(nobody.run(5 * LONG_FRAMES).is_empty(), "it goes on");
     // After a first line the next ones are expected within `deadman`.
     nobody.say("speed 90");
     assert_eq!(nobody.run(100).len(), 1);
     assert_eq!(nobody.status("fault"), "link");
-    // A line that is no command is nobody, and so is a byte.
+    // A line that is not a command counts as nobody, and so does a byte.
     let mut noise = alone();
     noise.board.send(b"x");
-    assert!(noise.run(LONG).is_empty());
+    assert!(noise.run(LONG_FRAMES).is_empty());
     noise.board.send(b"x\r");
     assert_eq!(noise.run(100).len(), 1, "the refusal");
 }
 
 #[test]
-fn a_rest_within_a_routine_ends_the_pulses_for_its_time_and_the_servos_wake_one_by_one() {
+fn a_rest_in_a_routine_ends_the_pulses_and_the_servos_wake_one_by_one() {
     let steps = [
         (CYCLES, "sway", 1),
         (REST, "stand", 50),
@@ -233,7 +232,7 @@ fn a_rest_within_a_routine_ends_the_pulses_for_its_time_and_the_servos_wake_one_
     dialogue.say("patrol");
     let (mut dark, mut awake) = (0, Vec::new());
     let mut printed = Vec::new();
-    for _ in 0..LONG {
+    for _ in 0..LONG_FRAMES {
         printed.extend(dialogue.run(1));
         let pulses = dialogue.board.submitted().0;
         let count = pulses.iter().filter(|width| width.0 > 0).count();
@@ -249,7 +248,7 @@ fn a_rest_within_a_routine_ends_the_pulses_for_its_time_and_the_servos_wake_one_
 }
 
 #[test]
-fn a_routine_can_be_stopped_while_it_rests_and_its_last_rest_is_kept_in_the_memory() {
+fn a_routine_can_be_stopped_while_it_rests_and_its_last_rest_is_saved() {
     let steps = [(CYCLES, "sway", 1), (REST, "stand", 50)];
     let resting = || {
         let mut dialogue = awake(Sample::odd().with_routine("patrol", 2, &steps));
@@ -264,11 +263,11 @@ fn a_routine_can_be_stopped_while_it_rests_and_its_last_rest_is_kept_in_the_memo
     for line in ["stop", "rest"] {
         let mut dialogue = resting();
         dialogue.accept(line);
-        assert!(dialogue.run(LONG).is_empty());
+        assert!(dialogue.run(LONG_FRAMES).is_empty());
         assert!(dialogue.motion().is_resting());
     }
     let mut dialogue = resting();
-    assert_eq!(dialogue.run(LONG), ["# done"]);
+    assert_eq!(dialogue.run(LONG_FRAMES), ["# done"]);
     assert!(dialogue.motion().is_resting());
     let pose = *dialogue.motion().pose();
     dialogue.lose_power(None);

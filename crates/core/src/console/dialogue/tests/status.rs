@@ -64,9 +64,9 @@ fn status_names_what_the_robot_does() {
 }
 
 #[test]
-fn the_longest_status_that_there_can_be_fits_a_line() {
+fn the_longest_possible_status_fits_a_line() {
     let name = "longest name of a gait that any robot may have..";
-    assert_eq!(name.len(), crate::numbers::gaits::LONGEST_NAME);
+    assert_eq!(name.len(), crate::numbers::gaits::MAX_NAME_BYTES);
     let robot = Sample::odd().with_gait(name);
     let mut dialogue = awake(robot);
     dialogue.board.late = u16::MAX;
@@ -116,7 +116,7 @@ fn watch_reports_the_pose_of_every_nth_frame_until_it_is_ended() {
 }
 
 #[test]
-fn watch_goes_on_while_the_robot_rests_and_a_new_one_counts_from_its_own_beginning() {
+fn watch_goes_on_at_rest_and_a_new_one_counts_from_its_own_beginning() {
     let mut dialogue = standing();
     dialogue.say("watch 5");
     dialogue.say("rest");

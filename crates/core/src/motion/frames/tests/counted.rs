@@ -27,13 +27,13 @@ fn cycles(motion: &mut Motion) -> (f64, u32) {
     }
 }
 
-/// The share of a cycle that a gait goes in a frame.
+/// The share of a cycle that a gait covers in a frame.
 fn in_a_frame(motion: &Motion, name: &str) -> f64 {
     f64::from(motion.robot.gait(motion.robot.id(name)).increment) / f64::from(CYCLE)
 }
 
 #[test]
-fn every_gait_goes_as_many_cycles_as_it_was_told_to_two_frames_at_any_pace() {
+fn every_gait_goes_its_count_of_cycles_within_two_frames_at_any_pace() {
     for name in GAITS.into_iter().filter(|name| *name != "stray") {
         for (speed, slow) in [(100, false), (100, true), (37, false), (10, false)] {
             for count in [1, 2, 3, 17] {
@@ -67,10 +67,10 @@ fn every_gait_goes_as_many_cycles_as_it_was_told_to_two_frames_at_any_pace() {
 fn a_gait_of_the_shortest_period_ends_too() {
     for (forward, count) in [(true, 1), (false, 1), (true, 5), (false, 5)] {
         let robot = Sample::odd();
-        let place = robot.id("sway").index();
+        let index = robot.id("sway").index();
         let increment = CYCLE as i32 / 10;
         let robot = robot.with(|content| {
-            content.gaits[place].increment = if forward { increment } else { -increment };
+            content.gaits[index].increment = if forward { increment } else { -increment };
         });
         let mut motion = Motion::awake(robot);
         motion.start_for("sway", count);
@@ -82,7 +82,7 @@ fn a_gait_of_the_shortest_period_ends_too() {
 }
 
 #[test]
-fn it_ends_in_the_pose_of_a_gait_that_brakes_and_no_frame_of_it_differs_from_that() {
+fn a_count_ends_like_a_gait_that_brakes_frame_by_frame() {
     let mut counted = Motion::standing();
     counted.start_for("sway", 2);
     let mut endless = Motion::standing();

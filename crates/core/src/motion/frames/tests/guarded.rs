@@ -16,7 +16,7 @@ fn guarded() -> Motion {
 }
 
 #[test]
-fn an_unsafe_frame_is_never_sent_and_the_last_safe_pose_is_held_with_the_reason() {
+fn an_unsafe_frame_is_never_sent_and_the_last_safe_pose_is_held() {
     let mut motion = Motion::standing();
     motion.start("stray");
     let mut last = *motion.pose();

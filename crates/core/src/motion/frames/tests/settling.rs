@@ -13,27 +13,27 @@ fn every_servo_settles_as_fast_as_its_own_gain_allows_and_no_faster() {
         // Cycles for a frame's turn, rounded down.
         (per_frame * f64::from(servo.gain).abs() / 16_384.0).floor() as u16
     });
-    for (place, step) in steps.iter().enumerate() {
+    for (index, step) in steps.iter().enumerate() {
         assert!(
-            steps[..place].iter().all(|other| other != step),
+            steps[..index].iter().all(|other| other != step),
             "{steps:?}"
         );
     }
-    for place in 0..4 {
-        let mut servo = motion.calibration[place];
+    for index in 0..4 {
+        let mut servo = motion.calibration[index];
         servo.neutral = Width(servo.neutral.0 + 1000);
-        motion.calibrate(Servo::at(place), servo);
+        motion.calibrate(Servo::at(index), servo);
     }
     motion.settle();
     for frame in 1..=1000u16 {
         motion.tick();
-        for (place, sent) in motion.sent().0.iter().enumerate() {
-            let gone = sent.0 - before[place].0;
+        for (index, sent) in motion.sent().0.iter().enumerate() {
+            let gone = sent.0 - before[index].0;
             assert_eq!(
                 gone,
-                1000.min(frame.saturating_mul(steps[place])),
+                1000.min(frame.saturating_mul(steps[index])),
                 "A{}",
-                place + 1
+                index + 1
             );
         }
     }

@@ -26,7 +26,7 @@ fn stop_and_rest_change_nothing_while_it_rests() {
 }
 
 #[test]
-fn a_gait_or_a_pose_wakes_the_servos_where_they_were_left_before_anything_moves() {
+fn a_gait_or_a_pose_wakes_the_servos_where_they_were_left_first() {
     for pose in [false, true] {
         let mut motion = resting();
         let left = *motion.pose();
@@ -60,12 +60,12 @@ fn servos_wake_one_by_one_a_tenth_of_a_second_apart_and_stay_awake() {
         let held = motion.held();
         let mut since = [0; 4];
         for frame in 1..=WAKING {
-            for (place, width) in motion.tick().0.into_iter().enumerate() {
-                if width != Width(0) && since[place] == 0 {
-                    since[place] = frame;
+            for (index, width) in motion.tick().0.into_iter().enumerate() {
+                if width != Width(0) && since[index] == 0 {
+                    since[index] = frame;
                 }
-                let expected = if since[place] > 0 {
-                    held.0[place]
+                let expected = if since[index] > 0 {
+                    held.0[index]
                 } else {
                     Width(0)
                 };

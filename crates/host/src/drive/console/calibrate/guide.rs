@@ -16,16 +16,16 @@ pub use view::View;
 
 /// Angles by which a servo is moved to prove its sign, degrees; the first that the robot
 /// accepts is used.
-const PROOFS: [f64; 4] = [10.0, 5.0, -10.0, -5.0];
+const SIGN_ANGLES: [f64; 4] = [10.0, 5.0, -10.0, -5.0];
 /// Angles by which a servo is moved to measure its scale, degrees; the first that the robot
 /// accepts is used. A larger angle measures more exactly.
-const FAR: [f64; 6] = [30.0, -30.0, 20.0, -20.0, 10.0, -10.0];
-/// Longest time for a motion to end.
-const MOTION: Duration = Duration::from_secs(5);
+const SCALE_ANGLES: [f64; 6] = [30.0, -30.0, 20.0, -20.0, 10.0, -10.0];
+/// The longest time that a motion may take to end.
+const MOTION_TIMEOUT: Duration = Duration::from_secs(5);
 /// Interval between two questions for the robot's status.
 const LOOK: Duration = Duration::from_millis(25);
 
-/// A key that means something here.
+/// A key with a meaning in the guide.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Key {
     /// Go to the next step.
@@ -36,9 +36,9 @@ pub enum Key {
     Leave,
     /// Perform the action of the step.
     Act,
-    /// The answer is yes.
+    /// Answer yes.
     Yes,
-    /// The answer is no.
+    /// Answer no.
     No,
     /// Turn the servo by this many degrees, counter-clockwise if positive.
     Turn(f64),
@@ -58,8 +58,8 @@ pub struct Guide<'a, P> {
     /// The angle by which the servo of this step was moved, if it was.
     moved: Option<f64>,
     /// True if scales and limits are skipped.
-    left_out: bool,
-    walks: bool,
+    skips_scales: bool,
+    is_walking: bool,
     message: String,
 }
 
@@ -67,7 +67,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     /// Reads the robot's calibration, and lets it stand.
     ///
     /// # Errors
-    /// No answer, or the robot cannot stand.
+    /// Fails if there is no answer, or the robot cannot stand.
     pub fn new(link: &'a mut Link<P>) -> Result<Self, LinkError> {
         let before = Calibration::ask(link)?;
         link.command("stand")?;
@@ -79,8 +79,8 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             neutral: pose,
             at: 0,
             moved: None,
-            left_out: false,
-            walks: false,
+            skips_scales: false,
+            is_walking: false,
             message: String::new(),
         })
     }
@@ -97,20 +97,22 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     /// Handles a key; true when the user has finished or cancelled.
     ///
     /// # Errors
-    /// The connection breaks. A refusal is not an error: it is shown.
+    /// Fails if the connection breaks. A refusal is not an error: it is shown.
     pub fn key(&mut self, key: Key) -> Result<bool, LinkError> {
         self.message.clear();
         let done = match (key, self.step()) {
             (Key::Leave, Step::Saved) | (Key::Next, Step::Saved) => Ok(true),
             (Key::Leave, _) => self.leave().map(|()| true),
-            (Key::Back, Step::Walk) if self.left_out => self.go_to_step(Step::More).map(|()| false),
+            (Key::Back, Step::Walk) if self.skips_scales => {
+                self.go_to_step(Step::More).map(|()| false)
+            }
             (Key::Back, _) => self.enter_step(self.at.saturating_sub(1)).map(|()| false),
             (Key::Next, Step::More) => {
-                self.left_out = true;
+                self.skips_scales = true;
                 self.go_to_step(Step::Walk).map(|()| false)
             }
             (Key::Yes, Step::More) => {
-                self.left_out = false;
+                self.skips_scales = false;
                 self.enter_step(self.at + 1).map(|()| false)
             }
             (Key::Next, Step::Sign(_)) => {
@@ -119,13 +121,13 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             }
             (Key::Next, Step::Save) => self.save().map(|()| false),
             (Key::Next, _) => self.enter_step(self.at + 1).map(|()| false),
-            (Key::Act, Step::Sign(servo)) => self.move_one(servo, &PROOFS).map(|()| false),
-            (Key::Act, Step::Scale(servo)) => self.move_one(servo, &FAR).map(|()| false),
+            (Key::Act, Step::Sign(servo)) => self.move_one(servo, &SIGN_ANGLES).map(|()| false),
+            (Key::Act, Step::Scale(servo)) => self.move_one(servo, &SCALE_ANGLES).map(|()| false),
             (Key::Turn(degrees), Step::Scale(servo)) => self.scale(servo, degrees).map(|()| false),
             (Key::Turn(degrees), Step::Limit(servo)) => self.limit(servo, degrees).map(|()| false),
             (Key::Yes | Key::No, Step::Sign(servo)) => self.prove(servo, key).map(|()| false),
             (Key::Turn(degrees), Step::Trim(servo)) => self.trim(servo, degrees).map(|()| false),
-            (Key::Act, Step::Walk) => self.walk(!self.walks).map(|()| false),
+            (Key::Act, Step::Walk) => self.set_walking(!self.is_walking).map(|()| false),
             _ => Ok(false),
         };
         match done {
@@ -140,7 +142,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     /// Reads the robot's messages while no key is pressed.
     ///
     /// # Errors
-    /// The connection breaks.
+    /// Fails if the connection breaks.
     pub fn idle(&mut self) -> Result<(), LinkError> {
         while let Some(line) = self.link.line(Duration::ZERO)? {
             if line.starts_with(BANNER) {
@@ -149,10 +151,10 @@ impl<'a, P: Read + Write> Guide<'a, P> {
                 self.message = format!("The robot says: {note}.");
             }
         }
-        if self.walks {
+        if self.is_walking {
             // Also keeps `deadman` from ending the gait.
             let reply = self.link.ask("status")?;
-            self.walks = Status::parse(&reply.answer).is_some_and(|status| status.walks());
+            self.is_walking = Status::parse(&reply.answer).is_some_and(|status| status.is_moving());
         }
         Ok(())
     }
@@ -177,8 +179,8 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     }
 
     fn go_to_step(&mut self, step: Step) -> Result<(), LinkError> {
-        let place = STEPS.iter().position(|at| *at == step);
-        self.enter_step(place.unwrap_or(self.at))
+        let index = STEPS.iter().position(|at| *at == step);
+        self.enter_step(index.unwrap_or(self.at))
     }
 
     fn enter_step(&mut self, to: usize) -> Result<(), LinkError> {
@@ -197,7 +199,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
 
     fn stand(&mut self) -> Result<(), LinkError> {
         self.link.command("stand")?;
-        self.walks = false;
+        self.is_walking = false;
         self.moved = None;
         settle(self.link)?;
         Ok(())
@@ -307,13 +309,13 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         Ok(())
     }
 
-    fn walk(&mut self, begin: bool) -> Result<(), LinkError> {
-        if !begin {
+    fn set_walking(&mut self, is_walking: bool) -> Result<(), LinkError> {
+        if !is_walking {
             return self.stand();
         }
         let gait = self.first_gait()?;
         self.link.command(&gait)?;
-        self.walks = true;
+        self.is_walking = true;
         self.message = format!("The robot does `{gait}`.");
         Ok(())
     }
@@ -339,7 +341,7 @@ fn hundredths(value: f64) -> f64 {
 
 /// Waits until the robot stands still, and returns its pose.
 fn settle<P: Read + Write>(link: &mut Link<P>) -> Result<[f64; 4], LinkError> {
-    let end = Instant::now() + MOTION;
+    let end = Instant::now() + MOTION_TIMEOUT;
     let mut last: Option<Status> = None;
     loop {
         let reply = link.command("status")?;

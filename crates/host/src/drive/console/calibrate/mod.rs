@@ -36,7 +36,7 @@ const LOOK: Duration = Duration::from_millis(20);
 /// Runs `lizard calibrate`.
 ///
 /// # Errors
-/// No terminal, no board, or a connection that breaks.
+/// Fails if there is no terminal or no board, or the connection breaks.
 pub fn run(args: Args) -> Result<(), Failure> {
     if !(io::stdin().is_terminal() && io::stdout().is_terminal()) {
         let words = "calibrate asks for single keys; run it in a terminal";

@@ -123,13 +123,13 @@ impl Session {
                     let counted = begin.and_then(|(first, at)| {
                         at.checked_add(usize::try_from(frame.checked_sub(first)?).ok()?)
                     });
-                    let place = counted
-                        .filter(|place| place.abs_diff(now) <= APART)
+                    let slot_index = counted
+                        .filter(|slot_index| slot_index.abs_diff(now) <= APART)
                         .unwrap_or(now);
-                    if counted != Some(place) {
-                        begin = Some((*frame, place));
+                    if counted != Some(slot_index) {
+                        begin = Some((*frame, slot_index));
                     }
-                    let Some(slot) = widths.get_mut(place) else {
+                    let Some(slot) = widths.get_mut(slot_index) else {
                         continue;
                     };
                     if resting {
@@ -142,14 +142,14 @@ impl Session {
                     });
                     *slot = pulses;
                     if let Some(before) =
-                        last.filter(|before| place.saturating_sub(*before) <= HELD)
+                        last.filter(|before| slot_index.saturating_sub(*before) <= HELD)
                     {
                         let held = widths[before];
-                        for slot in widths.iter_mut().take(place).skip(before + 1) {
+                        for slot in widths.iter_mut().take(slot_index).skip(before + 1) {
                             *slot = held;
                         }
                     }
-                    last = Some(place);
+                    last = Some(slot_index);
                 }
                 _ => {}
             }

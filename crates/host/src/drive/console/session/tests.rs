@@ -23,7 +23,7 @@ fn a_persons_line_is_sent_when_the_answer_before_it_has_come() {
     assert!(session.is_idle());
     assert_eq!(session.next_line(now), None, "the next status is not due");
     assert_eq!(session.next_line(now + POLL).as_deref(), Some("status"));
-    assert!(session.status().is_some_and(Status::walks));
+    assert!(session.status().is_some_and(Status::is_moving));
 }
 
 #[test]
@@ -104,7 +104,7 @@ fn stop_is_sent_until_it_is_answered_and_its_later_answers_belong_to_no_line() {
     for _ in 0..9 {
         assert_eq!(session.next_line(at).as_deref(), Some("stop"));
         assert_eq!(session.next_line(at), None);
-        at += AGAIN;
+        at += STOP_INTERVAL;
     }
     let printed = session.overdue(at).expect("the user is told");
     assert!(printed.contains("may go on"), "{printed}");
@@ -112,7 +112,7 @@ fn stop_is_sent_until_it_is_answered_and_its_later_answers_belong_to_no_line() {
     assert_eq!(session.receive("ok stop").as_deref(), Some("ok stop"));
     session.queue("walk");
     assert_eq!(session.next_line(at), None, "others may still come");
-    at += ECHOES;
+    at += LATE_ANSWERS;
     assert_eq!(session.next_line(at).as_deref(), Some("walk"));
     assert_eq!(session.receive("ok stop"), None, "it is not that of walk");
     assert!(!session.is_idle());
@@ -132,7 +132,10 @@ fn a_robot_that_refuses_to_stop_since_it_has_no_pulses_is_not_asked_again() {
         assert_eq!(session.next_line(now).as_deref(), Some("stop"));
         assert_eq!(session.receive(refusal).as_deref(), Some(refusal));
         session.queue("stand");
-        assert_eq!(session.next_line(now + AGAIN).as_deref(), Some("stand"));
+        assert_eq!(
+            session.next_line(now + STOP_INTERVAL).as_deref(),
+            Some("stand")
+        );
     }
 }
 
@@ -201,7 +204,7 @@ fn lines_that_fail_are_counted_once_and_the_first_is_named() {
     );
 }
 
-/// The lines that are sent while the robot answers each of them with what `answer` says.
+/// The lines that are sent while the robot answers each by `answer`.
 fn sent(
     session: &mut Session,
     from: Instant,
@@ -234,7 +237,7 @@ fn words(lines: &[(u64, String)]) -> Vec<&str> {
 }
 
 #[test]
-fn while_a_person_drives_deadman_is_set_and_a_line_goes_out_in_every_third_of_it() {
+fn while_a_person_drives_deadman_is_set_and_lines_keep_it_alive() {
     let now = Instant::now();
     let mut session = Session::new(now, true, false).with_person();
     session.queue("walk");
@@ -282,7 +285,7 @@ fn a_robot_that_has_stopped_gets_its_own_deadman_back() {
 }
 
 #[test]
-fn a_robot_that_its_person_leaves_goes_on_and_a_value_of_the_program_is_not_its_own() {
+fn a_robot_that_its_person_leaves_goes_on_with_its_own_deadman() {
     let now = Instant::now();
     let mut session = Session::new(now, true, false).with_person();
     session.queue("arc left");
@@ -318,7 +321,7 @@ fn no_gait_begins_while_the_robot_has_not_confirmed_its_deadman() {
 }
 
 #[test]
-fn a_robot_that_is_silent_is_said_to_be_once_until_it_answers_again() {
+fn a_silent_robot_is_reported_once_until_it_answers_again() {
     let mut now = Instant::now();
     let mut session = Session::new(now, true, false);
     let mut ask = |answers: bool| {

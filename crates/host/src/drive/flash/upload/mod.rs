@@ -176,15 +176,15 @@ pub fn upload<B: Board>(
         image,
         target,
         report,
-        answered: false,
-        reported: false,
+        has_answered: false,
+        has_reported: false,
         left: Left::AsBefore,
     };
     let mut written = vec![false; BOOT / PAGE];
     let mut loaders = target.loaders().iter().copied().cycle();
     let mut kind = Kind::Optiboot;
     for attempt in 1.. {
-        if !upload.answered {
+        if !upload.has_answered {
             kind = loaders.next().unwrap_or(kind);
         }
         let trouble = match upload.attempt(kind, &mut written) {
@@ -195,7 +195,7 @@ pub fn upload<B: Board>(
         if attempt == ATTEMPTS || !trouble.may_pass() {
             return Err(upload.failure(trouble));
         }
-        let next = match upload.answered {
+        let next = match upload.has_answered {
             true => kind,
             false => loaders.clone().next().unwrap_or(kind),
         };
@@ -230,10 +230,10 @@ struct Upload<'a, B> {
     image: &'a Image,
     target: Target,
     report: &'a mut dyn FnMut(Event<'_>),
-    /// The loader has answered once.
-    answered: bool,
+    /// True if the loader has answered.
+    has_answered: bool,
     /// True if the board's contents were reported.
-    reported: bool,
+    has_reported: bool,
     left: Left,
 }
 
@@ -242,7 +242,7 @@ impl<B: Board> Upload<'_, B> {
     /// writes.
     fn attempt(&mut self, kind: Kind, written: &mut [bool]) -> Result<(), Stop> {
         self.loader.call(kind)?;
-        self.answered = true;
+        self.has_answered = true;
         let chip = Chip(self.loader.signature()?);
         if chip != Chip::ATMEGA328P {
             return Err(Stop::Error(UploadError::Chip(chip)));
@@ -306,14 +306,14 @@ impl<B: Board> Upload<'_, B> {
         if self.image.is_robot_alone() {
             self.check_code(&found)?;
         }
-        if !self.reported {
-            self.reported = true;
+        if !self.has_reported {
+            self.has_reported = true;
             (self.report)(Event::Found(found));
         }
         Ok(flash)
     }
 
-    /// Checks that the code in flash can read the robot that is to be written behind it.
+    /// Checks that the code in flash can read the robot that is to be written after it.
     fn check_code(&self, found: &FlashContents) -> Result<(), Stop> {
         let found = found.clone();
         Err(Stop::Error(match found.program {
@@ -366,7 +366,7 @@ impl<B: Board> Upload<'_, B> {
 
     fn failure(&self, trouble: LoaderError) -> UploadError {
         match trouble {
-            LoaderError::Silent if !self.answered => UploadError::Nobody,
+            LoaderError::Silent if !self.has_answered => UploadError::Nobody,
             trouble => UploadError::Broken {
                 trouble,
                 left: self.left,

@@ -1,4 +1,4 @@
-//! An upload to a board whose boot loader is played.
+//! Uploads to a simulated board and boot loader.
 
 use std::time::Duration;
 
@@ -79,7 +79,7 @@ impl Run {
         let (flash, blank) = (&self.board.flash, Double::blank().flash);
         assert_eq!(flash[..600], bytes(600, 3));
         assert_eq!(flash[0x7e00..], blank[0x7e00..], "the boot loader");
-        assert!(self.board.left, "the program is started");
+        assert!(self.board.was_left, "the program is started");
         done
     }
 
@@ -170,7 +170,7 @@ fn output_of_the_old_program_before_the_answer_is_skipped() {
 #[test]
 fn a_board_that_never_answers_is_called_after_four_resets_and_not_written() {
     let mut board = Double::with(&[9; 500]);
-    board.mute = true;
+    board.is_mute = true;
     let run = run(board);
     assert!(matches!(run.result, Err(UploadError::Nobody)));
     assert!(
@@ -278,7 +278,7 @@ fn a_byte_that_the_flash_does_not_keep_is_named_and_the_board_does_nothing() {
 }
 
 #[test]
-fn a_board_unplugged_in_the_middle_does_nothing_and_is_written_by_the_next_upload() {
+fn a_board_unplugged_midway_does_nothing_until_the_next_upload() {
     for pages in 1..=5 {
         let mut board = Double::with(&[9; 500]);
         board.unplugged_after = Some(pages);

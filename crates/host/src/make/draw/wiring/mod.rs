@@ -72,13 +72,13 @@ pub fn wiring(robot: &Robot) -> String {
         .add(strips::draw())
         .add(strips::resistor_bodies())
         .add(UNO.draw(&used));
-    for (place, servo) in order.into_iter().enumerate() {
-        group = group.add(body(servo, place, pins[servo]));
+    for (index, servo) in order.into_iter().enumerate() {
+        group = group.add(body(servo, index, pins[servo]));
     }
     let lines = remarks(robot);
     let option = notes + LINE * lines.len() as f64 + 6.0;
-    for (place, words) in lines.iter().enumerate() {
-        let y = notes + LINE * place as f64;
+    for (index, words) in lines.iter().enumerate() {
+        let y = notes + LINE * index as f64;
         group = group.add(text_start(words, (16.0, y), 14.0));
     }
     let inputs = option + radio::HEIGHT;
@@ -104,25 +104,25 @@ fn order(pins: [u8; 4]) -> [usize; 4] {
     order
 }
 
-fn middle(place: usize) -> f64 {
-    FIRST + APART * place as f64
+fn middle(index: usize) -> f64 {
+    FIRST + APART * index as f64
 }
 
 /// The wires of the servos, which stand in an order, and of their signals to the board.
 fn servo_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
     let mut wires = Vec::new();
-    for (place, servo) in order.into_iter().enumerate() {
-        let (x, name) = (middle(place), NAMES[servo]);
-        let ground = strips::ground(supply::SERVOS + place);
+    for (index, servo) in order.into_iter().enumerate() {
+        let (x, name) = (middle(index), NAMES[servo]);
+        let ground = strips::ground(supply::SERVOS + index);
         let brown = vec![(x + LEAD, TOP), (x + LEAD, ground.1), ground];
         wires.push(Wire::new(format!("ground-{name}"), brown, BROWN, THIN));
         // The first ways are the converter's and the capacitor's.
-        let plus = strips::supply(strips::SUPPLIES - 1 - place);
+        let plus = strips::supply(strips::SUPPLIES - 1 - index);
         let red = vec![(x - LEAD, TOP), (x - LEAD, plus.1), plus];
         wires.push(Wire::new(format!("plus-{name}"), red, RED, THIN));
     }
     let places: [usize; 4] = [0, 1, 2, 3];
-    let from = places.map(|place| (middle(place), TOP + BODY.1));
+    let from = places.map(|index| (middle(index), TOP + BODY.1));
     let paths = between_rows(&from, &places.map(strips::servo), LEVELS[0]);
     for (servo, path) in order.into_iter().zip(paths) {
         let name = format!("signal-{}", NAMES[servo]);
@@ -166,8 +166,8 @@ fn board_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
 }
 
 /// A servo from above; its names stand beside it.
-fn body(servo: usize, place: usize, pin: u8) -> Group {
-    let x = middle(place);
+fn body(servo: usize, index: usize, pin: u8) -> Group {
+    let x = middle(index);
     let colour = SERVO[servo];
     let corner = (x - BODY.0 / 2.0, TOP);
     let name = NAMES[servo];

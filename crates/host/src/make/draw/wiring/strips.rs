@@ -42,8 +42,8 @@ pub fn supply(way: usize) -> (f64, f64) {
 
 /// The way of the signal strip for the servo at a place from left to right; the middle one is
 /// for ground.
-const fn way(place: usize) -> usize {
-    if place < 2 { place } else { place + 1 }
+const fn way(index: usize) -> usize {
+    if index < 2 { index } else { index + 1 }
 }
 
 /// The way for ground among those of the signals.
@@ -54,8 +54,8 @@ fn signal_x(way: usize) -> f64 {
 }
 
 /// Where a servo's signal goes into the signal strip.
-pub fn servo(place: usize) -> (f64, f64) {
-    (signal_x(way(place)), SIGNALS_AT.0)
+pub fn servo(index: usize) -> (f64, f64) {
+    (signal_x(way(index)), SIGNALS_AT.0)
 }
 
 /// Where the wire from the ground strip goes into the signal strip.
@@ -64,9 +64,9 @@ pub fn signal_ground() -> (f64, f64) {
 }
 
 /// Where the jumper to the board leaves the signal strip.
-pub fn board(place: usize) -> (f64, f64) {
-    let outward = if place < 2 { -JUMPER } else { JUMPER };
-    (signal_x(way(place)) + outward, SIGNALS_AT.1)
+pub fn board(index: usize) -> (f64, f64) {
+    let outward = if index < 2 { -JUMPER } else { JUMPER };
+    (signal_x(way(index)) + outward, SIGNALS_AT.1)
 }
 
 /// Where the board's ground leaves the signal strip.
@@ -94,15 +94,15 @@ pub fn links() -> Vec<Wire> {
 
 /// The resistors from the signals of the servos, left to right, to the middle way: their legs.
 pub fn resistors(names: [&str; 4]) -> Vec<Wire> {
-    let resistor = |(place, name): (usize, &str)| {
-        let (to_middle, inner) = match place {
+    let resistor = |(index, name): (usize, &str)| {
+        let (to_middle, inner) = match index {
             0 => (-5.0, false),
             1 => (-11.0, true),
             2 => (11.0, true),
             _ => (5.0, false),
         };
-        let inward = if place < 2 { JUMPER } else { -JUMPER };
-        let from = (signal_x(way(place)) + inward, SIGNALS_AT.1);
+        let inward = if index < 2 { JUMPER } else { -JUMPER };
+        let from = (signal_x(way(index)) + inward, SIGNALS_AT.1);
         let to = (signal_x(MIDDLE) + to_middle, SIGNALS_AT.1);
         let low = SIGNALS_AT.1 + if inner { 17.0 } else { 35.0 };
         let path = vec![from, (from.0, low), (to.0, low), to];

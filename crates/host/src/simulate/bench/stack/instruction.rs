@@ -12,7 +12,7 @@ pub enum Effect {
     Jump(u32),
     /// Continues here or at the next instruction.
     Branch(u32),
-    /// Continues at the next instruction or behind it.
+    /// Continues at the next instruction or after it.
     Skip,
     Return,
     /// An indirect jump or call: `ijmp`, `icall` and their extended forms.
@@ -53,7 +53,7 @@ const SPL: u16 = 0x3d;
 const SPH: u16 = 0x3e;
 const SP_DATA: [u16; 2] = [0x5d, 0x5e];
 
-/// The instruction at a byte address; none if flash ends there.
+/// The instruction at a byte address; `None` if flash ends there.
 pub fn decode(flash: &[u8], at: u32) -> Option<Instruction> {
     let code = word(flash, at)?;
     let is_long = code & 0xfe0f == 0x9000 // lds
@@ -65,7 +65,7 @@ pub fn decode(flash: &[u8], at: u32) -> Option<Instruction> {
     Some(Instruction { effect, size })
 }
 
-/// The target of the `jmp` or `rjmp` at a byte address; none for any other instruction.
+/// The target of the `jmp` or `rjmp` at a byte address; `None` for any other instruction.
 pub fn jump_target(flash: &[u8], at: u32) -> Option<u32> {
     match decode(flash, at)?.effect {
         Effect::Jump(target) => Some(target),

@@ -72,7 +72,7 @@ pub struct Walk<'a> {
     flash: &'a [u8],
     context: Context,
     shared: Shared,
-    /// Each function walked, by address; none while it is being walked.
+    /// Each function walked, by address; `None` while it is being walked.
     known: HashMap<u32, Option<Function>>,
 }
 
@@ -82,8 +82,8 @@ pub struct Function {
     /// The most bytes of stack in the function and all that it calls, without its own return
     /// address.
     pub depth: u16,
-    /// True if the function returns. Code behind a call of one that does not return is not its
-    /// caller's.
+    /// True if the function returns. Code after a call of one that does not return does not belong
+    /// to the caller.
     pub returns: bool,
     /// The address at which a handler enables other interrupts, if it does.
     pub lets_in: Option<u32>,
@@ -218,8 +218,9 @@ impl<'a> Walk<'a> {
 
     /// An error of the function at `entry`.
     pub fn refuse(&self, entry: u32, address: u32, what: &'static str) -> StackError {
-        let before =
-            |symbol: &&simulated_uno::Symbol| symbol.function && u64::from(entry) >= symbol.address;
+        let before = |symbol: &&simulated_uno::Symbol| {
+            symbol.is_function && u64::from(entry) >= symbol.address
+        };
         let symbols = self.image.symbols().iter().filter(before);
         let nearest = symbols.max_by_key(|symbol| symbol.address);
         StackError {

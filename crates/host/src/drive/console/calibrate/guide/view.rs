@@ -5,7 +5,7 @@ use std::io::{Read, Write};
 use crate::shared::ink::PLACES;
 
 use super::step::{STEPS, Step};
-use super::{FAR, Guide, PROOFS};
+use super::{Guide, SCALE_ANGLES, SIGN_ANGLES};
 
 /// The contents of the screen in one step.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -24,7 +24,7 @@ impl<P: Read + Write> Guide<'_, P> {
     /// The screen for the current step.
     #[must_use]
     pub fn view(&self) -> View {
-        let servo = |place: usize| format!("A{}, {}", place + 1, PLACES[place]);
+        let servo = |index: usize| format!("A{}, {}", index + 1, PLACES[index]);
         let next = "Enter: next    b: back    q: cancel, nothing is saved";
         let (name, text, keys): (String, String, &str) = match self.step() {
             Step::Begin => (
@@ -37,7 +37,7 @@ impl<P: Read + Write> Guide<'_, P> {
             ),
             Step::Horns => {
                 let angle =
-                    |place| format!("    {:<16} {:6.2} deg\n", servo(place), self.neutral[place]);
+                    |index| format!("    {:<16} {:6.2} deg\n", servo(index), self.neutral[index]);
                 let angles: String = (0..4).map(angle).collect();
                 let text = format!(
                     "Every servo stands in its middle now, and holds.\n\
@@ -49,8 +49,8 @@ impl<P: Read + Write> Guide<'_, P> {
                 );
                 ("fit the horns".to_owned(), text, next)
             }
-            Step::Sign(place) => {
-                let by = self.moved.unwrap_or(PROOFS[0]);
+            Step::Sign(index) => {
+                let by = self.moved.unwrap_or(SIGN_ANGLES[0]);
                 let sense = if by < 0.0 {
                     "clockwise"
                 } else {
@@ -59,27 +59,27 @@ impl<P: Read + Write> Guide<'_, P> {
                 let text = format!(
                     "The space bar moves A{} alone, by {:.0} degrees.\n\
                      Seen from above: did it turn {sense}?",
-                    place + 1,
+                    index + 1,
                     by.abs()
                 );
                 (
-                    format!("which way does {} turn?", servo(place)),
+                    format!("which way does {} turn?", servo(index)),
                     text,
                     "space: move it    y: yes    n: no    b: back    q: cancel, nothing is saved",
                 )
             }
-            Step::Trim(place) => {
+            Step::Trim(index) => {
                 let text = format!(
                     "Turn the crank of A{} with the arrow keys until it points to {:.2} deg,\n\
                      or until it mirrors the one on the other side. Left and up turn it\n\
                      counter-clockwise, seen from above; right and down clockwise.\n\n    \
                      trim {:+.2} deg",
-                    place + 1,
-                    self.neutral[place],
-                    self.now.servo.all()[place].trim
+                    index + 1,
+                    self.neutral[index],
+                    self.now.servo.all()[index].trim
                 );
                 (
-                    format!("straighten {}", servo(place)),
+                    format!("straighten {}", servo(index)),
                     text,
                     "left, right: 0.5 deg    up, down: 0.1 deg    Enter: next    b: back    q: leave",
                 )
@@ -92,41 +92,41 @@ impl<P: Read + Write> Guide<'_, P> {
                     .to_owned(),
                 "y: set them    Enter: leave them as they are    b: back    q: leave",
             ),
-            Step::Scale(place) => {
-                let by = self.moved.unwrap_or(FAR[0]);
+            Step::Scale(index) => {
+                let by = self.moved.unwrap_or(SCALE_ANGLES[0]);
                 let text = format!(
                     "The space bar turns A{} alone by {:.0} degrees, so that its crank\n\
                      should point to {:.2} deg. If it does not, turn it there with the\n\
                      arrow keys.\n\n    \
                      scale {:.2} us per degree",
-                    place + 1,
+                    index + 1,
                     by.abs(),
-                    (self.neutral[place] + by).rem_euclid(360.0),
-                    self.now.servo.all()[place].scale
+                    (self.neutral[index] + by).rem_euclid(360.0),
+                    self.now.servo.all()[index].scale
                 );
                 (
-                    format!("how far does {} turn?", servo(place)),
+                    format!("how far does {} turn?", servo(index)),
                     text,
                     "space: move it    left, right: 0.5 deg    up, down: 0.1 deg    Enter: next    b: back    q: leave",
                 )
             }
-            Step::Limit(place) => {
-                let [min, max] = self.now.servo.all()[place].limit;
+            Step::Limit(index) => {
+                let [min, max] = self.now.servo.all()[index].limit;
                 let text = format!(
                     "The crank of A{} never turns beyond its limits. Where a part would\n\
                      touch another, end its travel before that angle. Left and right move the\n\
                      first limit counter-clockwise and back, up and down the second one.\n\n    \
                      limits {min:.2} to {max:.2} deg",
-                    place + 1
+                    index + 1
                 );
                 (
-                    format!("how far may {} turn?", servo(place)),
+                    format!("how far may {} turn?", servo(index)),
                     text,
                     "left, right: first, 1 deg    up, down: second, 1 deg    Enter: next    b: back    q: leave",
                 )
             }
             Step::Walk => {
-                let bar = match self.walks {
+                let bar = match self.is_walking {
                     true => "It walks. The space bar ends it.",
                     false => "The space bar starts it, and ends it.",
                 };
@@ -138,11 +138,11 @@ impl<P: Read + Write> Guide<'_, P> {
             }
             Step::Save => {
                 let mut text = "This will be kept in the board:\n\n".to_owned();
-                for (place, set) in self.now.servo.all().into_iter().enumerate() {
+                for (index, set) in self.now.servo.all().into_iter().enumerate() {
                     let [min, max] = set.limit;
                     text += &format!(
                         "    {:<15} sign {}  trim {:+.2}  limits {min:.2} to {max:.2}  scale {:.2}\n",
-                        servo(place),
+                        servo(index),
                         set.dir.sign(),
                         set.trim,
                         set.scale

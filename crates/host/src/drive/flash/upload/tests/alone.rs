@@ -1,10 +1,10 @@
-//! A robot that is written alone, behind the code that the board has.
+//! A robot that is written alone, after the code that the board has.
 
 use super::*;
 use crate::drive::console::double::PAPER;
 
 #[test]
-fn a_robot_alone_is_written_behind_the_code_its_first_page_first_blank_and_then_last() {
+fn a_robot_alone_is_written_with_its_first_page_blank_first_and_filled_last() {
     let run = run_with(with_robot("paper"), &robot_image("unequal"));
     let done = run.result.expect("it is written");
     let section = robot("unequal").section();
@@ -14,7 +14,7 @@ fn a_robot_alone_is_written_behind_the_code_its_first_page_first_blank_and_then_
     assert_eq!(run.board.written, order);
     let whole = whole_image("unequal");
     assert!(run.board.flash[..whole.end()] == *whole.bytes());
-    assert!(run.board.left, "the firmware is started");
+    assert!(run.board.was_left, "the firmware is started");
     let [found] = &run.found[..] else {
         panic!("{:?}", run.found)
     };
@@ -41,7 +41,7 @@ fn a_gait_that_changes_costs_less_than_a_second_of_the_line() {
 fn a_robot_that_the_board_has_is_not_written() {
     let run = run_with(with_robot("paper"), &robot_image("paper"));
     assert_eq!(run.result.expect("it is right").written, 0);
-    assert!(run.board.written.is_empty() && run.board.left);
+    assert!(run.board.written.is_empty() && run.board.was_left);
     assert!(run.found[0].ends_with(" already"), "{:?}", run.found);
 }
 

@@ -17,7 +17,7 @@ fn an_old_nano_is_found_at_its_own_speed_and_keeps_its_boot_loader() {
     let image = whole_image("paper");
     assert!(run.board.flash[..image.end()] == *image.bytes());
     assert!(run.board.flash[0x7800..] == Double::old_nano().flash[0x7800..]);
-    assert!(run.board.left, "the program is started");
+    assert!(run.board.was_left, "the program is started");
 }
 
 #[test]
