@@ -43,7 +43,9 @@ proptest! {
                 Ask::Gait(name) => motion.start(name),
                 Ask::Pose(sweeps) => {
                     let pose = Pose(sweeps.map(Sweep));
+                    let beyond = pose.beyond(motion.calibration()).map(Hazard::Travel);
                     let hazard = Clearance::of(&motion.robot, &pose).hazard(&motion.robot);
+                    let hazard = beyond.or(hazard);
                     prop_assert_eq!(motion.go_to(&pose).err(), hazard);
                 }
                 Ask::Stop => motion.stop(),
