@@ -69,7 +69,10 @@ impl Observer {
             self.reports.is_reported = true;
             self.reports.told = self.now;
             if line.contains("no line for") {
-                self.reports.stop(self.now);
+                // One that an order has overtaken is over already.
+                if since - self.ordered >= self.limits.queued {
+                    self.reports.stop(self.now);
+                }
                 let silence = since - self.last_line;
                 if (self.limits.queued..self.deadman).contains(&silence) {
                     let (ms, says) = (silence / MS, self.deadman / MS);

@@ -254,7 +254,7 @@ fn of_a_board_that_falls_silent_the_lines_that_it_did_not_take_are_counted() {
     let (_, error, code) = run(folder.path(), &arguments, "walk\nspeed 50\nstop\n");
     device.stop();
     assert_eq!(code, Some(1), "{error}");
-    let words = "lizard: the robot did not accept 3 of 3 lines, the first `walk`: no answer\n";
+    let words = "lizard: the robot did not accept 3 of 3 lines, the first `walk`: not sent\n";
     assert!(error.ends_with(words), "{error}");
 }
 

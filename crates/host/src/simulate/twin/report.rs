@@ -27,7 +27,8 @@ pub struct Row {
     pub way: PathParts,
     /// The gait's last complete cycle, and its prediction.
     pub cycle: Option<Cycle>,
-    /// The path of a routine's one round that `lizard gaits` predicts for these servos.
+    /// The path of a routine's one round that `lizard gaits` predicts for these servos; null for
+    /// a routine with inputs.
     pub round: Option<PathParts>,
     /// The remaining figures are of the last complete cycle if there is one, else of all
     /// frames: the distance that each foot slid over the floor, mm, servo order.
@@ -80,13 +81,14 @@ impl From<Prediction> for PathParts {
 }
 
 /// The prediction of a routine's round by these servos, if a command goes through one.
-fn round(robot: &Robot, command: &str, model: ServoModel) -> Option<Prediction> {
+fn round(robot: &Robot, command: &str, model: ServoModel) -> Option<(Round, Prediction)> {
     let routine = robot.routine(command.strip_suffix(" 1")?)?;
     let round = Round::of(robot, routine);
-    Some(match model {
+    let way = match model {
         ServoModel::Motors(_) => round.driven,
         ServoModel::Ideal | ServoModel::Unloaded(_) => round.movement,
-    })
+    };
+    Some((round, way))
 }
 
 impl PathParts {
@@ -121,7 +123,7 @@ impl Report {
                 .as_ref()
                 .map(|(_, frames)| replay.tally(frames.clone()));
             let round = round(robot, &stage.command, model).filter(|_| !paced);
-            let known = prediction.as_ref().or(round.as_ref());
+            let known = prediction.as_ref().or(round.as_ref().map(|(_, way)| way));
             let seconds = |n: usize| replay.first + n as f64 * lizard_twin::FRAME;
             let of: &Tally = last.as_ref().unwrap_or(&whole);
             Row {
@@ -138,7 +140,10 @@ impl Report {
                     }),
                     share_of_rigid: SpringCost::of(gait, robot.ground()).and_then(|on| on.share),
                 }),
-                round: round.map(Into::into),
+                // Contacts may end a step earlier or later than the prediction takes for granted.
+                round: round
+                    .filter(|(round, _)| !round.has_inputs)
+                    .map(|(_, way)| way.into()),
                 foot_slip: of.slip,
                 lag: of.lag,
                 margin: of.margin.map(|(check, value)| (check.name(), value)),
