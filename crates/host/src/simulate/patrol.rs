@@ -7,8 +7,8 @@ use super::sim::tour;
 /// The name of the routine.
 pub const PATROL: &str = "patrol";
 
-/// Gaits of a patrol besides the first.
-const MOST: usize = 8;
+/// The largest number of gaits of a patrol besides the first.
+const MAX_MORE_GAITS: usize = 8;
 
 /// The pins that are tried for the contacts of a robot without inputs.
 const PINS: [&str; 8] = ["A1", "A2", "A3", "A4", "A5", "D12", "D8", "D7"];
@@ -38,7 +38,7 @@ pub fn with_patrol(text: &str) -> Result<Robot, Error> {
         .collect();
     let first = gaits.first().map_or("stand 1 s", String::as_str);
     let mut steps = vec!["wait button".to_owned(), format!("{first} until nose")];
-    let others = gaits.iter().skip(1).take(MOST);
+    let others = gaits.iter().skip(1).take(MAX_MORE_GAITS);
     steps.extend(others.map(|gait| format!("{gait} 1 until button")));
     Robot::parse(&format!(
         "{text}\n[routine.{PATROL}]\nsteps = {steps:?}\nrepeat = \"for ever\"\nrepeat_from = 2\n"

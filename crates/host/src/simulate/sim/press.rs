@@ -59,15 +59,15 @@ impl FromStr for Press {
 /// The changes of a robot's contacts, in order of time.
 ///
 /// # Errors
-/// An input that the robot does not have.
+/// Fails if the robot does not have an input.
 pub fn changes(presses: &[Press], robot: &Robot) -> Result<Vec<Change>, Failure> {
     let mut all = Vec::new();
     for press in presses {
         let mut inputs = robot.inputs().each();
         let Some((_, pin)) = inputs.find(|(name, _)| *name == press.input) else {
             let name = &press.input;
-            let sentence = format!("robot.toml has no [input.{name}] for --press");
-            return Err(Failure::Input(sentence));
+            let message = format!("robot.toml has no [input.{name}] for --press");
+            return Err(Failure::Input(message));
         };
         let change = |ms, is_closed| Change { ms, pin, is_closed };
         all.extend([change(press.from, true), change(press.to, false)]);

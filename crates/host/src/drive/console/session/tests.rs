@@ -248,7 +248,7 @@ fn while_a_person_drives_deadman_is_set_and_lines_keep_it_alive() {
 }
 
 #[test]
-fn a_robot_that_has_just_begun_to_walk_has_deadman_again_after_a_question_for_its_own() {
+fn a_robot_that_just_began_to_walk_has_deadman_again_after_a_question() {
     let now = Instant::now();
     let mut session = Session::new(now, false, false).with_person();
     for line in ["walk", "cal"] {
