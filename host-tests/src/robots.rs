@@ -45,9 +45,10 @@ pub fn robot() -> &'static Robot {
 /// If it has no room for them.
 #[must_use]
 pub fn patrolling() -> &'static Robot {
+    const REST: &str = "rest 1 s";
     static ROBOT: LazyLock<Robot> = LazyLock::new(|| {
         let text = std::fs::read_to_string(file()).expect("a robot.toml");
-        with_patrol(&text).unwrap_or_else(|error| panic!("{error}"))
+        with_patrol(&text, &[REST]).unwrap_or_else(|error| panic!("{error}"))
     });
     &ROBOT
 }

@@ -1,5 +1,5 @@
-//! The program `lizard`, divided by what its user does. Each command is a module with its
-//! `Args` and its `run`; `commands` has the table of them.
+//! The program `lizard`, in modules by what its user does; `commands` has the table of its
+//! commands.
 
 mod change;
 pub mod commands;
@@ -17,7 +17,7 @@ pub use shared::plain::readable_lines;
 pub use shared::pose_args::PoseArgs;
 pub use shared::robot_file::RobotFile;
 
-// Modules that tests use.
+// Modules that tests and other crates use.
 #[cfg(feature = "paper")]
 pub use change::prove;
 #[cfg(feature = "console")]

@@ -38,6 +38,8 @@ fn limits(robot: &Robot, scenario: &Scenario) -> Limits {
         frame_left: 25 * lizard_rules::MS,
         report_time: 300 * lizard_rules::MS,
         queued: 150 * lizard_rules::MS,
+        // A patrol rests for a second, and longer at half the pace.
+        longest_rest: 2_500 * lizard_rules::MS,
         boots_to_rest: mentions("boot rest"),
         brown_outs_clear_ram: true,
         is_narrowed: mentions("say limit ") && mentions("say factory"),

@@ -1,11 +1,11 @@
 //! Trouble at random moments: scenarios on the simulated UNO, judged by the rules of safety.
 //!
-//! Tests of single features miss faults where two features interact. So main stalls for 1
-//! to 300 ms at random cycles of everything that the robot does; resets, power cuts and
-//! dips of the supply come between. Its robot has a routine and inputs, which are pressed. In four
-//! of thirteen scenarios a person drives by radio meanwhile. Only what can be seen from outside is judged: pulses,
-//! lines, the LED, writes to the EEPROM. A scenario follows from its seed and
-//! number alone, so one that fails can be played again.
+//! Tests of single features miss faults where two features interact. So main stalls for 1 to
+//! 300 ms at random cycles, whatever the robot does; resets, power cuts and dips of the supply
+//! come too. The robot has a routine, and inputs that are pressed. In four of thirteen scenarios a
+//! person also drives it by radio. Only what can be seen from outside is judged: pulses, lines, the
+//! LED, writes to the EEPROM. A scenario follows from its seed and number alone, so one that fails
+//! can be played again.
 
 mod activity;
 pub mod campaign;

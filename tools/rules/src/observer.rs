@@ -27,6 +27,8 @@ pub struct Limits {
     pub report_time: Time,
     /// The longest time for which a line of the robot waits behind others before it is said.
     pub queued: Time,
+    /// The longest time for which a routine rests by itself; 0 without such a routine.
+    pub longest_rest: Time,
     /// True if `boot` ends the pulses.
     pub boots_to_rest: bool,
     /// True if the memory keeps what is written to it.
@@ -48,6 +50,7 @@ impl Default for Limits {
             frame_left: MS,
             report_time: 60 * MS - 1,
             queued: 0,
+            longest_rest: 0,
             boots_to_rest: false,
             keeps_memory: true,
             brown_outs_clear_ram: false,
@@ -396,7 +399,7 @@ impl Observer {
             self.rested = NEVER;
         }
         if effect == Effect::Moves {
-            self.reports.order();
+            self.reports.order(done.is_some());
             self.begun += 1;
         }
         let calm = self.disturbed <= self.now;

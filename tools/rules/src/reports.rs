@@ -15,6 +15,9 @@ pub(crate) struct Reports {
     pub stopped: Option<Time>,
     /// True once the console has reported the reason.
     pub is_reported: bool,
+    /// True if an order that may not have reached the robot came after that report: a robot that
+    /// stays stopped does not report it again.
+    may_still_be_stopped: bool,
     /// Time of the last report of a fault on the console.
     pub told: Time,
 }
@@ -24,6 +27,7 @@ impl Default for Reports {
         Self {
             stopped: None,
             is_reported: false,
+            may_still_be_stopped: false,
             told: NEVER,
         }
     }
@@ -34,7 +38,7 @@ impl Reports {
     pub(crate) fn stop(&mut self, at: Time) {
         if self.stopped.is_none() {
             self.stopped = Some(at);
-            self.is_reported = at - self.told < 400 * MS;
+            self.is_reported = self.may_still_be_stopped || at - self.told < 400 * MS;
         }
     }
 
@@ -45,7 +49,10 @@ impl Reports {
         }
     }
 
-    pub(crate) const fn order(&mut self) {
+    /// Ends a stop by an order to move, which may be lost unless it is sure.
+    pub(crate) const fn order(&mut self, is_sure: bool) {
+        let was_reported = self.stopped.is_some() && self.is_reported;
+        self.may_still_be_stopped = !is_sure && (was_reported || self.may_still_be_stopped);
         self.stopped = None;
     }
 }

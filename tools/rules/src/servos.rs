@@ -275,7 +275,7 @@ impl Observer {
         let Some(end) = self.servos.iter().map(|servo| servo.end).max() else {
             return;
         };
-        if self.is_silence_judged || self.now - end < UNTIL_RESET {
+        if self.is_silence_judged || self.now - end < UNTIL_RESET + self.limits.longest_rest {
             return;
         }
         self.is_silence_judged = true;

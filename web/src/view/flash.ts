@@ -47,7 +47,7 @@ export class FlashView {
     this.note.textContent = link.kind === 'radio' ? byRadio : byCable;
   }
 
-  /** Scrolls to the panel and writes the page's robot. */
+  /** Scrolls to the panel, and writes the robot, the firmware with it, or an image. */
   write(what: WriteContent): void {
     reveal(this.note);
     this.said.scrollIntoView({ block: 'nearest' });

@@ -208,7 +208,7 @@ impl Page {
     }
 
     /// Sets the model of the servos by its name in [`Description::models`]; an unknown name
-    /// changes nothing.
+    /// changes nothing if a robot was read.
     pub fn set_servos(&mut self, name: &str) {
         let Some(twin) = &mut self.twin else {
             self.model = Some(name.to_owned());
@@ -232,7 +232,7 @@ impl Page {
         self.robot()?.gaits().get(gait)?.bars()
     }
 
-    /// Tries a gait on the page's robot; `None` without a robot or a line.
+    /// Tries a gait on the page's robot; `None` if no robot was read, or the drawn line has no length.
     ///
     /// # Errors
     /// Returns the first limit that the gait breaks, with possible values.
@@ -241,7 +241,7 @@ impl Page {
     }
 
     /// The text of the page's robot with a gait, in place of the gait of the same name or at the
-    /// end; `None` without a robot or a line.
+    /// end; `None` if no robot was read, or the drawn line has no length.
     pub fn put_gait(&self, text: &str, made: &EditedGait) -> Option<String> {
         made.put_into(text, self.robot()?)
     }

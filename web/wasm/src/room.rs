@@ -7,8 +7,8 @@ use lizard_kinematics::{End, Vector, wrap};
 use lizard_robot::Robot;
 use serde::Serialize;
 
-/// Number of points across the reach.
-const POINTS: i32 = 160;
+/// Number of steps across twice the reach.
+const STEPS_ACROSS: i32 = 160;
 /// Number of points that are kept around the allowed ones.
 const RIM: i32 = 2;
 /// Largest distance of two points that count as the same, mm.
@@ -40,9 +40,9 @@ impl ReachArea {
         let reach = bars.base / 2.0
             + bars.crank_left.max(bars.crank_right)
             + bars.coupler_left.max(bars.coupler_right);
-        let step = 2.0 * reach / f64::from(POINTS);
+        let step = 2.0 * reach / f64::from(STEPS_ACROSS);
         let at = |column: i32, row: i32| [f64::from(column) * step, f64::from(row) * step];
-        let half = POINTS / 2;
+        let half = STEPS_ACROSS / 2;
         let row = |row: i32| -> Vec<bool> {
             let columns = -half..=half;
             columns
@@ -125,7 +125,7 @@ mod tests {
             // The first row is a rim of points that are not allowed, so that the
             // shape's edge is seen.
             assert!(room.allowed[..room.columns].iter().all(|allowed| !allowed));
-            // The gesture of robot.toml lies in it: 10 mm to either side of 54 mm outward.
+            // The gesture `look` lies in it: 10 mm to either side of 54 mm outward.
             for x in [-10.0, 0.0, 10.0] {
                 assert!(place([x, 54.0]), "{end} {x}");
             }

@@ -1,8 +1,8 @@
 //! The contents of the EEPROM: two copies of the settings, and the last rest pose.
 //!
 //! The two copies are written alternately, so that one is valid while the other is being
-//! written; the newer one counts. A damaged copy is not used. If both are damaged,
-//! robot.toml's numbers are used.
+//! written; the newer one counts. A damaged copy is not used. If no copy
+//! can be used, robot.toml's numbers are.
 //!
 //! | address | what |
 //! |---|---|

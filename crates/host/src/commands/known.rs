@@ -3,9 +3,9 @@
 /// The heading of a command in the help.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Group {
-    /// Commands for a board on USB.
+    /// Commands for a board, real or simulated.
     Drive,
-    /// The firmware on a simulated board.
+    /// Simulations of the firmware and of the body.
     Simulate,
     /// Parts and drawings.
     Build,

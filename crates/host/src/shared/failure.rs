@@ -11,7 +11,7 @@ pub enum Failure {
     /// robot.toml is missing or wrong.
     #[error("{0}")]
     Robot(#[from] lizard_robot::Error),
-    /// The input is well formed, but its result does not exist.
+    /// The command is right, but could not be carried out.
     #[error("{0}")]
     Impossible(String),
     /// Standard input, standard output or the terminal failed. Errors of a file or a port are

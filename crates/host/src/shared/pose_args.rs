@@ -1,5 +1,5 @@
-//! Numbers and poses on the command line. It has every bound on a number that a user
-//! types; beyond them a double has no digits left for the result.
+//! The options that give a pose, and the bounds of the quantities on the command line: beyond
+//! them a double has no digits left for the result.
 
 use std::fmt;
 

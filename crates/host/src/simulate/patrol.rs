@@ -1,4 +1,4 @@
-//! A routine through all gaits of a robot, with inputs: for measurements and for trouble.
+//! A routine with inputs through a robot's gaits, for measurements and random tests.
 
 use lizard_robot::{Error, Robot};
 
@@ -10,15 +10,16 @@ pub const PATROL: &str = "patrol";
 /// The largest number of gaits of a patrol besides the first.
 const MAX_MORE_GAITS: usize = 8;
 
-/// The pins that are tried for the contacts of a robot without inputs.
+/// The pins that are tried for a missing input, in this order.
 const PINS: [&str; 8] = ["A1", "A2", "A3", "A4", "A5", "D12", "D8", "D7"];
 
-/// The robot of this text, with a button, a nose and the routine [`PATROL`], which waits for
-/// the button, walks up to a wall and goes through every gait; unless it has one of this name.
+/// Adds a button, a nose contact and the routine [`PATROL`] to the robot of this text. The routine
+/// waits for the button, walks to a wall, goes through up to nine gaits that move and does the
+/// last steps. A robot that has a routine of this name is returned as it is.
 ///
 /// # Errors
-/// The text is no robot, or has no room for a routine.
-pub fn with_patrol(text: &str) -> Result<Robot, Error> {
+/// Fails if the text is no valid robot, or has no room for the inputs or the routine.
+pub fn with_patrol(text: &str, last_steps: &[&str]) -> Result<Robot, Error> {
     let robot = Robot::parse(text)?;
     if robot.routine(PATROL).is_some() {
         return Ok(robot);
@@ -40,6 +41,7 @@ pub fn with_patrol(text: &str) -> Result<Robot, Error> {
     let mut steps = vec!["wait button".to_owned(), format!("{first} until nose")];
     let others = gaits.iter().skip(1).take(MAX_MORE_GAITS);
     steps.extend(others.map(|gait| format!("{gait} 1 until button")));
+    steps.extend(last_steps.iter().map(|step| (*step).to_owned()));
     Robot::parse(&format!(
         "{text}\n[routine.{PATROL}]\nsteps = {steps:?}\nrepeat = \"for ever\"\nrepeat_from = 2\n"
     ))
@@ -52,7 +54,7 @@ mod tests {
 
     #[test]
     fn a_patrol_has_both_inputs_and_goes_through_the_gaits() {
-        let patrolling = with_patrol(robot_file::BUILT_IN).expect("a robot");
+        let patrolling = with_patrol(robot_file::BUILT_IN, &[]).expect("a robot");
         let inputs: Vec<&str> = patrolling.inputs().each().map(|(name, _)| name).collect();
         assert_eq!(inputs, ["button", "nose"]);
         assert!(patrolling.routine(PATROL).is_some_and(|it| it.has_inputs()));

@@ -305,11 +305,11 @@ fn wrong_input_is_a_message_and_starts_nothing() {
 fn a_script_by_radio_drives_with_deadman_and_its_end_stops_the_robot() {
     let folder = tempfile::tempdir().expect("a folder");
     let uno = Uno::by_radio(folder.path());
-    // What the air loses is said once more.
+    // The radio loses lines, so the script is repeated until all answers have come.
     let say = |lines: &str, expected: &[&str]| {
         let mut text = String::new();
         LIMIT.expect("the script to be heard", || {
-            // Nobody is heard for longer than deadman says.
+            // Longer than `deadman` says, so that the robot stops.
             std::thread::sleep(std::time::Duration::from_millis(1_500));
             text = run(folder.path(), &["console", &uno.port()], lines).0;
             expected.iter().all(|words| text.contains(words))

@@ -29,9 +29,9 @@ pub struct Polynomial {
     limit: fn() -> Number,
     /// The function that it approximates.
     function: fn(&Number) -> Number,
-    /// The terms added to the polynomial's share, and the power of the argument
-    /// that multiplies the polynomial.
+    /// The terms that are added to the polynomial's part.
     lead: fn(&Number) -> Number,
+    /// The power of the argument that multiplies the polynomial.
     power: i32,
 }
 
@@ -86,7 +86,7 @@ impl Polynomial {
             })
             .collect();
         // Divided differences, then Newton's form multiplied out.
-        let mut differences: Vec<Number> = nodes.iter().map(|z| self.share(&z.sqrt())).collect();
+        let mut differences: Vec<Number> = nodes.iter().map(|z| self.target(&z.sqrt())).collect();
         for order in 1..nodes.len() {
             for i in (order..nodes.len()).rev() {
                 let rise = &differences[i] - &differences[i - 1];
@@ -119,14 +119,14 @@ impl Polynomial {
                     .iter()
                     .rev()
                     .fold(number(0), |sum, c| sum * &z + exact_number(*c));
-                let off = (sum - self.share(&x)) * power(&x, self.power) / (self.function)(&x);
+                let off = (sum - self.target(&x)) * power(&x, self.power) / (self.function)(&x);
                 off.to_f64().value().abs()
             })
             .fold(0.0, f64::max)
     }
 
-    /// The exact value of the polynomial at an argument.
-    fn share(&self, x: &Number) -> Number {
+    /// The exact value that the polynomial approximates at an argument.
+    fn target(&self, x: &Number) -> Number {
         ((self.function)(x) - (self.lead)(x)) / power(x, self.power)
     }
 }

@@ -125,7 +125,7 @@ fn a_printed_solid_is_laid_into_the_space_of_its_body() {
 fn a_printed_body_is_that_of_its_part_and_in_one_step() {
     let model = model("strut");
     let entry = model.entry();
-    assert_eq!(entry.steps.len(), 14);
+    assert_eq!(entry.steps.len(), 15);
     assert!(
         entry
             .bodies

@@ -69,7 +69,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     };
     let robot = args.robot.load()?;
     firmware::of_robot(Some(&elf), &args.robot, &robot)?;
-    let patrolling = with_patrol(&args.robot.text()?).ok();
+    let patrolling = with_patrol(&args.robot.text()?, &[]).ok();
     let progress = bar(0, "{spinner} {msg}, {elapsed}");
     progress.enable_steady_tick(std::time::Duration::from_millis(100));
     let figures = Figures::measure(&elf, &robot, patrolling.as_ref(), |step| {

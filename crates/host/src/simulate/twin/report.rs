@@ -27,11 +27,11 @@ pub struct Row {
     pub way: PathParts,
     /// The gait's last complete cycle, and its prediction.
     pub cycle: Option<Cycle>,
-    /// The path of a routine's one round that `lizard gaits` predicts for these servos; null for
-    /// a routine with inputs.
+    /// The path that `lizard gaits` predicts for one round of a routine without inputs by these
+    /// servos; null for all else, and at another pace.
     pub round: Option<PathParts>,
-    /// The remaining figures are of the last complete cycle if there is one, else of all
-    /// frames: the distance that each foot slid over the floor, mm, servo order.
+    /// The remaining figures are of the last complete cycle if another came before it at the
+    /// gait's own pace, else of all frames: the distance that each foot slid over the floor, mm, servo order.
     pub foot_slip: [f64; 4],
     /// The largest lag of a leg behind its servo, deg.
     pub lag: f64,

@@ -1,4 +1,4 @@
-//! `lizard pose`, by the paper's robot.
+//! `lizard pose`, mostly on the paper's robot.
 
 use lizard_kinematics::wrap;
 use serde_json::Value;

@@ -6,7 +6,7 @@
 //! worst moment, or a rare refusal was not printed. So this module follows every path
 //! through the code and adds up what it pushes.
 //!
-//! It decodes the code itself and does not read avr-objdump's listing: only two dozen
+//! It decodes the code itself and does not read avr-objdump's listing: only some thirty
 //! instructions matter to the stack, which takes fewer lines than a parser of that
 //! listing, and the program needs no other tool.
 //!
