@@ -262,12 +262,14 @@ impl Observer {
             );
             self.fail(Rule::Held, seen);
         }
-        let (last, last_after_hang) = self.last_begin;
-        if at - last < MIN_WAKE_GAP && !(is_after_hang && last_after_hang) {
+        let (last_servo, last, last_after_hang) = self.last_begin;
+        // A servo that a late pulse cost a frame goes on by itself.
+        let is_other = pulse.servo != last_servo;
+        if is_other && at - last < MIN_WAKE_GAP && !(is_after_hang && last_after_hang) {
             let ms = (at - last) / MS;
             self.fail(Rule::OneByOne, format!("{name}, {ms} ms after another"));
         }
-        self.last_begin = (at, is_after_hang);
+        self.last_begin = (pulse.servo, at, is_after_hang);
     }
 
     /// Judges an unexplained end of all pulses: the program hung, so a reset must follow.
