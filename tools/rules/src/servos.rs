@@ -263,9 +263,12 @@ impl Observer {
             self.fail(Rule::Held, seen);
         }
         let (last_servo, last, last_after_hang) = self.last_begin;
-        // A servo that a late pulse cost a frame goes on by itself.
-        let is_other = pulse.servo != last_servo;
-        if is_other && at - last < MIN_WAKE_GAP && !(is_after_hang && last_after_hang) {
+        let is_soon = at - last < MIN_WAKE_GAP;
+        if is_soon && pulse.servo == last_servo {
+            // A late pulse has cost it a frame or two: it does not wake once more.
+            return;
+        }
+        if is_soon && !(is_after_hang && last_after_hang) {
             let ms = (at - last) / MS;
             self.fail(Rule::OneByOne, format!("{name}, {ms} ms after another"));
         }
