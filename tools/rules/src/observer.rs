@@ -321,7 +321,13 @@ impl Observer {
 
     fn program_starts(&mut self, cause: Cause) {
         let at = self.now;
-        let is_hung = cause == Cause::Watchdog || self.disturbed > at - 300 * MS;
+        // A dip of the supply may be long, and the program hung before it.
+        let ran_until = if cause == Cause::BrownOut {
+            self.cut.max(self.start)
+        } else {
+            at
+        };
+        let is_hung = cause == Cause::Watchdog || self.disturbed > ran_until - 300 * MS;
         self.check_reset(cause);
         for servo in 0..4 {
             let rests = self.must_keep_rest_pose(servo);
