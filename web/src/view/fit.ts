@@ -105,6 +105,7 @@ export class FitView {
   }
 
   private say(text: string): void {
+    element('fit').hidden = text === '';
     this.said.textContent = text;
     this.use.hidden = true;
   }
