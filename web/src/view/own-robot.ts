@@ -21,7 +21,7 @@ export class OwnRobot {
   ) {
     this.button.addEventListener('click', () => void this.restore());
     this.button.textContent = BACK;
-    this.setAside(kept.aside());
+    this.show();
   }
 
   /** Puts the changed robot of before aside, if another one has replaced it, and offers it. */
@@ -48,6 +48,10 @@ export class OwnRobot {
 
   private setAside(robots: SavedChanges[]): void {
     kept.setAside(robots);
+    this.show();
+  }
+
+  private show(): void {
     const now = kept.aside();
     this.button.hidden = now.length === 0;
     this.list(now.map(({ toml }) => nameIn(toml)));
