@@ -68,14 +68,16 @@ test('lengths that cannot be printed are told at once, with the nearest that can
   const nearest = Number(/ ([\d.]+)$/.exec(await use.innerText())[1]);
   assert.ok(nearest > 46 && nearest < 52, `${nearest} mm`);
 
+  const tried = await mkdtemp(join(tmpdir(), 'tried-'));
+  after(() => rm(tried, { recursive: true, force: true }));
   const parts = async (mm) => {
-    const path = join(folder, 'robot.toml');
+    const path = join(tried, 'robot.toml');
     const toml = await page.evaluate((mm) => {
       const { robot, toml } = window.lizard;
       return ['leg.crank', 'leg.follower'].reduce((text, key) => robot.edit(text, key, mm).text, toml);
     }, mm);
     await writeFile(path, toml);
-    const made = promisify(execFile)(resolve(ROOT, process.env.LIZARD), ['parts', join(folder, 'tried'), '--robot', path]);
+    const made = promisify(execFile)(resolve(ROOT, process.env.LIZARD), ['parts', join(tried, 'parts'), '--robot', path]);
     return within('lizard parts', made.then(() => 'made', ({ stderr }) => stderr));
   };
   assert.equal(await parts(nearest), 'made');
