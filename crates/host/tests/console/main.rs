@@ -301,6 +301,15 @@ fn wrong_input_is_a_message_and_starts_nothing() {
     }
 }
 
+/// The first gait that moves of the robot under test.
+fn moving_gait(folder: &Path) -> String {
+    let help = run(folder, &["console", "--sim"], "help\n").0;
+    let mut lines = help.lines();
+    let gaits = lines.find_map(|line| line.strip_prefix("# gaits: "));
+    let gait = gaits.and_then(|names| names.split('|').find(|name| *name != "stand"));
+    gait.expect("the robot has a gait that moves").to_owned()
+}
+
 #[test]
 fn a_script_by_radio_drives_with_deadman_and_its_end_stops_the_robot() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -316,19 +325,21 @@ fn a_script_by_radio_drives_with_deadman_and_its_end_stops_the_robot() {
         });
         text
     };
+    let gait = moving_gait(folder.path());
+    let accepted = format!("ok {gait}");
     say(
-        "stand\nwalk\ncal\n",
+        &format!("stand\n{gait}\ncal\n"),
         &[
             "not reset",
-            "ok walk",
+            &accepted,
             "# deadman 0",
             "(the robot stops by itself now",
         ],
     );
     say("status\n", &["ok gait=stop", "fault=link"]);
     let stopped = say(
-        "walk\nstop\nstatus\n",
-        &["ok walk", "ok stop", "ok gait=stop"],
+        &format!("{gait}\nstop\nstatus\n"),
+        &[&accepted, "ok stop", "ok gait=stop"],
     );
     assert!(!stopped.contains("fault=link"), "{stopped}");
 }
@@ -451,13 +462,7 @@ fn a_simulated_robot_that_is_gone_is_not_said_to_go_on() {
     let arguments = ["console", "--sim"];
     let mut person = AtTerminal::start(lizard(folder.path(), &arguments));
     person.wait_for("no fault");
-    // The first gait that moves, whatever robot it is.
-    let gaits = run(folder.path(), &arguments, "help\n").0;
-    let gaits = gaits
-        .lines()
-        .find_map(|line| line.strip_prefix("# gaits: "));
-    let gait = gaits.and_then(|names| names.split('|').find(|name| *name != "stand"));
-    let gait = gait.expect("it has one").to_owned();
+    let gait = moving_gait(folder.path());
     person.press(&format!("{gait}\r"));
     person.wait_for(&format!("ok {gait}"));
     person.wait_for(&format!("{gait}  "));
