@@ -45,7 +45,7 @@ export class BoardRobot {
     };
     const own = kept.aside().find(({ toml }) => isIt(toml));
     if (own) return own;
-    for (const file of await files.robots()) {
+    for (const file of await files.robots().catch(() => [])) {
       const toml = await files.toml(file).catch(() => '');
       if (isIt(toml)) return { file, toml };
     }

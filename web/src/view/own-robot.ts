@@ -1,17 +1,12 @@
 // The user's own robot: a link, or the list of robots, puts it aside and never erases it.
 import { kept, type SavedChanges } from '../kept';
 import type { Session } from '../session';
-import { element } from './canvas';
 import type { Troubles } from './troubles';
-
-const BACK = 'Back to my own robot';
 
 /** The name in a robot.toml. */
 const nameIn = (toml: string) => /^name\s*=\s*["'](.+?)["']/m.exec(toml)?.[1] ?? 'robot';
 
 export class OwnRobot {
-  private readonly button = element<HTMLButtonElement>('robot-own');
-
   /** `choose` loads a robot of the list by its file name; `list` shows the names of the robots that are put aside. */
   constructor(
     private readonly session: () => Session,
@@ -19,8 +14,6 @@ export class OwnRobot {
     private readonly choose: (file: string) => Promise<void>,
     private readonly list: (names: string[]) => void,
   ) {
-    this.button.addEventListener('click', () => void this.restore());
-    this.button.textContent = BACK;
     this.show();
   }
 
@@ -28,7 +21,7 @@ export class OwnRobot {
   replaced(before: SavedChanges | null): void {
     if (!before || before.toml === before.original || before.toml === this.session().toml) return;
     this.setAside([before, ...kept.aside().filter(({ toml }) => toml !== before.toml)]);
-    this.troubles.say('own', 'This is another robot. Your own one is put aside, and stays in the list of robots.', { label: BACK, act: () => void this.restore() });
+    this.troubles.say('own', 'This is another robot. Your own one is put aside, and stays in the list of robots.', { label: 'Back to my own robot', act: () => void this.restore() });
   }
 
   /** Makes a robot that was put aside the page's, and puts the one of before aside. */
@@ -52,8 +45,6 @@ export class OwnRobot {
   }
 
   private show(): void {
-    const now = kept.aside();
-    this.button.hidden = now.length === 0;
-    this.list(now.map(({ toml }) => nameIn(toml)));
+    this.list(kept.aside().map(({ toml }) => nameIn(toml)));
   }
 }

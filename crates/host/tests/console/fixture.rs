@@ -47,6 +47,15 @@ pub fn run(folder: &Path, arguments: &[&str], input: &str) -> (String, String, O
     (text(stdout), text(stderr), status.code())
 }
 
+/// The first gait that moves of the robot under test.
+pub fn moving_gait(folder: &Path) -> String {
+    let help = run(folder, &["console", "--sim"], "help\n").0;
+    let mut lines = help.lines();
+    let gaits = lines.find_map(|line| line.strip_prefix("# gaits: "));
+    let gait = gaits.and_then(|names| names.split('|').find(|name| *name != "stand"));
+    gait.expect("the robot has a gait that moves").to_owned()
+}
+
 /// `lizard sim --pty`: a board with an EEPROM that lasts as long as it runs.
 pub struct Uno {
     child: Child,

@@ -2,6 +2,7 @@
 //! pseudo terminal. Time is real here, so a test is a few seconds long.
 #![cfg(target_os = "linux")]
 
+mod by_radio;
 mod fixture;
 
 use std::fs::{self, File};
@@ -11,7 +12,7 @@ use std::process::{Child, Stdio};
 
 use lizard_time_limit::LIMIT;
 
-use fixture::{AtTerminal, Device, Uno, lizard, run, wide_terminal};
+use fixture::{AtTerminal, Device, Uno, lizard, moving_gait, run, wide_terminal};
 
 #[test]
 fn a_script_on_standard_input_gets_the_banner_and_its_answers_in_order() {
@@ -299,49 +300,6 @@ fn wrong_input_is_a_message_and_starts_nothing() {
         assert!(error.starts_with(words), "{error}");
         assert_eq!(code, Some(2), "{error}");
     }
-}
-
-/// The first gait that moves of the robot under test.
-fn moving_gait(folder: &Path) -> String {
-    let help = run(folder, &["console", "--sim"], "help\n").0;
-    let mut lines = help.lines();
-    let gaits = lines.find_map(|line| line.strip_prefix("# gaits: "));
-    let gait = gaits.and_then(|names| names.split('|').find(|name| *name != "stand"));
-    gait.expect("the robot has a gait that moves").to_owned()
-}
-
-#[test]
-fn a_script_by_radio_drives_with_deadman_and_its_end_stops_the_robot() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let uno = Uno::by_radio(folder.path());
-    // The radio loses lines, so the script is repeated until all answers have come.
-    let say = |lines: &str, expected: &[&str]| {
-        let mut text = String::new();
-        LIMIT.expect("the script to be heard", || {
-            // Longer than `deadman` says, so that the robot stops.
-            std::thread::sleep(std::time::Duration::from_millis(1_500));
-            text = run(folder.path(), &["console", &uno.port()], lines).0;
-            expected.iter().all(|words| text.contains(words))
-        });
-        text
-    };
-    let gait = moving_gait(folder.path());
-    let accepted = format!("ok {gait}");
-    say(
-        &format!("stand\n{gait}\ncal\n"),
-        &[
-            "not reset",
-            &accepted,
-            "# deadman 0",
-            "(the robot stops by itself now",
-        ],
-    );
-    say("status\n", &["ok gait=stop", "fault=link"]);
-    let stopped = say(
-        &format!("{gait}\nstop\nstatus\n"),
-        &[&accepted, "ok stop", "ok gait=stop"],
-    );
-    assert!(!stopped.contains("fault=link"), "{stopped}");
 }
 
 #[test]

@@ -1,0 +1,39 @@
+//! Scripts sent by radio, at a port that does not reset the board.
+
+use lizard_time_limit::LIMIT;
+
+use crate::fixture::{Uno, moving_gait, run};
+
+#[test]
+fn a_script_by_radio_drives_with_deadman_and_its_end_stops_the_robot() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let uno = Uno::by_radio(folder.path());
+    // The radio loses lines, so the script is repeated until all answers have come.
+    let say = |lines: &str, expected: &[&str]| {
+        let mut text = String::new();
+        LIMIT.expect("the script to be heard", || {
+            // Longer than `deadman` says, so that the robot stops.
+            std::thread::sleep(std::time::Duration::from_millis(1_500));
+            text = run(folder.path(), &["console", &uno.port()], lines).0;
+            expected.iter().all(|words| text.contains(words))
+        });
+        text
+    };
+    let gait = moving_gait(folder.path());
+    let accepted = format!("ok {gait}");
+    say(
+        &format!("stand\n{gait}\ncal\n"),
+        &[
+            "not reset",
+            &accepted,
+            "# deadman 0",
+            "(the robot stops by itself now",
+        ],
+    );
+    say("status\n", &["ok gait=stop", "fault=link"]);
+    let stopped = say(
+        &format!("{gait}\nstop\nstatus\n"),
+        &[&accepted, "ok stop", "ok gait=stop"],
+    );
+    assert!(!stopped.contains("fault=link"), "{stopped}");
+}
