@@ -12,5 +12,5 @@ pub use bench::{FirmwareBench, bench_of};
 pub use extent::{minutes, times};
 pub use lizard_host::sim::frame::{FRAME, Frame};
 pub use lizard_host::sim::lines::Line;
-pub use robots::{Named, paper, patrolling, rng, robot, robots, root, seed};
+pub use robots::{Named, paper, patrol_of, patrolling, rng, robot, robots, root, seed};
 pub mod trouble;

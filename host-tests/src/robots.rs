@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use fastrand::Rng;
 use lizard_host::patrol::with_patrol;
-use lizard_robot::Robot;
+use lizard_robot::{Robot, edit::with_gait};
 
 use crate::random_robot::random_robot;
 
@@ -39,18 +39,35 @@ pub fn robot() -> &'static Robot {
     &ROBOT
 }
 
-/// The robot under test with two inputs and a routine.
+/// The robot under test with two inputs and a routine. If they need the room, it has fewer
+/// gaits.
 ///
 /// # Panics
-/// If it has no room for them.
+/// If it has no room for them even with one gait.
 #[must_use]
 pub fn patrolling() -> &'static Robot {
-    const REST: &str = "rest 1 s";
     static ROBOT: LazyLock<Robot> = LazyLock::new(|| {
         let text = std::fs::read_to_string(file()).expect("a robot.toml");
-        with_patrol(&text, &[REST]).unwrap_or_else(|error| panic!("{error}"))
+        patrol_of(&text).unwrap_or_else(|error| panic!("{error}"))
     });
     &ROBOT
+}
+
+/// The robot of a file with two inputs and a routine, with as many of its gaits as there is
+/// room for.
+///
+/// # Errors
+/// Fails if there is no room even with one gait, or if the text is no valid robot.
+pub fn patrol_of(text: &str) -> Result<Robot, lizard_robot::Error> {
+    const REST: &str = "rest 1 s";
+    with_patrol(text, &[REST]).or_else(|error| {
+        let robot = Robot::parse(text)?;
+        let names = robot.gaits().iter().skip(1).map(|gait| gait.name());
+        // A gait that another is like, or that a routine does, cannot be left out.
+        let mut fewer = names.rev().map(|name| with_gait(text, name, ""));
+        let fewer = fewer.find(|text| Robot::parse(text).is_ok()).ok_or(error)?;
+        patrol_of(&fewer)
+    })
 }
 
 fn file() -> PathBuf {

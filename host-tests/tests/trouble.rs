@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 use std::thread;
 
 use lizard_host_tests::trouble::{Activity, Scenario, campaign, play};
-use lizard_host_tests::{FirmwareBench, patrolling, seed};
+use lizard_host_tests::{FirmwareBench, patrol_of, patrolling, root, seed};
+use lizard_robot::Robot;
 
 /// Number of scenarios: four of thirteen are drives, and each other activity has one.
 const COUNT: u64 = 156;
@@ -54,4 +55,22 @@ fn most_patrols_of_the_scenarios_get_as_far_as_the_wait_for_a_wall() {
     };
     let walked = patrols.filter(walks).count() as u64;
     assert!(walked > COUNT / 13 / 2, "{walked}");
+}
+
+#[test]
+fn a_robot_without_room_for_a_routine_patrols_with_fewer_gaits() {
+    let mut text = std::fs::read_to_string(root().join("robot.toml")).expect("a robot.toml");
+    let mut full = Robot::parse(&text).expect("a robot");
+    for n in 0.. {
+        text += &format!("[gait.more-{n}]\nlike = \"walk\"\n");
+        match Robot::parse(&text) {
+            Ok(robot) => full = robot,
+            Err(_) => break,
+        }
+    }
+    let text = text.rsplit_once("[gait.").expect("a gait").0;
+    let patrolling = patrol_of(text).expect("room for a routine");
+    assert!(patrolling.gaits().len() < full.gaits().len());
+    assert!(patrolling.gaits().len() > 5);
+    assert!(patrolling.routine("patrol").is_some());
 }
