@@ -285,6 +285,8 @@ fn nothing_is_done_that_nobody_sent(record: &Record) -> Result<(), String> {
 /// Checks that each `stop` of the person at the phone is answered, once the link holds for a while.
 fn stop_is_insisted_on(record: &Record) -> Result<(), String> {
     const HOLDS: u64 = 2_000 * MS;
+    // Until the robot has found the line's rate, for which it needs up to five lines.
+    const FINDS: u64 = 3_500 * MS;
     // Meanwhile the answer to an earlier one may be on its way.
     const UNDER_WAY: u64 = 300 * MS;
     for stop in &record.stops {
@@ -295,8 +297,9 @@ fn stop_is_insisted_on(record: &Record) -> Result<(), String> {
         let answered = record.lines.iter().find(ends).map(|line| line.cycle);
         let within = |link: &Span| {
             let from = link.start.max(*stop);
-            let is_calm = !record.is_troubled(from.saturating_sub(300 * MS), from + HOLDS);
-            (link.end >= from + HOLDS && is_calm).then_some(from + HOLDS)
+            let due = from + if record.has_found_rate(from) { HOLDS } else { FINDS };
+            let is_calm = !record.is_troubled(from.saturating_sub(300 * MS), due);
+            (link.end >= due && is_calm).then_some(due)
         };
         let due = record.reached.iter().find_map(within);
         if due.is_some_and(|due| answered.is_none_or(|at| at > due)) {

@@ -4,7 +4,7 @@
 use lizard_core::console::word::Effect;
 use lizard_host::sim::lines::Line;
 use lizard_rules::Pulse;
-use simulated_uno::{CYCLES_PER_MS, Edge, EepromOperation, Pin, Reset, State, pulses};
+use simulated_uno::{CYCLES_PER_MS, Edge, EepromOperation, Pin, Reset, ResetCause, State, pulses};
 
 /// CPU cycles in a millisecond.
 pub const MS: u64 = CYCLES_PER_MS;
@@ -196,6 +196,21 @@ impl Record {
             exchange.line == "save" && exchange.is_done() && sent.contains(&cycle)
         };
         self.exchanges.iter().any(is_it)
+    }
+
+    /// True if the board has answered since the person took the radio, and since a reset that
+    /// had it forget the line's rate.
+    #[must_use]
+    pub fn has_found_rate(&self, at: u64) -> bool {
+        let radio = self.reached.first().map_or(at, |link| link.start);
+        let forgets = |start: &&Reset| {
+            let is_reset = matches!(start.cause, ResetCause::PowerOn | ResetCause::External);
+            is_reset && start.cycle < at
+        };
+        let start = self.starts.iter().rev().find(forgets);
+        let since = start.map_or(radio, |start| start.cycle.max(radio));
+        let mut lines = self.lines.iter();
+        lines.any(|line| line.is_answer() && (since..at).contains(&line.cycle))
     }
 
     /// True if a reset or a disturbance came in `from..to`.

@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 use lizard_core::console::command::{effect, parse};
-use lizard_core::console::line::{GARBLED, MAX_BYTES};
+use lizard_core::console::line::MAX_BYTES;
 use lizard_core::console::word::Effect;
 use lizard_host::sim::frame::servo_pins;
 use lizard_host::sim::lines::LineReader;
@@ -298,7 +298,7 @@ impl Stage<'_> {
                         .push(received(&text, byte.cycle, self.robot));
                     text.clear();
                 }
-                0x08 | 0x7f => _ = text.pop_if(|last| *last != GARBLED),
+                0x08 | 0x7f => _ = text.pop_if(|last| last.is_ascii()),
                 other => text.push(other),
             }
         }
@@ -309,7 +309,7 @@ impl Stage<'_> {
 
 /// A line by its bytes, and the cycle at which its end arrived.
 fn received(bytes: &[u8], cycle: u64, robot: &Robot) -> Received {
-    let is_whole = bytes.len() <= MAX_BYTES && !bytes.contains(&GARBLED);
+    let is_whole = bytes.len() <= MAX_BYTES && bytes.is_ascii();
     let text = String::from_utf8_lossy(bytes.trim_ascii()).to_ascii_lowercase();
     let is_known = parse(text.as_bytes(), robot.firmware()).is_ok();
     Received {

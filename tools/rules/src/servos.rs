@@ -284,12 +284,14 @@ impl Observer {
             return;
         }
         self.is_silence_judged = true;
-        let rest = self.limits.levels[2] + self.limits.exact;
+        let [_, stop, rest] = self.limits.levels.map(|mv| mv + self.limits.exact);
         let has_reason = self.sent_to_rest > end - 400 * MS
             || self.cut > end - 25 * MS
             || self.start > end - 25 * MS
             || self.booted_to_rest > end - 60 * MS
-            || self.supply.time_below(rest, end - 600 * MS, end) > 0;
+            || self.supply.time_below(rest, end - 600 * MS, end) > 0
+            // A routine that rests ends there if the robot may not move on.
+            || self.supply.time_below(stop, end, end + self.limits.longest_rest) > 0;
         if !has_reason {
             let ms = (self.now - end) / MS;
             self.fail(

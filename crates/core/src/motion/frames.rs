@@ -273,6 +273,7 @@ impl Motion {
         }
         // While they settle, pulses change by at most the slew limit of a frame.
         let per_frame = self.robot.slew().per_frame;
+        let is_first = self.frames == 1;
         let mut under_way = false;
         let mut wakes_at = WAKE_APART;
         for (index, pulse) in pulses.0.iter_mut().enumerate() {
@@ -282,9 +283,9 @@ impl Motion {
             let mut width = servo.width(self.stance.pose.0[index]);
             if self.is_settling && sent.0 != 0 {
                 // A servo's first pulse repeats its last one, also that of the previous
-                // run: a reset may have come while it was settling.
-                let slept = before < wakes_at;
-                let turn = if slept { 0 } else { servo.slew(per_frame) };
+                // run: a reset may have come while it was settling, or before the pulse.
+                let is_repeated = is_first || before < wakes_at;
+                let turn = if is_repeated { 0 } else { servo.slew(per_frame) };
                 let wanted = width.0;
                 width.0 = wanted
                     .max(sent.0.saturating_sub(turn))

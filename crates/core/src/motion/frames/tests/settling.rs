@@ -38,3 +38,19 @@ fn every_servo_settles_as_fast_as_its_own_gain_allows_and_no_faster() {
         }
     }
 }
+
+#[test]
+fn the_first_pulses_after_a_hang_repeat_the_last_ones_however_far_the_settings_differ() {
+    // The last pulses of the run before may never have begun: a reset came first.
+    let before = *Motion::standing().stance();
+    let mut motion = Motion::new(*Sample::odd());
+    for index in 0..4 {
+        let mut servo = motion.calibration[index];
+        servo.neutral = Width(servo.neutral.0 + 1000);
+        motion.calibrate(Servo::at(index), servo);
+    }
+    assert!(motion.resume(&before, false));
+    assert_eq!(motion.tick(), before.sent);
+    let next = motion.tick();
+    assert!((0..4).all(|index| next.0[index].0 > before.sent.0[index].0));
+}
