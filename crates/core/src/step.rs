@@ -184,7 +184,7 @@ impl Main {
             board.submit(self.control.frame(&health));
             self.store_stance(board);
             board.set_led(self.control.is_lit());
-            if let Some(rate) = self.console.frame() {
+            if let Some(rate) = self.console.frame(&self.control) {
                 board.set_rate(rate);
             }
         } else if self.console.has_output(&self.control) {
@@ -441,6 +441,19 @@ mod tests {
             running.reset(cause);
             assert_eq!(running.board.rate, rate, "{cause:?}");
         }
+    }
+
+    #[test]
+    fn the_rate_does_not_change_while_bytes_wait_behind_an_answer() {
+        let mut running = Running::power_on(*Sample::odd());
+        running.run(10);
+        running
+            .board
+            .send(&[GARBLED, 0x80, GARBLED, GARBLED, b'\n']);
+        running.run_without_reader(10);
+        assert_eq!(running.board.rate, Rate::Fastest);
+        running.run(3);
+        assert_eq!(running.board.rate, Rate::Half);
     }
 
     #[test]

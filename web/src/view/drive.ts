@@ -24,7 +24,7 @@ export function short(displacement: Displacement | null): string {
 
 export class Drive {
   private readonly list = element('gaits');
-  private buttons: { command: string; button: HTMLButtonElement; note: HTMLElement }[] = [];
+  private buttons: { command: string; button: HTMLButtonElement; note: HTMLElement; moves: boolean }[] = [];
   private readonly predictions = new Map<string, GaitPrediction>();
   /** The robot's pace, percent. */
   private pace = 100;
@@ -64,7 +64,7 @@ export class Drive {
       const button = make('button', { type: 'button', ariaPressed: 'false', className: command.length > LONG ? 'long' : '' }, command, room);
       button.dataset.command = command;
       this.list.append(button);
-      return { command, button, note };
+      return { command, button, note, moves };
     });
     this.predictions.clear();
     this.said.hidden = true;
@@ -86,10 +86,11 @@ export class Drive {
     this.showLine();
   }
 
-  /** Shows the gait that asks most of the servos at the robot's pace. */
+  /** Shows the gait that asks most of the servos at the robot's pace, once all are predicted. */
   private showLine(): void {
+    const isKnown = this.buttons.every(({ command, moves }) => !moves || this.predictions.has(command));
     let [hardest, most] = ['', 0];
-    for (const [command, { lines }] of this.predictions) {
+    for (const [command, { lines }] of isKnown ? this.predictions : []) {
       const line = lines?.[Math.ceil((this.pace * lines.length) / 100) - 1] ?? 0;
       if (line > most) [hardest, most] = [command, line];
     }

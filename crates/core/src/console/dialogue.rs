@@ -75,8 +75,11 @@ impl Console {
 
     /// Advances the timer of `watch` by a frame. Returns the rate that the serial line is to
     /// have from now on, if it changes.
-    pub fn frame(&mut self) -> Option<Rate> {
+    pub fn frame(&mut self, control: &Control) -> Option<Rate> {
         self.watch.frame();
+        if self.has_output(control) {
+            self.finder.note_unread();
+        }
         let rate = self.finder.frame()?;
         // The next line end may end a line that began at the rate before.
         self.line.push(GARBLED);

@@ -27,7 +27,7 @@ pub struct Finder {
     /// Wrong bytes since the last command, from `-MORE_AFTER_COMMAND` on, or since the last change
     /// of rate, from 0 on.
     wrong_bytes: i8,
-    /// True if a byte came since the last frame.
+    /// True if a byte came since the last frame, or may have come.
     has_received: bool,
     /// True for a rate other than USB's that has not carried a command.
     is_guess: bool,
@@ -50,6 +50,11 @@ impl Finder {
         if !byte.is_ascii() && self.wrong_bytes < WRONG_BYTES {
             self.wrong_bytes += 1;
         }
+    }
+
+    /// Notes that bytes may have come that are not read yet.
+    pub const fn note_unread(&mut self) {
+        self.has_received = true;
     }
 
     /// Takes a command of this length; returns false if it may be a misread one.
