@@ -58,7 +58,6 @@ pub struct Account {
 
 impl Account {
     /// The account of a simulated UNO's records since power-on.
-    #[must_use]
     pub fn new(edges: &[Edge], sent: &[SerialByte], end: u64) -> Self {
         let mut rises = [None; 20];
         let mut pulses = Vec::new();

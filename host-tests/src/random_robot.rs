@@ -32,7 +32,6 @@ const LEGS: [&str; 4] = ["LF", "RF", "RH", "LH"];
 ///
 /// # Panics
 /// If no draft becomes a valid robot: the generator is wrong.
-#[must_use]
 pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
     (0..DRAFTS)
         .find_map(|_| {
@@ -58,7 +57,6 @@ pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
 ///
 /// # Panics
 /// If the robot has no gait that moves, or is not valid.
-#[must_use]
 pub fn with_many_gaits(text: &str, length: usize) -> Robot {
     let robot = Robot::parse(text).expect("a valid robot");
     let like = robot.gaits().iter().find(|gait| gait.moves());

@@ -39,13 +39,11 @@ impl Drive {
     };
 
     /// True if a leg can lag behind its servo.
-    #[must_use]
     pub fn lags(&self) -> bool {
         self.kind != Kind::Rigid || self.play > 0.0
     }
 
     /// The slotted strut; `None` for another kind.
-    #[must_use]
     pub fn strut(&self) -> Option<&Strut> {
         match &self.kind {
             Kind::Strut(strut) => Some(strut),
@@ -54,7 +52,6 @@ impl Drive {
     }
 
     /// Name of the kind in robot.toml.
-    #[must_use]
     pub fn word(&self) -> &'static str {
         match self.kind {
             Kind::Rigid => Kind::WORDS[0],

@@ -28,7 +28,6 @@ pub struct Motor {
 
 impl Motor {
     /// Returns the same motor on another supply, given as a share of its own.
-    #[must_use]
     pub fn at_supply(&self, share: f64) -> Self {
         Self {
             stall: self.stall * share,
@@ -38,20 +37,17 @@ impl Motor {
     }
 
     /// Torque that the motor loses for each rad/s, N mm s: that of its own voltage.
-    #[must_use]
     pub fn damping(&self) -> f64 {
         self.stall / self.rate.to_radians()
     }
 
     /// Inertia of the rotor through the gears, N mm s^2.
-    #[must_use]
     pub fn inertia(&self) -> f64 {
         self.damping() * self.spin_up
     }
 
     /// The share of the motor's line that a torque (N mm) at a rate (deg/s) uses: 1 on the line
     /// itself, negative where the motor brakes.
-    #[must_use]
     pub fn line_share(&self, torque: f64, rate: f64) -> f64 {
         torque / self.stall + rate / self.rate
     }

@@ -37,7 +37,6 @@ impl Place {
     }
 
     /// The movement from an earlier place to this one, seen from the earlier one.
-    #[must_use]
     pub fn seen_from(self, earlier: Self) -> Travel {
         let (sin, cos) = earlier.heading.sin_cos();
         let (x, y) = (self.forward - earlier.forward, self.left - earlier.left);
@@ -49,7 +48,6 @@ impl Place {
     }
 
     /// Converts a point of the body (forward, left, mm) to the floor.
-    #[must_use]
     pub fn on_floor(self, [forward, left]: [f64; 2]) -> [f64; 2] {
         let (sin, cos) = self.heading.sin_cos();
         [
@@ -59,7 +57,6 @@ impl Place {
     }
 
     /// The movement from the start.
-    #[must_use]
     pub fn travel(self) -> Travel {
         self.seen_from(Self::START)
     }

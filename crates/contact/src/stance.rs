@@ -47,7 +47,6 @@ impl Stance {
 
     /// Extra load of the front left foot and of the one across, if the feet stand in a rectangle,
     /// N; the other two carry as much less.
-    #[must_use]
     pub fn diagonal(&self) -> f64 {
         self.stiffness * self.twist / 4.0
     }
@@ -58,7 +57,6 @@ impl Stance {
     /// The feet give, and the chassis does not: it sinks and tilts, so the load has a part of
     /// the foot's own length and a part that is linear in its place. Three equations of balance
     /// determine the latter.
-    #[must_use]
     pub fn loads(&self, body: &Body, feet: [Point; 4]) -> [f64; 4] {
         let own = [
             self.stiffness * self.twist / body.mean_load(),

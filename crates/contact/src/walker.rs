@@ -66,14 +66,12 @@ impl Slip {
 impl Walker {
     /// Makes a robot that stands with its servos at these sweeps (deg, foot forward
     /// positive, servo order) and its springs at rest.
-    #[must_use]
     pub fn new(ground: Ground, sweeps: [f64; 4]) -> Self {
         Self::with_unevenness(ground, sweeps, [1.0; 4], 1.0)
     }
 
     /// Makes such a robot with factors on the loads of the pads and on the friction backward over
     /// forward.
-    #[must_use]
     pub fn with_unevenness(ground: Ground, sweeps: [f64; 4], load: [f64; 4], ratio: f64) -> Self {
         Self {
             ground,
@@ -87,7 +85,6 @@ impl Walker {
     }
 
     /// Place of the body on the floor.
-    #[must_use]
     pub fn place(&self) -> Place {
         self.place
     }
@@ -98,7 +95,6 @@ impl Walker {
     }
 
     /// The floor, the pads and the drive of the legs.
-    #[must_use]
     pub fn ground(&self) -> &Ground {
         &self.ground
     }
@@ -112,19 +108,16 @@ impl Walker {
     }
 
     /// Lag of each leg behind its servo, deg.
-    #[must_use]
     pub fn lag(&self) -> [f64; 4] {
         self.lag
     }
 
     /// Sweeps of the legs, deg.
-    #[must_use]
     pub fn legs(&self) -> [f64; 4] {
         std::array::from_fn(|i| self.servos[i] - self.lag[i])
     }
 
     /// Sweeps of the servos, deg.
-    #[must_use]
     pub fn servos(&self) -> [f64; 4] {
         self.servos
     }

@@ -43,7 +43,6 @@ pub struct Variation {
 
 impl Variation {
     /// Draws a robot and a floor around this ground from a seed.
-    #[must_use]
     pub fn of(ground: &Ground, seed: u64) -> Self {
         let mut rng = Rng::with_seed(seed);
         let mut within = |(low, high): (f64, f64)| low + (high - low) * rng.f64();
@@ -99,7 +98,6 @@ impl Variation {
     }
 
     /// The ground without variation.
-    #[must_use]
     pub fn none(ground: &Ground) -> Self {
         Self {
             ground: *ground,
@@ -110,7 +108,6 @@ impl Variation {
 
     /// Follows the second cycle of a gait, which all later ones repeat, frame by frame with
     /// these servos.
-    #[must_use]
     pub fn walked(&self, robot: &Robot, gait: &CheckedGait, model: ServoModel) -> Travel {
         let mut sweeps = gait.sweeps(gait.phase(0.0));
         let targets = |phase: u16| gait.sweeps(f64::from(phase) / PHASES);
@@ -156,7 +153,6 @@ impl Variation {
 }
 
 /// The values below which these shares of all values lie, by nearest rank.
-#[must_use]
 pub fn quantiles<const N: usize>(mut values: Vec<f64>, shares: [f64; N]) -> [f64; N] {
     values.sort_by(f64::total_cmp);
     let last = values.len().saturating_sub(1);

@@ -31,7 +31,6 @@ pub struct Tally {
 
 impl Tally {
     /// Starts at this place, without frames.
-    #[must_use]
     pub fn new(begin: Place) -> Self {
         Self {
             begin,
@@ -76,13 +75,11 @@ impl Tally {
     }
 
     /// The movement of the body, seen from its start.
-    #[must_use]
     pub fn travel(&self) -> Travel {
         self.end.seen_from(self.begin)
     }
 
     /// Duration of the frames, s.
-    #[must_use]
     pub fn seconds(&self) -> f64 {
         self.frames as f64 * FRAME
     }

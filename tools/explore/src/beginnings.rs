@@ -112,7 +112,6 @@ fn cut_off(robot: &Robot) -> Eeprom {
 ///
 /// # Panics
 /// If a memory cannot be made.
-#[must_use]
 pub fn all(robot: Robot<'static>) -> Vec<InitialState> {
     let mut memories: Vec<(&'static str, Eeprom)> = MEMORIES
         .iter()

@@ -93,13 +93,11 @@ fn pace(pace: u64) -> u64 {
 }
 
 /// A number that two values share if no rule tells them apart.
-#[must_use]
 pub fn coarse(value: &impl fmt::Debug) -> u64 {
     print(value, RULES)
 }
 
 /// The same with every field except those that record that a line came.
-#[must_use]
 pub fn without_line_counters(value: &impl fmt::Debug) -> u64 {
     print(value, A_LINE_CAME)
 }

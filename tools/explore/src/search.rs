@@ -47,7 +47,6 @@ struct Step {
 }
 
 /// Searches from all beginnings, until this many distinct states are reached or none is left.
-#[must_use]
 pub fn search(robot: Robot<'static>, most: usize) -> SearchResult {
     let actions = Action::all();
     let begun = beginnings::all(robot);

@@ -56,7 +56,6 @@ pub struct World {
 
 impl World {
     /// A robot whose power has just come on.
-    #[must_use]
     pub fn power_on(robot: Robot<'static>, mut memory: Eeprom) -> Self {
         memory.slowness = 4;
         memory.is_timed = true;
@@ -76,7 +75,6 @@ impl World {
     }
 
     /// The number that equal states share.
-    #[must_use]
     pub fn print(&self) -> u64 {
         let board = &self.running.board;
         let mut print = Print(fingerprint::coarse(&self.running.main));
@@ -121,7 +119,6 @@ impl World {
     }
 
     /// True if the action is possible now.
-    #[must_use]
     pub fn is_possible(&self, action: Action) -> bool {
         let board = &self.running.board;
         match action {

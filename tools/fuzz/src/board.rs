@@ -37,7 +37,6 @@ impl Board {
     ///
     /// # Panics
     /// If the robot breaks a rule.
-    #[must_use]
     pub fn new(robot: &'static Robot, memory: Eeprom) -> Self {
         let mut board = Self {
             robot,
@@ -77,13 +76,11 @@ impl Board {
     }
 
     /// The output since the last byte.
-    #[must_use]
     pub fn said(&self) -> &str {
         &self.said
     }
 
     /// The robot's memory.
-    #[must_use]
     pub const fn memory(&self) -> &Eeprom {
         &self.running.board.memory
     }

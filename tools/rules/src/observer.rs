@@ -116,7 +116,6 @@ pub(crate) struct Pending {
 
 impl Observer {
     /// An observer of a robot whose power is still off.
-    #[must_use]
     pub fn new(limits: Limits) -> Self {
         Self {
             limits,
@@ -173,38 +172,32 @@ impl Observer {
     }
 
     /// True while lines wait for their answers.
-    #[must_use]
     pub const fn has_unanswered_lines(&self) -> bool {
         self.lines > 0
     }
 
     /// True while nothing allows pulses.
-    #[must_use]
     pub const fn rests(&self) -> bool {
         !self.permission.may
     }
 
     /// The time since which a fault has stopped the robot.
-    #[must_use]
     pub const fn stopped_since(&self) -> Option<Time> {
         self.reports.stopped
     }
 
     /// True while the console has not reported a stop.
-    #[must_use]
     pub const fn is_unreported(&self) -> bool {
         self.reports.stopped.is_some() && !self.reports.is_reported
     }
 
     /// True if the supply was below a level (0: writing, 1: moving, 2: pulses) within this time.
-    #[must_use]
     pub fn was_low(&self, level: usize, within: Time) -> bool {
         let mv = self.limits.levels[level];
         self.supply.time_below(mv, self.now - within, self.now + 1) > 0
     }
 
     /// The time until the last promise is due.
-    #[must_use]
     pub fn due_in(&self) -> Option<Time> {
         let pending = &self.pending;
         let ends = [
@@ -222,7 +215,6 @@ impl Observer {
     }
 
     /// The time since the last reset.
-    #[must_use]
     pub const fn runs_for(&self) -> Time {
         self.now - self.start
     }

@@ -45,7 +45,6 @@ impl Mark {
     };
 
     /// The bytes in flash: magic, format, version, and a zero, since code begins at even addresses.
-    #[must_use]
     pub const fn bytes(self) -> [u8; LENGTH] {
         let [a, b, c, d] = MAGIC.to_le_bytes();
         let [low, high] = self.format.to_le_bytes();
@@ -54,7 +53,6 @@ impl Mark {
     }
 
     /// Reads the mark of a flash that begins with a lizard's code; `None` for any other.
-    #[must_use]
     pub fn find(flash: &[u8]) -> Option<Self> {
         let bytes = flash.get(AT..AT + LENGTH)?;
         let (magic, rest) = bytes.split_first_chunk()?;

@@ -40,7 +40,6 @@ impl Cells for Ram {
 
 impl Ram {
     /// The state that the program would find if it started now.
-    #[must_use]
     pub fn found(&self, reported: Option<Cause>) -> Restart {
         kept::begin(&self.clone(), reported)
     }

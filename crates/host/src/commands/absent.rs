@@ -80,7 +80,6 @@ pub struct Absent {
 #[cfg(not(all(feature = "paper", feature = "simulator")))]
 impl Absent {
     /// Explains why this build has no command of this name.
-    #[must_use]
     pub fn failure(name: &str, needs: &[&str]) -> Failure {
         missing(name, needs, is_built)
     }

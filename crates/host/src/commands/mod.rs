@@ -193,7 +193,6 @@ struct Cli {
 }
 
 /// All commands and options, the commands in groups.
-#[must_use]
 pub fn program() -> clap::Command {
     groups::grouped(Cli::command(), KNOWN)
 }
@@ -211,7 +210,6 @@ pub fn run(arguments: Vec<OsString>) -> Result<(), Failure> {
 }
 
 /// Runs a command line, writes the message of its failure, and returns the exit code.
-#[must_use]
 pub fn run_and_report(arguments: Vec<OsString>) -> u8 {
     match run(arguments) {
         Ok(()) => 0,

@@ -19,7 +19,6 @@ use crate::Failure;
 static READ: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// Notes a file that is about to be read, so that no output replaces it.
-#[must_use]
 pub fn note_input(path: &Path) -> &Path {
     let mut read = READ.lock().unwrap_or_else(PoisonError::into_inner);
     read.push(path.to_owned());

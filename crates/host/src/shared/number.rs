@@ -2,7 +2,6 @@
 
 /// A value rounded to some decimals, as it will be printed, without the sign of
 /// a zero: no "-0.000".
-#[must_use]
 pub fn tidy(value: f64, decimals: i32) -> f64 {
     let scale = 10f64.powi(decimals);
     // Adding a positive zero turns a negative one positive.
@@ -10,7 +9,6 @@ pub fn tidy(value: f64, decimals: i32) -> f64 {
 }
 
 /// A number with blanks between its thousands.
-#[must_use]
 pub fn grouped(value: f64, decimals: usize) -> String {
     let plain = format!("{value:.decimals$}");
     let (whole, fraction) = plain.split_at(plain.find('.').unwrap_or(plain.len()));

@@ -5,7 +5,6 @@
 //! file or a board is shown with such characters spelled out.
 
 /// The text with every control character as an escape of Rust, such as `\u{1b}`.
-#[must_use]
 pub fn plain(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {
@@ -19,7 +18,6 @@ pub fn plain(text: &str) -> String {
 }
 
 /// The text with its lines made plain; the middle of a very long line is omitted.
-#[must_use]
 pub fn readable_lines(text: &str) -> String {
     let lines: Vec<String> = text.split('\n').map(|line| shorten(&plain(line))).collect();
     lines.join("\n")

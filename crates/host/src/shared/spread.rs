@@ -70,7 +70,6 @@ impl Part {
     }
 
     /// The number of this part's pieces.
-    #[must_use]
     pub fn count(self, pieces: usize) -> usize {
         (0..pieces).filter(|piece| self.has(*piece)).count()
     }
@@ -151,7 +150,6 @@ impl Spread {
     }
 
     /// The only part to compute, if `--part` was given.
-    #[must_use]
     pub fn part(&self) -> Option<Part> {
         self.part
     }
@@ -192,7 +190,6 @@ impl Spread {
     }
 
     /// The number of pieces computed here, for a progress bar.
-    #[must_use]
     pub fn own(&self, count: usize) -> usize {
         match (&self.merged, self.part) {
             (Some(_), _) => 0,

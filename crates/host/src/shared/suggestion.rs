@@ -6,7 +6,6 @@ const MIN_SIMILARITY: f64 = 0.7;
 
 /// The end of a sentence: `; did you mean NAME?` with the name most like the word; nothing if
 /// none is like it.
-#[must_use]
 pub fn did_you_mean<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> String {
     let like = names
         .into_iter()

@@ -101,7 +101,6 @@ impl SimulatedBoard {
     }
 
     /// Powers on a board with an image that contains the robot already.
-    #[must_use]
     pub fn with_image(image: Image, fidelity: Fidelity, robot: &Robot) -> Self {
         let mut uno = Uno::with_image(image, fidelity);
         supplies::connect(&mut uno, robot);
@@ -121,7 +120,6 @@ impl SimulatedBoard {
     }
 
     /// A board around any simulated UNO. `pins` are those of the servos A1 to A4.
-    #[must_use]
     pub fn with_uno(uno: Uno, pins: [Pin; 4]) -> Self {
         Self {
             uno,
@@ -135,7 +133,6 @@ impl SimulatedBoard {
     }
 
     /// The pins of the servos A1 to A4.
-    #[must_use]
     pub fn pins(&self) -> [Pin; 4] {
         self.pins
     }

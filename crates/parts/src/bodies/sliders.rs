@@ -33,7 +33,6 @@ pub struct SliderLengths {
 
 impl SliderLengths {
     /// The lengths for a side whose pins may be from `shortest` to `longest` mm apart.
-    #[must_use]
     pub fn new(side: Side, [shortest, longest]: [f64; 2]) -> Self {
         let sleeve = shortest - SHORTEST_GAP;
         Self {

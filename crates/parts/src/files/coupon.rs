@@ -26,7 +26,6 @@ const SLEEVE: f64 = 10.0;
 const GAUGE: f64 = 30.0;
 
 /// The coupon, and a piece of rod to try its sleeves with.
-#[must_use]
 pub fn coupon(parts: &Parts) -> [Part; 2] {
     let (servo, horn) = (&parts.servo, &parts.horn);
     let pitch = servo.width + 2.0 * STEP * f64::from(COLUMNS) + 4.0;

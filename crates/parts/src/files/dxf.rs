@@ -9,7 +9,6 @@ use crate::files::sheet::{Sheet, extent};
 use crate::layers::outline::Loop;
 
 /// The text of a file.
-#[must_use]
 pub fn dxf(sheet: &Sheet, kerf: f64) -> String {
     let mut file = Groups::default();
     let [low, high] = extent(sheet);

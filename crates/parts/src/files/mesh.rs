@@ -29,7 +29,6 @@ impl Mesh {
     ///
     /// # Panics
     /// Never for a closed surface.
-    #[must_use]
     pub fn of(solid: &Solid) -> Self {
         let mut maker = MeshBuilder {
             solid,
@@ -52,7 +51,6 @@ impl Mesh {
     }
 
     /// The volume, mm^3.
-    #[must_use]
     pub fn volume(&self) -> f64 {
         let volumes = self.triangles.iter().map(|&triangle| {
             let [[ax, ay, az], [bx, by, bz], [cx, cy, cz]] = triangle.map(|i| self.corners[i]);
@@ -62,7 +60,6 @@ impl Mesh {
     }
 
     /// True if every side of a triangle has exactly one neighbour.
-    #[must_use]
     pub fn is_closed(&self) -> bool {
         let mut sides = BTreeMap::new();
         for &[a, b, c] in &self.triangles {

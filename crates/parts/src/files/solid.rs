@@ -70,7 +70,6 @@ struct Piece {
 
 impl Solid {
     /// The surface of some layers, which lie on each other from below to above.
-    #[must_use]
     pub fn of(prisms: &[Prism]) -> Self {
         let outlines: Vec<Outline> = prisms.iter().map(Outline::of).collect();
         let mut maker = SolidBuilder::default();
@@ -95,7 +94,6 @@ impl Solid {
     }
 
     /// True if every edge has exactly two faces, which run along it in opposite directions.
-    #[must_use]
     pub fn is_closed(&self) -> bool {
         let mut uses = vec![[0, 0]; self.edges.len()];
         for &(edge, forward) in self.faces.iter().flat_map(|face| &face.loops).flatten() {

@@ -11,7 +11,6 @@ use crate::files::solid::{Face, Solid, Surface};
 use crate::layers::outline::Side;
 
 /// The text of a STEP file.
-#[must_use]
 pub fn step(name: &str, solid: &Solid) -> String {
     let mut file = File::default();
     let solid = file.solid(name, solid);

@@ -13,7 +13,6 @@ const MARGIN: f64 = 5.0;
 const COLOURS: [&str; 4] = ["#d00000", "#0050c0", "#a000a0", "#008040"];
 
 /// The text of a file.
-#[must_use]
 pub fn sheet_svg(sheet: &Sheet, kerf: f64) -> String {
     let [low, high] = extent(sheet);
     let (width, height) = (high.x - low.x + 2.0 * MARGIN, high.y - low.y + 2.0 * MARGIN);

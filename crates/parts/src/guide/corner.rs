@@ -15,7 +15,6 @@ use crate::part::Part;
 
 impl Assembly {
     /// The printed parts of the corner of A1, each once.
-    #[must_use]
     pub fn corner(&self) -> Vec<Part> {
         let (name, leg) = names(CORNER);
         let prisms = chassis::corner(&Builder::new(self.robot()), CORNER);

@@ -128,7 +128,6 @@ struct Layer {
 }
 
 /// Some bodies at a pose, with names, as SVG.
-#[must_use]
 pub fn picture(
     assembly: &Assembly,
     drawn: &[PictureBody],

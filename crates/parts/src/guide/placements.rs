@@ -77,7 +77,6 @@ struct Flat {
 ///
 /// # Panics
 /// Never: texts and numbers can always be written as JSON.
-#[must_use]
 pub fn placements(assembly: &Assembly, pose: &Solution) -> String {
     let parts = assembly.parts();
     let steps = steps(assembly.robot().drive().strut().is_some());

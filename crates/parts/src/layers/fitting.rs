@@ -93,7 +93,6 @@ impl Fitting {
     ];
 
     /// What is known about it.
-    #[must_use]
     pub fn facts(self) -> Facts {
         match self {
             Self::Converter => Facts {
@@ -256,13 +255,11 @@ impl Fitting {
     }
 
     /// The name as a body.
-    #[must_use]
     pub fn name(self) -> &'static str {
         self.facts().name
     }
 
     /// The line in the list to buy; empty for a piece of another strip, and for an option.
-    #[must_use]
     pub fn what(self) -> String {
         let Facts { what, size, .. } = self.facts();
         let [x, y, z] = size;
@@ -284,7 +281,6 @@ impl Fitting {
     }
 
     /// The price class of its row of the bill.
-    #[must_use]
     pub fn price(self) -> Price {
         match self {
             Self::Resistor => Price::A,

@@ -60,7 +60,6 @@ pub fn size(text: &str) -> [f64; 2] {
 }
 
 /// Layers with a mark engraved on an upper face; `None` if no face has room for it.
-#[must_use]
 pub fn engraved(prisms: &[Prism], text: &str) -> Option<Vec<Prism>> {
     let outlines: Vec<_> = prisms.iter().map(Outline::of).collect();
     for (layer, prism) in prisms.iter().enumerate().rev() {

@@ -54,7 +54,6 @@ pub struct Outline {
 
 impl Outline {
     /// The outline of a layer.
-    #[must_use]
     pub fn of(prism: &Prism) -> Self {
         let (outer, gaps) = unite(prism.add.iter().map(polyline));
         let (mut cuts, _) = unite(gaps.into_iter().chain(prism.cut.iter().map(polyline)));
@@ -97,20 +96,17 @@ impl Outline {
     }
 
     /// The enclosed area, mm^2.
-    #[must_use]
     pub fn area(&self) -> f64 {
         self.loops().map(Loop::area).sum()
     }
 
     /// The area times its centroid, mm^3.
-    #[must_use]
     pub fn moment(&self) -> Vector {
         self.loops()
             .fold(Vector::default(), |sum, of| sum + of.moment())
     }
 
     /// True if a point is in the material.
-    #[must_use]
     pub fn contains(&self, point: Vector) -> bool {
         let turns: i32 = self.loops().map(|of| of.turns_around(point)).sum();
         turns > 0
@@ -143,7 +139,6 @@ impl Loop {
     }
 
     /// Centre and radius, if it is a circle.
-    #[must_use]
     pub fn circle(&self) -> Option<(Vector, f64)> {
         let mut arcs = self.ends().map(|(side, to)| side.arc(to));
         let (centre, radius) = arcs.next()??;
@@ -157,7 +152,6 @@ impl Loop {
     }
 
     /// The area within, mm^2; negative around a hole.
-    #[must_use]
     pub fn area(&self) -> f64 {
         self.polyline().area()
     }
@@ -205,7 +199,6 @@ impl Side {
     }
 
     /// Centre and radius of its arc to an end; `None` for a line.
-    #[must_use]
     pub fn arc(&self, to: Vector) -> Option<(Vector, f64)> {
         (self.bulge != 0.0).then(|| {
             let end = PlineVertex::new(to.x, to.y, 0.0);
@@ -215,7 +208,6 @@ impl Side {
     }
 
     /// The point half-way to an end.
-    #[must_use]
     pub fn middle(&self, to: Vector) -> Vector {
         let middle = seg_midpoint(self.vertex(), PlineVertex::new(to.x, to.y, 0.0));
         Vector::new(middle.x, middle.y)

@@ -19,7 +19,6 @@ const BESIDE: f64 = 0.3;
 const SAME_HEIGHT_MM: f64 = 1e-6;
 
 /// Layers in which the holes that would begin in the air are closed, and their number.
-#[must_use]
 pub fn closed(prisms: &[Prism]) -> (Vec<Prism>, usize) {
     let mut layers = prisms.to_vec();
     let mut count = 0;

@@ -238,7 +238,6 @@ impl Bench<'_> {
 impl Assembly {
     /// The screws that cannot be put in or turned in the order of some steps while the
     /// servos stand at a pose.
-    #[must_use]
     pub fn blocked(&self, steps: &[Step], pose: &Solution) -> Vec<Blocked> {
         let bench = Bench {
             assembly: self,

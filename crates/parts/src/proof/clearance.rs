@@ -45,7 +45,6 @@ impl fmt::Display for Clearance {
 impl Assembly {
     /// Pairs of bodies that come nearer than `within` mm at some poses, the nearest first,
     /// each pair once.
-    #[must_use]
     pub fn nearest(
         &self,
         poses: impl IntoIterator<Item = Solution>,

@@ -126,7 +126,6 @@ impl NearestPair {
 
 impl Proof {
     /// The nearest two bodies that are not made to meet.
-    #[must_use]
     pub fn least(&self) -> Option<&NearestPair> {
         self.apart.first()
     }
@@ -188,13 +187,11 @@ impl<'a> Questions<'a> {
     }
 
     /// The number of questions.
-    #[must_use]
     pub fn count(&self) -> usize {
         self.tasks.len()
     }
 
     /// Answers one question, by its index below [`Questions::count`].
-    #[must_use]
     pub fn one(&self, index: usize) -> Answer {
         self.within(index, search::MAX_REGIONS)
     }

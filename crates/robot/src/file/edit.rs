@@ -115,7 +115,6 @@ pub fn without(text: &str, key: &str) -> Result<String, NoSuchKey> {
 }
 
 /// Adds the table of a gait, in place of the gait of the same name or at the end of the text.
-#[must_use]
 pub fn with_gait(text: &str, name: &str, table: &str) -> String {
     let (own, below) = (format!("[gait.{name}]"), format!("[gait.{name}."));
     let (mut kept, mut is_own, mut done) = (String::new(), false, false);
@@ -154,7 +153,6 @@ pub struct WrittenRoutine {
 
 /// The routines of a text in its order, so that one with a mistake can be shown and mended. Without those
 /// whose steps are no strings.
-#[must_use]
 pub fn routines(text: &str) -> Vec<WrittenRoutine> {
     let Ok(document) = DeTable::parse(text) else {
         return Vec::new();
@@ -180,7 +178,6 @@ pub fn routines(text: &str) -> Vec<WrittenRoutine> {
 
 /// Sets the steps of a routine; a missing one is added at the end of the text. Its other lines, such as `repeat`,
 /// stay as they are.
-#[must_use]
 pub fn with_steps(text: &str, name: &str, steps: &[String]) -> String {
     let steps: Vec<_> = steps.iter().map(|step| format!("{step:?}")).collect();
     let steps = format!("[{}]", steps.join(", "));

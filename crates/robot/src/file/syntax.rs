@@ -6,7 +6,6 @@
 //! message stays.
 
 /// Makes the message for a mistake at byte `at` of a text; `message` is the parser's own.
-#[must_use]
 pub fn mistake(text: &str, at: usize, message: &str) -> String {
     let number = text.get(..at).map_or(0, |text| text.matches('\n').count());
     let lines: Vec<&str> = text.lines().map(without_comment).collect();

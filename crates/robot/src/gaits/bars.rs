@@ -67,7 +67,6 @@ impl Bars {
     /// negative, which begins where this one's stance ends. A held wave in reverse is the
     /// negative of the one in the opposite order; that all four begin at another time makes no
     /// difference.
-    #[must_use]
     pub fn reversed(&self) -> Self {
         let start = |leg: usize| match self.held {
             true => 1.0 - self.start[leg],
@@ -87,7 +86,6 @@ impl Bars {
     }
 
     /// Writes the gait as a table of robot.toml, rounded to thousandths.
-    #[must_use]
     pub fn table(&self) -> String {
         let legs = |values: [f64; 4]| {
             let each = LEGS.iter().zip(values);

@@ -100,7 +100,6 @@ impl LegPlan {
 
     /// Places the leg for an angle of the servo and an angle of the leg's crank, both in deg,
     /// chassis frame. They differ by the lag.
-    #[must_use]
     pub fn at(&self, servo: f64, leg: f64) -> LegPlace {
         let turned = |angle: f64, v: Vector| {
             let x = Vector::direction(angle);

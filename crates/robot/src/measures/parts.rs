@@ -151,7 +151,6 @@ measures! {
 impl Pad {
     /// Height of the dome, mm, and so of the highest edge that it can slide up; `None` for a pad
     /// that is wider than the ball.
-    #[must_use]
     pub fn dome(&self) -> Option<f64> {
         let half = self.width / 2.0;
         (half <= self.radius)

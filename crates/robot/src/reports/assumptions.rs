@@ -233,7 +233,6 @@ pub struct Assumptions {
 
 impl Assumptions {
     /// Walks a robot's gaits with its servos at both ends of every range; takes some seconds.
-    #[must_use]
     pub fn of(robot: &Robot) -> Self {
         let joints = robot.motors().joints;
         let taken = Inputs {

@@ -40,7 +40,6 @@ pub struct ServoTable {
 
 impl ServoTable {
     /// Predicts a robot's gaits at all supplies and paces; takes some seconds.
-    #[must_use]
     pub fn of(robot: &Robot) -> Self {
         let servo = *robot.servo_type();
         let supplies = robot.supplies();

@@ -23,7 +23,6 @@ const MIN_MOVEMENT: (f64, f64) = (1.0, 0.5);
 
 impl SpringCost {
     /// Compares a gait on this ground with the same gait on rigid legs; `None` if legs do not lag.
-    #[must_use]
     pub fn of(gait: &CheckedGait, ground: &Ground) -> Option<Self> {
         if !ground.drive.lags() {
             return None;

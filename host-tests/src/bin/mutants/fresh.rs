@@ -52,7 +52,6 @@ const SWAPS: [(&str, &str); 19] = [
 ];
 
 /// True if the file has code that fresh mistakes are made in.
-#[must_use]
 pub fn is_firmware(file: &str) -> bool {
     let ours = ["crates/core/src/", "src/board/", "crates/pulses/src/"];
     let host_only = HOST_ONLY.iter().any(|part| file.contains(part));
@@ -60,14 +59,12 @@ pub fn is_firmware(file: &str) -> bool {
 }
 
 /// True if a mistake in the file can move a servo or change a saved value.
-#[must_use]
 pub fn moves(file: &str) -> bool {
     let name = file.strip_prefix("crates/core/src/").unwrap_or(file);
     !TEXT.iter().any(|part| name.starts_with(part))
 }
 
 /// Every mistake that can be made in a file.
-#[must_use]
 pub fn all(file: &str, text: &str) -> Vec<Mutant> {
     let code = text.split("#[cfg(test)]").next().unwrap_or_default();
     let lines: Vec<&str> = code.lines().collect();
@@ -152,14 +149,12 @@ fn numbers(code: &str) -> Vec<(usize, &str)> {
 }
 
 /// The mistakes in the order in which a seed draws them.
-#[must_use]
 pub fn drawn(mut mutants: Vec<Mutant>, seed: u64) -> Vec<Mutant> {
     Rng::with_seed(seed).shuffle(&mut mutants);
     mutants
 }
 
 /// The Wilson interval of a rate, 95 %: within it the true rate lies in 19 of 20 samples.
-#[must_use]
 pub fn wilson(noticed: usize, tried: usize) -> (f64, f64) {
     const Z: f64 = 1.96;
     let n = tried.max(1) as f64;

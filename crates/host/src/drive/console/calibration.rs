@@ -60,7 +60,6 @@ pub enum Direction {
 
 impl Direction {
     /// The sign as the console writes it.
-    #[must_use]
     pub const fn sign(self) -> char {
         match self {
             Self::Plus => '+',
@@ -80,7 +79,6 @@ impl Direction {
 
 impl Servos {
     /// A1 to A4.
-    #[must_use]
     pub fn all(&self) -> [&Servo; 4] {
         [&self.a1, &self.a2, &self.a3, &self.a4]
     }
@@ -149,7 +147,6 @@ impl Calibration {
     }
 
     /// The console commands that set all values.
-    #[must_use]
     pub fn commands(&self) -> Vec<String> {
         let mut lines = Vec::new();
         for (index, servo) in self.servo.all().into_iter().enumerate() {
@@ -204,7 +201,6 @@ impl Calibration {
     }
 
     /// True if a robot would print the same for both: angles are the same modulo a turn.
-    #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
         let near = |a: f64, b: f64| (a - b).abs() < 0.0049;
         let turned = |a: f64, b: f64| {

@@ -135,7 +135,6 @@ impl Finder {
     }
 
     /// True if the board is a simulated one, which ends with this program.
-    #[must_use]
     pub fn is_simulated(&self) -> bool {
         #[cfg(all(feature = "simulator", target_os = "linux"))]
         let simulated = self.simulated.is_some();
@@ -168,7 +167,6 @@ impl Connection {
     }
 
     /// Converts the error to a failure whose message has the port's name.
-    #[must_use]
     pub fn failure(&self, error: &LinkError) -> Failure {
         Failure::Impossible(format!("{}: {error}", self.name))
     }

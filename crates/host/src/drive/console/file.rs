@@ -16,7 +16,6 @@ const HEAD: &str = "\
 ";
 
 /// The text of the file.
-#[must_use]
 pub fn text(set: &Calibration) -> String {
     let keys = toml::to_string(set).expect("numbers and words are always TOML");
     format!("{HEAD}format = \"{FORMAT}\"\n{keys}")

@@ -33,7 +33,6 @@ pub struct Prompt {
 
 impl Prompt {
     /// An empty line with a history.
-    #[must_use]
     pub fn new(history: Vec<String>) -> Self {
         Self {
             at: history.len(),
@@ -118,13 +117,11 @@ impl Prompt {
     }
 
     /// The text typed so far.
-    #[must_use]
     pub fn text(&self) -> &str {
         self.input.value()
     }
 
     /// The part of it that fits in `width` columns, and the cursor's column in it.
-    #[must_use]
     pub fn view(&self, width: usize) -> (String, usize) {
         let scroll = self.input.visual_scroll(width.max(1));
         let shown = self.text().chars().skip(scroll).take(width).collect();
@@ -132,7 +129,6 @@ impl Prompt {
     }
 
     /// The lines typed so far.
-    #[must_use]
     pub fn history(&self) -> &[String] {
         &self.history
     }

@@ -115,7 +115,6 @@ impl<W: Write> Recorder<W> {
 
 impl Event {
     /// The event of a line that begins with `#`: a pose, or a note.
-    #[must_use]
     pub fn of_note(line: &str) -> Self {
         match pose(line) {
             Some((frame, angles)) => Self::Pose { frame, angles },

@@ -114,7 +114,6 @@ pub struct Session {
 impl Session {
     /// A new dialogue. `polls_status`: ask for the status; `watches_poses`: ask
     /// for every pose.
-    #[must_use]
     pub fn new(now: Instant, polls_status: bool, watches_poses: bool) -> Self {
         Self {
             waiting: None,
@@ -172,7 +171,6 @@ impl Session {
     }
 
     /// True while `deadman` is set because the robot walks, or is about to.
-    #[must_use]
     pub fn is_driven(&self) -> bool {
         self.deadman.as_ref().is_some_and(|deadman| deadman.is_set)
     }
@@ -393,13 +391,11 @@ impl Session {
     }
 
     /// True if no answer is outstanding and no line is queued.
-    #[must_use]
     pub fn is_idle(&self) -> bool {
         self.waiting.is_none() && self.halt.is_none() && self.queue.is_empty()
     }
 
     /// The latest status.
-    #[must_use]
     pub fn status(&self) -> Option<&Status> {
         self.status.as_ref()
     }

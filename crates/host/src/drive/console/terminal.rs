@@ -6,7 +6,6 @@ use std::thread;
 use std::time::Duration;
 
 /// True if the terminal still exists. A terminal that was closed would return keys forever.
-#[must_use]
 pub fn is_there() -> bool {
     io::stdin().is_terminal()
 }

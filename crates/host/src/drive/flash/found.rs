@@ -63,7 +63,6 @@ pub enum TheirRobot {
 impl FlashContents {
     /// Compares `flash`, from address 0 to the boot loader, with an image. For an image that is
     /// a robot alone, only the first page and the robot's pages were read.
-    #[must_use]
     pub fn in_flash(flash: &[u8], image: &Image) -> Self {
         let pages = image.pages();
         let is_there = |page: &&super::image::Page| flash[page.range()] == page.bytes;

@@ -34,7 +34,6 @@ const BODY: (f64, f64) = (12.2, 22.8);
 const SHAFT: f64 = 6.0;
 
 /// The cranks of a robot at their neutral angles, as SVG text.
-#[must_use]
 pub fn horns(robot: &Robot) -> String {
     let mut group = chassis(robot);
     for servo in 0..4 {

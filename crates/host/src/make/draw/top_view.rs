@@ -27,7 +27,6 @@ pub(super) type Joint = Vector;
 
 /// The robot at a solved pose, as SVG text; with names and measures if
 /// `labels`.
-#[must_use]
 pub fn top_view(robot: &Robot, solution: &Solution, labels: bool) -> String {
     let view = View::new(robot, solution);
     let mut group = view.skin(Group::new());

@@ -87,13 +87,11 @@ impl<'a> Search<'a> {
     }
 
     /// The number of pieces to compute.
-    #[must_use]
     pub fn pieces(&self) -> usize {
         self.points.len().div_ceil(AT_ONCE)
     }
 
     /// The designs of one piece that meet the demands.
-    #[must_use]
     pub fn piece(&self, index: usize) -> Vec<Design> {
         let points = self.points.chunks(AT_ONCE).nth(index).unwrap_or_default();
         let designs = points.par_iter().filter_map(|point| {
@@ -105,7 +103,6 @@ impl<'a> Search<'a> {
 }
 
 /// The designs of all pieces, the best first.
-#[must_use]
 pub fn ranked(pieces: Vec<Vec<Design>>) -> Vec<Design> {
     let mut designs = pieces.concat();
     rank(&mut designs);

@@ -116,7 +116,6 @@ pub(crate) fn code_bytes(image: &Image, robot: &Robot) -> u32 {
 ///
 /// # Panics
 /// Never: a test reads that code, and a robot's section has room.
-#[must_use]
 pub fn image_with(robot: &Robot) -> Image {
     let mut image = Image::parse_hex(CODE).expect("a test reads it");
     put_robot(&mut image, robot).expect("a robot's section has room");

@@ -37,7 +37,6 @@ pub struct Row {
 
 impl Row {
     /// True if the figure keeps to its budget; a figure that was not measured passes.
-    #[must_use]
     pub fn is_met(&self) -> bool {
         self.measured.is_none_or(|measured| match self.budget {
             Bound::AtMost(most) => measured <= most,
@@ -70,7 +69,6 @@ const MAX_RUN_S: f64 = 60.0;
 const LONG_RUN_S: f64 = 600.0;
 
 /// The table of all figures.
-#[must_use]
 pub fn rows(figures: &Figures) -> Vec<Row> {
     use Bound::{AtLeast, AtMost};
     let row = |what, unit, measured, budget, servo_library| Row {

@@ -106,7 +106,6 @@ impl ServoFrame {
 }
 
 /// Reads frames back into angles.
-#[must_use]
 pub fn instants(robot: &Robot, frames: &[Frame]) -> Vec<ServoFrame> {
     let seconds = |frame: &Frame| frame.start as f64 / FREQUENCY as f64;
     frames
@@ -152,7 +151,6 @@ impl Serialize for Run<'_> {
 
 /// Each servo's row of the table. `commands` are the widths in cycles that the
 /// firmware's core asked for, frame by frame, 0 for none.
-#[must_use]
 pub fn servos(run: Run<'_>, commands: Option<&[[u16; 4]]>) -> Vec<ServoReport> {
     let frames = &run.log.widths;
     let mut slew = [0.0f64; 4];
@@ -188,7 +186,6 @@ pub fn servos(run: Run<'_>, commands: Option<&[[u16; 4]]>) -> Vec<ServoReport> {
 }
 
 /// Solves every pose of the run.
-#[must_use]
 pub fn safety(run: Run<'_>) -> Safety {
     let mut safety = Safety {
         least: None,
@@ -241,7 +238,6 @@ impl Safety {
 /// The path under each command by the contact model, and the path of the complete run as the
 /// last one. Legs count as rigid, so that each pair of frames is computed once; `lizard twin`
 /// lets them lag. Feet are never lifted: see [`lizard_robot::Ground`].
-#[must_use]
 pub fn command_paths(run: Run<'_>, spans: &[Span]) -> Vec<CommandPath> {
     let mut steps = Steps {
         run,

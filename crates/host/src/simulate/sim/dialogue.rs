@@ -19,7 +19,6 @@ pub struct Printer {
 
 impl Printer {
     /// A printer of all lines, or one that shortens runs.
-    #[must_use]
     pub fn new(all: bool) -> Self {
         Self { all, run: 0 }
     }

@@ -32,7 +32,6 @@ pub struct FootSpan {
 }
 
 /// The movements of a servo's foot, in order of time. `None` while it rests.
-#[must_use]
 pub fn foot_spans(
     instants: impl Iterator<Item = ServoFrame> + Clone,
     servo: usize,

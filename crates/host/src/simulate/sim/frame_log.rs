@@ -21,13 +21,11 @@ pub struct FrameLog {
 
 impl FrameLog {
     /// Seconds from power-on to the start of frame number `n`.
-    #[must_use]
     pub fn seconds(&self, n: usize) -> f64 {
         (self.first + n as u64 * FRAME) as f64 / FREQUENCY as f64
     }
 
     /// Number of the first frame that starts at a time or later.
-    #[must_use]
     pub fn index(&self, seconds: f64) -> usize {
         let since = seconds * FREQUENCY as f64 - self.first as f64;
         let n = (since / FRAME as f64).ceil().max(0.0) as usize;
@@ -48,7 +46,6 @@ pub struct FrameReader {
 
 impl FrameReader {
     /// Reads the pulses of these pins, A1 to A4; there is room for `frames`.
-    #[must_use]
     pub fn new(pins: [Pin; 4], frames: usize) -> Self {
         Self {
             pins,
@@ -105,7 +102,6 @@ impl FrameReader {
     }
 
     /// Finishes the log with the complete frames up to a cycle.
-    #[must_use]
     pub fn finish(mut self, cycle: u64) -> FrameLog {
         let whole = if self.started {
             (cycle - first_cycle(self.log.first)) / FRAME

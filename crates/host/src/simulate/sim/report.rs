@@ -182,7 +182,6 @@ pub struct Ram {
 
 impl Ram {
     /// The RAM of a UNO's program; `None` if the image does not say where its data ends.
-    #[must_use]
     pub fn of(uno: &Uno) -> Option<Self> {
         let static_ram = uno.image().static_ram();
         (static_ram > 0).then(|| Self {

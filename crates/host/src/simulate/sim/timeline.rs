@@ -44,7 +44,6 @@ pub const SIMULATED: Caption = Caption {
 };
 
 /// The picture as SVG text. `spans` are the commands that were in effect.
-#[must_use]
 pub fn draw(run: Run<'_>, spans: &[Span], caption: &Caption) -> String {
     let end = spans.last().map_or(0.0, |span| span.to);
     let chart = Chart {

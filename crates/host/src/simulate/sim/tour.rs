@@ -3,7 +3,6 @@
 use lizard_robot::Robot;
 
 /// Names of the gaits that move a servo, in the order of robot.toml.
-#[must_use]
 pub fn moving(robot: &Robot) -> Vec<&str> {
     let moving = robot.gaits().iter().filter(|gait| gait.moves());
     moving.map(|gait| gait.name()).collect()
@@ -11,7 +10,6 @@ pub fn moving(robot: &Robot) -> Vec<&str> {
 
 /// The gaits of a tour: the first that moves, and of the others the one that is
 /// predicted to turn the robot most in a cycle. Fewer where there are fewer.
-#[must_use]
 pub fn gaits(robot: &Robot) -> Vec<&str> {
     let moving = moving(robot);
     let turn = |name: &str| {

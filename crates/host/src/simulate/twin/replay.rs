@@ -31,7 +31,6 @@ pub struct Stage {
 
 impl Replay {
     /// Walks the frames of a run.
-    #[must_use]
     pub fn of(robot: &Robot, log: &FrameLog, spans: Vec<Span>, model: ServoModel) -> Self {
         let us = |width: u16| (width > 0).then(|| f64::from(width) / CYCLES_PER_US as f64);
         let mut twin = Twin::new(robot, model);
@@ -49,7 +48,6 @@ impl Replay {
     }
 
     /// Sums up these frames.
-    #[must_use]
     pub fn tally(&self, frames: Range<usize>) -> Tally {
         let begin = match frames.start {
             0 => Place::START,
@@ -64,7 +62,6 @@ impl Replay {
 
     /// The frames of the last complete cycle under a command, if it is a gait's and a cycle
     /// came before it.
-    #[must_use]
     pub fn last_cycle(&self, stage: &Stage) -> Option<(&CheckedGait, Range<usize>)> {
         let gait = self
             .robot

@@ -108,7 +108,6 @@ impl PathParts {
 impl Report {
     /// Sums up a replay. With `paced`, gaits went at other speeds than their own, and
     /// their cycles are not reported.
-    #[must_use]
     pub fn of(robot: &Robot, replay: &Replay, model: ServoModel, paced: bool) -> Self {
         let rows = replay
             .stages
@@ -255,7 +254,6 @@ fn sentence(way: &PathParts) -> String {
 }
 
 /// A part of a path with its sign, except for zero; a dash if it is unknown.
-#[must_use]
 pub fn format_part(part: Option<f64>, decimals: usize) -> String {
     part.map_or("-".to_owned(), |value| {
         format!("{:+.decimals$}", tidy(value, decimals as i32))

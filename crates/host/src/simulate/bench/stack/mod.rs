@@ -92,13 +92,11 @@ impl StackDepth {
 
     /// The deepest of all: on top of main at its deepest an interrupt, or one that never
     /// returns and another.
-    #[must_use]
     pub fn worst(&self) -> u16 {
         self.main + self.last + self.handler
     }
 
     /// Bytes between static data and the deepest stack; negative if they collide.
-    #[must_use]
     pub fn margin(&self) -> i32 {
         i32::from(SRAM_END) - i32::from(self.floor) - i32::from(self.worst())
     }

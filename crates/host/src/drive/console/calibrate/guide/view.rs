@@ -22,7 +22,6 @@ pub struct View {
 
 impl<P: Read + Write> Guide<'_, P> {
     /// The screen for the current step.
-    #[must_use]
     pub fn view(&self) -> View {
         let servo = |index: usize| format!("A{}, {}", index + 1, PLACES[index]);
         let next = "Enter: next    b: back    q: cancel, nothing is saved";
