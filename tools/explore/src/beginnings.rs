@@ -104,7 +104,7 @@ fn cut_off(robot: &Robot) -> Eeprom {
     settings.set_servo(Servo::ALL[2], set);
     let mut memory = Eeprom::blank();
     let mut writing = COPIES[0].write();
-    while writing.step(settings.bytes(), &mut memory) == Progress::Going {}
+    while writing.step(settings.bytes(), &mut memory) == Progress::InProgress {}
     Eeprom::with(*memory.bytes())
 }
 

@@ -156,9 +156,9 @@ impl Variant {
     pub fn disagreement(&self, gait: &str, answers: &Answers) -> Option<String> {
         let (_, part) = GAITS.into_iter().find(|(name, _)| *name == gait)?;
         let [model, mujoco] = [answers.model?, answers.mujoco].map(|way| way.0[part]);
-        let off = model / mujoco - 1.0;
-        (off.abs() > self.allowed(gait)).then(|| {
-            let percent = 100.0 * off;
+        let error = model / mujoco - 1.0;
+        (error.abs() > self.allowed(gait)).then(|| {
+            let percent = 100.0 * error;
             format!("the model has {model:.1}, MuJoCo {mujoco:.1}: {percent:+.0} %")
         })
     }

@@ -138,10 +138,10 @@ fn strewn_blocks(robot: &Robot, high: f64) -> Vec<Block> {
     const REACH: i32 = 12;
     let feet = robot.ground().feet.at([0.0; 4]);
     let mut seed: u32 = 1;
-    let mut random = |low: f64, most: f64| {
+    let mut random = |low: f64, max: f64| {
         // The constants of Numerical Recipes; the upper half of the bits is random enough.
         seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        low + (most - low) * f64::from(seed >> 16) / 65536.0
+        low + (max - low) * f64::from(seed >> 16) / 65536.0
     };
     let mut blocks = Vec::new();
     for row in -REACH..REACH {

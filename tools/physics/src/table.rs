@@ -151,14 +151,14 @@ fn range(part: Part, displacements: &[Displacement]) -> String {
     let values = displacements
         .iter()
         .map(|displacement| part.value(*displacement));
-    let least = values.clone().fold(f64::INFINITY, f64::min);
-    let most = values.fold(f64::NEG_INFINITY, f64::max);
-    let ([least, most], unit) = (
-        [least, most].map(|value| format!("{value:+.1}")),
+    let smallest = values.clone().fold(f64::INFINITY, f64::min);
+    let largest = values.fold(f64::NEG_INFINITY, f64::max);
+    let ([smallest, largest], unit) = (
+        [smallest, largest].map(|value| format!("{value:+.1}")),
         part.unit(),
     );
-    match least == most {
-        true => format!("{least} {unit}"),
-        false => format!("{least} to {most} {unit}"),
+    match smallest == largest {
+        true => format!("{smallest} {unit}"),
+        false => format!("{smallest} to {largest} {unit}"),
     }
 }

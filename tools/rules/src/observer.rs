@@ -3,7 +3,7 @@
 use lizard_core::console::word::Effect;
 use lizard_core::memory::restart::Cause;
 
-use crate::event::{Event, MS, NEVER, Time};
+use crate::event::{Event, MS, NEVER, Pulse, Time};
 use crate::reports::Reports;
 use crate::rule::{BrokenRule, Rule};
 use crate::servos::{Permission, Servo};
@@ -149,6 +149,25 @@ impl Observer {
         }
     }
 
+    /// Observes the pulses of a frame, `widths` of A1 to A4, 0 for none, and its end.
+    pub fn observe_frame(&mut self, start: Time, widths: [u16; 4]) {
+        for (servo, width) in widths
+            .into_iter()
+            .enumerate()
+            .filter(|(_, width)| *width > 0)
+        {
+            let pulse = Pulse {
+                servo,
+                width: width.into(),
+                is_cut: false,
+                is_held_up: false,
+            };
+            // A1's pulse begins 4 ms after the tick.
+            self.observe(start + (5 + 4 * servo as Time) * MS, Event::Pulse(pulse));
+        }
+        self.observe(start + 20 * MS, Event::Pass);
+    }
+
     /// Takes the first rule that was broken since the last call.
     ///
     /// # Errors
@@ -229,16 +248,16 @@ impl Observer {
     }
 
     /// Judges an event.
-    pub fn observe(&mut self, at: Time, event: Event<'_>) {
-        self.advance(at);
+    pub fn observe(&mut self, time: Time, event: Event<'_>) {
+        self.advance(time);
         match event {
             Event::Pass => {}
             Event::Start(cause) => self.program_starts(cause),
-            Event::Cut => self.cut = at,
+            Event::Cut => self.cut = time,
             Event::Stalled(until) => {
                 self.disturbed = self.disturbed.max(until);
-                self.stalls.retain(|(_, end)| at - end < 300 * MS);
-                self.stalls.push((at, until));
+                self.stalls.retain(|(_, end)| time - end < 300 * MS);
+                self.stalls.push((time, until));
                 self.is_disturbed();
             }
             Event::HeldUp(until) => {
@@ -250,17 +269,17 @@ impl Observer {
             }
             Event::Supply(mv) => {
                 let poor = self.limits.levels[0] + crate::supply::GOOD_ABOVE;
-                self.supply.set(at, mv, poor);
+                self.supply.set(time, mv, poor);
             }
             Event::Byte => {
-                self.last_byte = at;
+                self.last_byte = time;
                 self.permission.boot = None;
             }
             Event::Line { is_command } => {
                 self.lines += 1;
                 if is_command {
-                    self.last_line = at;
-                    self.heard = at;
+                    self.last_line = time;
+                    self.heard = time;
                 }
             }
             Event::Order { effect, done } => self.order(effect, done),
@@ -286,13 +305,13 @@ impl Observer {
             Event::Printed(since, line) => self.judge_line(since, line),
             Event::Pulse(pulse) => self.pulse(pulse),
             Event::Written => self.judge_write(),
-            Event::Fault => self.reports.stop(at),
+            Event::Fault => self.reports.stop(time),
         }
     }
 
     /// Advances the time, and judges everything that was due by now.
-    fn advance(&mut self, at: Time) {
-        self.now = self.now.max(at);
+    fn advance(&mut self, time: Time) {
+        self.now = self.now.max(time);
         self.permission.advance(self.now);
         self.check_silence();
         self.check_pending();
@@ -353,9 +372,9 @@ impl Observer {
     }
 
     /// The time for which main was stalled in the last 300 ms; several short stalls may add up.
-    pub(crate) fn stalled(&self, at: Time) -> Time {
-        let recent = self.stalls.iter().filter(|(_, end)| *end > at - 300 * MS);
-        recent.map(|(start, end)| end.min(&at) - start).sum()
+    pub(crate) fn stalled(&self, time: Time) -> Time {
+        let recent = self.stalls.iter().filter(|(_, end)| *end > time - 300 * MS);
+        recent.map(|(start, end)| end.min(&time) - start).sum()
     }
 
     fn check_reset(&mut self, cause: Cause) {

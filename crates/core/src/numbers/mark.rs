@@ -90,11 +90,15 @@ mod tests {
     fn any_byte_of_another_value_is_another_mark_or_none() {
         let mut flash = [0xff; 128];
         flash[AT..AT + LENGTH].copy_from_slice(&Mark::HERE.bytes());
-        for at in AT..AT + LENGTH {
+        for offset in AT..AT + LENGTH {
             for bit in 0..8 {
                 let mut flash = flash;
-                flash[at] ^= 1 << bit;
-                assert_ne!(Mark::find(&flash), Some(Mark::HERE), "bit {bit} of {at}");
+                flash[offset] ^= 1 << bit;
+                assert_ne!(
+                    Mark::find(&flash),
+                    Some(Mark::HERE),
+                    "bit {bit} of {offset}"
+                );
             }
         }
         assert_eq!(Mark::find(&flash[..AT + LENGTH - 1]), None);

@@ -217,16 +217,16 @@ impl Content {
         self.ends.each_ref().map(|end| {
             end.tables().map(|table| {
                 let Some(table) = table else { return 0 };
-                if let Some((_, at)) = written
+                if let Some((_, offset)) = written
                     .iter()
                     .find(|(other, _)| other.bytes() == table.bytes())
                 {
-                    return *at;
+                    return *offset;
                 }
-                let at = REST + rest.len() as u16;
+                let offset = REST + rest.len() as u16;
                 rest.extend(table.bytes());
-                written.push((table, at));
-                at
+                written.push((table, offset));
+                offset
             })
         })
     }
