@@ -30,7 +30,7 @@ impl Bars {
     /// Converts a moving gait to bars; `None` if it follows a path. A reversed gait becomes the bars
     /// of the same movement.
     pub(crate) fn of(gait: &Gait) -> Option<Self> {
-        let largest = |most: f64, leg: f64| most.max(leg.abs());
+        let largest = |max: f64, leg: f64| max.max(leg.abs());
         let amplitudes = gait.strides.each_ref().map(|leg| leg.amplitude);
         let amplitude = amplitudes.into_iter().fold(0.0, largest);
         let mut bars = Self {
