@@ -225,17 +225,17 @@ impl Bill {
                 *sum += mass * part;
             }
         }
-        let printed = |instead: bool| -> Vec<Item> {
+        let printed = |is_alternative: bool| -> Vec<Item> {
             let parts = parts.iter();
-            let some = parts.filter(|part| part.instead_of.is_some() == instead);
-            some.map(Item::printed).collect()
+            let parts_listed = parts.filter(|part| part.instead_of.is_some() == is_alternative);
+            parts_listed.map(Item::printed).collect()
         };
         let bought = list.into_iter();
         let bought =
             bought.map(|(what, (count, grams, price))| Item::bought(count, what, grams, price));
-        let more = ALWAYS.map(Item::loose);
-        grams += more.iter().map(Item::all).sum::<f64>();
-        let bought: Vec<_> = bought.chain(more).collect();
+        let loose_items = ALWAYS.map(Item::loose);
+        grams += loose_items.iter().map(Item::all).sum::<f64>();
+        let bought: Vec<_> = bought.chain(loose_items).collect();
         Self {
             printed: printed(false),
             instead: printed(true),

@@ -140,7 +140,7 @@ fn servo_digits(names: &[String]) -> String {
     let mut numbers: Vec<usize> = Vec::new();
     for name in names {
         let (_, of) = noun_and_owner(name);
-        let servo = |list: [&str; 4]| list.iter().position(|known| *known == of);
+        let servo = |list: [&str; 4]| list.iter().position(|name| *name == of);
         let side = Side::ALL.into_iter().find(|side| side.name() == of);
         numbers.extend(servo(NAMES).or(servo(LEGS)));
         numbers.extend(side.into_iter().flat_map(Side::servos));

@@ -39,22 +39,22 @@ impl Bill {
     /// True if a robot.toml with this `[body]` is off by more than 5 % or 3 mm.
     pub fn differs(&self, body: &Body) -> bool {
         let [ahead, left, _] = self.centre;
-        let off = libm::hypot(body.centre[0] - ahead, body.centre[1] - left);
-        (body.mass - self.grams).abs() > MASS_TOLERANCE * self.grams || off > CENTRE_TOLERANCE
+        let error = libm::hypot(body.centre[0] - ahead, body.centre[1] - left);
+        (body.mass - self.grams).abs() > MASS_TOLERANCE * self.grams || error > CENTRE_TOLERANCE
     }
 
     /// The place of the mass centre relative to the plate's middle, such as "0.1 mm behind
     /// and 0.1 mm to the right of".
     pub fn centre_in_words(&self) -> String {
         let [ahead, left, _] = self.centre;
-        let way = |value: f64, [positive, negative]: [&str; 2]| {
+        let direction = |value: f64, [positive, negative]: [&str; 2]| {
             let word = if value < 0.0 { negative } else { positive };
             format!("{:.1} mm {word}", value.abs())
         };
         format!(
             "{} and {} of",
-            way(ahead, ["ahead", "behind"]),
-            way(left, ["to the left", "to the right"])
+            direction(ahead, ["ahead", "behind"]),
+            direction(left, ["to the left", "to the right"])
         )
     }
 }

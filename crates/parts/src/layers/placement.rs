@@ -33,10 +33,10 @@ impl<T: Real> Placement<T> {
 
     /// The same place as seen from another body's frame.
     pub fn seen_from(&self, frame: &Self) -> Self {
-        let of = |v: Vector<T>| Vector::new(v.dot(frame.turn), frame.turn.cross(v));
+        let in_frame = |v: Vector<T>| Vector::new(v.dot(frame.turn), frame.turn.cross(v));
         Self {
-            at: of(self.at - frame.at),
-            turn: of(self.turn),
+            at: in_frame(self.at - frame.at),
+            turn: in_frame(self.turn),
         }
     }
 }

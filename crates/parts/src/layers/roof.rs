@@ -51,11 +51,11 @@ fn skin(low: f64) -> f64 {
 }
 
 /// A layer cut in two at a height, if that height is within it.
-fn split(layer: &Prism, at: f64) -> Vec<Prism> {
+fn split(layer: &Prism, height: f64) -> Vec<Prism> {
     let [low, high] = layer.z;
-    match at < low + SAME_HEIGHT_MM || at > high - SAME_HEIGHT_MM {
+    match height < low + SAME_HEIGHT_MM || height > high - SAME_HEIGHT_MM {
         true => vec![layer.clone()],
-        false => vec![layer.at([low, at]), layer.at([at, high])],
+        false => vec![layer.at([low, height]), layer.at([height, high])],
     }
 }
 
@@ -73,14 +73,14 @@ pub fn in_air(prisms: &[Prism]) -> Vec<Vector> {
 
 /// True if a hole's edge, which lies in the material, has nothing below it.
 fn begins_in_air(hole: &Shape, prism: &Prism, below: &Outline) -> bool {
-    let own = Outline::of(prism);
+    let outline = Outline::of(prism);
     let edge = Shape {
         points: hole.points.clone(),
         radius: hole.radius + BESIDE,
     };
     let alone = Outline::of(&Prism::solid([edge], prism.z));
     let mut points = alone.loops().flat_map(Loop::ends);
-    let in_air = |point: Vector| own.contains(point) && !below.contains(point);
+    let in_air = |point: Vector| outline.contains(point) && !below.contains(point);
     points.all(|(side, to)| in_air(side.from) && in_air(side.middle(to)))
 }
 

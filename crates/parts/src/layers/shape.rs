@@ -98,8 +98,8 @@ impl Shape {
 
     /// The greatest distance of two of its points, mm.
     pub fn width(&self) -> f64 {
-        let most = self.points.iter().map(|&point| self.farthest(point));
-        most.fold(0.0, f64::max) + self.radius
+        let largest = self.points.iter().map(|&point| self.farthest(point));
+        largest.fold(0.0, f64::max) + self.radius
     }
 
     /// The same shape at a place.
@@ -157,10 +157,10 @@ impl Shape {
         let anyhow = air - outermost - strayed.length();
         // A sharper bound for a long hole with a shape that slides along it.
         let lines = hole.lines().flat_map(|(from, out)| {
-            let more = out.x.abs() * strayed.x + out.y.abs() * strayed.y;
+            let stray = out.x.abs() * strayed.x + out.y.abs() * strayed.y;
             self.points
                 .iter()
-                .map(move |&point| out.dot(point - from) + more)
+                .map(move |&point| out.dot(point - from) + stray)
         });
         let outermost = lines.fold(f64::NEG_INFINITY, f64::max);
         if hole.points.len() > 2 && outermost <= 0.0 {

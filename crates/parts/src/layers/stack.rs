@@ -114,7 +114,7 @@ impl Stack {
     /// Computes the heights of a robot from its parts.
     pub fn new(parts: &Parts) -> Self {
         let (t, gap, screw) = (parts.thickness, parts.gap, &parts.screw);
-        let above = |below: Span, by: f64| [below[1] + gap, below[1] + gap + by];
+        let above = |below: Span, height: f64| [below[1] + gap, below[1] + gap + height];
         let plate = [-parts.plate, 0.0];
         let seat = [0.0, SEAT];
         let crank = [gap, gap + t.max(screw.nut_height + 1.0)];
@@ -193,11 +193,11 @@ impl Stack {
 }
 
 /// The shortest screw on sale of at least a length, mm; that length itself if none is.
-pub fn screw_length(least: f64) -> f64 {
+pub fn screw_length(min: f64) -> f64 {
     SCREWS
         .into_iter()
-        .find(|length| *length >= least - 1e-9)
-        .unwrap_or(least)
+        .find(|length| *length >= min - 1e-9)
+        .unwrap_or(min)
 }
 
 /// True if shops have a screw of this length, mm.
