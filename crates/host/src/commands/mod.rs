@@ -19,7 +19,7 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::Failure;
 use crate::shared::plain::readable_lines;
-use known::{Group, Known};
+use known::{CommandEntry, Group};
 use nested::With;
 
 /// The table below, as [`Command`] and as [`KNOWN`].
@@ -72,8 +72,8 @@ macro_rules! commands {
         }
 
         /// All commands that there are, in the order of the help.
-        const KNOWN: &[Known] = &[$($(
-            Known {
+        const KNOWN: &[CommandEntry] = &[$($(
+            CommandEntry {
                 group: Group::$group,
                 variant: stringify!($name),
                 also: &[$($alias)?],

@@ -11,10 +11,10 @@ pub fn tidy(value: f64, decimals: i32) -> f64 {
 /// A number with blanks between its thousands.
 pub fn grouped(value: f64, decimals: usize) -> String {
     let plain = format!("{value:.decimals$}");
-    let (whole, fraction) = plain.split_at(plain.find('.').unwrap_or(plain.len()));
+    let (integer, fraction) = plain.split_at(plain.find('.').unwrap_or(plain.len()));
     let mut text = String::new();
-    for (n, digit) in whole.chars().enumerate() {
-        if n > 0 && (whole.len() - n).is_multiple_of(3) {
+    for (n, digit) in integer.chars().enumerate() {
+        if n > 0 && (integer.len() - n).is_multiple_of(3) {
             text.push(' ');
         }
         text.push(digit);

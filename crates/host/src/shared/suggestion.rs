@@ -11,8 +11,8 @@ pub fn did_you_mean<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) ->
         .into_iter()
         .map(|name| (strsim::jaro(word, name), name))
         .filter(|(like, _)| *like > MIN_SIMILARITY);
-    let most = like.max_by(|a, b| a.0.total_cmp(&b.0));
-    most.map_or_else(String::new, |(_, name)| format!("; did you mean `{name}`?"))
+    let max = like.max_by(|a, b| a.0.total_cmp(&b.0));
+    max.map_or_else(String::new, |(_, name)| format!("; did you mean `{name}`?"))
 }
 
 #[cfg(test)]

@@ -257,10 +257,10 @@ impl SimulatedBoard {
     }
 
     /// The cycles spent so far in the handlers of some vectors.
-    pub fn handler_cycles(&self, which: impl Fn(u8) -> bool) -> u64 {
+    pub fn handler_cycles(&self, is_counted: impl Fn(u8) -> bool) -> u64 {
         let all = self.uno.interrupts();
-        let those = all.iter().filter(|used| which(used.vector));
-        those.map(|used| used.cycles).sum()
+        let counted = all.iter().filter(|used| is_counted(used.vector));
+        counted.map(|used| used.cycles).sum()
     }
 
     /// Cycle of A1's first pulse among the edges not taken yet.

@@ -217,16 +217,16 @@ fn put(
     line: usize,
 ) -> Result<(), ImageError> {
     let end = start + bytes.len();
-    let Some(there) = flash.get_mut(start..end) else {
+    let Some(target) = flash.get_mut(start..end) else {
         let address = end - 1;
         return Err(ImageError::BootLoader { line, address });
     };
-    for (index, (there, byte)) in there.iter_mut().zip(bytes).enumerate() {
-        if there.is_some_and(|there| there != *byte) {
+    for (index, (target, byte)) in target.iter_mut().zip(bytes).enumerate() {
+        if target.is_some_and(|target| target != *byte) {
             let address = start + index;
             return Err(ImageError::Twice { line, address });
         }
-        *there = Some(*byte);
+        *target = Some(*byte);
     }
     Ok(())
 }

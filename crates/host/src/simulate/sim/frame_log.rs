@@ -41,7 +41,7 @@ pub struct FrameReader {
     rise: [Option<u64>; 4],
     /// Each servo's latest pulse: number of its frame, cycle of its start.
     latest: [Option<(usize, u64)>; 4],
-    started: bool,
+    has_started: bool,
 }
 
 impl FrameReader {
@@ -55,7 +55,7 @@ impl FrameReader {
             },
             rise: [None; 4],
             latest: [None; 4],
-            started: false,
+            has_started: false,
         }
     }
 
@@ -68,24 +68,24 @@ impl FrameReader {
                 continue;
             };
             if edge.high {
-                if servo == 0 && !self.started {
+                if servo == 0 && !self.has_started {
                     self.log.first = edge.cycle;
-                    self.started = true;
+                    self.has_started = true;
                 }
                 self.rise[servo] = Some(edge.cycle);
                 let high = self.rise.iter().flatten().count() as u32;
                 self.log.most_pins_high = self.log.most_pins_high.max(high);
             } else if let Some(start) = self.rise[servo].take() {
-                self.pulse(servo, start, edge.cycle - start);
+                self.record_pulse(servo, start, edge.cycle - start);
             }
         }
     }
 
-    fn pulse(&mut self, servo: usize, start: u64, width: u64) {
+    fn record_pulse(&mut self, servo: usize, start: u64, width: u64) {
         let Some(since) = start.checked_sub(first_cycle(self.log.first)) else {
             return;
         };
-        if !self.started {
+        if !self.has_started {
             return;
         }
         let n = (since / FRAME) as usize;
@@ -103,7 +103,7 @@ impl FrameReader {
 
     /// Finishes the log with the complete frames up to a cycle.
     pub fn finish(mut self, cycle: u64) -> FrameLog {
-        let whole = if self.started {
+        let whole = if self.has_started {
             (cycle - first_cycle(self.log.first)) / FRAME
         } else {
             0

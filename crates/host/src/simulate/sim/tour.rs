@@ -18,11 +18,11 @@ pub fn gaits(robot: &Robot) -> Vec<&str> {
     };
     let others = moving.iter().copied().skip(1);
     // Of several equal ones the first, because mirrored gaits turn equally fast.
-    let most = others.fold(None, |best: Option<&str>, name| match best {
+    let max = others.fold(None, |best: Option<&str>, name| match best {
         Some(best) if turn(name) <= turn(best) + 1e-6 => Some(best),
         _ => Some(name),
     });
-    moving.first().copied().into_iter().chain(most).collect()
+    moving.first().copied().into_iter().chain(max).collect()
 }
 
 #[cfg(test)]

@@ -49,11 +49,11 @@ impl Replay {
 
     /// Sums up these frames.
     pub fn tally(&self, frames: Range<usize>) -> Tally {
-        let begin = match frames.start {
+        let start = match frames.start {
             0 => Place::START,
             first => self.states[first - 1].place,
         };
-        let mut tally = Tally::new(begin);
+        let mut tally = Tally::new(start);
         for state in &self.states[frames] {
             tally.add(state);
         }
@@ -68,7 +68,7 @@ impl Replay {
             .gait(&stage.command)
             .filter(|gait| gait.moves())?;
         let cycle = (gait.period() / FRAME).round() as usize;
-        let begin = stage.frames.end.checked_sub(cycle)?;
-        (begin >= stage.frames.start + cycle).then_some((gait, begin..stage.frames.end))
+        let start = stage.frames.end.checked_sub(cycle)?;
+        (start >= stage.frames.start + cycle).then_some((gait, start..stage.frames.end))
     }
 }

@@ -72,9 +72,9 @@ impl StackDepth {
                 let function = walk.function(target)?;
                 match function.lets_in {
                     None => handler = handler.max(ENTRY + function.depth),
-                    Some(at) if function.returns => {
+                    Some(address) if function.returns => {
                         let what = "lets interrupts into an interrupt";
-                        return Err(walk.refuse(target, at, what));
+                        return Err(walk.refuse(target, address, what));
                     }
                     Some(_) => last = last.max(ENTRY + function.depth),
                 }
