@@ -48,9 +48,9 @@ impl Unloaded {
     /// `us_per_degree` is the servo's gain.
     pub fn sweep_after_frame(&self, from: f64, target: f64, us_per_degree: f64) -> f64 {
         let idle = self.dead_band / 2.0 / us_per_degree.abs();
-        let most = self.rate * FRAME;
+        let max = self.rate * FRAME;
         let stops = from.clamp(target - idle, target + idle);
-        from + (stops - from).clamp(-most, most)
+        from + (stops - from).clamp(-max, max)
     }
 }
 

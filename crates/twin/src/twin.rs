@@ -55,8 +55,8 @@ impl Twin {
         let before = self.sweeps;
         let servos = self.robot.servos();
         let targets: [Option<f64>; 4] = std::array::from_fn(|i| {
-            let (least, most) = servos[i].travel();
-            targets[i].map(|target| target.clamp(least, most))
+            let (min, max) = servos[i].travel();
+            targets[i].map(|target| target.clamp(min, max))
         });
         let slip = match self.model {
             ServoModel::Motors(motors) => {
