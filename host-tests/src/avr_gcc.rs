@@ -9,7 +9,6 @@ pub use simulated_uno::avr_gcc::{assembler, c};
 ///
 /// # Panics
 /// If avr-gcc is missing or refuses the program; the message is avr-gcc's.
-#[must_use]
 pub fn compile_c_with_edited_object(
     source: &str,
     change: impl Fn(Vec<u8>) -> (Vec<u8>, &'static str),

@@ -22,7 +22,6 @@ impl FirmwareBench {
     /// The firmware that `make firmware` leaves, or what `LIZARD_ELF` names.
     ///
     /// It may have any robot: see [`FirmwareBench::image`].
-    #[must_use]
     pub fn elf() -> PathBuf {
         let built = root().join("target/avr-atmega328p/release/lizard.elf");
         std::env::var_os("LIZARD_ELF").map_or(built, PathBuf::from)
@@ -32,7 +31,6 @@ impl FirmwareBench {
     ///
     /// # Panics
     /// If there is no firmware.
-    #[must_use]
     pub fn image() -> Image {
         static IMAGE: LazyLock<Image> = LazyLock::new(|| FirmwareBench::image_with(robot()));
         IMAGE.clone()
@@ -42,7 +40,6 @@ impl FirmwareBench {
     ///
     /// # Panics
     /// If there is no firmware.
-    #[must_use]
     pub fn image_with(robot: &Robot) -> Image {
         let elf = Self::elf();
         lizard_host::firmware::with_robot(&elf, robot)
@@ -53,7 +50,6 @@ impl FirmwareBench {
     ///
     /// # Panics
     /// If there is no firmware, or no banner within 500 ms.
-    #[must_use]
     pub fn boot() -> Self {
         Self::boot_with(Fidelity::DataSheet)
     }
@@ -62,7 +58,6 @@ impl FirmwareBench {
     ///
     /// # Panics
     /// See [`FirmwareBench::boot`].
-    #[must_use]
     pub fn boot_with(fidelity: Fidelity) -> Self {
         let board = SimulatedBoard::boot(&Self::elf(), fidelity, robot());
         Self(done(board))
@@ -72,14 +67,12 @@ impl FirmwareBench {
     ///
     /// # Panics
     /// If there is no firmware.
-    #[must_use]
     pub fn power_on(fidelity: Fidelity) -> Self {
         let board = SimulatedBoard::with_image(Self::image(), fidelity, robot());
         Self(board)
     }
 
     /// A bench around any board, for programs other than the firmware.
-    #[must_use]
     pub fn with_board(board: SimulatedBoard) -> Self {
         Self(board)
     }
@@ -145,7 +138,6 @@ fn done<T>(result: Result<T, BoardError>) -> T {
 
 /// A bench around a program that is not the firmware, its servos on the pins of
 /// the paper's robot: D9, D10, D11 and D3.
-#[must_use]
 pub fn bench_of(uno: Uno) -> FirmwareBench {
     let pins = [9, 10, 11, 3].map(simulated_uno::Pin::d);
     FirmwareBench::with_board(SimulatedBoard::with_uno(uno, pins))

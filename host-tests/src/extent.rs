@@ -6,7 +6,6 @@ use std::num::NonZeroU64;
 ///
 /// # Panics
 /// `LIZARD_FUZZ` is not a whole number from 1 on.
-#[must_use]
 pub fn times(count: u64) -> u64 {
     count * number("LIZARD_FUZZ", 1)
 }
@@ -15,7 +14,6 @@ pub fn times(count: u64) -> u64 {
 ///
 /// # Panics
 /// `LIZARD_MINUTES` is not a whole number from 1 on.
-#[must_use]
 pub fn minutes() -> u64 {
     number("LIZARD_MINUTES", 10)
 }

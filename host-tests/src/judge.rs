@@ -58,7 +58,6 @@ pub struct Account {
 
 impl Account {
     /// The account of a simulated UNO's records since power-on.
-    #[must_use]
     pub fn new(edges: &[Edge], sent: &[SerialByte], end: u64) -> Self {
         let mut rises = [None; 20];
         let mut pulses = Vec::new();
@@ -193,7 +192,7 @@ fn read(printed: &str) -> Option<Verdict> {
                 byte: u8::from_str_radix(byte, 16).ok()?,
             }),
             ["eeprom", bytes] => {
-                let byte = |at| u8::from_str_radix(bytes.get(at..at + 2)?, 16).ok();
+                let byte = |cycle| u8::from_str_radix(bytes.get(cycle..cycle + 2)?, 16).ok();
                 verdict.eeprom = (0..bytes.len())
                     .step_by(2)
                     .map(byte)

@@ -32,7 +32,6 @@ const LEGS: [&str; 4] = ["LF", "RF", "RH", "LH"];
 ///
 /// # Panics
 /// If no draft becomes a valid robot: the generator is wrong.
-#[must_use]
 pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
     (0..DRAFTS)
         .find_map(|_| {
@@ -43,7 +42,7 @@ pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
                 text = with_allowed_gait(text, &gait);
             }
             if rng.bool() {
-                line(&mut text, &rail(rng, &body.pins));
+                append_line(&mut text, &rail(rng, &body.pins));
             }
             let robot = Robot::parse(&text).ok()?;
             let moves = robot.gaits().iter().any(|gait| gait.moves());
@@ -58,7 +57,6 @@ pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
 ///
 /// # Panics
 /// If the robot has no gait that moves, or is not valid.
-#[must_use]
 pub fn with_many_gaits(text: &str, length: usize) -> Robot {
     let robot = Robot::parse(text).expect("a valid robot");
     let like = robot.gaits().iter().find(|gait| gait.moves());
@@ -90,7 +88,7 @@ impl Body {
     /// A robot that stands; `None` where no safe neutral pose was found.
     fn random(rng: &mut Rng) -> Option<Self> {
         let scale = 0.3 * (4.0f64 / 0.3).powf(rng.f64());
-        let mut length = |least: f64, most: f64| round(scale * random_between(rng, least, most));
+        let mut length = |min: f64, max: f64| round(scale * random_between(rng, min, max));
         let chassis = length(100.0, 170.0);
         // l0 and l5 bases; l1, l4, l6, l9 cranks; l2, l3, l7, l8 couplers; l10 and
         // l15 chassis; l11, l14, l16, l19 arms; l12, l13, l17, l18 slider halves.
@@ -167,16 +165,16 @@ impl Body {
         let mut text = String::from("[links]\n");
         let Lizard { leg, .. } = self.lizard;
         for (link, length) in self.links.iter().enumerate() {
-            line(&mut text, &format!("l{link} = {length}"));
+            append_line(&mut text, &format!("l{link} = {length}"));
         }
-        line(
+        append_line(
             &mut text,
             &format!(
                 "[leg]\nground = {0}\ncrank = {1}\ncoupler = {0}\nfollower = {1}",
                 leg.ground, leg.crank
             ),
         );
-        line(
+        append_line(
             &mut text,
             &format!(
                 "hip_forward = {}\nhip_side = {}\nmount = 7.5",
@@ -185,7 +183,7 @@ impl Body {
             ),
         );
         for (name, servo) in SERVOS.iter().zip(&self.servos) {
-            line(&mut text, &format!("[servo.{name}]\n{servo}"));
+            append_line(&mut text, &format!("[servo.{name}]\n{servo}"));
         }
         let Limits {
             type2,
@@ -195,7 +193,7 @@ impl Body {
             stroke_max,
         } = self.limits;
         let [slew, gait_slew] = self.slew;
-        line(
+        append_line(
             &mut text,
             &format!(
                 "[limits]\ntype2 = {type2}\ntype1 = {type1}\nleg = {leg}\n\
@@ -260,8 +258,8 @@ fn gaits(rng: &mut Rng, body: &Body) -> Vec<Sized> {
             .collect();
         format!("{{ {} }}", pairs.join(", "))
     };
-    let mut any = |least: f64, most: f64| -> [f64; 4] {
-        std::array::from_fn(|_| round_factor(random_between(rng, least, most)))
+    let mut any = |min: f64, max: f64| -> [f64; 4] {
+        std::array::from_fn(|_| round_factor(random_between(rng, min, max)))
     };
     let (starts, gains, halves) = (any(0.0, 1.0), any(0.4, 1.0), any(-1.0, 1.0));
     let wave = format!(
@@ -327,13 +325,13 @@ fn with_allowed_gait(text: String, gait: &Sized) -> String {
         .unwrap_or(text)
 }
 
-fn line(text: &mut String, line: &str) {
+fn append_line(text: &mut String, line: &str) {
     // Writing to a String never fails.
     let _ = writeln!(text, "{line}");
 }
 
-fn random_between(rng: &mut Rng, least: f64, most: f64) -> f64 {
-    least + (most - least) * rng.f64()
+fn random_between(rng: &mut Rng, min: f64, max: f64) -> f64 {
+    min + (max - min) * rng.f64()
 }
 
 /// Rounds a length or an angle as a person would write it.

@@ -22,7 +22,6 @@ pub struct Named {
 }
 
 /// The root of the repository.
-#[must_use]
 pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
@@ -33,7 +32,6 @@ pub fn root() -> PathBuf {
 ///
 /// # Panics
 /// If the file is missing or wrong.
-#[must_use]
 pub fn robot() -> &'static Robot {
     static ROBOT: LazyLock<Robot> = LazyLock::new(|| load(&file()));
     &ROBOT
@@ -44,7 +42,6 @@ pub fn robot() -> &'static Robot {
 ///
 /// # Panics
 /// If it has no room for them even with one gait.
-#[must_use]
 pub fn patrolling() -> &'static Robot {
     static ROBOT: LazyLock<Robot> = LazyLock::new(|| {
         let text = std::fs::read_to_string(file()).expect("a robot.toml");
@@ -79,7 +76,6 @@ fn file() -> PathBuf {
 ///
 /// # Panics
 /// If robots/paper.toml is missing or wrong.
-#[must_use]
 pub fn paper() -> &'static Robot {
     static ROBOT: LazyLock<Robot> = LazyLock::new(|| load(&root().join("robots/paper.toml")));
     &ROBOT
@@ -90,7 +86,6 @@ pub fn paper() -> &'static Robot {
 ///
 /// # Panics
 /// If one of the files is wrong; the message names it.
-#[must_use]
 pub fn robots() -> &'static [Named] {
     static ROBOTS: LazyLock<Vec<Named>> = LazyLock::new(|| {
         let mut robots = vec![Named {
@@ -129,7 +124,6 @@ pub fn robots() -> &'static [Named] {
 ///
 /// # Panics
 /// If that is no whole number.
-#[must_use]
 pub fn seed() -> u64 {
     let given = std::env::var("PROPTEST_RNG_SEED").ok();
     given.map_or(1, |seed| {
@@ -139,7 +133,6 @@ pub fn seed() -> u64 {
 
 /// A generator of random numbers for each `stream`, the same in every run with the same
 /// [`seed`].
-#[must_use]
 pub fn rng(stream: u64) -> Rng {
     Rng::with_seed(seed().wrapping_mul(1_000_003).wrapping_add(stream))
 }

@@ -74,7 +74,7 @@ fn record_minute(image: Image) -> Recording {
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     supplies::connect(&mut uno, robot());
     let pins = servo_pins(robot());
-    let recording = play(&mut uno, pins, &script, false, |_| Ok(())).expect("it is not written");
+    let recording = play(&mut uno, pins, &script, |_| Ok(())).expect("it is not written");
     assert_eq!(recording.state, State::Alive);
     recording
 }

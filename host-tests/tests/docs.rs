@@ -244,8 +244,8 @@ fn pages() -> Vec<(PathBuf, String)> {
 
 /// The links and pictures of a page: the text between `](` and `)`, or in `src="..."`.
 fn links(text: &str) -> Vec<&str> {
-    let between = |begin: &'static str, end: char| {
-        let behind = text.split(begin).skip(1);
+    let between = |start: &'static str, end: char| {
+        let behind = text.split(start).skip(1);
         behind.filter_map(move |rest| rest.split_once(end).map(|(link, _)| link))
     };
     between("](", ')').chain(between("src=\"", '"')).collect()

@@ -81,8 +81,8 @@ fn the_led_blinks_every_sixteen_frames() {
     let blinks = uno.pulses(Pin::d(13));
     assert_eq!(blinks.len(), 4);
     for blink in blinks {
-        let off = blink.width.abs_diff(16 * u64::from(frame_cycles(8)));
-        assert!(off < CYCLES_PER_MS / 10, "{off} cycles");
+        let error = blink.width.abs_diff(16 * u64::from(frame_cycles(8)));
+        assert!(error < CYCLES_PER_MS / 10, "{error} cycles");
     }
 }
 
@@ -120,8 +120,8 @@ fn the_costs_in_the_readme_are_those_of_the_example() {
     // Another compiler may save a byte or two.
     let assert_near = |name: &str, measured: f64| {
         let stated = number(&row(name)[2]);
-        let off = (measured - stated).abs();
-        assert!(off <= stated / 50.0, "{name}: {measured}, not {stated}");
+        let error = (measured - stated).abs();
+        assert!(error <= stated / 50.0, "{name}: {measured}, not {stated}");
     };
     assert_near("cycles of its interrupts in a frame", per_frame);
     let image = uno.image();

@@ -179,9 +179,9 @@ fn code_without_a_bound_is_refused() {
         ),
         ("nop", "runs out"),
     ];
-    for (program, why) in programs {
+    for (program, reason) in programs {
         let error = refusal(&assembler(&format!("{BEGIN}\n{program}"))).to_string();
-        assert!(error.contains(why), "{program}: {error}");
+        assert!(error.contains(reason), "{program}: {error}");
     }
     let nests = assembler(
         "jmp start

@@ -27,7 +27,7 @@ fn walk_all(model: ServoModel) -> Replay {
     };
     let mut uno = Uno::with_image(FirmwareBench::image(), Fidelity::DataSheet);
     supplies::connect(&mut uno, robot());
-    let recording = play(&mut uno, servo_pins(robot()), &script, false, |_| Ok(()));
+    let recording = play(&mut uno, servo_pins(robot()), &script, |_| Ok(()));
     let recording = recording.expect("nothing is written");
     let spans = spans(&script, &recording.answers);
     Replay::of(robot(), &recording.frames, spans, model)
@@ -46,15 +46,15 @@ fn the_image_moves_the_body_as_its_gaits_predict() {
     assert_eq!(cycles.len(), moving, "one for each gait");
     let mut compared = 0;
     for (row, cycle) in cycles {
-        let mut part = |name: &str, ours: Option<f64>, wanted: Option<f64>, least: f64| {
+        let mut part = |name: &str, ours: Option<f64>, wanted: Option<f64>, min: f64| {
             let (Some(ours), Some(wanted)) = (ours, wanted) else {
                 assert_eq!(ours, wanted, "{} {name}", row.command);
                 return;
             };
             compared += 1;
-            let off = (ours - wanted).abs();
+            let error = (ours - wanted).abs();
             assert!(
-                off <= least.max(0.03 * wanted.abs()),
+                error <= min.max(0.03 * wanted.abs()),
                 "{} {name}: {ours}, not {wanted}",
                 row.command
             );
@@ -68,8 +68,8 @@ fn the_image_moves_the_body_as_its_gaits_predict() {
         );
         let (name, margin) = row.margin.expect("every pose closes");
         let limits = robot().limits();
-        let least = limits.type2.min(limits.type1).min(limits.leg);
-        assert!(margin > least - 0.01, "{} {name} {margin}", row.command);
+        let min = limits.type2.min(limits.type1).min(limits.leg);
+        assert!(margin > min - 0.01, "{} {name} {margin}", row.command);
     }
     assert!(compared > 0, "every gait depends on a tie");
 }

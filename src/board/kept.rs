@@ -31,22 +31,22 @@ struct Ram;
 
 impl Cells for Ram {
     #[inline(always)]
-    fn get(&self, at: usize) -> u8 {
-        cell(at).get()
+    fn get(&self, index: usize) -> u8 {
+        cell(index).get()
     }
 
     #[inline(always)]
-    fn set(&self, at: usize, byte: u8) {
-        cell(at).set(byte);
+    fn set(&self, index: usize, byte: u8) {
+        cell(index).set(byte);
     }
 }
 
 #[inline(always)]
-fn cell(at: usize) -> &'static Byte {
+fn cell(index: usize) -> &'static Byte {
     // SAFETY: every byte of RAM has some value, and each is one that a `Byte` may
     // have; nothing is believed of them before the checks. The core asks for cells
     // below `CELLS` alone.
-    unsafe { &*(&raw const KEPT).cast::<Byte>().add(at) }
+    unsafe { &*(&raw const KEPT).cast::<Byte>().add(index) }
 }
 
 /// Returns the cause of the reset and the state from before it, and marks the program as

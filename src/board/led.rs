@@ -20,10 +20,10 @@ pub fn start() {
 }
 
 /// Switches the LED on or off.
-pub fn set(on: bool) {
+pub fn set(is_on: bool) {
     // SAFETY: either changes one bit of PORTB, D13's, in one instruction.
     unsafe {
-        if on {
+        if is_on {
             asm!("sbi {port}, {bit}", port = const PORTB, bit = const BIT, options(nostack, preserves_flags))
         } else {
             asm!("cbi {port}, {bit}", port = const PORTB, bit = const BIT, options(nostack, preserves_flags))

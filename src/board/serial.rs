@@ -29,8 +29,8 @@ pub const ROOM: u8 = Ring::<SEND>::CAPACITY;
 /// The value of UBRR0 for the rate that is nearest: 16 MHz / 8 / (16 + 1) = 117 647 baud,
 /// 2.1 % fast, which the boot loader uses too; 57 143, 0.8 % slow; 38 462 and 9615, 0.2 % fast.
 const fn divisor(rate: Rate) -> u16 {
-    let (most, baud) = (16_000_000 / 8, rate.baud());
-    ((most + baud / 2) / baud - 1) as u16
+    let (clock_by_8, baud) = (16_000_000 / 8, rate.baud());
+    ((clock_by_8 + baud / 2) / baud - 1) as u16
 }
 
 /// Bytes on their way. `head` is moved by the side that puts, `tail` by the one
@@ -107,7 +107,7 @@ pub fn start(usart: USART0, rate: Rate) {
             .ucsz0()
             .chr8()
     });
-    listen(&usart, false);
+    enable_interrupts(&usart, false);
 }
 
 /// Changes the rate. Bytes on their way in either direction come garbled.
@@ -129,12 +129,12 @@ pub fn read() -> Option<u8> {
 }
 
 /// True if [`read`] would return a byte.
-pub fn pending() -> bool {
+pub fn has_input() -> bool {
     !RECEIVED.is_empty()
 }
 
 /// True while bytes wait to be sent.
-pub fn sending() -> bool {
+pub fn is_sending() -> bool {
     !TO_SEND.is_empty()
 }
 
@@ -177,14 +177,14 @@ fn send(byte: u8) {
     // SAFETY: main writes UCSR0B, whole, to a value that is right whenever there is
     // something to send, as there was a moment ago; if the handler has sent it
     // meanwhile, it runs once more for nothing.
-    listen(unsafe { &*USART0::ptr() }, true);
+    enable_interrupts(unsafe { &*USART0::ptr() }, true);
 }
 
 /// Receiver, transmitter and the receive interrupt on; the transmit interrupt on
 /// while there is something to send. One store, never a read and a write, so that
 /// main and a handler cannot undo each other's.
 #[inline(always)]
-fn listen(usart: &RegisterBlock, and_send: bool) {
+fn enable_interrupts(usart: &RegisterBlock, has_output: bool) {
     usart.ucsr0b.write(|w| {
         w.rxcie0()
             .set_bit()
@@ -193,7 +193,7 @@ fn listen(usart: &RegisterBlock, and_send: bool) {
             .txen0()
             .set_bit()
             .udrie0()
-            .bit(and_send)
+            .bit(has_output)
     });
 }
 
@@ -226,6 +226,6 @@ fn USART_UDRE() {
     let usart = unsafe { &*USART0::ptr() };
     match TO_SEND.take() {
         Some(byte) => usart.udr0.write(|w| w.bits(byte)),
-        None => listen(usart, false),
+        None => enable_interrupts(usart, false),
     }
 }

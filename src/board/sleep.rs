@@ -16,14 +16,14 @@ pub fn start(cpu: CPU) {
     cpu.smcr.write(|w| w.sm().idle().se().set_bit());
 }
 
-/// Sleeps until the tick is no longer `seen`, a byte waits to be read, or the last byte to
+/// Sleeps until the tick is no longer this one, a byte waits to be read, or the last byte to
 /// be sent is on its way, which leaves room for the next line. Interrupts are off for fewer
 /// than 40 cycles at a time.
-pub fn until_tick_or_byte(seen: u8) {
-    let sending = serial::sending();
+pub fn until_tick_or_byte(tick: u8) {
+    let was_sending = serial::is_sending();
     loop {
         interrupt::disable();
-        if pulses::ticks() != seen || serial::pending() || sending && !serial::sending() {
+        if pulses::ticks() != tick || serial::has_input() || was_sending && !serial::is_sending() {
             break;
         }
         // The `nop` is for stock simavr, which lets interrupts in an instruction

@@ -29,25 +29,25 @@ pub struct Converter {
     /// The channel of the servos' rail, where it is measured.
     channel: Option<u8>,
     /// True while the rail is being measured, false while the reference is.
-    rail: bool,
+    is_measuring_rail: bool,
     /// True if the channel is selected and its conversion has not been started yet.
-    chosen: bool,
+    is_selected: bool,
     /// True once every voltage has been measured.
-    complete: bool,
+    is_complete: bool,
 }
 
 impl Converter {
     pub fn new(registers: ADC) -> Self {
-        choose(&registers, REFERENCE);
+        select_channel(&registers, REFERENCE);
         // SAFETY: any value of ADCSRA is sound; this one switches the converter on.
         registers.adcsra.write(|w| unsafe { w.bits(ON) });
         Self {
             registers,
             reading: Reading::default(),
             channel: None,
-            rail: false,
-            chosen: true,
-            complete: false,
+            is_measuring_rail: false,
+            is_selected: true,
+            is_complete: false,
         }
     }
 
@@ -59,46 +59,46 @@ impl Converter {
     /// The last complete reading, or nothing; begins the next part of a measurement. To be
     /// called once a frame.
     pub fn next(&mut self) -> Reading {
-        if self.chosen {
-            self.chosen = false;
+        if self.is_selected {
+            self.is_selected = false;
             // SAFETY: as above; and it begins to convert.
             self.registers
                 .adcsra
                 .write(|w| unsafe { w.bits(ON | START) });
         } else {
             let value = self.registers.adc.read().bits();
-            self.take(value);
-            self.chosen = true;
+            self.store_value(value);
+            self.is_selected = true;
         }
-        if self.complete {
+        if self.is_complete {
             self.reading
         } else {
             Reading::default()
         }
     }
 
-    fn take(&mut self, value: u16) {
+    fn store_value(&mut self, value: u16) {
         match self.channel {
             None => {
                 self.reading.reference = value;
-                self.complete = true;
+                self.is_complete = true;
             }
             Some(channel) => {
-                if self.rail {
+                if self.is_measuring_rail {
                     self.reading.rail = value;
-                    self.complete = true;
-                    choose(&self.registers, REFERENCE);
+                    self.is_complete = true;
+                    select_channel(&self.registers, REFERENCE);
                 } else {
                     self.reading.reference = value;
-                    choose(&self.registers, channel);
+                    select_channel(&self.registers, channel);
                 }
-                self.rail = !self.rail;
+                self.is_measuring_rail = !self.is_measuring_rail;
             }
         }
     }
 }
 
-fn choose(registers: &ADC, channel: u8) {
+fn select_channel(registers: &ADC, channel: u8) {
     // SAFETY: AVcc as the reference is how the UNO is wired, and `channel` exists.
     registers.admux.write(|w| unsafe { w.bits(AVCC | channel) });
 }

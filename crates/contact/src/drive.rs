@@ -39,13 +39,11 @@ impl Drive {
     };
 
     /// True if a leg can lag behind its servo.
-    #[must_use]
     pub fn lags(&self) -> bool {
         self.kind != Kind::Rigid || self.play > 0.0
     }
 
     /// The slotted strut; `None` for another kind.
-    #[must_use]
     pub fn strut(&self) -> Option<&Strut> {
         match &self.kind {
             Kind::Strut(strut) => Some(strut),
@@ -54,7 +52,6 @@ impl Drive {
     }
 
     /// Name of the kind in robot.toml.
-    #[must_use]
     pub fn word(&self) -> &'static str {
         match self.kind {
             Kind::Rigid => Kind::WORDS[0],
@@ -72,15 +69,15 @@ impl Drive {
     }
 
     /// The energy of this leg's lag while its servo is at this sweep, deg. The unit of forces is
-    /// `force` N, and no pad turns its leg with more than `most` of them at a lever of 1 mm.
-    pub(crate) fn of_leg(&self, leg: usize, sweep: f64, force: f64, most: f64) -> LagEnergy {
+    /// `force` N, and no pad turns its leg with more than `max` of them at a lever of 1 mm.
+    pub(crate) fn of_leg(&self, leg: usize, sweep: f64, force: f64, max: f64) -> LagEnergy {
         let [lower, upper] = match &self.kind {
             Kind::Rigid => [Side::Stop; 2],
             Kind::Strut(strut) => strut.sides(leg, sweep, force),
         };
         LagEnergy {
             play: self.play.to_radians(),
-            stop: 1.25 * most,
+            stop: 1.25 * max,
             lower,
             upper,
             motor: None,

@@ -22,7 +22,6 @@ pub struct Feet {
 
 impl Feet {
     /// The hips in servo order: (forward, left) from the chassis centre, mm.
-    #[must_use]
     pub fn hips(&self) -> [Point; 4] {
         std::array::from_fn(|i| {
             let [front, hind] = self.hip_side;
@@ -33,7 +32,6 @@ impl Feet {
 
     /// Places of the feet for sweeps in deg, servo order: (forward, left) from the chassis
     /// centre, mm.
-    #[must_use]
     pub fn at(&self, sweeps: [f64; 4]) -> [Point; 4] {
         let hips = self.hips();
         std::array::from_fn(|i| {
@@ -75,7 +73,6 @@ impl Body {
     };
 
     /// Mean load of a foot, N.
-    #[must_use]
     pub fn mean_load(&self) -> f64 {
         self.mass / 1000.0 * GRAVITY / 4.0
     }

@@ -113,15 +113,15 @@ struct Scale {
 
 impl Pads {
     /// Finds the displacement of the body and the legs with the least cost.
-    pub fn least(&self) -> Displacement {
-        self.least_near(None)
+    pub fn minimum(&self) -> Displacement {
+        self.minimum_near(None)
     }
 
     /// Finds the displacement with the least cost, starting at a guess.
-    pub fn least_near(&self, guess: Option<&Displacement>) -> Displacement {
+    pub fn minimum_near(&self, guess: Option<&Displacement>) -> Displacement {
         let size = largest(&self.swing).max(self.jump_back());
         if size < STILL {
-            return self.moved([0.0; 3], [0.0; 4]);
+            return self.moved_by([0.0; 3], [0.0; 4]);
         }
         // Turns are counted in mm at the pads' radius, slides in units of the swing.
         let scale = Scale {
@@ -143,48 +143,48 @@ impl Pads {
         for stage in first..=STAGES {
             let eps = size * MIN_ROUNDING.powf(f64::from(stage) / f64::from(STAGES));
             let around = |x, z| self.expand(&scale.displacement(self, x, z), eps, &scale);
-            let mut here = around(x, z);
+            let mut current = around(x, z);
             // The slide of a pad that holds shrinks with the rounding, so the solutions of two
             // stages extrapolate to the next one. A guess counts as the last stage's solution.
             if let [Some((far, far_x, far_z)), Some((near, ..))] = answers {
                 let on = (near - eps) / (far - near);
                 let next_x: [f64; 3] = std::array::from_fn(|i| x[i] + on * (x[i] - far_x[i]));
                 let next_z: [f64; 4] = std::array::from_fn(|i| z[i] + on * (z[i] - far_z[i]));
-                let there = around(next_x, next_z);
-                if there.cost < here.cost {
-                    (x, z, here) = (next_x, next_z, there);
+                let candidate = around(next_x, next_z);
+                if candidate.cost < current.cost {
+                    (x, z, current) = (next_x, next_z, candidate);
                 }
             }
             for _ in 0..MAX_STEPS {
-                let steep = here.gradient.into_iter();
-                let steep = steep.chain(here.legs.map(|leg| leg.slope));
+                let steep = current.gradient.into_iter();
+                let steep = steep.chain(current.legs.map(|leg| leg.slope));
                 if steep.map(f64::abs).all(|g| g < BALANCED * size) {
                     break;
                 }
-                let dx = solve(here.hessian, here.gradient);
-                let dz = here.legs.map(|leg| leg.step(dx));
-                let slope = dot(dx, here.gradient) + here.gained();
+                let dx = solve(current.hessian, current.gradient);
+                let dz = current.legs.map(|leg| leg.step(dx));
+                let slope = dot(dx, current.gradient) + current.predicted_gain();
                 if slope < MIN_GAIN * size {
                     break;
                 }
-                let at = |share: f64| {
+                let displaced_by = |share: f64| {
                     let x: [f64; 3] = std::array::from_fn(|i| x[i] - share * dx[i]);
                     let z: [f64; 4] = std::array::from_fn(|i| z[i] - share * dz[i]);
                     (x, z)
                 };
                 // Halve the step until the cost falls, within rounding.
-                let least = here.cost * (1.0 + 1e-14);
+                let min = current.cost * (1.0 + 1e-14);
                 let shares = std::iter::successors(Some(1.0), |share| Some(share / 2.0));
                 let mut points = shares.take_while(|&share| share > 1e-9).map(|share| {
-                    let (x, z) = at(share);
+                    let (x, z) = displaced_by(share);
                     (share, x, z, around(x, z))
                 });
-                let next =
-                    points.find(|(share, _, _, there)| there.cost <= least - 1e-4 * share * slope);
-                let Some((_, to_x, to_z, there)) = next else {
+                let next = points
+                    .find(|(share, _, _, candidate)| candidate.cost <= min - 1e-4 * share * slope);
+                let Some((_, to_x, to_z, candidate)) = next else {
                     break;
                 };
-                (x, z, here) = (to_x, to_z, there);
+                (x, z, current) = (to_x, to_z, candidate);
             }
             answers = [answers[1], Some((eps, x, z))];
         }
@@ -192,7 +192,7 @@ impl Pads {
     }
 
     /// The displacement with this twist and these changes of the lags.
-    fn moved(&self, twist: Twist, change: [f64; 4]) -> Displacement {
+    fn moved_by(&self, twist: Twist, change: [f64; 4]) -> Displacement {
         let before = self
             .compliance
             .map_or([0.0; 4], |compliance| compliance.before);
@@ -252,9 +252,9 @@ impl Pads {
         let mut legs = [Row::default(); 4];
         if let Some(Inertia { stiffness, before }) = self.body {
             for i in 0..3 {
-                let off = displacement.twist[i] - before[i];
-                cost += stiffness[i] * off * off / 2.0;
-                gradient[i] += stiffness[i] * off * scale.twist[i];
+                let error = displacement.twist[i] - before[i];
+                cost += stiffness[i] * error * error / 2.0;
+                gradient[i] += stiffness[i] * error * scale.twist[i];
                 hessian[i][i] += stiffness[i] * scale.twist[i] * scale.twist[i];
             }
         }
@@ -317,7 +317,7 @@ impl Pads {
 impl Scale {
     /// Converts scaled unknowns to a displacement.
     fn displacement(&self, pads: &Pads, x: [f64; 3], z: [f64; 4]) -> Displacement {
-        pads.moved(
+        pads.moved_by(
             std::array::from_fn(|i| x[i] * self.twist[i]),
             std::array::from_fn(|i| z[i] * self.lag[i]),
         )
@@ -339,12 +339,12 @@ impl Scale {
 
 impl Expansion {
     /// First-order gain of the legs' own steps, besides that of the twist.
-    fn gained(&self) -> f64 {
-        let own = |leg: &Row| match leg.curvature {
+    fn predicted_gain(&self) -> f64 {
+        let reduction = |leg: &Row| match leg.curvature {
             0.0 => 0.0,
             curvature => leg.slope * leg.slope / curvature,
         };
-        self.legs.iter().map(own).sum()
+        self.legs.iter().map(reduction).sum()
     }
 }
 
@@ -360,7 +360,7 @@ impl Row {
 
 fn largest(points: &[Point; 4]) -> f64 {
     let parts = points.iter().flatten();
-    parts.fold(0.0f64, |most, part| most.max(part.abs()))
+    parts.fold(0.0f64, |max, part| max.max(part.abs()))
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

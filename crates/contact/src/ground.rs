@@ -37,7 +37,6 @@ pub const DEFAULT_FRICTION: f64 = 0.7;
 impl Ground {
     /// Returns the same ground with legs that do not lag, so that no step depends on earlier
     /// ones.
-    #[must_use]
     pub fn rigid(&self) -> Self {
         Self {
             drive: Drive::RIGID,
@@ -46,13 +45,11 @@ impl Ground {
     }
 
     /// Loads of the feet at these places (forward, left in mm, servo order), over the mean.
-    #[must_use]
     pub fn loads(&self, feet: [[f64; 2]; 4]) -> [f64; 4] {
         self.stance.loads(&self.body, feet)
     }
 
     /// Friction of a foot with the mean load, N: the force against which a spring works.
-    #[must_use]
     pub fn grip(&self) -> f64 {
         self.friction * self.body.mean_load()
     }

@@ -119,11 +119,11 @@ impl Stretch {
         let (product, (sin, cos)) = (self.far * self.near, self.sin_cos);
         let (half_sin, half_cos) = (lag / 2.0).sin_cos();
         let (lag_sin, lag_cos) = (2.0 * half_sin * half_cos, 1.0 - 2.0 * half_sin * half_sin);
-        let more = 4.0 * product * (sin * half_cos + cos * half_sin) * half_sin;
-        let length = (self.still * self.still + more).sqrt();
+        let extra = 4.0 * product * (sin * half_cos + cos * half_sin) * half_sin;
+        let length = (self.still * self.still + extra).sqrt();
         let lever = product * (sin * lag_cos + cos * lag_sin) / length;
         let grows = (product * (cos * lag_cos - sin * lag_sin) - lever * lever) / length;
-        (more / (length + self.still), lever, grows)
+        (extra / (length + self.still), lever, grows)
     }
 
     /// Energy of a spring that pulls the strut together with `force` and `rate`, less
@@ -299,18 +299,18 @@ mod tests {
     fn assert_slopes(drive: LagEnergy, lags: impl IntoIterator<Item = f64>) {
         for lag in lags {
             let (_, slope, curvature) = drive.expand(lag, 1e-3);
-            let at = |lag| drive.expand(lag, 1e-3);
+            let expanded_at = |lag| drive.expand(lag, 1e-3);
             let step = 1e-6;
-            let (before, after) = (at(lag - step), at(lag + step));
-            let by = (after.0 - before.0) / (2.0 * step);
+            let (before, after) = (expanded_at(lag - step), expanded_at(lag + step));
+            let measured = (after.0 - before.0) / (2.0 * step);
             assert!(
-                (by - slope).abs() < 1e-4 * (1.0 + slope.abs()),
-                "{lag} {by} {slope}"
+                (measured - slope).abs() < 1e-4 * (1.0 + slope.abs()),
+                "{lag} {measured} {slope}"
             );
-            let by = (after.1 - before.1) / (2.0 * step);
+            let measured = (after.1 - before.1) / (2.0 * step);
             assert!(
-                (by - curvature).abs() < 1e-3 * (1.0 + curvature.abs()),
-                "{lag} {by} {curvature}"
+                (measured - curvature).abs() < 1e-3 * (1.0 + curvature.abs()),
+                "{lag} {measured} {curvature}"
             );
         }
     }

@@ -24,8 +24,8 @@ pub(crate) fn solve(mut a: [[f64; 3]; 3], mut b: [f64; 3]) -> [f64; 3] {
     }
     let mut x = [0.0; 3];
     for row in (0..3).rev() {
-        let known: f64 = (row + 1..3).map(|column| a[row][column] * x[column]).sum();
-        x[row] = (b[row] - known) / a[row][row];
+        let known_terms: f64 = (row + 1..3).map(|column| a[row][column] * x[column]).sum();
+        x[row] = (b[row] - known_terms) / a[row][row];
     }
     x
 }

@@ -28,7 +28,6 @@ pub struct Motor {
 
 impl Motor {
     /// Returns the same motor on another supply, given as a share of its own.
-    #[must_use]
     pub fn at_supply(&self, share: f64) -> Self {
         Self {
             stall: self.stall * share,
@@ -38,20 +37,17 @@ impl Motor {
     }
 
     /// Torque that the motor loses for each rad/s, N mm s: that of its own voltage.
-    #[must_use]
     pub fn damping(&self) -> f64 {
         self.stall / self.rate.to_radians()
     }
 
     /// Inertia of the rotor through the gears, N mm s^2.
-    #[must_use]
     pub fn inertia(&self) -> f64 {
         self.damping() * self.spin_up
     }
 
     /// The share of the motor's line that a torque (N mm) at a rate (deg/s) uses: 1 on the line
     /// itself, negative where the motor brakes.
-    #[must_use]
     pub fn line_share(&self, torque: f64, rate: f64) -> f64 {
         torque / self.stall + rate / self.rate
     }
@@ -90,8 +86,8 @@ impl Motors {
         let arm = |[x, y]: [f64; 2]| x * x + y * y;
         let square = self.joints.arms.map(arm).into_iter().fold(0.0, f64::max);
         let inert = |motor: &Motor| motor.inertia() + motor.damping() * seconds;
-        let least = self.each.iter().map(inert).fold(f64::INFINITY, f64::min);
-        2.0 * self.joints.slider * square * seconds / least
+        let smallest = self.each.iter().map(inert).fold(f64::INFINITY, f64::min);
+        2.0 * self.joints.slider * square * seconds / smallest
     }
 }
 
@@ -141,15 +137,15 @@ impl MotorStep {
     ) -> Self {
         let inertia = motor.inertia() / (seconds * seconds);
         let inert = inertia + motor.damping() / seconds;
-        let turned = turn.rate * seconds;
+        let unloaded_turn = turn.rate * seconds;
         Self {
-            ahead: turn.target - turn.servo - turned,
+            ahead: turn.target - turn.servo - unloaded_turn,
             idle: motor.idle.to_radians(),
             full: motor.full.to_radians(),
             stall: motor.stall / force,
             inert: inert / force,
-            free: turned * (1.0 - inertia / inert),
-            still: turned,
+            free: unloaded_turn * (1.0 - inertia / inert),
+            still: unloaded_turn,
             drag: drag / force,
             slider: slider / force,
         }
@@ -166,16 +162,19 @@ impl MotorStep {
             true => (0.0, 0.0, 0.0),
             false => (self.stall * (past - self.full / 2.0), self.stall, 0.0),
         };
-        let off = place - self.free;
-        let turned = place - self.still;
-        let length = turned.hypot(eps);
+        let deviation = place - self.free;
+        let from_still = place - self.still;
+        let length = from_still.hypot(eps);
         let (rubs, bend) = match length > 0.0 {
-            true => (turned / length, eps * eps / (length * length * length)),
+            true => (from_still / length, eps * eps / (length * length * length)),
             false => (0.0, 0.0),
         };
         (
-            energy + self.inert * off * off / 2.0 + self.drag * length + self.slider * place,
-            torque.copysign(error) + self.inert * off + self.drag * rubs + self.slider,
+            energy
+                + self.inert * deviation * deviation / 2.0
+                + self.drag * length
+                + self.slider * place,
+            torque.copysign(error) + self.inert * deviation + self.drag * rubs + self.slider,
             stiffness + self.inert + self.drag * bend,
         )
     }
@@ -186,20 +185,20 @@ impl MotorStep {
     }
 
     /// The place at which the motor's torque equals the load's. `slope` gives the load's torque
-    /// and stiffness at a place; the torque is at most `most`.
-    pub fn balance(&self, most: f64, eps: f64, slope: impl Fn(f64) -> (f64, f64)) -> f64 {
-        let reach = (self.stall + self.drag + self.slider.abs() + most) / self.inert;
+    /// and stiffness at a place; the torque is at most `max`.
+    pub fn balance(&self, max: f64, eps: f64, slope: impl Fn(f64) -> (f64, f64)) -> f64 {
+        let reach = (self.stall + self.drag + self.slider.abs() + max) / self.inert;
         let (mut low, mut high) = (self.free - reach, self.free + reach);
         let mut place = self.free;
         for _ in 0..ROUNDS {
             let (_, torque, stiffness) = self.expand(place, eps);
             let (load, load_stiffness) = slope(place);
-            let off = torque - load;
-            match off > 0.0 {
+            let error = torque - load;
+            match error > 0.0 {
                 true => high = place,
                 false => low = place,
             }
-            let next = place - off / (stiffness + load_stiffness);
+            let next = place - error / (stiffness + load_stiffness);
             let next = match low < next && next < high {
                 true => next,
                 false => f64::midpoint(low, high),
@@ -325,7 +324,7 @@ mod tests {
             slider: 3.0,
             ..JOINTS
         };
-        let after = |targets: [f64; 4], joints| {
+        let angles_after = |targets: [f64; 4], joints| {
             let mut walker = Walker::new(free, [0.0; 4]);
             walker.drive(
                 targets.map(|at| Some(1000.0 * at)),
@@ -335,13 +334,13 @@ mod tests {
             walker.servos()
         };
         let alone = [1.0, 0.0, 0.0, 0.0];
-        let [slow, fast] = [joints, JOINTS].map(|joints| after(alone, joints)[0]);
+        let [slow, fast] = [joints, JOINTS].map(|joints| angles_after(alone, joints)[0]);
         let lever = JOINTS.levers([0.0; 4])[0].abs();
         assert!((lever - 19.8).abs() < 1e-9, "{lever}");
         let share = 1.0 - 3.0 * lever / SG90.stall;
         assert!((slow / fast - share).abs() < 0.06, "{slow} {fast} {share}");
         // Both feet of a side forward: the arms turn alike, and its length hardly changes.
-        let [slow, fast] = [joints, JOINTS].map(|joints| after([1.0; 4], joints)[0]);
+        let [slow, fast] = [joints, JOINTS].map(|joints| angles_after([1.0; 4], joints)[0]);
         assert!(1.0 - slow / fast < 0.4 * (1.0 - share), "{slow} {fast}");
     }
 
@@ -349,10 +348,10 @@ mod tests {
     fn a_servo_settles_where_its_gain_bears_the_load_and_keeps_its_dead_band() {
         let free = ground(0.1, 0.001);
         let banded = Motor { idle: 0.5, ..SG90 };
-        let at = turned(free, &motors(banded, JOINTS), 10.0, 1.0).servos()[0];
-        assert!((9.49..10.51).contains(&at), "{at}");
-        let at = turned(free, &motors(SG90, JOINTS), 10.0, 1.0).servos()[0];
-        assert!((at - 10.0).abs() < 0.02, "{at}");
+        let angle = turned(free, &motors(banded, JOINTS), 10.0, 1.0).servos()[0];
+        assert!((9.49..10.51).contains(&angle), "{angle}");
+        let angle = turned(free, &motors(SG90, JOINTS), 10.0, 1.0).servos()[0];
+        assert!((angle - 10.0).abs() < 0.02, "{angle}");
     }
 
     #[test]
@@ -409,9 +408,9 @@ mod tests {
         let motor_step = MotorStep::new(&SG90, turn, 0.0025, [12.0, -4.0], 0.7);
         for step in -40..40 {
             let place = f64::from(step) / 200.0 + 1e-4;
-            let at = |place: f64| motor_step.expand(place, 1e-3);
-            let (before, after) = (at(place - 1e-6), at(place + 1e-6));
-            let (_, torque, stiffness) = at(place);
+            let expanded_at = |place: f64| motor_step.expand(place, 1e-3);
+            let (before, after) = (expanded_at(place - 1e-6), expanded_at(place + 1e-6));
+            let (_, torque, stiffness) = expanded_at(place);
             let slope = (after.0 - before.0) / 2e-6;
             assert!(
                 (slope - torque).abs() < 1e-3 * torque.abs().max(1.0),

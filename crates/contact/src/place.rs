@@ -37,7 +37,6 @@ impl Place {
     }
 
     /// The movement from an earlier place to this one, seen from the earlier one.
-    #[must_use]
     pub fn seen_from(self, earlier: Self) -> Travel {
         let (sin, cos) = earlier.heading.sin_cos();
         let (x, y) = (self.forward - earlier.forward, self.left - earlier.left);
@@ -49,7 +48,6 @@ impl Place {
     }
 
     /// Converts a point of the body (forward, left, mm) to the floor.
-    #[must_use]
     pub fn on_floor(self, [forward, left]: [f64; 2]) -> [f64; 2] {
         let (sin, cos) = self.heading.sin_cos();
         [
@@ -59,7 +57,6 @@ impl Place {
     }
 
     /// The movement from the start.
-    #[must_use]
     pub fn travel(self) -> Travel {
         self.seen_from(Self::START)
     }
@@ -72,9 +69,9 @@ mod tests {
 
     fn assert_at(place: Place, forward: f64, left: f64, turn: f64) {
         let travel = place.travel();
-        let off = (travel.forward - forward).hypot(travel.left - left);
+        let error = (travel.forward - forward).hypot(travel.left - left);
         assert!(
-            off < 1e-12 && (travel.turn - turn).abs() < 1e-12,
+            error < 1e-12 && (travel.turn - turn).abs() < 1e-12,
             "{travel:?}"
         );
     }
@@ -103,15 +100,15 @@ mod tests {
 
     #[test]
     fn a_movement_is_seen_from_its_start() {
-        let begin = Place::START.moved([3.0, 4.0, FRAC_PI_2]);
+        let start = Place::START.moved([3.0, 4.0, FRAC_PI_2]);
         let twist = [10.0, -2.0, 0.3];
-        let movement = begin.moved(twist).seen_from(begin);
-        let same = Place::START.moved(twist).travel();
+        let movement = start.moved(twist).seen_from(start);
+        let expected = Place::START.moved(twist).travel();
         assert!(
-            (movement.forward - same.forward).abs() < 1e-12
-                && (movement.left - same.left).abs() < 1e-12
+            (movement.forward - expected.forward).abs() < 1e-12
+                && (movement.left - expected.left).abs() < 1e-12
         );
-        assert!((movement.turn - same.turn).abs() < 1e-12);
+        assert!((movement.turn - expected.turn).abs() < 1e-12);
     }
 
     #[test]

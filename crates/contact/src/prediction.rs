@@ -145,8 +145,9 @@ mod tests {
 
     /// A cycle of legs that all do the same, each from a phase of its own.
     fn cycle(starts: [f64; 4], wave: impl Fn(f64) -> f64) -> Vec<[f64; 4]> {
-        let at = |i: i32| starts.map(|start| wave((f64::from(i) / 400.0 - start).rem_euclid(1.0)));
-        (0..=400).map(at).collect()
+        let sweeps_at =
+            |i: i32| starts.map(|start| wave((f64::from(i) / 400.0 - start).rem_euclid(1.0)));
+        (0..=400).map(sweeps_at).collect()
     }
 
     /// Backward at one pace over `duty` of the cycle, then forward.

@@ -49,13 +49,11 @@ impl Strut {
     }
 
     /// Lever of the strut's pull at the leg's pivot, mm, while the leg does not lag.
-    #[must_use]
     pub fn lever(&self, leg: usize, sweep: f64) -> f64 {
         self.stretch(leg, sweep).lever().abs()
     }
 
     /// Lag at the end of the slot, deg, and the torque there, N mm.
-    #[must_use]
     pub fn end(&self, leg: usize, sweep: f64) -> (f64, f64) {
         let stretch = self.stretch(leg, sweep);
         let lag = stretch.lag_at_growth(self.slot);

@@ -29,7 +29,6 @@ impl Prediction {
     }
 
     /// Keeps the parts of a movement that are known in this prediction.
-    #[must_use]
     pub fn keep_known(&self, travel: Travel) -> Self {
         Self {
             forward: self.forward.and(Some(travel.forward)),

@@ -66,14 +66,12 @@ impl Slip {
 impl Walker {
     /// Makes a robot that stands with its servos at these sweeps (deg, foot forward
     /// positive, servo order) and its springs at rest.
-    #[must_use]
     pub fn new(ground: Ground, sweeps: [f64; 4]) -> Self {
         Self::with_unevenness(ground, sweeps, [1.0; 4], 1.0)
     }
 
     /// Makes such a robot with factors on the loads of the pads and on the friction backward over
     /// forward.
-    #[must_use]
     pub fn with_unevenness(ground: Ground, sweeps: [f64; 4], load: [f64; 4], ratio: f64) -> Self {
         Self {
             ground,
@@ -87,7 +85,6 @@ impl Walker {
     }
 
     /// Place of the body on the floor.
-    #[must_use]
     pub fn place(&self) -> Place {
         self.place
     }
@@ -98,7 +95,6 @@ impl Walker {
     }
 
     /// The floor, the pads and the drive of the legs.
-    #[must_use]
     pub fn ground(&self) -> &Ground {
         &self.ground
     }
@@ -112,19 +108,16 @@ impl Walker {
     }
 
     /// Lag of each leg behind its servo, deg.
-    #[must_use]
     pub fn lag(&self) -> [f64; 4] {
         self.lag
     }
 
     /// Sweeps of the legs, deg.
-    #[must_use]
     pub fn legs(&self) -> [f64; 4] {
         std::array::from_fn(|i| self.servos[i] - self.lag[i])
     }
 
     /// Sweeps of the servos, deg.
-    #[must_use]
     pub fn servos(&self) -> [f64; 4] {
         self.servos
     }
@@ -182,7 +175,7 @@ impl Walker {
             body: Some(self.inertia(seconds)),
             ..self.pads(from, reference, near, motor_steps)
         };
-        let displacement = pads.least();
+        let displacement = pads.minimum();
         for (i, behind) in displacement.lag.into_iter().enumerate() {
             let servo = pads.compliance.map_or(0.0, |compliance| {
                 compliance.lag_energy[i].servo(behind, ROUNDED)
@@ -222,13 +215,15 @@ impl Walker {
 
     /// Moves the servos to these sweeps in small steps and calls `visit` after each.
     pub(crate) fn parts(&mut self, sweeps: [f64; 4], mut visit: impl FnMut(&Pads, &Displacement)) {
-        let here = self.servos;
+        let servos = self.servos;
         (self.rates, self.speed) = ([0.0; 4], [0.0; 3]);
-        let furthest = (0..4).fold(0.0f64, |most, i| most.max((sweeps[i] - here[i]).abs()));
+        let furthest = (0..4).fold(0.0f64, |largest, i| {
+            largest.max((sweeps[i] - servos[i]).abs())
+        });
         let parts = (furthest / PART).ceil().max(1.0) as usize;
         for part in 1..=parts {
             let share = part as f64 / parts as f64;
-            let next = std::array::from_fn(|i| here[i] + share * (sweeps[i] - here[i]));
+            let next = std::array::from_fn(|i| servos[i] + share * (sweeps[i] - servos[i]));
             let (pads, displacement) = self.part(next);
             self.place = self.place.moved(displacement.twist);
             self.servos = next;
@@ -242,17 +237,17 @@ impl Walker {
         let from = self.ground.feet.at(self.legs());
         let mut lag = self.lag.map(f64::to_radians);
         let mut pads = self.pads(from, servos, lag, [None; 4]);
-        let mut displacement = pads.least();
+        let mut displacement = pads.minimum();
         for _ in 1..ROUNDS {
-            let off = (0..4).fold(0.0f64, |off, i| {
-                off.max((displacement.lag[i] - lag[i]).abs())
+            let error = (0..4).fold(0.0f64, |error, i| {
+                error.max((displacement.lag[i] - lag[i]).abs())
             });
-            if off < KNOWN {
+            if error < KNOWN {
                 break;
             }
             lag = displacement.lag;
             pads = self.pads(from, servos, lag, [None; 4]);
-            displacement = pads.least_near(Some(&displacement));
+            displacement = pads.minimum_near(Some(&displacement));
         }
         (pads, displacement)
     }
@@ -271,31 +266,33 @@ impl Walker {
         let to = feet.at(ends);
         let along = feet.along(ends);
         // In the middle of the step, so that the way back is its exact inverse.
-        let at = each(&|i, j| (from[i][j] + to[i][j]) / 2.0);
-        let before = self.lag.map(f64::to_radians);
+        let positions = points_from(&|i, j| (from[i][j] + to[i][j]) / 2.0);
+        let lag_before = self.lag.map(f64::to_radians);
         let (load, ratio) = self.uneven;
-        let loads = self.ground.loads(at);
+        let loads = self.ground.loads(positions);
         let (drive, grip) = (&self.ground.drive, self.ground.grip());
         // No pad carries more than the whole robot.
-        let most = 4.0 * feet.reach * (self.ground.ratio * ratio).max(1.0);
+        let max = 4.0 * feet.reach * (self.ground.ratio * ratio).max(1.0);
         Pads {
-            at,
-            swing: each(&|i, j| to[i][j] - from[i][j] + (lag[i] - before[i]) * along[i][j]),
+            at: positions,
+            swing: points_from(&|i, j| {
+                to[i][j] - from[i][j] + (lag[i] - lag_before[i]) * along[i][j]
+            }),
             ratio: self.ground.ratio * ratio,
             load: std::array::from_fn(|i| loads[i] * load[i]),
             body: None,
             compliance: (drive.lags() || motors.iter().any(Option::is_some)).then(|| Compliance {
                 along,
-                before,
+                before: lag_before,
                 lag_energy: std::array::from_fn(|i| LagEnergy {
                     motor: motors[i],
-                    ..drive.of_leg(i, servos[i], grip, most)
+                    ..drive.of_leg(i, servos[i], grip, max)
                 }),
             }),
         }
     }
 }
 
-fn each(of: &dyn Fn(usize, usize) -> f64) -> [Point; 4] {
-    std::array::from_fn(|i| std::array::from_fn(|j| of(i, j)))
+fn points_from(component: &dyn Fn(usize, usize) -> f64) -> [Point; 4] {
+    std::array::from_fn(|i| std::array::from_fn(|j| component(i, j)))
 }

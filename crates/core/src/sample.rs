@@ -184,11 +184,11 @@ impl Sample {
     /// The same robot under another hash.
     pub fn with_hash(&self, hash: u32) -> Robot<'static> {
         let mut section = self.content.section();
-        let at = offset_of!(Header, hash);
-        section[at..at + 4].copy_from_slice(&hash.to_le_bytes());
+        let offset = offset_of!(Header, hash);
+        section[offset..offset + 4].copy_from_slice(&hash.to_le_bytes());
         let crc = Checksum::of(&section[offset_of!(Header, name)..]).0;
-        let at = offset_of!(Header, crc);
-        section[at..at + 2].copy_from_slice(&crc.to_le_bytes());
+        let offset = offset_of!(Header, crc);
+        section[offset..offset + 2].copy_from_slice(&crc.to_le_bytes());
         Robot::unchecked(Region::new(Vec::leak(section))).expect("a whole section")
     }
 
@@ -279,11 +279,14 @@ pub fn sine(sine: Sine) -> f64 {
 pub fn side_of(side: &kinematics::Slider, stroke_min: f64, stroke_max: f64) -> Slider {
     let all = side.base + side.front + side.rear + side.offset.abs();
     let across = side.front + side.rear + side.offset.abs();
-    let fits = |scale: &Scale| {
+    let is_fine_enough = |scale: &Scale| {
         all.max(side.nominal + stroke_max) * per_mm(*scale) < slider::MAX_STEPS
             && across * per_mm(*scale) < slider::MAX_ARM_STEPS
     };
-    let scale = (0..=14).rev().map(|bits| Scale { bits }).find(fits);
+    let scale = (0..=14)
+        .rev()
+        .map(|bits| Scale { bits })
+        .find(is_fine_enough);
     let scale = scale.expect("lengths of a robot");
     let length = |mm: f64| steps(mm, scale);
     Slider {
@@ -315,8 +318,8 @@ pub const NOSE: Input = Input::nose(16);
 
 /// A sine, a slow rise with a quick fall, and a hump, as large as a gain asks.
 fn waves() -> Vec<Wave> {
-    let wave = |of: fn(f64) -> f64| -> Wave {
-        core::array::from_fn(|n| (of(n as f64 / SAMPLES as f64) * 1820.0).round() as i16)
+    let wave = |function: fn(f64) -> f64| -> Wave {
+        core::array::from_fn(|n| (function(n as f64 / SAMPLES as f64) * 1820.0).round() as i16)
     };
     std::vec![
         wave(|u| (u * core::f64::consts::TAU).sin()),

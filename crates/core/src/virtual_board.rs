@@ -108,7 +108,6 @@ impl Default for VirtualBoard {
 
 impl VirtualBoard {
     /// A board at power-on with this memory; its supplies cannot be measured.
-    #[must_use]
     pub fn new(memory: Eeprom) -> Self {
         Self {
             ms: FRAME_MS - 1,
@@ -208,7 +207,6 @@ impl VirtualBoard {
     }
 
     /// Milliseconds until the next tick.
-    #[must_use]
     pub const fn until_tick(&self) -> u16 {
         (FRAME_MS - self.ms) as u16
     }
@@ -258,7 +256,6 @@ impl VirtualBoard {
     }
 
     /// The number of bytes that main has not read yet.
-    #[must_use]
     pub fn unread(&self) -> usize {
         self.received.len()
     }
@@ -269,43 +266,36 @@ impl VirtualBoard {
     }
 
     /// The frame that main submitted last.
-    #[must_use]
     pub const fn submitted(&self) -> Pulses {
         self.submitted
     }
 
     /// True while that frame waits to be taken over.
-    #[must_use]
     pub const fn is_fresh(&self) -> bool {
         self.is_fresh
     }
 
     /// The pulses that have begun since the last hand-over.
-    #[must_use]
     pub const fn started_pulses(&self) -> Pulses {
         self.begun
     }
 
     /// True while the LED is lit.
-    #[must_use]
     pub const fn is_lit(&self) -> bool {
         self.is_lit
     }
 
     /// Milliseconds since the watchdog was fed.
-    #[must_use]
     pub const fn ms_since_fed(&self) -> u16 {
         self.unfed
     }
 
     /// The servos' state that would survive a reset.
-    #[must_use]
     pub fn stored_stance(&self) -> Option<Stance> {
         self.ram.found(None).before
     }
 
     /// True once the watchdog has ended the pulses.
-    #[must_use]
     pub const fn is_hushed(&self) -> bool {
         self.is_hushed
     }

@@ -38,11 +38,11 @@ fn main() {
     let poses: Vec<[f64; 4]> = (0..POSES).map(pose).collect();
     // The fastest of five passes over all poses.
     let seconds = (0..5).map(|_| {
-        let begin = Instant::now();
+        let start = Instant::now();
         for pose in &poses {
             let _ = black_box(lizard.solve(&Pose::from(*pose)));
         }
-        begin.elapsed().as_secs_f64()
+        start.elapsed().as_secs_f64()
     });
     let rate = POSES as f64 / seconds.fold(f64::INFINITY, f64::min) / 1e6;
     println!("one by one   {rate:6.2} million poses/s");

@@ -182,13 +182,13 @@ pub fn wrap(degrees: f64) -> f64 {
         return degrees;
     }
     // The remainder is exact, whatever the size of the angle.
-    let turned = degrees % 360.0;
-    if turned > 180.0 {
-        turned - 360.0
-    } else if turned <= -180.0 {
-        turned + 360.0
+    let remainder = degrees % 360.0;
+    if remainder > 180.0 {
+        remainder - 360.0
+    } else if remainder <= -180.0 {
+        remainder + 360.0
     } else {
-        turned
+        remainder
     }
 }
 
@@ -227,8 +227,8 @@ mod tests {
             let (sin, cos) = sin_cos(grid);
             let quarter = [(sin, cos), (cos, -sin), (-sin, -cos), (-cos, sin)];
             let expected = quarter[turns.rem_euclid(4) as usize];
-            let found = sin_cos(grid + 90.0 * f64::from(turns));
-            prop_assert_eq!(found, expected);
+            let computed = sin_cos(grid + 90.0 * f64::from(turns));
+            prop_assert_eq!(computed, expected);
         }
 
         #[test]
@@ -305,7 +305,9 @@ mod tests {
         ] {
             // Of the two angles a turn away, the one in range.
             let turns = [wrapped - 360.0, wrapped, wrapped + 360.0];
-            let wrapped = turns.into_iter().find(|of| *of > -180.0 && *of <= 180.0);
+            let wrapped = turns
+                .into_iter()
+                .find(|degrees_in_turn| *degrees_in_turn > -180.0 && *degrees_in_turn <= 180.0);
             assert_eq!(Some(wrap(degrees)), wrapped, "{degrees}");
             assert_eq!(sin_cos(degrees), sin_cos(wrap(degrees)), "{degrees}");
         }

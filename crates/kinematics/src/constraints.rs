@@ -92,15 +92,15 @@ impl Solution {
     /// and s right, mm per radian and mm per mm. 8x8.
     pub fn passive_matrix(&self) -> [[f64; 8]; 8] {
         let mut k = [[0.0; 8]; 8];
-        for (at, end) in ROWS.into_iter().zip(End::ALL) {
+        for (row, end) in ROWS.into_iter().zip(End::ALL) {
             let ([left, right], bars) = (self.couplers(end), &self.end(end).bars);
-            put_entry(&mut k, at, at, (left * bars.coupler_left).left());
-            put_entry(&mut k, at, at + 1, -(right * bars.coupler_right).left());
+            put_entry(&mut k, row, row, (left * bars.coupler_left).left());
+            put_entry(&mut k, row, row + 1, -(right * bars.coupler_right).left());
         }
-        for (at, side) in ROWS.into_iter().skip(2).zip(Side::ALL) {
+        for (row, side) in ROWS.into_iter().skip(2).zip(Side::ALL) {
             let slider = self.side(side);
-            put_entry(&mut k, at, at, -slider.span.left());
-            put_entry(&mut k, at, at + 1, slider.span * (-1.0 / slider.d));
+            put_entry(&mut k, row, row, -slider.span.left());
+            put_entry(&mut k, row, row + 1, slider.span * (-1.0 / slider.d));
         }
         k
     }
@@ -190,12 +190,12 @@ mod tests {
             let radian = 1f64.to_degrees();
             let k = solved.active_matrix();
             for column in 0..4 {
-                let moved = |by: f64| {
+                let residual_after = |step_size: f64| {
                     let mut active = pose;
-                    active[column] += by * radian;
+                    active[column] += step_size * radian;
                     robot.residual(active, &passive)
                 };
-                let (up, down) = (moved(step), moved(-step));
+                let (up, down) = (residual_after(step), residual_after(-step));
                 for row in 0..8 {
                     let slope = (up[row] - down[row]) / (2.0 * step);
                     prop_assert!((slope - k[row][column]).abs() < 1e-6 * 200.0, "K {row} {column}");
@@ -203,16 +203,16 @@ mod tests {
             }
             let k = solved.passive_matrix();
             for column in 0..8 {
-                let moved = |by: f64| {
+                let residual_after = |step_size: f64| {
                     let mut p = passive;
                     let field = [
                         &mut p.theta2, &mut p.theta3, &mut p.theta6, &mut p.theta7,
                         &mut p.phi_left, &mut p.s_left, &mut p.phi_right, &mut p.s_right,
                     ].into_iter().nth(column).unwrap();
-                    *field += if matches!(column, 5 | 7) { by } else { by * radian };
+                    *field += if matches!(column, 5 | 7) { step_size } else { step_size * radian };
                     robot.residual(pose, &p)
                 };
-                let (up, down) = (moved(step), moved(-step));
+                let (up, down) = (residual_after(step), residual_after(-step));
                 for row in 0..8 {
                     let slope = (up[row] - down[row]) / (2.0 * step);
                     prop_assert!((slope - k[row][column]).abs() < 1e-6 * 200.0, "K* {row} {column}");

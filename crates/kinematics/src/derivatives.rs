@@ -216,7 +216,8 @@ mod tests {
             m.phi_left,
             m.phi_right,
         ];
-        let points = [m.head, m.tail].map(|of| [of.map(|v| v.x), of.map(|v| v.y)]);
+        let points =
+            [m.head, m.tail].map(|points_of| [points_of.map(|v| v.x), points_of.map(|v| v.y)]);
         let all = [&angles[..], points.as_flattened(), &[m.s_left, m.s_right]].concat();
         let (rates, accelerations) = (|i: usize| all[i].rate, |i: usize| all[i].acceleration);
         (
@@ -235,7 +236,7 @@ mod tests {
     }
 
     fn drives() -> impl Strategy<Value = Drive> {
-        let four = |most: f64| [-most..most, -most..most, -most..most, -most..most];
+        let four = |max: f64| [-max..max, -max..max, -max..max, -max..max];
         (four(300.0), four(2000.0)).prop_map(|(rate, acceleration)| Drive { rate, acceleration })
     }
 
@@ -251,7 +252,7 @@ mod tests {
             prop_assume!(now.head.gap.length() > 5.0 && now.tail.gap.length() > 5.0);
             prop_assume!(now.left.d > 20.0 && now.right.d > 20.0);
             let (rates, accelerations) = numbers(&now, &drive);
-            let largest = |all: &[f64; 12]| all.iter().fold(1.0_f64, |most, v| most.max(v.abs()));
+            let largest = |all: &[f64; 12]| all.iter().fold(1.0_f64, |max, v| max.max(v.abs()));
             let (fast, hard) = (largest(&rates), largest(&accelerations));
             let step = STEP.min(TURN / fast);
             // Five points: error of the fourth order in the step.

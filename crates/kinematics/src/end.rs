@@ -73,9 +73,9 @@ impl End {
 
     /// The values of the left and the right crank, picked from four in servo order.
     #[inline(always)]
-    pub fn pick<T: Copy>(self, of: [T; 4]) -> [T; 2] {
+    pub fn pick<T: Copy>(self, four: [T; 4]) -> [T; 2] {
         let [left, right] = self.servos();
-        [of[left], of[right]]
+        [four[left], four[right]]
     }
 }
 
@@ -91,14 +91,14 @@ mod tests {
 
     #[test]
     fn each_servo_stands_at_the_end_that_names_it() {
-        let mut seen = [0; 4];
+        let mut count = [0; 4];
         for end in End::ALL {
             for servo in end.servos() {
-                seen[servo] += 1;
+                count[servo] += 1;
                 assert_eq!(End::of_servo(servo), end);
             }
         }
-        assert_eq!(seen, [1; 4]);
+        assert_eq!(count, [1; 4]);
         assert_eq!(End::Tail.pick(["A1", "A2", "A3", "A4"]), ["A4", "A3"]);
     }
 

@@ -215,13 +215,13 @@ impl FiveBar {
     #[inline(always)]
     fn check_numbers(&self, d: f64, probe: f64) -> Result<(), Fault> {
         let (l2, l3) = (self.coupler_left, self.coupler_right);
-        let (least, reach) = ((l2 - l3).abs(), l2 + l3);
+        let (min, reach) = ((l2 - l3).abs(), l2 + l3);
         if !d.is_finite() || !reach.is_finite() {
             Err(Fault::NotFinite)
         } else if d > reach {
             Err(Fault::Apart { gap: d, reach })
-        } else if d < least {
-            Err(Fault::Nested { gap: d, least })
+        } else if d < min {
+            Err(Fault::Nested { gap: d, least: min })
         } else if d < MIN_GAP {
             Err(Fault::Coincident)
         } else if !probe.is_finite() {

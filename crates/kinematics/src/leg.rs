@@ -56,11 +56,6 @@ impl LegPose {
 }
 
 impl Leg {
-    /// True if opposite links are equal, which the closed form needs.
-    pub fn is_parallelogram(&self) -> bool {
-        self.ground == self.coupler && self.crank == self.follower
-    }
-
     /// The leg of an end at a crank angle in degrees, chassis frame.
     pub fn forward(&self, end: End, theta: f64) -> LegPose {
         self.shape(end, theta, Vector::direction(theta))

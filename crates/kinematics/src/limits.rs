@@ -38,8 +38,8 @@ impl fmt::Display for Violation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { what, value, limit } = *self;
         // To the last digit shown, without the sign of a zero.
-        let shown = |scale: f64| libm::round(value * scale) / scale + 0.0;
-        let (thousandths, hundredths) = (shown(1e3), shown(100.0));
+        let rounded = |scale: f64| libm::round(value * scale) / scale + 0.0;
+        let (thousandths, hundredths) = (rounded(1e3), rounded(100.0));
         let stroke = |f: &mut fmt::Formatter<'_>, side: Side| {
             let passes = if value < limit { "below" } else { "above" };
             write!(
@@ -66,19 +66,23 @@ impl fmt::Display for Violation {
 impl Limits {
     /// The limit that a condition breaks with a value (a sine, or mm), if it
     /// breaks one. A value at its limit is safe; crank tips at 0 mm are crossed.
-    pub fn broken(&self, what: Check, value: f64) -> Option<Violation> {
+    pub fn broken(&self, check: Check, value: f64) -> Option<Violation> {
         let below = |limit: f64| (value < limit).then_some(limit);
-        let limit = match what {
+        let limit = match check {
             Check::Type2Head | Check::Type2Tail => below(self.type2),
             Check::Type1A1 | Check::Type1A2 | Check::Type1A3 | Check::Type1A4 => below(self.type1),
             Check::LegLf | Check::LegRf | Check::LegRh | Check::LegLh => below(self.leg),
             Check::StrokeLeft | Check::StrokeRight => {
-                let most = self.stroke_max;
-                below(self.stroke_min).or((value > most).then_some(most))
+                let max = self.stroke_max;
+                below(self.stroke_min).or((value > max).then_some(max))
             }
             Check::UncrossedHead | Check::UncrossedTail => (value <= 0.0).then_some(0.0),
         };
-        limit.map(|limit| Violation { what, value, limit })
+        limit.map(|limit| Violation {
+            what: check,
+            value,
+            limit,
+        })
     }
 
     /// Every limit that a solved pose breaks; empty if it is safe. This is the only definition

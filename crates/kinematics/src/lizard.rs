@@ -220,14 +220,14 @@ impl Lizard {
     /// Checks that every loop of a solution closes.
     #[inline]
     fn check(&self, solution: &Solution) -> Result<(), Infeasible> {
-        let at = |part: Part| move |fault: Fault| Infeasible { part, fault };
+        let infeasible_at = |part: Part| move |fault: Fault| Infeasible { part, fault };
         for end in End::ALL {
             let checked = self.end(end).check(solution.end(end));
-            checked.map_err(at(Part::End(end)))?;
+            checked.map_err(infeasible_at(Part::End(end)))?;
         }
         for side in Side::ALL {
             let checked = self.side(side).check(solution.side(side));
-            checked.map_err(at(Part::Side(side)))?;
+            checked.map_err(infeasible_at(Part::Side(side)))?;
         }
         Ok(())
     }
@@ -299,8 +299,8 @@ impl Lizard {
     /// Fails as [`FiveBar::inverse`] does.
     pub fn point_angles(&self, end: End, point: Vector) -> Result<[f64; 2], Infeasible> {
         let part = Part::End(end);
-        let found = self.end(end).inverse(point);
-        let [outward, ..] = found.map_err(|fault| Infeasible { part, fault })?;
+        let solutions = self.end(end).inverse(point);
+        let [outward, ..] = solutions.map_err(|fault| Infeasible { part, fault })?;
         let angles = [outward.theta_left, outward.theta_right];
         let [left, right] = angles.map(|theta| end.mirror_angle(theta));
         Ok(match end {

@@ -101,8 +101,8 @@ impl Margins {
     /// The smallest margin with its name; the first of several.
     pub fn min(&self) -> (Check, f64) {
         self.iter()
-            .fold((Check::Type2Head, self.type2[0]), |least, next| {
-                if next.1 < least.1 { next } else { least }
+            .fold((Check::Type2Head, self.type2[0]), |smallest, next| {
+                if next.1 < smallest.1 { next } else { smallest }
             })
     }
 }

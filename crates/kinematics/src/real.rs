@@ -50,19 +50,19 @@ pub struct Lanes<const N: usize>(pub [f64; N]);
 
 impl<const N: usize> Lanes<N> {
     #[inline(always)]
-    fn zip(self, other: Self, of: impl Fn(f64, f64) -> f64) -> Self {
+    fn zip(self, other: Self, operation: impl Fn(f64, f64) -> f64) -> Self {
         let mut result = self.0;
         for (value, other) in result.iter_mut().zip(other.0) {
-            *value = of(*value, other);
+            *value = operation(*value, other);
         }
         Self(result)
     }
 
     #[inline(always)]
-    fn map_lanes(self, of: impl Fn(f64) -> f64) -> Self {
+    fn map_lanes(self, function: impl Fn(f64) -> f64) -> Self {
         let mut result = self.0;
         for value in &mut result {
-            *value = of(*value);
+            *value = function(*value);
         }
         Self(result)
     }

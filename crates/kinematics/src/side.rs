@@ -71,9 +71,9 @@ impl Side {
 
     /// The values of the front and the rear servo, picked from four in servo order.
     #[inline(always)]
-    pub fn pick<T: Copy>(self, of: [T; 4]) -> [T; 2] {
+    pub fn pick<T: Copy>(self, four: [T; 4]) -> [T; 2] {
         let [front, rear] = self.servos();
-        [of[front], of[rear]]
+        [four[front], four[rear]]
     }
 }
 

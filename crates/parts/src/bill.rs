@@ -209,7 +209,6 @@ fn inputs(robot: &Robot) -> Vec<Item> {
 
 impl Bill {
     /// The bill of a robot, whose mass centre is taken at a pose.
-    #[must_use]
     pub fn of(assembly: &Assembly, parts: &[Part], pose: &Solution) -> Self {
         let hold = SpringEffect::of(assembly);
         let mut list: BTreeMap<String, (usize, f64, Price)> = BTreeMap::new();
@@ -226,17 +225,17 @@ impl Bill {
                 *sum += mass * part;
             }
         }
-        let printed = |instead: bool| -> Vec<Item> {
+        let printed = |is_alternative: bool| -> Vec<Item> {
             let parts = parts.iter();
-            let some = parts.filter(|part| part.instead_of.is_some() == instead);
-            some.map(Item::printed).collect()
+            let parts_listed = parts.filter(|part| part.instead_of.is_some() == is_alternative);
+            parts_listed.map(Item::printed).collect()
         };
         let bought = list.into_iter();
         let bought =
             bought.map(|(what, (count, grams, price))| Item::bought(count, what, grams, price));
-        let more = ALWAYS.map(Item::loose);
-        grams += more.iter().map(Item::all).sum::<f64>();
-        let bought: Vec<_> = bought.chain(more).collect();
+        let loose_items = ALWAYS.map(Item::loose);
+        grams += loose_items.iter().map(Item::all).sum::<f64>();
+        let bought: Vec<_> = bought.chain(loose_items).collect();
         Self {
             printed: printed(false),
             instead: printed(true),
@@ -251,7 +250,6 @@ impl Bill {
     }
 
     /// The meaning of the price classes, and their sum.
-    #[must_use]
     pub fn prices(&self) -> String {
         let [from, to] = self.euros;
         let meaning = Price::meaning();
@@ -259,7 +257,6 @@ impl Bill {
     }
 
     /// Hours to print all parts.
-    #[must_use]
     pub fn hours(&self) -> f64 {
         let each = self.printed.iter();
         each.map(|item| item.count as f64 * item.hours.unwrap_or_default())
@@ -267,7 +264,6 @@ impl Bill {
     }
 
     /// The number of bought things whose name begins with some words.
-    #[must_use]
     pub fn count(&self, what: &str) -> usize {
         let bought = self.bought.iter();
         let alike = bought.filter(|item| item.what.starts_with(what));
@@ -365,7 +361,6 @@ const PADS: &str = "The pads are of TPU (95A), all four of one roll: the flat si
 const SERVOS: &str = "Take plain analog servos, all four of one make: by the model, fast digital ones lose a quarter or more of `walk`.";
 
 /// Rows to buy as a table.
-#[must_use]
 pub fn to_buy(items: &[Item]) -> String {
     let mut text = "| pieces | what | price |\n|---|---|---|\n".to_owned();
     for item in items {
@@ -377,7 +372,6 @@ pub fn to_buy(items: &[Item]) -> String {
 }
 
 /// The places of the fittings as a table: room, hold, and two products that fit.
-#[must_use]
 pub fn places() -> String {
     let size = |[x, y, z]: [f64; 3]| format!("{x} x {y} x {z}");
     let mut text =

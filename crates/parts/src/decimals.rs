@@ -17,8 +17,8 @@ pub(crate) fn one<const UNIT: u32, S: Serializer>(value: &f64, out: S) -> Writte
 }
 
 /// Writes a number that may be missing.
-pub(crate) fn optional<const UNIT: u32, S: Serializer>(of: &Option<f64>, out: S) -> Written<S> {
-    of.map(rounded::<UNIT>).serialize(out)
+pub(crate) fn optional<const UNIT: u32, S: Serializer>(value: &Option<f64>, out: S) -> Written<S> {
+    value.map(rounded::<UNIT>).serialize(out)
 }
 
 /// Writes a list of numbers.

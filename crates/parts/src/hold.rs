@@ -44,13 +44,11 @@ pub struct SpringEffect {
 impl SpringEffect {
     /// True if a servo can go on turning at the slot's end, with less than seven tenths of
     /// its stall torque.
-    #[must_use]
     pub fn lets_servo_turn(&self) -> bool {
         self.end[1] < 0.7 * self.stall
     }
 
     /// The effect on the robot's legs, whose struts are equal; `None` if these are rigid.
-    #[must_use]
     pub fn of(assembly: &Assembly) -> Option<Self> {
         let robot = assembly.robot();
         let strut = robot.drive().strut()?;

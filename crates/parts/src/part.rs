@@ -51,33 +51,28 @@ impl Part {
     }
 
     /// The number of pieces needed.
-    #[must_use]
     pub fn count(&self) -> usize {
         self.bodies.len()
     }
 
     /// The name of its files, without extension.
-    #[must_use]
     pub fn file(&self) -> String {
         self.name.replace(' ', "-")
     }
 
     /// The layers as printed, with the mark, and the number of holes that are closed in
     /// them because they would begin in the air.
-    #[must_use]
     pub fn printed(&self) -> (Vec<Prism>, usize) {
         let marked = mark::engraved(&self.prisms, &self.mark);
         roof::closed(&marked.unwrap_or_else(|| self.prisms.clone()))
     }
 
     /// Centres of the holes to be drilled, in the frame of the printed part, mm.
-    #[must_use]
     pub fn closed_holes(&self) -> Vec<Vector> {
         roof::in_air(&self.prisms)
     }
 
     /// The motion that takes the printed part to the place of a body, in that body's frame.
-    #[must_use]
     pub fn print_to_body(&self, body: &Body) -> PrintToBody {
         let [low, high] = body.z();
         PrintToBody {
@@ -88,7 +83,6 @@ impl Part {
     }
 
     /// The part's volume, mm^3.
-    #[must_use]
     pub fn volume(&self) -> f64 {
         volume(&self.prisms)
     }
@@ -114,7 +108,6 @@ pub(crate) fn volume(prisms: &[Prism]) -> f64 {
 
 impl Assembly {
     /// Every printed part, each kind once. Parts that may replace others come last.
-    #[must_use]
     pub fn parts(&self) -> Vec<Part> {
         let mut parts = distinct_parts(self.bodies());
         let is_strut = |part: &&Part| {
@@ -147,7 +140,7 @@ fn servo_digits(names: &[String]) -> String {
     let mut numbers: Vec<usize> = Vec::new();
     for name in names {
         let (_, of) = noun_and_owner(name);
-        let servo = |list: [&str; 4]| list.iter().position(|known| *known == of);
+        let servo = |list: [&str; 4]| list.iter().position(|name| *name == of);
         let side = Side::ALL.into_iter().find(|side| side.name() == of);
         numbers.extend(servo(NAMES).or(servo(LEGS)));
         numbers.extend(side.into_iter().flat_map(Side::servos));

@@ -28,7 +28,6 @@ impl Price {
     pub const ALL: [Self; 5] = [Self::A, Self::B, Self::C, Self::D, Self::E];
 
     /// The least and the greatest price, euros.
-    #[must_use]
     pub fn euros(self) -> [u32; 2] {
         match self {
             Self::A => [0, 1],
@@ -40,7 +39,6 @@ impl Price {
     }
 
     /// The message that says what the classes mean.
-    #[must_use]
     pub fn meaning() -> String {
         let classes = Self::ALL.map(|class| {
             let [from, to] = class.euros();

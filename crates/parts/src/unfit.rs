@@ -63,23 +63,23 @@ impl Assembly {
         let (robot, stack) = (self.robot(), self.stack());
         let (parts, drive) = (robot.parts(), robot.drive());
         let refuse = |message: String| Err(Unfit::Measure(message));
-        let least = parts.screw.head + 2.0 * parts.fit + 1.2;
-        if parts.bar < least {
+        let min = parts.screw.head + 2.0 * parts.fit + 1.2;
+        if parts.bar < min {
             return refuse(format!(
-                "parts.bar is {} mm, but the head of a screw and a wall on each side need {least:.1} mm",
+                "parts.bar is {} mm, but the head of a screw and a wall on each side need {min:.1} mm",
                 parts.bar
             ));
         }
         if !stack.holds_nut(parts) {
             return refuse(NUT.to_owned());
         }
-        for (what, is, least) in [
+        for (measure, actual, min) in [
             ("height", parts.pad.height, pads::least_height(parts)),
             ("width", parts.pad.width, pads::least_width(parts)),
         ] {
-            if is < least {
+            if actual < min {
                 return refuse(format!(
-                    "parts.pad.{what} is {is} mm; a pad with a screw's head in it needs {least:.1} mm"
+                    "parts.pad.{measure} is {actual} mm; a pad with a screw's head in it needs {min:.1} mm"
                 ));
             }
         }
@@ -90,10 +90,10 @@ impl Assembly {
                 parts.pad.radius, parts.pad.width, parts.pad.height
             ));
         }
-        let least = OFF_FLOOR - stack.servo;
-        if parts.height < least {
+        let min = OFF_FLOOR - stack.servo;
+        if parts.height < min {
             return refuse(format!(
-                "parts.height is {} mm; the feet need {least:.1} mm to keep the servos off the floor",
+                "parts.height is {} mm; the feet need {min:.1} mm to keep the servos off the floor",
                 parts.height
             ));
         }
@@ -176,15 +176,15 @@ fn air(a: &[Prism], b: &[Prism]) -> f64 {
             .map(|hole| shape.within(hole, Vector::default()));
         depths.fold(beside, f64::max)
     };
-    let mut least = f64::INFINITY;
+    let mut smallest = f64::INFINITY;
     let layers = a.iter().flat_map(|p| b.iter().map(move |q| (p, q)));
     for (p, q) in layers.filter(|(p, q)| p.z[0] <= q.z[1] - 1e-6 && q.z[0] <= p.z[1] - 1e-6) {
         for first in &p.add {
             for second in &q.add {
                 let air = within(first, &q.cut, first.distance(second));
-                least = least.min(within(second, &p.cut, air));
+                smallest = smallest.min(within(second, &p.cut, air));
             }
         }
     }
-    least
+    smallest
 }

@@ -13,7 +13,6 @@ const CENTRE_TOLERANCE: f64 = 3.0;
 impl Bill {
     /// The values for `[body]` of robot.toml: whole grams, and the mass centre to 0.1 mm
     /// unless it is in the middle.
-    #[must_use]
     pub fn body(&self) -> Body {
         let [ahead, left, _] = self.centre;
         let centre = match ahead.abs() < MIDDLE && left.abs() < MIDDLE {
@@ -27,7 +26,6 @@ impl Bill {
     }
 
     /// `[body]` as text for robot.toml.
-    #[must_use]
     pub fn body_toml(&self) -> String {
         let Body { mass, centre } = self.body();
         match centre {
@@ -39,26 +37,24 @@ impl Bill {
     }
 
     /// True if a robot.toml with this `[body]` is off by more than 5 % or 3 mm.
-    #[must_use]
     pub fn differs(&self, body: &Body) -> bool {
         let [ahead, left, _] = self.centre;
-        let off = libm::hypot(body.centre[0] - ahead, body.centre[1] - left);
-        (body.mass - self.grams).abs() > MASS_TOLERANCE * self.grams || off > CENTRE_TOLERANCE
+        let error = libm::hypot(body.centre[0] - ahead, body.centre[1] - left);
+        (body.mass - self.grams).abs() > MASS_TOLERANCE * self.grams || error > CENTRE_TOLERANCE
     }
 
     /// The place of the mass centre relative to the plate's middle, such as "0.1 mm behind
     /// and 0.1 mm to the right of".
-    #[must_use]
     pub fn centre_in_words(&self) -> String {
         let [ahead, left, _] = self.centre;
-        let way = |value: f64, [positive, negative]: [&str; 2]| {
+        let direction = |value: f64, [positive, negative]: [&str; 2]| {
             let word = if value < 0.0 { negative } else { positive };
             format!("{:.1} mm {word}", value.abs())
         };
         format!(
             "{} and {} of",
-            way(ahead, ["ahead", "behind"]),
-            way(left, ["to the left", "to the right"])
+            direction(ahead, ["ahead", "behind"]),
+            direction(left, ["to the left", "to the right"])
         )
     }
 }

@@ -48,8 +48,12 @@ static RECEIVED: Byte = Byte::new(0);
 /// that no two servos move in the same way.
 fn width(servo: u8, frame: u16) -> u16 {
     let step = 16 * u16::from(servo) + 5;
-    let way = frame.wrapping_mul(step) % 32_000;
-    let up = if way < 16_000 { way } else { 32_000 - way };
+    let position = frame.wrapping_mul(step) % 32_000;
+    let up = if position < 16_000 {
+        position
+    } else {
+        32_000 - position
+    };
     1000 * CYCLES_PER_US + up
 }
 

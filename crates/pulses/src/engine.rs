@@ -114,8 +114,8 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         let servo = usize::from(slot) & (SIZE - 1);
         let width = self.frames[usize::from(self.playing.get() & 1)][servo].get();
         // Checked here, immediately before it is used.
-        let fits = MIN_WIDTH <= width && width <= Self::CLOSE;
-        (slot != Self::TICK_SLOT && fits).then_some((servo, width))
+        let is_in_range = MIN_WIDTH <= width && width <= Self::CLOSE;
+        (slot != Self::TICK_SLOT && is_in_range).then_some((servo, width))
     }
 
     /// Plans the next slot, when one closes.
@@ -255,8 +255,8 @@ mod tests {
     fn a_width_too_long_for_a_slot_makes_no_pulse() {
         let variables = Variables::<8>::of::<6>();
         let engine = variables.engine::<6>();
-        let most = max_width(6);
-        engine.submit([0, 999, 1_000, most, most + 1, u16::MAX]);
+        let max = max_width(6);
+        engine.submit([0, 999, 1_000, max, max + 1, u16::MAX]);
         let masks = frame(&engine).map(|(_, mask, _)| mask);
         assert_eq!(masks[..7], [0, 0, 3, 4, 0, 0, 0]);
     }

@@ -77,14 +77,14 @@ fn keys() -> BTreeMap<String, Words> {
     for (key, read) in &reads {
         let words = keys.entry(plain(key)).or_default();
         if let KeyRead::Number {
-            range: (least, most),
+            range: (min, max),
             unit,
             default,
         } = read
         {
             let unit = unit.trim_start_matches('(').trim_end_matches(')');
-            let [least, most] = [*least, *most].map(short);
-            words.values = Some(format!("{least} to {most}, {unit}"));
+            let [min, max] = [*min, *max].map(short);
+            words.values = Some(format!("{min} to {max}, {unit}"));
             words.default = default.map(short).or(words.default.take());
         }
     }

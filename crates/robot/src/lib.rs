@@ -36,7 +36,7 @@ mod testing;
 mod units;
 
 pub use checks::{Audit, CheckedGait, Effort, LeastMargin, Peak, TIGHT, TableError, Walked};
-pub use file::{Error, MAX_FILE_BYTES, edit, mistake};
+pub use file::{Error, MAX_FILE_BYTES, edit, explain_mistake};
 pub use gaits::{Bars, Harmonic, Path, PathLeg, Routine, Stride, Waveform};
 pub use lizard_contact::{
     Body, DEFAULT_FRICTION, Drive, Feet, GRAVITY, Ground, Joints, Kind, Motor, Motors, Place,

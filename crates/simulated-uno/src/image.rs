@@ -104,8 +104,8 @@ impl Symbol {
     }
 
     fn matches_path(&self, path: &str) -> bool {
-        let own = self.path();
-        let outer = own.strip_suffix(path);
+        let own_path = self.path();
+        let outer = own_path.strip_suffix(path);
         outer.is_some_and(|outer| outer.is_empty() || outer.ends_with("::"))
     }
 }
@@ -270,9 +270,9 @@ impl Image {
     /// have one address.
     fn unique_symbol(&self, path: &str, is_of_kind: impl Fn(&Symbol) -> bool) -> Option<&Symbol> {
         let matches = |symbol: &&Symbol| is_of_kind(symbol) && symbol.matches_path(path);
-        let mut found = self.symbols.iter().filter(matches);
-        let first = found.next()?;
-        found
+        let mut matching = self.symbols.iter().filter(matches);
+        let first = matching.next()?;
+        matching
             .all(|other| other.address == first.address)
             .then_some(first)
     }
@@ -282,9 +282,9 @@ impl Image {
     #[must_use]
     pub fn flash(&self) -> Vec<u8> {
         let mut flash = vec![0xff; self.code_end() as usize];
-        for (at, bytes) in &self.segments {
-            let at = *at as usize;
-            flash[at..at + bytes.len()].copy_from_slice(bytes);
+        for (start, bytes) in &self.segments {
+            let start = *start as usize;
+            flash[start..start + bytes.len()].copy_from_slice(bytes);
         }
         flash
     }
@@ -303,13 +303,13 @@ impl Image {
             });
         }
         let mut segments = Vec::new();
-        for (at, bytes) in self.segments.drain(..) {
+        for (start, bytes) in self.segments.drain(..) {
             let length = bytes.len();
-            let before = (range.start.saturating_sub(at) as usize).min(length);
-            let behind = (range.end.saturating_sub(at) as usize).min(length);
+            let before = (range.start.saturating_sub(start) as usize).min(length);
+            let behind = (range.end.saturating_sub(start) as usize).min(length);
             for kept in [0..before, behind..length] {
                 if !kept.is_empty() {
-                    segments.push((at + kept.start as u32, bytes[kept].to_vec()));
+                    segments.push((start + kept.start as u32, bytes[kept].to_vec()));
                 }
             }
         }

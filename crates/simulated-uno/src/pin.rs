@@ -101,7 +101,7 @@ pub fn pulses(edges: &[Edge], pin: Pin) -> Vec<Pulse> {
 #[must_use]
 pub fn most_pins_high(edges: &[Edge]) -> u32 {
     let mut levels = 0u32;
-    let mut most = 0;
+    let mut largest = 0;
     let mut edges = edges.to_vec();
     // At equal cycles a fall comes first: back-to-back pulses do not overlap.
     edges.sort_by_key(|edge| (edge.cycle, edge.high));
@@ -112,7 +112,7 @@ pub fn most_pins_high(edges: &[Edge]) -> u32 {
         } else {
             levels &= !bit;
         }
-        most = most.max(levels.count_ones());
+        largest = largest.max(levels.count_ones());
     }
-    most
+    largest
 }

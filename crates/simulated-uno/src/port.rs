@@ -170,7 +170,9 @@ impl Port {
             None => {
                 let ratio = uno.chip_baud() / baud;
                 let sent = uno.take_transmitted();
-                sent.iter().map(|it| sample_byte(it.byte, ratio)).collect()
+                sent.iter()
+                    .map(|sample| sample_byte(sample.byte, ratio))
+                    .collect()
             }
         };
         // Checked again, since this program may have been held up meanwhile.
@@ -186,13 +188,13 @@ impl Port {
     /// The cycle that the chip should have reached by now.
     fn due(&mut self, cycle: u64) -> u64 {
         let now = Instant::now();
-        let (then, before) = *self.anchor.get_or_insert((now, cycle));
-        let due = before + cycles(now - then);
-        let most = cycle + cycles(MAX_CATCH_UP);
-        if due > most {
-            self.anchor = Some((now, most));
+        let (anchor_time, anchor_cycle) = *self.anchor.get_or_insert((now, cycle));
+        let due = anchor_cycle + cycles(now - anchor_time);
+        let max = cycle + cycles(MAX_CATCH_UP);
+        if due > max {
+            self.anchor = Some((now, max));
         }
-        due.min(most)
+        due.min(max)
     }
 }
 

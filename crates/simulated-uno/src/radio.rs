@@ -82,7 +82,12 @@ impl Flight {
     fn arrive(&mut self, now: u64) -> Vec<u8> {
         let mut bytes = Vec::new();
         while self.packets.front().is_some_and(|(due, _)| *due <= now) {
-            bytes.extend(self.packets.pop_front().into_iter().flat_map(|it| it.1));
+            bytes.extend(
+                self.packets
+                    .pop_front()
+                    .into_iter()
+                    .flat_map(|packet| packet.1),
+            );
         }
         bytes
     }
@@ -158,7 +163,11 @@ impl Radio {
     /// To be called every millisecond of the chip's time.
     pub fn exchange(&mut self, uno: &mut Uno) -> Vec<u8> {
         uno.set_baud(self.air.baud);
-        let sent: Vec<u8> = uno.take_transmitted().iter().map(|it| it.byte).collect();
+        let sent: Vec<u8> = uno
+            .take_transmitted()
+            .iter()
+            .map(|sample| sample.byte)
+            .collect();
         let received = self.received_bytes(&sent, uno.chip_baud());
         let [to_uno, to_phone] = self.pass(&received, uno.cycle());
         uno.send(&to_uno);
@@ -216,7 +225,7 @@ impl Radio {
     }
 
     fn holds(&mut self, now: u64) -> Option<u64> {
-        let most = 2 * self.air.holds * CYCLES_PER_MS;
-        (most > 0).then(|| now + self.random.u64(..most))
+        let max = 2 * self.air.holds * CYCLES_PER_MS;
+        (max > 0).then(|| now + self.random.u64(..max))
     }
 }

@@ -316,12 +316,12 @@ impl Uno {
     }
 
     /// The items of one of the shim's lists.
-    pub(crate) fn list<Item: Copy>(&self, of: ListOf) -> Vec<Item> {
+    pub(crate) fn list<Item: Copy>(&self, kind: ListOf) -> Vec<Item> {
         // SAFETY: `raw` is valid, see `Uno`. The callers pair each list with the type that
         // the shim keeps in it, whose size is compared; `count` items of it are filled in,
         // and nothing runs while they are copied.
         unsafe {
-            let list = &*of(self.raw);
+            let list = &*kind(self.raw);
             assert_eq!(list.size, size_of::<Item>());
             match list.count {
                 0 => Vec::new(),
@@ -331,16 +331,16 @@ impl Uno {
     }
 
     /// The items of one of the shim's lists, which is empty afterwards.
-    pub(crate) fn take<Item: Copy>(&mut self, of: ListOf) -> Vec<Item> {
-        let items = self.list(of);
-        self.clear(of);
+    pub(crate) fn take<Item: Copy>(&mut self, kind: ListOf) -> Vec<Item> {
+        let items = self.list(kind);
+        self.clear(kind);
         items
     }
 
-    pub(crate) fn clear(&mut self, of: ListOf) {
+    pub(crate) fn clear(&mut self, kind: ListOf) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; a list is inside the instance, and
         // the shim writes after its `count`, so that 0 empties it.
-        unsafe { (*of(self.raw)).count = 0 }
+        unsafe { (*kind(self.raw)).count = 0 }
     }
 }
 

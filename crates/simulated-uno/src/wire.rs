@@ -31,8 +31,8 @@ impl Frame {
         self.start + FRAME * self.bit
     }
 
-    fn is_high(&self, at: f64) -> bool {
-        let index = ((at - self.start) / self.bit).floor();
+    fn is_high(&self, time: f64) -> bool {
+        let index = ((time - self.start) / self.bit).floor();
         let bits = 1u32 << 9 | u32::from(self.byte) << 1;
         !(0.0..FRAME).contains(&index) || bits >> index as u32 & 1 == 1
     }
@@ -80,16 +80,16 @@ impl Wire {
         let bit = FREQUENCY as f64 / baud;
         let mut received = Vec::new();
         while let Some(start) = self.next_fall() {
-            let done = start + STOP_BIT_MIDDLE * bit;
-            if done > now as f64 {
+            let end = start + STOP_BIT_MIDDLE * bit;
+            if end > now as f64 {
                 break;
             }
             let sampled = |index: u8| self.is_high(start + (f64::from(index) + 1.5) * bit);
             let byte = (0..8).fold(0, |byte, index| byte | u8::from(sampled(index)) << index);
             received.push(sampled(8).then_some(byte));
-            self.free = done;
+            self.free = end;
             for talker in &mut self.talkers {
-                while talker.front().is_some_and(|it| it.end() <= done) {
+                while talker.front().is_some_and(|frame| frame.end() <= end) {
                     talker.pop_front();
                 }
             }
@@ -99,9 +99,9 @@ impl Wire {
 
     /// The next moment at which the wire goes from high to low.
     fn next_fall(&self) -> Option<f64> {
-        let edges = self
-            .near()
-            .flat_map(|it| (0..9).map(|index| (it.start + f64::from(index) * it.bit, it.bit)));
+        let edges = self.near().flat_map(|frame| {
+            (0..9).map(|index| (frame.start + f64::from(index) * frame.bit, frame.bit))
+        });
         edges
             .filter(|(at, _)| *at > self.free)
             .filter(|(at, bit)| {
@@ -120,8 +120,8 @@ impl Wire {
             .flat_map(|talker| talker.iter().take(NEAR_BYTES))
     }
 
-    fn is_high(&self, at: f64) -> bool {
-        self.near().all(|frame| frame.is_high(at))
+    fn is_high(&self, time: f64) -> bool {
+        self.near().all(|frame| frame.is_high(time))
     }
 }
 

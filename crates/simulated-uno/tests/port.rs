@@ -183,9 +183,9 @@ fn unread_output_is_dropped_before_the_next_program_opens_the_port() {
 fn the_chip_keeps_time_with_the_wall_clock() {
     let mut uno = echo();
     let mut port = Port::new().expect("a pseudo terminal");
-    let begin = Instant::now();
+    let start = Instant::now();
     serve(&mut port, &mut uno, 100);
-    let wall = begin.elapsed().as_secs_f64();
+    let wall = start.elapsed().as_secs_f64();
     let chip = uno.cycle() as f64 / FREQUENCY as f64;
     // Never ahead by more than the slice under way. It is behind where this test was held
     // up, nobody knows how far.

@@ -84,8 +84,8 @@ impl Figures {
     fn of(judge: &Judge, gait: &CheckedGait, paced: f64) -> (Self, Vec<f64>) {
         let period = gait.period() * paced;
         let audit = gait.audit();
-        let least = [audit.type2, audit.type1, audit.leg];
-        let least = least
+        let min = [audit.type2, audit.type1, audit.leg];
+        let min = min
             .into_iter()
             .fold(audit.leg, |a, b| if b.value < a.value { b } else { a });
         let speeds = judge.speeds(gait, period);
@@ -93,7 +93,7 @@ impl Figures {
             name: gait.name().to_owned(),
             period,
             rate: audit.peak.speed / paced,
-            margin: (Check::name(least.what), least.value),
+            margin: (Check::name(min.what), min.value),
             predicted: judge.goal().progress(&judge.cycle(gait)) / period,
             sg90: judge.speed_on_robot(gait, period),
             speeds: quantiles(speeds.clone(), [0.05, 0.5, 0.95]),

@@ -52,7 +52,7 @@ impl Goal {
         let (Some(forward), Some(turn)) = (movement.forward, movement.turn) else {
             return Err(NoGoal::Undecided(name()));
         };
-        let goes = |value: f64, least: f64| value.abs() >= least;
+        let goes = |value: f64, min: f64| value.abs() >= min;
         match (goes(forward, MIN_MOVEMENT.0), goes(turn, MIN_MOVEMENT.1)) {
             (true, false) => Ok(Self::Ahead(forward.signum())),
             (false, true) => Ok(Self::Turn(turn.signum())),
@@ -128,12 +128,12 @@ mod tests {
         assert_eq!(goal("back"), Ok(Goal::Ahead(-1.0)));
         assert_eq!(goal("left"), Ok(Goal::Turn(1.0)));
         assert_eq!(goal("right"), Ok(Goal::Turn(-1.0)));
-        for (name, why) in [
+        for (name, reason) in [
             ("stand", "goes nowhere"),
             ("arc-left", "goes ahead and turns"),
             ("look", "is undecided"),
         ] {
-            assert!(goal(name).expect_err(name).contains(why), "{name}");
+            assert!(goal(name).expect_err(name).contains(reason), "{name}");
         }
     }
 

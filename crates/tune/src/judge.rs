@@ -61,8 +61,8 @@ impl BuiltGait {
     /// Finds the largest amplitude at which a plain walk is within the robot's limits, deg.
     pub(crate) fn widest(robot: &Robot, goal: Goal, rate: f64) -> f64 {
         let walks = |widest: f64| {
-            let begin = &Kind::Wave.begin()[0];
-            let bars = planned(Kind::Wave, Space { goal, widest }, "x", begin);
+            let start = &Kind::Wave.begin()[0];
+            let bars = planned(Kind::Wave, Space { goal, widest }, "x", start);
             Self::of(robot, &bars, rate).is_some()
         };
         let (mut low, mut high) = WIDTHS;
@@ -210,7 +210,7 @@ mod tests {
     #[test]
     fn walk_and_left_score_as_they_are_predicted() {
         let robot = paper();
-        for (name, goal, least) in [
+        for (name, goal, min) in [
             ("walk", Goal::Ahead(1.0), 28.0),
             ("left", Goal::Turn(1.0), 13.0),
         ] {
@@ -218,7 +218,7 @@ mod tests {
             let judge = Judge::new(&robot, robot.ground(), goal, 20, 0);
             let score = judge.score(gait).expect("it leads there");
             let exact = judge.speed_on_robot(gait, gait.period());
-            assert!(least < score && score < exact, "{name} {score} {exact}");
+            assert!(min < score && score < exact, "{name} {score} {exact}");
         }
         let walk = robot.gait("walk").expect("walk");
         let turn = Judge::new(&robot, robot.ground(), Goal::Turn(1.0), 2, 0);

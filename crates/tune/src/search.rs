@@ -44,10 +44,10 @@ pub struct Search {
 
 impl Search {
     /// Starts with these parameters and with random ones.
-    pub fn new(begin: &[Vec<f64>], seed: u64) -> Self {
+    pub fn new(start: &[Vec<f64>], seed: u64) -> Self {
         let mut rng = Rng::with_seed(seed);
-        let parameters = begin.first().map_or(0, Vec::len);
-        let mut trials = begin.to_vec();
+        let parameters = start.first().map_or(0, Vec::len);
+        let mut trials = start.to_vec();
         trials.resize_with(MEMBERS, || (0..parameters).map(|_| rng.f64()).collect());
         Self {
             rng,
@@ -129,17 +129,17 @@ mod tests {
     /// A narrow curved ridge with its top at (0.7, 0.49), and a quarter of the square refused.
     fn ridge(at: &[f64]) -> Option<f64> {
         let (x, y) = (at[0], at[1]);
-        let off = 40.0 * (y - x * x).powi(2) + (x - 0.7).powi(2);
-        (x + y > 0.5).then_some(-off)
+        let error = 40.0 * (y - x * x).powi(2) + (x - 0.7).powi(2);
+        (x + y > 0.5).then_some(-error)
     }
 
     fn searched(
-        begin: &[Vec<f64>],
+        start: &[Vec<f64>],
         rounds: usize,
         seed: u64,
         judge: impl Fn(&[f64]) -> Option<f64>,
     ) -> Vec<(f64, Vec<f64>)> {
-        let mut search = Search::new(begin, seed);
+        let mut search = Search::new(start, seed);
         for _ in 0..=rounds {
             let trials = search.trials().to_vec();
             search.score(trials.iter().map(|at| judge(at)));
@@ -151,8 +151,8 @@ mod tests {
     fn it_climbs_a_curved_ridge() {
         let found = searched(&[vec![0.1, 0.9]], 60, 1, ridge);
         let best = &found[0].1;
-        let off = (best[0] - 0.7).hypot(best[1] - 0.49);
-        assert!(off < 1e-3, "{best:?}");
+        let error = (best[0] - 0.7).hypot(best[1] - 0.49);
+        assert!(error < 1e-3, "{best:?}");
         assert!(found.windows(2).all(|pair| pair[0].0 >= pair[1].0));
     }
 

@@ -141,9 +141,9 @@ fn allowed(robot: &Robot, gait: &CheckedGait, asked: Option<f64>) -> Result<f64,
     let Some(rate) = asked else {
         return Ok(gait.audit().peak.speed);
     };
-    let most = robot.pace().gait_slew;
-    if (MIN_SERVO_SPEED..=most).contains(&rate) {
+    let max = robot.pace().gait_slew;
+    if (MIN_SERVO_SPEED..=max).contains(&rate) {
         return Ok(rate);
     }
-    Err(NoTuning::Rate { rate, most })
+    Err(NoTuning::Rate { rate, most: max })
 }

@@ -43,7 +43,6 @@ pub struct Variation {
 
 impl Variation {
     /// Draws a robot and a floor around this ground from a seed.
-    #[must_use]
     pub fn of(ground: &Ground, seed: u64) -> Self {
         let mut rng = Rng::with_seed(seed);
         let mut within = |(low, high): (f64, f64)| low + (high - low) * rng.f64();
@@ -99,7 +98,6 @@ impl Variation {
     }
 
     /// The ground without variation.
-    #[must_use]
     pub fn none(ground: &Ground) -> Self {
         Self {
             ground: *ground,
@@ -110,18 +108,17 @@ impl Variation {
 
     /// Follows the second cycle of a gait, which all later ones repeat, frame by frame with
     /// these servos.
-    #[must_use]
     pub fn walked(&self, robot: &Robot, gait: &CheckedGait, model: ServoModel) -> Travel {
         let mut sweeps = gait.sweeps(gait.phase(0.0));
         let targets = |phase: u16| gait.sweeps(f64::from(phase) / PHASES);
         if let ServoModel::Motors(motors) = model {
             let mut walker = Walker::with_unevenness(self.ground, sweeps, self.pads, self.ratio);
             let mut cycle = || {
-                let begin = walker.place();
+                let start = walker.place();
                 for (_, phase) in gait.frames().skip(1) {
                     walker.drive(targets(phase).map(Some), FRAME, &motors);
                 }
-                walker.place().seen_from(begin)
+                walker.place().seen_from(start)
             };
             cycle();
             return cycle();
@@ -137,32 +134,31 @@ impl Variation {
             sweeps
         };
         let first: Vec<[f64; 4]> = gait.frames().map(|(_, phase)| next(phase)).collect();
-        let [begin, end] = [first.first(), first.last()].map(|at| at.copied().unwrap_or_default());
+        let [start, end] = [first.first(), first.last()].map(|at| at.copied().unwrap_or_default());
         // With rigid legs the first cycle changes only the servos.
         let sprung = self.ground.drive.lags();
-        let from = if sprung { begin } else { end };
+        let from = if sprung { start } else { end };
         let mut walker = Walker::with_unevenness(self.ground, from, self.pads, self.ratio);
         if sprung {
             first.into_iter().for_each(|sweeps| {
                 walker.step(sweeps);
             });
         }
-        let begin = walker.place();
+        let start = walker.place();
         for (_, phase) in gait.frames() {
             walker.step(next(phase));
         }
-        walker.place().seen_from(begin)
+        walker.place().seen_from(start)
     }
 }
 
 /// The values below which these shares of all values lie, by nearest rank.
-#[must_use]
 pub fn quantiles<const N: usize>(mut values: Vec<f64>, shares: [f64; N]) -> [f64; N] {
     values.sort_by(f64::total_cmp);
     let last = values.len().saturating_sub(1);
     shares.map(|share| {
-        let at = (share * last as f64).round() as usize;
-        values.get(at).copied().unwrap_or(f64::NAN)
+        let position = (share * last as f64).round() as usize;
+        values.get(position).copied().unwrap_or(f64::NAN)
     })
 }
 
@@ -191,17 +187,19 @@ mod tests {
     #[test]
     fn soft_feet_leave_a_walk_where_stiff_ones_lose_it() {
         let text = include_str!("../../../robots/paper.toml");
-        let least = |feet: &str| {
+        let low_forward = |feet: &str| {
             let robot = Robot::parse(&format!("{text}\n{feet}")).expect("right");
             let walk = robot.gait("walk").expect("walk");
             let movements = (0..60).map(|seed| {
                 Variation::of(robot.ground(), seed).walked(&robot, walk, ServoModel::SG90)
             });
-            let [least] = quantiles(movements.map(|movement| movement.forward).collect(), [0.05]);
-            least
+            let [min] = quantiles(movements.map(|movement| movement.forward).collect(), [0.05]);
+            min
         };
-        let level = least("[feet]\nlevel = 0.0");
-        assert!(least("") > 0.97 * level && least("[feet]\nstiffness = 3.3") < 0.65 * level);
+        let level = low_forward("[feet]\nlevel = 0.0");
+        assert!(
+            low_forward("") > 0.97 * level && low_forward("[feet]\nstiffness = 3.3") < 0.65 * level
+        );
     }
 
     #[test]
@@ -232,9 +230,9 @@ mod tests {
                 for model in [ServoModel::Ideal, ServoModel::SG90] {
                     let movement = Variation::none(robot.ground()).walked(&robot, gait, model);
                     let twin = Twin::new(&robot, model).cycle(gait).travel();
-                    let off = (movement.forward - twin.forward).hypot(movement.turn - twin.turn);
+                    let error = (movement.forward - twin.forward).hypot(movement.turn - twin.turn);
                     // The twin reads waveforms of 64 samples, a search the gait itself.
-                    assert!(off < 0.4, "{name} {movement:?} {twin:?}");
+                    assert!(error < 0.4, "{name} {movement:?} {twin:?}");
                 }
             }
         }

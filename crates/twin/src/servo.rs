@@ -38,7 +38,6 @@ impl ServoModel {
     });
 
     /// The servos of a robot.toml, on their own supply.
-    #[must_use]
     pub fn of(robot: &Robot) -> Self {
         Self::Motors(robot.motors())
     }
@@ -47,12 +46,11 @@ impl ServoModel {
 impl Unloaded {
     /// Computes the sweep (deg) one frame after `from`, with a pulse for `target`;
     /// `us_per_degree` is the servo's gain.
-    #[must_use]
     pub fn sweep_after_frame(&self, from: f64, target: f64, us_per_degree: f64) -> f64 {
         let idle = self.dead_band / 2.0 / us_per_degree.abs();
-        let most = self.rate * FRAME;
+        let max = self.rate * FRAME;
         let stops = from.clamp(target - idle, target + idle);
-        from + (stops - from).clamp(-most, most)
+        from + (stops - from).clamp(-max, max)
     }
 }
 

@@ -22,14 +22,12 @@ pub struct Shape {
 impl Shape {
     /// Computes the joints at servo angles (deg, chassis frame), with legs at these sweeps from
     /// neutral (deg, foot forward positive), all in servo order; `None` if a loop does not close.
-    #[must_use]
     pub fn of(robot: &Robot, angles: [f64; 4], legs: [f64; 4]) -> Option<Self> {
         let solved = robot.lizard().solve(&angles.into()).ok()?;
         Some(Self::at_solution(robot, &solved, legs))
     }
 
     /// Computes the joints of a pose that is solved already.
-    #[must_use]
     pub fn at_solution(robot: &Robot, solved: &Solution, legs: [f64; 4]) -> Self {
         let shafts = robot.lizard().shafts();
         let tips = solved.crank_tips();

@@ -38,13 +38,11 @@ const HOLDS: f64 = 0.01;
 
 impl State {
     /// True for each foot that did not slide in this frame.
-    #[must_use]
     pub fn holding_feet(&self) -> [bool; 4] {
         self.slip.map(|slip| slip < HOLDS)
     }
 
     /// The name and the value of the smallest margin.
-    #[must_use]
     pub fn least_margin(&self) -> Option<(Check, f64)> {
         self.margins.map(|margins| margins.min())
     }

@@ -31,11 +31,10 @@ pub struct Tally {
 
 impl Tally {
     /// Starts at this place, without frames.
-    #[must_use]
-    pub fn new(begin: Place) -> Self {
+    pub fn new(start: Place) -> Self {
         Self {
-            begin,
-            end: begin,
+            begin: start,
+            end: start,
             frames: 0,
             length: 0.0,
             slip: [0.0; 4],
@@ -62,27 +61,25 @@ impl Tally {
             *sum += slip;
         }
         if let Some((check, value)) = state.least_margin()
-            && self.margin.is_none_or(|(_, least)| value < least)
+            && self.margin.is_none_or(|(_, smallest)| value < smallest)
         {
             self.margin = Some((check, value));
         }
         if let Some(strokes) = state.strokes {
-            let [least, greatest] = self.stroke.unwrap_or([f64::INFINITY, f64::NEG_INFINITY]);
+            let [smallest, greatest] = self.stroke.unwrap_or([f64::INFINITY, f64::NEG_INFINITY]);
             self.stroke = Some([
-                strokes.into_iter().fold(least, f64::min),
+                strokes.into_iter().fold(smallest, f64::min),
                 strokes.into_iter().fold(greatest, f64::max),
             ]);
         }
     }
 
     /// The movement of the body, seen from its start.
-    #[must_use]
     pub fn travel(&self) -> Travel {
         self.end.seen_from(self.begin)
     }
 
     /// Duration of the frames, s.
-    #[must_use]
     pub fn seconds(&self) -> f64 {
         self.frames as f64 * FRAME
     }

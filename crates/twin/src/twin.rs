@@ -23,7 +23,6 @@ pub struct Twin {
 
 impl Twin {
     /// Makes a robot that stands at neutral without pulses, its springs at rest.
-    #[must_use]
     pub fn new(robot: &Robot, model: ServoModel) -> Self {
         Self {
             robot: robot.clone(),
@@ -56,8 +55,8 @@ impl Twin {
         let before = self.sweeps;
         let servos = self.robot.servos();
         let targets: [Option<f64>; 4] = std::array::from_fn(|i| {
-            let (least, most) = servos[i].travel();
-            targets[i].map(|target| target.clamp(least, most))
+            let (min, max) = servos[i].travel();
+            targets[i].map(|target| target.clamp(min, max))
         });
         let slip = match self.model {
             ServoModel::Motors(motors) => {
@@ -107,31 +106,26 @@ impl Twin {
     }
 
     /// The robot of this twin.
-    #[must_use]
     pub fn robot(&self) -> &Robot {
         &self.robot
     }
 
     /// The present joints, chassis frame; `None` if a loop does not close.
-    #[must_use]
     pub fn shape(&self) -> Option<Shape> {
         Shape::of(&self.robot, self.angles(), self.legs())
     }
 
     /// The present servo angles, deg, chassis frame.
-    #[must_use]
     pub fn angles(&self) -> [f64; 4] {
         std::array::from_fn(|i| self.robot.servos()[i].neutral + self.sweeps[i])
     }
 
     /// The present sweeps of the legs, which may lag: deg, foot forward positive.
-    #[must_use]
     pub fn legs(&self) -> [f64; 4] {
         self.walker.legs()
     }
 
     /// The floor, the pads and the drive of the legs.
-    #[must_use]
     pub fn ground(&self) -> &Ground {
         self.walker.ground()
     }
@@ -143,7 +137,6 @@ impl Twin {
 
     /// Follows the second cycle of a gait at full speed, started at neutral, with the present
     /// ground and servos. This twin itself does not move.
-    #[must_use]
     pub fn cycle(&self, gait: &CheckedGait) -> Tally {
         let mut twin = Self::new(&self.robot, self.model);
         twin.set_ground(*self.ground());
@@ -158,7 +151,6 @@ impl Twin {
     }
 
     /// The model of the servos.
-    #[must_use]
     pub fn servos(&self) -> ServoModel {
         self.model
     }

@@ -20,12 +20,12 @@ fn cycle(robot: &Robot, name: &str, model: ServoModel, ground: &Ground) -> Tally
     twin.set_ground(*ground);
     let mut tally = Tally::new(Place::START);
     for _ in 0..4 {
-        let begin = twin.push(widths(
+        let start = twin.push(widths(
             robot,
             gait,
             gait.frames().next().expect("a frame").1,
         ));
-        tally = Tally::new(begin.place);
+        tally = Tally::new(start.place);
         for (_, phase) in gait.frames().skip(1) {
             tally.add(&twin.push(widths(robot, gait, phase)));
         }
@@ -145,8 +145,8 @@ fn a_cycle_is_what_its_frames_come_to() {
         let whole = cycle(&robot, name, ServoModel::SG90, robot.ground()).travel();
         let twin = Twin::new(&robot, ServoModel::SG90);
         let alone = twin.cycle(gait).travel();
-        let off = (alone.forward - whole.forward).abs();
-        assert!(off < 0.3, "{name} {alone:?} {whole:?}");
+        let error = (alone.forward - whole.forward).abs();
+        assert!(error < 0.3, "{name} {alone:?} {whole:?}");
         assert!((alone.turn - whole.turn).abs() < 0.2, "{name}");
         assert_eq!(
             twin.angles(),

@@ -297,7 +297,12 @@ fn stop_is_insisted_on(record: &Record) -> Result<(), String> {
         let answered = record.lines.iter().find(ends).map(|line| line.cycle);
         let within = |link: &Span| {
             let from = link.start.max(*stop);
-            let due = from + if record.has_found_rate(from) { HOLDS } else { FINDS };
+            let due = from
+                + if record.has_found_rate(from) {
+                    HOLDS
+                } else {
+                    FINDS
+                };
             let is_calm = !record.is_troubled(from.saturating_sub(300 * MS), due);
             (link.end >= due && is_calm).then_some(due)
         };

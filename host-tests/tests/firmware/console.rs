@@ -86,8 +86,8 @@ fn refused_poses() -> Vec<(String, u8)> {
     let servos = robot().servos();
     for n in 0..400_000 {
         // All around, and nearer to neutral, where fewer limits are broken at once.
-        let most = [175.0, 90.0, 45.0, 25.0][n % 4];
-        let sweeps: [f64; 4] = std::array::from_fn(|_| most * (2.0 * rng.f64() - 1.0));
+        let largest = [175.0, 90.0, 45.0, 25.0][n % 4];
+        let sweeps: [f64; 4] = std::array::from_fn(|_| largest * (2.0 * rng.f64() - 1.0));
         let within = |by: f64| {
             servos.iter().zip(sweeps).all(|(servo, sweep)| {
                 let (min, max) = servo.travel();
@@ -205,8 +205,8 @@ fn every_refusal_has_its_code_and_changes_nothing() {
             bench.run_for_frames(2 * SECOND),
             quiet.run_for_frames(2 * SECOND)
         );
-        let (told, untold) = (Status::of(&mut bench), Status::of(&mut quiet));
-        assert_eq!(told.0, untold.0);
+        let (printed, untold) = (Status::of(&mut bench), Status::of(&mut quiet));
+        assert_eq!(printed.0, untold.0);
     });
 }
 
@@ -298,9 +298,12 @@ fn status_counts_fifty_frames_a_second_and_follows_the_phase() {
             let turned = now.1.number("phase") - before.number("phase");
             let gone = frames.round() / 50.0 / gait.period();
             let gone = if gait.is_reversed() { -gone } else { gone };
-            let off = (turned - gone).rem_euclid(1.0);
+            let error = (turned - gone).rem_euclid(1.0);
             // A phase is printed to a thousandth.
-            assert!(off.min(1.0 - off) <= 0.0021, "{turned} in {frames} frames");
+            assert!(
+                error.min(1.0 - error) <= 0.0021,
+                "{turned} in {frames} frames"
+            );
         }
         last = Some(now);
         bench.run_ms(470);
@@ -367,10 +370,10 @@ fn half_speed_takes_twice_the_time() {
                 // Half a percent of a cycle, and the part of a frame at the cycle's
                 // end.
                 let frame = 16.0 * servo.us_per_degree.abs() * fastest;
-                let most = 0.005 * gait.period() * SECOND as f64 * frame + frame + 2.0;
+                let max = 0.005 * gait.period() * SECOND as f64 * frame + frame + 2.0;
                 for (here, later) in once.iter().zip(again) {
-                    let off = here[i].abs_diff(later[i]) as f64;
-                    assert!(off <= most, "{percent} %: {off} cycles after a cycle");
+                    let error = here[i].abs_diff(later[i]) as f64;
+                    assert!(error <= max, "{percent} %: {error} cycles after a cycle");
                 }
             }
             // In a cycle each leg makes its whole sweep, at any speed.

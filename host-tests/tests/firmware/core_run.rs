@@ -131,11 +131,11 @@ fn random_commands_give_the_same_widths_on_the_avr_and_here() {
         // And the same answers, except for the counters of faults, which are 0 here.
         // Which frame a report is told in also depends on the room in the line.
         let is_answer = |line: &&str| !line.starts_with('#');
-        let told = |line: &'_ str| comparable_line(line, fidelity);
-        let asked = commands.written.lines().filter(is_answer).map(told);
+        let printed = |line: &'_ str| comparable_line(line, fidelity);
+        let asked = commands.written.lines().filter(is_answer).map(printed);
         let asked: Vec<String> = asked.collect();
         let lines = bench.lines().iter().map(|line| line.text.as_str());
-        let answered: Vec<String> = lines.filter(is_answer).map(told).collect();
+        let answered: Vec<String> = lines.filter(is_answer).map(printed).collect();
         // The UNO runs on beyond the last whole frame, and may have answered once more.
         let more = answered.len().saturating_sub(asked.len());
         assert!(more <= 1, "{more} more");

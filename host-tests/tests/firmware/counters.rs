@@ -33,12 +33,12 @@ fn a_count_that_carries_while_main_reads_it_is_read_as_before_or_after() {
         // digits, so that all answers are equally long.
         walk.bench.uno.poke(late, 255);
         walk.bench.run_ms(20_000);
-        let begin = walk.next_frame();
+        let start = walk.next_frame();
         let mut seen = [0, 0];
         // Main reads the count shortly before it writes the answer's last part, once most of
         // the earlier parts are sent. Ticks and edges delay that, so the delay is measured at
         // the place in the frame where the read is to happen.
-        let rise = |n: u64| begin + 3 * n * FRAME + SLOT;
+        let rise = |n: u64| start + 3 * n * FRAME + SLOT;
         let (mut written, mut early, mut frame) = (150_000, 2_800, 0);
         loop {
             frame += 1;

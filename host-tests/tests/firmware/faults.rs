@@ -29,7 +29,7 @@ fn assert_stopped(bench: &mut FirmwareBench, word: &str, message: &str, code: us
 fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says() {
     let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
     bench.say("deadman 800");
-    let begin = bench.uno.cycle();
+    let start = bench.uno.cycle();
     bench.run_ms(700);
     bench.say("speed 90");
     bench.run_ms(700);
@@ -41,7 +41,7 @@ fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says() {
         .lines()
         .iter()
         .find(|line| line.text.contains("deadman says"))
-        .map(|line| (line.cycle - begin) / 16_000);
+        .map(|line| (line.cycle - start) / 16_000);
     // 1400 ms and the answers' time; the line itself takes 5 ms.
     assert!(
         stopped.is_some_and(|ms| (2_190..2_260).contains(&ms)),

@@ -44,10 +44,10 @@ fn floating(gait: &CheckedGait, frames: usize) -> Vec<[f64; 4]> {
     (0..frames).map(|n| gait.angles(phase(gait, n))).collect()
 }
 
-/// The largest deviation of a servo from the gait that begins at frame `begin`.
-fn worst(float: &[[f64; 4]], frames: &[[f64; 4]], begin: usize) -> f64 {
-    let pairs = frames[begin..].iter().flatten().zip(float.iter().flatten());
-    pairs.fold(0.0, |most, (is, meant)| (is - meant).abs().max(most))
+/// The largest deviation of a servo from the gait that begins at frame `start`.
+fn worst(float: &[[f64; 4]], frames: &[[f64; 4]], start: usize) -> f64 {
+    let pairs = frames[start..].iter().flatten().zip(float.iter().flatten());
+    pairs.fold(0.0, |largest, (is, meant)| (is - meant).abs().max(largest))
 }
 
 /// The frame at which the gait begins: the one unknown of the comparison.
@@ -56,8 +56,8 @@ fn first_frame(gait: &CheckedGait, float: &[[f64; 4]], frames: &[[f64; 4]]) -> u
         |a: &usize, b: &usize| worst(float, frames, *a).total_cmp(&worst(float, frames, *b));
     // The move to the first pose takes its time, and a cycle must follow.
     let last = frames.len() - (gait.period() * SECOND as f64) as usize - 10;
-    let begin = (0..last).min_by(by_worst);
-    begin.expect("a second has frames")
+    let start = (0..last).min_by(by_worst);
+    start.expect("a second has frames")
 }
 
 #[test]
@@ -66,12 +66,12 @@ fn the_pulses_of_every_gait_follow_it_frame_by_frame() {
         for gait in robot().gaits() {
             let frames = decode_angles(gait, *fidelity);
             let float = floating(gait, frames.len());
-            let begin = first_frame(gait, &float, &frames);
-            let off = worst(&float, &frames, begin);
+            let start = first_frame(gait, &float, &frames);
+            let off = worst(&float, &frames, start);
             println!(
                 "{:<10} {} frames, max {off:.4} deg",
                 gait.name(),
-                frames.len() - begin
+                frames.len() - start
             );
             assert!(off <= TABLES + cycle(), "{}: {off} deg", gait.name());
             // One frame earlier or later would exceed the bound, so the comparison can tell frames
@@ -79,7 +79,7 @@ fn the_pulses_of_every_gait_follow_it_frame_by_frame() {
             if gait.moves() {
                 assert!(off > 0.0, "{}: tables are rounded", gait.name());
                 // The very first frame has no earlier one.
-                let others = [Some(begin + 1), begin.checked_sub(1)];
+                let others = [Some(start + 1), start.checked_sub(1)];
                 for other in others.into_iter().flatten() {
                     assert!(worst(&float, &frames, other) > off, "{}", gait.name());
                 }
@@ -102,7 +102,7 @@ fn the_pulses_of_every_gait_lead_where_the_contact_model_says() {
         compared.fetch_add(usize::from(gait.moves()), Ordering::Relaxed);
         let frames = decode_angles(gait, Fidelity::DataSheet);
         let float = floating(gait, frames.len());
-        let begin = first_frame(gait, &float, &frames);
+        let start = first_frame(gait, &float, &frames);
         // From the first frame at full pace that begins a cycle, whole cycles: two
         // of those that are no whole number of frames.
         let cycles = if (gait.period() * SECOND as f64).fract() == 0.0 {
@@ -113,9 +113,9 @@ fn the_pulses_of_every_gait_lead_where_the_contact_model_says() {
         // In other periods the missing part of a frame matters little.
         let length = (f64::from(cycles) * gait.period() * SECOND as f64) as usize;
         let step = 1.0 / (gait.period() * SECOND as f64);
-        let from = (begin + GATHERS.0..frames.len())
+        let from = (start + GATHERS.0..frames.len())
             .find(|frame| {
-                let phase = phase(gait, frame - begin);
+                let phase = phase(gait, frame - start);
                 if gait.is_reversed() {
                     1.0 - phase <= step
                 } else {
@@ -131,8 +131,8 @@ fn the_pulses_of_every_gait_lead_where_the_contact_model_says() {
         println!("{name:<10} {ahead:7.2} mm {turned:7.2} deg");
         // Which foot holds may depend on a tenth of a degree.
         let size = robot().lizard().links.l10 / 135.0;
-        let most = (0.3 * size).max(forward.abs() * 0.02);
-        assert!((ahead - forward).abs() <= most, "{name}: {way:?}");
+        let max = (0.3 * size).max(forward.abs() * 0.02);
+        assert!((ahead - forward).abs() <= max, "{name}: {way:?}");
         assert!((turned - turn).abs() <= 0.2, "{name}: {way:?}");
     });
     let compared = compared.into_inner();

@@ -156,7 +156,7 @@ fn value(solution: &Solution, name: &str) -> Option<(f64, f64)> {
         ("5 right slider", solution.right.s, of_stroke),
     ];
     let found = all.iter().find(|(known, ..)| *known == name);
-    found.map(|(_, value, most)| (*value, *most))
+    found.map(|(_, value, max)| (*value, *max))
 }
 
 #[test]
@@ -180,9 +180,9 @@ fn a_refusal_names_the_margin_and_its_value_or_says_that_it_knows_none() {
                 let head = head.forward(angles[0], angles[1]);
                 match head {
                     Ok(pose) if name.ends_with("head") && said.is_some() => {
-                        let most = margin_error(pose.type2.max(0.05)) + 0.0005;
-                        let off = said.expect("a number").abs() - pose.type2;
-                        assert!(off.abs() <= most, "{angles:?}: {answer}, {open}");
+                        let max = margin_error(pose.type2.max(0.05)) + 0.0005;
+                        let error = said.expect("a number").abs() - pose.type2;
+                        assert!(error.abs() <= max, "{angles:?}: {answer}, {open}");
                     }
                     _ => {
                         assert!(name.starts_with("4 type-2"), "{angles:?}: {answer}");
@@ -194,11 +194,11 @@ fn a_refusal_names_the_margin_and_its_value_or_says_that_it_knows_none() {
                 continue;
             }
         };
-        let (float, most) = value(&solution, name).unwrap_or_else(|| panic!("{answer}"));
+        let (float, max) = value(&solution, name).unwrap_or_else(|| panic!("{answer}"));
         match said {
             Some(said) => {
-                let off = (said - float).abs();
-                assert!(off <= most, "{angles:?}: {answer}, not {float}");
+                let error = (said - float).abs();
+                assert!(error <= max, "{angles:?}: {answer}, not {float}");
                 named += 1;
             }
             None => {

@@ -144,7 +144,8 @@ fn interrupts_off_for_most_of_a_slot_cost_its_pulse_and_nothing_else() {
                 assert_eq!(frame.widths, expected, "A{} and {length}", servo + 1);
                 // Each starts exactly on the grid.
                 let starts = [0, 1, 2, 3].map(|n| frame.start + n * SLOT);
-                let on_grid = |(got, due): (Option<u64>, u64)| got.is_none_or(|got| got == due);
+                let on_grid =
+                    |(actual, due): (Option<u64>, u64)| actual.is_none_or(|actual| actual == due);
                 assert!(
                     frame.starts.into_iter().zip(starts).all(on_grid),
                     "{frame:?}"

@@ -74,10 +74,10 @@ fn slew_limit_at(gain: f64, slew: f64) -> u64 {
 pub fn assert_no_leap_in_a_gait(pulses: &[Vec<Pulse>; 4]) {
     let pace = robot().pace();
     for (servo, pulses) in robot().servos().iter().zip(pulses) {
-        let most = slew_limit_at(servo.us_per_degree, pace.slew.max(pace.gait_slew));
+        let max = slew_limit_at(servo.us_per_degree, pace.slew.max(pace.gait_slew));
         for pair in pulses.windows(2) {
             let leap = pair[0].width.abs_diff(pair[1].width);
-            assert!(leap <= most, "{leap} cycles of {most}: {pair:?}");
+            assert!(leap <= max, "{leap} cycles of {max}: {pair:?}");
         }
     }
 }

@@ -6,9 +6,9 @@ use lizard_core::console::word::Word;
 use lizard_host_tests::robot;
 
 /// A number as a person would type it, within some range and sometimes beyond.
-fn number(rng: &mut Rng, least: f64, most: f64) -> String {
-    let beyond = (most - least) * 0.2;
-    let number = least - beyond + rng.f64() * (most - least + 2.0 * beyond);
+fn number(rng: &mut Rng, min: f64, max: f64) -> String {
+    let beyond = (max - min) * 0.2;
+    let number = min - beyond + rng.f64() * (max - min + 2.0 * beyond);
     match rng.u8(..4) {
         0 => format!("{number:.0}"),
         1 => format!("{number:.1}"),
@@ -51,8 +51,8 @@ fn line(rng: &mut Rng) -> String {
         },
         14 | 15 => format!("trim {servo} {}", number(rng, -20.0, 20.0)),
         16 => {
-            let least = angle(rng, index);
-            format!("limit {servo} {least} {}", angle(rng, index))
+            let min = angle(rng, index);
+            format!("limit {servo} {min} {}", angle(rng, index))
         }
         17 => format!("dir {servo} {}", ['+', '-'][rng.usize(..2)]),
         18 => format!("scale {servo} {}", number(rng, 5.0, 20.0)),
@@ -71,13 +71,13 @@ fn line(rng: &mut Rng) -> String {
 pub fn mutated(rng: &mut Rng) -> Vec<u8> {
     let mut bytes = line(rng).into_bytes();
     for _ in 0..[0, 0, 0, 1, 1, 2, 3][rng.usize(..7)] {
-        let at = rng.usize(..=bytes.len());
+        let offset = rng.usize(..=bytes.len());
         match rng.u8(..5) {
-            0 => bytes.insert(at, rng.u8(..)),
-            1 => bytes.insert(at, b" .-+0159\x08\t"[rng.usize(..10)]),
-            2 if at < bytes.len() => _ = bytes.remove(at),
-            3 if at < bytes.len() => bytes[at] ^= 1 << rng.u8(..8),
-            _ => bytes.truncate(at),
+            0 => bytes.insert(offset, rng.u8(..)),
+            1 => bytes.insert(offset, b" .-+0159\x08\t"[rng.usize(..10)]),
+            2 if offset < bytes.len() => _ = bytes.remove(offset),
+            3 if offset < bytes.len() => bytes[offset] ^= 1 << rng.u8(..8),
+            _ => bytes.truncate(offset),
         }
     }
     // An end of line in the middle makes two lines.

@@ -76,13 +76,13 @@ fn no_step_of_main_delays_a_frame_too_long_however_many_gaits_there_are() {
         .chain([&robot])
     {
         let took = longest_step(&FirmwareBench::elf(), robot).expect("it runs");
-        let most = robot.longest_search();
-        println!("{} gaits: {took} cycles of {most}", robot.gaits().len());
-        assert!(took as usize <= most.max(OTHERS), "{took} of {most}");
+        let largest = robot.longest_search();
+        println!("{} gaits: {took} cycles of {largest}", robot.gaits().len());
+        assert!(took as usize <= largest.max(OTHERS), "{took} of {largest}");
         // Where the search takes longest, the bound is not far above it.
         assert!(
-            most < OTHERS || took as usize > most / 2,
-            "{took} of {most}"
+            largest < OTHERS || took as usize > largest / 2,
+            "{took} of {largest}"
         );
     }
 }

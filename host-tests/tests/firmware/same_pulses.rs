@@ -28,8 +28,8 @@ impl Random {
     }
 
     /// A number of hundredths, as the console takes it.
-    fn hundredths(&mut self, least: i64, most: i64) -> String {
-        let value = least + self.random_below((most - least) as u64 + 1) as i64;
+    fn hundredths(&mut self, min: i64, max: i64) -> String {
+        let value = min + self.random_below((max - min) as u64 + 1) as i64;
         let sign = if value < 0 { "-" } else { "" };
         let size = value.unsigned_abs();
         format!("{sign}{}.{:02}", size / 100, size % 100)
@@ -64,9 +64,9 @@ fn command(random: &mut Random, robot: &Robot) -> String {
         25 => format!("trim {servo} {}", random.hundredths(-2_000, 2_000)),
         26 => {
             let neutral = neutral(servo as usize - 1);
-            let least = random.hundredths(neutral - 9_000, neutral - 1_000);
-            let most = random.hundredths(neutral + 1_000, neutral + 9_000);
-            format!("limit {servo} {least} {most}")
+            let min = random.hundredths(neutral - 9_000, neutral - 1_000);
+            let max = random.hundredths(neutral + 1_000, neutral + 9_000);
+            format!("limit {servo} {min} {max}")
         }
         27 => format!("scale {servo} {}", random.hundredths(500, 2_000)),
         28 => ["save", "load", "factory"][random.random_below(3) as usize].into(),

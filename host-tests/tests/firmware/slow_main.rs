@@ -124,10 +124,10 @@ fn an_answer_is_the_same_wherever_main_stops_in_writing_it() {
 fn a_byte_at_any_cycle_of_falling_asleep_wakes_main_at_once() {
     in_both(|fidelity| {
         let mut walk = Walk::stand(fidelity);
-        let begin = walk.next_frame();
+        let start = walk.next_frame();
         // Main wakes for each pulse's rise, finds nothing and falls asleep again.
         for n in 0..700 {
-            let rise = begin + n / 4 * FRAME + n % 4 * SLOT;
+            let rise = start + n / 4 * FRAME + n % 4 * SLOT;
             walk.run_to(rise - 20_000);
             walk.bench.uno.send(b"stop");
             let bytes_before = walk.bench.bytes().len();

@@ -14,11 +14,11 @@ use crate::{
 /// and frame are covered.
 const APART: u64 = 1_237_331;
 
-/// Sends a line at cycle `at` after a second of `gait`, and returns the bench and
+/// Sends a line at cycle `cycle` after a second of `gait`, and returns the bench and
 /// the cycle at which the last byte of the line has arrived.
-fn interrupt(gait: &str, line: &str, at: u64, fidelity: Fidelity) -> (FirmwareBench, u64) {
+fn interrupt(gait: &str, line: &str, cycle: u64, fidelity: Fidelity) -> (FirmwareBench, u64) {
     let mut bench = robot_after(gait, fidelity);
-    bench.uno.run_cycles(at);
+    bench.uno.run_cycles(cycle);
     bench.send(line);
     while bench.uno.unsent() > 0 {
         bench.uno.run_cycles(100);
@@ -170,15 +170,15 @@ fn a_pose_is_reached_by_all_servos_together_and_not_too_fast() {
         for widths in &sent {
             let gone = way(*widths);
             for (gone_here, whole_here) in gone.into_iter().zip(whole) {
-                let off = gone_here - gone[0] / whole[0] * whole_here;
-                assert!(off.abs() <= 8.0, "{widths:?}");
+                let error = gone_here - gone[0] / whole[0] * whole_here;
+                assert!(error.abs() <= 8.0, "{widths:?}");
             }
         }
         for pair in sent.windows(2) {
             for (i, servo) in robot().servos().iter().enumerate() {
-                let most = robot().pace().slew / 50.0 * 16.0 * servo.us_per_degree.abs();
+                let max = robot().pace().slew / 50.0 * 16.0 * servo.us_per_degree.abs();
                 let step = pair[0][i].abs_diff(pair[1][i]) as f64;
-                assert!(step <= most + 2.0, "A{} by {step} cycles", i + 1);
+                assert!(step <= max + 2.0, "A{} by {step} cycles", i + 1);
             }
         }
     });

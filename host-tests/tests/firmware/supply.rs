@@ -16,14 +16,14 @@ const ANALOGUE: u8 = 14;
 /// The lines about the supply since line `from`, and the voltage that each tells.
 fn notes(bench: &mut FirmwareBench, from: usize) -> Vec<(String, f64)> {
     let lines = &bench.lines()[from..];
-    let told = lines
+    let printed = lines
         .iter()
         .filter_map(|line| line.text.strip_prefix("# supply: "));
-    let told = told.map(|text| {
+    let printed = printed.map(|text| {
         let (volts, what) = text.split_once(" V, ").expect("volts and what follows");
         (what.to_owned(), volts.parse().expect("a number"))
     });
-    told.collect()
+    printed.collect()
 }
 
 #[test]
@@ -33,8 +33,8 @@ fn status_tells_the_supply_within_thirty_millivolts() {
     for mv in (2_700..=5_500).step_by(35) {
         bench.uno.set_supply_mv(f64::from(mv));
         bench.run_ms(120);
-        let told = Status::of(&mut bench).number("vcc");
-        farthest = farthest.max((told - f64::from(mv) / 1000.0).abs());
+        let printed = Status::of(&mut bench).number("vcc");
+        farthest = farthest.max((printed - f64::from(mv) / 1000.0).abs());
     }
     assert!(farthest <= 0.030, "{farthest} V");
 }
@@ -58,8 +58,8 @@ fn assert_sinks(
             true_at.push(volts);
         }
     }
-    let told = notes(bench, from);
-    let words: Vec<&str> = told.iter().map(|(what, _)| what.as_str()).collect();
+    let printed = notes(bench, from);
+    let words: Vec<&str> = printed.iter().map(|(what, _)| what.as_str()).collect();
     assert_eq!(
         words,
         [
@@ -68,9 +68,9 @@ fn assert_sinks(
             "too low to hold: pulses ended"
         ]
     );
-    for ((truth, (_, told)), threshold) in true_at.iter().zip(&told).zip(thresholds) {
+    for ((truth, (_, printed)), threshold) in true_at.iter().zip(&printed).zip(thresholds) {
         assert!((truth - threshold).abs() <= step, "{truth}, {threshold}");
-        assert!((told - truth).abs() <= step, "{told}, {truth}");
+        assert!((printed - truth).abs() <= step, "{printed}, {truth}");
     }
 }
 
@@ -235,9 +235,9 @@ fn status_tells_the_servos_rail_where_robot_toml_names_its_pin() {
         let volts = highest * f64::from(step) / 41.0;
         set_rail(&mut bench, &rail, volts);
         bench.run_ms(120);
-        let told = Status::of(&mut bench).number("rail");
+        let printed = Status::of(&mut bench).number("rail");
         let limit = rail_step(&rail, volts);
-        assert!((told - volts).abs() <= limit, "{told}, {volts}");
+        assert!((printed - volts).abs() <= limit, "{printed}, {volts}");
     }
 }
 

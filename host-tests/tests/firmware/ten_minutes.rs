@@ -55,7 +55,7 @@ fn run(script: &Script, fidelity: Fidelity) -> (Recording, Vec<String>) {
     let mut uno = Uno::with_image(FirmwareBench::image(), fidelity);
     supplies::connect(&mut uno, robot());
     let mut lines = Vec::new();
-    let recording = play(&mut uno, servo_pins(robot()), script, false, |event| {
+    let recording = play(&mut uno, servo_pins(robot()), script, |event| {
         if let Event::Line(line) = event
             && line.from == Sender::Robot
         {
@@ -102,9 +102,9 @@ fn ten_minutes_of_commands_give_the_same_widths_and_words_on_the_avr_and_here() 
         let lines = lines.iter().map(String::as_str);
         let lines: Vec<&str> = lines.filter(|line| !is_report(line)).collect();
         // Stock simavr has a reference of its own, whatever robot.toml says.
-        let told = |line: &str| comparable_line(line, fidelity);
+        let printed = |line: &str| comparable_line(line, fidelity);
         for (n, (here, there)) in here.iter().zip(&lines).enumerate() {
-            assert_eq!(told(here), told(there), "{fidelity:?}, line {n}");
+            assert_eq!(printed(here), printed(there), "{fidelity:?}, line {n}");
         }
         // At the end of the run the line still holds something (a ring of 255 bytes,
         // two in the transmitter, a part of a line), and the core has not run since

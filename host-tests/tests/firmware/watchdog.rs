@@ -27,7 +27,7 @@ fn hold_pose() -> (FirmwareBench, [u64; 4]) {
 
 /// Runs until the watchdog has reset the chip; returns the cycles that it took.
 fn run_until_reset(bench: &mut FirmwareBench) -> u64 {
-    let (begin, resets) = (bench.uno.cycle(), bench.uno.resets());
+    let (start, resets) = (bench.uno.cycle(), bench.uno.resets());
     let limit = TIMEOUT_MS * MS;
     assert!(
         bench
@@ -37,7 +37,7 @@ fn run_until_reset(bench: &mut FirmwareBench) -> u64 {
     );
     // The restarted program is not stalled.
     bench.uno.stall_main(0);
-    bench.uno.cycle() - begin
+    bench.uno.cycle() - start
 }
 
 #[test]

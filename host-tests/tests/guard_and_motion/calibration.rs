@@ -32,8 +32,12 @@ fn each_servo_has_the_neutral_the_gain_and_the_pin_that_the_file_gives_it() {
                 if !(0.0..65536.0).contains(&meant) {
                     continue;
                 }
-                let off = f64::from(core.width(Sweep(sweep)).0) - meant;
-                assert!(off.abs() <= 2.0, "{name}: A{} is {off} cycles off", n + 1);
+                let error = f64::from(core.width(Sweep(sweep)).0) - meant;
+                assert!(
+                    error.abs() <= 2.0,
+                    "{name}: A{} is {error} cycles off",
+                    n + 1
+                );
                 checked += 1;
             }
             // Half the turn at least has pulses.

@@ -196,9 +196,9 @@ impl<'a> Walker<'a> {
         };
         // A table is rounded to a step at either end of a frame.
         let fastest = f64::from(before.farthest(&pose)) * STEP_PER_FRAME;
-        let most = limit + if in_gait { STEP_PER_FRAME } else { 0.0 };
+        let max = limit + if in_gait { STEP_PER_FRAME } else { 0.0 };
         assert!(
-            fastest <= most + 1e-6,
+            fastest <= max + 1e-6,
             "{name}: {fastest} deg/s, limit {limit}"
         );
 
@@ -228,12 +228,12 @@ impl<'a> Walker<'a> {
             }
             let sweep = f64::from(pose.0[n].0) * 360.0 / 65536.0;
             let meant = 16.0 * (servo.neutral_us + servo.us_per_degree * sweep);
-            let off = f64::from(width.0) - meant;
+            let error = f64::from(width.0) - meant;
             // Neutral, gain and product are rounded to half a cycle each; half a
             // step of the gain is a cycle at the ends of half a turn.
             assert!(
-                off.abs() <= 2.0,
-                "{}: A{} is {off} cycles off",
+                error.abs() <= 2.0,
+                "{}: A{} is {error} cycles off",
                 self.name,
                 n + 1
             );

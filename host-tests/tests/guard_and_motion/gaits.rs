@@ -77,11 +77,11 @@ fn tables_are_within_the_promised_error_of_every_gait_and_safe_at_every_phase() 
             let angles = float.angles(f64::from(phase) / f64::from(CYCLE));
             for (servo, angle) in angles.into_iter().enumerate() {
                 let sweep = f64::from(pose.0[servo].0) / STEPS_PER_DEGREE;
-                let off = (robot.servos()[servo].neutral + sweep - angle).abs();
-                worst = worst.max(off);
+                let error = (robot.servos()[servo].neutral + sweep - angle).abs();
+                worst = worst.max(error);
                 assert!(
-                    off <= TABLE_ERROR,
-                    "{name}: {} at {phase}: {off} deg",
+                    error <= TABLE_ERROR,
+                    "{name}: {} at {phase}: {error} deg",
                     float.name()
                 );
             }
@@ -121,10 +121,10 @@ fn a_leg_of_a_wave_pushes_back_for_its_duty_and_returns_in_the_rest() {
             let course = [(0.25, 0.5), (0.5, 0.0), (0.75, -0.5), (1.0, -1.0)];
             let course = course.map(|(part, share)| (part * duty, share));
             for (after, share) in course.into_iter().chain([(0.5 * (1.0 + duty), 0.0)]) {
-                let off = foot(after) - share * front;
+                let error = foot(after) - share * front;
                 assert!(
-                    off.abs() <= 2.0 * TABLE_ERROR,
-                    "{whom}: {off} deg at {after}"
+                    error.abs() <= 2.0 * TABLE_ERROR,
+                    "{whom}: {error} deg at {after}"
                 );
             }
         }
@@ -154,17 +154,17 @@ fn the_legs_of_a_held_gait_return_one_after_another_in_its_order() {
                 FORWARD[servo] * f64::from(pose.0[servo].0) / STEPS_PER_DEGREE
             };
             // A fifth of the cycle for the common stroke, then one for each return.
-            let begin = 0.2 * (1.0 + turn as f64);
+            let start = 0.2 * (1.0 + turn as f64);
             for (phase, share) in [
                 (0.2, -1.0),
-                (begin, -1.0),
-                (begin + 0.2, 1.0),
+                (start, -1.0),
+                (start + 0.2, 1.0),
                 (1.0 - 1e-6, 1.0),
             ] {
-                let off = foot(phase.min(1.0 - 1e-6)) - share * amplitude;
+                let error = foot(phase.min(1.0 - 1e-6)) - share * amplitude;
                 assert!(
-                    off.abs() <= TABLE_ERROR,
-                    "{name}: {} at {phase}: {off} deg",
+                    error.abs() <= TABLE_ERROR,
+                    "{name}: {} at {phase}: {error} deg",
                     float.name()
                 );
             }
@@ -213,10 +213,10 @@ fn a_path_moves_only_its_own_end_around_its_centre() {
             }
             let at = neutral.end(end).end_point;
             let size = robot.lizard().links.l10;
-            let off = (mean[0] - at.x).hypot(mean[1] - at.y);
+            let error = (mean[0] - at.x).hypot(mean[1] - at.y);
             assert!(
-                off < 1e-3 * size,
-                "{name}: {gait} is {off} mm off its centre"
+                error < 1e-3 * size,
+                "{name}: {gait} is {error} mm off its centre"
             );
         }
     }
@@ -320,7 +320,7 @@ fn the_head_of_the_papers_look_follows_its_figure_of_eight() {
             .head
             .end_point;
         let turn = std::f64::consts::TAU * f64::from(phase) / f64::from(PHASES);
-        let off = (point.x - 10.0 * turn.sin()).hypot(point.y - 54.0 - 5.0 * (2.0 * turn).sin());
-        assert!(off < 0.1, "{off} mm at {phase}");
+        let error = (point.x - 10.0 * turn.sin()).hypot(point.y - 54.0 - 5.0 * (2.0 * turn).sin());
+        assert!(error < 0.1, "{error} mm at {phase}");
     }
 }

@@ -52,17 +52,17 @@ fn travel(named: &Named, gait: &CheckedGait, percent: f64) -> Option<Travel> {
     Some(robot.travel(path))
 }
 
-/// Compares a travel with the expected one, where that is known, within `most` mm or a hundredth
+/// Compares a travel with the expected one, where that is known, within `largest` mm or a hundredth
 /// of it.
-fn check(whom: &str, travel: Travel, most: f64, forward: Option<f64>, turn: Option<f64>) {
+fn check(whom: &str, travel: Travel, largest: f64, forward: Option<f64>, turn: Option<f64>) {
     println!(
         "{whom}: {:+.2} mm, {:+.2} deg, meant {forward:?} {turn:?}",
         travel.forward, travel.turn
     );
     if let Some(forward) = forward {
-        let most = most.max(0.01 * forward.abs());
+        let largest = largest.max(0.01 * forward.abs());
         assert!(
-            (travel.forward - forward).abs() <= most,
+            (travel.forward - forward).abs() <= largest,
             "{whom}: {travel:?}, not {forward}"
         );
     }
@@ -92,8 +92,8 @@ fn the_pulses_of_every_gait_lead_where_the_same_gait_in_floating_point_does() {
                 let meant = gait.predict(&named.robot.ground().rigid());
                 let whom = format!("{}: {} at {percent} %", named.name, gait.name());
                 // Without symmetry, which foot holds may depend on a tenth of a degree.
-                let most = 0.01 * named.robot.lizard().links.l10;
-                check(&whom, travel, most, meant.forward, meant.turn);
+                let max = 0.01 * named.robot.lizard().links.l10;
+                check(&whom, travel, max, meant.forward, meant.turn);
             }
         }
     }

@@ -29,8 +29,8 @@ fn at_the_limit(robot: &Robot) -> Clearance {
     Clearance {
         margins: limits(robot).map(|limit| Sine(least(limit))),
         sliders_sq: Side::ALL.map(|side| {
-            let most = u32::from(robot.firmware().side(side).max);
-            most * most
+            let max = u32::from(robot.firmware().side(side).max);
+            max * max
         }),
     }
 }

@@ -72,14 +72,14 @@ impl Findings {
         for (by, broken) in clear_by.into_iter().zip(truth.broken) {
             assert!(by.abs() <= 1.0 || broken == (by < 0.0), "{truth:?}");
         }
-        let least = clear_by.into_iter().fold(f64::INFINITY, f64::min);
-        if hazard.is_none() != (least >= 0.0) {
+        let smallest = clear_by.into_iter().fold(f64::INFINITY, f64::min);
+        if hazard.is_none() != (smallest >= 0.0) {
             self.differ += 1;
-            self.farthest = self.farthest.max(least.abs());
+            self.farthest = self.farthest.max(smallest.abs());
         }
         assert!(
-            least.abs() <= 1.0 || hazard.is_none() == (least > 0.0),
-            "{pose:?} is {least} bands clear, and the guard says {hazard:?}"
+            smallest.abs() <= 1.0 || hazard.is_none() == (smallest > 0.0),
+            "{pose:?} is {smallest} bands clear, and the guard says {hazard:?}"
         );
         let Some(named) = named else {
             return;
@@ -98,9 +98,9 @@ impl Findings {
                 && (truth.margins[end] < MIN_TYPE2 || truth.is_at_crossing(end))
             {
                 // The guard only has to detect that case.
-                let most = MIN_TYPE2 + truth.bands[end];
+                let max = MIN_TYPE2 + truth.bands[end];
                 assert!(
-                    truth.is_at_crossing(end) || sine(core.margins[end]) < most,
+                    truth.is_at_crossing(end) || sine(core.margins[end]) < max,
                     "{truth:?}"
                 );
                 continue;
@@ -110,9 +110,9 @@ impl Findings {
                 2..6 => &mut self.type1,
                 _ => &mut self.leg,
             };
-            let off = sine(*value) - meant;
-            spread.add(off);
-            self.in_bands[index] = self.in_bands[index].max(off.abs() / truth.bands[index]);
+            let error = sine(*value) - meant;
+            spread.add(error);
+            self.in_bands[index] = self.in_bands[index].max(error.abs() / truth.bands[index]);
         }
         for (side, (length_sq, travel)) in Side::ALL
             .into_iter()
@@ -261,10 +261,10 @@ fn the_smallest_margin_is_the_one_of_kinematics() {
             safe += 1;
             let at = angles(robot.firmware(), &pose);
             let truth = Truth::of(robot, at).expect("a safe pose");
-            let least = truth.margins.into_iter().fold(f64::INFINITY, f64::min);
-            let off = sine(Clearance::of(robot.firmware(), &pose).smallest()) - least;
-            let most = truth.bands[..10].iter().copied().fold(0.0, f64::max);
-            assert!(off.abs() <= most, "{name}: {pose:?} is {off} off");
+            let smallest = truth.margins.into_iter().fold(f64::INFINITY, f64::min);
+            let error = sine(Clearance::of(robot.firmware(), &pose).smallest()) - smallest;
+            let largest = truth.bands[..10].iter().copied().fold(0.0, f64::max);
+            assert!(error.abs() <= largest, "{name}: {pose:?} is {error} off");
         }
         assert!(safe > 10, "{name}: {safe} safe poses");
     }

@@ -15,7 +15,7 @@ const DIALOGUES: u64 = 30;
 fn no_frame_is_too_fast_too_sudden_or_unsafe_for_any_commands() {
     for (n, named) in robots().iter().enumerate() {
         let mut rng = rng(1000 + n as u64);
-        let (mut done, mut refused, mut most) = (0, 0, 0.0f64);
+        let (mut done, mut refused, mut largest) = (0, 0, 0.0f64);
         for _ in 0..DIALOGUES {
             let mut walker = Walker::new(named);
             for _ in 0..12 {
@@ -27,10 +27,10 @@ fn no_frame_is_too_fast_too_sudden_or_unsafe_for_any_commands() {
                 }) += 1;
                 walker.run(rng.u32(..120));
             }
-            most = most.max(walker.jerk);
+            largest = largest.max(walker.jerk);
         }
         println!(
-            "{}: {done} commands done, {refused} refused; speed changes by at most {most:.0} of {:.0} deg/s",
+            "{}: {done} commands done, {refused} refused; speed changes by at most {largest:.0} of {:.0} deg/s",
             named.name,
             jerk(&named.robot)
         );
@@ -134,8 +134,8 @@ fn in_a_move_all_servos_do_the_same_share_of_their_ways_and_arrive_together() {
             for pose in &poses {
                 let share = 1.0 - f64::from(pose.farthest(&end)) / longest;
                 for (here, there) in pose.0.iter().zip(&end.0) {
-                    let off = f64::from(here.0) - share * f64::from(there.0);
-                    assert!(off.abs() <= 4.0, "{}: {pose:?} to {end:?}", named.name);
+                    let error = f64::from(here.0) - share * f64::from(there.0);
+                    assert!(error.abs() <= 4.0, "{}: {pose:?} to {end:?}", named.name);
                 }
             }
         }

@@ -85,11 +85,11 @@ fn the_last_safe_pose_is_held_and_the_reason_is_reported_once() {
             };
             held += 1;
             assert_eq!(walker.motion().activity(), Activity::Stop, "{name}");
-            let told = walker.read();
-            assert_eq!(told.len(), 1, "{name}: {told:?}");
+            let printed = walker.read();
+            assert_eq!(printed.len(), 1, "{name}: {printed:?}");
             assert!(
-                told[0].starts_with("# held in the last safe pose: "),
-                "{told:?}"
+                printed[0].starts_with("# held in the last safe pose: "),
+                "{printed:?}"
             );
             // The reason lies on the rest of the path.
             assert!(

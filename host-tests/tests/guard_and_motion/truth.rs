@@ -204,10 +204,10 @@ impl Verdict {
         let Ok(truth) = Truth::of(robot, angles) else {
             return Self::Unsafe;
         };
-        let least = truth.clear_by().into_iter().fold(f64::INFINITY, f64::min);
-        if least > 1.0 {
+        let smallest = truth.clear_by().into_iter().fold(f64::INFINITY, f64::min);
+        if smallest > 1.0 {
             Self::Safe
-        } else if least < -1.0 {
+        } else if smallest < -1.0 {
             Self::Unsafe
         } else {
             Self::Between

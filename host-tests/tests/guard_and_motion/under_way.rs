@@ -14,13 +14,13 @@ fn a_hundred_cycles_take_a_hundred_periods() {
         let phase = (0..frames as u32).fold(0, |phase, _| gait.advance(phase, FULL_PACE));
         // The advance is rounded to 1/2^24 cycle, so each frame may be half off.
         let meant = (frames / 50.0 / float.period()).fract();
-        let off = (f64::from(phase) / f64::from(CYCLE)
+        let error = (f64::from(phase) / f64::from(CYCLE)
             - if float.is_reversed() { -meant } else { meant })
         .rem_euclid(1.0);
-        let off = off.min(1.0 - off) * f64::from(CYCLE);
+        let error = error.min(1.0 - error) * f64::from(CYCLE);
         assert!(
-            off <= 0.5 * frames + 1.0,
-            "{name}: {} is {off} of 2^24 off",
+            error <= 0.5 * frames + 1.0,
+            "{name}: {} is {error} of 2^24 off",
             float.name()
         );
     }
@@ -56,11 +56,11 @@ fn every_speed_gives_its_share_of_every_gaits_pace() {
                 let cycles = gone as f64 / f64::from(CYCLE);
                 let sign = if float.is_reversed() { -1.0 } else { 1.0 };
                 let share = sign * f64::from(percent) / 100.0;
-                let off = cycles / (share * f64::from(FRAMES) / 50.0 / float.period()) - 1.0;
-                worst = worst.max(off.abs());
+                let error = cycles / (share * f64::from(FRAMES) / 50.0 / float.period()) - 1.0;
+                worst = worst.max(error.abs());
                 assert!(
-                    off.abs() <= 0.005,
-                    "{} {} at {percent} %: {off}",
+                    error.abs() <= 0.005,
+                    "{} {} at {percent} %: {error}",
                     named.name,
                     float.name()
                 );

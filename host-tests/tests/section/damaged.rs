@@ -131,8 +131,8 @@ fn a_hundred_thousand_random_sections_are_refused() {
     }
 }
 
-fn put_bytes(section: &mut [u8], at: usize, bytes: &[u8]) {
-    if let Some(place) = section.get_mut(at..at + bytes.len()) {
+fn put_bytes(section: &mut [u8], offset: usize, bytes: &[u8]) {
+    if let Some(place) = section.get_mut(offset..offset + bytes.len()) {
         place.copy_from_slice(bytes);
     }
 }
@@ -141,8 +141,8 @@ fn put_bytes(section: &mut [u8], at: usize, bytes: &[u8]) {
 fn random_sections_with_a_valid_header_and_checksum_are_refused_or_harmless() {
     let rng = &mut rng(151);
     for _ in 0..20_000 {
-        let least = size_of::<Header>() + size_of::<Numbers>();
-        let mut section = vec![0; rng.usize(least..=usize::from(SPACE))];
+        let min = size_of::<Header>() + size_of::<Numbers>();
+        let mut section = vec![0; rng.usize(min..=usize::from(SPACE))];
         rng.fill(&mut section);
         let (_, valid) = rng.choice(sections()).expect("sections");
         put_bytes(&mut section, 0, &valid[..LENGTH.start]);
@@ -252,13 +252,13 @@ fn a_robot_whose_servo_cannot_reach_its_neutral_angle_is_refused() {
 /// of the parts, which the host that made the section has checked.
 fn change(rng: &mut Rng, section: &mut [u8]) {
     let numbers = size_of::<Header>();
-    let at = match rng.u8(..4) {
+    let offset = match rng.u8(..4) {
         0 | 1 => numbers + rng.usize(offset_of!(Numbers, neutral)..offset_of!(Numbers, curves)),
         2 => numbers + rng.usize(offset_of!(Numbers, rail)..offset_of!(Numbers, maps)),
         _ => rng.usize(numbers + size_of::<Numbers>()..section.len() - 1),
     };
-    let at = at & !1;
-    let was = u16::from_le_bytes([section[at], section[at + 1]]);
+    let offset = offset & !1;
+    let was = u16::from_le_bytes([section[offset], section[offset + 1]]);
     let word = match rng.u8(..6) {
         0 => rng.u16(..),
         1 => was ^ 1 << rng.u8(..16),
@@ -269,7 +269,7 @@ fn change(rng: &mut Rng, section: &mut [u8]) {
         4 => was.wrapping_neg(),
         _ => was.wrapping_mul(rng.u16(2..5)),
     };
-    section[at..at + 2].copy_from_slice(&word.to_le_bytes());
+    section[offset..offset + 2].copy_from_slice(&word.to_le_bytes());
 }
 
 /// Runs a robot whose section was accepted, with any numbers: it obeys or refuses, completes

@@ -20,7 +20,8 @@ use crate::sections;
 fn for_each_robot(test: impl Fn(&str, &Robot, &Toml, Region<'_>)) {
     for (named, section) in sections() {
         let flash = Region::new(section);
-        let robot = Robot::open(flash).unwrap_or_else(|why| panic!("{}: {why:?}", named.name));
+        let robot =
+            Robot::open(flash).unwrap_or_else(|reason| panic!("{}: {reason:?}", named.name));
         test(&named.name, &robot, &named.robot, flash);
     }
 }
@@ -83,10 +84,13 @@ fn the_servos() {
             assert_eq!(robot.calibration()[index], read);
             let us = |sweep: i32| servo.neutral_us + servo.us_per_degree * degrees(sweep);
             for sweep in read.min.0..=read.max.0 {
-                let off = f64::from(read.width(Sweep(sweep)).0) - 16.0 * us(sweep.into());
+                let error = f64::from(read.width(Sweep(sweep)).0) - 16.0 * us(sweep.into());
                 // Half a cycle each of the neutral width and of the product; the gain's
                 // own rounding over the travel.
-                assert!(off.abs() <= 1.5, "{name} {one:?}: {off} cycles at {sweep}");
+                assert!(
+                    error.abs() <= 1.5,
+                    "{name} {one:?}: {error} cycles at {sweep}"
+                );
             }
             let bears =
                 |sweep: i32| (servo.min_us - 1e-6..=servo.max_us + 1e-6).contains(&us(sweep));
@@ -129,14 +133,14 @@ fn the_limits_the_slew_limit_and_what_the_gaits_need() {
         for servo in Servo::ALL {
             let read = robot.reach(servo);
             let [min, max] = widest[servo.index()];
-            let off = [
+            let error = [
                 degrees(read.min.0.into()) - min,
                 degrees(read.max.0.into()) - max,
             ];
             // The tables' tenth of a degree, and a step of rounding.
             assert!(
-                off.iter().all(|off| off.abs() < 0.11),
-                "{name} {servo:?}: {off:?}"
+                error.iter().all(|error| error.abs() < 0.11),
+                "{name} {servo:?}: {error:?}"
             );
         }
     });
@@ -241,9 +245,9 @@ fn the_curves_at_every_point_of_their_tables() {
                     // One of rounding, and a quarter of a step's square in `s`, which
                     // counts where the curve is steep.
                     let hair = 1.01 + exact * 2.0 / (s - least).min(reach - s).max(1.0);
-                    let off = f64::from(entry) - exact;
+                    let error = f64::from(entry) - exact;
                     assert!(
-                        off.abs() <= hair,
+                        error.abs() <= hair,
                         "{name} {end:?} {index}: {entry} for {exact}"
                     );
                 }
@@ -274,9 +278,13 @@ fn the_gaits_their_names_and_their_waveforms_at_every_phase() {
                 let exact = gait.angles(f64::from(step) / 8192.0);
                 for (index, angle) in pose.angles(&robot.neutral()).into_iter().enumerate() {
                     let angle = f64::from(angle.0) / STEPS_PER_DEGREE;
-                    let off = (angle - exact[index] + 180.0).rem_euclid(360.0) - 180.0;
+                    let error = (angle - exact[index] + 180.0).rem_euclid(360.0) - 180.0;
                     // The error of a table, and half a step of the neutral angle.
-                    assert!(off.abs() <= 0.504, "{what} A{} at {step}: {off}", index + 1);
+                    assert!(
+                        error.abs() <= 0.504,
+                        "{what} A{} at {step}: {error}",
+                        index + 1
+                    );
                 }
             }
         }
@@ -308,10 +316,10 @@ fn accepts(robot: &Robot, pair: usize, pose: &Pose) -> bool {
     let clearance = Clearance::of(robot, pose);
     let limits = robot.limits();
     let margins = |type2: usize, first: usize| {
-        let least = |index: usize, limit: Sine| clearance.margins[index] >= limit;
-        least(type2, limits.type2)
+        let keeps = |index: usize, limit: Sine| clearance.margins[index] >= limit;
+        keeps(type2, limits.type2)
             && (first..first + 2)
-                .all(|index| least(2 + index, limits.type1) && least(6 + index, limits.leg))
+                .all(|index| keeps(2 + index, limits.type1) && keeps(6 + index, limits.leg))
     };
     match pair {
         0 => margins(0, 0),

@@ -78,7 +78,6 @@ const LINES: [&str; 30] = [
 
 impl Action {
     /// Every action, whatever the state.
-    #[must_use]
     pub fn all() -> Vec<Self> {
         let mut all = vec![
             Self::Frames(1),

@@ -104,7 +104,7 @@ fn cut_off(robot: &Robot) -> Eeprom {
     settings.set_servo(Servo::ALL[2], set);
     let mut memory = Eeprom::blank();
     let mut writing = COPIES[0].write();
-    while writing.step(settings.bytes(), &mut memory) == Progress::Going {}
+    while writing.step(settings.bytes(), &mut memory) == Progress::InProgress {}
     Eeprom::with(*memory.bytes())
 }
 
@@ -112,7 +112,6 @@ fn cut_off(robot: &Robot) -> Eeprom {
 ///
 /// # Panics
 /// If a memory cannot be made.
-#[must_use]
 pub fn all(robot: Robot<'static>) -> Vec<InitialState> {
     let mut memories: Vec<(&'static str, Eeprom)> = MEMORIES
         .iter()

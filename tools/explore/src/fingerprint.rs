@@ -30,14 +30,14 @@ const RULES: &[Field] = &[
     // The last line; the next byte begins a new one.
     ("Console", "line", Skip),
     // A line at another rate has enough wrong bytes, whatever was before.
-    ("Finder", "wrong_bytes", Skip),
+    ("RateFinder", "wrong_bytes", Skip),
     (
         "Motion",
         "frames",
         Coarse(|frames| u64::from(frames >= 1_500)),
     ),
     ("Motion", "calibration", Skip),
-    ("Count", "covered", Coarse(|phase| phase >> 14)),
+    ("Count", "phase_covered", Coarse(|phase| phase >> 14)),
     ("Count", "phase", Skip),
     ("Routine", "wait", Coarse(countdown)),
     ("Stance", "sent", Coarse(|width| width >> 11)),
@@ -67,15 +67,15 @@ const A_LINE_CAME: &[Field] = &[
     ("Main", "ticks", Skip),
     ("Console", "line", Skip),
     ("Console", "answer", Skip),
-    ("Finder", "wrong_bytes", Skip),
-    ("Finder", "has_received", Skip),
+    ("RateFinder", "wrong_bytes", Skip),
+    ("RateFinder", "has_received", Skip),
     ("Console", "has_greeted", Skip),
     ("Safety", "silence", Skip),
     ("Safety", "boot", Skip),
     // A command shows that a program opened the port, which resets the board.
-    ("Control", "is_heard", Skip),
+    ("Control", "has_heard_command", Skip),
     // Nor does what `boot` began go on without anybody from then on.
-    ("Control", "is_alone", Skip),
+    ("Control", "is_unattended", Skip),
 ];
 
 fn countdown(frames: u64) -> u64 {
@@ -93,13 +93,11 @@ fn pace(pace: u64) -> u64 {
 }
 
 /// A number that two values share if no rule tells them apart.
-#[must_use]
 pub fn coarse(value: &impl fmt::Debug) -> u64 {
     print(value, RULES)
 }
 
 /// The same with every field except those that record that a line came.
-#[must_use]
 pub fn without_line_counters(value: &impl fmt::Debug) -> u64 {
     print(value, A_LINE_CAME)
 }
@@ -157,10 +155,10 @@ struct Reader {
 const fn hash(text: &str) -> u64 {
     let bytes = text.as_bytes();
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-    let mut at = 0;
-    while at < bytes.len() {
-        hash = (hash ^ bytes[at] as u64).wrapping_mul(0x0100_0000_01b3);
-        at += 1;
+    let mut index = 0;
+    while index < bytes.len() {
+        hash = (hash ^ bytes[index] as u64).wrapping_mul(0x0100_0000_01b3);
+        index += 1;
     }
     hash
 }

@@ -5,16 +5,16 @@ use std::process::ExitCode;
 use lizard_explore::{search, small::small};
 
 fn main() -> ExitCode {
-    let most = std::env::args()
+    let max = std::env::args()
         .nth(1)
         .map_or(Ok(10_000_000), |count| count.parse());
-    let Ok(most) = most else {
+    let Ok(max) = max else {
         eprintln!("explore [how many states]");
         return ExitCode::FAILURE;
     };
     let robot = small();
     let begun = std::time::Instant::now();
-    let found = search(robot, most);
+    let found = search(robot, max);
     println!(
         "{} distinct states by {} actions in {:.0} s, the longest sequence of {}, {}",
         found.states,

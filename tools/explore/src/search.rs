@@ -47,8 +47,7 @@ struct Step {
 }
 
 /// Searches from all beginnings, until this many distinct states are reached or none is left.
-#[must_use]
-pub fn search(robot: Robot<'static>, most: usize) -> SearchResult {
+pub fn search(robot: Robot<'static>, max: usize) -> SearchResult {
     let actions = Action::all();
     let begun = beginnings::all(robot);
     let known: Vec<Mutex<SeenStates>> = (0..64).map(|_| Mutex::default()).collect();
@@ -68,12 +67,12 @@ pub fn search(robot: Robot<'static>, most: usize) -> SearchResult {
     // Each is reported as a broken rule.
     let hook = panic::take_hook();
     panic::set_hook(Box::new(|_| {}));
-    while !now.is_empty() && states.load(Ordering::Relaxed) < most {
+    while !now.is_empty() && states.load(Ordering::Relaxed) < max {
         found.longest += 1;
         let queue = Mutex::new(now.into_iter());
         let threads = thread::available_parallelism().map_or(1, usize::from);
         let parts: Vec<Part> = thread::scope(|scope| {
-            let walk = || walk(&queue, &actions, &known, &states, most);
+            let walk = || walk(&queue, &actions, &known, &states, max);
             let threads: Vec<_> = (0..threads).map(|_| scope.spawn(walk)).collect();
             threads
                 .into_iter()
@@ -91,8 +90,8 @@ pub fn search(robot: Robot<'static>, most: usize) -> SearchResult {
         broken.sort_by_key(|(from, action, _)| (*from, *action));
         for (from, action, fault) in broken {
             let entry = found.broken.entry(fault.rule).or_insert_with(|| {
-                let told = describe(&begun, &steps, &actions, Step { from, action });
-                (0, format!("{told}\n  {}", fault.seen))
+                let printed = describe(&begun, &steps, &actions, Step { from, action });
+                (0, format!("{printed}\n  {}", fault.seen))
             });
             entry.0 += 1;
         }
@@ -181,9 +180,9 @@ impl Part {
 /// Applies an action; a panic breaks a rule, too.
 fn apply_catching_panics(world: &mut World, action: Action) -> Verdict {
     let applied = panic::catch_unwind(AssertUnwindSafe(|| world.apply(action)));
-    applied.unwrap_or_else(|why| {
-        let said = why.downcast_ref::<String>().cloned();
-        let said = said.or_else(|| why.downcast_ref::<&str>().map(ToString::to_string));
+    applied.unwrap_or_else(|reason| {
+        let said = reason.downcast_ref::<String>().cloned();
+        let said = said.or_else(|| reason.downcast_ref::<&str>().map(ToString::to_string));
         Err(BrokenRule::new(Rule::Lives, said.unwrap_or_default()))
     })
 }
@@ -198,12 +197,12 @@ fn describe(begun: &[InitialState], steps: &[Step], actions: &[Action], last: St
     }
     let beginning = &begun[at as usize];
     let mut text = format!("  power on with {}", beginning.with);
-    let told = beginning
+    let printed = beginning
         .actions
         .iter()
         .copied()
         .chain(sequence.into_iter().rev());
-    for action in told {
+    for action in printed {
         _ = write!(text, "; {action}");
     }
     text

@@ -27,7 +27,6 @@ pub const NOSE: u8 = 16;
 ///
 /// # Panics
 /// If robots/paper.toml is not a robot.
-#[must_use]
 pub fn small() -> Robot<'static> {
     let text = include_str!("../../../robots/paper.toml");
     let paper = lizard_robot::Robot::parse(text).expect("robots/paper.toml is right");

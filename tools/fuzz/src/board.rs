@@ -8,7 +8,7 @@ use lizard_core::memory::restart::{Cause, Restart};
 use lizard_core::memory::settings::Settings;
 use lizard_core::virtual_board::{Eeprom, Running};
 use lizard_robot::Robot;
-use lizard_rules::{Event, Limits, MS, Observer, Pulse, Rule, Time};
+use lizard_rules::{Event, Limits, MS, Observer, Rule, Time};
 
 /// The core on a board whose time is a call.
 pub struct Board {
@@ -37,7 +37,6 @@ impl Board {
     ///
     /// # Panics
     /// If the robot breaks a rule.
-    #[must_use]
     pub fn new(robot: &'static Robot, memory: Eeprom) -> Self {
         let mut board = Self {
             robot,
@@ -77,13 +76,11 @@ impl Board {
     }
 
     /// The output since the last byte.
-    #[must_use]
     pub fn said(&self) -> &str {
         &self.said
     }
 
     /// The robot's memory.
-    #[must_use]
     pub const fn memory(&self) -> &Eeprom {
         &self.running.board.memory
     }
@@ -158,22 +155,8 @@ impl Board {
     pub fn frame(&mut self) {
         self.running.frame();
         let widths = self.running.board.started_pulses().0.map(|width| width.0);
-        for (servo, width) in widths
-            .into_iter()
-            .enumerate()
-            .filter(|(_, width)| *width > 0)
-        {
-            let at = self.now + (5 + 4 * servo as Time) * MS;
-            let pulse = Pulse {
-                servo,
-                width: width.into(),
-                is_cut: false,
-                is_held_up: false,
-            };
-            self.observer.observe(at, Event::Pulse(pulse));
-        }
+        self.observer.observe_frame(self.now, widths);
         self.now += 20 * MS;
-        self.observe(Event::Pass);
         self.settle();
         self.assert_rules_hold();
     }

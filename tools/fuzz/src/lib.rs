@@ -95,5 +95,5 @@ pub fn memory(data: &[u8]) {
 /// Writes a record as the core does.
 fn write(place: Address, content: &[u8; CONTENT], memory: &mut Eeprom) {
     let mut writing = place.write();
-    while writing.step(content, memory) == Progress::Going {}
+    while writing.step(content, memory) == Progress::InProgress {}
 }

@@ -103,9 +103,9 @@ impl Edits {
             ..*reference
         });
         let new = self.0.iter().flat_map(|edit| {
-            let begin = self.new_offset(edit.at);
+            let start = self.new_offset(edit.at);
             let at_its_place = move |reference: &Reference| Reference {
-                offset: begin + reference.offset,
+                offset: start + reference.offset,
                 ..*reference
             };
             edit.references.iter().map(at_its_place)

@@ -104,8 +104,8 @@ impl Frame {
         // Every use of the stack pointer and every pop has to belong to an epilogue.
         while let Some(at) = code.instructions.get(index) {
             if let Some(words) = end(code, index, &registers, room, has_room) {
-                let begin = code.offset(index);
-                ends.push((begin, code.offset(index + words) - begin));
+                let start = code.offset(index);
+                ends.push((start, code.offset(index + words) - start));
                 index += words;
             } else if has_stack_pointer(at.code)
                 || popped(at.code).is_some()

@@ -176,8 +176,8 @@ impl Object<'_> {
             if let SectionData::Relocation(all) = &table.data {
                 let own = edit.filter(|_| table.sh_info_section == Some(section));
                 let places = all.iter().filter_map(|relocation| {
-                    let at = relocation.r_offset;
-                    let replaced = own.is_some_and(|edit| edit.at == at || edit.covers(at));
+                    let offset = relocation.r_offset;
+                    let replaced = own.is_some_and(|edit| edit.at == offset || edit.covers(offset));
                     let symbol = relocation.symbol.filter(|_| !replaced)?;
                     self.place(section, symbol, relocation.r_addend)
                 });

@@ -54,9 +54,9 @@ impl Pieces {
         let movable = self.sizes.len().saturating_sub(1);
         let mut random = fastrand::Rng::with_seed(SEED);
         let mut now = self.cost(&order);
-        let (mut best, mut least) = (order.clone(), now);
+        let (mut best, mut min) = (order.clone(), now);
         for left in (0..TRIES).rev() {
-            if least == 0 || movable < 2 {
+            if min == 0 || movable < 2 {
                 break;
             }
             let worse = u64::from(MAX_EXTRA_COST) * u64::from(left) / u64::from(TRIES);
@@ -68,8 +68,8 @@ impl Pieces {
                 continue;
             }
             now = cost;
-            if now < least {
-                (best, least) = (order.clone(), now);
+            if now < min {
+                (best, min) = (order.clone(), now);
             }
         }
         best

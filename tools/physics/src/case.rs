@@ -29,7 +29,6 @@ impl Feet {
     pub const ALL: [Self; 3] = [Self::Level, Self::Stiff, Self::Soft];
 
     /// The excess length of the front left foot, mm.
-    #[must_use]
     pub fn long(self) -> f64 {
         match self {
             Self::Level => 0.0,
@@ -39,7 +38,6 @@ impl Feet {
     }
 
     /// The stiffness of a foot on this robot, N/mm.
-    #[must_use]
     pub fn stiffness(self, robot: &Robot) -> f64 {
         match self {
             Self::Stiff => 2.0,
@@ -75,7 +73,6 @@ impl Case {
 
     /// The input of the contact model: the robot on pads whose friction is equal in all
     /// directions, as in the engine.
-    #[must_use]
     pub fn ground(self, robot: &Robot) -> Ground {
         Ground {
             stance: Stance {

@@ -6,7 +6,6 @@ use std::fmt::Write as _;
 use lizard_robot::{CheckedGait, Effort, GRAVITY, Robot, ServoType, TIGHT};
 
 /// The table of `docs/measure.md`.
-#[must_use]
 pub fn expected(robot: &Robot) -> String {
     let ground = robot.ground();
     let load = ground.body.mean_load();

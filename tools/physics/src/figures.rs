@@ -13,7 +13,6 @@ pub struct Displacement(pub [f64; 3]);
 
 impl Displacement {
     /// The difference from another displacement: mm and deg.
-    #[must_use]
     pub fn distance_to(&self, other: &Self) -> (f64, f64) {
         let [a, b] = [self.0, other.0];
         ((a[0] - b[0]).hypot(a[1] - b[1]), (a[2] - b[2]).abs())
@@ -56,7 +55,6 @@ const CREEPS: f64 = 3.5;
 
 impl Answers {
     /// The allowed difference between MuJoCo and the model, mm and deg.
-    #[must_use]
     pub fn bound(&self, case: Case) -> (f64, f64) {
         let (mm, share, deg) = match case.feet {
             Feet::Level => LEVEL,
@@ -72,7 +70,6 @@ impl Answers {
     }
 
     /// The message for a difference beyond the allowed one.
-    #[must_use]
     pub fn disagreement(&self, case: Case) -> Option<String> {
         let (off, turned) = self.mujoco.distance_to(&self.model?);
         let (mm, deg) = self.bound(case);
@@ -94,7 +91,6 @@ impl Figures {
     ///
     /// # Panics
     /// If `figures.json` is not as [`Figures::text`] makes it.
-    #[must_use]
     pub fn stored() -> Self {
         serde_json::from_str(include_str!("../figures.json")).expect("figures.json")
     }
@@ -103,7 +99,6 @@ impl Figures {
     ///
     /// # Panics
     /// Never: they are names and numbers.
-    #[must_use]
     pub fn text(&self) -> String {
         let block = |lines: Vec<String>| format!("{{\n{}\n}}", lines.join(",\n"));
         let robots = self.0.iter().map(|(robot, gaits)| {
@@ -120,7 +115,6 @@ impl Figures {
     }
 
     /// The answers for a robot's gait in a case.
-    #[must_use]
     pub fn get(&self, robot: &str, gait: &str, case: Case) -> Option<&Answers> {
         self.0.get(robot)?.get(gait)?.get(&case.to_string())
     }
@@ -133,7 +127,6 @@ impl Figures {
     }
 
     /// The number of walks.
-    #[must_use]
     pub fn count(&self) -> usize {
         let gaits = self.0.values().flat_map(BTreeMap::values);
         gaits.map(BTreeMap::len).sum()

@@ -41,7 +41,6 @@ pub type Grains = BTreeMap<String, Vec<Answers>>;
 ///
 /// # Panics
 /// If `grains.json` is not as [`text`] makes it.
-#[must_use]
 pub fn stored() -> Grains {
     serde_json::from_str(include_str!("../grains.json")).expect("grains.json")
 }
@@ -50,7 +49,6 @@ pub fn stored() -> Grains {
 ///
 /// # Panics
 /// Never: they are names and numbers.
-#[must_use]
 pub fn text(grains: &Grains) -> String {
     let gaits = grains.iter().map(|(gait, answers)| {
         let lines = answers
@@ -62,7 +60,6 @@ pub fn text(grains: &Grains) -> String {
 }
 
 /// The model's answer for level feet; `None` where it depends on ties.
-#[must_use]
 pub fn model(robot: &Robot, gait: &CheckedGait, ratio: f64) -> Option<Displacement> {
     let ground = Ground {
         stance: Stance {
@@ -120,7 +117,6 @@ fn scene(name: String, assembly: &Assembly, gait: &CheckedGait, ratio: f64) -> S
 }
 
 /// The messages for answers of MuJoCo that are too far from the model's.
-#[must_use]
 pub fn disagreements(grains: &Grains) -> Vec<String> {
     let (mm, share, deg) = BOUND;
     let mut words = Vec::new();
@@ -144,7 +140,6 @@ pub fn disagreements(grains: &Grains) -> Vec<String> {
 ///
 /// # Panics
 /// If a gait is missing.
-#[must_use]
 pub fn table(robot: &Robot, grains: &Grains) -> String {
     let mut text = format!("{:16}", "model, MuJoCo");
     for ratio in RATIOS {

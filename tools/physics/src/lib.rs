@@ -36,14 +36,12 @@ pub const ROBOTS: [&str; 4] = ["paper", "own-gaits", "large", "unequal"];
 ///
 /// # Panics
 /// If its file is refused; tests of the robot crate show that none is.
-#[must_use]
 pub fn robot(name: &str) -> Robot {
     let file = here().join(format!("../../robots/{name}.toml"));
     Robot::load(file).expect(name)
 }
 
 /// The folder of this crate.
-#[must_use]
 pub fn here() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }

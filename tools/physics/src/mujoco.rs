@@ -74,7 +74,6 @@ impl Jobs {
     }
 
     /// The number of walks.
-    #[must_use]
     pub fn count(&self) -> usize {
         self.count
     }

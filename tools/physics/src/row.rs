@@ -20,7 +20,6 @@ pub struct Row {
 
 impl Row {
     /// The scene for MuJoCo under a name, and its legs.
-    #[must_use]
     pub fn scene(&self, name: &str, assembly: &Assembly) -> (Legs, Scene) {
         let scene = scene_of(name, assembly, &self.gait, self.case);
         (self.case.legs, scene)
@@ -30,7 +29,6 @@ impl Row {
     ///
     /// # Panics
     /// If the robot has no such gait.
-    #[must_use]
     pub fn model(&self, robot: &Robot) -> Option<Displacement> {
         let gait = robot.gait(&self.gait).expect("it is the robot's");
         let walked = || gait.walked(&self.case.ground(robot)).travel;
@@ -40,7 +38,6 @@ impl Row {
 
 /// Every gait of a robot that moves, in every case; a gait that depends on ties in the first case
 /// only.
-#[must_use]
 pub fn rows(robot: &Robot) -> Vec<Row> {
     let gaits = robot.gaits().iter().filter(|gait| gait.moves());
     gaits.flat_map(|gait| rows_of(robot, gait)).collect()

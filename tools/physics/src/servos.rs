@@ -92,7 +92,6 @@ impl Variant {
     ///
     /// # Panics
     /// If robots/paper.toml does not have the lines that are replaced.
-    #[must_use]
     pub fn robot(&self) -> Robot {
         let text = std::fs::read_to_string(here().join("../../robots/paper.toml"));
         let mut text = text.expect("robots/paper.toml");
@@ -123,7 +122,6 @@ impl Variant {
     ///
     /// # Panics
     /// If the robot has no such gait.
-    #[must_use]
     pub fn scene(&self, name: &str, assembly: &Assembly, gait: &str) -> Scene {
         let gait = assembly.robot().gait(gait).expect(gait);
         let mut scene = Scene {
@@ -142,7 +140,6 @@ impl Variant {
     ///
     /// # Panics
     /// If the robot has no such gait.
-    #[must_use]
     pub fn model(&self, gait: &str) -> Displacement {
         let robot = self.robot();
         let gait = robot.gait(gait).expect(gait);
@@ -156,13 +153,12 @@ impl Variant {
     }
 
     /// The message for a gait in which the model differs from MuJoCo too much.
-    #[must_use]
     pub fn disagreement(&self, gait: &str, answers: &Answers) -> Option<String> {
         let (_, part) = GAITS.into_iter().find(|(name, _)| *name == gait)?;
         let [model, mujoco] = [answers.model?, answers.mujoco].map(|way| way.0[part]);
-        let off = model / mujoco - 1.0;
-        (off.abs() > self.allowed(gait)).then(|| {
-            let percent = 100.0 * off;
+        let error = model / mujoco - 1.0;
+        (error.abs() > self.allowed(gait)).then(|| {
+            let percent = 100.0 * error;
             format!("the model has {model:.1}, MuJoCo {mujoco:.1}: {percent:+.0} %")
         })
     }
@@ -175,7 +171,6 @@ pub type Servos = BTreeMap<String, BTreeMap<String, Answers>>;
 ///
 /// # Panics
 /// If `servos.json` is not as [`text`] makes it.
-#[must_use]
 pub fn kept() -> Servos {
     serde_json::from_str(include_str!("../servos.json")).expect("servos.json")
 }
@@ -184,7 +179,6 @@ pub fn kept() -> Servos {
 ///
 /// # Panics
 /// Never: they are names and numbers.
-#[must_use]
 pub fn text(servos: &Servos) -> String {
     let variants = servos.iter().map(|(variant, gaits)| {
         let lines = gaits.iter().map(|(gait, answers)| {
@@ -202,7 +196,6 @@ pub fn text(servos: &Servos) -> String {
 }
 
 /// The table of all variants, as Markdown; a dash where a walk is missing.
-#[must_use]
 pub fn servos_table(servos: &Servos) -> String {
     let heads = GAITS.map(|(gait, part)| {
         let unit = if part == 2 { "deg" } else { "mm" };

@@ -55,20 +55,17 @@ impl Surface {
     ];
 
     /// True for edges and blocks, which a pad has to climb.
-    #[must_use]
     pub fn is_climbed(self) -> bool {
         matches!(self, Self::Edge(_) | Self::Blocks(_))
     }
 
     /// The least share of its distance that a gait must keep here, if it goes ahead or back.
-    #[must_use]
     pub fn least_way(self) -> Option<f64> {
         self.is_climbed().then_some(0.85)
     }
 
     /// The least share of its angle that a gait must keep here, if it turns. A lost pad is a fault
     /// to be mended: it halves some turns.
-    #[must_use]
     pub fn least_turn(self) -> Option<f64> {
         (self != Self::NoPad).then_some(0.75)
     }
@@ -100,7 +97,6 @@ impl Surface {
     ///
     /// # Panics
     /// If the robot has no such gait.
-    #[must_use]
     pub fn scene(self, name: &str, assembly: &Assembly, gait: &str, level: Displacement) -> Scene {
         let robot = assembly.robot();
         let case = Case::ALL[0];
@@ -142,10 +138,10 @@ fn strewn_blocks(robot: &Robot, high: f64) -> Vec<Block> {
     const REACH: i32 = 12;
     let feet = robot.ground().feet.at([0.0; 4]);
     let mut seed: u32 = 1;
-    let mut random = |low: f64, most: f64| {
+    let mut random = |low: f64, max: f64| {
         // The constants of Numerical Recipes; the upper half of the bits is random enough.
         seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        low + (most - low) * f64::from(seed >> 16) / 65536.0
+        low + (max - low) * f64::from(seed >> 16) / 65536.0
     };
     let mut blocks = Vec::new();
     for row in -REACH..REACH {
@@ -182,7 +178,6 @@ pub type Surfaces = BTreeMap<String, BTreeMap<String, Displacement>>;
 ///
 /// # Panics
 /// If `surfaces.json` is not a table of displacements.
-#[must_use]
 pub fn stored() -> Surfaces {
     serde_json::from_str(include_str!("../surfaces.json")).expect("surfaces.json")
 }
@@ -191,7 +186,6 @@ pub fn stored() -> Surfaces {
 ///
 /// # Panics
 /// Never: they are names and numbers.
-#[must_use]
 pub fn text(surfaces: &Surfaces) -> String {
     let line = |(gait, of): (&String, &BTreeMap<String, Displacement>)| {
         format!("{gait:?}: {}", serde_json::to_string(of).expect("numbers"))
@@ -204,7 +198,6 @@ pub fn text(surfaces: &Surfaces) -> String {
 ///
 /// # Panics
 /// If none is stored.
-#[must_use]
 pub fn level(figures: &Figures, gait: &str) -> Displacement {
     let answers = figures.get("paper", gait, Case::ALL[0]);
     answers.expect("figures.json has it").mujoco
@@ -219,7 +212,6 @@ fn least(surface: Surface, part: Part) -> Option<f64> {
 }
 
 /// The messages for a gait that loses more of its distance or its turn than a surface allows.
-#[must_use]
 pub fn excess_losses(
     surface: Surface,
     level: Displacement,
@@ -237,7 +229,6 @@ pub fn excess_losses(
 }
 
 /// The table of all surfaces, as Markdown.
-#[must_use]
 pub fn surfaces_table(figures: &Figures, surfaces: &Surfaces) -> String {
     let heads = Surface::ALL.map(|surface| format!(" {surface} |")).concat();
     let lines = "---|".repeat(Surface::ALL.len());

@@ -48,7 +48,6 @@ impl Part {
 
 /// The table of all figures of a robot: model and MuJoCo side by side, a block for each kind of
 /// legs.
-#[must_use]
 pub fn table(name: &str, robot: &Robot, figures: &Figures) -> String {
     let mut text = String::new();
     for legs in [Legs::Rigid, Legs::Strut] {
@@ -115,7 +114,6 @@ fn gaits(robot: &Robot) -> impl Iterator<Item = &str> {
 /// The displacement by a cycle of each gait, as Markdown: the model's prediction for level feet
 /// with ideal servos and with the robot's, MuJoCo's answer, and the range of the first and the last
 /// with a foot 1.0 mm too long.
-#[must_use]
 pub fn spread(name: &str, robot: &Robot, figures: &Figures) -> String {
     let mut text = "| gait | cycle, s | ideal servos | its servos | MuJoCo | ideal servos and MuJoCo, a foot 1.0 mm too long |\n|---|---|---|---|---|---|\n".to_owned();
     for gait in robot.gaits().iter().filter(|gait| gait.moves()) {
@@ -153,14 +151,14 @@ fn range(part: Part, displacements: &[Displacement]) -> String {
     let values = displacements
         .iter()
         .map(|displacement| part.value(*displacement));
-    let least = values.clone().fold(f64::INFINITY, f64::min);
-    let most = values.fold(f64::NEG_INFINITY, f64::max);
-    let ([least, most], unit) = (
-        [least, most].map(|value| format!("{value:+.1}")),
+    let smallest = values.clone().fold(f64::INFINITY, f64::min);
+    let largest = values.fold(f64::NEG_INFINITY, f64::max);
+    let ([smallest, largest], unit) = (
+        [smallest, largest].map(|value| format!("{value:+.1}")),
         part.unit(),
     );
-    match least == most {
-        true => format!("{least} {unit}"),
-        false => format!("{least} to {most} {unit}"),
+    match smallest == largest {
+        true => format!("{smallest} {unit}"),
+        false => format!("{smallest} to {largest} {unit}"),
     }
 }

@@ -33,11 +33,11 @@ fn block(path: &str, begin: &str, end: &str, wanted: &str) {
 #[test]
 fn the_page_and_the_robots_file_have_the_speeds_of_model_and_engine() {
     let table = grains::table(&robot(grains::ROBOT), &grains::stored());
-    let begin = "<!-- speeds of robots/grain.toml -->\n```text\n";
-    block("docs/gaits.md", begin, "```\n<!-- end -->", &table);
+    let start = "<!-- speeds of robots/grain.toml -->\n```text\n";
+    block("docs/gaits.md", start, "```\n<!-- end -->", &table);
     let comment: String = table.lines().map(|line| format!("# {line}\n")).collect();
-    let begin = "# leads nowhere.\n#\n";
-    block("robots/grain.toml", begin, "#\n# Fit all", &comment);
+    let start = "# leads nowhere.\n#\n";
+    block("robots/grain.toml", start, "#\n# Fit all", &comment);
 }
 
 #[test]
@@ -85,9 +85,9 @@ fn with_a_grain_the_robot_runs_at_90_mm_a_second_and_still_turns() {
             "{turn:?}"
         );
     }
-    for (gait, part, least) in [("left", 2, 14.0), ("back", 0, 30.0)] {
+    for (gait, part, min) in [("left", 2, 14.0), ("back", 0, 30.0)] {
         let against = speeds(&kept, gait, 1.5, part);
-        let still = |speed: &f64| speed.abs() > least;
+        let still = |speed: &f64| speed.abs() > min;
         assert!(
             against.len() == 2 && against.iter().all(still),
             "{against:?}"

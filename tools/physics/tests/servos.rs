@@ -15,8 +15,8 @@ fn a_servo_that_cannot_follow_loses_in_the_model_what_it_loses_in_mujoco() {
             let name = variant.name;
             assert_eq!(variant.disagreement(gait, &answers), None, "{name}, {gait}");
             let (was, is) = (answers.model.expect("a way"), variant.model(gait));
-            let off = (was.0[part] - is.0[part]).abs();
-            assert!(off < 0.05, "{name}, {gait}: {was:?} {is:?}");
+            let error = (was.0[part] - is.0[part]).abs();
+            assert!(error < 0.05, "{name}, {gait}: {was:?} {is:?}");
             // The rule refuses a servo that follows in the model only.
             let mut lost = answers;
             lost.mujoco.0[part] /= 2.0;

@@ -3,7 +3,7 @@
 use lizard_core::console::word::Effect;
 use lizard_core::memory::restart::Cause;
 
-use crate::event::{Event, MS, NEVER, Time};
+use crate::event::{Event, MS, NEVER, Pulse, Time};
 use crate::reports::Reports;
 use crate::rule::{BrokenRule, Rule};
 use crate::servos::{Permission, Servo};
@@ -116,7 +116,6 @@ pub(crate) struct Pending {
 
 impl Observer {
     /// An observer of a robot whose power is still off.
-    #[must_use]
     pub fn new(limits: Limits) -> Self {
         Self {
             limits,
@@ -150,6 +149,25 @@ impl Observer {
         }
     }
 
+    /// Observes the pulses of a frame, `widths` of A1 to A4, 0 for none, and its end.
+    pub fn observe_frame(&mut self, start: Time, widths: [u16; 4]) {
+        for (servo, width) in widths
+            .into_iter()
+            .enumerate()
+            .filter(|(_, width)| *width > 0)
+        {
+            let pulse = Pulse {
+                servo,
+                width: width.into(),
+                is_cut: false,
+                is_held_up: false,
+            };
+            // A1's pulse begins 4 ms after the tick.
+            self.observe(start + (5 + 4 * servo as Time) * MS, Event::Pulse(pulse));
+        }
+        self.observe(start + 20 * MS, Event::Pass);
+    }
+
     /// Takes the first rule that was broken since the last call.
     ///
     /// # Errors
@@ -173,38 +191,32 @@ impl Observer {
     }
 
     /// True while lines wait for their answers.
-    #[must_use]
     pub const fn has_unanswered_lines(&self) -> bool {
         self.lines > 0
     }
 
     /// True while nothing allows pulses.
-    #[must_use]
     pub const fn rests(&self) -> bool {
         !self.permission.may
     }
 
     /// The time since which a fault has stopped the robot.
-    #[must_use]
     pub const fn stopped_since(&self) -> Option<Time> {
         self.reports.stopped
     }
 
     /// True while the console has not reported a stop.
-    #[must_use]
     pub const fn is_unreported(&self) -> bool {
         self.reports.stopped.is_some() && !self.reports.is_reported
     }
 
     /// True if the supply was below a level (0: writing, 1: moving, 2: pulses) within this time.
-    #[must_use]
     pub fn was_low(&self, level: usize, within: Time) -> bool {
         let mv = self.limits.levels[level];
         self.supply.time_below(mv, self.now - within, self.now + 1) > 0
     }
 
     /// The time until the last promise is due.
-    #[must_use]
     pub fn due_in(&self) -> Option<Time> {
         let pending = &self.pending;
         let ends = [
@@ -222,7 +234,6 @@ impl Observer {
     }
 
     /// The time since the last reset.
-    #[must_use]
     pub const fn runs_for(&self) -> Time {
         self.now - self.start
     }
@@ -237,16 +248,16 @@ impl Observer {
     }
 
     /// Judges an event.
-    pub fn observe(&mut self, at: Time, event: Event<'_>) {
-        self.advance(at);
+    pub fn observe(&mut self, time: Time, event: Event<'_>) {
+        self.advance(time);
         match event {
             Event::Pass => {}
             Event::Start(cause) => self.program_starts(cause),
-            Event::Cut => self.cut = at,
+            Event::Cut => self.cut = time,
             Event::Stalled(until) => {
                 self.disturbed = self.disturbed.max(until);
-                self.stalls.retain(|(_, end)| at - end < 300 * MS);
-                self.stalls.push((at, until));
+                self.stalls.retain(|(_, end)| time - end < 300 * MS);
+                self.stalls.push((time, until));
                 self.is_disturbed();
             }
             Event::HeldUp(until) => {
@@ -258,17 +269,17 @@ impl Observer {
             }
             Event::Supply(mv) => {
                 let poor = self.limits.levels[0] + crate::supply::GOOD_ABOVE;
-                self.supply.set(at, mv, poor);
+                self.supply.set(time, mv, poor);
             }
             Event::Byte => {
-                self.last_byte = at;
+                self.last_byte = time;
                 self.permission.boot = None;
             }
             Event::Line { is_command } => {
                 self.lines += 1;
                 if is_command {
-                    self.last_line = at;
-                    self.heard = at;
+                    self.last_line = time;
+                    self.heard = time;
                 }
             }
             Event::Order { effect, done } => self.order(effect, done),
@@ -294,13 +305,13 @@ impl Observer {
             Event::Printed(since, line) => self.judge_line(since, line),
             Event::Pulse(pulse) => self.pulse(pulse),
             Event::Written => self.judge_write(),
-            Event::Fault => self.reports.stop(at),
+            Event::Fault => self.reports.stop(time),
         }
     }
 
     /// Advances the time, and judges everything that was due by now.
-    fn advance(&mut self, at: Time) {
-        self.now = self.now.max(at);
+    fn advance(&mut self, time: Time) {
+        self.now = self.now.max(time);
         self.permission.advance(self.now);
         self.check_silence();
         self.check_pending();
@@ -361,9 +372,9 @@ impl Observer {
     }
 
     /// The time for which main was stalled in the last 300 ms; several short stalls may add up.
-    pub(crate) fn stalled(&self, at: Time) -> Time {
-        let recent = self.stalls.iter().filter(|(_, end)| *end > at - 300 * MS);
-        recent.map(|(start, end)| end.min(&at) - start).sum()
+    pub(crate) fn stalled(&self, time: Time) -> Time {
+        let recent = self.stalls.iter().filter(|(_, end)| *end > time - 300 * MS);
+        recent.map(|(start, end)| end.min(&time) - start).sum()
     }
 
     fn check_reset(&mut self, cause: Cause) {

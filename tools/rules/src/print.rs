@@ -6,7 +6,6 @@ use crate::event::{MS, Time};
 use crate::observer::Observer;
 
 /// Sorts an age in frames of 20 ms into a few classes.
-#[must_use]
 pub const fn frames_class(age: Time) -> u8 {
     match age / (20 * MS) {
         ..=0 => 0,
@@ -19,7 +18,6 @@ pub const fn frames_class(age: Time) -> u8 {
 
 impl Observer {
     /// A value whose `Debug` output is the same for equivalent states.
-    #[must_use]
     pub fn coarse(&self) -> impl fmt::Debug + use<> {
         let age = |at: Time| frames_class(self.now.saturating_sub(at));
         let signed = |age: i64| {

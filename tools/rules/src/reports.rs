@@ -35,17 +35,17 @@ impl Default for Reports {
 
 impl Reports {
     /// Records that a fault stops the robot.
-    pub(crate) fn stop(&mut self, at: Time) {
+    pub(crate) fn stop(&mut self, time: Time) {
         if self.stopped.is_none() {
-            self.stopped = Some(at);
-            self.is_reported = self.may_still_be_stopped || at - self.told < 400 * MS;
+            self.stopped = Some(time);
+            self.is_reported = self.may_still_be_stopped || time - self.told < 400 * MS;
         }
     }
 
-    pub(crate) fn start(&mut self, cause: Cause, at: Time) {
+    pub(crate) fn start(&mut self, cause: Cause, time: Time) {
         *self = Self::default();
         if cause == Cause::Watchdog {
-            self.stopped = Some(at);
+            self.stopped = Some(time);
         }
     }
 

@@ -13,7 +13,6 @@ macro_rules! rules {
             pub const ALL: &[Self] = &[$(Self::$name),*];
 
             /// The promise as a sentence.
-            #[must_use]
             pub const fn sentence(self) -> &'static str {
                 match self { $(Self::$name => $sentence),* }
             }

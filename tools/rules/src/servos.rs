@@ -57,17 +57,17 @@ impl Permission {
         self.end.take_if(|(_, is_order)| *is_order);
     }
 
-    pub(crate) fn start(&mut self, cause: Cause, at: Time, boots_to_rest: bool) {
+    pub(crate) fn start(&mut self, cause: Cause, time: Time, boots_to_rest: bool) {
         self.cancel_order();
         self.may |= cause == Cause::Power;
         let boots = cause != Cause::Watchdog && !boots_to_rest;
-        self.boot = boots.then_some(at + BOOT);
+        self.boot = boots.then_some(time + BOOT);
     }
 
-    pub(crate) fn order(&mut self, at: Time, effect: Effect, is_sure: bool) {
+    pub(crate) fn order(&mut self, time: Time, effect: Effect, is_sure: bool) {
         self.cancel_order();
         match effect {
-            Effect::Rests if is_sure => self.end = Some((at + UNTIL_REST, true)),
+            Effect::Rests if is_sure => self.end = Some((time + UNTIL_REST, true)),
             Effect::Moves => {
                 self.may = true;
                 self.end = None;
@@ -76,16 +76,16 @@ impl Permission {
         }
     }
 
-    pub(crate) fn note_boot(&mut self, at: Time, boot: &str) {
+    pub(crate) fn note_boot(&mut self, time: Time, boot: &str) {
         if boot == "rest" {
-            self.end(at);
+            self.end(time);
         } else {
             self.may = true;
         }
     }
 
-    pub(crate) const fn end(&mut self, at: Time) {
-        self.end = Some((at + UNTIL_REST, false));
+    pub(crate) const fn end(&mut self, time: Time) {
+        self.end = Some((time + UNTIL_REST, false));
     }
 
     pub(crate) const fn ends(&self) -> bool {
@@ -180,10 +180,10 @@ impl Observer {
         let at = self.now;
         let servo = self.servos[pulse.servo];
         let name = format_args!("A{}", pulse.servo + 1);
-        let (least, most) = self.limits.widths[pulse.servo];
-        let short = pulse.width < least && !pulse.is_cut;
+        let (min, max) = self.limits.widths[pulse.servo];
+        let short = pulse.width < min && !pulse.is_cut;
         // A falling edge that is held up comes late, at worst with the next slot.
-        let long = pulse.width > most && !pulse.is_held_up || pulse.width > 65_000;
+        let long = pulse.width > max && !pulse.is_held_up || pulse.width > 65_000;
         if short || long {
             let seen = format!("{name} gets {} cycles", pulse.width);
             self.fail(Rule::Travel, seen);

@@ -36,15 +36,15 @@ impl Default for Supply {
 }
 
 impl Supply {
-    pub(crate) fn set(&mut self, at: Time, mv: u32, poor: u32) {
+    pub(crate) fn set(&mut self, time: Time, mv: u32, poor: u32) {
         if self.now() < poor || mv < poor {
-            self.poor = at;
+            self.poor = time;
         }
-        let is_old = |pair: &[(Time, u32)]| pair[1].0 < at - 2_000 * MS;
+        let is_old = |pair: &[(Time, u32)]| pair[1].0 < time - 2_000 * MS;
         let old = self.history.windows(2).take_while(|pair| is_old(pair));
         let old = old.count();
         self.history.drain(..old);
-        self.history.push((at, mv));
+        self.history.push((time, mv));
     }
 
     fn now(&self) -> u32 {

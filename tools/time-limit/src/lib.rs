@@ -39,7 +39,6 @@ impl fmt::Display for TimeLimit {
 
 impl TimeLimit {
     /// Makes another limit, for a test of waits.
-    #[must_use]
     pub const fn new(time: Duration) -> Self {
         Self(time)
     }

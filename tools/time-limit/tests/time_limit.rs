@@ -37,14 +37,14 @@ fn a_condition_that_never_holds_fails_with_what_was_waited_for() {
 
 #[test]
 fn a_condition_is_checked_until_it_holds() {
-    let begin = Instant::now();
+    let start = Instant::now();
     let mut asked = 0;
     LIMIT.expect("the third time", || {
         asked += 1;
         asked == 3
     });
     assert_eq!(asked, 3);
-    assert!(LIMIT.wait_for(|| begin.elapsed() > Duration::from_millis(20)));
+    assert!(LIMIT.wait_for(|| start.elapsed() > Duration::from_millis(20)));
 }
 
 #[test]

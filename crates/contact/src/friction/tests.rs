@@ -11,9 +11,9 @@ const STOP: f64 = 250.0;
 const AT: [Point; 4] = [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]];
 
 /// Pads with equal loads and frictions, on rigid legs.
-fn pads(at: [Point; 4], swing: [Point; 4]) -> Pads {
+fn pads(positions: [Point; 4], swing: [Point; 4]) -> Pads {
     Pads {
-        at,
+        at: positions,
         swing,
         ratio: 1.0,
         load: EVEN,
@@ -70,7 +70,7 @@ fn certificate(pads: &Pads, displacement: &Displacement) -> ([f64; 3], f64) {
 }
 
 fn assert_least(pads: &Pads) {
-    let (net, gap) = certificate(pads, &pads.least());
+    let (net, gap) = certificate(pads, &pads.minimum());
     assert!(
         net.iter().all(|part| part.abs() < 1e-5),
         "forces out of balance: {net:?}"
@@ -93,12 +93,12 @@ fn nearly_two_against_two_is_still_decided_rightly() {
                 side * (35.0 + 45.0 * psi.cos()),
             ]
         };
-        let at = std::array::from_fn(|i| foot(i, (from + to) / 2.0));
+        let positions = std::array::from_fn(|i| foot(i, (from + to) / 2.0));
         let swing = std::array::from_fn(|i| {
             let (a, b) = (foot(i, from), foot(i, to));
             [b[0] - a[0], b[1] - a[1]]
         });
-        assert_least(&pads(at, swing));
+        assert_least(&pads(positions, swing));
     }
 }
 
@@ -107,7 +107,7 @@ fn three_pads_that_agree_hold_and_the_fourth_slides() {
     for odd in 0..4 {
         let mut swing = [[-1.0, 0.0]; 4];
         swing[odd] = [3.0, 0.0];
-        let twist = pads(AT, swing).least().twist;
+        let twist = pads(AT, swing).minimum().twist;
         assert!(
             (twist[0] - 1.0).abs() < 1e-7 && twist[1].abs() < 1e-7 && twist[2].abs() < 1e-9,
             "{twist:?}"
@@ -118,7 +118,7 @@ fn three_pads_that_agree_hold_and_the_fourth_slides() {
 #[test]
 fn a_single_pad_that_swings_alone_moves_nothing() {
     let swing = [[5.0, 1.0], [0.0; 2], [0.0; 2], [0.0; 2]];
-    let twist = pads(AT, swing).least().twist;
+    let twist = pads(AT, swing).minimum().twist;
     assert!(twist.iter().all(|part| part.abs() < 1e-7), "{twist:?}");
 }
 
@@ -126,7 +126,7 @@ fn a_single_pad_that_swings_alone_moves_nothing() {
 fn legs_that_swing_against_each_other_turn_the_body() {
     // Pads that move as a rigid turn by 0.01 rad are followed exactly.
     let swing = AT.map(|[x, y]| [0.01 * y, -0.01 * x]);
-    let twist = pads(AT, swing).least().twist;
+    let twist = pads(AT, swing).minimum().twist;
     assert!((twist[2] - 0.01).abs() < 1e-9 && twist[0].abs() < 1e-7 && twist[1].abs() < 1e-7);
 }
 
@@ -154,11 +154,11 @@ proptest! {
         load in prop::array::uniform4(0.8f64..1.2),
     ) {
         let pads = Pads { at: AT, swing, ratio: 1.3, load, compliance: None, body: None };
-        let least = pads.least();
-        let (twist, scale) = (least.twist, 10f64.powi(size));
+        let min = pads.minimum();
+        let (twist, scale) = (min.twist, 10f64.powi(size));
         let other = [twist[0] + scale * nudge[0], twist[1] + scale * nudge[1], twist[2] + scale * nudge[2] / 80.0];
-        let other = Displacement { twist: other, ..least };
-        prop_assert!(cost(&pads, &least) <= cost(&pads, &other) + 1e-6);
+        let other = Displacement { twist: other, ..min };
+        prop_assert!(cost(&pads, &min) <= cost(&pads, &other) + 1e-6);
     }
 
     // Play together with stops, and slotted struts that yield one way.

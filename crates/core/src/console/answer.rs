@@ -15,20 +15,20 @@ pub enum Answer {
     /// `ok` and the line as the console understood it.
     Done = 1,
     /// The gaits from this one on, as many as fit in a line.
-    Gaits(GaitId),
+    HelpGaits(GaitId),
     /// The words of the console.
-    Words,
+    HelpWords,
     /// The hint that ends the list of commands.
-    Hint,
+    HelpHint,
     /// The end of help, `ok help`.
-    Helped,
+    HelpDone,
     /// `ok`, the motion and its pose; the next answer continues the line. It is written in
     /// three parts, so that a frame waits for one of them at most.
     Status,
     /// The margin, whose measurement takes most of a frame; the pace; the frame count.
-    Margin,
+    StatusMargin,
     /// Counters, faults, restarts and supplies.
-    Health,
+    StatusHealth,
     /// A line of the settings, by its number; after the last one `ok cal`.
     Settings(u8),
     /// `err`, since the line is not a command; nothing was changed.

@@ -38,18 +38,18 @@ pub enum Misread {
     /// The line is too long.
     TooLong,
     /// The first word is not a command.
-    Unknown,
+    UnknownCommand,
     /// A command that takes no argument has one.
-    Surplus,
+    UnexpectedArgument,
     /// The first words of a gait's name, without the others.
-    Incomplete,
+    IncompleteName,
     /// An argument is missing, malformed or superfluous; the message describes the correct
     /// arguments.
-    Wants(Text),
+    WrongArguments(Text),
     /// An argument is out of range; the message gives the range.
-    Range(Text),
+    OutOfRange(Text),
     /// The angle of this servo is more than a turn.
-    PoseRange(Servo),
+    AngleOutOfRange(Servo),
 }
 
 /// The longest interval of `watch`, frames: 200 s.
@@ -67,7 +67,7 @@ const MAX_CENTIDEG: u16 = TURN_CENTIDEG as u16;
 /// The syntax of an argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
-enum Kind {
+enum Syntax {
     /// A whole number in decimal digits.
     Whole,
     /// Degrees with a sign and at most two decimals, read as an [`Angle`].
@@ -86,32 +86,32 @@ struct Form {
     /// The number of arguments after it.
     count: u8,
     /// The syntax of each of them.
-    kind: Kind,
+    syntax: Syntax,
     /// The range of each, without its sign.
-    least: u16,
-    most: u16,
+    min: u16,
+    max: u16,
     /// The message for arguments that do not match this form.
-    wants: Text,
+    usage: Text,
     /// The message for an argument out of range.
     range: Text,
 }
 
 flash! {
-    /// All forms, in the order of [`form`].
+    /// All forms, in the order of [`form_index`].
     const FORMS: [Form; 8] = [
-        Form { takes_servo: false, count: 4, kind: Kind::Degrees, least: 0, most: MAX_CENTIDEG, wants: Text::PoseWants, range: Text::Nothing },
-        Form { takes_servo: false, count: 1, kind: Kind::Whole, least: 10, most: 100, wants: Text::SpeedWants, range: Text::SpeedRange },
-        Form { takes_servo: false, count: 1, kind: Kind::Whole, least: 0, most: MAX_WATCH_FRAMES, wants: Text::WatchWants, range: Text::WatchRange },
-        Form { takes_servo: true, count: 1, kind: Kind::Degrees, least: 0, most: 2000, wants: Text::TrimWants, range: Text::TrimRange },
-        Form { takes_servo: true, count: 2, kind: Kind::Degrees, least: 0, most: MAX_CENTIDEG, wants: Text::LimitWants, range: Text::LimitRange },
-        Form { takes_servo: true, count: 1, kind: Kind::Sign, least: 0, most: 1, wants: Text::DirWants, range: Text::Nothing },
-        Form { takes_servo: true, count: 1, kind: Kind::Hundredths, least: 500, most: 2000, wants: Text::ScaleWants, range: Text::ScaleRange },
-        Form { takes_servo: false, count: 1, kind: Kind::Whole, least: 0, most: MAX_DEADMAN_MS, wants: Text::DeadmanWants, range: Text::DeadmanRange },
+        Form { takes_servo: false, count: 4, syntax: Syntax::Degrees, min: 0, max: MAX_CENTIDEG, usage: Text::PoseWants, range: Text::Nothing },
+        Form { takes_servo: false, count: 1, syntax: Syntax::Whole, min: 10, max: 100, usage: Text::SpeedWants, range: Text::SpeedRange },
+        Form { takes_servo: false, count: 1, syntax: Syntax::Whole, min: 0, max: MAX_WATCH_FRAMES, usage: Text::WatchWants, range: Text::WatchRange },
+        Form { takes_servo: true, count: 1, syntax: Syntax::Degrees, min: 0, max: 2000, usage: Text::TrimWants, range: Text::TrimRange },
+        Form { takes_servo: true, count: 2, syntax: Syntax::Degrees, min: 0, max: MAX_CENTIDEG, usage: Text::LimitWants, range: Text::LimitRange },
+        Form { takes_servo: true, count: 1, syntax: Syntax::Sign, min: 0, max: 1, usage: Text::DirWants, range: Text::Nothing },
+        Form { takes_servo: true, count: 1, syntax: Syntax::Hundredths, min: 500, max: 2000, usage: Text::ScaleWants, range: Text::ScaleRange },
+        Form { takes_servo: false, count: 1, syntax: Syntax::Whole, min: 0, max: MAX_DEADMAN_MS, usage: Text::DeadmanWants, range: Text::DeadmanRange },
     ];
 }
 
 /// The index into `FORMS` for a command that takes arguments.
-const fn form(word: Word) -> Option<usize> {
+const fn form_index(word: Word) -> Option<usize> {
     match word {
         Word::Pose => Some(0),
         Word::Speed => Some(1),
@@ -144,20 +144,20 @@ fn parse_among<const YIELDING: usize>(line: &[u8], robot: &Robot) -> Result<Comm
             || (*word as usize) < YIELDING
             || matches!(
                 gait(line, robot),
-                Err(Misread::Unknown | Misread::Incomplete)
+                Err(Misread::UnknownCommand | Misread::IncompleteName)
             )
     });
     let Some(word) = word else {
         let (gait, cycles) = gait(line, robot)?;
         return Ok(Command::Order(Order::Gait(gait, cycles)));
     };
-    let Arguments { servo, numbers } = match form(word) {
+    let Arguments { servo, numbers } = match form_index(word) {
         Some(index) => Arguments::read(word, words, &FORMS.at(index).load())?,
-        None if word != Word::Boot && !words.is_done() => return Err(Misread::Surplus),
+        None if word != Word::Boot && !words.is_done() => return Err(Misread::UnexpectedArgument),
         None => Arguments::NONE,
     };
     let [number, second, ..] = numbers;
-    let set = |setting| Order::Set(servo, setting);
+    let order_setting = |setting| Order::Set(servo, setting);
     Ok(Command::Order(match word {
         Word::Help | Word::QuestionMark => return Ok(Command::Help),
         Word::Status => return Ok(Command::Status),
@@ -168,14 +168,14 @@ fn parse_among<const YIELDING: usize>(line: &[u8], robot: &Robot) -> Result<Comm
         Word::Pose => Order::Pose(numbers.map(Angle)),
         Word::Center => Order::Center,
         Word::Speed => Order::Speed(number as u8),
-        Word::Trim => set(Setting::Trim(Sweep(number as i16))),
-        Word::Limit => set(Setting::Limit(Angle(number), Angle(second))),
-        Word::Dir => set(Setting::Direct(number != 0)),
-        Word::Scale => set(Setting::Scale(number)),
+        Word::Trim => order_setting(Setting::Trim(Sweep(number as i16))),
+        Word::Limit => order_setting(Setting::Limit(Angle(number), Angle(second))),
+        Word::Dir => order_setting(Setting::Direct(number != 0)),
+        Word::Scale => order_setting(Setting::Scale(number)),
         Word::Save => Order::Save,
         Word::Load => Order::Load,
         Word::Factory => Order::Factory,
-        Word::Boot => Order::Boot(boot(words.0.trim_ascii(), robot)?),
+        Word::Boot => Order::Boot(parse_boot(words.0.trim_ascii(), robot)?),
         Word::Deadman => Order::Deadman(number),
     }))
 }
@@ -192,13 +192,13 @@ pub fn effect(line: &str, robot: &Robot) -> Effect {
 }
 
 /// Reads the argument of `boot`.
-fn boot(rest: &[u8], robot: &Robot) -> Result<Boot, Misread> {
-    if Word::find(rest) == Some(Word::Rest) {
+fn parse_boot(argument: &[u8], robot: &Robot) -> Result<Boot, Misread> {
+    if Word::find(argument) == Some(Word::Rest) {
         return Ok(Boot::Rest);
     }
-    match gait(rest, robot) {
+    match gait(argument, robot) {
         Ok((gait, 0)) => Ok(Boot::Gait(gait)),
-        _ => Err(Misread::Wants(Text::BootWants)),
+        _ => Err(Misread::WrongArguments(Text::BootWants)),
     }
 }
 
@@ -221,37 +221,37 @@ impl Arguments {
     /// Reads the arguments that follow `word`.
     #[inline(never)]
     fn read(word: Word, mut words: Words, form: &Form) -> Result<Self, Misread> {
-        let wants = Err(Misread::Wants(form.wants));
+        let usage_error = Err(Misread::WrongArguments(form.usage));
         let mut arguments = Self::NONE;
         if form.takes_servo {
             arguments.servo = match words.next() {
                 [digit @ b'1'..=b'4'] => Servo::at(usize::from(digit - b'1')),
-                _ => return wants,
+                _ => return usage_error,
             };
         }
-        let mut beyond = None;
+        let mut first_out_of_range = None;
         for (index, number) in (0..form.count).zip(&mut arguments.numbers) {
-            let Some((size, negative)) = number_of(words.next(), form.kind) else {
-                return wants;
+            let Some((magnitude, is_negative)) = number_of(words.next(), form.syntax) else {
+                return usage_error;
             };
-            *number = size;
-            let mut within = form.least <= size && size <= form.most;
-            if form.kind == Kind::Degrees {
-                let size = i32::from(size);
-                *number = Angle::from_centideg(if negative { -size } else { size }).0;
+            *number = magnitude;
+            let mut is_in_range = form.min <= magnitude && magnitude <= form.max;
+            if form.syntax == Syntax::Degrees {
+                let magnitude = i32::from(magnitude);
+                *number = Angle::from_centideg(if is_negative { -magnitude } else { magnitude }).0;
             } else {
-                within &= !negative;
+                is_in_range &= !is_negative;
             }
-            if !within {
-                beyond = beyond.or(Some(index));
+            if !is_in_range {
+                first_out_of_range = first_out_of_range.or(Some(index));
             }
         }
-        match beyond {
-            _ if !words.is_done() => wants,
+        match first_out_of_range {
+            _ if !words.is_done() => usage_error,
             Some(index) if word == Word::Pose => {
-                Err(Misread::PoseRange(Servo::at(usize::from(index))))
+                Err(Misread::AngleOutOfRange(Servo::at(usize::from(index))))
             }
-            Some(_) => Err(Misread::Range(form.range)),
+            Some(_) => Err(Misread::OutOfRange(form.range)),
             None => Ok(arguments),
         }
     }
@@ -285,16 +285,16 @@ impl<'a> Words<'a> {
 #[inline(never)]
 fn gait(line: &[u8], robot: &Robot) -> Result<(GaitId, u16), Misread> {
     let line = line.trim_ascii_start();
-    let mut read = Err(Misread::Unknown);
+    let mut parsed = Err(Misread::UnknownCommand);
     for id in GaitId::all(robot.gait_count()) {
         match compare(line, robot.name(id)) {
-            Err(Misread::Unknown) => {}
+            Err(Misread::UnknownCommand) => {}
             Ok(0) => return Ok((id, 0)),
-            other if read.is_err() => read = other.map(|cycles| (id, cycles)),
+            other if parsed.is_err() => parsed = other.map(|cycles| (id, cycles)),
             _ => {}
         }
     }
-    read
+    parsed
 }
 
 /// Compares a line with a name, and reads the number after it; 0 without one. Stops at the
@@ -304,24 +304,24 @@ fn compare(line: &[u8], name: Name) -> Result<u16, Misread> {
     let mut rest = line;
     for byte in name {
         match rest {
-            [] if byte == b' ' => return Err(Misread::Incomplete),
+            [] if byte == b' ' => return Err(Misread::IncompleteName),
             [first, ..] if byte == b' ' && first.is_ascii_whitespace() => {
                 rest = rest.trim_ascii_start();
             }
             [first, others @ ..] if *first == byte => rest = others,
-            _ => return Err(Misread::Unknown),
+            _ => return Err(Misread::UnknownCommand),
         }
     }
     match rest {
         [] => return Ok(0),
-        [first, ..] if !first.is_ascii_whitespace() => return Err(Misread::Unknown),
+        [first, ..] if !first.is_ascii_whitespace() => return Err(Misread::UnknownCommand),
         _ => {}
     }
     let mut words = Words(rest);
-    let number = number_of(words.next(), Kind::Whole);
+    let number = number_of(words.next(), Syntax::Whole);
     match number {
         Some((cycles @ 1..=MAX_CYCLES, _)) if words.is_done() => Ok(cycles),
-        _ => Err(Misread::Wants(Text::CountWants)),
+        _ => Err(Misread::WrongArguments(Text::CountWants)),
     }
 }
 
@@ -331,23 +331,23 @@ const DECIMALS: u8 = 2;
 /// Reads a word as a number without its sign; true if the sign is a minus. Returns 65535 for
 /// numbers of more than sixteen bits.
 #[inline(never)]
-fn number_of(word: &[u8], kind: Kind) -> Option<(u16, bool)> {
+fn number_of(word: &[u8], syntax: Syntax) -> Option<(u16, bool)> {
     let (mut sign, mut digits) = (b'+', word);
-    if kind != Kind::Whole
+    if syntax != Syntax::Whole
         && let [first @ (b'+' | b'-'), rest @ ..] = word
     {
         (sign, digits) = (*first, rest);
     }
-    let negative = sign == b'-';
-    if kind == Kind::Sign {
-        return (word.len() == 1 && digits.is_empty()).then_some((u16::from(!negative), false));
+    let is_negative = sign == b'-';
+    if syntax == Syntax::Sign {
+        return (word.len() == 1 && digits.is_empty()).then_some((u16::from(!is_negative), false));
     }
-    let mut size = None;
+    let mut magnitude = None;
     let mut decimals = None;
     for byte in digits {
         match byte {
-            b'0'..=b'9' => size = Some(append(size.unwrap_or(0), byte - b'0')),
-            b'.' if kind != Kind::Whole && size.is_some() && decimals.is_none() => {
+            b'0'..=b'9' => magnitude = Some(append(magnitude.unwrap_or(0), byte - b'0')),
+            b'.' if syntax != Syntax::Whole && magnitude.is_some() && decimals.is_none() => {
                 decimals = Some(0);
                 continue;
             }
@@ -357,14 +357,14 @@ fn number_of(word: &[u8], kind: Kind) -> Option<(u16, bool)> {
             *decimals += 1;
         }
     }
-    let mut size = size?;
-    if kind != Kind::Whole {
+    let mut magnitude = magnitude?;
+    if syntax != Syntax::Whole {
         // Zeros in place of the missing decimals.
         for _ in 0..DECIMALS.checked_sub(decimals.unwrap_or(0))? {
-            size = append(size, 0);
+            magnitude = append(magnitude, 0);
         }
     }
-    Some((size, negative))
+    Some((magnitude, is_negative))
 }
 
 /// Appends a digit to a number; saturates at 65535.

@@ -7,7 +7,7 @@
 use crate::console::answer::{Answer, Counters};
 use crate::console::command::{self, Command, Misread};
 use crate::console::digits;
-use crate::console::finder::Finder;
+use crate::console::finder::RateFinder;
 use crate::console::line::{Ended, GARBLED, Line};
 use crate::console::output::Output;
 use crate::console::print;
@@ -35,16 +35,16 @@ enum Pending {
     /// A notice that comes without a command.
     Notice(Notice),
     /// The reason why the guard holds the robot.
-    Held,
+    HoldReason,
     /// The pose report that `watch` asked for.
-    Report,
+    PoseReport,
 }
 
 /// The console at one serial line: the line being received, and the answer being written.
 #[derive(Clone, Debug)]
 pub struct Console {
     line: Line,
-    finder: Finder,
+    rate_finder: RateFinder,
     has_greeted: bool,
     answer: Option<Answer>,
     watch: Watch,
@@ -61,26 +61,26 @@ impl Console {
     pub const fn new() -> Self {
         Self {
             line: Line::new(),
-            finder: Finder::new(Rate::Fastest),
+            rate_finder: RateFinder::new(Rate::Fastest),
             has_greeted: false,
             answer: None,
-            watch: Watch::every(0),
+            watch: Watch::new(0),
         }
     }
 
     /// Begins at this rate of the serial line.
     pub const fn begin(&mut self, rate: Rate) {
-        self.finder = Finder::new(rate);
+        self.rate_finder = RateFinder::new(rate);
     }
 
     /// Advances the timer of `watch` by a frame. Returns the rate that the serial line is to
     /// have from now on, if it changes.
     pub fn frame(&mut self, control: &Control) -> Option<Rate> {
-        self.watch.frame();
+        self.watch.count_frame();
         if self.has_output(control) {
-            self.finder.note_unread();
+            self.rate_finder.note_unread();
         }
-        let rate = self.finder.frame()?;
+        let rate = self.rate_finder.end_frame()?;
         // The next line end may end a line that began at the rate before.
         self.line.push(GARBLED);
         Some(rate)
@@ -97,7 +97,7 @@ impl Console {
     #[inline(never)]
     pub fn receive(&mut self, byte: u8, control: &mut Control) {
         control.note_byte();
-        self.finder.note_byte(byte);
+        self.rate_finder.note_byte(byte);
         let Some(ended) = self.line.push(byte) else {
             return;
         };
@@ -110,13 +110,13 @@ impl Console {
     }
 
     /// Executes the line. Returns no answer while the EEPROM is still being written: then
-    /// [`Console::done`] has to follow.
+    /// [`Console::finish_order`] has to follow.
     #[inline(never)]
     fn obey(&mut self, control: &mut Control) -> Result<Option<Answer>, Answer> {
         let robot = control.motion().robot();
         let text = self.line.text();
         let mut command = command::parse(text, robot);
-        if command.is_ok() && !self.finder.note_command(text.len()) {
+        if command.is_ok() && !self.rate_finder.note_command(text.len()) {
             command = Err(Misread::Garbled);
         }
         let reads = matches!(
@@ -130,11 +130,11 @@ impl Console {
         // Noise or the rest of a line comes from nobody, so `deadman` ignores it.
         control.note_command();
         Ok(match command {
-            Command::Help => Some(Answer::Gaits(GaitId::STAND)),
+            Command::Help => Some(Answer::HelpGaits(GaitId::STAND)),
             Command::Status => Some(Answer::Status),
             Command::Cal => Some(Answer::Settings(0)),
             Command::Watch(frames) => {
-                self.watch = Watch::every(frames);
+                self.watch = Watch::new(frames);
                 Some(Answer::Done)
             }
             Command::Order(order) => match control.execute(&order).map_err(Answer::Refused)? {
@@ -145,7 +145,7 @@ impl Console {
     }
 
     /// Reports the outcome of an order that had to wait for the EEPROM.
-    pub fn done(&mut self, outcome: Result<(), Refusal>) {
+    pub fn finish_order(&mut self, outcome: Result<(), Refusal>) {
         self.answer = Some(match outcome {
             Ok(()) => Answer::Done,
             Err(refusal) => Answer::Refused(refusal),
@@ -166,7 +166,7 @@ impl Console {
             }
             Some(Pending::Answer(answer)) => {
                 self.answer = print::answer(out, answer, &self.line, control, counters);
-                if matches!(answer, Answer::Status | Answer::Margin) {
+                if matches!(answer, Answer::Status | Answer::StatusMargin) {
                     return;
                 }
             }
@@ -174,13 +174,13 @@ impl Console {
                 control.note_printed(notice);
                 print::notice(out, notice, control);
             }
-            Some(Pending::Held) => {
-                if let Some(hazard) = control.take_held() {
+            Some(Pending::HoldReason) => {
+                if let Some(hazard) = control.take_hold_reason() {
                     Text::Held.print(out);
                     refusal::print_hazard(hazard, control.motion(), out);
                 }
             }
-            Some(Pending::Report) => {
+            Some(Pending::PoseReport) => {
                 self.watch.is_due = false;
                 Text::WatchTime.print(out);
                 digits::number(out, control.motion().frames(), 0);
@@ -200,9 +200,9 @@ impl Console {
         } else if let Some(notice) = control.safety().notice() {
             Some(Pending::Notice(notice))
         } else if control.has_hold_reason() {
-            Some(Pending::Held)
+            Some(Pending::HoldReason)
         } else if self.watch.is_due {
-            Some(Pending::Report)
+            Some(Pending::PoseReport)
         } else {
             None
         }

@@ -30,7 +30,7 @@ pub fn angles(out: &mut impl Output, pose: &Pose, robot: &Robot) {
 /// Prints a number, the last `decimals` of its digits after a point.
 pub fn number(out: &mut impl Output, value: u32, decimals: usize) {
     let mut rest = value;
-    let mut begun = false;
+    let mut has_begun = false;
     let mut place = DECADES.as_slice().len();
     while place > 0 {
         place -= 1;
@@ -40,8 +40,8 @@ pub fn number(out: &mut impl Output, value: u32, decimals: usize) {
             rest -= unit;
             digit += 1;
         }
-        begun |= digit != b'0' || place <= decimals;
-        if begun {
+        has_begun |= digit != b'0' || place <= decimals;
+        if has_begun {
             out.byte(digit);
             if place == decimals && place > 0 {
                 out.byte(b'.');

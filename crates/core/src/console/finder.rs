@@ -22,7 +22,7 @@ const MIN_COMMAND_BYTES: usize = 4;
 
 /// The present rate, and the wrong bytes at it.
 #[derive(Clone, Copy, Debug)]
-pub struct Finder {
+pub struct RateFinder {
     rate: Rate,
     /// Wrong bytes since the last command, from `-MORE_AFTER_COMMAND` on, or since the last change
     /// of rate, from 0 on.
@@ -33,7 +33,7 @@ pub struct Finder {
     is_guess: bool,
 }
 
-impl Finder {
+impl RateFinder {
     /// A finder that begins with this rate.
     pub const fn new(rate: Rate) -> Self {
         Self {
@@ -68,7 +68,7 @@ impl Finder {
     }
 
     /// Changes the rate if it must be wrong and nothing came in this frame; returns the new one.
-    pub fn frame(&mut self) -> Option<Rate> {
+    pub fn end_frame(&mut self) -> Option<Rate> {
         let is_pause = !core::mem::take(&mut self.has_received);
         if !is_pause || self.wrong_bytes < WRONG_BYTES {
             return None;

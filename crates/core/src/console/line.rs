@@ -116,18 +116,18 @@ mod tests {
     fn expected(bytes: &[u8]) -> Vec<Option<String>> {
         let mut lines = Vec::new();
         for line in bytes.split(|byte| matches!(byte, b'\r' | b'\n')) {
-            let mut kept = String::new();
+            let mut typed = String::new();
             // Or garbled.
             let mut too_long = false;
             for byte in line {
                 match byte {
-                    0x08 | 0x7f => drop(kept.pop()),
+                    0x08 | 0x7f => drop(typed.pop()),
                     0x80.. => too_long = true,
-                    _ if kept.chars().count() == 63 => too_long = true,
-                    _ => kept.push(char::from(*byte)),
+                    _ if typed.chars().count() == 63 => too_long = true,
+                    _ => typed.push(char::from(*byte)),
                 }
             }
-            let text = kept.trim_matches([' ', '\t', '\x0c']).to_ascii_lowercase();
+            let text = typed.trim_matches([' ', '\t', '\x0c']).to_ascii_lowercase();
             lines.push((!too_long).then_some(text));
         }
         lines.pop(); // has not ended yet

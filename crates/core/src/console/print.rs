@@ -48,33 +48,33 @@ pub(super) fn answer(
             Text::Err.print(out);
             refusal.print(control.motion(), out);
         }
-        Answer::Gaits(first) => {
+        Answer::HelpGaits(first) => {
             let rest = gaits(out, first, control.motion().robot());
-            return Some(rest.map_or(Answer::Words, Answer::Gaits));
+            return Some(rest.map_or(Answer::HelpWords, Answer::HelpGaits));
         }
-        Answer::Words => {
+        Answer::HelpWords => {
             Text::HelpWords.print(out);
             Word::print_all::<RESERVED>(out, control.motion().robot());
-            return Some(Answer::Hint);
+            return Some(Answer::HelpHint);
         }
-        Answer::Hint => {
+        Answer::HelpHint => {
             Text::HelpHint.print(out);
-            return Some(Answer::Helped);
+            return Some(Answer::HelpDone);
         }
-        Answer::Helped => Text::OkHelp.print(out),
+        Answer::HelpDone => Text::OkHelp.print(out),
         Answer::Done => {
             Text::Ok.print(out);
             digits::ascii(out, line.text().iter().copied());
         }
         Answer::Status => {
             status(out, control);
-            return Some(Answer::Margin);
+            return Some(Answer::StatusMargin);
         }
-        Answer::Margin => {
+        Answer::StatusMargin => {
             margin(out, control.motion());
-            return Some(Answer::Health);
+            return Some(Answer::StatusHealth);
         }
-        Answer::Health => health(out, control, counters),
+        Answer::StatusHealth => health(out, control, counters),
         Answer::Settings(line) => {
             if settings(out, line, control) {
                 return Some(Answer::Settings(line + 1));
@@ -202,18 +202,22 @@ fn settings(out: &mut impl Output, line: u8, control: &Control) -> bool {
         }
         _ => {
             let servo = Servo::at(usize::from(line));
-            let set = settings.servo(servo);
+            let adjustment = settings.servo(servo);
             let neutral = control.motion().robot().neutral_of(servo);
             Text::Information.print(out);
             out.byte(b'A');
             out.byte(b'1' + line);
             Text::CalTrim.print(out);
-            sweep(out, set.trim);
-            digits::field(out, Text::CalLimit, neutral.swept(set.min).centideg());
-            digits::field(out, Text::Blank, neutral.swept(set.max).centideg());
+            sweep(out, adjustment.trim);
+            digits::field(
+                out,
+                Text::CalLimit,
+                neutral.swept(adjustment.min).centideg(),
+            );
+            digits::field(out, Text::Blank, neutral.swept(adjustment.max).centideg());
             Text::CalDir.print(out);
-            out.byte(if set.is_direct() { b'+' } else { b'-' });
-            digits::field(out, Text::CalScale, set.scale());
+            out.byte(if adjustment.is_direct() { b'+' } else { b'-' });
+            digits::field(out, Text::CalScale, adjustment.scale());
         }
     }
     true
@@ -232,7 +236,7 @@ pub(super) fn notice(out: &mut impl Output, notice: Notice, control: &Control) {
     match notice {
         Notice::Memory => match control.saved_settings() {
             Outcome::Latest | Outcome::Blank => Text::MemoryBlank,
-            Outcome::Other => Text::MemoryOther,
+            Outcome::OneCopy => Text::MemoryOther,
             Outcome::Damaged => Text::MemoryDamaged,
             Outcome::Foreign => Text::MemoryForeign,
             Outcome::Unfit => Text::MemoryUnfit,

@@ -20,13 +20,13 @@ impl Misread {
     #[inline(never)]
     pub fn print(self, motion: &Motion, out: &mut impl Output) {
         let (code, text) = match self {
-            Self::Unknown => (1, Text::Unknown),
+            Self::UnknownCommand => (1, Text::Unknown),
             Self::Garbled => (1, Text::Garbled),
-            Self::Surplus => (2, Text::Surplus),
-            Self::Incomplete => (2, Text::Incomplete),
-            Self::Wants(text) => (2, text),
-            Self::Range(text) => (3, text),
-            Self::PoseRange(servo) => {
+            Self::UnexpectedArgument => (2, Text::Surplus),
+            Self::IncompleteName => (2, Text::Incomplete),
+            Self::WrongArguments(text) => (2, text),
+            Self::OutOfRange(text) => (3, text),
+            Self::AngleOutOfRange(servo) => {
                 print_code(3, out);
                 return print_travel(servo, motion, out);
             }
@@ -102,7 +102,7 @@ pub fn print_hazard(hazard: Hazard, motion: &Motion, out: &mut impl Output) {
         Hazard::Travel(servo) => print_travel(servo, motion, out),
         Hazard::Margin { margin, value } => {
             let limits = robot.limits();
-            let least = match margin {
+            let limit = match margin {
                 Margin::Type2(End::Head) => {
                     Text::Type2Head.print(out);
                     limits.type2
@@ -129,7 +129,7 @@ pub fn print_hazard(hazard: Hazard, motion: &Motion, out: &mut impl Output) {
                 Text::IsBelow.print(out);
             }
             Text::Least.print(out);
-            sine(out, least)
+            sine(out, limit)
         }
         Hazard::Stroke { side, length } => {
             match side {
@@ -179,30 +179,36 @@ mod tests {
 
     #[test]
     fn every_error_has_its_code_and_its_message() {
-        use Misread::{PoseRange, Range, Wants};
+        use Misread::{AngleOutOfRange, OutOfRange, WrongArguments};
         for (misread, message) in [
             (
-                Misread::Unknown,
+                Misread::UnknownCommand,
                 "1 unknown command, send help for the list",
             ),
             (Misread::Garbled, "1 the line came garbled, send it again"),
-            (Misread::Surplus, "2 this command takes no argument"),
-            (Misread::Incomplete, "2 this command wants one more word"),
             (
-                Wants(Text::SpeedWants),
+                Misread::UnexpectedArgument,
+                "2 this command takes no argument",
+            ),
+            (
+                Misread::IncompleteName,
+                "2 this command wants one more word",
+            ),
+            (
+                WrongArguments(Text::SpeedWants),
                 "2 speed wants a whole number, 10..100",
             ),
-            (Range(Text::SpeedRange), "3 speed must be 10..100"),
+            (OutOfRange(Text::SpeedRange), "3 speed must be 10..100"),
             (
-                Wants(Text::WatchWants),
+                WrongArguments(Text::WatchWants),
                 "2 watch wants a whole number, 0..10000",
             ),
-            (Range(Text::WatchRange), "3 watch must be 0..10000"),
+            (OutOfRange(Text::WatchRange), "3 watch must be 0..10000"),
             (
-                Wants(Text::PoseWants),
+                WrongArguments(Text::PoseWants),
                 "2 pose wants four angles in degrees, at most two decimals",
             ),
-            (PoseRange(Servo::A1), "3 A1 reaches 61.37..215.36"),
+            (AngleOutOfRange(Servo::A1), "3 A1 reaches 61.37..215.36"),
             (Misread::TooLong, "6 a line has at most 63 characters"),
         ] {
             assert_eq!(printed(|motion, out| misread.print(motion, out)), message);

@@ -279,8 +279,12 @@ impl Part {
     /// Reads the next nibble.
     #[inline(always)]
     fn next(&mut self) -> u8 {
-        let pair = NIBBLES.at(usize::from(self.at >> 1)).load();
-        let nibble = if self.at & 1 == 0 { pair } else { pair >> 4 };
+        let nibbles = NIBBLES.at(usize::from(self.at >> 1)).load();
+        let nibble = if self.at & 1 == 0 {
+            nibbles
+        } else {
+            nibbles >> 4
+        };
         self.at += 1;
         self.left -= 1;
         nibble & 0xf
@@ -329,9 +333,9 @@ const fn pack() -> Packed {
     };
     let mut string = 0;
     while string < STRINGS {
-        let begin = packed.count;
+        let start = packed.count;
         if string % BLOCK_STRINGS == 0 {
-            packed.blocks[string / BLOCK_STRINGS] = begin as u16;
+            packed.blocks[string / BLOCK_STRINGS] = start as u16;
         }
         let is_phrase = string >= COUNT;
         let text = if is_phrase {
@@ -352,8 +356,8 @@ const fn pack() -> Packed {
                 }
             }
         }
-        assert!(packed.count - begin <= 255);
-        packed.lengths[string] = (packed.count - begin) as u8;
+        assert!(packed.count - start <= 255);
+        packed.lengths[string] = (packed.count - start) as u8;
         string += 1;
     }
     packed

@@ -4,28 +4,28 @@
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Watch {
     /// Frames from one report to the next; 0 for none.
-    every: u16,
+    interval_frames: u16,
     /// Frames until the next report.
-    left: u16,
+    frames_left: u16,
     /// True while a report waits to be written.
     pub(super) is_due: bool,
 }
 
 impl Watch {
     /// Reports once every so many frames, the first after as many.
-    pub(super) const fn every(frames: u16) -> Self {
+    pub(super) const fn new(interval_frames: u16) -> Self {
         Self {
-            every: frames,
-            left: frames,
+            interval_frames,
+            frames_left: interval_frames,
             is_due: false,
         }
     }
 
-    pub(super) fn frame(&mut self) {
-        if self.every > 0 {
-            self.left -= 1;
-            if self.left == 0 {
-                self.left = self.every;
+    pub(super) fn count_frame(&mut self) {
+        if self.interval_frames > 0 {
+            self.frames_left -= 1;
+            if self.frames_left == 0 {
+                self.frames_left = self.interval_frames;
                 self.is_due = true;
             }
         }

@@ -20,7 +20,7 @@ use crate::memory::record::{Memory, Writing};
 use crate::memory::restart::{Cause, Restart, Stance};
 use crate::memory::settings::{Boot, Settings};
 use crate::motion::{Activity, Motion};
-use crate::numbers::gaits::{GaitId, Input};
+use crate::numbers::gaits::GaitId;
 use crate::numbers::pose::{Pose, Pulses};
 use crate::numbers::robot::Robot;
 use crate::numbers::section::Damage;
@@ -30,6 +30,7 @@ use routine::Routine;
 
 mod adjust;
 mod job;
+mod report;
 mod routine;
 
 /// Frames without a reset after which the supply counts as good again: 30 s.
@@ -46,7 +47,7 @@ pub struct Control {
     /// The reason why the flash holds no usable robot.
     damage: Option<Damage>,
     /// The state of the saved settings at power-on.
-    found: Outcome,
+    saved_settings: Outcome,
     safety: Safety,
     /// The cause of the last reset.
     cause: Cause,
@@ -57,18 +58,18 @@ pub struct Control {
     /// Consecutive resets that a weak supply may have caused.
     brown_outs: u8,
     /// True if a command has come since the start.
-    is_heard: bool,
+    has_heard_command: bool,
     routine: Routine,
     /// The contact that the last step of a routine waited for.
     contact: Contact,
     /// True if `boot` has begun what is under way, and no command has come since.
-    is_alone: bool,
+    is_unattended: bool,
     /// The EEPROM operation that an order has started.
     job: Option<Job>,
     /// The record of the rest pose that is being written or invalidated.
     rested: Option<Writing>,
     /// The reason why the guard holds the robot, until it is printed.
-    held: Option<Hazard>,
+    hold_reason: Option<Hazard>,
 }
 
 impl Default for Control {
@@ -84,19 +85,19 @@ impl Control {
             settings: Settings::NONE,
             motion: Motion::unstarted(Robot::NONE),
             damage: None,
-            found: Outcome::Latest,
+            saved_settings: Outcome::Latest,
             safety: Safety::new(),
             cause: Cause::Power,
             restarts: 0,
             may_be_supply: false,
             brown_outs: 0,
-            is_heard: false,
+            has_heard_command: false,
             routine: Routine::NONE,
             contact: Contact::NONE,
-            is_alone: false,
+            is_unattended: false,
             job: None,
             rested: None,
-            held: None,
+            hold_reason: None,
         }
     }
 
@@ -113,11 +114,11 @@ impl Control {
             return;
         }
         self.may_be_supply = restart.may_be_supply;
-        self.found = copies::load(self.motion.robot(), memory, &mut self.settings);
-        if self.found != Outcome::Latest {
+        self.saved_settings = copies::load(self.motion.robot(), memory, &mut self.settings);
+        if self.saved_settings != Outcome::Latest {
             self.safety.notify(Notice::Memory);
         }
-        self.calibrate();
+        self.apply_calibration();
         let before = match &restart.before {
             None => Before::Nothing,
             Some(stance) if stance.is_resting => Before::Rested,
@@ -128,14 +129,15 @@ impl Control {
             true => brown_outs + 1,
             false => restart.brown_outs.min(BROWN_OUTS),
         };
-        let (beginning, fault) = supervisor::first_action(restart.cause, self.brown_outs, before);
+        let (first_action, fault) =
+            supervisor::first_action(restart.cause, self.brown_outs, before);
         if let Some(fault) = fault {
             self.safety.note_byte();
             self.safety.fail(fault);
         }
         let rested = copies::last_rest_pose(self.motion.robot(), memory);
         let stance = restart.before.as_ref();
-        let began = match (beginning, stance) {
+        let is_awake = match (first_action, stance) {
             (FirstAction::Wake, _) => {
                 self.motion.wake(rested.as_ref());
                 true
@@ -144,7 +146,7 @@ impl Control {
             (FirstAction::Hold, Some(stance)) => self.motion.resume(stance, false),
             _ => false,
         };
-        if began {
+        if is_awake {
             self.rested = Some(RESTED.invalidate());
             return;
         }
@@ -155,61 +157,8 @@ impl Control {
         });
         self.motion.resume_rest(stance.or(at_rest.as_ref()));
         // The pose may not have reached the memory yet.
-        let kept = before == Before::Nothing || rested.as_ref() == Some(self.motion.pose());
-        self.rested = (!kept).then(|| RESTED.write());
-    }
-
-    /// The robot's motion.
-    pub const fn motion(&self) -> &Motion {
-        &self.motion
-    }
-
-    /// The settings in use.
-    pub const fn settings(&self) -> &Settings {
-        &self.settings
-    }
-
-    /// The reason why the flash holds no usable robot; `None` if it holds one.
-    pub const fn damage(&self) -> Option<Damage> {
-        self.damage
-    }
-
-    /// The state of the saved settings at power-on.
-    pub const fn saved_settings(&self) -> Outcome {
-        self.found
-    }
-
-    /// The input that the last step of a routine waited for.
-    pub const fn input(&self) -> Input {
-        self.contact.input
-    }
-
-    /// The watch over supply, line, pulses and stack.
-    pub const fn safety(&self) -> &Safety {
-        &self.safety
-    }
-
-    /// The cause of the last reset.
-    pub const fn cause(&self) -> Cause {
-        self.cause
-    }
-
-    /// Resets since power-on; stays at 255.
-    pub const fn resets(&self) -> u8 {
-        self.restarts
-    }
-
-    /// The present fault: the guard's first, else that of [`Safety`].
-    pub fn fault(&self) -> Option<Fault> {
-        match self.motion.hazard() {
-            Some(_) => Some(Fault::Guard),
-            None => self.safety.fault(),
-        }
-    }
-
-    /// Consecutive resets that a weak supply may have caused.
-    pub const fn brown_outs(&self) -> u8 {
-        self.brown_outs
+        let is_saved = before == Before::Nothing || rested.as_ref() == Some(self.motion.pose());
+        self.rested = (!is_saved).then(|| RESTED.write());
     }
 
     /// Computes the pulses of the next frame. To be called 50 times a second.
@@ -221,7 +170,7 @@ impl Control {
         let pulses = self.motion.tick();
         let hazard = self.motion.hazard();
         if !was_held && let Some(hazard) = hazard {
-            self.held = Some(hazard);
+            self.hold_reason = Some(hazard);
         }
         if self.routine.is_under_way() {
             self.go_on(health.is_closed);
@@ -235,7 +184,7 @@ impl Control {
         // Opening the port resets the board, and then a line comes. By radio, lines come at any
         // time, so a reset while the servos wake still counts against the supply.
         let is_external = self.may_be_supply && self.cause == Cause::External;
-        if is_external && self.is_heard && frames > WAKING_FRAMES {
+        if is_external && self.has_heard_command && frames > WAKING_FRAMES {
             self.may_be_supply = false;
             self.brown_outs = self.brown_outs.saturating_sub(1);
         }
@@ -256,18 +205,18 @@ impl Control {
     /// Notes that a command was received.
     pub fn note_command(&mut self) {
         self.safety.note_command();
-        self.is_alone = false;
-        self.is_heard = true;
+        self.is_unattended = false;
+        self.has_heard_command = true;
     }
 
     /// Takes the reason why the guard holds the robot; the next call returns `None`.
-    pub fn take_held(&mut self) -> Option<Hazard> {
-        self.held.take()
+    pub fn take_hold_reason(&mut self) -> Option<Hazard> {
+        self.hold_reason.take()
     }
 
     /// True while the guard's reason waits to be printed.
     pub const fn has_hold_reason(&self) -> bool {
-        self.held.is_some()
+        self.hold_reason.is_some()
     }
 
     /// Notes that a notice has been printed.
@@ -312,7 +261,7 @@ impl Control {
         let state = self.state();
         let supplies = self.motion.robot().supplies();
         // Nobody has talked to a routine that `boot` began, so nobody can have fallen silent.
-        let deadman = if self.is_alone && self.routine.is_under_way() {
+        let deadman = if self.is_unattended && self.routine.is_under_way() {
             0
         } else {
             self.settings.deadman()
@@ -332,13 +281,13 @@ impl Control {
     /// Carries out the `boot` setting, unless the robot does so already.
     fn boot(&mut self, state: State) {
         let boot = self.settings.boot(self.motion.robot());
-        let rests = state == State::Resting;
+        let is_resting = state == State::Resting;
         match boot {
-            Boot::Gait(GaitId::STAND) if !rests => return,
-            Boot::Rest if rests => return,
+            Boot::Gait(GaitId::STAND) if !is_resting => return,
+            Boot::Rest if is_resting => return,
             Boot::Gait(gait) => {
                 self.start(gait, 0);
-                self.is_alone = true;
+                self.is_unattended = true;
                 self.rested = Some(RESTED.invalidate());
             }
             Boot::Rest => self.rest(),

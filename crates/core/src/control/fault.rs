@@ -60,7 +60,7 @@ impl Led {
     }
 
     /// Advances the pattern by a frame; true if the LED is lit in it.
-    pub fn frame(&mut self, fault: Option<Fault>) -> bool {
+    pub fn advance(&mut self, fault: Option<Fault>) -> bool {
         let code = fault.map_or(0, Fault::code);
         let period = match code {
             0 => 2 * BEAT,
@@ -101,7 +101,7 @@ mod tests {
     fn runs(led: &mut Led, fault: Option<Fault>, frames: usize) -> Vec<(bool, usize)> {
         let mut runs: Vec<(bool, usize)> = Vec::new();
         for _ in 0..frames {
-            let lit = led.frame(fault);
+            let lit = led.advance(fault);
             match runs.last_mut() {
                 Some((last, count)) if *last == lit => *count += 1,
                 _ => runs.push((lit, 1)),
@@ -116,8 +116,8 @@ mod tests {
             return frame % 64 < 32;
         };
         let flashes = 16 * usize::from(fault.code());
-        let at = frame % (flashes + 48);
-        at < flashes && at % 16 < 8
+        let frame_in_period = frame % (flashes + 48);
+        frame_in_period < flashes && frame_in_period % 16 < 8
     }
 
     #[test]
@@ -167,7 +167,7 @@ mod tests {
                     let mut led = Led::default();
                     runs(&mut led, *before, frames);
                     for frame in 0..400 {
-                        let lit = led.frame(*after);
+                        let lit = led.advance(*after);
                         assert_eq!(lit, is_lit(*after, frame), "{before:?} {after:?} {frames}");
                     }
                 }

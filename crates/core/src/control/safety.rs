@@ -233,7 +233,7 @@ impl Safety {
         } else {
             self.fault
         };
-        self.is_lit = self.led.frame(fault);
+        self.is_lit = self.led.advance(fault);
     }
 
     /// Records a fault and has it printed.

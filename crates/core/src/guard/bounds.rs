@@ -111,49 +111,50 @@ impl LeanError {
     pub fn of(left: i16, right: i16, [low, high]: [f64; 2]) -> Self {
         let (a, b) = (f64::from(left) / 2.0, f64::from(right) / 2.0);
         let reach = (a + b).powi(2).floor();
-        let least = (a - b).powi(2).floor();
+        let min = (a - b).powi(2).floor();
         let root = |p: f64, q: f64| Factor { power: 0.5, p, q };
         let over = |p: f64, q: f64| Factor { power: -1.0, p, q };
         // A table is read from the whole octave on that has a 1024th of the largest argument.
         let octaves = 2048.0;
         let mut rise = 0.0f64;
         // A range of its argument, where the table is read, where its function begins.
-        let mut read = |product: Product, ends: [f64; 2], within: [f64; 2], first: f64| {
-            let ends = [ends[0].max(within[0]), ends[1].min(within[1])];
-            if ends[0] <= ends[1] {
-                let [bend, top] = product.bend(ends, first);
-                let value = bend / 2048.0 + top / 65536.0 + Q10;
-                // Of R and N rounded down: a relative error, here twice as large as
-                // its first order.
-                let of_ends = [
-                    (reach - high).max(reach / 4.0 / octaves),
-                    (low - least).max(least / octaves).max(1.0),
-                ];
-                let rounded = 0.25 / of_ends[0] + 0.25 / of_ends[1];
-                rise = rise.max(value + top * rounded);
-            }
-        };
-        let peak = 2.0 * reach * least / (reach + least);
-        read(
-            Product([root(reach, -1.0), root(-least, 1.0), over(0.0, 1.0)]),
+        let mut add_reading_error =
+            |product: Product, ends: [f64; 2], within: [f64; 2], first: f64| {
+                let ends = [ends[0].max(within[0]), ends[1].min(within[1])];
+                if ends[0] <= ends[1] {
+                    let [bend, top] = product.bend(ends, first);
+                    let value = bend / 2048.0 + top / 65536.0 + Q10;
+                    // Of R and N rounded down: a relative error, here twice as large as
+                    // its first order.
+                    let of_ends = [
+                        (reach - high).max(reach / 4.0 / octaves),
+                        (low - min).max(min / octaves).max(1.0),
+                    ];
+                    let rounded = 0.25 / of_ends[0] + 0.25 / of_ends[1];
+                    rise = rise.max(value + top * rounded);
+                }
+            };
+        let peak = 2.0 * reach * min / (reach + min);
+        add_reading_error(
+            Product([root(reach, -1.0), root(-min, 1.0), over(0.0, 1.0)]),
             [low, high],
-            [(2.0 * least).max(reach / octaves), 0.75 * reach],
+            [(2.0 * min).max(reach / octaves), 0.75 * reach],
             peak,
         );
-        read(
-            Product([root(0.0, 1.0), root(reach - least, -1.0), over(reach, -1.0)]),
+        add_reading_error(
+            Product([root(0.0, 1.0), root(reach - min, -1.0), over(reach, -1.0)]),
             [reach - high, reach - low],
             [reach / 4.0 / octaves, reach / 4.0],
             0.0,
         );
-        read(
-            Product([root(0.0, 1.0), root(reach - least, -1.0), over(least, 1.0)]),
-            [low - least, high - least],
-            [least / octaves, least],
+        add_reading_error(
+            Product([root(0.0, 1.0), root(reach - min, -1.0), over(min, 1.0)]),
+            [low - min, high - min],
+            [min / octaves, min],
             0.0,
         );
         let low = low.max(reach / octaves);
-        let skew = (reach * least).sqrt() / low;
+        let skew = (reach * min).sqrt() / low;
         // The bend of 1 / s is 2; a step begins a sixteenth below at most.
         let bend = 2.0 * skew * (17.0 / 16.0) / 2048.0 + skew / 65536.0;
         let skew = if left == right {
@@ -198,13 +199,13 @@ impl Product {
             }
             top *= line[0].powf(power).max(line[1].powf(power));
         }
-        let most = sum[0].abs().max(sum[1].abs()).powi(2);
-        let least = if sum[0] <= 0.0 && sum[1] >= 0.0 {
+        let max_sq = sum[0].abs().max(sum[1].abs()).powi(2);
+        let min_sq = if sum[0] <= 0.0 && sum[1] >= 0.0 {
             0.0
         } else {
             sum[0].abs().min(sum[1].abs()).powi(2)
         };
-        let bend = (most - squares[0]).abs().max((least - squares[1]).abs());
+        let bend = (max_sq - squares[0]).abs().max((min_sq - squares[1]).abs());
         [bend * top, top]
     }
 }

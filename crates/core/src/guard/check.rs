@@ -60,8 +60,8 @@ impl<'a> Robot<'a> {
 
     /// Reads the two bytes at an offset.
     #[inline(never)]
-    fn word(&self, at: u16) -> u16 {
-        self.section().read(at)
+    fn word(&self, offset: u16) -> u16 {
+        self.section().read(offset)
     }
 
     /// True if all pins are free ones of the board, each used once, and the rail's can measure.
@@ -108,11 +108,11 @@ impl<'a> Robot<'a> {
         while servo < 4 {
             let name = Servo::at(servo);
             let calibration: Calibration = self.servo(name);
-            let [least, most] = PULSES;
-            let fits = |pulse: u16| pulse.wrapping_sub(least) <= most - least;
+            let [min, most] = PULSES;
+            let is_in_pulse_range = |pulse: u16| pulse.wrapping_sub(min) <= most - min;
             if !calibration.reaches(Sweep(0))
-                || !fits(calibration.pulse(calibration.min))
-                || !fits(calibration.pulse(calibration.max))
+                || !is_in_pulse_range(calibration.pulse(calibration.min))
+                || !is_in_pulse_range(calibration.pulse(calibration.max))
                 || !self.reach(name).is_within(&calibration)
             {
                 return false;

@@ -104,11 +104,11 @@ impl Clearance {
 
     /// The smallest of the ten margins.
     pub fn smallest(&self) -> Sine {
-        let mut least = Sine(i16::MAX);
+        let mut smallest = Sine(i16::MAX);
         for margin in &self.margins {
-            least = least.min(*margin);
+            smallest = smallest.min(*margin);
         }
-        least
+        smallest
     }
 
     /// The first limit that this pose breaks: margins, then strokes left and right.
@@ -116,12 +116,12 @@ impl Clearance {
     pub fn hazard(&self, robot: &Robot) -> Option<Hazard> {
         let limits = robot.limits();
         for (index, value) in self.margins.iter().enumerate() {
-            let least = match index {
+            let limit = match index {
                 ..TYPE1 => limits.type2,
                 TYPE1..LEGS => limits.type1,
                 _ => limits.leg,
             };
-            if *value < least {
+            if *value < limit {
                 return Some(Hazard::Margin {
                     margin: ORDER.at(index).load(),
                     value: *value,

@@ -28,9 +28,9 @@ impl Slider {
     #[inline(never)]
     pub fn length_sq(&self, front: &Direction, rear: &Direction) -> u32 {
         let aside = upper((mul(self.rear, rear.sin) - mul(self.front, front.sin)) << 1);
-        let ahead = upper((mul(self.front, front.cos) + mul(self.rear, rear.cos)) << 1);
+        let along = upper((mul(self.front, front.cos) + mul(self.rear, rear.cos)) << 1);
         let x = self.offset.wrapping_add(aside).unsigned_abs();
-        let y = (i32::from(self.base) + i32::from(ahead)).unsigned_abs() as u16;
+        let y = (i32::from(self.base) + i32::from(along)).unsigned_abs() as u16;
         mul_unsigned(x, x).wrapping_add(mul_unsigned(y, y))
     }
 }
@@ -75,7 +75,7 @@ mod tests {
             let integers = side_of(&side, -10.0, 10.0);
             let [front, rear] = [front, rear].map(Angle);
             // Cranks in the frame of their end; the slider's rear one in the tail's.
-            let got = if is_mirrored {
+            let length = if is_mirrored {
                 let [front, rear] = [front, rear].map(|angle| Direction::of(angle).mirrored());
                 integers.mirrored().length_sq(&front, &rear)
             } else {
@@ -88,9 +88,9 @@ mod tests {
             };
             prop_assert_eq!(of.sign() * 90.0, turn);
             let pose = side.forward(-degrees(rear) - turn, degrees(front) + turn).expect("a length");
-            let mm = f64::from(got).sqrt() / per_mm(integers.scale);
-            let most = bounds::slider(&side, &integers);
-            prop_assert!((mm - pose.d).abs() <= most, "{mm} for {} mm", pose.d);
+            let mm = f64::from(length).sqrt() / per_mm(integers.scale);
+            let max = bounds::slider(&side, &integers);
+            prop_assert!((mm - pose.d).abs() <= max, "{mm} for {} mm", pose.d);
         }
 
         #[test]

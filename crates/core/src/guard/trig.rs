@@ -57,13 +57,13 @@ const STEPS: usize = 128;
 /// The sine over the first quarter, `across` in 0..=0x4000.
 fn quarter(across: u16) -> i16 {
     let index = usize::from(across >> 7);
-    let here = QUARTER.at(index).load();
-    let next = QUARTER.at(index + 1).load();
+    let entry = QUARTER.at(index).load();
+    let next_entry = QUARTER.at(index + 1).load();
     // A step is at most 402 in height, more than a byte: its two bytes apart.
-    let step = (next - here) as u16;
+    let step = (next_entry - entry) as u16;
     let part = (across << 1) & 0xff;
     let rise = (step >> 8) * part + (((step & 0xff) * part + 0x80) >> 8);
-    here + rise as i16
+    entry + rise as i16
 }
 
 flash! {
@@ -100,15 +100,17 @@ mod tests {
 
     #[test]
     fn sine_and_cosine_are_within_4_5e_5_at_every_angle() {
-        let (mut most, mut length) = (0.0f64, 0.0f64);
+        let (mut max_error, mut length) = (0.0f64, 0.0f64);
         for angle in (0..=u16::MAX).map(Angle) {
             let direction = Direction::of(angle);
-            let got = [direction.sin, direction.cos].map(|q15| sine(Sine(q15)));
+            let computed = [direction.sin, direction.cos].map(|q15| sine(Sine(q15)));
             let (sin, cos) = degrees(angle).to_radians().sin_cos();
-            most = most.max((got[0] - sin).abs()).max((got[1] - cos).abs());
-            length = length.max((got[0].hypot(got[1]) - 1.0).abs());
+            max_error = max_error
+                .max((computed[0] - sin).abs())
+                .max((computed[1] - cos).abs());
+            length = length.max((computed[0].hypot(computed[1]) - 1.0).abs());
         }
-        assert!(most <= 4.5e-5, "{most}");
+        assert!(max_error <= 4.5e-5, "{max_error}");
         assert!(length <= 6e-5, "{length}");
     }
 

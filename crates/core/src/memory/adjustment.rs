@@ -93,12 +93,12 @@ fn farthest(servo: &Calibration, end: Sweep, [shortest, longest]: [u16; 2]) -> S
     let neutral = servo.neutral.0;
     // A pulse is the neutral one and n times the gain, to the nearest cycle; this many
     // times the gain stays within the two limits.
-    let most = if (servo.gain < 0) == (end.0 < 0) {
+    let max_pulse_steps = if (servo.gain < 0) == (end.0 < 0) {
         mul_unsigned(longest - neutral, ONE_Q14 as u16) + HALF_Q14 - 1
     } else {
         mul_unsigned(neutral - shortest, ONE_Q14 as u16) + HALF_Q14
     };
-    let steps = quotient(most, servo.gain.unsigned_abs());
+    let steps = quotient(max_pulse_steps, servo.gain.unsigned_abs());
     let within = end.0.unsigned_abs().min(steps) as i16;
     Sweep(if end.0 < 0 {
         within.wrapping_neg()
@@ -128,15 +128,15 @@ mod tests {
             0i16..30_000,
         )
             .prop_map(|(trim, scale, direct, min, max)| {
-                let mut set = Adjustment {
+                let mut adjustment = Adjustment {
                     trim: Sweep(trim),
                     gain: 1,
                     min: Sweep(min),
                     max: Sweep(max),
                 };
-                set.set_scale(scale);
-                set.set_direct(direct);
-                set
+                adjustment.set_scale(scale);
+                adjustment.set_direct(direct);
+                adjustment
             })
     }
 
@@ -153,10 +153,10 @@ mod tests {
         #[test]
         fn no_sweep_within_the_travel_leaves_the_pulses_of_robot_toml(
             robot in Sample::random(),
-            set in adjusted(),
+            adjustment in adjusted(),
         ) {
             for (factory, float) in robot.calibration().iter().zip(robot.measures.servos) {
-                let servo = set.apply(factory);
+                let servo = adjustment.apply(factory);
                 for sweep in servo.min.0..=servo.max.0 {
                     let us = f64::from(servo.width(Sweep(sweep)).0) / 16.0;
                     // Two cycles of rounding: the ends of the travel, and this width.
@@ -169,21 +169,21 @@ mod tests {
         #[test]
         fn a_travel_ends_at_its_limit_or_where_the_next_step_would_leave_the_pulses(
             robot in Sample::random(),
-            set in adjusted(),
+            adjustment in adjusted(),
         ) {
             for factory in &robot.calibration() {
-                let servo = set.apply(factory);
+                let servo = adjustment.apply(factory);
                 let ends = [factory.pulse(factory.min), factory.pulse(factory.max)];
                 let pulses = ends[0].min(ends[1])..=ends[0].max(ends[1]);
                 if !pulses.contains(&servo.pulse(Sweep(0))) {
                     prop_assert!(servo.min > Sweep(0) && servo.max < Sweep(0), "empty");
                     continue;
                 }
-                prop_assert!(set.min <= servo.min && servo.max <= set.max);
-                if servo.max < set.max {
+                prop_assert!(adjustment.min <= servo.min && servo.max <= adjustment.max);
+                if servo.max < adjustment.max {
                     prop_assert!(!pulses.contains(&servo.pulse(Sweep(servo.max.0 + 1))));
                 }
-                if servo.min > set.min {
+                if servo.min > adjustment.min {
                     prop_assert!(!pulses.contains(&servo.pulse(Sweep(servo.min.0 - 1))));
                 }
             }
@@ -192,56 +192,59 @@ mod tests {
         #[test]
         fn a_servo_turns_by_its_trim_and_its_scale(
             robot in Sample::random(),
-            set in adjusted(),
+            adjustment in adjusted(),
             scale in 500u16..=2000,
             sweep in -8000i16..8000,
         ) {
-            let mut set = set;
-            set.set_scale(scale);
+            let mut adjustment = adjustment;
+            adjustment.set_scale(scale);
             for (factory, float) in robot.calibration().iter().zip(robot.measures.servos) {
-                let servo = set.apply(factory);
-                let turned = (f64::from(set.trim.0) + f64::from(sweep)) / STEPS_PER_DEGREE;
-                let sense = if set.is_direct() { 1.0 } else { -1.0 };
-                let us = float.neutral_us + sense * f64::from(scale) / 100.0 * turned;
-                let off = f64::from(servo.pulse(Sweep(sweep))) - 16.0 * us;
+                let servo = adjustment.apply(factory);
+                let degrees = (f64::from(adjustment.trim.0) + f64::from(sweep)) / STEPS_PER_DEGREE;
+                let sense = if adjustment.is_direct() { 1.0 } else { -1.0 };
+                let us = float.neutral_us + sense * f64::from(scale) / 100.0 * degrees;
+                let error = f64::from(servo.pulse(Sweep(sweep))) - 16.0 * us;
                 // Half a cycle each of the neutral width, the trim, the sweep; and the
                 // gain's rounding over a sixth of a turn.
-                prop_assert!(off.abs() <= 2.5, "{off}");
+                prop_assert!(error.abs() <= 2.5, "{error}");
             }
         }
     }
 
     #[test]
     fn a_trim_of_one_degree_at_ten_microseconds_is_160_cycles() {
-        let mut set = Adjustment::default();
-        set.set_scale(1000);
-        set.trim = Sweep(182);
+        let mut adjustment = Adjustment::default();
+        adjustment.set_scale(1000);
+        adjustment.trim = Sweep(182);
         let factory = Calibration {
             neutral: Width(24_000),
-            gain: set.gain,
+            gain: adjustment.gain,
             min: Sweep(-16_384),
             max: Sweep(16_384),
         };
-        assert_eq!(set.apply(&factory).neutral, Width(24_160));
+        assert_eq!(adjustment.apply(&factory).neutral, Width(24_160));
     }
 
     #[test]
     fn every_scale_comes_back_as_it_was_set_and_keeps_the_sense() {
         for gain in [1, -1] {
             for scale in 500..=2000 {
-                let mut set = Adjustment {
+                let mut adjustment = Adjustment {
                     gain,
                     ..Adjustment::default()
                 };
-                set.set_scale(scale);
-                assert_eq!(set.scale(), scale);
-                assert_eq!(set.gain > 0, gain > 0);
+                adjustment.set_scale(scale);
+                assert_eq!(adjustment.scale(), scale);
+                assert_eq!(adjustment.gain > 0, gain > 0);
                 let exact = f64::from(scale) / 100.0 * 16.0 * 360.0 / 65536.0 * 16384.0;
-                assert!((f64::from(set.gain.abs()) - exact).abs() < 0.71, "{scale}");
-                set.set_direct(false);
-                assert!(set.gain < 0);
-                set.set_direct(true);
-                assert!(set.gain > 0 && set.is_direct());
+                assert!(
+                    (f64::from(adjustment.gain.abs()) - exact).abs() < 0.71,
+                    "{scale}"
+                );
+                adjustment.set_direct(false);
+                assert!(adjustment.gain < 0);
+                adjustment.set_direct(true);
+                assert!(adjustment.gain > 0 && adjustment.is_direct());
             }
         }
     }

@@ -34,7 +34,7 @@ pub enum Outcome {
     /// No settings were ever saved.
     Blank,
     /// One copy is valid, the other is damaged and may have been the newer one.
-    Other,
+    OneCopy,
     /// No copy is valid.
     Damaged,
     /// Settings for other servos, or of another firmware.
@@ -46,7 +46,7 @@ pub enum Outcome {
 /// The state of both copies.
 struct Copies {
     /// The result of checking each copy.
-    found: [RecordState; 2],
+    states: [RecordState; 2],
     /// The number of the copy that was saved last, if any is valid.
     latest: usize,
 }
@@ -54,20 +54,20 @@ struct Copies {
 impl Copies {
     #[inline(never)]
     fn check<M: Memory>(memory: &M) -> Self {
-        let found = [copy(0).check(memory), copy(1).check(memory)];
+        let states = [copy(0).check(memory), copy(1).check(memory)];
         let turn = |copy: usize| self::copy(copy).byte(memory, TURN as u16);
-        let latest = match found {
+        let latest = match states {
             [RecordState::Whole, RecordState::Whole] => {
                 usize::from(turn(1).wrapping_sub(turn(0)) < 0x80)
             }
             [RecordState::Whole, _] => 0,
             _ => 1,
         };
-        Self { found, latest }
+        Self { states, latest }
     }
 
     fn none_is_whole(&self) -> bool {
-        self.found[self.latest & 1] != RecordState::Whole
+        self.states[self.latest & 1] != RecordState::Whole
     }
 
     fn address(&self) -> Address {
@@ -80,7 +80,7 @@ impl Copies {
 pub fn read<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Outcome {
     let copies = Copies::check(memory);
     if copies.none_is_whole() {
-        return match copies.found {
+        return match copies.states {
             [RecordState::Blank, RecordState::Blank] => Outcome::Blank,
             _ => Outcome::Damaged,
         };
@@ -88,8 +88,8 @@ pub fn read<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Ou
     copies.address().fetch(memory, settings.bytes_mut());
     if !settings.are_for(robot) {
         Outcome::Foreign
-    } else if copies.found.contains(&RecordState::Damaged) {
-        Outcome::Other
+    } else if copies.states.contains(&RecordState::Damaged) {
+        Outcome::OneCopy
     } else {
         Outcome::Latest
     }
@@ -99,7 +99,7 @@ pub fn read<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Ou
 #[inline(never)]
 pub fn load<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Outcome {
     let mut outcome = read(robot, memory, settings);
-    if matches!(outcome, Outcome::Latest | Outcome::Other) {
+    if matches!(outcome, Outcome::Latest | Outcome::OneCopy) {
         if settings.unfit(robot).is_none() {
             return outcome;
         }
@@ -120,8 +120,8 @@ pub fn save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<Writing> {
     let latest = copies.address();
     let turn = latest.byte(memory, TURN as u16);
     settings.set_turn(turn);
-    let kept = |(n, byte): (usize, &u8)| latest.byte(memory, n as u16) == *byte;
-    if settings.bytes().iter().enumerate().all(kept) {
+    let is_saved = |(n, byte): (usize, &u8)| latest.byte(memory, n as u16) == *byte;
+    if settings.bytes().iter().enumerate().all(is_saved) {
         return None;
     }
     settings.set_turn(turn.wrapping_add(1));
@@ -132,8 +132,8 @@ pub fn save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<Writing> {
 pub fn last_rest_pose<M: Memory>(robot: &Robot, memory: &M) -> Option<Pose> {
     let mut bytes = [0; CONTENT];
     RESTED.fetch(memory, &mut bytes);
-    let kept = Settings::from_bytes(bytes);
-    (RESTED.check(memory) == RecordState::Whole && kept.are_for(robot)).then(|| kept.pose())
+    let saved = Settings::from_bytes(bytes);
+    (RESTED.check(memory) == RecordState::Whole && saved.are_for(robot)).then(|| saved.pose())
 }
 
 #[cfg(test)]

@@ -25,26 +25,26 @@ use crate::memory::restart::{Cause, Restart, Stance};
 use crate::numbers::rate::Rate;
 
 /// The number of cells.
-pub const CELLS: usize = COPIES + 2 * COPY;
+pub const CELLS: usize = COPIES + 2 * COPY_CELLS;
 
 /// Bytes that survive a reset. At power-on each may hold anything.
 pub trait Cells {
     /// The byte in a cell below [`CELLS`].
-    fn get(&self, at: usize) -> u8;
+    fn get(&self, index: usize) -> u8;
 
     /// Stores a byte, in one instruction and in the order of the calls.
-    fn set(&self, at: usize, byte: u8);
+    fn set(&self, index: usize, byte: u8);
 }
 
 const MARK: usize = 0;
 const STATE: usize = 1;
 const COUNT: usize = 2;
-const WHOLE: usize = 3;
+const VALID_COPY: usize = 3;
 const RATE: usize = 4;
 const COPIES: usize = 5;
 
 /// Cells of a copy.
-const COPY: usize = 19;
+const COPY_CELLS: usize = 19;
 
 /// The first cell's value as long as there is power.
 const ALIVE: u8 = 0x96;
@@ -91,7 +91,7 @@ pub fn begin<C: Cells>(cells: &C, reported: Option<Cause>) -> Restart {
         // By chance RAM may hold a copy that looks valid: the next reset must not find
         // it.
         cells.set(COPIES, NOTHING);
-        cells.set(COPIES + COPY, NOTHING);
+        cells.set(COPIES + COPY_CELLS, NOTHING);
     }
     store_rate(cells, restart.rate);
     cells.set(COUNT, restart.count);
@@ -104,18 +104,18 @@ pub fn begin<C: Cells>(cells: &C, reported: Option<Cause>) -> Restart {
 /// The older copy stays valid until the new one is complete.
 #[inline(never)]
 pub fn store_stance<C: Cells>(cells: &C, stance: &Stance, brown_outs: u8) {
-    let turn = !cells.get(WHOLE) & 1;
-    let mut copy = Copy::of(cells, turn);
-    copy.put(stance.awake | if stance.is_resting { RESTING } else { 0 });
-    copy.put(brown_outs);
+    let turn = !cells.get(VALID_COPY) & 1;
+    let mut copy = Copy::new(cells, turn);
+    copy.write_byte(stance.awake | if stance.is_resting { RESTING } else { 0 });
+    copy.write_byte(brown_outs);
     for sweep in &stance.pose.0 {
-        copy.put_word(sweep.0 as u16);
+        copy.write_word(sweep.0 as u16);
     }
     for width in &stance.sent.0 {
-        copy.put_word(width.0);
+        copy.write_word(width.0);
     }
-    copy.put(!copy.sum);
-    cells.set(WHOLE, turn);
+    copy.write_byte(!copy.sum);
+    cells.set(VALID_COPY, turn);
 }
 
 /// Stores the rate of the serial line.
@@ -131,7 +131,7 @@ pub fn mark_hung<C: Cells>(cells: &C) {
 /// Reads the valid copy, if there is one, into `restart`.
 #[inline(never)]
 fn take<C: Cells>(cells: &C, restart: &mut Restart) {
-    let mut copy = Copy::of(cells, cells.get(WHOLE) & 1);
+    let mut copy = Copy::new(cells, cells.get(VALID_COPY) & 1);
     let state = copy.take();
     let brown_outs = copy.take();
     let mut stance = Stance {
@@ -155,31 +155,40 @@ fn take<C: Cells>(cells: &C, restart: &mut Restart) {
 /// A copy that is being written or read, cell by cell.
 struct Copy<'a, C> {
     cells: &'a C,
-    at: usize,
+    /// The next cell.
+    index: usize,
     /// The sum of all bytes so far.
     sum: u8,
 }
 
 impl<'a, C: Cells> Copy<'a, C> {
-    const fn of(cells: &'a C, turn: u8) -> Self {
-        let at = if turn == 0 { COPIES } else { COPIES + COPY };
-        Self { cells, at, sum: 0 }
+    const fn new(cells: &'a C, turn: u8) -> Self {
+        let index = if turn == 0 {
+            COPIES
+        } else {
+            COPIES + COPY_CELLS
+        };
+        Self {
+            cells,
+            index,
+            sum: 0,
+        }
     }
 
-    fn put(&mut self, byte: u8) {
-        self.cells.set(self.at, byte);
-        self.count(byte);
+    fn write_byte(&mut self, byte: u8) {
+        self.cells.set(self.index, byte);
+        self.add_to_sum(byte);
     }
 
-    fn put_word(&mut self, word: u16) {
+    fn write_word(&mut self, word: u16) {
         let [low, high] = word.to_le_bytes();
-        self.put(low);
-        self.put(high);
+        self.write_byte(low);
+        self.write_byte(high);
     }
 
     fn take(&mut self) -> u8 {
-        let byte = self.cells.get(self.at);
-        self.count(byte);
+        let byte = self.cells.get(self.index);
+        self.add_to_sum(byte);
         byte
     }
 
@@ -189,9 +198,9 @@ impl<'a, C: Cells> Copy<'a, C> {
         u16::from_le_bytes([low, self.take()])
     }
 
-    fn count(&mut self, byte: u8) {
+    fn add_to_sum(&mut self, byte: u8) {
         self.sum = self.sum.wrapping_add(byte);
-        self.at += 1;
+        self.index += 1;
     }
 }
 

@@ -59,7 +59,7 @@ pub enum RecordState {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
     /// There is more to write, or the memory is not ready.
-    Going,
+    InProgress,
     /// The memory holds what it should.
     Done,
     /// The memory does not keep what was written.
@@ -72,7 +72,7 @@ pub enum Progress {
 #[repr(u8)]
 enum Byte {
     /// To be written, unless the memory holds this value already.
-    Due = 1,
+    ToWrite = 1,
     /// Written, to be read back.
     Written,
 }
@@ -109,10 +109,10 @@ impl Address {
     /// Reads the content without a check.
     #[inline(never)]
     pub fn fetch<M: Memory>(self, memory: &M, content: &mut Content) {
-        let mut at = self.0;
+        let mut address = self.0;
         for byte in content {
-            at += 1;
-            *byte = memory.read(at);
+            address += 1;
+            *byte = memory.read(address);
         }
     }
 
@@ -127,7 +127,7 @@ impl Address {
             address: self,
             step: 0,
             last: LENGTH as u8,
-            byte: Byte::Due,
+            byte: Byte::ToWrite,
         }
     }
 
@@ -146,7 +146,7 @@ impl Writing {
     #[inline(never)]
     pub fn step<M: Memory>(&mut self, content: &Content, memory: &mut M) -> Progress {
         if !memory.is_ready() {
-            return Progress::Going;
+            return Progress::InProgress;
         }
         let step = u16::from(self.step);
         let (offset, byte) = if step == 0 {
@@ -158,20 +158,20 @@ impl Writing {
             let byte = content.get(usize::from(self.step - 1));
             (step, byte.copied().unwrap_or_else(crc))
         };
-        let at = self.address.0 + offset;
-        if memory.read(at) != byte {
+        let address = self.address.0 + offset;
+        if memory.read(address) != byte {
             if self.byte == Byte::Written {
                 return Progress::Failed;
             }
             self.byte = Byte::Written;
-            memory.write(at, byte);
+            memory.write(address, byte);
         } else if self.step == self.last {
             return Progress::Done;
         } else {
             self.step += 1;
-            self.byte = Byte::Due;
+            self.byte = Byte::ToWrite;
         }
-        Progress::Going
+        Progress::InProgress
     }
 }
 
@@ -203,7 +203,7 @@ mod tests {
         let mut writing = ADDRESS.write();
         for _ in 0..10_000 {
             match writing.step(content, eeprom) {
-                Progress::Going => {}
+                Progress::InProgress => {}
                 ended => return ended,
             }
         }
@@ -234,8 +234,8 @@ mod tests {
                 let eeprom = Eeprom::with(*eeprom.bytes());
                 prop_assert_eq!(read(&eeprom), (RecordState::Whole, content));
             }
-            let beside = |at: &usize| !(64..64 + usize::from(LENGTH)).contains(at);
-            prop_assert!((0..1024).filter(beside).all(|at| eeprom.bytes()[at] == ERASED));
+            let beside = |address: &usize| !(64..64 + usize::from(LENGTH)).contains(address);
+            prop_assert!((0..1024).filter(beside).all(|address| eeprom.bytes()[address] == ERASED));
         }
 
         #[test]
@@ -288,7 +288,7 @@ mod tests {
         write(&mut eeprom, &[3; CONTENT]);
         let before = *eeprom.bytes();
         let mut writing = ADDRESS.invalidate();
-        while writing.step(&[0; CONTENT], &mut eeprom) == Progress::Going {}
+        while writing.step(&[0; CONTENT], &mut eeprom) == Progress::InProgress {}
         assert_eq!(read(&eeprom).0, RecordState::Damaged);
         assert_eq!(eeprom.bytes()[64], ERASED);
         assert_eq!(eeprom.bytes()[65..], before[65..]);

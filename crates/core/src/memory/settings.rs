@@ -77,24 +77,24 @@ impl Settings {
     /// trim would be.
     #[inline(never)]
     pub fn of_pose(pose: &Pose, robot: &Robot) -> Self {
-        let mut kept = Self::NONE;
-        kept.set_head(robot);
-        let mut at = SERVOS;
+        let mut settings = Self::NONE;
+        settings.set_head(robot);
+        let mut offset = SERVOS;
         for sweep in &pose.0 {
-            kept.put(at, sweep.0 as u16);
-            at += 8;
+            settings.put(offset, sweep.0 as u16);
+            offset += 8;
         }
-        kept
+        settings
     }
 
     /// The pose of [`Settings::of_pose`].
     #[inline(never)]
     pub fn pose(&self) -> Pose {
         let mut pose = Pose::NEUTRAL;
-        let mut at = SERVOS;
+        let mut offset = SERVOS;
         for sweep in &mut pose.0 {
-            sweep.0 = self.get(at) as i16;
-            at += 8;
+            sweep.0 = self.get(offset) as i16;
+            offset += 8;
         }
         pose
     }
@@ -144,32 +144,37 @@ impl Settings {
     }
 
     /// Sets a servo's adjustment.
-    pub fn set_servo(&mut self, servo: Servo, set: Adjustment) {
-        let numbers = [set.trim.0, set.gain, set.min.0, set.max.0];
-        let mut at = SERVOS + 8 * servo.index();
+    pub fn set_servo(&mut self, servo: Servo, adjustment: Adjustment) {
+        let numbers = [
+            adjustment.trim.0,
+            adjustment.gain,
+            adjustment.min.0,
+            adjustment.max.0,
+        ];
+        let mut offset = SERVOS + 8 * servo.index();
         for number in numbers {
-            self.put(at, number as u16);
-            at += 2;
+            self.put(offset, number as u16);
+            offset += 2;
         }
     }
 
     /// The action after power-on; `stand` in place of a gait that no longer exists.
     pub fn boot(&self, robot: &Robot) -> Boot {
-        let kept = self.get(BOOT);
-        if kept == 0 {
+        let saved_key = self.get(BOOT);
+        if saved_key == 0 {
             return Boot::Rest;
         }
-        let gait = GaitId::all(robot.gait_count()).find(|id| key(robot.name(*id)) == kept);
+        let gait = GaitId::all(robot.gait_count()).find(|id| key(robot.name(*id)) == saved_key);
         Boot::Gait(gait.unwrap_or(GaitId::STAND))
     }
 
     /// Sets the action after power-on.
     pub fn set_boot(&mut self, boot: Boot, robot: &Robot) {
-        let kept = match boot {
+        let saved_key = match boot {
             Boot::Rest => 0,
             Boot::Gait(id) => key(robot.name(id)),
         };
-        self.put(BOOT, kept);
+        self.put(BOOT, saved_key);
     }
 
     /// A gait ends when no command has come for this many milliseconds; 0 for never.
@@ -197,15 +202,15 @@ impl Settings {
         })
     }
 
-    fn get(&self, at: usize) -> u16 {
-        match self.bytes.get(at..) {
+    fn get(&self, offset: usize) -> u16 {
+        match self.bytes.get(offset..) {
             Some([low, high, ..]) => u16::from_le_bytes([*low, *high]),
             _ => 0,
         }
     }
 
-    fn put(&mut self, at: usize, number: u16) {
-        if let Some([low, high, ..]) = self.bytes.get_mut(at..) {
+    fn put(&mut self, offset: usize, number: u16) {
+        if let Some([low, high, ..]) = self.bytes.get_mut(offset..) {
             [*low, *high] = number.to_le_bytes();
         }
     }
@@ -215,9 +220,9 @@ impl Settings {
 /// is found again when robot.toml has other gaits. Never 0. The host that makes a robot has
 /// checked that no two of its gaits have the same number.
 pub fn key(name: impl Iterator<Item = u8>) -> u16 {
-    let mut key = 0u16;
+    let mut hash = 0u16;
     for byte in name {
-        key = (key << 5).wrapping_sub(key).wrapping_add(byte.into());
+        hash = (hash << 5).wrapping_sub(hash).wrapping_add(byte.into());
     }
-    key.max(1)
+    hash.max(1)
 }

@@ -51,10 +51,11 @@ use crate::numbers::section::Damage;
 use count::Count;
 
 mod count;
+mod report;
 mod resume;
 
 /// Servos wake one after the other, 0.1 s apart, to spare the supply.
-const WAKE_APART: u8 = 5;
+const WAKE_INTERVAL_FRAMES: u8 = 5;
 
 /// The gaits' own pace, percent.
 const FULL_PERCENT: u8 = 100;
@@ -63,7 +64,7 @@ const FULL_PERCENT: u8 = 100;
 const SLOW_PERCENT: u8 = 50;
 
 /// Frames from the first pulse until all four are awake and motion may begin.
-pub const AWAKE: u8 = 4 * WAKE_APART;
+pub const AWAKE: u8 = 4 * WAKE_INTERVAL_FRAMES;
 
 /// The motion of a robot: its state, its target and the pulses of the last frame.
 #[derive(Clone, Debug)]
@@ -174,16 +175,16 @@ impl Motion {
     /// True if the robot's pose or target is beyond a servo's travel in another
     /// calibration.
     pub fn goes_beyond(&self, servo: Servo, calibration: &Calibration) -> bool {
-        let beyond = |pose: &Pose| !calibration.reaches(*servo.of(&pose.0));
-        let moves_beyond = match &self.state {
-            State::Moving { path, .. } => beyond(path.target()),
+        let is_beyond = |pose: &Pose| !calibration.reaches(*servo.of(&pose.0));
+        let is_target_beyond = match &self.state {
+            State::Moving { path, .. } => is_beyond(path.target()),
             _ => false,
         };
-        let next_beyond = match &self.next {
-            Some(Target::Pose(pose)) => beyond(pose),
+        let is_next_beyond = match &self.next {
+            Some(Target::Pose(pose)) => is_beyond(pose),
             _ => false,
         };
-        beyond(&self.stance.pose) || moves_beyond || next_beyond
+        is_beyond(&self.stance.pose) || is_target_beyond || is_next_beyond
     }
 
     /// The servos' state, which has to survive a reset.
@@ -200,20 +201,20 @@ impl Motion {
         } else if let Some(Target::End) = self.next {
             self.next = None;
         }
-        self.count.left = cycles;
-        self.count.covered = 0;
+        self.count.cycles_left = cycles;
+        self.count.phase_covered = 0;
     }
 
     /// Brakes a gait, or the move to it, and holds the pose in which that stands still. Returns
     /// false if there is none to end.
     #[inline(never)]
     pub fn end_gait(&mut self) -> bool {
-        let moves = self.next.is_some()
+        let is_moving = self.next.is_some()
             || matches!(self.state, State::Moving { .. } | State::Cycling { .. });
-        if moves {
+        if is_moving {
             self.next = Some(Target::End);
         }
-        moves
+        is_moving
     }
 
     /// True if a gait ended in the last frame and the robot stands still.
@@ -265,40 +266,44 @@ impl Motion {
         if matches!(self.state, State::Resting) {
             return pulses;
         }
-        let before = self.stance.awake;
-        if before < AWAKE {
-            self.stance.awake = before + 1;
+        let awake_before = self.stance.awake;
+        if awake_before < AWAKE {
+            self.stance.awake = awake_before + 1;
         } else if !self.is_settling {
             self.proceed();
         }
         // While they settle, pulses change by at most the slew limit of a frame.
         let per_frame = self.robot.slew().per_frame;
         let is_first = self.frames == 1;
-        let mut under_way = false;
-        let mut wakes_at = WAKE_APART;
+        let mut is_settling = false;
+        let mut wakes_at = WAKE_INTERVAL_FRAMES;
         for (index, pulse) in pulses.0.iter_mut().enumerate() {
             let servo = &self.calibration[index];
             let sent = &mut self.stance.sent.0[index];
-            let sleeps = self.stance.awake < wakes_at;
+            let is_asleep = self.stance.awake < wakes_at;
             let mut width = servo.width(self.stance.pose.0[index]);
             if self.is_settling && sent.0 != 0 {
                 // A servo's first pulse repeats its last one, also that of the previous
                 // run: a reset may have come while it was settling, or before the pulse.
-                let is_repeated = is_first || before < wakes_at;
-                let turn = if is_repeated { 0 } else { servo.slew(per_frame) };
-                let wanted = width.0;
-                width.0 = wanted
-                    .max(sent.0.saturating_sub(turn))
-                    .min(sent.0.saturating_add(turn));
-                under_way |= width.0 != wanted;
+                let is_repeated = is_first || awake_before < wakes_at;
+                let max_change = if is_repeated {
+                    0
+                } else {
+                    servo.slew(per_frame)
+                };
+                let target_width = width.0;
+                width.0 = target_width
+                    .max(sent.0.saturating_sub(max_change))
+                    .min(sent.0.saturating_add(max_change));
+                is_settling |= width.0 != target_width;
             }
             *sent = width;
-            if !sleeps {
+            if !is_asleep {
                 *pulse = width;
             }
-            wakes_at += WAKE_APART;
+            wakes_at += WAKE_INTERVAL_FRAMES;
         }
-        self.is_settling = under_way;
+        self.is_settling = is_settling;
         pulses
     }
 
@@ -316,44 +321,6 @@ impl Motion {
             // A gait that has ended needs no end of its count.
             (Some(Target::End), _) => Activity::Stop,
         }
-    }
-
-    /// Phase of the gait, 1/2^24 cycle; 0 outside of one.
-    pub const fn phase(&self) -> u32 {
-        match self.state {
-            State::Cycling { phase, .. } => phase,
-            _ => 0,
-        }
-    }
-
-    /// The pose of the last frame.
-    pub const fn pose(&self) -> &Pose {
-        &self.stance.pose
-    }
-
-    /// True while the servos get no pulses.
-    pub const fn is_resting(&self) -> bool {
-        matches!(self.state, State::Resting)
-    }
-
-    /// The pulses of the last frame, of servos that sleep, too.
-    pub const fn sent(&self) -> &Pulses {
-        &self.stance.sent
-    }
-
-    /// Speed of gaits in percent.
-    pub const fn speed(&self) -> u8 {
-        self.speed
-    }
-
-    /// Frames since power-on.
-    pub const fn frames(&self) -> u32 {
-        self.frames
-    }
-
-    /// The reason why the guard stopped the robot, until the next motion begins.
-    pub const fn hazard(&self) -> Option<Hazard> {
-        self.hazard
     }
 
     /// The first limit that a pose breaks.
@@ -386,12 +353,12 @@ impl Motion {
     #[inline(never)]
     fn proceed(&mut self) {
         self.count();
-        self.turn_to_next();
-        let braking = self.next.is_some();
+        self.start_next_target();
+        let is_braking = self.next.is_some();
         let pose = match &mut self.state {
             State::Resting | State::Holding { .. } => return,
             State::Moving { path, pace, .. } => {
-                *pace = pace::toward(*pace, if braking { 0 } else { pace::FULL });
+                *pace = pace::step_toward(*pace, if is_braking { 0 } else { pace::FULL });
                 path.advance(*pace);
                 path.pose()
             }
@@ -403,9 +370,9 @@ impl Motion {
                 } else {
                     self.speed
                 };
-                *pace = pace::toward(
+                *pace = pace::step_toward(
                     *pace,
-                    if braking {
+                    if is_braking {
                         0
                     } else {
                         pace::of_percent(percent)
@@ -437,7 +404,7 @@ impl Motion {
 
     /// Begins the move towards what comes next, once the old motion has no pace.
     #[inline(always)]
-    fn turn_to_next(&mut self) {
+    fn start_next_target(&mut self) {
         if let Some(target) = self.next
             && !matches!(
                 self.state,

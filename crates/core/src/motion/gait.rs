@@ -37,12 +37,12 @@ impl Channel {
         if self.gain == 0 {
             return Sweep(0);
         }
-        let at = phase.wrapping_add(self.offset);
-        let (index, fraction) = ((at >> 10) as u8, (at >> 2) as u8);
-        let here = wave.at(usize::from(index)).load();
-        let next = wave.at(usize::from((index + 1) & 0x3f)).load();
-        let rise = (mul(next.wrapping_sub(here), i16::from(fraction)) + 128) >> 8;
-        let value = here.wrapping_add(rise as i16);
+        let position = phase.wrapping_add(self.offset);
+        let (index, fraction) = ((position >> 10) as u8, (position >> 2) as u8);
+        let sample = wave.at(usize::from(index)).load();
+        let next_sample = wave.at(usize::from((index + 1) & 0x3f)).load();
+        let rise = (mul(next_sample.wrapping_sub(sample), i16::from(fraction)) + 128) >> 8;
+        let value = sample.wrapping_add(rise as i16);
         Sweep((mul(value, self.gain).wrapping_add(1 << 13) >> 14) as i16)
     }
 }
@@ -80,16 +80,16 @@ mod tests {
             let (offset, gain) = channel;
             let channel = Channel { wave: 0, offset, gain };
             let table = wave(|n| samples[n]);
-            let got = f64::from(channel.sweep(Flash::from(&table), phase).0);
+            let actual = f64::from(channel.sweep(Flash::from(&table), phase).0);
             let at = f64::from(phase.wrapping_add(offset)) / 1024.0;
             let (here, next) = (samples[at as usize], samples[(at as usize + 1) % SAMPLES]);
             let rise = f64::from(next) - f64::from(here);
             let factor = f64::from(gain) / 16384.0;
             let exact = factor * (f64::from(here) + rise * at.fract());
             // Half a step before the gain, half after it, and the phase's last two bits.
-            let most = 0.5 + factor.abs() * (0.5 + 3.0 * rise.abs() / 1024.0);
+            let max = 0.5 + factor.abs() * (0.5 + 3.0 * rise.abs() / 1024.0);
             prop_assume!(exact.abs() < 32_000.0);
-            prop_assert!((got - exact).abs() <= most, "{got} for {exact}");
+            prop_assert!((actual - exact).abs() <= max, "{actual} for {exact}");
         }
 
         #[test]
@@ -102,9 +102,9 @@ mod tests {
             let next = gait.advance(phase, pace);
             prop_assert!(next < CYCLE);
             let exact = f64::from(increment) * f64::from(pace) / 1024.0;
-            let gone = (i64::from(next) - i64::from(phase)).rem_euclid(CYCLE.into());
-            let off = (gone as f64 - exact).rem_euclid(f64::from(CYCLE));
-            prop_assert!(off < 1e-6 || off > f64::from(CYCLE) - 1.0, "{off}");
+            let advance = (i64::from(next) - i64::from(phase)).rem_euclid(CYCLE.into());
+            let error = (advance as f64 - exact).rem_euclid(f64::from(CYCLE));
+            prop_assert!(error < 1e-6 || error > f64::from(CYCLE) - 1.0, "{error}");
         }
     }
 
@@ -122,15 +122,15 @@ mod tests {
     #[test]
     fn halves_round_up_between_samples_and_in_the_gain() {
         let table = wave(|n| [0, 1, 0, -1][n % 4]);
-        let at = |phase, gain| {
+        let sweep = |phase, gain| {
             Channel { gain, ..PLAIN }
                 .sweep(Flash::from(&table), phase)
                 .0
         };
-        assert_eq!([at(0x01fc, 1 << 14), at(0x0200, 1 << 14)], [0, 1]);
-        assert_eq!([at(0x0a00, 1 << 14), at(0x0a04, 1 << 14)], [0, -1]);
-        assert_eq!([at(0x0400, 8191), at(0x0400, 8192)], [0, 1]);
-        assert_eq!([at(0x0c00, 8192), at(0x0c00, 8193)], [0, -1]);
+        assert_eq!([sweep(0x01fc, 1 << 14), sweep(0x0200, 1 << 14)], [0, 1]);
+        assert_eq!([sweep(0x0a00, 1 << 14), sweep(0x0a04, 1 << 14)], [0, -1]);
+        assert_eq!([sweep(0x0400, 8191), sweep(0x0400, 8192)], [0, 1]);
+        assert_eq!([sweep(0x0c00, 8192), sweep(0x0c00, 8193)], [0, -1]);
     }
 
     #[test]
@@ -138,18 +138,21 @@ mod tests {
         let robot = Sample::odd();
         let table = Flash::from(&robot.content.waves[1]);
         for phase in (0..=u16::MAX).step_by(97) {
-            let ahead = Channel {
+            let with_offset = Channel {
                 offset: 0x1800,
                 ..PLAIN
             };
             let plain = PLAIN.sweep(table, phase.wrapping_add(0x1800));
-            assert_eq!(ahead.sweep(table, phase), plain);
+            assert_eq!(with_offset.sweep(table, phase), plain);
             let other = Channel {
                 gain: -(1 << 14),
-                ..ahead
+                ..with_offset
             };
             assert_eq!(other.sweep(table, phase), Sweep(-plain.0));
-            let still = Channel { gain: 0, ..ahead };
+            let still = Channel {
+                gain: 0,
+                ..with_offset
+            };
             assert_eq!(still.sweep(table, phase), Sweep(0));
         }
     }

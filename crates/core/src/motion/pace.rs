@@ -14,9 +14,9 @@ pub const FULL: u16 = 1024;
 /// move at once there, and `crawl` would lose 1.2 % of its distance.
 const PACE_STEP: u16 = FULL.div_ceil(7);
 
-/// The pace one frame later, on its way to `wanted`.
-pub fn toward(pace: u16, wanted: u16) -> u16 {
-    wanted
+/// The pace one frame later, on its way to `target`.
+pub fn step_toward(pace: u16, target: u16) -> u16 {
+    target
         .max(pace.saturating_sub(PACE_STEP))
         .min(pace + PACE_STEP)
 }
@@ -36,7 +36,7 @@ mod tests {
         for (from, to) in [(0, FULL), (FULL, 0)] {
             let (mut pace, mut sum) = (from, 0);
             while pace != to {
-                pace = toward(pace, to);
+                pace = step_toward(pace, to);
                 sum += pace;
             }
             let frames = f64::from(sum) / f64::from(FULL);
@@ -49,8 +49,8 @@ mod tests {
         for percent in 10..=100u8 {
             let exact = f64::from(percent) * 1024.0 / 100.0;
             // 2622/256 is 0.02 % more than that, and then to nearest.
-            let off = f64::from(of_percent(percent)) - exact * 1.000_214;
-            assert!(off.abs() <= 0.501, "{percent}: {off}");
+            let error = f64::from(of_percent(percent)) - exact * 1.000_214;
+            assert!(error.abs() <= 0.501, "{percent}: {error}");
         }
     }
 }

@@ -129,14 +129,14 @@ mod tests {
         ) {
             let sweeps = sweeps_of_move(from, to, slew);
             prop_assert_eq!(sweeps.last(), Some(&to));
-            let most = sweeps.windows(2).map(|pair| pair[1].abs_diff(pair[0])).max();
-            prop_assert!(most <= Some(slew.per_frame), "{most:?} of {slew:?}");
+            let max = sweeps.windows(2).map(|pair| pair[1].abs_diff(pair[0])).max();
+            prop_assert!(max <= Some(slew.per_frame), "{max:?} of {slew:?}");
             // A smoothstep needs half as long again as a steady move, and a frame
             // is a whole number of 1/32768 of the time.
             let frames = 1.5 * f64::from(from.abs_diff(to)) / f64::from(slew.per_frame - 6);
-            let least = frames.ceil().max(8.0) + 1.0;
-            let most = 32_768.0 / (32_768.0 / least).floor() + 1.0;
-            prop_assert!((sweeps.len() - 1) as f64 <= most, "{} of {most}", sweeps.len() - 1);
+            let min = frames.ceil().max(8.0) + 1.0;
+            let max = 32_768.0 / (32_768.0 / min).floor() + 1.0;
+            prop_assert!((sweeps.len() - 1) as f64 <= max, "{} of {max}", sweeps.len() - 1);
             prop_assert!(sweeps.len() > 8, "a jerk");
         }
 
@@ -151,12 +151,12 @@ mod tests {
                 frame += f64::from(path.step) / 32_768.0;
                 let u = f64::min(frame, 1.0);
                 let exact = f64::from(from) + distance * u * u * (3.0 - 2.0 * u);
-                let here = f64::from(path.pose().0[0].0);
+                let sweep = f64::from(path.pose().0[0].0);
                 // Q15 of the way, twice, and halves of odd sweeps.
                 let rounding = 2.0 + distance.abs() / 8000.0;
-                prop_assert!((here - exact).abs() <= rounding, "{here}, {exact}");
-                prop_assert!((here - before) * distance.signum() >= -rounding, "{here} after {before}");
-                before = here;
+                prop_assert!((sweep - exact).abs() <= rounding, "{sweep}, {exact}");
+                prop_assert!((sweep - before) * distance.signum() >= -rounding, "{sweep} after {before}");
+                before = sweep;
             }
         }
 
@@ -176,8 +176,8 @@ mod tests {
                 let share = share * share * (3.0 - 2.0 * share);
                 for (n, distance) in ways.iter().enumerate() {
                     let elapsed = f64::from(here.0[n].0) - f64::from(from.0[n].0);
-                    let off = elapsed - share * distance;
-                    prop_assert!(off.abs() <= 2.0 + distance.abs() / 8000.0, "A{}: {off}", n + 1);
+                    let error = elapsed - share * distance;
+                    prop_assert!(error.abs() <= 2.0 + distance.abs() / 8000.0, "A{}: {error}", n + 1);
                 }
             }
             prop_assert_eq!(path.pose(), to);
@@ -213,13 +213,13 @@ mod tests {
             for length in (0..=u16::MAX).step_by(251).chain([u16::MAX]) {
                 let to = i16::MIN.wrapping_add(length as i16);
                 let sweeps = sweeps_of_move(i16::MIN, to, slew);
-                let most = sweeps
+                let max_step = sweeps
                     .windows(2)
                     .map(|pair| pair[1].abs_diff(pair[0]))
                     .max();
                 assert!(
-                    most <= Some(slew.per_frame),
-                    "{length}: {most:?} of {slew:?}"
+                    max_step <= Some(slew.per_frame),
+                    "{length}: {max_step:?} of {slew:?}"
                 );
             }
         }

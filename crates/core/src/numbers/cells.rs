@@ -42,16 +42,16 @@ impl Cells<'static> {
 }
 
 impl<'a> Cells<'a> {
-    /// The map whose `count` rows begin at `begin` among `rows`. They follow one another
+    /// The map whose `count` rows begin at `start` among `rows`. They follow one another
     /// from row `first` on, around the turn. Each has its first and its last column, both
     /// of which belong to it; a row whose first column is the greater one has none. A row
     /// or column is a sweep divided by 2 to the [`ROW_BITS`] or [`COLUMN_BITS`], rounded
     /// down.
     #[inline(always)]
-    pub const fn from_rows(first: i8, begin: u16, count: u8, rows: Flash<'a, [[i8; 2]]>) -> Self {
+    pub const fn from_rows(first: i8, start: u16, count: u8, rows: Flash<'a, [[i8; 2]]>) -> Self {
         Self {
             first,
-            begin,
+            begin: start,
             count,
             rows,
         }
@@ -152,8 +152,8 @@ mod tests {
         for first in [-3, 0, -128, 122, 125] {
             agrees(first, &rows);
         }
-        let most: Vec<[i8; 2]> = (0..MAX_ROWS as i8).map(|n| [n - 40, n]).collect();
-        agrees(-32, &most);
+        let max: Vec<[i8; 2]> = (0..MAX_ROWS as i8).map(|n| [n - 40, n]).collect();
+        agrees(-32, &max);
     }
 
     #[test]

@@ -66,13 +66,13 @@ impl<'a> Curve<'a> {
         let step = (mantissa >> 24) as u8 >> 3 & (STEPS as u8 - 1);
         let part = ((mantissa << 5) >> 16) as u16;
         let index = usize::from(octave) * STEPS + usize::from(step);
-        let here = self.table.at(index).load();
-        let next = self.table.at(index + 1).load();
-        let change = (mul_unsigned(next.abs_diff(here), part) + u32::from(round)) >> 16;
-        Some(if next < here {
-            here.wrapping_sub(change as i16)
+        let entry = self.table.at(index).load();
+        let next_entry = self.table.at(index + 1).load();
+        let change = (mul_unsigned(next_entry.abs_diff(entry), part) + u32::from(round)) >> 16;
+        Some(if next_entry < entry {
+            entry.wrapping_sub(change as i16)
         } else {
-            here.wrapping_add(change as i16)
+            entry.wrapping_add(change as i16)
         })
     }
 }
@@ -133,9 +133,9 @@ mod tests {
                 return Ok(());
             }
             let exact = function(f64::from(argument) / f64::from(largest));
-            let got = f64::from(curve.at(argument).expect("within its octaves"));
+            let actual = f64::from(curve.at(argument).expect("within its octaves"));
             // A step of a sixteenth bends the logarithm by 2.2; two roundings.
-            prop_assert!((got - exact).abs() <= 4.0, "{argument} of {largest}: {got}, {exact}");
+            prop_assert!((actual - exact).abs() <= 4.0, "{argument} of {largest}: {actual}, {exact}");
         }
 
         #[test]
@@ -162,8 +162,11 @@ mod tests {
             for argument in (1 << 20..1 << 21).step_by(997) {
                 let octaves = f64::from(argument) / f64::from(1 << 20) - 1.0;
                 let exact = f64::from(slope) * 16.0 * (f64::from(OCTAVES) + octaves);
-                let got = f64::from(curve.at(argument).expect("in its octaves"));
-                assert!((got - exact).abs() <= 0.501, "{argument}: {got}, {exact}");
+                let actual = f64::from(curve.at(argument).expect("in its octaves"));
+                assert!(
+                    (actual - exact).abs() <= 0.501,
+                    "{argument}: {actual}, {exact}"
+                );
             }
         }
     }
@@ -174,12 +177,12 @@ mod tests {
         for largest in [0, 1, 1023, 1024, 5000, 1 << 20, u32::MAX] {
             let curve = Curve::new(Flash::from(&table), largest);
             // The table begins with the whole octave of its smallest argument.
-            let least: u32 = (largest >> OCTAVES)
+            let min: u32 = (largest >> OCTAVES)
                 .checked_ilog2()
                 .map_or(0, |octave| 1 << octave);
             assert_eq!(curve.at(0), None);
-            assert_eq!(curve.at(least.saturating_sub(1)), None);
-            assert_eq!(curve.at(least.max(1)), Some(7));
+            assert_eq!(curve.at(min.saturating_sub(1)), None);
+            assert_eq!(curve.at(min.max(1)), Some(7));
         }
     }
 

@@ -45,7 +45,6 @@ impl Mark {
     };
 
     /// The bytes in flash: magic, format, version, and a zero, since code begins at even addresses.
-    #[must_use]
     pub const fn bytes(self) -> [u8; LENGTH] {
         let [a, b, c, d] = MAGIC.to_le_bytes();
         let [low, high] = self.format.to_le_bytes();
@@ -54,7 +53,6 @@ impl Mark {
     }
 
     /// Reads the mark of a flash that begins with a lizard's code; `None` for any other.
-    #[must_use]
     pub fn find(flash: &[u8]) -> Option<Self> {
         let bytes = flash.get(AT..AT + LENGTH)?;
         let (magic, rest) = bytes.split_first_chunk()?;
@@ -92,11 +90,15 @@ mod tests {
     fn any_byte_of_another_value_is_another_mark_or_none() {
         let mut flash = [0xff; 128];
         flash[AT..AT + LENGTH].copy_from_slice(&Mark::HERE.bytes());
-        for at in AT..AT + LENGTH {
+        for offset in AT..AT + LENGTH {
             for bit in 0..8 {
                 let mut flash = flash;
-                flash[at] ^= 1 << bit;
-                assert_ne!(Mark::find(&flash), Some(Mark::HERE), "bit {bit} of {at}");
+                flash[offset] ^= 1 << bit;
+                assert_ne!(
+                    Mark::find(&flash),
+                    Some(Mark::HERE),
+                    "bit {bit} of {offset}"
+                );
             }
         }
         assert_eq!(Mark::find(&flash[..AT + LENGTH - 1]), None);

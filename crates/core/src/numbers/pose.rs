@@ -61,11 +61,11 @@ impl Pose {
 
     /// The longest turn of any servo to `other`, in 1/65536 turn.
     pub fn farthest(&self, other: &Self) -> u16 {
-        let mut most = 0;
-        for (here, there) in self.0.iter().zip(&other.0) {
-            most = most.max(here.0.abs_diff(there.0));
+        let mut largest = 0;
+        for (from, to) in self.0.iter().zip(&other.0) {
+            largest = largest.max(from.0.abs_diff(to.0));
         }
-        most
+        largest
     }
 }
 

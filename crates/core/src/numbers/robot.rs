@@ -84,7 +84,7 @@ impl<'a> Robot<'a> {
         let section = self.section;
         let name = offset_of!(Header, name) as u16;
         (name..name + section::MAX_NAME_BYTES as u16)
-            .map(move |at| section.read(at))
+            .map(move |offset| section.read(offset))
             .take_while(|byte| *byte != 0)
     }
 
@@ -234,19 +234,19 @@ impl<'a> Robot<'a> {
     /// left and right have a map each. A pose outside may be safe, too.
     pub fn is_certified(&self, pose: &Pose) -> bool {
         let maps = self.part::<[i8; 2]>(Part::Rows);
-        let mut begin = 0;
-        let mut pair = 0;
-        while pair < 4 {
+        let mut first_row = 0;
+        let mut pair_index = 0;
+        while pair_index < 4 {
             let MapHead { first, rows } =
-                self.number(offset_of!(Numbers, maps) + pair * size_of::<MapHead>());
-            let [row, column] = PAIRS.at(pair).load();
+                self.number(offset_of!(Numbers, maps) + pair_index * size_of::<MapHead>());
+            let [row, column] = PAIRS.at(pair_index).load();
             let row = pose.0[usize::from(row & 3)];
             let column = pose.0[usize::from(column & 3)];
-            if !Cells::from_rows(first, begin, rows, maps).contains(row, column) {
+            if !Cells::from_rows(first, first_row, rows, maps).contains(row, column) {
                 return false;
             }
-            begin += u16::from(rows);
-            pair += 1;
+            first_row += u16::from(rows);
+            pair_index += 1;
         }
         true
     }

@@ -195,10 +195,10 @@ pub fn find(flash: Region) -> Result<u16, Damage> {
         return Err(Damage::Damaged);
     }
     let mut checksum = Checksum::NOTHING;
-    let mut at = CHECKED as u16;
-    while at < length {
-        checksum = checksum.and(flash.read(at));
-        at += 1;
+    let mut offset = CHECKED as u16;
+    while offset < length {
+        checksum = checksum.and(flash.read(offset));
+        offset += 1;
     }
     if checksum.0 != flash.read(offset_of!(Header, crc) as u16) {
         return Err(Damage::Damaged);

@@ -164,8 +164,8 @@ mod tests {
 
     /// The distance of two angles, deg, the short way round.
     fn apart(a: f64, b: f64) -> f64 {
-        let off = (a - b).rem_euclid(360.0);
-        off.min(360.0 - off)
+        let difference = (a - b).rem_euclid(360.0);
+        difference.min(360.0 - difference)
     }
 
     fn degrees(angle: Angle) -> f64 {
@@ -176,9 +176,9 @@ mod tests {
     fn an_angle_of_the_console_is_within_seven_tenths_of_a_step() {
         for centideg in -36_000..=36_000 {
             let angle = Angle::from_centideg(centideg);
-            let off = apart(degrees(angle), f64::from(centideg) / 100.0);
+            let error = apart(degrees(angle), f64::from(centideg) / 100.0);
             // Half a step is 0.0027 deg.
-            assert!(off <= 0.004, "{centideg}: {off} deg");
+            assert!(error <= 0.004, "{centideg}: {error} deg");
         }
     }
 
@@ -195,8 +195,8 @@ mod tests {
         for angle in (0..=u16::MAX).map(Angle) {
             let centideg = angle.centideg();
             assert!(centideg < 36_000);
-            let off = apart(f64::from(centideg) / 100.0, degrees(angle));
-            assert!(off <= 0.005 + 1e-9, "{angle:?}: {off}");
+            let error = apart(f64::from(centideg) / 100.0, degrees(angle));
+            assert!(error <= 0.005 + 1e-9, "{angle:?}: {error}");
         }
     }
 
@@ -215,8 +215,8 @@ mod tests {
     fn every_margin_is_printed_to_the_nearest_thousandth() {
         for raw in i16::MIN..=i16::MAX {
             let exact = f64::from(raw) * 1000.0 / 32768.0;
-            let told = f64::from(Sine(raw).thousandths());
-            assert!((told - exact).abs() <= 0.5, "{raw}: {told}");
+            let printed = f64::from(Sine(raw).thousandths());
+            assert!((printed - exact).abs() <= 0.5, "{raw}: {printed}");
         }
     }
 
@@ -229,8 +229,11 @@ mod tests {
                 .chain([-65_535, -1, 0, 1, 65_535])
             {
                 let exact = f64::from(length) * 100.0 / f64::from(1 << bits);
-                let told = f64::from(scale.hundredths(length));
-                assert!((told - exact).abs() <= 0.5, "{length} at {bits}: {told}");
+                let printed = f64::from(scale.hundredths(length));
+                assert!(
+                    (printed - exact).abs() <= 0.5,
+                    "{length} at {bits}: {printed}"
+                );
             }
         }
     }
@@ -239,11 +242,11 @@ mod tests {
     fn a_phase_is_printed_rounded_down_and_never_as_a_whole_cycle() {
         for phase in (0..CYCLE).step_by(97).chain([CYCLE - 1]) {
             let exact = f64::from(phase) * 1000.0 / f64::from(CYCLE);
-            let told = thousandths_from_phase(phase);
+            let printed = thousandths_from_phase(phase);
             // Tables and the console see the first sixteen bits.
-            let below = exact - f64::from(told);
+            let below = exact - f64::from(printed);
             assert!((0.0..1.0 + 1000.0 / 65536.0).contains(&below), "{phase}");
-            assert!(told < 1000);
+            assert!(printed < 1000);
             assert_eq!(u32::from(phase16(phase)), phase / 256);
         }
     }

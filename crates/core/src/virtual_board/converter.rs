@@ -18,7 +18,6 @@ pub struct Converter {
 
 impl Converter {
     /// A converter with these supplies, with the servos' rail or without.
-    #[must_use]
     pub fn new(truth: Reading, has_rail: bool) -> Self {
         Self {
             truth,
@@ -33,13 +32,11 @@ impl Converter {
     }
 
     /// The present supplies.
-    #[must_use]
     pub const fn truth(&self) -> Reading {
         self.truth
     }
 
     /// True once every voltage has been measured since the program began.
-    #[must_use]
     pub const fn is_complete(&self) -> bool {
         self.is_complete
     }
@@ -72,7 +69,6 @@ impl Converter {
 }
 
 /// The converter's reading of a supply, and of a rail through its divider, mV.
-#[must_use]
 pub fn reading(supplies: &Supplies, board: u32, rail: u32) -> Reading {
     let board = u64::from(board);
     let parts = |mv: u64| ((1024 * mv + board / 2) / board.max(1)).min(1023) as u16;

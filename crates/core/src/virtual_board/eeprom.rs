@@ -45,13 +45,11 @@ impl Hash for Eeprom {
 
 impl Eeprom {
     /// An erased EEPROM, as it comes from the factory.
-    #[must_use]
     pub fn blank() -> Self {
         Self::with([ERASED; SIZE])
     }
 
     /// An EEPROM with these bytes.
-    #[must_use]
     pub fn with(bytes: [u8; SIZE]) -> Self {
         Self {
             bytes: Arc::new(bytes),
@@ -66,7 +64,6 @@ impl Eeprom {
     }
 
     /// All its bytes.
-    #[must_use]
     pub fn bytes(&self) -> &[u8; SIZE] {
         &self.bytes
     }
@@ -77,13 +74,11 @@ impl Eeprom {
     }
 
     /// The address of the byte that is being written.
-    #[must_use]
     pub fn under_way(&self) -> Option<u16> {
         self.under_way.get()
     }
 
     /// True if it was polled while busy since the last call and only time makes it ready.
-    #[must_use]
     pub fn was_polled_busy(&self) -> bool {
         self.was_polled_busy.take()
     }

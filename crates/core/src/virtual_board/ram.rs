@@ -27,20 +27,19 @@ impl Hash for Ram {
 }
 
 impl Cells for Ram {
-    fn get(&self, at: usize) -> u8 {
-        self.0.get()[at]
+    fn get(&self, index: usize) -> u8 {
+        self.0.get()[index]
     }
 
-    fn set(&self, at: usize, byte: u8) {
+    fn set(&self, index: usize, byte: u8) {
         let mut bytes = self.0.get();
-        bytes[at] = byte;
+        bytes[index] = byte;
         self.0.set(bytes);
     }
 }
 
 impl Ram {
     /// The state that the program would find if it started now.
-    #[must_use]
     pub fn found(&self, reported: Option<Cause>) -> Restart {
         kept::begin(&self.clone(), reported)
     }

@@ -231,7 +231,6 @@ impl Running {
 }
 
 /// True for the one line that ends an answer.
-#[must_use]
 pub fn is_final(line: &str) -> bool {
     let code = line
         .strip_prefix("err ")

@@ -195,7 +195,7 @@ fn leaps(running: &mut Running, frames: usize) -> [u16; 4] {
 fn settings_changed_at_rest_turn_no_servo_faster_than_the_slew_limit() {
     let robot = Sample::odd();
     let per_frame = robot.slew().per_frame;
-    let most = robot.calibration().map(|servo| servo.slew(per_frame));
+    let max = robot.calibration().map(|servo| servo.slew(per_frame));
     for reset in [None, Some(Cause::External), Some(Cause::Watchdog)] {
         let mut running = standing();
         running.say("sway");
@@ -213,7 +213,7 @@ fn settings_changed_at_rest_turn_no_servo_faster_than_the_slew_limit() {
         running.say("stand");
         let leaps = leaps(&mut running, 200);
         for servo in 0..4 {
-            assert!(leaps[servo] <= most[servo], "{leaps:?}, {most:?}");
+            assert!(leaps[servo] <= max[servo], "{leaps:?}, {max:?}");
             assert!(leaps[servo] > 0, "it stands elsewhere than it rested");
         }
         assert_ne!(*running.motion().sent(), before);

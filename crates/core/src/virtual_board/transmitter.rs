@@ -43,7 +43,6 @@ impl Hash for Transmitter {
 
 impl Transmitter {
     /// A line that takes this many cycles for a byte, with room for this many bytes.
-    #[must_use]
     pub const fn new(per_byte: u64, capacity: u64) -> Self {
         Self {
             text: String::new(),
@@ -66,7 +65,6 @@ impl Transmitter {
     }
 
     /// The cycle at which everything written has been sent.
-    #[must_use]
     pub const fn free(&self) -> u64 {
         self.free
     }
@@ -77,7 +75,6 @@ impl Transmitter {
     }
 
     /// Bytes that it takes without waiting, at most 255.
-    #[must_use]
     pub fn room(&self) -> u8 {
         if self.is_held {
             return 0;

@@ -91,11 +91,11 @@ fn computed<T>(table: impl FnOnce() -> T) -> T {
 /// One cycle of a gait, frame by frame, as the firmware reads its table.
 fn trace(robot: &Robot, name: &str) -> Result<String, Failure> {
     let Some(gait) = robot.gait(name) else {
-        let known: Vec<&str> = robot.gaits().iter().map(|gait| gait.name()).collect();
+        let names: Vec<&str> = robot.gaits().iter().map(|gait| gait.name()).collect();
         return Err(Failure::Input(format!(
             "--trace {name}: the gaits are {}{}",
-            known.join(", "),
-            did_you_mean(name, known)
+            names.join(", "),
+            did_you_mean(name, names)
         )));
     };
     let mut text = format!("seconds,{}\n", ANGLES.join(","));
@@ -185,7 +185,7 @@ impl From<Prediction> for Predicted {
 
 impl<'a> GaitLine<'a> {
     fn new(row: &'a Row) -> Self {
-        let least = |least: lizard_robot::LeastMargin| LeastMargin {
+        let least_margin = |least: lizard_robot::LeastMargin| LeastMargin {
             margin: least.value,
             what: Check::name(least.what),
             phase: least.phase,
@@ -198,9 +198,9 @@ impl<'a> GaitLine<'a> {
             peak_servo: servo::NAMES[audit.peak.servo],
             table_error_max: row.error.max,
             table_error_rms: row.error.rms,
-            type2: least(audit.type2),
-            type1: least(audit.type1),
-            leg: least(audit.leg),
+            type2: least_margin(audit.type2),
+            type1: least_margin(audit.type1),
+            leg: least_margin(audit.leg),
             stroke: [audit.stroke.0, audit.stroke.1],
             predicted: row.movement.into(),
             line: row.line,

@@ -2,7 +2,7 @@
 
 use std::ffi::OsString;
 
-use super::known::Known;
+use super::known::CommandEntry;
 use crate::Failure;
 use crate::shared::suggestion::did_you_mean;
 
@@ -29,15 +29,15 @@ fn is_built(feature: &str) -> bool {
 }
 
 /// The commands that this build lacks, for the help; empty for a complete build.
-pub(super) fn list(known: &[Known]) -> String {
-    list_in_build(known, is_built)
+pub(super) fn list(commands: &[CommandEntry]) -> String {
+    list_in_build(commands, is_built)
 }
 
-fn list_in_build(known: &[Known], has: impl Fn(&str) -> bool) -> String {
-    let lacks = known
+fn list_in_build(commands: &[CommandEntry], has: impl Fn(&str) -> bool) -> String {
+    let lacks = commands
         .iter()
-        .filter(|known| !known.needs.iter().all(|feature| has(feature)));
-    let names: Vec<String> = lacks.map(Known::name).collect();
+        .filter(|commands| !commands.needs.iter().all(|feature| has(feature)));
+    let names: Vec<String> = lacks.map(CommandEntry::name).collect();
     if names.is_empty() {
         return String::new();
     }
@@ -65,22 +65,21 @@ fn list_in_build(known: &[Known], has: impl Fn(&str) -> bool) -> String {
     ),
     allow(dead_code, reason = "a complete build lacks nothing")
 )]
-pub(super) fn explain(typed: &[OsString], known: &[Known]) -> Failure {
-    explain_in_build(typed, known, is_built)
+pub(super) fn explain(typed: &[OsString], commands: &[CommandEntry]) -> Failure {
+    explain_in_build(typed, commands, is_built)
 }
 
 /// The arguments of a command that this build lacks; nothing reads them.
 #[cfg(not(all(feature = "paper", feature = "simulator")))]
 #[derive(clap::Args)]
-pub struct Absent {
+pub struct AbsentCommand {
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
     _arguments: Vec<OsString>,
 }
 
 #[cfg(not(all(feature = "paper", feature = "simulator")))]
-impl Absent {
+impl AbsentCommand {
     /// Explains why this build has no command of this name.
-    #[must_use]
     pub fn failure(name: &str, needs: &[&str]) -> Failure {
         missing(name, needs, is_built)
     }
@@ -98,11 +97,15 @@ fn missing(name: &str, needs: &[&str], has: impl Fn(&str) -> bool) -> Failure {
     ))
 }
 
-fn explain_in_build(typed: &[OsString], known: &[Known], has: impl Fn(&str) -> bool) -> Failure {
+fn explain_in_build(
+    typed: &[OsString],
+    known: &[CommandEntry],
+    has: impl Fn(&str) -> bool,
+) -> Failure {
     let word = typed.first().map(|word| word.to_string_lossy());
     let word = word.as_deref().unwrap_or_default();
-    let names: Vec<String> = known.iter().map(Known::name).collect();
-    let called = |known: &&Known| known.name() == word || known.also.contains(&word);
+    let names: Vec<String> = known.iter().map(CommandEntry::name).collect();
+    let called = |known: &&CommandEntry| known.name() == word || known.also.contains(&word);
     let Some(known) = known.iter().find(called) else {
         let like = did_you_mean(word, names.iter().map(String::as_str));
         return Failure::Input(format!(

@@ -8,10 +8,10 @@ use std::fmt::Write as _;
 use clap::Command;
 
 use super::absent;
-use super::known::{Group, Known};
+use super::known::{CommandEntry, Group};
 
 /// Returns the command with a help that lists its subcommands in groups.
-pub(super) fn grouped(command: Command, known: &[Known]) -> Command {
+pub(super) fn grouped(command: Command, known: &[CommandEntry]) -> Command {
     let list = list(&command, known);
     let lacks = absent::list(known);
     command.help_template(format!(
@@ -26,7 +26,7 @@ fn heading(text: &str) -> String {
 }
 
 /// Lists every subcommand once, under its heading.
-fn list(command: &Command, known: &[Known]) -> String {
+fn list(command: &Command, known: &[CommandEntry]) -> String {
     let present: Vec<&Command> = command.get_subcommands().collect();
     let widest = present.iter().map(|sub| sub.get_name().len()).max();
     let width = widest.unwrap_or(0);
@@ -81,7 +81,7 @@ mod tests {
             sub("completions"),
             sub("console"),
         ]);
-        let row = |group, variant| Known {
+        let row = |group, variant| CommandEntry {
             group,
             variant,
             also: &[],

@@ -43,7 +43,7 @@ impl Group {
 
 /// A command of the program, whether or not this build has it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Known {
+pub(super) struct CommandEntry {
     pub(super) group: Group,
     /// The command's variant of the enum of commands.
     pub(super) variant: &'static str,
@@ -53,7 +53,7 @@ pub(super) struct Known {
     pub(super) needs: &'static [&'static str],
 }
 
-impl Known {
+impl CommandEntry {
     /// The name that the user types.
     pub(super) fn name(&self) -> String {
         self.variant.to_lowercase()

@@ -33,7 +33,7 @@ pub struct MergeArgs {
 /// Fails if a part is missing, is given twice or differs from the others; and the command's own
 /// errors.
 pub fn merge(args: MergeArgs) -> Result<(), Failure> {
-    let whole = Whole::of(shares(&args.files)?)?;
+    let whole = MergedParts::of(shares(&args.files)?)?;
     match whole.command.as_str() {
         #[cfg(feature = "paper")]
         "prove" => whole.run(crate::change::prove::run),
@@ -52,7 +52,7 @@ pub fn merge(args: MergeArgs) -> Result<(), Failure> {
 /// Reads the parts from files, or from standard input.
 fn shares(files: &[PathBuf]) -> Result<Vec<PartOutput>, Failure> {
     let mut shares = Vec::new();
-    let mut read = |name: &str, text: &str| {
+    let mut set_once = |name: &str, text: &str| {
         for (number, line) in (1..).zip(text.lines()) {
             if line.trim().is_empty() {
                 continue;
@@ -67,41 +67,41 @@ fn shares(files: &[PathBuf]) -> Result<Vec<PartOutput>, Failure> {
     if files.is_empty() {
         let mut text = String::new();
         io::stdin().lock().read_to_string(&mut text)?;
-        read("standard input", &text)?;
+        set_once("standard input", &text)?;
     }
     for file in files {
         let name = file.display().to_string();
         let text = files::read_text(file)?;
-        read(&name, &text)?;
+        set_once(&name, &text)?;
     }
     Ok(shares)
 }
 
 /// All parts of one computation.
-struct Whole {
+struct MergedParts {
     command: String,
     options: Value,
     robot: String,
     found: BTreeMap<usize, Value>,
 }
 
-impl Whole {
+impl MergedParts {
     /// Joins the parts, if they all belong to one computation.
     fn of(shares: Vec<PartOutput>) -> Result<Self, Failure> {
-        let refused = |why: String| Err(Failure::Input(why));
+        let refused = |reason: String| Err(Failure::Input(reason));
         let Some(first) = shares.first() else {
             return refused(
                 "there are no parts; `lizard merge --help` says how to make them".to_owned(),
             );
         };
-        let (of, pieces) = (first.part.of, first.pieces);
+        let (part_count, pieces) = (first.part.of, first.pieces);
         let mut whole = Self {
             command: first.command.clone(),
             options: first.options.clone(),
             robot: first.robot.clone(),
             found: BTreeMap::new(),
         };
-        let mut seen = vec![false; of as usize];
+        let mut seen = vec![false; part_count as usize];
         for share in shares {
             let name = String::from(share.part);
             let version = env!("CARGO_PKG_VERSION");
@@ -117,7 +117,10 @@ impl Whole {
                     share.command, whole.command
                 ));
             }
-            if share.options != whole.options || share.part.of != of || share.pieces != pieces {
+            if share.options != whole.options
+                || share.part.of != part_count
+                || share.pieces != pieces
+            {
                 return refused(format!(
                     "part {name} has different options from another part"
                 ));
@@ -134,7 +137,7 @@ impl Whole {
             whole.found.extend(share.found);
         }
         if let Some(missing) = seen.iter().position(|seen| !seen) {
-            return refused(format!("part {}/{of} is missing", missing + 1));
+            return refused(format!("part {}/{part_count} is missing", missing + 1));
         }
         Ok(whole)
     }
@@ -168,7 +171,7 @@ mod tests {
     }
 
     fn refusal(shares: Vec<PartOutput>) -> String {
-        match Whole::of(shares) {
+        match MergedParts::of(shares) {
             Ok(_) => panic!("it is accepted"),
             Err(failure) => failure.to_string(),
         }
@@ -201,7 +204,7 @@ mod tests {
         assert!(changed(|part| part.lizard = "0.0.1".to_owned()).contains("is from version 0.0.1"));
         assert!(refusal(Vec::new()).starts_with("there are no parts"));
         assert!(
-            Whole::of(vec![share("2/2"), share("1/2")]).is_ok(),
+            MergedParts::of(vec![share("2/2"), share("1/2")]).is_ok(),
             "in any order"
         );
     }

@@ -19,7 +19,7 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::Failure;
 use crate::shared::plain::readable_lines;
-use known::{Group, Known};
+use known::{CommandEntry, Group};
 use nested::With;
 
 /// The table below, as [`Command`] and as [`KNOWN`].
@@ -72,8 +72,8 @@ macro_rules! commands {
         }
 
         /// All commands that there are, in the order of the help.
-        const KNOWN: &[Known] = &[$($(
-            Known {
+        const KNOWN: &[CommandEntry] = &[$($(
+            CommandEntry {
                 group: Group::$group,
                 variant: stringify!($name),
                 also: &[$($alias)?],
@@ -193,7 +193,6 @@ struct Cli {
 }
 
 /// All commands and options, the commands in groups.
-#[must_use]
 pub fn program() -> clap::Command {
     groups::grouped(Cli::command(), KNOWN)
 }
@@ -211,7 +210,6 @@ pub fn run(arguments: Vec<OsString>) -> Result<(), Failure> {
 }
 
 /// Runs a command line, writes the message of its failure, and returns the exit code.
-#[must_use]
 pub fn run_and_report(arguments: Vec<OsString>) -> u8 {
     match run(arguments) {
         Ok(()) => 0,

@@ -14,7 +14,7 @@ use crate::simulate;
 use crate::{Failure, commands::completions};
 
 #[cfg(not(all(feature = "paper", feature = "simulator")))]
-use super::absent::Absent;
+use super::absent::AbsentCommand;
 
 // No documentation comments on the types of this file: clap would show them in place of those of the
 // arguments.
@@ -49,7 +49,7 @@ pub enum OfConsole {
     Replay(drive::console::replay::Args),
     /// Draw a recorded session: missing, this program was built without the simulator
     #[cfg(not(feature = "simulator"))]
-    Replay(Absent),
+    Replay(AbsentCommand),
 }
 
 /// Runs `lizard console` or a command below it.
@@ -61,7 +61,7 @@ pub fn console(
         #[cfg(feature = "simulator")]
         Some(OfConsole::Replay(args)) => drive::console::replay::run(args),
         #[cfg(not(feature = "simulator"))]
-        Some(OfConsole::Replay(_)) => Err(Absent::failure("console replay", &["simulator"])),
+        Some(OfConsole::Replay(_)) => Err(AbsentCommand::failure("console replay", &["simulator"])),
         None => drive::console::interactive::console(args.own),
     }
 }
@@ -104,7 +104,7 @@ pub enum OfDraw {
     Charts(crate::paper::charts::Args),
     /// Draw all charts: missing, this program was built without the commands that compute
     #[cfg(not(feature = "paper"))]
-    Charts(Absent),
+    Charts(AbsentCommand),
 }
 
 /// Runs `lizard draw` or a command below it.
@@ -113,7 +113,7 @@ pub fn draw(args: With<draw::Args, OfDraw>) -> Result<(), Failure> {
         #[cfg(feature = "paper")]
         Some(OfDraw::Charts(args)) => crate::paper::charts::run(args),
         #[cfg(not(feature = "paper"))]
-        Some(OfDraw::Charts(_)) => Err(Absent::failure("draw charts", &["paper"])),
+        Some(OfDraw::Charts(_)) => Err(AbsentCommand::failure("draw charts", &["paper"])),
         None => draw::run(args.own),
     }
 }

@@ -48,13 +48,13 @@ pub fn run(args: Args) -> Result<(), Failure> {
         return Ok(io::stdout().lock().write_all(hex.as_bytes())?);
     };
     files::write(&path, hex.as_bytes())?;
-    let what = match args.only_robot {
+    let content = match args.only_robot {
         true => String::new(),
         false => format!("lizard {} ", env!("CARGO_PKG_VERSION")),
     };
     writeln!(
         io::stdout(),
-        "{}: {what}robot {}; the robot has {} of {SPACE} bytes",
+        "{}: {content}robot {}; the robot has {} of {SPACE} bytes",
         path.display(),
         firmware::label(robot.firmware()),
         robot.section().len(),

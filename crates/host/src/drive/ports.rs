@@ -38,15 +38,15 @@ struct Line {
 }
 
 impl Line {
-    fn of(found: UsbPort) -> Self {
+    fn of(port: UsbPort) -> Self {
         Self {
-            vendor: format!("{:04x}", found.vendor),
-            product: format!("{:04x}", found.product_id),
-            chip: chip([found.vendor, found.product_id]),
-            may_open: port::may_open(&found.name),
-            open_in: port::holder(&found.name),
-            name: found.product.map(|name| plain(&name.replace('_', " "))),
-            port: found.name,
+            vendor: format!("{:04x}", port.vendor),
+            product: format!("{:04x}", port.product_id),
+            chip: chip([port.vendor, port.product_id]),
+            may_open: port::may_open(&port.name),
+            open_in: port::holder(&port.name),
+            name: port.product.map(|name| plain(&name.replace('_', " "))),
+            port: port.name,
         }
     }
 }

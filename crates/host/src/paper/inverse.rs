@@ -68,14 +68,14 @@ pub fn print(robot: &Robot, ends: [Option<Vector>; 2], json: bool) -> Result<(),
         .into_iter()
         .find_map(|(name, part)| Some((name, part.as_ref()?.why.as_ref()?)));
     match unreachable {
-        Some((name, why)) => Err(Failure::Impossible(format!("{name}: {why}"))),
+        Some((name, reason)) => Err(Failure::Impossible(format!("{name}: {reason}"))),
         None => Ok(()),
     }
 }
 
 fn solve(robot: &Robot, end: End, point: Vector) -> Loop {
     let local = robot.lizard().to_end(end, point);
-    let (working_modes, why) = match robot.lizard().end(end).inverse(local) {
+    let (working_modes, reason) = match robot.lizard().end(end).inverse(local) {
         Ok(all) => {
             let solutions = all.into_iter().map(|a| solve_mode(robot, end, local, a));
             (solutions.collect(), None)
@@ -85,19 +85,19 @@ fn solve(robot: &Robot, end: End, point: Vector) -> Loop {
     Loop {
         point: [point.x, point.y],
         working_modes,
-        why,
+        why: reason,
     }
 }
 
 fn solve_mode(robot: &Robot, end: End, point: Vector, a: InverseSolution) -> ModeSolution {
     let bars = robot.lizard().end(end);
-    let there = bars.forward_in(a.assembly_mode, a.theta_left, a.theta_right);
-    let (error_mm, margin) = match &there {
+    let pose = bars.forward_in(a.assembly_mode, a.theta_left, a.theta_right);
+    let (error_mm, margin) = match &pose {
         Ok(pose) => ((pose.end_point - point).length(), pose.margin()),
         Err(_) => (0.0, 0.0),
     };
     let angles = [a.theta_left, a.theta_right].map(|theta| end.mirror_angle(theta));
-    let mut why: Vec<String> = end
+    let mut reason: Vec<String> = end
         .servos()
         .into_iter()
         .zip(angles)
@@ -105,13 +105,15 @@ fn solve_mode(robot: &Robot, end: End, point: Vector, a: InverseSolution) -> Mod
         .collect();
     let behind = a.assembly_mode == AssemblyMode::Behind;
     if behind {
-        why.push("another assembly mode: the end point would be behind the crank tips".to_string());
+        reason.push(
+            "another assembly mode: the end point would be behind the crank tips".to_string(),
+        );
     }
-    if let Ok(pose) = &there {
+    if let Ok(pose) = &pose {
         // In the other assembly mode the type-2 margin is negative, which is stated.
-        let stated = |what| behind && Check::TYPE2.contains(&what);
+        let stated = |check| behind && Check::TYPE2.contains(&check);
         let broken = robot.limits().end_violations(end, pose);
-        why.extend(broken.filter(|v| !stated(v.what)).map(|v| v.to_string()));
+        reason.extend(broken.filter(|v| !stated(v.what)).map(|v| v.to_string()));
     }
     ModeSolution {
         left: elbow_text(a.working_mode.left),
@@ -121,8 +123,8 @@ fn solve_mode(robot: &Robot, end: End, point: Vector, a: InverseSolution) -> Mod
         theta_right: angles[1],
         error_mm,
         margin,
-        reachable: why.is_empty(),
-        why,
+        reachable: reason.is_empty(),
+        why: reason,
     }
 }
 
@@ -136,7 +138,7 @@ fn elbow_text(elbow: Elbow) -> &'static str {
 /// Combines both ends and checks the complete pose.
 fn report(robot: &Robot, head: Option<Loop>, tail: Option<Loop>) -> Report {
     let mut angles = robot.servos().map(|servo| servo.neutral);
-    let mut whole = true;
+    let mut is_complete = true;
     for (part, end) in [(&head, End::Head), (&tail, End::Tail)] {
         match part.as_ref().map(|part| part.working_modes.first()) {
             Some(Some(outward)) => {
@@ -144,32 +146,32 @@ fn report(robot: &Robot, head: Option<Loop>, tail: Option<Loop>) -> Report {
                 angles[left] = outward.theta_left;
                 angles[right] = outward.theta_right;
             }
-            Some(None) => whole = false,
+            Some(None) => is_complete = false,
             None => {}
         }
     }
-    let mut why: Vec<String> = Vec::new();
+    let mut reason: Vec<String> = Vec::new();
     for part in [&head, &tail].into_iter().flatten() {
-        why.extend(part.why.clone());
+        reason.extend(part.why.clone());
     }
-    if whole {
+    if is_complete {
         match robot.lizard().solve(&Pose::from(angles)) {
-            Ok(solution) => why.extend(verdict::reasons(robot, &solution)),
-            Err(infeasible) => why.push(infeasible.to_string()),
+            Ok(solution) => reason.extend(verdict::reasons(robot, &solution)),
+            Err(infeasible) => reason.push(infeasible.to_string()),
         }
     }
     let [theta1, theta4, theta8, theta5] = angles.map(|angle| angle.rem_euclid(360.0));
     Report {
         head,
         tail,
-        pose: whole.then_some(Angles {
+        pose: is_complete.then_some(Angles {
             theta1,
             theta4,
             theta8,
             theta5,
         }),
-        safe: why.is_empty(),
-        why,
+        safe: reason.is_empty(),
+        why: reason,
     }
 }
 
@@ -182,8 +184,8 @@ fn text(report: &Report) -> String {
         let Some(part) = part else { continue };
         let [x, y] = part.point;
         page += &format!("{name} at ({:.3}, {:.3}) mm\n", tidy(x, 3), tidy(y, 3));
-        if let Some(why) = &part.why {
-            page += &format!("  {why}\n\n");
+        if let Some(reason) = &part.why {
+            page += &format!("  {reason}\n\n");
             continue;
         }
         // Both in servo order; the tail's left servo is A4.

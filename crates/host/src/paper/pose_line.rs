@@ -55,8 +55,8 @@ struct Sines(Margins);
 impl Serialize for Sines {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
-        for (what, value) in self.0.iter() {
-            map.serialize_entry(what.name(), &(value + 0.0))?;
+        for (check, value) in self.0.iter() {
+            map.serialize_entry(check.name(), &(value + 0.0))?;
         }
         map.end()
     }
@@ -75,7 +75,7 @@ impl PoseLine {
                 };
             }
         };
-        let why = verdict::reasons(robot, s);
+        let reason = verdict::reasons(robot, s);
         let (head, tail) = (s.head_point(), s.tail_point());
         let p = s.passive();
         let [lf, rf, rh, lh] = s.legs.map(|leg| Leg {
@@ -100,8 +100,8 @@ impl PoseLine {
             }),
             legs: Some(Legs { lf, rf, rh, lh }),
             margins: Some(Sines(s.margins)),
-            safe: why.is_empty(),
-            why,
+            safe: reason.is_empty(),
+            why: reason,
         }
     }
 }
@@ -145,7 +145,7 @@ pub fn row(robot: &Robot, timed: &Timed, solved: &Result<Solution, Infeasible>) 
         Ok(solution) => solution,
     };
     let (head, tail) = (s.head_point(), s.tail_point());
-    let (least, value) = s.margins.min();
+    let (min, value) = s.margins.min();
     for block in [
         [s.theta2(), s.theta3(), s.theta6(), s.theta7()],
         [head.x, head.y, tail.x, tail.y],
@@ -157,7 +157,7 @@ pub fn row(robot: &Robot, timed: &Timed, solved: &Result<Solution, Infeasible>) 
     }
     let _ = write!(
         line,
-        " | {:+7.2} {:+7.2} | {least:9} {:+7.4} | ",
+        " | {:+7.2} {:+7.2} | {min:9} {:+7.4} | ",
         tidy(s.left.s, 2),
         tidy(s.right.s, 2),
         tidy(value, 4),
@@ -235,8 +235,8 @@ margins  (0 is singular, 1 is best)  limits {} {} {}
     );
     let broken = verdict::reasons(robot, s);
     if broken.is_empty() {
-        let (least, value) = m.min();
-        let _ = writeln!(page, "safe     yes, the least margin is {least} {value:.4}");
+        let (min, value) = m.min();
+        let _ = writeln!(page, "safe     yes, the least margin is {min} {value:.4}");
     } else {
         for (i, reason) in broken.iter().enumerate() {
             let lead = if i == 0 {

@@ -82,10 +82,10 @@ impl<R: BufRead> Poses<R> {
             columns: SERVO_ORDER.to_vec(),
             is_unanswered: false,
         };
-        let wanted = ANGLES.join(",");
+        let expected = ANGLES.join(",");
         if !poses.advance()? {
             return Err(Failure::Input(format!(
-                "line 1, column 1: the input is empty, expected the header {wanted}"
+                "line 1, column 1: the input is empty, expected the header {expected}"
             )));
         }
         let text = poses.text()?;
@@ -96,9 +96,9 @@ impl<R: BufRead> Poses<R> {
             return Ok(poses);
         }
         let number = poses.number;
-        let wrong = |column: usize, what: String| {
+        let wrong = |column: usize, problem: String| {
             Failure::Input(format!(
-                "line {number}, column {column}: {what}; the header is {wanted}, in any order, \
+                "line {number}, column {column}: {problem}; the header is {expected}, in any order, \
                  and {SECONDS} if you like"
             ))
         };
@@ -129,14 +129,14 @@ impl<R: BufRead> Poses<R> {
     fn advance(&mut self) -> Result<bool, Failure> {
         loop {
             self.line.clear();
-            let read = (&mut self.input)
+            let outcome = (&mut self.input)
                 .take(MAX_LINE_BYTES)
                 .read_until(b'\n', &mut self.line)?;
-            if read == 0 {
+            if outcome == 0 {
                 return Ok(false);
             }
             self.number += 1;
-            if read as u64 == MAX_LINE_BYTES && !self.line.ends_with(b"\n") {
+            if outcome as u64 == MAX_LINE_BYTES && !self.line.ends_with(b"\n") {
                 return Err(Failure::Input(format!(
                     "line {}, column 1: longer than {MAX_LINE_BYTES} bytes",
                     self.number
@@ -159,8 +159,8 @@ impl<R: BufRead> Poses<R> {
                 text.trim_end_matches(['\n', '\r'])
             })
             .map_err(|fault| {
-                let before = &self.line[..fault.valid_up_to()];
-                let column = before.iter().filter(|&&byte| byte == b',').count() + 1;
+                let valid_bytes = &self.line[..fault.valid_up_to()];
+                let column = valid_bytes.iter().filter(|&&byte| byte == b',').count() + 1;
                 Failure::Input(format!(
                     "line {}, column {column}: not UTF-8 text",
                     self.number
@@ -172,13 +172,13 @@ impl<R: BufRead> Poses<R> {
         let mut angles = [0.0; 4];
         let mut seconds = None;
         let mut count = 0;
-        let at = |field: usize, what: String| {
+        let failure_at = |field: usize, problem: String| {
             let name = match self.columns.get(field) {
                 Some(column) => format!(" ({})", column.name()),
                 None => String::new(),
             };
             Failure::Input(format!(
-                "line {}, column {}{name}: {what}",
+                "line {}, column {}{name}: {problem}",
                 self.number,
                 field + 1
             ))
@@ -186,12 +186,15 @@ impl<R: BufRead> Poses<R> {
         for (field, text) in self.text()?.split(',').enumerate() {
             let text = trim_quotes(text);
             let Some(&column) = self.columns.get(field) else {
-                return Err(at(field, format!("\"{text}\" is one value too many")));
+                return Err(failure_at(
+                    field,
+                    format!("\"{text}\" is one value too many"),
+                ));
             };
             if text.is_empty() {
-                return Err(at(field, "no value".to_string()));
+                return Err(failure_at(field, "no value".to_string()));
             }
-            let refused = |fault: NumberFault| at(field, format!("\"{text}\" {fault}"));
+            let refused = |fault: NumberFault| failure_at(field, format!("\"{text}\" {fault}"));
             match column {
                 Column::Angle(servo) => {
                     angles[servo] = Quantity::ANGLE.parse(text).map_err(refused)?;
@@ -203,7 +206,7 @@ impl<R: BufRead> Poses<R> {
             count = field + 1;
         }
         if count < self.columns.len() {
-            return Err(at(count, "no value".to_string()));
+            return Err(failure_at(count, "no value".to_string()));
         }
         Ok(Timed {
             seconds,

@@ -54,11 +54,11 @@ fn stream(robot: &Robot, json: bool) -> Result<(), Failure> {
     thread::scope(|scope| {
         let heading = (!json).then(|| pose_line::heading(poses.has_time()));
         let writer = scope.spawn(move || write(to_write, heading));
-        let read = solve_all(robot, json, &mut poses, &solved);
+        let outcome = solve_all(robot, json, &mut poses, &solved);
         drop(solved);
         // A failure to write takes precedence over a failure to read.
         writer.join().unwrap_or_else(|panic| resume_unwind(panic))?;
-        read
+        outcome
     })
 }
 

@@ -134,37 +134,37 @@ fn values(s: &Solution) -> [(&'static str, &'static str, f64); 12] {
 
 /// Rates and accelerations in the same order.
 fn rates(m: &Derivatives) -> [(f64, f64); 12] {
-    let pair = |d: lizard_kinematics::Derivative<f64>| (d.rate, d.acceleration);
+    let rate_and_acceleration = |d: lizard_kinematics::Derivative<f64>| (d.rate, d.acceleration);
     [
-        pair(m.theta2),
-        pair(m.theta3),
-        pair(m.theta6),
-        pair(m.theta7),
+        rate_and_acceleration(m.theta2),
+        rate_and_acceleration(m.theta3),
+        rate_and_acceleration(m.theta6),
+        rate_and_acceleration(m.theta7),
         (m.head.rate.x, m.head.acceleration.x),
         (m.head.rate.y, m.head.acceleration.y),
         (m.tail.rate.x, m.tail.acceleration.x),
         (m.tail.rate.y, m.tail.acceleration.y),
-        pair(m.phi_left),
-        pair(m.s_left),
-        pair(m.phi_right),
-        pair(m.s_right),
+        rate_and_acceleration(m.phi_left),
+        rate_and_acceleration(m.s_left),
+        rate_and_acceleration(m.phi_right),
+        rate_and_acceleration(m.s_right),
     ]
 }
 
 fn rows(lizard: &Lizard, solution: &Solution, drive: &Drive) -> Vec<Row> {
     let start = <[f64; 4]>::from(solution.pose);
-    let largest = |all: &[f64; 4]| all.iter().fold(0.0f64, |most, one| most.max(one.abs()));
+    let largest = |all: &[f64; 4]| all.iter().fold(0.0f64, |max, one| max.max(one.abs()));
     let step = STEP
         .min(SWEEP / largest(&drive.rate))
         .min((SWEEP / largest(&drive.acceleration)).sqrt());
-    let at = |steps: f64| {
+    let solved_at = |steps: f64| {
         let t = steps * step;
         let angles: [f64; 4] = std::array::from_fn(|i| {
             start[i] + drive.rate[i] * t + drive.acceleration[i] * t * t / 2.0
         });
         lizard.solve(&Pose::from(angles)).ok().map(|s| values(&s))
     };
-    let around = match [-2.0, -1.0, 1.0, 2.0].map(at) {
+    let around = match [-2.0, -1.0, 1.0, 2.0].map(solved_at) {
         [Some(a), Some(b), Some(c), Some(d)] => Some([a, b, c, d]),
         _ => None,
     };

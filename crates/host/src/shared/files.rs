@@ -19,10 +19,9 @@ use crate::Failure;
 static READ: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// Notes a file that is about to be read, so that no output replaces it.
-#[must_use]
 pub fn note_input(path: &Path) -> &Path {
-    let mut read = READ.lock().unwrap_or_else(PoisonError::into_inner);
-    read.push(path.to_owned());
+    let mut inputs = READ.lock().unwrap_or_else(PoisonError::into_inner);
+    inputs.push(path.to_owned());
     path
 }
 
@@ -33,13 +32,13 @@ pub fn note_input(path: &Path) -> &Path {
 pub fn read_text(path: &Path) -> Result<String, Failure> {
     const MAX_BYTES: u64 = 256 << 20;
     let mut text = String::new();
-    let read = File::open(note_input(path)).and_then(|file| {
+    let outcome = File::open(note_input(path)).and_then(|file| {
         match file.take(MAX_BYTES + 1).read_to_string(&mut text)? as u64 {
             0..=MAX_BYTES => Ok(()),
             _ => Err(io::Error::other("it is longer than 256 MiB")),
         }
     });
-    read.map_err(|error| Failure::Input(format!("cannot read {}: {error}", path.display())))?;
+    outcome.map_err(|error| Failure::Input(format!("cannot read {}: {error}", path.display())))?;
     Ok(text)
 }
 
@@ -48,9 +47,9 @@ pub fn read_text(path: &Path) -> Result<String, Failure> {
 /// # Errors
 /// Fails if the output would replace one of them.
 pub fn check_replaceable(path: &Path) -> Result<(), Failure> {
-    let read = READ.lock().unwrap_or_else(PoisonError::into_inner);
+    let inputs = READ.lock().unwrap_or_else(PoisonError::into_inner);
     let is_input = |input: &PathBuf| same_file::is_same_file(input, path).unwrap_or(false);
-    let why = if read.iter().any(is_input) {
+    let reason = if inputs.iter().any(is_input) {
         "this command reads it"
     } else if is_robot(path) {
         "it describes a robot"
@@ -58,7 +57,7 @@ pub fn check_replaceable(path: &Path) -> Result<(), Failure> {
         return Ok(());
     };
     Err(Failure::Input(format!(
-        "{} would be overwritten, but {why}; name another file for the output",
+        "{} would be overwritten, but {reason}; name another file for the output",
         path.display()
     )))
 }
@@ -89,7 +88,7 @@ fn is_robot(path: &Path) -> bool {
 /// input or a robot ([`check_replaceable`]).
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     check_replaceable(path)?;
-    let done = if is_stream(path) {
+    let outcome = if is_stream(path) {
         // Opened as it is: neither created nor truncated.
         File::options()
             .write(true)
@@ -98,17 +97,17 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     } else {
         folders(path).and_then(|()| persist(path, bytes))
     };
-    done.map_err(|error| write_failure(path, &error))
+    outcome.map_err(|error| write_failure(path, &error))
 }
 
 /// The message for a path that cannot be written.
 pub fn write_failure(path: &Path, error: &io::Error) -> Failure {
-    let why = error.to_string();
+    let reason = error.to_string();
     // tempfile adds the name of the temporary file, which means nothing to a user.
-    let why = why
+    let reason = reason
         .split_once(" at path ")
-        .map_or(why.as_str(), |(why, _)| why);
-    Failure::Impossible(format!("cannot write {}: {why}", path.display()))
+        .map_or(reason.as_str(), |(reason, _)| reason);
+    Failure::Impossible(format!("cannot write {}: {reason}", path.display()))
 }
 
 fn folders(path: &Path) -> io::Result<()> {
@@ -122,7 +121,7 @@ fn folders(path: &Path) -> io::Result<()> {
 fn is_stream(path: &Path) -> bool {
     use std::os::unix::fs::FileTypeExt;
     path.metadata()
-        .map(|there| there.file_type())
+        .map(|metadata| metadata.file_type())
         .is_ok_and(|kind| kind.is_char_device() || kind.is_fifo())
 }
 
@@ -231,7 +230,7 @@ mod tests {
         fs::write(&mine, "# mine\n [links]\nl0 = x\n").expect("it is written");
         fs::hard_link(&input, &other).expect("another name of it");
         let _ = note_input(&folder.path().join("../").join(&input));
-        for (path, why) in [
+        for (path, reason) in [
             (&input, "but this command reads it; name another file"),
             (&other, "but this command reads it; name another file"),
             (&robot, "but it describes a robot; name another file"),
@@ -239,7 +238,7 @@ mod tests {
         ] {
             let before = fs::read(path).expect("it is there");
             let words = refusal(path);
-            assert!(words.contains(why), "{words}");
+            assert!(words.contains(reason), "{words}");
             assert_eq!(fs::read(path).expect("it is there"), before);
         }
         write(&folder.path().join("c"), b"x").expect("a file like any other");

@@ -154,7 +154,6 @@ pub fn fixed(value: f64) -> f64 {
 }
 
 /// The name on the board of an Arduino pin number: D9, or A0 for 14.
-#[must_use]
 pub fn pin_name(number: u8) -> String {
     const A0: u8 = 14;
     match number.checked_sub(A0) {

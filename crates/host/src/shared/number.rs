@@ -2,7 +2,6 @@
 
 /// A value rounded to some decimals, as it will be printed, without the sign of
 /// a zero: no "-0.000".
-#[must_use]
 pub fn tidy(value: f64, decimals: i32) -> f64 {
     let scale = 10f64.powi(decimals);
     // Adding a positive zero turns a negative one positive.
@@ -10,13 +9,12 @@ pub fn tidy(value: f64, decimals: i32) -> f64 {
 }
 
 /// A number with blanks between its thousands.
-#[must_use]
 pub fn grouped(value: f64, decimals: usize) -> String {
     let plain = format!("{value:.decimals$}");
-    let (whole, fraction) = plain.split_at(plain.find('.').unwrap_or(plain.len()));
+    let (integer, fraction) = plain.split_at(plain.find('.').unwrap_or(plain.len()));
     let mut text = String::new();
-    for (n, digit) in whole.chars().enumerate() {
-        if n > 0 && (whole.len() - n).is_multiple_of(3) {
+    for (n, digit) in integer.chars().enumerate() {
+        if n > 0 && (integer.len() - n).is_multiple_of(3) {
             text.push(' ');
         }
         text.push(digit);

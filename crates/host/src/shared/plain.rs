@@ -5,21 +5,19 @@
 //! file or a board is shown with such characters spelled out.
 
 /// The text with every control character as an escape of Rust, such as `\u{1b}`.
-#[must_use]
 pub fn plain(text: &str) -> String {
-    let mut shown = String::with_capacity(text.len());
+    let mut result = String::with_capacity(text.len());
     for c in text.chars() {
         if c.is_control() {
-            shown.extend(c.escape_default());
+            result.extend(c.escape_default());
         } else {
-            shown.push(c);
+            result.push(c);
         }
     }
-    shown
+    result
 }
 
 /// The text with its lines made plain; the middle of a very long line is omitted.
-#[must_use]
 pub fn readable_lines(text: &str) -> String {
     let lines: Vec<String> = text.split('\n').map(|line| shorten(&plain(line))).collect();
     lines.join("\n")
@@ -31,9 +29,9 @@ fn shorten(line: &str) -> String {
     if count <= 3 * SIDE {
         return line.to_owned();
     }
-    let begin: String = line.chars().take(SIDE).collect();
+    let start: String = line.chars().take(SIDE).collect();
     let end: String = line.chars().skip(count - SIDE).collect();
-    format!("{begin} [...{} characters...] {end}", count - 2 * SIDE)
+    format!("{start} [...{} characters...] {end}", count - 2 * SIDE)
 }
 
 #[cfg(test)]

@@ -30,8 +30,8 @@ impl Quantity {
     /// A coordinate or a length, mm.
     pub const LENGTH: Self = Self::up_to(1e6, "mm");
 
-    const fn up_to(most: f64, unit: &'static str) -> Self {
-        Self { most, unit }
+    const fn up_to(max: f64, unit: &'static str) -> Self {
+        Self { most: max, unit }
     }
 
     /// A parser of this quantity for clap.

@@ -8,7 +8,6 @@ use indicatif::{ProgressBar, ProgressStyle};
 ///
 /// # Panics
 /// The template is not well formed.
-#[must_use]
 pub fn bar(length: usize, template: &str) -> ProgressBar {
     let style = ProgressStyle::with_template(template).expect("the template is well formed");
     ProgressBar::new(length as u64).with_style(style)
@@ -19,7 +18,6 @@ pub struct Spinner(ProgressBar);
 
 impl Spinner {
     /// Begins to show the time, after these words.
-    #[must_use]
     pub fn new(words: &'static str) -> Self {
         let spinner = bar(0, "{spinner} {msg}, {elapsed}").with_message(words);
         spinner.enable_steady_tick(Duration::from_millis(100));

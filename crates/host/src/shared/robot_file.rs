@@ -49,7 +49,6 @@ pub struct RobotFile {
 
 impl RobotFile {
     /// The robot with this text.
-    #[must_use]
     pub(crate) fn with_text(text: String) -> Self {
         Self {
             path: None,
@@ -73,7 +72,6 @@ impl RobotFile {
     }
 
     /// The robot file at a path; without one, [`RobotFile::load`] searches for it.
-    #[must_use]
     pub fn at(path: Option<PathBuf>) -> Self {
         Self { path, text: None }
     }
@@ -93,7 +91,6 @@ impl RobotFile {
     }
 
     /// The file that was named with `--robot`.
-    #[must_use]
     pub fn given(&self) -> Option<&Path> {
         self.path.as_deref()
     }

@@ -70,7 +70,6 @@ impl Part {
     }
 
     /// The number of this part's pieces.
-    #[must_use]
     pub fn count(self, pieces: usize) -> usize {
         (0..pieces).filter(|piece| self.has(*piece)).count()
     }
@@ -84,12 +83,12 @@ impl Part {
         command: &C,
         robot: &RobotFile,
         pieces: usize,
-        mut one: impl FnMut(usize) -> T,
+        mut compute_piece: impl FnMut(usize) -> T,
     ) -> Result<(), Failure> {
         let robot = robot.text()?;
-        let mut found = BTreeMap::new();
+        let mut values = BTreeMap::new();
         for index in (0..pieces).filter(|index| self.has(*index)) {
-            found.insert(index, serde_json::to_value(one(index))?);
+            values.insert(index, serde_json::to_value(compute_piece(index))?);
         }
         let share = PartOutput {
             lizard: env!("CARGO_PKG_VERSION").to_owned(),
@@ -98,7 +97,7 @@ impl Part {
             robot,
             part: self,
             pieces,
-            found,
+            found: values,
         };
         Ok(json::line(&mut io::stdout().lock(), &share)?)
     }
@@ -151,7 +150,6 @@ impl Spread {
     }
 
     /// The only part to compute, if `--part` was given.
-    #[must_use]
     pub fn part(&self) -> Option<Part> {
         self.part
     }
@@ -168,12 +166,12 @@ impl Spread {
         if merged.len() != count || values.clone().any(|((index, _), at)| *index != at) {
             return Err(other_pieces());
         }
-        let of = |((_, value), _): ((&usize, &Value), usize)| T::deserialize(value);
-        let read: Result<Vec<T>, _> = values.map(of).collect();
-        read.map(Some).map_err(|_| other_pieces())
+        let deserialize = |((_, value), _): ((&usize, &Value), usize)| T::deserialize(value);
+        let pieces: Result<Vec<T>, _> = values.map(deserialize).collect();
+        pieces.map(Some).map_err(|_| other_pieces())
     }
 
-    /// Returns all pieces in order: computed by `one` from their indices, or read from parts in
+    /// Returns all pieces in order: computed by `compute_piece` from their indices, or read from parts in
     /// a merge. With `--part`, prints the pieces of that part and returns `None`.
     ///
     /// # Errors
@@ -182,17 +180,20 @@ impl Spread {
         &self,
         command: &impl Spreads,
         count: usize,
-        one: impl FnMut(usize) -> T,
+        compute_piece: impl FnMut(usize) -> T,
     ) -> Result<Option<Vec<T>>, Failure> {
         if let Some(part) = self.part {
-            return part.print(command, &self.robot, count, one).map(|()| None);
+            return part
+                .print(command, &self.robot, count, compute_piece)
+                .map(|()| None);
         }
-        let read = self.read(count)?;
-        Ok(Some(read.unwrap_or_else(|| (0..count).map(one).collect())))
+        let pieces = self.read(count)?;
+        Ok(Some(pieces.unwrap_or_else(|| {
+            (0..count).map(compute_piece).collect()
+        })))
     }
 
     /// The number of pieces computed here, for a progress bar.
-    #[must_use]
     pub fn own(&self, count: usize) -> usize {
         match (&self.merged, self.part) {
             (Some(_), _) => 0,
@@ -212,16 +213,16 @@ mod tests {
 
     #[test]
     fn every_piece_belongs_to_one_part() {
-        for of in [1, 2, 3, 7, 40] {
+        for part_count in [1, 2, 3, 7, 40] {
             for piece in 0..20 {
-                let parts = (1..=of).filter(|number| {
+                let parts = (1..=part_count).filter(|number| {
                     Part {
                         number: *number,
-                        of,
+                        of: part_count,
                     }
                     .has(piece)
                 });
-                assert_eq!(parts.count(), 1, "piece {piece} of {of} parts");
+                assert_eq!(parts.count(), 1, "piece {piece} of {part_count} parts");
             }
         }
     }

@@ -6,14 +6,13 @@ const MIN_SIMILARITY: f64 = 0.7;
 
 /// The end of a sentence: `; did you mean NAME?` with the name most like the word; nothing if
 /// none is like it.
-#[must_use]
 pub fn did_you_mean<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> String {
     let like = names
         .into_iter()
         .map(|name| (strsim::jaro(word, name), name))
         .filter(|(like, _)| *like > MIN_SIMILARITY);
-    let most = like.max_by(|a, b| a.0.total_cmp(&b.0));
-    most.map_or_else(String::new, |(_, name)| format!("; did you mean `{name}`?"))
+    let max = like.max_by(|a, b| a.0.total_cmp(&b.0));
+    max.map_or_else(String::new, |(_, name)| format!("; did you mean `{name}`?"))
 }
 
 #[cfg(test)]

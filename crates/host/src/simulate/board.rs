@@ -101,7 +101,6 @@ impl SimulatedBoard {
     }
 
     /// Powers on a board with an image that contains the robot already.
-    #[must_use]
     pub fn with_image(image: Image, fidelity: Fidelity, robot: &Robot) -> Self {
         let mut uno = Uno::with_image(image, fidelity);
         supplies::connect(&mut uno, robot);
@@ -121,7 +120,6 @@ impl SimulatedBoard {
     }
 
     /// A board around any simulated UNO. `pins` are those of the servos A1 to A4.
-    #[must_use]
     pub fn with_uno(uno: Uno, pins: [Pin; 4]) -> Self {
         Self {
             uno,
@@ -135,7 +133,6 @@ impl SimulatedBoard {
     }
 
     /// The pins of the servos A1 to A4.
-    #[must_use]
     pub fn pins(&self) -> [Pin; 4] {
         self.pins
     }
@@ -260,10 +257,10 @@ impl SimulatedBoard {
     }
 
     /// The cycles spent so far in the handlers of some vectors.
-    pub fn handler_cycles(&self, which: impl Fn(u8) -> bool) -> u64 {
+    pub fn handler_cycles(&self, is_counted: impl Fn(u8) -> bool) -> u64 {
         let all = self.uno.interrupts();
-        let those = all.iter().filter(|used| which(used.vector));
-        those.map(|used| used.cycles).sum()
+        let counted = all.iter().filter(|used| is_counted(used.vector));
+        counted.map(|used| used.cycles).sum()
     }
 
     /// Cycle of A1's first pulse among the edges not taken yet.

@@ -76,8 +76,8 @@ impl FromStr for LongFoot {
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let (leg, mm) = text.split_once('=').ok_or(LongFootError::Form)?;
-        let known = LEGS.iter().position(|name| name.eq_ignore_ascii_case(leg));
-        let leg = known.ok_or_else(|| LongFootError::Leg(leg.to_owned()))?;
+        let leg_index = LEGS.iter().position(|name| name.eq_ignore_ascii_case(leg));
+        let leg = leg_index.ok_or_else(|| LongFootError::Leg(leg.to_owned()))?;
         let number = mm.parse().ok().filter(|mm: &f64| mm.is_finite());
         let mm = number.ok_or_else(|| LongFootError::Number(mm.to_owned()))?;
         match mm.abs() <= MAX_FOOT_ERROR_MM {
@@ -158,15 +158,15 @@ fn course(args: &Args, robot: &Robot, gait: &CheckedGait) -> Result<Course, Fail
 /// The servos' targets from their pulses: sweeps from neutral, deg. A servo without a pulse
 /// keeps its previous target.
 fn targets(robot: &Robot, log: &FrameLog) -> Vec<[f64; 4]> {
-    let mut now = [0.0; 4];
+    let mut angles = [0.0; 4];
     let frames = log.widths.iter().map(|widths| {
         for (servo, width) in widths.iter().enumerate() {
             if *width > 0 {
                 let us = f64::from(*width) / CYCLES_PER_US as f64;
-                now[servo] = robot.servos()[servo].sweep(us);
+                angles[servo] = robot.servos()[servo].sweep(us);
             }
         }
-        now
+        angles
     });
     frames.collect()
 }

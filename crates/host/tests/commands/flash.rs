@@ -32,12 +32,12 @@ fn an_image_of_any_robot_is_made_in_an_empty_folder() {
             options,
         ]
         .concat();
-        let begin = Instant::now();
+        let start = Instant::now();
         let made = run_in(folder.path(), &arguments, "");
         assert!(
-            begin.elapsed() < Duration::from_secs(20),
+            start.elapsed() < Duration::from_secs(20),
             "{:?}",
-            begin.elapsed()
+            start.elapsed()
         );
         assert_eq!(made.err, "");
         let output = made.success();
@@ -76,8 +76,8 @@ fn a_port_that_is_not_there_is_named() {
     fs::write(folder.path().join("a.hex"), HEX).expect("a file");
     let arguments = ["flash", "/dev/no-such-port", "--image", "a.hex"];
     let message = run_in(folder.path(), &arguments, "").refusal();
-    let begin = "lizard: there is no /dev/no-such-port; USB serial ports of this machine: ";
-    assert!(message.starts_with(begin), "{message}");
+    let start = "lizard: there is no /dev/no-such-port; USB serial ports of this machine: ";
+    assert!(message.starts_with(start), "{message}");
 }
 
 #[test]

@@ -36,7 +36,7 @@ impl Board {
 fn matches_page(line: &str, shown: &str) -> bool {
     shown
         .strip_suffix("...")
-        .map_or(line == shown, |begin| line.starts_with(begin))
+        .map_or(line == shown, |start| line.starts_with(start))
 }
 
 #[test]

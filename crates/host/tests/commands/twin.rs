@@ -28,8 +28,8 @@ fn a_round_of_a_routine_leads_as_far_as_lizard_gaits_says_of_the_same_servos() {
         let walked = twin("tour", servo);
         assert_eq!(walked["round"], tour[key], "{servo}");
         for name in ["forward", "left", "turn"] {
-            let off = part(&walked["way"], name) - part(&tour[key], name);
-            assert!(off.abs() < 0.2, "{servo}, {name}: {off}");
+            let error = part(&walked["way"], name) - part(&tour[key], name);
+            assert!(error.abs() < 0.2, "{servo}, {name}: {error}");
         }
     }
     let lost = part(&tour["predicted"], "turn") - part(&tour["by_servos"], "turn");

@@ -119,8 +119,9 @@ impl Polynomial {
                     .iter()
                     .rev()
                     .fold(number(0), |sum, c| sum * &z + exact_number(*c));
-                let off = (sum - self.target(&x)) * power(&x, self.power) / (self.function)(&x);
-                off.to_f64().value().abs()
+                let deviation =
+                    (sum - self.target(&x)) * power(&x, self.power) / (self.function)(&x);
+                deviation.to_f64().value().abs()
             })
             .fold(0.0, f64::max)
     }

@@ -155,18 +155,18 @@ fn crank_directions(
     is_left: bool,
 ) -> Result<[Vector; 2], Fault> {
     let distance = to_point.length();
-    let (least, most) = ((crank - coupler).abs(), crank + coupler);
-    if !distance.is_finite() || !most.is_finite() {
+    let (min, max) = ((crank - coupler).abs(), crank + coupler);
+    if !distance.is_finite() || !max.is_finite() {
         return Err(Fault::NotFinite);
     }
     // A point on the rim that was computed elsewhere may miss it by rounding.
-    let slack = most * 4.0 * f64::EPSILON;
-    if distance > most + slack || distance < least - slack {
+    let slack = max * 4.0 * f64::EPSILON;
+    if distance > max + slack || distance < min - slack {
         return Err(Fault::OutOfReach {
             is_left,
             distance,
-            least,
-            most,
+            least: min,
+            most: max,
         });
     }
     if distance <= slack {

@@ -120,8 +120,8 @@ fn the_robot_returns_from_point_to_pose_to_point_over_its_whole_workspace() {
                 continue;
             };
             let (left, right) = (outward.theta_left, outward.theta_right);
-            let there = HEAD.forward_in(outward.assembly_mode, left, right);
-            worst = worst.max((there.unwrap().end_point - point).length());
+            let pose = HEAD.forward_in(outward.assembly_mode, left, right);
+            worst = worst.max((pose.unwrap().end_point - point).length());
             reached += 1;
         }
     }
@@ -146,20 +146,20 @@ fn coinciding_crank_tips_are_a_singularity_and_not_a_number() {
 #[test]
 fn the_solver_works_where_the_papers_a_vanishes() {
     // A = (d^2 - 2 K2 l3) / 2 = 0 where the right coupler points along -x.
-    let mut least = f64::INFINITY;
+    let mut smallest = f64::INFINITY;
     for step in 0..=1800 {
         let theta4 = f64::from(step) / 10.0;
         for theta1 in [100.0, 120.0, 138.59, 150.0] {
             let Ok(pose) = HEAD.forward(theta1, theta4) else {
                 continue;
             };
-            least = least.min((pose.gap.square() - 100.0 * pose.gap.x).abs());
+            smallest = smallest.min((pose.gap.square() - 100.0 * pose.gap.x).abs());
             let (theta2, theta3) = (pose.theta_left_coupler(), pose.theta_right_coupler());
             let gap = loop_gap(&HEAD, [theta1, theta2, theta3, theta4]);
             assert!(gap[0].hypot(gap[1]) < 1e-12);
         }
     }
-    assert!(least < 10.0, "the sweep passes A = 0 nearby, {least}");
+    assert!(smallest < 10.0, "the sweep passes A = 0 nearby, {smallest}");
 }
 
 #[test]

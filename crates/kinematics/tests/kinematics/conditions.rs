@@ -106,8 +106,8 @@ proptest! {
                 prop_assert_eq!(value, conditions[what.name()], "{} {}", end, what);
             }
         }
-        let least = s.margins.iter().map(|(_, value)| value).fold(1.0, f64::min);
-        prop_assert_eq!(s.margins.min().1, least);
+        let smallest = s.margins.iter().map(|(_, value)| value).fold(1.0, f64::min);
+        prop_assert_eq!(s.margins.min().1, smallest);
     }
 
     #[test]
@@ -116,12 +116,12 @@ proptest! {
     ) {
         let mut expected = Vec::new();
         for (what, value) in s.conditions() {
-            let (least, most) = range(&limits, what.name());
-            if value < least {
+            let (min, max) = range(&limits, what.name());
+            if value < min {
                 let crossed = Check::UNCROSSED.contains(&what);
-                expected.push((what, value, if crossed { 0.0 } else { least }));
-            } else if value > most {
-                expected.push((what, value, most));
+                expected.push((what, value, if crossed { 0.0 } else { min }));
+            } else if value > max {
+                expected.push((what, value, max));
             }
         }
         let found: Vec<_> = limits.violations(&s).map(|v| (v.what, v.value, v.limit)).collect();
@@ -143,11 +143,11 @@ proptest! {
             (&Check::LEG, limits.leg),
             (&Check::STROKE, limits.stroke_min),
         ];
-        for (checks, least) in of_kinds {
+        for (checks, min) in of_kinds {
             for &what in checks {
-                prop_assert_eq!(limits.broken(what, least), None);
-                let broken = limits.broken(what, least.next_down()).unwrap();
-                prop_assert_eq!((broken.what, broken.limit), (what, least));
+                prop_assert_eq!(limits.broken(what, min), None);
+                let broken = limits.broken(what, min.next_down()).unwrap();
+                prop_assert_eq!((broken.what, broken.limit), (what, min));
             }
         }
         for what in Check::STROKE {

@@ -72,9 +72,9 @@ proptest! {
                     // Nothing went to zero on the way either: the arm ends there.
                     let tip = bars.left_shaft() + Vector::direction(a.theta_left) * bars.crank_left;
                     let reach = (point - tip).length();
-                    let off = (reach - bars.coupler_left).abs();
+                    let error = (reach - bars.coupler_left).abs();
                     let size = bars.crank_left + bars.coupler_left + bars.base;
-                    prop_assert!(off < 1e-6 * size, "{off} of {size}: {a:?}");
+                    prop_assert!(error < 1e-6 * size, "{error} of {size}: {a:?}");
                 }
             }
             if let Ok(pose) = bars.reach(point) {

@@ -138,7 +138,7 @@ fn margins_have_ten_names_and_a_least() {
         names.join(" "),
         "type2_head type2_tail type1_a1 type1_a2 type1_a3 type1_a4 leg_lf leg_rf leg_rh leg_lh"
     );
-    let (least, value) = margins.min();
-    assert!(Check::LEG.contains(&least));
+    let (min, value) = margins.min();
+    assert!(Check::LEG.contains(&min));
     assert!((value - 41.409622f64.to_radians().sin()).abs() < 1e-12);
 }

@@ -23,7 +23,6 @@ pub struct Assembly {
 
 impl Assembly {
     /// Builds the bodies of a robot, without checking that they fit.
-    #[must_use]
     pub fn new(robot: &Robot) -> Self {
         let mut builder = Builder::new(robot);
         chassis::add(&mut builder);
@@ -42,37 +41,31 @@ impl Assembly {
     }
 
     /// The robot of this assembly.
-    #[must_use]
     pub fn robot(&self) -> &Robot {
         &self.robot
     }
 
     /// The heights of its layers.
-    #[must_use]
     pub fn stack(&self) -> &Stack {
         &self.stack
     }
 
     /// The plan of its pivots and anchors.
-    #[must_use]
     pub fn layout(&self) -> &Layout {
         &self.layout
     }
 
     /// Every body that the robot has.
-    #[must_use]
     pub fn bodies(&self) -> &[Body] {
         &self.bodies
     }
 
     /// Bodies that may replace others: the struts of the other kind.
-    #[must_use]
     pub fn alternatives(&self) -> &[Body] {
         &self.instead
     }
 
     /// The body with a name.
-    #[must_use]
     pub fn body(&self, name: &str) -> Option<&Body> {
         self.bodies.iter().find(|body| body.name == name)
     }
@@ -85,13 +78,11 @@ impl Assembly {
     }
 
     /// True if two bodies may touch: they move together, or are made to meet.
-    #[must_use]
     pub fn may_touch(&self, a: &Body, b: &Body) -> bool {
         a.mount == b.mount || a.meets.contains(&b.name) || b.meets.contains(&a.name)
     }
 
     /// The place of a mount's frame at a pose, with legs that do not lag.
-    #[must_use]
     pub fn place(&self, mount: Mount, pose: &Solution) -> Placement {
         self.place_on(mount, &Cranks::of(self.robot.lizard(), pose))
     }

@@ -110,23 +110,26 @@ impl<'a> Builder<'a> {
     }
 
     /// A hole through which a screw turns.
-    pub fn hole(&self, at: Vector) -> Shape {
-        Shape::disc(at, self.parts.screw.diameter / 2.0 + self.parts.fit / 2.0)
+    pub fn hole(&self, centre: Vector) -> Shape {
+        Shape::disc(
+            centre,
+            self.parts.screw.diameter / 2.0 + self.parts.fit / 2.0,
+        )
     }
 
     /// A hole into which a screw cuts its thread.
-    pub fn thread(&self, at: Vector) -> Shape {
-        Shape::disc(at, 0.43 * self.parts.screw.diameter)
+    pub fn thread(&self, centre: Vector) -> Shape {
+        Shape::disc(centre, 0.43 * self.parts.screw.diameter)
     }
 
     /// The recess for a sunk screw head.
-    pub fn sink(&self, at: Vector) -> Shape {
-        Shape::disc(at, self.parts.screw.head / 2.0 + self.parts.fit)
+    pub fn sink(&self, centre: Vector) -> Shape {
+        Shape::disc(centre, self.parts.screw.head / 2.0 + self.parts.fit)
     }
 
     /// The pocket for a nut.
-    pub fn pocket(&self, at: Vector) -> Shape {
-        Shape::hexagon(at, self.parts.screw.nut + self.parts.fit)
+    pub fn pocket(&self, centre: Vector) -> Shape {
+        Shape::hexagon(centre, self.parts.screw.nut + self.parts.fit)
     }
 
     /// Adds a body.
@@ -165,9 +168,13 @@ impl<'a> Builder<'a> {
     }
 
     /// Adds a printed ring around a screw.
-    pub fn spacer(&mut self, name: String, mount: Mount, at: Vector, z: Span, meets: &[&str]) {
-        let hole = self.hole(at);
-        let ring = Prism::new([Shape::disc(at, hole.radius + self.parts.wall)], [hole], z);
+    pub fn spacer(&mut self, name: String, mount: Mount, centre: Vector, z: Span, meets: &[&str]) {
+        let hole = self.hole(centre);
+        let ring = Prism::new(
+            [Shape::disc(centre, hole.radius + self.parts.wall)],
+            [hole],
+            z,
+        );
         self.printed(name, mount, [ring]);
         self.allow_contact(meets);
     }

@@ -37,15 +37,15 @@ fn at(x: f64, y: f64) -> Vector {
 }
 
 pub fn add(builder: &mut Builder) {
-    plate(builder);
+    add_plate(builder);
     for servo in 0..4 {
-        case(builder, servo);
+        add_case(builder, servo);
     }
     leads::add(builder);
-    battery(builder);
+    add_battery(builder);
     fittings::add(builder);
-    deck(builder);
-    board(builder);
+    add_deck(builder);
+    add_board(builder);
 }
 
 /// A servo's case from above, grown by `air` on each side.
@@ -93,7 +93,7 @@ fn standoffs() -> [Vector; 4] {
     [at(-x, y), at(x, y), at(x, -y), at(-x, -y)]
 }
 
-fn plate(builder: &mut Builder) {
+fn add_plate(builder: &mut Builder) {
     let (stack, layout) = (builder.stack, builder.layout);
     let plate = layout.plate;
     let seats: Vec<_> = (0..4).map(|servo| seat(builder, servo, 0.0)).collect();
@@ -166,7 +166,7 @@ fn numbers(builder: &Builder) -> Vec<Shape> {
     strokes.collect()
 }
 
-fn case(builder: &mut Builder, servo: usize) {
+fn add_case(builder: &mut Builder, servo: usize) {
     let (name, _) = names(servo);
     let body = builder.parts.servo;
     let bottom = builder.stack.servo;
@@ -197,14 +197,14 @@ fn case(builder: &mut Builder, servo: usize) {
     }
 }
 
-fn battery(builder: &mut Builder) {
+fn add_battery(builder: &mut Builder) {
     let [x, y, z] = builder.parts.battery;
     let block = Shape::rectangle(Vector::default(), at(x, y), 0.0);
     let block = Prism::solid([block], [0.0, z]);
     builder.body("battery", Kind::Battery, Mount::Chassis, [block]);
 }
 
-fn deck(builder: &mut Builder) {
+fn add_deck(builder: &mut Builder) {
     let (stack, parts) = (builder.stack, builder.parts);
     let [x, y] = STANDOFFS;
     let bar = |a: (f64, f64), b: (f64, f64)| Shape::bar(at(a.0, a.1), at(b.0, b.1), 5.0);
@@ -243,7 +243,7 @@ fn deck(builder: &mut Builder) {
     }
 }
 
-fn board(builder: &mut Builder) {
+fn add_board(builder: &mut Builder) {
     let low = builder.stack.boss[1];
     let [x, y, z] = UNO;
     let top = low + UNO_BOARD;

@@ -15,8 +15,8 @@ pub fn add(builder: &mut Builder) {
         let Stack {
             link, lower, upper, ..
         } = builder.stack;
-        bar(builder, left, lower);
-        bar(builder, right, upper);
+        add_bar(builder, left, lower);
+        add_bar(builder, right, upper);
         for (servo, top, ring) in [(left, lower[1], None), (right, upper[1], Some(upper[0]))] {
             let tip = Vector::new(builder.layout.crank[servo], 0.0);
             let (mount, meets) = (Mount::Link(servo), [&*coupler(servo)]);
@@ -41,7 +41,7 @@ pub fn add(builder: &mut Builder) {
     }
 }
 
-fn bar(builder: &mut Builder, servo: usize, z: Span) {
+fn add_bar(builder: &mut Builder, servo: usize, z: Span) {
     let from = Vector::default();
     let to = Vector::new(coupler_length(builder.robot, servo), 0.0);
     let layer = |hole: Option<Shape>, z: Span| {

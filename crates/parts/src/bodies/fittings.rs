@@ -134,21 +134,21 @@ fn tie_of_switch() -> f64 {
 fn beside(builder: &Builder) -> Option<f64> {
     let [across, _, _] = builder.parts.battery;
     let x = (across + STRAP[1]) / 2.0;
-    let least = x + STRAP_SLOT[1] / 2.0 + builder.parts.wall;
-    (builder.layout.plate.half.x >= least).then_some(x)
+    let min = x + STRAP_SLOT[1] / 2.0 + builder.parts.wall;
+    (builder.layout.plate.half.x >= min).then_some(x)
 }
 
 pub fn add(builder: &mut Builder) {
-    below(builder);
-    on_deck(builder);
-    plugs(builder);
-    strap(builder);
+    add_below_plate(builder);
+    add_on_deck(builder);
+    add_plugs(builder);
+    add_strap(builder);
 }
 
 /// Adds a fitting as a block.
-fn block(builder: &mut Builder, fitting: Fitting, middle: Vector, low: f64) {
+fn add_block(builder: &mut Builder, fitting: Fitting, middle: Vector, low: f64) {
     let size = fitting.facts().size;
-    sized(
+    add_sized_block(
         builder,
         fitting,
         fitting.name().to_owned(),
@@ -158,7 +158,7 @@ fn block(builder: &mut Builder, fitting: Fitting, middle: Vector, low: f64) {
     );
 }
 
-fn sized(
+fn add_sized_block(
     builder: &mut Builder,
     fitting: Fitting,
     name: String,
@@ -172,7 +172,7 @@ fn sized(
 }
 
 /// What hangs under the deck and under the plate.
-fn below(builder: &mut Builder) {
+fn add_below_plate(builder: &mut Builder) {
     let stack = builder.stack;
     // Under the strap, and under the heads of the standoffs' screws.
     let belly = stack.plate[0] - STRAP[1].max(builder.parts.screw.head_height) - 0.3;
@@ -196,32 +196,32 @@ fn below(builder: &mut Builder) {
         (Fitting::Supply, strips, supply, belly),
         (Fitting::Capacitor, strips, capacitor, belly),
     ] {
-        block(builder, fitting, at(x, y), ceiling - length(fitting, 2));
+        add_block(builder, fitting, at(x, y), ceiling - length(fitting, 2));
     }
 }
 
 /// What lies on the deck's wings.
-fn on_deck(builder: &mut Builder) {
+fn add_on_deck(builder: &mut Builder) {
     let top = builder.stack.deck[1];
     let half = |fitting: Fitting| length(fitting, 0) / 2.0;
     let x = |fitting: Fitting| ON_WING + half(fitting);
-    block(
+    add_block(
         builder,
         Fitting::Signals,
         at(-x(Fitting::Signals), signals()),
         top,
     );
     let front = WING[2] - 0.5 - length(Fitting::Radio, 1) / 2.0;
-    block(builder, Fitting::Radio, at(-x(Fitting::Radio), front), top);
-    block(builder, Fitting::Fuse, at(x(Fitting::Fuse), fuse()), top);
-    block(
+    add_block(builder, Fitting::Radio, at(-x(Fitting::Radio), front), top);
+    add_block(builder, Fitting::Fuse, at(x(Fitting::Fuse), fuse()), top);
+    add_block(
         builder,
         Fitting::Switch,
         at(x(Fitting::Switch), switch()),
         top,
     );
     let way = fuse() - (length(Fitting::Fuse, 1) + length(Fitting::Plus, 1)) / 2.0 - 0.3;
-    block(builder, Fitting::Plus, at(x(Fitting::Plus), way), top);
+    add_block(builder, Fitting::Plus, at(x(Fitting::Plus), way), top);
     // From each signal to the middle way: two over one way, two over two.
     let outside = -ON_WING - length(Fitting::Signals, 0) - 0.4 - half(Fitting::Resistor);
     let row = length(Fitting::Resistor, 0) + 0.4;
@@ -229,20 +229,20 @@ fn on_deck(builder: &mut Builder) {
     for (number, (out, ways)) in (1..).zip(places) {
         let middle = at(outside - out * row, signals() + ways * PITCH);
         let (size, name) = (Fitting::Resistor.facts().size, format!("resistor {number}"));
-        sized(builder, Fitting::Resistor, name, middle, top + 4.0, size);
+        add_sized_block(builder, Fitting::Resistor, name, middle, top + 4.0, size);
     }
 }
 
 /// The battery's plug, before its end or, where a long battery leaves no room, on it; and
 /// the plug in the board's socket.
-fn plugs(builder: &mut Builder) {
+fn add_plugs(builder: &mut Builder) {
     let [_, battery, high] = builder.parts.battery;
     let [wide, thick, tall] = Fitting::Plug.facts().size;
     let end = battery / 2.0 + 0.3;
     let name = Fitting::Plug.name().to_owned();
     if end + thick <= STANDOFFS[1] - STANDOFF {
         let middle = at(0.0, end + thick / 2.0);
-        sized(
+        add_sized_block(
             builder,
             Fitting::Plug,
             name,
@@ -253,7 +253,7 @@ fn plugs(builder: &mut Builder) {
     } else {
         let middle = at(0.0, STRAP[0] / 2.0 + 1.0 + tall / 2.0);
         let low = high + 0.2;
-        sized(
+        add_sized_block(
             builder,
             Fitting::Plug,
             name,
@@ -266,11 +266,11 @@ fn plugs(builder: &mut Builder) {
     let [_, long, high] = Fitting::RoundPlug.facts().size;
     let y = -(UNO[1] + long) / 2.0 - beyond - 0.1;
     let low = builder.stack.boss[1] + UNO_BOARD + above - high / 2.0;
-    block(builder, Fitting::RoundPlug, at(SOCKET_AT, y), low);
+    add_block(builder, Fitting::RoundPlug, at(SOCKET_AT, y), low);
 }
 
 /// The strap around battery and plate.
-fn strap(builder: &mut Builder) {
+fn add_strap(builder: &mut Builder) {
     let stack = builder.stack;
     let [battery_x, battery_y, battery_z] = builder.parts.battery;
     let [wide, thick] = STRAP;

@@ -34,7 +34,6 @@ pub struct Layout {
 
 impl Layout {
     /// The layout of a robot.
-    #[must_use]
     pub fn new(robot: &Robot) -> Self {
         let lizard = robot.lizard();
         let (mut crank, mut arm) = ([0.0; 4], [0.0; 4]);

@@ -41,15 +41,15 @@ fn leaf_length(width: f64) -> f64 {
 
 pub fn add(builder: &mut Builder) {
     for servo in 0..4 {
-        crank(builder, servo);
-        follower(builder, servo);
-        coupler(builder, servo);
-        foot(builder, servo);
-        screws(builder, servo);
+        add_crank(builder, servo);
+        add_follower(builder, servo);
+        add_coupler(builder, servo);
+        add_foot(builder, servo);
+        add_screws(builder, servo);
     }
 }
 
-fn crank(builder: &mut Builder, servo: usize) {
+fn add_crank(builder: &mut Builder, servo: usize) {
     let (_, leg) = names(servo);
     let (stack, parts) = (builder.stack, builder.parts);
     let LegPlan { anchor, joint, .. } = builder.layout.legs[servo];
@@ -77,7 +77,7 @@ fn crank(builder: &mut Builder, servo: usize) {
     builder.printed(format!("crank {leg}"), Mount::Crank(servo), prisms);
 }
 
-fn follower(builder: &mut Builder, servo: usize) {
+fn add_follower(builder: &mut Builder, servo: usize) {
     let (_, leg) = names(servo);
     let (pivot, joint) = (Vector::default(), builder.layout.legs[servo].joint);
     let (stack, half) = (builder.stack, builder.half_bar());
@@ -103,7 +103,7 @@ fn clamp_seat(builder: &Builder) -> f64 {
     builder.stack.leg_coupler[1] - builder.parts.screw.head_height - PLAY
 }
 
-fn coupler(builder: &mut Builder, servo: usize) {
+fn add_coupler(builder: &mut Builder, servo: usize) {
     let (_, leg) = names(servo);
     let stack = builder.stack;
     let ground = builder.robot.lizard().leg.ground;
@@ -123,7 +123,7 @@ fn coupler(builder: &mut Builder, servo: usize) {
     builder.printed(format!("leg coupler {leg}"), Mount::Foot(servo), prisms);
 }
 
-fn foot(builder: &mut Builder, servo: usize) {
+fn add_foot(builder: &mut Builder, servo: usize) {
     let (_, leg) = names(servo);
     let stack = builder.stack;
     let at = builder.layout.legs[servo].foot;
@@ -181,7 +181,7 @@ fn foot(builder: &mut Builder, servo: usize) {
     builder.body(format!("pad {leg}"), Kind::Pad, mount, pad);
 }
 
-fn screws(builder: &mut Builder, servo: usize) {
+fn add_screws(builder: &mut Builder, servo: usize) {
     let (_, leg) = names(servo);
     let (stack, parts) = (builder.stack, builder.parts);
     let LegPlan { anchor, joint, .. } = builder.layout.legs[servo];

@@ -30,10 +30,10 @@ pub const POCKET: f64 = 1.5;
 
 pub fn add(builder: &mut Builder) {
     for servo in 0..4 {
-        horn(builder, servo);
-        link(builder, servo);
-        horn_screws(builder, servo);
-        anchor(builder, servo);
+        add_horn(builder, servo);
+        add_link(builder, servo);
+        add_horn_screws(builder, servo);
+        add_anchor(builder, servo);
     }
 }
 
@@ -52,7 +52,7 @@ pub fn arm(horn: &Horn, grown: f64) -> Vec<Shape> {
     ]
 }
 
-fn horn(builder: &mut Builder, servo: usize) {
+fn add_horn(builder: &mut Builder, servo: usize) {
     let (name, _) = names(servo);
     let horn = builder.parts.horn;
     let [low, _] = builder.stack.horn;
@@ -73,7 +73,7 @@ fn horn(builder: &mut Builder, servo: usize) {
     builder.allow_contact(&[format!("servo {name}")]);
 }
 
-fn link(builder: &mut Builder, servo: usize) {
+fn add_link(builder: &mut Builder, servo: usize) {
     let (name, _) = names(servo);
     let (parts, stack, layout) = (builder.parts, builder.stack, builder.layout);
     let hub = Vector::default();
@@ -95,14 +95,17 @@ fn link(builder: &mut Builder, servo: usize) {
     ];
     let horn_hub = Shape::disc(hub, parts.horn.hub / 2.0 + parts.fit);
     let holes = [builder.hole(tip), builder.hole(side)];
-    let pilots = horn_holes(&parts.horn).map(|at| Shape::disc(at, PILOT));
+    let pilots = horn_holes(&parts.horn).map(|position| Shape::disc(position, PILOT));
     let pocket = arm(&parts.horn, POCKET * parts.fit);
     let anchor_hole = builder.hole(anchor);
     let [low, high] = stack.link;
     // The holes and pockets, each with its heights.
     let cuts = [
         (&holes[..], [low, high]),
-        (&[tip, side].map(|at| builder.pocket(at)), [low, stack.held]),
+        (
+            &[tip, side].map(|position| builder.pocket(position)),
+            [low, stack.held],
+        ),
         (&[horn_hub], [low, stack.horn[0]]),
         (&pilots, [low, stack.horn[0]]),
         (&pocket, stack.horn),
@@ -128,7 +131,7 @@ fn horn_holes(horn: &Horn) -> [Vector; 2] {
     HORN_SCREWS.map(|share| Vector::new(share * horn.arm, 0.0))
 }
 
-fn horn_screws(builder: &mut Builder, servo: usize) {
+fn add_horn_screws(builder: &mut Builder, servo: usize) {
     let (name, _) = names(servo);
     let top = builder.stack.horn[0] + builder.parts.horn.thickness;
     let [radius, high] = HORN_SCREW_HEAD;
@@ -145,21 +148,21 @@ fn horn_screws(builder: &mut Builder, servo: usize) {
 }
 
 /// The screw that holds the strut, and the ring that fills the gap below the link.
-fn anchor(builder: &mut Builder, servo: usize) {
+fn add_anchor(builder: &mut Builder, servo: usize) {
     let (name, leg) = names(servo);
     let (stack, parts) = (builder.stack, builder.parts);
-    let at = builder.layout.legs[servo].anchor;
+    let position = builder.layout.legs[servo].anchor;
     let strut = builder.strut(leg);
     let ring = [stack.on_hook, stack.link[0] - PLAY];
     // Beside the spring's coil.
-    let thin = Shape::disc(at, parts.screw.diameter / 2.0 + RING);
-    let prism = Prism::new([thin], [builder.hole(at)], ring);
+    let thin = Shape::disc(position, parts.screw.diameter / 2.0 + RING);
+    let prism = Prism::new([thin], [builder.hole(position)], ring);
     builder.printed(format!("strut ring {name}"), Mount::Link(servo), [prism]);
     builder.allow_contact(&[&strut]);
     let (mount, screw) = (Mount::Link(servo), format!("anchor {name}"));
     builder.bolt(&Bolt {
         nut: stack.strut[0] - PLAY,
         meets: &[&strut],
-        ..Bolt::new(&screw, mount, at, stack.sunk[0], Direction::Down)
+        ..Bolt::new(&screw, mount, position, stack.sunk[0], Direction::Down)
     });
 }

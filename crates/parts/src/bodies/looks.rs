@@ -68,12 +68,12 @@ pub fn add(builder: &mut Builder, end: End) -> Looks {
         }
         End::Tail => {
             let shape = tail(builder, left, &neutral, length);
-            under_lower(builder, left, shape);
+            add_under_lower_link(builder, left, shape);
             let shape = tail(builder, right, &neutral, length);
             (THICK, format!("tail {}", names(right).0), shape)
         }
     };
-    on_upper(builder, right, &name, upper);
+    add_on_upper_link(builder, right, &name, upper);
     Looks {
         below,
         above: THICK,
@@ -94,9 +94,9 @@ fn out(builder: &Builder, servo: usize, neutral: &Solution) -> [Vector; 2] {
     [point, Vector::new(ahead.dot(along), along.cross(ahead))]
 }
 
-fn turned(way: Vector, by: f64) -> Vector {
+fn turned(direction: Vector, by: f64) -> Vector {
     let by = Vector::direction(by);
-    way * by.x + way.left() * by.y
+    direction * by.x + direction.left() * by.y
 }
 
 fn tail(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> Flat {
@@ -143,15 +143,15 @@ fn second(builder: &Builder, servo: usize) -> Vector {
     Vector::new(coupler_length(builder.robot, servo) - BACK, 0.0)
 }
 
-fn on_upper(builder: &mut Builder, servo: usize, name: &str, (add, mut cut): Flat) {
+fn add_on_upper_link(builder: &mut Builder, servo: usize, name: &str, (add, mut cut): Flat) {
     let low = builder.stack.upper[1];
     cut.push(builder.hole(second(builder, servo)));
     let z = [low, low + THICK];
     builder.printed(name, Mount::Coupler(servo), [Prism::new(add, cut, z)]);
-    screw(builder, name, servo, z[1]);
+    add_screw(builder, name, servo, z[1]);
 }
 
-fn under_lower(builder: &mut Builder, servo: usize, (add, mut cut): Flat) {
+fn add_under_lower_link(builder: &mut Builder, servo: usize, (add, mut cut): Flat) {
     let high = builder.stack.lower[0];
     cut.push(builder.thread(second(builder, servo)));
     let z = [high - THICK, high];
@@ -159,11 +159,11 @@ fn under_lower(builder: &mut Builder, servo: usize, (add, mut cut): Flat) {
     builder.printed(&name, Mount::Coupler(servo), [Prism::new(add, cut, z)]);
     // The upper coupler turns over this head.
     let seat = builder.stack.lower[1] - builder.parts.screw.head_height - PLAY;
-    screw(builder, &name, servo, seat);
+    add_screw(builder, &name, servo, seat);
 }
 
-fn screw(builder: &mut Builder, of: &str, servo: usize, head: f64) {
-    let at = second(builder, servo);
-    let bolt = Bolt::new(of, Mount::Coupler(servo), at, head, Direction::Down);
+fn add_screw(builder: &mut Builder, of: &str, servo: usize, head: f64) {
+    let position = second(builder, servo);
+    let bolt = Bolt::new(of, Mount::Coupler(servo), position, head, Direction::Down);
     builder.screw(&bolt, SCREW);
 }

@@ -13,8 +13,8 @@ pub fn coupler(servo: usize) -> String {
 }
 
 /// The name of a leg's strut, which has a slot or is rigid.
-pub fn strut(slotted: bool, leg: &str) -> String {
-    match slotted {
+pub fn strut(is_slotted: bool, leg: &str) -> String {
+    match is_slotted {
         true => format!("strut {leg}"),
         false => format!("rigid strut {leg}"),
     }

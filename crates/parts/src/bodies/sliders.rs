@@ -33,7 +33,6 @@ pub struct SliderLengths {
 
 impl SliderLengths {
     /// The lengths for a side whose pins may be from `shortest` to `longest` mm apart.
-    #[must_use]
     pub fn new(side: Side, [shortest, longest]: [f64; 2]) -> Self {
         let sleeve = shortest - SHORTEST_GAP;
         Self {
@@ -47,13 +46,13 @@ impl SliderLengths {
 pub fn add(builder: &mut Builder) {
     for side in Side::ALL {
         let lengths = SliderLengths::new(side, slider_range(builder.robot, side));
-        sleeve(builder, side, &lengths);
-        rod(builder, side, &lengths);
-        pins(builder, side);
+        add_sleeve(builder, side, &lengths);
+        add_rod(builder, side, &lengths);
+        add_pins(builder, side);
     }
 }
 
-fn sleeve(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
+fn add_sleeve(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
     let (parts, stack) = (builder.parts, builder.stack);
     let half = builder.half_bar();
     let pin = Vector::default();
@@ -81,7 +80,7 @@ fn sleeve(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
     builder.allow_contact(&[format!("rod {side}")]);
 }
 
-fn rod(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
+fn add_rod(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
     let half = builder.half_bar();
     let pin = Vector::default();
     let middle = Vector::new(-lengths.rod / 2.0, lengths.beside);
@@ -93,7 +92,7 @@ fn rod(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
     builder.printed(format!("rod {side}"), Mount::Rod(side), [prism]);
 }
 
-fn pins(builder: &mut Builder, side: Side) {
+fn add_pins(builder: &mut Builder, side: Side) {
     let [front, rear] = side.servos();
     let stack = builder.stack;
     let layout = builder.layout;

@@ -26,7 +26,7 @@ pub fn add(builder: &mut Builder) {
         let strut = body(builder, servo, builder.slotted());
         builder.bodies.push(strut);
         if builder.slotted() {
-            spring(builder, servo);
+            add_spring(builder, servo);
         }
     }
 }
@@ -38,13 +38,13 @@ pub fn alternatives(builder: &Builder) -> Vec<Body> {
         .collect()
 }
 
-fn body(builder: &Builder, servo: usize, slotted: bool) -> Body {
+fn body(builder: &Builder, servo: usize, is_slotted: bool) -> Body {
     let (_, leg) = names(servo);
     Body {
-        name: names::strut(slotted, leg),
+        name: names::strut(is_slotted, leg),
         kind: Kind::Printed,
         mount: Mount::Strut(servo),
-        prisms: match slotted {
+        prisms: match is_slotted {
             true => with_slot(builder, servo),
             false => vec![rigid(builder, servo)],
         },
@@ -83,7 +83,7 @@ fn rigid(builder: &Builder, servo: usize) -> Prism {
     Prism::new([bar], holes, builder.stack.rigid)
 }
 
-fn spring(builder: &mut Builder, servo: usize) {
+fn add_spring(builder: &mut Builder, servo: usize) {
     let (name, leg) = names(servo);
     let (stack, parts) = (builder.stack, builder.parts);
     let length = builder.layout.legs[servo].strut_length;

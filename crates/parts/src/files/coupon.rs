@@ -26,14 +26,13 @@ const SLEEVE: f64 = 10.0;
 const GAUGE: f64 = 30.0;
 
 /// The coupon, and a piece of rod to try its sleeves with.
-#[must_use]
 pub fn coupon(parts: &Parts) -> [Part; 2] {
     let (servo, horn) = (&parts.servo, &parts.horn);
     let pitch = servo.width + 2.0 * STEP * f64::from(COLUMNS) + 4.0;
     // From below: opening, pocket, hole and dots, sleeve.
-    let most = STEP * f64::from(COLUMNS);
-    let opening = 3.0 + LEAD[1] + most + servo.length / 2.0;
-    let pocket = opening + servo.length / 2.0 + most + 3.0 + horn.hub / 2.0;
+    let max = STEP * f64::from(COLUMNS);
+    let opening = 3.0 + LEAD[1] + max + servo.length / 2.0;
+    let pocket = opening + servo.length / 2.0 + max + 3.0 + horn.hub / 2.0;
     let hole = pocket + horn.arm + 5.0;
     let sleeve = hole + 6.0 + SLEEVE / 2.0;
     let top = sleeve + SLEEVE / 2.0 + 2.0;

@@ -9,7 +9,6 @@ use crate::files::sheet::{Sheet, extent};
 use crate::layers::outline::Loop;
 
 /// The text of a file.
-#[must_use]
 pub fn dxf(sheet: &Sheet, kerf: f64) -> String {
     let mut file = Groups::default();
     let [low, high] = extent(sheet);
@@ -17,26 +16,26 @@ pub fn dxf(sheet: &Sheet, kerf: f64) -> String {
     file.add(999, format!(
         "{name}: mm, 1:1, {thick:.2} mm thick; lines are the part's edge, cut {half:.2} mm outside (kerf {kerf} mm)"
     ));
-    file.all(&[
+    file.add_all(&[
         (0, "SECTION"),
         (2, "HEADER"),
         (9, "$ACADVER"),
         (1, "AC1009"),
     ]);
-    file.all(&[(9, "$INSUNITS"), (70, "4"), (9, "$MEASUREMENT"), (70, "1")]);
+    file.add_all(&[(9, "$INSUNITS"), (70, "4"), (9, "$MEASUREMENT"), (70, "1")]);
     file.add(9, "$EXTMIN");
-    file.point(10, low.x, low.y);
+    file.add_point(10, low.x, low.y);
     file.add(9, "$EXTMAX");
-    file.point(10, high.x, high.y);
+    file.add_point(10, high.x, high.y);
     file.add(0, "ENDSEC");
-    file.layers(sheet);
-    file.all(&[(0, "SECTION"), (2, "ENTITIES")]);
+    file.add_layers(sheet);
+    file.add_all(&[(0, "SECTION"), (2, "ENTITIES")]);
     for layer in &sheet.layers {
         for line in &layer.loops {
-            file.line(line, &layer.name);
+            file.add_line(line, &layer.name);
         }
     }
-    file.all(&[(0, "ENDSEC"), (0, "EOF")]);
+    file.add_all(&[(0, "ENDSEC"), (0, "EOF")]);
     file.0
 }
 
@@ -49,51 +48,51 @@ impl Groups {
         let _ = write!(self.0, "{code:>3}\r\n{value}\r\n");
     }
 
-    fn all(&mut self, pairs: &[(u32, &str)]) {
+    fn add_all(&mut self, pairs: &[(u32, &str)]) {
         for (code, value) in pairs {
             self.add(*code, value);
         }
     }
 
-    fn real(&mut self, code: u32, value: f64) {
+    fn add_real(&mut self, code: u32, value: f64) {
         // Without the sign of a zero.
         let value = (value * 1e9).round() / 1e9 + 0.0;
         self.add(code, format!("{value:.9}"));
     }
 
-    fn point(&mut self, code: u32, x: f64, y: f64) {
-        self.real(code, x);
-        self.real(code + 10, y);
-        self.real(code + 20, 0.0);
+    fn add_point(&mut self, code: u32, x: f64, y: f64) {
+        self.add_real(code, x);
+        self.add_real(code + 10, y);
+        self.add_real(code + 20, 0.0);
     }
 
-    fn layers(&mut self, sheet: &Sheet) {
-        self.all(&[(0, "SECTION"), (2, "TABLES"), (0, "TABLE"), (2, "LAYER")]);
+    fn add_layers(&mut self, sheet: &Sheet) {
+        self.add_all(&[(0, "SECTION"), (2, "TABLES"), (0, "TABLE"), (2, "LAYER")]);
         self.add(70, sheet.layers.len());
         for (number, layer) in sheet.layers.iter().enumerate() {
-            self.all(&[(0, "LAYER"), (2, &layer.name), (70, "0")]);
+            self.add_all(&[(0, "LAYER"), (2, &layer.name), (70, "0")]);
             // Red is cut through; pockets are blue, magenta and so on.
             self.add(62, if number == 0 { 1 } else { 4 + number });
             self.add(6, "CONTINUOUS");
         }
-        self.all(&[(0, "ENDTAB"), (0, "ENDSEC")]);
+        self.add_all(&[(0, "ENDTAB"), (0, "ENDSEC")]);
     }
 
-    fn line(&mut self, line: &Loop, layer: &str) {
+    fn add_line(&mut self, line: &Loop, layer: &str) {
         if let Some((centre, radius)) = line.circle() {
-            self.all(&[(0, "CIRCLE"), (8, layer)]);
-            self.point(10, centre.x, centre.y);
-            self.real(40, radius);
+            self.add_all(&[(0, "CIRCLE"), (8, layer)]);
+            self.add_point(10, centre.x, centre.y);
+            self.add_real(40, radius);
             return;
         }
-        self.all(&[(0, "POLYLINE"), (8, layer), (66, "1")]);
-        self.point(10, 0.0, 0.0);
+        self.add_all(&[(0, "POLYLINE"), (8, layer), (66, "1")]);
+        self.add_point(10, 0.0, 0.0);
         self.add(70, 1);
         for side in &line.sides {
-            self.all(&[(0, "VERTEX"), (8, layer)]);
-            self.point(10, side.from.x, side.from.y);
-            self.real(42, side.bulge);
+            self.add_all(&[(0, "VERTEX"), (8, layer)]);
+            self.add_point(10, side.from.x, side.from.y);
+            self.add_real(42, side.bulge);
         }
-        self.all(&[(0, "SEQEND"), (8, layer)]);
+        self.add_all(&[(0, "SEQEND"), (8, layer)]);
     }
 }

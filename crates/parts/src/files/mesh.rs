@@ -29,7 +29,6 @@ impl Mesh {
     ///
     /// # Panics
     /// Never for a closed surface.
-    #[must_use]
     pub fn of(solid: &Solid) -> Self {
         let mut maker = MeshBuilder {
             solid,
@@ -43,16 +42,15 @@ impl Mesh {
         }
         for face in &solid.faces {
             match face.surface {
-                Surface::Top(_) => maker.flat(face, false),
-                Surface::Bottom(_) => maker.flat(face, true),
-                Surface::Wall(side, end) => maker.wall(face, side, end),
+                Surface::Top(_) => maker.add_flat(face, false),
+                Surface::Bottom(_) => maker.add_flat(face, true),
+                Surface::Wall(side, end) => maker.add_wall(face, side, end),
             }
         }
         maker.mesh
     }
 
     /// The volume, mm^3.
-    #[must_use]
     pub fn volume(&self) -> f64 {
         let volumes = self.triangles.iter().map(|&triangle| {
             let [[ax, ay, az], [bx, by, bz], [cx, cy, cz]] = triangle.map(|i| self.corners[i]);
@@ -62,7 +60,6 @@ impl Mesh {
     }
 
     /// True if every side of a triangle has exactly one neighbour.
-    #[must_use]
     pub fn is_closed(&self) -> bool {
         let mut sides = BTreeMap::new();
         for &[a, b, c] in &self.triangles {
@@ -128,7 +125,7 @@ impl MeshBuilder<'_> {
         trail
     }
 
-    fn flat(&mut self, face: &Face, below: bool) {
+    fn add_flat(&mut self, face: &Face, is_below: bool) {
         let mut corners: Vec<usize> = Vec::new();
         let mut starts = Vec::new();
         for edges in &face.loops {
@@ -140,10 +137,13 @@ impl MeshBuilder<'_> {
         }
         let place = |&corner: &usize| {
             let [x, y, _] = self.mesh.corners[corner];
-            (corner, Vector::new(if below { -x } else { x }, y))
+            (corner, Vector::new(if is_below { -x } else { x }, y))
         };
         let known: Vec<_> = corners.iter().map(place).collect();
-        let flat: Vec<f64> = known.iter().flat_map(|(_, at)| [at.x, at.y]).collect();
+        let flat: Vec<f64> = known
+            .iter()
+            .flat_map(|(_, corner_index)| [corner_index.x, corner_index.y])
+            .collect();
         let found = earcutr::earcut(&flat, &starts, 2).expect("a loop has points");
         let triangle = |three: &[usize]| {
             let [(a, p), (b, q), (c, r)] = [0, 1, 2].map(|i| known[three[i]]);
@@ -157,7 +157,7 @@ impl MeshBuilder<'_> {
         self.mesh.triangles.extend(triangles);
     }
 
-    fn wall(&mut self, face: &Face, side: Side, end: Vector) {
+    fn add_wall(&mut self, face: &Face, side: Side, end: Vector) {
         let level = |edge: usize| self.solid.edges[edge].ends.map(|(_, level)| level);
         let edges = &face.loops[0];
         let upright = |&(edge, _): &(usize, bool)| {
@@ -197,9 +197,9 @@ impl MeshBuilder<'_> {
     }
 
     /// The corner at which an edge begins, or ends.
-    fn end(&self, (edge, forward): (usize, bool), last: bool) -> usize {
+    fn end(&self, (edge, forward): (usize, bool), is_last: bool) -> usize {
         let line = &self.lines[edge];
-        if forward == last {
+        if forward == is_last {
             line[line.len() - 1]
         } else {
             line[0]

@@ -28,7 +28,6 @@ pub struct File {
 
 impl File {
     /// A file of text.
-    #[must_use]
     pub fn text(path: String, text: String) -> Self {
         Self {
             path,

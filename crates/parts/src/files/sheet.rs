@@ -37,7 +37,6 @@ impl Layer {
 }
 
 /// The sheets of a part; none if it cannot be cut.
-#[must_use]
 pub fn sheets(part: &Part) -> Vec<Sheet> {
     let outlines: Vec<_> = part.prisms.iter().map(Outline::of).collect();
     let outer = |outline: &Outline| -> Vec<Loop> {
@@ -112,7 +111,6 @@ fn is_open(outline: &Outline, hole: &Loop) -> bool {
 }
 
 /// The smallest and the largest x and y of a sheet, arcs at their full size, mm.
-#[must_use]
 pub fn extent(sheet: &Sheet) -> [Vector; 2] {
     let lines = sheet.layers.iter().flat_map(|layer| &layer.loops);
     bounds(lines.flat_map(Loop::ends).flat_map(|(side, to)| {

@@ -70,7 +70,6 @@ struct Piece {
 
 impl Solid {
     /// The surface of some layers, which lie on each other from below to above.
-    #[must_use]
     pub fn of(prisms: &[Prism]) -> Self {
         let outlines: Vec<Outline> = prisms.iter().map(Outline::of).collect();
         let mut maker = SolidBuilder::default();
@@ -84,8 +83,8 @@ impl Solid {
             let upper = outlines.get(level).unwrap_or(&nothing);
             let lower_pieces = maker.pieces(level, lower, upper);
             let upper_pieces = maker.pieces(level, upper, lower);
-            maker.flats(level, (lower, &lower_pieces), (upper, &upper_pieces));
-            maker.walls(level, lower, &below, &lower_pieces);
+            maker.add_flats(level, (lower, &lower_pieces), (upper, &upper_pieces));
+            maker.add_walls(level, lower, &below, &lower_pieces);
             below = upper_pieces;
         }
         let layers = prisms.iter().zip(&outlines);
@@ -95,7 +94,6 @@ impl Solid {
     }
 
     /// True if every edge has exactly two faces, which run along it in opposite directions.
-    #[must_use]
     pub fn is_closed(&self) -> bool {
         let mut uses = vec![[0, 0]; self.edges.len()];
         for &(edge, forward) in self.faces.iter().flat_map(|face| &face.loops).flatten() {
@@ -127,29 +125,30 @@ fn place(points: &mut Vec<Vector>, point: Vector) -> usize {
 
 impl SolidBuilder {
     /// Each side of an outline as pieces, cut where it meets another outline.
-    fn pieces(&mut self, level: usize, of: &Outline, other: &Outline) -> Vec<Vec<Piece>> {
+    fn pieces(&mut self, level: usize, outline: &Outline, other: &Outline) -> Vec<Vec<Piece>> {
         let others: Vec<_> = other.loops().flat_map(Loop::ends).collect();
-        let sides: Vec<_> = of.loops().flat_map(Loop::ends).collect();
+        let sides: Vec<_> = outline.loops().flat_map(Loop::ends).collect();
         sides
             .into_iter()
             .map(|(side, to)| {
                 let mut cuts = vec![side.from, to];
                 for (across, end) in &others {
-                    meetings(side, to, *across, *end, &mut cuts);
+                    add_meetings(side, to, *across, *end, &mut cuts);
                 }
                 let points = &mut self.solid.points;
-                let way = |cut| (progress(side, to, cut), place(points, cut));
-                let mut along: Vec<(f64, usize)> = cuts.into_iter().map(way).collect();
+                let progress_and_index = |cut| (progress(side, to, cut), place(points, cut));
+                let mut along: Vec<(f64, usize)> =
+                    cuts.into_iter().map(progress_and_index).collect();
                 along[0].0 = 0.0;
                 along[1].0 = progress(side, to, to).max(SAME_POINT_MM);
                 along.sort_by(|a, b| a.0.total_cmp(&b.0));
                 along.dedup_by_key(|(_, point)| *point);
                 let whole = along.len() == 2;
                 let piece = |pair: &[(f64, usize)]| {
-                    let [(begin, from), (end, to)] = [pair[0], pair[1]];
+                    let [(start, from), (end, to)] = [pair[0], pair[1]];
                     let bulge = match whole {
                         true => side.bulge,
-                        false => bulge_of(end - begin, side.bulge),
+                        false => bulge_of(end - start, side.bulge),
                     };
                     self.piece(level, from, to, bulge)
                 };
@@ -184,11 +183,11 @@ impl SolidBuilder {
     }
 
     /// Adds the flat faces at a height, which one layer covers and the other does not.
-    fn flats(&mut self, level: usize, lower: Cut, upper: Cut) {
+    fn add_flats(&mut self, level: usize, lower: Cut, upper: Cut) {
         let tops = self.difference(lower, upper);
-        self.faces(tops, Surface::Top(level), false);
+        self.add_faces(tops, Surface::Top(level), false);
         let bottoms = self.difference(upper, lower);
-        self.faces(bottoms, Surface::Bottom(level), true);
+        self.add_faces(bottoms, Surface::Bottom(level), true);
     }
 
     /// The outline of `a` less `b`, as pieces with the material on their left.
@@ -219,17 +218,17 @@ impl SolidBuilder {
     }
 
     /// Adds pieces as faces. Seen from below, each loop runs in the opposite direction.
-    fn faces(&mut self, mut pieces: Vec<Piece>, surface: Surface, below: bool) {
+    fn add_faces(&mut self, mut pieces: Vec<Piece>, surface: Surface, is_below: bool) {
         let mut outer: Vec<(f64, Outline, Vec<Vec<Piece>>)> = Vec::new();
         let mut holes = Vec::new();
         while let Some(first) = pieces.pop() {
             let mut trail = vec![first];
-            let mut at = first.to;
-            while at != first.from
-                && let Some(next) = pieces.iter().position(|piece| piece.from == at)
+            let mut point = first.to;
+            while point != first.from
+                && let Some(next) = pieces.iter().position(|piece| piece.from == point)
             {
                 let next = pieces.swap_remove(next);
-                at = next.to;
+                point = next.to;
                 trail.push(next);
             }
             let around = self.around(&trail);
@@ -250,12 +249,12 @@ impl SolidBuilder {
         }
         for (_, _, loops) in outer {
             let edges = |mut trail: Vec<Piece>| {
-                if below {
+                if is_below {
                     trail.reverse();
                 }
                 let edges = trail.into_iter();
                 edges
-                    .map(|piece| (piece.edge, piece.forward != below))
+                    .map(|piece| (piece.edge, piece.forward != is_below))
                     .collect()
             };
             let loops = loops.into_iter().map(edges).collect();
@@ -276,15 +275,21 @@ impl SolidBuilder {
     }
 
     /// Adds the walls of the layer below a height.
-    fn walls(&mut self, level: usize, of: &Outline, low: &[Vec<Piece>], high: &[Vec<Piece>]) {
-        let sides = of.loops().flat_map(Loop::ends);
+    fn add_walls(
+        &mut self,
+        level: usize,
+        outline: &Outline,
+        low: &[Vec<Piece>],
+        high: &[Vec<Piece>],
+    ) {
+        let sides = outline.loops().flat_map(Loop::ends);
         for ((low, high), (side, end)) in low.iter().zip(high).zip(sides) {
             let (Some(first), Some(last)) = (low.first(), low.last()) else {
                 continue;
             };
             let (from, to) = (first.from, last.to);
-            let up = low.iter().map(|piece| (piece.edge, piece.forward));
-            let mut edges: Vec<_> = up.collect();
+            let uprights = low.iter().map(|piece| (piece.edge, piece.forward));
+            let mut edges: Vec<_> = uprights.collect();
             edges.push((self.upright(to, level), true));
             edges.extend(high.iter().rev().map(|piece| (piece.edge, !piece.forward)));
             edges.push((self.upright(from, level), false));
@@ -332,8 +337,8 @@ fn bulge_of(angle: f64, like: f64) -> f64 {
 }
 
 /// Adds the points in which two sides meet.
-fn meetings(a: Side, a_end: Vector, b: Side, b_end: Vector, found: &mut Vec<Vector>) {
-    let end = |at: Vector| PlineVertex::new(at.x, at.y, 0.0);
+fn add_meetings(a: Side, a_end: Vector, b: Side, b_end: Vector, meetings: &mut Vec<Vector>) {
+    let end = |position: Vector| PlineVertex::new(position.x, position.y, 0.0);
     let points = match pline_seg_intr(
         a.vertex(),
         end(a_end),
@@ -350,7 +355,7 @@ fn meetings(a: Side, a_end: Vector, b: Side, b_end: Vector, found: &mut Vec<Vect
         | PlineSegIntr::OverlappingArcs { point1, point2 } => [Some(point1), Some(point2)],
     };
     let points = points.into_iter().flatten();
-    found.extend(points.map(|point| Vector::new(point.x, point.y)));
+    meetings.extend(points.map(|point| Vector::new(point.x, point.y)));
 }
 
 #[cfg(test)]

@@ -11,11 +11,10 @@ use crate::files::solid::{Face, Solid, Surface};
 use crate::layers::outline::Side;
 
 /// The text of a STEP file.
-#[must_use]
 pub fn step(name: &str, solid: &Solid) -> String {
     let mut file = File::default();
     let solid = file.solid(name, solid);
-    file.product(name, solid);
+    file.add_product(name, solid);
     let data = file.text;
     format!(
         "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION(('{name}, mm'),'2;1');\n\
@@ -35,8 +34,8 @@ struct File {
 
 /// A number in the format's notation: with a point, and without an exponent, which some
 /// readers misread.
-fn real(value: f64) -> String {
-    let text = format!("{value:.9}");
+fn real(number: f64) -> String {
+    let text = format!("{number:.9}");
     let text = text.trim_end_matches('0');
     if text == "-0." { "0." } else { text }.to_owned()
 }
@@ -122,11 +121,11 @@ impl File {
             let frame = self.frame(at, up, [1.0, 0.0, 0.0]);
             return self.add(&format!("CIRCLE('',#{frame},{})", real(radius)));
         }
-        let way = [0, 1, 2].map(|i| to[i] - from[i]);
-        let length = way.iter().map(|part| part * part).sum::<f64>().sqrt();
+        let direction = [0, 1, 2].map(|i| to[i] - from[i]);
+        let length = direction.iter().map(|part| part * part).sum::<f64>().sqrt();
         let origin = self.triple("CARTESIAN_POINT", from);
-        let way = self.triple("DIRECTION", way.map(|part| part / length));
-        let vector = self.add(&format!("VECTOR('',#{way},1.)"));
+        let direction = self.triple("DIRECTION", direction.map(|part| part / length));
+        let vector = self.add(&format!("VECTOR('',#{direction},1.)"));
         self.add(&format!("LINE('',#{origin},#{vector})"))
     }
 
@@ -152,7 +151,7 @@ impl File {
                 None => {
                     let along = (end - side.from) * (1.0 / (end - side.from).length());
                     let [at, out, along] =
-                        [side.from, along.right(), along].map(|of| [of.x, of.y, 0.0]);
+                        [side.from, along.right(), along].map(|point| [point.x, point.y, 0.0]);
                     let frame = self.frame(at, out, along);
                     (self.add(&format!("PLANE('',#{frame})")), true)
                 }
@@ -161,7 +160,7 @@ impl File {
     }
 
     /// The product's header, which readers require, and its units.
-    fn product(&mut self, name: &str, solid: usize) {
+    fn add_product(&mut self, name: &str, solid: usize) {
         let context = self.last + 1;
         // `#+3` is the third entity of the list, `#NAME` the part's name.
         for entity in PRODUCT.lines() {

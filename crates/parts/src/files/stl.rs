@@ -3,7 +3,6 @@
 use crate::files::mesh::Mesh;
 
 /// The bytes of a file.
-#[must_use]
 pub fn stl(name: &str, mesh: &Mesh) -> Vec<u8> {
     let mut bytes = format!("lizard parts: {name}, mm").into_bytes();
     bytes.resize(80, b' ');

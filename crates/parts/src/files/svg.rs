@@ -13,11 +13,10 @@ const MARGIN: f64 = 5.0;
 const COLOURS: [&str; 4] = ["#d00000", "#0050c0", "#a000a0", "#008040"];
 
 /// The text of a file.
-#[must_use]
 pub fn sheet_svg(sheet: &Sheet, kerf: f64) -> String {
     let [low, high] = extent(sheet);
     let (width, height) = (high.x - low.x + 2.0 * MARGIN, high.y - low.y + 2.0 * MARGIN);
-    let page = |at: Vector| (at.x - low.x + MARGIN, high.y - at.y + MARGIN);
+    let page = |position: Vector| (position.x - low.x + MARGIN, high.y - position.y + MARGIN);
     let (name, thick, half) = (&sheet.name, sheet.thickness, kerf / 2.0);
     let mut text = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.3}mm\" height=\"{height:.3}mm\" \

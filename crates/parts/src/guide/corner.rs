@@ -15,21 +15,20 @@ use crate::part::Part;
 
 impl Assembly {
     /// The printed parts of the corner of A1, each once.
-    #[must_use]
     pub fn corner(&self) -> Vec<Part> {
         let (name, leg) = names(CORNER);
         let prisms = chassis::corner(&Builder::new(self.robot()), CORNER);
         let mut corner = vec![Part::single(&format!("seat {name}"), prisms)];
-        let own = |body: &str| {
+        let is_own = |body: &str| {
             let body = self.body(body);
             body.is_some_and(|body| {
                 let moves = !matches!(body.mount, Mount::Coupler(_));
-                let of = [name, leg].iter().any(|of| body.name.ends_with(of));
-                moves && of && body.kind.is_printed()
+                let suffix = [name, leg].iter().any(|suffix| body.name.ends_with(suffix));
+                moves && suffix && body.kind.is_printed()
             })
         };
         for mut part in self.parts() {
-            part.bodies.retain(|body| own(body));
+            part.bodies.retain(|body| is_own(body));
             if !part.bodies.is_empty() && !part.name.starts_with("spacer") {
                 corner.push(part);
             }

@@ -5,11 +5,11 @@ use std::fmt::Write;
 /// The text with what stands between pairs of a mark put into an element.
 fn paired(text: &str, mark: &str, element: &str) -> String {
     let mut parts = text.split(mark);
-    let mut done = parts.next().unwrap_or_default().to_owned();
+    let mut result = parts.next().unwrap_or_default().to_owned();
     while let (Some(inside), Some(rest)) = (parts.next(), parts.next()) {
-        let _ = write!(done, "<{element}>{inside}</{element}>{rest}");
+        let _ = write!(result, "<{element}>{inside}</{element}>{rest}");
     }
-    done
+    result
 }
 
 /// The guide's Markdown as a page. Only headings, pictures, tables, code and paragraphs

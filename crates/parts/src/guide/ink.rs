@@ -40,14 +40,14 @@ pub(super) struct Frame {
 
 impl Frame {
     /// The frame around some points, with a margin in a close view.
-    pub(super) fn around(points: impl Iterator<Item = (f64, f64)>, close_up: bool) -> Self {
+    pub(super) fn around(points: impl Iterator<Item = (f64, f64)>, is_close_up: bool) -> Self {
         /// Margin of a close view, mm.
         const AROUND: f64 = 12.0;
         let [low, high] = bounds(points.map(|(x, y)| Vector::new(x, y)));
-        let more = if close_up { AROUND } else { 0.0 };
+        let margin = if is_close_up { AROUND } else { 0.0 };
         Self {
-            low: (low.x - more, low.y - more),
-            high: (high.x + more, high.y + more),
+            low: (low.x - margin, low.y - margin),
+            high: (high.x + margin, high.y + margin),
         }
     }
 
@@ -65,10 +65,10 @@ pub(super) struct Ink {
 
 impl Ink {
     /// Draws loops over everything drawn so far; loops within loops are holes.
-    pub(super) fn polygon(&mut self, loops: &[Vec<(f64, f64)>], colour: [f64; 3], edge: bool) {
+    pub(super) fn polygon(&mut self, loops: &[Vec<(f64, f64)>], colour: [f64; 3], has_edge: bool) {
         let [r, g, b] = colour.map(|part| part.clamp(0.0, 255.0).round() as u8);
         self.shapes
-            .push((format!("#{r:02x}{g:02x}{b:02x}"), loops.to_vec(), edge));
+            .push((format!("#{r:02x}{g:02x}{b:02x}"), loops.to_vec(), has_edge));
     }
 
     /// The picture, this many pixels wide, with names at their places on the page.
@@ -89,31 +89,31 @@ impl Ink {
         let tenths = |x: f64, from: f64| (10.0 * (x * scale + from)).round() as i64;
         for (colour, loops, edge) in &self.shapes {
             let style = (colour.as_str(), *edge);
-            let known = styles.iter().position(|of| *of == style);
-            let class = known.unwrap_or(styles.len());
-            if known.is_none() {
+            let style_index = styles.iter().position(|other| *other == style);
+            let class = style_index.unwrap_or(styles.len());
+            if style_index.is_none() {
                 styles.push(style);
             }
             let mut data = String::new();
             let mut at = (0, 0);
             for line in loops {
-                let mut begin = None;
+                let mut start = None;
                 for (x, y) in line {
                     let to = (tenths(x - low.0, x0), tenths(y - low.1, MARGIN));
                     let (x, y) = (to.0 - at.0, to.1 - at.1);
                     // Behind the first point each pair is a line, and a minus separates.
-                    let _ = match (begin, x < 0) {
+                    let _ = match (start, x < 0) {
                         (None, _) => write!(data, "m{x}"),
                         (Some(_), _) if (x, y) == (0, 0) => continue,
                         (Some(_), true) => write!(data, "{x}"),
                         (Some(_), false) => write!(data, " {x}"),
                     };
                     let _ = write!(data, "{}{y}", if y < 0 { "" } else { " " });
-                    begin.get_or_insert(to);
+                    start.get_or_insert(to);
                     at = to;
                 }
                 data.push('z');
-                at = begin.unwrap_or(at);
+                at = start.unwrap_or(at);
             }
             let _ = writeln!(paths, "<path class=\"c{class}\" d=\"{data}\"/>");
         }
@@ -145,8 +145,8 @@ impl Ink {
         }
         for left in [true, false] {
             let middle = width / 2.0;
-            let here = shown.iter().filter(|(_, label)| label.beside);
-            let places = here.map(|(at, label)| (page(*at), *label));
+            let on_this_side = shown.iter().filter(|(_, label)| label.beside);
+            let places = on_this_side.map(|(at, label)| (page(*at), *label));
             let mut column: Vec<_> = places.filter(|((x, _), _)| (*x < middle) == left).collect();
             column.sort_by(|a, b| a.0.1.total_cmp(&b.0.1));
             write_column(&mut text, &column, left, width, height);
@@ -157,27 +157,31 @@ impl Ink {
 }
 
 /// Names below each other at one side, each with a line to its place.
-fn write_column(text: &mut String, column: &[Name], left: bool, width: f64, height: f64) {
+fn write_column(text: &mut String, column: &[Name], is_left: bool, width: f64, height: f64) {
     let count = column.len() as f64;
-    let mut least = LINE;
+    let mut min = LINE;
     for (number, ((x, y), label)) in column.iter().enumerate() {
-        let most = height - (count - number as f64) * LINE + 8.0;
-        let at = (y + 4.0).min(most).max(least);
-        least = at + LINE;
-        let (edge, end, anchor) = match left {
+        let max = height - (count - number as f64) * LINE + 8.0;
+        let position = (y + 4.0).min(max).max(min);
+        min = position + LINE;
+        let (edge, end, anchor) = match is_left {
             true => (8.0, BESIDE - 4.0, "start"),
             false => (width - 8.0, width - BESIDE + 4.0, "end"),
         };
         // The line begins where the words end, about.
         let words = 6.4 * label.text.chars().count() as f64;
-        let from = if left { edge + words } else { edge - words };
-        let from = if left { from.min(end) } else { from.max(end) };
+        let from = if is_left { edge + words } else { edge - words };
+        let from = if is_left {
+            from.min(end)
+        } else {
+            from.max(end)
+        };
         let _ = writeln!(
             text,
             "<path d=\"M{from:.1} {:.1}L{x:.1} {y:.1}\" stroke=\"#111\" stroke-width=\"0.8\"/>\
              <circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2\"/>\
-             <text x=\"{edge}\" y=\"{at:.1}\" text-anchor=\"{anchor}\" {FONT}>{}</text>",
-            at - 4.0,
+             <text x=\"{edge}\" y=\"{position:.1}\" text-anchor=\"{anchor}\" {FONT}>{}</text>",
+            position - 4.0,
             label.text
         );
     }

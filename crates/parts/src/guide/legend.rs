@@ -31,10 +31,10 @@ pub fn called(body: &Body, parts: &[Part]) -> Option<String> {
         Kind::Printed => {
             let part = parts.iter().find(|part| part.bodies.contains(&body.name))?;
             let name = part.name.split(" A").next()?;
-            let what = name.split(['L', 'R']).next()?.trim();
+            let noun = name.split(['L', 'R']).next()?.trim();
             match part.mark.is_empty() {
-                true => what.to_owned(),
-                false => format!("{what}, marked {}", part.mark),
+                true => noun.to_owned(),
+                false => format!("{noun}, marked {}", part.mark),
             }
         }
     })
@@ -63,7 +63,7 @@ pub fn names(
     drawn: &[PictureBody],
     pose: &Solution,
 ) -> Vec<Label> {
-    let mut found: BTreeMap<String, (f64, usize, Label)> = BTreeMap::new();
+    let mut labels_by_name: BTreeMap<String, (f64, usize, Label)> = BTreeMap::new();
     for PictureBody { body, lift, .. } in drawn.iter().filter(|drawn| !drawn.grey) {
         let (Some(name), Some(prism)) = (called(body, parts), body.prisms.last()) else {
             continue;
@@ -76,13 +76,15 @@ pub fn names(
             text: name.clone(),
             beside: true,
         };
-        let entry = found.entry(name).or_insert((away, 0, label.clone()));
+        let entry = labels_by_name
+            .entry(name)
+            .or_insert((away, 0, label.clone()));
         entry.1 += 1;
         if away < entry.0 {
             (entry.0, entry.2) = (away, label);
         }
     }
-    let labels = found.into_values().map(|(_, count, mut label)| {
+    let labels = labels_by_name.into_values().map(|(_, count, mut label)| {
         label.text.insert_str(0, &format!("{count} x "));
         label
     });
@@ -93,8 +95,8 @@ pub fn names(
 pub fn places(assembly: &Assembly, pose: &Solution) -> Vec<Label> {
     /// Height of the links, mm.
     const LINK_HEIGHT: f64 = 18.0;
-    let label = |at: Vector, text: &str| Label {
-        at,
+    let label = |position: Vector, text: &str| Label {
+        at: position,
         z: LINK_HEIGHT,
         text: text.to_owned(),
         beside: false,

@@ -76,20 +76,20 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
     let _ = writeln!(text, "## What is needed\n\n{bill}");
     let mut before: Vec<&Body> = Vec::new();
     for (number, step) in (1..).zip(&steps) {
-        let known = |body: &Body| before.iter().any(|old| old.name == body.name);
-        let adds = |body: &&Body| step.adds(body) && !known(body);
+        let is_already_on = |body: &Body| before.iter().any(|old| old.name == body.name);
+        let adds = |body: &&Body| step.adds(body) && !is_already_on(body);
         let new: Vec<&Body> = assembly.bodies().iter().filter(adds).collect();
         let _ = writeln!(text, "## {number}. {}\n\n{}\n", step.title, step.words);
         if new.is_empty() {
             continue;
         }
         let _ = writeln!(text, "Take {}.\n", legend::counted(&new, &parts).join("; "));
-        let here = access_poses.iter().filter(|aside| aside.step == number);
+        let poses_here = access_poses.iter().filter(|aside| aside.step == number);
         let at_bench = step
             .stages
             .iter()
             .any(|stage| stage.at == TurningPlace::Bench);
-        let turns = here.map(|aside| turns_in_words(assembly, aside, at_bench));
+        let turns = poses_here.map(|aside| turns_in_words(assembly, aside, at_bench));
         let turns: Vec<_> = turns.collect();
         if !turns.is_empty() {
             let _ = writeln!(
@@ -181,7 +181,7 @@ impl Scene<'_> {
         pictures
     }
 
-    fn picture(&self, view: &View, lift: f64, named: bool, which: fn(&Body) -> bool) -> String {
+    fn picture(&self, view: &View, lift: f64, has_names: bool, which: fn(&Body) -> bool) -> String {
         let old = self
             .before
             .iter()
@@ -193,7 +193,7 @@ impl Scene<'_> {
         });
         let drawn: Vec<_> = old.chain(new).collect();
         let mut labels: Vec<Label> = legend::places(self.assembly, self.pose);
-        if named {
+        if has_names {
             labels.extend(legend::names(self.assembly, self.parts, &drawn, self.pose));
         }
         picture(self.assembly, &drawn, self.pose, view, &labels)
@@ -212,21 +212,21 @@ fn at_corner(body: &Body) -> bool {
 }
 
 /// The guide's words about links to turn out of the way.
-fn turns_in_words(assembly: &Assembly, aside: &AccessPose, at_bench: bool) -> String {
+fn turns_in_words(assembly: &Assembly, aside: &AccessPose, is_at_bench: bool) -> String {
     let neutral: [f64; 4] = assembly.robot().neutral().into();
     let turns = (0..4).map(|servo| (servo, aside.pose[servo] - neutral[servo]));
     let turns = turns.filter(|(_, by)| by.abs() > 0.5).map(|(servo, by)| {
-        let way = if by > 0.0 {
+        let direction = if by > 0.0 {
             "counter-clockwise"
         } else {
             "clockwise"
         };
         let (name, leg) = names(servo);
-        let what = match at_bench {
+        let subject = match is_at_bench {
             true => format!("crank and follower {leg}"),
             false => format!("link {name} with its leg"),
         };
-        format!("{what} by {:.0} deg {way}", by.abs())
+        format!("{subject} by {:.0} deg {direction}", by.abs())
     });
     let turns: Vec<_> = turns.collect();
     format!("{} for {}", turns.join(" and "), aside.screws.join(", "))

@@ -27,11 +27,11 @@ pub struct PictureBody<'a> {
 
 impl<'a> PictureBody<'a> {
     /// A body in its place, grey or in colour.
-    pub fn at_place(body: &'a Body, grey: bool) -> Self {
+    pub fn at_place(body: &'a Body, is_grey: bool) -> Self {
         Self {
             body,
             lift: 0.0,
-            grey,
+            grey: is_grey,
         }
     }
 }
@@ -100,8 +100,8 @@ impl Eye {
     }
 
     /// A point of space on the page, mm before the page's scale; y down.
-    fn page(&self, at: Vector, z: f64) -> (f64, f64) {
-        let (x, along) = (at.dot(self.right), at.dot(self.away));
+    fn page(&self, position: Vector, z: f64) -> (f64, f64) {
+        let (x, along) = (position.dot(self.right), position.dot(self.away));
         let near = along * self.cos + z * self.sin;
         let up = z * self.cos - along * self.sin;
         let scale = AWAY / (AWAY - near);
@@ -128,7 +128,6 @@ struct Layer {
 }
 
 /// Some bodies at a pose, with names, as SVG.
-#[must_use]
 pub fn picture(
     assembly: &Assembly,
     drawn: &[PictureBody],
@@ -161,7 +160,8 @@ pub fn picture(
         }
         for layer in present() {
             if layer.z[1] < high + 1e-6 && !layer.loops.is_empty() {
-                let page = |line: &Vec<Vector>| line.iter().map(|at| eye.page(*at, high)).collect();
+                let page =
+                    |line: &Vec<Vector>| line.iter().map(|point| eye.page(*point, high)).collect();
                 let loops: Vec<Trail> = layer.loops.iter().map(page).collect();
                 ink.polygon(&loops, layer.colour, true);
             }
@@ -171,7 +171,7 @@ pub fn picture(
     let framed = layers.iter().filter(|layer| !view.close_up || !layer.grey);
     let points = framed.flat_map(|layer| {
         let all = layer.loops.iter().flatten();
-        all.flat_map(|at| layer.z.map(|z| eye.page(*at, z)))
+        all.flat_map(|point| layer.z.map(|z| eye.page(*point, z)))
     });
     let place = |label: &Label| match view.from_below {
         true => eye.page(turned_over(label.at), -label.z),
@@ -182,8 +182,8 @@ pub fn picture(
 }
 
 /// A point of a robot that is turned over about its long axis.
-fn turned_over(at: Vector) -> Vector {
-    Vector::new(-at.x, at.y)
+fn turned_over(position: Vector) -> Vector {
+    Vector::new(-position.x, position.y)
 }
 
 /// The heights at which layers begin or end. Heights nearer to each other than `SLICE`
@@ -212,7 +212,12 @@ fn layers(assembly: &Assembly, drawn: &[PictureBody], pose: &Solution) -> Vec<La
                 let hole = line.circle().filter(|_| *grey || *lift == 0.0);
                 !hole.is_some_and(|(_, radius)| radius < HOLE && line.area() < 0.0)
             };
-            let placed = |line: &Loop| points(line).into_iter().map(|at| place.map(at)).collect();
+            let placed = |line: &Loop| {
+                points(line)
+                    .into_iter()
+                    .map(|point| place.map(point))
+                    .collect()
+            };
             layers.push(Layer {
                 colour,
                 grey: *grey,
@@ -253,11 +258,11 @@ impl Layer {
         let shade = |i: usize| {
             let (a, b) = (line[i], line[(i + 1) % n]);
             let out = (b - a).right();
-            let seen = out.dot(eye.at() - a) > 0.0;
+            let is_seen = out.dot(eye.at() - a) > 0.0;
             let length = out.length();
             // The light comes from the eye's left.
             let light = (eye.away + eye.right * -0.8).dot(out) / (1.3 * length.max(1e-9));
-            seen.then(|| (4.0 * light.clamp(0.0, 1.0)).round() as i32)
+            is_seen.then(|| (4.0 * light.clamp(0.0, 1.0)).round() as i32)
         };
         let mut i = 0;
         while i < n {
@@ -270,10 +275,10 @@ impl Layer {
                 chain.push(line[(i + 1) % n]);
                 i += 1;
             }
-            let distances = chain.iter().map(|at| (eye.at() - *at).length());
+            let distances = chain.iter().map(|point| (eye.at() - *point).length());
             let far = distances.sum::<f64>() / chain.len() as f64;
-            let mut points: Vec<_> = chain.iter().map(|at| eye.page(*at, low)).collect();
-            points.extend(chain.iter().rev().map(|at| eye.page(*at, high)));
+            let mut points: Vec<_> = chain.iter().map(|point| eye.page(*point, low)).collect();
+            points.extend(chain.iter().rev().map(|point| eye.page(*point, high)));
             let dark = 0.5 + 0.09 * f64::from(light);
             walls.push((far, points, self.colour.map(|part| part * dark)));
         }
@@ -281,8 +286,8 @@ impl Layer {
 }
 
 /// The colour of a body.
-fn colour(body: &Body, grey: bool) -> [f64; 3] {
-    if grey {
+fn colour(body: &Body, is_grey: bool) -> [f64; 3] {
+    if is_grey {
         return [222.0, 222.0, 218.0];
     }
     match (body.kind, body.mount.servo()) {

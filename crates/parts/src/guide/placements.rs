@@ -77,7 +77,6 @@ struct Flat {
 ///
 /// # Panics
 /// Never: texts and numbers can always be written as JSON.
-#[must_use]
 pub fn placements(assembly: &Assembly, pose: &Solution) -> String {
     let parts = assembly.parts();
     let steps = steps(assembly.robot().drive().strut().is_some());
@@ -102,8 +101,8 @@ pub fn placements(assembly: &Assembly, pose: &Solution) -> String {
     serde_json::to_string_pretty(&list).expect("texts and numbers") + "\n"
 }
 
-fn pair(at: Vector) -> [f64; 2] {
-    [at.x, at.y]
+fn pair(position: Vector) -> [f64; 2] {
+    [position.x, position.y]
 }
 
 fn print(place: &Placement, body: &Body, part: &Part) -> Print {
@@ -134,21 +133,25 @@ fn screw(assembly: &Assembly, steps: &[Step], place: &Placement, body: &Body) ->
         return None;
     };
     let turns = |step: &Step| step.stages.iter().any(|stage| (stage.turns)(body));
-    let turned = (1..).zip(steps).filter(|(_, step)| turns(step));
+    let steps_that_turn = (1..).zip(steps).filter(|(_, step)| turns(step));
     Some(Screw {
         at: pair(place.map(low.add[0].middle())),
         head: low.z[1],
         length,
         diameter: assembly.robot().parts().screw.diameter,
         head_above: high.add[0].width() > low.add[0].width(),
-        turned: turned.map(|(number, _)| number).collect(),
+        turned: steps_that_turn.map(|(number, _)| number).collect(),
     })
 }
 
 fn solids(place: &Placement, body: &Body) -> Vec<Prism> {
     let flat = |shape: &Shape| Flat {
         radius: shape.radius,
-        outline: shape.points.iter().map(|at| pair(place.map(*at))).collect(),
+        outline: shape
+            .points
+            .iter()
+            .map(|point| pair(place.map(*point)))
+            .collect(),
     };
     let layers = body.prisms.iter().flat_map(|prism| {
         prism.add.iter().map(move |shape| Prism {

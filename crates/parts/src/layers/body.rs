@@ -21,14 +21,12 @@ pub struct Prism {
 
 impl Prism {
     /// A layer with holes.
-    #[must_use]
     pub fn new(add: impl Into<Vec<Shape>>, cut: impl Into<Vec<Shape>>, z: Span) -> Self {
         let (add, cut) = (add.into(), cut.into());
         Self { add, cut, z }
     }
 
     /// A layer without holes.
-    #[must_use]
     pub fn solid(add: impl Into<Vec<Shape>>, z: Span) -> Self {
         Self::new(add, [], z)
     }
@@ -39,7 +37,6 @@ impl Prism {
     }
 
     /// The same layer between two other heights.
-    #[must_use]
     pub fn at(&self, z: Span) -> Self {
         Self { z, ..self.clone() }
     }
@@ -82,13 +79,11 @@ pub enum Kind {
 
 impl Kind {
     /// True for a body that is printed.
-    #[must_use]
     pub fn is_printed(self) -> bool {
         matches!(self, Self::Printed | Self::Pad)
     }
 
     /// The word used for it in placements.json and on the page.
-    #[must_use]
     pub fn word(self) -> &'static str {
         match self {
             Self::Printed => "printed",
@@ -138,7 +133,6 @@ pub enum Mount {
 
 impl Mount {
     /// The servos that its position depends on, in servo order.
-    #[must_use]
     pub fn servos(self) -> Vec<usize> {
         match self {
             Self::Coupler(servo) => sorted(End::of_servo(servo).servos()),
@@ -148,7 +142,6 @@ impl Mount {
     }
 
     /// The servo whose link or leg it belongs to; `None` for the chassis and the sliders.
-    #[must_use]
     pub fn servo(self) -> Option<usize> {
         match self {
             Self::Link(servo)
@@ -184,7 +177,6 @@ pub struct Body {
 
 impl Body {
     /// The lowest and the highest point, mm.
-    #[must_use]
     pub fn z(&self) -> Span {
         let mut span = [f64::INFINITY, f64::NEG_INFINITY];
         for prism in &self.prisms {

@@ -47,7 +47,7 @@ pub enum Fitting {
 
 /// The facts about a fitting.
 #[derive(Clone, Copy, Debug)]
-pub struct Facts {
+pub struct FittingFacts {
     /// The name as a body; several of one kind get a number.
     pub name: &'static str,
     /// The mass, g, as shops give it.
@@ -93,10 +93,9 @@ impl Fitting {
     ];
 
     /// What is known about it.
-    #[must_use]
-    pub fn facts(self) -> Facts {
+    pub fn facts(self) -> FittingFacts {
         match self {
-            Self::Converter => Facts {
+            Self::Converter => FittingFacts {
                 name: "converter",
                 grams: 6.0,
                 size: [22.0, 28.0, 10.0],
@@ -108,7 +107,7 @@ impl Fitting {
                     ("MP1584EN board", [17.0, 22.0, 5.0]),
                 ],
             },
-            Self::Capacitor => Facts {
+            Self::Capacitor => FittingFacts {
                 name: "capacitor",
                 grams: 2.0,
                 size: [10.5, 20.5, 10.5],
@@ -120,7 +119,7 @@ impl Fitting {
                     ("1000 uF, 16 V", [10.0, 20.0, 10.0]),
                 ],
             },
-            Self::Alarm => Facts {
+            Self::Alarm => FittingFacts {
                 name: "alarm",
                 grams: 9.0,
                 size: [26.0, 42.0, 13.0],
@@ -132,7 +131,7 @@ impl Fitting {
                     ("HobbyKing alarm for 2 to 4 cells", [23.0, 37.0, 11.0]),
                 ],
             },
-            Self::Ground => Facts {
+            Self::Ground => FittingFacts {
                 name: "ground strip",
                 grams: 18.0,
                 size: [17.5, 97.0, 14.5],
@@ -141,7 +140,7 @@ impl Fitting {
                 hold: "two cable ties through the plate's slots",
                 examples: strips(12.0),
             },
-            Self::Supply => Facts {
+            Self::Supply => FittingFacts {
                 name: "supply strip",
                 grams: 9.0,
                 size: [17.5, 49.0, 14.5],
@@ -150,7 +149,7 @@ impl Fitting {
                 hold: "two cable ties through the plate's slots",
                 examples: strips(6.0),
             },
-            Self::Signals => Facts {
+            Self::Signals => FittingFacts {
                 name: "signal strip",
                 grams: 7.5,
                 size: [17.5, 41.0, 14.5],
@@ -159,7 +158,7 @@ impl Fitting {
                 hold: "foam tape, and a cable tie through the wing's slots",
                 examples: strips(5.0),
             },
-            Self::Plus => Facts {
+            Self::Plus => FittingFacts {
                 name: "plus way",
                 grams: 1.5,
                 size: [17.5, 8.5, 14.5],
@@ -168,7 +167,7 @@ impl Fitting {
                 hold: "foam tape",
                 examples: strips(1.0),
             },
-            Self::Resistor => Facts {
+            Self::Resistor => FittingFacts {
                 name: "resistor",
                 grams: 0.2,
                 size: [2.6, 6.6, 2.6],
@@ -180,7 +179,7 @@ impl Fitting {
                     ("metal film, 0.25 W", [2.5, 6.3, 2.5]),
                 ],
             },
-            Self::Switch => Facts {
+            Self::Switch => FittingFacts {
                 name: "switch",
                 grams: 5.0,
                 size: [27.0, 21.5, 15.5],
@@ -192,7 +191,7 @@ impl Fitting {
                     ("Marquardt 1801, 6 A at 250 V AC", [26.0, 21.0, 15.0]),
                 ],
             },
-            Self::Fuse => Facts {
+            Self::Fuse => FittingFacts {
                 name: "fuse",
                 grams: 6.0,
                 size: [14.0, 46.0, 14.0],
@@ -204,7 +203,7 @@ impl Fitting {
                     ("holder for glass fuses 5 x 20 mm", [13.0, 44.0, 13.0]),
                 ],
             },
-            Self::Plug => Facts {
+            Self::Plug => FittingFacts {
                 name: "battery plug",
                 grams: 5.0,
                 size: [32.0, 6.6, 12.0],
@@ -216,7 +215,7 @@ impl Fitting {
                     ("JST RCY (BEC) pair", [26.0, 6.0, 8.0]),
                 ],
             },
-            Self::RoundPlug => Facts {
+            Self::RoundPlug => FittingFacts {
                 name: "round plug",
                 grams: 4.0,
                 size: [15.0, 42.0, 15.0],
@@ -228,7 +227,7 @@ impl Fitting {
                     ("with screw terminals", [14.0, 38.0, 12.5]),
                 ],
             },
-            Self::Strap => Facts {
+            Self::Strap => FittingFacts {
                 name: "battery strap",
                 grams: 3.0,
                 size: [STRAP[0], 150.0, STRAP[1]],
@@ -240,7 +239,7 @@ impl Fitting {
                     ("non-slip battery strap, cut to length", [16.0, 150.0, 1.5]),
                 ],
             },
-            Self::Radio => Facts {
+            Self::Radio => FittingFacts {
                 name: "place for a radio module",
                 grams: 0.0,
                 size: [16.5, 37.5, 8.0],
@@ -256,15 +255,13 @@ impl Fitting {
     }
 
     /// The name as a body.
-    #[must_use]
     pub fn name(self) -> &'static str {
         self.facts().name
     }
 
     /// The line in the list to buy; empty for a piece of another strip, and for an option.
-    #[must_use]
     pub fn what(self) -> String {
-        let Facts { what, size, .. } = self.facts();
+        let FittingFacts { what, size, .. } = self.facts();
         let [x, y, z] = size;
         match self {
             Self::Ground => {
@@ -284,7 +281,6 @@ impl Fitting {
     }
 
     /// The price class of its row of the bill.
-    #[must_use]
     pub fn price(self) -> Price {
         match self {
             Self::Resistor => Price::A,

@@ -41,11 +41,11 @@ fn lines(digit: char) -> &'static [[(f64, f64); 2]] {
 }
 
 /// A mark's lines with its lower left corner at a place.
-pub fn strokes(text: &str, at: Vector) -> Vec<Shape> {
+pub fn strokes(text: &str, position: Vector) -> Vec<Shape> {
     let [wide, high] = DIGIT;
     let mut strokes = Vec::new();
     for (index, digit) in text.chars().enumerate() {
-        let left = at + Vector::new(NEXT * index as f64, 0.0);
+        let left = position + Vector::new(NEXT * index as f64, 0.0);
         let point = |(x, y): (f64, f64)| left + Vector::new(x * wide, y * high);
         let bars = lines(digit).iter();
         strokes.extend(bars.map(|[from, to]| Shape::bar(point(*from), point(*to), LINE)));
@@ -60,7 +60,6 @@ pub fn size(text: &str) -> [f64; 2] {
 }
 
 /// Layers with a mark engraved on an upper face; `None` if no face has room for it.
-#[must_use]
 pub fn engraved(prisms: &[Prism], text: &str) -> Option<Vec<Prism>> {
     let outlines: Vec<_> = prisms.iter().map(Outline::of).collect();
     for (layer, prism) in prisms.iter().enumerate().rev() {
@@ -93,9 +92,9 @@ fn place(outline: &Outline, text: &str, free: impl Fn(Vector) -> bool) -> Option
     let [low, high] = bounds(ends.flat_map(|(side, to)| [side.from, side.middle(to)]));
     let [wide, tall] = size(text);
     let margin = LINE + BESIDE;
-    let steps = |from: f64, to: f64, by: f64| {
-        let count = ((to - from) / by).ceil().max(0.0) as u32;
-        (0..=count).map(move |i| (from + f64::from(i) * by).min(to))
+    let steps = |from: f64, to: f64, step: f64| {
+        let count = ((to - from) / step).ceil().max(0.0) as u32;
+        (0..=count).map(move |i| (from + f64::from(i) * step).min(to))
     };
     for x in steps(low.x + margin, high.x - margin - wide, STEP) {
         for y in steps(low.y + margin, high.y - margin - tall, 0.5 * STEP) {

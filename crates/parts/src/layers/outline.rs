@@ -54,11 +54,10 @@ pub struct Outline {
 
 impl Outline {
     /// The outline of a layer.
-    #[must_use]
     pub fn of(prism: &Prism) -> Self {
-        let (outer, gaps) = unite(prism.add.iter().map(polyline));
+        let (is_outer, gaps) = unite(prism.add.iter().map(polyline));
         let (mut cuts, _) = unite(gaps.into_iter().chain(prism.cut.iter().map(polyline)));
-        let mut pieces = outer;
+        let mut pieces = is_outer;
         // Cuts that open a piece change its outer loop; the others are holes.
         cuts.retain(|cut| {
             let mut opens = false;
@@ -97,32 +96,29 @@ impl Outline {
     }
 
     /// The enclosed area, mm^2.
-    #[must_use]
     pub fn area(&self) -> f64 {
         self.loops().map(Loop::area).sum()
     }
 
     /// The area times its centroid, mm^3.
-    #[must_use]
     pub fn moment(&self) -> Vector {
         self.loops()
-            .fold(Vector::default(), |sum, of| sum + of.moment())
+            .fold(Vector::default(), |sum, line| sum + line.moment())
     }
 
     /// True if a point is in the material.
-    #[must_use]
     pub fn contains(&self, point: Vector) -> bool {
-        let turns: i32 = self.loops().map(|of| of.turns_around(point)).sum();
+        let turns: i32 = self.loops().map(|line| line.turns_around(point)).sum();
         turns > 0
     }
 }
 
 impl Loop {
-    fn of(line: &Polyline<f64>, outer: bool) -> Self {
+    fn of(line: &Polyline<f64>, is_outer: bool) -> Self {
         let mut line = line
             .remove_redundant(SAME_POINT_MM)
             .unwrap_or_else(|| line.clone());
-        if (line.area() > 0.0) != outer {
+        if (line.area() > 0.0) != is_outer {
             line.invert_direction_mut();
         }
         let side = |vertex: PlineVertex<f64>| {
@@ -143,21 +139,19 @@ impl Loop {
     }
 
     /// Centre and radius, if it is a circle.
-    #[must_use]
     pub fn circle(&self) -> Option<(Vector, f64)> {
         let mut arcs = self.ends().map(|(side, to)| side.arc(to));
         let (centre, radius) = arcs.next()??;
-        let same = |arc: Option<(Vector, f64)>| {
+        let is_same_circle = |arc: Option<(Vector, f64)>| {
             let near = |(at, size): (Vector, f64)| {
                 (at - centre).length() < SAME_POINT_MM && (size - radius).abs() < SAME_POINT_MM
             };
             arc.is_some_and(near)
         };
-        arcs.all(same).then_some((centre, radius))
+        arcs.all(is_same_circle).then_some((centre, radius))
     }
 
     /// The area within, mm^2; negative around a hole.
-    #[must_use]
     pub fn area(&self) -> f64 {
         self.polyline().area()
     }
@@ -205,7 +199,6 @@ impl Side {
     }
 
     /// Centre and radius of its arc to an end; `None` for a line.
-    #[must_use]
     pub fn arc(&self, to: Vector) -> Option<(Vector, f64)> {
         (self.bulge != 0.0).then(|| {
             let end = PlineVertex::new(to.x, to.y, 0.0);
@@ -215,7 +208,6 @@ impl Side {
     }
 
     /// The point half-way to an end.
-    #[must_use]
     pub fn middle(&self, to: Vector) -> Vector {
         let middle = seg_midpoint(self.vertex(), PlineVertex::new(to.x, to.y, 0.0));
         Vector::new(middle.x, middle.y)
@@ -227,11 +219,11 @@ impl Side {
         let Some((centre, radius)) = self.arc(to) else {
             return Vec::new();
         };
-        let whole = 4.0 * libm::atan(self.bulge);
-        let count = count(radius, whole.abs());
+        let angle = 4.0 * libm::atan(self.bulge);
+        let count = count(radius, angle.abs());
         let arm = self.from - centre;
         let point = |i: u32| {
-            let angle = whole * f64::from(i) / f64::from(count);
+            let angle = angle * f64::from(i) / f64::from(count);
             centre + arm * libm::cos(angle) + arm.left() * libm::sin(angle)
         };
         (1..count).map(point).collect()

@@ -19,7 +19,6 @@ impl Placement {
     };
 
     /// A point of the chassis frame in the body's frame.
-    #[must_use]
     pub fn unmap(&self, point: Vector) -> Vector {
         let from = point - self.at;
         Vector::new(from.dot(self.turn), self.turn.cross(from))
@@ -28,18 +27,16 @@ impl Placement {
 
 impl<T: Real> Placement<T> {
     /// A point of the body's frame in the chassis frame.
-    #[must_use]
     pub fn map(&self, point: Vector) -> Vector<T> {
         self.at + self.turn * point.x + self.turn.left() * point.y
     }
 
     /// The same place as seen from another body's frame.
-    #[must_use]
     pub fn seen_from(&self, frame: &Self) -> Self {
-        let of = |v: Vector<T>| Vector::new(v.dot(frame.turn), frame.turn.cross(v));
+        let in_frame = |v: Vector<T>| Vector::new(v.dot(frame.turn), frame.turn.cross(v));
         Self {
-            at: of(self.at - frame.at),
-            turn: of(self.turn),
+            at: in_frame(self.at - frame.at),
+            turn: in_frame(self.turn),
         }
     }
 }

@@ -19,7 +19,6 @@ const BESIDE: f64 = 0.3;
 const SAME_HEIGHT_MM: f64 = 1e-6;
 
 /// Layers in which the holes that would begin in the air are closed, and their number.
-#[must_use]
 pub fn closed(prisms: &[Prism]) -> (Vec<Prism>, usize) {
     let mut layers = prisms.to_vec();
     let mut count = 0;
@@ -52,11 +51,11 @@ fn skin(low: f64) -> f64 {
 }
 
 /// A layer cut in two at a height, if that height is within it.
-fn split(layer: &Prism, at: f64) -> Vec<Prism> {
+fn split(layer: &Prism, height: f64) -> Vec<Prism> {
     let [low, high] = layer.z;
-    match at < low + SAME_HEIGHT_MM || at > high - SAME_HEIGHT_MM {
+    match height < low + SAME_HEIGHT_MM || height > high - SAME_HEIGHT_MM {
         true => vec![layer.clone()],
-        false => vec![layer.at([low, at]), layer.at([at, high])],
+        false => vec![layer.at([low, height]), layer.at([height, high])],
     }
 }
 
@@ -74,14 +73,14 @@ pub fn in_air(prisms: &[Prism]) -> Vec<Vector> {
 
 /// True if a hole's edge, which lies in the material, has nothing below it.
 fn begins_in_air(hole: &Shape, prism: &Prism, below: &Outline) -> bool {
-    let own = Outline::of(prism);
+    let outline = Outline::of(prism);
     let edge = Shape {
         points: hole.points.clone(),
         radius: hole.radius + BESIDE,
     };
     let alone = Outline::of(&Prism::solid([edge], prism.z));
     let mut points = alone.loops().flat_map(Loop::ends);
-    let in_air = |point: Vector| own.contains(point) && !below.contains(point);
+    let in_air = |point: Vector| outline.contains(point) && !below.contains(point);
     points.all(|(side, to)| in_air(side.from) && in_air(side.middle(to)))
 }
 

@@ -21,7 +21,6 @@ pub struct Shape {
 
 impl Shape {
     /// A disc about a centre.
-    #[must_use]
     pub fn disc(centre: Vector, radius: f64) -> Self {
         Self {
             points: vec![centre],
@@ -30,7 +29,6 @@ impl Shape {
     }
 
     /// A bar with round ends around two points.
-    #[must_use]
     pub fn bar(from: Vector, to: Vector, radius: f64) -> Self {
         if from == to {
             return Self::disc(from, radius);
@@ -42,7 +40,6 @@ impl Shape {
     }
 
     /// A rectangle by its middle and its size, with rounded corners.
-    #[must_use]
     pub fn rectangle(middle: Vector, size: Vector, radius: f64) -> Self {
         let (x, y) = (size.x / 2.0 - radius, size.y / 2.0 - radius);
         let corners = [(-x, -y), (x, -y), (x, y), (-x, y)];
@@ -50,7 +47,6 @@ impl Shape {
     }
 
     /// A nut's hexagon by its width over flats; a corner points along x.
-    #[must_use]
     pub fn hexagon(centre: Vector, flats: f64) -> Self {
         let reach = flats / f64::sqrt(3.0);
         let angles = [0.0, 60.0, 120.0, 180.0, 240.0, 300.0];
@@ -59,7 +55,6 @@ impl Shape {
     }
 
     /// The convex hull of any points.
-    #[must_use]
     pub fn hull(points: &[Vector], radius: f64) -> Self {
         let mut sorted = points.to_vec();
         sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
@@ -90,28 +85,24 @@ impl Shape {
     }
 
     /// The mean of its points.
-    #[must_use]
     pub fn middle(&self) -> Vector {
         let sum = self.points.iter().fold(Vector::default(), |a, b| a + *b);
         sum * (1.0 / self.points.len() as f64)
     }
 
     /// The largest distance of any of its points from one point, mm.
-    #[must_use]
     pub fn farthest(&self, from: Vector) -> f64 {
         let away = self.points.iter().map(|&point| (point - from).length());
         away.fold(0.0, f64::max) + self.radius
     }
 
     /// The greatest distance of two of its points, mm.
-    #[must_use]
     pub fn width(&self) -> f64 {
-        let most = self.points.iter().map(|&point| self.farthest(point));
-        most.fold(0.0, f64::max) + self.radius
+        let largest = self.points.iter().map(|&point| self.farthest(point));
+        largest.fold(0.0, f64::max) + self.radius
     }
 
     /// The same shape at a place.
-    #[must_use]
     pub fn placed(&self, place: &Placement) -> Self {
         Self {
             points: self.points.iter().map(|&point| place.map(point)).collect(),
@@ -120,7 +111,6 @@ impl Shape {
     }
 
     /// The mirror image in the x axis.
-    #[must_use]
     pub fn mirrored(&self) -> Self {
         Self {
             points: self.points.iter().rev().map(|p| p.mirrored()).collect(),
@@ -131,7 +121,6 @@ impl Shape {
     /// The distance to another shape, mm: 0 where they touch. Where they overlap, minus
     /// the shortest way that takes them apart. No point that moves by a length changes
     /// it by more than that length.
-    #[must_use]
     pub fn distance(&self, other: &Self) -> f64 {
         let mut between = f64::INFINITY;
         if self.contains(other.points[0]) || other.contains(self.points[0]) {
@@ -153,7 +142,6 @@ impl Shape {
 
     /// Depth of this shape within another, mm; below 0 if it sticks out. Each point may have
     /// `strayed` along x and y; then the least depth.
-    #[must_use]
     pub fn within(&self, hole: &Self, strayed: Vector) -> f64 {
         let sharp = Self {
             points: hole.points.clone(),
@@ -169,10 +157,10 @@ impl Shape {
         let anyhow = air - outermost - strayed.length();
         // A sharper bound for a long hole with a shape that slides along it.
         let lines = hole.lines().flat_map(|(from, out)| {
-            let more = out.x.abs() * strayed.x + out.y.abs() * strayed.y;
+            let stray = out.x.abs() * strayed.x + out.y.abs() * strayed.y;
             self.points
                 .iter()
-                .map(move |&point| out.dot(point - from) + more)
+                .map(move |&point| out.dot(point - from) + stray)
         });
         let outermost = lines.fold(f64::NEG_INFINITY, f64::max);
         if hole.points.len() > 2 && outermost <= 0.0 {

@@ -112,10 +112,9 @@ pub struct Stack {
 
 impl Stack {
     /// Computes the heights of a robot from its parts.
-    #[must_use]
     pub fn new(parts: &Parts) -> Self {
         let (t, gap, screw) = (parts.thickness, parts.gap, &parts.screw);
-        let above = |below: Span, by: f64| [below[1] + gap, below[1] + gap + by];
+        let above = |below: Span, height: f64| [below[1] + gap, below[1] + gap + height];
         let plate = [-parts.plate, 0.0];
         let seat = [0.0, SEAT];
         let crank = [gap, gap + t.max(screw.nut_height + 1.0)];
@@ -177,36 +176,31 @@ impl Stack {
 
     /// Top of the pocket for a leg anchor's nut, and the length of its screw, which must not
     /// touch the plate.
-    #[must_use]
     pub fn anchor_nut(&self, parts: &Parts) -> (f64, f64) {
         let tip = self.crank[0] + TIP;
         (tip + parts.screw.nut_height, self.on_hook - tip)
     }
 
     /// From the floor to the head of a screw in its pad, mm.
-    #[must_use]
     pub fn under_head(&self, parts: &Parts) -> f64 {
         self.pad[1] - PAD_LIP - parts.screw.head_height - self.floor
     }
 
     /// True if a leg's crank is thick enough above the nut that is sunk into it.
-    #[must_use]
     pub fn holds_nut(&self, parts: &Parts) -> bool {
         self.anchor[1] - self.anchor_nut(parts).0 >= OVER_NUT
     }
 }
 
 /// The shortest screw on sale of at least a length, mm; that length itself if none is.
-#[must_use]
-pub fn screw_length(least: f64) -> f64 {
+pub fn screw_length(min: f64) -> f64 {
     SCREWS
         .into_iter()
-        .find(|length| *length >= least - 1e-9)
-        .unwrap_or(least)
+        .find(|length| *length >= min - 1e-9)
+        .unwrap_or(min)
 }
 
 /// True if shops have a screw of this length, mm.
-#[must_use]
 pub fn is_sold(length: f64) -> bool {
     SCREWS.iter().any(|sold| (sold - length).abs() < 1e-9)
 }

@@ -102,8 +102,8 @@ struct Axis {
 }
 
 impl Axis {
-    fn room(&self, radius: f64, from: f64, by: f64) -> FreeSpace {
-        let to = from + by;
+    fn room(&self, radius: f64, from: f64, length: f64) -> FreeSpace {
+        let to = from + length;
         FreeSpace {
             shape: Shape::disc(self.at, radius),
             z: [from.min(to), from.max(to)],
@@ -189,14 +189,14 @@ impl Bench<'_> {
         screw: &Body,
         new: &[&Body],
         around: &[&Body],
-        again: bool,
+        is_turned_later: bool,
     ) -> Vec<(ScrewOperation, String)> {
         let Some(axis) = self.axis(screw) else {
             return Vec::new();
         };
         let nut = self.assembly.body(&screw.name.replacen("screw", "nut", 1));
         let nut = nut.filter(|nut| nut.kind == Kind::Nut);
-        let own = |name: &str| name == screw.name || nut.is_some_and(|nut| nut.name == name);
+        let is_own = |name: &str| name == screw.name || nut.is_some_and(|nut| nut.name == name);
         let is_in = |list: &[&Body], body: &Body| list.iter().any(|other| other.name == body.name);
         let new_nut = nut.filter(|nut| is_in(new, nut));
         let complete = is_in(around, screw) && nut.is_none_or(|nut| is_in(around, nut));
@@ -204,17 +204,17 @@ impl Bench<'_> {
         let on_pad = screw.name.strip_prefix("screw height ");
         let pad = on_pad.and_then(|leg| self.assembly.body(&format!("pad {leg}")));
         let is_pad = |body: &Body| pad.is_some_and(|pad| pad.name == body.name);
-        let others = around.iter().filter(|body| !own(&body.name));
+        let others = around.iter().filter(|body| !is_own(&body.name));
         let others: Vec<&Body> = others.filter(|body| !is_pad(body)).copied().collect();
         let mut rooms = Vec::new();
         if is_new {
-            let way = axis.room(axis.radius, axis.end, axis.up * axis.length);
-            rooms.push((ScrewOperation::Push, way));
+            let room = axis.room(axis.radius, axis.end, axis.up * axis.length);
+            rooms.push((ScrewOperation::Push, room));
         }
         // A hexagonal head is held by its pocket.
         let turns = !matches!(screw.kind, Kind::HexScrew(_));
         let mut through = None;
-        if turns && complete && (is_new || new_nut.is_some() || again) {
+        if turns && complete && (is_new || new_nut.is_some() || is_turned_later) {
             let key = |radius| axis.room(radius, axis.end, axis.up * KEY[1]);
             rooms.push((ScrewOperation::Turn, key(KEY[0])));
             through = pad.filter(|pad| is_in(around, pad) && self.fills(pad, &key(HEX_KEY)));
@@ -238,32 +238,36 @@ impl Bench<'_> {
 impl Assembly {
     /// The screws that cannot be put in or turned in the order of some steps while the
     /// servos stand at a pose.
-    #[must_use]
     pub fn blocked(&self, steps: &[Step], pose: &Solution) -> Vec<Blocked> {
         let bench = Bench {
             assembly: self,
             pose,
         };
-        let mut found = Vec::new();
+        let mut all_blocked = Vec::new();
         let mut before: Vec<&Body> = Vec::new();
         for (number, step) in (1..).zip(steps) {
             let begin = before.len();
             for stage in &step.stages {
-                let known = |body: &Body| before.iter().any(|old| old.name == body.name);
-                let adds = |body: &&Body| (stage.adds)(body) && !known(body);
+                let is_already_on = |body: &Body| before.iter().any(|old| old.name == body.name);
+                let adds = |body: &&Body| (stage.adds)(body) && !is_already_on(body);
                 let new: Vec<_> = self.bodies().iter().filter(adds).collect();
                 before.extend(&new);
                 for screw in self.bodies() {
-                    let same = |body: &&&Body| body.mount.servos() == screw.mount.servos();
+                    let is_on_same_servos =
+                        |body: &&&Body| body.mount.servos() == screw.mount.servos();
                     let around: Vec<_> = match stage.at {
                         TurningPlace::Robot => before.clone(),
-                        TurningPlace::Bench => {
-                            before[begin..].iter().filter(same).copied().collect()
-                        }
+                        TurningPlace::Bench => before[begin..]
+                            .iter()
+                            .filter(is_on_same_servos)
+                            .copied()
+                            .collect(),
                     };
-                    let again = (stage.turns)(screw);
-                    let blocked = bench.obstacles(screw, &new, &around, again).into_iter();
-                    found.extend(blocked.map(|(operation, by)| Blocked {
+                    let is_turned_later = (stage.turns)(screw);
+                    let blocked = bench
+                        .obstacles(screw, &new, &around, is_turned_later)
+                        .into_iter();
+                    all_blocked.extend(blocked.map(|(operation, by)| Blocked {
                         step: number,
                         screw: screw.name.clone(),
                         operation,
@@ -272,7 +276,7 @@ impl Assembly {
                 }
             }
         }
-        found
+        all_blocked
     }
 
     /// The poses that servos have to be turned to in some steps so that every screw can be
@@ -292,9 +296,10 @@ impl Assembly {
         }
         for pose in self.poses_near(neutral) {
             let still = self.blocked(steps, &pose);
-            let reached = |of: &mut Blocked| {
-                let same = |other: &Blocked| other.step == of.step && other.screw == of.screw;
-                !still.iter().any(same)
+            let reached = |obstacle: &mut Blocked| {
+                let is_same_screw =
+                    |other: &Blocked| other.step == obstacle.step && other.screw == obstacle.screw;
+                !still.iter().any(is_same_screw)
             };
             let angles: [f64; 4] = pose.pose.into();
             for blocked in left.extract_if(.., reached) {
@@ -335,9 +340,9 @@ impl Assembly {
             let turns = angles.iter().zip(from).map(|(a, b)| (a - b).abs());
             turns.fold(0.0, f64::max)
         };
-        let mut more: Vec<_> = self.poses(STEPS).collect();
-        more.sort_by(|a, b| away(a).total_cmp(&away(b)));
-        poses.extend(more);
+        let mut others: Vec<_> = self.poses(STEPS).collect();
+        others.sort_by(|a, b| away(a).total_cmp(&away(b)));
+        poses.extend(others);
         poses
     }
 }

@@ -119,7 +119,7 @@ fn console(title: &'static str) -> Step {
 }
 
 /// The steps of a robot with slotted or with rigid struts.
-pub fn steps(slotted: bool) -> Vec<Step> {
+pub fn steps(is_slotted: bool) -> Vec<Step> {
     vec![
         chassis(),
         supply(),
@@ -129,7 +129,7 @@ pub fn steps(slotted: bool) -> Vec<Step> {
         console("Prove the signs"),
         legs(),
         legs_on_plate(),
-        struts(slotted),
+        struts(is_slotted),
         sliders(),
         ends(),
         level(),
@@ -264,7 +264,7 @@ fn legs_on_plate() -> Step {
     step("Legs on the plate", lift, ExtraView::CornerBelow, vec![all])
 }
 
-fn struts(slotted: bool) -> Step {
+fn struts(is_slotted: bool) -> Step {
     let lift = |body: &Body| match body.kind {
         Kind::Screw(_) => 1.6,
         Kind::Nut => -0.4,
@@ -275,7 +275,7 @@ fn struts(slotted: bool) -> Step {
         matches!(body.mount, Mount::Strut(_)) || body.name.starts_with("screw leg anchor")
     });
     let on_link = robot(|body| named(body, &["strut ring", "screw anchor", "nut anchor"]));
-    let title = match slotted {
+    let title = match is_slotted {
         true => "Struts and springs",
         false => "Struts",
     };

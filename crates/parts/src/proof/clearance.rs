@@ -45,7 +45,6 @@ impl fmt::Display for Clearance {
 impl Assembly {
     /// Pairs of bodies that come nearer than `within` mm at some poses, the nearest first,
     /// each pair once.
-    #[must_use]
     pub fn nearest(
         &self,
         poses: impl IntoIterator<Item = Solution>,
@@ -68,18 +67,20 @@ impl Assembly {
                 }
             }
         }
-        let mut least: BTreeMap<[usize; 2], ([f64; 4], f64)> = BTreeMap::new();
+        let mut min: BTreeMap<[usize; 2], ([f64; 4], f64)> = BTreeMap::new();
         for pose in poses {
             let places = bodies.iter().map(|body| self.place(body.mount, &pose));
             let places: Vec<_> = places.collect();
-            for (of, [(a, (middle, reach)), (b, (other, more))]) in &pairs {
-                let [first, second] = of.map(|body| &places[body]);
+            for (index, [(a, (middle, reach)), (b, (other, more))]) in &pairs {
+                let [first, second] = index.map(|body| &places[body]);
                 let apart = (second.map(*other) - first.map(*middle)).length() - reach - more;
-                let known = least.get(of).map_or(within, |known| known.1);
-                if apart < known {
+                let nearest_so_far = min
+                    .get(index)
+                    .map_or(within, |nearest_so_far| nearest_so_far.1);
+                if apart < nearest_so_far {
                     let mm = a.placed(first).distance(&b.placed(second));
-                    if mm < known {
-                        least.insert(*of, (pose.pose.into(), mm));
+                    if mm < nearest_so_far {
+                        min.insert(*index, (pose.pose.into(), mm));
                     }
                 }
             }
@@ -90,9 +91,9 @@ impl Assembly {
             pose,
             mm,
         };
-        let mut found: Vec<_> = least.into_iter().map(clearance).collect();
-        found.sort_by(|a, b| a.mm.total_cmp(&b.mm));
-        found
+        let mut clearances: Vec<_> = min.into_iter().map(clearance).collect();
+        clearances.sort_by(|a, b| a.mm.total_cmp(&b.mm));
+        clearances
     }
 
     /// Poses that the guard accepts, on a grid of `steps` angles over each servo's travel.

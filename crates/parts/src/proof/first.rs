@@ -25,16 +25,16 @@ pub fn worst(assembly: &Assembly, tasks: &[Task]) -> Option<Vec<Task>> {
     let mut poses: Vec<Solution> = robot.accepted(robot.neutral().into()).into_iter().collect();
     poses.extend((0..81).filter_map(|direction| edge(robot, direction)));
     poses.extend(assembly.poses(STEPS));
-    let least = |task: &Task| {
-        let at = poses.iter().map(|pose| distance(assembly, task, pose));
-        at.fold(f64::INFINITY, f64::min)
+    let smallest = |task: &Task| {
+        let distances = poses.iter().map(|pose| distance(assembly, task, pose));
+        distances.fold(f64::INFINITY, f64::min)
     };
-    let all = tasks.iter().map(|task| (least(task), task));
-    let mut found: Vec<_> = all.filter(|(mm, task)| *mm < task.least()).collect();
-    found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let found = found.into_iter().take(WORST);
-    let found: Vec<_> = found.map(|(_, task)| task.clone()).collect();
-    (!found.is_empty()).then_some(found)
+    let all = tasks.iter().map(|task| (smallest(task), task));
+    let mut too_near: Vec<_> = all.filter(|(mm, task)| *mm < task.least()).collect();
+    too_near.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let too_near = too_near.into_iter().take(WORST);
+    let too_near: Vec<_> = too_near.map(|(_, task)| task.clone()).collect();
+    (!too_near.is_empty()).then_some(too_near)
 }
 
 /// The least distance of a task's parts at a pose, mm; infinite if they are far enough apart.
@@ -55,14 +55,14 @@ fn edge(robot: &Robot, direction: u32) -> Option<Solution> {
         let (low, high) = robot.servos()[servo].travel();
         [low, 0.0, high][(direction / 3_u32.pow(servo as u32) % 3) as usize]
     });
-    let at = |share: f64| robot.accepted([0, 1, 2, 3].map(|i| from[i] + share * ends[i]));
+    let pose_at = |share: f64| robot.accepted([0, 1, 2, 3].map(|i| from[i] + share * ends[i]));
     let (mut within, mut beyond) = (0.0, 1.0);
     for _ in 0..HALVINGS {
         let share = (within + beyond) / 2.0;
-        match at(share) {
+        match pose_at(share) {
             Some(_) => within = share,
             None => beyond = share,
         }
     }
-    at(within)
+    pose_at(within)
 }

@@ -43,8 +43,10 @@ pub struct Region<const N: usize> {
 impl<const N: usize> Region<N> {
     pub fn of(bounds: [Interval; N]) -> Self {
         Self {
-            middle: bounds.map(|of| of.low + (of.high - of.low) / 2.0),
-            half: bounds.map(|of| (of.high - of.low) / 2.0),
+            middle: bounds.map(|bounds_of_servo| {
+                bounds_of_servo.low + (bounds_of_servo.high - bounds_of_servo.low) / 2.0
+            }),
+            half: bounds.map(|bounds_of_servo| (bounds_of_servo.high - bounds_of_servo.low) / 2.0),
         }
     }
 
@@ -122,9 +124,9 @@ impl<'a> Guard<'a> {
 
     /// The angle of one of two servos beyond which no pose is accepted, at any angle of the
     /// other servo.
-    fn end_of(&self, pair: [usize; 2], which: usize, high: bool) -> f64 {
-        let sign = if high { -1.0 } else { 1.0 };
-        let end = |region: &Region<2>| region.middle[which] - sign * region.half[which];
+    fn end_of(&self, pair: [usize; 2], index: usize, is_high: bool) -> f64 {
+        let sign = if is_high { -1.0 } else { 1.0 };
+        let end = |region: &Region<2>| region.middle[index] - sign * region.half[index];
         let whole = Region::of(pair.map(|servo| self.ranges[servo]));
         // The least end comes first, and of equal ones the first that was found.
         let (mut regions, mut count) = (BTreeMap::from([((0, 0), whole)]), 0);
@@ -132,9 +134,9 @@ impl<'a> Guard<'a> {
             if self.refuses(&pair, &region) {
                 continue;
             }
-            let mut least = [COARSE; 2];
-            least[which] = FINE;
-            let [a, b] = [0, 1].map(|i| region.half[i] / least[i]);
+            let mut min = [COARSE; 2];
+            min[index] = FINE;
+            let [a, b] = [0, 1].map(|i| region.half[i] / min[i]);
             if a.max(b) < 1.0 {
                 return end(&region);
             }
@@ -162,12 +164,13 @@ impl<'a> Guard<'a> {
         let angles = std::array::from_fn(|i| Slope::angle(i, region.bounds(i)));
         let bounds = turned(self.robot, servos, angles);
         let middle = turned(self.robot, servos, region.middle);
-        let broken = |(what, bounds, middle): (Check, Slope<N>, f64)| {
+        let broken = |(check, bounds, middle): (Check, Slope<N>, f64)| {
             let value = bounds.tightened(middle, &region.half).value;
-            let [low, high] = [value.low, value.high].map(|value| self.broken(what, value));
+            let [low, high] = [value.low, value.high].map(|value| self.broken(check, value));
             low.is_some() && low == high
         };
-        let all = |of: [usize; 2]| of.iter().all(|servo| servos.contains(servo));
+        let all =
+            |servos_needed: [usize; 2]| servos_needed.iter().all(|servo| servos.contains(servo));
         // A leg's margin depends on the crank's direction alone, not on the angle.
         let (leg, none) = (&self.robot.lizard().leg, Slope::of(0.0));
         let legs = servos.iter().any(|&servo| {
@@ -179,32 +182,35 @@ impl<'a> Guard<'a> {
         let end = |end: End| {
             let values = middle.end(end).conditions(end).map(|(_, value)| value);
             let conditions = bounds.end(end).conditions(end).into_iter().zip(values);
-            all(end.servos()) && { conditions }.any(|((what, of), value)| broken((what, of, value)))
+            all(end.servos()) && { conditions }
+                .any(|((check, servos_needed), value)| broken((check, servos_needed, value)))
         };
         let side = |side: Side| {
-            let what = Check::STROKE[usize::from(side == Side::Right)];
-            all(side.servos()) && broken((what, bounds.side(side).s, middle.side(side).s))
+            let check = Check::STROKE[usize::from(side == Side::Right)];
+            all(side.servos()) && broken((check, bounds.side(side).s, middle.side(side).s))
         };
         let refused = legs || End::ALL.into_iter().any(end) || Side::ALL.into_iter().any(side);
         (!refused).then_some((bounds, middle))
     }
 
     /// The relaxed limit that a value breaks, if any.
-    fn broken(&self, what: Check, value: f64) -> Option<f64> {
+    fn broken(&self, check: Check, value: f64) -> Option<f64> {
         // Crossed tips have no limit that could be relaxed.
-        let off = match what {
+        let slack = match check {
             Check::UncrossedHead | Check::UncrossedTail => LENGTH,
             _ => 0.0,
         };
-        self.limits.broken(what, value + off).map(|of| of.limit)
+        self.limits
+            .broken(check, value + slack)
+            .map(|violation| violation.limit)
     }
 
     /// A pose in which some servos have given angles and which the guard accepts with its
     /// unrelaxed limits; `None` if none is found.
     pub fn pose(&self, angles: [Option<f64>; 4]) -> Option<Solution> {
         const ALL: [usize; 4] = [0, 1, 2, 3];
-        let or = |of: fn(&lizard_robot::Servo) -> f64| {
-            ALL.map(|servo| angles[servo].unwrap_or(of(&self.robot.servos()[servo])))
+        let or = |bound_of: fn(&lizard_robot::Servo) -> f64| {
+            ALL.map(|servo| angles[servo].unwrap_or(bound_of(&self.robot.servos()[servo])))
         };
         if let Some(pose) = self.robot.accepted(or(|servo| servo.neutral)) {
             return Some(pose);
@@ -220,8 +226,8 @@ impl<'a> Guard<'a> {
                 return Some(pose);
             }
             if !self.refuses(&ALL, &region) {
-                let by = |a: &usize, b: &usize| region.half[*a].total_cmp(&region.half[*b]);
-                let widest = ALL.into_iter().max_by(by)?;
+                let by_width = |a: &usize, b: &usize| region.half[*a].total_cmp(&region.half[*b]);
+                let widest = ALL.into_iter().max_by(by_width)?;
                 regions.extend(region.halves(widest));
             }
         }

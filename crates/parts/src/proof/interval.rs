@@ -123,8 +123,11 @@ impl Real for Interval {
     }
 
     fn sin_cos_each<const K: usize>(degrees: [Self; K]) -> ([Self; K], [Self; K]) {
-        let both = degrees.map(Self::sine_and_cosine);
-        (both.map(|(sine, _)| sine), both.map(|(_, cosine)| cosine))
+        let sines_and_cosines = degrees.map(Self::sine_and_cosine);
+        (
+            sines_and_cosines.map(|(sine, _)| sine),
+            sines_and_cosines.map(|(_, cosine)| cosine),
+        )
     }
 }
 

@@ -109,11 +109,11 @@ impl fmt::Display for NearestPair {
 
 impl NearestPair {
     /// The clash of two bodies that have to keep a least distance, mm; `None` if they do.
-    fn clash(&self, least: f64) -> Option<Clash> {
+    fn clash(&self, min: f64) -> Option<Clash> {
         match &self.seen {
-            Some(seen) if seen.mm < least.min(0.0) => Some(Clash::Overlap(Box::new(seen.clone()))),
-            Some(seen) if seen.mm < least => Some(Clash::Narrow(Box::new(seen.clone()))),
-            _ if self.proved < least => Some(Clash::Unsure(Box::new(self.clone()))),
+            Some(seen) if seen.mm < min.min(0.0) => Some(Clash::Overlap(Box::new(seen.clone()))),
+            Some(seen) if seen.mm < min => Some(Clash::Narrow(Box::new(seen.clone()))),
+            _ if self.proved < min => Some(Clash::Unsure(Box::new(self.clone()))),
             _ => None,
         }
     }
@@ -126,7 +126,6 @@ impl NearestPair {
 
 impl Proof {
     /// The nearest two bodies that are not made to meet.
-    #[must_use]
     pub fn least(&self) -> Option<&NearestPair> {
         self.apart.first()
     }
@@ -188,28 +187,26 @@ impl<'a> Questions<'a> {
     }
 
     /// The number of questions.
-    #[must_use]
     pub fn count(&self) -> usize {
         self.tasks.len()
     }
 
     /// Answers one question, by its index below [`Questions::count`].
-    #[must_use]
     pub fn one(&self, index: usize) -> Answer {
         self.within(index, search::MAX_REGIONS)
     }
 
-    /// Answers one question after at most `most` regions.
-    fn within(&self, index: usize, most: u64) -> Answer {
+    /// Answers one question after at most `max` regions.
+    fn within(&self, index: usize, max: u64) -> Answer {
         let mut task = self.tasks[index].clone();
         let pinned = match task.meet {
             true => self.assembly.take_joint(&mut task, &self.joints),
             false => None,
         };
         let nearest = (!task.shape_pairs.is_empty()).then(|| {
-            let found = search::least(self.assembly, &self.guard, &task, most);
-            let regions = found.regions;
-            (self.assembly.nearest_pair(found), regions)
+            let nearest = search::least(self.assembly, &self.guard, &task, max);
+            let regions = nearest.regions;
+            (self.assembly.nearest_pair(nearest), regions)
         });
         Answer { pinned, nearest }
     }
@@ -222,7 +219,7 @@ impl<'a> Questions<'a> {
         mut known: impl FnMut(usize) -> Option<Answer>,
         mut progress: impl FnMut(usize, usize),
     ) -> Proof {
-        let mut most = search::MAX_REGIONS;
+        let mut max = search::MAX_REGIONS;
         let mut proof = Proof {
             apart: Vec::new(),
             meeting: Vec::new(),
@@ -233,7 +230,7 @@ impl<'a> Questions<'a> {
         let count = self.count();
         for (index, task) in self.tasks.iter().enumerate() {
             progress(index, count);
-            let answer = match most {
+            let answer = match max {
                 search::MAX_REGIONS => known(index).unwrap_or_else(|| self.one(index)),
                 fewer => self.within(index, fewer),
             };
@@ -250,7 +247,7 @@ impl<'a> Questions<'a> {
             }
             // One clash is enough, and if parts hardly fit, each question takes long.
             match clash {
-                Some(Clash::Unsure(_)) => most = search::MAX_REGIONS / 10,
+                Some(Clash::Unsure(_)) => max = search::MAX_REGIONS / 10,
                 Some(_) if !self.seen => break,
                 _ => {}
             }
@@ -291,13 +288,13 @@ impl Assembly {
         };
         let places: Vec<_> = poses.iter().map(place).collect();
         let pose = poses.first()?;
-        let mut least: Option<NearestPair> = None;
+        let mut min: Option<NearestPair> = None;
         task.shape_pairs.retain(|pair| {
             let gap = pair.pinned(&places);
             if let Some(mm) = gap
-                && least.as_ref().is_none_or(|least| mm < least.proved)
+                && min.as_ref().is_none_or(|min| mm < min.proved)
             {
-                least = Some(self.nearest_pair(Found {
+                min = Some(self.nearest_pair(Found {
                     proved: mm,
                     bodies: pair.bodies,
                     seen: Some((*pose, mm)),
@@ -307,13 +304,15 @@ impl Assembly {
             }
             gap.is_none()
         });
-        least
+        min
     }
 
     fn nearest_pair(&self, found: Found) -> NearestPair {
         let [first, second] = found.bodies.map(|body| self.bodies()[body].name.clone());
         let neutral = self.robot().servos().each_ref().map(|servo| servo.neutral);
-        let angles = |of: [Option<f64>; 4]| std::array::from_fn(|i| of[i].unwrap_or(neutral[i]));
+        let angles = |optional_angles: [Option<f64>; 4]| {
+            std::array::from_fn(|i| optional_angles[i].unwrap_or(neutral[i]))
+        };
         NearestPair {
             seen: found.seen.map(|(pose, mm)| Clearance {
                 first: first.clone(),

@@ -60,14 +60,14 @@ struct Part<const N: usize> {
 }
 
 /// The least distance of a task's solids over all poses that the guard accepts, from
-/// this many regions at `most`.
-pub fn least(assembly: &Assembly, guard: &Guard, task: &Task, most: u64) -> Found {
+/// this many regions at `max`.
+pub fn least(assembly: &Assembly, guard: &Guard, task: &Task, max: u64) -> Found {
     match task.servos()[..] {
-        [] => search(assembly, guard, task, [], most),
-        [a] => search(assembly, guard, task, [a], most),
-        [a, b] => search(assembly, guard, task, [a, b], most),
-        [a, b, c] => search(assembly, guard, task, [a, b, c], most),
-        _ => search(assembly, guard, task, [0, 1, 2, 3], most),
+        [] => search(assembly, guard, task, [], max),
+        [a] => search(assembly, guard, task, [a], max),
+        [a, b] => search(assembly, guard, task, [a, b], max),
+        [a, b, c] => search(assembly, guard, task, [a, b, c], max),
+        _ => search(assembly, guard, task, [0, 1, 2, 3], max),
     }
 }
 
@@ -76,7 +76,7 @@ fn search<const N: usize>(
     guard: &Guard,
     task: &Task,
     servos: [usize; N],
-    most: u64,
+    max: u64,
 ) -> Found {
     let search = Search {
         assembly,
@@ -87,7 +87,7 @@ fn search<const N: usize>(
         by: 0,
         regions: 0,
     };
-    search.run(most)
+    search.run(max)
 }
 
 struct Search<'a, const N: usize> {
@@ -107,25 +107,25 @@ impl<const N: usize> Search<'_, N> {
         self.seen.as_ref().map_or(ENOUGH, |seen| seen.1.min(ENOUGH))
     }
 
-    fn run(mut self, most: u64) -> Found {
-        let whole = Region::of(self.servos.map(|servo| self.guard.ranges[servo]));
+    fn run(mut self, max: u64) -> Found {
+        let all_poses = Region::of(self.servos.map(|servo| self.guard.ranges[servo]));
         let all: Vec<u32> = (0..self.task.shape_pairs.len() as u32).collect();
         let share = if self.task.meet { SHARE_MEETING } else { SHARE };
         // The least bound comes first; regions break ties, so the order is always the same.
         let key = |part: &Part<N>| (ordered(part.low), part.region.middle.map(ordered));
-        let first = self.look(whole, &all).into_iter();
+        let first = self.look(all_poses, &all).into_iter();
         let mut parts: BTreeMap<_, _> = first.map(|part| (key(&part), part)).collect();
         while let Some((_, part)) = parts.pop_first() {
             let high = self.high();
             if part.low >= high - TOLERANCE - share * high.abs() {
                 return self.found(part.low.min(high), None);
             }
-            let most = if high < 0.0 {
+            let max = if high < 0.0 {
                 MAX_REGIONS_OVERLAPPING
             } else {
-                most
+                max
             };
-            if part.region.half.iter().all(|half| *half < MIN_HALF_WIDTH) || self.regions >= most {
+            if part.region.half.iter().all(|half| *half < MIN_HALF_WIDTH) || self.regions >= max {
                 return self.found(part.low, Some(&part));
             }
             for half in part.region.halves(part.across) {
@@ -172,7 +172,8 @@ impl<const N: usize> Search<'_, N> {
         let place = b.seen_from(&a);
         let bounds = tightened(&around_b.seen_from(&around_a), &place, &region);
         let strays = [bounds.at, bounds.turn].map(|vector| {
-            let [x, y] = [vector.x, vector.y].map(|of| of.largest_change(&region.half));
+            let [x, y] =
+                [vector.x, vector.y].map(|coordinate| coordinate.largest_change(&region.half));
             x.hypot(y)
         });
         let mut part = Part {
@@ -185,17 +186,17 @@ impl<const N: usize> Search<'_, N> {
         let closed = place.at.is_finite() && place.turn.is_finite();
         let mut nearest = (f64::INFINITY, 0);
         for &index in alive {
-            let pair = &self.task.shape_pairs[index as usize];
+            let shape_pair = &self.task.shape_pairs[index as usize];
             let low = if !closed {
                 f64::NEG_INFINITY
-            } else if pair.is_far(&place, strays, self.high()) {
+            } else if shape_pair.is_far(&place, strays, self.high()) {
                 continue;
             } else {
-                let apart = pair.apart(&place);
+                let apart = shape_pair.apart(&place);
                 if apart < nearest.0 {
                     nearest = (apart, index);
                 }
-                let low = pair.apart_within(&place, &bounds, &region);
+                let low = shape_pair.apart_within(&place, &bounds, &region);
                 if low.is_nan() { f64::NEG_INFINITY } else { low }
             };
             if low < self.high() {
@@ -221,13 +222,13 @@ fn tightened<const N: usize>(
     middle: &Placement,
     region: &Region<N>,
 ) -> Placement<Slope<N>> {
-    let each = |bounds: Vector<Slope<N>>, middle: Vector| {
+    let tighten = |bounds: Vector<Slope<N>>, middle: Vector| {
         let x = bounds.x.tightened(middle.x, &region.half);
         Vector::new(x, bounds.y.tightened(middle.y, &region.half))
     };
     Placement {
-        at: each(bounds.at, middle.at),
-        turn: each(bounds.turn, middle.turn),
+        at: tighten(bounds.at, middle.at),
+        turn: tighten(bounds.turn, middle.turn),
     }
 }
 

@@ -55,7 +55,11 @@ impl Task {
 
     /// The servos on which the relative place of the two mounts depends.
     pub fn servos(&self) -> Vec<usize> {
-        let mut all: Vec<_> = self.mounts.iter().flat_map(|of| of.servos()).collect();
+        let mut all: Vec<_> = self
+            .mounts
+            .iter()
+            .flat_map(|mount| mount.servos())
+            .collect();
         all.sort_unstable();
         all.dedup();
         all
@@ -85,8 +89,8 @@ impl Task {
                     continue;
                 }
                 let mounts = [a.mount, b.mount];
-                let same = |task: &&mut Self| task.mounts == mounts && task.meet == meet;
-                match tasks.iter_mut().find(same) {
+                let is_same = |task: &&mut Self| task.mounts == mounts && task.meet == meet;
+                match tasks.iter_mut().find(is_same) {
                     Some(task) => task.shape_pairs.extend(shape_pairs),
                     None => tasks.push(Self {
                         mounts,
@@ -163,8 +167,8 @@ impl ShapePair {
             _ => None,
         };
         let stays = |first: Vector, second: Vector| {
-            let off = |place: &Placement| (place.map(second) - first).length();
-            places.iter().all(|place| off(place) < ROUNDING_MM)
+            let error = |place: &Placement| (place.map(second) - first).length();
+            places.iter().all(|place| error(place) < ROUNDING_MM)
         };
         let air = |pin: &Shape, holes: &[Shape], stays: &dyn Fn(Vector, Vector) -> bool| {
             let middle = centre(pin)?;
@@ -221,14 +225,14 @@ impl ShapePair {
         const ANYWHERE: Vector = Vector::new(f64::INFINITY, f64::INFINITY);
         self.at_least(place, |shape| {
             let strays = shape.points.iter().map(|&point| {
-                let at = bounds.map(point);
+                let position = bounds.map(point);
                 Vector::new(
-                    at.x.largest_change(&region.half),
-                    at.y.largest_change(&region.half),
+                    position.x.largest_change(&region.half),
+                    position.y.largest_change(&region.half),
                 )
             });
-            strays.fold(Vector::default(), |most, of| match of.is_finite() {
-                true => Vector::new(most.x.max(of.x), most.y.max(of.y)),
+            strays.fold(Vector::default(), |max, stray| match stray.is_finite() {
+                true => Vector::new(max.x.max(stray.x), max.y.max(stray.y)),
                 false => ANYWHERE,
             })
         })

@@ -51,10 +51,10 @@ impl<const N: usize> Slope<N> {
         }
     }
 
-    fn each(self, value: Interval, of: impl Fn(Interval) -> Interval) -> Self {
+    fn each(self, value: Interval, derivative: impl Fn(Interval) -> Interval) -> Self {
         Self {
             value,
-            slope: self.slope.map(of),
+            slope: self.slope.map(derivative),
         }
     }
 
@@ -62,9 +62,9 @@ impl<const N: usize> Slope<N> {
         self,
         other: Self,
         value: Interval,
-        of: impl Fn(Interval, Interval) -> Interval,
+        derivative: impl Fn(Interval, Interval) -> Interval,
     ) -> Self {
-        let slope = std::array::from_fn(|i| of(self.slope[i], other.slope[i]));
+        let slope = std::array::from_fn(|i| derivative(self.slope[i], other.slope[i]));
         Self { value, slope }
     }
 }

@@ -72,8 +72,8 @@ impl Sweep<'_> {
                 _ => {
                     let place = self.assembly.place_on(self.mount, &bounds);
                     self.cover(|point| {
-                        let at = place.map(point);
-                        [at.x.value, at.y.value]
+                        let position = place.map(point);
+                        [position.x.value, position.y.value]
                     });
                 }
             }

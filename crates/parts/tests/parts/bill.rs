@@ -38,8 +38,8 @@ fn every_body_is_printed_or_bought() {
 fn a_robot_that_is_the_same_on_both_sides_has_its_mass_in_the_middle() {
     let (_, paper) = bill("paper");
     // All but board and supply, which are balanced to what counts as the middle.
-    let off = paper.centre[0].abs().max(paper.centre[1].abs());
-    assert!(off < 1.0, "{:?}", paper.centre);
+    let error = paper.centre[0].abs().max(paper.centre[1].abs());
+    assert!(error < 1.0, "{:?}", paper.centre);
     assert!((350.0..450.0).contains(&paper.grams), "{}", paper.grams);
     let (_, large) = bill("large");
     assert!(large.grams > paper.grams);

@@ -192,7 +192,7 @@ fn along(line: &Loop) -> Vec<Vector> {
 
 /// The thinnest wall between two loops of a layer of a part.
 fn thinnest(part: &Part) -> f64 {
-    let mut least = f64::INFINITY;
+    let mut smallest = f64::INFINITY;
     for prism in &part.prisms {
         for piece in &Outline::of(prism).pieces {
             let lines: Vec<_> = piece.iter().map(along).collect();
@@ -202,12 +202,12 @@ fn thinnest(part: &Part) -> f64 {
                     .flat_map(|b| a.iter().map(move |p| (b, p)))
                 {
                     let near = b.iter().map(|other| (*other - *point).length());
-                    least = near.fold(least, f64::min);
+                    smallest = near.fold(smallest, f64::min);
                 }
             }
         }
     }
-    least
+    smallest
 }
 
 #[test]

@@ -54,14 +54,14 @@ fn the_page_has_every_key() {
 }
 
 /// Compares the text of a page after a mark, up to the next mark, or writes it there.
-fn quoted(path: &str, begin: &str, expected: &str) {
+fn quoted(path: &str, start: &str, expected: &str) {
     const END: &str = "<!-- end of the list -->";
     let page = read(path);
-    let (before, rest) = page.split_once(begin).expect(begin);
+    let (before, rest) = page.split_once(start).expect(start);
     let (list, after) = rest.split_once(END).expect("the list ends");
     if std::env::var_os("BLESS_DOCS").is_some() {
         let file = format!("{}/../../{path}", env!("CARGO_MANIFEST_DIR"));
-        std::fs::write(file, format!("{before}{begin}{expected}{END}{after}")).expect(path);
+        std::fs::write(file, format!("{before}{start}{expected}{END}{after}")).expect(path);
         return;
     }
     assert_eq!(list, expected, "{path}: run with BLESS_DOCS=1");
@@ -81,8 +81,8 @@ fn the_pages_quote_the_lists_of_the_bill() {
         ),
         ("docs/build.md", "the places on the robot", &places()),
     ] {
-        let begin = format!("<!-- {mark}; a test holds it -->\n");
-        quoted(path, &begin, list);
+        let start = format!("<!-- {mark}; a test holds it -->\n");
+        quoted(path, &start, list);
         // The guide has it, too.
         assert!(bill.to_string().contains(list), "{mark}");
     }

@@ -27,8 +27,10 @@ fn holes(body: &Body) -> Vec<(f64, f64)> {
 #[track_caller]
 fn spans(assembly: &Assembly, name: &str, mm: f64) {
     let holes = holes(body(assembly, name));
-    let off = |a: &(f64, f64), b: &(f64, f64)| ((a.0 - b.0).hypot(a.1 - b.1) - mm).abs();
-    let near = holes.iter().any(|a| holes.iter().any(|b| off(a, b) < 1e-9));
+    let error = |a: &(f64, f64), b: &(f64, f64)| ((a.0 - b.0).hypot(a.1 - b.1) - mm).abs();
+    let near = holes
+        .iter()
+        .any(|a| holes.iter().any(|b| error(a, b) < 1e-9));
     assert!(near, "{name}: no two of {holes:?} are {mm} mm apart");
 }
 

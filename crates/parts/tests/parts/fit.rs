@@ -77,8 +77,8 @@ fn pins_meet_the_holes_of_the_parts_that_they_hold() {
                     let frame = assembly.place(held.mount, &pose);
                     let cuts = held.prisms.iter().flat_map(|prism| &prism.cut);
                     let holes = cuts.filter(|cut| cut.radius >= shank.radius - 0.3);
-                    let off = holes.map(|hole| (frame.map(hole.points[0]) - at).length());
-                    let near = off.fold(f64::INFINITY, f64::min);
+                    let error = holes.map(|hole| (frame.map(hole.points[0]) - at).length());
+                    let near = error.fold(f64::INFINITY, f64::min);
                     let (screw, held) = (&screw.name, &held.name);
                     assert!(near < 1e-9, "{name}: {screw} in {held} {near}");
                     met += 1;

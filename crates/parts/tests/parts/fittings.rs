@@ -100,8 +100,8 @@ fn a_tie_slot_has_a_wall_on_each_side_and_nothing_stands_in_the_ties_way() {
 #[test]
 fn the_fuse_carries_what_the_converter_draws_and_the_list_names_both_ratings() {
     // From a battery of two cells at 3.2 V, with a loss of 15 %.
-    let most = 3.0 * 5.0 / (0.85 * 2.0 * 3.2);
-    assert!(most < f64::from(FUSE), "{most}");
+    let max = 3.0 * 5.0 / (0.85 * 2.0 * 3.2);
+    assert!(max < f64::from(FUSE), "{max}");
     for (fitting, rating) in [(Fitting::Fuse, FUSE), (Fitting::Switch, SWITCH)] {
         assert!(fitting.what().contains(&format!(" {rating} A ")));
     }

@@ -134,8 +134,8 @@ fn its_bodies_weigh_what_robot_toml_says_and_where() {
             let (grams, [ahead, left, up]) = weighed(&written(&robot, |_| {}));
             // A chord cuts off a little of each round end.
             assert!((grams / mass - 1.0).abs() < 2e-3, "{name} {grams} {mass}");
-            let off = (ahead - centre[0]).hypot(left - centre[1]);
-            assert!(off < 0.05, "{name} {ahead} {left} {centre:?}");
+            let error = (ahead - centre[0]).hypot(left - centre[1]);
+            assert!(error < 0.05, "{name} {ahead} {left} {centre:?}");
             // Wires count at the height of the plate.
             let moment = (grams * up / (bill.grams * bill.centre[2]) - 1.0).abs();
             assert!(moment < 0.01, "{name} {up} {:?}", bill.centre);
@@ -177,8 +177,8 @@ fn its_loops_are_closed_where_the_robots_joints_are() {
                 assert!(all.contains_key(second), "{second}");
                 let at = all[first].0.point(&numbers(connect, "anchor"));
                 let joint = joints[of("name")] * 1e-3;
-                let off = (at[0] - joint.x).hypot(at[1] - joint.y);
-                assert!(off < 1e-8, "{name} {connect:?} {off}");
+                let error = (at[0] - joint.x).hypot(at[1] - joint.y);
+                assert!(error < 1e-8, "{name} {connect:?} {error}");
             }
         }
     }
@@ -290,8 +290,11 @@ fn a_slotted_strut_pulls_with_its_springs_force_and_yields_one_way() {
         assert_eq!(range, [0.0, 0.005]);
         let [stiffness, rest] = ["stiffness", "springref"].map(|of| numbers(joint, of)[0]);
         for (metres, newtons) in [(0.0, force), (0.003, force + 3.0 * rate)] {
-            let off = stiffness * (metres - rest) - newtons;
-            assert!(off.abs() < 1e-6, "{metres} m from the slot's end: {off}");
+            let error = stiffness * (metres - rest) - newtons;
+            assert!(
+                error.abs() < 1e-6,
+                "{metres} m from the slot's end: {error}"
+            );
         }
     }
     let rigid = written(&robot("paper"), |scene| scene.pull = None);
@@ -363,8 +366,8 @@ fn servos_and_joints_of_a_robot_file_are_those_of_the_engine() {
     assert!((numbers(*link, "damping")[0] - damping).abs() < 1e-8);
     assert!((numbers(*link, "armature")[0] - 0.01 * damping).abs() < 1e-8);
     let motor = elements(&document, "actuator")[0];
-    let most = numbers(motor, "forcerange")[1];
-    assert!((most - 0.012 * 9.80665 * 4.2 / 4.8).abs() < 1e-6, "{most}");
+    let max = numbers(motor, "forcerange")[1];
+    assert!((max - 0.012 * 9.80665 * 4.2 / 4.8).abs() < 1e-6, "{max}");
 }
 
 #[test]
@@ -372,7 +375,7 @@ fn a_course_has_the_angles_of_the_firmwares_tables_and_tells_its_last_cycle() {
     let robot = robot("own-gaits");
     let gait = robot.gait("stride").expect("stride");
     let course = Course::of(&robot, gait, 2, 1);
-    let (begin, period) = (course.begin, course.period);
+    let (start, period) = (course.begin, course.period);
     let text = written(&robot, |scene| scene.course = Some(course));
     let document = Document::parse(&text).expect("well formed");
     let mut nodes = document.descendants();
@@ -381,20 +384,23 @@ fn a_course_has_the_angles_of_the_firmwares_tables_and_tells_its_last_cycle() {
     let [written, long, count] = numbers(numeric, "data")[..] else {
         panic!("two times and a number")
     };
-    assert!((written - begin).abs() < 1e-9 && long == period && period == 0.91);
+    assert!((written - start).abs() < 1e-9 && long == period && period == 0.91);
     assert_eq!(count, 1.0);
     let keys = elements(&document, "keyframe");
     let last = numbers(*keys.last().expect("frames"), "time")[0];
-    assert!(last >= begin + period && last < begin + period + 0.02 + 1e-9);
+    assert!(last >= start + period && last < start + period + 0.02 + 1e-9);
     for key in keys {
         let time = numbers(key, "time")[0];
-        if time < begin {
+        if time < start {
             continue;
         }
-        let wanted = gait.angles(gait.phase(time - begin));
+        let wanted = gait.angles(gait.phase(time - start));
         for (servo, target) in numbers(key, "ctrl").into_iter().enumerate() {
-            let off = wanted[servo] - robot.servos()[servo].neutral - target.to_degrees();
-            assert!(lizard_kinematics::wrap(off).abs() < 0.11, "{time} {off}");
+            let error = wanted[servo] - robot.servos()[servo].neutral - target.to_degrees();
+            assert!(
+                lizard_kinematics::wrap(error).abs() < 0.11,
+                "{time} {error}"
+            );
         }
     }
 }

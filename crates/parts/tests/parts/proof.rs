@@ -267,16 +267,16 @@ fn a_rod_stays_in_its_sleeve_over_the_whole_stroke() {
                 let mut shapes = body.prisms.iter().flat_map(|prism| &prism.add);
                 shapes.find(|shape| shape.points.len() > 2).expect(part)
             });
-            let [begin, end] = along(sleeve, 0.0);
-            let mut least = f64::INFINITY;
+            let [start, end] = along(sleeve, 0.0);
+            let mut smallest = f64::INFINITY;
             for step in 0..=100 {
                 let share = f64::from(step) / 100.0;
                 let stroke = limits.stroke_min + share * (limits.stroke_max - limits.stroke_min);
                 let [rear, front] = along(rod, slider.nominal + stroke);
-                least = least.min(front.min(end) - rear.max(begin));
+                smallest = smallest.min(front.min(end) - rear.max(start));
             }
             // At the longest the rod is drawn out to what it must keep.
-            assert!((least - 20.0).abs() < 1e-9, "{name} {side}: {least}");
+            assert!((smallest - 20.0).abs() < 1e-9, "{name} {side}: {smallest}");
         }
         let pair = |a: &Body, b: &Body| a.name.starts_with("sleeve") && b.name.starts_with("rod");
         let sliders = assembly.prove_some(pair, |_, _| ());

@@ -17,8 +17,8 @@ fn every_printed_part_is_closed_and_has_its_volume() {
             assert!(solid.is_closed(), "{name}: {}", body.name);
             let mesh = Mesh::of(&solid);
             assert!(mesh.is_closed(), "{name}: the mesh of {}", body.name);
-            let off = mesh.volume() / solid.volume - 1.0;
-            assert!(off.abs() < 0.006, "{name}: {} {off}", body.name);
+            let error = mesh.volume() / solid.volume - 1.0;
+            assert!(error.abs() < 0.006, "{name}: {} {error}", body.name);
             printed += 1;
         }
         assert!(printed > 10, "{name}: {printed} printed parts");

@@ -124,11 +124,11 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
             let port = port(self.port.get());
             // SAFETY: the port of a servo pin, in a handler, LEAD after the match.
             unsafe {
-                let before = port.read_volatile();
+                let level_before = port.read_volatile();
                 // A pin that is still high has missed its falling edge: it only goes
                 // down.
-                let change = mask & !before;
-                let on_time = store_at([LEAD, 0], port, before & !mask, change);
+                let change = mask & !level_before;
+                let on_time = store_at([LEAD, 0], port, level_before & !mask, change);
                 if on_time & change == 0 {
                     self.late.count();
                     self.mask.set(0);

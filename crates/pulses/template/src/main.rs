@@ -40,7 +40,7 @@ fn main() -> ! {
         if servos::ticks() != tick {
             tick = servos::ticks();
             frame = (frame + 1) % 100;
-            servos::submit([0, 25, 50, 75].map(|ahead| width((frame + ahead) % 100)));
+            servos::submit([0, 25, 50, 75].map(|offset| width((frame + offset) % 100)));
         }
     }
 }

@@ -64,12 +64,12 @@ fn with_value(
     let missing = || NoSuchKey(key.to_string());
     let document = DeTable::parse(text).map_err(|_| missing())?;
     let (table, name) = key.rsplit_once('.').ok_or_else(missing)?;
-    if let Some(old) = find(document.get_ref(), key) {
-        if !has_type(old.get_ref()) {
+    if let Some(old_value) = find(document.get_ref(), key) {
+        if !has_type(old_value.get_ref()) {
             return Err(missing());
         }
         let mut changed = text.to_string();
-        changed.replace_range(old.span(), value);
+        changed.replace_range(old_value.span(), value);
         return Ok(changed);
     }
     if !OPTIONAL.contains(&key) {
@@ -104,42 +104,41 @@ pub fn without(text: &str, key: &str) -> Result<String, NoSuchKey> {
     let Some(value) = find(document.get_ref(), key) else {
         return Ok(text.to_string());
     };
-    let begin = text[..value.span().start]
+    let start = text[..value.span().start]
         .rfind('\n')
         .map_or(0, |line| line + 1);
     let end = (line_end(text, value.span().end) + 1).min(text.len());
-    if !text[begin..end].trim_start().starts_with(name) {
+    if !text[start..end].trim_start().starts_with(name) {
         return Err(missing());
     }
-    Ok(text[..begin].to_string() + &text[end..])
+    Ok(text[..start].to_string() + &text[end..])
 }
 
 /// Adds the table of a gait, in place of the gait of the same name or at the end of the text.
-#[must_use]
 pub fn with_gait(text: &str, name: &str, table: &str) -> String {
-    let (own, below) = (format!("[gait.{name}]"), format!("[gait.{name}."));
-    let (mut kept, mut is_own, mut done) = (String::new(), false, false);
+    let (header, below) = (format!("[gait.{name}]"), format!("[gait.{name}."));
+    let (mut result, mut is_own, mut is_written) = (String::new(), false, false);
     for line in text.lines() {
         let head = line.trim_start();
         if head.starts_with('[') {
-            is_own = head.starts_with(&own) || head.starts_with(&below);
-            if is_own && !done {
-                done = true;
-                kept += table;
-                kept.push('\n');
+            is_own = head.starts_with(&header) || head.starts_with(&below);
+            if is_own && !is_written {
+                is_written = true;
+                result += table;
+                result.push('\n');
             }
         }
         // A comment below the last key may belong to the next table.
         if !is_own || head.starts_with('#') {
-            kept += line;
-            kept.push('\n');
+            result += line;
+            result.push('\n');
         }
     }
-    if !done {
-        kept.push('\n');
-        kept += table;
+    if !is_written {
+        result.push('\n');
+        result += table;
     }
-    kept
+    result
 }
 
 /// A routine as it is written, right or wrong.
@@ -154,7 +153,6 @@ pub struct WrittenRoutine {
 
 /// The routines of a text in its order, so that one with a mistake can be shown and mended. Without those
 /// whose steps are no strings.
-#[must_use]
 pub fn routines(text: &str) -> Vec<WrittenRoutine> {
     let Ok(document) = DeTable::parse(text) else {
         return Vec::new();
@@ -163,8 +161,8 @@ pub fn routines(text: &str) -> Vec<WrittenRoutine> {
     let Some(table) = table.and_then(|table| table.get_ref().as_table()) else {
         return Vec::new();
     };
-    let mut found: Vec<_> = table.iter().collect();
-    found.sort_by_key(|(name, _)| name.span().start);
+    let mut entries: Vec<_> = table.iter().collect();
+    entries.sort_by_key(|(name, _)| name.span().start);
     let written = |(name, routine): (&Spanned<_>, &Spanned<DeValue>)| {
         let steps = routine.get_ref().get("steps")?.get_ref().as_array()?;
         let steps = steps.iter().map(|step| step.get_ref().as_str());
@@ -175,20 +173,19 @@ pub fn routines(text: &str) -> Vec<WrittenRoutine> {
                 .collect::<Option<_>>()?,
         })
     };
-    found.into_iter().filter_map(written).collect()
+    entries.into_iter().filter_map(written).collect()
 }
 
 /// Sets the steps of a routine; a missing one is added at the end of the text. Its other lines, such as `repeat`,
 /// stay as they are.
-#[must_use]
 pub fn with_steps(text: &str, name: &str, steps: &[String]) -> String {
     let steps: Vec<_> = steps.iter().map(|step| format!("{step:?}")).collect();
     let steps = format!("[{}]", steps.join(", "));
     if let Ok(document) = DeTable::parse(text)
-        && let Some(old) = find(document.get_ref(), &format!("routine.{name}.steps"))
+        && let Some(old_value) = find(document.get_ref(), &format!("routine.{name}.steps"))
     {
         let mut changed = text.to_string();
-        changed.replace_range(old.span(), &steps);
+        changed.replace_range(old_value.span(), &steps);
         return changed;
     }
     let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '-';
@@ -315,8 +312,8 @@ mod tests {
         let steps = texts(&["walk until \"nose\"", "wait\\", "rest"]);
         let changed = with_steps(ROUTINES, "patrol", &steps);
         assert_eq!(written(&changed)[0].1, steps);
-        let begin = ROUTINES.find("[\n").expect("there");
-        assert!(changed.starts_with(&ROUTINES[..begin]));
+        let start = ROUTINES.find("[\n").expect("there");
+        assert!(changed.starts_with(&ROUTINES[..start]));
         assert!(changed.ends_with(&ROUTINES[ROUTINES.find("\nrepeat").expect("there")..]));
     }
 

@@ -15,6 +15,6 @@ pub(crate) use error::{Checked, Fault, hint, short};
 #[cfg(test)]
 pub(crate) use reader::{KeyRead, READS};
 pub(crate) use reader::{Section, parse};
-pub use syntax::mistake;
+pub use syntax::explain_mistake;
 pub use text::MAX_FILE_BYTES;
 pub(crate) use text::read;

@@ -5,7 +5,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::file::error::{Checked, Error, Fault, hint};
-use crate::file::syntax::mistake;
+use crate::file::syntax::explain_mistake;
 
 /// Parses the text of a robot file and reads it with `read`. A byte order mark at the start is
 /// skipped.
@@ -15,11 +15,11 @@ use crate::file::syntax::mistake;
 pub(crate) fn parse<T>(text: &str, read: impl Fn(&DeTable) -> Checked<T>) -> Result<T, Error> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let file = "robot.toml".to_string();
-    let line_of = |at: usize| text[..at].matches('\n').count() + 1;
+    let line_of = |offset: usize| text[..offset].matches('\n').count() + 1;
     let document = DeTable::parse(text).map_err(|fault| {
-        let at = fault.span().map(|span| span.start);
-        let message = mistake(text, at.unwrap_or(text.len()), fault.message());
-        Fault::new("", message).in_file(file.clone(), at.map(line_of))
+        let offset = fault.span().map(|span| span.start);
+        let message = explain_mistake(text, offset.unwrap_or(text.len()), fault.message());
+        Fault::new("", message).in_file(file.clone(), offset.map(line_of))
     })?;
     let table = document.get_ref();
     read(table).map_err(|fault| {
@@ -301,7 +301,7 @@ impl<'a> Section<'a> {
     }
 
     fn wrong_type(&self, name: &str, value: &DeValue, expected: &str) -> Fault {
-        let found = match value {
+        let found_type = match value {
             DeValue::String(text) => format!("the string \"{text}\""),
             DeValue::Integer(number) => number.to_string(),
             DeValue::Float(number) => number.to_string(),
@@ -310,7 +310,7 @@ impl<'a> Section<'a> {
             DeValue::Array(_) => "an array".to_string(),
             DeValue::Table(_) => "a table".to_string(),
         };
-        self.fault(name, format!("is {found}; it must be {expected}"))
+        self.fault(name, format!("is {found_type}; it must be {expected}"))
     }
 }
 

@@ -5,16 +5,17 @@
 //! that. So this module checks the line for such mistakes. If it finds none, the parser's
 //! message stays.
 
-/// Makes the message for a mistake at byte `at` of a text; `message` is the parser's own.
-#[must_use]
-pub fn mistake(text: &str, at: usize, message: &str) -> String {
-    let number = text.get(..at).map_or(0, |text| text.matches('\n').count());
+/// Makes the message for a mistake at byte `offset` of a text; `message` is the parser's own.
+pub fn explain_mistake(text: &str, offset: usize, message: &str) -> String {
+    let number = text
+        .get(..offset)
+        .map_or(0, |text| text.matches('\n').count());
     let lines: Vec<&str> = text.lines().map(without_comment).collect();
     let line = lines.get(number).copied().unwrap_or_default();
-    let twice = (message == "duplicate key").then(|| twice(&lines, number));
+    let twice = (message == "duplicate key").then(|| find_duplicate(&lines, number));
     twice
         .flatten()
-        .or_else(|| in_line(line))
+        .or_else(|| find_mistake_in_line(line))
         .unwrap_or_else(|| format!("this is not TOML: {message}"))
 }
 
@@ -41,11 +42,11 @@ fn heading(line: &str) -> Option<&str> {
 }
 
 /// The message for a table or a key that occurs a second time in this line.
-fn twice(lines: &[&str], number: usize) -> Option<String> {
-    let before = lines.get(..number)?;
+fn find_duplicate(lines: &[&str], number: usize) -> Option<String> {
+    let lines_before = lines.get(..number)?;
     let line = lines.get(number)?;
     if let Some(table) = heading(line) {
-        let first = before
+        let first = lines_before
             .iter()
             .position(|line| heading(line) == Some(table))?
             + 1;
@@ -54,7 +55,7 @@ fn twice(lines: &[&str], number: usize) -> Option<String> {
         ));
     }
     let key = line.split_once('=')?.0.trim();
-    let table = before
+    let table = lines_before
         .iter()
         .rposition(|line| heading(line).is_some())
         .map_or(0, |heading| heading + 1);
@@ -62,14 +63,14 @@ fn twice(lines: &[&str], number: usize) -> Option<String> {
         line.split_once('=')
             .is_some_and(|(name, _)| name.trim() == key)
     };
-    let first = table + before[table..].iter().position(is_key)? + 1;
+    let first = table + lines_before[table..].iter().position(is_key)? + 1;
     Some(format!(
         "`{key}` is there twice, first in line {first}; keep one of them"
     ))
 }
 
 /// The message for a mistake within one line.
-fn in_line(line: &str) -> Option<String> {
+fn find_mistake_in_line(line: &str) -> Option<String> {
     if line.starts_with('[') && !line.contains('=') && !line.ends_with(']') {
         return Some(format!("`{line}` lacks the ] behind the table's name"));
     }
@@ -92,12 +93,12 @@ fn number(value: &str) -> Option<String> {
     let is_number =
         |text: &str| text.parse::<f64>().is_ok() && !text.starts_with(char::is_alphabetic);
     let digits = |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_digit());
-    if let Some((whole, part)) = value.split_once(',')
-        && digits(whole.trim_start_matches(['-', '+']))
+    if let Some((integer, part)) = value.split_once(',')
+        && digits(integer.trim_start_matches(['-', '+']))
         && digits(part)
     {
         return Some(format!(
-            "`{value}` is no number; the decimal mark is a point: {whole}.{part}"
+            "`{value}` is no number; the decimal mark is a point: {integer}.{part}"
         ));
     }
     let bare = value.trim_start_matches(['-', '+']);
@@ -109,8 +110,8 @@ fn number(value: &str) -> Option<String> {
             "`{value}` is no number in TOML; write {sign}0.{part}"
         ));
     }
-    if let Some(whole) = bare.strip_suffix('.')
-        && digits(whole)
+    if let Some(integer) = bare.strip_suffix('.')
+        && digits(integer)
     {
         return Some(format!("`{value}` is no number in TOML; write {value}0"));
     }
@@ -135,12 +136,12 @@ fn word(value: &str) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::mistake;
+    use super::explain_mistake;
 
     /// The message for a text whose last line has the mistake.
     fn message_for(text: &str) -> String {
-        let at = text.trim_end().rfind('\n').map_or(0, |end| end + 1);
-        mistake(text, at, "expected newline")
+        let offset = text.trim_end().rfind('\n').map_or(0, |end| end + 1);
+        explain_mistake(text, offset, "expected newline")
     }
 
     #[test]
@@ -182,15 +183,15 @@ mod tests {
     #[test]
     fn a_second_occurrence_is_named_with_the_line_of_the_first() {
         let text = "[a]\nx = 1\n[b]\nx = 2 # once\ny = 3\nx = 4\n";
-        let at = text.rfind("x = 4").expect("there");
+        let offset = text.rfind("x = 4").expect("there");
         assert_eq!(
-            mistake(text, at, "duplicate key"),
+            explain_mistake(text, offset, "duplicate key"),
             "`x` is there twice, first in line 4; keep one of them"
         );
         let text = "[servo.A1]\npin = \"D9\"\n[servo.A2]\n[servo.A1] # again\n";
-        let at = text.rfind("[servo.A1]").expect("there");
+        let offset = text.rfind("[servo.A1]").expect("there");
         assert_eq!(
-            mistake(text, at, "duplicate key"),
+            explain_mistake(text, offset, "duplicate key"),
             "the table [servo.A1] is there twice, first in line 1; put all its keys under one of them"
         );
     }
@@ -204,7 +205,7 @@ mod tests {
                 "{line}"
             );
         }
-        assert_eq!(mistake("", 0, "x"), "this is not TOML: x");
-        assert_eq!(mistake("a = 1", 99, "x"), "this is not TOML: x");
+        assert_eq!(explain_mistake("", 0, "x"), "this is not TOML: x");
+        assert_eq!(explain_mistake("a = 1", 99, "x"), "this is not TOML: x");
     }
 }

@@ -23,8 +23,8 @@ pub(crate) fn read(path: &Path) -> Result<String, String> {
         ));
     }
     String::from_utf8(bytes).map_err(|fault| {
-        let before = &fault.as_bytes()[..fault.utf8_error().valid_up_to()];
-        let line = before.iter().filter(|&&byte| byte == b'\n').count() + 1;
+        let valid_bytes = &fault.as_bytes()[..fault.utf8_error().valid_up_to()];
+        let line = valid_bytes.iter().filter(|&&byte| byte == b'\n').count() + 1;
         format!("is not UTF-8 text: line {line} holds other bytes")
     })
 }

@@ -30,7 +30,7 @@ impl Bars {
     /// Converts a moving gait to bars; `None` if it follows a path. A reversed gait becomes the bars
     /// of the same movement.
     pub(crate) fn of(gait: &Gait) -> Option<Self> {
-        let largest = |most: f64, leg: f64| most.max(leg.abs());
+        let largest = |max: f64, leg: f64| max.max(leg.abs());
         let amplitudes = gait.strides.each_ref().map(|leg| leg.amplitude);
         let amplitude = amplitudes.into_iter().fold(0.0, largest);
         let mut bars = Self {
@@ -67,7 +67,6 @@ impl Bars {
     /// negative, which begins where this one's stance ends. A held wave in reverse is the
     /// negative of the one in the opposite order; that all four begin at another time makes no
     /// difference.
-    #[must_use]
     pub fn reversed(&self) -> Self {
         let start = |leg: usize| match self.held {
             true => 1.0 - self.start[leg],
@@ -87,7 +86,6 @@ impl Bars {
     }
 
     /// Writes the gait as a table of robot.toml, rounded to thousandths.
-    #[must_use]
     pub fn table(&self) -> String {
         let legs = |values: [f64; 4]| {
             let each = LEGS.iter().zip(values);

@@ -41,9 +41,9 @@ pub(crate) fn gaits(root: &Section, body: &Measures) -> Checked<Vec<Gait>> {
         check_name(name, "gait").map_err(|problem| section.fault(name, problem))?;
     }
     if names.len() > MAX_GAITS {
-        let found = names.len();
+        let count = names.len();
         let message = format!(
-            "holds {found} gaits; the firmware numbers them with a byte, so leave at most {MAX_GAITS}"
+            "holds {count} gaits; the firmware numbers them with a byte, so leave at most {MAX_GAITS}"
         );
         return Err(Fault::new("gait", message));
     }
@@ -78,12 +78,12 @@ pub(crate) fn gaits(root: &Section, body: &Measures) -> Checked<Vec<Gait>> {
 /// Refuses two gaits or routines that the EEPROM cannot tell apart: it keeps that of `boot` by a number
 /// that is made of its name.
 pub(super) fn check_keys(section: &Section, names: &[&str]) -> Checked<()> {
-    let mut known = HashMap::new();
+    let mut names_by_key = HashMap::new();
     for name in names {
         let written = name
             .bytes()
             .map(|byte| if byte == b'-' { b' ' } else { byte });
-        if let Some(other) = known.insert(key(written), *name) {
+        if let Some(other) = names_by_key.insert(key(written), *name) {
             let message = format!(
                 "is not a gait name: the memory would take it for {other} when `boot` begins it, so one of them needs another name"
             );
@@ -95,7 +95,7 @@ pub(super) fn check_keys(section: &Section, names: &[&str]) -> Checked<()> {
 
 pub(super) fn check_name(name: &str, kind: &str) -> Result<(), String> {
     let letters = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
-    let refused = |why: String| Err(format!("is not a {kind} name: {why}"));
+    let refused = |reason: String| Err(format!("is not a {kind} name: {reason}"));
     if !name.chars().all(letters) || !name.starts_with(|c: char| c.is_ascii_lowercase()) {
         return refused(
             "it must be lower-case letters, digits and dashes, a letter first".to_string(),
@@ -135,8 +135,8 @@ impl<'a> Resolver<'a> {
         self.chain.push(name);
         let table = self.section.section(name, &KEYS)?;
         let gait = match definition_key(&table)? {
-            "waveform" => waveform(name, &table, self.body)?,
-            "head or tail" => path(name, &table, self.body)?,
+            "waveform" => read_waveform(name, &table, self.body)?,
+            "head or tail" => read_path(name, &table, self.body)?,
             reference => self.derived(name, &table, reference)?,
         };
         self.chain.pop();
@@ -170,8 +170,8 @@ impl<'a> Resolver<'a> {
             _ => {}
         }
         gait.name = name.to_string();
-        gait.period = period(table, Some(gait.period))?;
-        Ok(gait.scaled(gains(table)?))
+        gait.period = read_period(table, Some(gait.period))?;
+        Ok(gait.scaled(read_gains(table)?))
     }
 }
 
@@ -206,7 +206,7 @@ fn allow_only(table: &Section, allowed: &[&str], with: &str) -> Checked<()> {
     }
 }
 
-fn waveform(name: &str, table: &Section, body: &Measures) -> Checked<Gait> {
+fn read_waveform(name: &str, table: &Section, body: &Measures) -> Checked<Gait> {
     let word = table.text("waveform")?;
     let with = format!("waveform = \"{word}\"");
     let strides = match word {
@@ -223,8 +223,8 @@ fn waveform(name: &str, table: &Section, body: &Measures) -> Checked<Gait> {
             let waveform = Waveform::Wave {
                 duty: table.number("duty", 0.05, 0.95, "of the cycle")?,
             };
-            let amplitude = amplitude(table)?;
-            let starts = legs(
+            let amplitude = read_amplitude(table)?;
+            let starts = read_legs(
                 &table.section("start", &LEGS)?,
                 None,
                 0.0,
@@ -243,8 +243,8 @@ fn waveform(name: &str, table: &Section, body: &Measures) -> Checked<Gait> {
                 &["waveform", "period", "amplitude", "order", "gain"],
                 &with,
             )?;
-            let amplitude = amplitude(table)?;
-            order(table)?.map(|turn| Stride {
+            let amplitude = read_amplitude(table)?;
+            read_order(table)?.map(|turn| Stride {
                 waveform: Waveform::Held { turn },
                 start: 0.0,
                 amplitude,
@@ -258,7 +258,7 @@ fn waveform(name: &str, table: &Section, body: &Measures) -> Checked<Gait> {
     finish(name, table, body, strides)
 }
 
-fn path(name: &str, table: &Section, body: &Measures) -> Checked<Gait> {
+fn read_path(name: &str, table: &Section, body: &Measures) -> Checked<Gait> {
     allow_only(table, &["period", "head", "tail", "gain"], "a path")?;
     let mut strides = [Stride::STILL; 4];
     for end in End::ALL {
@@ -268,8 +268,8 @@ fn path(name: &str, table: &Section, body: &Measures) -> Checked<Gait> {
         let section = table.section(end.name(), &["centre", "x", "y"])?;
         let path = Path {
             centre: section.numbers("centre", -255.0, 255.0, "mm")?,
-            x: harmonics(&section, "x")?,
-            y: harmonics(&section, "y")?,
+            x: read_harmonics(&section, "x")?,
+            y: read_harmonics(&section, "y")?,
         };
         let legs = PathLeg::pair(body.lizard, body.neutral(), end, &path)
             .map_err(|problem| Fault::clause(section.key.clone(), problem))?;
@@ -287,30 +287,30 @@ fn path(name: &str, table: &Section, body: &Measures) -> Checked<Gait> {
 fn finish(name: &str, table: &Section, body: &Measures, strides: [Stride; 4]) -> Checked<Gait> {
     let gait = Gait {
         name: name.to_string(),
-        period: period(table, None)?,
+        period: read_period(table, None)?,
         reversed: false,
         strides,
         neutral: body.neutral(),
     };
-    Ok(gait.scaled(gains(table)?))
+    Ok(gait.scaled(read_gains(table)?))
 }
 
-fn period(table: &Section, default: Option<f64>) -> Checked<f64> {
+fn read_period(table: &Section, default: Option<f64>) -> Checked<f64> {
     match default {
         Some(period) => table.number_or("period", period, 0.2, 60.0, "s"),
         None => table.number("period", 0.2, 60.0, "s"),
     }
 }
 
-fn amplitude(table: &Section) -> Checked<f64> {
+fn read_amplitude(table: &Section) -> Checked<f64> {
     table.number("amplitude", 0.0, 90.0, "deg")
 }
 
-fn gains(table: &Section) -> Checked<[f64; 4]> {
+fn read_gains(table: &Section) -> Checked<[f64; 4]> {
     if !table.has("gain") {
         return Ok([1.0; 4]);
     }
-    legs(
+    read_legs(
         &table.section("gain", &LEGS)?,
         Some(1.0),
         -4.0,
@@ -320,7 +320,7 @@ fn gains(table: &Section) -> Checked<[f64; 4]> {
 }
 
 /// Reads a number for each leg, in servo order.
-fn legs(
+fn read_legs(
     section: &Section,
     default: Option<f64>,
     min: f64,
@@ -338,7 +338,7 @@ fn legs(
 }
 
 /// Reads the order of swings: for each leg, in servo order, its place.
-fn order(table: &Section) -> Checked<[usize; 4]> {
+fn read_order(table: &Section) -> Checked<[usize; 4]> {
     let words = table.words("order")?;
     let fault = || table.fault("order", "must list each of LF, RF, RH, LH exactly once");
     if words.len() != LEGS.len() {
@@ -354,7 +354,7 @@ fn order(table: &Section) -> Checked<[usize; 4]> {
     Ok(turns)
 }
 
-fn harmonics(section: &Section, name: &str) -> Checked<Vec<Harmonic>> {
+fn read_harmonics(section: &Section, name: &str) -> Checked<Vec<Harmonic>> {
     let terms = section.list(name, &["k", "amplitude", "shift"])?;
     let term = |term: Section| {
         let k = term.number("k", 1.0, 16.0, "periods in a cycle")?;

@@ -83,71 +83,71 @@ pub(crate) fn routines(root: &Section, gaits: &[&str], inputs: &Inputs) -> Check
     let all: Vec<&str> = gaits.iter().chain(&names).copied().collect();
     check_keys(&section, &all)?;
     if all.len() > MAX_GAITS {
-        let found = all.len();
+        let count = all.len();
         let message = format!(
-            "and gait are {found} together; the firmware numbers them with a byte, so leave at most {MAX_GAITS}"
+            "and gait are {count} together; the firmware numbers them with a byte, so leave at most {MAX_GAITS}"
         );
         return Err(Fault::new("routine", message));
     }
-    let read = |name: &&str| routine(&section, name, gaits, &names, inputs);
-    names.iter().map(read).collect()
+    let read_one = |name: &&str| read_routine(&section, name, gaits, &names, inputs);
+    names.iter().map(read_one).collect()
 }
 
-fn routine(
+fn read_routine(
     section: &Section,
     name: &str,
     gaits: &[&str],
     routines: &[&str],
     inputs: &Inputs,
 ) -> Checked<Routine> {
-    let one = section.section(name, &["steps", "repeat", "repeat_from"])?;
-    let texts = one.words("steps")?;
+    let table = section.section(name, &["steps", "repeat", "repeat_from"])?;
+    let texts = table.words("steps")?;
     if texts.is_empty() || texts.len() > MAX_STEPS {
-        let found = texts.len();
-        let message = format!("has {found} steps; it must have 1 to {MAX_STEPS}");
-        return Err(one.fault("steps", message));
+        let count = texts.len();
+        let message = format!("has {count} steps; it must have 1 to {MAX_STEPS}");
+        return Err(table.fault("steps", message));
     }
-    let read = |(index, text): (usize, &&str)| {
+    let parse_text = |(index, text): (usize, &&str)| {
         let fault = |problem| {
             let message = format!("step {}, \"{text}\", {problem}", index + 1);
-            Fault::clause(one.path("steps"), message)
+            Fault::clause(table.path("steps"), message)
         };
-        records(text, name, gaits, routines, inputs).map_err(fault)
+        parse_records(text, name, gaits, routines, inputs).map_err(fault)
     };
-    let steps = texts.iter().enumerate().map(read);
+    let steps = texts.iter().enumerate().map(parse_text);
     let steps = steps.collect::<Checked<Vec<_>>>()?;
     let unit = "(a step)";
-    let from = one.number_or("repeat_from", 1.0, 1.0, steps.len() as f64, unit)?;
+    let from = table.number_or("repeat_from", 1.0, 1.0, steps.len() as f64, unit)?;
     if from.fract() != 0.0 {
         let message = format!("is {from}; it must be the number of a step");
-        return Err(one.fault("repeat_from", message));
+        return Err(table.fault("repeat_from", message));
     }
     Ok(Routine {
         name: name.to_string(),
         again: steps[..from as usize - 1].concat().len() as u16,
         steps: steps.concat(),
-        rounds: rounds(&one)?,
+        rounds: read_rounds(&table)?,
     })
 }
 
-fn rounds(one: &Section) -> Checked<u16> {
-    if one.text("repeat").is_ok_and(|text| text == FOR_EVER) {
+fn read_rounds(table: &Section) -> Checked<u16> {
+    if table.text("repeat").is_ok_and(|text| text == FOR_EVER) {
         return Ok(0);
     }
-    let most = f64::from(MAX_CYCLES);
+    let max = f64::from(MAX_CYCLES);
     let unit = format!("or \"{FOR_EVER}\"");
-    let rounds = one.number_or("repeat", 1.0, 1.0, most, &unit)?;
+    let rounds = table.number_or("repeat", 1.0, 1.0, max, &unit)?;
     if rounds.fract() != 0.0 {
         let message = format!("is {rounds}; it must be a whole number {unit}");
-        return Err(one.fault("repeat", message));
+        return Err(table.fault("repeat", message));
     }
     Ok(rounds as u16)
 }
 
 /// Reads a step and its input, such as `wait button` or `walk 10 until nose`.
-fn records(
+fn parse_records(
     text: &str,
-    own: &str,
+    own_name: &str,
     gaits: &[&str],
     routines: &[&str],
     inputs: &Inputs,
@@ -172,10 +172,11 @@ fn records(
             Ok(vec![until(name)?, wait])
         }
         [.., "until"] => Err("must say until what, as \"walk until nose\"".to_string()),
-        [words @ .., "until", name] if !words.is_empty() => {
-            Ok(vec![until(name)?, step(words, own, gaits, routines, true)?])
-        }
-        words => Ok(vec![step(words, own, gaits, routines, false)?]),
+        [words @ .., "until", name] if !words.is_empty() => Ok(vec![
+            until(name)?,
+            parse_step(words, own_name, gaits, routines, true)?,
+        ]),
+        words => Ok(vec![parse_step(words, own_name, gaits, routines, false)?]),
     }
 }
 
@@ -192,15 +193,15 @@ fn no_input(name: &str) -> String {
 
 /// Reads a step such as `walk 4`, `stand 1 s`, `rest` or `rest 2.5 s`. One that an input ends needs
 /// neither a number nor a time.
-fn step(
+fn parse_step(
     words: &[&str],
-    own: &str,
+    own_name: &str,
     gaits: &[&str],
     routines: &[&str],
     has_input: bool,
 ) -> Result<Step, String> {
     let (words, frames) = match words {
-        [words @ .., time, "s"] => (words, Some(frames(time)?)),
+        [words @ .., time, "s"] => (words, Some(parse_frames(time)?)),
         words => (words, None),
     };
     if words == ["rest"] {
@@ -218,7 +219,7 @@ fn step(
     };
     let name = words.join("-");
     let Some(gait) = gaits.iter().position(|gait| *gait == name) else {
-        return Err(if name == own {
+        return Err(if name == own_name {
             "is the routine itself, which would never end".to_string()
         } else if routines.contains(&&*name) {
             "is a routine; a step is a gait".to_string()
@@ -242,14 +243,14 @@ fn step(
     }
 }
 
-fn frames(time: &str) -> Result<u16, String> {
+fn parse_frames(time: &str) -> Result<u16, String> {
     let seconds: f64 = time.parse().unwrap_or(f64::NAN);
-    let least = 1.0 / FRAMES_PER_SECOND;
-    if (least..=MAX_SECONDS).contains(&seconds) {
+    let min = 1.0 / FRAMES_PER_SECOND;
+    if (min..=MAX_SECONDS).contains(&seconds) {
         Ok((seconds * FRAMES_PER_SECOND).round() as u16)
     } else {
         Err(format!(
-            "has a time that is not within {least} to {MAX_SECONDS} s"
+            "has a time that is not within {min} to {MAX_SECONDS} s"
         ))
     }
 }

@@ -115,9 +115,9 @@ mod tests {
                 "{w:?} jumps"
             );
             let largest = samples.iter().fold(f64::MIN, |a, b| a.max(*b));
-            let least = samples.iter().fold(f64::MAX, |a, b| a.min(*b));
+            let min = samples.iter().fold(f64::MAX, |a, b| a.min(*b));
             assert!(
-                (largest - 1.0).abs() < 1e-5 && (least + 1.0).abs() < 1e-5,
+                (largest - 1.0).abs() < 1e-5 && (min + 1.0).abs() < 1e-5,
                 "{w:?}"
             );
         }

@@ -18,7 +18,6 @@ pub struct Coil {
 
 impl Coil {
     /// The spring of the paper's size, with this wire.
-    #[must_use]
     pub const fn paper(wire: f64) -> Self {
         Self {
             wire,
@@ -28,21 +27,18 @@ impl Coil {
     }
 
     /// Mean diameter of the coil, mm.
-    #[must_use]
     pub fn mean(&self) -> f64 {
         self.outer - self.wire
     }
 
     /// Number of active coils. The wound body has the length without the two hooks, each of
     /// which is an inner diameter long.
-    #[must_use]
     pub fn coils(&self) -> f64 {
         let inner = self.outer - 2.0 * self.wire;
         (self.length - 2.0 * inner) / self.wire - 1.0
     }
 
     /// Rate, N/mm: G d^4 / (8 D^3 n).
-    #[must_use]
     pub fn rate(&self) -> f64 {
         SHEAR * self.wire.powi(4) / (8.0 * self.mean().powi(3) * self.coils())
     }
@@ -50,20 +46,17 @@ impl Coil {
     /// Initial tension: the force that opens the coils, N. Winding leaves a shear stress that falls with
     /// the ratio of coil to wire C; makers reach 231 / e^(0.105 C) MPa, give or take
     /// 6.9 (4 - (C - 3) / 6.5) MPa.
-    #[must_use]
     pub fn initial_tension(&self) -> f64 {
         let ratio = self.mean() / self.wire;
         self.force_of(231.0 * (-0.105 * ratio).exp())
     }
 
     /// Force at a length inside the hooks, N.
-    #[must_use]
     pub fn force(&self, length: f64) -> f64 {
         self.initial_tension() + self.rate() * (length - self.length).max(0.0)
     }
 
     /// Shear stress at a force, N/mm^2.
-    #[must_use]
     pub fn stress(&self, force: f64) -> f64 {
         force / self.force_of(1.0)
     }

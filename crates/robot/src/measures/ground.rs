@@ -11,8 +11,8 @@ pub(crate) fn read(root: &Section, feet: Feet, drive: Drive) -> Checked<Ground> 
     let section = root.section("ground", &[RATIO, "friction"])?;
     Ok(Ground {
         feet,
-        body: body(root, &feet)?,
-        stance: stance(root)?,
+        body: read_body(root, &feet)?,
+        stance: read_stance(root)?,
         friction: section.number_or("friction", DEFAULT_FRICTION, 0.05, 5.0, "(a coefficient)")?,
         ratio: section.number(RATIO, 0.1, 10.0, "(a ratio)")?,
         drive,
@@ -21,7 +21,7 @@ pub(crate) fn read(root: &Section, feet: Feet, drive: Drive) -> Checked<Ground> 
 
 /// Reads the mass and its centre. A mass centre that leaves a foot in the air at neutral is
 /// refused.
-fn body(root: &Section, feet: &Feet) -> Checked<Body> {
+fn read_body(root: &Section, feet: &Feet) -> Checked<Body> {
     if !root.has("body") {
         return Ok(Body::DEFAULT);
     }
@@ -46,7 +46,7 @@ fn body(root: &Section, feet: &Feet) -> Checked<Body> {
 }
 
 /// Reads `[feet]`; every key may be left out.
-fn stance(root: &Section) -> Checked<Stance> {
+fn read_stance(root: &Section) -> Checked<Stance> {
     let all = Stance::DEFAULT;
     if !root.has("feet") {
         return Ok(all);

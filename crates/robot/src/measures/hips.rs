@@ -54,8 +54,8 @@ impl Hips {
             let hip = shafts[right] + outward(right, parts.pivot) + outward(right, foot);
             end.mirror(hip)
         });
-        let placed = |given: Option<f64>, follows: f64, key: &str, (min, max)| {
-            let problem = match given {
+        let placed = |value: Option<f64>, follows: f64, key: &str, (min, max)| {
+            let problem = match value {
                 Some(value) if parts.foot.is_none() || (value - follows).abs() < SAME_LENGTH_MM => {
                     return Ok(value);
                 }
@@ -119,8 +119,8 @@ mod tests {
             leg.along * leg.foot.x + leg.along.left() * leg.foot.y
         };
         let built = robot("hip_forward = 57.0\nhip_side = 36.0", "").expect("a robot");
-        let off = foot(&built) - Vector::new(36.0 - 38.5, 57.0 - 57.5);
-        assert!(off.length() < 1e-9, "{off:?}");
+        let error = foot(&built) - Vector::new(36.0 - 38.5, 57.0 - 57.5);
+        assert!(error.length() < 1e-9, "{error:?}");
         let same = robot("hip_forward = 55.0\nhip_side = 35.0", "").expect("a robot");
         assert_eq!(foot(&same), foot(&robot("", "").expect("a robot")));
     }

@@ -27,31 +27,31 @@ impl Inputs {
         let section = root.section("input", &NAMES)?;
         let pins = servos.map(|servo| servo.pin);
         let owners = pins.into_iter().zip(servo::NAMES);
-        let mut taken: Vec<(u8, String)> = owners
+        let mut used_pins: Vec<(u8, String)> = owners
             .map(|(pin, name)| (pin, format!("servo.{name}")))
             .collect();
-        taken.extend(
+        used_pins.extend(
             supplies
                 .rail
                 .map(|rail| (rail.pin, "supply.rail".to_string())),
         );
-        let mut read = |name: &str| -> Checked<Option<u8>> {
+        let mut read_input = |name: &str| -> Checked<Option<u8>> {
             if !section.has(name) {
                 return Ok(None);
             }
-            let one = section.section(name, &["pin"])?;
-            let pin = free_pin(&one)?;
-            if let Some((_, owner)) = taken.iter().find(|(other, _)| *other == pin) {
-                let message = format!("is \"{}\", which {owner} already has", one.text("pin")?);
-                return Err(one.fault("pin", message));
+            let table = section.section(name, &["pin"])?;
+            let pin = free_pin(&table)?;
+            if let Some((_, owner)) = used_pins.iter().find(|(other, _)| *other == pin) {
+                let message = format!("is \"{}\", which {owner} already has", table.text("pin")?);
+                return Err(table.fault("pin", message));
             }
-            taken.push((pin, format!("input.{name}")));
+            used_pins.push((pin, format!("input.{name}")));
             Ok(Some(pin))
         };
         let [button, nose] = NAMES;
         Ok(Self {
-            button: read(button)?,
-            nose: read(nose)?,
+            button: read_input(button)?,
+            nose: read_input(nose)?,
         })
     }
 

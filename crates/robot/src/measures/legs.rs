@@ -100,7 +100,6 @@ impl LegPlan {
 
     /// Places the leg for an angle of the servo and an angle of the leg's crank, both in deg,
     /// chassis frame. They differ by the lag.
-    #[must_use]
     pub fn at(&self, servo: f64, leg: f64) -> LegPlace {
         let turned = |angle: f64, v: Vector| {
             let x = Vector::direction(angle);
@@ -166,8 +165,8 @@ mod tests {
                 for (servo, leg) in robot.legs().iter().enumerate() {
                     let angle = robot.servos()[servo].neutral + FORWARD[servo] * sweep;
                     let [forward, left] = feet[servo];
-                    let off = leg.at(angle, angle).foot - Vector::new(-left, forward);
-                    assert!(off.length() < 1e-9, "{name} {servo} {off:?}");
+                    let error = leg.at(angle, angle).foot - Vector::new(-left, forward);
+                    assert!(error.length() < 1e-9, "{name} {servo} {error:?}");
                 }
             }
         }
@@ -198,8 +197,8 @@ mod tests {
                 };
                 let neutral = robot.servos()[servo].neutral;
                 for angle in [neutral - 30.0, neutral, neutral + 30.0] {
-                    let off = length(angle, 0.0) - leg.strut_length;
-                    assert!(off.abs() < 1e-9, "{name} {servo} {off}");
+                    let error = length(angle, 0.0) - leg.strut_length;
+                    assert!(error.abs() < 1e-9, "{name} {servo} {error}");
                 }
                 assert!((length(neutral, 5.0) - leg.strut_length).abs() > 0.5);
             }

@@ -72,8 +72,8 @@ pub(crate) struct Measures {
 impl Measures {
     /// Reads and checks the measurements and the neutral pose.
     pub fn read(root: &Section) -> Checked<Self> {
-        let links = links(root)?;
-        let (leg, hips, mount) = leg(root)?;
+        let links = read_links(root)?;
+        let (leg, hips, mount) = read_leg(root)?;
         let servos = servo::read(root)?;
         let (limits, pace) = limits::read(root)?;
         let parts = Parts::read(root)?;
@@ -117,16 +117,16 @@ impl Measures {
         ] {
             let bars = self.lizard.end(end);
             let per_mm = scale::steps_per_mm(scale::of_loop(&bars));
-            let least = f64::from(MIN_COUPLER) / per_mm;
+            let smallest = f64::from(MIN_COUPLER) / per_mm;
             for (key, value) in names
                 .into_iter()
                 .zip([bars.coupler_left, bars.coupler_right])
             {
-                if value < least {
+                if value < smallest {
                     // Rounded up, so that the length in the message is long enough.
-                    let least = (10.0 * least).ceil() / 10.0;
+                    let smallest = (10.0 * smallest).ceil() / 10.0;
                     let message = format!(
-                        "is {value} mm, which is short beside the rest of its loop; the firmware's 16-bit integers ask for at least {least:.1} mm, or for shorter cranks and a shorter base"
+                        "is {value} mm, which is short beside the rest of its loop; the firmware's 16-bit integers ask for at least {smallest:.1} mm, or for shorter cranks and a shorter base"
                     );
                     return Err(Fault::new(key, message));
                 }
@@ -164,7 +164,7 @@ impl Measures {
 }
 
 /// Reads the links of the body.
-fn links(root: &Section) -> Checked<Links> {
+fn read_links(root: &Section) -> Checked<Links> {
     let section = root.section("links", &LINKS)?;
     let mut lengths = [0.0; 20];
     for (length, name) in lengths.iter_mut().zip(LINKS) {
@@ -182,7 +182,7 @@ fn links(root: &Section) -> Checked<Links> {
 }
 
 /// Reads the legs: their links, their hips, and their sweep at neutral in deg.
-fn leg(root: &Section) -> Checked<(Leg, Hips, f64)> {
+fn read_leg(root: &Section) -> Checked<(Leg, Hips, f64)> {
     let keys = [
         "ground",
         "crank",
@@ -224,10 +224,10 @@ fn leg(root: &Section) -> Checked<(Leg, Hips, f64)> {
 }
 
 /// Refuses two lengths that the mechanism needs equal.
-fn equal(key: &str, value: f64, other: &str, other_value: f64, why: &str) -> Checked<()> {
+fn equal(key: &str, value: f64, other: &str, other_value: f64, reason: &str) -> Checked<()> {
     if value == other_value {
         return Ok(());
     }
-    let message = format!("is {value}, but {other} is {other_value}; {why}");
+    let message = format!("is {value}, but {other} is {other_value}; {reason}");
     Err(Fault::new(key, message))
 }

@@ -85,23 +85,22 @@ impl ServoType {
     /// Reads the keys of `[servo]` beside its four tables; all may be left out.
     pub(crate) fn read(root: &Section) -> Checked<Self> {
         let section = root.open("servo")?;
-        let own = match section.has("model") {
-            true => named(&section)?,
+        let base = match section.has("model") {
+            true => read_model(&section)?,
             false => SG90,
         };
-        let number = |name, default, (least, most), unit| {
-            section.number_or(name, default, least, most, unit)
-        };
-        let at_volts = number("at_volts", own.at_volts, (2.0, 9.0), "V")?;
+        let number =
+            |name, default, (min, max), unit| section.number_or(name, default, min, max, unit);
+        let at_volts = number("at_volts", base.at_volts, (2.0, 9.0), "V")?;
         Ok(Self {
-            stall_kg_cm: number("stall_kg_cm", own.stall_kg_cm, (0.1, 100.0), "kg cm")?,
-            s_per_60_deg: number("s_per_60_deg", own.s_per_60_deg, (0.02, 2.0), "s")?,
+            stall_kg_cm: number("stall_kg_cm", base.stall_kg_cm, (0.1, 100.0), "kg cm")?,
+            s_per_60_deg: number("s_per_60_deg", base.s_per_60_deg, (0.02, 2.0), "s")?,
             at_volts,
             volts: number("volts", at_volts, (2.0, 9.0), "V")?,
-            dead_band_us: number("dead_band_us", own.dead_band_us, (0.0, 100.0), "us")?,
-            spin_up_ms: number("spin_up_ms", own.spin_up_ms, (0.5, 200.0), "ms")?,
-            full_torque_deg: number("full_torque_deg", own.full_torque_deg, (0.1, 45.0), "deg")?,
-            ..own
+            dead_band_us: number("dead_band_us", base.dead_band_us, (0.0, 100.0), "us")?,
+            spin_up_ms: number("spin_up_ms", base.spin_up_ms, (0.5, 200.0), "ms")?,
+            full_torque_deg: number("full_torque_deg", base.full_torque_deg, (0.1, 45.0), "deg")?,
+            ..base
         })
     }
 
@@ -119,13 +118,13 @@ impl ServoType {
 }
 
 /// The type that `[servo] model` names, whatever its capitals and dashes.
-fn named(section: &Section) -> Checked<ServoType> {
+fn read_model(section: &Section) -> Checked<ServoType> {
     let plain = |name: &str| name.to_ascii_lowercase().replace(['-', ' '], "");
     let word = section.text("model")?;
-    let known = ServoType::ALL
+    let found = ServoType::ALL
         .iter()
         .find(|own| plain(own.model) == plain(word));
-    known.copied().ok_or_else(|| {
+    found.copied().ok_or_else(|| {
         let hint = hint(word, &ServoType::ALL.map(|own| own.model));
         let message = format!(
             "is \"{word}\"; for a servo without a name here write stall_kg_cm and s_per_60_deg of its data sheet instead; {hint}"
@@ -234,8 +233,8 @@ mod tests {
             ];
             for (servo, tip, base) in tips {
                 let [forward, left] = arms[servo];
-                let off = (tip.y - base - forward).hypot(tip.x + left);
-                assert!(off < 1e-6, "{servo}: {tip:?} {:?}", arms[servo]);
+                let error = (tip.y - base - forward).hypot(tip.x + left);
+                assert!(error < 1e-6, "{servo}: {tip:?} {:?}", arms[servo]);
             }
         }
     }

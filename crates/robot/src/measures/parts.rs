@@ -151,7 +151,6 @@ measures! {
 impl Pad {
     /// Height of the dome, mm, and so of the highest edge that it can slide up; `None` for a pad
     /// that is wider than the ball.
-    #[must_use]
     pub fn dome(&self) -> Option<f64> {
         let half = self.width / 2.0;
         (half <= self.radius)
@@ -208,7 +207,7 @@ const KEYS: [&str; 19] = [
 ];
 
 /// Reads the spring of the struts; its lengths have the range of other parts.
-fn coil(parts: &Section, default: Coil) -> Checked<Coil> {
+fn read_coil(parts: &Section, default: Coil) -> Checked<Coil> {
     if !parts.has("spring") {
         return Ok(default);
     }
@@ -263,7 +262,7 @@ impl Parts {
             horn: Horn::read(&section)?,
             screw: Screw::read(&section)?,
             pad: Pad::read(&section)?,
-            spring: coil(&section, all.spring)?,
+            spring: read_coil(&section, all.spring)?,
             battery,
             tail: mm("tail", all.tail, 0.0, 300.0)?,
             head: mm("head", all.head, 0.0, 300.0)?,

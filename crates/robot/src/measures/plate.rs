@@ -42,10 +42,11 @@ impl Plate {
             legs[servo].shaft + Vector::new(0.0, inward * (body.length / 2.0 - body.shaft))
         });
         // Wide enough for the servos of both ends, and long enough for their flanges.
-        let most = |of: fn(Vector) -> f64| cases.map(of).into_iter().fold(0.0, f64::max);
+        let largest =
+            |coordinate: fn(Vector) -> f64| cases.map(coordinate).into_iter().fold(0.0, f64::max);
         let half = Vector::new(
-            most(|case| case.x.abs()) + body.width / 2.0 + BESIDE_SERVO,
-            most(|case| case.y.abs()) + body.flange / 2.0 + BEYOND_FLANGE,
+            largest(|case| case.x.abs()) + body.width / 2.0 + BESIDE_SERVO,
+            largest(|case| case.y.abs()) + body.flange / 2.0 + BEYOND_FLANGE,
         );
         let arms = legs.map(|leg| {
             let inner = |pivot: Vector| {

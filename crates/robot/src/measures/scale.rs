@@ -39,14 +39,14 @@ pub(crate) fn of_side(side: &Slider, stroke_max: f64) -> Scale {
 
 /// Finds the finest scale in which every length (mm) has fewer steps than its bound.
 fn finest(lengths: &[(f64, f64)]) -> Scale {
-    let fits = |scale: &Scale| {
+    let is_in_range = |scale: &Scale| {
         let per_mm = steps_per_mm(*scale);
-        lengths.iter().all(|(mm, most)| mm * per_mm < *most)
+        lengths.iter().all(|(mm, max)| mm * per_mm < *max)
     };
     (0..=Scale::FINEST.bits)
         .rev()
         .map(|bits| Scale { bits })
-        .find(fits)
+        .find(is_in_range)
         .expect("a bar is at most a metre long")
 }
 

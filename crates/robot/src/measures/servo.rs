@@ -55,8 +55,8 @@ impl Servo {
 
     /// True if the servo can turn to this chassis-frame angle, deg.
     pub fn reaches(&self, angle: f64) -> bool {
-        let (least, most) = self.travel();
-        (least - ROUNDING..=most + ROUNDING).contains(&wrap(angle - self.neutral))
+        let (min, max) = self.travel();
+        (min - ROUNDING..=max + ROUNDING).contains(&wrap(angle - self.neutral))
     }
 
     /// Converts a pulse width (us) to the sweep from neutral, deg, counter-clockwise
@@ -130,7 +130,7 @@ pub(crate) fn read(root: &Section) -> Checked<[Servo; 4]> {
     let section = root.section("servo", &keys)?;
     let mut servos = Vec::with_capacity(4);
     for name in NAMES {
-        let one = section.section(
+        let table = section.section(
             name,
             &[
                 "pin",
@@ -141,13 +141,13 @@ pub(crate) fn read(root: &Section) -> Checked<[Servo; 4]> {
                 "max_us",
             ],
         )?;
-        let servo = servo(&one)?;
+        let servo = read_servo(&table)?;
         if let Some(other) = servos
             .iter()
             .position(|earlier: &Servo| earlier.pin == servo.pin)
         {
-            let (pin, other) = (one.text("pin")?, NAMES[other]);
-            return Err(one.fault(
+            let (pin, other) = (table.text("pin")?, NAMES[other]);
+            return Err(table.fault(
                 "pin",
                 format!("is \"{pin}\", which servo.{other} already has"),
             ));
@@ -157,7 +157,7 @@ pub(crate) fn read(root: &Section) -> Checked<[Servo; 4]> {
     Ok([servos[0], servos[1], servos[2], servos[3]])
 }
 
-fn servo(section: &Section) -> Checked<Servo> {
+fn read_servo(section: &Section) -> Checked<Servo> {
     let width = |name| section.number(name, WIDTHS.0, WIDTHS.1, "us");
     let pin = free_pin(section)?;
     let us_per_degree = section.number("us_per_degree", -f64::MAX, f64::MAX, "us")?;

@@ -65,10 +65,10 @@ impl Rail {
     /// at `volts`.
     pub(crate) fn slowed(&mut self, line: f64, share: f64, volts: f64) {
         let [slow, stop, _] = &mut self.thresholds;
-        let least = *stop + APART;
+        let min = *stop + APART;
         // To hundredths. The supply itself must count as good, or nothing would be saved.
-        let wanted = (100.0 * volts * line / share).round() / 100.0;
-        *slow = wanted.min(volts - APART).max(least);
+        let slow_volts = (100.0 * volts * line / share).round() / 100.0;
+        *slow = slow_volts.min(volts - APART).max(min);
     }
 }
 
@@ -89,11 +89,11 @@ impl Supplies {
             return Ok(Self::default());
         }
         let section = root.section("supply", &["reference", "slow", "stop", "rest", "rail"])?;
-        let (least, most) = REFERENCES;
+        let (min, max) = REFERENCES;
         Ok(Self {
-            reference: section.number_or("reference", REFERENCE, least, most, "V")?,
-            board: thresholds(&section, BOARD, DEFAULTS)?,
-            rail: rail(&section, servos)?,
+            reference: section.number_or("reference", REFERENCE, min, max, "V")?,
+            board: read_thresholds(&section, BOARD, DEFAULTS)?,
+            rail: read_rail(&section, servos)?,
         })
     }
 
@@ -128,13 +128,13 @@ pub fn healthy_rail_mv(supplies: &CoreSupplies) -> Option<f64> {
     (supplies.rail_reference != 0).then(|| (mv.max(BOARD) / ratio).min(BOARD - 1.0).floor())
 }
 
-fn rail(supply: &Section, servos: &[Servo; 4]) -> Checked<Option<Rail>> {
+fn read_rail(supply: &Section, servos: &[Servo; 4]) -> Checked<Option<Rail>> {
     if !supply.has("rail") {
         return Ok(None);
     }
     let section = supply.section("rail", &["pin", "ratio", "slow", "stop", "rest"])?;
     let text = section.text("pin")?;
-    let refused = |why: String| section.fault("pin", format!("is \"{text}\"{why}"));
+    let refused = |reason: String| section.fault("pin", format!("is \"{text}\"{reason}"));
     let pin = pin(text)
         .filter(|pin| ANALOGUE.contains(pin))
         .ok_or_else(|| refused("; it must be one of A0 to A5".to_string()))?;
@@ -153,18 +153,18 @@ fn rail(supply: &Section, servos: &[Servo; 4]) -> Checked<Option<Rail>> {
     Ok(Some(Rail {
         pin,
         ratio,
-        thresholds: thresholds(&section, (1.0, 5.0 * ratio), defaults)?,
+        thresholds: read_thresholds(&section, (1.0, 5.0 * ratio), defaults)?,
         by_servos,
     }))
 }
 
 /// Reads three voltages, each below the previous one.
-fn thresholds(
+fn read_thresholds(
     section: &Section,
-    (least, most): (f64, f64),
+    (min, max): (f64, f64),
     defaults: [f64; 3],
 ) -> Checked<[f64; 3]> {
-    let voltage = |name, default| section.number_or(name, default, least, most, "V");
+    let voltage = |name, default| section.number_or(name, default, min, max, "V");
     let [slow, stop, rest] = defaults;
     let [slow, stop, rest] = [
         voltage("slow", slow)?,
@@ -246,7 +246,7 @@ mod tests {
         let sg90 = slow("", "", "0.6");
         let robot = with("paper", &[(BEFORE, "[ground]\nfriction = 0.6")]).expect("right");
         let of = |gait| crate::Effort::of(gait, robot.ground(), &robot.motors());
-        let most = |supply| {
+        let largest = |supply| {
             let used = robot
                 .gaits()
                 .iter()
@@ -254,7 +254,7 @@ mod tests {
             used.fold(0.0, f64::max)
         };
         // A little below stop + 0.25 for this floor: the threshold of the paper's robot.
-        let wanted = (4.8 * most(1.0) / crate::TIGHT).max(4.25);
+        let wanted = (4.8 * largest(1.0) / crate::TIGHT).max(4.25);
         assert!((sg90 - wanted).abs() < 0.01, "{sg90} {wanted}");
         // More friction needs more; a threshold that is given stays.
         let rough = slow("", "", "0.8");

@@ -35,9 +35,9 @@ fn each_coupler_must_be_long_enough_for_its_own_loop() {
 fn the_neutral_pulse_of_every_servo_lies_within_its_own_pulses() {
     for name in ["A1", "A2", "A3", "A4"] {
         let text = crate::testing::text("unequal");
-        let begin = text.find(&format!("[servo.{name}]")).expect(name);
+        let start = text.find(&format!("[servo.{name}]")).expect(name);
         let line = |key: &str| {
-            let from = begin + text[begin..].find(key).expect(key);
+            let from = start + text[start..].find(key).expect(key);
             let to = from + text[from..].find('\n').expect("a line's end");
             from..to
         };

@@ -28,189 +28,105 @@ struct Inputs {
     scale: f64,
 }
 
-/// An assumption: its words, its unit, its value and the ends of its range, and its change.
+/// An assumption: its words, its unit, the ends of its range, and what it is about.
 struct Assumption {
     words: &'static str,
     unit: &'static str,
-    own: fn(&Inputs) -> f64,
     ends: [f64; 2],
-    change: fn(&mut Inputs, f64),
+    subject: Subject,
+}
+
+/// What an assumption is about.
+enum Subject {
+    /// A number.
+    Number(fn(&mut Inputs) -> &mut f64),
+    /// A case that the prediction does not assume, 0, or does, 1.
+    Case(fn(&mut Inputs)),
+    /// A number that matters only after another change.
+    After(fn(&mut Inputs), fn(&mut Inputs) -> &mut f64),
+}
+
+impl Subject {
+    /// The value in the prediction.
+    fn value(&self, mut inputs: Inputs) -> f64 {
+        match self {
+            Self::Number(number) | Self::After(_, number) => *number(&mut inputs),
+            Self::Case(_) => 0.0,
+        }
+    }
+
+    fn set(&self, inputs: &mut Inputs, value: f64) {
+        match self {
+            Self::Number(number) => *number(inputs) = value,
+            Self::Case(change) if value > 0.0 => change(inputs),
+            Self::Case(_) => {}
+            Self::After(change, number) => {
+                change(inputs);
+                *number(inputs) = value;
+            }
+        }
+    }
+}
+
+/// Makes the table of assumptions.
+macro_rules! assumptions {
+    ($($words:literal, $unit:literal, $from:literal to $to:literal, $kind:ident($($of:tt)+);)+) => {
+        [$(Assumption {
+            words: $words,
+            unit: $unit,
+            ends: [$from, $to],
+            subject: assumptions!(@$kind $($of)+),
+        }),+]
+    };
+    (@number $($field:tt)+) => { Subject::Number(|inputs| &mut inputs.$($field)+) };
+    (@case $change:expr) => { Subject::Case($change) };
+    (@after $change:expr, $($field:tt)+) => {
+        Subject::After($change, |inputs| &mut inputs.$($field)+)
+    };
 }
 
 /// The assumptions in the order of robot.toml.
-const ALL: [Assumption; 21] = [
-    Assumption {
-        words: "stall torque of a servo",
-        unit: "kg cm",
-        own: |taken| taken.servo.stall_kg_cm,
-        ends: [1.2, 2.2],
-        change: |taken, value| taken.servo.stall_kg_cm = value,
-    },
-    Assumption {
-        words: "time of a servo for 60 deg",
-        unit: "s",
-        own: |taken| taken.servo.s_per_60_deg,
-        ends: [0.1, 0.15],
-        change: |taken, value| taken.servo.s_per_60_deg = value,
-    },
-    Assumption {
-        words: "supply of the servos",
-        unit: "V",
-        own: |taken| taken.servo.volts,
-        ends: [4.0, 5.2],
-        change: |taken, value| taken.servo.volts = value,
-    },
-    Assumption {
-        words: "spin-up of a servo's rotor",
-        unit: "ms",
-        own: |taken| taken.servo.spin_up_ms,
-        ends: [2.0, 40.0],
-        change: |taken, value| taken.servo.spin_up_ms = value,
-    },
-    Assumption {
-        words: "error at the full torque",
-        unit: "deg",
-        own: |taken| taken.servo.full_torque_deg,
-        ends: [1.0, 6.0],
-        change: |taken, value| taken.servo.full_torque_deg = value,
-    },
-    Assumption {
-        words: "dead band of a servo",
-        unit: "us",
-        own: |taken| taken.servo.dead_band_us,
-        ends: [2.0, 20.0],
-        change: |taken, value| taken.servo.dead_band_us = value,
-    },
-    Assumption {
-        words: "angle of the servos over the one sent",
-        unit: "",
-        own: |taken| taken.scale,
-        // A servo that trial 3 of docs/measure.md accepts: 11 or 9 us for each deg, not 10.
-        ends: [0.91, 1.11],
-        change: |taken, value| taken.scale = value,
-    },
-    Assumption {
-        words: "fast digital servos",
-        unit: "(0 no, 1 yes)",
-        own: |_| 0.0,
-        ends: [0.0, 1.0],
-        change: |taken, value| {
-            if value > 0.0 {
-                taken.servo = ServoType {
-                    volts: taken.servo.volts,
-                    ..ServoType::DIGITAL
-                };
-            }
-        },
-    },
-    Assumption {
-        words: "rotor 2 ms and full torque at 1 deg",
-        unit: "(0 no, 1 yes)",
-        own: |_| 0.0,
-        ends: [0.0, 1.0],
-        change: |taken, value| {
-            if value > 0.0 {
-                taken.servo.spin_up_ms = 2.0;
-                taken.servo.full_torque_deg = 1.0;
-            }
-        },
-    },
-    Assumption {
-        words: "friction of pins",
-        unit: "N mm",
-        own: |taken| taken.joints[0],
-        ends: [0.0, 20.0],
-        change: |taken, value| taken.joints[0] = value,
-    },
-    Assumption {
-        words: "friction of a slider",
-        unit: "N",
-        own: |taken| taken.joints[1],
-        ends: [0.0, 1.0],
-        change: |taken, value| taken.joints[1] = value,
-    },
-    Assumption {
-        words: "mass",
-        unit: "g",
-        own: |taken| taken.ground.body.mass,
-        ends: [350.0, 500.0],
-        change: |taken, value| taken.ground.body.mass = value,
-    },
-    Assumption {
-        words: "mass centre ahead",
-        unit: "mm",
-        own: |taken| taken.ground.body.centre[0],
-        ends: [-15.0, 15.0],
-        change: |taken, value| taken.ground.body.centre[0] = value,
-    },
-    Assumption {
-        words: "friction of a pad",
-        unit: "",
-        own: |taken| taken.ground.friction,
-        ends: [0.4, 1.2],
-        change: |taken, value| taken.ground.friction = value,
-    },
-    Assumption {
-        words: "friction backward over forward",
-        unit: "",
-        own: |taken| taken.ground.ratio,
-        ends: [0.67, 1.5],
-        change: |taken, value| taken.ground.ratio = value,
-    },
-    Assumption {
-        words: "hips ahead of the middle",
-        unit: "mm",
-        own: |taken| taken.ground.feet.hip_forward,
-        ends: [50.0, 60.0],
-        change: |taken, value| taken.ground.feet.hip_forward = value,
-    },
-    Assumption {
-        words: "mounting of the legs",
-        unit: "deg",
-        own: |taken| taken.ground.feet.mount,
-        ends: [-10.0, 41.4],
-        change: |taken, value| taken.ground.feet.mount = value,
-    },
-    Assumption {
-        words: "play of a leg",
-        unit: "deg",
-        own: |taken| taken.ground.drive.play,
-        ends: [0.0, 2.0],
-        change: |taken, value| taken.ground.drive.play = value,
-    },
-    Assumption {
-        words: "front left foot too long",
-        unit: "mm",
-        own: |taken| taken.ground.stance.twist,
-        ends: [-1.0, 1.0],
-        change: |taken, value| taken.ground.stance.twist = value,
-    },
-    Assumption {
-        words: "stiffness of feet, that foot 0.5 mm too long",
-        unit: "N/mm",
-        own: |taken| taken.ground.stance.stiffness,
-        ends: [0.3, 3.3],
-        change: |taken, value| {
-            taken.ground.stance.stiffness = value;
-            taken.ground.stance.twist = 0.5;
-        },
-    },
-    Assumption {
-        words: "copies, stiff joints, friction 1, 50 g more",
-        unit: "(0 no, 1 yes)",
-        own: |_| 0.0,
-        ends: [0.0, 1.0],
-        change: |taken, value| {
-            if value > 0.0 {
-                taken.servo.stall_kg_cm = 1.2;
-                taken.servo.s_per_60_deg = 0.15;
-                taken.joints = [17.0, 0.5];
-                taken.ground.friction = 1.0;
-                taken.ground.body.mass += 50.0;
-            }
-        },
-    },
-];
+const ALL: [Assumption; 21] = assumptions! {
+    "stall torque of a servo", "kg cm", 1.2 to 2.2, number(servo.stall_kg_cm);
+    "time of a servo for 60 deg", "s", 0.1 to 0.15, number(servo.s_per_60_deg);
+    "supply of the servos", "V", 4.0 to 5.2, number(servo.volts);
+    "spin-up of a servo's rotor", "ms", 2.0 to 40.0, number(servo.spin_up_ms);
+    "error at the full torque", "deg", 1.0 to 6.0, number(servo.full_torque_deg);
+    "dead band of a servo", "us", 2.0 to 20.0, number(servo.dead_band_us);
+    // A servo that trial 3 of docs/measure.md accepts: 11 or 9 us for each deg, not 10.
+    "angle of the servos over the one sent", "", 0.91 to 1.11, number(scale);
+    "fast digital servos", "(0 no, 1 yes)", 0.0 to 1.0, case(|inputs| {
+        inputs.servo = ServoType {
+            volts: inputs.servo.volts,
+            ..ServoType::DIGITAL
+        };
+    });
+    "rotor 2 ms and full torque at 1 deg", "(0 no, 1 yes)", 0.0 to 1.0, case(|inputs| {
+        inputs.servo.spin_up_ms = 2.0;
+        inputs.servo.full_torque_deg = 1.0;
+    });
+    "friction of pins", "N mm", 0.0 to 20.0, number(joints[0]);
+    "friction of a slider", "N", 0.0 to 1.0, number(joints[1]);
+    "mass", "g", 350.0 to 500.0, number(ground.body.mass);
+    "mass centre ahead", "mm", -15.0 to 15.0, number(ground.body.centre[0]);
+    "friction of a pad", "", 0.4 to 1.2, number(ground.friction);
+    "friction backward over forward", "", 0.67 to 1.5, number(ground.ratio);
+    "hips ahead of the middle", "mm", 50.0 to 60.0, number(ground.feet.hip_forward);
+    "mounting of the legs", "deg", -10.0 to 41.4, number(ground.feet.mount);
+    "play of a leg", "deg", 0.0 to 2.0, number(ground.drive.play);
+    "front left foot too long", "mm", -1.0 to 1.0, number(ground.stance.twist);
+    "stiffness of feet, that foot 0.5 mm too long", "N/mm", 0.3 to 3.3, after(
+        |inputs| inputs.ground.stance.twist = 0.5,
+        ground.stance.stiffness
+    );
+    "copies, stiff joints, friction 1, 50 g more", "(0 no, 1 yes)", 0.0 to 1.0, case(|inputs| {
+        inputs.servo.stall_kg_cm = 1.2;
+        inputs.servo.s_per_60_deg = 0.15;
+        inputs.joints = [17.0, 0.5];
+        inputs.ground.friction = 1.0;
+        inputs.ground.body.mass += 50.0;
+    });
+};
 
 /// An assumption's effect on each gait.
 #[derive(Debug, Clone, PartialEq)]
@@ -233,37 +149,36 @@ pub struct Assumptions {
 
 impl Assumptions {
     /// Walks a robot's gaits with its servos at both ends of every range; takes some seconds.
-    #[must_use]
     pub fn of(robot: &Robot) -> Self {
         let joints = robot.motors().joints;
-        let taken = Inputs {
+        let nominal = Inputs {
             ground: *robot.ground(),
             servo: *robot.servo_type(),
             joints: [joints.drag, joints.slider],
             scale: 1.0,
         };
-        let walked = |gait: &CheckedGait, taken: &Inputs| {
-            let Motors { each, mut joints } = robot.motors_of(&taken.servo, taken.servo.volts);
-            [joints.drag, joints.slider] = taken.joints;
-            gait.driven_scaled(&taken.ground, &Motors { each, joints }, 1.0, taken.scale)
+        let walked = |gait: &CheckedGait, inputs: &Inputs| {
+            let Motors { each, mut joints } = robot.motors_of(&inputs.servo, inputs.servo.volts);
+            [joints.drag, joints.slider] = inputs.joints;
+            gait.driven_scaled(&inputs.ground, &Motors { each, joints }, 1.0, inputs.scale)
         };
-        let gaits = different(robot, |gait| walked(gait, &taken));
+        let gaits = different(robot, |gait| walked(gait, &nominal));
         let row = |assumption: &Assumption| {
             let change = |gait: &CheckedGait, before: &Travel, end: f64| {
-                let mut changed = taken;
-                (assumption.change)(&mut changed, end);
+                let mut changed = nominal;
+                assumption.subject.set(&mut changed, end);
                 let part = main(before);
                 100.0 * (part(&walked(gait, &changed)) / part(before) - 1.0)
             };
-            let of = |(gait, before): &(&CheckedGait, Travel)| {
+            let changes = |(gait, before): &(&CheckedGait, Travel)| {
                 assumption.ends.map(|end| change(gait, before, end))
             };
             Row {
                 words: assumption.words,
                 unit: assumption.unit,
-                own: (assumption.own)(&taken),
+                own: assumption.subject.value(nominal),
                 ends: assumption.ends,
-                changes: gaits.iter().map(of).collect(),
+                changes: gaits.iter().map(changes).collect(),
             }
         };
         let mut rows: Vec<Row> = ALL.iter().map(row).collect();
@@ -292,8 +207,8 @@ fn different(
         }
         let movement = walked(gait);
         let alike = |(_, other): &(_, Travel)| {
-            let off = |a: f64, b: f64| (a.abs() - b.abs()).abs() < ALIKE;
-            off(movement.forward, other.forward) && off(movement.turn, other.turn)
+            let is_close = |a: f64, b: f64| (a.abs() - b.abs()).abs() < ALIKE;
+            is_close(movement.forward, other.forward) && is_close(movement.turn, other.turn)
         };
         let leads = movement.forward.abs() > MIN_MOVEMENT.0 || movement.turn.abs() > MIN_MOVEMENT.1;
         if leads && !gaits.iter().any(alike) {
@@ -349,13 +264,13 @@ impl fmt::Display for Assumptions {
             }
             writeln!(f)?;
         }
-        let of = |row: &Row| {
+        let columns = |row: &Row| {
             let [least, most] = row.ends;
             format!("  {}, {least} to {most} {}", row.words, row.unit)
                 .trim_end()
                 .to_string()
         };
-        let rest: Vec<String> = rest.into_iter().map(of).collect();
+        let rest: Vec<String> = rest.into_iter().map(columns).collect();
         match rest.is_empty() {
             true => Ok(()),
             false => writeln!(f, "\nLess than {COUNTS:.0} %:\n{}", rest.join("\n")),

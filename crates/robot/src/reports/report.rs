@@ -128,9 +128,13 @@ impl Report {
             } = round;
             let rounds = rounds.map_or("for ever".to_string(), |rounds| rounds.to_string());
             write!(f, "{name:<width$} {steps:>5} {rounds:>6} {seconds:>6.1}")?;
-            for way in [movement, driven] {
-                let [forward, left, turn] =
-                    [way.forward, way.left, way.turn].map(|part| known(part, 1));
+            for movement_or_driven in [movement, driven] {
+                let [forward, left, turn] = [
+                    movement_or_driven.forward,
+                    movement_or_driven.left,
+                    movement_or_driven.turn,
+                ]
+                .map(|part| known(part, 1));
                 write!(f, " {forward:>7} {left:>6} {turn:>7}")?;
             }
             writeln!(f)?;

@@ -33,7 +33,6 @@ pub struct Round {
 impl Round {
     /// Goes through a routine once, while no contact closes ([`Robot::without_contacts`]). The time
     /// that it takes grows with the routine's length.
-    #[must_use]
     pub fn of(robot: &Robot, routine: &Routine) -> Self {
         let mut sweeps: Vec<[f64; 4]> = vec![[0.0; 4]];
         sweeps.extend(Self::sweeps(robot, routine));

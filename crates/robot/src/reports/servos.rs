@@ -40,7 +40,6 @@ pub struct ServoTable {
 
 impl ServoTable {
     /// Predicts a robot's gaits at all supplies and paces; takes some seconds.
-    #[must_use]
     pub fn of(robot: &Robot) -> Self {
         let servo = *robot.servo_type();
         let supplies = robot.supplies();
@@ -72,7 +71,7 @@ impl ServoTable {
         }
     }
 
-    fn head(
+    fn write_head(
         &self,
         f: &mut fmt::Formatter,
         title: &str,
@@ -105,13 +104,13 @@ impl fmt::Display for ServoTable {
         )?;
         let width = widest(self.rows.iter().map(|row| row.name.as_str()));
         for (i, pace) in PACES.into_iter().enumerate() {
-            self.head(f, &format!("speed {pace:.0}"), width, 22)?;
+            self.write_head(f, &format!("speed {pace:.0}"), width, 22)?;
             for row in &self.rows {
                 let cells: String = row.cells[i].iter().map(cell).collect();
                 writeln!(f, "{}", format!("{:<width$}{cells}", row.name).trim_end())?;
             }
         }
-        self.head(f, "fastest", width, 10)?;
+        self.write_head(f, "fastest", width, 10)?;
         for Row { name, paces, .. } in &self.rows {
             let paces: String = paces.iter().map(|pace| format!("{pace:>10.0}")).collect();
             writeln!(f, "{name:<width$}{paces}")?;

@@ -23,24 +23,23 @@ const MIN_MOVEMENT: (f64, f64) = (1.0, 0.5);
 
 impl SpringCost {
     /// Compares a gait on this ground with the same gait on rigid legs; `None` if legs do not lag.
-    #[must_use]
     pub fn of(gait: &CheckedGait, ground: &Ground) -> Option<Self> {
         if !ground.drive.lags() {
             return None;
         }
         let walked = gait.walked(ground);
         let movement = gait.predict(&ground.rigid());
-        let part = |lagging: f64, rigid: Option<f64>, least: f64| {
+        let part = |lagging: f64, rigid: Option<f64>, smallest: f64| {
             rigid
-                .filter(|rigid| rigid.abs() > least)
+                .filter(|rigid| rigid.abs() > smallest)
                 .map(|rigid| lagging / rigid)
         };
-        let ahead = part(walked.travel.forward, movement.forward, MIN_MOVEMENT.0);
+        let forward_share = part(walked.travel.forward, movement.forward, MIN_MOVEMENT.0);
         let turn = part(walked.travel.turn, movement.turn, MIN_MOVEMENT.1);
         Some(Self {
             movement: movement.keep_known(walked.travel),
             lag: walked.lag,
-            share: [ahead, turn].into_iter().flatten().reduce(f64::min),
+            share: [forward_share, turn].into_iter().flatten().reduce(f64::min),
         })
     }
 }

@@ -23,16 +23,16 @@ pub fn out_of_travel(robot: &Robot, pose: &Pose) -> impl Iterator<Item = String>
 
 /// A message if a servo (0 to 3) cannot reach an angle (deg, chassis frame).
 pub fn beyond(robot: &Robot, servo: usize, angle: f64) -> Option<String> {
-    let of = &robot.servos()[servo];
-    (!of.reaches(angle)).then(|| {
-        let (neutral, (least, most)) = (of.neutral, of.travel());
+    let limits_of_servo = &robot.servos()[servo];
+    (!limits_of_servo.reaches(angle)).then(|| {
+        let (neutral, (min, max)) = (limits_of_servo.neutral, limits_of_servo.travel());
         let sweep = wrap(angle - neutral);
         format!(
             "servo {} would turn {sweep:+.1} deg from neutral to {:.1} deg, its travel is {:.1} to {:.1} deg",
             servo::NAMES[servo],
             neutral + sweep,
-            neutral + least,
-            neutral + most,
+            neutral + min,
+            neutral + max,
         )
     })
 }

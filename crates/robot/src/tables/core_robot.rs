@@ -18,12 +18,12 @@ static KEPT: Mutex<Option<HashSet<&'static [u8]>>> = Mutex::new(None);
 
 /// Keeps a section until the program ends and returns it as a region of flash.
 pub fn flash(section: &[u8]) -> Region<'static> {
-    let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
-    let kept = kept.get_or_insert_default();
-    if let Some(known) = kept.get(section) {
-        return Region::new(known);
+    let mut sections = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    let sections = sections.get_or_insert_default();
+    if let Some(section_copy) = sections.get(section) {
+        return Region::new(section_copy);
     }
     let section: &'static [u8] = Vec::leak(section.to_vec());
-    kept.insert(section);
+    sections.insert(section);
     Region::new(section)
 }

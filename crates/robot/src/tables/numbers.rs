@@ -67,7 +67,7 @@ pub(crate) fn content(
         slew: Slew::new(floor(pace.slew * STEPS_PER_DEGREE / FRAMES_PER_SECOND) as u16),
         supplies: supplies.numbers(),
         ends: kinematics::End::ALL.map(|end| five_bar(&lizard.end(end))),
-        sides: kinematics::Side::ALL.map(|of| side(&lizard.side(of), limits)),
+        sides: kinematics::Side::ALL.map(|name_of_side| side(&lizard.side(name_of_side), limits)),
         gaits,
         steps,
         names,
@@ -316,8 +316,8 @@ mod tests {
                     let width = calibration.width(Sweep(sweep as i16));
                     // A half of a cycle each: the neutral, the gain over the travel, the
                     // product.
-                    let off = (f64::from(width.0) - cycles).abs();
-                    assert!(off <= 1.5, "{name} A{}: {off} cycles at {sweep}", i + 1);
+                    let error = (f64::from(width.0) - cycles).abs();
+                    assert!(error <= 1.5, "{name} A{}: {error} cycles at {sweep}", i + 1);
                 }
                 let neutral = f64::from(firmware.neutral()[i].0) * 360.0 / 65536.0;
                 assert!((neutral - servo.neutral).abs() <= 0.5 * 360.0 / 65536.0);

@@ -142,21 +142,21 @@ impl WaveformBank {
         if amplitude.abs() >= 180.0 {
             return None;
         }
-        let ahead = -stride.start - shift;
+        let offset = -stride.start - shift;
         let samples = samples.map(|value| value / peak);
-        let found = self.samples.iter().enumerate().find_map(|(wave, known)| {
+        let match_found = self.samples.iter().enumerate().find_map(|(wave, known)| {
             let rotation = same(known, &samples, SAME_DEG / amplitude.abs())?;
             Some(Part {
                 wave,
-                ahead: ahead + rotation as f64 / SAMPLES as f64,
+                ahead: offset + rotation as f64 / SAMPLES as f64,
                 amplitude,
             })
         });
-        Some(found.unwrap_or_else(|| {
+        Some(match_found.unwrap_or_else(|| {
             self.samples.push(samples);
             Part {
                 wave: self.samples.len() - 1,
-                ahead,
+                ahead: offset,
                 amplitude,
             }
         }))
@@ -165,13 +165,13 @@ impl WaveformBank {
     /// Computes the largest amplitude that each waveform needs, deg. Tables are
     /// stored at that size, so that no gain exceeds 1.
     fn largest(&self, parts: &[Part]) -> Vec<f64> {
-        let of = |wave| {
+        let largest_of_wave = |wave| {
             parts
                 .iter()
                 .filter(|p| p.wave == wave)
-                .fold(0.0f64, |most, p| most.max(p.amplitude.abs()))
+                .fold(0.0f64, |max, p| max.max(p.amplitude.abs()))
         };
-        (0..self.samples.len()).map(of).collect()
+        (0..self.samples.len()).map(largest_of_wave).collect()
     }
 }
 
@@ -196,10 +196,10 @@ fn peak(samples: &[f64; SAMPLES]) -> f64 {
     samples.iter().fold(0.0, larger)
 }
 
-/// Finds the rotation that turns `known` into `samples` within `tolerance`.
-fn same(known: &[f64; SAMPLES], samples: &[f64; SAMPLES], tolerance: f64) -> Option<usize> {
+/// Finds the rotation that turns `existing` into `samples` within `tolerance`.
+fn same(existing: &[f64; SAMPLES], samples: &[f64; SAMPLES], tolerance: f64) -> Option<usize> {
     (0..SAMPLES).find(|rotation| {
-        (0..SAMPLES).all(|i| (samples[i] - known[(i + rotation) % SAMPLES]).abs() <= tolerance)
+        (0..SAMPLES).all(|i| (samples[i] - existing[(i + rotation) % SAMPLES]).abs() <= tolerance)
     })
 }
 
@@ -238,8 +238,8 @@ mod tests {
             for gait in robot.gaits() {
                 let increment = robot.firmware().gait(id(&robot, gait.index())).increment;
                 let frames = 50.0 * gait.period();
-                let off = f64::from(increment.abs()) * frames - f64::from(1 << 24);
-                assert!(off.abs() <= 0.5 * frames, "{name} {}", gait.name());
+                let error = f64::from(increment.abs()) * frames - f64::from(1 << 24);
+                assert!(error.abs() <= 0.5 * frames, "{name} {}", gait.name());
                 assert_eq!(increment < 0, gait.is_reversed());
             }
         }

@@ -32,8 +32,8 @@ fn play(play: f64) -> Ground {
 fn gaits_go_as_far_on_weak_struts_as_another_solver_found() {
     for (force, expected) in [(0.5, [34.8, 24.6, 14.3]), (1.0, [35.7, 26.7, 15.2])] {
         for (name, expected) in ["walk", "trot", "left"].into_iter().zip(expected) {
-            let found = cycle_movement(gait(paper(), name), &strut(force));
-            assert!((found - expected).abs() < 0.2, "{force} N {name} {found}");
+            let moved = cycle_movement(gait(paper(), name), &strut(force));
+            assert!((moved - expected).abs() < 0.2, "{force} N {name} {moved}");
         }
     }
 }
@@ -44,10 +44,10 @@ fn from_two_newton_on_a_strut_walks_as_a_bar() {
         let gait = gait(paper(), name);
         let bar = cycle_movement(gait, paper().ground());
         for force in [2.0, 3.0, 5.0] {
-            let found = cycle_movement(gait, &strut(force));
+            let moved = cycle_movement(gait, &strut(force));
             assert!(
-                (found / bar - 1.0).abs() < 0.005,
-                "{force} N {name} {found}"
+                (moved / bar - 1.0).abs() < 0.005,
+                "{force} N {name} {moved}"
             );
         }
         // What docs/build.md says to buy does for a robot of 400 g, and the strongest for
@@ -61,8 +61,8 @@ fn from_two_newton_on_a_strut_walks_as_a_bar() {
                 },
                 ..strut(force)
             };
-            let found = cycle_movement(gait, &heavy);
-            assert!((found / bar - 1.0).abs() < 0.01, "{force} N {name} {found}");
+            let moved = cycle_movement(gait, &heavy);
+            assert!((moved / bar - 1.0).abs() < 0.01, "{force} N {name} {moved}");
         }
     }
 }
@@ -72,8 +72,8 @@ fn gaits_lose_to_play_what_another_solver_found() {
     for (size, expected) in [(1.0, [33.4, 24.4, 14.1]), (2.0, [31.5, 21.2, 12.8])] {
         for (name, expected) in ["walk", "trot", "left"].into_iter().zip(expected) {
             let walked = gait(paper(), name).walked(&play(size));
-            let found = cycle_movement(gait(paper(), name), &play(size));
-            assert!((found - expected).abs() < 0.25, "{size} deg {name} {found}");
+            let moved = cycle_movement(gait(paper(), name), &play(size));
+            assert!((moved - expected).abs() < 0.25, "{size} deg {name} {moved}");
             assert!((walked.lag - size).abs() < 1e-3, "{walked:?}");
         }
     }
@@ -106,19 +106,22 @@ fn a_lever_is_the_arms_part_square_to_the_strut() {
                 let [from, to] = plan.at(angle, angle - forward * lag).strut;
                 (to - from).length()
             };
-            let by = (length(0.001) - length(-0.001)) / 0.002f64.to_radians();
+            let slope = (length(0.001) - length(-0.001)) / 0.002f64.to_radians();
             assert!(
-                (strut.lever(leg, sweep) - by.abs()).abs() < 1e-4,
-                "{leg} {by}"
+                (strut.lever(leg, sweep) - slope.abs()).abs() < 1e-4,
+                "{leg} {slope}"
             );
-            let (way, torque) = strut.end(leg, sweep);
-            let way = way.copysign(by);
+            let (lag, torque) = strut.end(leg, sweep);
+            let lag = lag.copysign(slope);
             assert!(
-                (length(way) - length(0.0) - strut.slot).abs() < 1e-6,
-                "{way}"
+                (length(lag) - length(0.0) - strut.slot).abs() < 1e-6,
+                "{lag}"
             );
-            let by = (length(way + 0.001) - length(way - 0.001)) / 0.002f64.to_radians();
-            assert!((torque - 4.0 * by.abs()).abs() < 1e-3, "{torque} {by}");
+            let slope = (length(lag + 0.001) - length(lag - 0.001)) / 0.002f64.to_radians();
+            assert!(
+                (torque - 4.0 * slope.abs()).abs() < 1e-3,
+                "{torque} {slope}"
+            );
         }
     }
 }

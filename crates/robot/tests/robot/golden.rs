@@ -25,24 +25,24 @@ fn every_gait_of_the_papers_robot_is_as_its_snapshot_says() {
     let bless = std::env::var_os("BLESS_GAITS").is_some();
     for gait in paper().gaits() {
         let path = format!("{FOLDER}/{}.csv", gait.name());
-        let now = snapshot(gait);
+        let current = snapshot(gait);
         if bless {
-            std::fs::write(&path, &now).expect(&path);
+            std::fs::write(&path, &current).expect(&path);
         }
-        let then = std::fs::read_to_string(&path).unwrap_or_default();
-        if let Some((then, now)) = then
+        let stored = std::fs::read_to_string(&path).unwrap_or_default();
+        if let Some((stored, current)) = stored
             .lines()
-            .zip(now.lines())
-            .find(|(then, now)| then != now)
+            .zip(current.lines())
+            .find(|(stored, current)| stored != current)
         {
             panic!(
-                "{} has changed.\n  was {then}\n  is  {now}\nIf that is meant, run BLESS_GAITS=1 cargo test -p lizard-robot golden and commit {path}.",
+                "{} has changed.\n  was {stored}\n  is  {current}\nIf that is meant, run BLESS_GAITS=1 cargo test -p lizard-robot golden and commit {path}.",
                 gait.name()
             );
         }
         assert_eq!(
-            then.lines().count(),
-            now.lines().count(),
+            stored.lines().count(),
+            current.lines().count(),
             "{path}: bless it with BLESS_GAITS=1"
         );
     }

@@ -123,8 +123,8 @@ fn every_free_pin_is_an_input_and_a_taken_one_is_refused_with_its_owner() {
         ),
     ] {
         for name in ["button", "nose"] {
-            let found = refusal(&format!("[input.{name}]\npin = \"{pin}\"\n{rail}"));
-            assert_eq!(found, format!("2: input.{name}.pin is \"{pin}\"{message}"));
+            let actual = refusal(&format!("[input.{name}]\npin = \"{pin}\"\n{rail}"));
+            assert_eq!(actual, format!("2: input.{name}.pin is \"{pin}\"{message}"));
         }
     }
     let free = [
@@ -191,17 +191,17 @@ fn a_mistake_in_an_input_or_its_step_is_told_with_its_line_and_its_step() {
             "names the gait \"wait-button\", which does not exist; allowed are stand, walk, trot, crawl, back, left, right, arc-left, arc-right, look",
         ),
     ] {
-        let found = refusal(&format!(
+        let actual = refusal(&format!(
             "{INPUTS}[routine.one]\nsteps = [\"walk 1\", \"{step}\"]"
         ));
         let expected = format!("6: routine.one.steps: step 2, \"{step}\", {message}");
-        assert_eq!(found, expected);
+        assert_eq!(actual, expected);
     }
-    let found = refusal("[routine.one]\nsteps = [\"wait nose\"]");
+    let actual = refusal("[routine.one]\nsteps = [\"wait nose\"]");
     let message =
         "names the input \"nose\", which has no pin; [input.nose] must have one, as pin = \"A1\"";
     assert_eq!(
-        found,
+        actual,
         format!("2: routine.one.steps: step 1, \"wait nose\", {message}")
     );
 }

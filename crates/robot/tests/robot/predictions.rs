@@ -120,14 +120,14 @@ fn a_sine_trot_gets_nowhere() {
 fn a_finer_cycle_changes_no_prediction_by_a_hundredth() {
     let robot = paper();
     for gait in robot.gaits() {
-        let at = |i| gait.sweeps(gait.phase(gait.period() * f64::from(i) / 1000.0));
-        let coarse = robot.ground().travel((0..=1000).map(at));
-        let at = |i| gait.sweeps(gait.phase(gait.period() * f64::from(i) / 2000.0));
-        let fine = robot.ground().travel((0..=2000).map(at));
-        let off = (coarse.forward - fine.forward).hypot(coarse.left - fine.left);
+        let sweeps_at = |i| gait.sweeps(gait.phase(gait.period() * f64::from(i) / 1000.0));
+        let coarse = robot.ground().travel((0..=1000).map(sweeps_at));
+        let sweeps_at = |i| gait.sweeps(gait.phase(gait.period() * f64::from(i) / 2000.0));
+        let fine = robot.ground().travel((0..=2000).map(sweeps_at));
+        let error = (coarse.forward - fine.forward).hypot(coarse.left - fine.left);
         assert!(
-            off < 0.01 && (coarse.turn - fine.turn).abs() < 0.01,
-            "{} {off}",
+            error < 0.01 && (coarse.turn - fine.turn).abs() < 0.01,
+            "{} {error}",
             gait.name()
         );
     }

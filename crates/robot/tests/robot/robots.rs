@@ -67,7 +67,7 @@ fn an_audit_has_the_least_margins_of_all_phases() {
     each_gait(|file, robot, gait| {
         let audit = gait.audit();
         let mut least_margins = [f64::INFINITY; 3];
-        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+        let (mut smallest, mut largest) = (f64::INFINITY, f64::NEG_INFINITY);
         for phase in (0..=u16::MAX).step_by(64) {
             let pose = gait.table_angles(phase).into();
             let s = robot.lizard().solve(&pose).expect("it closes");
@@ -77,8 +77,8 @@ fn an_audit_has_the_least_margins_of_all_phases() {
             {
                 least_margins[index] = margins.iter().fold(least_margins[index], |a, b| a.min(*b));
             }
-            least = least.min(s.left.s).min(s.right.s);
-            most = most.max(s.left.s).max(s.right.s);
+            smallest = smallest.min(s.left.s).min(s.right.s);
+            largest = largest.max(s.left.s).max(s.right.s);
         }
         let found = [audit.type2.value, audit.type1.value, audit.leg.value];
         for (found, sampled) in found.into_iter().zip(least_margins) {
@@ -90,12 +90,12 @@ fn an_audit_has_the_least_margins_of_all_phases() {
             );
         }
         assert!(
-            (0.0..0.1).contains(&(least - audit.stroke.0)),
+            (0.0..0.1).contains(&(smallest - audit.stroke.0)),
             "{file} {}",
             gait.name()
         );
         assert!(
-            (0.0..0.1).contains(&(audit.stroke.1 - most)),
+            (0.0..0.1).contains(&(audit.stroke.1 - largest)),
             "{file} {}",
             gait.name()
         );
@@ -107,18 +107,18 @@ fn an_audit_has_the_least_margins_of_all_phases() {
 fn the_fastest_frame_is_faster_than_all_others_whichever_way_they_go() {
     each_gait(|file, robot, gait| {
         let frame = 0.02 / gait.period();
-        let mut most = 0.0f64;
+        let mut largest = 0.0f64;
         for i in 0..1000 {
             let phase = f64::from(i) / 1000.0;
             let (from, to) = (gait.angles(phase), gait.angles(phase + frame));
             for servo in 0..4 {
-                most = most.max((to[servo] - from[servo]).abs() * 50.0);
+                largest = largest.max((to[servo] - from[servo]).abs() * 50.0);
             }
         }
         let peak = gait.audit().peak;
         assert!(
-            (peak.speed - most).abs() <= 0.005 * most,
-            "{file} {}: {peak:?}, but {most}",
+            (peak.speed - largest).abs() <= 0.005 * largest,
+            "{file} {}: {peak:?}, but {largest}",
             gait.name()
         );
         assert!(peak.speed <= robot.pace().gait_slew);

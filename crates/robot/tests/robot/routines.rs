@@ -57,7 +57,7 @@ steps = ["arc left 2", "arc-left 2.5 s", "  arc  left   999 ", "rest 0.02 s", "s
         .expect("it is there")
         .steps()
         .to_vec();
-    let found: Vec<_> = steps
+    let steps_read: Vec<_> = steps
         .iter()
         .map(|step| (step.kind, step.gait, step.count))
         .collect();
@@ -68,7 +68,7 @@ steps = ["arc left 2", "arc-left 2.5 s", "  arc  left   999 ", "rest 0.02 s", "s
         (Step::REST, 0, 1),
         (Step::FRAMES, 0, 49_950),
     ];
-    assert_eq!(found, expected);
+    assert_eq!(steps_read, expected);
 }
 
 #[test]
@@ -198,15 +198,15 @@ fn a_mistake_is_told_with_its_line_and_its_step() {
             "routine.patrol.speed is not a known key; allowed are steps, repeat, repeat_from",
         ),
     ] {
-        let found = refusal(lines);
-        assert!(found.ends_with(message), "{found}");
-        assert!(found.starts_with("robot.toml:"), "{found}");
+        let actual = refusal(lines);
+        assert!(actual.ends_with(message), "{actual}");
+        assert!(actual.starts_with("robot.toml:"), "{actual}");
     }
     let many = "\"walk 1\", ".repeat(100);
-    let found = refusal(&format!("steps = [{many}]"));
+    let actual = refusal(&format!("steps = [{many}]"));
     assert!(
-        found.ends_with("has 100 steps; it must have 1 to 99"),
-        "{found}"
+        actual.ends_with("has 100 steps; it must have 1 to 99"),
+        "{actual}"
     );
 }
 
@@ -230,9 +230,9 @@ fn a_name_that_is_taken_or_no_name_is_refused() {
             "routine.Patrol is not a routine name: it must be lower-case letters, digits and dashes, a letter first",
         ),
     ] {
-        let found = with(&format!("[routine.{name}]\nsteps = [\"walk 1\"]"));
-        let found = found.map(|_| ()).expect_err(name).to_string();
-        assert!(found.ends_with(message), "{found}");
+        let actual = with(&format!("[routine.{name}]\nsteps = [\"walk 1\"]"));
+        let actual = actual.map(|_| ()).expect_err(name).to_string();
+        assert!(actual.ends_with(message), "{actual}");
     }
 }
 

@@ -39,18 +39,18 @@ fn four_tenths_on_a_diagonal_cost_as_much_as_another_solver_found() {
         ("trot", 17.6),
     ] {
         let gait = gait(paper(), name);
-        let at = |i: i32| gait.sweeps(gait.phase(gait.period() * f64::from(i) / 1000.0));
+        let sweeps_at = |i: i32| gait.sweeps(gait.phase(gait.period() * f64::from(i) / 1000.0));
         let ground = *paper().ground();
-        let mut walker = Walker::with_unevenness(ground, at(0), [1.4, 0.6, 1.4, 0.6], 1.0);
+        let mut walker = Walker::with_unevenness(ground, sweeps_at(0), [1.4, 0.6, 1.4, 0.6], 1.0);
         (1..=1000).for_each(|i| {
-            walker.step(at(i));
+            walker.step(sweeps_at(i));
         });
         let place = walker.place();
-        let found = match name {
+        let movement = match name {
             "left" => place.travel().turn,
             _ => place.travel().forward,
         };
-        assert!((found - expected).abs() < 0.45, "{name} {found}");
+        assert!((movement - expected).abs() < 0.45, "{name} {movement}");
     }
 }
 

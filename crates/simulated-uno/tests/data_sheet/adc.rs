@@ -294,8 +294,8 @@ fn conversions_keep_step_with_the_adc_clock() {
     let cycles = mark_cycles(&uno);
     assert_eq!(cycles.len(), 20);
     for cycle in &cycles {
-        let off = (cycle - cycles[0] + 10) % CLOCK;
-        assert!(off <= 20, "{cycles:?}");
+        let error = (cycle - cycles[0] + 10) % CLOCK;
+        assert!(error <= 20, "{cycles:?}");
     }
 }
 

@@ -52,7 +52,6 @@ const SWAPS: [(&str, &str); 19] = [
 ];
 
 /// True if the file has code that fresh mistakes are made in.
-#[must_use]
 pub fn is_firmware(file: &str) -> bool {
     let ours = ["crates/core/src/", "src/board/", "crates/pulses/src/"];
     let host_only = HOST_ONLY.iter().any(|part| file.contains(part));
@@ -60,14 +59,12 @@ pub fn is_firmware(file: &str) -> bool {
 }
 
 /// True if a mistake in the file can move a servo or change a saved value.
-#[must_use]
 pub fn moves(file: &str) -> bool {
     let name = file.strip_prefix("crates/core/src/").unwrap_or(file);
     !TEXT.iter().any(|part| name.starts_with(part))
 }
 
 /// Every mistake that can be made in a file.
-#[must_use]
 pub fn all(file: &str, text: &str) -> Vec<Mutant> {
     let code = text.split("#[cfg(test)]").next().unwrap_or_default();
     let lines: Vec<&str> = code.lines().collect();
@@ -117,18 +114,18 @@ fn changes(line: &str) -> Vec<(String, String)> {
         return Vec::new();
     }
     let mut changes = Vec::new();
-    let mut swap = |at: usize, old: &str, new: &str| {
-        let changed = format!("{}{new}{}", &line[..at], &line[at + old.len()..]);
+    let mut swap = |offset: usize, old: &str, new: &str| {
+        let changed = format!("{}{new}{}", &line[..offset], &line[offset + old.len()..]);
         changes.push((format!("`{}` for `{}`", new.trim(), old.trim()), changed));
     };
     for (old, new) in SWAPS {
-        for (at, _) in code.match_indices(old) {
-            swap(at, old, new);
+        for (offset, _) in code.match_indices(old) {
+            swap(offset, old, new);
         }
     }
-    for (at, number) in numbers(code) {
+    for (offset, number) in numbers(code) {
         let next = number.parse::<u32>().map_or(1, |number| number + 1);
-        swap(at, number, &next.to_string());
+        swap(offset, number, &next.to_string());
     }
     let is_call = trimmed.ends_with(';') && trimmed.contains('(') && trimmed.contains('.');
     let starts = ["let ", "return ", "pub ", "}", ")", "."];
@@ -143,23 +140,21 @@ fn numbers(code: &str) -> Vec<(usize, &str)> {
     let mut found = Vec::new();
     let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '.';
     for piece in code.split(|c: char| !is_name(c)) {
-        let at = piece.as_ptr() as usize - code.as_ptr() as usize;
+        let offset = piece.as_ptr() as usize - code.as_ptr() as usize;
         if !piece.is_empty() && piece.bytes().all(|byte| byte.is_ascii_digit()) {
-            found.push((at, piece));
+            found.push((offset, piece));
         }
     }
     found
 }
 
 /// The mistakes in the order in which a seed draws them.
-#[must_use]
 pub fn drawn(mut mutants: Vec<Mutant>, seed: u64) -> Vec<Mutant> {
     Rng::with_seed(seed).shuffle(&mut mutants);
     mutants
 }
 
 /// The Wilson interval of a rate, 95 %: within it the true rate lies in 19 of 20 samples.
-#[must_use]
 pub fn wilson(noticed: usize, tried: usize) -> (f64, f64) {
     const Z: f64 = 1.96;
     let n = tried.max(1) as f64;
@@ -216,8 +211,8 @@ mod tests {
             (0, 20, 0.0000, 0.1611),
             (1, 29, 0.0061, 0.1718),
         ] {
-            let (least, most) = wilson(noticed, tried);
-            assert!((least - low).abs() < 1e-4 && (most - high).abs() < 1e-4);
+            let (min, max) = wilson(noticed, tried);
+            assert!((min - low).abs() < 1e-4 && (max - high).abs() < 1e-4);
         }
     }
 }

@@ -50,9 +50,9 @@ pub fn read(list: &str) -> Result<Vec<Mutant>, String> {
         if line.is_empty() {
             if let Some(mutant) = open.take() {
                 if mutant.file.is_empty() || mutant.wrong.is_empty() || mutant.old.is_empty() {
-                    let at = mutant.line;
+                    let line_number = mutant.line;
                     return Err(format!(
-                        "line {at}: an entry needs a file, what is wrong, old text"
+                        "line {line_number}: an entry needs a file, what is wrong, old text"
                     ));
                 }
                 mutants.push(mutant);
@@ -64,9 +64,9 @@ pub fn read(list: &str) -> Result<Vec<Mutant>, String> {
             ..Mutant::default()
         });
         if let Some(old) = line.strip_prefix('-') {
-            append(&mut mutant.old, old);
+            append_line(&mut mutant.old, old);
         } else if let Some(new) = line.strip_prefix('+') {
-            append(&mut mutant.new, new);
+            append_line(&mut mutant.new, new);
         } else {
             let (key, value) = line.split_once(' ').unwrap_or((line, ""));
             match key {
@@ -82,7 +82,7 @@ pub fn read(list: &str) -> Result<Vec<Mutant>, String> {
 }
 
 /// Adds a line; line feeds separate the lines.
-fn append(text: &mut String, line: &str) {
+fn append_line(text: &mut String, line: &str) {
     if !text.is_empty() {
         text.push('\n');
     }

@@ -100,11 +100,11 @@ fn sample(parts: &[String], count: usize, seed: u64) -> Result<usize, String> {
         .into_iter()
         .zip(["that move a servo or a saved value", "in text"])
     {
-        let (least, most) = fresh::wilson(noticed, tried);
+        let (min, max) = fresh::wilson(noticed, tried);
         println!(
             "mistakes {kind}: {noticed} of {tried} noticed, {:.1} to {:.1} % (Wilson, 95 %)",
-            100.0 * least,
-            100.0 * most
+            100.0 * min,
+            100.0 * max
         );
     }
     Ok(tally.iter().map(|[noticed, tried]| tried - noticed).sum())
@@ -134,7 +134,7 @@ fn run(parts: &[String]) -> Result<usize, String> {
     }
     let mut lives = Vec::new();
     for mutant in &list {
-        let begin = Instant::now();
+        let start = Instant::now();
         let fate = scratch.judge(mutant)?;
         let fate = match &fate {
             Outcome::Caught(test) => format!("caught by {test}"),
@@ -144,7 +144,7 @@ fn run(parts: &[String]) -> Result<usize, String> {
             }
             Outcome::NoProgram => return Err(format!("{}: it does not build", mutant.wrong)),
         };
-        let seconds = begin.elapsed().as_secs();
+        let seconds = start.elapsed().as_secs();
         println!("{}: {}: {fate} ({seconds} s)", mutant.file, mutant.wrong);
     }
     println!(

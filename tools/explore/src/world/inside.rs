@@ -9,7 +9,7 @@ use lizard_core::numbers::gaits::GaitId;
 use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::robot::Robot;
 use lizard_core::virtual_board::{Eeprom, Running};
-use lizard_rules::{Event, Limits, MS, Pulse, Rule, Time};
+use lizard_rules::{Event, Limits, Rule, Time};
 
 use super::{FRAME, Verdict, World, broken};
 use crate::fingerprint;
@@ -205,22 +205,11 @@ impl World {
         let widths = self.running.board.started_pulses().0.map(|width| width.0);
         let slew = self.robot().slew().per_frame;
         for (servo, calibration) in self.running.motion().calibration().iter().enumerate() {
-            let most = calibration.slew(slew).saturating_add(ROUNDING);
-            self.observer.limits.leap[servo] = most.into();
-            if widths[servo] > 0 {
-                // A1's pulse begins 4 ms after the tick.
-                let at = self.now + (5 + 4 * servo as Time) * MS;
-                let pulse = Pulse {
-                    servo,
-                    width: widths[servo].into(),
-                    is_cut: false,
-                    is_held_up: false,
-                };
-                self.observer.observe(at, Event::Pulse(pulse));
-            }
+            let max = calibration.slew(slew).saturating_add(ROUNDING);
+            self.observer.limits.leap[servo] = max.into();
         }
+        self.observer.observe_frame(self.now, widths);
         self.now += FRAME;
-        self.observe(Event::Pass);
         self.is_late |= !main_ran;
         let motion = self.running.motion();
         let robot = self.robot();

@@ -92,7 +92,7 @@ fn a_word_that_yields_is_a_command_unless_a_gait_has_its_name() {
             (&*longer, Ok(gait_of(named.id(&longer)))),
             (
                 &std::format!("{text} 1 2"),
-                Err(Misread::Wants(Text::CountWants)),
+                Err(Misread::WrongArguments(Text::CountWants)),
             ),
         ] {
             let as_word = parse(line.as_bytes(), &robot);
@@ -160,7 +160,7 @@ fn a_missing_malformed_or_surplus_argument_is_answered_by_the_syntax() {
         ),
     ] {
         for line in lines.split('|') {
-            assert_eq!(read(line), Err(Misread::Wants(wants)), "{line}");
+            assert_eq!(read(line), Err(Misread::WrongArguments(wants)), "{line}");
         }
     }
 }
@@ -186,7 +186,7 @@ fn a_setting_out_of_range_is_answered_by_the_range() {
         ),
     ] {
         for line in lines.split('|') {
-            assert_eq!(read(line), Err(Misread::Range(range)), "{line}");
+            assert_eq!(read(line), Err(Misread::OutOfRange(range)), "{line}");
         }
     }
 }
@@ -208,10 +208,13 @@ fn a_name_that_is_too_short_or_too_long_is_not_recognised() {
     // `sway` is a gait, and so is `sway left`.
     for (misread, lines) in [
         (
-            Misread::Wants(Text::CountWants),
+            Misread::WrongArguments(Text::CountWants),
             "sway lef|sway leftt|sway left now|sway sway|stand up",
         ),
-        (Misread::Unknown, "swayleft|sway-left|sways|swa|left|s"),
+        (
+            Misread::UnknownCommand,
+            "swayleft|sway-left|sways|swa|left|s",
+        ),
     ] {
         for line in lines.split('|') {
             assert_eq!(read(line), Err(misread), "{line}");
@@ -223,12 +226,12 @@ fn a_name_that_is_too_short_or_too_long_is_not_recognised() {
 fn the_first_words_of_a_longer_name_are_incomplete() {
     let robot = Sample::odd().with_gait("arc to left");
     let read = |line: &str| parse(line.as_bytes(), &robot);
-    assert_eq!(read("arc"), Err(Misread::Incomplete));
-    assert_eq!(read("arc to"), Err(Misread::Incomplete));
+    assert_eq!(read("arc"), Err(Misread::IncompleteName));
+    assert_eq!(read("arc to"), Err(Misread::IncompleteName));
     assert_eq!(read("arc  to\tleft"), Ok(gait_of(robot.id("arc to left"))));
-    assert_eq!(read("arc t"), Err(Misread::Unknown));
-    assert_eq!(read("arc left"), Err(Misread::Unknown));
-    let wants = Err(Misread::Wants(Text::CountWants));
+    assert_eq!(read("arc t"), Err(Misread::UnknownCommand));
+    assert_eq!(read("arc left"), Err(Misread::UnknownCommand));
+    let wants = Err(Misread::WrongArguments(Text::CountWants));
     assert_eq!(read("arc to left too"), wants);
 }
 
@@ -240,12 +243,12 @@ fn every_gait_takes_every_count_from_1_to_999_and_no_other() {
         for count in (0..=70_000u32).chain([655_360, 655_361, 99_999_999]) {
             let expected = match count {
                 1..=999 => Ok(Command::Order(Order::Gait(robot.id(name), count as u16))),
-                _ => Err(Misread::Wants(Text::CountWants)),
+                _ => Err(Misread::WrongArguments(Text::CountWants)),
             };
             assert_eq!(read(&count.to_string()), expected, "{name} {count}");
         }
         for count in ["-1", "+1", "1.0", "1,", "x", "1 1", "0x1", "1s"] {
-            let wants = Err(Misread::Wants(Text::CountWants));
+            let wants = Err(Misread::WrongArguments(Text::CountWants));
             assert_eq!(read(count), wants, "{name} {count}");
         }
     }
@@ -268,7 +271,7 @@ fn any_other_line_is_an_unknown_command() {
         "dance", "halt", "??", "-", "speed10", "watch0", "pose1", "stop.", "\0", "\u{e9}", "12",
         "helpp", "hel", "statu",
     ] {
-        assert_eq!(read(line), Err(Misread::Unknown), "{line:?}");
+        assert_eq!(read(line), Err(Misread::UnknownCommand), "{line:?}");
     }
 }
 
@@ -276,7 +279,7 @@ fn any_other_line_is_an_unknown_command() {
 fn a_command_without_arguments_takes_none() {
     let lines = "stop now|rest 5|help me|? ?|status all|cal 1|save it|load 1|factory reset";
     for line in lines.split('|') {
-        assert_eq!(read(line), Err(Misread::Surplus), "{line}");
+        assert_eq!(read(line), Err(Misread::UnexpectedArgument), "{line}");
     }
 }
 
@@ -288,7 +291,7 @@ fn speed_and_watch_want_one_whole_number() {
         for (word, wants) in [("speed", Text::SpeedWants), ("watch", Text::WatchWants)] {
             assert_eq!(
                 read(&format!("{word}{argument}")),
-                Err(Misread::Wants(wants))
+                Err(Misread::WrongArguments(wants))
             );
         }
     }
@@ -299,18 +302,18 @@ fn every_speed_and_every_watch_is_read_and_no_other() {
     for number in (0..=70_000).chain([655_350, 99_999_999]) {
         let speed = match number {
             10..=100 => Ok(Command::Order(Order::Speed(number as u8))),
-            _ => Err(Misread::Range(Text::SpeedRange)),
+            _ => Err(Misread::OutOfRange(Text::SpeedRange)),
         };
         assert_eq!(read_number("speed", number), speed);
         let watch = match number {
             0..=10_000 => Ok(Command::Watch(number as u16)),
-            _ => Err(Misread::Range(Text::WatchRange)),
+            _ => Err(Misread::OutOfRange(Text::WatchRange)),
         };
         assert_eq!(read_number("watch", number), watch);
     }
     assert_eq!(
         read("speed 99999999999999999999"),
-        Err(Misread::Range(Text::SpeedRange))
+        Err(Misread::OutOfRange(Text::SpeedRange))
     );
 }
 
@@ -334,12 +337,12 @@ fn numbers_around_sixteen_bits_saturate_instead_of_wrapping() {
         ("70000", u16::MAX),
         ("655360", u16::MAX),
     ] {
-        let read = number_of(digits.as_bytes(), Kind::Whole);
+        let read = number_of(digits.as_bytes(), Syntax::Whole);
         assert_eq!(read, Some((value, false)));
     }
-    assert_eq!(number_of(b"12x", Kind::Whole), None);
+    assert_eq!(number_of(b"12x", Syntax::Whole), None);
     assert_eq!(
-        number_of(b"655.36", Kind::Hundredths),
+        number_of(b"655.36", Syntax::Hundredths),
         Some((u16::MAX, false))
     );
 }

@@ -104,8 +104,8 @@ fn many_or_long_gait_names_fill_several_lines_of_help_and_none_is_too_long() {
             .iter()
             .filter_map(|line| line.strip_prefix("# gaits: "))
             .collect();
-        let told: Vec<&str> = lines.iter().flat_map(|line| line.split('|')).collect();
-        assert_eq!(told, names);
+        let listed: Vec<&str> = lines.iter().flat_map(|line| line.split('|')).collect();
+        assert_eq!(listed, names);
         // A line ends only where the next name has no room: with the prefix and the bar.
         for pair in lines.windows(2) {
             let next = pair[1].split('|').next().expect("a name");
@@ -131,13 +131,13 @@ fn guarded() -> Dialogue {
 #[test]
 fn the_guards_reason_is_printed_once_and_stays_in_status() {
     let mut dialogue = guarded();
-    let told = dialogue.lines();
-    assert_eq!(told.len(), 1);
+    let printed = dialogue.lines();
+    assert_eq!(printed.len(), 1);
     assert!(
-        told[0].starts_with("# held in the last safe pose: "),
-        "{told:?}"
+        printed[0].starts_with("# held in the last safe pose: "),
+        "{printed:?}"
     );
-    assert!(told[0].contains(" margin of ") || told[0].contains(" slider is at "));
+    assert!(printed[0].contains(" margin of ") || printed[0].contains(" slider is at "));
     assert!(dialogue.run(100).is_empty());
     assert_eq!(dialogue.status("guard"), "held");
     assert_eq!(dialogue.status("fault"), "guard");

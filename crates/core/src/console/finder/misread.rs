@@ -66,28 +66,28 @@ impl Text {
     /// Adds a state that each of these bytes leads to, from each of these states.
     fn lead(&mut self, from: &[usize], bytes: impl IntoIterator<Item = u8> + Clone) -> usize {
         let to = self.state();
-        for at in from {
-            self.next[*at].extend(bytes.clone().into_iter().map(|byte| (byte, to)));
+        for state in from {
+            self.next[*state].extend(bytes.clone().into_iter().map(|byte| (byte, to)));
         }
         to
     }
 
     fn word(&mut self, word: &str) -> usize {
-        word.bytes().fold(Self::START, |at, byte| {
-            self.next[at]
+        word.bytes().fold(Self::START, |state, byte| {
+            self.next[state]
                 .get(&byte)
                 .copied()
-                .unwrap_or_else(|| self.lead(&[at], [byte]))
+                .unwrap_or_else(|| self.lead(&[state], [byte]))
         })
     }
 
-    /// Adds up to `most` digits; returns the states in which the number may end.
-    fn digits(&mut self, from: &[usize], most: usize) -> Vec<usize> {
-        let mut at = from.to_vec();
+    /// Adds up to `max_digits` digits; returns the states in which the number may end.
+    fn digits(&mut self, from: &[usize], max_digits: usize) -> Vec<usize> {
+        let mut states = from.to_vec();
         let mut ends = Vec::new();
-        for _ in 0..most {
-            at = vec![self.lead(&at, b'0'..=b'9')];
-            ends.extend(&at);
+        for _ in 0..max_digits {
+            states = vec![self.lead(&states, b'0'..=b'9')];
+            ends.extend(&states);
         }
         ends
     }
@@ -191,18 +191,20 @@ enum Read {
 impl Read {
     fn take(self, byte: u8, text: &Text) -> Self {
         match (byte.to_ascii_lowercase(), self) {
-            (b'\r' | b'\n', Self::Begun(at)) if text.ends.contains(&at) => Self::Ended(at),
+            (b'\r' | b'\n', Self::Begun(state)) if text.ends.contains(&state) => Self::Ended(state),
             (b'\r' | b'\n', Self::Deleted) => Self::Ended(usize::MAX),
             (b'\r' | b'\n', _) => Self::Begun(Text::START),
             (0x80.., _) | (_, Self::Garbled) => Self::Garbled,
             (_, Self::Deleted) => Self::Deleted,
-            (0x08 | 0x7f, Self::Begun(at)) => text.before(at).map_or(Self::Deleted, Self::Begun),
-            (0x08 | 0x7f, Self::Other(at, 1)) => Self::Begun(at),
-            (0x08 | 0x7f, Self::Other(at, more)) => Self::Other(at, more - 1),
-            (_, Self::Other(at, more)) => Self::Other(at, more + 1),
-            (byte, Self::Begun(at)) => text.next[at]
+            (0x08 | 0x7f, Self::Begun(state)) => {
+                text.before(state).map_or(Self::Deleted, Self::Begun)
+            }
+            (0x08 | 0x7f, Self::Other(state, 1)) => Self::Begun(state),
+            (0x08 | 0x7f, Self::Other(state, more)) => Self::Other(state, more - 1),
+            (_, Self::Other(state, more)) => Self::Other(state, more + 1),
+            (byte, Self::Begun(state)) => text.next[state]
                 .get(&byte)
-                .map_or(Self::Other(at, 1), |to| Self::Begun(*to)),
+                .map_or(Self::Other(state, 1), |to| Self::Begun(*to)),
             (_, read) => read,
         }
     }
@@ -220,8 +222,8 @@ impl Bits {
     /// Text without pauses, and silence after its end.
     fn of(text: &Text) -> Self {
         let mut bytes: Vec<(usize, u8, Option<usize>)> = Vec::new();
-        for (at, next) in text.next.iter().enumerate() {
-            bytes.extend(next.iter().map(|(byte, to)| (at, *byte, Some(*to))));
+        for (state, next) in text.next.iter().enumerate() {
+            bytes.extend(next.iter().map(|(byte, to)| (state, *byte, Some(*to))));
         }
         // CR, LF, or both.
         let return_sent = text.next.len();
@@ -239,11 +241,11 @@ impl Bits {
             first: Vec::new(),
         };
         let start = |index: usize| 1 + 10 * index;
-        let followers = |at: usize| {
+        let followers = |state: usize| {
             let follows = bytes
                 .iter()
                 .enumerate()
-                .filter(move |(_, byte)| byte.0 == at);
+                .filter(move |(_, byte)| byte.0 == state);
             follows.map(|(index, _)| start(index)).collect::<Vec<_>>()
         };
         for (index, (_, byte, to)) in bytes.iter().enumerate() {
@@ -294,7 +296,7 @@ type At = (Read, usize);
 
 /// Reads a byte from each of these start edges; returns the states after it.
 fn read_byte(edges: &BTreeSet<At>, bits: &Bits, text: &Text, look: [usize; 10]) -> BTreeSet<At> {
-    let mut now: BTreeSet<(Read, usize, u16)> =
+    let mut current: BTreeSet<(Read, usize, u16)> =
         edges.iter().map(|(read, at)| (*read, *at, 0)).collect();
     let mut time = 0;
     for (bit, at) in look.into_iter().enumerate() {
@@ -304,10 +306,10 @@ fn read_byte(edges: &BTreeSet<At>, bits: &Bits, text: &Text, look: [usize; 10]) 
                 let (read, line) = (*read, *line);
                 bits.next[*at].iter().map(move |next| (read, *next, line))
             };
-            now = now.iter().flat_map(next).collect();
+            current = current.iter().flat_map(next).collect();
         }
         let look = |(read, at, line)| (read, at, line | u16::from(bits.high[at]) << bit);
-        now = now
+        current = current
             .into_iter()
             .map(look)
             .filter(|(.., line)| line & 1 == 0)
@@ -322,15 +324,15 @@ fn read_byte(edges: &BTreeSet<At>, bits: &Bits, text: &Text, look: [usize; 10]) 
         };
         (read.take(byte, text), at)
     };
-    now.into_iter().map(end).collect()
+    current.into_iter().map(end).collect()
 }
 
 /// The next start edges of each state, whatever the sender does.
 fn edges_from(states: BTreeSet<At>, bits: &Bits) -> BTreeSet<At> {
-    let (mut seen, mut edges) = (BTreeSet::new(), BTreeSet::new());
+    let (mut visited, mut edges) = (BTreeSet::new(), BTreeSet::new());
     let mut left: Vec<At> = states.into_iter().collect();
     while let Some((read, at)) = left.pop() {
-        if !seen.insert((read, at)) {
+        if !visited.insert((read, at)) {
             continue;
         }
         for next in &bits.next[at] {
@@ -352,14 +354,14 @@ fn commands_read(sender: Rate, receiver: Rate) -> BTreeSet<usize> {
         Read::Other(Text::START, 1),
         Read::Garbled,
     ];
-    let mut new: BTreeSet<At> = (bits.first.iter())
-        .flat_map(|at| before.map(|read| (read, *at)))
+    let mut to_visit: BTreeSet<At> = (bits.first.iter())
+        .flat_map(|state| before.map(|read| (read, *state)))
         .collect();
-    let (mut known, mut commands) = (new.clone(), BTreeSet::new());
-    while !new.is_empty() {
+    let (mut visited, mut commands) = (to_visit.clone(), BTreeSet::new());
+    while !to_visit.is_empty() {
         let mut ends = BTreeSet::new();
         for look in looks(sender, receiver) {
-            ends.extend(read_byte(&new, &bits, &text, look));
+            ends.extend(read_byte(&to_visit, &bits, &text, look));
         }
         ends.retain(|(read, _)| match read {
             Read::Ended(command) => {
@@ -368,14 +370,14 @@ fn commands_read(sender: Rate, receiver: Rate) -> BTreeSet<usize> {
             }
             _ => true,
         });
-        new = edges_from(ends, &bits);
-        new.retain(|state| known.insert(*state));
+        to_visit = edges_from(ends, &bits);
+        to_visit.retain(|state| visited.insert(*state));
     }
     println!(
         "{} at {}: {} states",
         sender.baud(),
         receiver.baud(),
-        known.len()
+        visited.len()
     );
     commands
 }
@@ -395,9 +397,9 @@ fn no_line_ends_at_a_receiver_that_is_faster_than_the_sender_of_any_bytes() {
     let text = Text::taken();
     for (sender, receiver) in pairs(false) {
         let edges: BTreeSet<At> = (0..bits.high.len())
-            .filter(|at| bits.high[*at])
-            .flat_map(|at| bits.next[at].iter().filter(|next| !bits.high[**next]))
-            .map(|at| (Read::Garbled, *at))
+            .filter(|state| bits.high[*state])
+            .flat_map(|state| bits.next[state].iter().filter(|next| !bits.high[**next]))
+            .map(|state| (Read::Garbled, *state))
             .collect();
         assert!(edges.len() > 128);
         for look in looks(sender, receiver) {

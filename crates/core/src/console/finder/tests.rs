@@ -4,18 +4,18 @@ use super::*;
 use crate::console::line::GARBLED;
 
 /// Gives a finder these bytes and a pause; returns the rate it changes to, if any.
-fn after(finder: &mut Finder, bytes: &[u8]) -> Option<Rate> {
+fn after(finder: &mut RateFinder, bytes: &[u8]) -> Option<Rate> {
     for byte in bytes {
         finder.note_byte(*byte);
         // A frame in which a byte came is no pause.
-        assert_eq!(finder.frame(), None);
+        assert_eq!(finder.end_frame(), None);
     }
-    finder.frame()
+    finder.end_frame()
 }
 
 #[test]
 fn wrong_bytes_lead_through_all_rates_and_back_to_that_of_usb() {
-    let mut finder = Finder::new(Rate::Fastest);
+    let mut finder = RateFinder::new(Rate::Fastest);
     let mut tried = std::vec::Vec::new();
     for _ in 0..5 {
         assert_eq!(after(&mut finder, &[GARBLED; 3]), None);
@@ -26,7 +26,7 @@ fn wrong_bytes_lead_through_all_rates_and_back_to_that_of_usb() {
 
 #[test]
 fn text_of_any_kind_and_length_changes_no_rate() {
-    let mut finder = Finder::new(Rate::Third);
+    let mut finder = RateFinder::new(Rate::Third);
     for _ in 0..1000 {
         let text: std::vec::Vec<u8> = (0..0x80).collect();
         assert_eq!(after(&mut finder, &text), None);
@@ -35,7 +35,7 @@ fn text_of_any_kind_and_length_changes_no_rate() {
 
 #[test]
 fn a_rate_that_has_carried_a_command_survives_31_wrong_bytes() {
-    let mut finder = Finder::new(Rate::Slowest);
+    let mut finder = RateFinder::new(Rate::Slowest);
     for _ in 0..100 {
         assert!(finder.note_command(4));
         assert_eq!(after(&mut finder, &[GARBLED; 31]), None);
@@ -50,7 +50,7 @@ fn a_rate_that_has_carried_a_command_survives_31_wrong_bytes() {
 
 #[test]
 fn noise_without_a_pause_changes_the_rate_once_it_pauses() {
-    let mut finder = Finder::new(Rate::Fastest);
+    let mut finder = RateFinder::new(Rate::Fastest);
     assert_eq!(after(&mut finder, &[GARBLED; 10_000]), Some(Rate::Half));
     assert_eq!(after(&mut finder, &[]), None, "and once only");
 }
@@ -58,7 +58,7 @@ fn noise_without_a_pause_changes_the_rate_once_it_pauses() {
 #[test]
 fn a_guessed_rate_is_not_confirmed_by_a_word_of_three_letters() {
     for rate in Rate::ALL {
-        let mut finder = Finder::new(rate);
+        let mut finder = RateFinder::new(rate);
         let is_of_usb = rate == Rate::Fastest;
         assert_eq!(finder.note_command(3), is_of_usb, "{rate:?}");
         assert!(finder.note_command(4));

@@ -13,18 +13,18 @@ impl Control {
     #[inline(never)]
     pub(super) fn set_servo(&mut self, servo: Servo, setting: Setting) -> Result<(), Refusal> {
         let mut settings = self.settings;
-        let mut set = settings.servo(servo);
+        let mut adjustment = settings.servo(servo);
         match setting {
-            Setting::Trim(trim) => set.trim = trim,
-            Setting::Direct(direct) => set.set_direct(direct),
-            Setting::Scale(scale) => set.set_scale(scale),
+            Setting::Trim(trim) => adjustment.trim = trim,
+            Setting::Direct(direct) => adjustment.set_direct(direct),
+            Setting::Scale(scale) => adjustment.set_scale(scale),
             Setting::Limit(clockwise, counter_clockwise) => {
                 let neutral = self.motion.robot().neutral_of(servo);
-                set.min = neutral.sweep_to(clockwise);
-                set.max = neutral.sweep_to(counter_clockwise);
+                adjustment.min = neutral.sweep_to(clockwise);
+                adjustment.max = neutral.sweep_to(counter_clockwise);
             }
         }
-        settings.set_servo(servo, set);
+        settings.set_servo(servo, adjustment);
         self.replace(&settings)
     }
 
@@ -33,9 +33,9 @@ impl Control {
     pub(super) fn replace(&mut self, settings: &Settings) -> Result<(), Refusal> {
         let mut calibration = *self.motion.calibration();
         for servo in Servo::all() {
-            let changed = servo.of_mut(&mut calibration);
-            *changed = settings.calibration(servo, self.motion.robot());
-            self.check_gaits(servo, changed)?;
+            let new_calibration = servo.of_mut(&mut calibration);
+            *new_calibration = settings.calibration(servo, self.motion.robot());
+            self.check_gaits(servo, new_calibration)?;
         }
         for servo in Servo::all() {
             self.check_poses(servo, servo.of(&calibration))?;
@@ -65,7 +65,7 @@ impl Control {
     }
 
     /// Applies the calibration in the settings to the motion.
-    pub(super) fn calibrate(&mut self) {
+    pub(super) fn apply_calibration(&mut self) {
         for servo in Servo::all() {
             let calibration = self.settings.calibration(servo, self.motion.robot());
             self.motion.calibrate(servo, calibration);

@@ -56,21 +56,21 @@ impl Control {
         if may_write && let Some(writing) = &mut self.rested {
             let pose = Settings::of_pose(self.motion.pose(), self.motion.robot());
             match writing.step(pose.bytes(), memory) {
-                Progress::Going => return None,
+                Progress::InProgress => return None,
                 Progress::Done => {}
                 Progress::Failed => self.safety.notify(Notice::NotKept),
             }
             self.rested = None;
             return None;
         }
-        let done = match &mut self.job {
+        let outcome = match &mut self.job {
             None => return None,
             Some(Job::Load) => {
-                let mut kept = Settings::NONE;
-                match copies::read(self.motion.robot(), memory, &mut kept) {
-                    Outcome::Latest | Outcome::Other => match self.replace(&kept) {
+                let mut saved = Settings::NONE;
+                match copies::read(self.motion.robot(), memory, &mut saved) {
+                    Outcome::Latest | Outcome::OneCopy => match self.replace(&saved) {
                         Err(Refusal::Unfit(_)) => Err(Refusal::NothingSaved),
-                        done => done,
+                        outcome => outcome,
                     },
                     _ => Err(Refusal::NothingSaved),
                 }
@@ -84,12 +84,12 @@ impl Control {
                 }
             },
             Some(Job::Saving(writing)) => match writing.step(self.settings.bytes(), memory) {
-                Progress::Going => return None,
+                Progress::InProgress => return None,
                 Progress::Done => Ok(()),
                 Progress::Failed => Err(Refusal::NotKept),
             },
         };
         self.job = None;
-        Some(done)
+        Some(outcome)
     }
 }

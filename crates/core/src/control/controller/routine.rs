@@ -76,10 +76,10 @@ impl Control {
     fn next_step(&mut self) {
         let robot = *self.motion.robot();
         let gait = robot.gait(self.routine.id);
-        let [_, steps, _, again] = &gait.channels;
+        let [_, steps, _, first_of_round] = &gait.channels;
         let mut number = u16::from(self.routine.step);
         if number >= steps.offset {
-            number = again.offset;
+            number = first_of_round.offset;
             if self.routine.left == 1 {
                 self.routine = Routine::NONE;
                 // The pose of its last rest has to survive a loss of power.

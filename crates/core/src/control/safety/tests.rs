@@ -123,9 +123,9 @@ fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says_and_no_sooner()
             }
             // A line may come just before a frame: this many milliseconds have passed since,
             // in this frame and in the one before.
-            let (least, before) = (20 * frames, 20 * frames - 20);
+            let (min, before) = (20 * frames, 20 * frames - 20);
             assert!(
-                least >= u32::from(deadman) && before < u32::from(deadman),
+                min >= u32::from(deadman) && before < u32::from(deadman),
                 "{frames}"
             );
             assert_eq!(safety.fault(), Some(Fault::Link));

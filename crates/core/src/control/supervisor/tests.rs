@@ -86,20 +86,21 @@ fn the_docs_print_the_table_of_restarts() {
     let mut rows = Vec::new();
     for cause in Cause::ALL {
         for (brown_outs, often) in [(0, "once, twice"), (BROWN_OUTS, "three times in a row")] {
-            let told = |before| first_action(cause, brown_outs, before);
+            let action = |before| first_action(cause, brown_outs, before);
             if brown_outs > 0
-                && Before::ALL.map(told) == Before::ALL.map(|before| first_action(cause, 0, before))
+                && Before::ALL.map(action)
+                    == Before::ALL.map(|before| first_action(cause, 0, before))
             {
                 continue;
             }
             let depends = matches!(cause, Cause::External | Cause::BrownOut);
-            let cells = Before::ALL.map(|before| match told(before).0 {
+            let cells = Before::ALL.map(|before| match action(before).0 {
                 FirstAction::Wake => "wakes, stands",
                 FirstAction::TakeOver => "wakes where it was, stands",
                 FirstAction::Hold => "held",
                 FirstAction::Rest => "rests",
             });
-            let fault = told(Before::Held).1;
+            let fault = action(Before::Held).1;
             rows.push(format!(
                 "| {} | {} | {} | {} |",
                 match cause {

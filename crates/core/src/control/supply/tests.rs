@@ -57,10 +57,10 @@ fn every_voltage_is_printed_with_two_decimals() {
             let rail = 700;
             let reading = Reading { reference, rail };
             let exact = 1024.0 * f64::from(mv) / f64::from(reference) / 10.0;
-            let told = Voltage::of_board(reading, &supplies).hundredths();
+            let printed = Voltage::of_board(reading, &supplies).hundredths();
             // More than 81.91 V is not a supply.
             let expected = exact.floor().min(8191.0);
-            assert_eq!(f64::from(told), expected, "{reference} {mv}");
+            assert_eq!(f64::from(printed), expected, "{reference} {mv}");
             let rail = Voltage::of_rail(reading, &WITH_RAIL).hundredths();
             let exact = 700.0 * 2200.0 / f64::from(reference) / 10.0;
             assert_eq!(f64::from(rail), exact.floor().min(8191.0));
@@ -176,8 +176,8 @@ fn the_worse_of_two_supplies_counts_and_is_reported() {
         let mut supply = Supply::default();
         until_change(&mut supply, reading(board, rail), &supplies);
         assert_eq!(supply.level(), level);
-        let told = f64::from(supply.worst(&supplies).hundredths()) / 100.0;
-        assert!((told - worst).abs() < 0.05, "{told} {worst}");
+        let reported = f64::from(supply.worst(&supplies).hundredths()) / 100.0;
+        assert!((reported - worst).abs() < 0.05, "{reported} {worst}");
     }
 }
 

@@ -16,13 +16,13 @@ impl Changed {
         Self(Sample::odd().content.section())
     }
 
-    fn put(mut self, at: u16, word: u16) -> Self {
-        self.0[usize::from(at)..][..2].copy_from_slice(&word.to_le_bytes());
+    fn put(mut self, offset: u16, word: u16) -> Self {
+        self.0[usize::from(offset)..][..2].copy_from_slice(&word.to_le_bytes());
         self
     }
 
-    fn put_byte(mut self, at: u16, byte: u8) -> Self {
-        self.0[usize::from(at)] = byte;
+    fn put_byte(mut self, offset: u16, byte: u8) -> Self {
+        self.0[usize::from(offset)] = byte;
         self
     }
 
@@ -41,8 +41,8 @@ impl Changed {
 }
 
 /// True if the odd robot's section still opens with this word at that offset.
-fn opens_with(at: u16, word: u16) -> bool {
-    Changed::new().put(at, word).opens()
+fn opens_with(offset: u16, word: u16) -> bool {
+    Changed::new().put(offset, word).opens()
 }
 
 #[test]
@@ -90,25 +90,25 @@ fn a_servo_tolerates_the_pulses_of_its_travel_and_gaits_stay_within_it() {
             Changed(content.section()).opens()
         };
         assert!(opens(&|_| {}));
-        for least in [7_999, 8_000] {
+        for smallest in [7_999, 8_000] {
             // The shortest pulse is that of the clockwise end.
             let at_end = |calibration: &mut Calibration| {
                 let short = calibration.neutral.0 - calibration.pulse(calibration.min);
-                calibration.neutral.0 = least + short;
+                calibration.neutral.0 = smallest + short;
             };
-            assert!(opens(&at_end), "{servo} {least}");
+            assert!(opens(&at_end), "{servo} {smallest}");
         }
         let too_short = |calibration: &mut Calibration| {
             let short = calibration.neutral.0 - calibration.pulse(calibration.min);
             calibration.neutral.0 = 7_998 + short;
         };
         assert!(!opens(&too_short), "{servo}");
-        for (most, bears) in [(40_001, true), (40_002, false)] {
+        for (largest, bears) in [(40_001, true), (40_002, false)] {
             let at_end = |calibration: &mut Calibration| {
                 let long = calibration.pulse(calibration.max) - calibration.neutral.0;
-                calibration.neutral.0 = most - long;
+                calibration.neutral.0 = largest - long;
             };
-            assert_eq!(opens(&at_end), bears, "{servo} {most}");
+            assert_eq!(opens(&at_end), bears, "{servo} {largest}");
         }
         // The neutral angle is within the travel, even if no gait needs it.
         for (travel, has_neutral) in [([0, 900], true), ([1, 900], false), ([-900, -1], false)] {

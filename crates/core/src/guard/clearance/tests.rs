@@ -75,7 +75,7 @@ fn truth(robot: &Sample, pose: &Pose) -> Option<bool> {
     }
     // Limits are rounded up to a step, strokes inwards.
     let step = 1.0 / per_mm(robot.content.sides[0].scale).min(per_mm(robot.content.sides[1].scale));
-    let by = |sign: f64| kinematics::Limits {
+    let scaled_by = |sign: f64| kinematics::Limits {
         type2: robot.measures.limits.type2 + sign * (bounds.most(|end| end.type2) + Q15),
         type1: robot.measures.limits.type1 + sign * (bounds.most(bounds::End::type1) + Q15),
         leg: robot.measures.limits.leg + sign * (DIRECTION + Q15),
@@ -84,9 +84,9 @@ fn truth(robot: &Sample, pose: &Pose) -> Option<bool> {
         stroke_max: robot.measures.limits.stroke_max
             - sign * (bounds.sliders[0].max(bounds.sliders[1]) + step),
     };
-    if by(1.0).allow(&solution) {
+    if scaled_by(1.0).allow(&solution) {
         Some(true)
-    } else if !by(-1.0).allow(&solution) {
+    } else if !scaled_by(-1.0).allow(&solution) {
         Some(false)
     } else {
         None
@@ -95,7 +95,7 @@ fn truth(robot: &Sample, pose: &Pose) -> Option<bool> {
 
 /// Checks that every margin and slider of a pose is within the bounds of its error.
 fn measured(robot: &Sample, pose: &Pose) -> Result<(), TestCaseError> {
-    let got = Clearance::of(robot, pose);
+    let clearance = Clearance::of(robot, pose);
     let Some(truth) = robot.solve(pose) else {
         return Ok(());
     };
@@ -119,22 +119,25 @@ fn measured(robot: &Sample, pose: &Pose) -> Result<(), TestCaseError> {
         } else {
             exact
         };
-        let most = match index {
+        let max_error = match index {
             0..2 => bound.type2,
             2 | 5 => bound.type1_left,
             3 | 4 => bound.type1_right,
             _ => DIRECTION,
         };
-        let off = sine(got.margins[index]) - exact;
-        prop_assert!(off.abs() <= most, "{what} is off by {off} of {most}");
+        let error = sine(clearance.margins[index]) - exact;
+        prop_assert!(
+            error.abs() <= max_error,
+            "{what} is off by {error} of {max_error}"
+        );
     }
     for (index, exact) in [truth.left.d, truth.right.d].into_iter().enumerate() {
-        let length = f64::from(got.sliders_sq[index]).sqrt();
-        let off = length / per_mm(robot.content.sides[index].scale) - exact;
-        let most = bounds.sliders[index];
+        let length = f64::from(clearance.sliders_sq[index]).sqrt();
+        let error = length / per_mm(robot.content.sides[index].scale) - exact;
+        let max_error = bounds.sliders[index];
         prop_assert!(
-            off.abs() <= most,
-            "slider {index} is off by {off} of {most}"
+            error.abs() <= max_error,
+            "slider {index} is off by {error} of {max_error}"
         );
     }
     Ok(())
@@ -230,12 +233,15 @@ fn margins(limits: &Limits) -> [(Margin, Sine); 10] {
 fn a_margin_at_its_limit_is_safe_and_one_step_below_it_is_not() {
     let (robot, clear) = clear();
     for (index, (margin, limit)) in margins(&robot.limits()).into_iter().enumerate() {
-        let mut at = clear;
-        at.margins[index] = limit;
-        assert_eq!(at.hazard(&robot), None, "{margin:?}");
+        let mut at_limit = clear;
+        at_limit.margins[index] = limit;
+        assert_eq!(at_limit.hazard(&robot), None, "{margin:?}");
         let value = Sine(limit.0 - 1);
-        at.margins[index] = value;
-        assert_eq!(at.hazard(&robot), Some(Hazard::Margin { margin, value }));
+        at_limit.margins[index] = value;
+        assert_eq!(
+            at_limit.hazard(&robot),
+            Some(Hazard::Margin { margin, value })
+        );
     }
 }
 
@@ -245,10 +251,10 @@ fn a_slider_at_either_end_of_its_stroke_is_safe_and_one_step_beyond_is_not() {
     for (index, side) in Side::ALL.into_iter().enumerate() {
         let Slider { min, max, .. } = robot.content.sides[index];
         for (length, allowed) in [(min, true), (min - 1, false), (max, true), (max + 1, false)] {
-            let mut at = clear;
-            at.sliders_sq[index] = u32::from(length) * u32::from(length);
+            let mut at_end = clear;
+            at_end.sliders_sq[index] = u32::from(length) * u32::from(length);
             let expected = (!allowed).then_some(Hazard::Stroke { side, length });
-            assert_eq!(at.hazard(&robot), expected);
+            assert_eq!(at_end.hazard(&robot), expected);
         }
     }
 }

@@ -51,17 +51,17 @@ proptest! {
     ) {
         let [left, right] = [left, right].map(Angle);
         let integers = Loop::new(&bars).expect("fits");
-        let got = margins(&integers, left, right);
+        let actual = margins(&integers, left, right);
         let angles = [left, right].map(degrees);
         let bound = bounds::End::of(&bars, &integers, angles);
         let Ok(pose) = bars.forward(angles[0], angles[1]) else {
             // Couplers that almost meet may do so in whole steps.
-            prop_assert!(sine(got.type2).abs() <= bound.type2, "{got:?}");
+            prop_assert!(sine(actual.type2).abs() <= bound.type2, "{actual:?}");
             return Ok(());
         };
-        let off = sine(got.type2).abs() - pose.type2;
-        prop_assert!(off <= bound.type2, "type-2 off by {off}: {bound:?}");
-        if got == EndMargins::default() {
+        let error = sine(actual.type2).abs() - pose.type2;
+        prop_assert!(error <= bound.type2, "type-2 off by {error}: {bound:?}");
+        if actual == EndMargins::default() {
             // All margins are zero, and a refusal says "below 0.1".
             prop_assert!(pose.type2 < 0.1, "nothing is known of {}", pose.type2);
         }
@@ -69,17 +69,17 @@ proptest! {
             // The margin may be too small, or all of them zero.
             return Ok(());
         }
-        prop_assert_ne!(got, EndMargins::default());
-        prop_assert!(-off <= bound.type2, "type-2 off by {off}: {bound:?}");
+        prop_assert_ne!(actual, EndMargins::default());
+        prop_assert!(-error <= bound.type2, "type-2 off by {error}: {bound:?}");
         if pose.gap.x.abs() > bound.along && pose.type2 > bound.type2 {
-            prop_assert_eq!(got.type2.0 > 0, pose.gap.x > 0.0, "{:?} {:?}", got, pose);
+            prop_assert_eq!(actual.type2.0 > 0, pose.gap.x > 0.0, "{:?} {:?}", actual, pose);
         }
-        for (what, got, exact, bound) in [
-            ("left", got.type1_left, pose.type1_left(), bound.type1_left),
-            ("right", got.type1_right, pose.type1_right(), bound.type1_right),
+        for (what, actual, exact, bound) in [
+            ("left", actual.type1_left, pose.type1_left(), bound.type1_left),
+            ("right", actual.type1_right, pose.type1_right(), bound.type1_right),
         ] {
-            let off = sine(got) - exact;
-            prop_assert!(off.abs() <= bound, "type-1, {what}, off by {off} of {bound}");
+            let error = sine(actual) - exact;
+            prop_assert!(error.abs() <= bound, "type-1, {what}, off by {error} of {bound}");
         }
     }
 }
@@ -121,16 +121,16 @@ fn the_largest_errors_that_random_bars_have_found_are_within_their_bounds() {
         };
         let integers = Loop::new(&bars).expect("fits");
         let angles = angles.map(Angle);
-        let got = margins(&integers, angles[0], angles[1]);
+        let actual = margins(&integers, angles[0], angles[1]);
         let angles = angles.map(degrees);
         let bound = bounds::End::of(&bars, &integers, angles);
         let pose = bars.forward(angles[0], angles[1]).expect("closes");
-        let off = (sine(got.type2).abs() - pose.type2).abs();
+        let error = (sine(actual.type2).abs() - pose.type2).abs();
         // The case is still the one that was found.
-        assert!(off > found && pose.type2 > 0.1, "{off}");
+        assert!(error > found && pose.type2 > 0.1, "{error}");
         assert!(
-            off <= bound.type2 && bound.type2 < 2.5 * off,
-            "{off}: {bound:?}"
+            error <= bound.type2 && bound.type2 < 2.5 * error,
+            "{error}: {bound:?}"
         );
     }
 }
@@ -150,9 +150,9 @@ fn roundings_of_the_type_2_margin_are_even_where_few_bits_are_left() {
     for left in (13_000..18_000).step_by(7) {
         let [left, right] = [Angle(left), Angle(0x8000 - left)];
         let pose = bars.forward(degrees(left), degrees(right)).expect("closes");
-        let got = sine(margins(&integers, left, right).type2);
+        let actual = sine(margins(&integers, left, right).type2);
         if pose.gap.x > 0.0 && pose.type2 > 0.1 && pose.type2 < 0.3 {
-            sum += got - pose.type2;
+            sum += actual - pose.type2;
             count += 1.0;
         }
     }

@@ -19,11 +19,11 @@ fn robot() -> Sample {
 fn settings(robot: &Sample, n: i16) -> Settings {
     let mut settings = Settings::of(robot);
     for servo in Servo::ALL {
-        let mut set = settings.servo(servo);
-        set.trim = Sweep(37 * n - 5 * servo as i16);
-        set.min.0 += n;
-        set.max.0 -= 2 * n;
-        settings.set_servo(servo, set);
+        let mut adjustment = settings.servo(servo);
+        adjustment.trim = Sweep(37 * n - 5 * servo as i16);
+        adjustment.min.0 += n;
+        adjustment.max.0 -= 2 * n;
+        settings.set_servo(servo, adjustment);
     }
     settings.set_deadman(1000 + n as u16);
     settings.set_boot(Boot::Gait(robot.id("sway left")), robot);
@@ -33,17 +33,17 @@ fn settings(robot: &Sample, n: i16) -> Settings {
 
 /// Saves settings as the console does.
 fn save_all(settings: &Settings, eeprom: &mut Eeprom) -> Settings {
-    let mut kept = *settings;
-    if let Some(mut writing) = save(&mut kept, eeprom) {
+    let mut saved = *settings;
+    if let Some(mut writing) = save(&mut saved, eeprom) {
         loop {
-            match writing.step(kept.bytes(), eeprom) {
-                Progress::Going => {}
+            match writing.step(saved.bytes(), eeprom) {
+                Progress::InProgress => {}
                 Progress::Done => break,
                 Progress::Failed => panic!("worn"),
             }
         }
     }
-    kept
+    saved
 }
 
 fn loaded(robot: &Sample, eeprom: &Eeprom) -> (Settings, Outcome) {
@@ -69,9 +69,9 @@ fn the_last_of_a_thousand_saves_is_loaded() {
     );
     for n in 0..1000 {
         let new = settings(&robot, n % 70);
-        let kept = save_all(&new, &mut eeprom);
-        assert_eq!(without_turn(&kept), without_turn(&new));
-        assert_eq!(loaded(&robot, &eeprom), (kept, Outcome::Latest), "{n}");
+        let saved = save_all(&new, &mut eeprom);
+        assert_eq!(without_turn(&saved), without_turn(&new));
+        assert_eq!(loaded(&robot, &eeprom), (saved, Outcome::Latest), "{n}");
     }
 }
 
@@ -164,7 +164,7 @@ fn any_flipped_bit_leaves_the_last_settings_the_previous_or_robot_tomls() {
         if settings == last {
             lasts += 1;
         } else {
-            assert_eq!((settings, outcome), (before, Outcome::Other), "bit {bit}");
+            assert_eq!((settings, outcome), (before, Outcome::OneCopy), "bit {bit}");
             befores += 1;
         }
     }
@@ -180,15 +180,15 @@ fn any_flipped_bit_of_the_only_copy_leaves_it_or_robot_tomls() {
     for bit in 0..8 * 1024 {
         let mut bytes = *eeprom.bytes();
         bytes[bit / 8] ^= 1 << (bit % 8);
-        let found = loaded(&robot, &Eeprom::with(bytes));
-        let own = bit / 8 < 45;
+        let outcome = loaded(&robot, &Eeprom::with(bytes));
+        let is_in_content = bit / 8 < 45;
         let other = (64..109).contains(&(bit / 8));
-        let expected = match (own, other) {
+        let expected = match (is_in_content, other) {
             (true, _) => (Settings::of(&robot), Outcome::Damaged),
-            (_, true) => (only, Outcome::Other),
+            (_, true) => (only, Outcome::OneCopy),
             _ => (only, Outcome::Latest),
         };
-        assert_eq!(found, expected, "bit {bit}");
+        assert_eq!(outcome, expected, "bit {bit}");
     }
 }
 
@@ -229,9 +229,9 @@ fn settings_with_which_a_gait_leaves_the_travel_are_not_used() {
     let robot = robot();
     let mut eeprom = Eeprom::blank();
     let mut narrow = settings(&robot, 1);
-    let mut set = narrow.servo(Servo::A3);
-    set.max = Sweep(robot.reach(Servo::A3).max.0 - 1);
-    narrow.set_servo(Servo::A3, set);
+    let mut adjustment = narrow.servo(Servo::A3);
+    adjustment.max = Sweep(robot.reach(Servo::A3).max.0 - 1);
+    narrow.set_servo(Servo::A3, adjustment);
     save_all(&narrow, &mut eeprom);
     let found = loaded(&robot, &eeprom);
     assert_eq!(found, (Settings::of(&robot), Outcome::Unfit));
@@ -241,13 +241,13 @@ fn settings_with_which_a_gait_leaves_the_travel_are_not_used() {
 fn a_boot_gait_is_found_by_its_name_and_a_gait_that_is_gone_is_stand() {
     let robot = robot();
     let mut eeprom = Eeprom::blank();
-    let kept = save_all(&settings(&robot, 1), &mut eeprom);
-    assert_eq!(kept.boot(&robot), Boot::Gait(robot.id("sway left")));
+    let saved = save_all(&settings(&robot, 1), &mut eeprom);
+    assert_eq!(saved.boot(&robot), Boot::Gait(robot.id("sway left")));
     let fewer = robot.clone().with(|content| _ = content.gaits.remove(1));
-    assert_eq!(kept.boot(&fewer), Boot::Gait(fewer.id("sway left")));
+    assert_eq!(saved.boot(&fewer), Boot::Gait(fewer.id("sway left")));
     let fewer = fewer.with(|content| _ = content.gaits.remove(1));
-    assert_eq!(kept.boot(&fewer), Boot::Gait(GaitId::STAND));
-    let mut rests = kept;
+    assert_eq!(saved.boot(&fewer), Boot::Gait(GaitId::STAND));
+    let mut rests = saved;
     rests.set_boot(Boot::Rest, &robot);
     assert_eq!(rests.boot(&robot), Boot::Rest);
 }
@@ -258,22 +258,22 @@ fn a_rest_is_remembered_until_it_is_forgotten_and_only_by_its_own_robot() {
     let mut eeprom = Eeprom::blank();
     assert_eq!(last_rest_pose(&robot, &eeprom), None);
     for sweeps in [[0, 1, -2, 30_000], [-100, 4000, 17, -32_768]] {
-        let there = Pose(sweeps.map(Sweep));
-        let kept = Settings::of_pose(&there, &robot);
+        let rest_pose = Pose(sweeps.map(Sweep));
+        let saved = Settings::of_pose(&rest_pose, &robot);
         let mut writing = RESTED.write();
-        while writing.step(kept.bytes(), &mut eeprom) == Progress::Going {}
-        assert_eq!(last_rest_pose(&robot, &eeprom), Some(there));
+        while writing.step(saved.bytes(), &mut eeprom) == Progress::InProgress {}
+        assert_eq!(last_rest_pose(&robot, &eeprom), Some(rest_pose));
         let other = robot.clone().with(|content| content.servo_hash = 7);
         assert_eq!(last_rest_pose(&other, &eeprom), None);
     }
     let mut writing = RESTED.invalidate();
-    while writing.step(&[0; CONTENT], &mut eeprom) == Progress::Going {}
+    while writing.step(&[0; CONTENT], &mut eeprom) == Progress::InProgress {}
     assert_eq!(last_rest_pose(&robot, &eeprom), None);
-    let outside = |at: &u16| !(128..128 + LENGTH).contains(at);
+    let outside = |address: &u16| !(128..128 + LENGTH).contains(address);
     let touched: Vec<u16> = eeprom
         .log
         .iter()
-        .map(|(at, ..)| *at)
+        .map(|(address, ..)| *address)
         .filter(outside)
         .collect();
     assert!(touched.is_empty());

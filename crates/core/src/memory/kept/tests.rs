@@ -48,15 +48,15 @@ impl Ram {
 }
 
 impl Cells for Ram {
-    fn get(&self, at: usize) -> u8 {
-        self.bytes.borrow()[at]
+    fn get(&self, index: usize) -> u8 {
+        self.bytes.borrow()[index]
     }
 
-    fn set(&self, at: usize, byte: u8) {
+    fn set(&self, index: usize, byte: u8) {
         self.stores.set(self.stores.get() + 1);
         if self.left.get() > 0 {
             self.left.set(self.left.get() - 1);
-            self.bytes.borrow_mut()[at] = byte;
+            self.bytes.borrow_mut()[index] = byte;
         }
     }
 }
@@ -193,10 +193,10 @@ proptest! {
     }
 
     #[test]
-    fn a_bit_that_changes_in_a_stance_is_found(bit in 0..8 * COPY, n in 1i16..100) {
+    fn a_bit_that_changes_in_a_stance_is_found(bit in 0..8 * COPY_CELLS, n in 1i16..100) {
         let ram = Ram::powered();
         store_stance(&ram, &stance(n), n as u8);
-        let copy = COPIES + COPY * usize::from(ram.get(WHOLE) & 1);
+        let copy = COPIES + COPY_CELLS * usize::from(ram.get(VALID_COPY) & 1);
         ram.set(copy + bit / 8, ram.get(copy + bit / 8) ^ (1 << (bit % 8)));
         prop_assert_eq!(begin(&ram, None).before, None);
     }

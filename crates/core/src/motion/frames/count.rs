@@ -13,9 +13,9 @@ use crate::numbers::units::phase16;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Count {
     /// Cycles that are not over yet; 0 if nothing is counted.
-    pub left: u16,
+    pub cycles_left: u16,
     /// The phase covered since the count began, without whole cycles.
-    pub covered: u16,
+    pub phase_covered: u16,
     /// The phase of the last frame.
     pub phase: u16,
 }
@@ -23,8 +23,8 @@ pub(super) struct Count {
 impl Count {
     /// No count: the gait goes on until an order or a fault ends it.
     pub const NONE: Self = Self {
-        left: 0,
-        covered: 0,
+        cycles_left: 0,
+        phase_covered: 0,
         phase: 0,
     };
 }
@@ -37,21 +37,21 @@ impl Motion {
             return;
         };
         let count = &mut self.count;
-        let now = phase16(*phase);
-        let mut gone = now.wrapping_sub(count.phase);
-        count.phase = now;
-        if count.left == 0 || self.next.is_some() {
+        let phase_now = phase16(*phase);
+        let mut advance = phase_now.wrapping_sub(count.phase);
+        count.phase = phase_now;
+        if count.cycles_left == 0 || self.next.is_some() {
             return;
         }
         if gait.increment < 0 {
-            gone = gone.wrapping_neg();
+            advance = advance.wrapping_neg();
         }
-        let (covered, mut is_over) = count.covered.overflowing_add(gone);
-        count.covered = covered;
-        is_over |= count.left == 1 && covered.checked_add(3 * gone).is_none();
+        let (covered, mut is_over) = count.phase_covered.overflowing_add(advance);
+        count.phase_covered = covered;
+        is_over |= count.cycles_left == 1 && covered.checked_add(3 * advance).is_none();
         if is_over {
-            count.left -= 1;
-            if count.left == 0 {
+            count.cycles_left -= 1;
+            if count.cycles_left == 0 {
                 self.next = Some(Target::End);
             }
         }

@@ -3,7 +3,7 @@
 //! A servo does not report its angle. A robot that rested or was held until the reset is where
 //! its saved stance says, so that it need not leap to the neutral pose.
 
-use super::{AWAKE, Motion, WAKE_APART};
+use super::{AWAKE, Motion, WAKE_INTERVAL_FRAMES};
 use crate::memory::restart::Stance;
 use crate::motion::state::{State, Target};
 use crate::numbers::gaits::GaitId;
@@ -53,7 +53,7 @@ impl Motion {
         } else {
             // The next servo to wake waits as long as after any other.
             let awake = stance.awake.min(AWAKE);
-            self.stance.awake = awake - awake % WAKE_APART;
+            self.stance.awake = awake - awake % WAKE_INTERVAL_FRAMES;
         }
         self.settle();
         true

@@ -91,12 +91,12 @@ const THERE: [i16; 4] = [900, -700, 800, -1100];
 const BACK: [i16; 4] = [-600, 500, -800, 700];
 
 /// Checks that two motions are the same for some frames.
-fn assert_same(mut one: Motion, mut other: Motion) {
+fn assert_same(mut first: Motion, mut other: Motion) {
     for _ in 0..100 {
-        assert_eq!(one.tick(), other.tick());
-        assert_eq!(one.activity(), other.activity());
-        assert_eq!(one.phase(), other.phase());
-        assert_eq!(one.hazard(), other.hazard());
+        assert_eq!(first.tick(), other.tick());
+        assert_eq!(first.activity(), other.activity());
+        assert_eq!(first.phase(), other.phase());
+        assert_eq!(first.hazard(), other.hazard());
     }
 }
 

@@ -52,8 +52,8 @@ proptest! {
             (share, 1) => share.powi(4),
             (share, _) => 1.0 - share.powi(4),
         };
-        let (reach, least) = (reach_sq(left, right), least_sq(left, right));
-        let tips_sq = least + (f64::from(reach - least) * share) as u32;
+        let (reach, min) = (reach_sq(left, right), least_sq(left, right));
+        let tips_sq = min + (f64::from(reach - min) * share) as u32;
         let bars = Bars::new(left, right);
         let lean = bars.couplers().at(tips_sq);
         let bound = bounds::LeanError::of(left, right, [f64::from(tips_sq); 2]);
@@ -64,7 +64,7 @@ proptest! {
             prop_assert!(type2(left, right, tips_sq, rise) < KNOWN, "a lean for {rise}");
             return Ok(());
         };
-        let off = [
+        let error = [
             f64::from(lean.rise) / 1024.0 - rise,
             f64::from(lean.skew) / 1024.0 - skew,
         ];
@@ -72,13 +72,13 @@ proptest! {
             // An entry beyond the table's numbers is less than it should be, and below its
             // peak the table keeps the largest rise: nothing there is read as known.
             let read = f64::from(lean.rise) / 1024.0 - bound.rise;
-            prop_assert!(type2(left, right, tips_sq, read) < KNOWN, "rise {off:?}, {bound:?}");
+            prop_assert!(type2(left, right, tips_sq, read) < KNOWN, "rise {error:?}, {bound:?}");
             return Ok(());
         }
-        prop_assert!(off[0].abs() <= bound.rise, "rise {off:?}, {bound:?}");
+        prop_assert!(error[0].abs() <= bound.rise, "rise {error:?}, {bound:?}");
         // The error of the floating-point numbers.
         let tolerance = 1e-9;
-        prop_assert!(skew.is_nan() || off[1].abs() <= bound.skew + tolerance, "skew {off:?}, {bound:?}");
+        prop_assert!(skew.is_nan() || error[1].abs() <= bound.skew + tolerance, "skew {error:?}, {bound:?}");
         // Rounding never changes the sign of a skew.
         prop_assert!(lean.skew == 0 || (lean.skew > 0) == (left > right));
     }
@@ -90,16 +90,16 @@ proptest! {
         beyond in 0u32..1 << 28,
     ) {
         let bars = Bars::new(left, right);
-        let (reach, least) = (reach_sq(left, right), least_sq(left, right));
+        let (reach, min) = (reach_sq(left, right), least_sq(left, right));
         prop_assert_eq!(bars.couplers().at(reach + beyond), None);
-        prop_assert_eq!(bars.couplers().at(least.saturating_sub(beyond)), None);
+        prop_assert_eq!(bars.couplers().at(min.saturating_sub(beyond)), None);
     }
 }
 
 #[test]
 fn entries_are_rounded_to_nearest_but_those_of_a_falling_rise_down() {
     for (left, right) in [(12_800, 12_800), (13_000, 11_000), (9_000, 20_001)] {
-        let (reach, least) = (reach_sq(left, right), least_sq(left, right));
+        let (reach, min) = (reach_sq(left, right), least_sq(left, right));
         let tables = [
             rise(left, right),
             stretched(left, right),
@@ -107,10 +107,10 @@ fn entries_are_rounded_to_nearest_but_those_of_a_falling_rise_down() {
             skew(left, right),
         ];
         let exact = |tips_sq: u64| {
-            let [r, n, s] = [reach.into(), least.into(), tips_sq].map(|sq: u64| sq as f64);
+            let [r, n, s] = [reach.into(), min.into(), tips_sq].map(|sq: u64| sq as f64);
             (1024.0 * ((r - s) * (s - n)).sqrt() / s).min(32_767.0)
         };
-        let within = |tips_sq: u64| (u64::from(least) + 1..u64::from(reach)).contains(&tips_sq);
+        let within = |tips_sq: u64| (u64::from(min) + 1..u64::from(reach)).contains(&tips_sq);
         for index in 0..ENTRIES {
             let [falling, stretched, folded, skew] = tables.map(|table| f64::from(table[index]));
             let tips_sq = argument(reach, index);
@@ -133,7 +133,7 @@ fn entries_are_rounded_to_nearest_but_those_of_a_falling_rise_down() {
                     "stretched {index}"
                 );
             }
-            let tips_sq = u64::from(least) + argument(least, index);
+            let tips_sq = u64::from(min) + argument(min, index);
             if within(tips_sq) {
                 assert!((folded - exact(tips_sq)).abs() <= 0.51, "folded {index}");
             }
@@ -148,10 +148,10 @@ fn couplers_that_differ_by_a_few_steps_are_couplers_too() {
         for tips_sq in [1 << 20, 1 << 24, 1 << 27] {
             let lean = bars.couplers().at(tips_sq).expect("closes");
             let [rise, _] = truth(12_800.0, 12_800.0 + f64::from(more), tips_sq).expect("closes");
-            let off = f64::from(lean.rise) / 1024.0 - rise;
+            let error = f64::from(lean.rise) / 1024.0 - rise;
             assert!(
-                off.abs() <= 0.002 * rise.max(1.0),
-                "{more}: {off} of {rise}"
+                error.abs() <= 0.002 * rise.max(1.0),
+                "{more}: {error} of {rise}"
             );
         }
     }

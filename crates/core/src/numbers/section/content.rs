@@ -91,7 +91,6 @@ pub struct Map {
 
 impl Map {
     /// The map in the form that the guard reads.
-    #[must_use]
     pub fn cells(&self) -> Cells<'_> {
         Cells::new(self.first, Flash::from(self.rows.as_slice()))
     }
@@ -99,7 +98,6 @@ impl Map {
 
 impl Loop {
     /// The bars, and the factors that follow from them.
-    #[must_use]
     pub fn bars(&self) -> Bars {
         let [left, right] = self.cranks;
         Bars::new([self.base, left, right], self.couplers, self.scale)
@@ -120,7 +118,6 @@ impl Loop {
 impl Content {
     /// The size of the section in bytes, which may exceed a board; [`Content::section`] sometimes
     /// needs one more, see [`super::seal()`].
-    #[must_use]
     pub fn length(&self) -> usize {
         let mut curves = Vec::new();
         self.curves(&mut curves);
@@ -138,7 +135,6 @@ impl Content {
     ///
     /// # Panics
     /// If a map has more than 255 rows, or the section more than 65 535 bytes.
-    #[must_use]
     pub fn section(&self) -> Vec<u8> {
         let [head, tail] = &self.ends;
         let mut rest = Vec::new();
@@ -221,16 +217,16 @@ impl Content {
         self.ends.each_ref().map(|end| {
             end.tables().map(|table| {
                 let Some(table) = table else { return 0 };
-                if let Some((_, at)) = written
+                if let Some((_, offset)) = written
                     .iter()
                     .find(|(other, _)| other.bytes() == table.bytes())
                 {
-                    return *at;
+                    return *offset;
                 }
-                let at = REST + rest.len() as u16;
+                let offset = REST + rest.len() as u16;
                 rest.extend(table.bytes());
-                written.push((table, at));
-                at
+                written.push((table, offset));
+                offset
             })
         })
     }

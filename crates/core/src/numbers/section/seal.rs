@@ -89,15 +89,15 @@ const fn before(sum: Checksum, byte: u8) -> Checksum {
 /// True if a length that is one bit off gives the same sum, with erased flash after the
 /// section. No board accepts more than [`SPACE`] bytes.
 fn another_length_passes(length: u16, sums: &[Checksum]) -> bool {
-    let own = sums[usize::from(length) - CHECKED];
+    let own_sum = sums[usize::from(length) - CHECKED];
     let is_one_off = |other: u16| (other ^ length).is_power_of_two();
     let shorter = (CHECKED as u16 + 1..length)
-        .any(|other| is_one_off(other) && sums[usize::from(other) - CHECKED] == own);
-    let mut sum = own;
+        .any(|other| is_one_off(other) && sums[usize::from(other) - CHECKED] == own_sum);
+    let mut sum = own_sum;
     shorter
         || (length..SPACE).any(|last| {
             sum = sum.and(ERASED);
-            is_one_off(last + 1) && sum == own
+            is_one_off(last + 1) && sum == own_sum
         })
 }
 
@@ -109,22 +109,22 @@ mod tests {
 
     /// The same check, byte by byte.
     fn a_beginning_has_the_sum(bytes: &[u8]) -> bool {
-        let own = Checksum::of(bytes);
+        let sum = Checksum::of(bytes);
         (0..bytes.len()).any(|end| {
             let mut cut = bytes.to_vec();
             cut[end..].fill(ERASED);
-            cut != bytes && Checksum::of(&cut) == own
+            cut != bytes && Checksum::of(&cut) == sum
         })
     }
 
     /// The same as [`another_length_passes`], on what the flash would hold.
     fn another_length_has_the_sum(section: &[u8]) -> bool {
-        let own = Checksum::of(&section[CHECKED..]);
+        let sum = Checksum::of(&section[CHECKED..]);
         let mut flash = section.to_vec();
         flash.resize(SPACE.into(), ERASED);
         let lengths = (0..16).map(|bit| section.len() ^ 1 << bit);
         let mut lengths = lengths.filter(|length| (CHECKED + 1..=flash.len()).contains(length));
-        lengths.any(|length| Checksum::of(&flash[CHECKED..length]) == own)
+        lengths.any(|length| Checksum::of(&flash[CHECKED..length]) == sum)
     }
 
     /// Finds the two bytes that lead from one sum to another.

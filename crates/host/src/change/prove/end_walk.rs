@@ -84,11 +84,11 @@ impl<'a> EndWalk<'a> {
                     self.compare(&mut tally, margins, &truth, place);
                     let [sweep, other] = [left.sweep(row), right.sweep(column)];
                     // Their rows are A1 and A3, their columns A2 and A4.
-                    let held = match self.end {
+                    let is_held = match self.end {
                         End::Head => self.cells.contains(sweep, other),
                         End::Tail => self.cells.contains(other, sweep),
                     };
-                    if held {
+                    if is_held {
                         let legs = [left.fixed[row], right.fixed[column]];
                         let accepted = self.accepts(margins)
                             && legs.iter().all(|leg| leg.sin >= self.fixed_leg);
@@ -134,12 +134,12 @@ impl<'a> EndWalk<'a> {
         if fixed != exact {
             // The distance of the deciding value from its limit.
             let by_crossing = crossed / self.crossing_band < clear / self.margin_band;
-            let (by, band) = if by_crossing {
+            let (excess, band) = if by_crossing {
                 (crossed.abs(), self.crossing_band)
             } else {
                 (clear.abs(), self.margin_band)
             };
-            tally.record_difference(by_crossing, by, band, || {
+            tally.record_difference(by_crossing, excess, band, || {
                 format!(
                     "{}: the guard says {}, floating point {}: margins {:.5} {:.5} {:.5}, for {:.5} {:.5} {:.5}, crank tips {:+.4} mm apart across",
                     place(),

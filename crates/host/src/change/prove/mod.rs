@@ -206,14 +206,14 @@ fn print(proof: &Proof, share: PairSample, out: &mut impl Write) -> io::Result<(
             writeln!(out, "{}: {example}", finding.part)?;
         }
     }
-    let what = if share.one_in == 1 {
+    let sample = if share.one_in == 1 {
         "every pair of positions".to_string()
     } else {
         format!("one pair of positions in {}", share.one_in)
     };
     writeln!(
         out,
-        "\n{what}, in steps of 0.0055 deg, of a robot with tables {:08x}",
+        "\n{sample}, in steps of 0.0055 deg, of a robot with tables {:08x}",
         proof.hash
     )?;
     if proof.wrong() == 0 {

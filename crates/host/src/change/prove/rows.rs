@@ -75,10 +75,10 @@ pub fn eight_by_eight(
 }
 
 #[inline]
-pub fn lanes(of: &[Vector], columns: [usize; LANES]) -> Vector<Lanes<LANES>> {
+pub fn lanes(vectors: &[Vector], columns: [usize; LANES]) -> Vector<Lanes<LANES>> {
     Vector::new(
-        Lanes(columns.map(|column| of[column].x)),
-        Lanes(columns.map(|column| of[column].y)),
+        Lanes(columns.map(|column| vectors[column].x)),
+        Lanes(columns.map(|column| vectors[column].y)),
     )
 }
 

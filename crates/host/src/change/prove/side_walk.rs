@@ -44,14 +44,14 @@ impl<'a> SideWalk<'a> {
         cut: usize,
         progress: &(dyn Fn(u64) + Sync),
     ) -> Tally {
-        let turned = |direction: Direction| match self.side {
+        let in_side_frame = |direction: Direction| match self.side {
             Side::Left => direction,
             Side::Right => direction.mirrored(),
         };
         let band = STEPS_BAND / self.steps_per_mm;
         rows_of(front, cut, progress, |row| {
             let mut tally = Tally::default();
-            let crank = turned(front.fixed[row]);
+            let crank = in_side_frame(front.fixed[row]);
             let front_arm = splat(self.side.front_arm(front.exact[row]));
             eight_by_eight(columns(share, row, rear.fixed.len()), |eight, count| {
                 // Positions are in the frame of their end, arms in the chassis'.
@@ -61,7 +61,9 @@ impl<'a> SideWalk<'a> {
                 for lane in 0..count {
                     let column = eight[lane];
                     tally.pairs += 1;
-                    let length_sq = self.fixed.length_sq(&crank, &turned(rear.fixed[column]));
+                    let length_sq = self
+                        .fixed
+                        .length_sq(&crank, &in_side_frame(rear.fixed[column]));
                     let length = f64::from(length_sq).sqrt() / self.steps_per_mm;
                     Tally::raise(&mut tally.travel, (length - d[lane]).abs());
                     let fixed = self.fixed.allows(length_sq);
@@ -93,12 +95,12 @@ impl<'a> SideWalk<'a> {
 /// The positions of one leg.
 pub fn leg(robot: &Robot, guard: &CoreRobot, positions: &Positions) -> Tally {
     let mut tally = Tally::default();
-    let least = guard.limits().leg.0;
+    let min = guard.limits().leg.0;
     for (position, (fixed, exact)) in positions.fixed.iter().zip(&positions.exact).enumerate() {
         tally.pairs += 1;
         Tally::raise(&mut tally.leg, (sine(fixed.sin) - exact.y).abs());
         let clear = exact.y - robot.limits().leg;
-        if (fixed.sin >= least) != (clear >= 0.0) {
+        if (fixed.sin >= min) != (clear >= 0.0) {
             tally.record_difference(false, clear.abs(), MARGIN_BAND, || {
                 format!("at {:.4} deg", positions.degrees[position])
             });

@@ -81,22 +81,22 @@ impl Tally {
 
     /// Counts a pair in a cell; records it if the guard refuses it.
     #[inline(always)]
-    pub fn count_certified(&mut self, accepted: bool, place: impl FnOnce() -> String) {
+    pub fn count_certified(&mut self, is_accepted: bool, place: impl FnOnce() -> String) {
         self.certified += 1;
-        if !accepted {
+        if !is_accepted {
             self.wrong += 1;
             self.example
                 .get_or_insert_with(|| format!("{}: in a cell, but the guard refuses it", place()));
         }
     }
 
-    /// Records a pair that is decided differently: it is `by` from its limit, and
+    /// Records a pair that is decided differently: it is `difference` from its limit, and
     /// `band` is allowed.
     #[cold]
     pub fn record_difference(
         &mut self,
         is_length: bool,
-        by: f64,
+        difference: f64,
         band: f64,
         example: impl FnOnce() -> String,
     ) {
@@ -105,8 +105,8 @@ impl Tally {
         } else {
             &mut self.margin_band
         };
-        Self::raise(widest, by);
-        if by > band {
+        Self::raise(widest, difference);
+        if difference > band {
             self.wrong += 1;
             self.example.get_or_insert_with(example);
         }

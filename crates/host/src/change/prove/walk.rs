@@ -42,15 +42,15 @@ impl<'a> Walk<'a> {
 
     /// Walks one piece by its index, below [`PIECES`].
     pub fn piece(&self, index: usize, progress: &(dyn Fn(u64) + Sync)) -> Tally {
-        let (whole, cut) = (index / CUTS, index % CUTS);
-        let of = |servos: [usize; 2]| servos.map(|servo| self.positions(servo));
-        if let Some(end) = End::ALL.get(whole) {
+        let (part, cut) = (index / CUTS, index % CUTS);
+        let positions_of = |servos: [usize; 2]| servos.map(|servo| self.positions(servo));
+        if let Some(end) = End::ALL.get(part) {
             let walk = EndWalk::new(self.robot, self.guard, &self.maps, *end);
-            walk.walk(of(end.servos()), self.share, cut, progress)
+            walk.walk(positions_of(end.servos()), self.share, cut, progress)
         } else {
-            let side = Side::ALL[whole - End::ALL.len()];
+            let side = Side::ALL[part - End::ALL.len()];
             let walk = SideWalk::new(self.robot, self.guard, &self.maps, side);
-            walk.walk(of(side.servos()), self.share, cut, progress)
+            walk.walk(positions_of(side.servos()), self.share, cut, progress)
         }
     }
 }

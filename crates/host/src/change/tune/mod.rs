@@ -110,8 +110,8 @@ fn tune(robot: &Robot, args: &Args) -> Result<Option<Comparison>, Failure> {
             NoTuning::Rate { .. } => format!("--rate {no}"),
         })
     })?;
-    let found = search_all(&tuning, args)?;
-    Ok(found.map(|found| tuning.compare(&found, args.robots as usize)))
+    let best = search_all(&tuning, args)?;
+    Ok(best.map(|best| tuning.compare(&best, args.robots as usize)))
 }
 
 fn gait_to_surpass<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failure> {
@@ -128,7 +128,7 @@ fn gait_to_surpass<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, 
 
 /// Refuses a name that robot.toml already has or does not allow.
 fn check_name(robot: &Robot, name: &str) -> Result<(), Failure> {
-    let refused = |why: String| Err(Failure::Input(format!("--name {name}: {why}")));
+    let refused = |reason: String| Err(Failure::Input(format!("--name {name}: {reason}")));
     if robot.gait(name).is_some() {
         return refused("robot.toml already has a gait of this name".to_owned());
     }
@@ -146,7 +146,7 @@ fn search_all(tuning: &Tuning, args: &Args) -> Result<Option<BuiltGait>, Failure
     let rounds = args.rounds as usize;
     let kinds = args.spread.own(Kind::ALL.len());
     let bar = bar(kinds * trials(rounds), "{bar:40} {pos}/{len} gaits, {eta}");
-    let one = |index: usize| -> Vec<(f64, Vec<f64>)> {
+    let search_one = |index: usize| -> Vec<(f64, Vec<f64>)> {
         let kind = Kind::ALL[index];
         let mut search = tuning.search(kind);
         for _ in 0..=rounds {
@@ -159,7 +159,7 @@ fn search_all(tuning: &Tuning, args: &Args) -> Result<Option<BuiltGait>, Failure
         }
         search.found()
     };
-    let pieces = args.spread.all(args, Kind::ALL.len(), one)?;
+    let pieces = args.spread.all(args, Kind::ALL.len(), search_one)?;
     bar.finish_and_clear();
     let Some(pieces) = pieces else {
         return Ok(None);
@@ -174,8 +174,8 @@ fn search_all(tuning: &Tuning, args: &Args) -> Result<Option<BuiltGait>, Failure
                 parameters,
             })
     });
-    let found = tuning.best(scored.collect());
-    found.map(Some).ok_or_else(|| {
+    let best = tuning.best(scored.collect());
+    best.map(Some).ok_or_else(|| {
         let rate = tuning.rate();
         Failure::Impossible(format!(
             "no gait was found that robot.toml's limits allow at {rate:.0} deg/s; more --rounds may find one"
@@ -233,7 +233,7 @@ mod tests {
 
     #[test]
     fn a_gait_that_cannot_be_tuned_is_refused_with_the_reason() {
-        for (words, why) in [
+        for (words, reason) in [
             (
                 "--gait run",
                 "no gait `run` to surpass; --gait takes one of walk, trot, crawl",
@@ -259,7 +259,7 @@ mod tests {
             ("--robots 3", "3 is not in 20..=100000"),
         ] {
             let message = run_tune(words).expect_err(words);
-            assert!(message.contains(why), "{words}: {message}");
+            assert!(message.contains(reason), "{words}: {message}");
         }
     }
 }

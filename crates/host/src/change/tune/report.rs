@@ -8,18 +8,18 @@ use lizard_tune::{Comparison, SPREAD};
 ///
 /// # Errors
 /// Fails if writing fails.
-pub fn print(of: &Comparison, out: &mut impl Write) -> io::Result<()> {
+pub fn print(comparison: &Comparison, out: &mut impl Write) -> io::Result<()> {
     let Comparison {
         unit,
         robots,
         faster,
         ..
-    } = of;
-    let (gait, tuned) = (&of.gait.name, &of.tuned.name);
+    } = comparison;
+    let (gait, tuned) = (&comparison.gait.name, &comparison.tuned.name);
     writeln!(
         out,
         "# {unit} with servos of at most {:.1} deg/s; the last three on {robots} random robots and floors\n#",
-        of.rate
+        comparison.rate
     )?;
     let width = [gait, tuned]
         .map(|name| name.len())
@@ -30,7 +30,7 @@ pub fn print(of: &Comparison, out: &mut impl Write) -> io::Result<()> {
         "# {:width$}  cycle, s   deg/s  least margin          ideal   SG-90     5 %    50 %    95 %",
         "gait"
     )?;
-    for row in [&of.gait, &of.tuned] {
+    for row in [&comparison.gait, &comparison.tuned] {
         let [low, middle, high] = row.speeds;
         let (margin, value) = row.margin;
         writeln!(
@@ -40,11 +40,11 @@ pub fn print(of: &Comparison, out: &mut impl Write) -> io::Result<()> {
         )?;
     }
     writeln!(out, "#")?;
-    if of.is_better() {
+    if comparison.is_better() {
         writeln!(
             out,
             "# {tuned} is faster than {gait} on {faster} of {robots}, and by {:.0} % where 5 % are slower.",
-            100.0 * of.gain()
+            100.0 * comparison.gain()
         )?;
     } else {
         writeln!(
@@ -54,5 +54,5 @@ pub fn print(of: &Comparison, out: &mut impl Write) -> io::Result<()> {
         )?;
     }
     writeln!(out, "# At random: {}.\n", SPREAD.replace('\n', "\n# "))?;
-    write!(out, "{}", of.fragment)
+    write!(out, "{}", comparison.fragment)
 }

@@ -41,8 +41,8 @@ pub struct RestoreArgs {
 pub fn backup(args: BackupArgs) -> Result<(), Failure> {
     let finder = args.connect.finder("calibrate backup FILE")?;
     let (mut board, _) = finder.open_and_greet()?;
-    let set = Calibration::ask(&mut board.link).map_err(|error| board.failure(&error))?;
-    files::write(&args.file, file::text(&set).as_bytes())?;
+    let calibration = Calibration::ask(&mut board.link).map_err(|error| board.failure(&error))?;
+    files::write(&args.file, file::text(&calibration).as_bytes())?;
     println!(
         "the calibration of {} is in {}",
         board.name,
@@ -56,10 +56,10 @@ pub fn backup(args: BackupArgs) -> Result<(), Failure> {
 /// # Errors
 /// Fails for a wrong file, without a board, or if the robot refuses.
 pub fn restore(args: RestoreArgs) -> Result<(), Failure> {
-    let set = file::read(&args.file)?;
+    let calibration = file::read(&args.file)?;
     let finder = args.connect.finder("calibrate restore FILE")?;
     let (mut board, _) = finder.open_and_greet()?;
-    send_calibration(&set, &mut board.link)
+    send_calibration(&calibration, &mut board.link)
         .map_err(|error| Failure::Impossible(format!("{}: {error}", args.file.display())))?;
     println!(
         "{} has accepted and saved the calibration of {}",
@@ -89,14 +89,14 @@ pub enum SendError {
 /// # Errors
 /// Fails for a refusal, or a connection that breaks.
 pub fn send_calibration<P: Read + Write>(
-    set: &Calibration,
+    calibration: &Calibration,
     link: &mut Link<P>,
 ) -> Result<(), SendError> {
-    let before = Calibration::ask(link).map_err(SendError::Refused)?;
-    let given = set
+    let calibration_before = Calibration::ask(link).map_err(SendError::Refused)?;
+    let given = calibration
         .apply(link)
         .and_then(|()| Calibration::ask(link))
-        .map(|now| now.is_same(set));
+        .map(|now| now.is_same(calibration));
     let error = match given {
         Ok(true) => match link.command("save") {
             Ok(_) => return Ok(()),
@@ -105,7 +105,7 @@ pub fn send_calibration<P: Read + Write>(
         Ok(false) => SendError::Differs,
         Err(error) => SendError::Refused(error),
     };
-    before.apply(link).map_err(SendError::Between)?;
+    calibration_before.apply(link).map_err(SendError::Between)?;
     Err(error)
 }
 
@@ -119,16 +119,16 @@ mod tests {
         let mut link = robot();
         link.command("trim 3 -4.25").expect("it is accepted");
         link.command("boot walk").expect("it is accepted");
-        let kept = Calibration::ask(&mut link).expect("it answers");
-        let kept = file::parse(&file::text(&kept)).expect("it is a calibration");
+        let saved = Calibration::ask(&mut link).expect("it answers");
+        let saved = file::parse(&file::text(&saved)).expect("it is a calibration");
         link.command("factory").expect("it is accepted");
-        send_calibration(&kept, &mut link).expect("it is taken and saved");
+        send_calibration(&saved, &mut link).expect("it is taken and saved");
         link.command("factory").expect("it is accepted");
         link.command("load").expect("something was saved");
         assert!(
             Calibration::ask(&mut link)
                 .expect("it answers")
-                .is_same(&kept)
+                .is_same(&saved)
         );
     }
 
@@ -137,10 +137,10 @@ mod tests {
         let mut link = robot();
         link.command("trim 3 -4.25").expect("it is accepted");
         let before = Calibration::ask(&mut link).expect("it answers");
-        let mut set = before.clone();
-        set.servo.at(0).trim = 5.0;
-        set.servo.at(2).scale = 99.0;
-        let error = send_calibration(&set, &mut link).expect_err("it is refused");
+        let mut calibration = before.clone();
+        calibration.servo.at(0).trim = 5.0;
+        calibration.servo.at(2).scale = 99.0;
+        let error = send_calibration(&calibration, &mut link).expect_err("it is refused");
         assert_eq!(
             error.to_string(),
             "the robot refuses `scale 3 99.00`: 3 scale must be 5..20; nothing was saved, and the \

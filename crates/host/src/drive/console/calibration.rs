@@ -60,7 +60,6 @@ pub enum Direction {
 
 impl Direction {
     /// The sign as the console writes it.
-    #[must_use]
     pub const fn sign(self) -> char {
         match self {
             Self::Plus => '+',
@@ -80,7 +79,6 @@ impl Direction {
 
 impl Servos {
     /// A1 to A4.
-    #[must_use]
     pub fn all(&self) -> [&Servo; 4] {
         [&self.a1, &self.a2, &self.a3, &self.a4]
     }
@@ -111,9 +109,9 @@ impl Calibration {
 
     /// Reads the lines of `cal`; other `#` lines among them are skipped.
     fn parse(lines: &[String]) -> Option<Self> {
-        let after = |key: &str| lines.iter().find_map(|line| line.strip_prefix(key));
+        let value_of = |key: &str| lines.iter().find_map(|line| line.strip_prefix(key));
         let servo = |name: &str| {
-            let mut words = after(&format!("# {name} "))?.split(' ');
+            let mut words = value_of(&format!("# {name} "))?.split(' ');
             let mut number = |word: &str| -> Option<f64> {
                 (words.next()? == word).then_some(())?;
                 words.next()?.parse().ok()
@@ -137,8 +135,8 @@ impl Calibration {
             })
         };
         Some(Self {
-            boot: after("# boot ").filter(|boot| is_name(boot))?.to_owned(),
-            deadman: after("# deadman ")?.parse().ok()?,
+            boot: value_of("# boot ").filter(|boot| is_name(boot))?.to_owned(),
+            deadman: value_of("# deadman ")?.parse().ok()?,
             servo: Servos {
                 a1: servo("A1")?,
                 a2: servo("A2")?,
@@ -149,7 +147,6 @@ impl Calibration {
     }
 
     /// The console commands that set all values.
-    #[must_use]
     pub fn commands(&self) -> Vec<String> {
         let mut lines = Vec::new();
         for (index, servo) in self.servo.all().into_iter().enumerate() {
@@ -204,10 +201,9 @@ impl Calibration {
     }
 
     /// True if a robot would print the same for both: angles are the same modulo a turn.
-    #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
         let near = |a: f64, b: f64| (a - b).abs() < 0.0049;
-        let turned = |a: f64, b: f64| {
+        let is_same_angle = |a: f64, b: f64| {
             let turn = (a - b).rem_euclid(360.0);
             turn.min(360.0 - turn) < 0.0049
         };
@@ -218,8 +214,8 @@ impl Calibration {
                 near(a.trim, b.trim)
                     && near(a.scale, b.scale)
                     && a.dir == b.dir
-                    && turned(a.limit[0], b.limit[0])
-                    && turned(a.limit[1], b.limit[1])
+                    && is_same_angle(a.limit[0], b.limit[0])
+                    && is_same_angle(a.limit[1], b.limit[1])
             })
     }
 }
@@ -242,10 +238,10 @@ mod tests {
 
     #[test]
     fn the_settings_of_a_new_robot_are_those_of_robot_toml() {
-        let set = factory();
-        assert_eq!(set.boot, "stand");
-        assert_eq!(set.deadman, 0);
-        for (servo, neutral) in set
+        let calibration = factory();
+        assert_eq!(calibration.boot, "stand");
+        assert_eq!(calibration.deadman, 0);
+        for (servo, neutral) in calibration
             .servo
             .all()
             .into_iter()
@@ -255,25 +251,25 @@ mod tests {
                 (servo.trim, servo.dir, servo.scale),
                 (0.0, Direction::Plus, 10.0)
             );
-            let least = (neutral - 90.0_f64).rem_euclid(360.0);
-            assert!((servo.limit[0] - least).abs() < 0.011, "{servo:?}");
+            let min = (neutral - 90.0_f64).rem_euclid(360.0);
+            assert!((servo.limit[0] - min).abs() < 0.011, "{servo:?}");
         }
     }
 
     #[test]
     fn settings_that_were_sent_are_read_back() {
         let mut link = robot();
-        let mut set = factory();
-        set.servo.at(1).trim = -3.25;
-        set.servo.at(2).dir = Direction::Minus;
-        set.servo.at(3).scale = 10.57;
-        set.servo.at(0).limit = [70.0, -150.0];
-        set.boot = "arc left".to_owned();
-        set.deadman = 1500;
-        set.apply(&mut link).expect("it takes them");
-        let now = Calibration::ask(&mut link).expect("it answers");
-        assert!(set.is_same(&now), "{now:?}");
-        assert!(!set.is_same(&factory()));
+        let mut calibration = factory();
+        calibration.servo.at(1).trim = -3.25;
+        calibration.servo.at(2).dir = Direction::Minus;
+        calibration.servo.at(3).scale = 10.57;
+        calibration.servo.at(0).limit = [70.0, -150.0];
+        calibration.boot = "arc left".to_owned();
+        calibration.deadman = 1500;
+        calibration.apply(&mut link).expect("it takes them");
+        let read_back = Calibration::ask(&mut link).expect("it answers");
+        assert!(calibration.is_same(&read_back), "{read_back:?}");
+        assert!(!calibration.is_same(&factory()));
     }
 
     #[test]
@@ -286,36 +282,36 @@ mod tests {
         let [mut scaled, mut trimmed] = [first.clone(), first];
         scaled.servo.at(0).scale = 16.0;
         trimmed.servo.at(0).trim = 15.0;
-        for set in [&trimmed, &scaled, &trimmed] {
-            set.apply(&mut link).expect("it takes them");
-            let now = Calibration::ask(&mut link).expect("it answers");
-            assert!(set.is_same(&now), "{now:?}");
+        for calibration in [&trimmed, &scaled, &trimmed] {
+            calibration.apply(&mut link).expect("it takes them");
+            let read_back = Calibration::ask(&mut link).expect("it answers");
+            assert!(calibration.is_same(&read_back), "{read_back:?}");
         }
     }
 
     #[test]
     fn two_calibrations_that_differ_in_anything_are_not_the_same() {
         let changes: [fn(&mut Calibration); 6] = [
-            |set| set.servo.a1.trim = 0.01,
-            |set| set.servo.a2.limit[1] += 0.01,
-            |set| set.servo.a3.dir = Direction::Minus,
-            |set| set.servo.a4.scale = 10.01,
-            |set| set.boot = "walk".to_owned(),
-            |set| set.deadman = 1,
+            |calibration| calibration.servo.a1.trim = 0.01,
+            |calibration| calibration.servo.a2.limit[1] += 0.01,
+            |calibration| calibration.servo.a3.dir = Direction::Minus,
+            |calibration| calibration.servo.a4.scale = 10.01,
+            |calibration| calibration.boot = "walk".to_owned(),
+            |calibration| calibration.deadman = 1,
         ];
         for (n, change) in changes.into_iter().enumerate() {
-            let mut set = factory();
-            change(&mut set);
-            assert!(!set.is_same(&factory()), "change {n}");
+            let mut calibration = factory();
+            change(&mut calibration);
+            assert!(!calibration.is_same(&factory()), "change {n}");
         }
     }
 
     #[test]
     fn settings_that_do_not_suit_the_gaits_are_refused_with_the_robots_reason() {
         let mut link = robot();
-        let mut set = factory();
-        set.servo.at(1).limit = [40.0, 43.0];
-        let error = set.apply(&mut link).expect_err("too narrow");
+        let mut calibration = factory();
+        calibration.servo.at(1).limit = [40.0, 43.0];
+        let error = calibration.apply(&mut link).expect_err("too narrow");
         let words = error.to_string();
         assert!(
             words.contains("`limit 2 40.00 43.00`: 3 A2 would"),

@@ -31,7 +31,7 @@ pub struct Connect {
 /// The location of the board. It is searched again on each call, because a board that is
 /// plugged in again may get another port.
 #[derive(Debug)]
-pub struct Finder {
+pub struct BoardFinder {
     port: Option<String>,
     command: &'static str,
     #[cfg(all(feature = "simulator", target_os = "linux"))]
@@ -51,12 +51,12 @@ impl Connect {
     ///
     /// # Errors
     /// Fails if there is no firmware for it, or no pseudo terminal.
-    pub fn finder(self, command: &'static str) -> Result<Finder, Failure> {
+    pub fn finder(self, command: &'static str) -> Result<BoardFinder, Failure> {
         if self.sim {
             let robot = RobotFile::at(self.robot);
             return simulated(self.elf.as_deref(), &robot, command);
         }
-        Ok(Finder {
+        Ok(BoardFinder {
             port: self.port,
             command,
             #[cfg(all(feature = "simulator", target_os = "linux"))]
@@ -70,7 +70,7 @@ fn simulated(
     elf: Option<&std::path::Path>,
     file: &RobotFile,
     command: &'static str,
-) -> Result<Finder, Failure> {
+) -> Result<BoardFinder, Failure> {
     use simulated_uno::{Fidelity, Port, Uno};
     let robot = file.load()?;
     let image = crate::shared::firmware::of_robot(elf, file, &robot)?.image;
@@ -83,7 +83,7 @@ fn simulated(
         uno.take_edges();
         uno.take_marks();
     })?;
-    Ok(Finder {
+    Ok(BoardFinder {
         port: Some(board.path().display().to_string()),
         command,
         simulated: Some(board),
@@ -95,14 +95,14 @@ fn simulated(
     _: Option<&std::path::Path>,
     _: &RobotFile,
     _: &'static str,
-) -> Result<Finder, Failure> {
+) -> Result<BoardFinder, Failure> {
     Err(Failure::Input(
         "--sim is missing: this program was built without the simulator, or not for Linux"
             .to_owned(),
     ))
 }
 
-impl Finder {
+impl BoardFinder {
     /// Opens the port, which resets the board. [`Connection::greet`] comes next.
     ///
     /// # Errors
@@ -111,10 +111,10 @@ impl Finder {
         let (port, name) = match &self.port {
             Some(port) => (port.clone(), self.name_of(port)),
             None => {
-                let found = find::choose(&find::usb_ports(), self.command)
+                let port = find::choose(&find::usb_ports(), self.command)
                     .map_err(|error| Failure::Impossible(error.to_string()))?;
                 // The board chooses its name, so it is made safe to print.
-                (found.name.clone(), plain(&found.to_string()))
+                (port.name.clone(), plain(&port.to_string()))
             }
         };
         Ok(Connection {
@@ -135,7 +135,6 @@ impl Finder {
     }
 
     /// True if the board is a simulated one, which ends with this program.
-    #[must_use]
     pub fn is_simulated(&self) -> bool {
         #[cfg(all(feature = "simulator", target_os = "linux"))]
         let simulated = self.simulated.is_some();
@@ -168,7 +167,6 @@ impl Connection {
     }
 
     /// Converts the error to a failure whose message has the port's name.
-    #[must_use]
     pub fn failure(&self, error: &LinkError) -> Failure {
         Failure::Impossible(format!("{}: {error}", self.name))
     }

@@ -57,15 +57,15 @@ impl Deadman {
 
     /// The line of a step, if there is one.
     pub(super) fn line(&mut self, step: Step) -> Option<String> {
-        let own = self.own.unwrap_or(0);
+        let own_ms = self.own.unwrap_or(0);
         let ms = match step {
             Step::Read => return Some("cal".to_owned()),
-            Step::Set if own == 0 => DRIVEN_MS,
-            Step::Set => own.min(DRIVEN_MS),
-            Step::Lend => own,
+            Step::Set if own_ms == 0 => DRIVEN_MS,
+            Step::Set => own_ms.min(DRIVEN_MS),
+            Step::Lend => own_ms,
             Step::Restore => {
                 self.is_set = false;
-                own
+                own_ms
             }
         };
         Some(format!("deadman {ms}"))
@@ -81,7 +81,7 @@ impl Deadman {
         }
         ["# A", "# boot ", "# deadman "]
             .iter()
-            .any(|begin| line.starts_with(begin))
+            .any(|start| line.starts_with(start))
     }
 
     /// Notes a user's line that the robot has accepted.

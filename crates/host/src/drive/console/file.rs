@@ -16,9 +16,8 @@ const HEAD: &str = "\
 ";
 
 /// The text of the file.
-#[must_use]
-pub fn text(set: &Calibration) -> String {
-    let keys = toml::to_string(set).expect("numbers and words are always TOML");
+pub fn text(calibration: &Calibration) -> String {
+    let keys = toml::to_string(calibration).expect("numbers and words are always TOML");
     format!("{HEAD}format = \"{FORMAT}\"\n{keys}")
 }
 
@@ -28,21 +27,21 @@ pub fn text(set: &Calibration) -> String {
 /// Returns a message that names the key or the line.
 pub fn parse(text: &str) -> Result<Calibration, String> {
     let line = |error: &toml::de::Error| {
-        let at = error.span().map_or(0, |span| span.start);
-        text.get(..at)
-            .map_or(1, |before| before.lines().count().max(1))
+        let offset = error.span().map_or(0, |span| span.start);
+        text.get(..offset)
+            .map_or(1, |text_before| text_before.lines().count().max(1))
     };
     let mut table: toml::Table = text.parse().map_err(|error: toml::de::Error| {
-        let at = error.span().map_or(0, |span| span.start);
-        let why = lizard_robot::mistake(text, at, error.message());
-        format!("line {}: {why}", line(&error))
+        let offset = error.span().map_or(0, |span| span.start);
+        let reason = lizard_robot::explain_mistake(text, offset, error.message());
+        format!("line {}: {reason}", line(&error))
     })?;
     match table.remove("format") {
         Some(format) if format.as_str() == Some(FORMAT) => {}
         Some(other) => return Err(format!("format is {other}, not \"{FORMAT}\"")),
         None => return Err(format!("the key format = \"{FORMAT}\" is missing")),
     }
-    let set: Calibration = serde_path_to_error::deserialize(table).map_err(|error| {
+    let calibration: Calibration = serde_path_to_error::deserialize(table).map_err(|error| {
         let key = error.path().to_string();
         let problem = error.inner().message().to_owned();
         match key.as_str() {
@@ -50,10 +49,16 @@ pub fn parse(text: &str) -> Result<Calibration, String> {
             _ => format!("{key}: {problem}"),
         }
     })?;
-    if !is_name(&set.boot) {
-        return Err(format!("boot: `{}` is not the name of a gait", set.boot));
+    if !is_name(&calibration.boot) {
+        return Err(format!(
+            "boot: `{}` is not the name of a gait",
+            calibration.boot
+        ));
     }
-    for (name, servo) in ["A1", "A2", "A3", "A4"].into_iter().zip(set.servo.all()) {
+    for (name, servo) in ["A1", "A2", "A3", "A4"]
+        .into_iter()
+        .zip(calibration.servo.all())
+    {
         let [min, max] = servo.limit;
         let values = [
             ("trim", servo.trim),
@@ -72,7 +77,7 @@ pub fn parse(text: &str) -> Result<Calibration, String> {
             }
         }
     }
-    Ok(set)
+    Ok(calibration)
 }
 
 /// Reads a file.

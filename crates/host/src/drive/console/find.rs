@@ -45,7 +45,6 @@ pub enum FindError {
 
 /// The USB serial ports of this machine. Others, such as those of a mainboard, have
 /// to be named.
-#[must_use]
 pub fn usb_ports() -> Vec<UsbPort> {
     let mut ports: Vec<UsbPort> = serialport::available_ports()
         .unwrap_or_default()
@@ -74,7 +73,6 @@ fn usb(port: SerialPortInfo) -> Option<UsbPort> {
 
 impl UsbPort {
     /// True if the chip has one of Arduino's vendor numbers.
-    #[must_use]
     pub fn is_arduinos(&self) -> bool {
         ARDUINO.contains(&self.vendor)
     }

@@ -13,7 +13,6 @@ fn path() -> Option<PathBuf> {
 }
 
 /// Loads the lines, the oldest first; an empty list if there is no such file.
-#[must_use]
 pub fn load() -> Vec<String> {
     let text = path().and_then(|path| std::fs::read_to_string(path).ok());
     let text = text.unwrap_or_default();

@@ -56,8 +56,8 @@ struct Robot {
 pub fn run(args: Args) -> Result<(), Failure> {
     let finder = args.connect.finder("info")?;
     let (mut board, banner) = finder.open_and_greet()?;
-    let asked = Board::ask(board.name.clone(), banner.as_deref(), &mut board.link);
-    let answers = asked.map_err(|error| board.failure(&error))?;
+    let answer = Board::ask(board.name.clone(), banner.as_deref(), &mut board.link);
+    let answers = answer.map_err(|error| board.failure(&error))?;
     json::print_json_or(args.json, &answers, || answers.text())
 }
 
@@ -69,7 +69,7 @@ impl Board {
     ) -> Result<Self, LinkError> {
         let status = settled(link)?;
         let calibration = match Calibration::ask(link) {
-            Ok(set) => Some(set),
+            Ok(calibration) => Some(calibration),
             Err(LinkError::Refused { .. }) => None,
             Err(error) => return Err(error),
         };
@@ -118,10 +118,15 @@ impl Board {
         if let Some(volts) = self.rail {
             row("servos", format!("{volts:.2} V"));
         }
-        if let Some(set) = &self.calibration {
-            row("boot", set.boot.clone());
-            row("deadman", format!("{} ms", set.deadman));
-            for (servo, name) in set.servo.all().into_iter().zip(["A1", "A2", "A3", "A4"]) {
+        if let Some(calibration) = &self.calibration {
+            row("boot", calibration.boot.clone());
+            row("deadman", format!("{} ms", calibration.deadman));
+            for (servo, name) in calibration
+                .servo
+                .all()
+                .into_iter()
+                .zip(["A1", "A2", "A3", "A4"])
+            {
                 let [from, to] = servo.limit;
                 let sign = servo.dir.sign();
                 row(

@@ -8,10 +8,10 @@ use std::time::{Duration, Instant};
 
 use crossterm::event::{self, Event as TerminalEvent};
 
-use super::connect::{Connect, Connection, Finder};
+use super::connect::{BoardFinder, Connect, Connection};
 use super::history;
 use super::link::LinkError;
-use super::prompt::{Outcome, Prompt};
+use super::prompt::{Prompt, PromptEvent};
 use super::recorder::{self, Event, FORMAT, Recorder};
 use super::screen::Screen;
 use super::session::Session;
@@ -58,7 +58,7 @@ pub fn console(args: ConsoleArgs) -> Result<(), Failure> {
     dialogue(&args.connect.finder("console")?, args.record)
 }
 
-fn dialogue(finder: &Finder, file: Option<PathBuf>) -> Result<(), Failure> {
+fn dialogue(finder: &BoardFinder, file: Option<PathBuf>) -> Result<(), Failure> {
     let (board, banner) = finder.open_and_greet()?;
     let mut dialogue = Dialogue {
         session: Session::new(Instant::now(), true, file.is_some()).with_person(),
@@ -139,18 +139,18 @@ impl Dialogue {
         mut self,
         mut board: Connection,
         first: &str,
-        resets: bool,
+        opening_resets: bool,
     ) -> Result<(), Failure> {
         let mut out = io::stdout();
         writeln!(out, "{first}")?;
-        if resets {
+        if opening_resets {
             // A script needs only the answers, unless it is recorded.
             let is_recorded = self.recorder.is_some();
             self.session = Session::new(Instant::now(), is_recorded, is_recorded);
         }
         let lines = lines_of_stdin();
         let mut ended = false;
-        let mut asks_last = !resets;
+        let mut asks_last = !opening_resets;
         while !(ended && self.session.is_idle()) || asks_last {
             if ended && self.session.is_idle() {
                 asks_last = false;
@@ -164,8 +164,8 @@ impl Dialogue {
                     Err(TryRecvError::Disconnected) => ended = true,
                 }
             }
-            let shown = self.turn(&mut board, |line| writeln!(out, "{line}"));
-            shown.map_err(|error| failure(error, &board))?;
+            let outcome = self.turn(&mut board, |line| writeln!(out, "{line}"));
+            outcome.map_err(|error| failure(error, &board))?;
         }
         if self.session.is_driven() {
             writeln!(
@@ -181,7 +181,7 @@ impl Dialogue {
 
     fn with_terminal(
         mut self,
-        finder: &Finder,
+        finder: &BoardFinder,
         board: Connection,
         first: &str,
     ) -> Result<(), Failure> {
@@ -243,20 +243,20 @@ impl Dialogue {
         }
         while event::poll(Duration::ZERO)? {
             let outcomes = match event::read()? {
-                TerminalEvent::Key(key) => vec![prompt.key(key)],
+                TerminalEvent::Key(key) => vec![prompt.press_key(key)],
                 TerminalEvent::Paste(text) => prompt.paste(&text),
                 _ => vec![],
             };
             for outcome in outcomes {
                 match outcome {
-                    Outcome::Edited => {}
-                    Outcome::Leave => return Ok(true),
-                    Outcome::Stop => {
+                    PromptEvent::Edited => {}
+                    PromptEvent::Leave => return Ok(true),
+                    PromptEvent::Stop => {
                         screen.leave()?;
                         terminal::stop()?;
                         screen.enter()?;
                     }
-                    Outcome::Line(line) => {
+                    PromptEvent::Line(line) => {
                         screen.print(&format!("> {line}"))?;
                         if line.eq_ignore_ascii_case("stop") {
                             self.session.stop(Instant::now());
@@ -273,7 +273,7 @@ impl Dialogue {
     /// Opens the board again, if it is back.
     fn reopen(
         &mut self,
-        finder: &Finder,
+        finder: &BoardFinder,
         screen: &mut Screen,
     ) -> Result<Option<Connection>, Failure> {
         std::thread::sleep(RETRY);

@@ -229,7 +229,7 @@ impl<P: Read + Write> Link<P> {
             Ok(0) => Err(LinkError::Gone),
             Ok(count) => {
                 for byte in &bytes[..count] {
-                    self.take(*byte);
+                    self.take_byte(*byte);
                 }
                 Ok(())
             }
@@ -240,7 +240,7 @@ impl<P: Read + Write> Link<P> {
         }
     }
 
-    fn take(&mut self, byte: u8) {
+    fn take_byte(&mut self, byte: u8) {
         if byte != b'\n' {
             if self.partial.len() < MAX_LINE_BYTES {
                 self.partial.push(byte);
@@ -431,11 +431,11 @@ mod tests {
     fn an_endless_line_is_cut_and_control_characters_are_replaced() {
         let mut link = Script::link(&[]);
         for _ in 0..2000 {
-            link.take(b'a');
+            link.take_byte(b'a');
         }
-        link.take(b'\n');
+        link.take_byte(b'\n');
         for byte in b"\x1b[2Jhi\r\n\r\n\n" {
-            link.take(*byte);
+            link.take_byte(*byte);
         }
         assert_eq!(link.lines[0].len(), MAX_LINE_BYTES);
         assert_eq!(link.lines[1], "\u{fffd}[2Jhi");

@@ -71,12 +71,12 @@ pub fn open(name: &str) -> Result<Box<dyn SerialPort>, PortError> {
     if cfg!(unix) && !Path::new(name).exists() {
         return Err(missing_port(name));
     }
-    let busy = |who: String| PortError::Busy {
+    let busy = |holder: String| PortError::Busy {
         name: name.to_owned(),
-        who,
+        who: holder,
     };
-    if let Some(who) = lasting_holder(name) {
-        return Err(busy(who));
+    if let Some(holder) = lasting_holder(name) {
+        return Err(busy(holder));
     }
     let opened = serialport::new(name, BAUD).timeout(READ_TIMEOUT).open();
     opened.map_err(|error| match error.kind() {
@@ -120,10 +120,10 @@ fn missing_port(name: &str) -> PortError {
 /// The program that holds the port open. One that is about to close it, such as a console
 /// that is quitting or a simulated board that clears its line, gets some time to do so.
 fn lasting_holder(name: &str) -> Option<String> {
-    let begin = Instant::now();
+    let start = Instant::now();
     loop {
         let holder = holder(name)?;
-        if begin.elapsed() > CLOSING_TIME {
+        if start.elapsed() > CLOSING_TIME {
             return Some(holder);
         }
         std::thread::sleep(READ_TIMEOUT);
@@ -134,11 +134,11 @@ fn lasting_holder(name: &str) -> Option<String> {
 /// bytes from each other. Processes of other users are not visible.
 pub(in crate::drive) fn holder(name: &str) -> Option<String> {
     let port = std::fs::canonicalize(name).ok()?;
-    let own = std::process::id().to_string();
+    let own_id = std::process::id().to_string();
     let processes = std::fs::read_dir("/proc").ok()?;
     processes.flatten().find_map(|process| {
         let id = process.file_name().into_string().ok()?;
-        if id == own || !id.bytes().all(|byte| byte.is_ascii_digit()) {
+        if id == own_id || !id.bytes().all(|byte| byte.is_ascii_digit()) {
             return None;
         }
         let mut files = std::fs::read_dir(process.path().join("fd")).ok()?.flatten();

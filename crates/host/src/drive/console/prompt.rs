@@ -9,7 +9,7 @@ const MAX_HISTORY: usize = 500;
 
 /// The effect of a key.
 #[derive(Debug, PartialEq, Eq)]
-pub enum Outcome {
+pub enum PromptEvent {
     /// There is nothing to send.
     Edited,
     /// Send this line.
@@ -33,7 +33,6 @@ pub struct Prompt {
 
 impl Prompt {
     /// An empty line with a history.
-    #[must_use]
     pub fn new(history: Vec<String>) -> Self {
         Self {
             at: history.len(),
@@ -43,36 +42,36 @@ impl Prompt {
     }
 
     /// Handles a key.
-    pub fn key(&mut self, key: KeyEvent) -> Outcome {
+    pub fn press_key(&mut self, key: KeyEvent) -> PromptEvent {
         if key.kind == KeyEventKind::Release {
-            return Outcome::Edited;
+            return PromptEvent::Edited;
         }
         let control = key.modifiers.contains(KeyModifiers::CONTROL);
         match key.code {
-            KeyCode::Char('c') if control => return Outcome::Leave,
+            KeyCode::Char('c') if control => return PromptEvent::Leave,
             KeyCode::Char('d') if control => {
                 if self.text().is_empty() {
-                    return Outcome::Leave;
+                    return PromptEvent::Leave;
                 }
                 self.input.handle(tui_input::InputRequest::DeleteNextChar);
             }
-            KeyCode::Char('z') if control => return Outcome::Stop,
-            KeyCode::Up => self.go(self.at.saturating_sub(1)),
-            KeyCode::Char('p') if control => self.go(self.at.saturating_sub(1)),
-            KeyCode::Down => self.go(self.at + 1),
-            KeyCode::Char('n') if control => self.go(self.at + 1),
-            KeyCode::Esc => return Outcome::Line("stop".to_owned()),
+            KeyCode::Char('z') if control => return PromptEvent::Stop,
+            KeyCode::Up => self.go_to_entry(self.at.saturating_sub(1)),
+            KeyCode::Char('p') if control => self.go_to_entry(self.at.saturating_sub(1)),
+            KeyCode::Down => self.go_to_entry(self.at + 1),
+            KeyCode::Char('n') if control => self.go_to_entry(self.at + 1),
+            KeyCode::Esc => return PromptEvent::Line("stop".to_owned()),
             KeyCode::Enter => return self.enter(),
             KeyCode::Char('j' | 'm') if control => return self.enter(),
             _ => {
                 self.input.handle_event(&Event::Key(key));
             }
         }
-        Outcome::Edited
+        PromptEvent::Edited
     }
 
     /// Handles pasted text; each line end counts as Enter.
-    pub fn paste(&mut self, text: &str) -> Vec<Outcome> {
+    pub fn paste(&mut self, text: &str) -> Vec<PromptEvent> {
         let mut outcomes = Vec::new();
         for c in text.chars() {
             match c {
@@ -87,7 +86,7 @@ impl Prompt {
         outcomes
     }
 
-    fn enter(&mut self) -> Outcome {
+    fn enter(&mut self) -> PromptEvent {
         let line = self.input.value_and_reset().trim().to_owned();
         if !line.is_empty() && self.history.last() != Some(&line) {
             self.history.push(line.clone());
@@ -97,13 +96,13 @@ impl Prompt {
         self.at = self.history.len();
         self.draft.clear();
         match line.as_str() {
-            "" => Outcome::Edited,
-            "quit" | "exit" => Outcome::Leave,
-            _ => Outcome::Line(line),
+            "" => PromptEvent::Edited,
+            "quit" | "exit" => PromptEvent::Leave,
+            _ => PromptEvent::Line(line),
         }
     }
 
-    fn go(&mut self, to: usize) {
+    fn go_to_entry(&mut self, to: usize) {
         let end = self.history.len();
         let to = to.min(end);
         if to == self.at {
@@ -118,21 +117,18 @@ impl Prompt {
     }
 
     /// The text typed so far.
-    #[must_use]
     pub fn text(&self) -> &str {
         self.input.value()
     }
 
     /// The part of it that fits in `width` columns, and the cursor's column in it.
-    #[must_use]
     pub fn view(&self, width: usize) -> (String, usize) {
         let scroll = self.input.visual_scroll(width.max(1));
-        let shown = self.text().chars().skip(scroll).take(width).collect();
-        (shown, self.input.visual_cursor().saturating_sub(scroll))
+        let visible = self.text().chars().skip(scroll).take(width).collect();
+        (visible, self.input.visual_cursor().saturating_sub(scroll))
     }
 
     /// The lines typed so far.
-    #[must_use]
     pub fn history(&self) -> &[String] {
         &self.history
     }
@@ -142,15 +138,15 @@ impl Prompt {
 mod tests {
     use super::*;
 
-    fn press(prompt: &mut Prompt, code: KeyCode) -> Outcome {
-        prompt.key(KeyEvent::new(code, KeyModifiers::NONE))
+    fn press(prompt: &mut Prompt, code: KeyCode) -> PromptEvent {
+        prompt.press_key(KeyEvent::new(code, KeyModifiers::NONE))
     }
 
-    fn control(prompt: &mut Prompt, c: char) -> Outcome {
-        prompt.key(KeyEvent::new(KeyCode::Char(c), KeyModifiers::CONTROL))
+    fn control(prompt: &mut Prompt, c: char) -> PromptEvent {
+        prompt.press_key(KeyEvent::new(KeyCode::Char(c), KeyModifiers::CONTROL))
     }
 
-    fn type_text(prompt: &mut Prompt, text: &str) -> Outcome {
+    fn type_text(prompt: &mut Prompt, text: &str) -> PromptEvent {
         for c in text.chars() {
             press(prompt, KeyCode::Char(c));
         }
@@ -169,7 +165,7 @@ mod tests {
         assert_eq!(prompt.view(20), ("walk ".to_owned(), 4));
         assert_eq!(
             press(&mut prompt, KeyCode::Enter),
-            Outcome::Line("walk".to_owned())
+            PromptEvent::Line("walk".to_owned())
         );
         assert_eq!(prompt.text(), "");
     }
@@ -200,7 +196,7 @@ mod tests {
     fn escape_stops_the_robot_and_leaves_what_is_typed() {
         let mut prompt = Prompt::default();
         prompt.paste("wal");
-        let stop = Outcome::Line("stop".to_owned());
+        let stop = PromptEvent::Line("stop".to_owned());
         assert_eq!(press(&mut prompt, KeyCode::Esc), stop);
         assert_eq!(prompt.text(), "wal");
     }
@@ -208,21 +204,21 @@ mod tests {
     #[test]
     fn control_c_control_d_on_an_empty_line_and_quit_leave() {
         let mut prompt = Prompt::default();
-        assert_eq!(control(&mut prompt, 'c'), Outcome::Leave);
-        assert_eq!(control(&mut prompt, 'd'), Outcome::Leave);
-        assert_eq!(type_text(&mut prompt, "quit"), Outcome::Leave);
+        assert_eq!(control(&mut prompt, 'c'), PromptEvent::Leave);
+        assert_eq!(control(&mut prompt, 'd'), PromptEvent::Leave);
+        assert_eq!(type_text(&mut prompt, "quit"), PromptEvent::Leave);
         press(&mut prompt, KeyCode::Char('x'));
         press(&mut prompt, KeyCode::Home);
-        assert_eq!(control(&mut prompt, 'd'), Outcome::Edited, "it deletes");
+        assert_eq!(control(&mut prompt, 'd'), PromptEvent::Edited, "it deletes");
         assert_eq!(prompt.text(), "");
-        assert_eq!(press(&mut prompt, KeyCode::Enter), Outcome::Edited);
+        assert_eq!(press(&mut prompt, KeyCode::Enter), PromptEvent::Edited);
     }
 
     #[test]
     fn pasted_lines_are_sent_one_by_one() {
         let mut prompt = Prompt::default();
         let outcomes = prompt.paste("walk\r\nspeed 50\nst");
-        let lines = ["walk", "speed 50"].map(|line| Outcome::Line(line.to_owned()));
+        let lines = ["walk", "speed 50"].map(|line| PromptEvent::Line(line.to_owned()));
         assert_eq!(outcomes, lines);
         assert_eq!(prompt.text(), "st");
     }

@@ -84,8 +84,12 @@ pub fn create(path: &Path) -> Result<Recorder<BufWriter<File>>, Failure> {
 
 impl<W: Write> Recorder<W> {
     /// A new session in a file of this name.
-    pub fn new(name: String, out: W, begin: Instant) -> Self {
-        Self { name, out, begin }
+    pub fn new(name: String, out: W, start: Instant) -> Self {
+        Self {
+            name,
+            out,
+            begin: start,
+        }
     }
 
     /// Writes an event. All but poses are in the file at once.
@@ -115,7 +119,6 @@ impl<W: Write> Recorder<W> {
 
 impl Event {
     /// The event of a line that begins with `#`: a pose, or a note.
-    #[must_use]
     pub fn of_note(line: &str) -> Self {
         match pose(line) {
             Some((frame, angles)) => Self::Pose { frame, angles },
@@ -160,9 +163,9 @@ mod tests {
 
     #[test]
     fn each_event_is_a_line_of_json_with_its_time() {
-        let begin = Instant::now();
+        let start = Instant::now();
         let mut out = Vec::new();
-        let mut recorder = Recorder::new("a".to_owned(), &mut out, begin);
+        let mut recorder = Recorder::new("a".to_owned(), &mut out, start);
         let events = [
             Event::Begin {
                 format: FORMAT.to_owned(),
@@ -175,7 +178,7 @@ mod tests {
             Event::Gone,
         ];
         for (n, event) in events.iter().enumerate() {
-            let now = begin + Duration::from_millis(20 * n as u64);
+            let now = start + Duration::from_millis(20 * n as u64);
             recorder
                 .write(now, event.clone())
                 .expect("a vector takes it");

@@ -79,7 +79,7 @@ impl Question {
 
 /// A `stop` without an answer.
 #[derive(Debug)]
-struct PendingStop {
+struct UnansweredStop {
     since: Instant,
     next: Instant,
     times: u32,
@@ -90,7 +90,7 @@ struct PendingStop {
 #[derive(Debug)]
 pub struct Session {
     waiting: Option<(Question, Instant)>,
-    halt: Option<PendingStop>,
+    halt: Option<UnansweredStop>,
     /// True from an answer that was missing until the next one, so that it is said once.
     is_silent: bool,
     /// Until then, answers to repeated `stop` lines may come.
@@ -114,7 +114,6 @@ pub struct Session {
 impl Session {
     /// A new dialogue. `polls_status`: ask for the status; `watches_poses`: ask
     /// for every pose.
-    #[must_use]
     pub fn new(now: Instant, polls_status: bool, watches_poses: bool) -> Self {
         Self {
             waiting: None,
@@ -172,7 +171,6 @@ impl Session {
     }
 
     /// True while `deadman` is set because the robot walks, or is about to.
-    #[must_use]
     pub fn is_driven(&self) -> bool {
         self.deadman.as_ref().is_some_and(|deadman| deadman.is_set)
     }
@@ -182,7 +180,7 @@ impl Session {
         self.queue.clear();
         self.sent += 1;
         self.events.push(Event::Sent("stop".to_owned()));
-        self.halt.get_or_insert(PendingStop {
+        self.halt.get_or_insert(UnansweredStop {
             since: now,
             next: now,
             times: 0,
@@ -233,7 +231,8 @@ impl Session {
                     return Some((Question::Line(line.clone()), line));
                 }
                 Queued::Deadman(step) => {
-                    if let Some(line) = self.deadman.as_mut().and_then(|it| it.line(step)) {
+                    if let Some(line) = self.deadman.as_mut().and_then(|deadman| deadman.line(step))
+                    {
                         return Some((Question::Deadman(line.clone()), line));
                     }
                 }
@@ -273,10 +272,10 @@ impl Session {
 
     /// Handles a line of the robot; returns it if the user should see it.
     pub fn receive(&mut self, line: &str) -> Option<String> {
-        let shown = Some(line.to_owned());
+        let visible = Some(line.to_owned());
         let stands = self.halt.is_some() && cannot_move(line);
         if (line == "ok stop" || stands) && !self.asks_to_stop() {
-            return self.take_stop_answer(line).then_some(shown).flatten();
+            return self.take_stop_answer(line).then_some(visible).flatten();
         }
         if let (Some((Question::Deadman(_), _)), Some(deadman)) = (&self.waiting, &mut self.deadman)
             && deadman.take_answer_line(line)
@@ -291,7 +290,7 @@ impl Session {
                 self.is_watch_due = self.watches_poses;
                 self.deadman = self.deadman.take().map(|_| Deadman::default());
             }
-            return shown.filter(|_| !(self.watches_poses && line.starts_with("# t=")));
+            return visible.filter(|_| !(self.watches_poses && line.starts_with("# t=")));
         }
         self.is_silent = false;
         let status = Status::parse(line);
@@ -321,7 +320,7 @@ impl Session {
             _ => {}
         }
         self.events.push(Event::Answer(line.to_owned()));
-        shown
+        visible
     }
 
     /// True if a script waits for the answer to its own `stop`.
@@ -347,7 +346,7 @@ impl Session {
 
     /// The message about a question that was not answered in time.
     pub fn overdue(&mut self, now: Instant) -> Option<String> {
-        let since = |begin: Instant| now.saturating_duration_since(begin);
+        let since = |start: Instant| now.saturating_duration_since(start);
         if let Some(halt) = &mut self.halt
             && !halt.is_said
             && since(halt.since) >= SILENCE
@@ -356,7 +355,7 @@ impl Session {
             return Some("(no answer: it may go on; stop is sent until it answers)".to_owned());
         }
         let is_late =
-            |(question, begin): &mut (Question, Instant)| since(*begin) >= question.timeout();
+            |(question, start): &mut (Question, Instant)| since(*start) >= question.timeout();
         let (question, _) = self.waiting.take_if(is_late)?;
         Some(match question {
             Question::Line(line) => {
@@ -373,9 +372,9 @@ impl Session {
         })
     }
 
-    fn fail(&mut self, line: String, why: &str) {
+    fn fail(&mut self, line: String, reason: &str) {
         self.failed += 1;
-        self.first_failed.get_or_insert((line, why.to_owned()));
+        self.first_failed.get_or_insert((line, reason.to_owned()));
     }
 
     /// Succeeds if the robot accepted all lines.
@@ -383,23 +382,21 @@ impl Session {
     /// # Errors
     /// Fails if the robot refused a line; the message names the first one.
     pub fn verdict(&self) -> Result<(), Failure> {
-        let Some((line, why)) = &self.first_failed else {
+        let Some((line, reason)) = &self.first_failed else {
             return Ok(());
         };
         Err(Failure::Impossible(format!(
-            "the robot did not accept {} of {} lines, the first `{line}`: {why}",
+            "the robot did not accept {} of {} lines, the first `{line}`: {reason}",
             self.failed, self.sent
         )))
     }
 
     /// True if no answer is outstanding and no line is queued.
-    #[must_use]
     pub fn is_idle(&self) -> bool {
         self.waiting.is_none() && self.halt.is_none() && self.queue.is_empty()
     }
 
     /// The latest status.
-    #[must_use]
     pub fn status(&self) -> Option<&Status> {
         self.status.as_ref()
     }

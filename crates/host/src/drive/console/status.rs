@@ -31,7 +31,6 @@ pub struct Status {
 impl Status {
     /// Reads `ok gait=...`; `None` for any other line. Keys that this program does
     /// not know are skipped.
-    #[must_use]
     pub fn parse(answer: &str) -> Option<Self> {
         let pairs = answer.strip_prefix("ok ")?;
         let value = |key: &str| {
@@ -65,13 +64,11 @@ impl Status {
     }
 
     /// True if the servos turn, or may turn at any moment.
-    #[must_use]
     pub fn is_moving(&self) -> bool {
         !matches!(self.gait.as_str(), "stand" | "pose" | "stop" | "rest")
     }
 
     /// The line at the bottom of the console.
-    #[must_use]
     pub fn line(&self) -> String {
         let mut line = self.gait.clone();
         if let Some([a1, a2, a3, a4]) = self.pose {
@@ -101,7 +98,6 @@ impl Status {
 }
 
 /// Four angles with commas between them.
-#[must_use]
 pub fn angles(text: &str) -> Option<[f64; 4]> {
     let angles: Option<Vec<f64>> = text.split(',').map(|angle| angle.parse().ok()).collect();
     angles?.try_into().ok()

@@ -6,7 +6,6 @@ use std::thread;
 use std::time::Duration;
 
 /// True if the terminal still exists. A terminal that was closed would return keys forever.
-#[must_use]
 pub fn is_there() -> bool {
     io::stdin().is_terminal()
 }
@@ -21,10 +20,10 @@ const CHECKS: u32 = 10;
 /// left half written, since each file is written at once.
 pub fn end_when_gone() {
     let check = || {
-        let mut gone = 0;
-        while gone < CHECKS {
+        let mut checks_gone = 0;
+        while checks_gone < CHECKS {
             thread::sleep(CHECK_INTERVAL);
-            gone = if is_there() { 0 } else { gone + 1 };
+            checks_gone = if is_there() { 0 } else { checks_gone + 1 };
         }
         std::process::exit(0)
     };

@@ -96,8 +96,8 @@ impl Double {
     }
 
     fn is_unplugged(&self) -> bool {
-        let after = self.unplugged_after;
-        after.is_some_and(|after| self.written.len() >= after)
+        let page_limit = self.unplugged_after;
+        page_limit.is_some_and(|page_limit| self.written.len() >= page_limit)
     }
 
     /// Answers a command if it is complete.

@@ -56,9 +56,9 @@ mod tests {
             let path = file.expect("a file").path();
             let robot = Robot::load(&path).expect("it is right");
             let image = image(&robot).expect("it fits");
-            let (begin, section) = image.bytes().split_at(START.into());
-            let (begin, gap) = begin.split_at(code.len());
-            assert!(begin == code, "{}", path.display());
+            let (start, section) = image.bytes().split_at(START.into());
+            let (start, gap) = start.split_at(code.len());
+            assert!(start == code, "{}", path.display());
             assert!(gap.iter().all(|byte| *byte == BLANK));
             assert!(section == robot.section(), "{}", path.display());
             let alone = robot_alone(&robot).expect("it fits");

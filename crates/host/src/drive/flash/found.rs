@@ -23,7 +23,7 @@ pub struct FlashContents {
     /// The program in flash.
     pub program: Program,
     /// The robot after the code, if that is a lizard's.
-    pub robot: TheirRobot,
+    pub robot: RobotInFlash,
     /// True if flash holds the image already.
     pub has_image: bool,
 }
@@ -51,7 +51,7 @@ pub enum Program {
 
 /// The robot after a lizard's code.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum TheirRobot {
+pub enum RobotInFlash {
     /// Nothing was ever written there.
     None,
     /// A valid robot, by its name and hash.
@@ -63,7 +63,6 @@ pub enum TheirRobot {
 impl FlashContents {
     /// Compares `flash`, from address 0 to the boot loader, with an image. For an image that is
     /// a robot alone, only the first page and the robot's pages were read.
-    #[must_use]
     pub fn in_flash(flash: &[u8], image: &Image) -> Self {
         let pages = image.pages();
         let is_there = |page: &&super::image::Page| flash[page.range()] == page.bytes;
@@ -87,9 +86,9 @@ impl FlashContents {
         let has_code = matches!(program, Program::Lizard { .. }) || !image.is_robot_alone();
         let has_image = has_code && pages.iter().all(|page| is_there(&page));
         let robot = match robot_in(flash) {
-            Some(robot) => TheirRobot::Named(label(&robot)),
-            None if is_blank(&flash[ROBOT..ROBOT + PAGE]) => TheirRobot::None,
-            None => TheirRobot::Damaged,
+            Some(robot) => RobotInFlash::Named(label(&robot)),
+            None if is_blank(&flash[ROBOT..ROBOT + PAGE]) => RobotInFlash::None,
+            None => RobotInFlash::Damaged,
         };
         Self {
             program,
@@ -121,9 +120,9 @@ impl fmt::Display for FlashContents {
                 }
                 write!(f, "lizard {major}.{minor}.{patch}")?;
                 match &self.robot {
-                    TheirRobot::None => f.write_str(" without a robot")?,
-                    TheirRobot::Damaged => f.write_str(" with a damaged robot")?,
-                    TheirRobot::Named(name) => write!(f, " robot {name}")?,
+                    RobotInFlash::None => f.write_str(" without a robot")?,
+                    RobotInFlash::Damaged => f.write_str(" with a damaged robot")?,
+                    RobotInFlash::Named(name) => write!(f, " robot {name}")?,
                 }
             }
         }
@@ -142,24 +141,24 @@ mod tests {
     #[test]
     fn flash_is_blank_or_has_half_a_program_or_another_one() {
         let image = Image::new(vec![1, 2, 3]).expect("it fits");
-        let found = |changes: &[(usize, u8)]| {
+        let text = |changes: &[(usize, u8)]| {
             let mut flash = vec![0xff; BOOT];
             for (address, byte) in changes {
                 flash[*address] = *byte;
             }
             FlashContents::in_flash(&flash, &image).to_string()
         };
-        assert_eq!(found(&[]), "the board has no program");
+        assert_eq!(text(&[]), "the board has no program");
         assert_eq!(
-            found(&[(1, 0xcf), (0x1000, 7)]),
+            text(&[(1, 0xcf), (0x1000, 7)]),
             "the board has half a program, which does nothing"
         );
         assert_eq!(
-            found(&[(0, 1), (1, 2), (2, 4)]),
+            text(&[(0, 1), (1, 2), (2, 4)]),
             "the board has another program, of 3 bytes"
         );
         assert_eq!(
-            found(&[(0, 1), (0x1fff, 7)]),
+            text(&[(0, 1), (0x1fff, 7)]),
             "the board has another program, of 8192 bytes"
         );
     }
@@ -172,29 +171,29 @@ mod tests {
         let mut flash = image.bytes().to_vec();
         flash.resize(BOOT, 0xff);
         let lizard = format!("the board has lizard {}", env!("CARGO_PKG_VERSION"));
-        let its = |robot: &Robot| format!("{lizard} robot {}", label(robot.firmware()));
-        let found = |flash: &[u8], image: &Image| FlashContents::in_flash(flash, image).to_string();
-        assert_eq!(found(&flash, &image), format!("{} already", its(&paper)));
-        assert_eq!(found(&flash, &alone), format!("{} already", its(&paper)));
+        let named = |robot: &Robot| format!("{lizard} robot {}", label(robot.firmware()));
+        let text = |flash: &[u8], image: &Image| FlashContents::in_flash(flash, image).to_string();
+        assert_eq!(text(&flash, &image), format!("{} already", named(&paper)));
+        assert_eq!(text(&flash, &alone), format!("{} already", named(&paper)));
         let other = file::image(&large).expect("it fits");
-        assert_eq!(found(&flash, &other), its(&paper));
+        assert_eq!(text(&flash, &other), named(&paper));
         // A sketch, shorter than the firmware, whose robot is still there.
         let mut sketch = flash.clone();
         sketch[..1000].fill(0x95);
-        assert_eq!(found(&sketch, &alone), "the board has another program");
+        assert_eq!(text(&sketch, &alone), "the board has another program");
         let mut damaged = flash.clone();
         damaged[ROBOT + 100] ^= 1;
         assert_eq!(
-            found(&damaged, &image),
+            text(&damaged, &image),
             format!("{lizard} with a damaged robot")
         );
         damaged[ROBOT..].fill(0xff);
-        assert_eq!(found(&damaged, &image), format!("{lizard} without a robot"));
+        assert_eq!(text(&damaged, &image), format!("{lizard} without a robot"));
         let mut build = flash;
         build[0x1000] ^= 1;
         assert_eq!(
-            found(&build, &image),
-            its(&paper).replace("has ", "has another build of ")
+            text(&build, &image),
+            named(&paper).replace("has ", "has another build of ")
         );
     }
 }

@@ -122,7 +122,6 @@ impl Image {
     }
 
     /// True if the image has no code.
-    #[must_use]
     pub fn is_robot_alone(&self) -> bool {
         self.start == ROBOT
     }
@@ -169,7 +168,6 @@ impl Image {
     ///
     /// # Panics
     /// Never: all addresses have 16 bits, and lines are short.
-    #[must_use]
     pub fn to_hex(&self) -> String {
         let mut records = Vec::new();
         for (index, line) in self.bytes.chunks(LINE_BYTES).enumerate() {
@@ -184,19 +182,16 @@ impl Image {
     }
 
     /// The image's bytes as flash holds them, from first to last.
-    #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 
     /// The address after the last byte.
-    #[must_use]
     pub fn end(&self) -> usize {
         self.start + self.bytes.len()
     }
 
     /// The image's pages in the order of their addresses.
-    #[must_use]
     pub fn pages(&self) -> Vec<Page> {
         let page = |(index, part): (usize, &[u8])| {
             let mut bytes = [BLANK; PAGE];
@@ -210,7 +205,6 @@ impl Image {
 
 impl Page {
     /// The addresses in flash that the image occupies.
-    #[must_use]
     pub fn range(&self) -> Range<usize> {
         self.address..self.address + PAGE
     }
@@ -223,16 +217,16 @@ fn put(
     line: usize,
 ) -> Result<(), ImageError> {
     let end = start + bytes.len();
-    let Some(there) = flash.get_mut(start..end) else {
+    let Some(target) = flash.get_mut(start..end) else {
         let address = end - 1;
         return Err(ImageError::BootLoader { line, address });
     };
-    for (index, (there, byte)) in there.iter_mut().zip(bytes).enumerate() {
-        if there.is_some_and(|there| there != *byte) {
+    for (index, (target, byte)) in target.iter_mut().zip(bytes).enumerate() {
+        if target.is_some_and(|target| target != *byte) {
             let address = start + index;
             return Err(ImageError::Twice { line, address });
         }
-        *there = Some(*byte);
+        *target = Some(*byte);
     }
     Ok(())
 }

@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 pub use chip::Chip;
-pub use found::{FlashContents, Program, TheirRobot};
+pub use found::{FlashContents, Program, RobotInFlash};
 
 use crate::drive::console::find::{self, FindError, UsbPort};
 use crate::drive::console::link::{self, Link};
@@ -73,8 +73,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let (port, name) = match args.port {
         Some(port) => (port.clone(), port),
         None => {
-            let found = choose(&ports)?;
-            (found.name.clone(), found.to_string())
+            let port = choose(&ports)?;
+            (port.name.clone(), port.to_string())
         }
     };
     let target = Target {
@@ -83,10 +83,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
     };
     let board = SerialBoard::open(&port)?;
     eprintln!("lizard: calling the boot loader of the board at {name}");
-    let at = |message: String| Failure::Impossible(format!("{name}: {message}"));
-    let board = write(board, &image, target).map_err(|error| at(error.to_string()))?;
+    let failure_of_port = |message: String| Failure::Impossible(format!("{name}: {message}"));
+    let board = write(board, &image, target).map_err(|error| failure_of_port(error.to_string()))?;
     let banner = greet(board).map_err(|error| {
-        at(format!(
+        failure_of_port(format!(
             "the flash is written and verified, but the firmware does not answer: {error}"
         ))
     })?;
@@ -121,7 +121,7 @@ fn may_be_nano(ports: &[UsbPort], name: &str) -> bool {
 fn write(board: SerialBoard, image: &Image, target: Target) -> Result<SerialBoard, Failure> {
     let bar = bar(0, "{msg} {wide_bar} {percent} %");
     let mut loader = Loader::new(board, Timeouts::default());
-    let begin = Instant::now();
+    let start = Instant::now();
     let done = upload::upload(&mut loader, image, target, &mut |event| match event {
         Event::Found(found) => bar.suspend(|| println(&found.to_string())),
         Event::Again {
@@ -145,7 +145,7 @@ fn write(board: SerialBoard, image: &Image, target: Target) -> Result<SerialBoar
         }
     });
     bar.finish_and_clear();
-    println(&summary(done?, begin.elapsed()));
+    println(&summary(done?, start.elapsed()));
     let mut board = loader.into_board();
     board.set_baud(BAUD)?;
     Ok(board)
@@ -197,13 +197,13 @@ mod tests {
 
     #[test]
     fn only_a_board_without_arduinos_usb_chip_may_be_a_nano() {
-        let at = |name: &str, vendor| UsbPort {
+        let port = |name: &str, vendor| UsbPort {
             name: name.to_owned(),
             vendor,
             product_id: 0x43,
             product: None,
         };
-        let ports = [at("/dev/ttyACM7", 0x2341), at("/dev/ttyUSB7", 0x1a86)];
+        let ports = [port("/dev/ttyACM7", 0x2341), port("/dev/ttyUSB7", 0x1a86)];
         assert!(!may_be_nano(&ports, "/dev/ttyACM7"));
         assert!(may_be_nano(&ports, "/dev/ttyUSB7"));
         assert!(!may_be_nano(&ports, "/dev/pts/7"), "no USB port");

@@ -45,7 +45,6 @@ pub enum Kind {
 
 impl Kind {
     /// The speed of the serial line.
-    #[must_use]
     pub fn baud(self) -> u32 {
         match self {
             Self::Optiboot => 115_200,
@@ -54,7 +53,6 @@ impl Kind {
     }
 
     /// The address of the loader's first byte in flash.
-    #[must_use]
     pub fn start(self) -> usize {
         match self {
             Self::Optiboot => BOOT,
@@ -117,7 +115,6 @@ pub enum LoaderError {
 
 impl LoaderError {
     /// True if another reset may help.
-    #[must_use]
     pub fn may_pass(&self) -> bool {
         matches!(self, Self::Silent | Self::OutOfStep)
     }

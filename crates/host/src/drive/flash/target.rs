@@ -44,7 +44,6 @@ pub struct TooLong {
 
 impl Target {
     /// The boot loaders that the board may have, in the order in which they are called.
-    #[must_use]
     pub fn loaders(self) -> &'static [Kind] {
         match self.model {
             Some(Model::Uno) => &[Kind::Optiboot],

@@ -34,14 +34,14 @@ impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
     }
 
     /// A joint this many mm large.
-    pub fn joint(&self, at: Vector, mm: f64) -> Circle {
-        self.disc(at, mm, "white")
+    pub fn joint(&self, position: Vector, mm: f64) -> Circle {
+        self.disc(position, mm, "white")
     }
 
     /// A disc with an edge.
-    pub fn disc(&self, at: Vector, mm: f64, fill: &str) -> Circle {
+    pub fn disc(&self, position: Vector, mm: f64, fill: &str) -> Circle {
         edged(
-            circle((self.at)(at), mm * self.scale, fill),
+            circle((self.at)(position), mm * self.scale, fill),
             DARK,
             0.6 * self.scale,
         )
@@ -76,14 +76,14 @@ impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
     }
 
     /// The plate and the servos in it.
-    pub fn plate(&self, mut group: Group, plate: &Plate) -> Group {
+    pub fn draw_plate(&self, mut group: Group, plate: &Plate) -> Group {
         let middle = Vector::default();
-        let grown = |by: f64| plate.half + Vector::new(by, by);
-        for (by, colour) in [(RIM, EDGE), (0.0, FRAME)] {
+        let grown = |margin: f64| plate.half + Vector::new(margin, margin);
+        for (margin, colour) in [(RIM, EDGE), (0.0, FRAME)] {
             for [from, to] in plate.arms.as_flattened() {
-                group = group.add(self.bar(*from, *to, colour, 2.0 * (plate.arm + by)));
+                group = group.add(self.bar(*from, *to, colour, 2.0 * (plate.arm + margin)));
             }
-            group = group.add(self.rectangle(middle, grown(by), plate.corner + by, colour));
+            group = group.add(self.rectangle(middle, grown(margin), plate.corner + margin, colour));
         }
         for (case, colour) in plate.cases.into_iter().zip(SERVO) {
             let case = self.rectangle(case, plate.case * 0.5, 1.3, colour);

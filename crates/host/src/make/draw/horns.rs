@@ -34,7 +34,6 @@ const BODY: (f64, f64) = (12.2, 22.8);
 const SHAFT: f64 = 6.0;
 
 /// The cranks of a robot at their neutral angles, as SVG text.
-#[must_use]
 pub fn horns(robot: &Robot) -> String {
     let mut group = chassis(robot);
     for servo in 0..4 {
@@ -66,8 +65,8 @@ fn scale(robot: &Robot) -> f64 {
     (ROOM.0 / (2.0 * x)).min(ROOM.1 / (2.0 * y))
 }
 
-fn on_page(at: Vector, scale: f64) -> (f64, f64) {
-    (MIDDLE.0 + scale * at.x, MIDDLE.1 - scale * at.y)
+fn on_page(position: Vector, scale: f64) -> (f64, f64) {
+    (MIDDLE.0 + scale * position.x, MIDDLE.1 - scale * position.y)
 }
 
 /// The point at a distance from another in some direction, on the page.
@@ -213,8 +212,8 @@ fn example(robot: &Robot) -> Group {
         // A tooth's width on the other side, where nothing else is.
         .add(tooth(placed - 9.0 * TOOTH));
     for (index, words) in lines.iter().enumerate() {
-        let at = (LEFT, SPLINE.1 + 102.0 + 19.0 * index as f64);
-        let mut line = text_start(words, at, 14.0);
+        let position = (LEFT, SPLINE.1 + 102.0 + 19.0 * index as f64);
+        let mut line = text_start(words, position, 14.0);
         if words.starts_with("trim") {
             line = line.set("font-weight", "bold");
         }
@@ -229,8 +228,8 @@ fn spline(degrees: f64) -> Polygon {
         .map(|corner| {
             // Two corners at a tooth's tip, two between teeth.
             let radius = if corner % 4 < 2 { RADII.1 } else { RADII.0 };
-            let turned = degrees + TOOTH / 4.0 * (corner as f64 - 0.5);
-            let (x, y) = point_toward(SPLINE, turned, radius);
+            let degrees_of_corner = degrees + TOOTH / 4.0 * (corner as f64 - 0.5);
+            let (x, y) = point_toward(SPLINE, degrees_of_corner, radius);
             format!("{},{}", fixed(x), fixed(y))
         })
         .collect();
@@ -280,10 +279,10 @@ fn rose() -> Group {
         (270.0, "270°", Anchor::Middle, (0.0, 19.0)),
     ] {
         let end = point_toward(middle, degrees, 52.0);
-        let at = (end.0 + off.0, end.1 + off.1);
+        let position = (end.0 + off.0, end.1 + off.1);
         group = group
             .add(line(middle, end, GREY, 1.2))
-            .add(text(words, at, 14.0, DARK, anchor));
+            .add(text(words, position, 14.0, DARK, anchor));
     }
     group
 }

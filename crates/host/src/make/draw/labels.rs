@@ -20,10 +20,13 @@ impl View<'_> {
             let shaft = self.shafts()[servo];
             let left = matches!(servo, 0 | 3);
             let side = if left { -1.0 } else { 1.0 };
-            let up = shaft.y.signum();
+            let sign = shaft.y.signum();
             let anchor = if left { Anchor::End } else { Anchor::Start };
-            let (x, y) = (SIZE.0 / 2.0 + side * NAMES_AT, SIZE.1 / 2.0 - up * NAMES_AT);
-            let toward = self.page(shaft + Vector::new(side * 3.5, up * 2.0));
+            let (x, y) = (
+                SIZE.0 / 2.0 + side * NAMES_AT,
+                SIZE.1 / 2.0 - sign * NAMES_AT,
+            );
+            let toward = self.page(shaft + Vector::new(side * 3.5, sign * 2.0));
             let name = format!(
                 "{} · {}",
                 NAMES[servo],
@@ -31,24 +34,26 @@ impl View<'_> {
             );
             let symbol = ["θ1", "θ4", "θ8", "θ5"][servo];
             let angle = format!("{symbol} = {:.2}°", angles[servo].rem_euclid(360.0));
-            let begin = (x + 6.0 * -side, y - 4.0);
+            let start = (x + 6.0 * -side, y - 4.0);
             group = group
-                .add(line(begin, toward, SERVO[servo], 1.2).set("stroke-dasharray", "3 4"))
+                .add(line(start, toward, SERVO[servo], 1.2).set("stroke-dasharray", "3 4"))
                 .add(
                     text(&name, (x, y - 8.0), 20.0, SERVO[servo], anchor)
                         .set("font-weight", "bold"),
                 )
                 .add(text(&angle, (x, y + 16.0), 18.0, DARK, anchor));
         }
-        group = self.part_labels(group);
-        compass(group, self.scale)
+        group = self.draw_part_labels(group);
+        draw_compass(group, self.scale)
     }
 
-    fn part_labels(&self, mut group: Group) -> Group {
+    fn draw_part_labels(&self, mut group: Group) -> Group {
         let solution = self.solution;
         let head = solution.head_point();
         let tail = solution.tail_point();
-        let coordinates = |name: &str, at: Joint| format!("{name} ({:.1}, {:.1}) mm", at.x, at.y);
+        let coordinates = |name: &str, position: Joint| {
+            format!("{name} ({:.1}, {:.1}) mm", position.x, position.y)
+        };
         let (x, y) = self.page(head + Vector::new(0.0, SKIN_BEYOND * self.grown() + NAME_BEYOND));
         group = group.add(text_middle(&coordinates("head", head), (x, y), 18.0));
         let (x, y) = self.page(tail + Vector::new(0.0, -26.0 * self.grown() - 8.0));
@@ -91,7 +96,7 @@ impl View<'_> {
 }
 
 /// The axes of the chassis frame and a scale.
-fn compass(mut group: Group, scale: f64) -> Group {
+fn draw_compass(mut group: Group, scale: f64) -> Group {
     let origin = (50.0, SIZE.1 - 50.0);
     for (degrees, name) in [(0.0, "x, right"), (90.0, "y, forward")] {
         let (sin, cos) = sin_cos(degrees);
@@ -112,12 +117,12 @@ fn compass(mut group: Group, scale: f64) -> Group {
             .add(text_start(name, at, 16.0));
     }
     let end = (SIZE.0 - 60.0, SIZE.1 - 48.0);
-    let begin = (end.0 - 50.0 * scale, end.1);
-    for at in [begin, end] {
+    let start = (end.0 - 50.0 * scale, end.1);
+    for at in [start, end] {
         group = group.add(line((at.0, at.1 - 7.0), (at.0, at.1 + 7.0), DARK, 2.0));
     }
-    let middle = ((begin.0 + end.0) / 2.0, end.1 - 12.0);
+    let middle = ((start.0 + end.0) / 2.0, end.1 - 12.0);
     group
-        .add(line(begin, end, DARK, 2.0))
+        .add(line(start, end, DARK, 2.0))
         .add(text_middle("50 mm", middle, 16.0))
 }

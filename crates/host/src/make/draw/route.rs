@@ -16,14 +16,14 @@ pub fn between_rows(from: &[(f64, f64)], to: &[(f64, f64)], height: f64) -> Vec<
     let goes_right = |wire: usize| to[wire].0 > from[wire].0;
     (0..from.len())
         .map(|wire| {
-            let ahead = if goes_right(wire) {
+            let wires_ahead = if goes_right(wire) {
                 (wire + 1..from.len())
                     .filter(|other| goes_right(*other))
                     .count()
             } else {
                 (0..wire).filter(|other| !goes_right(*other)).count()
             };
-            let level = height + GAP * ahead as f64;
+            let level = height + GAP * wires_ahead as f64;
             vec![
                 from[wire],
                 (from[wire].0, level),

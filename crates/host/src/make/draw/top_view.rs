@@ -26,23 +26,22 @@ const STEEL: &str = "#555555";
 pub(super) type Joint = Vector;
 
 /// The robot at a solved pose, as SVG text; with names and measures if
-/// `labels`.
-#[must_use]
-pub fn top_view(robot: &Robot, solution: &Solution, labels: bool) -> String {
+/// `has_labels`.
+pub fn top_view(robot: &Robot, solution: &Solution, has_labels: bool) -> String {
     let view = View::new(robot, solution);
-    let mut group = view.skin(Group::new());
+    let mut group = view.draw_skin(Group::new());
     let (legs, sheet) = (view.legs(), view.sheet());
     group = sheet.feet(group, &legs, [DARK; 4]);
-    group = sheet.plate(group, &robot.plate());
+    group = sheet.draw_plate(group, &robot.plate());
     group = sheet.cranks(group, view.shafts(), &legs);
     for side in Side::ALL {
-        group = view.slider(group, side);
+        group = view.draw_slider(group, side);
     }
     for end in End::ALL {
-        group = view.five_bar(group, end);
+        group = view.draw_five_bar(group, end);
     }
     group = sheet.anchors(group, &legs);
-    if labels {
+    if has_labels {
         group = view.labels(group);
     }
     page(SIZE, group)
@@ -68,10 +67,10 @@ impl<'a> View<'a> {
         let ends = [solution.head_point(), solution.tail_point()];
         let beyond = SKIN_BEYOND * view.grown() + NAME_BEYOND;
         let long = ends.map(|end| end.y.abs()).into_iter().fold(1.0, f64::max) + beyond;
-        let fits = [(SIZE.0, MARGIN.0, wide), (SIZE.1, MARGIN.1, long)];
-        let fits = fits.map(|(page, margin, mm)| (page / 2.0 - margin) / mm);
+        let scales = [(SIZE.0, MARGIN.0, wide), (SIZE.1, MARGIN.1, long)];
+        let scales = scales.map(|(page, margin, mm)| (page / 2.0 - margin) / mm);
         Self {
-            scale: fits.into_iter().fold(PIXELS_PER_MM, f64::min),
+            scale: scales.into_iter().fold(PIXELS_PER_MM, f64::min),
             ..view
         }
     }
@@ -101,8 +100,8 @@ impl<'a> View<'a> {
         self.sheet().bar(from, to, colour, mm)
     }
 
-    fn pivot(&self, at: Joint, mm: f64) -> svg::node::element::Circle {
-        self.sheet().joint(at, mm)
+    fn pivot(&self, position: Joint, mm: f64) -> svg::node::element::Circle {
+        self.sheet().joint(position, mm)
     }
 
     pub(super) fn angles(&self) -> [f64; 4] {
@@ -119,7 +118,7 @@ impl<'a> View<'a> {
     }
 
     /// A lizard's outline, pale, so that a mechanism looks like an animal.
-    fn skin(&self, group: Group) -> Group {
+    fn draw_skin(&self, group: Group) -> Group {
         let grown = self.grown();
         let around = |point: Joint, x: f64, y: f64| {
             let (x, y) = self.page(point + Vector::new(x, y) * grown);
@@ -174,7 +173,7 @@ impl<'a> View<'a> {
     }
 
     /// The prismatic joint between the arms of a front and a rear servo.
-    fn slider(&self, mut group: Group, side: Side) -> Group {
+    fn draw_slider(&self, mut group: Group, side: Side) -> Group {
         let ([front, rear], slider) = (side.servos(), self.solution.side(side));
         let rear_shaft = self.shafts()[rear];
         let (low, high) = (rear_shaft + slider.rear_tip, rear_shaft + slider.front_tip);
@@ -202,7 +201,7 @@ impl<'a> View<'a> {
     }
 
     /// Two cranks, two couplers and the point that they carry.
-    fn five_bar(&self, mut group: Group, end: End) -> Group {
+    fn draw_five_bar(&self, mut group: Group, end: End) -> Group {
         let (servos, point) = (end.servos(), self.solution.point(end));
         for servo in servos {
             group = group.add(self.bar(self.crank_tip(servo), point, STEEL, 3.4));

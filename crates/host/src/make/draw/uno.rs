@@ -69,7 +69,7 @@ impl Uno {
             DARK,
             1.5,
         ));
-        group = self.sockets(group);
+        group = self.draw_sockets(group);
         for number in 0..=19 {
             let name = pin_name(number);
             let is_used = used.contains(&number);
@@ -79,24 +79,26 @@ impl Uno {
                 .add(self.label(self.pin(number), &name, is_used));
         }
         for (index, name) in REFERENCES.1.iter().enumerate() {
-            let at = self.at(REFERENCES.0 + index as f64, UPPER_ROW);
-            let is_used = at == self.ground();
-            let mut hole = hole(at, is_used);
+            let position = self.at(REFERENCES.0 + index as f64, UPPER_ROW);
+            let is_used = position == self.ground();
+            let mut hole = hole(position, is_used);
             if is_used {
                 hole = hole.set("id", "pin-GND");
             }
-            group = group.add(hole).add(self.label(at, name, is_used));
+            group = group.add(hole).add(self.label(position, name, is_used));
         }
         for (index, name) in POWER.1.iter().enumerate() {
-            let at = self.at(POWER.0 + index as f64, LOWER_ROW);
-            group = group.add(hole(at, false)).add(self.label(at, name, false));
+            let position = self.at(POWER.0 + index as f64, LOWER_ROW);
+            group = group
+                .add(hole(position, false))
+                .add(self.label(position, name, false));
         }
         let name = self.at(9.0, 11.2);
         group.add(text_start("Arduino UNO", name, 18.0))
     }
 
     /// Sockets, chip and LED.
-    fn sockets(&self, group: Group) -> Group {
+    fn draw_sockets(&self, group: Group) -> Group {
         let block = |x: f64, top: f64, size: (f64, f64), fill| {
             edged(
                 rectangle(self.at(x, top), (size.0 * PITCH, size.1 * PITCH), fill),

@@ -92,10 +92,10 @@ pub(super) fn proof(assembly: &Assembly) -> Proof {
 }
 
 /// The proof, of answers that are known or else are found here.
-fn complete_proof(questions: &Questions, known: Option<Vec<Answer>>) -> Proof {
+fn complete_proof(questions: &Questions, answers: Option<Vec<Answer>>) -> Proof {
     let bar = bar(questions.count(), PAIRS);
-    let known = |index: usize| known.as_ref()?.get(index).cloned();
-    let proof = questions.answer(known, |done, _| bar.set_position(done as u64));
+    let answers = |index: usize| answers.as_ref()?.get(index).cloned();
+    let proof = questions.answer(answers, |done, _| bar.set_position(done as u64));
     bar.finish_and_clear();
     proof
 }
@@ -112,11 +112,11 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let count = questions.count();
     if let Some(part) = args.spread.part() {
         let bar = bar(part.count(count), PAIRS);
-        let one = |index| {
+        let answer_one = |index| {
             bar.inc(1);
             questions.one(index)
         };
-        part.print(&args, &args.spread.robot, count, one)?;
+        part.print(&args, &args.spread.robot, count, answer_one)?;
         bar.finish_and_clear();
         return Ok(());
     }
@@ -142,7 +142,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     judged.map_err(|clash| Unfit::from(clash).into())
 }
 
-fn print(proof: &Proof, all: bool, out: &mut impl Write) -> io::Result<()> {
+fn print(proof: &Proof, shows_all: bool, out: &mut impl Write) -> io::Result<()> {
     /// Rows that are printed without --all.
     const SHOWN_ROWS: usize = 10;
     writeln!(
@@ -155,15 +155,15 @@ fn print(proof: &Proof, all: bool, out: &mut impl Write) -> io::Result<()> {
             .iter()
             .filter(|near| near.proved < ENOUGH * 0.9)
             .collect();
-        let shown = if all {
+        let pairs = if shows_all {
             near.len()
         } else {
             SHOWN_ROWS.min(near.len())
         };
-        for near in &near[..shown] {
+        for near in &near[..pairs] {
             row(near, out)?;
         }
-        match near.len() - shown {
+        match near.len() - pairs {
             0 => Ok(()),
             more => writeln!(out, "... and {more} more (--all)"),
         }
@@ -180,11 +180,11 @@ fn print(proof: &Proof, all: bool, out: &mut impl Write) -> io::Result<()> {
         "{} pairs of shapes, {} regions of poses",
         proof.pairs, proof.regions
     )?;
-    if let (Ok(()), Some(least)) = (proof.judge(), proof.least()) {
+    if let (Ok(()), Some(min)) = (proof.judge(), proof.least()) {
         writeln!(
             out,
             "no two parts come nearer than {:.2} mm at any pose that the guard accepts",
-            least.proved
+            min.proved
         )?;
     }
     Ok(())

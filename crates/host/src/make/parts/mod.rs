@@ -76,7 +76,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let kerf = robot.parts().kerf;
     let assembly = Assembly::new(&robot);
-    let whole = !args.coupon && !args.corner;
+    let is_whole_robot = !args.coupon && !args.corner;
     let mut parts = Vec::new();
     if !args.corner {
         parts.extend(coupon(robot.parts()));
@@ -94,21 +94,21 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let mut list = Vec::new();
     for part in &parts {
         bar.set_message(part.name.clone());
-        let made = part_files(part, kerf)?;
+        let new_files = part_files(part, kerf)?;
         list.push(PartEntry {
             part: part.name.clone(),
             count: part.count(),
             instead_of: part.instead_of.clone(),
             bodies: part.bodies.clone(),
             volume: part.volume(),
-            files: made.iter().map(|file| file.path.clone()).collect(),
+            files: new_files.iter().map(|file| file.path.clone()).collect(),
         });
-        files.extend(made);
+        files.extend(new_files);
         bar.inc(1);
     }
     bar.finish_and_clear();
     let mut weight = None;
-    if whole {
+    if is_whole_robot {
         let pose = robot.lizard().solve(&robot.neutral())?;
         let bill = Bill::of(&assembly, &assembly.parts(), &pose);
         files.extend(papers(&assembly, &bill, &pose)?);

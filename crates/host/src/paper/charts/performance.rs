@@ -42,7 +42,7 @@ pub fn performance(points: &[Point], step: f64) -> String {
         "Performance charts of the five-bar",
         "every design r1 + r2 + r3 = 0.9 (crank, coupler, half base, in units of D); dashed: r3 = 0.1 to 0.4; white: no design; ring: the paper's design",
     );
-    for (i, (name, value, most, digits)) in panels.into_iter().enumerate() {
+    for (i, (name, value, max, digits)) in panels.into_iter().enumerate() {
         let plot = Plot {
             corner: (90.0 + 480.0 * i as f64, 150.0),
             size: (PANEL, PANEL),
@@ -51,7 +51,7 @@ pub fn performance(points: &[Point], step: f64) -> String {
         };
         let scale = Scale {
             least: 0.0,
-            most,
+            most: max,
             colours: VIRIDIS,
         };
         let count = (SUM / step).round() as usize;
@@ -66,8 +66,8 @@ pub fn performance(points: &[Point], step: f64) -> String {
             Axis::new(0.1, "r1, crank"),
             Axis::new(0.1, if i == 0 { "r2, coupler" } else { "" }),
         );
-        group = plot.grid(group, &axes.0, &axes.1);
-        group = wide.map(group, (count + 1, count + 1), |x, y| {
+        group = plot.draw_grid(group, &axes.0, &axes.1);
+        group = wide.draw_map(group, (count + 1, count + 1), |x, y| {
             look_up(x, y)
                 .and_then(value)
                 .map(|value| scale.colour(value))
@@ -80,9 +80,9 @@ pub fn performance(points: &[Point], step: f64) -> String {
         group = group
             .add(edged(circle((x, y), 7.0, "none"), "white", 5.0))
             .add(edged(circle((x, y), 7.0, "none"), "#d55e00", 2.5));
-        group = plot.axes(group, &axes.0, &axes.1);
+        group = plot.draw_axes(group, &axes.0, &axes.1);
         group = group.add(text_start(name, (plot.corner.0, 128.0), 17.0));
-        group = scale.key(
+        group = scale.draw_key(
             group,
             (plot.corner.0 + PANEL + 20.0, 150.0),
             PANEL,

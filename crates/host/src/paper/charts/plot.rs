@@ -72,44 +72,44 @@ impl Plot {
     }
 
     /// A grid in the background.
-    pub fn grid(&self, mut group: Group, x: &Axis, y: &Axis) -> Group {
+    pub fn draw_grid(&self, mut group: Group, x: &Axis, y: &Axis) -> Group {
         for value in ticks(self.x, x.step) {
-            let at = self.at(value, 0.0).0;
-            group = group.add(line((at, self.corner.1), (at, self.end().1), GRID, 1.0));
+            let px = self.at(value, 0.0).0;
+            group = group.add(line((px, self.corner.1), (px, self.end().1), GRID, 1.0));
         }
         for value in ticks(self.y, y.step) {
-            let at = self.at(0.0, value).1;
-            group = group.add(line((self.corner.0, at), (self.end().0, at), GRID, 1.0));
+            let py = self.at(0.0, value).1;
+            group = group.add(line((self.corner.0, py), (self.end().0, py), GRID, 1.0));
         }
         group
     }
 
     /// Frame, ticks, numbers and names.
-    pub fn axes(&self, mut group: Group, x: &Axis, y: &Axis) -> Group {
+    pub fn draw_axes(&self, mut group: Group, x: &Axis, y: &Axis) -> Group {
         let (right, bottom) = self.end();
         group = group.add(edged(rectangle(self.corner, self.size, "none"), DARK, 1.0));
         for value in ticks(self.x, x.step) {
-            let at = self.at(value, 0.0).0;
+            let px = self.at(value, 0.0).0;
             group = group
-                .add(line((at, bottom), (at, bottom + 6.0), DARK, 1.0))
+                .add(line((px, bottom), (px, bottom + 6.0), DARK, 1.0))
                 .add(text_middle(
                     &number(value, x.step),
-                    (at, bottom + 23.0),
+                    (px, bottom + 23.0),
                     15.0,
                 ));
         }
         for value in ticks(self.y, y.step) {
-            let at = self.at(0.0, value).1;
+            let py = self.at(0.0, value).1;
             group = group
                 .add(line(
-                    (self.corner.0 - 6.0, at),
-                    (self.corner.0, at),
+                    (self.corner.0 - 6.0, py),
+                    (self.corner.0, py),
                     DARK,
                     1.0,
                 ))
                 .add(text_end(
                     &number(value, y.step),
-                    (self.corner.0 - 10.0, at + 5.0),
+                    (self.corner.0 - 10.0, py + 5.0),
                     15.0,
                 ));
         }
@@ -125,7 +125,7 @@ impl Plot {
 
     /// A map in bands of colour, one path for each. Equal neighbours in a row
     /// become one rectangle of it.
-    pub fn map(
+    pub fn draw_map(
         &self,
         mut group: Group,
         cells: (usize, usize),
@@ -136,18 +136,22 @@ impl Plot {
         let mut outlines: BTreeMap<&str, String> = BTreeMap::new();
         for row in 0..cells.1 {
             let y = self.y.0 + row as f64 * height;
-            let at = |column: usize| self.x.0 + column as f64 * width;
-            let of = |column: usize| colour(at(column) + width / 2.0, y + height / 2.0);
+            let left_of = |column: usize| self.x.0 + column as f64 * width;
+            let colour_of = |column: usize| colour(left_of(column) + width / 2.0, y + height / 2.0);
             let mut from = 0;
-            let mut fill = of(0);
+            let mut fill = colour_of(0);
             for column in 1..=cells.0 {
-                let next = if column < cells.0 { of(column) } else { None };
+                let next = if column < cells.0 {
+                    colour_of(column)
+                } else {
+                    None
+                };
                 if column < cells.0 && next == fill {
                     continue;
                 }
                 if let Some(fill) = fill {
-                    let (left, top) = self.at(at(from), y + height);
-                    let (right, bottom) = self.at(at(column), y);
+                    let (left, top) = self.at(left_of(from), y + height);
+                    let (right, bottom) = self.at(left_of(column), y);
                     let (wide, high) = (right - left, bottom - top);
                     let _ = write!(
                         outlines.entry(fill).or_default(),
@@ -206,7 +210,7 @@ impl Scale {
     }
 
     /// A vertical key with the bands' limits.
-    pub fn key(
+    pub fn draw_key(
         &self,
         mut group: Group,
         corner: (f64, f64),
@@ -222,10 +226,10 @@ impl Scale {
         }
         for i in 0..=count {
             let value = self.least + (self.most - self.least) * i as f64 / count as f64;
-            let at = corner.1 + height - i as f64 * band;
+            let top = corner.1 + height - i as f64 * band;
             group = group.add(text_start(
                 &format!("{value:.digits$}"),
-                (corner.0 + 30.0, at + 5.0),
+                (corner.0 + 30.0, top + 5.0),
                 14.0,
             ));
         }
@@ -236,7 +240,7 @@ impl Scale {
 }
 
 /// A short line and its meaning.
-pub fn entry(group: Group, at: (f64, f64), colour: &str, dashes: &str, words: &str) -> Group {
+pub fn draw_entry(group: Group, at: (f64, f64), colour: &str, dashes: &str, words: &str) -> Group {
     group
         .add(line(at, (at.0 + 34.0, at.1), colour, 3.0).set("stroke-dasharray", dashes))
         .add(text_start(words, (at.0 + 44.0, at.1 + 5.0), 15.0))

@@ -10,7 +10,7 @@ use lizard_kinematics::{End, Pose, Side, Solution, Vector, Workspace};
 use lizard_robot::Robot;
 use svg::node::element::Group;
 
-use super::plot::{Axis, Plot, entry};
+use super::plot::{Axis, Plot, draw_entry};
 use crate::shared::ink::{DARK, GREY, circle, edged, page, rectangle, text_start, title};
 
 const SIZE: (f64, f64) = (1120.0, 900.0);
@@ -31,8 +31,11 @@ const LEGS: &str = "#117733";
 /// Cells of the plane.
 type Cells = HashSet<(i32, i32)>;
 
-fn cell(at: Vector) -> (i32, i32) {
-    ((at.x / CELL).floor() as i32, (at.y / CELL).floor() as i32)
+fn cell(position: Vector) -> (i32, i32) {
+    (
+        (position.x / CELL).floor() as i32,
+        (position.y / CELL).floor() as i32,
+    )
 }
 
 /// The workspaces of tail, both sliders and all feet.
@@ -47,15 +50,15 @@ pub fn reach(robot: &Robot) -> String {
     let free = free_sliders(robot);
     let sliders = accepted_sliders(robot);
     let cells = (2.0 * REACH / CELL) as usize;
-    let mut group = plot.grid(Group::new(), &AXES[0], &AXES[1]);
-    group = plot.map(group, (cells, cells), |x, y| {
-        let at = Vector::new(x, y);
-        let found = cell(at);
+    let mut group = plot.draw_grid(Group::new(), &AXES[0], &AXES[1]);
+    group = plot.draw_map(group, (cells, cells), |x, y| {
+        let point = Vector::new(x, y);
+        let cell_of_point = cell(point);
         let colours = [
-            (sliders.contains(&found), SLIDERS[1]),
-            (tail.contains(&found), TAIL[1]),
-            (free.contains(&found), SLIDERS[0]),
-            (is_in_tail(robot, at), TAIL[0]),
+            (sliders.contains(&cell_of_point), SLIDERS[1]),
+            (tail.contains(&cell_of_point), TAIL[1]),
+            (free.contains(&cell_of_point), SLIDERS[0]),
+            (is_in_tail(robot, point), TAIL[0]),
         ];
         colours
             .into_iter()
@@ -63,10 +66,13 @@ pub fn reach(robot: &Robot) -> String {
             .map(|(_, colour)| colour)
     });
     for servo in 0..4 {
-        let whole = feet(robot, servo, (-180..=180).map(f64::from), false);
+        let full_circle = feet(robot, servo, (-180..=180).map(f64::from), false);
         let is_guarded = feet(robot, servo, (-RANGE..=RANGE).map(f64::from), true);
         group = group
-            .add(plot.curve(&whole, GREY, 1.2).set("stroke-dasharray", "5 4"))
+            .add(
+                plot.curve(&full_circle, GREY, 1.2)
+                    .set("stroke-dasharray", "5 4"),
+            )
             .add(plot.curve(&is_guarded, LEGS, 4.0))
             .add(
                 plot.curve(&walked(robot, servo), DARK, 8.0)
@@ -80,17 +86,17 @@ pub fn reach(robot: &Robot) -> String {
             2.0,
         ));
     }
-    group = plot.axes(group, &AXES[0], &AXES[1]);
+    group = plot.draw_axes(group, &AXES[0], &AXES[1]);
     group = title(
         group,
         90.0,
         "Workspaces of tail, body and legs",
         "from above; light: what the links alone allow, dark: what the guard accepts",
     );
-    page(SIZE, legend(group))
+    page(SIZE, draw_legend(group))
 }
 
-fn legend(mut group: Group) -> Group {
+fn draw_legend(mut group: Group) -> Group {
     let left = 840.0;
     let patches = [
         (TAIL, "tail's point"),
@@ -103,14 +109,14 @@ fn legend(mut group: Group) -> Group {
             .add(rectangle((left + 17.0, y), (17.0, 17.0), dark))
             .add(text_start(words, (left + 44.0, y + 14.0), 15.0));
     }
-    group = entry(group, (left, 190.0), GREY, "5 4", "circle of a foot");
-    group = entry(group, (left, 218.0), LEGS, "", "what the guard accepts,");
+    group = draw_entry(group, (left, 190.0), GREY, "5 4", "circle of a foot");
+    group = draw_entry(group, (left, 218.0), LEGS, "", "what the guard accepts,");
     group = group.add(text_start(
         "the other servos at neutral",
         (left + 44.0, 242.0),
         15.0,
     ));
-    group = entry(group, (left, 268.0), DARK, "", "where walk has the foot");
+    group = draw_entry(group, (left, 268.0), DARK, "", "where walk has the foot");
     group
         .add(edged(circle((left + 17.0, 300.0), 6.0, "white"), DARK, 2.0))
         .add(text_start("shaft of a servo", (left + 44.0, 305.0), 15.0))
@@ -139,7 +145,7 @@ fn accepted_tail(robot: &Robot) -> Cells {
 /// The robot's sides mirror each other, so that head and tail accept the most.
 fn accepted_sliders(robot: &Robot) -> Cells {
     let poses = accepted(robot, |a, b| [a, -a, -b, b]);
-    let both = poses.iter().flat_map(|pose| {
+    let points = poses.iter().flat_map(|pose| {
         Side::ALL.map(|side| {
             let slider = match side {
                 Side::Left => &pose.left,
@@ -148,7 +154,7 @@ fn accepted_sliders(robot: &Robot) -> Cells {
             middle(robot, side, slider.rear_tip, slider.front_tip)
         })
     });
-    both.map(cell).collect()
+    points.map(cell).collect()
 }
 
 /// The middle of a slider by the tips of its arms, which count from its rear shaft.
@@ -176,12 +182,12 @@ fn free_sliders(robot: &Robot) -> Cells {
 }
 
 /// True if both arms of the tail reach a point of the chassis frame behind its base.
-fn is_in_tail(robot: &Robot, at: Vector) -> bool {
+fn is_in_tail(robot: &Robot, position: Vector) -> bool {
     let [left, right] = End::Tail.servos();
     let shafts = robot.lizard().shafts();
-    let from = at - (shafts[left] + shafts[right]) * 0.5;
-    let own = Vector::new(from.x, -from.y);
-    own.y >= 0.0 && Workspace::of(&robot.lizard().end(End::Tail)).contains(own)
+    let from = position - (shafts[left] + shafts[right]) * 0.5;
+    let in_tail_frame = Vector::new(from.x, -from.y);
+    in_tail_frame.y >= 0.0 && Workspace::of(&robot.lizard().end(End::Tail)).contains(in_tail_frame)
 }
 
 /// The places of a foot while its servo turns from neutral and no other does.

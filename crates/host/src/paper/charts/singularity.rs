@@ -5,7 +5,7 @@ use lizard_kinematics::{Check, End, FiveBar, Pose, SingularPose, Singularity, wr
 use lizard_robot::{CheckedGait, Robot};
 use svg::node::element::Group;
 
-use super::plot::{Axis, BLUES, IMPOSSIBLE, Plot, Scale, entry};
+use super::plot::{Axis, BLUES, IMPOSSIBLE, Plot, Scale, draw_entry};
 use crate::shared::ink::{DARK, circle, cross, edged, line, page, rectangle, text_start, title};
 
 const SIZE: (f64, f64) = (1500.0, 860.0);
@@ -55,11 +55,11 @@ pub fn singularity(robot: &Robot) -> String {
     };
     let mut group = Group::new();
     for (plot, cells) in [(&left, 360), (&right, 200)] {
-        group = plot.map(group, (cells, cells), |x, y| {
+        group = plot.draw_map(group, (cells, cells), |x, y| {
             Some(least(robot, x, y).map_or(IMPOSSIBLE, |least| scale.colour(least)))
         });
     }
-    group = curves(group, &left, robot);
+    group = draw_curves(group, &left, robot);
     // Where the right panel lies in the left one.
     let corner = left.at(near.x.0, near.y.1);
     let end = left.at(near.x.1, near.y.0);
@@ -85,28 +85,32 @@ pub fn singularity(robot: &Robot) -> String {
         }
     }
     let (x, y) = axes(20.0);
-    group = left.axes(group, &x, &y);
+    group = left.draw_axes(group, &x, &y);
     let (x, y) = axes(10.0);
-    group = right.axes(group, &x, &y);
+    group = right.draw_axes(group, &x, &y);
     for (i, (names, path)) in paths.iter().enumerate() {
         let (colour, dashes) = STYLES[i % STYLES.len()];
-        let at = (1226.0, 124.0 + 27.0 * i as f64);
+        let position = (1226.0, 124.0 + 27.0 * i as f64);
         let names = names.replace('-', " ");
         if path.len() > 1 {
-            group = entry(group, at, colour, dashes, &names);
+            group = draw_entry(group, position, colour, dashes, &names);
         } else {
             group = group
-                .add(circle((at.0 + 17.0, at.1), 6.0, colour))
-                .add(text_start(&names, (at.0 + 44.0, at.1 + 5.0), 15.0));
+                .add(circle((position.0 + 17.0, position.1), 6.0, colour))
+                .add(text_start(
+                    &names,
+                    (position.0 + 44.0, position.1 + 5.0),
+                    15.0,
+                ));
         }
     }
-    group = scale.key(group, (800.0, 640.0 - 20.0), 160.0, "least margin", 1);
+    group = scale.draw_key(group, (800.0, 640.0 - 20.0), 160.0, "least margin", 1);
     let keys = [
         (A1, "", "arm of A1 straight or folded (type 1)"),
         (A2, "", "arm of A2 straight or folded (type 1)"),
     ];
     for (i, (colour, dashes, words)) in keys.into_iter().enumerate() {
-        group = entry(
+        group = draw_entry(
             group,
             (930.0, 640.0 + 28.0 * i as f64),
             colour,
@@ -165,8 +169,8 @@ fn paths(robot: &Robot) -> Vec<(String, Vec<(f64, f64)>)> {
     let mut paths: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
     for gait in robot.gaits() {
         let path = path(gait);
-        let known = paths.iter_mut().find(|(_, other)| are_close(other, &path));
-        match known {
+        let close_path = paths.iter_mut().find(|(_, other)| are_close(other, &path));
+        match close_path {
             Some((names, _)) => {
                 names.push_str(", ");
                 names.push_str(gait.name());
@@ -178,37 +182,37 @@ fn paths(robot: &Robot) -> Vec<(String, Vec<(f64, f64)>)> {
 }
 
 fn path(gait: &CheckedGait) -> Vec<(f64, f64)> {
-    let at = |i: i32| {
+    let angles_at = |i: i32| {
         let [theta1, theta4, ..] = gait.angles(f64::from(i) / 500.0);
         (theta1, theta4)
     };
-    let start = at(0);
-    let moves = (1..500).any(|i| (at(i).0 - start.0).hypot(at(i).1 - start.1) > 1e-6);
+    let start = angles_at(0);
+    let moves = (1..500).any(|i| (angles_at(i).0 - start.0).hypot(angles_at(i).1 - start.1) > 1e-6);
     if moves {
-        (0..=500).map(at).collect()
+        (0..=500).map(angles_at).collect()
     } else {
         vec![start]
     }
 }
 
 /// True if the two paths are close to each other everywhere.
-fn are_close(one: &[(f64, f64)], two: &[(f64, f64)]) -> bool {
+fn are_close(first: &[(f64, f64)], second: &[(f64, f64)]) -> bool {
     let near = |point: &(f64, f64), path: &[(f64, f64)]| {
         path.iter()
             .any(|other| (point.0 - other.0).hypot(point.1 - other.1) < 0.5)
     };
-    one.iter().all(|point| near(point, two)) && two.iter().all(|point| near(point, one))
+    first.iter().all(|point| near(point, second)) && second.iter().all(|point| near(point, first))
 }
 
 /// A square around all paths.
 fn surroundings(paths: &[(String, Vec<(f64, f64)>)]) -> Plot {
     let all = || paths.iter().flat_map(|(_, path)| path);
-    let of = |pick: fn(&(f64, f64)) -> f64| {
-        let least = all().map(pick).fold(f64::INFINITY, f64::min);
-        let most = all().map(pick).fold(f64::NEG_INFINITY, f64::max);
-        ((least + most) / 2.0, (most - least) / 2.0)
+    let range_of = |pick: fn(&(f64, f64)) -> f64| {
+        let smallest = all().map(pick).fold(f64::INFINITY, f64::min);
+        let largest = all().map(pick).fold(f64::NEG_INFINITY, f64::max);
+        ((smallest + largest) / 2.0, (largest - smallest) / 2.0)
     };
-    let ((x, wide), (y, high)) = (of(|p| p.0), of(|p| p.1));
+    let ((x, wide), (y, high)) = (range_of(|p| p.0), range_of(|p| p.1));
     let half = (wide.max(high) + 5.0).ceil();
     Plot {
         corner: (0.0, 0.0),
@@ -219,9 +223,9 @@ fn surroundings(paths: &[(String, Vec<(f64, f64)>)]) -> Plot {
 }
 
 /// The singular curves within the plot, as short pieces.
-fn curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
+fn draw_curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
     let bars = robot.lizard().end(End::Head);
-    group = sweep(group, plot, |theta1| bars.singular_with(theta1).collect());
+    group = draw_sweep(group, plot, |theta1| bars.singular_with(theta1).collect());
     // Once more with the other crank leading, where the first runs steeply: the
     // five-bar seen in a mirror, in which left and right change places.
     let mirrored = FiveBar {
@@ -231,7 +235,7 @@ fn curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
         coupler_right: bars.coupler_left,
         crank_right: bars.crank_left,
     };
-    group = sweep(group, plot, |theta4| {
+    group = draw_sweep(group, plot, |theta4| {
         let unmirror = |pose: SingularPose| SingularPose {
             kind: match pose.kind {
                 Singularity::LeftArm => Singularity::RightArm,
@@ -248,15 +252,15 @@ fn curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
     });
     for pose in bars.coinciding_tips() {
         if pose.theta_left >= 0.0 && pose.theta_right >= 0.0 {
-            let at = plot.at(pose.theta_left, pose.theta_right);
-            group = group.add(cross(at, 7.0, DARK, 3.0));
+            let position = plot.at(pose.theta_left, pose.theta_right);
+            group = group.add(cross(position, 7.0, DARK, 3.0));
         }
     }
     group
 }
 
 /// Joins the singular poses of one angle to those of the next.
-fn sweep(mut group: Group, plot: &Plot, at: impl Fn(f64) -> Vec<SingularPose>) -> Group {
+fn draw_sweep(mut group: Group, plot: &Plot, poses_at: impl Fn(f64) -> Vec<SingularPose>) -> Group {
     const STEP: f64 = 0.5;
     let inside = |pose: &&SingularPose| {
         [pose.theta_left, pose.theta_right]
@@ -266,11 +270,11 @@ fn sweep(mut group: Group, plot: &Plot, at: impl Fn(f64) -> Vec<SingularPose>) -
     let apart = |a: &SingularPose, b: &SingularPose| {
         (a.theta_left - b.theta_left).hypot(a.theta_right - b.theta_right)
     };
-    let mut before: Vec<SingularPose> = Vec::new();
+    let mut poses_before: Vec<SingularPose> = Vec::new();
     for i in 0..=360 {
-        let here = at(f64::from(i) * STEP);
-        for pose in here.iter().filter(inside) {
-            let nearest = before
+        let poses = poses_at(f64::from(i) * STEP);
+        for pose in poses.iter().filter(inside) {
+            let nearest = poses_before
                 .iter()
                 .filter(inside)
                 .filter(|other| other.kind == pose.kind && apart(other, pose) < 4.0 * STEP)
@@ -286,7 +290,7 @@ fn sweep(mut group: Group, plot: &Plot, at: impl Fn(f64) -> Vec<SingularPose>) -
                 group = group.add(line(start, end, colour, 2.5));
             }
         }
-        before = here;
+        poses_before = poses;
     }
     group
 }

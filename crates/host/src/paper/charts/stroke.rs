@@ -3,7 +3,7 @@
 use lizard_robot::{CheckedGait, Robot};
 use svg::node::element::Group;
 
-use super::plot::{Axis, IMPOSSIBLE, Plot, entry};
+use super::plot::{Axis, IMPOSSIBLE, Plot, draw_entry};
 use crate::shared::ink::{Anchor, GREY, page, rectangle, text, text_start, title};
 use crate::shared::number::tidy;
 
@@ -28,14 +28,14 @@ pub fn stroke(robot: &Robot) -> String {
         "Slider travel over a cycle of each gait",
         "s in mm from nominal; grey: beyond the stroke that robot.toml allows",
     );
-    group = entry(
+    group = draw_entry(
         group,
         (size.0 - 300.0, 36.0),
         LEFT,
         "",
         "left slider (A1, A4)",
     );
-    group = entry(
+    group = draw_entry(
         group,
         (size.0 - 300.0, 62.0),
         RIGHT,
@@ -52,17 +52,17 @@ pub fn stroke(robot: &Robot) -> String {
             x: (0.0, 1.0),
             y: range,
         };
-        group = panel(group, &plot, robot, gait);
+        group = draw_panel(group, &plot, robot, gait);
     }
     page(size, group)
 }
 
-fn panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &CheckedGait) -> Group {
+fn draw_panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &CheckedGait) -> Group {
     let axes = (
         Axis::new(0.25, "phase"),
         Axis::new(15.0, if plot.corner.0 < PITCH.0 { "s, mm" } else { "" }),
     );
-    group = plot.grid(group, &axes.0, &axes.1);
+    group = plot.draw_grid(group, &axes.0, &axes.1);
     for (from, to) in [
         (plot.y.0, robot.limits().stroke_min),
         (robot.limits().stroke_max, plot.y.1),
@@ -77,19 +77,24 @@ fn panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &CheckedGait) -> Gr
             Some((phase, s.left.s, s.right.s))
         })
         .collect();
-    let of = |pick: fn(&(f64, f64, f64)) -> f64| -> Vec<(f64, f64)> {
-        travel.iter().map(|at| (at.0, pick(at))).collect()
+    let curve_of = |pick: fn(&(f64, f64, f64)) -> f64| -> Vec<(f64, f64)> {
+        travel
+            .iter()
+            .map(|sample| (sample.0, pick(sample)))
+            .collect()
     };
-    group = group.add(plot.curve(&of(|at| at.1), LEFT, 2.5)).add(
-        plot.curve(&of(|at| at.2), RIGHT, 2.5)
-            .set("stroke-dasharray", "7 4"),
-    );
-    group = plot.axes(group, &axes.0, &axes.1);
-    let values = || travel.iter().flat_map(|at| [at.1, at.2]);
-    let least = values().fold(f64::INFINITY, f64::min);
-    let most = values().fold(f64::NEG_INFINITY, f64::max);
+    group = group
+        .add(plot.curve(&curve_of(|sample| sample.1), LEFT, 2.5))
+        .add(
+            plot.curve(&curve_of(|sample| sample.2), RIGHT, 2.5)
+                .set("stroke-dasharray", "7 4"),
+        );
+    group = plot.draw_axes(group, &axes.0, &axes.1);
+    let values = || travel.iter().flat_map(|sample| [sample.1, sample.2]);
+    let smallest = values().fold(f64::INFINITY, f64::min);
+    let largest = values().fold(f64::NEG_INFINITY, f64::max);
     let head = (plot.corner.0, plot.corner.1 - 10.0);
-    let range = format!("{:+.1} to {:+.1} mm", tidy(least, 1), tidy(most, 1));
+    let range = format!("{:+.1} to {:+.1} mm", tidy(smallest, 1), tidy(largest, 1));
     group
         .add(text_start(&gait.name().replace('-', " "), head, 17.0).set("font-weight", "bold"))
         .add(text(

@@ -4,7 +4,7 @@ use lizard_kinematics::{Circle, End, Vector, Workspace};
 use lizard_robot::Robot;
 use svg::node::element::{Circle as Ring, Group};
 
-use super::plot::{Axis, IMPOSSIBLE, Plot, Scale, VIRIDIS, entry};
+use super::plot::{Axis, IMPOSSIBLE, Plot, Scale, VIRIDIS, draw_entry};
 use crate::paper::design::{CLAIM, Performance, lci};
 use crate::shared::ink::{DARK, GREY, circle, edged, page, text_start, title};
 
@@ -26,8 +26,8 @@ pub fn workspace(robot: &Robot) -> String {
         x: (-reach, reach),
         y: (-reach, reach),
     };
-    let mut group = plot.grid(Group::new(), &MM, &MM_UP);
-    group = plot.map(group, (480, 480), |x, y| {
+    let mut group = plot.draw_grid(Group::new(), &MM, &MM_UP);
+    group = plot.draw_map(group, (480, 480), |x, y| {
         space
             .contains(Vector::new(x, y))
             .then_some(if y >= 0.0 { "#cfe3f1" } else { "#e6e3df" })
@@ -43,8 +43,8 @@ pub fn workspace(robot: &Robot) -> String {
     for path in look_paths(robot) {
         group = group.add(plot.curve(&path, "#009e73", 2.5));
     }
-    group = mechanism(group, &plot, robot);
-    group = plot.axes(group, &MM, &MM_UP);
+    group = draw_mechanism(group, &plot, robot);
+    group = plot.draw_axes(group, &MM, &MM_UP);
     group = title(
         group,
         90.0,
@@ -53,16 +53,16 @@ pub fn workspace(robot: &Robot) -> String {
     );
     let p = Performance::of(&bars, 32);
     let left = 840.0;
-    group = entry(group, (left, 120.0), GREY, "5 4", "limits of each arm");
-    group = entry(group, (left, 148.0), RED, "", "maximal inscribed circle");
-    group = entry(
+    group = draw_entry(group, (left, 120.0), GREY, "5 4", "limits of each arm");
+    group = draw_entry(group, (left, 148.0), RED, "", "maximal inscribed circle");
+    group = draw_entry(
         group,
         (left, 176.0),
         "#009e73",
         "",
         "path of the gesture \"look\"",
     );
-    group = entry(group, (left, 204.0), DARK, "", "five-bar at neutral");
+    group = draw_entry(group, (left, 204.0), DARK, "", "five-bar at neutral");
     let facts = [
         format!("area {:.1} mm²", p.area),
         format!("upper half {:.1} mm² (blue)", p.area / 2.0),
@@ -91,8 +91,8 @@ pub fn conditioning(robot: &Robot) -> String {
         most: 1.0,
         colours: VIRIDIS,
     };
-    let mut group = plot.grid(Group::new(), &MM, &MM_UP);
-    group = plot.map(group, (480, 330), |x, y| {
+    let mut group = plot.draw_grid(Group::new(), &MM, &MM_UP);
+    group = plot.draw_map(group, (480, 330), |x, y| {
         let point = Vector::new(x, y);
         space.contains(point).then(|| match bars.reach(point) {
             Ok(pose) if y >= 0.0 && pose.gap.x > 0.0 => scale.colour(lci(&bars, point)),
@@ -101,24 +101,26 @@ pub fn conditioning(robot: &Robot) -> String {
     });
     let p = Performance::of(&bars, 64);
     if let (Some(mic), Some(index)) = (space.inscribed_circle(), p.lci) {
-        let held = Circle {
+        let circle = Circle {
             radius: index.radius_above,
             ..mic
         };
         group = group
             .add(ring(&plot, mic.centre, mic.radius, "white", 6.0))
             .add(ring(&plot, mic.centre, mic.radius, RED, 3.0))
-            .add(ring(&plot, held.centre, held.radius, "white", 5.0))
-            .add(ring(&plot, held.centre, held.radius, DARK, 2.0).set("stroke-dasharray", "7 4"));
+            .add(ring(&plot, circle.centre, circle.radius, "white", 5.0))
+            .add(
+                ring(&plot, circle.centre, circle.radius, DARK, 2.0).set("stroke-dasharray", "7 4"),
+            );
         let left = 850.0;
-        group = entry(
+        group = draw_entry(
             group,
             (left - 10.0, 530.0),
             RED,
             "",
             "maximal inscribed circle",
         );
-        group = entry(
+        group = draw_entry(
             group,
             (left - 10.0, 558.0),
             DARK,
@@ -127,8 +129,8 @@ pub fn conditioning(robot: &Robot) -> String {
         );
         group = group.add(text_start(&format!("in the circle: mean {:.3}, least {:.3}, most {:.3}; above {CLAIM} on {:.1} % of its area", index.mean, index.least, index.most, 100.0 * index.share_above), (90.0, 690.0), 16.0));
     }
-    group = plot.axes(group, &MM, &MM_UP);
-    group = scale.key(group, (870.0, 120.0), 360.0, "LCI", 1);
+    group = plot.draw_axes(group, &MM, &MM_UP);
+    group = scale.draw_key(group, (870.0, 120.0), 360.0, "LCI", 1);
     group = title(
         group,
         90.0,
@@ -161,7 +163,7 @@ fn look_paths(robot: &Robot) -> Vec<Vec<(f64, f64)>> {
         .collect()
 }
 
-fn mechanism(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
+fn draw_mechanism(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
     if let Ok(s) = robot.lizard().solve(&robot.neutral()) {
         let h = &s.head;
         let points = [

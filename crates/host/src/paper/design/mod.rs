@@ -124,9 +124,9 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.spread.robot.load()?;
     let mut out = BufWriter::new(io::stdout().lock());
     if args.chart {
-        charts(&args, &mut out)?;
+        print_charts(&args, &mut out)?;
     } else if args.search {
-        ranking(&args, &robot, l0, proportions, &mut out)?;
+        print_ranking(&args, &robot, l0, proportions, &mut out)?;
     } else {
         let report = Report::new(proportions, l0);
         if args.json {
@@ -253,7 +253,7 @@ fn verdict(lci: &Conditioning, r_mic: f64) -> String {
     )
 }
 
-fn charts(args: &Args, out: &mut impl Write) -> Result<(), Failure> {
+fn print_charts(args: &Args, out: &mut impl Write) -> Result<(), Failure> {
     let progress = bar(0, "performance charts {bar:40} {pos}/{len} {eta}");
     let points = chart(args.step, COARSE, &progress);
     progress.finish_and_clear();
@@ -286,7 +286,7 @@ fn charts(args: &Args, out: &mut impl Write) -> Result<(), Failure> {
     Ok(())
 }
 
-fn ranking(
+fn print_ranking(
     args: &Args,
     robot: &Robot,
     l0: f64,
@@ -294,8 +294,8 @@ fn ranking(
     out: &mut impl Write,
 ) -> Result<(), Failure> {
     let travel = robot.servos().iter().map(|servo| {
-        let (least, most) = servo.travel();
-        most.min(-least)
+        let (smallest, largest) = servo.travel();
+        largest.min(-smallest)
     });
     let demands = Demands {
         base: l0,
@@ -310,17 +310,17 @@ fn ranking(
     let search = Search::new(args.step, demands, &progress, |count| {
         args.spread.own(count)
     });
-    let one = |index| search.piece(index);
-    let pieces = args.spread.all(args, search.pieces(), one)?;
+    let search_piece = |index| search.piece(index);
+    let pieces = args.spread.all(args, search.pieces(), search_piece)?;
     progress.finish_and_clear();
     let Some(pieces) = pieces else {
         return Ok(());
     };
     let designs = ranked(pieces);
-    let shown = &designs[..designs.len().min(args.top)];
+    let top_designs = &designs[..designs.len().min(args.top)];
     let reference = design(given, &demands);
     if args.json {
-        return Ok(json::line(out, &shown)?);
+        return Ok(json::line(out, &top_designs)?);
     }
     writeln!(
         out,
@@ -353,7 +353,7 @@ fn ranking(
             if d.pareto { " *" } else { "" }
         )
     };
-    for (i, design) in shown.iter().enumerate() {
+    for (i, design) in top_designs.iter().enumerate() {
         line(out, &(i + 1).to_string(), design)?;
     }
     match reference {
@@ -362,17 +362,25 @@ fn ranking(
             "\nThe given design (r1 {}, r2 {}, r3 {}) does not.",
             given.r1, given.r2, given.r3
         )?,
-        Some(mut own) => {
+        Some(mut own_design) => {
             // Scored against the best of the list, as its members are.
-            let best = |of: fn(&Design) -> f64| designs.iter().map(of).fold(of(&own), f64::max);
+            let best = |quantity: fn(&Design) -> f64| {
+                designs
+                    .iter()
+                    .map(quantity)
+                    .fold(quantity(&own_design), f64::max)
+            };
             let (lci, margin, stride) = (best(|d| d.lci), best(|d| d.margin), best(|d| d.stride));
-            own.score = ((own.lci / lci) * (own.margin / margin) * (own.stride / stride)).cbrt();
+            own_design.score = ((own_design.lci / lci)
+                * (own_design.margin / margin)
+                * (own_design.stride / stride))
+                .cbrt();
             let rank = 1 + designs
                 .iter()
-                .filter(|d| d.score > own.score + 1e-9)
+                .filter(|d| d.score > own_design.score + 1e-9)
                 .count();
             writeln!(out, "\nthe given design:")?;
-            line(out, &rank.to_string(), &own)?;
+            line(out, &rank.to_string(), &own_design)?;
         }
     }
     Ok(())

@@ -62,7 +62,7 @@ impl Conditioning {
         let spokes = 4 * rings;
         let mut sum = 0.0;
         let mut above = 0;
-        let (mut least, mut best) = (f64::INFINITY, (0.0_f64, circle.centre));
+        let (mut min, mut best) = (f64::INFINITY, (0.0_f64, circle.centre));
         for spoke in 0..spokes {
             let direction = Vector::direction((spoke as f64 + 0.5) * 360.0 / spokes as f64);
             for ring in 0..rings {
@@ -71,7 +71,7 @@ impl Conditioning {
                 let value = lci(bars, point);
                 sum += value;
                 above += usize::from(value > CLAIM);
-                least = least.min(value);
+                min = min.min(value);
                 if value > best.0 {
                     best = (value, point);
                 }
@@ -80,19 +80,19 @@ impl Conditioning {
         // The rim itself, with the four points where it touches the edge.
         for spoke in 0..spokes {
             let direction = Vector::direction(spoke as f64 * 360.0 / spokes as f64);
-            least = least.min(lci(bars, circle.centre + direction * circle.radius));
+            min = min.min(lci(bars, circle.centre + direction * circle.radius));
         }
         for shaft in [bars.left_shaft(), bars.right_shaft()] {
             let away = circle.centre - shaft;
             for side in [circle.radius, -circle.radius] {
                 let touch = circle.centre + away * (side / away.length());
-                least = least.min(lci(bars, touch));
+                min = min.min(lci(bars, touch));
             }
         }
         let count = (rings * spokes) as f64;
         Self {
             mean: sum / count,
-            least,
+            least: min,
             most: climb(bars, circle, best, circle.radius / rings as f64),
             share_above: above as f64 / count,
             radius_above: Self::radius_above(bars, circle, rings),

@@ -35,10 +35,10 @@ impl Proportions {
     /// # Errors
     /// Returns the message that says which constraint is broken.
     pub fn new(r1: f64, r2: f64, r3: f64) -> Result<Self, String> {
-        for (name, value, most) in [("r1", r1, SUM), ("r2", r2, SUM), ("r3", r3, SUM / 2.0)] {
-            if !(value > 0.0 && value < most) {
+        for (name, value, max) in [("r1", r1, SUM), ("r2", r2, SUM), ("r3", r3, SUM / 2.0)] {
+            if !(value > 0.0 && value < max) {
                 return Err(format!(
-                    "{name} is {value}, it must lie between 0 and {most}"
+                    "{name} is {value}, it must lie between 0 and {max}"
                 ));
             }
             if value < MIN_LINK {

@@ -87,13 +87,11 @@ impl<'a> Search<'a> {
     }
 
     /// The number of pieces to compute.
-    #[must_use]
     pub fn pieces(&self) -> usize {
         self.points.len().div_ceil(AT_ONCE)
     }
 
     /// The designs of one piece that meet the demands.
-    #[must_use]
     pub fn piece(&self, index: usize) -> Vec<Design> {
         let points = self.points.chunks(AT_ONCE).nth(index).unwrap_or_default();
         let designs = points.par_iter().filter_map(|point| {
@@ -105,7 +103,6 @@ impl<'a> Search<'a> {
 }
 
 /// The designs of all pieces, the best first.
-#[must_use]
 pub fn ranked(pieces: Vec<Vec<Design>>) -> Vec<Design> {
     let mut designs = pieces.concat();
     rank(&mut designs);
@@ -199,23 +196,28 @@ fn slider(bars: &FiveBar, demands: &Demands) -> Slider {
 
 /// Least margin and mean conditioning index within a sweep.
 fn quality(bars: &FiveBar, neutral: f64, sweep: f64) -> (f64, f64) {
-    let mut least = f64::INFINITY;
+    let mut smallest = f64::INFINITY;
     let mut sum = 0.0;
     for i in ACROSS {
         let left = neutral + i * sweep;
-        least = least.min(left.to_radians().sin());
+        smallest = smallest.min(left.to_radians().sin());
         for j in ACROSS {
             if let Ok(pose) = bars.forward(left, 180.0 - neutral + j * sweep) {
-                least = least.min(pose.margin());
+                smallest = smallest.min(pose.margin());
                 sum += pose.lci();
             }
         }
     }
-    (least, sum / (ACROSS.len() * ACROSS.len()) as f64)
+    (smallest, sum / (ACROSS.len() * ACROSS.len()) as f64)
 }
 
 fn rank(designs: &mut [Design]) {
-    let best = |of: fn(&Design) -> f64| designs.iter().map(of).fold(f64::MIN_POSITIVE, f64::max);
+    let best = |quantity: fn(&Design) -> f64| {
+        designs
+            .iter()
+            .map(quantity)
+            .fold(f64::MIN_POSITIVE, f64::max)
+    };
     let (lci, margin, stride) = (best(|d| d.lci), best(|d| d.margin), best(|d| d.stride));
     let all = designs.to_vec();
     for design in designs.iter_mut() {

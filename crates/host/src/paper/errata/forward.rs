@@ -214,9 +214,9 @@ fn def(s: &Sample, base_sign: f64) -> (f64, f64, f64) {
 /// [-90, 90] degrees.
 fn vanishing_a(s: &Sample) -> Option<f64> {
     let a = |theta4: f64| abc(s, theta4).0;
-    let at = |i: i32| f64::from(i) * FRAC_PI_2 / 90.0;
-    let start = (-90..90).find(|&i| a(at(i)) * a(at(i + 1)) < 0.0)?;
-    let (mut low, mut high) = (at(start), at(start + 1));
+    let angle_at = |i: i32| f64::from(i) * FRAC_PI_2 / 90.0;
+    let start = (-90..90).find(|&i| a(angle_at(i)) * a(angle_at(i + 1)) < 0.0)?;
+    let (mut low, mut high) = (angle_at(start), angle_at(start + 1));
     for _ in 0..60 {
         let middle = (low + high) / 2.0;
         if a(low) * a(middle) <= 0.0 {

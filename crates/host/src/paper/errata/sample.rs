@@ -55,7 +55,7 @@ impl Sample {
         let lizard = paper_lizard();
         let mut random = Random(1);
         std::iter::repeat_with(move || {
-            let mut within = |least: f64| least + 90.0 * random.next();
+            let mut within = |min: f64| min + 90.0 * random.next();
             let pose = Pose {
                 theta1: within(90.0),
                 theta4: within(0.0),

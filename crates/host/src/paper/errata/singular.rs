@@ -320,9 +320,14 @@ fn active_block(s: &Sample, row: usize, first: usize, second: usize) -> [f64; 4]
 }
 
 /// A diagonal block of the true K*.
-fn passive_block(s: &Sample, at: usize) -> [f64; 4] {
+fn passive_block(s: &Sample, column: usize) -> [f64; 4] {
     let k = s.s.passive_matrix();
-    [k[at][at], k[at][at + 1], k[at + 1][at], k[at + 1][at + 1]]
+    [
+        k[column][column],
+        k[column][column + 1],
+        k[column + 1][column],
+        k[column + 1][column + 1],
+    ]
 }
 
 /// A printed side block: rear arm, then front arm with the sign of its sine.

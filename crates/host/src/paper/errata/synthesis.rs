@@ -156,13 +156,13 @@ fn lci_at(s: &Sample, shrink: f64) -> f64 {
         })
 }
 
-/// Counts the lengths l0 to l19 that the table leaves out, if `read` corrects the number of
+/// Counts the lengths l0 to l19 that the table leaves out, if `read_length` corrects the number of
 /// each entry.
-fn count_unlisted_links(read: fn(usize, f64) -> usize) -> f64 {
+fn count_unlisted_links(read_length: fn(usize, f64) -> usize) -> f64 {
     let named = |link: usize| {
         TABLE
             .iter()
-            .any(|(links, length)| links.iter().any(|&i| read(i, *length) == link))
+            .any(|(links, length)| links.iter().any(|&i| read_length(i, *length) == link))
     };
     (0..20).filter(|&link| !named(link)).count() as f64
 }

@@ -29,7 +29,6 @@ mod simulated;
 pub const CODE: &str = include_str!("../../../../../firmware/code.hex");
 
 /// A robot's name and hash, as its banner says them.
-#[must_use]
 pub fn label(robot: &CoreRobot) -> String {
     let name: String = robot.label().map(char::from).collect();
     format!("{name} {:08x}", robot.hash())

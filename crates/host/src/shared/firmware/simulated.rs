@@ -90,12 +90,12 @@ pub(crate) fn of_robot(
         return Err(FirmwareError::Missing(elf.display().to_string()).into());
     }
     let image = read(elf)?;
-    if let Some(its) = robot_in(&image.flash())
-        && its.hash() != robot.firmware().hash()
+    if let Some(label_in_image) = robot_in(&image.flash())
+        && label_in_image.hash() != robot.firmware().hash()
     {
         return Err(FirmwareError::OtherRobot {
             robot: file.name()?,
-            its: label(&its),
+            its: label(&label_in_image),
             wanted: label(robot.firmware()),
             elf: elf.to_owned(),
         }
@@ -116,7 +116,6 @@ pub(crate) fn code_bytes(image: &Image, robot: &Robot) -> u32 {
 ///
 /// # Panics
 /// Never: a test reads that code, and a robot's section has room.
-#[must_use]
 pub fn image_with(robot: &Robot) -> Image {
     let mut image = Image::parse_hex(CODE).expect("a test reads it");
     put_robot(&mut image, robot).expect("a robot's section has room");

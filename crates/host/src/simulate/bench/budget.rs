@@ -37,11 +37,10 @@ pub struct Row {
 
 impl Row {
     /// True if the figure keeps to its budget; a figure that was not measured passes.
-    #[must_use]
     pub fn is_met(&self) -> bool {
         self.measured.is_none_or(|measured| match self.budget {
-            Bound::AtMost(most) => measured <= most,
-            Bound::AtLeast(least) => measured >= least,
+            Bound::AtMost(max) => measured <= max,
+            Bound::AtLeast(min) => measured >= min,
             Bound::None => true,
         })
     }
@@ -70,7 +69,6 @@ const MAX_RUN_S: f64 = 60.0;
 const LONG_RUN_S: f64 = 600.0;
 
 /// The table of all figures.
-#[must_use]
 pub fn rows(figures: &Figures) -> Vec<Row> {
     use Bound::{AtLeast, AtMost};
     let row = |what, unit, measured, budget, servo_library| Row {
@@ -85,16 +83,16 @@ pub fn rows(figures: &Figures) -> Vec<Row> {
         wall_clock: true,
         ..row(what, unit, Some(measured), budget, None)
     };
-    let whole = |figure: Option<u64>| figure.map(|figure| figure as f64);
+    let to_f64 = |figure: Option<u64>| figure.map(|figure| figure as f64);
     let count = |figure: u64| Some(figure as f64);
     let f = figures;
     let [tick_mean, tick_worst] = if f.has_maps { TICK } else { TICK_WITHOUT_MAPS };
     #[rustfmt::skip]
     let table = vec![
-        row("pulse jitter, idle line", "cycles", whole(f.jitter_idle), AtMost(0.0), Some("77-113")),
-        row("pulse jitter, line saturated", "cycles", whole(f.jitter_flooded), AtMost(0.0), Some("121-135")),
-        row("width less command, worst", "cycles", whole(f.width_error), AtMost(0.0), None),
-        row("width resolution", "cycles", whole(f.resolution), AtMost(1.0), Some("16")),
+        row("pulse jitter, idle line", "cycles", to_f64(f.jitter_idle), AtMost(0.0), Some("77-113")),
+        row("pulse jitter, line saturated", "cycles", to_f64(f.jitter_flooded), AtMost(0.0), Some("121-135")),
+        row("width less command, worst", "cycles", to_f64(f.width_error), AtMost(0.0), None),
+        row("width resolution", "cycles", to_f64(f.resolution), AtMost(1.0), Some("16")),
         row("period less 20 ms, worst", "cycles", count(f.period_error), AtMost(0.0), None),
         row("servo pins high at once", "", count(f.pins_high.into()), AtMost(1.0), None),
         row("late edges counted", "", count(f.late), AtMost(0.0), None),
@@ -103,7 +101,7 @@ pub fn rows(figures: &Figures) -> Vec<Row> {
         row("  of which the guard", "cycles", f.guard, Bound::None, Some("35 400, float solve")),
         row("control tick, worst", "cycles", count(f.tick_worst), AtMost(tick_worst), None),
         row("  in a routine, mean", "cycles", f.routine_mean, AtMost(tick_mean), None),
-        row("  in a routine, worst", "cycles", whole(f.routine_worst), AtMost(tick_worst), None),
+        row("  in a routine, worst", "cycles", to_f64(f.routine_worst), AtMost(tick_worst), None),
         row("tick to frame, line saturated", "cycles", count(f.tick_latency), AtMost(IN_TIME), None),
         row("any other step, worst", "cycles", count(f.step), AtMost(LEFT_TO_MAIN * IN_TIME - tick_worst), None),
         row("main, mean per frame of a gait", "cycles", f.main, Bound::None, None),

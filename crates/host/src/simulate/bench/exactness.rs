@@ -38,32 +38,34 @@ impl Exactness {
         let pins = board.pins();
         let mut edges = board.uno.edges();
         let count = (board.uno.cycle() - first_cycle(first)) / FRAME;
-        let sent = frames(&edges, pins, first, count);
+        let frames_sent = frames(&edges, pins, first, count);
         let received = &board.uno.received_by_uno()[..commands];
-        let commanded = core_run::play(*robot, received, first, sent.len());
-        let known = banner.as_deref() == commanded.written.lines().next();
+        let commanded = core_run::play(*robot, received, first, frames_sent.len());
+        let is_known = banner.as_deref() == commanded.written.lines().next();
 
         let mut error = [i64::MAX, i64::MIN];
         let (mut period, mut step) = (0, 0);
-        for (frame, commanded) in sent.iter().zip(&commanded.widths) {
+        for (frame, commanded) in frames_sent.iter().zip(&commanded.widths) {
             for (width, commanded) in frame.widths.iter().zip(commanded) {
                 let difference = width.unwrap_or(0) as i64 - i64::from(*commanded);
                 error = [error[0].min(difference), error[1].max(difference)];
             }
         }
-        for pair in sent.windows(2) {
+        for pair in frames_sent.windows(2) {
             for servo in 0..4 {
-                if let (Some(here), Some(next)) = (pair[0].starts[servo], pair[1].starts[servo]) {
-                    period = (next - here).abs_diff(FRAME).max(period);
+                if let (Some(current), Some(next)) = (pair[0].starts[servo], pair[1].starts[servo])
+                {
+                    period = (next - current).abs_diff(FRAME).max(period);
                 }
-                if let (Some(here), Some(next)) = (pair[0].widths[servo], pair[1].widths[servo]) {
-                    step = common(step, here.abs_diff(next));
+                if let (Some(current), Some(next)) = (pair[0].widths[servo], pair[1].widths[servo])
+                {
+                    step = common(step, current.abs_diff(next));
                 }
             }
         }
         edges.retain(|edge| pins.contains(&edge.pin));
         Ok(Self {
-            error: known.then_some(error),
+            error: is_known.then_some(error),
             period,
             pins_high: most_pins_high(&edges),
             step: (step > 0).then_some(step),
@@ -72,7 +74,7 @@ impl Exactness {
 
     /// Peak to peak, cycles.
     pub fn jitter(&self) -> Option<u64> {
-        self.error.map(|[least, most]| most.abs_diff(least))
+        self.error.map(|[min, most]| most.abs_diff(min))
     }
 
     /// Worst deviation of a width from its command, cycles.

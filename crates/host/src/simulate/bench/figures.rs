@@ -151,11 +151,11 @@ impl Figures {
         let stack = StackDepth::of(&image).map_err(|e| Failure::Impossible(e.to_string()))?;
         progress("pulses on an idle line");
         let mut idle = Steady::of(awake()?, gait, 20_000)?;
-        let sent = idle.board.uno.received_by_uno().len();
-        let idle_exact = Exactness::of(&mut idle.board, robot.firmware(), sent)?;
+        let bytes_sent = idle.board.uno.received_by_uno().len();
+        let idle_exact = Exactness::of(&mut idle.board, robot.firmware(), bytes_sent)?;
         progress("pulses on a saturated line");
-        let (mut flooded, sent) = flood(awake()?, turn)?;
-        let flooded_exact = Exactness::of(&mut flooded, robot.firmware(), sent)?;
+        let (mut flooded, bytes_sent) = flood(awake()?, turn)?;
+        let flooded_exact = Exactness::of(&mut flooded, robot.firmware(), bytes_sent)?;
         progress("every command");
         let mut session = session(awake()?, robot)?;
         progress("the control tick in every motion");
@@ -172,9 +172,9 @@ impl Figures {
         progress("serial interrupts");
         let serial_interrupt = longest_serial(awake, turn)?;
         progress("ten minutes of a gait");
-        let begin = Instant::now();
+        let start = Instant::now();
         let long = Steady::of(awake()?, gait, LONG_RUN_MS)?;
-        let wall = begin.elapsed().as_secs_f64();
+        let wall = start.elapsed().as_secs_f64();
 
         let frames = idle.cycles as f64 / FRAME as f64;
         let of_gait = |figure: f64| moves.then_some(figure);
@@ -220,13 +220,13 @@ pub fn longest_step(elf: &Path, robot: &Robot) -> Result<u64, BoardError> {
     let gait = tour::gaits(robot)
         .first()
         .map_or("stand".into(), |gait| command(gait));
-    let mut most = 0;
+    let mut largest = 0;
     for function in STEPS {
         let mut board = SimulatedBoard::power_on(elf, Fidelity::DataSheet, robot)?;
         board.run_ms(1000)?;
-        most = longest(board, function, &gait, &long_lines(robot))?.max(most);
+        largest = longest(board, function, &gait, &long_lines(robot))?.max(largest);
     }
-    Ok(most)
+    Ok(largest)
 }
 
 /// The console command of a gait.
@@ -255,10 +255,11 @@ impl Steady {
                 board.handler_cycles(|vector| SERVO_VECTORS.contains(&vector)),
             ]
         };
-        let before = counts(&board);
+        let counts_before = counts(&board);
         board.run_ms(ms)?;
-        let after = counts(&board);
-        let [cycles, awake, in_handlers, in_servos] = std::array::from_fn(|i| after[i] - before[i]);
+        let counts_after = counts(&board);
+        let [cycles, awake, in_handlers, in_servos] =
+            std::array::from_fn(|i| counts_after[i] - counts_before[i]);
         Ok(Self {
             board,
             cycles,
@@ -273,23 +274,23 @@ impl Steady {
 /// while the robot walks and as many bytes come back. Also returns the number of bytes
 /// received before.
 fn flood(mut board: SimulatedBoard, gait: &str) -> Result<(SimulatedBoard, usize), BoardError> {
-    let before = saturate(&mut board, gait)?;
+    let received_before = saturate(&mut board, gait)?;
     board.run_ms(20_000)?;
     board.uno.flood(b"");
     board.run_ms(300)?;
     // What is left of the flood ends with this line.
     board.uno.send(b"\n");
     board.run_ms(100)?;
-    Ok((board, before))
+    Ok((board, received_before))
 }
 
 /// Returns how many bytes came before the flood.
 fn saturate(board: &mut SimulatedBoard, gait: &str) -> Result<usize, BoardError> {
     board.say("watch 1")?;
     board.say(gait)?;
-    let before = board.uno.received_by_uno().len();
+    let received_before = board.uno.received_by_uno().len();
     board.uno.flood(b"status\n");
-    Ok(before)
+    Ok(received_before)
 }
 
 /// Everything one can ask for that moves: each gait from the one before, a far
@@ -350,12 +351,12 @@ fn times(
 fn long_lines(robot: &Robot) -> Vec<String> {
     let names = || robot.gaits().iter().map(|gait| command(gait.name()));
     let alike = |line: &String| -> usize {
-        let same = |name: String| {
+        let is_same_name = |name: String| {
             zip(name.bytes(), line.bytes())
                 .take_while(|(a, b)| a == b)
                 .count()
         };
-        names().map(same).sum()
+        names().map(is_same_name).sum()
     };
     let nearly = names().max_by_key(alike).unwrap_or_default();
     let mut lines = LONG_LINES.map(str::to_owned).to_vec();
@@ -375,14 +376,14 @@ fn longest(
     lines: &[String],
 ) -> Result<u64, BoardError> {
     board.say(gait)?;
-    let mut most = 0;
+    let mut largest = 0;
     for line in lines {
         board.uno.send(line.as_bytes());
         board.uno.send(b"\n");
         let calls = board.time_calls(function, 400)?;
-        most = most.max(worst(&calls));
+        largest = largest.max(worst(&calls));
     }
-    Ok(most)
+    Ok(largest)
 }
 
 /// The ticks of half a minute of a patrol, in which the button and then the nose are pressed now

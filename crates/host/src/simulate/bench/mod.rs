@@ -94,7 +94,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     if broken.is_empty() {
         Ok(())
     } else {
-        let which = broken.join(", ");
-        Err(Failure::Impossible(format!("over budget: {which}")))
+        let names = broken.join(", ");
+        Err(Failure::Impossible(format!("over budget: {names}")))
     }
 }

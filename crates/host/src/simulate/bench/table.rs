@@ -17,8 +17,8 @@ pub fn print(rows: &[Row], gait: Option<&str>, out: &mut impl Write) -> io::Resu
     )?;
     for row in rows {
         let budget = match row.budget {
-            Bound::AtMost(most) => format!("at most {}", grouped(most, 0)),
-            Bound::AtLeast(least) => format!("at least {}", grouped(least, 0)),
+            Bound::AtMost(max) => format!("at most {}", grouped(max, 0)),
+            Bound::AtLeast(min) => format!("at least {}", grouped(min, 0)),
             Bound::None => "-".to_owned(),
         };
         let decimals = if row.unit == "%" || row.unit == "s" {

@@ -106,7 +106,6 @@ impl ServoFrame {
 }
 
 /// Reads frames back into angles.
-#[must_use]
 pub fn instants(robot: &Robot, frames: &[Frame]) -> Vec<ServoFrame> {
     let seconds = |frame: &Frame| frame.start as f64 / FREQUENCY as f64;
     frames
@@ -152,17 +151,16 @@ impl Serialize for Run<'_> {
 
 /// Each servo's row of the table. `commands` are the widths in cycles that the
 /// firmware's core asked for, frame by frame, 0 for none.
-#[must_use]
 pub fn servos(run: Run<'_>, commands: Option<&[[u16; 4]]>) -> Vec<ServoReport> {
     let frames = &run.log.widths;
     let mut slew = [0.0f64; 4];
-    let mut before = None;
-    for angles in run.instants().map(|at| at.angles) {
-        if let (Some(before), Some(angles)) = (before, angles) {
-            let before: [f64; 4] = before;
-            slew = std::array::from_fn(|i| slew[i].max((angles[i] - before[i]).abs()));
+    let mut angles_before = None;
+    for angles in run.instants().map(|instant| instant.angles) {
+        if let (Some(angles_before), Some(angles)) = (angles_before, angles) {
+            let angles_before: [f64; 4] = angles_before;
+            slew = std::array::from_fn(|i| slew[i].max((angles[i] - angles_before[i]).abs()));
         }
-        before = angles;
+        angles_before = angles;
     }
     let row = |i: usize| {
         let widths = || frames.iter().map(move |frame| frame[i]).filter(|w| *w > 0);
@@ -188,7 +186,6 @@ pub fn servos(run: Run<'_>, commands: Option<&[[u16; 4]]>) -> Vec<ServoReport> {
 }
 
 /// Solves every pose of the run.
-#[must_use]
 pub fn safety(run: Run<'_>) -> Safety {
     let mut safety = Safety {
         least: None,
@@ -223,7 +220,7 @@ impl Safety {
             Ok(solution) => solution,
         };
         let (check, value) = solution.margins.min();
-        if self.least.as_ref().is_none_or(|least| value < least.value) {
+        if self.least.as_ref().is_none_or(|min| value < min.value) {
             self.least = Some(SmallestMargin {
                 margin: check.to_string(),
                 value,
@@ -241,13 +238,12 @@ impl Safety {
 /// The path under each command by the contact model, and the path of the complete run as the
 /// last one. Legs count as rigid, so that each pair of frames is computed once; `lizard twin`
 /// lets them lag. Feet are never lifted: see [`lizard_robot::Ground`].
-#[must_use]
 pub fn command_paths(run: Run<'_>, spans: &[Span]) -> Vec<CommandPath> {
     let mut steps = Steps {
         run,
         known: HashMap::new(),
     };
-    let mut whole = NOWHERE;
+    let mut sum = NOWHERE;
     let mut all_known = [true; 3];
     let mut predictions = HashMap::new();
     let mut paths = Vec::with_capacity(spans.len() + 1);
@@ -256,21 +252,21 @@ pub fn command_paths(run: Run<'_>, spans: &[Span]) -> Vec<CommandPath> {
         for n in run.log.index(span.from)..run.log.index(span.to) {
             let step = steps.from(n);
             travel = followed_by(travel, step);
-            whole = followed_by(whole, step);
+            sum = followed_by(sum, step);
         }
-        let known = *predictions
+        let predicted = *predictions
             .entry(span.command.as_str())
             .or_insert_with(|| decided_parts(run.robot, &span.command));
-        all_known = std::array::from_fn(|part| all_known[part] && known[part]);
+        all_known = std::array::from_fn(|part| all_known[part] && predicted[part]);
         paths.push(CommandPath::new(
             &span.command,
             [span.from, span.to],
             travel,
-            known,
+            predicted,
         ));
     }
     let end = spans.last().map_or(0.0, |span| span.to);
-    paths.push(CommandPath::new("all", [0.0, end], whole, all_known));
+    paths.push(CommandPath::new("all", [0.0, end], sum, all_known));
     paths
 }
 
@@ -278,8 +274,8 @@ pub fn command_paths(run: Run<'_>, spans: &[Span]) -> Vec<CommandPath> {
 /// gait's path may depend on a tie, and so may that of some of its cycles.
 fn decided_parts(robot: &Robot, command: &str) -> [bool; 3] {
     robot.gait_of_line(command).map_or([true; 3], |gait| {
-        let way = robot.predict(gait);
-        [way.forward, way.left, way.turn].map(|part| part.is_some())
+        let prediction = robot.predict(gait);
+        [prediction.forward, prediction.left, prediction.turn].map(|part| part.is_some())
     })
 }
 
@@ -328,7 +324,10 @@ impl Steps<'_> {
         if let Some(travel) = self.known.get(&pair) {
             return *travel;
         }
-        let sweeps = self.run.within(n..n + 2).filter_map(|at| at.sweeps);
+        let sweeps = self
+            .run
+            .within(n..n + 2)
+            .filter_map(|instant| instant.sweeps);
         let travel = self.run.robot.ground().rigid().travel(sweeps);
         if self.known.len() < KEPT {
             self.known.insert(pair, travel);

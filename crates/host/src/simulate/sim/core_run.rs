@@ -87,13 +87,11 @@ pub struct Commands {
 /// Runs the core of a robot along with a recording: `received` are the bytes that
 /// reached the UNO, `first` is the cycle of A1's first pulse, `count` the number of
 /// frames from there on. Exact except for the lines of [`undecided`].
-#[must_use]
 pub fn play(robot: Robot<'static>, received: &[SerialByte], first: u64, count: usize) -> Commands {
     play_with_contacts(robot, received, &[], first, count)
 }
 
 /// The same with contacts that close and open.
-#[must_use]
 pub fn play_with_contacts(
     robot: Robot<'static>,
     received: &[SerialByte],

@@ -12,16 +12,15 @@ const SHOWN: usize = 3;
 /// and how many follow, unless it is to print all.
 #[derive(Debug)]
 pub struct Printer {
-    all: bool,
+    shows_all: bool,
     /// Lines of the present run of `# t=` lines.
     run: usize,
 }
 
 impl Printer {
     /// A printer of all lines, or one that shortens runs.
-    #[must_use]
-    pub fn new(all: bool) -> Self {
-        Self { all, run: 0 }
+    pub fn new(shows_all: bool) -> Self {
+        Self { shows_all, run: 0 }
     }
 
     /// Prints a line.
@@ -30,7 +29,7 @@ impl Printer {
     /// Fails if writing fails.
     pub fn print(&mut self, line: &DialogueLine, out: &mut impl Write) -> io::Result<()> {
         let watch = line.from == Sender::Robot && line.text.starts_with("# t=");
-        if watch && !self.all {
+        if watch && !self.shows_all {
             self.run += 1;
             if self.run > SHOWN {
                 return Ok(());
@@ -71,9 +70,9 @@ impl Printer {
 mod tests {
     use super::*;
 
-    fn print_lines(all: bool, lines: &[(Sender, &str)]) -> String {
+    fn print_lines(shows_all: bool, lines: &[(Sender, &str)]) -> String {
         let mut out = Vec::new();
-        let mut printer = Printer::new(all);
+        let mut printer = Printer::new(shows_all);
         for (from, text) in lines {
             let (ms, from, text) = (1500.0, *from, (*text).to_owned());
             let line = DialogueLine { ms, from, text };

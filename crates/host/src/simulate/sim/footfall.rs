@@ -32,15 +32,14 @@ pub struct FootSpan {
 }
 
 /// The movements of a servo's foot, in order of time. `None` while it rests.
-#[must_use]
 pub fn foot_spans(
     instants: impl Iterator<Item = ServoFrame> + Clone,
     servo: usize,
 ) -> Vec<FootSpan> {
     let frame = FRAME as f64 / FREQUENCY as f64;
     let mut spans: Vec<FootSpan> = Vec::new();
-    for (here, next) in instants.clone().zip(instants.skip(1)) {
-        let (Some(before), Some(after)) = (here.sweeps, next.sweeps) else {
+    for (current, next) in instants.clone().zip(instants.skip(1)) {
+        let (Some(before), Some(after)) = (current.sweeps, next.sweeps) else {
             continue;
         };
         let rate = (after[servo] - before[servo]) / frame;
@@ -51,7 +50,7 @@ pub fn foot_spans(
         } else {
             Phase::Stance
         };
-        let (from, to) = (here.seconds, next.seconds);
+        let (from, to) = (current.seconds, next.seconds);
         match spans.last_mut() {
             Some(last) if last.phase == phase && from - last.to < frame / 2.0 => last.to = to,
             _ => spans.push(FootSpan { phase, from, to }),

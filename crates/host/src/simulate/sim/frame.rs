@@ -23,7 +23,6 @@ pub struct Frame {
 
 impl Frame {
     /// The four widths, if all four servos have a pulse.
-    #[must_use]
     pub fn all(&self) -> Option<[u64; 4]> {
         let [a1, a2, a3, a4] = self.widths;
         Some([a1?, a2?, a3?, a4?])
@@ -33,41 +32,35 @@ impl Frame {
     ///
     /// # Panics
     /// If a servo has no pulse in this frame.
-    #[must_use]
     pub fn widths(&self) -> [u64; 4] {
         self.all()
             .unwrap_or_else(|| panic!("a servo has no pulse: {self:?}"))
     }
 
     /// True if no servo has a pulse: the robot rests.
-    #[must_use]
     pub fn is_silent(&self) -> bool {
         self.widths == [None; 4]
     }
 }
 
 /// The pins of the robot's servos A1, A2, A3, A4.
-#[must_use]
 pub fn servo_pins(robot: &Robot) -> [Pin; 4] {
     robot.servos().map(|servo| Pin::arduino(servo.pin))
 }
 
 /// The first cycle that belongs to the frame which starts at cycle `start`: half
 /// a slot earlier, so that no pulse falls between two frames.
-#[must_use]
 pub fn first_cycle(start: u64) -> u64 {
     start.saturating_sub(SLOT / 2)
 }
 
 /// Start of the first frame that opens at cycle `now` or later, on the grid of
 /// frames that `anchor` is a start of.
-#[must_use]
 pub fn next_start(anchor: u64, now: u64) -> u64 {
     anchor + (now + SLOT / 2).saturating_sub(anchor).div_ceil(FRAME) * FRAME
 }
 
 /// Cycle of A1's latest rising edge.
-#[must_use]
 pub fn latest_start(edges: &[Edge], pins: [Pin; 4]) -> Option<u64> {
     edges
         .iter()
@@ -77,7 +70,6 @@ pub fn latest_start(edges: &[Edge], pins: [Pin; 4]) -> Option<u64> {
 }
 
 /// The `count` frames from cycle `start` on.
-#[must_use]
 pub fn frames(edges: &[Edge], pins: [Pin; 4], start: u64, count: u64) -> Vec<Frame> {
     let empty = |n| Frame {
         start: start + n * FRAME,

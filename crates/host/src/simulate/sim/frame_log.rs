@@ -21,13 +21,11 @@ pub struct FrameLog {
 
 impl FrameLog {
     /// Seconds from power-on to the start of frame number `n`.
-    #[must_use]
     pub fn seconds(&self, n: usize) -> f64 {
         (self.first + n as u64 * FRAME) as f64 / FREQUENCY as f64
     }
 
     /// Number of the first frame that starts at a time or later.
-    #[must_use]
     pub fn index(&self, seconds: f64) -> usize {
         let since = seconds * FREQUENCY as f64 - self.first as f64;
         let n = (since / FRAME as f64).ceil().max(0.0) as usize;
@@ -43,12 +41,11 @@ pub struct FrameReader {
     rise: [Option<u64>; 4],
     /// Each servo's latest pulse: number of its frame, cycle of its start.
     latest: [Option<(usize, u64)>; 4],
-    started: bool,
+    has_started: bool,
 }
 
 impl FrameReader {
     /// Reads the pulses of these pins, A1 to A4; there is room for `frames`.
-    #[must_use]
     pub fn new(pins: [Pin; 4], frames: usize) -> Self {
         Self {
             pins,
@@ -58,7 +55,7 @@ impl FrameReader {
             },
             rise: [None; 4],
             latest: [None; 4],
-            started: false,
+            has_started: false,
         }
     }
 
@@ -71,24 +68,24 @@ impl FrameReader {
                 continue;
             };
             if edge.high {
-                if servo == 0 && !self.started {
+                if servo == 0 && !self.has_started {
                     self.log.first = edge.cycle;
-                    self.started = true;
+                    self.has_started = true;
                 }
                 self.rise[servo] = Some(edge.cycle);
                 let high = self.rise.iter().flatten().count() as u32;
                 self.log.most_pins_high = self.log.most_pins_high.max(high);
             } else if let Some(start) = self.rise[servo].take() {
-                self.pulse(servo, start, edge.cycle - start);
+                self.record_pulse(servo, start, edge.cycle - start);
             }
         }
     }
 
-    fn pulse(&mut self, servo: usize, start: u64, width: u64) {
+    fn record_pulse(&mut self, servo: usize, start: u64, width: u64) {
         let Some(since) = start.checked_sub(first_cycle(self.log.first)) else {
             return;
         };
-        if !self.started {
+        if !self.has_started {
             return;
         }
         let n = (since / FRAME) as usize;
@@ -105,9 +102,8 @@ impl FrameReader {
     }
 
     /// Finishes the log with the complete frames up to a cycle.
-    #[must_use]
     pub fn finish(mut self, cycle: u64) -> FrameLog {
-        let whole = if self.started {
+        let whole = if self.has_started {
             (cycle - first_cycle(self.log.first)) / FRAME
         } else {
             0

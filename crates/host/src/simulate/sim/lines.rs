@@ -13,7 +13,6 @@ pub struct Line {
 
 impl Line {
     /// True if this is the final line of a command's answer, not information.
-    #[must_use]
     pub fn is_answer(&self) -> bool {
         !self.text.starts_with('#')
     }

@@ -77,14 +77,11 @@ pub struct Args {
     /// The fidelity of the simulated chip
     #[arg(long, value_enum, default_value_t)]
     fidelity: FidelityArg,
-    /// Run in real time
-    #[arg(long)]
-    realtime: bool,
     /// Act as a board on USB instead: in real time at a pseudo terminal that other
     /// programs can open, until Ctrl-C. LINK becomes a link to it
     #[cfg(target_os = "linux")]
     #[arg(long, value_name = "LINK", num_args = 0..=1,
-          conflicts_with_all = ["gait", "script", "duration", "all", "json", "svg", "realtime"])]
+          conflicts_with_all = ["gait", "script", "duration", "all", "json", "svg"])]
     pty: Option<Option<PathBuf>>,
     /// With --pty: a new board, with this boot loader in flash (ELF) and no firmware, so
     /// that `make flash` can write it
@@ -163,8 +160,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let Firmware { name, image } = firmware::of_robot(args.elf.as_deref(), &args.robot, &robot)?;
     let mut uno = Uno::with_image(image, fidelity);
     supplies::connect(&mut uno, &robot);
-    let mut kept = Vec::new();
-    let recording = record(&mut uno, &robot, &script, &args, &mut kept)?;
+    let mut printed = Vec::new();
+    let recording = record(&mut uno, &robot, &script, &args, &mut printed)?;
 
     let spinner = Spinner::new("looking at every frame");
     let spans = spans::spans(&script, &recording.answers);
@@ -192,7 +189,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         resets: uno.resets(),
         ended: end_message(&recording.state),
         svg: Some(args.svg.display().to_string()),
-        dialogue: kept,
+        dialogue: printed,
         frames,
     };
     drop(spinner);
@@ -214,16 +211,16 @@ fn record(
     robot: &Robot,
     script: &Script,
     args: &Args,
-    kept: &mut Vec<DialogueLine>,
+    printed: &mut Vec<DialogueLine>,
 ) -> io::Result<Recording> {
     let bar = simulated_time(script.end_ms);
     let mut printer = Printer::new(args.all);
     let mut out = io::stdout();
     let pins = frame::servo_pins(robot);
-    let recording = session::play(uno, pins, script, args.realtime, |event| {
+    let recording = session::play(uno, pins, script, |event| {
         match event {
             Event::Time(ms) => bar.set_position(ms),
-            Event::Line(line) if args.json => kept.push(line.clone()),
+            Event::Line(line) if args.json => printed.push(line.clone()),
             Event::Line(line) => return bar.suspend(|| printer.print(line, &mut out)),
         }
         Ok(())
@@ -247,8 +244,8 @@ fn commands(robot: &Robot, recording: &Recording, contacts: &[Change]) -> Option
         log.first,
         log.widths.len(),
     );
-    let same = recording.banner.as_deref()? == commands.written.lines().next()?;
-    same.then_some(commands.widths)
+    let is_same = recording.banner.as_deref()? == commands.written.lines().next()?;
+    is_same.then_some(commands.widths)
 }
 
 fn end_message(state: &State) -> String {
@@ -257,22 +254,22 @@ fn end_message(state: &State) -> String {
         State::Halted => "the firmware sleeps with interrupts off, forever".to_owned(),
         State::Crashed { pc, message } => {
             // The simulator's name for it, where it has no words.
-            let why = match message.as_str() {
+            let reason = match message.as_str() {
                 "avr_sadly_crashed" => "no such instruction or address",
                 words => words,
             };
-            format!("the firmware crashed at {pc:#06x}: {why}")
+            format!("the firmware crashed at {pc:#06x}: {reason}")
         }
         State::Off => "the board has no power".to_owned(),
     }
 }
 
 fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
-    let given = args.duration.map(|seconds| (seconds * 1000.0) as u64);
+    let given_ms = args.duration.map(|seconds| (seconds * 1000.0) as u64);
     if let Some(path) = &args.script {
         let script = read_script(path)?;
         return Ok(Script {
-            end_ms: given.unwrap_or(script.end_ms),
+            end_ms: given_ms.unwrap_or(script.end_ms),
             ..script
         });
     }
@@ -286,11 +283,11 @@ fn script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
             did_you_mean(gait, names)
         )));
     }
-    let ms = given.unwrap_or(12_000);
+    let ms = given_ms.unwrap_or(12_000);
     if ms < Script::SHORTEST_MS {
-        let least = Script::SHORTEST_MS / 1000;
+        let min = Script::SHORTEST_MS / 1000;
         return Err(Failure::Input(format!(
-            "--duration must be at least {least} s without --script"
+            "--duration must be at least {min} s without --script"
         )));
     }
     Ok(args.gait.as_deref().map_or_else(

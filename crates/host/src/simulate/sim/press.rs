@@ -89,13 +89,13 @@ mod tests {
     fn a_press_is_a_name_and_a_time_or_a_span() {
         assert_eq!("button@2".parse(), Ok(press("button", 2_000, 2_200)));
         assert_eq!("nose@5.5-8".parse(), Ok(press("nose", 5_500, 8_000)));
-        for (wrong, why) in [
+        for (wrong, reason) in [
             ("button", "it is not NAME@SECONDS or NAME@FROM-TO"),
             ("button@soon", "it is not a number"),
             ("button@3-2", "it ends before it begins"),
             ("button@-1-2", "it is not a number"),
         ] {
-            assert_eq!(wrong.parse::<Press>(), Err(why.to_owned()), "{wrong}");
+            assert_eq!(wrong.parse::<Press>(), Err(reason.to_owned()), "{wrong}");
         }
     }
 }

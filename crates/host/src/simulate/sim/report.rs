@@ -132,13 +132,13 @@ impl Report<'_> {
     }
 
     fn print_rest(&self, out: &mut impl Write) -> io::Result<()> {
-        if let Some(least) = &self.safety.least {
+        if let Some(min) = &self.safety.least {
             writeln!(
                 out,
                 "smallest margin {:.3} ({}) at {:.2} s; slider travel {:+.1} to {:+.1} mm",
-                least.value,
-                least.margin,
-                least.seconds,
+                min.value,
+                min.margin,
+                min.seconds,
                 tidy(self.safety.stroke[0], 1),
                 tidy(self.safety.stroke[1], 1)
             )?;
@@ -182,7 +182,6 @@ pub struct Ram {
 
 impl Ram {
     /// The RAM of a UNO's program; `None` if the image does not say where its data ends.
-    #[must_use]
     pub fn of(uno: &Uno) -> Option<Self> {
         let static_ram = uno.image().static_ram();
         (static_ram > 0).then(|| Self {

@@ -54,7 +54,6 @@ impl Script {
 
     /// Boot, gaits one after the other, stop, status, rest, within `ms`. The
     /// last gait gets what is left of the time.
-    #[must_use]
     pub fn of_gaits(gaits: &[&str], ms: u64) -> Self {
         let time = ms - STAND_MS - CLOSE_MS;
         // Of two gaits the first gets the longer part.

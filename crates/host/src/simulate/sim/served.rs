@@ -58,7 +58,7 @@ pub(super) fn until_interrupted(
     let mut out = io::stdout();
     writeln!(out, "the simulated UNO is at {}", name.display())?;
     writeln!(out, "{opening}; Ctrl-C ends it")?;
-    let mut told = State::Alive;
+    let mut printed = State::Alive;
     let mut contacts = contacts.iter().peekable();
     loop {
         while let Some(change) = contacts.next_if(|change| change.ms as f64 <= uno.ms()) {
@@ -74,9 +74,9 @@ pub(super) fn until_interrupted(
         .map_err(|error| Failure::Impossible(format!("the pseudo terminal: {error}")))?;
         uno.take_edges();
         uno.take_marks();
-        if *uno.state() != told {
-            told = uno.state().clone();
-            writeln!(out, "{}", end_message(&told, uno.flash(), &name))?;
+        if *uno.state() != printed {
+            printed = uno.state().clone();
+            writeln!(out, "{}", end_message(&printed, uno.flash(), &name))?;
         }
     }
 }

@@ -60,8 +60,7 @@ pub struct Recording {
     pub wall: Duration,
 }
 
-/// Plays a script from power-on. `realtime` waits for the wall clock. `on_event`
-/// gets what happens, in order of time.
+/// Plays a script from power-on. `on_event` gets what happens, in order of time.
 ///
 /// # Errors
 /// Returns the errors of `on_event`, which end the run.
@@ -69,10 +68,9 @@ pub fn play(
     uno: &mut Uno,
     pins: [Pin; 4],
     script: &Script,
-    realtime: bool,
     on_event: impl FnMut(Event<'_>) -> io::Result<()>,
 ) -> io::Result<Recording> {
-    let begin = Instant::now();
+    let start = Instant::now();
     let frames = script.end_ms as usize / 20 + 1;
     let mut dialogue = Dialogue {
         reader: LineReader::default(),
@@ -104,9 +102,6 @@ pub fn play(
         pulses.read(uno.take_edges());
         ms = until;
         (dialogue.on_event)(Event::Time(ms))?;
-        if realtime {
-            std::thread::sleep(Duration::from_millis(ms).saturating_sub(begin.elapsed()));
-        }
     }
     dialogue.answers.resize(script.steps.len(), None);
     Ok(Recording {
@@ -116,7 +111,7 @@ pub fn play(
         received_by_uno: uno.received_by_uno(),
         cycles: uno.cycle(),
         state: uno.state().clone(),
-        wall: begin.elapsed(),
+        wall: start.elapsed(),
     })
 }
 

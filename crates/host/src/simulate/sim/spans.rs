@@ -26,7 +26,6 @@ fn changes_motion(command: &str) -> bool {
 /// The commands that changed the motion, in order of time, after the stand that
 /// the robot wakes to. A command that was refused changes nothing: the one
 /// before it continues.
-#[must_use]
 pub fn spans(script: &Script, answers: &[Option<String>]) -> Vec<Span> {
     let mut starts = vec![(0.0, "stand")];
     for (step, answer) in script.steps.iter().zip(answers) {

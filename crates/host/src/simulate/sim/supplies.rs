@@ -16,7 +16,6 @@ const FULL_SCALE: f64 = 1_024.0;
 
 /// The analogue pin that measures the servos' rail, and the voltage there, mV. `None` if
 /// none does.
-#[must_use]
 pub fn at_pin(robot: &Robot) -> Option<(Pin, u16)> {
     let mv = healthy_rail_mv(&robot.firmware().supplies())?;
     Some((Pin::arduino(robot.firmware().rail_pin()?), mv as u16))

@@ -44,7 +44,6 @@ pub const SIMULATED: Caption = Caption {
 };
 
 /// The picture as SVG text. `spans` are the commands that were in effect.
-#[must_use]
 pub fn draw(run: Run<'_>, spans: &[Span], caption: &Caption) -> String {
     let end = spans.last().map_or(0.0, |span| span.to);
     let chart = Chart {
@@ -55,13 +54,13 @@ pub fn draw(run: Run<'_>, spans: &[Span], caption: &Caption) -> String {
     };
     let reach = chart.reach();
     let mut group = title(Group::new(), LEFT, caption.title, caption.note);
-    group = chart.commands(group);
+    group = chart.draw_commands(group);
     for servo in 0..4 {
-        group = chart.strip(group, servo, reach);
-        group = chart.feet(group, servo);
+        group = chart.draw_strip(group, servo, reach);
+        group = chart.draw_feet(group, servo);
     }
-    group = chart.marks(group);
-    group = chart.axis(group);
+    group = chart.draw_marks(group);
+    group = chart.draw_axis(group);
     page((WIDTH, HEIGHT), group)
 }
 
@@ -78,15 +77,15 @@ impl Chart<'_> {
     }
 
     /// The band with the command in effect.
-    fn commands(&self, mut group: Group) -> Group {
+    fn draw_commands(&self, mut group: Group) -> Group {
         for (n, Span { from, to, command }) in self.spans.iter().enumerate() {
             let (x, end) = (self.x(*from), self.x(*to));
             let fill = if n % 2 == 0 { "#e6e6e6" } else { "#d2d2d2" };
             group = group.add(rectangle((x, COMMANDS), (end - x, 26.0), fill));
             // About 7.5 px a letter: leave out what would run over.
             if command.len() as f64 * 7.5 < end - x {
-                let at = ((x + end) / 2.0, COMMANDS + 18.0);
-                group = group.add(text_middle(command, at, 15.0));
+                let position = ((x + end) / 2.0, COMMANDS + 18.0);
+                group = group.add(text_middle(command, position, 15.0));
             }
         }
         group.add(text(
@@ -99,7 +98,7 @@ impl Chart<'_> {
     }
 
     /// A line across the complete picture at each command.
-    fn marks(&self, mut group: Group) -> Group {
+    fn draw_marks(&self, mut group: Group) -> Group {
         for span in self.spans.iter().skip(1) {
             let x = self.x(span.from);
             let mark = line((x, COMMANDS), (x, AXIS), GREY, 1.0);
@@ -111,19 +110,24 @@ impl Chart<'_> {
     /// Half the height of every strip in degrees, the same for all so that
     /// slopes compare.
     fn reach(&self) -> f64 {
-        let sweeps = self.run.instants().filter_map(|at| at.sweeps).flatten();
-        (sweeps.fold(20.0, |most: f64, sweep| most.max(sweep.abs())) / 10.0).ceil() * 10.0 + 5.0
+        let sweeps = self
+            .run
+            .instants()
+            .filter_map(|instant| instant.sweeps)
+            .flatten();
+        (sweeps.fold(20.0, |largest: f64, sweep| largest.max(sweep.abs())) / 10.0).ceil() * 10.0
+            + 5.0
     }
 
-    fn strip(&self, mut group: Group, servo: usize, reach: f64) -> Group {
+    fn draw_strip(&self, mut group: Group, servo: usize, reach: f64) -> Group {
         let top = STRIPS + servo as f64 * (STRIP + STRIP_GAP);
         let neutral = self.run.robot.servos()[servo].neutral;
         let y = |angle: f64| top + STRIP / 2.0 * (1.0 - (angle - neutral) / reach);
-        let (begin, end) = (self.x(0.0), self.x(self.seconds));
+        let (start, end) = (self.x(0.0), self.x(self.seconds));
         let name = format!("{} {}", NAMES[servo], PLACES[servo]);
         let pin = pin_name(self.run.robot.servos()[servo].pin);
         group = group
-            .add(rectangle((begin, top), (end - begin, STRIP), PANEL))
+            .add(rectangle((start, top), (end - start, STRIP), PANEL))
             .add(
                 text(
                     &name,
@@ -145,15 +149,15 @@ impl Chart<'_> {
         let first = -(reach / step).floor() as i32;
         for n in first..=-first {
             let angle = neutral + f64::from(n) * step;
-            let rule = line((begin, y(angle)), (end, y(angle)), GRID, 1.0);
+            let rule = line((start, y(angle)), (end, y(angle)), GRID, 1.0);
             group = group.add(if n == 0 {
                 rule.set("stroke", "#999999").set("stroke-dasharray", "6 4")
             } else {
                 rule
             });
             let label = format!("{angle:.0}°");
-            let at = (LEFT - 8.0, y(angle) + 4.5);
-            group = group.add(text(&label, at, 13.0, GREY, Anchor::End));
+            let position = (LEFT - 8.0, y(angle) + 4.5);
+            group = group.add(text(&label, position, 13.0, GREY, Anchor::End));
         }
         for run in self.runs(servo) {
             let points: Vec<(f64, f64)> = run
@@ -170,11 +174,11 @@ impl Chart<'_> {
     fn runs(&self, servo: usize) -> Vec<Vec<(f64, f64)>> {
         let dense = self.run.log.widths.len() as f64 > 4.0 * (WIDTH - LEFT - RIGHT);
         let mut runs = vec![Curve::default()];
-        for at in self.run.instants() {
-            match (at.angles, runs.last_mut()) {
+        for instant in self.run.instants() {
+            match (instant.angles, runs.last_mut()) {
                 (Some(angles), Some(run)) => {
-                    let column = dense.then(|| self.x(at.seconds) as i64);
-                    run.add(column, (at.seconds, angles[servo]));
+                    let column = dense.then(|| self.x(instant.seconds) as i64);
+                    run.add(column, (instant.seconds, angles[servo]));
                 }
                 (None, Some(run)) if run.points.is_empty() => {}
                 _ => runs.push(Curve::default()),
@@ -186,16 +190,16 @@ impl Chart<'_> {
             .collect()
     }
 
-    fn feet(&self, mut group: Group, servo: usize) -> Group {
+    fn draw_feet(&self, mut group: Group, servo: usize) -> Group {
         let top = FEET + servo as f64 * (FOOT + FOOT_GAP);
-        let (begin, end) = (self.x(0.0), self.x(self.seconds));
+        let (start, end) = (self.x(0.0), self.x(self.seconds));
         if servo == 0 {
-            let at = (14.0, FEET - 12.0);
-            group = group.add(text_start("Footfalls", at, 17.0).set("font-weight", "bold"));
-            group = self.legend(group);
+            let position = (14.0, FEET - 12.0);
+            group = group.add(text_start("Footfalls", position, 17.0).set("font-weight", "bold"));
+            group = self.draw_legend(group);
         }
         group = group
-            .add(rectangle((begin, top), (end - begin, FOOT), PANEL))
+            .add(rectangle((start, top), (end - start, FOOT), PANEL))
             .add(text(
                 PLACES[servo],
                 (LEFT - 12.0, top + FOOT / 2.0 + 5.0),
@@ -204,10 +208,10 @@ impl Chart<'_> {
                 Anchor::End,
             ));
         let stretches = foot_spans(self.run.instants(), servo);
-        if stretches.len() as f64 > (end - begin) / 2.0 {
-            let at = ((begin + end) / 2.0, top + FOOT / 2.0 + 5.0);
+        if stretches.len() as f64 > (end - start) / 2.0 {
+            let position = ((start + end) / 2.0, top + FOOT / 2.0 + 5.0);
             let words = "steps shorter than a pixel: simulate less to see them";
-            return group.add(text(words, at, 13.0, GREY, Anchor::Middle));
+            return group.add(text(words, position, 13.0, GREY, Anchor::Middle));
         }
         for FootSpan { phase, from, to } in stretches {
             let (x, width) = (self.x(from), self.x(to) - self.x(from));
@@ -216,7 +220,7 @@ impl Chart<'_> {
         group
     }
 
-    fn legend(&self, mut group: Group) -> Group {
+    fn draw_legend(&self, mut group: Group) -> Group {
         let entries = [
             (Phase::Stance, "moves back: stance of a forward gait"),
             (Phase::Still, "stands still"),
@@ -238,7 +242,7 @@ impl Chart<'_> {
         group
     }
 
-    fn axis(&self, mut group: Group) -> Group {
+    fn draw_axis(&self, mut group: Group) -> Group {
         let steps = [
             0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 60.0, 120.0, 300.0, 600.0, 1800.0, 3600.0,
         ];

@@ -3,7 +3,6 @@
 use lizard_robot::Robot;
 
 /// Names of the gaits that move a servo, in the order of robot.toml.
-#[must_use]
 pub fn moving(robot: &Robot) -> Vec<&str> {
     let moving = robot.gaits().iter().filter(|gait| gait.moves());
     moving.map(|gait| gait.name()).collect()
@@ -11,7 +10,6 @@ pub fn moving(robot: &Robot) -> Vec<&str> {
 
 /// The gaits of a tour: the first that moves, and of the others the one that is
 /// predicted to turn the robot most in a cycle. Fewer where there are fewer.
-#[must_use]
 pub fn gaits(robot: &Robot) -> Vec<&str> {
     let moving = moving(robot);
     let turn = |name: &str| {
@@ -20,11 +18,11 @@ pub fn gaits(robot: &Robot) -> Vec<&str> {
     };
     let others = moving.iter().copied().skip(1);
     // Of several equal ones the first, because mirrored gaits turn equally fast.
-    let most = others.fold(None, |best: Option<&str>, name| match best {
+    let max = others.fold(None, |best: Option<&str>, name| match best {
         Some(best) if turn(name) <= turn(best) + 1e-6 => Some(best),
         _ => Some(name),
     });
-    moving.first().copied().into_iter().chain(most).collect()
+    moving.first().copied().into_iter().chain(max).collect()
 }
 
 #[cfg(test)]

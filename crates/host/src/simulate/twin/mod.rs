@@ -123,7 +123,7 @@ pub(crate) fn record(uno: &mut Uno, robot: &Robot, script: &Script) -> Result<Re
     supplies::connect(uno, robot);
     let bar = simulated_time(script.end_ms);
     let pins = frame::servo_pins(robot);
-    let recording = session::play(uno, pins, script, false, |event| {
+    let recording = session::play(uno, pins, script, |event| {
         if let Event::Time(ms) = event {
             bar.set_position(ms);
         }

@@ -31,7 +31,6 @@ pub struct Stage {
 
 impl Replay {
     /// Walks the frames of a run.
-    #[must_use]
     pub fn of(robot: &Robot, log: &FrameLog, spans: Vec<Span>, model: ServoModel) -> Self {
         let us = |width: u16| (width > 0).then(|| f64::from(width) / CYCLES_PER_US as f64);
         let mut twin = Twin::new(robot, model);
@@ -49,13 +48,12 @@ impl Replay {
     }
 
     /// Sums up these frames.
-    #[must_use]
     pub fn tally(&self, frames: Range<usize>) -> Tally {
-        let begin = match frames.start {
+        let start = match frames.start {
             0 => Place::START,
             first => self.states[first - 1].place,
         };
-        let mut tally = Tally::new(begin);
+        let mut tally = Tally::new(start);
         for state in &self.states[frames] {
             tally.add(state);
         }
@@ -64,14 +62,13 @@ impl Replay {
 
     /// The frames of the last complete cycle under a command, if it is a gait's and a cycle
     /// came before it.
-    #[must_use]
     pub fn last_cycle(&self, stage: &Stage) -> Option<(&CheckedGait, Range<usize>)> {
         let gait = self
             .robot
             .gait(&stage.command)
             .filter(|gait| gait.moves())?;
         let cycle = (gait.period() / FRAME).round() as usize;
-        let begin = stage.frames.end.checked_sub(cycle)?;
-        (begin >= stage.frames.start + cycle).then_some((gait, begin..stage.frames.end))
+        let start = stage.frames.end.checked_sub(cycle)?;
+        (start >= stage.frames.start + cycle).then_some((gait, start..stage.frames.end))
     }
 }

@@ -106,30 +106,29 @@ impl PathParts {
 }
 
 impl Report {
-    /// Sums up a replay. With `paced`, gaits went at other speeds than their own, and
+    /// Sums up a replay. With `is_paced`, gaits went at other speeds than their own, and
     /// their cycles are not reported.
-    #[must_use]
-    pub fn of(robot: &Robot, replay: &Replay, model: ServoModel, paced: bool) -> Self {
+    pub fn of(robot: &Robot, replay: &Replay, model: ServoModel, is_paced: bool) -> Self {
         let rows = replay
             .stages
             .iter()
             .filter(|stage| !stage.frames.is_empty());
         let row = |stage: &super::replay::Stage| {
-            let whole = replay.tally(stage.frames.clone());
+            let tally_of_stage = replay.tally(stage.frames.clone());
             let gait = robot.gait_of_line(&stage.command);
             let prediction = gait.map(|gait| robot.predict(gait));
-            let cycle = replay.last_cycle(stage).filter(|_| !paced);
+            let cycle = replay.last_cycle(stage).filter(|_| !is_paced);
             let last = cycle
                 .as_ref()
                 .map(|(_, frames)| replay.tally(frames.clone()));
-            let round = round(robot, &stage.command, model).filter(|_| !paced);
+            let round = round(robot, &stage.command, model).filter(|_| !is_paced);
             let known = prediction.as_ref().or(round.as_ref().map(|(_, way)| way));
             let seconds = |n: usize| replay.first + n as f64 * lizard_twin::FRAME;
-            let of: &Tally = last.as_ref().unwrap_or(&whole);
+            let cycle_or_stage: &Tally = last.as_ref().unwrap_or(&tally_of_stage);
             Row {
                 command: stage.command.clone(),
                 seconds: [seconds(stage.frames.start), seconds(stage.frames.end)],
-                way: PathParts::of(whole.travel(), known),
+                way: PathParts::of(tally_of_stage.travel(), known),
                 cycle: last.zip(cycle).map(|(tally, (gait, _))| Cycle {
                     way: PathParts::of(tally.travel(), known),
                     predicted: known
@@ -144,12 +143,14 @@ impl Report {
                 round: round
                     .filter(|(round, _)| !round.has_inputs)
                     .map(|(_, way)| way.into()),
-                foot_slip: of.slip,
-                lag: of.lag,
-                margin: of.margin.map(|(check, value)| (check.name(), value)),
-                stroke: of.stroke,
-                servo_rate: of.rate,
-                servo_error: of.error,
+                foot_slip: cycle_or_stage.slip,
+                lag: cycle_or_stage.lag,
+                margin: cycle_or_stage
+                    .margin
+                    .map(|(check, value)| (check.name(), value)),
+                stroke: cycle_or_stage.stroke,
+                servo_rate: cycle_or_stage.rate,
+                servo_error: cycle_or_stage.error,
             }
         };
         Self {
@@ -255,7 +256,6 @@ fn sentence(way: &PathParts) -> String {
 }
 
 /// A part of a path with its sign, except for zero; a dash if it is unknown.
-#[must_use]
 pub fn format_part(part: Option<f64>, decimals: usize) -> String {
     part.map_or("-".to_owned(), |value| {
         format!("{:+.decimals$}", tidy(value, decimals as i32))

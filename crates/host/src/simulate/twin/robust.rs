@@ -84,8 +84,9 @@ pub fn run(
 
 impl Spread {
     fn of(gait: &str, paths: &[Travel], line: [f64; 2]) -> Self {
-        let part =
-            |of: fn(&Travel) -> f64| quantiles(paths.iter().map(of).collect(), [0.05, 0.5, 0.95]);
+        let part = |quantity: fn(&Travel) -> f64| {
+            quantiles(paths.iter().map(quantity).collect(), [0.05, 0.5, 0.95])
+        };
         Self {
             gait: gait.to_owned(),
             times: paths.len(),

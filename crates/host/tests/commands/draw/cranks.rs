@@ -75,8 +75,8 @@ fn the_trim_of_the_example_turns_the_crank_to_its_neutral_angle() {
             .filter_map(|words| words.strip_prefix("trim 1 "))
             .collect();
         let trim: f64 = trims[0].parse().expect("degrees");
-        let off = turn_between(direction(&sits), direction(&should)) - trim;
-        assert!(off.abs() < 0.02, "{name} {off}");
+        let error = turn_between(direction(&sits), direction(&should)) - trim;
+        assert!(error.abs() < 0.02, "{name} {error}");
         assert!(trim.abs() <= 7.2, "more than the teeth leave");
     }
 }

@@ -76,8 +76,8 @@ impl<'a> Nets<'a> {
     }
 
     /// The terminal or pin nearest to a point.
-    fn end(&self, at: Point) -> String {
-        let away = |end: &Point| (end.0 - at.0).hypot(end.1 - at.1);
+    fn end(&self, position: Point) -> String {
+        let away = |end: &Point| (end.0 - position.0).hypot(end.1 - position.1);
         let ends = self.drawing.0.iter().filter(|element| {
             let id = element.text("id");
             element.tag == "circle" && (id.starts_with("end-") || id.starts_with("pin-"))
@@ -86,7 +86,7 @@ impl<'a> Nets<'a> {
         let (nearest, name) = ends.min_by(|a, b| a.0.total_cmp(&b.0)).expect("an end");
         assert!(
             nearest <= HOLE,
-            "nothing is at {at:?}; {name} is {nearest} away"
+            "nothing is at {position:?}; {name} is {nearest} away"
         );
         name.to_owned()
     }
@@ -346,11 +346,14 @@ fn pins_are_where_an_uno_has_them() {
     let (zero, first) = (at("D13"), PINS[0].1);
     for (name, mil) in PINS {
         let (x, y) = at(name);
-        let off = (
+        let error = (
             (x - zero.0) / scale - (mil.0 - first.0),
             (zero.1 - y) / scale - (mil.1 - first.1),
         );
-        assert!(off.0.abs() < 1.0 && off.1.abs() < 1.0, "{name} {off:?}");
+        assert!(
+            error.0.abs() < 1.0 && error.1.abs() < 1.0,
+            "{name} {error:?}"
+        );
     }
 }
 

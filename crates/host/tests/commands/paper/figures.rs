@@ -136,8 +136,10 @@ fn the_determinant_is_that_of_its_blocks_and_the_nearest_pose_is_singular() {
             Some(margins) => margins.values().map(number).collect(),
             None => vec![0.0],
         };
-        let least = margins.iter().fold(1.0_f64, |least, m| least.min(m.abs()));
-        assert!(least < 1e-4, "{} {least}", near["what"]);
+        let smallest = margins
+            .iter()
+            .fold(1.0_f64, |smallest, m| smallest.min(m.abs()));
+        assert!(smallest < 1e-4, "{} {smallest}", near["what"]);
     }
 }
 

@@ -51,7 +51,7 @@ fn every_printed_solution_closes_all_loops() {
     let mut input = HEADER.to_string();
     let mut poses = Vec::new();
     for i in 0..2000 {
-        let at = |least: f64, k: usize| least + (i * k % 997) as f64 * 90.0 / 997.0;
+        let at = |min: f64, k: usize| min + (i * k % 997) as f64 * 90.0 / 997.0;
         let pose = [at(85.0, 31), at(10.0, 57), at(265.0, 211), at(190.0, 101)];
         input += &format!("{},{},{},{}\n", pose[0], pose[1], pose[2], pose[3]);
         poses.push(pose);
@@ -281,11 +281,12 @@ fn an_angle_that_a_servo_cannot_reach_is_not_safe() {
     )
     .json();
     assert_eq!(inverse["safe"], false);
-    let why = inverse["why"].as_array().unwrap();
+    let reason = inverse["why"].as_array().unwrap();
     assert!(
-        why.iter()
-            .any(|why| why.as_str().unwrap().starts_with("servo A3")),
-        "{why:?}"
+        reason
+            .iter()
+            .any(|reason| reason.as_str().unwrap().starts_with("servo A3")),
+        "{reason:?}"
     );
     assert_eq!(inverse["tail"]["working_modes"][0]["reachable"], false);
 }

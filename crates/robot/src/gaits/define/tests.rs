@@ -170,8 +170,8 @@ fn a_robot_may_have_as_many_gaits_as_its_section_has_room_for() {
             }
         }
     }
-    let most = paper_with_gaits(&gaits(255)).expect_err("255").to_string();
-    assert!(most.ends_with(LEAVE_OUT), "{most}");
+    let max = paper_with_gaits(&gaits(255)).expect_err("255").to_string();
+    assert!(max.ends_with(LEAVE_OUT), "{max}");
     let more = paper_with_gaits(&gaits(256)).expect_err("256").to_string();
     assert!(
         more.ends_with(
@@ -197,10 +197,10 @@ fn waveforms_are_refused_that_the_section_has_no_room_for() {
     let some = paper_with_gaits(&gaits(6)).expect("13 waveforms");
     assert_eq!(some.firmware().waves().len(), 13);
     for count in [14, 127] {
-        let most = paper_with_gaits(&gaits(count))
+        let max = paper_with_gaits(&gaits(count))
             .expect_err("too many")
             .to_string();
-        assert!(most.ends_with(LEAVE_OUT), "{most}");
+        assert!(max.ends_with(LEAVE_OUT), "{max}");
     }
     let more = paper_with_gaits(&gaits(128)).expect_err("257").to_string();
     assert!(more.contains("gait.nod127 needs one waveform too many: the firmware numbers them with a byte, so gaits may share 255"), "{more}");

@@ -93,20 +93,21 @@ impl Condition for EndConditions {
             return Verdict::Broken;
         }
 
-        let moved = self.bars.crank_left * left.half() + self.bars.crank_right * right.half();
+        let crank_movement =
+            self.bars.crank_left * left.half() + self.bars.crank_right * right.half();
         let apart = pose.gap.length();
-        let range = [(apart - moved).max(0.0), apart + moved];
+        let range = [(apart - crank_movement).max(0.0), apart + crank_movement];
         let off = bounds::End::between(&self.bars, self.integers, range);
-        let uncrossed = pose.gap.x - moved > off.along + HAIR;
+        let uncrossed = pose.gap.x - crank_movement > off.along + HAIR;
         if !(off.is_known && uncrossed) {
             return Verdict::Open;
         }
-        let turned = |coupler: f64| moved / (coupler * off.least);
+        let coupler_turn = |coupler: f64| crank_movement / (coupler * off.least);
         let elbows = [
-            left.half() + turned(self.bars.coupler_left) + off.type1_left,
-            right.half() + turned(self.bars.coupler_right) + off.type1_right,
+            left.half() + coupler_turn(self.bars.coupler_left) + off.type1_left,
+            right.half() + coupler_turn(self.bars.coupler_right) + off.type1_right,
         ];
-        let kept = off.least - off.type2 >= self.type2 + HAIR
+        let is_kept = off.least - off.type2 >= self.type2 + HAIR
             && type1
                 .iter()
                 .zip(elbows)
@@ -114,7 +115,11 @@ impl Condition for EndConditions {
             && [left, right]
                 .iter()
                 .all(|span| self.least_leg(span) - DIRECTION >= self.leg + HAIR);
-        if kept { Verdict::Kept } else { Verdict::Open }
+        if is_kept {
+            Verdict::Kept
+        } else {
+            Verdict::Open
+        }
     }
 }
 

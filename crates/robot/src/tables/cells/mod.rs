@@ -67,30 +67,33 @@ fn map(rule: &impl Condition, numbers: &Content) -> Map {
         neutral: numbers.neutral[servo],
         travel: numbers.calibration[servo],
     });
-    let most = MAX_ROWS as i32 / 2;
-    let rows = row.cells(ROW_BITS, -most..=most - 1);
+    let max = MAX_ROWS as i32 / 2;
+    let rows = row.cells(ROW_BITS, -max..=max - 1);
     let columns = column.cells(COLUMN_BITS, i8::MIN.into()..=i8::MAX.into());
     let first = *rows.start();
     let all: Vec<[i8; 2]> = rows
-        .map(|at| {
-            let across = row.span(at, ROW_BITS);
-            certified(&columns, |at| {
-                let along = column.span(at, COLUMN_BITS);
+        .map(|cell| {
+            let across = row.span(cell, ROW_BITS);
+            certified(&columns, |cell| {
+                let along = column.span(cell, COLUMN_BITS);
                 Cell([across, along]).proves(rule)
             })
         })
         .collect();
-    let some = |row: &[i8; 2]| row[0] <= row[1];
-    let Some(begin) = all.iter().position(some) else {
+    let is_occupied = |row: &[i8; 2]| row[0] <= row[1];
+    let Some(start) = all.iter().position(is_occupied) else {
         return Map {
             first: 0,
             rows: Vec::new(),
         };
     };
-    let end = all.iter().rposition(some).map_or(begin, |last| last + 1);
+    let end = all
+        .iter()
+        .rposition(is_occupied)
+        .map_or(start, |last| last + 1);
     Map {
-        first: (first + begin as i32) as i8,
-        rows: all[begin..end].to_vec(),
+        first: (first + start as i32) as i8,
+        rows: all[start..end].to_vec(),
     }
 }
 
@@ -108,8 +111,8 @@ impl Servo {
     }
 
     /// The chassis angles of a cell: of its first sweep to its last.
-    fn span(&self, at: i32, bits: u32) -> Span {
-        let first = f64::from(i32::from(self.neutral.0) + (at << bits));
+    fn span(&self, cell: i32, bits: u32) -> Span {
+        let first = f64::from(i32::from(self.neutral.0) + (cell << bits));
         Span {
             low: first,
             high: first + f64::from((1 << bits) - 1),

@@ -57,8 +57,8 @@ impl Condition for StrokeCondition {
         if room < 0.0 {
             return Verdict::Broken;
         }
-        let moved = self.slider.front * front.half() + self.slider.rear * rear.half();
-        if room - moved - self.off >= HAIR {
+        let arm_movement = self.slider.front * front.half() + self.slider.rear * rear.half();
+        if room - arm_movement - self.off >= HAIR {
             Verdict::Kept
         } else {
             Verdict::Open

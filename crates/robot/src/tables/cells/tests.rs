@@ -140,7 +140,7 @@ impl Subject {
     /// and sliders that depend on the pair. Else returns the first pair that it refuses.
     fn check(&self, runner: &mut TestRunner) -> Result<usize, String> {
         let Limits { type2, type1, leg } = self.robot.limits();
-        let least = [type2, type2, type1, type1, type1, type1, leg, leg, leg, leg];
+        let min = [type2, type2, type1, type1, type1, type1, leg, leg, leg, leg];
         let sides = [0, 1].map(|side| self.robot.side(lizard_core::numbers::part::Side::ALL[side]));
         let mut cells = 0;
         for part in self.parts() {
@@ -171,7 +171,7 @@ impl Subject {
                         let clearance = Clearance::of(&self.robot, &pose);
                         let kept = margins
                             .iter()
-                            .all(|margin| clearance.margins[*margin] >= least[*margin])
+                            .all(|margin| clearance.margins[*margin] >= min[*margin])
                             && slider
                                 .is_none_or(|side| sides[side].allows(clearance.sliders_sq[side]));
                         if !kept {

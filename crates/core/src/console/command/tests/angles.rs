@@ -28,7 +28,7 @@ fn every_hundredth_of_a_degree_within_a_turn_is_read_and_printed_back() {
         let angle = format!("{sign}{}.{:02}", size / 100, size % 100);
         let index = size as usize % 4;
         let expected = if size > 36_000 {
-            Err(Misread::PoseRange(Servo::at(index)))
+            Err(Misread::AngleOutOfRange(Servo::at(index)))
         } else {
             Ok(centideg.rem_euclid(36_000))
         };
@@ -57,13 +57,17 @@ fn an_invalid_angle_is_refused() {
     ] {
         assert_eq!(
             angle_read(2, word),
-            Err(Misread::Wants(Text::PoseWants)),
+            Err(Misread::WrongArguments(Text::PoseWants)),
             "{word}"
         );
     }
     let lines = "pose|pose 1|pose 1 2 3|pose 1 2 3 4 5|pose 1 2 3 4 x|pose 1 999 3 4 5";
     for line in lines.split('|') {
-        assert_eq!(read(line), Err(Misread::Wants(Text::PoseWants)), "{line}");
+        assert_eq!(
+            read(line),
+            Err(Misread::WrongArguments(Text::PoseWants)),
+            "{line}"
+        );
     }
 }
 
@@ -76,10 +80,10 @@ fn angles_go_to_the_servos_in_order_and_the_first_too_large_is_named() {
     assert_eq!(centideg, [13_859, 4_142, 31_860, 22_144]);
     assert_eq!(
         read("pose 1 361 3 -400"),
-        Err(Misread::PoseRange(Servo::A2))
+        Err(Misread::AngleOutOfRange(Servo::A2))
     );
     assert_eq!(
         read("pose 1 2 3 99999999"),
-        Err(Misread::PoseRange(Servo::A4))
+        Err(Misread::AngleOutOfRange(Servo::A4))
     );
 }

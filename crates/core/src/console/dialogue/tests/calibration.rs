@@ -28,21 +28,24 @@ fn cal_prints_all_settings_and_no_state() {
     ] {
         dialogue.accept(line);
     }
-    let set = cal(&mut dialogue);
+    let printed = cal(&mut dialogue);
     assert!(
-        set[0].starts_with("# A1 trim -3.25 limit 61.37 215.36 dir "),
-        "{set:?}"
+        printed[0].starts_with("# A1 trim -3.25 limit 61.37 215.36 dir "),
+        "{printed:?}"
     );
     assert!(
-        set[1].starts_with("# A2 trim 0.00 limit 350.00 130.50 dir "),
-        "{set:?}"
+        printed[1].starts_with("# A2 trim 0.00 limit 350.00 130.50 dir "),
+        "{printed:?}"
     );
-    assert!(set[2].contains(" dir - scale "), "{set:?}");
-    assert!(set[3].ends_with(" scale 9.87"), "{set:?}");
-    assert_eq!(set[4..], ["# boot sway left", "# deadman 1500", "ok cal"]);
+    assert!(printed[2].contains(" dir - scale "), "{printed:?}");
+    assert!(printed[3].ends_with(" scale 9.87"), "{printed:?}");
+    assert_eq!(
+        printed[4..],
+        ["# boot sway left", "# deadman 1500", "ok cal"]
+    );
     dialogue.say("sway");
     dialogue.run(77);
-    assert_eq!(cal(&mut dialogue), set);
+    assert_eq!(cal(&mut dialogue), printed);
     dialogue.accept("factory");
     assert_eq!(cal(&mut dialogue), untouched);
 }
@@ -108,12 +111,12 @@ fn a_calibration_moves_only_its_servo_at_once_within_the_slew_limit() {
             .0
             .map(|width| width.0);
         let gain = f64::from(motion.calibration()[0].gain).abs() / 16384.0;
-        let most = f64::from(motion.robot().slew().per_frame) * gain;
+        let max_change = f64::from(motion.robot().slew().per_frame) * gain;
         let mut last = before;
         for _ in 0..200 {
             let now = widths(&mut dialogue);
             assert!(
-                f64::from(now[0].abs_diff(last[0])) <= most.max(1.0),
+                f64::from(now[0].abs_diff(last[0])) <= max_change.max(1.0),
                 "{change}"
             );
             assert_eq!(now[1..], before[1..], "{change}");
@@ -218,11 +221,13 @@ fn settings_too_narrow_for_a_gait_are_not_loaded_and_change_nothing() {
             let mut dialogue = standing();
             let robot = Sample::odd();
             let mut settings = Settings::of(&robot);
-            let mut set = settings.servo(servo);
-            set.min = Sweep(robot.reach(servo).min.0 - beyond);
-            settings.set_servo(servo, set);
+            let mut adjustment = settings.servo(servo);
+            adjustment.min = Sweep(robot.reach(servo).min.0 - beyond);
+            settings.set_servo(servo, adjustment);
             let mut writing = COPIES[0].write();
-            while writing.step(settings.bytes(), &mut dialogue.board.memory) == Progress::Going {}
+            while writing.step(settings.bytes(), &mut dialogue.board.memory) == Progress::InProgress
+            {
+            }
             let before = cal(&mut dialogue);
             let answer = dialogue.say("load");
             let refused = answer == "err 9 nothing is saved that could be loaded";
@@ -280,9 +285,9 @@ fn a_travel_that_was_saved_short_of_a_gait_is_not_used_whichever_servo_it_is() {
     for servo in Servo::ALL {
         let robot = Sample::odd();
         let mut settings = Settings::of(&robot);
-        let mut set = settings.servo(servo);
-        set.max = Sweep(robot.reach(servo).max.0 - 1);
-        settings.set_servo(servo, set);
+        let mut adjustment = settings.servo(servo);
+        adjustment.max = Sweep(robot.reach(servo).max.0 - 1);
+        settings.set_servo(servo, adjustment);
         assert_eq!(settings.unfit(&robot), Some(servo));
     }
 }

@@ -9,12 +9,15 @@ fn boot_is_carried_out_three_seconds_after_power_on_unless_a_byte_comes() {
         dialogue.say(&format!("boot {boot}"));
         dialogue.accept("save");
         let eeprom = dialogue.board.memory.clone();
-        let mut alone = Dialogue::with(*Sample::odd(), eeprom.clone(), Restart::default());
-        let printed = alone.run(149);
+        let mut unattended = Dialogue::with(*Sample::odd(), eeprom.clone(), Restart::default());
+        let printed = unattended.run(149);
         assert_eq!(printed.len(), 1, "{printed:?}");
-        assert_eq!(alone.motion().activity(), Activity::Gait(GaitId::STAND));
-        assert_eq!(alone.run(1), [format!("# boot: {boot}")]);
-        assert_eq!(alone.status("gait"), boot.replace(' ', "-"));
+        assert_eq!(
+            unattended.motion().activity(),
+            Activity::Gait(GaitId::STAND)
+        );
+        assert_eq!(unattended.run(1), [format!("# boot: {boot}")]);
+        assert_eq!(unattended.status("gait"), boot.replace(' ', "-"));
         let mut watched = Dialogue::with(*Sample::odd(), eeprom, Restart::default());
         watched.run(100);
         watched.board.send(b" ");
@@ -211,10 +214,14 @@ fn settings_that_were_not_saved_are_undone_at_the_slew_limit_after_a_reset() {
                 if pulse.0 == 0 {
                     continue;
                 }
-                let most = calibration[index].slew(Sample::odd().slew().per_frame);
-                let way = pulse.0.abs_diff(before.0);
-                assert!(way <= most + 1, "{setting} A{}: {way} of {most}", index + 1);
-                moved += usize::from(index == servo && way > 0);
+                let max_change = calibration[index].slew(Sample::odd().slew().per_frame);
+                let change = pulse.0.abs_diff(before.0);
+                assert!(
+                    change <= max_change + 1,
+                    "{setting} A{}: {change} of {max_change}",
+                    index + 1
+                );
+                moved += usize::from(index == servo && change > 0);
                 *before = *pulse;
             }
         }
@@ -311,9 +318,9 @@ fn repeated_brown_outs_or_presses_end_in_a_rest_until_a_motion_is_ordered() {
             let printed = dialogue.run(17);
             let rests = dialogue.frame() == Pulses::default();
             assert_eq!(rests, resets >= 3, "{resets}");
-            let why =
+            let reason =
                 "# fault: reset several times in a row by the button or a weak supply, resting";
-            assert_eq!(printed.iter().any(|line| line == why), resets >= 3);
+            assert_eq!(printed.iter().any(|line| line == reason), resets >= 3);
         }
         dialogue.run(300);
         assert_eq!(dialogue.frame(), Pulses::default(), "boot is cancelled");

@@ -42,9 +42,9 @@ fn set(dialogue: &mut Dialogue, input: Input, is_closed: bool) {
 /// Presses for these frames and lets go; returns what the robot says meanwhile.
 fn press(dialogue: &mut Dialogue, input: Input, frames: u32) -> Vec<String> {
     set(dialogue, input, true);
-    let said = dialogue.run(frames);
+    let lines = dialogue.run(frames);
     set(dialogue, input, false);
-    said
+    lines
 }
 
 /// The name of the gait that moves the robot, or what it does instead.
@@ -216,18 +216,21 @@ fn a_wait_brakes_the_gait_before_it_within_the_slew_limit() {
     ];
     let mut dialogue = begun(1, &steps);
     let mut last = widths(&mut dialogue);
-    let mut ways = Vec::new();
+    let mut changes = Vec::new();
     for _ in 0..200 {
         let now = widths(&mut dialogue);
-        let way = last.iter().zip(now).map(|(a, b)| a.abs_diff(b)).max();
-        ways.push(way.expect("four"));
+        let change = last.iter().zip(now).map(|(a, b)| a.abs_diff(b)).max();
+        changes.push(change.expect("four"));
         last = now;
     }
-    let braked = ways[90..].iter().position(|way| *way == 0);
-    assert!((4..12).contains(&braked.expect("it stands")), "{ways:?}");
-    let walking = ways[80..90].iter().max();
-    assert!(ways[90..].iter().max() <= walking, "{ways:?}");
-    assert!(ways[110..].iter().all(|way| *way == 0), "{ways:?}");
+    let braked = changes[90..].iter().position(|change| *change == 0);
+    assert!((4..12).contains(&braked.expect("it stands")), "{changes:?}");
+    let walking = changes[80..90].iter().max();
+    assert!(changes[90..].iter().max() <= walking, "{changes:?}");
+    assert!(
+        changes[110..].iter().all(|change| *change == 0),
+        "{changes:?}"
+    );
 }
 
 /// A robot in every wait of the patrol.
@@ -241,13 +244,13 @@ fn waiting() -> [Dialogue; 2] {
 
 #[test]
 fn whatever_ends_a_routine_ends_its_wait_and_then_no_contact_moves_the_robot() {
-    let stays = |mut dialogue: Dialogue, what: &str| {
+    let stays = |mut dialogue: Dialogue, event: &str| {
         dialogue.run(60);
         let now = gait(&dialogue);
         for input in [BUTTON, NOSE] {
             press(&mut dialogue, input, 50);
-            assert_eq!(dialogue.run(50), Vec::<String>::new(), "{what}");
-            assert_eq!(gait(&dialogue), now, "{what}");
+            assert_eq!(dialogue.run(50), Vec::<String>::new(), "{event}");
+            assert_eq!(gait(&dialogue), now, "{event}");
         }
     };
     for begun in waiting() {
@@ -303,16 +306,16 @@ fn boot_waits_for_the_button_as_long_as_it_takes_and_deadman_does_not_end_that()
         dialogue.accept(line);
     }
     let robot = *Sample::odd().with_routine("patrol", 0, &PATROL);
-    let mut alone = Dialogue::with(robot, dialogue.board.memory.clone(), Restart::default());
-    let said = alone.run(10 * LONG_FRAMES);
+    let mut unattended = Dialogue::with(robot, dialogue.board.memory.clone(), Restart::default());
+    let lines = unattended.run(10 * LONG_FRAMES);
     assert_eq!(
-        said[said.len() - 2..],
+        lines[lines.len() - 2..],
         ["# boot: patrol", "# waiting for button"]
     );
-    let said = press(&mut alone, BUTTON, DEBOUNCED);
-    assert_eq!(said, ["# waiting for nose"]);
-    assert_eq!(gait(&alone), "sway");
-    assert!(alone.run(10 * LONG_FRAMES).is_empty());
+    let lines = press(&mut unattended, BUTTON, DEBOUNCED);
+    assert_eq!(lines, ["# waiting for nose"]);
+    assert_eq!(gait(&unattended), "sway");
+    assert!(unattended.run(10 * LONG_FRAMES).is_empty());
 }
 
 #[test]

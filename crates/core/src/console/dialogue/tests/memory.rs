@@ -79,8 +79,8 @@ fn repeated_rests_write_nothing_and_a_worn_cell_is_reported() {
     dialogue.board.memory.is_worn = true;
     dialogue.board.send(b"rest\r");
     let printed = dialogue.run(3);
-    let told = "# memory: does not keep the pose of this rest";
-    assert!(printed.iter().any(|line| line == told), "{printed:?}");
+    let notice = "# memory: does not keep the pose of this rest";
+    assert!(printed.iter().any(|line| line == notice), "{printed:?}");
 }
 
 #[test]

@@ -107,10 +107,10 @@ fn help_boot_and_cal_know_a_routine_as_they_know_a_gait() {
     );
     dialogue.accept("save");
     let eeprom = dialogue.board.memory.clone();
-    let mut alone = Dialogue::with(*robot(1), eeprom, Restart::default());
-    let printed = alone.run(150);
+    let mut unattended = Dialogue::with(*robot(1), eeprom, Restart::default());
+    let printed = unattended.run(150);
     assert_eq!(printed.last().map(String::as_str), Some("# boot: patrol"));
-    assert_eq!(alone.status("gait"), "patrol");
+    assert_eq!(unattended.status("gait"), "patrol");
     dialogue.say("rest");
     dialogue.refuse("patrol", "7 servos are resting, send stand first");
 }
@@ -202,19 +202,19 @@ fn silence_ends_a_routine_that_a_talker_began_and_not_one_that_boot_began() {
     dialogue.say("deadman 200");
     dialogue.accept("save");
     let eeprom = dialogue.board.memory.clone();
-    let alone = || {
-        let mut alone = Dialogue::with(*robot(0), eeprom.clone(), Restart::default());
-        alone.run(150);
-        alone
+    let unattended = || {
+        let mut unattended = Dialogue::with(*robot(0), eeprom.clone(), Restart::default());
+        unattended.run(150);
+        unattended
     };
-    let mut nobody = alone();
+    let mut nobody = unattended();
     assert!(nobody.run(5 * LONG_FRAMES).is_empty(), "it goes on");
     // After a first line the next ones are expected within `deadman`.
     nobody.say("speed 90");
     assert_eq!(nobody.run(100).len(), 1);
     assert_eq!(nobody.status("fault"), "link");
     // A line that is not a command counts as nobody, and so does a byte.
-    let mut noise = alone();
+    let mut noise = unattended();
     noise.board.send(b"x");
     assert!(noise.run(LONG_FRAMES).is_empty());
     noise.board.send(b"x\r");

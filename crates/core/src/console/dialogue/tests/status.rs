@@ -75,7 +75,7 @@ fn the_longest_possible_status_fits_a_line() {
     let line = dialogue.say("status");
     // Each number as long as it gets.
     let values = pairs(line.strip_prefix("ok ").expect("a status"));
-    let most = [
+    let longest = [
         ("phase", "0.999"),
         ("pose", "359.99,359.99,359.99,359.99"),
         ("margin", "-1.000"),
@@ -83,20 +83,20 @@ fn the_longest_possible_status_fits_a_line() {
         ("frames", "4294967295"),
         ("guard", "clear"),
     ];
-    let more: usize = most
+    let more: usize = longest
         .iter()
-        .map(|(key, most)| most.len() - values[*key].len())
+        .map(|(key, longest)| longest.len() - values[*key].len())
         .sum();
     assert!(line.len() + more + "\r\n".len() <= usize::from(LONGEST_LINE));
 }
 
 #[test]
 fn watch_reports_the_pose_of_every_nth_frame_until_it_is_ended() {
-    for every in [1u32, 2, 7, 50] {
+    for interval in [1u32, 2, 7, 50] {
         let mut dialogue = standing();
         dialogue.say("sway");
-        dialogue.say(&format!("watch {every}"));
-        let begin = dialogue.motion().frames();
+        dialogue.say(&format!("watch {interval}"));
+        let start = dialogue.motion().frames();
         let mut times = Vec::new();
         for _ in 0..200 {
             for line in dialogue.run(1) {
@@ -105,10 +105,10 @@ fn watch_reports_the_pose_of_every_nth_frame_until_it_is_ended() {
                 assert_eq!(time, dialogue.motion().frames());
                 assert_eq!(report["pose"], dialogue.status("pose"));
                 assert_eq!(report.len(), 2);
-                times.push(time - begin);
+                times.push(time - start);
             }
         }
-        let expected: Vec<u32> = (1..=200).filter(|time| time % every == 0).collect();
+        let expected: Vec<u32> = (1..=200).filter(|time| time % interval == 0).collect();
         assert_eq!(times, expected);
         dialogue.say("watch 0");
         assert!(dialogue.run(200).is_empty());

@@ -57,8 +57,8 @@ proptest! {
                 let pulses = motion.tick();
                 let clearance = Clearance::of(&motion.robot, motion.pose());
                 prop_assert_eq!(clearance.hazard(&motion.robot), None);
-                for (got, held) in pulses.0.into_iter().zip(motion.held().0) {
-                    prop_assert!(got == Width(0) || got == held);
+                for (actual, held) in pulses.0.into_iter().zip(motion.held().0) {
+                    prop_assert!(actual == Width(0) || actual == held);
                 }
                 if !cycling {
                     let distance = before.farthest(motion.pose());

@@ -28,9 +28,9 @@ fn every_servo_settles_as_fast_as_its_own_gain_allows_and_no_faster() {
     for frame in 1..=1000u16 {
         motion.tick();
         for (index, sent) in motion.sent().0.iter().enumerate() {
-            let gone = sent.0 - before[index].0;
+            let change = sent.0 - before[index].0;
             assert_eq!(
-                gone,
+                change,
                 1000.min(frame.saturating_mul(steps[index])),
                 "A{}",
                 index + 1

@@ -98,9 +98,9 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     ///
     /// # Errors
     /// Fails if the connection breaks. A refusal is not an error: it is shown.
-    pub fn key(&mut self, key: Key) -> Result<bool, LinkError> {
+    pub fn press_key(&mut self, key: Key) -> Result<bool, LinkError> {
         self.message.clear();
-        let done = match (key, self.step()) {
+        let is_done = match (key, self.step()) {
             (Key::Leave, Step::Saved) | (Key::Next, Step::Saved) => Ok(true),
             (Key::Leave, _) => self.leave().map(|()| true),
             (Key::Back, Step::Walk) if self.skips_scales => {
@@ -130,7 +130,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             (Key::Act, Step::Walk) => self.set_walking(!self.is_walking).map(|()| false),
             _ => Ok(false),
         };
-        match done {
+        match is_done {
             Err(LinkError::Refused { line, reason }) if key != Key::Leave => {
                 self.message = format!("The robot refuses `{line}`: {reason}.");
                 Ok(false)
@@ -179,7 +179,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     }
 
     fn go_to_step(&mut self, step: Step) -> Result<(), LinkError> {
-        let index = STEPS.iter().position(|at| *at == step);
+        let index = STEPS.iter().position(|other| *other == step);
         self.enter_step(index.unwrap_or(self.at))
     }
 
@@ -209,8 +209,8 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     fn move_one(&mut self, servo: usize, angles: &[f64]) -> Result<(), LinkError> {
         self.stand()?;
         let mut refusal = None;
-        for by in angles {
-            match self.turn_to(servo, *by) {
+        for angle in angles {
+            match self.turn_to(servo, *angle) {
                 Ok(()) => {
                     self.message = format!("A{} has moved.", servo + 1);
                     return Ok(());
@@ -223,13 +223,13 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     }
 
     /// Moves one servo by an angle from its neutral pose, the others to theirs.
-    fn turn_to(&mut self, servo: usize, by: f64) -> Result<(), LinkError> {
+    fn turn_to(&mut self, servo: usize, degrees: f64) -> Result<(), LinkError> {
         let mut pose = self.neutral;
-        pose[servo] = (pose[servo] + by).rem_euclid(360.0);
+        pose[servo] = (pose[servo] + degrees).rem_euclid(360.0);
         let [a1, a2, a3, a4] = pose;
         self.link
             .command(&format!("pose {a1:.2} {a2:.2} {a3:.2} {a4:.2}"))?;
-        self.moved = Some(by);
+        self.moved = Some(degrees);
         settle(self.link)?;
         Ok(())
     }
@@ -237,16 +237,16 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     /// Sets the scale with which a servo that was moved turns by this many degrees more. Its
     /// neutral pulse stays, so its trim is converted to the new degrees.
     fn scale(&mut self, servo: usize, degrees: f64) -> Result<(), LinkError> {
-        let Some(by) = self.moved else {
+        let Some(ordered) = self.moved else {
             self.message = "Press the space bar first, and look where it points.".to_owned();
             return Ok(());
         };
         let mut next = self.now.clone();
-        let set = next.servo.at(servo);
-        let (old_scale, old_trim) = (set.scale, set.trim);
-        set.scale = hundredths(old_scale * (1.0 + degrees / by));
-        set.trim = hundredths(old_trim * old_scale / set.scale);
-        let (n, scale, trim) = (servo + 1, set.scale, set.trim);
+        let servo_settings = next.servo.at(servo);
+        let (old_scale, old_trim) = (servo_settings.scale, servo_settings.trim);
+        servo_settings.scale = hundredths(old_scale * (1.0 + degrees / ordered));
+        servo_settings.trim = hundredths(old_trim * old_scale / servo_settings.scale);
+        let (n, scale, trim) = (servo + 1, servo_settings.scale, servo_settings.trim);
         self.link.command(&format!("scale {n} {scale:.2}"))?;
         if trim != old_trim
             && let Err(error) = self.link.command(&format!("trim {n} {trim:.2}"))
@@ -262,10 +262,10 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     /// far, its second with those that turn little.
     fn limit(&mut self, servo: usize, degrees: f64) -> Result<(), LinkError> {
         let mut next = self.now.clone();
-        let set = next.servo.at(servo);
-        let end = &mut set.limit[usize::from(degrees.abs() < 0.3)];
+        let servo_settings = next.servo.at(servo);
+        let end = &mut servo_settings.limit[usize::from(degrees.abs() < 0.3)];
         *end = hundredths((*end + degrees.signum()).rem_euclid(360.0));
-        let [min, max] = set.limit;
+        let [min, max] = servo_settings.limit;
         self.link
             .command(&format!("limit {} {min:.2} {max:.2}", servo + 1))?;
         self.now = next;
@@ -283,11 +283,11 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         self.stand()?;
         let n = servo + 1;
         let mut next = self.now.clone();
-        let set = next.servo.at(servo);
-        set.dir = set.dir.reversed();
+        let servo_settings = next.servo.at(servo);
+        servo_settings.dir = servo_settings.dir.reversed();
         // The horn stays where it is: the same pulse is now the opposite trim.
-        set.trim = -set.trim;
-        let (dir, trim) = (set.dir.sign(), set.trim);
+        servo_settings.trim = -servo_settings.trim;
+        let (dir, trim) = (servo_settings.dir.sign(), servo_settings.trim);
         self.link.command(&format!("dir {n} {dir}"))?;
         if trim != 0.0 {
             self.link.command(&format!("trim {n} {trim:.2}"))?;
@@ -301,9 +301,9 @@ impl<'a, P: Read + Write> Guide<'a, P> {
 
     fn trim(&mut self, servo: usize, degrees: f64) -> Result<(), LinkError> {
         let mut next = self.now.clone();
-        let set = next.servo.at(servo);
-        set.trim = hundredths(set.trim + degrees);
-        let line = format!("trim {} {:.2}", servo + 1, set.trim);
+        let servo_settings = next.servo.at(servo);
+        servo_settings.trim = hundredths(servo_settings.trim + degrees);
+        let line = format!("trim {} {:.2}", servo + 1, servo_settings.trim);
         self.link.command(&line)?;
         self.now = next;
         Ok(())
@@ -345,14 +345,15 @@ fn settle<P: Read + Write>(link: &mut Link<P>) -> Result<[f64; 4], LinkError> {
     let mut last: Option<Status> = None;
     loop {
         let reply = link.command("status")?;
-        let now = Status::parse(&reply.answer);
-        let Some((now, pose)) = now.and_then(|now| now.pose.map(|pose| (now, pose))) else {
+        let status = Status::parse(&reply.answer);
+        let Some((status, pose)) = status.and_then(|status| status.pose.map(|pose| (status, pose)))
+        else {
             return Err(LinkError::Unclear {
                 line: "status".to_owned(),
                 answer: reply.answer,
             });
         };
-        let frames = now.frames;
+        let frames = status.frames;
         let since = last
             .as_ref()
             .and_then(|last| frames.checked_sub(last.frames));
@@ -360,7 +361,7 @@ fn settle<P: Read + Write>(link: &mut Link<P>) -> Result<[f64; 4], LinkError> {
             Some(0..STILL_FRAMES) if Instant::now() < end => {}
             Some(_) if last.is_some_and(|last| last.pose == Some(pose)) => return Ok(pose),
             _ if Instant::now() >= end => return Ok(pose),
-            _ => last = Some(now),
+            _ => last = Some(status),
         }
         link.pause(LOOK)?;
     }

@@ -72,7 +72,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 fn with_keys<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, TurnError> {
     match steps(guide) {
         Err(TurnError::Io(_)) if !terminal::is_there() => {
-            guide.key(Key::Leave)?;
+            guide.press_key(Key::Leave)?;
             Ok(false)
         }
         ended => ended,
@@ -81,13 +81,13 @@ fn with_keys<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, 
 
 fn steps<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, TurnError> {
     let mut page = Page::new()?;
-    let mut shown = None;
+    let mut last_view = None;
     let mut last_read = Instant::now();
     loop {
         let view = guide.view();
-        if shown.as_ref() != Some(&view) {
+        if last_view.as_ref() != Some(&view) {
             page.show(&view)?;
-            shown = Some(view);
+            last_view = Some(view);
         }
         if !terminal::is_there() {
             return Err(io::Error::from(io::ErrorKind::UnexpectedEof).into());
@@ -107,16 +107,16 @@ fn steps<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, Turn
                 page.leave()?;
                 terminal::stop()?;
                 page.enter()?;
-                shown = None;
+                last_view = None;
             }
             Event::Key(key) => {
                 if let Some(key) = meaning(key)
-                    && guide.key(key)?
+                    && guide.press_key(key)?
                 {
                     return Ok(guide.is_saved());
                 }
             }
-            Event::Resize(..) => shown = None,
+            Event::Resize(..) => last_view = None,
             _ => {}
         }
     }

@@ -114,7 +114,7 @@ impl Session {
                     }
                 }
                 Event::Pose { frame, angles } => {
-                    let now = (entry.ms / FRAME_MS) as usize;
+                    let slot_now = (entry.ms / FRAME_MS) as usize;
                     if *frame < count {
                         (begin, last) = (None, None);
                     }
@@ -124,8 +124,8 @@ impl Session {
                         at.checked_add(usize::try_from(frame.checked_sub(first)?).ok()?)
                     });
                     let slot_index = counted
-                        .filter(|slot_index| slot_index.abs_diff(now) <= APART)
-                        .unwrap_or(now);
+                        .filter(|slot_index| slot_index.abs_diff(slot_now) <= APART)
+                        .unwrap_or(slot_now);
                     if counted != Some(slot_index) {
                         begin = Some((*frame, slot_index));
                     }
@@ -141,12 +141,12 @@ impl Session {
                         (us * CYCLES_PER_US as f64).round().clamp(1.0, 65_534.0) as u16
                     });
                     *slot = pulses;
-                    if let Some(before) =
-                        last.filter(|before| slot_index.saturating_sub(*before) <= HELD)
+                    if let Some(previous_slot) = last
+                        .filter(|previous_slot| slot_index.saturating_sub(*previous_slot) <= HELD)
                     {
-                        let held = widths[before];
-                        for slot in widths.iter_mut().take(slot_index).skip(before + 1) {
-                            *slot = held;
+                        let held_widths = widths[previous_slot];
+                        for slot in widths.iter_mut().take(slot_index).skip(previous_slot + 1) {
+                            *slot = held_widths;
                         }
                     }
                     last = Some(slot_index);

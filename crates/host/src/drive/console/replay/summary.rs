@@ -26,8 +26,8 @@ pub(super) fn print(session: &Session, out: &mut impl Write) -> io::Result<()> {
         "time        {seconds:.1} s, the pose of {poses} of {frames} frames"
     )?;
     let refused = count(|event| matches!(event, Event::Answer(line) if line.starts_with("err")));
-    let sent = count(|event| matches!(event, Event::Sent(_)));
-    writeln!(out, "commands    {sent}, of these refused: {refused}")?;
+    let sent_count = count(|event| matches!(event, Event::Sent(_)));
+    writeln!(out, "commands    {sent_count}, of these refused: {refused}")?;
 
     let statuses: Vec<(u64, Status)> = entries
         .iter()
@@ -47,12 +47,12 @@ pub(super) fn print(session: &Session, out: &mut impl Write) -> io::Result<()> {
             statuses.len()
         )?;
     }
-    range(
+    print_range(
         out,
         "supply",
         statuses.iter().filter_map(|(_, status)| status.vcc),
     )?;
-    range(
+    print_range(
         out,
         "servos",
         statuses.iter().filter_map(|(_, status)| status.rail),
@@ -91,7 +91,11 @@ fn is_trouble(note: &str) -> bool {
         .any(|start| note.starts_with(start))
 }
 
-fn range(out: &mut impl Write, name: &str, volts: impl Iterator<Item = f64>) -> io::Result<()> {
+fn print_range(
+    out: &mut impl Write,
+    name: &str,
+    volts: impl Iterator<Item = f64>,
+) -> io::Result<()> {
     let ends = volts.fold(None, |ends: Option<(f64, f64)>, volts| {
         let (low, high) = ends.unwrap_or((volts, volts));
         Some((low.min(volts), high.max(volts)))

@@ -115,7 +115,7 @@ pub enum UploadError {
         /// The byte that was read back.
         read: u8,
         /// The state of flash now.
-        left: Left,
+        left: FlashState,
     },
     /// The connection failed.
     #[error("{trouble}. {left}")]
@@ -123,30 +123,30 @@ pub enum UploadError {
         /// The error of the boot loader.
         trouble: LoaderError,
         /// The state of flash now.
-        left: Left,
+        left: FlashState,
     },
 }
 
 /// The state of flash after an upload has failed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Left {
+pub enum FlashState {
     /// Flash holds its old contents.
-    AsBefore,
+    Unchanged,
     /// The loop that does nothing, and a part of the code.
-    Idle,
+    HalfProgram,
     /// The firmware, and no robot that it could move.
-    NoRobot,
+    HalfRobot,
 }
 
-impl fmt::Display for Left {
+impl fmt::Display for FlashState {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::AsBefore => "Nothing was written: the board is unchanged",
-            Self::NoRobot => {
+            Self::Unchanged => "Nothing was written: the board is unchanged",
+            Self::HalfRobot => {
                 "The board has half a robot now: its firmware says fault=robot and moves no \
                  servo. Run this command again"
             }
-            Self::Idle => {
+            Self::HalfProgram => {
                 "The board has half a program now, and does nothing. Its boot loader is still \
                  there: run this command again"
             }
@@ -178,7 +178,7 @@ pub fn upload<B: Board>(
         report,
         has_answered: false,
         has_reported: false,
-        left: Left::AsBefore,
+        left: FlashState::Unchanged,
     };
     let mut written = vec![false; BOOT / PAGE];
     let mut loaders = target.loaders().iter().copied().cycle();
@@ -206,7 +206,7 @@ pub fn upload<B: Board>(
         });
     }
     let pages = image.pages().len();
-    let written = written.into_iter().filter(|it| *it).count();
+    let written = written.into_iter().filter(|is_written| *is_written).count();
     Ok(Done {
         written,
         kept: pages - written,
@@ -234,7 +234,7 @@ struct Upload<'a, B> {
     has_answered: bool,
     /// True if the board's contents were reported.
     has_reported: bool,
-    left: Left,
+    left: FlashState,
 }
 
 impl<B: Board> Upload<'_, B> {
@@ -277,9 +277,9 @@ impl<B: Board> Upload<'_, B> {
         let first = self.first_page();
         let mut closed = [BLANK; PAGE];
         if self.image.is_robot_alone() {
-            self.left = Left::NoRobot;
+            self.left = FlashState::HalfRobot;
         } else {
-            self.left = Left::Idle;
+            self.left = FlashState::HalfProgram;
             closed[..IDLE.len()].copy_from_slice(&IDLE);
         }
         goal.retain(|page| page.address != first.address);
@@ -302,59 +302,66 @@ impl<B: Board> Upload<'_, B> {
         } else {
             self.read(&mut flash, 0..boot / PAGE)?;
         }
-        let found = FlashContents::in_flash(&flash, self.image);
+        let contents = FlashContents::in_flash(&flash, self.image);
         if self.image.is_robot_alone() {
-            self.check_code(&found)?;
+            self.check_code(&contents)?;
         }
         if !self.has_reported {
             self.has_reported = true;
-            (self.report)(Event::Found(found));
+            (self.report)(Event::Found(contents));
         }
         Ok(flash)
     }
 
     /// Checks that the code in flash can read the robot that is to be written after it.
-    fn check_code(&self, found: &FlashContents) -> Result<(), Stop> {
-        let found = found.clone();
-        Err(Stop::Error(match found.program {
+    fn check_code(&self, contents: &FlashContents) -> Result<(), Stop> {
+        let contents = contents.clone();
+        Err(Stop::Error(match contents.program {
             Program::Lizard { mark, .. } if mark.format == FORMAT => return Ok(()),
-            Program::Lizard { mark, .. } => UploadError::Format { found, mark },
-            _ => UploadError::NoLizard(found),
+            Program::Lizard { mark, .. } => UploadError::Format {
+                found: contents,
+                mark,
+            },
+            _ => UploadError::NoLizard(contents),
         }))
     }
 
     fn read(&mut self, flash: &mut [u8], pages: Range<usize>) -> Result<(), Stop> {
-        let of = pages.len();
-        for (done, page) in pages.enumerate() {
+        let page_count = pages.len();
+        for (pages_read, page) in pages.enumerate() {
             let address = page * PAGE;
             let read = self.loader.read_page(address)?;
             flash[address..address + PAGE].copy_from_slice(&read);
-            (self.report)(Event::Progress(Step::Reading, done + 1, of));
+            (self.report)(Event::Progress(Step::Reading, pages_read + 1, page_count));
         }
         Ok(())
     }
 
     /// Writes pages and reads them back. One that has changed on the way is written again.
     fn write(&mut self, pages: &[Page]) -> Result<(), Stop> {
-        for (done, page) in pages.iter().enumerate() {
+        for (pages_done, page) in pages.iter().enumerate() {
             self.write_page(page.address, &page.bytes)?;
-            (self.report)(Event::Progress(Step::Writing, done + 1, pages.len()));
+            (self.report)(Event::Progress(Step::Writing, pages_done + 1, pages.len()));
         }
-        for (done, page) in pages.iter().enumerate() {
-            let mut read = self.loader.read_page(page.address)?;
-            if read != page.bytes {
+        for (pages_done, page) in pages.iter().enumerate() {
+            let mut read_back = self.loader.read_page(page.address)?;
+            if read_back != page.bytes {
                 self.write_page(page.address, &page.bytes)?;
-                read = self.loader.read_page(page.address)?;
+                read_back = self.loader.read_page(page.address)?;
             }
-            if let Some(at) = difference(&read, &page.bytes) {
+            if let Some(offset) = difference(&read_back, &page.bytes) {
                 return Err(Stop::Error(UploadError::NotKept {
-                    address: page.address + at,
-                    written: page.bytes[at],
-                    read: read[at],
+                    address: page.address + offset,
+                    written: page.bytes[offset],
+                    read: read_back[offset],
                     left: self.left,
                 }));
             }
-            (self.report)(Event::Progress(Step::Verifying, done + 1, pages.len()));
+            (self.report)(Event::Progress(
+                Step::Verifying,
+                pages_done + 1,
+                pages.len(),
+            ));
         }
         Ok(())
     }

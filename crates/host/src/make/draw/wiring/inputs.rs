@@ -39,8 +39,8 @@ pub fn draw(robot: &Robot, top: f64) -> Group {
         .add(text_start(title, (30.0, top + 26.0), 15.0).set("font-weight", "bold"));
     for (name, pin) in robot.inputs().each() {
         group = match name {
-            "button" => button(group, pin, top + BUTTON),
-            _ => nose(group, pin, top + NOSE),
+            "button" => draw_button(group, pin, top + BUTTON),
+            _ => draw_nose(group, pin, top + NOSE),
         };
     }
     group
@@ -64,7 +64,7 @@ fn wire(group: Group, names: [&str; 3], y: f64, colour: &'static str) -> Group {
 }
 
 /// A push button between its pin and ground.
-fn button(group: Group, pin: u8, y: f64) -> Group {
+fn draw_button(group: Group, pin: u8, y: f64) -> Group {
     let case = rectangle((THING - 12.0, y - 14.0), (44.0, ROW + 28.0), "#e6eef7").set("rx", 5);
     let middle = y + ROW / 2.0;
     let group = group
@@ -91,7 +91,7 @@ fn button(group: Group, pin: u8, y: f64) -> Group {
 }
 
 /// An infrared obstacle switch at the robot's nose.
-fn nose(group: Group, pin: u8, y: f64) -> Group {
+fn draw_nose(group: Group, pin: u8, y: f64) -> Group {
     let case = rectangle(
         (THING - 12.0, y - 14.0),
         (44.0, 2.0 * ROW + 28.0),

@@ -46,7 +46,6 @@ const SOCKET: (f64, f64) = (-11.0, 252.0);
 const LINE: f64 = 19.0;
 
 /// The wiring of a robot, as SVG text.
-#[must_use]
 pub fn wiring(robot: &Robot) -> String {
     let pins = robot.servos().map(|servo| servo.pin);
     let order = order(pins);

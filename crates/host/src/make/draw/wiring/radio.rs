@@ -58,14 +58,14 @@ pub fn draw(top: f64) -> Group {
         let path = curve(&wire.path, wire.colour, wire.width);
         group = group.add(path.set("id", wire.name));
     }
-    group = diode(group, (DIODE, y(0)));
-    group = resistor(group, (UPPER, y(1)), (28.0, 10.0)).add(text_middle(
+    group = draw_diode(group, (DIODE, y(0)));
+    group = draw_resistor(group, (UPPER, y(1)), (28.0, 10.0)).add(text_middle(
         "1 k\u{3a9}",
         (UPPER, y(1) - 10.0),
         13.0,
     ));
     let lower = (DIVIDED, (y(1) + y(2)) / 2.0);
-    group = resistor(group, lower, (10.0, 26.0)).add(text_start(
+    group = draw_resistor(group, lower, (10.0, 26.0)).add(text_start(
         "2 k\u{3a9}",
         (DIVIDED + 12.0, lower.1 + 5.0),
         13.0,
@@ -97,7 +97,7 @@ pub fn draw(top: f64) -> Group {
 }
 
 /// A diode that lets current pass from left to right, with its stripe at the right.
-fn diode(group: Group, (x, y): (f64, f64)) -> Group {
+fn draw_diode(group: Group, (x, y): (f64, f64)) -> Group {
     let corners = format!(
         "{},{} {},{} {},{}",
         x - 12.0,
@@ -115,7 +115,7 @@ fn diode(group: Group, (x, y): (f64, f64)) -> Group {
         .add(end("diode-cathode", (x + 12.0, y), DARK))
 }
 
-fn resistor(group: Group, (x, y): (f64, f64), (width, height): (f64, f64)) -> Group {
+fn draw_resistor(group: Group, (x, y): (f64, f64), (width, height): (f64, f64)) -> Group {
     let corner = (x - width / 2.0, y - height / 2.0);
     let body = rectangle(corner, (width, height), "#f3e3c3").set("rx", 2);
     group.add(edged(body, DARK, 1.5))

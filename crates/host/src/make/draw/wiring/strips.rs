@@ -121,12 +121,12 @@ pub fn resistor_bodies() -> Group {
         let body = rectangle(corner, (width, height), "#f3e3c3").set("rx", 2);
         group = group.add(edged(body, DARK, 1.5));
     }
-    let at = (signal_x(4) + 22.0, SIGNALS_AT.1 + 31.0);
-    group.add(text_start("4 x 10 k\u{3a9}", at, 13.0))
+    let position = (signal_x(4) + 22.0, SIGNALS_AT.1 + 31.0);
+    group.add(text_start("4 x 10 k\u{3a9}", position, 13.0))
 }
 
 /// A way: its brass, its two screws and its number.
-fn brass(group: Group, from: (f64, f64), to: (f64, f64), number: usize) -> Group {
+fn draw_brass_strip(group: Group, from: (f64, f64), to: (f64, f64), number: usize) -> Group {
     let middle = ((from.0 + to.0) / 2.0, (from.1 + to.1) / 2.0);
     group
         .add(line(from, to, "#c9b26b", 7.0))
@@ -160,7 +160,7 @@ pub fn draw() -> Group {
                 _ => (supply(way), -WIDE),
             };
             let link = (hole.0 + other, hole.1);
-            group = brass(group, hole, link, way + 1)
+            group = draw_brass_strip(group, hole, link, way + 1)
                 .add(end(&format!("{name}-{}-wire", way + 1), hole, DARK))
                 .add(end(&format!("{name}-{}-link", way + 1), link, DARK));
         }
@@ -173,7 +173,7 @@ pub fn draw() -> Group {
     ));
     for way in 0..5 {
         let x = signal_x(way);
-        group = brass(group, (x, top + 3.0), (x, bottom - 3.0), way + 1)
+        group = draw_brass_strip(group, (x, top + 3.0), (x, bottom - 3.0), way + 1)
             .add(end(&format!("signals-{}-servo", way + 1), (x, top), ORANGE))
             .add(end(
                 &format!("signals-{}-board", way + 1),

@@ -46,9 +46,9 @@ const GROUND_OF: [(&str, usize); 5] = [
 /// The first way of the ground strip for a servo.
 pub const SERVOS: usize = GROUND_OF.len();
 
-fn way(of: &str) -> Point {
-    let found = GROUND_OF.iter().find(|(name, _)| *name == of);
-    ground(found.map_or(0, |(_, way)| *way))
+fn way(name_of_part: &str) -> Point {
+    let index = GROUND_OF.iter().find(|(name, _)| *name == name_of_part);
+    ground(index.map_or(0, |(_, way)| *way))
 }
 
 /// All wires of the supply; `socket` is the middle of the board's round socket.
@@ -167,18 +167,18 @@ fn capacitor() -> [Point; 2] {
     [(CAPACITOR, way("capacitor").1), (CAPACITOR, supply(1).1)]
 }
 
-fn case(group: Group, corner: Point, size: Point, fill: &str) -> Group {
+fn draw_case(group: Group, corner: Point, size: Point, fill: &str) -> Group {
     group.add(edged(rectangle(corner, size, fill).set("rx", 5), DARK, 1.5))
 }
 
 /// The things that the wires join.
 pub fn draw(socket: Point) -> Group {
-    let mut group = battery(Group::new());
-    group = alarm(group);
-    group = in_line(group);
-    group = converter(group);
+    let mut group = draw_battery(Group::new());
+    group = draw_alarm(group);
+    group = draw_supply_line(group);
+    group = draw_converter(group);
     let [above, below] = capacitor();
-    group = case(
+    group = draw_case(
         group,
         (CAPACITOR - 9.0, above.1 + 5.0),
         (18.0, below.1 - above.1 - 10.0),
@@ -204,7 +204,7 @@ pub fn draw(socket: Point) -> Group {
         group = group.add(text_start(words, at, 12.0));
     }
     let [plus, minus] = round_plug(socket);
-    case(group, (plus.0, plus.1 - 8.0), (34.0, 34.0), "#8f8f8f")
+    draw_case(group, (plus.0, plus.1 - 8.0), (34.0, 34.0), "#8f8f8f")
         .add(rectangle(
             (plus.0 + 34.0, socket.1 - 5.0),
             (10.0, 10.0),
@@ -216,10 +216,10 @@ pub fn draw(socket: Point) -> Group {
         .add(text_start("+ inside", (44.0, plus.1 - 13.0), 13.0))
 }
 
-fn battery(group: Group) -> Group {
-    let mut group = case(group, (BATTERY, 18.0), (132.0, 114.0), "#f4efe2");
+fn draw_battery(group: Group) -> Group {
+    let mut group = draw_case(group, (BATTERY, 18.0), (132.0, 114.0), "#f4efe2");
     for (number, top) in [(2, 30.0), (1, 82.0)] {
-        group = case(group, (CELLS, top), (82.0, 38.0), "white").add(text_middle(
+        group = draw_case(group, (CELLS, top), (82.0, 38.0), "white").add(text_middle(
             &format!("cell {number}: 3.7 V"),
             (CELLS + 41.0, top + 23.0),
             12.0,
@@ -254,8 +254,8 @@ fn battery(group: Group) -> Group {
         .add(text_end("battery, 7.4 V", (690.0, 147.0), 13.0))
 }
 
-fn alarm(group: Group) -> Group {
-    let mut group = case(group, (ALARM - 92.0, 58.0), (92.0, 38.0), "#e6eef7")
+fn draw_alarm(group: Group) -> Group {
+    let mut group = draw_case(group, (ALARM - 92.0, 58.0), (92.0, 38.0), "#e6eef7")
         .add(text_start("low-voltage", (ALARM - 84.0, 74.0), 13.0))
         .add(text_start("alarm", (ALARM - 84.0, 90.0), 13.0))
         .add(text_start("balance plug", (ALARM - 40.0, 112.0), 12.0));
@@ -266,16 +266,16 @@ fn alarm(group: Group) -> Group {
 }
 
 /// Fuse, switch and the single way.
-fn in_line(group: Group) -> Group {
+fn draw_supply_line(group: Group) -> Group {
     let mut group = group;
     for ([left, right], fill) in [
         (FUSE_AT, "#fde9e9"),
         (SWITCH_AT, "#e9f3e9"),
         (WAY, "#f2f2f2"),
     ] {
-        group = case(group, (left, PLUS - 13.0), (right - left, 26.0), fill);
+        group = draw_case(group, (left, PLUS - 13.0), (right - left, 26.0), fill);
     }
-    let middle = |of: [f64; 2]| (of[0] + of[1]) / 2.0;
+    let middle = |ends: [f64; 2]| (ends[0] + ends[1]) / 2.0;
     let lever = [
         (SWITCH_AT[0] + 16.0, PLUS + 4.0),
         (SWITCH_AT[1] - 18.0, PLUS - 8.0),
@@ -304,10 +304,10 @@ fn in_line(group: Group) -> Group {
     group
 }
 
-fn converter(group: Group) -> Group {
+fn draw_converter(group: Group) -> Group {
     let [left, right] = CONVERTER;
     let middle = (left + right) / 2.0;
-    case(group, (left, 20.0), (right - left, 102.0), "#e3f0e3")
+    draw_case(group, (left, 20.0), (right - left, 102.0), "#e3f0e3")
         .add(text_middle("converter", (middle, 66.0), 14.0))
         .add(text_middle("to 5.0 V, 3 A", (middle, 84.0), 14.0))
         .add(text_start("OUT+", (left + 8.0, PLUS + 5.0), 12.0))

@@ -54,32 +54,36 @@ const SPH: u16 = 0x3e;
 const SP_DATA: [u16; 2] = [0x5d, 0x5e];
 
 /// The instruction at a byte address; `None` if flash ends there.
-pub fn decode(flash: &[u8], at: u32) -> Option<Instruction> {
-    let code = word(flash, at)?;
+pub fn decode(flash: &[u8], address: u32) -> Option<Instruction> {
+    let code = word(flash, address)?;
     let is_long = code & 0xfe0f == 0x9000 // lds
         || code & 0xfe0f == 0x9200 // sts
         || code & 0xfe0c == 0x940c; // jmp, call
     let size = if is_long { 4 } else { 2 };
-    let second = if is_long { word(flash, at + 2)? } else { 0 };
-    let effect = effect(code, second, at);
+    let second = if is_long {
+        word(flash, address + 2)?
+    } else {
+        0
+    };
+    let effect = effect(code, second, address);
     Some(Instruction { effect, size })
 }
 
 /// The target of the `jmp` or `rjmp` at a byte address; `None` for any other instruction.
-pub fn jump_target(flash: &[u8], at: u32) -> Option<u32> {
-    match decode(flash, at)?.effect {
+pub fn jump_target(flash: &[u8], address: u32) -> Option<u32> {
+    match decode(flash, address)?.effect {
         Effect::Jump(target) => Some(target),
         _ => None,
     }
 }
 
-fn word(flash: &[u8], at: u32) -> Option<u16> {
-    let at = at as usize;
-    let bytes = flash.get(at..at + 2)?;
+fn word(flash: &[u8], address: u32) -> Option<u16> {
+    let address = address as usize;
+    let bytes = flash.get(address..address + 2)?;
     Some(u16::from_le_bytes([bytes[0], bytes[1]]))
 }
 
-fn effect(code: u16, second: u16, at: u32) -> Effect {
+fn effect(code: u16, second: u16, address: u32) -> Effect {
     let register = code >> 4 & 0x1f;
     match code {
         0x9508 | 0x9518 => Effect::Return, // ret, reti
@@ -89,9 +93,9 @@ fn effect(code: u16, second: u16, at: u32) -> Effect {
         _ if code & 0xfe0f == 0x900f => Effect::Pop,
         _ if code & 0xfe0e == 0x940e => Effect::Call(far_target(code, second)),
         _ if code & 0xfe0e == 0x940c => Effect::Jump(far_target(code, second)),
-        _ if code & 0xf000 == 0xc000 => Effect::Jump(relative_target(code, 12, at)), // rjmp
-        _ if code & 0xf000 == 0xd000 => Effect::Call(relative_target(code, 12, at)), // rcall
-        _ if code & 0xf800 == 0xf000 => Effect::Branch(relative_target(code >> 3, 7, at)),
+        _ if code & 0xf000 == 0xc000 => Effect::Jump(relative_target(code, 12, address)), // rjmp
+        _ if code & 0xf000 == 0xd000 => Effect::Call(relative_target(code, 12, address)), // rcall
+        _ if code & 0xf800 == 0xf000 => Effect::Branch(relative_target(code >> 3, 7, address)),
         // cpse; sbrc and sbrs; sbic and sbis
         _ if code & 0xfc00 == 0x1000 => Effect::Skip,
         _ if code & 0xfc08 == 0xfc00 => Effect::Skip,
@@ -131,10 +135,12 @@ fn far_target(code: u16, second: u16) -> u32 {
 }
 
 /// A target relative to the next instruction, in words of this many bits with a sign.
-fn relative_target(offset: u16, bits: u32, at: u32) -> u32 {
+fn relative_target(offset: u16, bits: u32, address: u32) -> u32 {
     let shift = 16 - bits;
     let words = (offset << shift) as i16 >> shift;
-    at.wrapping_add(2).wrapping_add_signed(i32::from(words) * 2)
+    address
+        .wrapping_add(2)
+        .wrapping_add_signed(i32::from(words) * 2)
 }
 
 /// The I/O address of `in` and `out`.

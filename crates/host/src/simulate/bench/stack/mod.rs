@@ -72,9 +72,9 @@ impl StackDepth {
                 let function = walk.function(target)?;
                 match function.lets_in {
                     None => handler = handler.max(ENTRY + function.depth),
-                    Some(at) if function.returns => {
+                    Some(address) if function.returns => {
                         let what = "lets interrupts into an interrupt";
-                        return Err(walk.refuse(target, at, what));
+                        return Err(walk.refuse(target, address, what));
                     }
                     Some(_) => last = last.max(ENTRY + function.depth),
                 }
@@ -92,13 +92,11 @@ impl StackDepth {
 
     /// The deepest of all: on top of main at its deepest an interrupt, or one that never
     /// returns and another.
-    #[must_use]
     pub fn worst(&self) -> u16 {
         self.main + self.last + self.handler
     }
 
     /// Bytes between static data and the deepest stack; negative if they collide.
-    #[must_use]
     pub fn margin(&self) -> i32 {
         i32::from(SRAM_END) - i32::from(self.floor) - i32::from(self.worst())
     }

@@ -117,38 +117,39 @@ impl<'a> Walk<'a> {
         let mut worst = 0;
         let mut returns = false;
         let mut lets_in = None;
-        let mut seen: HashMap<u32, State> = HashMap::new();
-        let begin = State {
+        let mut states: HashMap<u32, State> = HashMap::new();
+        let start = State {
             depth: 0,
             pointer: Pointer::Unknown,
             low: 0,
             room: None,
         };
-        let mut open = vec![(entry, begin)];
-        while let Some((at, mut state)) = open.pop() {
-            if let Some(before) = seen.get(&at) {
-                if before.depth != state.depth {
+        let mut open = vec![(entry, start)];
+        while let Some((address, mut state)) = open.pop() {
+            if let Some(state_before) = states.get(&address) {
+                if state_before.depth != state.depth {
                     let what = "is reached with more or less on the stack than before";
-                    return Err(self.refuse(entry, at, what));
+                    return Err(self.refuse(entry, address, what));
                 }
-                if before.pointer == state.pointer || before.pointer == Pointer::Unknown {
+                if state_before.pointer == state.pointer || state_before.pointer == Pointer::Unknown
+                {
                     continue;
                 }
                 state.pointer = Pointer::Unknown;
             }
-            seen.insert(at, state);
-            let Some(instruction) = decode(self.flash, at) else {
-                return Err(self.refuse(entry, at, "runs out of the code"));
+            states.insert(address, state);
+            let Some(instruction) = decode(self.flash, address) else {
+                return Err(self.refuse(entry, address, "runs out of the code"));
             };
-            let next = at + instruction.size;
+            let next = address + instruction.size;
             let room = state.room.take().map(i32::from);
-            let mut after = vec![next];
+            let mut next_addresses = vec![next];
             match instruction.effect {
                 // The shortest way to make room for two bytes.
                 Effect::Call(target) if target == next => state.depth += RETURN_ADDRESS,
                 Effect::Call(target) if self.shared.save.contains_key(&target) => {
                     let Some(room) = room else {
-                        return Err(self.refuse(entry, at, ROOM));
+                        return Err(self.refuse(entry, address, ROOM));
                     };
                     state.depth += self.shared.save[&target] + room;
                     state.pointer = Pointer::Depth(state.depth);
@@ -157,14 +158,14 @@ impl<'a> Walk<'a> {
                 }
                 Effect::Jump(target) if self.shared.restore.contains_key(&target) => {
                     let Some(room) = room else {
-                        return Err(self.refuse(entry, at, ROOM));
+                        return Err(self.refuse(entry, address, ROOM));
                     };
                     if state.depth != self.shared.restore[&target] + room {
                         let what = "restores other registers than it saved";
-                        return Err(self.refuse(entry, at, what));
+                        return Err(self.refuse(entry, address, what));
                     }
                     returns = true;
-                    after.clear();
+                    next_addresses.clear();
                 }
                 Effect::Call(target) => {
                     let called = self.function(target)?;
@@ -172,40 +173,40 @@ impl<'a> Walk<'a> {
                     worst = worst.max(state.depth + RETURN_ADDRESS + below);
                     lets_in = lets_in.or(called.lets_in);
                     if !called.returns {
-                        after.clear();
+                        next_addresses.clear();
                     }
                 }
                 // The program restarts, and so does its stack.
-                Effect::Jump(0) => after.clear(),
-                Effect::Jump(target) => after = vec![target],
-                Effect::Branch(target) => after.push(target),
+                Effect::Jump(0) => next_addresses.clear(),
+                Effect::Jump(target) => next_addresses = vec![target],
+                Effect::Branch(target) => next_addresses.push(target),
                 Effect::Skip => {
                     let skipped = decode(self.flash, next).map_or(2, |skipped| skipped.size);
-                    after.push(next + skipped);
+                    next_addresses.push(next + skipped);
                 }
                 Effect::Return if state.depth == 0 => {
                     returns = true;
-                    after.clear();
+                    next_addresses.clear();
                 }
                 Effect::Return => {
-                    return Err(self.refuse(entry, at, "returns with something on the stack"));
+                    return Err(self.refuse(entry, address, "returns with something on the stack"));
                 }
                 Effect::Indirect => {
                     let what = "goes to an address that it computes";
-                    return Err(self.refuse(entry, at, what));
+                    return Err(self.refuse(entry, address, what));
                 }
                 Effect::EnableInterrupts if self.context == Context::Interrupt => {
-                    lets_in = Some(at);
+                    lets_in = Some(address);
                 }
-                Effect::StackFromOther => return Err(self.refuse(entry, at, POINTER)),
+                Effect::StackFromOther => return Err(self.refuse(entry, address, POINTER)),
                 effect => {
                     if !state.apply(effect) {
-                        return Err(self.refuse(entry, at, POINTER));
+                        return Err(self.refuse(entry, address, POINTER));
                     }
                 }
             }
             worst = worst.max(state.depth);
-            open.extend(after.into_iter().map(|at| (at, state)));
+            open.extend(next_addresses.into_iter().map(|address| (address, state)));
         }
         let depth = u16::try_from(worst)
             .map_err(|_| self.refuse(entry, entry, "needs more stack than there is"))?;
@@ -218,10 +219,10 @@ impl<'a> Walk<'a> {
 
     /// An error of the function at `entry`.
     pub fn refuse(&self, entry: u32, address: u32, what: &'static str) -> StackError {
-        let before = |symbol: &&simulated_uno::Symbol| {
+        let is_before = |symbol: &&simulated_uno::Symbol| {
             symbol.is_function && u64::from(entry) >= symbol.address
         };
-        let symbols = self.image.symbols().iter().filter(before);
+        let symbols = self.image.symbols().iter().filter(is_before);
         let nearest = symbols.max_by_key(|symbol| symbol.address);
         StackError {
             function: nearest.map_or_else(|| "the code".to_owned(), |symbol| symbol.path()),
@@ -238,9 +239,9 @@ impl State {
     /// Follows an instruction that only works on the stack and its pointer. False if
     /// the stack pointer is then unknown.
     fn apply(&mut self, effect: Effect) -> bool {
-        let add = |pointer: Pointer, more: i16| match pointer {
-            Pointer::Depth(depth) => Pointer::Depth(depth - i32::from(more)),
-            Pointer::Address(address) => Pointer::Address(address.wrapping_add_signed(more)),
+        let add = |pointer: Pointer, change: i16| match pointer {
+            Pointer::Depth(depth) => Pointer::Depth(depth - i32::from(change)),
+            Pointer::Address(address) => Pointer::Address(address.wrapping_add_signed(change)),
             Pointer::Unknown => Pointer::Unknown,
         };
         match effect {
@@ -255,11 +256,11 @@ impl State {
                     Pointer::Unknown => return false,
                 }
             }
-            Effect::AddToPointer(more) => self.pointer = add(self.pointer, more),
+            Effect::AddToPointer(change) => self.pointer = add(self.pointer, change),
             Effect::SubtractLow(low) => self.low = low,
             Effect::SubtractHigh(high) => {
-                let less = i16::from_le_bytes([self.low, high]);
-                self.pointer = add(self.pointer, less.wrapping_neg());
+                let amount = i16::from_le_bytes([self.low, high]);
+                self.pointer = add(self.pointer, amount.wrapping_neg());
             }
             Effect::LoadLow(low) => self.pointer = Pointer::Address(low.into()),
             Effect::LoadHigh(high) => {

@@ -65,9 +65,9 @@ fn walking_and_turning_lead_where_the_contact_model_says() {
         };
         let paths = command_paths(run, &[span]);
         let all = paths.last().expect("the whole run");
-        let off = |found: Option<f64>, wanted: f64| found.map(|found| (found - wanted).abs());
-        assert!(off(all.forward, forward) < Some(0.35), "{gait}: {all:?}");
-        assert!(off(all.turn, turn) < Some(0.2), "{gait}: {all:?}");
+        let error = |found: Option<f64>, wanted: f64| found.map(|found| (found - wanted).abs());
+        assert!(error(all.forward, forward) < Some(0.35), "{gait}: {all:?}");
+        assert!(error(all.turn, turn) < Some(0.2), "{gait}: {all:?}");
         assert!(all.forward.is_some() && all.turn.is_some());
     }
 }
@@ -161,7 +161,7 @@ fn a_pose_near_a_singularity_is_reported() {
     let of = |log: &FrameLog| safety(Run { robot: &robot, log });
     let fine = of(&gait_frames(&robot, "walk", 50));
     assert_eq!(fine.violations, 0);
-    assert!(fine.least.is_some_and(|least| least.value > 0.3));
+    assert!(fine.least.is_some_and(|min| min.value > 0.3));
     let found = of(&frames_of(&robot, 2, |_| [90.0, 90.0, 318.59, 221.41]));
     assert_eq!(found.violations, 2);
     assert!(found.first_violation.is_some());

@@ -6,7 +6,7 @@ use lizard_core::virtual_board::Running;
 fn press<P: Read + Write>(guide: &mut Guide<'_, P>, keys: &[Key]) -> bool {
     let mut done = false;
     for key in keys {
-        done = guide.key(*key).expect("the robot answers");
+        done = guide.press_key(*key).expect("the robot answers");
     }
     done
 }

@@ -22,7 +22,6 @@ pub struct View {
 
 impl<P: Read + Write> Guide<'_, P> {
     /// The screen for the current step.
-    #[must_use]
     pub fn view(&self) -> View {
         let servo = |index: usize| format!("A{}, {}", index + 1, PLACES[index]);
         let next = "Enter: next    b: back    q: cancel, nothing is saved";
@@ -50,8 +49,8 @@ impl<P: Read + Write> Guide<'_, P> {
                 ("fit the horns".to_owned(), text, next)
             }
             Step::Sign(index) => {
-                let by = self.moved.unwrap_or(SIGN_ANGLES[0]);
-                let sense = if by < 0.0 {
+                let ordered = self.moved.unwrap_or(SIGN_ANGLES[0]);
+                let sense = if ordered < 0.0 {
                     "clockwise"
                 } else {
                     "counter-clockwise"
@@ -60,7 +59,7 @@ impl<P: Read + Write> Guide<'_, P> {
                     "The space bar moves A{} alone, by {:.0} degrees.\n\
                      Seen from above: did it turn {sense}?",
                     index + 1,
-                    by.abs()
+                    ordered.abs()
                 );
                 (
                     format!("which way does {} turn?", servo(index)),
@@ -93,15 +92,15 @@ impl<P: Read + Write> Guide<'_, P> {
                 "y: set them    Enter: leave them as they are    b: back    q: leave",
             ),
             Step::Scale(index) => {
-                let by = self.moved.unwrap_or(SCALE_ANGLES[0]);
+                let ordered = self.moved.unwrap_or(SCALE_ANGLES[0]);
                 let text = format!(
                     "The space bar turns A{} alone by {:.0} degrees, so that its crank\n\
                      should point to {:.2} deg. If it does not, turn it there with the\n\
                      arrow keys.\n\n    \
                      scale {:.2} us per degree",
                     index + 1,
-                    by.abs(),
-                    (self.neutral[index] + by).rem_euclid(360.0),
+                    ordered.abs(),
+                    (self.neutral[index] + ordered).rem_euclid(360.0),
                     self.now.servo.all()[index].scale
                 );
                 (

@@ -106,22 +106,23 @@ fn a_robot_alone_is_refused_if_the_code_on_the_board_cannot_read_it() {
         assert!(run.board.flash == before && run.board.written.is_empty());
         run.words()
     };
-    let why = "a robot alone moves nothing: write both, without --only-robot. Nothing was written";
+    let reason =
+        "a robot alone moves nothing: write both, without --only-robot. Nothing was written";
     assert_eq!(
         refused(&|board| board.flash[..BOOT].fill(0xff)),
-        format!("the board has no program, and {why}")
+        format!("the board has no program, and {reason}")
     );
     // Another sketch, shorter than the firmware, most of which is still there.
     assert_eq!(
         refused(&|board| board.flash[..1000].fill(0x95)),
-        format!("the board has another program, and {why}")
+        format!("the board has another program, and {reason}")
     );
     assert_eq!(
         refused(&|board| {
             board.flash[..PAGE].fill(0xff);
             board.flash[..2].copy_from_slice(&IDLE);
         }),
-        format!("the board has half a program, which does nothing, and {why}")
+        format!("the board has half a program, which does nothing, and {reason}")
     );
     let words = refused(&|board| board.flash[AT + 4] += 1);
     assert!(

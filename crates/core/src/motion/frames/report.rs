@@ -1,0 +1,46 @@
+//! The state of a motion, as others read it.
+
+use super::Motion;
+use crate::guard::hazard::Hazard;
+use crate::motion::state::State;
+use crate::numbers::pose::{Pose, Pulses};
+
+impl Motion {
+    /// Phase of the gait, 1/2^24 cycle; 0 outside of one.
+    pub const fn phase(&self) -> u32 {
+        match self.state {
+            State::Cycling { phase, .. } => phase,
+            _ => 0,
+        }
+    }
+
+    /// The pose of the last frame.
+    pub const fn pose(&self) -> &Pose {
+        &self.stance.pose
+    }
+
+    /// True while the servos get no pulses.
+    pub const fn is_resting(&self) -> bool {
+        matches!(self.state, State::Resting)
+    }
+
+    /// The pulses of the last frame, of servos that sleep, too.
+    pub const fn sent(&self) -> &Pulses {
+        &self.stance.sent
+    }
+
+    /// Speed of gaits in percent.
+    pub const fn speed(&self) -> u8 {
+        self.speed
+    }
+
+    /// Frames since power-on.
+    pub const fn frames(&self) -> u32 {
+        self.frames
+    }
+
+    /// The reason why the guard stopped the robot, until the next motion begins.
+    pub const fn hazard(&self) -> Option<Hazard> {
+        self.hazard
+    }
+}

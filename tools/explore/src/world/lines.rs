@@ -1,0 +1,140 @@
+//! The lines that are sent to the robot, and those that it prints.
+
+use lizard_core::console::command::{effect, parse};
+use lizard_core::step::Step;
+use lizard_core::virtual_board::{Running, is_final};
+use lizard_rules::{Event, Rule, Time};
+
+use super::{FOUND_AFTER, UNREADABLE, Verdict, World, broken};
+use crate::fingerprint;
+
+impl World {
+    /// Sends a line and runs main up to the line's immediate effect.
+    pub(super) fn say(&mut self, line: &'static str, bytes: &[u8]) -> Verdict {
+        let before = self.settled();
+        self.running.board.send(bytes);
+        self.running.board.send(b"\n");
+        self.observe(Event::Byte);
+        let is_command = bytes == line.as_bytes() && parse(bytes, &self.robot()).is_ok();
+        self.observe(Event::Line { is_command });
+        self.unread = Some(line);
+        for _ in 0..10_000 {
+            if self.running.board.unread() == 0 {
+                break;
+            }
+            let step = self.running.main.step(&mut self.running.board);
+            if step != Step::Worked || self.running.board.memory.was_polled_busy() {
+                // It is read when main has time.
+                break;
+            }
+        }
+        if self.running.board.unread() == 0 {
+            self.predict(line, &before)?;
+        }
+        if self.unread.is_some() {
+            let effect = effect(line, &self.robot());
+            self.order(effect, None);
+        }
+        self.listen(self.now)
+    }
+
+    /// Sends a line that the robot's receiver reads at another rate.
+    pub(super) fn say_at_another_rate(&mut self) -> Verdict {
+        let before = self.settled();
+        self.running.board.send(&UNREADABLE);
+        self.observe(Event::Byte);
+        let after = self.settled();
+        let print = |running: &Running| fingerprint::without_line_counters(&running.main);
+        if print(&after) != print(&before) {
+            return broken(Rule::OtherRate, after.board.transmitter.text);
+        }
+        Ok(())
+    }
+
+    /// Checks that a robot that is asked at one rate answers in the end.
+    pub(super) fn is_found(&self) -> Verdict {
+        let mut asked = self.running.clone();
+        asked.board.transmitter.is_held = false;
+        for _ in 0..FOUND_AFTER {
+            if asked.is_over() {
+                return Ok(());
+            }
+            let line: &[u8] = if asked.board.rate == self.sender {
+                b"status\n"
+            } else {
+                &UNREADABLE
+            };
+            asked.board.send(line);
+            for _ in 0..4 {
+                asked.frame();
+            }
+            if asked.board.transmitter.text.contains("ok gait=") {
+                return Ok(());
+            }
+        }
+        broken(Rule::Found, format!("at {} baud", self.sender.baud()))
+    }
+
+    /// A clone of the robot that has printed all its output.
+    fn settled(&self) -> Running {
+        let mut settled = self.running.clone();
+        settled.board.transmitter.text.clear();
+        settled.settle();
+        settled
+    }
+
+    /// Judges the answer that the robot is about to print, if it prints one at once: its state
+    /// must already match that answer.
+    fn predict(&mut self, line: &'static str, before: &Running) -> Verdict {
+        let after = self.settled();
+        let text = &after.board.transmitter.text;
+        let Some(answer) = text.lines().find(|line| is_final(line)) else {
+            return Ok(());
+        };
+        let print = |running: &Running| fingerprint::without_line_counters(&running.main);
+        if answer.starts_with("err ")
+            && (print(&after) != print(before)
+                || after.board.memory.bytes() != before.board.memory.bytes())
+        {
+            return broken(Rule::Refused, text.clone());
+        }
+        if answer.starts_with("ok gait=") {
+            // This answer is judged when it is printed.
+            return Ok(());
+        }
+        self.known += 1;
+        self.unread = None;
+        self.answer(line, answer)?;
+        self.look_ahead()
+    }
+
+    /// Passes the robot's lines to the observer; they were decided at `since` or later.
+    pub(super) fn listen(&mut self, since: Time) -> Verdict {
+        let text = std::mem::take(&mut self.running.board.transmitter.text);
+        // Of the longest line only the first part may have been printed.
+        let (whole, rest) = text.rsplit_once("\r\n").unwrap_or(("", &text));
+        rest.clone_into(&mut self.running.board.transmitter.text);
+        for line in whole.split("\r\n").filter(|line| !line.is_empty()) {
+            self.observe(Event::Printed(since, line));
+            if is_final(line) {
+                if self.known > 0 && !line.starts_with("ok gait=") {
+                    self.known -= 1;
+                } else if let Some(asked) = self.unread.take() {
+                    self.answer(asked, line)?;
+                }
+            }
+        }
+        self.look_ahead()
+    }
+
+    /// Tells the observer about `boot` although nobody reads the output.
+    pub(super) fn predict_boot(&mut self) {
+        let mut heard = self.running.clone();
+        heard.board.transmitter.is_held = false;
+        heard.settle();
+        let lines = heard.board.transmitter.text.lines();
+        for line in lines.filter(|line| line.starts_with("# boot: ")) {
+            self.observe(Event::Printed(self.now, line));
+        }
+    }
+}
