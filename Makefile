@@ -55,7 +55,7 @@ web-test: ## test the page in a real browser: walk, turn, refuse, calibrate, fla
 	$(call prepared,.web-test)
 lint: ## rustfmt, clippy and cargo doc, warnings are errors
 	$(call prepared,.lint)
-parts-test: ## check the files of `lizard parts` with ezdxf, FreeCAD, admesh, PrusaSlicer and trimesh
+parts-test: ## check the files of `lizard parts` and `lizard model` with ezdxf, FreeCAD, PrusaSlicer, urdfdom, libsdformat and others
 	$(call prepared,.parts-test)
 cli: ## build the host program, crates/target/release/lizard
 	$(call prepared,.cli)
@@ -188,6 +188,7 @@ WALKS := target/walks.log
 	@scripts/setup-parts
 	@cd crates && cargo build $(ALL) --bin lizard --quiet
 	@scripts/parts-test $(HOST)/debug/lizard
+	@out/put-together/bin/python scripts/models-test $(HOST)/debug/lizard
 
 .bench: .firmware .cli
 	@$(LIZARD) sim bench --elf $(ELF) $(FOR_ROBOT)
@@ -205,7 +206,7 @@ WALKS := target/walks.log
 .physics: .firmware
 	@scripts/setup-physics
 	@cd crates && cargo build $(ALL) --bin lizard --bin lizard-physics --quiet
-	@$(HOST)/debug/lizard mjcf target/physics/walk.xml --drive walk --elf $(ELF) $(FOR_ROBOT)
+	@$(HOST)/debug/lizard model target/physics/walk.xml --drive walk --elf $(ELF) $(FOR_ROBOT)
 	@target/physics/bin/python tools/physics/judge.py target/physics/walk.xml
 	@cd crates && ../$(HOST)/debug/lizard-physics $(if $(WRITE),--write,--one-in $(or $(ONE_IN),1))
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Walks robots that `lizard mjcf --drive` or `make physics` has written, by MuJoCo.
+"""Walks robots that `lizard model --drive` or `make physics` has written, by MuJoCo.
 
 Prints a line of JSON for each: the file's name, and the mean displacement by a cycle (mm forward, mm to
 the left, deg counter-clockwise). Two walks run at a time. Usage: judge.py FOLDER-OR-FILE
@@ -19,7 +19,7 @@ def judge(path):
         walk = Walk(path)
     except ValueError as wrong:
         return {"file": path.stem, "trouble": " ".join(str(wrong).split())}
-    if walk.model.nkey == 0:
+    if walk.frames == 0:
         return {"file": path.stem, "trouble": "it holds no gait; write it with --drive GAIT"}
     way = [round(float(part), 3) for part in walk.cycle()]
     trouble = sum(warning.number for warning in walk.data.warning)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Shows in MuJoCo's window how a robot walks that `lizard mjcf` has written.
+"""Shows in MuJoCo's window how a robot walks that `lizard model` has written.
 
 Usage: target/physics/bin/python tools/physics/view.py out/walk.xml
 The file is to be written with --drive; the last cycle is repeated until the window is
@@ -27,7 +27,7 @@ def main():
         walk = Walk(sys.argv[1])
     except ValueError as wrong:
         sys.exit(f"view.py: {sys.argv[1]}: {' '.join(str(wrong).split())}")
-    if walk.model.nkey == 0:
+    if walk.frames == 0:
         print("view.py: the servos do not move; write the file with --drive GAIT")
     stopped = False
 

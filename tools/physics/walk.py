@@ -1,7 +1,7 @@
-"""Walks a robot that `lizard mjcf` has written, by MuJoCo.
+"""Walks a robot that `lizard model` has written, by MuJoCo.
 
 The file has a keyframe for each frame of 20 ms: its time and the servos' angles, which stay
-set until the next frame begins, as by the pulses of the board.
+set until the next frame begins, as by the pulses of the board. The last keyframe is `home`.
 """
 
 import math
@@ -20,7 +20,8 @@ class Walk:
         ratio = float(self.model.numeric("back over forward").data[0])
         self.grain = None if ratio == 1 else Grain(self.model, ratio)
         self.begin, self.period, self.count = None, None, None
-        if self.model.nkey > 0:
+        self.frames = self.model.nkey - 1
+        if self.frames > 0:
             self.begin, self.period, count = self.model.numeric("cycle").data
             self.count = int(count)
 
@@ -31,11 +32,11 @@ class Walk:
             seconds = self.begin + (seconds - self.begin) % cycles
         times = self.model.key_time
         frame = int((seconds + 1e-9) / (times[1] - times[0]))
-        return min(frame, self.model.nkey - 1)
+        return min(frame, self.frames - 1)
 
     def step(self):
         """Makes one step of the engine, with the servos set to the present frame's angles."""
-        if self.model.nkey > 0:
+        if self.frames > 0:
             self.data.ctrl[:] = self.model.key_ctrl[self.frame(self.data.time)]
         if self.grain:
             self.grain.set(self.data)

@@ -232,7 +232,7 @@ class Model:
         return self._robot.image(only_robot)
 
     def mjcf(self, *, shapes: bool = True) -> str:
-        """The model for MuJoCo, as `lizard mjcf` writes it; without shapes it is a fiftieth as long."""
+        """The model for MuJoCo, as `lizard model` writes it to an .xml file; without shapes it is a fiftieth as long."""
         return self._robot.mjcf(shapes)
 
 

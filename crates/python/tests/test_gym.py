@@ -18,7 +18,7 @@ assert SPEC is not None and SPEC.loader is not None
 learn_gait = importlib.util.module_from_spec(SPEC)
 SPEC.loader.exec_module(learn_gait)
 
-# A cycle with a step of 0.2 ms, as the file of `lizard mjcf` has it: docs/judges.md.
+# A cycle with a step of 0.2 ms, as the file of `lizard model` has it: docs/judges.md.
 WAYS = {"walk": (34.1, 0.0), "trot": (26.4, 0.0), "left": (0.0, 14.9)}
 
 

@@ -8,7 +8,7 @@
 //!
 //! # When not to use it
 //! The model is planar: feet do not lift or tilt, and links do not bend. Where this
-//! matters, `lizard mjcf` writes the robot for a physics engine. For the movement of a gait
+//! matters, `lizard model` writes the robot for a physics engine. For the movement of a gait
 //! without pulses and servos, `lizard_robot::CheckedGait::predict` is enough.
 //!
 //! # Units

@@ -38,7 +38,7 @@ pub struct Answers {
     /// The contact model's; `None` where two feet pull against two, so that the smallest
     /// difference between the pads decides.
     pub model: Option<Displacement>,
-    /// MuJoCo's, for the robot as `lizard mjcf` writes it.
+    /// MuJoCo's, for the robot as `lizard model` writes it.
     pub mujoco: Displacement,
 }
 

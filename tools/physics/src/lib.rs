@@ -2,7 +2,7 @@
 //!
 //! Every prediction of a path over the floor comes from this project's own contact model.
 //! A fault of that model would affect every table, the page and the choice of gaits. So
-//! MuJoCo, which does not use the model, walks the same gaits with the robot as `lizard mjcf`
+//! MuJoCo, which does not use the model, walks the same gaits with the robot as `lizard model`
 //! writes it.
 //!
 //! `make physics` runs it (`mujoco`), compares it with the model and with the figures in

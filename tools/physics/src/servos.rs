@@ -1,5 +1,5 @@
 //! Servos that cannot follow their pulses: the model with motors, and MuJoCo with the motors of
-//! `lizard mjcf`. Neither has a dead band here.
+//! `lizard model`. Neither has a dead band here.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

@@ -143,12 +143,12 @@ mod tests {
         assert_eq!(list_in_build(KNOWN, |_| true), "");
         assert_eq!(
             list_in_build(KNOWN, |feature| feature != "simulator"),
-            "Not in this program: sim, twin, mjcf, tune. It was built without the simulator. The \
+            "Not in this program: sim, twin, tune. It was built without the simulator. The \
              simulator runs on Linux.\n\n"
         );
         assert_eq!(
             list_in_build(KNOWN, |feature| feature != "parts"),
-            "Not in this program: mjcf, parts, fit. It was built without the parts to print.\n\n"
+            "Not in this program: model, parts, fit. It was built without the parts to print.\n\n"
         );
     }
 
@@ -156,7 +156,11 @@ mod tests {
     fn of_two_features_only_the_absent_ones_are_named() {
         assert!(message("tune", &["simulator"]).contains("without the commands that compute;"));
         assert!(message("tune", &["paper"]).contains("without the simulator;"));
-        assert!(message("mjcf", &[]).contains("the simulator and the parts to print;"));
+        let both = message("tune", &[]);
+        assert!(
+            both.contains("the simulator and the commands that compute;"),
+            "{both}"
+        );
     }
 
     #[test]

@@ -94,7 +94,7 @@ commands! {
     Simulate {
         Sim(With<crate::simulate::sim::Args, nested::OfSim>) => nested::sim, needs "simulator";
         Twin(crate::simulate::twin::Args) => crate::simulate::twin::run, needs "simulator";
-        Mjcf(crate::simulate::mjcf::Args) => crate::simulate::mjcf::run, needs "simulator" and "parts";
+        Model(crate::make::model::Args) => crate::make::model::run, needs "parts", also "mjcf";
     }
     Build {
         Draw(With<crate::make::draw::Args, nested::OfDraw>) => nested::draw;

@@ -1,6 +1,8 @@
 //! Make the robot: drawings of it and of its wiring, its parts as files to print and to cut,
-//! and the proof that they fit.
+//! the proof that they fit, and models of it for other programs.
 
 pub mod draw;
+#[cfg(feature = "parts")]
+pub mod model;
 #[cfg(feature = "parts")]
 pub mod parts;

@@ -4,7 +4,7 @@
 pub mod bench;
 pub mod board;
 #[cfg(feature = "parts")]
-pub mod mjcf;
+pub mod course;
 pub mod patrol;
 pub mod sim;
 pub mod twin;

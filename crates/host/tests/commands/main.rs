@@ -5,7 +5,7 @@ mod another_robot;
 mod draw;
 mod flash;
 mod merge;
-mod mjcf;
+mod model;
 mod outputs;
 mod paper;
 mod parts;

@@ -31,6 +31,7 @@ fn no_command_writes_over_its_input_or_over_a_robot() {
     }
     fs::create_dir(here.join("charts")).expect("a folder");
     fs::hard_link(here.join("my.toml"), here.join("charts/top-view.svg")).expect("another name");
+    fs::hard_link(here.join("my.toml"), here.join("my.urdf")).expect("another name");
     for (line, file) in [
         ("flash image --robot my.toml --output my.toml", "my.toml"),
         (
@@ -44,8 +45,7 @@ fn no_command_writes_over_its_input_or_over_a_robot() {
         ("flash image --robot large --output broken", "broken"),
         ("draw --robot my.toml --output my.toml", "my.toml"),
         ("draw --robot my.toml --output robot.toml", "robot.toml"),
-        ("mjcf my.toml --robot my.toml", "my.toml"),
-        ("mjcf robot.toml --robot my.toml", "robot.toml"),
+        ("model my.urdf --robot my.toml", "my.urdf"),
         ("console replay a.jsonl --svg a.jsonl", "a.jsonl"),
         ("sim --duration 4 --svg robot.toml", "robot.toml"),
         ("sim --script a.txt --svg a.txt", "a.txt"),
@@ -65,6 +65,7 @@ fn no_command_writes_over_its_input_or_over_a_robot() {
         let now = fs::read_to_string(here.join(name)).expect("it is there");
         assert!(now == text, "{name} has changed");
     }
+    assert!(!here.join("my-meshes").exists());
 }
 
 #[test]

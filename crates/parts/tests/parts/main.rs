@@ -11,6 +11,7 @@ mod files;
 mod fit;
 mod fittings;
 mod mjcf;
+mod models;
 mod order;
 mod proof;
 mod surface;

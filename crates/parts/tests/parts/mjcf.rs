@@ -14,19 +14,19 @@ fn robot(name: &str) -> Robot {
     with(name, "")
 }
 
-fn neutral(robot: &Robot) -> Solution {
+pub fn neutral(robot: &Robot) -> Solution {
     let solved = robot.lizard().solve(&robot.neutral());
     solved.expect("neutral closes")
 }
 
-fn written(robot: &Robot, change: impl FnOnce(&mut Scene)) -> String {
+pub fn written(robot: &Robot, change: impl FnOnce(&mut Scene)) -> String {
     let assembly = Assembly::new(robot);
     let mut scene = Scene::of(&assembly);
     change(&mut scene);
     mjcf(&assembly, &neutral(robot), &scene).expect("it is made")
 }
 
-fn numbers(node: Node, attribute: &str) -> Vec<f64> {
+pub fn numbers(node: Node, attribute: &str) -> Vec<f64> {
     let text = node.attribute(attribute).expect(attribute);
     let parts = text.split(' ');
     parts.map(|part| part.parse().expect("a number")).collect()
@@ -34,13 +34,13 @@ fn numbers(node: Node, attribute: &str) -> Vec<f64> {
 
 /// A body of the file: where it is in the world, m, and how far it is turned.
 #[derive(Clone, Copy)]
-struct Placed {
-    at: [f64; 3],
-    turn: f64,
+pub struct Placed {
+    pub at: [f64; 3],
+    pub turn: f64,
 }
 
 impl Placed {
-    fn point(&self, point: &[f64]) -> [f64; 3] {
+    pub fn point(&self, point: &[f64]) -> [f64; 3] {
         let (sin, cos) = self.turn.sin_cos();
         [
             self.at[0] + cos * point[0] - sin * point[1],
@@ -51,10 +51,10 @@ impl Placed {
 }
 
 /// Bodies by their names.
-type Bodies<'a> = BTreeMap<String, (Placed, Node<'a, 'a>)>;
+pub type Bodies<'a> = BTreeMap<String, (Placed, Node<'a, 'a>)>;
 
 /// Every body of a file.
-fn bodies<'a>(document: &'a Document) -> Bodies<'a> {
+pub fn bodies<'a>(document: &'a Document) -> Bodies<'a> {
     fn walk<'a>(parent: Node<'a, 'a>, on: Placed, all: &mut Bodies<'a>) {
         for body in parent.children().filter(|node| node.has_tag_name("body")) {
             let quat = numbers(body, "quat");
@@ -85,7 +85,7 @@ fn elements<'a>(document: &'a Document, tag: &str) -> Vec<Node<'a, 'a>> {
     children.filter(Node::is_element).collect()
 }
 
-fn child<'a>(node: Node<'a, 'a>, tag: &str) -> Node<'a, 'a> {
+pub fn child<'a>(node: Node<'a, 'a>, tag: &str) -> Node<'a, 'a> {
     let found = node.children().find(|node| node.has_tag_name(tag));
     found.expect(tag)
 }
@@ -386,7 +386,9 @@ fn a_course_has_the_angles_of_the_firmwares_tables_and_tells_its_last_cycle() {
     };
     assert!((written - start).abs() < 1e-9 && long == period && period == 0.91);
     assert_eq!(count, 1.0);
-    let keys = elements(&document, "keyframe");
+    let mut keys = elements(&document, "keyframe");
+    let home = keys.pop().and_then(|key| key.attribute("name"));
+    assert_eq!(home, Some("home"));
     let last = numbers(*keys.last().expect("frames"), "time")[0];
     assert!(last >= start + period && last < start + period + 0.02 + 1e-9);
     for key in keys {

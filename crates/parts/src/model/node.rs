@@ -1,7 +1,6 @@
 //! The bodies of the file: the parent of each, and its motion on the parent.
 //!
-//! MuJoCo wants a tree. So each closed loop of the robot is cut at one of its joints,
-//! which a constraint closes again (`closed.rs`).
+//! They are a tree: each closed loop of the robot is cut at one of its joints (`closed.rs`).
 
 use lizard_kinematics::Side;
 use lizard_robot::servo::{LEGS, NAMES};

@@ -1,9 +1,10 @@
-//! The robot as a model for MuJoCo, so that an independent physics engine can let it walk.
+//! The robot as a model for physics engines and for ROS: MJCF, URDF and SDF.
 //!
 //! Every part of the assembly becomes part of a rigid body, with the mass and the inertia
 //! of its own volume, at its place in the assembly. Hinges and slides join the bodies as
-//! pins and sleeves do; a constraint closes each loop. The file knows nothing of walking:
-//! it has servos, pads and a floor.
+//! pins and sleeves do. MJCF and URDF want a tree, so each closed loop is cut at one of its
+//! joints (`closed.rs`), which MJCF and SDF close again. The files know nothing of walking. MJCF,
+//! by which an independent engine lets the robot walk, has motors and a floor, too.
 //!
 //! # Simplifications
 //! - Only pads and floor touch each other. A separate proof shows that no two parts meet
@@ -12,32 +13,37 @@
 //! - A servo is a motor whose torque falls with its speed, with a rotor, and with a gain that
 //!   applies the full torque at a few degrees of error, as `[servo]` has them. It has no dead band.
 //! - The friction of all pins that a servo turns acts at its link.
-//! - The friction of the pads is equal in all directions, as MuJoCo has it. The file says by how much
+//! - The friction of the pads is equal in all directions, as MuJoCo has it. Its file says by how much
 //!   that of the robot's pads is larger backward, and `tools/physics/grain.py` sees to it.
 
 mod closed;
-mod drives;
 mod floor;
-mod footing;
 mod inertia;
+mod joint;
+mod looks;
+mod meshes;
+mod mjcf;
 mod node;
 mod pieces;
 mod scene;
+mod sdf;
 mod text;
-mod tree;
+mod urdf;
 mod writer;
 
 use lizard_kinematics::Solution;
 
 use crate::bodies::assembly::Assembly;
+use crate::files::File;
 use crate::unfit::Unfit;
 pub use floor::{Block, Floor};
+use node::Node;
 use pieces::{Piece, pieces};
 pub use scene::{Course, Pull, Scene};
 use text::Xml;
 use writer::Writer;
 
-/// The file of a scene.
+/// The file of a scene for MuJoCo.
 ///
 /// # Errors
 /// Returns [`Unfit::Surface`] for a part whose layers do not make a body.
@@ -62,10 +68,39 @@ impl<'a> Pieces<'a> {
         Ok(Self { assembly, pieces })
     }
 
-    /// The file of a scene whose struts and play equal those of the scene that was given
+    /// The file for MuJoCo of a scene whose struts and play equal those of the scene that was given
     /// to [`Pieces::of`].
     #[must_use]
     pub fn mjcf(&self, neutral: &Solution, scene: &Scene) -> String {
+        self.written(neutral, scene, |writer| writer.mjcf())
+    }
+
+    /// The robot of such a scene as URDF, whose meshes ([`Pieces::meshes`]) lie in `folder`: a path
+    /// or an address with a slash at its end.
+    #[must_use]
+    pub fn urdf(&self, neutral: &Solution, scene: &Scene, folder: &str) -> String {
+        self.written(neutral, scene, |writer| writer.urdf(folder))
+    }
+
+    /// The robot of such a scene as SDF, with meshes as in [`Pieces::urdf`].
+    #[must_use]
+    pub fn sdf(&self, neutral: &Solution, scene: &Scene, folder: &str) -> String {
+        self.written(neutral, scene, |writer| writer.sdf(folder))
+    }
+
+    /// The meshes that URDF and SDF name, by the names that they have in their folder.
+    #[must_use]
+    pub fn meshes(&self, scene: &Scene) -> Vec<File> {
+        let nodes = Node::all(scene.pull.is_some(), scene.play > 0.0);
+        meshes::files(&self.pieces, &nodes)
+    }
+
+    fn written(
+        &self,
+        neutral: &Solution,
+        scene: &Scene,
+        write: impl FnOnce(&mut Writer<'_>),
+    ) -> String {
         let mut writer = Writer {
             assembly: self.assembly,
             neutral,
@@ -73,7 +108,7 @@ impl<'a> Pieces<'a> {
             pieces: &self.pieces,
             xml: Xml::default(),
         };
-        writer.document();
+        write(&mut writer);
         writer.xml.finish()
     }
 }

@@ -1,14 +1,10 @@
 //! The file from the top: options, defaults, meshes, floor, and then the robot.
 
-use lizard_kinematics::Solution;
-
-use super::node::Node;
-use super::pieces::Piece;
-use super::scene::Scene;
-use super::text::{Xml, escaped, round};
-use crate::bodies::assembly::Assembly;
-use crate::layers::body::{Kind, Mount};
-use crate::layers::placement::Placement;
+use crate::layers::body::Mount;
+use crate::model::node::Node;
+use crate::model::pieces::Piece;
+use crate::model::text::{escaped, joined, round};
+use crate::model::writer::Writer;
 
 /// Time of a step, s.
 const STEP: f64 = 0.0002;
@@ -19,17 +15,9 @@ pub(super) const CONTACT: &str = "0.001 1";
 /// Impedance of constraints and limits.
 const STIFF: &str = "0.99 0.999 0.0001";
 
-/// A writer of a robot and its scene.
-pub(super) struct Writer<'a> {
-    pub assembly: &'a Assembly,
-    pub neutral: &'a Solution,
-    pub scene: &'a Scene,
-    pub pieces: &'a [Piece],
-    pub xml: Xml,
-}
-
-impl<'a> Writer<'a> {
-    pub(super) fn document(&mut self) {
+impl Writer<'_> {
+    /// Writes the whole file.
+    pub(in super::super) fn mjcf(&mut self) {
         let name = escaped(&self.scene.name);
         self.xml.open(format!(r#"mujoco model="{name}""#));
         self.options();
@@ -48,7 +36,8 @@ impl<'a> Writer<'a> {
         self.world();
         self.loops();
         self.actuators();
-        self.course();
+        self.sensors();
+        self.keyframes();
     }
 
     fn options(&mut self) {
@@ -104,47 +93,9 @@ impl<'a> Writer<'a> {
         self.body(Node::Of(Mount::Chassis));
         self.xml.close();
     }
-
-    /// The parts whose shapes go into the file.
-    pub(super) fn shown(&self) -> &'a [Piece] {
-        match self.scene.shapes {
-            true => self.pieces,
-            false => &[],
-        }
-    }
-
-    /// True if the links have play on their horns.
-    pub(super) fn has_play(&self) -> bool {
-        self.scene.play > 0.0
-    }
-
-    pub(super) fn place(&self, node: Node) -> Placement {
-        self.assembly.place(node.frame(), self.neutral)
-    }
 }
 
 /// The attributes that make the ends of a joint's range hard.
 pub(super) fn limits() -> String {
     format!(r#"solreflimit="{HARD}" solimplimit="{STIFF}""#)
-}
-
-/// Numbers with blanks between them.
-pub(super) fn joined(numbers: impl IntoIterator<Item = impl ToString>) -> String {
-    let numbers: Vec<_> = numbers
-        .into_iter()
-        .map(|number| number.to_string())
-        .collect();
-    numbers.join(" ")
-}
-
-pub(super) fn colour(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Printed => "0.36 0.62 0.36 1",
-        Kind::Servo => "0.15 0.3 0.65 1",
-        Kind::Horn => "0.95 0.95 0.95 1",
-        Kind::Board => "0.0 0.5 0.55 1",
-        Kind::Battery => "0.25 0.25 0.28 1",
-        Kind::Pad => "0.15 0.15 0.15 1",
-        _ => "0.6 0.6 0.62 1",
-    }
 }

@@ -3,11 +3,11 @@
 use lizard_robot::FRAMES_PER_SECOND;
 use lizard_robot::servo::NAMES;
 
-use super::closed;
-use super::node::Node;
-use super::text::{MILLI, metres, round};
-use super::writer::{Writer, joined};
 use crate::layers::body::Mount;
+use crate::model::closed;
+use crate::model::node::Node;
+use crate::model::text::{MILLI, joined, metres, round};
+use crate::model::writer::Writer;
 
 impl Writer<'_> {
     pub(super) fn loops(&mut self) {
@@ -43,19 +43,20 @@ impl Writer<'_> {
         self.xml.close();
     }
 
-    /// Writes a keyframe for each frame of 20 ms: its time and the servos' angles.
-    pub(super) fn course(&mut self) {
-        let Some(course) = &self.scene.course else {
-            return;
-        };
+    /// Writes a keyframe for each frame of 20 ms, its time and the servos' angles, and last the
+    /// standing robot.
+    pub(super) fn keyframes(&mut self) {
         self.xml.open("keyframe");
-        for (frame, targets) in course.frames.iter().enumerate() {
-            let (gait, time) = (&course.gait, round(frame as f64 / FRAMES_PER_SECOND));
-            let targets = joined(targets.map(|angle| round(angle.to_radians())));
-            self.xml.leaf(format!(
-                r#"key name="{gait} {time:.2}" time="{time}" ctrl="{targets}""#
-            ));
+        if let Some(course) = &self.scene.course {
+            for (frame, targets) in course.frames.iter().enumerate() {
+                let (gait, time) = (&course.gait, round(frame as f64 / FRAMES_PER_SECOND));
+                let targets = joined(targets.map(|angle| round(angle.to_radians())));
+                self.xml.leaf(format!(
+                    r#"key name="{gait} {time:.2}" time="{time}" ctrl="{targets}""#
+                ));
+            }
         }
+        self.xml.leaf(r#"key name="home" ctrl="0 0 0 0""#);
         self.xml.close();
     }
 }

@@ -1,8 +1,9 @@
 //! The floor and the pads on it, in the file.
 
-use super::floor::{Block, Floor};
-use super::text::{MILLI, metres, round};
-use super::writer::{CONTACT, Writer, joined};
+use super::document::CONTACT;
+use crate::model::floor::{Block, Floor};
+use crate::model::text::{MILLI, joined, metres, round};
+use crate::model::writer::Writer;
 use lizard_robot::GRAVITY;
 use lizard_robot::servo::LEGS;
 
@@ -32,14 +33,11 @@ impl Writer<'_> {
         }
     }
 
-    /// A pad in the frame of its foot: the ball of its dome, for above its rim there is nothing
-    /// that touches. Viewers hide it and show the part. It has friction against sliding only, not
+    /// A pad. Viewers hide it and show the part. It has friction against sliding only, not
     /// against turning or rolling, and the same on all that lies on the floor.
     pub(super) fn pad(&mut self, servo: usize) {
-        let foot = self.assembly.layout().legs[servo].foot;
         let radius = self.assembly.robot().parts().pad.radius;
-        let z = self.assembly.stack().floor - self.scene.long[servo] + radius;
-        let (leg, at) = (LEGS[servo], metres([foot.x, foot.y, z]));
+        let (leg, at) = (LEGS[servo], metres(self.pad_middle(servo)));
         let size = round(radius * MILLI);
         let friction = self.scene.floor.friction[servo];
         self.xml.leaf(format!(

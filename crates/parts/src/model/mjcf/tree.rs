@@ -2,35 +2,19 @@
 
 use lizard_robot::SLOT;
 
-use super::inertia::Inertia;
-use super::node::{Freedom, Node};
-use super::scene::Pull;
-use super::text::{MILLI, metres, round};
-use super::writer::{Writer, colour, limits};
-use crate::bill::{self, Bill};
+use super::document::limits;
 use crate::layers::body::Mount;
-use crate::layers::placement::Placement;
-
-/// Damping of a foot on its leaf, as a share of the critical damping of a quarter of the
-/// robot's mass.
-const DAMPING: f64 = 0.4;
-/// kg m^2 per g mm^2.
-const MILLI_CUBED: f64 = 1e-9;
+use crate::model::looks::Look;
+use crate::model::node::{Freedom, Node};
+use crate::model::scene::Pull;
+use crate::model::text::{MILLI, joined, metres, round};
+use crate::model::writer::Writer;
 
 impl Writer<'_> {
     pub(super) fn body(&mut self, node: Node) {
-        let stack = *self.assembly.stack();
-        let parent = node.parent(self.has_play());
-        let place = match parent {
-            Some(parent) => self.place(node).seen_from(&self.place(parent)),
-            None => Placement::CHASSIS,
-        };
-        // The pads' undersides are on the floor, the longest foot's too.
-        let longest = self.scene.long.into_iter().fold(0.0, f64::max);
-        let up = match parent {
-            Some(_) => 0.0,
-            None => longest - stack.floor,
-        };
+        let place = self.place_on_parent(node);
+        let is_chassis = self.parent(node).is_none();
+        let up = if is_chassis { self.height() } else { 0.0 };
         let half = place.turn.angle().to_radians() / 2.0;
         let (name, at) = (node.name(), metres([place.at.x, place.at.y, up]));
         let (cos, sin) = (round(half.cos()), round(half.sin()));
@@ -38,54 +22,33 @@ impl Writer<'_> {
             r#"body name="{name}" pos="{at}" quat="{cos} 0 0 {sin}""#
         ));
         self.joint(node);
-        let own = self.pieces.iter().filter(|piece| piece.node == node);
-        let drawn = own.fold(Inertia::default(), |sum, piece| sum.and(&piece.inertia));
-        let mass = match parent {
-            Some(_) => drawn,
-            None => self.weighed(&drawn),
-        };
+        let mass = self.mass(node);
         let (centre, grams) = (metres(mass.centre()), round(mass.mass * MILLI));
-        let tensor = mass
-            .tensor()
-            .map(|part| format!("{:.6e}", part * MILLI_CUBED));
-        let tensor = tensor.join(" ");
+        let tensor = joined(mass.written_tensor());
         self.xml.leaf(format!(
             r#"inertial pos="{centre}" mass="{grams}" fullinertia="{tensor}""#
         ));
         for piece in self.shown().iter().filter(|piece| piece.node == node) {
-            let (name, colour) = (&piece.name, colour(piece.kind));
+            let (name, colour) = (&piece.name, Look::of(piece.kind).colour);
             self.xml
                 .leaf(format!(r#"geom type="mesh" mesh="{name}" rgba="{colour}""#));
         }
         if let Node::Pad(servo) = node {
             self.pad(servo);
+            self.pad_site(servo);
         }
-        if parent.is_none() {
+        if is_chassis {
+            self.xml.leaf(r#"site name="chassis" group="3""#);
             self.xml.leaf(
                 r#"camera name="beside" mode="trackcom" pos="0.24 -0.21 0.2" xyaxes="0.66 0.75 0 -0.39 0.34 0.86""#,
             );
         }
-        for child in Node::all(self.scene.pull.is_some(), self.has_play()) {
-            if child.parent(self.has_play()) == Some(node) {
+        for child in self.nodes() {
+            if self.parent(child) == Some(node) {
                 self.body(child);
             }
         }
         self.xml.close();
-    }
-
-    /// The chassis of a robot that has the mass and the mass centre of `[body]`. What is not
-    /// drawn, such as wires, is in the plate's middle; then its parts are moved together.
-    fn weighed(&self, drawn: &Inertia) -> Inertia {
-        let body = self.assembly.robot().ground().body;
-        let bill = Bill::of(self.assembly, &[], self.neutral);
-        let bodies = self.assembly.bodies().iter();
-        let parts: f64 = bodies.map(|body| bill::grams(body, self.assembly)).sum();
-        // For a robot that is lighter than its parts, half of the chassis stays.
-        let loose = (body.mass - parts).max(-drawn.mass / 2.0);
-        let chassis = drawn.and(&Inertia::point(loose));
-        let [ahead, left] =
-            [0, 1].map(|i| body.mass * body.centre[i] - bill.grams * bill.centre[i]);
-        chassis.moved([-left, ahead, 0.0].map(|moment| moment / chassis.mass))
     }
 
     /// Writes the joint of a body with its parent, under the body's name.
@@ -123,10 +86,7 @@ impl Writer<'_> {
                 joint += &format!(r#" range="{} {play}" {limits} damping="0.00001""#, -play);
             }
             (Node::Pad(_), _) => {
-                let stiffness = self.scene.stiffness / MILLI;
-                let quarter = self.assembly.robot().ground().body.mass * MILLI / 4.0;
-                let damping = round(DAMPING * 2.0 * (stiffness * quarter).sqrt());
-                let stiffness = round(stiffness);
+                let [stiffness, damping] = self.leaf();
                 joint += &format!(r#" stiffness="{stiffness}" damping="{damping}""#);
             }
             (Node::Slot(_), Some(Pull { force, rate })) => {
@@ -139,15 +99,6 @@ impl Writer<'_> {
             _ => {}
         }
         self.xml.leaf(joint);
-    }
-
-    /// The servo whose motor turns a body, if any.
-    pub(super) fn motor_on(&self, node: Node) -> Option<usize> {
-        match node {
-            Node::Horn(servo) => Some(servo),
-            Node::Of(Mount::Link(servo)) if !self.has_play() => Some(servo),
-            _ => None,
-        }
     }
 }
 

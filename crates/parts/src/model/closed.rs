@@ -4,7 +4,7 @@ use lizard_kinematics::{End, Side, Vector};
 
 use crate::bodies::assembly::Assembly;
 use crate::layers::body::Mount;
-use crate::mjcf::node::Node;
+use crate::model::node::Node;
 
 /// A joint that a constraint closes: a point that two bodies share.
 #[derive(Clone, Debug, PartialEq)]

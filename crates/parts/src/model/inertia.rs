@@ -95,6 +95,14 @@ impl Inertia {
         let [xy, xz, yz] = [about(0, 1), about(0, 2), about(1, 2)];
         [y + z, x + z, x + y, -xy, -xz, -yz]
     }
+
+    /// The same inertia, kg m^2, as the files have it.
+    pub fn written_tensor(&self) -> [String; 6] {
+        // kg m^2 per g mm^2.
+        const MILLI_CUBED: f64 = 1e-9;
+        self.tensor()
+            .map(|part| format!("{:.6e}", part * MILLI_CUBED))
+    }
 }
 
 #[cfg(test)]

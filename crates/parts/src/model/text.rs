@@ -1,4 +1,4 @@
-//! Elements, numbers and names in the notation of the file.
+//! Elements, numbers and names in the notation of the files.
 
 use std::fmt::{Display, Write};
 
@@ -13,6 +13,15 @@ pub(super) fn metres(at: [f64; 3]) -> String {
 /// A number rounded to a billionth, without a minus before 0.
 pub(super) fn round(value: f64) -> f64 {
     (value * 1e9).round() / 1e9 + 0.0
+}
+
+/// Numbers with blanks between them.
+pub(super) fn joined(numbers: impl IntoIterator<Item = impl ToString>) -> String {
+    let numbers: Vec<_> = numbers
+        .into_iter()
+        .map(|number| number.to_string())
+        .collect();
+    numbers.join(" ")
 }
 
 /// A name as the value of an attribute.
@@ -34,9 +43,21 @@ impl Xml {
         let _ = writeln!(self.text, "{:indent$}{text}", "");
     }
 
+    /// Writes the line that begins a document.
+    pub fn declaration(&mut self) {
+        self.line(r#"<?xml version="1.0"?>"#);
+    }
+
     /// Writes an element without children.
     pub fn leaf(&mut self, element: impl Display) {
         self.line(format_args!("<{element}/>"));
+    }
+
+    /// Writes an element that holds a value.
+    pub fn value(&mut self, element: impl Display, value: impl Display) {
+        let element = element.to_string();
+        let name = element.split(' ').next().unwrap_or_default();
+        self.line(format_args!("<{element}>{value}</{name}>"));
     }
 
     /// Begins an element with children.

@@ -1,0 +1,155 @@
+//! `lizard model`: the robot for physics engines and for ROS, which others wrote.
+
+mod format;
+mod long_foot;
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use lizard_parts::{Assembly, Course, Pieces, Scene};
+use lizard_robot::Robot;
+
+use crate::shared::files;
+use crate::{Failure, RobotFile};
+use format::Format;
+use long_foot::LongFoot;
+
+/// Write the robot for MuJoCo (.xml), ROS (.urdf) or Gazebo (.sdf): bodies, masses, joints, meshes
+///
+/// Each format has the shapes of all parts, their masses and inertias, hinges and slides, and servos
+/// with the travel, the torque and the rate of `[servo]`. All joints are 0 at neutral.
+///
+/// MuJoCo's has everything in one file: also a floor, motors, sensors, and constraints that close
+/// the loops. With --drive the firmware runs on the simulated UNO, and the file gets a keyframe for
+/// each frame of its pulses, which `tools/physics/view.py` plays (docs/judges.md).
+///
+/// URDF and SDF name meshes, which are written into a folder beside the file, `robot-meshes` for
+/// robot.urdf. SDF closes the loops by joints. URDF cannot: its legs follow the servos, its couplers and
+/// sliders are free, and the frames `closing_..._1` and `closing_..._2` are to coincide (docs/models.md).
+#[derive(clap::Args, Debug)]
+#[command(after_help = "Examples:
+  lizard model out/robot.urdf
+  lizard model out/robot.sdf --robot robots/large.toml
+  lizard model urdf/robot.urdf --mesh-address package://my_robot/urdf/robot-meshes
+  lizard model out/walk.xml --drive walk
+  lizard model out/rocks.xml --drive walk --long-foot LF=0.6")]
+pub struct Args {
+    /// The file to write: .xml, .urdf or .sdf; an existing file is replaced
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// The folder of the meshes as URDF or SDF should name it, such as package://my_robot/meshes
+    /// [default: relative to FILE]
+    #[arg(long, value_hint = clap::ValueHint::Other, value_name = "ADDRESS")]
+    mesh_address: Option<String>,
+    /// Also write the servo angles of three cycles of this gait, from the firmware's
+    /// pulses; for MuJoCo
+    #[arg(long, value_hint = clap::ValueHint::Other, value_name = "GAIT")]
+    drive: Option<String>,
+    /// The firmware for --drive: an ELF that has this robot in it [default: the one inside this
+    /// program]
+    #[arg(long, value_name = "FILE", requires = "drive")]
+    elf: Option<PathBuf>,
+    /// Make the foot LF, RF, RH or LH longer by this many mm; a negative number makes it
+    /// shorter
+    #[arg(long, value_name = "LEG=MM")]
+    long_foot: Vec<LongFoot>,
+    #[command(flatten)]
+    robot: RobotFile,
+}
+
+/// Makes the model and writes it.
+///
+/// # Errors
+/// Fails for a wrong robot.toml, a robot that cannot be built, another ending, no such gait, no
+/// firmware or another robot's, a file that cannot be written.
+pub fn run(args: Args) -> Result<(), Failure> {
+    let format = Format::of(&args.file)?;
+    check_options(&args, format)?;
+    let robot = args.robot.load()?;
+    let assembly = Assembly::new(&robot);
+    assembly.measures_fit()?;
+    let neutral = robot.lizard().solve(&robot.neutral())?;
+    let mut scene = Scene::of(&assembly);
+    for (long, more) in scene
+        .long
+        .iter_mut()
+        .zip(long_foot::lengths(&args.long_foot)?)
+    {
+        *long += more;
+    }
+    scene.course = course(&args, &robot)?;
+    let pieces = Pieces::of(&assembly, &scene)?;
+    let folder = mesh_folder(&args.file);
+    let address = match &args.mesh_address {
+        Some(address) => address.trim_end_matches('/'),
+        None => &folder,
+    };
+    let address = format!("{address}/");
+    let text = match format {
+        Format::Mjcf => pieces.mjcf(&neutral, &scene),
+        Format::Urdf => pieces.urdf(&neutral, &scene, &address),
+        Format::Sdf => pieces.sdf(&neutral, &scene, &address),
+    };
+    // Else the meshes alone would be left.
+    files::check_replaceable(&args.file)?;
+    let mut also = String::new();
+    if let Some(course) = &scene.course {
+        also = format!(", and {} frames of `{}`", course.frames.len(), course.gait);
+    }
+    if format != Format::Mjcf {
+        let meshes = pieces.meshes(&scene);
+        let folder = args.file.with_file_name(folder);
+        for mesh in &meshes {
+            files::write(&folder.join(&mesh.path), &mesh.bytes)?;
+        }
+        also = format!(", and {} meshes in {}", meshes.len(), folder.display());
+    }
+    files::write(&args.file, text.as_bytes())?;
+    // Where the file is a stream, such as /dev/stdout, it alone is to be in it.
+    if !args.file.is_file() {
+        return Ok(());
+    }
+    let mut out = io::stdout().lock();
+    writeln!(out, "{}: the robot{also}", args.file.display())?;
+    Ok(out.flush()?)
+}
+
+/// Refuses options that the format has no use for.
+fn check_options(args: &Args, format: Format) -> Result<(), Failure> {
+    let wrong = match (format, &args.drive, &args.mesh_address) {
+        (Format::Mjcf, _, Some(_)) => {
+            "--mesh-address is for .urdf and .sdf; MuJoCo's file has the meshes in it"
+        }
+        (Format::Urdf | Format::Sdf, Some(_), _) => {
+            "--drive is for MuJoCo's file, .xml; URDF and SDF have no keyframes"
+        }
+        _ => return Ok(()),
+    };
+    Err(Failure::Input(wrong.to_owned()))
+}
+
+/// The angles for --drive, if given.
+#[cfg(feature = "simulator")]
+fn course(args: &Args, robot: &Robot) -> Result<Option<Course>, Failure> {
+    let drive = args.drive.as_deref();
+    let course = drive
+        .map(|gait| crate::simulate::course::course(robot, &args.robot, gait, args.elf.as_deref()));
+    course.transpose()
+}
+
+#[cfg(not(feature = "simulator"))]
+fn course(args: &Args, _: &Robot) -> Result<Option<Course>, Failure> {
+    match args.drive {
+        None => Ok(None),
+        Some(_) => Err(Failure::Input(
+            "--drive needs the simulator, which this program was built without; make cli builds all"
+                .to_owned(),
+        )),
+    }
+}
+
+/// The name of the folder for the meshes, beside the file.
+fn mesh_folder(file: &Path) -> String {
+    let name = file.file_stem().unwrap_or_default().to_string_lossy();
+    format!("{name}-meshes")
+}

@@ -1,0 +1,83 @@
+//! The angles that the firmware's pulses ask for while a gait walks, for an engine to follow.
+
+use std::path::Path;
+
+use lizard_parts::Course;
+use lizard_robot::Robot;
+use lizard_twin::FRAME;
+use simulated_uno::{CYCLES_PER_US, Fidelity, Uno};
+
+use crate::shared::firmware;
+use crate::simulate::sim::frame_log::FrameLog;
+use crate::simulate::twin;
+use crate::{Failure, RobotFile};
+
+/// Three cycles of a gait by the firmware on the simulated UNO: that of an ELF, or the one inside
+/// this program.
+///
+/// # Errors
+/// Fails for no such gait, no firmware or another robot's, a simulation that fails.
+pub fn course(
+    robot: &Robot,
+    file: &RobotFile,
+    gait: &str,
+    elf: Option<&Path>,
+) -> Result<Course, Failure> {
+    let gait = twin::moving_gait(robot, gait)?;
+    let image = firmware::of_robot(elf, file, robot)?.image;
+    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    let script = twin::walk_script(robot, &[gait.name()]);
+    let recording = twin::record(&mut uno, robot, &script)?;
+    let log = &recording.frames;
+    let stop = script.steps.last().map_or(script.end_ms, |step| step.ms);
+    let end = log.index(stop as f64 / 1000.0) as f64 * FRAME;
+    Ok(Course {
+        gait: gait.name().to_owned(),
+        frames: targets(robot, log),
+        begin: end - gait.period(),
+        period: gait.period(),
+        count: 1,
+    })
+}
+
+/// The servos' targets from their pulses: sweeps from neutral, deg. A servo without a pulse
+/// keeps its previous target.
+fn targets(robot: &Robot, log: &FrameLog) -> Vec<[f64; 4]> {
+    let mut now = [0.0; 4];
+    let frames = log.widths.iter().map(|widths| {
+        for (servo, width) in widths.iter().enumerate() {
+            if *width > 0 {
+                let us = f64::from(*width) / CYCLES_PER_US as f64;
+                now[servo] = robot.servos()[servo].sweep(us);
+            }
+        }
+        now
+    });
+    frames.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_servo_without_a_pulse_is_asked_for_what_it_was_asked_before() {
+        let robot = crate::shared::robot_file::named("unequal");
+        let log = FrameLog {
+            widths: vec![
+                [0; 4],
+                [1470 * 16, 1535 * 16, 0, 0],
+                [1562 * 16, 0, 1500 * 16, 0],
+            ],
+            ..FrameLog::default()
+        };
+        let found = targets(&robot, &log);
+        assert_eq!(found[0], [0.0; 4]);
+        assert_eq!(found[1], [0.0; 4]);
+        assert!(
+            (found[2][0] - 10.0).abs() < 1e-9,
+            "92 us are 10 deg: {found:?}"
+        );
+        assert_eq!(found[2][1..], [0.0; 3]);
+    }
+}

@@ -1,0 +1,105 @@
+//! `lizard model` as its user runs it.
+
+use std::fs;
+use std::path::PathBuf;
+
+use crate::program::{run, scratch};
+
+/// A path without a file.
+fn fresh_path(name: &str) -> PathBuf {
+    let file = scratch().join(name);
+    let _ = fs::remove_file(&file);
+    file
+}
+
+#[test]
+fn the_file_holds_a_robot_with_four_servos_and_four_feet() {
+    let file = fresh_path("robot.xml");
+    let path = file.display().to_string();
+    run(&["model", &path]).success();
+    let text = fs::read_to_string(&file).expect("a file");
+    for part in [
+        "<position name=\"A1\"",
+        "<position name=\"A4\"",
+        "<geom name=\"pad LH\"",
+    ] {
+        assert_eq!(text.matches(part).count(), 1, "{part}");
+    }
+    assert!(text.ends_with("</mujoco>\n"));
+    assert_eq!(text.matches("<key ").count(), 1, "nobody asked for a gait");
+    assert!(text.contains("<key name=\"home\""));
+}
+
+#[test]
+#[cfg(unix)]
+fn a_stream_gets_the_file_and_nothing_else() {
+    let text = run(&["model", "/dev/stdout", "--long-foot", "LH=-0.5"]).success();
+    assert!(text.starts_with("<mujoco ") && text.ends_with("</mujoco>\n"));
+}
+
+#[test]
+fn wrong_input_is_refused_with_a_message_and_no_file_is_written() {
+    let file = fresh_path("wrong.xml");
+    let path = file.display().to_string();
+    let refusal = |words: &[&str]| run(&[&["model", &path], words].concat()).refusal();
+    let wolk = refusal(&["--drive", "wolk"]);
+    assert!(wolk.contains("robot.toml has no gait `wolk`"), "{wolk}");
+    assert!(wolk.ends_with("did you mean `walk`?"), "{wolk}");
+    let stand = refusal(&["--drive", "stand"]);
+    assert_eq!(stand, "lizard: the gait `stand` moves no servo");
+    let far = refusal(&["--long-foot", "LF=5.1"]);
+    assert!(far.contains("at most 5 mm either way"), "{far}");
+    let twice = refusal(&["--long-foot", "LF=1", "--long-foot", "lf=0"]);
+    assert_eq!(twice, "lizard: --long-foot LF is given twice");
+    assert!(!file.exists());
+}
+
+#[test]
+fn a_urdf_or_sdf_comes_with_the_meshes_that_it_names() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for ending in ["urdf", "sdf"] {
+        let file = folder.path().join(format!("new/my.{ending}"));
+        let said = run(&["model", &file.display().to_string()]).success();
+        assert!(said.contains("my-meshes"), "{said}");
+        let text = fs::read_to_string(&file).expect("a file");
+        let names = text.split("my-meshes/").skip(1);
+        let names: Vec<&str> = names
+            .filter_map(|rest| rest.split_once(".stl"))
+            .map(|(name, _)| name)
+            .collect();
+        assert!(names.len() > 30, "{names:?}");
+        for name in names {
+            let mesh = folder.path().join(format!("new/my-meshes/{name}.stl"));
+            assert!(mesh.is_file(), "{name}");
+        }
+    }
+    let file = folder.path().join("my.urdf");
+    let address = ["--mesh-address", "package://my_robot/meshes/"];
+    run(&[&["model", &file.display().to_string()], &address[..]].concat()).success();
+    let text = fs::read_to_string(&file).expect("a file");
+    assert!(text.contains("\"package://my_robot/meshes/link_A1-printed.stl\""));
+}
+
+#[test]
+fn what_a_format_does_not_have_is_refused_and_nothing_is_written() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, words, refusal) in [
+        ("a.urfd", vec![], "the ending decides the format"),
+        (
+            "a.urdf",
+            vec!["--drive", "walk"],
+            "--drive is for MuJoCo's file",
+        ),
+        (
+            "a.xml",
+            vec!["--mesh-address", "x"],
+            "--mesh-address is for .urdf and .sdf",
+        ),
+    ] {
+        let file = folder.path().join(name).display().to_string();
+        let said = run(&[&["model", &file], &words[..]].concat()).refusal();
+        assert!(said.contains(refusal), "{said}");
+    }
+    let left = folder.path().read_dir().expect("a folder");
+    assert_eq!(left.count(), 0);
+}

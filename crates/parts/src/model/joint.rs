@@ -1,0 +1,79 @@
+//! Joints as URDF and SDF have them: names without blanks, ranges, friction.
+
+use lizard_kinematics::Side;
+use lizard_robot::SLOT;
+use lizard_robot::servo::NAMES;
+
+use crate::layers::body::Mount;
+use crate::model::closed::Closed;
+use crate::model::node::Node;
+use crate::model::text::{MILLI, round};
+use crate::model::writer::Writer;
+
+impl Node {
+    /// The node's name without a blank, as ROS wants names.
+    pub(super) fn identifier(self) -> String {
+        self.name().replace(' ', "_")
+    }
+}
+
+impl Closed {
+    /// The joint's name without a blank.
+    pub(super) fn identifier(&self) -> String {
+        self.name.replace(' ', "_")
+    }
+}
+
+impl Writer<'_> {
+    /// The name of a body's joint with its parent: that of the servo that turns it, or its own.
+    /// In SDF no joint may have the name of a body.
+    pub(super) fn joint_name(&self, node: Node) -> String {
+        match self.motor_on(node) {
+            Some(servo) => NAMES[servo].to_owned(),
+            None => format!("{}_joint", node.identifier()),
+        }
+    }
+
+    /// The range of a body's joint, rad or m from neutral; `None` if it has no ends.
+    pub(super) fn range(&self, node: Node) -> Option<[f64; 2]> {
+        let robot = self.assembly.robot();
+        let range = match (self.motor_on(node), node) {
+            (Some(servo), _) => {
+                let (least, most) = robot.servos()[servo].travel();
+                [least, most].map(f64::to_radians)
+            }
+            (None, Node::Of(Mount::Link(_))) => {
+                let play = self.scene.play.to_radians();
+                [-play, play]
+            }
+            (None, Node::Of(Mount::Rod(side))) => self.stroke(side).map(|mm| mm * MILLI),
+            (None, Node::Slot(_)) => [0.0, SLOT * MILLI],
+            _ => return None,
+        };
+        Some(range.map(round))
+    }
+
+    /// How much shorter and longer than at neutral a slider may be, mm.
+    fn stroke(&self, side: Side) -> [f64; 2] {
+        let limits = self.assembly.robot().limits();
+        let now = self.neutral.side(side).s;
+        [limits.stroke_min, limits.stroke_max].map(|end| end - now)
+    }
+
+    /// Damping, N m s or N s/m, and dry friction, N m or N, of a body's joint.
+    pub(super) fn resistance(&self, node: Node) -> [f64; 2] {
+        let motors = &self.scene.motors;
+        let resistance = match (self.motor_on(node), node) {
+            (Some(servo), _) => {
+                [motors.each[servo].damping(), motors.joints.drag].map(|of| of * MILLI)
+            }
+            (None, Node::Of(Mount::Rod(_))) => [0.0, motors.joints.slider],
+            (None, Node::Pad(_)) => [self.leaf()[1], 0.0],
+            // Grease: a link that is free in its play does not ring.
+            (None, Node::Of(Mount::Link(_))) => [1e-5, 0.0],
+            (None, Node::Slot(_)) => [0.1, 0.0],
+            _ => [0.0, self.scene.pins * MILLI],
+        };
+        resistance.map(round)
+    }
+}

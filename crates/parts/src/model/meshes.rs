@@ -1,0 +1,45 @@
+//! The meshes of URDF and SDF, which name files: one for each body and look.
+
+use crate::files::File;
+use crate::files::mesh::Mesh;
+use crate::files::stl::stl;
+use crate::model::looks::Look;
+use crate::model::node::Node;
+use crate::model::pieces::Piece;
+
+/// The looks that the parts of a body have.
+pub(super) fn looks(pieces: &[Piece], node: Node) -> impl Iterator<Item = Look> {
+    let has = move |look: &Look| {
+        let mut own = pieces.iter().filter(|piece| piece.node == node);
+        own.any(|piece| Look::of(piece.kind) == *look)
+    };
+    Look::ALL.into_iter().filter(has)
+}
+
+/// The file's name of the parts of a body that have a look.
+pub(super) fn file(node: Node, look: Look) -> String {
+    format!("{}-{}.stl", node.identifier(), look.name)
+}
+
+/// The meshes of all bodies, mm, in the frames of the bodies.
+pub(super) fn files(pieces: &[Piece], nodes: &[Node]) -> Vec<File> {
+    let mut files = Vec::new();
+    for &node in nodes {
+        for look in looks(pieces, node) {
+            let mut mesh = Mesh::default();
+            let is_own = |piece: &&Piece| piece.node == node && Look::of(piece.kind) == look;
+            for piece in pieces.iter().filter(is_own) {
+                let first = mesh.corners.len();
+                mesh.corners.extend(&piece.mesh.corners);
+                let moved = piece.mesh.triangles.iter();
+                mesh.triangles
+                    .extend(moved.map(|of| of.map(|corner| first + corner)));
+            }
+            files.push(File {
+                bytes: stl(&node.name(), &mesh),
+                path: file(node, look),
+            });
+        }
+    }
+    files
+}

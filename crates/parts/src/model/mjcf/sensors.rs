@@ -1,0 +1,46 @@
+//! What MuJoCo measures on the robot.
+
+use lizard_robot::servo::{LEGS, NAMES};
+
+use crate::model::text::{MILLI, metres, round};
+use crate::model::writer::Writer;
+
+/// The size of a pad's site as a share of its dome: contacts lie a little outside of the dome.
+const SITE: f64 = 1.05;
+
+impl Writer<'_> {
+    /// Writes the servos' angles, rates and torques, the force on each pad, and the place, the
+    /// direction and the rates of the chassis.
+    pub(super) fn sensors(&mut self) {
+        self.xml.open("sensor");
+        for name in NAMES {
+            for (what, kind) in [("angle", "pos"), ("rate", "vel"), ("torque", "frc")] {
+                self.xml.leaf(format!(
+                    r#"actuator{kind} name="{name} {what}" actuator="{name}""#
+                ));
+            }
+        }
+        for leg in LEGS {
+            self.xml
+                .leaf(format!(r#"touch name="load {leg}" site="pad {leg}""#));
+        }
+        let chassis = r#"objtype="xbody" objname="chassis""#;
+        self.xml.leaf(format!(r#"framepos name="place" {chassis}"#));
+        self.xml
+            .leaf(format!(r#"framequat name="direction" {chassis}"#));
+        self.xml
+            .leaf(r#"velocimeter name="velocity" site="chassis""#);
+        self.xml.leaf(r#"gyro name="gyro" site="chassis""#);
+        self.xml.close();
+    }
+
+    /// The place on a pad where its load is measured.
+    pub(super) fn pad_site(&mut self, servo: usize) {
+        let radius = self.assembly.robot().parts().pad.radius;
+        let (leg, at) = (LEGS[servo], metres(self.pad_middle(servo)));
+        let size = round(SITE * radius * MILLI);
+        self.xml.leaf(format!(
+            r#"site name="pad {leg}" type="sphere" size="{size}" pos="{at}" group="3""#
+        ));
+    }
+}

@@ -1,0 +1,169 @@
+//! The robot as SDF, the format of Gazebo, with closed loops, without a floor.
+
+use std::f64::consts::FRAC_PI_2;
+
+use crate::model::closed;
+use crate::model::meshes;
+use crate::model::node::{Freedom, Node};
+use crate::model::scene::Pull;
+use crate::model::text::{MILLI, escaped, metres, round};
+use crate::model::writer::Writer;
+
+/// The oldest version in which a pose may be relative to another link.
+const VERSION: &str = "1.7";
+
+impl Writer<'_> {
+    /// Writes the whole file, whose meshes lie in a folder or below an address.
+    pub(super) fn sdf(&mut self, folder: &str) {
+        let name = escaped(&self.scene.name);
+        self.xml.declaration();
+        self.xml.open(format!(r#"sdf version="{VERSION}""#));
+        self.xml.open(format!(r#"model name="{name}""#));
+        for node in self.nodes() {
+            self.sdf_link(node, folder);
+        }
+        for node in self.nodes() {
+            self.sdf_joint(node);
+        }
+        for closed in closed::all(self.assembly, self.scene.pull.is_some()) {
+            let [first, second] = closed.bodies.map(Node::identifier);
+            // All axes are upright already. Two upright pins would hold what one holds.
+            self.sdf_between(&closed.identifier(), "ball", &first, &second);
+            let at = metres([closed.at.x, closed.at.y, 0.0]);
+            let pose = format!(r#"pose relative_to="{first}""#);
+            self.xml.value(pose, format_args!("{at} 0 0 0"));
+            self.xml.close();
+        }
+    }
+
+    fn sdf_link(&mut self, node: Node, folder: &str) {
+        self.xml
+            .open(format!(r#"link name="{}""#, node.identifier()));
+        let place = self.place_on_parent(node);
+        let turn = place.turn.angle().to_radians();
+        match self.parent(node) {
+            Some(parent) => {
+                let pose = format!(r#"pose relative_to="{}""#, parent.identifier());
+                self.pose(&pose, [place.at.x, place.at.y, 0.0], turn);
+            }
+            // The model's x is ahead, its y to the left.
+            None => self.pose("pose", [0.0, 0.0, self.height()], turn - FRAC_PI_2),
+        }
+        let mass = self.mass(node);
+        self.xml.open("inertial");
+        self.pose("pose", mass.centre(), 0.0);
+        self.xml.value("mass", round(mass.mass * MILLI));
+        self.xml.open("inertia");
+        let names = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
+        for (name, value) in names.into_iter().zip(mass.written_tensor()) {
+            self.xml.value(name, value);
+        }
+        self.xml.close();
+        self.xml.close();
+        for look in meshes::looks(self.shown(), node) {
+            self.xml.open(format!(r#"visual name="{}""#, look.name));
+            self.xml.open("geometry");
+            self.xml.open("mesh");
+            let file = format!("{folder}{}", meshes::file(node, look));
+            self.xml.value("uri", escaped(&file));
+            self.xml.value("scale", "0.001 0.001 0.001");
+            self.xml.close();
+            self.xml.close();
+            self.xml.open("material");
+            self.xml.value("ambient", look.colour);
+            self.xml.value("diffuse", look.colour);
+            self.xml.close();
+            self.xml.close();
+        }
+        if let Node::Pad(servo) = node {
+            self.sdf_pad(servo);
+        }
+        self.xml.close();
+    }
+
+    fn sdf_pad(&mut self, servo: usize) {
+        self.xml.open(r#"collision name="pad""#);
+        self.pose("pose", self.pad_middle(servo), 0.0);
+        self.xml.open("geometry");
+        self.xml.open("sphere");
+        let radius = round(self.assembly.robot().parts().pad.radius * MILLI);
+        self.xml.value("radius", radius);
+        self.xml.close();
+        self.xml.close();
+        for element in ["surface", "friction", "ode"] {
+            self.xml.open(element);
+        }
+        let friction = self.scene.floor.friction[servo];
+        self.xml.value("mu", friction);
+        self.xml.value("mu2", friction);
+        for _ in ["ode", "friction", "surface", "collision"] {
+            self.xml.close();
+        }
+    }
+
+    fn sdf_joint(&mut self, node: Node) {
+        let Some(parent) = self.parent(node) else {
+            return;
+        };
+        let (kind, axis) = match node.freedom() {
+            Freedom::Free => return,
+            Freedom::Turns => ("revolute", "0 0 1"),
+            Freedom::Along => ("prismatic", "1 0 0"),
+            Freedom::Upright => ("prismatic", "0 0 1"),
+        };
+        let (name, parent, child) = (
+            self.joint_name(node),
+            parent.identifier(),
+            node.identifier(),
+        );
+        self.sdf_between(&name, kind, &parent, &child);
+        self.xml.open("axis");
+        self.xml.value("xyz", axis);
+        if let Some([least, most]) = self.range(node) {
+            self.xml.open("limit");
+            self.xml.value("lower", least);
+            self.xml.value("upper", most);
+            if let Some(servo) = self.motor_on(node) {
+                let motor = &self.scene.motors.each[servo];
+                self.xml.value("effort", round(motor.stall * MILLI));
+                self.xml.value("velocity", round(motor.rate.to_radians()));
+            }
+            self.xml.close();
+        }
+        let [damping, friction] = self.resistance(node);
+        self.xml.open("dynamics");
+        self.xml.value("damping", damping);
+        self.xml.value("friction", friction);
+        if let Some([reference, stiffness]) = self.spring(node) {
+            self.xml.value("spring_reference", reference);
+            self.xml.value("spring_stiffness", stiffness);
+        }
+        self.xml.close();
+        self.xml.close();
+        self.xml.close();
+    }
+
+    /// Where the spring of a body's joint is without force, m, and its stiffness, N/m.
+    fn spring(&self, node: Node) -> Option<[f64; 2]> {
+        match (node, self.scene.pull) {
+            (Node::Pad(_), _) => Some([0.0, self.leaf()[0]]),
+            (Node::Slot(_), Some(Pull { force, rate })) => {
+                Some([-force / rate * MILLI, rate / MILLI].map(round))
+            }
+            _ => None,
+        }
+    }
+
+    /// Begins a joint.
+    fn sdf_between(&mut self, name: &str, kind: &str, parent: &str, child: &str) {
+        self.xml
+            .open(format!(r#"joint name="{name}" type="{kind}""#));
+        self.xml.value("parent", parent);
+        self.xml.value("child", child);
+    }
+
+    fn pose(&mut self, element: &str, at: [f64; 3], turn: f64) {
+        let (at, turn) = (metres(at), round(turn));
+        self.xml.value(element, format_args!("{at} 0 0 {turn}"));
+    }
+}

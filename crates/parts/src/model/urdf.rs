@@ -1,0 +1,168 @@
+//! The robot as URDF, the format of ROS: a tree of links, without a floor.
+//!
+//! A URDF cannot close a loop. The legs follow their servos exactly, as parallelograms do, so their
+//! joints mimic those of the servos. Couplers, sleeves and rods are free; a pair of frames
+//! at each joint where a loop is cut says which two points coincide.
+
+use std::f64::consts::FRAC_PI_2;
+
+use lizard_robot::servo::NAMES;
+
+use crate::layers::body::Mount;
+use crate::model::closed::{self, Closed};
+use crate::model::looks::Look;
+use crate::model::meshes;
+use crate::model::node::{Freedom, Node};
+use crate::model::text::{MILLI, escaped, metres, round};
+use crate::model::writer::Writer;
+
+/// The link on the floor under the chassis: x ahead, y to the left, z up, as ROS wants it.
+const BASE: &str = "base_link";
+
+impl Writer<'_> {
+    /// Writes the whole file, whose meshes lie in a folder or below an address.
+    pub(super) fn urdf(&mut self, folder: &str) {
+        let name = escaped(&self.scene.name);
+        self.xml.declaration();
+        self.xml.open(format!(r#"robot name="{name}""#));
+        for Look { name, colour } in Look::ALL {
+            self.xml.open(format!(r#"material name="{name}""#));
+            self.xml.leaf(format!(r#"color rgba="{colour}""#));
+            self.xml.close();
+        }
+        self.xml.leaf(format!(r#"link name="{BASE}""#));
+        for node in self.nodes() {
+            self.urdf_link(node, folder);
+            self.urdf_joint(node);
+        }
+        for closed in closed::all(self.assembly, self.scene.pull.is_some()) {
+            self.coinciding(&closed);
+        }
+    }
+
+    fn urdf_link(&mut self, node: Node, folder: &str) {
+        self.xml
+            .open(format!(r#"link name="{}""#, node.identifier()));
+        let mass = self.mass(node);
+        let [xx, yy, zz, xy, xz, yz] = mass.written_tensor();
+        self.xml.open("inertial");
+        self.origin(mass.centre(), 0.0);
+        self.xml
+            .leaf(format!(r#"mass value="{}""#, round(mass.mass * MILLI)));
+        self.xml.leaf(format!(
+            r#"inertia ixx="{xx}" iyy="{yy}" izz="{zz}" ixy="{xy}" ixz="{xz}" iyz="{yz}""#
+        ));
+        self.xml.close();
+        for look in meshes::looks(self.shown(), node) {
+            self.xml.open("visual");
+            self.xml.open("geometry");
+            let file = escaped(&format!("{folder}{}", meshes::file(node, look)));
+            self.xml.leaf(format!(
+                r#"mesh filename="{file}" scale="0.001 0.001 0.001""#
+            ));
+            self.xml.close();
+            self.xml.leaf(format!(r#"material name="{}""#, look.name));
+            self.xml.close();
+        }
+        if let Node::Pad(servo) = node {
+            self.xml.open("collision");
+            self.origin(self.pad_middle(servo), 0.0);
+            self.xml.open("geometry");
+            let radius = round(self.assembly.robot().parts().pad.radius * MILLI);
+            self.xml.leaf(format!(r#"sphere radius="{radius}""#));
+            self.xml.close();
+            self.xml.close();
+        }
+        self.xml.close();
+    }
+
+    fn urdf_joint(&mut self, node: Node) {
+        let range = self.range(node);
+        let kind = match (node.freedom(), range) {
+            // A URDF has no springs, on which the feet move.
+            (Freedom::Free | Freedom::Upright, _) => "fixed",
+            (Freedom::Turns, Some(_)) => "revolute",
+            (Freedom::Turns, None) => "continuous",
+            (Freedom::Along, _) => "prismatic",
+        };
+        let place = self.place_on_parent(node);
+        let (parent, up, turned) = match self.parent(node) {
+            Some(parent) => (parent.identifier(), 0.0, 0.0),
+            None => (BASE.to_owned(), self.height(), -FRAC_PI_2),
+        };
+        let turn = place.turn.angle().to_radians() + turned;
+        let name = self.joint_name(node);
+        self.urdf_between(&name, kind, &parent, &node.identifier());
+        self.origin([place.at.x, place.at.y, up], turn);
+        if kind != "fixed" {
+            let axis = match node.freedom() {
+                Freedom::Along => "1 0 0",
+                _ => "0 0 1",
+            };
+            self.xml.leaf(format!(r#"axis xyz="{axis}""#));
+            if let Some([least, most]) = range {
+                let (effort, rate) = match self.motor_on(node) {
+                    Some(servo) => {
+                        let motor = &self.scene.motors.each[servo];
+                        (motor.stall * MILLI, motor.rate.to_radians())
+                    }
+                    // Nothing drives it.
+                    None => (0.0, 0.0),
+                };
+                let (effort, rate) = (round(effort), round(rate));
+                self.xml.leaf(format!(
+                    r#"limit lower="{least}" upper="{most}" effort="{effort}" velocity="{rate}""#
+                ));
+            }
+            let [damping, friction] = self.resistance(node);
+            self.xml.leaf(format!(
+                r#"dynamics damping="{damping}" friction="{friction}""#
+            ));
+        }
+        if let Some((servo, factor)) = follows(node) {
+            let servo = NAMES[servo];
+            self.xml
+                .leaf(format!(r#"mimic joint="{servo}" multiplier="{factor}""#));
+        }
+        self.xml.close();
+    }
+
+    /// Begins a joint.
+    fn urdf_between(&mut self, name: &str, kind: &str, parent: &str, child: &str) {
+        self.xml
+            .open(format!(r#"joint name="{name}" type="{kind}""#));
+        self.xml.leaf(format!(r#"parent link="{parent}""#));
+        self.xml.leaf(format!(r#"child link="{child}""#));
+    }
+
+    fn origin(&mut self, at: [f64; 3], turn: f64) {
+        let (at, turn) = (metres(at), round(turn));
+        self.xml
+            .leaf(format!(r#"origin xyz="{at}" rpy="0 0 {turn}""#));
+    }
+
+    /// Writes the two frames of a joint that closes a loop: one on each body.
+    fn coinciding(&mut self, closed: &Closed) {
+        let [first, second] = closed.bodies;
+        let point = self.place(first).map(closed.at);
+        let on_second = self.place(second).unmap(point);
+        for (number, (node, at)) in [(first, closed.at), (second, on_second)].iter().enumerate() {
+            let frame = format!("closing_{}_{}", closed.identifier(), number + 1);
+            self.xml.leaf(format!(r#"link name="{frame}""#));
+            let joint = format!("{frame}_joint");
+            self.urdf_between(&joint, "fixed", &node.identifier(), &frame);
+            self.origin([at.x, at.y, 0.0], 0.0);
+            self.xml.close();
+        }
+    }
+}
+
+/// The servo whose angle a joint follows, and by which factor.
+fn follows(node: Node) -> Option<(usize, i8)> {
+    match node {
+        Node::Of(Mount::Crank(servo) | Mount::Follower(servo)) => Some((servo, 1)),
+        // They do not turn on the chassis.
+        Node::Of(Mount::Foot(servo) | Mount::Strut(servo)) => Some((servo, -1)),
+        _ => None,
+    }
+}

@@ -1,0 +1,121 @@
+//! What the writers of all formats share: the robot at neutral, as bodies on bodies.
+
+use lizard_kinematics::Solution;
+
+use super::inertia::Inertia;
+use super::node::Node;
+use super::pieces::Piece;
+use super::scene::Scene;
+use super::text::{MILLI, Xml, round};
+use crate::bill::{self, Bill};
+use crate::bodies::assembly::Assembly;
+use crate::layers::body::Mount;
+use crate::layers::placement::Placement;
+
+/// Damping of a foot on its leaf, as a share of the critical damping of a quarter of the
+/// robot's mass.
+const DAMPING: f64 = 0.4;
+
+/// A writer of a robot and its scene.
+pub(super) struct Writer<'a> {
+    pub assembly: &'a Assembly,
+    pub neutral: &'a Solution,
+    pub scene: &'a Scene,
+    pub pieces: &'a [Piece],
+    pub xml: Xml,
+}
+
+impl<'a> Writer<'a> {
+    /// Every body, each after its parent.
+    pub(super) fn nodes(&self) -> Vec<Node> {
+        Node::all(self.scene.pull.is_some(), self.has_play())
+    }
+
+    /// The body on which another one moves; `None` for the chassis.
+    pub(super) fn parent(&self, node: Node) -> Option<Node> {
+        node.parent(self.has_play())
+    }
+
+    /// The parts whose shapes go into the file.
+    pub(super) fn shown(&self) -> &'a [Piece] {
+        match self.scene.shapes {
+            true => self.pieces,
+            false => &[],
+        }
+    }
+
+    /// True if the links have play on their horns.
+    pub(super) fn has_play(&self) -> bool {
+        self.scene.play > 0.0
+    }
+
+    /// The place of a body on the chassis.
+    pub(super) fn place(&self, node: Node) -> Placement {
+        self.assembly.place(node.frame(), self.neutral)
+    }
+
+    /// The place of a body on its parent.
+    pub(super) fn place_on_parent(&self, node: Node) -> Placement {
+        match self.parent(node) {
+            Some(parent) => self.place(node).seen_from(&self.place(parent)),
+            None => Placement::CHASSIS,
+        }
+    }
+
+    /// Height of the chassis frame, mm: the pads' undersides are on the floor, the longest foot's
+    /// too.
+    pub(super) fn height(&self) -> f64 {
+        self.scene.long.into_iter().fold(0.0, f64::max) - self.assembly.stack().floor
+    }
+
+    /// The mass of a body.
+    pub(super) fn mass(&self, node: Node) -> Inertia {
+        let own = self.pieces.iter().filter(|piece| piece.node == node);
+        let drawn = own.fold(Inertia::default(), |sum, piece| sum.and(&piece.inertia));
+        match self.parent(node) {
+            Some(_) => drawn,
+            None => self.weighed(&drawn),
+        }
+    }
+
+    /// The chassis of a robot that has the mass and the mass centre of `[body]`. What is not
+    /// drawn, such as wires, is in the plate's middle; then its parts are moved together.
+    fn weighed(&self, drawn: &Inertia) -> Inertia {
+        let body = self.assembly.robot().ground().body;
+        let bill = Bill::of(self.assembly, &[], self.neutral);
+        let bodies = self.assembly.bodies().iter();
+        let parts: f64 = bodies.map(|body| bill::grams(body, self.assembly)).sum();
+        // For a robot that is lighter than its parts, half of the chassis stays.
+        let loose = (body.mass - parts).max(-drawn.mass / 2.0);
+        let chassis = drawn.and(&Inertia::point(loose));
+        let [ahead, left] =
+            [0, 1].map(|i| body.mass * body.centre[i] - bill.grams * bill.centre[i]);
+        chassis.moved([-left, ahead, 0.0].map(|moment| moment / chassis.mass))
+    }
+
+    /// Stiffness of a foot's leaf, N/m, and its damping, N s/m.
+    pub(super) fn leaf(&self) -> [f64; 2] {
+        let stiffness = self.scene.stiffness / MILLI;
+        let quarter = self.assembly.robot().ground().body.mass * MILLI / 4.0;
+        let damping = DAMPING * 2.0 * (stiffness * quarter).sqrt();
+        [stiffness, damping].map(round)
+    }
+
+    /// The middle of a pad's dome in the frame of its foot, mm: the ball of the dome touches the
+    /// floor, for above its rim there is nothing that touches.
+    pub(super) fn pad_middle(&self, servo: usize) -> [f64; 3] {
+        let foot = self.assembly.layout().legs[servo].foot;
+        let radius = self.assembly.robot().parts().pad.radius;
+        let z = self.assembly.stack().floor - self.scene.long[servo] + radius;
+        [foot.x, foot.y, z]
+    }
+
+    /// The servo whose motor turns a body, if any.
+    pub(super) fn motor_on(&self, node: Node) -> Option<usize> {
+        match node {
+            Node::Horn(servo) => Some(servo),
+            Node::Of(Mount::Link(servo)) if !self.has_play() => Some(servo),
+            _ => None,
+        }
+    }
+}
