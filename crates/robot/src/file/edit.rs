@@ -117,6 +117,22 @@ pub fn without(text: &str, key: &str) -> Result<String, NoSuchKey> {
 /// Adds the table of a gait, in place of the gait of the same name or at the end of the text.
 #[must_use]
 pub fn with_gait(text: &str, name: &str, table: &str) -> String {
+    let (mut kept, done) = replaced(text, name, table);
+    if !done {
+        kept.push('\n');
+        kept += table;
+    }
+    kept
+}
+
+/// Removes the tables of a gait.
+#[must_use]
+pub fn without_gait(text: &str, name: &str) -> String {
+    replaced(text, name, "").0
+}
+
+/// Puts lines in the place of a gait's tables; returns true if the gait was there.
+fn replaced(text: &str, name: &str, table: &str) -> (String, bool) {
     let (own, below) = (format!("[gait.{name}]"), format!("[gait.{name}."));
     let (mut kept, mut is_own, mut done) = (String::new(), false, false);
     for line in text.lines() {
@@ -125,8 +141,10 @@ pub fn with_gait(text: &str, name: &str, table: &str) -> String {
             is_own = head.starts_with(&own) || head.starts_with(&below);
             if is_own && !done {
                 done = true;
-                kept += table;
-                kept.push('\n');
+                for line in table.lines() {
+                    kept += line;
+                    kept.push('\n');
+                }
             }
         }
         // A comment below the last key may belong to the next table.
@@ -135,11 +153,7 @@ pub fn with_gait(text: &str, name: &str, table: &str) -> String {
             kept.push('\n');
         }
     }
-    if !done {
-        kept.push('\n');
-        kept += table;
-    }
-    kept
+    (kept, done)
 }
 
 /// A routine as it is written, right or wrong.
@@ -277,6 +291,16 @@ mod tests {
             "[leg]\nmount = 0.0\n\n[leg.drive]\nkind = \"strut\"\n"
         );
         assert!(with_word("[leg]\nmount = 0.0\n", "leg.mount", "x").is_err());
+    }
+
+    #[test]
+    fn a_gait_is_removed_with_its_tables_and_no_other() {
+        const GAITS: &str = "[gait.look]\nperiod = 4.0\n[gait.look.head]\nx = [[1.0, 0.0]]\n# the next\n[gait.look-up]\nlike = \"walk\"\n";
+        let rest = "# the next\n[gait.look-up]\nlike = \"walk\"\n";
+        assert_eq!(without_gait(GAITS, "look"), rest);
+        assert_eq!(without_gait(rest, "look"), rest);
+        let again = with_gait(GAITS, "look", "[gait.look]\nperiod = 5.0\n");
+        assert_eq!(again, format!("[gait.look]\nperiod = 5.0\n{rest}"));
     }
 
     const ROUTINES: &str = "name = \"x\"\n\n[routine.patrol] # by night\nsteps = [\n  \"walk 4\", # on\n  \"left 6\",\n]\nrepeat = 3 # rounds\n\n[routine.about]\nsteps = ['left 12']\n";
