@@ -108,10 +108,10 @@ async function start(): Promise<void> {
   for (const act of ['pointerdown', 'keydown']) document.addEventListener(act, () => (begun = true), { once: true });
   const world = new World(now, predict);
   const health = new Health(now);
-  const lengths = new Lengths(now);
-  const fit = new FitView(now);
-  const sketch = new Sketch(module, now);
+  const lengths: Lengths = new Lengths(now, (edits) => sketch.offer(edits));
   const parts = new PartsView(now);
+  const fit = new FitView(now, parts);
+  const sketch = new Sketch(module, now, fit);
   const keep = new Keep(module, now, floor, (line) => drive.ask(line), () => pace.percent);
   const calibrate = new Calibrate(now);
   let writing = false;
@@ -157,7 +157,6 @@ async function start(): Promise<void> {
       setup.update();
       floor.clear();
       world.showRobot();
-      parts.showRobot();
       gaits.showRobot();
       path.showRobot();
       address.follow();

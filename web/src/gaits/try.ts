@@ -16,7 +16,7 @@ export async function takeGait(session: Session, made: EditedGait): Promise<Refu
  */
 export async function tryGait(session: Session, made: EditedGait, ask: (line: string) => Promise<unknown>): Promise<Refused | null> {
   if (session.isReal) {
-    return { refused: 'A board on USB has only the gaits that are written on it: write this one, or go back to the simulation to try it.', line: null, key: '' };
+    return { refused: 'A board on USB has only the gaits that are written on it: write this one, or go back to the simulation to try it.', meaning: null, line: null, key: '' };
   }
   const refused = await takeGait(session, made);
   if (refused) return refused;
