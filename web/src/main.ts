@@ -128,7 +128,11 @@ async function start(): Promise<void> {
   const remote = new Remote();
   const text: RobotText = new RobotText(now, writer, () => routines.show());
   const routines = new RoutinesView(module, now, text, () => pace.percent, (line) => drive.ask(line), writer);
-  const gaits = new GaitsView(module, now, (line) => drive.ask(line), writer);
+  const gaits = new GaitsView(module, now, (line) => drive.ask(line), writer, (before, found, told) => {
+    // The second robot is drawn from above alone.
+    parts.set3d(false);
+    return keep.compare(before, found, told);
+  });
   const path = new PathView(module, now, (line) => drive.ask(line), writer);
   const flash = new FlashView(now, writer);
   const setup: Setup = new Setup(now, writer, () => connectBoard());
