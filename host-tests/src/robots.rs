@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use fastrand::Rng;
 use lizard_host::patrol::with_patrol;
-use lizard_robot::{Robot, edit::with_gait};
+use lizard_robot::{Robot, edit::without_gait};
 
 use crate::random_robot::random_robot;
 
@@ -61,7 +61,7 @@ pub fn patrol_of(text: &str) -> Result<Robot, lizard_robot::Error> {
         let robot = Robot::parse(text)?;
         let names = robot.gaits().iter().skip(1).map(|gait| gait.name());
         // A gait that another is like, or that a routine does, cannot be left out.
-        let mut fewer = names.rev().map(|name| with_gait(text, name, ""));
+        let mut fewer = names.rev().map(|name| without_gait(text, name));
         let fewer = fewer.find(|text| Robot::parse(text).is_ok()).ok_or(error)?;
         patrol_of(&fewer)
     })

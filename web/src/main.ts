@@ -108,10 +108,10 @@ async function start(): Promise<void> {
   for (const act of ['pointerdown', 'keydown']) document.addEventListener(act, () => (begun = true), { once: true });
   const world = new World(now, predict);
   const health = new Health(now);
-  const lengths = new Lengths(now);
-  const fit = new FitView(now);
-  const sketch = new Sketch(module, now);
+  const lengths: Lengths = new Lengths(now, (edits) => sketch.offer(edits));
   const parts = new PartsView(now);
+  const fit = new FitView(now, parts);
+  const sketch = new Sketch(module, now, fit);
   const keep = new Keep(module, now, floor, (line) => drive.ask(line), () => pace.percent);
   const calibrate = new Calibrate(now);
   let writing = false;
@@ -128,7 +128,11 @@ async function start(): Promise<void> {
   const remote = new Remote();
   const text: RobotText = new RobotText(now, writer, () => routines.show());
   const routines = new RoutinesView(module, now, text, () => pace.percent, (line) => drive.ask(line), writer);
-  const gaits = new GaitsView(module, now, (line) => drive.ask(line), writer);
+  const gaits = new GaitsView(module, now, (line) => drive.ask(line), writer, (before, found, told) => {
+    // The second robot is drawn from above alone.
+    parts.set3d(false);
+    return keep.compare(before, found, told);
+  });
   const path = new PathView(module, now, (line) => drive.ask(line), writer);
   const flash = new FlashView(now, writer);
   const setup: Setup = new Setup(now, writer, () => connectBoard());
@@ -157,7 +161,6 @@ async function start(): Promise<void> {
       setup.update();
       floor.clear();
       world.showRobot();
-      parts.showRobot();
       gaits.showRobot();
       path.showRobot();
       address.follow();

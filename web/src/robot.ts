@@ -108,9 +108,25 @@ export interface ServoModel {
 }
 
 export interface Refused {
+  /** What is wrong, and where. */
   refused: string;
+  /** What is wrong, without the place and its figures; null where the message has no shorter form. */
+  meaning: string | null;
   line: number | null;
   key: string;
+}
+
+/** Lengths by their keys in robot.toml. */
+export type Edits = [key: string, value: number][];
+
+/** A robot.toml with other lengths, its refusal, and what would do instead. */
+export interface TriedLengths {
+  text: string;
+  refusal: Refused | null;
+  /** The nearest lengths that are accepted. */
+  nearest: { lengths: Edits; text: string } | null;
+  /** The lengths wanted, on a robot that gives up the gait which forbids them. */
+  without: { gait: string; text: string } | null;
 }
 
 export interface Scene {
@@ -310,9 +326,14 @@ export class Robot {
     return this.ask('read', toml);
   }
 
-  /** Returns the robot.toml with another number at a key, and its refusal, if any. */
-  edit(toml: string, key: string, value: number): { text: string; refusal: Refused | null } | Refused {
-    return this.ask('edit', [toml, key, value]);
+  /** Tries other lengths in a robot.toml; `searches` also looks for what would do. */
+  lengths(toml: string, edits: Edits, searches: boolean): TriedLengths {
+    return this.ask('lengths', [toml, edits, searches]);
+  }
+
+  /** The least and the greatest value with which the robot walks if all these lengths have it; null for a key that there is not. */
+  lengthRange(toml: string, keys: string[]): [number, number] | null {
+    return this.ask('length_range', [toml, keys]);
   }
 
   /** Returns the robot.toml with this floor, mass, feet and drive, and its refusal, if any. */

@@ -66,6 +66,51 @@ test('the downloaded robot.toml has lengths, drive, feet, floor and mass', async
   assert.match(toml, /^kind = "strut"$/m);
 });
 
+/** Types a length that is refused; returns what is said of it, and the button with what would do. */
+async function refused(opened, key, value) {
+  const box = opened.locator(`#lengths input[name="${key}"]`);
+  await box.fill(String(value));
+  await box.press('Enter');
+  const way = opened.locator('#lengths-instead button');
+  await way.waitFor();
+  return [await opened.locator('#lengths-refusal').innerText(), await way.innerText()];
+}
+
+const length = (opened, name) => opened.evaluate((name) => window.lizard.description.lengths.find(({ key }) => key === name).value, name);
+
+test('a length is refused by what would happen to the robot, with the nearest that does', async () => {
+  const opened = await standing();
+  await unfold(opened, '#lengths-panel');
+  await opened.locator('#sketch circle').first().waitFor();
+  const [said, way] = await refused(opened, 'links.l12', 80);
+  assert.equal(said, '80 mm is too long: in the neutral pose the left slider would run into its end.');
+  const nearest = Number(/^Try ([0-9.]+) mm$/.exec(way)?.[1]);
+  assert.ok(nearest > 45 && nearest < 80, way);
+  await opened.locator('#lengths-instead button').click();
+  await opened.waitForFunction((nearest) => window.lizard.description.lengths.find(({ key }) => key === 'links.l12').value === nearest, nearest);
+  assert.equal(await opened.locator('#lengths-instead button').count(), 0);
+  // Half a mm more is refused, so it is the nearest.
+  const box = opened.locator('#lengths input[name="links.l12"]');
+  await box.fill(String(nearest + 0.5));
+  await box.press('Enter');
+  await opened.locator('#lengths-refusal', { hasText: `${nearest + 0.5} mm is too long` }).waitFor();
+  assert.equal(await length(opened, 'links.l12'), nearest);
+});
+
+test('the gait that is in the way is dropped, and the length is taken', async () => {
+  const opened = await standing();
+  await unfold(opened, '#lengths-panel');
+  await opened.locator('#sketch circle').first().waitFor();
+  assert.deepEqual(await refused(opened, 'links.l2', 60), ['60 mm is too long: in "look" the left front leg would lock.', 'Drop “look”']);
+  await opened.locator('#lengths-instead button', { hasText: 'Drop' }).click();
+  await opened.waitForFunction(() => window.lizard.description.lengths.find(({ key }) => key === 'links.l2').value === 60);
+  const gaits = await opened.evaluate(() => window.lizard.description.gaits.map(({ name }) => name));
+  assert.ok(!gaits.includes('look') && gaits.includes('walk'), gaits.join());
+  await unfold(opened, '#robot-editor');
+  await opened.locator('#robot-undo').click();
+  await opened.waitForFunction(() => window.lizard.description.gaits.some(({ name }) => name === 'look'));
+});
+
 test('a file of which nothing was changed is given as it is', async () => {
   const opened = await standing();
   await unfold(opened, '#lengths-panel');

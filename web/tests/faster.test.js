@@ -94,6 +94,32 @@ test('stopped midway it has the best so far, and the page can search again', asy
   await ended(page);
 });
 
+test('what was found walks beside what there was, and goes as much farther as was promised', async () => {
+  const page = await opened({ rounds: 200 });
+  await page.locator('#solid').click();
+  await start(page);
+  await tried(page, 21);
+  await page.getByRole('button', { name: 'Stop the search' }).click();
+  await ended(page);
+  const rows = await page.locator('#faster-rows tr').allInnerTexts();
+  const [, before, found] = rows.map((row) => row.split('\t')).find(([name]) => name === 'speed').map(Number.parseFloat);
+  assert.ok(found > before, rows.join());
+  await page.getByRole('button', { name: 'See both walk' }).click();
+  assert.ok(await page.locator('#space').isHidden(), 'the drawing has both');
+  await page.waitForFunction(() => window.lizard.toml.includes('[gait.mine]'));
+  await advance(page, 3000);
+  await page.waitForFunction(() => window.lizard.gait === 'mine');
+  await advance(page, 8000);
+  await page.waitForFunction(() => /^Found: [0-9.]+ mm.*\. Before: [0-9.]+ mm/.test(document.querySelector('#faster-ways').textContent));
+  await page.keyboard.press('Escape');
+  await advance(page, 1000);
+  const ways = await text(page, 'faster-ways');
+  const [, far, near] = /^Found: ([0-9.]+) mm.*\. Before: ([0-9.]+) mm/.exec(ways) ?? assert.fail(ways);
+  assert.ok(Math.abs(far / near / (found / before) - 1) < 0.1, `${ways} ${found} and ${before} mm/s`);
+  assert.ok(await page.locator('#faster-result').isVisible(), 'the result stays');
+  assert.equal((await page.evaluate(() => window.lizard.toml)).match(/\[gait\.mine\]/g).length, 1);
+});
+
 test('a robot that is changed midway ends the search of the one of before', async () => {
   const page = await opened({ rounds: 200 });
   await start(page);

@@ -81,7 +81,7 @@ test('what would break a limit is refused, and a button has the nearest value th
   await page.locator('#gait-amplitude').fill('40');
   const button = page.locator('#gait-instead button', { hasText: 'Amplitude' });
   await button.waitFor();
-  assert.match(await text(page, 'refusal'), /margin leg_lf [0-9.]+ is below 0\.300/);
+  assert.match(await text(page, 'refusal'), /^in "mine" the left front leg would lock: margin leg_lf [0-9.]+ is below 0\.300/);
   assert.ok(await page.locator('#gait-try').isDisabled());
   const value = Number(/Amplitude ([0-9.]+)°/.exec(await button.innerText())[1]);
   await button.click();

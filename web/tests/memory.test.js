@@ -21,7 +21,7 @@ test('ten thousand robots with another length each are not kept', async () => {
   // The gaits only take time: a robot that stands has a section of flash, too.
   const standing = toml.slice(0, toml.indexOf('[gait.walk]'));
   const grew = await grown(10_000, (page, n) => {
-    const { text, refusal } = page.ask('edit', [standing, 'links.l0', 20 + n / 5000]);
+    const { text, refusal } = page.ask('lengths', [standing, [['links.l0', 20 + n / 5000]], false]);
     assert.equal(refusal, null);
     assert.ok(text.includes('[gait.stand]') && text.includes('l0 = 2'));
   });

@@ -62,7 +62,7 @@ test('lengths that cannot be printed are told at once, with the nearest that can
   await page.locator('#fit-said', { hasText: /^The parts fit: no two come nearer than \d\.\d\d mm\.$/ }).waitFor();
   await length.fill('52');
   await length.press('Enter');
-  await page.locator('#fit-said', { hasText: /^These lengths cannot be printed: .* overlap by [\d.]+ mm/ }).waitFor();
+  await page.locator('#fit-said', { hasText: /^These lengths cannot be printed: .* would overlap by [\d.]+ mm\.$/ }).waitFor();
   const use = page.locator('#fit-use');
   await use.waitFor();
   const nearest = Number(/ ([\d.]+)$/.exec(await use.innerText())[1]);
@@ -74,7 +74,7 @@ test('lengths that cannot be printed are told at once, with the nearest that can
     const path = join(tried, 'robot.toml');
     const toml = await page.evaluate((mm) => {
       const { robot, toml } = window.lizard;
-      return ['leg.crank', 'leg.follower'].reduce((text, key) => robot.edit(text, key, mm).text, toml);
+      return robot.lengths(toml, [['leg.crank', mm], ['leg.follower', mm]], false).text;
     }, mm);
     await writeFile(path, toml);
     const made = promisify(execFile)(resolve(ROOT, process.env.LIZARD), ['parts', join(tried, 'parts'), '--robot', path]);
@@ -87,6 +87,94 @@ test('lengths that cannot be printed are told at once, with the nearest that can
   await page.locator('#fit-said', { hasText: /^The parts fit/ }).waitFor();
   assert.equal(await length.inputValue(), String(nearest));
   assert.equal(await use.isHidden(), true);
+
+  // The slider marks the longest that can be printed at the same value.
+  const printed = page.locator('#length-printed', { hasText: /^Can be printed from [\d.]+ to [\d.]+ mm\.$/ });
+  await printed.waitFor();
+  const [, least, most] = /from ([\d.]+) to ([\d.]+) mm/.exec(await printed.innerText());
+  assert.equal(Number(most), nearest);
+  assert.equal(await parts(Number(least)), 'made');
+  const { ends, marks } = await page.locator('#length-slide').evaluate((slide) => {
+    const { style } = document.querySelector('#length-marks');
+    return { ends: [Number(slide.min), Number(slide.max)], marks: ['--from', '--to'].map((name) => Number.parseFloat(style.getPropertyValue(name))) };
+  });
+  const at = (share) => ends[0] + ((ends[1] - ends[0]) * share) / 100;
+  assert.deepEqual(marks.map(at).map((mm) => Math.round(mm * 100) / 100), [Number(least), nearest]);
+  assert.ok(ends[0] <= Number(least) && ends[1] > nearest, `${ends} of what walks`);
+});
+
+test('while a length is dragged, the two parts that meet are red in 3D, with their millimetres', async () => {
+  const page = await standing();
+  await unfold(page, '#lengths-panel');
+  await page.locator('#solid').click();
+  await page.getByText('Click a part for its name').waitFor();
+  const slide = page.locator('#length-slide');
+  await slide.focus();
+  await page.waitForFunction(() => Number(document.querySelector('#length-slide').max) > 52);
+  const reds = async () => {
+    const picture = (await page.locator('#space').screenshot()).toString('base64');
+    return page.evaluate(async (picture) => {
+      const bytes = Uint8Array.from(atob(picture), (letter) => letter.charCodeAt(0));
+      const image = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
+      const pen = new OffscreenCanvas(image.width, image.height).getContext('2d');
+      pen.drawImage(image, 0, 0);
+      const { data } = pen.getImageData(0, 0, image.width, image.height);
+      let red = 0;
+      for (let n = 0; n < data.length; n += 4) {
+        const [r, g, b] = data.subarray(n, n + 3);
+        // The orange of a leg has more green.
+        if (r > 90 && r > 3 * g && r > 3 * b) red += 1;
+      }
+      return red;
+    }, picture);
+  };
+  const atRest = await reds();
+  const before = await page.evaluate(() => window.lizard.toml);
+  const drag = (mm) => slide.evaluate((slide, mm) => ((slide.value = String(mm)), slide.dispatchEvent(new Event('input'))), mm);
+  await drag(52);
+  const said = page.locator('#fit-said', { hasText: /^These lengths cannot be printed: .* would overlap by [\d.]+ mm\.$/ });
+  await said.waitFor();
+  const [, pair, mm] = /printed: (.*) would overlap by ([\d.]+) mm/.exec(await said.innerText());
+  await page.locator('#parts-said', { hasText: `${pair}: ${mm} mm too much.` }).waitFor();
+  assert.equal(await page.evaluate(() => window.lizard.toml), before, 'it is not let go');
+  // Stop is red, too. A picture follows within a moment.
+  const paints = async (isRed) => {
+    while ((await reds()) > atRest + 50 !== isRed) await page.waitForTimeout(200);
+  };
+  await within('red parts', paints(true));
+  // Back where it was: all is well again.
+  await drag(45);
+  await page.locator('#fit-said', { hasText: /^The parts fit/ }).waitFor();
+  await within('no red parts', paints(false));
+});
+
+test('the files that another length changes are listed, and can be had alone', async () => {
+  const page = await standing();
+  await unfold(page, '#parts');
+  assert.ok(await page.locator('#parts-changed').isHidden(), 'nothing is changed');
+  assert.equal(await page.evaluate(() => window.lizard.change(window.lizard.robot.lengths(window.lizard.toml, [['leg.crank', 46], ['leg.follower', 46]], false).text)), null);
+  const download = page.waitForEvent('download');
+  await page.locator('#parts-changed').click();
+  const saved = await download;
+  assert.equal(saved.suggestedFilename(), 'robot-changed-parts.zip');
+  const archive = unzipSync(await readFile(await saved.path()));
+  const changed = await mkdtemp(join(tmpdir(), 'changed-'));
+  after(() => rm(changed, { recursive: true, force: true }));
+  const path = join(changed, 'robot.toml');
+  await writeFile(path, await page.evaluate(() => window.lizard.toml));
+  await within('lizard parts', promisify(execFile)(resolve(ROOT, process.env.LIZARD), ['parts', join(changed, 'parts'), '--robot', path]));
+  const entries = await readdir(join(changed, 'parts'), { recursive: true, withFileTypes: true });
+  const paths = entries.filter((entry) => entry.isFile()).map(({ parentPath, name }) => join(parentPath, name).slice(join(changed, 'parts').length + 1));
+  const same = async (name) => {
+    const [one, other] = await Promise.all([join(changed, 'parts', name), join(folder, name)].map((file) => readFile(file).catch(() => Buffer.alloc(0))));
+    return one.equals(other);
+  };
+  const differ = [];
+  for (const name of paths) if (!(await same(name))) differ.push(name);
+  assert.deepEqual(Object.keys(archive).sort(), differ.sort());
+  assert.ok(differ.length > 5 && differ.length < paths.length - 20, `${differ.length} of ${paths.length}`);
+  assert.deepEqual((await page.locator('#files-list li').allInnerTexts()).sort(), differ.sort());
+  assert.match(await page.locator('#files-said').innerText(), new RegExp(`^${differ.length} of ${paths.length} files are not those of robot\\.toml:`));
 });
 
 test('whoever opens the page loads no parts, and less than half a megabyte', async () => {

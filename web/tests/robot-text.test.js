@@ -47,6 +47,18 @@ test('a text that is wrong is refused with its line, and the robot of before sta
   assert.equal(await box(page).inputValue(), wrong, 'nothing that was typed is lost');
 });
 
+test('a gait that cannot be is refused by what would happen to the robot, then by its place', async () => {
+  const page = await opened();
+  const wrong = (await toml(page)).replace('amplitude = 20.0', 'amplitude = 40.0');
+  const line = wrong.split('\n').findIndex((text) => text.startsWith('[gait.walk]')) + 1;
+  await box(page).fill(wrong);
+  await page.locator('#robot-take').click();
+  await page.getByRole('button', { name: `Go to line ${line}` }).waitFor();
+  const said = await page.locator('#robot-refusal').innerText();
+  assert.match(said, /^in "walk" the (left|right) (front|hind) leg would lock: margin leg_[lr][fh] -?[0-9.]+ is below 0\.300 at phase [0-9.]+ /i);
+  assert.ok(said.endsWith(`(robot.toml:${line}: gait.walk)`), said);
+});
+
 test('a text that is right becomes the robot, and is undone and done again step by step', async () => {
   const page = await opened();
   const first = await toml(page);

@@ -136,6 +136,27 @@ for (const [name, viewport] of [
   });
 }
 
+test('where a finger points, no key is told of, and the list of robots shows a whole name', async () => {
+  for (const viewport of [{ width: 360, height: 640 }, { width: 844, height: 390 }, { width: 1024, height: 1366 }]) {
+    const opened = await standing({ viewport, hasTouch: true, isMobile: true });
+    for (const room of ['drive', 'build', 'board']) {
+      await opened.goto(`${address()}#room=${room}`);
+      const keys = await opened.evaluate(() => [...document.querySelectorAll('button kbd')].filter((key) => key.checkVisibility()).map(({ textContent }) => textContent));
+      assert.deepEqual(keys, [], room);
+    }
+    assert.equal((await opened.locator('.stop').innerText()).trim(), 'Stop');
+    const room = await opened.locator('#robot').evaluate((list) => {
+      const pen = document.createElement('canvas').getContext('2d');
+      pen.font = getComputedStyle(list).font;
+      const wide = Math.max(...['robot', 'large', 'paper'].map((name) => pen.measureText(name).width));
+      const { paddingLeft, paddingRight } = getComputedStyle(list);
+      // An arrow is as wide as a letter is high.
+      return list.clientWidth - Number.parseFloat(paddingLeft) - Number.parseFloat(paddingRight) - 18 - wide;
+    });
+    assert.ok(room >= 0, `${room} pixels of ${viewport.width}`);
+  }
+});
+
 test('a page without JavaScript says what it needs', async () => {
   const opened = await blank({ javaScriptEnabled: false });
   await opened.goto(address());

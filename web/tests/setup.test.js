@@ -376,10 +376,16 @@ for (const [name, options] of [
       await button.tap();
       await advance(opened, 1500);
       const outside = await opened.evaluate(() =>
-        [...document.querySelectorAll('#setup button, #setup table, #setup svg')].filter((each) => each.getBoundingClientRect().right > innerWidth).map(({ textContent }) => textContent),
+        [...document.querySelectorAll('#setup :not(#setup-steps *):is(button, table, svg)')].filter((each) => each.getBoundingClientRect().right > innerWidth).map(({ textContent }) => textContent),
       );
       assert.equal(await sideways(opened), 0, await text(opened, '#setup-step'));
       assert.deepEqual(outside, []);
+      // The row of the steps is drawn aside: where one is, is in sight, by its name.
+      const at = await opened.locator('#setup-steps [aria-current]').evaluate((button) => {
+        const { left, right } = button.getBoundingClientRect();
+        return { isSeen: left >= 0 && right <= innerWidth, isWhole: button.scrollWidth <= button.clientWidth, size: Number.parseFloat(getComputedStyle(button).fontSize) };
+      });
+      assert.ok(at.isSeen && at.isWhole && at.size >= 12, JSON.stringify(at));
     }
   });
 }

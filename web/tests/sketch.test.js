@@ -70,7 +70,7 @@ test('the point of the head is dragged, and both couplers follow', async () => {
 test('where a joint may not be, that is said while it is held, and it goes to the nearest place that does', async () => {
   const page = await opened();
   await drag(page, 'point of the head', [0, -40]);
-  await isSaid(page, /is refused: /);
+  await isSaid(page, /^l2 = l3 = [0-9.]+ mm is too short: /);
   await page.mouse.up();
   await isSaid(page, /(the nearest that does|It stays as it was)\.$/);
   const wanted = Number(/It is l2 = l3 = ([0-9.]+) mm, the nearest that does\.$/.exec(await said(page))[1]);

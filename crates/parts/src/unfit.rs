@@ -1,6 +1,7 @@
 //! The reasons why a robot cannot be built.
 
 use lizard_kinematics::Vector;
+use serde::Serialize;
 
 use crate::bodies::assembly::Assembly;
 use crate::bodies::pads;
@@ -17,6 +18,19 @@ pub enum Unfit {
     /// Two parts that collide, or come too near to each other.
     #[error("{0}; other links, or other measures under [parts] in robot.toml, may keep them apart")]
     Clash(#[from] Clash),
+    /// Two parts that move together and overlap.
+    #[error(
+        "{first} and {second}, which move together, overlap by {mm:.2} mm; other links, or other measures under \
+         [parts] in robot.toml, may keep them apart"
+    )]
+    Together {
+        /// Name of one body.
+        first: String,
+        /// Name of the other body.
+        second: String,
+        /// Their overlap, mm.
+        mm: f64,
+    },
     /// A measure of robot.toml with which the parts cannot be made.
     #[error("{0}")]
     Measure(String),
@@ -30,6 +44,47 @@ pub enum Unfit {
         "the layers of {0} do not make one body; a measure under [parts] in robot.toml is too small or too large for it"
     )]
     Surface(String),
+}
+
+/// Two parts that meet, where a robot cannot be built for that reason.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Meeting {
+    /// Name of one body.
+    pub first: String,
+    /// Name of the other body.
+    pub second: String,
+    /// Their distance, mm; below 0 they overlap.
+    pub mm: f64,
+    /// Servo angles there, deg, servo order; `None` if it is so at every pose, or no pose is known.
+    pub pose: Option<[f64; 4]>,
+}
+
+impl Unfit {
+    /// The parts that meet, if that is the reason.
+    #[must_use]
+    pub fn meeting(&self) -> Option<Meeting> {
+        match self {
+            Self::Clash(Clash::Overlap(seen) | Clash::Narrow(seen)) => Some(Meeting {
+                first: seen.first.clone(),
+                second: seen.second.clone(),
+                mm: seen.mm,
+                pose: Some(seen.pose),
+            }),
+            Self::Clash(Clash::Unsure(near)) => Some(Meeting {
+                first: near.first.clone(),
+                second: near.second.clone(),
+                mm: near.proved,
+                pose: near.doubt,
+            }),
+            Self::Together { first, second, mm } => Some(Meeting {
+                first: first.clone(),
+                second: second.clone(),
+                mm: -mm,
+                pose: None,
+            }),
+            Self::Measure(_) | Self::Blocked(_) | Self::Surface(_) => None,
+        }
+    }
 }
 
 /// Least gap between servos and floor, mm.
@@ -142,11 +197,11 @@ impl Assembly {
             for b in bodies[i + 1..].iter().filter(|b| b.mount == a.mount) {
                 let air = air(self.outside_threads(a), self.outside_threads(b));
                 if air < -TOUCH {
-                    return Err(Unfit::Measure(format!(
-                        "{} and {}, which move together, overlap by {:.2} mm; other links, or other measures \
-                         under [parts] in robot.toml, may keep them apart",
-                        a.name, b.name, -air
-                    )));
+                    return Err(Unfit::Together {
+                        first: a.name.clone(),
+                        second: b.name.clone(),
+                        mm: -air,
+                    });
                 }
             }
         }

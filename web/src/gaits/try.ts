@@ -15,13 +15,18 @@ export async function takeGait(session: Session, made: EditedGait): Promise<Refu
  * has only the gaits that are written on it, so there it is refused.
  */
 export async function tryGait(session: Session, made: EditedGait, ask: (line: string) => Promise<unknown>): Promise<Refused | null> {
+  const refused = await wakeWith(session, made);
+  if (!refused) await ask(made.name.replaceAll('-', ' '));
+  return refused;
+}
+
+/** Puts the gait into the session's robot, and waits until the simulated board that restarts with it stands. */
+export async function wakeWith(session: Session, made: EditedGait): Promise<Refused | null> {
   if (session.isReal) {
-    return { refused: 'A board on USB has only the gaits that are written on it: write this one, or go back to the simulation to try it.', line: null, key: '' };
+    return { refused: 'A board on USB has only the gaits that are written on it: write this one, or go back to the simulation to try it.', meaning: null, line: null, key: '' };
   }
   const refused = await takeGait(session, made);
   if (refused) return refused;
-  const { link } = session;
-  await link.wait(WAKES);
-  if (session.link === link) await ask(made.name.replaceAll('-', ' '));
+  await session.link.wait(WAKES);
   return null;
 }

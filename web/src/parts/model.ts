@@ -1,7 +1,5 @@
 // Types and calls of the robot's parts in WebAssembly (wasm-parts/src/abi.rs). Runs in a worker, since
 // triangles and proofs take seconds.
-import type { Refused } from '../robot';
-
 export interface Body {
   name: string;
   kind: string;
@@ -63,8 +61,31 @@ interface Exports {
   parts_files(number: number): number;
 }
 
+/** Two parts that meet. */
+export interface Meeting {
+  first: string;
+  second: string;
+  /** Their distance, mm; below 0 they overlap. */
+  mm: number;
+  /** Servo angles there, deg; null if it is so at every pose, or none is known. */
+  pose: number[] | null;
+}
+
+/** The refusal of a robot whose parts cannot be made, with the parts that meet, if that is why. */
+export interface NotMade {
+  refused: string;
+  meeting: Meeting | null;
+}
+
 /** Thrown for a robot whose parts cannot be made; its message is for the user. */
-export class Unfit extends Error {}
+export class Unfit extends Error {
+  constructor(
+    message: string,
+    readonly meeting: Meeting | null,
+  ) {
+    super(message);
+  }
+}
 
 export class PartsModel {
   private constructor(
@@ -138,7 +159,7 @@ const output = (wasm: Exports) =>
   new Uint8Array(wasm.memory.buffer, wasm.parts_output(), wasm.parts_output_length());
 
 function json<T>(wasm: Exports): T {
-  const answer = JSON.parse(new TextDecoder().decode(output(wasm))) as T | Refused;
-  if (answer !== null && typeof answer === 'object' && 'refused' in answer) throw new Unfit(answer.refused);
+  const answer = JSON.parse(new TextDecoder().decode(output(wasm))) as T | NotMade;
+  if (answer !== null && typeof answer === 'object' && 'refused' in answer) throw new Unfit(answer.refused, answer.meeting);
   return answer as T;
 }

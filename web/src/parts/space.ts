@@ -46,6 +46,8 @@ export interface ViewSettings {
   step: number | null;
   /** Index of the selected body. */
   picked: number | null;
+  /** Indices of the two bodies that meet; none if none do. */
+  clash: number[];
 }
 
 export class Space {
@@ -59,7 +61,7 @@ export class Space {
   private model: Model | null = null;
   private mounts: Group[] = [];
   private meshes: Mesh<BufferGeometry, MeshLambertMaterial>[] = [];
-  private settings: ViewSettings = { apart: 0, step: null, picked: null };
+  private settings: ViewSettings = { apart: 0, step: null, picked: null, clash: [] };
   private dirty = true;
   /** Time of the last change, ms. */
   private changed = 0;
@@ -177,7 +179,7 @@ export class Space {
   /** Applies the view's settings, and the colours of light or dark mode. */
   show(settings: ViewSettings): void {
     this.settings = settings;
-    const { step, apart, picked } = settings;
+    const { step, apart, picked, clash } = settings;
     const colours = palette();
     const floor = new Color(colours.floor);
     this.scene.background = floor;
@@ -192,8 +194,9 @@ export class Space {
       if (!mesh) return;
       const isNew = step === null || body.step === step;
       mesh.visible = step === null || body.step <= step;
-      const isPale = picked === null ? !isNew : number !== picked;
-      mesh.material.color.set(colour(body)).lerp(floor, isPale ? PALE : 0);
+      const chosen = clash.length > 0 ? clash : picked === null ? null : [picked];
+      const isPale = chosen ? !chosen.includes(number) : !isNew;
+      mesh.material.color.set(clash.includes(number) ? colours.alarm : colour(body)).lerp(floor, isPale ? PALE : 0);
       const lift = new Matrix4().makeTranslation(0, 0, isNew ? apart * LIFT * body.lift : 0);
       mesh.matrix.copy(lift.multiply(new Matrix4().fromArray(body.place)));
       mesh.matrixWorldNeedsUpdate = true;

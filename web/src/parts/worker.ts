@@ -2,7 +2,7 @@
 import { zipSync } from 'fflate';
 
 import { messageOf } from '../trouble';
-import { PartsModel } from './model';
+import { PartsModel, Unfit } from './model';
 import type { Answer, Question } from './workshop';
 
 let known: PartsModel | null = null;
@@ -10,7 +10,7 @@ let known: PartsModel | null = null;
 const say = (answer: Answer, give: Transferable[] = []) => postMessage(answer, { transfer: give });
 
 addEventListener('message', ({ data }: MessageEvent<Question>) => {
-  void answer(data).catch((error: unknown) => say({ of: data.ask, refused: messageOf(error) }));
+  void answer(data).catch((error: unknown) => say({ of: data.ask, refused: messageOf(error), meeting: error instanceof Unfit ? error.meeting : null }));
 });
 
 async function answer(question: Question): Promise<void> {
@@ -30,19 +30,33 @@ async function answer(question: Question): Promise<void> {
       say({ of: 'fit', least: (await PartsModel.read(question.module, question.toml)).prove() });
       break;
     case 'files': {
-      const parts = await PartsModel.read(question.module, question.toml, (done, all) => {
+      const { module, toml, before } = question;
+      const parts = await PartsModel.read(module, toml, (done, all) => {
         say({ of: 'progress', doing: 'prove', done, all });
       });
       const least = parts.prove();
-      const files: Record<string, Uint8Array> = {};
-      const all = parts.model.files;
-      for (let number = 0; number < all; number++) {
-        say({ of: 'progress', doing: 'make', done: number, all });
-        for (const { path, bytes } of parts.files(number)) files[path] = bytes;
+      const files = filesOf(parts);
+      const count = Object.keys(files).length;
+      if (before !== null) {
+        const known = filesOf(await PartsModel.read(module, before));
+        for (const [path, bytes] of Object.entries(known)) if (isSame(bytes, files[path])) delete files[path];
       }
       // A fixed date, so that the same files make the same archive.
       const zip = zipSync(files, { mtime: '1980-01-02T00:00:00' });
-      say({ of: 'files', zip, count: Object.keys(files).length, least }, [zip.buffer]);
+      say({ of: 'files', zip, paths: Object.keys(files), count, least }, [zip.buffer]);
     }
   }
 }
+
+/** Makes all files of a robot, by their paths. */
+function filesOf(parts: PartsModel): Record<string, Uint8Array> {
+  const made: Record<string, Uint8Array> = {};
+  const all = parts.model.files;
+  for (let number = 0; number < all; number++) {
+    say({ of: 'progress', doing: 'make', done: number, all });
+    for (const { path, bytes } of parts.files(number)) made[path] = bytes;
+  }
+  return made;
+}
+
+const isSame = (one: Uint8Array, other: Uint8Array | undefined) => one.length === other?.length && one.every((byte, at) => byte === other[at]);

@@ -1,20 +1,22 @@
 // Asks a worker for the robot's parts: solids, places at a pose, and all files as one archive.
 import { files } from '../files';
-import type { Model, Solid } from './model';
+import { type Model, type NotMade, type Solid, Unfit } from './model';
+
+export { Unfit };
 
 export type Question =
   | { ask: 'model'; module: WebAssembly.Module; toml: string }
   | { ask: 'pose'; angles: number[]; lags: number[] }
   | { ask: 'fit'; module: WebAssembly.Module; toml: string }
-  | { ask: 'files'; module: WebAssembly.Module; toml: string };
+  | { ask: 'files'; module: WebAssembly.Module; toml: string; before: string | null };
 
 export type Answer =
   | { of: 'model'; model: Model; solids: Solid[] }
   | { of: 'pose'; places: Float64Array | null }
   | { of: 'fit'; least: number | null }
   | { of: 'progress'; doing: 'prove' | 'make'; done: number; all: number }
-  | { of: 'files'; zip: Uint8Array<ArrayBuffer>; count: number; least: number | null }
-  | { of: Question['ask']; refused: string };
+  | { of: 'files'; zip: Uint8Array<ArrayBuffer>; paths: string[]; count: number; least: number | null }
+  | ({ of: Question['ask'] } & NotMade);
 
 /** Progress of the making of a robot's files. */
 export interface Progress {
@@ -23,9 +25,12 @@ export interface Progress {
   all: number;
 }
 
-/** All files, and the least distance that was proved, mm. */
+/** Files in an archive, and the least distance that was proved, mm. */
 export interface Made {
   zip: Uint8Array<ArrayBuffer>;
+  /** The paths in the archive. */
+  paths: string[];
+  /** The number of all files that the robot has. */
   count: number;
   least: number | null;
 }
@@ -34,17 +39,14 @@ function worker(): Worker {
   return new Worker(new URL('./worker.ts', import.meta.url), { type: 'module' });
 }
 
-/** Thrown for parts that cannot be made, or do not fit; the message says why. */
-export class NoParts extends Error {}
-
-/** Asks a worker and calls `onAnswer` with each answer, up to the last. Throws {@link NoParts}. */
+/** Asks a worker and calls `onAnswer` with each answer, up to the last. Throws {@link Unfit}. */
 function asked<T extends Answer>(of: Worker, question: Question, onAnswer: (answer: Answer) => void = () => {}): Promise<T> {
   return new Promise((resolve, reject) => {
     const listen = ({ data }: MessageEvent<Answer>) => {
       onAnswer(data);
       if (data.of !== question.ask) return;
       of.removeEventListener('message', listen);
-      if ('refused' in data) reject(new NoParts(data.refused));
+      if ('refused' in data) reject(new Unfit(data.refused, data.meeting));
       else resolve(data as T);
     };
     of.addEventListener('message', listen);
@@ -90,18 +92,21 @@ export class Solids {
   }
 }
 
-/** Proves that the parts of a robot.toml fit: the least distance of two, mm. Throws {@link NoParts}; `stop` ends it without an answer. */
+/** Proves that the parts of a robot.toml fit: the least distance of two, mm. Throws {@link Unfit}; `stop` ends it without an answer. */
 export function fit(toml: string): { fits: Promise<number | null>; stop: () => void } {
   const prover = worker();
   const proved = files.parts().then((module) => asked<{ of: 'fit'; least: number | null }>(prover, { ask: 'fit', module, toml }));
   return { fits: proved.then(({ least }) => least).finally(() => prover.terminate()), stop: () => prover.terminate() };
 }
 
-/** Proves that the parts fit, makes all files and packs them. `stop` ends it without an answer. */
-export function make(toml: string, progress: (progress: Progress) => void): { made: Promise<Made>; stop: () => void } {
+/**
+ * Proves that the parts fit, makes all files and packs them, or only those that are not the same for the robot `before`. `stop` ends it
+ * without an answer.
+ */
+export function make(toml: string, before: string | null, progress: (progress: Progress) => void): { made: Promise<Made>; stop: () => void } {
   const maker = worker();
   const made = files.parts().then((module) =>
-    asked<{ of: 'files' } & Made>(maker, { ask: 'files', module, toml }, (answer) => {
+    asked<{ of: 'files' } & Made>(maker, { ask: 'files', module, toml, before }, (answer) => {
       if (answer.of === 'progress' && 'doing' in answer) progress(answer);
     }),
   );

@@ -1,7 +1,6 @@
 // The bars and joints of a robot in its neutral pose, and the lengths that follow when a joint is dragged. Servos
 // keep their neutral angles, so the end of a crank moves along its crank.
-import type { Scene, Point } from '../robot';
-import type { Edits } from './question';
+import type { Edits, Point, Scene } from '../robot';
 
 /** A bar between two points: its key in robot.toml. */
 export interface Bar {

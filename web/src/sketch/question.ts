@@ -1,25 +1,20 @@
 // The question to the worker that checks other lengths while a joint is dragged, and its answer.
-import type { Refused, Scene } from '../robot';
-
-/** Lengths by their keys in robot.toml. */
-export type Edits = [key: string, value: number][];
+import type { Edits, Scene, TriedLengths } from '../robot';
 
 export interface Question {
   toml: string;
   edits: Edits;
-  /** True for the last question of a drag: if refused, the nearest valid lengths are searched. */
+  /** True for the last question of a drag: if refused, what would do instead is searched. */
   isLast: boolean;
+  /** The lengths whose range is wanted; none for no range. */
+  keys: string[];
 }
 
-export interface Answer {
+export interface Answer extends TriedLengths {
   edits: Edits;
-  /** The robot.toml with these lengths. */
-  toml: string;
-  /** The refusal, if any. */
-  refused: Refused | null;
   /** The neutral pose, if accepted. */
   scene: Scene | null;
-  /** The nearest valid lengths, if they were asked for and exist. */
-  nearest: { edits: Edits; toml: string } | null;
   isLast: boolean;
+  /** The least and the greatest value of the lengths whose range was asked for. */
+  range: [number, number] | null;
 }

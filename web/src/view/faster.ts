@@ -12,6 +12,8 @@ import { figures } from './trial';
 export interface Edited {
   gait(): Bars | null;
   setGait(gait: Bars): void;
+  /** Lets the found gait walk beside the one before it, and writes their figures. */
+  compare(before: Bars, found: Bars, told: HTMLElement): Promise<void>;
 }
 
 const WORDS = { start: 'Make it faster', stop: 'Stop the search', take: 'Use this gait', back: 'Back to the previous gait' };
@@ -26,6 +28,8 @@ export class FasterView {
   private readonly result = element('faster-result');
   private readonly numbers = { rate: null as number | null, rounds: 5, seed: 1 };
   private search: FasterSearch | null = null;
+  /** The gait to beat, and its trial. */
+  private beaten: Bars | null = null;
   private before: Trial | null = null;
   private best: Best | null = null;
   /** The gait that the found one replaced. */
@@ -45,6 +49,7 @@ export class FasterView {
     numberInput(element('faster-seed'), { min: 0, max: 1e9, step: 1 }, (value) => (numbers.seed = Math.round(value ?? 1)));
     this.start.addEventListener('click', () => (this.search ? this.search.stop() : this.begin()));
     this.takeIt.addEventListener('click', () => this.takeOver());
+    element('faster-both').addEventListener('click', () => void this.compare());
   }
 
   /** Ends the search if the robot has changed, since its result would not fit. */
@@ -63,6 +68,7 @@ export class FasterView {
     if (!bars) return this.say('There is no gait to start from.');
     const { toml, floor, servos } = this.session();
     this.toml = toml;
+    this.beaten = bars;
     this.before = this.best = null;
     this.result.hidden = true;
     this.start.textContent = WORDS.stop;
@@ -125,6 +131,7 @@ export class FasterView {
     );
     this.replaced = null;
     this.takeIt.textContent = WORDS.take;
+    element('faster-ways').textContent = '';
     this.result.hidden = false;
   }
 
@@ -136,6 +143,15 @@ export class FasterView {
     this.replaced = this.replaced ? null : now;
     this.takeIt.textContent = this.replaced ? WORDS.back : WORDS.take;
     this.edited.setGait({ ...next, name: now.name });
+  }
+
+  private async compare(): Promise<void> {
+    const { beaten, best } = this;
+    if (!beaten || !best) return;
+    const { robot, toml, isReal } = this.session();
+    // The robot with the found gait is no other one, so the result stays.
+    if (!isReal) this.toml = robot.putGait(toml, best.bars);
+    await this.edited.compare(beaten, best.bars, element('faster-ways'));
   }
 
   private say(text: string): void {

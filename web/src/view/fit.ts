@@ -1,8 +1,11 @@
-// The parts after a change of lengths: a worker proves that they fit, and where they do not, looks for the nearest lengths that do.
-import { isRefused, type Length } from '../robot';
+// The parts of changed lengths: a worker proves that they fit, also while a length is dragged. Where they do not, the two that meet are
+// red in 3D, and the nearest lengths that fit are looked for.
+import type { Meeting } from '../parts/model';
+import type { Length } from '../robot';
 import type { Session } from '../session';
 import { messageOf } from '../trouble';
 import { element } from './canvas';
+import type { PartsView } from './parts';
 
 /** Time after a change until its parts are made, ms: a joint that is dragged makes many. */
 const QUIET = 400;
@@ -12,61 +15,121 @@ const STEP = 0.5;
 /** Lengths by their keys, mm. */
 type Lengths = Map<string, number>;
 
+/** Work that ends with the next change: proofs in workers. */
+interface Work {
+  isOver: boolean;
+  stop: () => void;
+}
+
+/** A length whose printable values are wanted, within a range. */
+interface Wish {
+  keys: string[];
+  range: [number, number];
+  show: (found: [number, number] | null, said: string) => void;
+}
+
 export class FitView {
   private readonly said = element('fit-said');
   private readonly use = element<HTMLButtonElement>('fit-use');
+  private readonly where = element<HTMLButtonElement>('fit-where');
   /** The last lengths that fit, of robots from the same file. */
   private fitting: Lengths = new Map();
+  private wish: Wish | null = null;
   private timer = 0;
-  private stop: () => void = () => {};
+  private work: Work = { isOver: true, stop: () => {} };
 
-  constructor(private readonly session: () => Session) {}
+  constructor(
+    private readonly session: () => Session,
+    private readonly parts: PartsView,
+  ) {
+    this.where.addEventListener('click', () => this.parts.set3d(true));
+  }
 
   /** Takes the lengths of the session's robot. */
   showRobot(lengths: Length[]): void {
     const wanted: Lengths = new Map(lengths.map(({ key, value }) => [key, value]));
-    clearTimeout(this.timer);
-    this.stop();
-    this.say('');
+    this.wish = null;
+    this.begin();
+    this.parts.showRobot();
     const { file, toml, original } = this.session();
     // A file of the list, which has no name while it is read, and what was changed elsewhere are not checked.
     if (file === '' || toml === original || document.body.dataset.at !== 'room-build') this.fitting = wanted;
     const changed = [...wanted].filter(([key, value]) => this.fitting.get(key) !== value);
-    if (changed.length === 0) return;
-    const check = () => this.check(wanted, new Map(changed)).catch((error: unknown) => this.say(`The parts could not be checked: ${messageOf(error)}.`));
-    this.timer = setTimeout(() => void check(), QUIET);
+    if (changed.length > 0) this.soon((work) => this.check(wanted, new Map(changed), work));
   }
 
-  private async check(wanted: Lengths, changed: Lengths): Promise<void> {
-    const { toml } = this.session();
-    let isOver = false;
-    this.stop = () => (isOver = true);
-    this.say('Checking that the parts fit…');
-    const { fit, NoParts } = await import('../parts/workshop');
-    /** Returns the least distance of two parts, mm, or why they do not fit. */
-    const proved = async (text: string): Promise<number | null | string> => {
-      if (isOver) return null;
-      const { fits, stop } = fit(text);
-      this.stop = () => {
-        isOver = true;
-        stop();
-      };
-      return fits.catch((error: unknown) => {
-        if (error instanceof NoParts) return error.message;
-        throw error;
-      });
-    };
-    const result = await proved(toml);
-    if (isOver) return;
-    if (typeof result !== 'string') {
-      this.fitting = wanted;
-      return this.say(`The parts fit${result === null ? '' : `: no two come nearer than ${result.toFixed(2)} mm`}.`);
+  /** Takes lengths that are being dragged, by their robot.toml; null for some with which it cannot walk. */
+  follow(toml: string | null): void {
+    this.begin();
+    if (toml === null) return;
+    this.soon(async (work) => {
+      this.parts.show3d(toml);
+      await this.prove(toml, work);
+    });
+  }
+
+  /** Looks for the least and the greatest value with which the parts fit, once the robot is known to fit. */
+  findRange(keys: string[], range: [number, number], show: Wish['show']): void {
+    this.wish = { keys, range, show };
+    if (this.isFitting) {
+      this.begin();
+      this.soon((work) => this.search(work));
     }
-    const refused = `These lengths cannot be printed: ${result.replace(/\.$/, '')}.`;
-    this.say(`${refused} Looking for the nearest that can…`);
-    const nearest = await this.nearest(toml, changed, async (text) => typeof (await proved(text)) !== 'string');
-    if (isOver) return;
-    this.say(refused);
+  }
+
+  private get isFitting(): boolean {
+    return this.session().description.lengths.every(({ key, value }) => this.fitting.get(key) === value);
+  }
+
+  /** Ends the work of before. */
+  private begin(): void {
+    clearTimeout(this.timer);
+    this.work.isOver = true;
+    this.work.stop();
+    this.say('', null);
+  }
+
+  private soon(act: (work: Work) => Promise<void>): void {
+    const work: Work = { isOver: false, stop: () => {} };
+    this.work = work;
+    const run = () => act(work).catch((error: unknown) => this.say(`The parts could not be checked: ${messageOf(error)}.`, null));
+    this.timer = setTimeout(() => void run(), QUIET);
+  }
+
+  /** Proves a robot's parts, and says the result; returns true if they fit. */
+  private async prove(toml: string, work: Work): Promise<boolean> {
+    this.say('Checking that the parts fit…', null);
+    const result = await this.proved(toml, work);
+    if (work.isOver) return false;
+    if (result instanceof Error) this.say(refusal(result), result.meeting);
+    else this.say(`The parts fit${result === null ? '' : `: no two come nearer than ${result.toFixed(2)} mm`}.`, null);
+    return !(result instanceof Error);
+  }
+
+  /** Returns the least distance of two parts, mm, or why they do not fit. */
+  private async proved(toml: string, work: Work) {
+    const { fit, Unfit } = await import('../parts/workshop');
+    if (work.isOver) return null;
+    const { fits, stop } = fit(toml);
+    work.stop = stop;
+    return fits.catch((error: unknown) => {
+      if (error instanceof Unfit) return error;
+      throw error;
+    });
+  }
+
+  private async check(wanted: Lengths, changed: Lengths, work: Work): Promise<void> {
+    const { toml } = this.session();
+    if (await this.prove(toml, work)) {
+      this.fitting = wanted;
+      return this.search(work);
+    }
+    if (work.isOver) return;
+    const refused = this.said.textContent ?? '';
+    this.said.textContent = `${refused} Looking for the nearest that can…`;
+    const nearest = await this.nearest(changed, work);
+    if (work.isOver) return;
+    this.said.textContent = refused;
     const { lengths } = this.session().description;
     const names = lengths.filter(({ key }) => changed.has(key)).map(({ key, label }) => `${label} ${nearest.lengths.get(key)}`);
     this.use.textContent = `Use what fits: ${names.join(', ')}`;
@@ -74,39 +137,66 @@ export class FitView {
     this.use.hidden = false;
   }
 
-  /** Halves the way from the last lengths that fit to those wanted, until it is as fine as a step. */
-  private async nearest(toml: string, changed: Lengths, fits: (text: string) => Promise<boolean>): Promise<{ lengths: Lengths; text: string }> {
-    const { robot } = this.session();
+  /** Looks for the range that was wished for. */
+  private async search(work: Work): Promise<void> {
+    const { wish } = this;
+    if (!wish) return;
+    const { keys, range, show } = wish;
+    show(null, 'Looking for the shortest and the longest that can be printed…');
+    const found: number[] = [];
+    for (const end of range) {
+      const { lengths } = await this.nearest(new Map(keys.map((key) => [key, end])), work, true);
+      if (work.isOver) return;
+      found.push(lengths.get(keys[0] ?? '') ?? end);
+    }
+    const [least = 0, most = 0] = found;
+    const { unit } = this.session().description.lengths.find(({ key }) => key === keys[0]) ?? { unit: '' };
+    show([least, most], `Can be printed from ${least} to ${most} ${unit}.`);
+  }
+
+  /** Halves the way from the last lengths that fit to those wanted, until it is as fine as a step; `isOpen` if these may fit, too. */
+  private async nearest(wanted: Lengths, work: Work, isOpen = false): Promise<{ lengths: Lengths; text: string }> {
+    const { robot, toml } = this.session();
     const between = (share: number): Lengths =>
-      new Map([...changed].map(([key, to]) => {
+      new Map([...wanted].map(([key, to]) => {
         const from = this.fitting.get(key) ?? to;
         return [key, share === 0 ? from : STEP * Math.round((from + (to - from) * share) / STEP)];
       }));
-    const textOf = (lengths: Lengths): string | null => {
-      let text = toml;
-      for (const [key, value] of lengths) {
-        const edited = robot.edit(text, key, value);
-        if (isRefused(edited)) return null;
-        text = edited.text;
-      }
-      return text;
+    const at = (share: number) => {
+      const lengths = between(share);
+      const { text, refusal } = robot.lengths(toml, [...lengths], false);
+      return { lengths, text, isRobot: refusal === null };
     };
+    const fits = async ({ text, isRobot }: ReturnType<typeof at>) => isRobot && !((await this.proved(text, work)) instanceof Error);
+    let best = at(0);
+    if (isOpen) {
+      const end = at(1);
+      if (await fits(end)) return end;
+    }
     let [low, high] = [0, 1];
-    let best = between(0);
-    const longest = Math.max(...[...changed].map(([key, to]) => Math.abs(to - (this.fitting.get(key) ?? to))));
-    while ((high - low) * longest > STEP) {
+    const longest = Math.max(...[...wanted].map(([key, to]) => Math.abs(to - (this.fitting.get(key) ?? to))));
+    while ((high - low) * longest > STEP && !work.isOver) {
       const middle = (low + high) / 2;
-      const lengths = between(middle);
-      const text = textOf(lengths);
-      if (text !== null && (await fits(text))) [low, best] = [middle, lengths];
+      const tried = at(middle);
+      if (await fits(tried)) [low, best] = [middle, tried];
       else high = middle;
     }
-    return { lengths: best, text: textOf(best) ?? toml };
+    return best;
   }
 
-  private say(text: string): void {
+  private say(text: string, meeting: Meeting | null): void {
     element('fit').hidden = text === '';
     this.said.textContent = text;
     this.use.hidden = true;
+    this.where.hidden = meeting === null;
+    this.parts.meet(meeting);
   }
+}
+
+/** Says which parts meet, or else what cannot be made. */
+function refusal({ message, meeting }: { message: string; meeting: Meeting | null }): string {
+  if (!meeting) return `These lengths cannot be printed: ${message.replace(/\.$/, '')}.`;
+  const { first, second, mm } = meeting;
+  const near = mm < 0 ? `would overlap by ${(-mm).toFixed(2)} mm` : `would come as near as ${mm.toFixed(2)} mm`;
+  return `These lengths cannot be printed: ${first} and ${second} ${near}.`;
 }

@@ -3,7 +3,7 @@ import { kept } from '../kept';
 import type { Bars, Description, Four } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
-import { FasterView } from './faster';
+import { type Edited, FasterView } from './faster';
 import { make, tableRow } from './make';
 import { numberInput, putNumber, type Range } from './number';
 import { isShown } from './rooms';
@@ -54,9 +54,10 @@ export class GaitsView {
     private readonly session: () => Session,
     ask: (line: string) => Promise<unknown>,
     writer: Writer,
+    compare: Edited['compare'],
   ) {
     this.trial = new TrialView(module, session, ask, writer, { prefix: 'gait', made: () => this.gait, change: (what, value) => this.change({ [what]: value }) });
-    this.faster = new FasterView(session, { gait: () => this.gait, setGait: (gait) => this.change(gait) });
+    this.faster = new FasterView(session, { gait: () => this.gait, setGait: (gait) => this.change(gait), compare });
     this.panel.addEventListener('toggle', () => this.showRobot());
     this.from.addEventListener('change', () => this.choose());
     this.name.addEventListener('input', () => this.change({ name: this.name.value.trim().replaceAll(' ', '-') }));

@@ -1,7 +1,8 @@
 // The panel that records runs, saves pictures, and lets a second robot walk beside the first.
 import { Companion } from '../companion';
+import { wakeWith } from '../gaits/try';
 import { LONGEST, Recording } from '../recording';
-import type { Description, Four, Frame } from '../robot';
+import type { Bars, Description, Four, Frame } from '../robot';
 import type { Session } from '../session';
 import { messageOf } from '../trouble';
 import { WORDS } from '../words';
@@ -23,6 +24,17 @@ const FILMS = [
 /** Duration of a frame of the core, s. */
 const FRAME = 0.02;
 
+/** Two robots that walk side by side: the first is the page's own. */
+interface Pair {
+  /** The robot.toml of the second one. */
+  toml: string;
+  gaits: [string, string];
+  /** What they are called in the figures. */
+  names: [string, string];
+  /** Where the figures are written. */
+  told: HTMLElement;
+}
+
 export class Keep {
   private readonly panel = element<HTMLDetailsElement>('keep');
   private readonly moment = element<HTMLInputElement>('moment');
@@ -35,8 +47,9 @@ export class Keep {
   private isSeen = false;
   private film: MediaRecorder | null = null;
   private companion: Companion | null = null;
-  /** The companion's gait, which starts together with the robot's. */
-  private waiting: { mine: string; other: string } | null = null;
+  private pair: Pair | null = null;
+  /** True until the robot begins its gait, with which the companion begins. */
+  private isWaiting = false;
   private owed = 0;
   private onDrawn: (() => void) | null = null;
 
@@ -55,7 +68,7 @@ export class Keep {
     on('png', () => this.takePicture(() => void this.savePng()));
     on('svg', () => this.takePicture(() => void this.saveSvg()));
     on('film', () => this.toggleFilm());
-    on('both', () => void this.startBoth());
+    on('both', () => void this.startBoth(this.chosen()));
     on('alone', () => this.removeCompanion());
     this.moment.addEventListener('input', () => {
       this.isSeen = true;
@@ -90,7 +103,7 @@ export class Keep {
       this.record(false);
       this.say(`The recording is full: ${LONGEST} s.`);
     }
-    if (!this.companion || this.waiting) return;
+    if (!this.companion || this.isWaiting) return;
     for (this.owed += seconds; this.owed > FRAME / 2; this.owed -= FRAME) this.companion.step();
     const place = this.companion.frame?.place;
     if (place) this.floor.addToTrack(place, true);
@@ -98,12 +111,12 @@ export class Keep {
 
   /** Starts the companion when the robot starts its gait. */
   doing(gait: string): void {
-    const { companion, waiting } = this;
-    if (!companion) return;
-    if (waiting && gait === waiting.mine) {
-      companion.send(waiting.other);
-      this.waiting = null;
-    } else if (!waiting && gait === WORDS.stop) companion.send(WORDS.stop);
+    const { companion, pair, isWaiting } = this;
+    if (!companion || !pair) return;
+    if (isWaiting && gait === pair.gaits[0]) {
+      companion.send(pair.gaits[1]);
+      this.isWaiting = false;
+    } else if (!isWaiting && gait === WORDS.stop) companion.send(WORDS.stop);
   }
 
   /** The frame that the floor shows: the current one, or one of the replay. */
@@ -132,19 +145,19 @@ export class Keep {
 
   /** Updates the numbers, some times a second. */
   write(): void {
-    if (!isShown(this.panel)) return;
-    const { recording, companion } = this;
-    if (recording) {
+    const { recording, companion, pair } = this;
+    if (recording && isShown(this.panel)) {
       if (this.isRecording) this.moment.max = String(recording.seconds);
       const time = this.isRecording && !this.isSeen ? recording.seconds : this.moment.valueAsNumber;
       const of = this.isRecording ? '' : ` of ${recording.seconds.toFixed(1)}`;
       element('moment-out').textContent = `${time.toFixed(1)}${of} s`;
     }
-    if (!companion?.frame || this.waiting) return;
+    const panel = pair?.told.closest('details');
+    if (!pair || !panel || !companion?.frame || this.isWaiting || !isShown(panel)) return;
     const { last, robot } = this.session();
     const start = { x: 0, y: 0, heading: 0 };
     const displacement = (frame: Frame | null) => (frame ? short(robot.between(start, frame.place)) : '');
-    this.say(`${this.mine.value}: ${displacement(last)}. Beside it, ${this.other.value}: ${displacement(companion.frame)}.`);
+    this.say(`${pair.names[0]}: ${displacement(last)}. ${pair.names[1]}: ${displacement(companion.frame)}.`, pair.told);
   }
 
   private record(on: boolean): void {
@@ -226,35 +239,48 @@ export class Keep {
     }
   }
 
+  private chosen(): Pair {
+    const gaits: [string, string] = [this.mine.value, this.other.value];
+    return { toml: this.session().toml, gaits, names: [gaits[0], `Beside it, ${gaits[1]}`], told: element('keep-said') };
+  }
+
+  /** Lets a gait that was found walk beside the one before it; the robot takes the found one. */
+  async compare(before: Bars, found: Bars, told: HTMLElement): Promise<void> {
+    const session = this.session();
+    const toml = session.robot.putGait(session.toml, before);
+    this.say('The robot restarts with this gait…', told);
+    const refused = await wakeWith(session, found);
+    if (refused) return this.say(refused.refused, told);
+    const gait = found.name.replaceAll('-', ' ');
+    await this.startBoth({ toml, gaits: [gait, gait], names: ['Found', 'Before'], told });
+  }
+
   /** Starts both robots in the same frame, each from its own start. */
-  private async startBoth(): Promise<void> {
+  private async startBoth(pair: Pair): Promise<void> {
     const session = this.session();
     const { toml, floor, servos, volts } = session;
     this.removeCompanion();
-    this.say('Switching on the second robot…');
+    this.say('Switching on the second robot…', pair.told);
     try {
-      const companion = await Companion.create(this.module, toml, floor, servos, volts);
+      const companion = await Companion.create(this.module, pair.toml, floor, servos, volts);
       if (toml !== this.session().toml) return;
       await this.ask(WORDS.stop);
       session.home();
       this.floor.clear();
       companion.send(`${WORDS.speed} ${this.pace()}`);
       companion.step();
-      this.companion = companion;
-      this.owed = 0;
-      this.waiting = { mine: this.mine.value, other: this.other.value };
+      Object.assign(this, { companion, pair, isWaiting: true, owed: 0 });
       this.updateButtons();
       this.floor.fitTwoRobots();
-      await this.ask(this.mine.value);
+      await this.ask(pair.gaits[0]);
     } catch (error) {
-      this.say(`The second robot cannot start: ${messageOf(error)}`);
+      this.say(`The second robot cannot start: ${messageOf(error)}`, pair.told);
     }
   }
 
   private removeCompanion(): void {
-    if (this.companion) this.say('');
-    this.companion = null;
-    this.waiting = null;
+    if (this.pair) this.say('', this.pair.told);
+    Object.assign(this, { companion: null, pair: null, isWaiting: false });
     this.updateButtons();
   }
 
@@ -275,8 +301,7 @@ export class Keep {
     element<HTMLButtonElement>('alone').disabled = this.companion === null;
   }
 
-  private say(text: string): void {
-    const box = element('keep-said');
+  private say(text: string, box = element('keep-said')): void {
     if (box.textContent !== text) box.textContent = text;
   }
 }

@@ -1,9 +1,10 @@
 // The robot's lengths as numbers: a change makes a new robot or is refused.
-import { isRefused, type Length, type Refused } from '../robot';
+import type { Edits, Length } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
 import { download } from './download';
 import { make } from './make';
+import { refusalOf, showOffers, withTwin } from './tried-lengths';
 
 export class Lengths {
   private readonly list = element('lengths');
@@ -11,7 +12,11 @@ export class Lengths {
   private readonly refusal = element('lengths-refusal');
   private inputs = new Map<string, HTMLInputElement>();
 
-  constructor(private readonly session: () => Session) {
+  /** `offer` looks for what would do where lengths are refused. */
+  constructor(
+    private readonly session: () => Session,
+    private readonly offer: (edits: Edits) => void,
+  ) {
     element('lengths-reset').addEventListener('click', () => void this.session().restore());
     element('lengths-save').addEventListener('click', () => this.download());
   }
@@ -45,30 +50,20 @@ export class Lengths {
     const input = this.inputs.get(key);
     const value = input?.valueAsNumber;
     if (!input || value === undefined || !Number.isFinite(value)) return;
-    const twin = session.description.lengths.find((length) => length.key === key)?.twin ?? key;
-    const keys = this.alike.checked && twin !== key ? [key, twin] : [key];
-    let text = session.toml;
-    for (const each of keys) {
-      const edited = session.robot.edit(text, each, value);
-      if (isRefused(edited)) return this.refuse(keys, value, edited);
-      text = edited.text;
+    const edits = withTwin(key, value, session.description.lengths, this.alike.checked);
+    const { text, refusal } = session.robot.lengths(session.toml, edits, false);
+    if (!refusal) return void (await session.change(text));
+    const { lengths } = session.description;
+    const kept = lengths.filter((length) => edits.some(([each]) => each === length.key));
+    // The boxes have the robot's numbers again.
+    for (const length of kept) {
+      const box = this.inputs.get(length.key);
+      if (!box) continue;
+      box.value = String(length.value);
+      box.setAttribute('aria-invalid', 'true');
     }
-    const refused = await session.change(text);
-    if (refused) this.refuse(keys, value, refused);
-  }
-
-  /** Shows a refusal and restores the robot's number in the box. */
-  private refuse(keys: string[], value: number, { refused }: Refused): void {
-    const { lengths } = this.session().description;
-    const kept = lengths.filter(({ key }) => keys.includes(key));
-    for (const { key, value } of kept) {
-      const input = this.inputs.get(key);
-      if (!input) continue;
-      input.value = String(value);
-      input.setAttribute('aria-invalid', 'true');
-    }
-    const stays = kept.map((length) => `${length.key} stays ${length.value} ${length.unit}`).join(', ');
-    this.say(`${value} is refused, ${stays}: ${refused}`);
+    this.say(refusalOf(`${value} ${kept[0]?.unit}`, edits, refusal, lengths));
+    this.offer(edits);
   }
 
   private download(): void {
@@ -80,5 +75,6 @@ export class Lengths {
   private say(message: string | null): void {
     this.refusal.hidden = message === null;
     this.refusal.textContent = message ?? '';
+    showOffers(null, this.session());
   }
 }

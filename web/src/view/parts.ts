@@ -1,13 +1,14 @@
 // The robot in 3D on the stage, and its panel: the parts, the guide step by step, and all files to print and to cut.
 // Nothing of it is loaded before 3D is shown or the panel is opened.
-import type { Model } from '../parts/model';
+import type { Meeting, Model } from '../parts/model';
 import type { Space } from '../parts/space';
-import type { Progress, Solids } from '../parts/workshop';
+import type { Made, Progress, Solids } from '../parts/workshop';
 import type { Frame, Place } from '../robot';
 import type { Session } from '../session';
 import { messageOf } from '../trouble';
 import { element } from './canvas';
 import { save } from './download';
+import { make } from './make';
 import { onPaletteChange } from './palette';
 import { isShown } from './rooms';
 
@@ -23,14 +24,19 @@ export class PartsView {
   private readonly canvas = element<HTMLCanvasElement>('space');
   private readonly apart = element<HTMLInputElement>('apart');
   private readonly list = element<HTMLSelectElement>('part');
-  private readonly button = element<HTMLButtonElement>('parts-save');
+  /** The buttons that make files: all, and those that another robot of the same file has not. */
+  private readonly buttons = { all: element<HTMLButtonElement>('parts-save'), changed: element<HTMLButtonElement>('parts-changed') };
   private space: Space | null = null;
   private solids: Solids | null = null;
   private model: Model | null = null;
   /** The robot.toml that is shown or being loaded. */
   private toml = '';
+  /** The robot.toml whose files were made last. */
+  private made = '';
   private step: number | null = null;
   private picked: number | null = null;
+  /** The parts that meet, which are red. */
+  private meeting: Meeting | null = null;
   /** The request of the last pose. */
   private asked = '';
   private stop: (() => void) | null = null;
@@ -47,7 +53,8 @@ export class PartsView {
     for (const [id, key] of [['zoom-in', '+'], ['zoom-out', '-'], ['home', 'Home']] as const) {
       element(id).addEventListener('click', () => this.space?.press(key));
     }
-    this.button.addEventListener('click', () => void this.files());
+    this.buttons.all.addEventListener('click', () => void this.files('all'));
+    this.buttons.changed.addEventListener('click', () => void this.files('changed'));
     onPaletteChange(() => this.show());
   }
 
@@ -56,7 +63,7 @@ export class PartsView {
     return !this.view.hidden;
   }
 
-  private set3d(is3d: boolean): void {
+  set3d(is3d: boolean): void {
     this.view.hidden = !is3d;
     this.button3d.setAttribute('aria-pressed', String(is3d));
     this.showRobot();
@@ -64,7 +71,18 @@ export class PartsView {
 
   /** Takes the session's robot, if it is shown in 3D. */
   showRobot(): void {
-    const { toml } = this.session();
+    const { toml, original } = this.session();
+    this.buttons.changed.hidden = toml === original;
+    if (this.made !== toml) {
+      this.made = toml;
+      this.listFiles([]);
+      if (!this.stop) this.say('files-said', '');
+    }
+    this.show3d(toml);
+  }
+
+  /** Shows a robot, also one that is not the session's yet, if the stage is in 3D. */
+  show3d(toml: string): void {
     if (!this.is3d || toml === this.toml) return;
     this.toml = toml;
     this.stop?.();
@@ -73,13 +91,12 @@ export class PartsView {
 
   private async load(toml: string): Promise<void> {
     this.say('parts-said', 'Making the solids…');
-    this.solids?.end();
-    this.solids = null;
-    this.model = null;
     try {
       const [{ Solids }, { Space }] = await Promise.all([import('../parts/workshop'), import('../parts/space')]);
       const { solids, model, meshes } = await Solids.of(toml);
       if (toml !== this.toml) return solids.end();
+      // The robot of before is shown until then.
+      this.solids?.end();
       this.solids = solids;
       this.model = model;
       this.asked = '';
@@ -92,7 +109,7 @@ export class PartsView {
       if (toml !== this.toml) return;
       // A failed download is tried again when 3D is shown again.
       this.toml = '';
-      this.say('parts-said', `There are no parts of this robot: ${messageOf(error)}`);
+      this.say('parts-said', `There are no parts of this robot: ${messageOf(error)}${this.model ? ' The one before is shown.' : ''}`);
     }
   }
 
@@ -139,7 +156,11 @@ export class PartsView {
     this.list.value = number === null ? '' : String(number);
     const body = number === null ? undefined : this.model?.bodies[number];
     const part = body?.part == null ? undefined : this.model?.parts[body.part];
-    if (!body) this.say('parts-said', this.space ? 'Click a part for its name and its file.' : '');
+    const { meeting } = this;
+    if (meeting) {
+      const { first, second, mm } = meeting;
+      this.say('parts-said', `${first} and ${second}: ${mm < 0 ? `${(-mm).toFixed(2)} mm too much` : `only ${mm.toFixed(2)} mm apart`}.`);
+    } else if (!body) this.say('parts-said', this.space ? 'Click a part for its name and its file.' : '');
     else if (!part) this.say('parts-said', `${body.name}: ${body.kind}, bought; put on in step ${body.step}.`);
     else {
       const often = part.count === 1 ? 'printed once' : `printed ${part.count} times`;
@@ -148,9 +169,20 @@ export class PartsView {
     this.show();
   }
 
+  /** Colours two parts that meet, at the pose where they do; null if none do. */
+  meet(meeting: Meeting | null): void {
+    if (meeting === this.meeting) return;
+    this.meeting = meeting;
+    this.asked = '';
+    this.pick(this.picked);
+  }
+
   private show(): void {
     element('apart-out').textContent = `${this.apart.value} %`;
-    this.space?.show({ apart: Number(this.apart.value) / 100, step: this.step, picked: this.picked });
+    const { step, picked, meeting, model } = this;
+    const names = meeting ? [meeting.first, meeting.second] : [];
+    const clash = names.map((name) => model?.bodies.findIndex((body) => body.name === name) ?? -1);
+    this.space?.show({ apart: Number(this.apart.value) / 100, step, picked, clash });
   }
 
   /** Called in every frame of the page. */
@@ -158,9 +190,9 @@ export class PartsView {
     const { space, solids } = this;
     if (!space || !solids || !space.mayDraw() || !this.is3d) return;
     const neutral = this.session().description.servos.map((servo) => servo.neutral);
-    // The robot stands still while a step of the guide is shown.
-    const moving = this.step === null && frame?.scene != null;
-    const [angles, lags] = moving ? [frame.scene?.angles ?? neutral, frame.lag] : [neutral, [0, 0, 0, 0]];
+    // The robot stands still while a step of the guide is shown, or where two parts meet.
+    const moving = this.step === null && !this.meeting && frame?.scene != null;
+    const [angles, lags] = moving ? [frame.scene?.angles ?? neutral, frame.lag] : [this.meeting?.pose ?? neutral, [0, 0, 0, 0]];
     const asked = [...angles, ...lags].map((angle) => angle.toFixed(2)).join(' ');
     if (asked !== this.asked) {
       this.asked = asked;
@@ -174,21 +206,24 @@ export class PartsView {
     space.draw(moving ? frame.place : ORIGIN);
   }
 
-  private async files(): Promise<void> {
+  private async files(which: 'all' | 'changed'): Promise<void> {
     // The button also stops the making.
     if (this.stop) return this.stop();
-    const { toml, file } = this.session();
+    const { toml, original, file } = this.session();
     const bar = element<HTMLProgressElement>('parts-progress');
     const words = { prove: 'Proving that no two parts meet', make: 'Making the files' };
+    const button = this.buttons[which];
+    const label = button.textContent;
     bar.hidden = false;
     bar.removeAttribute('value');
-    this.button.textContent = 'Stop';
+    button.textContent = 'Stop';
     this.stop = () => {};
     this.say('files-said', 'Loading…');
+    this.listFiles([]);
     let stopped = false;
     try {
-      const { make } = await import('../parts/workshop');
-      const { made, stop } = make(toml, ({ doing, done, all }: Progress) => {
+      const workshop = await import('../parts/workshop');
+      const { made, stop } = workshop.make(toml, which === 'all' ? null : original, ({ doing, done, all }: Progress) => {
         bar.max = all;
         bar.value = done;
         this.say('files-said', `${words[doing]}: ${done} of ${all}.`);
@@ -200,19 +235,31 @@ export class PartsView {
           end(null);
         };
       });
-      const all = await Promise.race([made, halted]);
-      if (!all) return;
-      save(`${file || 'robot'}-parts.zip`, [all.zip], 'application/zip');
-      const least = all.least === null ? '' : ` No two parts come nearer than ${all.least.toFixed(2)} mm at any pose that the guard accepts.`;
-      this.say('files-said', `${all.count} files.${least}`);
+      const files = await Promise.race([made, halted]);
+      if (!files) return;
+      if (files.paths.length > 0) save(`${file || 'robot'}-${which === 'all' ? 'parts' : 'changed-parts'}.zip`, [files.zip], 'application/zip');
+      this.say('files-said', this.saved(files, which));
+      if (which === 'changed') this.listFiles(files.paths);
     } catch (error) {
       this.say('files-said', `No files are made: ${messageOf(error)}`);
     } finally {
       this.stop = null;
       bar.hidden = true;
-      this.button.textContent = 'Download all files';
+      button.textContent = label;
       if (stopped) this.say('files-said', 'Stopped; nothing was saved.');
     }
+  }
+
+  private saved({ paths, count, least }: Made, which: 'all' | 'changed'): string {
+    const near = least === null ? '' : ` No two parts come nearer than ${least.toFixed(2)} mm at any pose that the guard accepts.`;
+    if (which === 'all') return `${count} files.${near}`;
+    return paths.length === 0 ? `None of the ${count} files changed.` : `${paths.length} of ${count} files are not those of ${this.session().file}.toml:`;
+  }
+
+  private listFiles(paths: string[]): void {
+    const box = element('files-list');
+    box.replaceChildren(...paths.map((path) => make('li', {}, path)));
+    box.hidden = paths.length === 0;
   }
 
   private say(id: string, text: string): void {

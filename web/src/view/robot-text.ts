@@ -90,7 +90,7 @@ export class RobotText {
       return toml === this.session().toml || (await this.loadAndShow(toml));
     } catch (error) {
       reveal(this.box);
-      this.say({ refused: messageOf(error), line: null, key: '' });
+      this.say({ refused: messageOf(error), meaning: null, line: null, key: '' });
       return false;
     }
   }
@@ -99,7 +99,7 @@ export class RobotText {
     reveal(this.box);
     // A binary file is not shown in the box.
     const toml = file.size > 1_000_000 ? '' : await file.text();
-    if (toml === '' || toml.includes('\0')) return this.say({ refused: `${file.name} is not a robot.toml.`, line: null, key: '' });
+    if (toml === '' || toml.includes('\0')) return this.say({ refused: `${file.name} is not a robot.toml.`, meaning: null, line: null, key: '' });
     await this.loadAndShow(toml);
   }
 

@@ -283,7 +283,10 @@ export class Setup implements Tools {
     const at = STEPS.indexOf(step);
     this.steps.querySelectorAll('button').forEach((each, n) => {
       each.toggleAttribute('aria-current', n === at);
-      if (n === at) each.setAttribute('aria-current', 'step');
+      if (n === at) {
+        each.setAttribute('aria-current', 'step');
+        this.steps.scrollLeft = each.offsetLeft - this.steps.offsetLeft - (this.steps.clientWidth - each.offsetWidth) / 2;
+      }
       each.classList.toggle('done', this.isDone(STEPS[n].name));
     });
     this.title.textContent = `${at + 1} of ${STEPS.length}: ${step.title}`;

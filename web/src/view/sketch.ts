@@ -1,11 +1,14 @@
-// The drawing whose joints can be dragged: lengths follow, and invalid ones are refused during the drag.
+// The drawing whose joints can be dragged, and a slider of one length: lengths follow, and invalid ones are refused during the drag.
 import { LatestQuestion } from '../latest';
-import type { Length, Scene, Point } from '../robot';
+import type { Edits, Length, Scene, Point } from '../robot';
 import type { Session } from '../session';
 import { bars, type Joint, joints } from '../sketch/joints';
-import type { Answer, Edits, Question } from '../sketch/question';
+import type { Answer, Question } from '../sketch/question';
 import { element } from './canvas';
+import type { FitView } from './fit';
+import { LengthSlider } from './length-slider';
 import { isShown } from './rooms';
+import { refusalOf, showOffers, words } from './tried-lengths';
 
 const SVG = 'http://www.w3.org/2000/svg';
 /** Movement below which a press is not a drag, screen points. */
@@ -21,6 +24,7 @@ export class Sketch {
   private readonly drawnBars = this.picture.appendChild(document.createElementNS(SVG, 'g'));
   private readonly drawnJoints = this.picture.appendChild(document.createElementNS(SVG, 'g'));
   private sketches: LatestQuestion<Question, Answer> | null = null;
+  private readonly slider = new LengthSlider((edits, isLast) => this.tryOut(edits, isLast), () => this.askRobot());
   private toml = '';
   /** The dragged joint, as it was at the start of the drag. */
   private held: Joint | null = null;
@@ -30,6 +34,7 @@ export class Sketch {
   constructor(
     private readonly module: WebAssembly.Module,
     private readonly session: () => Session,
+    private readonly fit: FitView,
   ) {
     this.panel.addEventListener('toggle', () => this.showRobot());
   }
@@ -37,25 +42,47 @@ export class Sketch {
   /** Draws the session's robot in its neutral pose, if the panel is open. */
   showRobot(): void {
     if (!isShown(this.panel)) return;
-    const { toml } = this.session();
+    const { toml, description } = this.session();
     if (toml === this.toml) return;
     this.toml = toml;
     this.held = null;
+    this.slider.showRobot(description.lengths);
     this.sketches ??= new LatestQuestion(new Worker(new URL('../sketch/worker.ts', import.meta.url), { type: 'module' }), this.module, (answer) => this.answered(answer));
-    this.sketches.ask({ toml, edits: [], isLast: false });
+    this.askRobot();
+  }
+
+  /** Asks for the robot as it is, and for the range of the slider's length. */
+  private askRobot(): void {
+    this.sketches?.ask({ toml: this.toml, edits: [], isLast: false, keys: this.slider.keys });
+  }
+
+  /** Tries lengths that are being dragged. */
+  private tryOut(edits: Edits, isLast: boolean): void {
+    this.isEnding ||= isLast;
+    this.sketches?.ask({ toml: this.toml, edits, isLast, keys: [] });
+  }
+
+  /** Looks for what would do where lengths are refused, and offers it. */
+  offer(edits: Edits): void {
+    this.sketches?.ask({ toml: this.toml, edits, isLast: true, keys: [] });
   }
 
   private lengths(): Map<string, Length> {
     return new Map(this.session().description.lengths.map((length) => [length.key, length]));
   }
 
-  private answered({ edits, toml, refused, scene, nearest, isLast }: Answer): void {
+  private answered({ edits, text, refusal, scene, nearest, without, isLast, range }: Answer): void {
     if (scene) this.draw(scene, edits.length === 0);
+    if (range) this.ranged(range);
     if (edits.length === 0) return;
-    const stays = !isLast ? '' : nearest ? ` It is ${words(nearest.edits)}, the nearest that does.` : ' It stays as it was.';
-    this.said.textContent = refused ? `${words(edits)} is refused: ${refused.refused}.${stays}` : `${words(edits)}.`;
-    this.said.classList.toggle('refusal', refused !== null);
-    if (isLast && this.isEnding) void this.end(refused ? (nearest?.toml ?? null) : toml);
+    // A number that was refused.
+    if (isLast && !this.isEnding) return showOffers({ nearest, without }, this.session());
+    if (!isLast) this.fit.follow(refusal ? null : text);
+    const { lengths } = this.session().description;
+    const stays = !isLast ? '' : nearest ? ` It is ${words(nearest.lengths, lengths)}, the nearest that does.` : ' It stays as it was.';
+    this.said.textContent = refusal ? `${refusalOf(words(edits, lengths), edits, refusal, lengths)}${stays}` : `${words(edits, lengths)}.`;
+    this.said.classList.toggle('refusal', refusal !== null);
+    if (isLast) void this.end(refusal ? (nearest?.text ?? null) : text).then(() => showOffers({ nearest: null, without }, this.session()));
   }
 
   /** Ends a drag with a new robot.toml; null if the robot stays. */
@@ -64,7 +91,20 @@ export class Sketch {
     this.isEnding = false;
     this.held = null;
     if (toml !== null && toml !== session.toml) await session.change(toml);
-    else this.sketches?.ask({ toml: session.toml, edits: [], isLast: false });
+    else this.goBack();
+  }
+
+  /** Shows the session's robot again. */
+  private goBack(): void {
+    const { lengths } = this.session().description;
+    this.slider.showRobot(lengths);
+    this.fit.showRobot(lengths);
+    this.askRobot();
+  }
+
+  private ranged(range: [number, number]): void {
+    this.slider.setRange(range);
+    if (this.slider.isChosen) this.fit.findRange(this.slider.keys, range, (found, said) => this.slider.mark(found, said));
   }
 
   /** Draws the robot; with `isWhole` also the joints, which stay during a drag. */
@@ -125,13 +165,12 @@ export class Sketch {
     mark.addEventListener('pointerup', (event) => {
       if (this.held !== joint) return;
       if (!isDragged(event)) return void (this.held = null);
-      this.isEnding = true;
       this.drag(joint, event, true);
     });
     mark.addEventListener('pointercancel', () => {
       if (this.held !== joint) return;
       this.held = null;
-      this.sketches?.ask({ toml: this.toml, edits: [], isLast: false });
+      this.goBack();
     });
     return mark;
   }
@@ -140,8 +179,7 @@ export class Sketch {
     const place = this.picture.getScreenCTM();
     if (!place) return;
     const { x, y } = new DOMPoint(clientX, clientY).matrixTransform(place.inverse());
-    const edits = joint.moved([x, -y], this.alike.checked);
-    this.sketches?.ask({ toml: this.toml, edits, isLast });
+    this.tryOut(joint.moved([x, -y], this.alike.checked), isLast);
   }
 
   /** Highlights the number of a clicked bar. */
@@ -150,11 +188,4 @@ export class Sketch {
     input?.focus();
     input?.select();
   }
-}
-
-/** Lists lengths in words; a length that is equal on both sides once. */
-function words(edits: Edits): string {
-  const by = new Map<number, string[]>();
-  for (const [key, value] of edits) by.set(value, [...(by.get(value) ?? []), key.replace('links.', '')]);
-  return [...by].map(([value, keys]) => `${keys.join(' = ')} = ${value} mm`).join(', ');
 }

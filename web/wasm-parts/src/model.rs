@@ -2,24 +2,36 @@
 
 use lizard_kinematics::Vector;
 use lizard_parts::{
-    Assembly, Bill, File, Mount, Part, Placement, PrintToBody, Step, coupon, papers, part_files,
-    steps,
+    Assembly, Bill, File, Meeting, Mount, Part, Placement, PrintToBody, Step, Unfit, coupon,
+    papers, part_files, steps,
 };
 use lizard_robot::Robot;
 use lizard_robot::servo::FORWARD;
 use serde::Serialize;
 
 /// A refusal: the reason why no parts can be made of a robot.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Refused {
     /// The reason, as a message.
     pub refused: String,
+    /// The parts that meet, if that is the reason.
+    pub meeting: Option<Meeting>,
 }
 
 impl Refused {
     fn of(error: impl ToString) -> Self {
         Self {
             refused: error.to_string(),
+            meeting: None,
+        }
+    }
+}
+
+impl From<Unfit> for Refused {
+    fn from(unfit: Unfit) -> Self {
+        Self {
+            meeting: unfit.meeting(),
+            ..Self::of(unfit)
         }
     }
 }
@@ -100,7 +112,7 @@ impl Model {
     pub fn read(toml: &str) -> Result<Self, Refused> {
         let robot = Robot::parse(toml).map_err(Refused::of)?;
         let assembly = Assembly::new(&robot);
-        assembly.measures_fit().map_err(Refused::of)?;
+        assembly.measures_fit()?;
         let mut mounts: Vec<Mount> = Vec::new();
         for body in assembly.bodies() {
             if !mounts.contains(&body.mount) {
@@ -230,7 +242,7 @@ impl Model {
         let robot = self.assembly.robot();
         let count = self.made().count();
         if let Some(part) = self.made().nth(number) {
-            return part_files(&part, robot.parts().kerf).map_err(Refused::of);
+            return Ok(part_files(&part, robot.parts().kerf)?);
         }
         if number > count {
             return Ok(Vec::new());
@@ -240,7 +252,7 @@ impl Model {
             .solve(&robot.neutral())
             .map_err(Refused::of)?;
         let bill = Bill::of(&self.assembly, &self.parts, &pose);
-        papers(&self.assembly, &bill, &pose).map_err(Refused::of)
+        Ok(papers(&self.assembly, &bill, &pose)?)
     }
 
     /// Proves that no two parts meet at any pose that the guard accepts.
@@ -249,8 +261,7 @@ impl Model {
     /// Returns the two parts that meet.
     pub fn prove(&self, progress: impl FnMut(usize, usize)) -> Result<Proved, Refused> {
         let proof = self.assembly.prove(progress);
-        let judged = proof.judge().map_err(lizard_parts::Unfit::from);
-        judged.map_err(Refused::of)?;
+        proof.judge().map_err(Unfit::from)?;
         Ok(Proved {
             least: proof.least().map(|near| near.proved),
         })

@@ -34,9 +34,7 @@ impl Model {
 fn put(name: &str, prisms: &[Prism], bytes: &mut Vec<u8>) -> Result<(), Refused> {
     let mesh = Mesh::of(&Solid::of(prisms));
     if !mesh.is_closed() {
-        return Err(Refused {
-            refused: lizard_parts::Unfit::Surface(name.to_owned()).to_string(),
-        });
+        return Err(lizard_parts::Unfit::Surface(name.to_owned()).into());
     }
     for count in [mesh.corners.len(), mesh.triangles.len()] {
         bytes.extend((count as u32).to_le_bytes());

@@ -17,6 +17,7 @@ use crate::drawn::DrawnGait;
 #[cfg(feature = "tune")]
 use crate::faster::SearchTask;
 use crate::floor::Floor;
+use crate::lengths::{self, Lengths};
 use crate::page::Page;
 use crate::place::Place;
 use crate::trial::EditedGait;
@@ -27,8 +28,10 @@ use crate::trial::EditedGait;
 enum Question {
     /// [`Page::read`] of a robot.toml.
     Read(String),
-    /// [`Page::edit`].
-    Edit(String, String, f64),
+    /// [`Lengths::of`], with the nearest that do where these are refused.
+    Lengths(String, Vec<(String, f64)>, bool),
+    /// [`lengths::range`].
+    LengthRange(String, Vec<String>),
     /// [`Page::edit_floor`].
     EditFloor(String, Floor),
     /// [`Page::pulses`].
@@ -86,7 +89,8 @@ impl Question {
     fn answer(self, page: &mut Page) -> Result<Vec<u8>> {
         match self {
             Self::Read(toml) => json(either(page.read(&toml))),
-            Self::Edit(toml, key, value) => json(either(Page::edit(&toml, &key, value))),
+            Self::Lengths(toml, wanted, searches) => json(Lengths::of(&toml, &wanted, searches)),
+            Self::LengthRange(toml, keys) => json(lengths::range(&toml, &keys)),
             Self::EditFloor(toml, floor) => json(either(Page::edit_floor(&toml, floor))),
             Self::Pulses(widths) => json(page.pulses(widths)),
             Self::Pose(angles, frames) => json(page.pose(angles, frames)),

@@ -77,6 +77,7 @@ impl Faster {
     pub fn begin(twin: &Twin, wish: &SearchTask) -> Result<Self, Refused> {
         let refusal = |key: &str, refused: String| Refused {
             refused,
+            meaning: None,
             line: None,
             key: key.to_string(),
         };
@@ -225,7 +226,7 @@ mod tests {
         let mut wide = wish("walk");
         wide.bars.amplitude = 60.0;
         assert!(
-            refused(&wide).starts_with("gait.walk: "),
+            refused(&wide).starts_with("in \"walk\" "),
             "{}",
             refused(&wide)
         );

@@ -18,6 +18,7 @@ mod drawn;
 #[cfg(feature = "tune")]
 mod faster;
 mod floor;
+mod lengths;
 mod map;
 mod page;
 #[cfg(test)]
@@ -38,6 +39,7 @@ pub use drawn::DrawnGait;
 #[cfg(feature = "tune")]
 pub use faster::{Faster, Found, Progress, SearchExtent, SearchTask};
 pub use floor::{Floor, Legs};
+pub use lengths::{Lengths, NearestLengths, WithoutGait};
 pub use map::{Curve, Map, MapPoint};
 pub use page::{Edited, Frame, Page};
 pub use place::Place;

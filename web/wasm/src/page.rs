@@ -106,14 +106,6 @@ impl Page {
         Some(self.robot()?.section())
     }
 
-    /// Sets a number in the text of a robot.toml. The page's robot stays as it is.
-    ///
-    /// # Errors
-    /// Fails if the text has no such number.
-    pub fn edit(text: &str, key: &str, value: f64) -> Result<Edited, Refused> {
-        Ok(Edited::of(with_number(text, key, value)?))
-    }
-
     /// Sets the floor, the mass, the feet and the drive of the legs in the text of a robot.toml.
     /// Values that do not change stay as they are written. The page's robot stays as it is.
     ///

@@ -7,8 +7,10 @@ use serde::Serialize;
 /// A refusal: the message that the user sees, and its key.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Refused {
-    /// The message for the user.
+    /// The message for the user: what is wrong, and where.
     pub refused: String,
+    /// What is wrong, without the place and its figures; `None` where the message has no shorter form.
+    pub meaning: Option<String>,
     /// Line of the file, counted from 1; `None` if the refusal belongs to no line.
     pub line: Option<usize>,
     /// Full name of the key, such as `links.l2`; may be empty.
@@ -18,10 +20,17 @@ pub struct Refused {
 impl Refused {
     /// Refuses a gait whose text the user does not see, so without its line.
     pub(crate) fn of_gait(error: Error) -> Self {
+        let Error {
+            meaning,
+            problem,
+            key,
+            ..
+        } = error;
         Self {
-            refused: format!("{}: {}", error.key, error.problem),
+            refused: format!("{}: {problem}", meaning.as_ref().unwrap_or(&key)),
+            meaning,
             line: None,
-            key: error.key,
+            key,
         }
     }
 }
@@ -30,6 +39,7 @@ impl From<Error> for Refused {
     fn from(error: Error) -> Self {
         Self {
             refused: error.to_string(),
+            meaning: error.meaning,
             line: error.line,
             key: error.key,
         }
@@ -40,6 +50,7 @@ impl From<NoSuchKey> for Refused {
     fn from(error: NoSuchKey) -> Self {
         Self {
             refused: error.to_string(),
+            meaning: None,
             line: None,
             key: error.0,
         }

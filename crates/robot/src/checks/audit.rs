@@ -11,8 +11,8 @@ use lizard_kinematics::{Check, Solution, Violation};
 
 use crate::checks::accuracy::{self, ALL_PHASES};
 use crate::gaits::Gait;
-use crate::measures::Measures;
 use crate::measures::servo::NAMES;
+use crate::measures::{Measures, consequence, no_loop};
 use crate::tables::Tables;
 use crate::units::{FRAMES_PER_SECOND, PHASES, STEPS_PER_DEGREE};
 
@@ -85,10 +85,18 @@ impl LeastMargin {
     }
 }
 
+/// A limit that a gait breaks.
+pub(crate) struct Broken {
+    /// What would happen to the robot.
+    pub meaning: String,
+    /// The figures.
+    pub problem: String,
+}
+
 /// Checks a gait against the limits of its robot.
 ///
 /// # Errors
-/// Returns the message for the first travel or loop that a sample breaks; else, over all samples,
+/// Returns the first travel or loop that a sample breaks; else, over all samples,
 /// for the worst violation of the first limit broken; else for the pose that the firmware's guard
 /// would stop at; else for a frame that is too fast, or a table that is too coarse.
 pub(crate) fn check(
@@ -97,7 +105,7 @@ pub(crate) fn check(
     tables: &Tables,
     robot: &Measures,
     firmware: &lizard_core::numbers::robot::Robot<'_>,
-) -> Result<Audit, String> {
+) -> Result<Audit, Broken> {
     let mut found = Audit {
         peak: fastest(gait),
         ..Audit::NONE
@@ -115,7 +123,10 @@ pub(crate) fn check(
             held.get_or_insert((phase, condition(&hazard)));
         }
         let solution = robot.lizard.solve(&angles.into());
-        let solution = solution.map_err(|fault| format!("{}: {fault}", at(phase)))?;
+        let solution = solution.map_err(|fault| Broken {
+            meaning: no_loop(fault.part),
+            problem: format!("{fault} {}", at(phase)),
+        })?;
         for violation in robot.limits.violations(&solution) {
             worst = Some(match worst {
                 Some(earlier) if !exceeds(violation, earlier.1) => earlier,
@@ -125,14 +136,19 @@ pub(crate) fn check(
         found.add(&solution, phase);
     }
     if let Some((phase, violation)) = worst {
-        return Err(format!("{}: {violation}", at(phase)));
+        return Err(Broken {
+            meaning: consequence(violation.what),
+            problem: format!("{violation} {}", at(phase)),
+        });
     }
     if let Some((phase, what)) = held {
-        return Err(format!(
-            "{}: margin or travel {} is so near to its limit that the firmware's integers take it to be beyond; leave it a little room",
-            at(phase),
-            what.name()
-        ));
+        return Err(Broken {
+            meaning: consequence(what),
+            problem: format!(
+                "margin or travel {what} is so near to its limit {} that the firmware's integers take it to be beyond; leave it a little room",
+                at(phase)
+            ),
+        });
     }
     let Peak {
         servo,
@@ -141,18 +157,27 @@ pub(crate) fn check(
     } = found.peak;
     let limit = robot.pace.gait_slew;
     if speed > limit {
-        return Err(format!(
-            "{} servo {} would turn at {speed:.1} deg/s; limits.gait_slew is {limit:.1} deg/s",
-            at(phase),
-            NAMES[servo]
-        ));
+        return Err(Broken {
+            meaning: format!("servo {} would have to turn too fast", NAMES[servo]),
+            problem: format!(
+                "{speed:.1} deg/s {}; limits.gait_slew is {limit:.1} deg/s",
+                at(phase)
+            ),
+        });
     }
     let coarse = accuracy::worst(gait, index, tables, CHECKED);
     if coarse.max > ERROR_LIMIT {
-        return Err(format!(
-            "its table of {SAMPLES} samples is {:.3} deg off at phase {:.4} (servo {}); at most {ERROR_LIMIT:.2} deg is allowed",
-            coarse.max, coarse.phase, NAMES[coarse.servo]
-        ));
+        return Err(Broken {
+            meaning: format!(
+                "servo {} would have to turn too sharply",
+                NAMES[coarse.servo]
+            ),
+            problem: format!(
+                "the firmware's table of {SAMPLES} samples is {:.3} deg off {}; at most {ERROR_LIMIT:.2} deg is allowed",
+                coarse.max,
+                at(coarse.phase)
+            ),
+        });
     }
     Ok(found)
 }
@@ -189,7 +214,7 @@ fn phases(table: &TableGait) -> Vec<u16> {
 }
 
 /// Refuses servo angles outside a travel.
-fn check_travels(robot: &Measures, angles: [f64; 4], phase: f64) -> Result<(), String> {
+fn check_travels(robot: &Measures, angles: [f64; 4], phase: f64) -> Result<(), Broken> {
     // The ends of the travel and the sample are both rounded to an angle step.
     const STEP: f64 = 1.0 / STEPS_PER_DEGREE;
     for ((servo, angle), name) in robot.servos.iter().zip(angles).zip(NAMES) {
@@ -197,9 +222,12 @@ fn check_travels(robot: &Measures, angles: [f64; 4], phase: f64) -> Result<(), S
         let sweep = angle - servo.neutral;
         if sweep < min - STEP || sweep > max + STEP {
             let (min, max) = (servo.neutral + min, servo.neutral + max);
-            return Err(format!(
-                "at phase {phase:.4} servo {name} would be at {angle:.2} deg, outside its travel of {min:.2} to {max:.2} deg"
-            ));
+            return Err(Broken {
+                meaning: format!("servo {name} would have to turn farther than it can"),
+                problem: format!(
+                    "{angle:.2} deg at phase {phase:.4} is outside its travel of {min:.2} to {max:.2} deg"
+                ),
+            });
         }
     }
     Ok(())

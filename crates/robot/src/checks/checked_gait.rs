@@ -8,7 +8,7 @@ use lizard_core::numbers::units::phase16;
 use lizard_kinematics::Pose;
 
 use crate::checks::accuracy::{self, TableError};
-use crate::checks::audit::{self, Audit};
+use crate::checks::audit::{self, Audit, Broken};
 use crate::file::{Checked, Fault};
 use crate::gaits::{Bars, Gait, Stride};
 use crate::measures::Measures;
@@ -37,8 +37,11 @@ impl CheckedGait {
         firmware: &lizard_core::numbers::robot::Robot,
     ) -> Checked<Self> {
         let audit = audit::check(&gait, index, tables, measures, firmware);
-        let audit =
-            audit.map_err(|problem| Fault::clause(format!("gait.{}", gait.name), problem))?;
+        let audit = audit.map_err(|Broken { meaning, problem }| {
+            let name = &gait.name;
+            Fault::clause(format!("gait.{name}"), problem)
+                .meaning(format!("in \"{name}\" {meaning}"))
+        })?;
         Ok(Self {
             gait,
             index,

@@ -116,16 +116,33 @@ pub fn without(text: &str, key: &str) -> Result<String, NoSuchKey> {
 
 /// Adds the table of a gait, in place of the gait of the same name or at the end of the text.
 pub fn with_gait(text: &str, name: &str, table: &str) -> String {
+    let (mut result, is_replaced) = replace_gait(text, name, table);
+    if !is_replaced {
+        result.push('\n');
+        result += table;
+    }
+    result
+}
+
+/// Removes the tables of a gait.
+pub fn without_gait(text: &str, name: &str) -> String {
+    replace_gait(text, name, "").0
+}
+
+/// Puts lines in the place of a gait's tables; returns true if the gait was there.
+fn replace_gait(text: &str, name: &str, table: &str) -> (String, bool) {
     let (header, below) = (format!("[gait.{name}]"), format!("[gait.{name}."));
-    let (mut result, mut is_own, mut is_written) = (String::new(), false, false);
+    let (mut result, mut is_own, mut is_replaced) = (String::new(), false, false);
     for line in text.lines() {
         let head = line.trim_start();
         if head.starts_with('[') {
             is_own = head.starts_with(&header) || head.starts_with(&below);
-            if is_own && !is_written {
-                is_written = true;
-                result += table;
-                result.push('\n');
+            if is_own && !is_replaced {
+                is_replaced = true;
+                for line in table.lines() {
+                    result += line;
+                    result.push('\n');
+                }
             }
         }
         // A comment below the last key may belong to the next table.
@@ -134,11 +151,7 @@ pub fn with_gait(text: &str, name: &str, table: &str) -> String {
             result.push('\n');
         }
     }
-    if !is_written {
-        result.push('\n');
-        result += table;
-    }
-    result
+    (result, is_replaced)
 }
 
 /// A routine as it is written, right or wrong.
@@ -274,6 +287,16 @@ mod tests {
             "[leg]\nmount = 0.0\n\n[leg.drive]\nkind = \"strut\"\n"
         );
         assert!(with_word("[leg]\nmount = 0.0\n", "leg.mount", "x").is_err());
+    }
+
+    #[test]
+    fn a_gait_is_removed_with_its_tables_and_no_other() {
+        const GAITS: &str = "[gait.look]\nperiod = 4.0\n[gait.look.head]\nx = [[1.0, 0.0]]\n# the next\n[gait.look-up]\nlike = \"walk\"\n";
+        let rest = "# the next\n[gait.look-up]\nlike = \"walk\"\n";
+        assert_eq!(without_gait(GAITS, "look"), rest);
+        assert_eq!(without_gait(rest, "look"), rest);
+        let again = with_gait(GAITS, "look", "[gait.look]\nperiod = 5.0\n");
+        assert_eq!(again, format!("[gait.look]\nperiod = 5.0\n{rest}"));
     }
 
     const ROUTINES: &str = "name = \"x\"\n\n[routine.patrol] # by night\nsteps = [\n  \"walk 4\", # on\n  \"left 6\",\n]\nrepeat = 3 # rounds\n\n[routine.about]\nsteps = ['left 12']\n";

@@ -11,26 +11,32 @@ pub struct Error {
     pub line: Option<usize>,
     /// Full name of the key, such as `servo.A1.pin`; empty for a mistake of the file.
     pub key: String,
-    /// The message without file, line and key.
+    /// What the mistake means for the robot, without keys and figures; `None` where `problem` says it.
+    pub meaning: Option<String>,
+    /// The message without file, line, key and meaning.
     pub problem: String,
     pub(crate) is_clause: bool,
 }
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(&self.file)?;
+        let mut place = self.file.clone();
         if let Some(line) = self.line {
-            write!(f, ":{line}")?;
+            place += &format!(":{line}");
         }
         if !self.key.is_empty() {
-            write!(f, ": {}", self.key)?;
+            place += &format!(": {}", self.key);
+        }
+        // Whoever reads it first wants to know what is wrong with the robot, then where that is written.
+        if let Some(meaning) = &self.meaning {
+            return write!(f, "{meaning}: {} ({place})", self.problem);
         }
         let link = if self.key.is_empty() || self.is_clause {
             ":"
         } else {
             ""
         };
-        write!(f, "{link} {}", self.problem)
+        write!(f, "{place}{link} {}", self.problem)
     }
 }
 
@@ -40,6 +46,7 @@ impl std::error::Error for Error {}
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Fault {
     pub key: String,
+    meaning: Option<String>,
     problem: String,
     is_clause: bool,
 }
@@ -52,6 +59,7 @@ impl Fault {
     pub fn new(key: impl Into<String>, problem: impl Into<String>) -> Self {
         Self {
             key: key.into(),
+            meaning: None,
             problem: problem.into(),
             is_clause: false,
         }
@@ -62,6 +70,14 @@ impl Fault {
         Self {
             is_clause: true,
             ..Self::new(key, problem)
+        }
+    }
+
+    /// The same mistake with what it means for the robot: "in "walk" the left front leg would lock".
+    pub fn meaning(self, meaning: impl Into<String>) -> Self {
+        Self {
+            meaning: Some(meaning.into()),
+            ..self
         }
     }
 
@@ -80,6 +96,7 @@ impl Fault {
             file,
             line,
             key: self.key,
+            meaning: self.meaning,
             problem: self.problem,
             is_clause: self.is_clause,
         }

@@ -271,8 +271,10 @@ fn read_path(name: &str, table: &Section, body: &Measures) -> Checked<Gait> {
             x: read_harmonics(&section, "x")?,
             y: read_harmonics(&section, "y")?,
         };
-        let legs = PathLeg::pair(body.lizard, body.neutral(), end, &path)
-            .map_err(|problem| Fault::clause(section.key.clone(), problem))?;
+        let legs = PathLeg::pair(body.lizard, body.neutral(), end, &path).map_err(|problem| {
+            let meaning = format!("in \"{name}\" the {end} would not reach its line");
+            Fault::clause(section.key.clone(), problem).meaning(meaning)
+        })?;
         for (servo, leg) in legs {
             strides[servo] = Stride {
                 waveform: Waveform::Path(Box::new(leg)),

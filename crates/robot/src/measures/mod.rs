@@ -6,6 +6,7 @@
 //! values: linkage, servos, legs, parts, supplies and the ground of the contact model.
 
 mod coil;
+mod consequence;
 mod drive;
 mod ground;
 mod hips;
@@ -23,6 +24,7 @@ mod supply;
 mod tests;
 
 pub use coil::Coil;
+pub(crate) use consequence::{consequence, no_loop};
 pub use input::{Inputs, NAMES as INPUTS};
 pub use legs::{LegPlace, LegPlan};
 pub use motor::ServoType;
@@ -149,14 +151,14 @@ impl Measures {
 
     /// Refuses a robot whose neutral pose breaks a limit.
     fn check_neutral(&self) -> Checked<()> {
-        let fault = |text: String| {
-            let message = format!("the neutral pose is not safe: {text}");
-            Err(Fault::clause("servo", message))
+        let fault = |consequence: String, problem: String| {
+            let meaning = format!("in the neutral pose {consequence}");
+            Err(Fault::clause("servo", problem).meaning(meaning))
         };
         match self.lizard.solve(&self.neutral().into()) {
-            Err(infeasible) => fault(infeasible.to_string()),
+            Err(infeasible) => fault(no_loop(infeasible.part), infeasible.to_string()),
             Ok(solution) => match self.limits.violations(&solution).next() {
-                Some(violation) => fault(violation.to_string()),
+                Some(violation) => fault(consequence(violation.what), violation.to_string()),
                 None => Ok(()),
             },
         }

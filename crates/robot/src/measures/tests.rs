@@ -82,16 +82,16 @@ fn a_stroke_leaves_the_shorter_slider_a_length() {
 
 #[test]
 fn each_leg_must_stand_on_the_side_where_it_was_assembled() {
-    for (from, to, leg) in [
-        ("neutral = 135.0", "neutral = 200.0", "leg_lf"),
-        ("neutral = 47.0", "neutral = 350.0", "leg_rf"),
-        ("neutral = 316.0", "neutral = 10.0", "leg_rh"),
-        ("neutral = 228.0", "neutral = 170.0", "leg_lh"),
+    for (from, to, name, leg) in [
+        ("neutral = 135.0", "neutral = 200.0", "left front", "leg_lf"),
+        ("neutral = 47.0", "neutral = 350.0", "right front", "leg_rf"),
+        ("neutral = 316.0", "neutral = 10.0", "right hind", "leg_rh"),
+        ("neutral = 228.0", "neutral = 170.0", "left hind", "leg_lh"),
     ] {
         let refused = refused(&[(from, to)]);
         assert!(
-            refused.contains(&format!(
-                "servo: the neutral pose is not safe: margin {leg} -"
+            refused.starts_with(&format!(
+                "in the neutral pose the {name} leg would lock: margin {leg} -"
             )),
             "{refused}"
         );

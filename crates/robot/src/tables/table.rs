@@ -40,8 +40,12 @@ impl Tables {
             let key = format!("gait.{}", gait.name);
             for ((stride, forward), name) in gait.strides.iter().zip(FORWARD).zip(NAMES) {
                 let Some(part) = bank.find(stride, forward) else {
-                    let message = format!("servo {name} would sweep half a turn or more");
-                    return Err(Fault::clause(key, message));
+                    let meaning = format!(
+                        "in \"{}\" servo {name} would have to turn farther than it can",
+                        gait.name
+                    );
+                    let message = "its sweep is half a turn or more";
+                    return Err(Fault::clause(key, message).meaning(meaning));
                 };
                 parts.push(part);
             }
@@ -358,7 +362,7 @@ mod tests {
             .expect_err("half a turn")
             .to_string();
         assert!(
-            refused.ends_with("gait.whirl: servo A3 would sweep half a turn or more"),
+            refused.starts_with("in \"whirl\" servo A3 would have to turn farther than it can: its sweep is half a turn or more ("),
             "{refused}"
         );
     }

@@ -16,20 +16,6 @@ fn a_refused_robot_leaves_the_previous_one() {
     assert!(page.pulses([24_000; 4]).is_some());
 }
 
-#[test]
-fn an_impossible_length_is_refused_and_its_text_is_kept() {
-    let edited = Page::edit(PAPER, "links.l2", 21.0).expect("there");
-    assert!(edited.text.contains("l2 = 21.0"));
-    let refusal = edited.refusal.expect("the head is out of reach");
-    assert_eq!(refusal.key, "gait.look.head");
-    assert!(refusal.refused.contains("out of reach"), "{refusal:?}");
-    assert_eq!(
-        Page::edit(PAPER, "links.l1", 35.0).expect("there").refusal,
-        None
-    );
-    assert!(Page::edit(PAPER, "links.l99", 51.0).is_err());
-}
-
 fn page() -> Page {
     let mut page = Page::default();
     page.read(PAPER).expect("right");

@@ -1,0 +1,67 @@
+//! The consequences of a broken condition for the robot, in words that need no key and no figure.
+
+use lizard_kinematics::{Check, End, Part, Side};
+
+/// Names of the legs in servo order.
+const LEGS: [&str; 4] = ["left front", "right front", "right hind", "left hind"];
+
+/// Says what would happen to the robot in a pose that breaks a condition.
+pub(crate) fn consequence(what: Check) -> String {
+    let at = |all: &[Check]| all.iter().position(|one| *one == what);
+    if let Some(end) = at(&Check::TYPE2) {
+        return format!("nothing would hold the {}", End::ALL[end]);
+    }
+    if let Some(servo) = at(&Check::TYPE1) {
+        let end = End::of_servo(servo);
+        let hand = if end.servos()[0] == servo {
+            "left"
+        } else {
+            "right"
+        };
+        return format!("the {hand} elbow of the {end} could flip over");
+    }
+    if let Some(leg) = at(&Check::LEG) {
+        return format!("the {} leg would lock", LEGS[leg]);
+    }
+    if let Some(side) = at(&Check::STROKE) {
+        return format!("the {} slider would run into its end", Side::ALL[side]);
+    }
+    let end = at(&Check::UNCROSSED).map_or("end", |end| End::ALL[end].name());
+    format!("the cranks of the {end} would cross")
+}
+
+/// Says what is wrong with a part whose loop does not close.
+pub(crate) fn no_loop(part: Part) -> String {
+    match part {
+        Part::End(end) => format!("the links of the {end} would not reach each other"),
+        Part::Side(side) => format!("the {side} slider would have no length"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_condition_names_what_the_robot_calls_it() {
+        for (what, said) in [
+            (Check::Type2Tail, "nothing would hold the tail"),
+            (Check::Type1A1, "the left elbow of the head could flip over"),
+            (
+                Check::Type1A2,
+                "the right elbow of the head could flip over",
+            ),
+            (
+                Check::Type1A3,
+                "the right elbow of the tail could flip over",
+            ),
+            (Check::Type1A4, "the left elbow of the tail could flip over"),
+            (Check::LegRf, "the right front leg would lock"),
+            (Check::LegRh, "the right hind leg would lock"),
+            (Check::StrokeLeft, "the left slider would run into its end"),
+            (Check::UncrossedHead, "the cranks of the head would cross"),
+        ] {
+            assert_eq!(consequence(what), said);
+        }
+    }
+}

@@ -1,0 +1,87 @@
+// One length as a slider, from the least to the greatest with which the robot walks; those that can be printed are marked.
+import type { Edits, Length } from '../robot';
+import { element } from './canvas';
+import { withTwin } from './tried-lengths';
+
+/** Takes lengths while the slider is dragged, and at last. */
+export type TryOut = (edits: Edits, isLast: boolean) => void;
+
+export class LengthSlider {
+  private readonly slide = element<HTMLInputElement>('length-slide');
+  private readonly out = element('length-out');
+  private readonly alike = element<HTMLInputElement>('alike');
+  private readonly printed = element('length-printed');
+  private readonly marks = element('length-marks');
+  private lengths: Length[] = [];
+  /** True once the user has chosen a length: to prove which can be printed takes time. */
+  isChosen = false;
+
+  /** `onChoice` is called for another length, or another twin. */
+  constructor(
+    tryOut: TryOut,
+    private readonly onChoice: () => void,
+    private key = 'leg.crank',
+  ) {
+    element('lengths').addEventListener('focusin', ({ target }) => this.choose((target as HTMLInputElement).name));
+    this.slide.addEventListener('focus', () => this.choose(this.key));
+    this.alike.addEventListener('change', () => this.onChoice());
+    const moved = (isLast: boolean) => {
+      this.write(this.slide.valueAsNumber);
+      tryOut(withTwin(this.key, this.slide.valueAsNumber, this.lengths, this.alike.checked), isLast);
+    };
+    this.slide.addEventListener('input', () => moved(false));
+    this.slide.addEventListener('change', () => moved(true));
+  }
+
+  /** The lengths that the slider sets. */
+  get keys(): string[] {
+    return withTwin(this.key, 0, this.lengths, this.alike.checked).map(([key]) => key);
+  }
+
+  private get length(): Length | undefined {
+    return this.lengths.find(({ key }) => key === this.key);
+  }
+
+  showRobot(lengths: Length[]): void {
+    this.lengths = lengths;
+    if (!this.length) this.key = lengths[0]?.key ?? '';
+    this.show();
+  }
+
+  private choose(key: string): void {
+    if (key === this.key && this.isChosen) return;
+    this.key = key;
+    this.isChosen = true;
+    this.show();
+    this.onChoice();
+  }
+
+  private show(): void {
+    const { length } = this;
+    element('length-name').textContent = length?.label ?? '';
+    this.mark(null, '');
+    if (length) this.write(length.value);
+  }
+
+  /** Sets the ends, with which the robot walks. */
+  setRange([least, most]: [number, number]): void {
+    Object.assign(this.slide, { min: String(least), max: String(most) });
+    if (this.length) this.write(this.length.value);
+  }
+
+  /** Marks the values that can be printed; null while they are not known. */
+  mark(range: [number, number] | null, said: string): void {
+    this.printed.textContent = said;
+    this.marks.hidden = range === null;
+    const { min, max } = this.slide;
+    const share = (value: number) => `${(100 * (value - Number(min))) / (Number(max) - Number(min))}%`;
+    if (!range) return;
+    this.marks.style.setProperty('--from', share(range[0]));
+    this.marks.style.setProperty('--to', share(range[1]));
+  }
+
+  private write(value: number): void {
+    if (this.slide.valueAsNumber !== value) this.slide.value = String(value);
+    this.out.textContent = `${value} ${this.length?.unit === 'deg' ? '°' : 'mm'}`;
+  }
+}

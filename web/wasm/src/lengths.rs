@@ -1,0 +1,228 @@
+//! Other lengths for a robot and, where they are refused, what would do instead.
+//!
+//! Both offers are tried as a whole robot: the nearest lengths on the way from those of the text to those wanted, and the
+//! lengths wanted without the gait that forbids them.
+
+use lizard_robot::Robot;
+use lizard_robot::edit::{NoSuchKey, with_number, without_gait};
+use serde::Serialize;
+
+use crate::description::Description;
+use crate::refused::Refused;
+
+/// Lengths are offered in steps of this, mm.
+const STEP: f64 = 0.5;
+
+/// Lengths by their keys, such as `links.l2`.
+type Wanted = [(String, f64)];
+
+/// The text of a robot.toml with other lengths, its refusal, and what would do.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Lengths {
+    /// The text with the lengths wanted.
+    text: String,
+    /// The refusal of this text; `None` if it is a robot.
+    refusal: Option<Refused>,
+    /// The nearest lengths that are accepted.
+    nearest: Option<NearestLengths>,
+    /// The lengths wanted on a robot that gives up the gait which forbids them.
+    without: Option<WithoutGait>,
+}
+
+/// The nearest lengths that are accepted.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NearestLengths {
+    /// The lengths by their keys.
+    lengths: Vec<(String, f64)>,
+    /// The text with them.
+    text: String,
+}
+
+/// A robot.toml that gives up a gait.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WithoutGait {
+    /// Name of the gait.
+    gait: String,
+    /// The text without it.
+    text: String,
+}
+
+impl Lengths {
+    /// Sets lengths in the text of a robot.toml; `searches` also looks for what would do.
+    #[must_use]
+    pub fn of(text: &str, wanted: &Wanted, searches: bool) -> Self {
+        let changed = match with_lengths(text, wanted) {
+            Ok(changed) => changed,
+            Err(missing) => return Self::refused(text.to_string(), missing.into()),
+        };
+        let Err(error) = Robot::parse(&changed) else {
+            return Self {
+                text: changed,
+                refusal: None,
+                nearest: None,
+                without: None,
+            };
+        };
+        let gait = error.key.strip_prefix("gait.");
+        let gait = gait.and_then(|rest| rest.split('.').next());
+        let gait = gait.filter(|_| searches).map(str::to_string);
+        Self {
+            nearest: searches.then(|| nearest(text, wanted)).flatten(),
+            without: gait.and_then(|gait| {
+                let text = without_gait(&changed, &gait);
+                Robot::parse(&text).ok()?;
+                Some(WithoutGait { gait, text })
+            }),
+            ..Self::refused(changed, error.into())
+        }
+    }
+
+    fn refused(text: String, refused: Refused) -> Self {
+        Self {
+            text,
+            refusal: Some(refused),
+            nearest: None,
+            without: None,
+        }
+    }
+}
+
+/// The least and the greatest value that some lengths may have together, as far as a robot walks with them. Beyond a half
+/// and the double of their value nothing is looked for, nor farther than an eighth of a turn for an angle.
+#[must_use]
+pub fn range(text: &str, keys: &[String]) -> Option<(f64, f64)> {
+    let own = Description::of(&Robot::parse(text).ok()?).lengths;
+    let own = own
+        .iter()
+        .find(|length| Some(&length.key) == keys.first())?;
+    let (least, most) = match own.unit {
+        "deg" => (own.value - 45.0, own.value + 45.0),
+        _ => (0.5 * own.value, 2.0 * own.value),
+    };
+    let end = |value: f64| {
+        let value = (value / STEP).round() * STEP;
+        let wanted: Vec<_> = keys.iter().map(|key| (key.clone(), value)).collect();
+        let tried = Lengths::of(text, &wanted, true);
+        let nearest = tried.nearest.and_then(|near| near.lengths.first().cloned());
+        match (tried.refusal, nearest) {
+            (None, _) => value,
+            (Some(_), Some((_, nearest))) => nearest,
+            (Some(_), None) => own.value,
+        }
+    };
+    Some((end(least), end(most)))
+}
+
+fn with_lengths(text: &str, wanted: &Wanted) -> Result<String, NoSuchKey> {
+    let mut text = text.to_string();
+    for (key, value) in wanted {
+        text = with_number(&text, key, *value)?;
+    }
+    Ok(text)
+}
+
+/// Halves the way from the lengths of the text to those wanted, down to a step.
+fn nearest(text: &str, wanted: &Wanted) -> Option<NearestLengths> {
+    let own = Description::of(&Robot::parse(text).ok()?).lengths;
+    let way: Vec<(&String, f64, f64)> = wanted
+        .iter()
+        .map(|(key, to)| {
+            let from = own.iter().find(|length| length.key == *key);
+            (key, from.map_or(*to, |length| length.value), *to)
+        })
+        .collect();
+    let longest = way.iter().map(|(_, from, to)| (to - from).abs());
+    let (mut does, mut not) = (0.0, 1.0);
+    let mut found = None;
+    let fine = STEP / longest.fold(0.0, f64::max);
+    while not - does > fine {
+        let share = f64::midpoint(does, not);
+        let at = |(key, from, to): &(&String, f64, f64)| {
+            let value = ((from + (to - from) * share) / STEP).round() * STEP;
+            ((*key).clone(), value)
+        };
+        let lengths: Vec<_> = way.iter().map(at).collect();
+        let text = with_lengths(text, &lengths).ok()?;
+        if Robot::parse(&text).is_ok() {
+            does = share;
+            found = Some(NearestLengths { lengths, text });
+        } else {
+            not = share;
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PAPER: &str = include_str!("../../../robots/paper.toml");
+
+    /// The lengths of a leg's crank and of the link that must equal it.
+    fn crank(mm: f64) -> [(String, f64); 2] {
+        ["leg.crank", "leg.follower"].map(|key| (key.to_string(), mm))
+    }
+
+    #[test]
+    fn lengths_that_are_accepted_need_nothing_else() {
+        let tried = Lengths::of(PAPER, &crank(41.0), true);
+        assert_eq!(
+            (tried.refusal, tried.nearest, tried.without),
+            (None, None, None)
+        );
+        assert!(tried.text.contains("crank = 41.0") && tried.text.contains("follower = 41.0"));
+        let missing = Lengths::of(PAPER, &[("links.l99".to_string(), 1.0)], true);
+        assert_eq!(missing.text, PAPER);
+        let refusal = missing.refusal.expect("no such length");
+        assert_eq!(refusal.refused, "robot.toml has no number links.l99");
+    }
+
+    #[test]
+    fn a_length_is_refused_with_the_nearest_half_millimetre_that_is_a_robot() {
+        let wanted = |mm| ["links.l12", "links.l17"].map(|key| (key.to_string(), mm));
+        let tried = Lengths::of(PAPER, &wanted(80.0), true);
+        let meaning = tried.refusal.expect("too long").meaning;
+        assert_eq!(
+            meaning.as_deref(),
+            Some("in the neutral pose the left slider would run into its end")
+        );
+        assert_eq!(tried.without, None, "no gait is in the way");
+        let NearestLengths { lengths, text } = tried.nearest.expect("shorter ones");
+        let [(_, one), (_, other)] = lengths[..] else {
+            panic!("two lengths")
+        };
+        assert_eq!(one, other);
+        assert!(45.0 < one && one < 80.0, "{one}");
+        assert!(Robot::parse(&text).is_ok());
+        let next = Lengths::of(PAPER, &wanted(one + STEP), false);
+        assert!(next.refusal.is_some(), "{one} is not the longest");
+        assert_eq!(next.nearest, None, "not asked for");
+    }
+
+    #[test]
+    fn the_range_of_a_length_ends_where_half_a_millimetre_more_is_refused() {
+        let keys: Vec<_> = crank(0.0).into_iter().map(|(key, _)| key).collect();
+        let (least, most) = range(PAPER, &keys).expect("a crank");
+        assert!(least < 45.0 && 45.0 < most, "{least} to {most}");
+        let refused = |mm: f64| Lengths::of(PAPER, &crank(mm), false).refusal.is_some();
+        assert!(!refused(least) && !refused(most));
+        assert!(least == 22.5 || refused(least - STEP), "{least}");
+        assert!(most == 90.0 || refused(most + STEP), "{most}");
+        assert_eq!(range(PAPER, &["links.l99".to_string()]), None);
+    }
+
+    #[test]
+    fn a_gait_that_alone_forbids_a_length_may_be_given_up() {
+        let wanted = ["links.l2", "links.l3"].map(|key| (key.to_string(), 60.0));
+        let tried = Lengths::of(PAPER, &wanted, true);
+        let meaning = tried.refusal.expect("too long").meaning;
+        let expected = "in \"look\" the left front leg would lock";
+        assert_eq!(meaning.as_deref(), Some(expected));
+        let WithoutGait { gait, text } = tried.without.expect("look alone");
+        assert_eq!(gait, "look");
+        let robot = Robot::parse(&text).expect("a robot");
+        assert_eq!(robot.gait("look"), None);
+        assert_eq!(robot.lizard().links.l2, 60.0);
+    }
+}
