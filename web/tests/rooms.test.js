@@ -16,8 +16,11 @@ const ACTS = { start: '.doors', drive: '#speed', gaits: '#gait-try', build: '#sk
 const SIZES = [
   { viewport: { width: 360, height: 640 }, hasTouch: true, isMobile: true },
   { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true },
+  { viewport: { width: 844, height: 390 }, hasTouch: true, isMobile: true },
   { viewport: { width: 1280, height: 720 } },
+  { viewport: { width: 1440, height: 900 } },
 ];
+const THEMES = ['light', 'dark'];
 /** A thumb's reach from the corner of a phone, CSS pixels. */
 const REACH = 120;
 
@@ -25,9 +28,9 @@ const link = (opened, room) => opened.locator(`nav a[href="#room=${room}"]`);
 const isOpen = (opened, room) => opened.waitForFunction((room) => [...document.querySelectorAll('.room:not([hidden])')].map(({ id }) => id).join() === `room-${room}`, room);
 const box = (opened, selector) => opened.evaluate((selector) => document.querySelector(selector).getBoundingClientRect().toJSON(), selector);
 
-for (const options of SIZES) {
+for (const options of SIZES.flatMap((size) => THEMES.map((colorScheme) => ({ ...size, colorScheme })))) {
   const { width, height } = options.viewport;
-  test(`every room fits ${width} x ${height} pixels, with its act and stop on the screen, and without a fault of axe`, async () => {
+  test(`every room fits ${width} x ${height} pixels in ${options.colorScheme} colours, with its act and stop on the screen, and without a fault of axe`, async () => {
     const opened = await standing({ ...options, bypassCSP: true });
     await opened.addScriptTag({ path: AXE });
     for (const room of ROOMS) {
