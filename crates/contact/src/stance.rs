@@ -58,7 +58,7 @@ impl Stance {
     /// the foot's own length and a part that is linear in its place. Three equations of balance
     /// determine the latter.
     pub fn loads(&self, body: &Body, feet: [Point; 4]) -> [f64; 4] {
-        let own_pressures = [
+        let alone = [
             self.stiffness * self.twist / body.mean_load(),
             0.0,
             0.0,
@@ -68,7 +68,7 @@ impl Stance {
         // pulls and none is below the floor.
         let all_but = |lifted: Option<usize>| {
             let stands = std::array::from_fn(|i| lifted != Some(i));
-            (stands, pressures(feet, own_pressures, body.centre, stands))
+            (stands, pressures(feet, alone, body.centre, stands))
         };
         let cases = [None, Some(0), Some(1), Some(2), Some(3)].map(all_but);
         let is_consistent = |(stands, pressures): &&([bool; 4], [f64; 4])| {
@@ -92,25 +92,20 @@ impl Stance {
 
 /// Computes the load of each foot as a share of the mean, if only some of them stand; a foot with
 /// a negative load is above the floor.
-fn pressures(
-    feet: [Point; 4],
-    own_pressures: [f64; 4],
-    centre: Point,
-    stands: [bool; 4],
-) -> [f64; 4] {
+fn pressures(feet: [Point; 4], alone: [f64; 4], centre: Point, stands: [bool; 4]) -> [f64; 4] {
     let mut matrix = [[0.0; 3]; 3];
     let mut moments = [4.0, 4.0 * centre[0], 4.0 * centre[1]];
     for i in (0..4).filter(|&i| stands[i]) {
         let row = [1.0, feet[i][0], feet[i][1]];
         for j in 0..3 {
-            moments[j] -= own_pressures[i] * row[j];
+            moments[j] -= alone[i] * row[j];
             for k in 0..3 {
                 matrix[j][k] += row[j] * row[k];
             }
         }
     }
     let [sinks, nods, rolls] = solve(matrix, moments);
-    std::array::from_fn(|i| own_pressures[i] + sinks + nods * feet[i][0] + rolls * feet[i][1])
+    std::array::from_fn(|i| alone[i] + sinks + nods * feet[i][0] + rolls * feet[i][1])
 }
 
 #[cfg(test)]
@@ -148,9 +143,8 @@ mod tests {
             })
         };
         for _ in 0..200_000 {
-            let loads_now = loads(sinks, nods, rolls);
-            let sum =
-                |arm: &dyn Fn(usize) -> f64| -> f64 { (0..4).map(|i| loads_now[i] * arm(i)).sum() };
+            let now = loads(sinks, nods, rolls);
+            let sum = |arm: &dyn Fn(usize) -> f64| -> f64 { (0..4).map(|i| now[i] * arm(i)).sum() };
             sinks += 0.05 * (4.0 - sum(&|_| 1.0));
             nods += 1e-5 * (4.0 * body.centre[0] - sum(&|i| feet[i][0]));
             rolls += 1e-5 * (4.0 * body.centre[1] - sum(&|i| feet[i][1]));

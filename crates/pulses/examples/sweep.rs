@@ -48,12 +48,8 @@ static RECEIVED: Byte = Byte::new(0);
 /// that no two servos move in the same way.
 fn width(servo: u8, frame: u16) -> u16 {
     let step = 16 * u16::from(servo) + 5;
-    let position = frame.wrapping_mul(step) % 32_000;
-    let up = if position < 16_000 {
-        position
-    } else {
-        32_000 - position
-    };
+    let ramp = frame.wrapping_mul(step) % 32_000;
+    let up = if ramp < 16_000 { ramp } else { 32_000 - ramp };
     1000 * CYCLES_PER_US + up
 }
 

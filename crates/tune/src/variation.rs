@@ -157,8 +157,8 @@ pub fn quantiles<const N: usize>(mut values: Vec<f64>, shares: [f64; N]) -> [f64
     values.sort_by(f64::total_cmp);
     let last = values.len().saturating_sub(1);
     shares.map(|share| {
-        let position = (share * last as f64).round() as usize;
-        values.get(position).copied().unwrap_or(f64::NAN)
+        let point = (share * last as f64).round() as usize;
+        values.get(point).copied().unwrap_or(f64::NAN)
     })
 }
 

@@ -229,7 +229,7 @@ impl Arguments {
                 _ => return usage_error,
             };
         }
-        let mut first_out_of_range = None;
+        let mut wrong = None;
         for (index, number) in (0..form.count).zip(&mut arguments.numbers) {
             let Some((magnitude, is_negative)) = number_of(words.next(), form.syntax) else {
                 return usage_error;
@@ -243,10 +243,10 @@ impl Arguments {
                 is_in_range &= !is_negative;
             }
             if !is_in_range {
-                first_out_of_range = first_out_of_range.or(Some(index));
+                wrong = wrong.or(Some(index));
             }
         }
-        match first_out_of_range {
+        match wrong {
             _ if !words.is_done() => usage_error,
             Some(index) if word == Word::Pose => {
                 Err(Misread::AngleOutOfRange(Servo::at(usize::from(index))))

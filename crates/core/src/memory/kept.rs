@@ -106,15 +106,15 @@ pub fn begin<C: Cells>(cells: &C, reported: Option<Cause>) -> Restart {
 pub fn store_stance<C: Cells>(cells: &C, stance: &Stance, brown_outs: u8) {
     let turn = !cells.get(VALID_COPY) & 1;
     let mut copy = Copy::new(cells, turn);
-    copy.write_byte(stance.awake | if stance.is_resting { RESTING } else { 0 });
-    copy.write_byte(brown_outs);
+    copy.put(stance.awake | if stance.is_resting { RESTING } else { 0 });
+    copy.put(brown_outs);
     for sweep in &stance.pose.0 {
-        copy.write_word(sweep.0 as u16);
+        copy.put_word(sweep.0 as u16);
     }
     for width in &stance.sent.0 {
-        copy.write_word(width.0);
+        copy.put_word(width.0);
     }
-    copy.write_byte(!copy.sum);
+    copy.put(!copy.sum);
     cells.set(VALID_COPY, turn);
 }
 
@@ -156,38 +156,38 @@ fn take<C: Cells>(cells: &C, restart: &mut Restart) {
 struct Copy<'a, C> {
     cells: &'a C,
     /// The next cell.
-    index: usize,
+    cell: usize,
     /// The sum of all bytes so far.
     sum: u8,
 }
 
 impl<'a, C: Cells> Copy<'a, C> {
     const fn new(cells: &'a C, turn: u8) -> Self {
-        let index = if turn == 0 {
+        let cell = if turn == 0 {
             COPIES
         } else {
             COPIES + COPY_CELLS
         };
         Self {
             cells,
-            index,
+            cell,
             sum: 0,
         }
     }
 
-    fn write_byte(&mut self, byte: u8) {
-        self.cells.set(self.index, byte);
+    fn put(&mut self, byte: u8) {
+        self.cells.set(self.cell, byte);
         self.add_to_sum(byte);
     }
 
-    fn write_word(&mut self, word: u16) {
+    fn put_word(&mut self, word: u16) {
         let [low, high] = word.to_le_bytes();
-        self.write_byte(low);
-        self.write_byte(high);
+        self.put(low);
+        self.put(high);
     }
 
     fn take(&mut self) -> u8 {
-        let byte = self.cells.get(self.index);
+        let byte = self.cells.get(self.cell);
         self.add_to_sum(byte);
         byte
     }
@@ -200,7 +200,7 @@ impl<'a, C: Cells> Copy<'a, C> {
 
     fn add_to_sum(&mut self, byte: u8) {
         self.sum = self.sum.wrapping_add(byte);
-        self.index += 1;
+        self.cell += 1;
     }
 }
 

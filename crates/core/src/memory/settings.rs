@@ -77,14 +77,14 @@ impl Settings {
     /// trim would be.
     #[inline(never)]
     pub fn of_pose(pose: &Pose, robot: &Robot) -> Self {
-        let mut settings = Self::NONE;
-        settings.set_head(robot);
+        let mut saved = Self::NONE;
+        saved.set_head(robot);
         let mut offset = SERVOS;
         for sweep in &pose.0 {
-            settings.put(offset, sweep.0 as u16);
+            saved.put(offset, sweep.0 as u16);
             offset += 8;
         }
-        settings
+        saved
     }
 
     /// The pose of [`Settings::of_pose`].

@@ -37,8 +37,8 @@ impl Channel {
         if self.gain == 0 {
             return Sweep(0);
         }
-        let position = phase.wrapping_add(self.offset);
-        let (index, fraction) = ((position >> 10) as u8, (position >> 2) as u8);
+        let point = phase.wrapping_add(self.offset);
+        let (index, fraction) = ((point >> 10) as u8, (point >> 2) as u8);
         let sample = wave.at(usize::from(index)).load();
         let next_sample = wave.at(usize::from((index + 1) & 0x3f)).load();
         let rise = (mul(next_sample.wrapping_sub(sample), i16::from(fraction)) + 128) >> 8;

@@ -34,7 +34,7 @@ pub(crate) fn least_width(parts: &Parts) -> f64 {
 }
 
 /// The layers of a pad from the floor up.
-pub(crate) fn layers(parts: &Parts, position: Vector, floor: f64) -> Vec<Prism> {
+pub(crate) fn layers(parts: &Parts, point: Vector, floor: f64) -> Vec<Prism> {
     let (pad, screw) = (parts.pad, parts.screw);
     let half = pad.width / 2.0;
     let top = floor + pad.height;
@@ -48,13 +48,13 @@ pub(crate) fn layers(parts: &Parts, position: Vector, floor: f64) -> Vec<Prism> 
         } else {
             screw.head / 2.0 - SNAP
         };
-        Shape::disc(position, radius)
+        Shape::disc(point, radius)
     };
     // A terrace is as wide as the ball is in its middle.
     let outline = |z: f64| {
         let high = (z - floor).min(pad.radius);
         let ball = (high * (2.0 * pad.radius - high)).sqrt();
-        Shape::disc(position, ball.max(KEY_HOLE + RIM).min(half))
+        Shape::disc(point, ball.max(KEY_HOLE + RIM).min(half))
     };
     let count = (dome / TERRACE).ceil() as u32;
     let terraces = (0..=count).map(|number| floor + (f64::from(number) * TERRACE).min(dome));

@@ -162,8 +162,8 @@ fn write_column(text: &mut String, column: &[Name], is_left: bool, width: f64, h
     let mut min = LINE;
     for (number, ((x, y), label)) in column.iter().enumerate() {
         let max = height - (count - number as f64) * LINE + 8.0;
-        let position = (y + 4.0).min(max).max(min);
-        min = position + LINE;
+        let point = (y + 4.0).min(max).max(min);
+        min = point + LINE;
         let (edge, end, anchor) = match is_left {
             true => (8.0, BESIDE - 4.0, "start"),
             false => (width - 8.0, width - BESIDE + 4.0, "end"),
@@ -180,8 +180,8 @@ fn write_column(text: &mut String, column: &[Name], is_left: bool, width: f64, h
             text,
             "<path d=\"M{from:.1} {:.1}L{x:.1} {y:.1}\" stroke=\"#111\" stroke-width=\"0.8\"/>\
              <circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2\"/>\
-             <text x=\"{edge}\" y=\"{position:.1}\" text-anchor=\"{anchor}\" {FONT}>{}</text>",
-            position - 4.0,
+             <text x=\"{edge}\" y=\"{point:.1}\" text-anchor=\"{anchor}\" {FONT}>{}</text>",
+            point - 4.0,
             label.text
         );
     }

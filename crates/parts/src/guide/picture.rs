@@ -100,8 +100,8 @@ impl Eye {
     }
 
     /// A point of space on the page, mm before the page's scale; y down.
-    fn page(&self, position: Vector, z: f64) -> (f64, f64) {
-        let (x, along) = (position.dot(self.right), position.dot(self.away));
+    fn page(&self, point: Vector, z: f64) -> (f64, f64) {
+        let (x, along) = (point.dot(self.right), point.dot(self.away));
         let near = along * self.cos + z * self.sin;
         let up = z * self.cos - along * self.sin;
         let scale = AWAY / (AWAY - near);
@@ -182,8 +182,8 @@ pub fn picture(
 }
 
 /// A point of a robot that is turned over about its long axis.
-fn turned_over(position: Vector) -> Vector {
-    Vector::new(-position.x, position.y)
+fn turned_over(point: Vector) -> Vector {
+    Vector::new(-point.x, point.y)
 }
 
 /// The heights at which layers begin or end. Heights nearer to each other than `SLICE`

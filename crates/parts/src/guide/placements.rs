@@ -101,8 +101,8 @@ pub fn placements(assembly: &Assembly, pose: &Solution) -> String {
     serde_json::to_string_pretty(&list).expect("texts and numbers") + "\n"
 }
 
-fn pair(position: Vector) -> [f64; 2] {
-    [position.x, position.y]
+fn pair(point: Vector) -> [f64; 2] {
+    [point.x, point.y]
 }
 
 fn print(place: &Placement, body: &Body, part: &Part) -> Print {

@@ -53,21 +53,14 @@ fn the_page_on_limits_lists_the_assumptions_that_matter() {
 }
 
 /// Asserts that a page is up to date, or writes it.
-fn check(path: &str, page: &str, current: &str) {
+fn check(path: &str, page: &str, new: &str) {
     let (_, name) = path.split_once("/../../").expect("a page");
     if std::env::var_os("BLESS_GAITS").is_some() {
-        std::fs::write(path, current).expect(path);
-    } else if let Some((was, is)) = page
-        .lines()
-        .zip(current.lines())
-        .find(|(was, is)| was != is)
-    {
+        std::fs::write(path, new).expect(path);
+    } else if let Some((was, is)) = page.lines().zip(new.lines()).find(|(was, is)| was != is) {
         panic!("{name} is out of date; run with BLESS_GAITS=1.\n  was {was}\n  is  {is}");
     } else {
-        assert_eq!(
-            page, current,
-            "{name} is out of date; run with BLESS_GAITS=1"
-        );
+        assert_eq!(page, new, "{name} is out of date; run with BLESS_GAITS=1");
     }
 }
 

@@ -94,9 +94,9 @@ fn after_a_power_cut_the_board_starts_again_with_the_same_eeprom() {
     let mut uno = two_bytes();
     uno.cut_power(PowerCut::InWrite(0), 0x08);
     uno.run_ms(20);
-    let position = uno.cycle();
+    let point = uno.cycle();
     assert_eq!(*uno.run_ms(20), State::Off, "nothing runs without power");
-    assert_eq!(uno.cycle(), position);
+    assert_eq!(uno.cycle(), point);
     uno.power_cycle();
     assert_eq!(*uno.run_ms(20), State::Alive);
     assert_eq!(marks(&uno), [0x35 | 0x08]);

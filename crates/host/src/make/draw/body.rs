@@ -34,14 +34,14 @@ impl<At: Fn(Vector) -> (f64, f64)> Sheet<At> {
     }
 
     /// A joint this many mm large.
-    pub fn joint(&self, position: Vector, mm: f64) -> Circle {
-        self.disc(position, mm, "white")
+    pub fn joint(&self, point: Vector, mm: f64) -> Circle {
+        self.disc(point, mm, "white")
     }
 
     /// A disc with an edge.
-    pub fn disc(&self, position: Vector, mm: f64, fill: &str) -> Circle {
+    pub fn disc(&self, point: Vector, mm: f64, fill: &str) -> Circle {
         edged(
-            circle((self.at)(position), mm * self.scale, fill),
+            circle((self.at)(point), mm * self.scale, fill),
             DARK,
             0.6 * self.scale,
         )

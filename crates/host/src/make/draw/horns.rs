@@ -65,8 +65,8 @@ fn scale(robot: &Robot) -> f64 {
     (ROOM.0 / (2.0 * x)).min(ROOM.1 / (2.0 * y))
 }
 
-fn on_page(position: Vector, scale: f64) -> (f64, f64) {
-    (MIDDLE.0 + scale * position.x, MIDDLE.1 - scale * position.y)
+fn on_page(point: Vector, scale: f64) -> (f64, f64) {
+    (MIDDLE.0 + scale * point.x, MIDDLE.1 - scale * point.y)
 }
 
 /// The point at a distance from another in some direction, on the page.
@@ -212,8 +212,8 @@ fn example(robot: &Robot) -> Group {
         // A tooth's width on the other side, where nothing else is.
         .add(tooth(placed - 9.0 * TOOTH));
     for (index, words) in lines.iter().enumerate() {
-        let position = (LEFT, SPLINE.1 + 102.0 + 19.0 * index as f64);
-        let mut line = text_start(words, position, 14.0);
+        let point = (LEFT, SPLINE.1 + 102.0 + 19.0 * index as f64);
+        let mut line = text_start(words, point, 14.0);
         if words.starts_with("trim") {
             line = line.set("font-weight", "bold");
         }
@@ -279,10 +279,10 @@ fn rose() -> Group {
         (270.0, "270°", Anchor::Middle, (0.0, 19.0)),
     ] {
         let end = point_toward(middle, degrees, 52.0);
-        let position = (end.0 + off.0, end.1 + off.1);
+        let point = (end.0 + off.0, end.1 + off.1);
         group = group
             .add(line(middle, end, GREY, 1.2))
-            .add(text(words, position, 14.0, DARK, anchor));
+            .add(text(words, point, 14.0, DARK, anchor));
     }
     group
 }

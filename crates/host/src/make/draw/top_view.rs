@@ -100,8 +100,8 @@ impl<'a> View<'a> {
         self.sheet().bar(from, to, colour, mm)
     }
 
-    fn pivot(&self, position: Joint, mm: f64) -> svg::node::element::Circle {
-        self.sheet().joint(position, mm)
+    fn pivot(&self, point: Joint, mm: f64) -> svg::node::element::Circle {
+        self.sheet().joint(point, mm)
     }
 
     pub(super) fn angles(&self) -> [f64; 4] {

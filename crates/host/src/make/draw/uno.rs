@@ -79,19 +79,19 @@ impl Uno {
                 .add(self.label(self.pin(number), &name, is_used));
         }
         for (index, name) in REFERENCES.1.iter().enumerate() {
-            let position = self.at(REFERENCES.0 + index as f64, UPPER_ROW);
-            let is_used = position == self.ground();
-            let mut hole = hole(position, is_used);
+            let point = self.at(REFERENCES.0 + index as f64, UPPER_ROW);
+            let is_used = point == self.ground();
+            let mut hole = hole(point, is_used);
             if is_used {
                 hole = hole.set("id", "pin-GND");
             }
-            group = group.add(hole).add(self.label(position, name, is_used));
+            group = group.add(hole).add(self.label(point, name, is_used));
         }
         for (index, name) in POWER.1.iter().enumerate() {
-            let position = self.at(POWER.0 + index as f64, LOWER_ROW);
+            let point = self.at(POWER.0 + index as f64, LOWER_ROW);
             group = group
-                .add(hole(position, false))
-                .add(self.label(position, name, false));
+                .add(hole(point, false))
+                .add(self.label(point, name, false));
         }
         let name = self.at(9.0, 11.2);
         group.add(text_start("Arduino UNO", name, 18.0))

@@ -31,10 +31,10 @@ const LEGS: &str = "#117733";
 /// Cells of the plane.
 type Cells = HashSet<(i32, i32)>;
 
-fn cell(position: Vector) -> (i32, i32) {
+fn cell(point: Vector) -> (i32, i32) {
     (
-        (position.x / CELL).floor() as i32,
-        (position.y / CELL).floor() as i32,
+        (point.x / CELL).floor() as i32,
+        (point.y / CELL).floor() as i32,
     )
 }
 
@@ -53,11 +53,11 @@ pub fn reach(robot: &Robot) -> String {
     let mut group = plot.draw_grid(Group::new(), &AXES[0], &AXES[1]);
     group = plot.draw_map(group, (cells, cells), |x, y| {
         let point = Vector::new(x, y);
-        let cell_of_point = cell(point);
+        let key = cell(point);
         let colours = [
-            (sliders.contains(&cell_of_point), SLIDERS[1]),
-            (tail.contains(&cell_of_point), TAIL[1]),
-            (free.contains(&cell_of_point), SLIDERS[0]),
+            (sliders.contains(&key), SLIDERS[1]),
+            (tail.contains(&key), TAIL[1]),
+            (free.contains(&key), SLIDERS[0]),
             (is_in_tail(robot, point), TAIL[0]),
         ];
         colours
@@ -182,12 +182,12 @@ fn free_sliders(robot: &Robot) -> Cells {
 }
 
 /// True if both arms of the tail reach a point of the chassis frame behind its base.
-fn is_in_tail(robot: &Robot, position: Vector) -> bool {
+fn is_in_tail(robot: &Robot, point: Vector) -> bool {
     let [left, right] = End::Tail.servos();
     let shafts = robot.lizard().shafts();
-    let from = position - (shafts[left] + shafts[right]) * 0.5;
-    let in_tail_frame = Vector::new(from.x, -from.y);
-    in_tail_frame.y >= 0.0 && Workspace::of(&robot.lizard().end(End::Tail)).contains(in_tail_frame)
+    let from = point - (shafts[left] + shafts[right]) * 0.5;
+    let local = Vector::new(from.x, -from.y);
+    local.y >= 0.0 && Workspace::of(&robot.lizard().end(End::Tail)).contains(local)
 }
 
 /// The places of a foot while its servo turns from neutral and no other does.

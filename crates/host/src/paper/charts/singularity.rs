@@ -90,18 +90,14 @@ pub fn singularity(robot: &Robot) -> String {
     group = right.draw_axes(group, &x, &y);
     for (i, (names, path)) in paths.iter().enumerate() {
         let (colour, dashes) = STYLES[i % STYLES.len()];
-        let position = (1226.0, 124.0 + 27.0 * i as f64);
+        let point = (1226.0, 124.0 + 27.0 * i as f64);
         let names = names.replace('-', " ");
         if path.len() > 1 {
-            group = draw_entry(group, position, colour, dashes, &names);
+            group = draw_entry(group, point, colour, dashes, &names);
         } else {
             group = group
-                .add(circle((position.0 + 17.0, position.1), 6.0, colour))
-                .add(text_start(
-                    &names,
-                    (position.0 + 44.0, position.1 + 5.0),
-                    15.0,
-                ));
+                .add(circle((point.0 + 17.0, point.1), 6.0, colour))
+                .add(text_start(&names, (point.0 + 44.0, point.1 + 5.0), 15.0));
         }
     }
     group = scale.draw_key(group, (800.0, 640.0 - 20.0), 160.0, "least margin", 1);

@@ -362,25 +362,19 @@ fn print_ranking(
             "\nThe given design (r1 {}, r2 {}, r3 {}) does not.",
             given.r1, given.r2, given.r3
         )?,
-        Some(mut own_design) => {
+        Some(mut ours) => {
             // Scored against the best of the list, as its members are.
-            let best = |quantity: fn(&Design) -> f64| {
-                designs
-                    .iter()
-                    .map(quantity)
-                    .fold(quantity(&own_design), f64::max)
-            };
+            let best =
+                |value: fn(&Design) -> f64| designs.iter().map(value).fold(value(&ours), f64::max);
             let (lci, margin, stride) = (best(|d| d.lci), best(|d| d.margin), best(|d| d.stride));
-            own_design.score = ((own_design.lci / lci)
-                * (own_design.margin / margin)
-                * (own_design.stride / stride))
-                .cbrt();
+            ours.score =
+                ((ours.lci / lci) * (ours.margin / margin) * (ours.stride / stride)).cbrt();
             let rank = 1 + designs
                 .iter()
-                .filter(|d| d.score > own_design.score + 1e-9)
+                .filter(|d| d.score > ours.score + 1e-9)
                 .count();
             writeln!(out, "\nthe given design:")?;
-            line(out, &rank.to_string(), &own_design)?;
+            line(out, &rank.to_string(), &ours)?;
         }
     }
     Ok(())

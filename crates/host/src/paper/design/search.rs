@@ -212,12 +212,8 @@ fn quality(bars: &FiveBar, neutral: f64, sweep: f64) -> (f64, f64) {
 }
 
 fn rank(designs: &mut [Design]) {
-    let best = |quantity: fn(&Design) -> f64| {
-        designs
-            .iter()
-            .map(quantity)
-            .fold(f64::MIN_POSITIVE, f64::max)
-    };
+    let best =
+        |value: fn(&Design) -> f64| designs.iter().map(value).fold(f64::MIN_POSITIVE, f64::max);
     let (lci, margin, stride) = (best(|d| d.lci), best(|d| d.margin), best(|d| d.stride));
     let all = designs.to_vec();
     for design in designs.iter_mut() {

@@ -76,8 +76,8 @@ impl<'a> Nets<'a> {
     }
 
     /// The terminal or pin nearest to a point.
-    fn end(&self, position: Point) -> String {
-        let away = |end: &Point| (end.0 - position.0).hypot(end.1 - position.1);
+    fn end(&self, point: Point) -> String {
+        let away = |end: &Point| (end.0 - point.0).hypot(end.1 - point.1);
         let ends = self.drawing.0.iter().filter(|element| {
             let id = element.text("id");
             element.tag == "circle" && (id.starts_with("end-") || id.starts_with("pin-"))
@@ -86,7 +86,7 @@ impl<'a> Nets<'a> {
         let (nearest, name) = ends.min_by(|a, b| a.0.total_cmp(&b.0)).expect("an end");
         assert!(
             nearest <= HOLE,
-            "nothing is at {position:?}; {name} is {nearest} away"
+            "nothing is at {point:?}; {name} is {nearest} away"
         );
         name.to_owned()
     }

@@ -206,7 +206,7 @@ pub fn upload<B: Board>(
         });
     }
     let pages = image.pages().len();
-    let written = written.into_iter().filter(|is_written| *is_written).count();
+    let written = written.into_iter().filter(|done| *done).count();
     Ok(Done {
         written,
         kept: pages - written,
@@ -328,22 +328,22 @@ impl<B: Board> Upload<'_, B> {
 
     fn read(&mut self, flash: &mut [u8], pages: Range<usize>) -> Result<(), Stop> {
         let page_count = pages.len();
-        for (pages_read, page) in pages.enumerate() {
+        for (done, page) in pages.enumerate() {
             let address = page * PAGE;
             let read = self.loader.read_page(address)?;
             flash[address..address + PAGE].copy_from_slice(&read);
-            (self.report)(Event::Progress(Step::Reading, pages_read + 1, page_count));
+            (self.report)(Event::Progress(Step::Reading, done + 1, page_count));
         }
         Ok(())
     }
 
     /// Writes pages and reads them back. One that has changed on the way is written again.
     fn write(&mut self, pages: &[Page]) -> Result<(), Stop> {
-        for (pages_done, page) in pages.iter().enumerate() {
+        for (done, page) in pages.iter().enumerate() {
             self.write_page(page.address, &page.bytes)?;
-            (self.report)(Event::Progress(Step::Writing, pages_done + 1, pages.len()));
+            (self.report)(Event::Progress(Step::Writing, done + 1, pages.len()));
         }
-        for (pages_done, page) in pages.iter().enumerate() {
+        for (done, page) in pages.iter().enumerate() {
             let mut read_back = self.loader.read_page(page.address)?;
             if read_back != page.bytes {
                 self.write_page(page.address, &page.bytes)?;
@@ -357,11 +357,7 @@ impl<B: Board> Upload<'_, B> {
                     left: self.left,
                 }));
             }
-            (self.report)(Event::Progress(
-                Step::Verifying,
-                pages_done + 1,
-                pages.len(),
-            ));
+            (self.report)(Event::Progress(Step::Verifying, done + 1, pages.len()));
         }
         Ok(())
     }

@@ -121,8 +121,8 @@ pub fn resistor_bodies() -> Group {
         let body = rectangle(corner, (width, height), "#f3e3c3").set("rx", 2);
         group = group.add(edged(body, DARK, 1.5));
     }
-    let position = (signal_x(4) + 22.0, SIGNALS_AT.1 + 31.0);
-    group.add(text_start("4 x 10 k\u{3a9}", position, 13.0))
+    let point = (signal_x(4) + 22.0, SIGNALS_AT.1 + 31.0);
+    group.add(text_start("4 x 10 k\u{3a9}", point, 13.0))
 }
 
 /// A way: its brass, its two screws and its number.
