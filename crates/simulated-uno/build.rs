@@ -8,6 +8,12 @@ use std::process::Command;
 const TESTED: &str = "1.6";
 
 fn main() {
+    if std::env::var("CARGO_CFG_TARGET_OS").is_ok_and(|system| system == "windows") {
+        panic!(
+            "there is no libsimavr for Windows; `lizard` builds there without the simulator: \
+             --no-default-features --features paper,console,parts"
+        );
+    }
     check_version();
     println!("cargo:rerun-if-changed=shim");
     let files = std::fs::read_dir("shim").expect("the folder shim/ is part of the package");

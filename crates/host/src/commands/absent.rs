@@ -91,8 +91,13 @@ fn missing(name: &str, needs: &[&str], has: impl Fn(&str) -> bool) -> Failure {
         .filter(|feature| !has(feature))
         .map(|feature| words(feature))
         .collect();
+    let no_simulator = needs.contains(&"simulator") && !has("simulator");
+    let all = match no_simulator && !cfg!(target_os = "linux") {
+        true => "the simulator runs on Linux",
+        false => "make cli builds all",
+    };
     Failure::Input(format!(
-        "`lizard {name}` is missing: this program was built without {}; make cli builds all",
+        "`lizard {name}` is missing: this program was built without {}; {all}",
         without.join(" and ")
     ))
 }

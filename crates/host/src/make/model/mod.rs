@@ -142,8 +142,7 @@ fn course(args: &Args, _: &Robot) -> Result<Option<Course>, Failure> {
     match args.drive {
         None => Ok(None),
         Some(_) => Err(Failure::Input(
-            "--drive needs the simulator, which this program was built without; make cli builds all"
-                .to_owned(),
+            "--drive needs the simulator, which this program was built without".to_owned(),
         )),
     }
 }
