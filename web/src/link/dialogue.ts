@@ -20,8 +20,11 @@ const ECHOES = 500;
 export const SILENCE = 800;
 /** The words that a Bluetooth module puts into the line when its link begins and ends. */
 const MODULE = /OK\+(CONN|LOST)/g;
-/** The answers to `stop` of a robot without pulses: it rests, or its flash has no robot. */
-const CANNOT_MOVE = /^err (7|10) /;
+/**
+ * The answers to `stop` of a robot without pulses: it rests, or its flash has no robot. All of a line counts: what a radio
+ * has cut off may be the beginning of an older answer.
+ */
+const CANNOT_MOVE = /^err (7 servos are resting, send stand first|10 no robot in the flash)$/;
 /** A line of the answer to `cal`. */
 const SETTING = /^# (A[1-4]|boot|deadman) /;
 

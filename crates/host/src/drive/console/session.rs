@@ -11,6 +11,8 @@
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
+use lizard_core::console::text::Text;
+
 use super::deadman::{self, Deadman};
 use super::link::BANNER;
 use super::recorder::Event;
@@ -408,8 +410,14 @@ impl Session {
 }
 
 /// True if a line refuses `stop` to a robot that has no pulses: it rests, or its flash has no robot.
+/// All of it counts: what a radio has cut off may be the beginning of an older answer.
 fn cannot_move(line: &str) -> bool {
-    line.starts_with("err 7 ") || line.starts_with("err 10 ")
+    let is_refusal = |code: u8, reason: Text| {
+        let mut refusal = format!("err {code} ");
+        reason.print(&mut refusal);
+        line == refusal
+    };
+    is_refusal(7, Text::Resting) || is_refusal(10, Text::NoRobot)
 }
 
 #[cfg(test)]

@@ -124,7 +124,7 @@ fn stop_is_sent_until_it_is_answered_and_its_later_answers_belong_to_no_line() {
 fn a_robot_that_refuses_to_stop_since_it_has_no_pulses_is_not_asked_again() {
     for refusal in [
         "err 7 servos are resting, send stand first",
-        "err 10 there is no robot in the flash",
+        "err 10 no robot in the flash",
     ] {
         let now = Instant::now();
         let mut session = Session::new(now, false, false);
@@ -137,6 +137,17 @@ fn a_robot_that_refuses_to_stop_since_it_has_no_pulses_is_not_asked_again() {
             Some("stand")
         );
     }
+}
+
+#[test]
+fn the_beginning_of_a_refusal_that_a_radio_has_cut_off_is_no_answer_to_stop() {
+    let now = Instant::now();
+    let mut session = Session::new(now, false, false);
+    session.stop(now);
+    session.next_line(now);
+    session.receive("err 7 servos are resting, senok walk");
+    let next = session.next_line(now + STOP_INTERVAL);
+    assert_eq!(next.as_deref(), Some("stop"));
 }
 
 #[test]
