@@ -75,6 +75,30 @@ test('a stop that is lost is sent again until it is answered, and the page is re
   assert.equal(await opened.locator('#alarm').isVisible(), false);
 });
 
+test('a robot that rests is not asked to stop again', async () => {
+  const opened = await connected('robot', 8000);
+  await type(opened, 'rest');
+  const before = (await heard(opened)).length;
+  await opened.keyboard.press('Escape');
+  await opened.clock.runFor(1500);
+  const sent = (await heard(opened)).slice(before).split('\n');
+  assert.equal(sent.filter((line) => line === 'stop').length, 1);
+  assert.equal(await isStopping(opened), false);
+});
+
+test('the beginning of a refusal that a radio has cut off is no answer to stop', async () => {
+  const opened = await walking();
+  await lose(opened, ['stop']);
+  await opened.keyboard.press('Escape');
+  await opened.evaluate(() => {
+    for (const letter of 'err 7 servos are resting, senok walk\r\n') window.otherBoard.onByte(letter.charCodeAt(0));
+  });
+  await opened.clock.runFor(600);
+  assert.ok(await isStopping(opened));
+  await loseNothing(opened);
+  await until(opened, 'it is answered', async () => !(await isStopping(opened)));
+});
+
 test('the answers to a stop that was sent often are not those of the next lines', async () => {
   const opened = await walking();
   await opened.evaluate(() => {
