@@ -20,6 +20,16 @@ fn works(running: &mut Running) -> bool {
     running.main.step(&mut running.board) == Step::Worked
 }
 
+/// A robot that stands, with a line of wrong bytes received: somebody sends at another rate.
+fn hearing_another_rate() -> Running {
+    let mut running = Running::power_on(*Sample::odd());
+    running.run(10);
+    running
+        .board
+        .send(&[GARBLED, 0x80, GARBLED, GARBLED, b'\n']);
+    running
+}
+
 /// The lines written so far.
 fn written(running: &Running) -> usize {
     running.board.transmitter.text.lines().count()
@@ -199,11 +209,7 @@ fn a_slow_memory_holds_up_the_input_and_no_frame() {
 
 #[test]
 fn the_rest_of_a_line_begun_at_another_rate_is_not_obeyed_but_the_next_is() {
-    let mut running = Running::power_on(*Sample::odd());
-    running.run(10);
-    running
-        .board
-        .send(&[GARBLED, 0x80, GARBLED, GARBLED, b'\n']);
+    let mut running = hearing_another_rate();
     running.board.send(b"bo");
     assert_eq!(running.board.rate, Rate::Fastest);
     running.run(3);
@@ -223,11 +229,7 @@ fn the_rest_of_a_line_begun_at_another_rate_is_not_obeyed_but_the_next_is() {
 
 #[test]
 fn the_rate_does_not_change_while_bytes_wait_behind_an_answer() {
-    let mut running = Running::power_on(*Sample::odd());
-    running.run(10);
-    running
-        .board
-        .send(&[GARBLED, 0x80, GARBLED, GARBLED, b'\n']);
+    let mut running = hearing_another_rate();
     running.run_without_reader(10);
     assert_eq!(running.board.rate, Rate::Fastest);
     running.run(3);
