@@ -19,21 +19,20 @@ async function opened(options) {
 const length = (page, key) => page.evaluate((key) => window.lizard.description.lengths.find((each) => each.key === key).value, key);
 const joint = (page, name) => page.locator(`#sketch circle[data-joint="${name}"]`);
 
-/** Screen positions of a joint, and of points some mm ahead of it and to its right. */
-async function place(page, name, [right, ahead] = [0, 0]) {
-  return joint(page, name).evaluate(
-    (mark, [right, ahead]) => {
-      const at = new DOMPoint(Number(mark.getAttribute('cx')) + right, Number(mark.getAttribute('cy')) - ahead).matrixTransform(mark.getScreenCTM());
-      return [at.x, at.y];
-    },
-    [right, ahead],
-  );
-}
-
-/** Takes a joint and moves it so far, mm, in ten steps; it is not let go. */
+/** Takes a joint and moves it so far, mm to the right and ahead, in ten steps; it is not let go. */
 async function drag(page, name, [right, ahead]) {
-  const from = await place(page, name);
-  const to = await place(page, name, [right, ahead]);
+  // Both places in one turn of the page, which draws its joints anew with each answer: a joint that was replaced is nowhere.
+  const [from, to] = await page.evaluate(
+    ({ name, right, ahead }) => {
+      const mark = document.querySelector(`#sketch circle[data-joint="${name}"]`);
+      const [x, y] = ['cx', 'cy'].map((axis) => Number(mark.getAttribute(axis)));
+      return [new DOMPoint(x, y), new DOMPoint(x + right, y - ahead)].map((point) => {
+        const at = point.matrixTransform(mark.getScreenCTM());
+        return [at.x, at.y];
+      });
+    },
+    { name, right, ahead },
+  );
   await page.mouse.move(...from);
   await page.mouse.down();
   for (let step = 1; step <= 10; step++) await page.mouse.move(from[0] + ((to[0] - from[0]) * step) / 10, from[1] + ((to[1] - from[1]) * step) / 10);
