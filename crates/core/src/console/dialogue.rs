@@ -20,6 +20,7 @@ use crate::control::refusal::Refusal;
 use crate::control::safety::Notice;
 use crate::numbers::gaits::GaitId;
 use crate::numbers::rate::Rate;
+use crate::numbers::units::FRAME_MS;
 
 /// The longest line that [`Console::write_line`] writes, with its line end: a
 /// `status` whose every number has all its digits.
@@ -44,6 +45,8 @@ enum Pending {
 #[derive(Clone, Debug)]
 pub struct Console {
     line: Line,
+    /// Time since the last byte, ms.
+    silence: u16,
     rate_finder: RateFinder,
     has_greeted: bool,
     answer: Option<Answer>,
@@ -61,6 +64,7 @@ impl Console {
     pub const fn new() -> Self {
         Self {
             line: Line::new(),
+            silence: 0,
             rate_finder: RateFinder::new(Rate::Fastest),
             has_greeted: false,
             answer: None,
@@ -73,10 +77,16 @@ impl Console {
         self.rate_finder = RateFinder::new(rate);
     }
 
-    /// Advances the timer of `watch` by a frame. Returns the rate that the serial line is to
-    /// have from now on, if it changes.
+    /// Advances the timer of `watch` by a frame, and that of a line which has not ended. Returns
+    /// the rate that the serial line is to have from now on, if it changes.
     pub fn frame(&mut self, control: &Control) -> Option<Rate> {
         self.watch.count_frame();
+        self.silence = self.silence.saturating_add(FRAME_MS);
+        let deadman = control.deadman();
+        if deadman != 0 && self.silence >= deadman {
+            // A link that broke within `walk 12`: noise, minutes later, would end `walk 1`.
+            self.line.garble_unfinished();
+        }
         if self.has_output(control) {
             self.rate_finder.note_unread();
         }
@@ -97,6 +107,7 @@ impl Console {
     #[inline(never)]
     pub fn receive(&mut self, byte: u8, control: &mut Control) {
         control.note_byte();
+        self.silence = 0;
         self.rate_finder.note_byte(byte);
         let Some(ended) = self.line.push(byte) else {
             return;

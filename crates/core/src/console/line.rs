@@ -68,6 +68,11 @@ impl Line {
         }
     }
 
+    /// Makes a line garbled that has begun, more than with blanks, and not ended.
+    pub fn garble_unfinished(&mut self) {
+        self.is_garbled |= !self.has_ended && !self.text().is_empty();
+    }
+
     /// The line in lower case, without blanks around it.
     pub fn text(&self) -> &[u8] {
         self.bytes.trim_ascii()

@@ -197,6 +197,11 @@ impl Control {
         self.safety.is_lit()
     }
 
+    /// Time without a command after which a gait ends, ms; 0: never.
+    pub fn deadman(&self) -> u16 {
+        self.settings.deadman()
+    }
+
     /// Notes that a byte was received, so a computer is connected.
     pub fn note_byte(&mut self) {
         self.safety.note_byte();

@@ -9,7 +9,7 @@ use crate::control::fault::{Fault, Led};
 use crate::control::supervisor::{self, Event, Response, State};
 use crate::control::supply::{Level, Reading, Supply};
 use crate::numbers::supplies::Supplies;
-use crate::numbers::units::FRAMES_PER_SECOND;
+use crate::numbers::units::{FRAME_MS, FRAMES_PER_SECOND};
 
 /// The board's health, reported with every frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,9 +103,6 @@ impl Notice {
         }
     }
 }
-
-/// Milliseconds of a frame.
-const FRAME_MS: u16 = 1000 / FRAMES_PER_SECOND;
 
 /// Frames from power-on to `boot`, three seconds.
 const BOOT_AFTER: u8 = 3 * FRAMES_PER_SECOND as u8;

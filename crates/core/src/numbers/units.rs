@@ -24,6 +24,9 @@ pub const TURN_CENTIDEG: i32 = 36_000;
 /// Frames a second; every servo gets one pulse in each.
 pub const FRAMES_PER_SECOND: u16 = 50;
 
+/// The time of a frame, ms.
+pub const FRAME_MS: u16 = 1000 / FRAMES_PER_SECOND;
+
 /// CPU cycles in a microsecond: the UNO runs at 16 MHz.
 pub const CYCLES_PER_US: u16 = 16;
 

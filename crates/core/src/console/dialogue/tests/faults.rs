@@ -71,6 +71,43 @@ fn lines_that_are_not_commands_do_not_keep_a_gait_going() {
 }
 
 #[test]
+fn the_beginning_of_a_line_that_waits_for_as_long_as_deadman_says_is_no_command() {
+    for (deadman, wait, is_obeyed) in [(400, 19, true), (400, 20, false), (0, 2000, true)] {
+        let mut dialogue = standing();
+        dialogue.say(&format!("deadman {deadman}"));
+        dialogue.board.send(b"sway 1");
+        dialogue.run(wait);
+        // The link broke within `sway 12`, and noise ends the line.
+        dialogue.board.send(b"\n");
+        let printed = dialogue.run(2);
+        let gait = if is_obeyed { "sway" } else { "stand" };
+        assert_eq!(
+            dialogue.status("gait"),
+            gait,
+            "{deadman} {wait} {printed:?}"
+        );
+        // The next line is whole.
+        assert_eq!(dialogue.say("swing"), "ok swing", "{deadman} {wait}");
+    }
+}
+
+#[test]
+fn a_line_that_comes_slowly_and_an_answered_one_do_not_age() {
+    let mut dialogue = standing();
+    dialogue.say("deadman 400");
+    for byte in b"sway 1" {
+        dialogue.board.send(&[*byte]);
+        dialogue.run(19);
+    }
+    dialogue.board.send(b"\n");
+    dialogue.run(2);
+    assert_eq!(dialogue.status("gait"), "sway");
+    dialogue.accept("stop");
+    dialogue.run(200);
+    assert_eq!(dialogue.status("gait"), "stop");
+}
+
+#[test]
 fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
     let mut dialogue = standing();
     dialogue.say("sway");
