@@ -157,6 +157,11 @@ class Robot:
         if self._ended:
             raise RobotError(self._ended)
 
+    @property
+    def is_going(self) -> bool:
+        """True while a gait or a routine goes."""
+        return self._ended is None
+
     def stop(self) -> None:
         """Freezes the robot in the next frame. The line is sent until the robot answers it, for five seconds.
 

@@ -1,0 +1,70 @@
+"""The ROS node: `joint_states` from a robot, `cmd_vel` to it. All that can be wrong without ROS is in `lizard.ros`."""
+
+import threading
+
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+from sensor_msgs.msg import JointState
+
+from lizard import Model, Robot, RobotError
+from lizard.ros import JOINTS, Driver, joint_values
+
+
+class Lizard(Node):
+    """A robot at the serial port `port`, or a simulated one; its robot.toml is `robot`."""
+
+    def __init__(self) -> None:
+        super().__init__("lizard")
+        port = self.declare_parameter("port", "").value
+        file = self.declare_parameter("robot", "").value
+        self.every = self.declare_parameter("every", 2).value
+        self.model = Model.from_toml(file) if file else Model.default()
+        self.robot = Robot(port) if port else Robot.simulated(self.model)
+        self.driver = Driver(self.robot, self.model)
+        self.states = self.create_publisher(JointState, "joint_states", 10)
+        self.create_subscription(Twist, "cmd_vel", self.drive, 1)
+        self.create_timer(0.1, self.watch_over)
+        threading.Thread(target=self.publish, daemon=True).start()
+
+    def publish(self) -> None:
+        """Publishes every so many frames of 20 ms, until the robot is out of reach."""
+        try:
+            for frame in self.robot.watch(self.every):
+                state = JointState()
+                state.header.stamp = self.get_clock().now().to_msg()
+                state.name = list(JOINTS)
+                state.position = joint_values(self.model, frame.pose).tolist()
+                self.states.publish(state)
+        except (RobotError, OSError) as error:
+            if rclpy.ok():
+                self.get_logger().fatal(str(error))
+                rclpy.shutdown()
+
+    def drive(self, twist: Twist) -> None:
+        """Takes a velocity."""
+        self.attempt(self.driver.drive, twist.linear.x, twist.angular.z)
+
+    def watch_over(self) -> None:
+        """Stops the robot when velocities no longer come."""
+        self.attempt(self.driver.watch_over)
+
+    def attempt(self, act, *values) -> None:
+        """Does what a robot may refuse, and logs its sentence."""
+        try:
+            act(*values)
+        except (RobotError, OSError) as error:
+            self.get_logger().error(str(error), throttle_duration_sec=1.0)
+
+
+def main() -> None:
+    """Runs the node; the robot stops at its end."""
+    rclpy.init()
+    node = Lizard()
+    try:
+        rclpy.spin(node)
+    except KeyboardInterrupt:
+        pass
+    finally:
+        node.robot.close()
+        rclpy.try_shutdown()
