@@ -91,11 +91,7 @@ ISR(TIMER1_COMPA_vect) {
     uint8_t before = *port;
     // A pin that is still high has missed its falling edge, and only goes down.
     uint8_t change = mask & ~before;
-    if (!(storeAt(LEAD, port, before & ~mask, change) & change)) {
-      countLate();
-      mask = 0;
-      fall = NO_PULSE;
-    }
+    if (!(storeAt(LEAD, port, before & ~mask, change) & change)) countLate();
   } else if (slot == MAX_SERVOS) {
     framesSoFar++;
   }
@@ -132,7 +128,7 @@ uint8_t Servo::attach(int pin, int low, int high) {
   uint8_t pinMask = digitalPinToBitMask(pin);
   bool hasPulse;
   ATOMIC_BLOCK(ATOMIC_RESTORESTATE) { hasPulse = mask == pinMask && port == pinPort; }
-  // A pulse from before `detach` keeps its width.
+  // A pulse that was under way at `detach` keeps its width.
   if (!hasPulse) digitalWrite(pin, LOW);
   pinMode(pin, OUTPUT);
   writeCycles(cycles);

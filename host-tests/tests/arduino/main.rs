@@ -3,7 +3,10 @@
 
 use lizard_host_tests::{FirmwareBench, root};
 use servo_pulses::{CYCLES_PER_US, frame_cycles};
-use simulated_uno::{CYCLES_PER_MS, Edge, Fidelity, Pin, State, Uno};
+use simulated_uno::{CYCLES_PER_MS, Edge, FREQUENCY, Fidelity, Pin, State, Uno};
+
+/// The pins of the eight servos in the library's examples.
+const PINS: [u8; 8] = [2, 3, 7, 8, 9, 12, 14, 19];
 
 const FLOOD: &[u8] = b"The quick brown fox jumps over the lazy dog. ";
 
@@ -76,7 +79,7 @@ fn a_flood_of_serial_bytes_changes_no_width_by_a_cycle() {
     let mut uno = sketch("BesideSerial");
     // 90 degrees of 544 to 2400 us.
     let width = (544 + (2400 - 544) / 2) * u64::from(CYCLES_PER_US);
-    for widths in widths_in_a_flood(&mut uno, &[9, 10, 11, 3]) {
+    for widths in widths_in_a_flood(&mut uno, &PINS) {
         assert!(widths.len() > 440, "{} pulses", widths.len());
         assert!(
             widths.iter().all(|one| *one == width),
@@ -84,21 +87,68 @@ fn a_flood_of_serial_bytes_changes_no_width_by_a_cycle() {
         );
     }
     assert_eq!(uno.overruns(), 0);
+    let readme = std::fs::read_to_string(root().join("arduino/ServoPulses/README.md"));
+    let readme = readme.expect("it is there");
+    for row in [
+        format!(
+            "| flash of the whole sketch, bytes | {} |",
+            uno.image().flash_used()
+        ),
+        format!(
+            "| static RAM of the whole sketch, bytes | {} |",
+            uno.image().static_ram()
+        ),
+    ] {
+        assert!(readme.contains(&row), "the README has no {row}");
+    }
+}
+
+/// Cycles per second in the handlers of Timer1's compare matches.
+fn cycles_in_handlers(uno: &Uno) -> u64 {
+    let handlers = uno.interrupts().into_iter();
+    let cycles = handlers
+        .filter(|one| [11, 12].contains(&one.vector))
+        .map(|one| one.cycles);
+    cycles.sum::<u64>() * FREQUENCY / uno.cycle()
 }
 
 #[test]
 #[ignore = "needs Arduino's Servo library: make arduino-test SERVO=folder"]
 fn the_servo_library_trembles_in_the_same_flood() {
-    let mut uno = sketch("ServoBesideSerial");
-    let jitters = widths_in_a_flood(&mut uno, &[9, 10, 11, 3]);
-    let jitters: Vec<_> = jitters.iter().map(|widths| jitter(widths)).collect();
-    let image = uno.image();
-    println!(
-        "Servo: {jitters:?} cycles, {} bytes of flash, {} of RAM",
-        image.flash_used(),
-        image.static_ram()
+    for (name, jitters) in [("ServoBesideSerial", 50..200), ("BesideSerial", 0..1)] {
+        let mut uno = sketch(name);
+        let widths = widths_in_a_flood(&mut uno, &PINS);
+        let found: Vec<u64> = widths.iter().map(|widths| jitter(widths)).collect();
+        let image = uno.image();
+        println!(
+            "{name}: jitter {found:?} cycles, {} bytes of flash, {} of RAM, {} cycles a second",
+            image.flash_used(),
+            image.static_ram(),
+            cycles_in_handlers(&uno)
+        );
+        assert!(found.iter().all(|jitter| jitters.contains(jitter)));
+    }
+}
+
+#[test]
+fn a_late_pulse_is_left_out_and_none_is_ever_too_short() {
+    let mut uno = sketch("Late");
+    uno.run_ms(10_000);
+    let pulses = uno.pulses(Pin::d(9));
+    // Interrupts are on for a half of the time.
+    assert!(
+        (100..400).contains(&pulses.len()),
+        "{} pulses",
+        pulses.len()
     );
-    assert!(jitters.iter().all(|jitter| *jitter > 50));
+    for pulse in pulses {
+        // A falling edge waits until interrupts are on again, 30 us at most.
+        assert!((24_000..24_500).contains(&pulse.width), "{}", pulse.width);
+    }
+    assert!(
+        uno.is_high(Pin::d(13)),
+        "the sketch sees that edges were late"
+    );
 }
 
 #[test]
