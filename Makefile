@@ -31,7 +31,7 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help fit parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants other-robots explore fuzz package code-image docs docs-check install release release-test parallel-test plain-test python-test desks clean trouble .fit .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .workspace .walks .test .bench .prove .physics .mutants .other-robots .explore .fuzz .package .code-image .docs .docs-check .install .release .release-test .parallel-test .plain-test .python-test .desks .trouble
+.PHONY: help fit parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants other-robots explore fuzz package code-image docs docs-check install release release-test parallel-test plain-test arduino-test python-test desks clean trouble .fit .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .workspace .walks .test .bench .prove .physics .mutants .other-robots .explore .fuzz .package .code-image .docs .docs-check .install .release .release-test .parallel-test .plain-test .arduino-test .python-test .desks .trouble
 
 help: ## this list
 	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 15
@@ -95,6 +95,8 @@ parallel-test: ## long computations in parts by GNU parallel, merged, compared w
 	$(call prepared,.parallel-test)
 plain-test: ## the image's tests and the recorded pulses, linked by avr-gcc alone
 	$(call prepared,.plain-test)
+arduino-test: ## the C++ library of arduino/ as the Arduino IDE compiles it, beside the Rust engine; SERVO=folder of the Servo library
+	$(call prepared,.arduino-test)
 python-test: ## build the Python package's wheel, install it in target/python, test it there
 	$(call prepared,.python-test)
 desks: ## build `lizard` for Linux on ARM and for Windows, run it, compare what it writes; compile it for macOS
@@ -274,6 +276,11 @@ PREFIX ?= $(HOME)/.local
 	@cd crates && cargo build $(ALL) --bin lizard --quiet
 	@scripts/parallel-test $(HOST)/debug/lizard
 
+# Debian has the Arduino core but not the Servo library, so its test runs only with SERVO.
+.arduino-test: .sweep
+	@scripts/arduino $(SERVO)
+	@cd crates && cargo test $(ALL) --features lizard-host-tests/arduino --test arduino --quiet $(if $(SERVO),-- --include-ignored --nocapture)
+
 # The program is the one with the simulator, whose board the package drives over a serial port.
 .python-test:
 	@scripts/setup-python
@@ -300,7 +307,7 @@ PLAIN := $(CURDIR)/target/plain
 	@cargo fmt --check
 	@cd crates && cargo fmt --all --check
 	@RUSTC_BOOTSTRAP=1 cargo clippy --release -- -D warnings
-	@cd crates && cargo clippy $(ALL) --all-targets --features lizard-host-tests/flash --quiet -- -D warnings
+	@cd crates && cargo clippy $(ALL) --all-targets --features lizard-host-tests/flash,lizard-host-tests/arduino --quiet -- -D warnings
 	@cd crates && cargo clippy -p lizard-host --no-default-features --features paper,console --quiet -- -D warnings
 	@cd crates && cargo clippy -p lizard-host --no-default-features --features simulator --quiet -- -D warnings
 	@cd crates && cargo clippy -p lizard-host --no-default-features --features parts --quiet -- -D warnings

@@ -1,0 +1,11 @@
+// A servo on pin 9 follows a potentiometer: its ends on 5V and GND, its wiper on A0.
+#include <ServoPulses.h>
+
+Servo servo;
+
+void setup() { servo.attach(9); }
+
+void loop() {
+  servo.write(map(analogRead(A0), 0, 1023, 0, 180));
+  delay(15);
+}

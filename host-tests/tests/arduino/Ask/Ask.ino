@@ -1,0 +1,24 @@
+// Says the number of each servo and of what cannot be one, then writes every number that it gets and says what it reads.
+#include <ServoPulses.h>
+
+Servo servos[9];
+
+void setup() {
+  Serial.begin(115200);
+  Serial.setTimeout(5);
+  servos[0].write(0);
+  for (uint8_t i = 0; i < 9; i++) Serial.print(servos[i].attach(i + 2) + servos[i].attached());
+  Serial.println(servos[1].attach(20));
+  for (uint8_t i = 1; i < 8; i++) servos[i].detach();
+  servos[0].attach(2, 1000, 2000);
+}
+
+void loop() {
+  if (!Serial.available()) return;
+  servos[0].write(Serial.parseInt());
+  Serial.read();       // the end of the line
+  servos[1].write(90); // detached
+  Serial.print(servos[0].read());
+  Serial.print(' ');
+  Serial.println(servos[0].readMicroseconds());
+}

@@ -1,0 +1,17 @@
+// One servo has its width written as often as possible, whose bytes both change; another is attached and detached.
+#include <ServoPulses.h>
+
+Servo written, attached;
+
+void setup() {
+  Serial.begin(115200);
+  written.attach(9);
+}
+
+void loop() {
+  written.writeCycles(0x5dff);
+  attached.attach(A0);
+  if (Serial.available()) Serial.write(Serial.read());
+  written.writeCycles(0x5e00);
+  attached.detach();
+}

@@ -1,0 +1,212 @@
+//! The Arduino library of `arduino/`, compiled by `make arduino-test` as the Arduino IDE does, in the
+//! simulated UNO: its edges are those of the Rust engine.
+
+use lizard_host_tests::{FirmwareBench, root};
+use servo_pulses::{CYCLES_PER_US, frame_cycles};
+use simulated_uno::{CYCLES_PER_MS, Edge, FREQUENCY, Fidelity, Pin, State, Uno};
+
+/// The pins of the eight servos in the library's examples.
+const PINS: [u8; 8] = [2, 3, 7, 8, 9, 12, 14, 19];
+
+const FLOOD: &[u8] = b"The quick brown fox jumps over the lazy dog. ";
+
+fn elf(path: &str) -> Uno {
+    Uno::load(root().join(path), Fidelity::DataSheet)
+        .unwrap_or_else(|error| panic!("`make arduino-test` builds it: {error}"))
+}
+
+/// The library's example or the tests' sketch of this name.
+fn sketch(name: &str) -> Uno {
+    elf(&format!("target/arduino/{name}/{name}.ino.elf"))
+}
+
+/// Every edge of the servos, with its cycles since the first one.
+fn edges_since_the_first(uno: &Uno) -> Vec<(u64, Pin, bool)> {
+    let is_servo = |edge: &&Edge| edge.pin != Pin::d(13);
+    let edges: Vec<Edge> = uno.edges().iter().filter(is_servo).copied().collect();
+    let first = edges.first().expect("there are edges").cycle;
+    let since = |edge: &Edge| (edge.cycle - first, edge.pin, edge.high);
+    edges.iter().map(since).collect()
+}
+
+/// The widths of a pin's pulses in 10 s, cycles, while bytes arrive and are echoed without a pause.
+fn widths_in_a_flood(uno: &mut Uno, pins: &[u8]) -> Vec<Vec<u64>> {
+    uno.run_ms(100);
+    uno.take_edges();
+    uno.take_transmitted();
+    uno.flood(FLOOD);
+    uno.run_ms(10_000);
+    assert_eq!(*uno.state(), State::Alive);
+    let echoed = uno.transmitted().len();
+    assert!(echoed > 100_000, "{echoed} bytes echoed");
+    let widths = |pin: &u8| {
+        uno.pulses(Pin::arduino(*pin))
+            .iter()
+            .map(|pulse| pulse.width)
+            .collect()
+    };
+    pins.iter().map(widths).collect()
+}
+
+/// Cycles between the longest and the shortest.
+fn jitter(widths: &[u64]) -> u64 {
+    let [min, max] = [widths.iter().min(), widths.iter().max()];
+    max.expect("a pulse") - min.expect("a pulse")
+}
+
+#[test]
+fn eight_servos_have_the_edges_of_the_rust_engine_to_the_cycle() {
+    let mut rust = Uno::load(
+        FirmwareBench::elf().with_file_name("examples/sweep.elf"),
+        Fidelity::DataSheet,
+    )
+    .unwrap_or_else(|error| panic!("`make sweep` builds it: {error}"));
+    let mut cpp = sketch("EightServos");
+    for uno in [&mut rust, &mut cpp] {
+        uno.run_ms(20_000);
+    }
+    let [expected, edges] = [&rust, &cpp].map(edges_since_the_first);
+    let frames = 20_000 * CYCLES_PER_MS / u64::from(frame_cycles(8));
+    let common = expected.len().min(edges.len());
+    assert!(common as u64 >= (frames - 3) * 16, "{common} edges");
+    let differs = (0..common).find(|at| edges[*at] != expected[*at]);
+    let pair = differs.map(|at| (at, edges[at], expected[at]));
+    assert_eq!(pair, None, "the first edge that differs, C++ and Rust");
+}
+
+#[test]
+fn a_flood_of_serial_bytes_changes_no_width_by_a_cycle() {
+    let mut uno = sketch("BesideSerial");
+    // 90 degrees of 544 to 2400 us.
+    let width = (544 + (2400 - 544) / 2) * u64::from(CYCLES_PER_US);
+    for widths in widths_in_a_flood(&mut uno, &PINS) {
+        assert!(widths.len() > 440, "{} pulses", widths.len());
+        assert!(
+            widths.iter().all(|one| *one == width),
+            "not {width}: {widths:?}"
+        );
+    }
+    assert_eq!(uno.overruns(), 0);
+    let readme = std::fs::read_to_string(root().join("arduino/ServoPulses/README.md"));
+    let readme = readme.expect("it is there");
+    for row in [
+        format!(
+            "| flash of the whole sketch, bytes | {} |",
+            uno.image().flash_used()
+        ),
+        format!(
+            "| static RAM of the whole sketch, bytes | {} |",
+            uno.image().static_ram()
+        ),
+    ] {
+        assert!(readme.contains(&row), "the README has no {row}");
+    }
+}
+
+/// Cycles per second in the handlers of Timer1's compare matches.
+fn cycles_in_handlers(uno: &Uno) -> u64 {
+    let handlers = uno.interrupts().into_iter();
+    let cycles = handlers
+        .filter(|one| [11, 12].contains(&one.vector))
+        .map(|one| one.cycles);
+    cycles.sum::<u64>() * FREQUENCY / uno.cycle()
+}
+
+#[test]
+#[ignore = "needs Arduino's Servo library: make arduino-test SERVO=folder"]
+fn the_servo_library_trembles_in_the_same_flood() {
+    for (name, jitters) in [("ServoBesideSerial", 50..200), ("BesideSerial", 0..1)] {
+        let mut uno = sketch(name);
+        let widths = widths_in_a_flood(&mut uno, &PINS);
+        let found: Vec<u64> = widths.iter().map(|widths| jitter(widths)).collect();
+        let image = uno.image();
+        println!(
+            "{name}: jitter {found:?} cycles, {} bytes of flash, {} of RAM, {} cycles a second",
+            image.flash_used(),
+            image.static_ram(),
+            cycles_in_handlers(&uno)
+        );
+        assert!(found.iter().all(|jitter| jitters.contains(jitter)));
+    }
+}
+
+#[test]
+fn a_late_pulse_is_left_out_and_none_is_ever_too_short() {
+    let mut uno = sketch("Late");
+    uno.run_ms(10_000);
+    let pulses = uno.pulses(Pin::d(9));
+    // Interrupts are on for a half of the time.
+    assert!(
+        (100..400).contains(&pulses.len()),
+        "{} pulses",
+        pulses.len()
+    );
+    for pulse in pulses {
+        // A falling edge waits until interrupts are on again, 30 us at most.
+        assert!((24_000..24_500).contains(&pulse.width), "{}", pulse.width);
+    }
+    assert!(
+        uno.is_high(Pin::d(13)),
+        "the sketch sees that edges were late"
+    );
+}
+
+#[test]
+fn every_change_of_a_width_appears_whole_and_no_pulse_is_cut() {
+    let mut uno = sketch("Restless");
+    let widths = widths_in_a_flood(&mut uno, &[9, 14]);
+    let [written, attached] = &widths[..] else {
+        unreachable!()
+    };
+    for width in [0x5dff, 0x5e00] {
+        let times = written.iter().filter(|one| **one == width).count();
+        assert!(times > 20, "{width} {times} times");
+    }
+    let torn = written.iter().find(|one| ![0x5dff, 0x5e00].contains(*one));
+    assert_eq!(torn, None);
+    assert!(attached.len() > 20, "{} pulses", attached.len());
+    assert_eq!(attached.iter().find(|one| **one != 24_000), None);
+}
+
+#[test]
+fn angles_and_widths_are_those_of_the_servo_library() {
+    let mut uno = sketch("Ask");
+    assert!(uno.run_until_line(100 * CYCLES_PER_MS));
+    let numbers = uno.take_transmitted();
+    let numbers: Vec<u8> = numbers.iter().map(|byte| byte.byte).collect();
+    // The number and 1 of each servo that is attached; 255 for a ninth one, and for a pin 20.
+    assert_eq!(String::from_utf8_lossy(&numbers), "12345678255255\r\n");
+    for (value, angle, us) in [
+        (0, 0, 1000),
+        (1, 1, 1005),
+        (90, 90, 1500),
+        (179, 179, 1994),
+        (180, 180, 2000),
+        (543, 180, 2000),
+        (544, 0, 1000),
+        (1250, 45, 1250),
+        (2400, 180, 2000),
+        (-20, 0, 1000),
+    ] {
+        assert_eq!(
+            uno.say(&value.to_string()),
+            Some(format!("{angle} {us}")),
+            "{value}"
+        );
+        uno.run_ms(50);
+        uno.take_edges();
+        uno.run_ms(50);
+        let widths: Vec<u64> = uno
+            .pulses(Pin::d(2))
+            .iter()
+            .map(|pulse| pulse.width)
+            .collect();
+        assert!(!widths.is_empty());
+        assert!(
+            widths.iter().all(|width| *width == us * 16),
+            "{value}: {widths:?}"
+        );
+        // The others are detached.
+        assert!(uno.edges().iter().all(|edge| edge.pin == Pin::d(2)));
+    }
+}
