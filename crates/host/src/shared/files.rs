@@ -165,7 +165,10 @@ fn persist(path: &Path, bytes: &[u8]) -> io::Result<()> {
             .persist(path)?;
         return Ok(());
     }
-    #[cfg_attr(not(unix), expect(unused_mut, reason = "Windows has no such permissions"))]
+    #[cfg_attr(
+        not(unix),
+        expect(unused_mut, reason = "Windows has no such permissions")
+    )]
     let mut builder = tempfile::Builder::new();
     #[cfg(unix)]
     {
