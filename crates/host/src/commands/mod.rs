@@ -313,6 +313,29 @@ mod tests {
     }
 
     #[test]
+    #[cfg(all(
+        feature = "simulator",
+        feature = "paper",
+        feature = "console",
+        feature = "parts"
+    ))]
+    fn docs_commands_names_every_command_without_json() {
+        let page = include_str!("../../../../docs/commands.md");
+        let (_, list) = page.split_once("`--json`, except ").expect("the list");
+        let (list, _) = list.split_once(": they").expect("its end");
+        let named: BTreeSet<&str> = list.split('`').skip(1).step_by(2).collect();
+        let program = Cli::command();
+        let has_json = |sub: &&clap::Command| sub.get_arguments().any(|arg| arg.get_id() == "json");
+        let without = program.get_subcommands().filter(|sub| !has_json(sub));
+        assert_eq!(
+            without
+                .map(clap::Command::get_name)
+                .collect::<BTreeSet<_>>(),
+            named
+        );
+    }
+
+    #[test]
     fn the_help_names_the_addresses_that_the_project_has() {
         assert_eq!(addresses("", ""), "");
         assert_eq!(
