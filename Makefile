@@ -142,6 +142,7 @@ clean: ## remove everything that was built
 .web-test:
 	@env -u LIZARD_ROBOT $(MAKE) .firmware ROBOT=
 	@scripts/setup-web --test
+	@scripts/setup-book
 	@scripts/build-web
 	@cd crates && cargo build $(ALL) --bin lizard --quiet
 	@LIZARD=$(HOST)/debug/lizard $$(cat target/web-node) --test --test-concurrency=2 --test-timeout=900000 web/tests/*.test.js
