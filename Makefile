@@ -31,7 +31,7 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help fit parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants other-robots explore fuzz package code-image docs docs-check install release release-test parallel-test plain-test arduino-test python-test desks clean trouble .fit .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .workspace .walks .test .bench .prove .physics .mutants .other-robots .explore .fuzz .package .code-image .docs .docs-check .install .release .release-test .parallel-test .plain-test .arduino-test .python-test .desks .trouble
+.PHONY: help fit parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants other-robots explore fuzz package code-image docs docs-check install release release-test parallel-test plain-test arduino-test python-test addresses-test desks clean trouble .fit .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .workspace .walks .test .bench .prove .physics .mutants .other-robots .explore .fuzz .package .code-image .docs .docs-check .install .release .release-test .parallel-test .plain-test .arduino-test .python-test .addresses-test .desks .trouble
 
 help: ## this list
 	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 15
@@ -99,6 +99,8 @@ arduino-test: ## the C++ library of arduino/ as the Arduino IDE compiles it, bes
 	$(call prepared,.arduino-test)
 python-test: ## build the Python package's wheel, install it in target/python, test it there
 	$(call prepared,.python-test)
+addresses-test: ## the project's addresses of crates/Cargo.toml, set in a copy, are in the program, a package, the page and the book
+	$(call prepared,.addresses-test)
 desks: ## build `lizard` for Linux on ARM and for Windows, run it, compare what it writes; compile it for macOS
 	$(call prepared,.desks)
 clean: ## remove everything that was built
@@ -142,6 +144,7 @@ clean: ## remove everything that was built
 .web-test:
 	@env -u LIZARD_ROBOT $(MAKE) .firmware ROBOT=
 	@scripts/setup-web --test
+	@scripts/setup-book
 	@scripts/build-web
 	@cd crates && cargo build $(ALL) --bin lizard --quiet
 	@LIZARD=$(HOST)/debug/lizard $$(cat target/web-node) --test --test-concurrency=2 --test-timeout=900000 web/tests/*.test.js
@@ -286,6 +289,11 @@ PREFIX ?= $(HOME)/.local
 	@scripts/setup-python
 	@cd crates && cargo build $(ALL) --bin lizard --quiet
 	@scripts/python-test $(HOST)/debug/lizard
+
+.addresses-test:
+	@scripts/setup-web
+	@scripts/setup-book
+	@scripts/addresses-test
 
 # Not a part of .ci/run: it compiles everything three more times.
 .desks:

@@ -40,6 +40,7 @@ const product = (name, license, purpose) => {
   return id;
 };
 const program = product('lizard-program', GPL, 'APPLICATION');
+const portable = product('lizard-program-without-simulator', 'MIT OR Apache-2.0', 'APPLICATION'); // for ARM and for Windows
 const image = product('lizard-image', 'MIT OR Apache-2.0', 'FIRMWARE');
 const page = product('lizard-page', '(MIT OR Apache-2.0) AND MIT AND GPL-2.0-or-later', 'APPLICATION');
 
@@ -55,8 +56,11 @@ function checksums(folder) {
   return found;
 }
 
-/** Adds the crates that a crate of a workspace is built from, all the way down. */
-function crates(folder, top, of, ...filter) {
+/**
+ * Adds the crates that a crate of a workspace is built from, all the way down, except those left out: cargo lists what
+ * any member of the workspace needs of it.
+ */
+function crates(folder, top, of, leftOut, ...filter) {
   const text = execFileSync('cargo', ['metadata', '--locked', '--format-version', '1', ...filter], { cwd: folder, encoding: 'utf8', maxBuffer: 1 << 28 });
   const metadata = JSON.parse(text);
   const sums = checksums(folder);
@@ -72,9 +76,10 @@ function crates(folder, top, of, ...filter) {
       ? { downloadLocation: `https://static.crates.io/crates/${name}/${name}-${number}.crate`, ...purl(`pkg:cargo/${name}@${number}`) }
       : {};
     if (sum) more.checksums = [{ algorithm: 'SHA256', checksumValue: sum }];
-    const mine = add('cargo', name, number, license?.replace(/\s*\/\s*/g, ' OR ') ?? 'NOASSERTION', more);
+    const mine = add('cargo', [name, ...(name === top ? leftOut : [])].join(' without '), number, license?.replace(/\s*\/\s*/g, ' OR ') ?? 'NOASSERTION', more);
     ids.set(id, mine);
     for (const { pkg, dep_kinds } of node.get(id).deps) {
+      if (leftOut.includes(crate.get(pkg).name)) continue;
       for (const { kind } of dep_kinds) {
         if (kind === null) relate(mine, 'DEPENDS_ON', visit(pkg));
         if (kind === 'build') relate(visit(pkg), 'BUILD_DEPENDENCY_OF', mine);
@@ -86,14 +91,17 @@ function crates(folder, top, of, ...filter) {
   relate(of, 'CONTAINS', visit(first.id));
 }
 const machine = run('rustc', '--print', 'host-tuple').trim();
-crates('crates', 'lizard-host', program, '--filter-platform', machine);
-crates('crates', 'lizard-web', page, '--filter-platform', 'wasm32-unknown-unknown');
+crates('crates', 'lizard-host', program, [], '--filter-platform', machine);
+for (const target of ['aarch64-unknown-linux-gnu', 'x86_64-pc-windows-gnu']) {
+  crates('crates', 'lizard-host', portable, ['simulated-uno', 'lizard-tune'], '--filter-platform', target);
+}
+crates('crates', 'lizard-web', page, [], '--filter-platform', 'wasm32-unknown-unknown');
 // Cargo knows the AVR's target by a file; what these crates need does not depend on it.
-crates('.', 'lizard', image);
+crates('.', 'lizard', image, []);
 
 const rust = run('rustc', '--version').split(' ')[1];
 const std = add('rust', 'rust-std', rust, 'MIT OR Apache-2.0', { downloadLocation: `https://static.rust-lang.org/dist/rustc-${rust}-src.tar.gz` });
-for (const of of [program, image, page]) relate(of, 'STATIC_LINK', std);
+for (const of of [program, portable, image, page]) relate(of, 'STATIC_LINK', std);
 
 // --- Node's packages -------------------------------------------------------
 
@@ -131,6 +139,9 @@ debian('libsimavr-dev', GPL, program);
 debian('libelf-dev', 'GPL-2.0-or-later OR LGPL-3.0-or-later', program);
 debian('zlib1g-dev', 'Zlib', program);
 debian('libc6-dev', 'LGPL-2.1-or-later', program);
+debian('libc6-dev-arm64-cross', 'LGPL-2.1-or-later', portable);
+debian('mingw-w64-x86-64-dev', 'ZPL-2.1', portable);
+debian('gcc-mingw-w64-x86-64-posix', 'GPL-3.0-or-later WITH GCC-exception-3.1', portable);
 debian('avr-libc', 'BSD-3-Clause', image);
 debian('gcc-avr', 'GPL-3.0-or-later WITH GCC-exception-3.1', image);
 debian('arduino-core-avr', 'GPL-2.0-or-later', page, 'CONTAINS'); // optiboot

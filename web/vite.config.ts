@@ -1,4 +1,5 @@
 import { defineConfig } from 'vite';
+import { addresses } from './addresses.js';
 import { offline } from './offline.js';
 
 export default defineConfig({
@@ -6,7 +7,7 @@ export default defineConfig({
   base: './',
   // three.js is one chunk, loaded when the robot is shown in space.
   build: { target: 'es2022', outDir: 'dist', emptyOutDir: true, reportCompressedSize: false, chunkSizeWarningLimit: 700 },
-  plugins: [offline()],
+  plugins: [addresses(), offline()],
   // Allows imports of the simulated chip from tools/judge.
   server: { fs: { allow: ['..'] } },
 });

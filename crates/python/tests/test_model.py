@@ -226,6 +226,9 @@ def test_a_gait_is_checked_alone(model):
     assert swaying.gaits == ["stand", "sway"]
     with pytest.raises(lizard.RobotFileError, match=r"gait\.sway"):
         model.with_gait(f"{table}amplitude = 80.0\n{starts}")
+    with pytest.raises(lizard.RobotFileError) as error:
+        model.with_gait(table.replace("0.6", "6.0") + f"amplitude = 10.0\n{starts}")
+    assert error.value.line == 4 and error.value.key == "gait.sway.duty"
 
 
 def test_images_are_those_of_the_program(model, program, tmp_path):

@@ -71,9 +71,19 @@ impl Robot {
     /// Fails if the table holds a mistake, or the gait breaks a limit.
     pub fn with_gait(&self, table: &str) -> Result<Self, Error> {
         const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
-        file::parse(&format!("{STAND}{table}"), |table| {
+        // Alone first: a mistake of syntax may name a second line.
+        file::parse(table, |_| Ok(()))?;
+        let robot = file::parse(&format!("{STAND}{table}"), |table| {
             let root = Section::root(table, &["gait"])?;
             Self::with_measures(self.name(), self.measures.clone(), &root)
+        });
+        robot.map_err(|mut error| {
+            let lines = STAND.lines().count();
+            error.line = error
+                .line
+                .filter(|line| *line > lines)
+                .map(|line| line - lines);
+            error
         })
     }
 

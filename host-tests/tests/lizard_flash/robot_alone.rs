@@ -37,9 +37,17 @@ fn a_robot_alone_is_written_behind_the_firmware_and_the_trims_are_kept() {
     let end = usize::from(START) + other.section().len();
     assert!(desk.uno.flash()[..end] == firmware_of(&other)[..end]);
 
-    // And the first robot again: its trims are there as they were.
-    let shell = lizard_flash(&desk, &["--only-robot"]);
-    self::end(&mut desk, &shell);
+    // And the first robot again, by a script: its trims are there as they were.
+    let shell = lizard_flash(&desk, &["--only-robot", "--json"]);
+    let screen = self::end(&mut desk, &shell);
+    let (name, hash) = its.split_once(' ').expect("name and hash");
+    let version = env!("CARGO_PKG_VERSION");
+    let object =
+        format!(r#","firmware":"{version}","robot":{{"name":"{name}","hash":"{hash}"}}}}"#);
+    let line = screen.lines().find(|line| line.starts_with(r#"{"port":""#));
+    let is_right = |line: &str| line.contains(r#""bytes_written":"#) && line.ends_with(&object);
+    assert!(line.is_some_and(is_right), "{screen}");
+    assert!(!screen.contains("\n# lizard"), "{screen}");
     assert_kept(&desk, &kept);
     let answer = says(&mut desk, "cal\n", 500);
     assert!(answer.contains("3.5"), "{answer}");

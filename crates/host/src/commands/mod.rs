@@ -194,7 +194,21 @@ struct Cli {
 
 /// All commands and options, the commands in groups.
 pub fn program() -> clap::Command {
-    groups::grouped(Cli::command(), KNOWN)
+    let addresses = addresses(env!("CARGO_PKG_HOMEPAGE"), env!("CARGO_PKG_REPOSITORY"));
+    groups::grouped(Cli::command().after_help(addresses), KNOWN)
+}
+
+/// Lists the project's addresses for the end of the help, without those that are empty.
+fn addresses(page: &str, source: &str) -> String {
+    let lines = [
+        ("Page", page, ""),
+        ("Source", source, ""),
+        ("Report a fault", source, "/issues"),
+    ];
+    let known = lines.iter().filter(|(_, address, _)| !address.is_empty());
+    known
+        .map(|(name, address, below)| format!("{name}: {address}{below}\n"))
+        .collect()
 }
 
 /// Runs a command line.
@@ -296,6 +310,42 @@ mod tests {
         let gone =
             translate_old_arguments(words("lizard spring --wire 0.6")).expect_err("it is gone");
         assert!(gone.to_string().contains("[leg.drive]"), "{gone}");
+    }
+
+    #[test]
+    #[cfg(all(
+        feature = "simulator",
+        feature = "paper",
+        feature = "console",
+        feature = "parts"
+    ))]
+    fn docs_commands_names_every_command_without_json() {
+        let page = include_str!("../../../../docs/commands.md");
+        let (_, list) = page.split_once("`--json`, except ").expect("the list");
+        let (list, _) = list.split_once(": they").expect("its end");
+        let named: BTreeSet<&str> = list.split('`').skip(1).step_by(2).collect();
+        let program = Cli::command();
+        let has_json = |sub: &&clap::Command| sub.get_arguments().any(|arg| arg.get_id() == "json");
+        let without = program.get_subcommands().filter(|sub| !has_json(sub));
+        assert_eq!(
+            without
+                .map(clap::Command::get_name)
+                .collect::<BTreeSet<_>>(),
+            named
+        );
+    }
+
+    #[test]
+    fn the_help_names_the_addresses_that_the_project_has() {
+        assert_eq!(addresses("", ""), "");
+        assert_eq!(
+            addresses("https://p.example", ""),
+            "Page: https://p.example\n"
+        );
+        assert_eq!(
+            addresses("", "https://s.example/l"),
+            "Source: https://s.example/l\nReport a fault: https://s.example/l/issues\n"
+        );
     }
 
     #[test]

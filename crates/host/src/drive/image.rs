@@ -7,9 +7,11 @@ use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 
 use lizard_core::numbers::section::SPACE;
+use serde::Serialize;
 
+use crate::drive::console::info;
 use crate::drive::flash::file;
-use crate::shared::{files, firmware};
+use crate::shared::{files, json};
 use crate::{Failure, RobotFile};
 
 /// Make the image of your robot as a file of Intel HEX, without a compiler
@@ -24,8 +26,22 @@ pub struct Args {
     /// Only the robot, for a board that has this firmware: avrdude -D leaves the rest as it is
     #[arg(long)]
     only_robot: bool,
+    /// Print one JSON object about the file
+    #[arg(long, requires = "output")]
+    json: bool,
     #[command(flatten)]
     robot: RobotFile,
+}
+
+/// An image in a file, under the names of `--json`.
+#[derive(Serialize)]
+struct Made {
+    file: String,
+    /// The version of the firmware; null in a file with only the robot.
+    firmware: Option<&'static str>,
+    robot: info::Robot,
+    robot_bytes: usize,
+    robot_space: u16,
 }
 
 /// Makes the image.
@@ -48,16 +64,24 @@ pub fn run(args: Args) -> Result<(), Failure> {
         return Ok(io::stdout().lock().write_all(hex.as_bytes())?);
     };
     files::write(&path, hex.as_bytes())?;
-    let content = match args.only_robot {
-        true => String::new(),
-        false => format!("lizard {} ", env!("CARGO_PKG_VERSION")),
+    let made = Made {
+        file: path.display().to_string(),
+        firmware: (!args.only_robot).then_some(env!("CARGO_PKG_VERSION")),
+        robot: info::Robot::of(robot.firmware()),
+        robot_bytes: robot.section().len(),
+        robot_space: SPACE,
     };
-    writeln!(
-        io::stdout(),
-        "{}: {content}robot {}; the robot has {} of {SPACE} bytes",
-        path.display(),
-        firmware::label(robot.firmware()),
-        robot.section().len(),
-    )?;
-    Ok(())
+    json::print_json_or(args.json, &made, || made.text())
+}
+
+impl Made {
+    fn text(&self) -> String {
+        let content = self
+            .firmware
+            .map_or(String::new(), |version| format!("lizard {version} "));
+        format!(
+            "{}: {content}robot {} {}; the robot has {} of {} bytes\n",
+            self.file, self.robot.name, self.robot.hash, self.robot_bytes, self.robot_space
+        )
+    }
 }

@@ -60,6 +60,28 @@ fn an_image_of_any_robot_is_made_in_an_empty_folder() {
 }
 
 #[test]
+fn a_script_reads_what_an_image_has() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let arguments = ["flash", "image", "--robot", "large", "--output", "x.hex"];
+    let made = run_in(folder.path(), &[&arguments[..], &["--json"]].concat(), "").success();
+    let made: serde_json::Value = serde_json::from_str(&made).expect("it is JSON");
+    let robot = Robot::load(robot("large")).expect("it is right");
+    let hash = robot.firmware().hash();
+    assert_eq!(
+        made,
+        serde_json::json!({
+            "file": "x.hex",
+            "firmware": env!("CARGO_PKG_VERSION"),
+            "robot": { "name": "large", "hash": format!("{hash:08x}") },
+            "robot_bytes": robot.section().len(),
+            "robot_space": 0x7e00 - 0x6e00,
+        })
+    );
+    let piped = run_in(folder.path(), &["flash", "image", "--json"], "").refusal();
+    assert!(piped.contains("--output"), "{piped}");
+}
+
+#[test]
 fn a_robot_that_is_wrong_gives_no_image() {
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("x.toml"), "[servo]\n").expect("a file");

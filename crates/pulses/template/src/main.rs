@@ -1,5 +1,5 @@
 //! Four servos on pins 9, 10, 11 and 3 of an Arduino UNO move to and fro once in two seconds, each a
-//! quarter of a cycle after the one before it.
+//! quarter of a cycle after the one before it. The LED blinks with them.
 
 #![no_std]
 #![no_main]
@@ -29,6 +29,9 @@ fn width(frame: u8) -> u16 {
 
 #[avr_device::entry]
 fn main() -> ! {
+    // SAFETY: the engine has Timer1 and the servos' pins; the LED is on another one, D13.
+    let led = unsafe { avr_device::atmega328p::Peripherals::steal() }.PORTB;
+    led.ddrb.write(|w| w.pb5().set_bit());
     // SAFETY: interrupts are off, and nothing else uses Timer1.
     unsafe { servos::start() };
     // SAFETY: every interrupt that is enabled has its handler.
@@ -41,6 +44,9 @@ fn main() -> ! {
             tick = servos::ticks();
             frame = (frame + 1) % 100;
             servos::submit([0, 25, 50, 75].map(|offset| width((frame + offset) % 100)));
+            if frame % 50 == 0 {
+                led.pinb.write(|w| w.pb5().set_bit()); // a one here toggles the pin
+            }
         }
     }
 }

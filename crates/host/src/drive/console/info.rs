@@ -44,9 +44,18 @@ struct Board {
 
 /// A robot as its board names it.
 #[derive(Debug, PartialEq, Serialize)]
-struct Robot {
-    name: String,
-    hash: String,
+pub(in crate::drive) struct Robot {
+    pub(in crate::drive) name: String,
+    pub(in crate::drive) hash: String,
+}
+
+impl Robot {
+    /// Names a robot as its board will.
+    pub(in crate::drive) fn of(robot: &lizard_core::numbers::robot::Robot) -> Self {
+        let name = robot.label().map(char::from).collect();
+        let hash = format!("{:08x}", robot.hash());
+        Self { name, hash }
+    }
 }
 
 /// Asks a board and prints its answers.
@@ -165,7 +174,7 @@ fn status<P: Read + Write>(link: &mut Link<P>) -> Result<Status, LinkError> {
 }
 
 /// The version and the robot in the first line of a firmware.
-fn parse_banner(line: &str) -> (Option<String>, Option<Robot>) {
+pub(in crate::drive) fn parse_banner(line: &str) -> (Option<String>, Option<Robot>) {
     let line = line.split(',').next().unwrap_or(line);
     let words: Vec<&str> = line.split(' ').collect();
     match words[..] {

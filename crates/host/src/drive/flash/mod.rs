@@ -23,9 +23,13 @@ use std::time::{Duration, Instant};
 pub use chip::Chip;
 pub use found::{FlashContents, Program, RobotInFlash};
 
+use serde::Serialize;
+
 use crate::drive::console::find::{self, FindError, UsbPort};
+use crate::drive::console::info;
 use crate::drive::console::link::{self, Link};
 use crate::drive::console::port::BAUD;
+use crate::shared::json;
 use crate::shared::progress::bar;
 use crate::{Failure, RobotFile};
 use image::{Image, PAGE};
@@ -54,8 +58,24 @@ pub struct Args {
     /// Write this file of Intel HEX instead, whatever it is
     #[arg(long, value_name = "FILE", conflicts_with_all = ["path", "only_robot"])]
     image: Option<PathBuf>,
+    /// Print one JSON object when the firmware has answered; all else goes to standard error
+    #[arg(long)]
+    json: bool,
     #[command(flatten)]
     robot: RobotFile,
+}
+
+/// A board that was written, under the names of `--json`.
+#[derive(Serialize)]
+struct Flashed {
+    port: String,
+    bytes_written: usize,
+    /// Bytes that were right already.
+    bytes_kept: usize,
+    /// The firmware's version; null if it answers without its first line.
+    firmware: Option<String>,
+    /// Null if the board has no robot.
+    robot: Option<info::Robot>,
 }
 
 /// Writes a board.
@@ -84,14 +104,22 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let board = SerialBoard::open(&port)?;
     eprintln!("lizard: calling the boot loader of the board at {name}");
     let failure_of_port = |message: String| Failure::Impossible(format!("{name}: {message}"));
-    let board = write(board, &image, target).map_err(|error| failure_of_port(error.to_string()))?;
+    let (board, done) = write(board, &image, target, args.json)
+        .map_err(|error| failure_of_port(error.to_string()))?;
     let banner = greet(board).map_err(|error| {
         failure_of_port(format!(
             "the flash is written and verified, but the firmware does not answer: {error}"
         ))
     })?;
-    writeln!(io::stdout(), "{banner}")?;
-    Ok(())
+    let (firmware, robot) = info::parse_banner(&banner);
+    let flashed = Flashed {
+        port,
+        bytes_written: done.written * PAGE,
+        bytes_kept: done.kept * PAGE,
+        firmware,
+        robot,
+    };
+    json::print_json_or(args.json, &flashed, || format!("{banner}\n"))
 }
 
 /// The one board of this machine.
@@ -118,7 +146,17 @@ fn may_be_nano(ports: &[UsbPort], name: &str) -> bool {
 
 /// Writes the board, with a progress bar and a summary. Returns the board, whose firmware
 /// starts.
-fn write(board: SerialBoard, image: &Image, target: Target) -> Result<SerialBoard, Failure> {
+fn write(
+    board: SerialBoard,
+    image: &Image,
+    target: Target,
+    json: bool,
+) -> Result<(SerialBoard, Done), Failure> {
+    // A closed standard output does not stop the upload.
+    let println = |line: &str| match json {
+        true => eprintln!("{line}"),
+        false => _ = writeln!(io::stdout(), "{line}"),
+    };
     let bar = bar(0, "{msg} {wide_bar} {percent} %");
     let mut loader = Loader::new(board, Timeouts::default());
     let start = Instant::now();
@@ -145,10 +183,11 @@ fn write(board: SerialBoard, image: &Image, target: Target) -> Result<SerialBoar
         }
     });
     bar.finish_and_clear();
-    println(&summary(done?, start.elapsed()));
+    let done = done?;
+    println(&summary(done, start.elapsed()));
     let mut board = loader.into_board();
     board.set_baud(BAUD)?;
-    Ok(board)
+    Ok((board, done))
 }
 
 /// A message about a finished upload.
@@ -161,11 +200,6 @@ fn summary(done: Done, time: Duration) -> String {
             "{written} bytes written and verified, {kept} were right already; {seconds:.1} s"
         ),
     }
-}
-
-/// Prints a line. A closed standard output does not stop the upload.
-fn println(line: &str) {
-    let _ = writeln!(io::stdout(), "{line}");
 }
 
 /// Waits for the firmware's first line.

@@ -205,3 +205,24 @@ fn waveforms_are_refused_that_the_section_has_no_room_for() {
     let more = paper_with_gaits(&gaits(128)).expect_err("257").to_string();
     assert!(more.contains("gait.nod127 needs one waveform too many: the firmware numbers them with a byte, so gaits may share 255"), "{more}");
 }
+
+#[test]
+fn a_mistake_in_one_gait_is_named_by_its_line_there() {
+    let paper = paper_with_gaits(STAND).expect("it is right");
+    for (table, line, words) in [
+        (
+            "[gait.a]\nperiod = 1.0\nwaveform = \"wav\"\n",
+            3,
+            "gait.a.waveform",
+        ),
+        (
+            "\n[gait.a]\nperiod = 1.0\nperiod = 2.0\n",
+            4,
+            "first in line 3",
+        ),
+    ] {
+        let error = paper.with_gait(table).expect_err(table);
+        assert_eq!(error.line, Some(line), "{error}");
+        assert!(error.to_string().contains(words), "{error}");
+    }
+}

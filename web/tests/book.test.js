@@ -1,0 +1,32 @@
+// The book from a file: its search finds a word.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { mkdtemp, rm } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+
+import { blank, close, open, tidy } from './browser.js';
+
+let folder;
+
+before(async () => {
+  await open();
+  folder = await mkdtemp(join(tmpdir(), 'lizard-book-'));
+  const built = spawnSync('mkdocs', ['build', '--strict', '--quiet', '--site-dir', folder], { cwd: new URL('../..', import.meta.url), encoding: 'utf8' });
+  assert.equal(built.status, 0, built.stderr);
+});
+after(async () => {
+  await tidy();
+  await close();
+  await rm(folder, { recursive: true });
+});
+
+test('the search of the book finds a word without a server', async () => {
+  const book = await blank();
+  await book.goto(`file://${folder}/index.html`);
+  await book.fill('input[name=query]', 'brownout');
+  const first = book.locator('.md-search-result__link').first();
+  await first.waitFor();
+  assert.match(await first.getAttribute('href'), /^file:.*(faults|firmware|quickstart|console)\.html/);
+});
