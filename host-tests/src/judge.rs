@@ -112,7 +112,7 @@ pub fn judge(
     objcopy.args(["-I", "binary", "-O", "ihex"]);
     done(objcopy.args([&flash, &hex]), "binutils-avr", "")?;
     let mut script = String::new();
-    if let Some((pin, mv)) = supplies::at_pin(robot) {
+    if let Some((pin, mv)) = supplies::rail_pin(robot) {
         script += &format!("analogue {} {mv}\n", pin.number());
     }
     for SerialByte { cycle, byte } in received {

@@ -1,4 +1,5 @@
-//! A region of flash after the program, which is not part of it.
+//! The flash after the program, which holds the robot's section and is written separately
+//! from the program.
 //!
 //! Data that is written without a compiler lies at a fixed address. On the AVR that
 //! address is a constant of the program, so a region takes no RAM and reading it costs
@@ -7,19 +8,21 @@
 
 use crate::{Flash, Plain};
 
-/// True in a build whose code is longer, because avr-gcc alone links it. It is for simulators,
-/// so the region may end where the flash does, beyond a UNO's boot loader.
+/// True for a build linked by avr-gcc alone, without tools/linker, whose code is longer. It is
+/// for simulators, so the region may end where the flash does, beyond a UNO's boot loader.
 const IS_PLAIN: bool = match option_env!("LIZARD_PLAIN_LINK") {
     Some(set) => matches!(set.as_bytes(), b"1"),
     None => false,
 };
 
-/// The region's first address, after 27.5 KiB of code. The region ends where the boot loader
-/// of an Arduino UNO begins.
+/// The region's first address, after 27.5 KiB of code.
 pub const START: u16 = if IS_PLAIN { 0x7780 } else { 0x6e00 };
 
+/// The address after the region: where the boot loader of an Arduino UNO begins, or the flash ends.
+const END: u16 = if IS_PLAIN { 0x8000 } else { 0x7e00 };
+
 /// The size of the region in bytes.
-pub const SPACE: u16 = if IS_PLAIN { 0x8000 } else { 0x7e00 } - START;
+pub const SPACE: u16 = END - START;
 
 /// The region of flash that holds the robot's section.
 #[derive(Clone, Copy, Debug)]
@@ -60,8 +63,8 @@ impl<'a> Region<'a> {
         Self::new(self.bytes.get(..length.into()).unwrap_or(self.bytes))
     }
 
-    /// Reads the value whose bytes begin at `at`; zeros if it is not completely inside. Tests
-    /// panic in that case, unless the region is empty.
+    /// Reads the value whose bytes begin at `at`; zeros if it is not completely inside. Debug
+    /// builds panic in that case, unless the region is empty.
     pub fn read<T: Plain>(self, at: u16) -> T {
         self.assert_has(at, size_of::<T>());
         Flash::from(self.bytes).read(at.into())
@@ -117,7 +120,8 @@ impl<'a> Region<'a> {
     #[inline(always)]
     pub fn values<T: Plain>(self, at: u16, count: u16) -> Flash<'a, [T]> {
         let first = core::ptr::with_exposed_provenance(usize::from(START.wrapping_add(at)));
-        // SAFETY: as above.
+        // SAFETY: every address of flash can be read, and any bytes are values; the
+        // program does not write its flash.
         unsafe { Flash::new(core::ptr::slice_from_raw_parts(first, usize::from(count))) }
     }
 }

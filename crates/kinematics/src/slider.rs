@@ -1,4 +1,4 @@
-//! A slider between two arms, on either side of the robot: the RRPRR loop.
+//! A slider between two arms, one on each side of the robot: the RRPRR loop.
 //!
 //! Both arms are rigid with a crank, so their tips are known, and the prismatic joint
 //! lies on the line from the rear tip to the front one: length d = l12 + l13 + s,
@@ -29,7 +29,7 @@ pub struct Slider {
     pub nominal: f64,
 }
 
-/// A closed side. Points in mm from the rear shaft.
+/// The solved pose of one side's loop. Points in mm from the rear shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SliderPose<T = f64> {
     /// Tip of the rear arm.
@@ -38,7 +38,7 @@ pub struct SliderPose<T = f64> {
     pub front_tip: Vector<T>,
     /// The front shaft.
     pub front_shaft: Vector<T>,
-    /// From the rear tip to the front one.
+    /// Vector from the rear tip to the front one, mm.
     pub span: Vector<T>,
     /// Length of the span, mm: d.
     pub d: T,

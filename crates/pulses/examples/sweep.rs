@@ -7,7 +7,7 @@
 #![no_std]
 #![no_main]
 #![feature(abi_avr_interrupt)]
-#![allow(unsafe_code)] // Registers, and interrupts let in.
+#![allow(unsafe_code)] // Registers, and enabling interrupts.
 
 use avr_device::atmega328p::{Peripherals, USART0};
 use panic_halt as _;
@@ -39,13 +39,13 @@ mod servos {
     servo_pulses::engine!(later: 8);
 }
 
-/// The last received bytes, and their number modulo 256: the handler advances the count, and
+/// A ring buffer, and the count of bytes received, modulo 256. The handler advances the count, and
 /// main follows it.
 static RING: [Byte; 16] = [const { Byte::new(0) }; 16];
 static RECEIVED: Byte = Byte::new(0);
 
-/// The width of a servo in a frame: 1000 to 2000 us and back, by steps of this many cycles
-/// that no two servos move in the same way.
+/// The width of a servo in a frame, cycles: a triangle wave from 1000 to 2000 us; each servo has
+/// its own step per frame.
 fn width(servo: u8, frame: u16) -> u16 {
     let step = 16 * u16::from(servo) + 5;
     let ramp = frame.wrapping_mul(step) % 32_000;
@@ -97,7 +97,7 @@ fn main() -> ! {
 fn USART_RX() {
     // SAFETY: only this handler reads UDR0.
     let byte = unsafe { &*USART0::ptr() }.udr0.read().bits();
-    let came = RECEIVED.get();
-    RING[usize::from(came & 15)].set(byte);
-    RECEIVED.set(came.wrapping_add(1));
+    let received = RECEIVED.get();
+    RING[usize::from(received & 15)].set(byte);
+    RECEIVED.set(received.wrapping_add(1));
 }

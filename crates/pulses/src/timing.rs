@@ -1,7 +1,7 @@
 //! The lengths of slots, frames and pulses.
 
-/// Cycles from a compare match to the moment after which the edge follows at a fixed
-/// distance. At most 255, because the wait is counted in a byte.
+/// Cycles from the compare match until the handler stops waiting; the edge follows a fixed
+/// time later. At most 255, because the wait is counted in a byte.
 pub const LEAD: u8 = 220;
 
 /// CPU cycles in a microsecond, each counted by Timer1: the CPU runs at 16 MHz.
@@ -22,9 +22,9 @@ const MIN_SLOT_CYCLES: u32 = 40_000;
 /// The longest slot, 4 ms, as with four servos.
 const MAX_SLOT_CYCLES: u32 = 64_000;
 
-/// Cycles of a slot with this many servos: 20 ms shared by them and the slot of the tick.
-/// But 2.5 ms at least, so that with eight servos a frame takes 22.5 ms, and 4 ms at most,
-/// so that it takes 16 ms with three.
+/// Cycles of a slot with this many servos: 20 ms shared by their slots and one slot without a
+/// pin, which opens with the tick. But 2.5 ms at least, so that with eight servos a frame takes
+/// 22.5 ms, and 4 ms at most, so that it takes 16 ms with three.
 ///
 /// # Panics
 /// If there is no servo or more than eight, while the program is compiled.
@@ -35,7 +35,7 @@ pub const fn slot_cycles(servos: usize) -> u16 {
         "an engine has one to eight servos"
     );
     let even = FRAME_CYCLES / (servos as u32 + 1);
-    // With less than four servos a slot would not fit 16 bits.
+    // With fewer than four servos a slot would not fit 16 bits.
     if even > MAX_SLOT_CYCLES {
         return MAX_SLOT_CYCLES as u16;
     }
@@ -48,7 +48,7 @@ pub const fn slot_cycles(servos: usize) -> u16 {
 /// Cycles from one pulse of a servo to its next.
 ///
 /// # Panics
-/// As [`slot_cycles`].
+/// Panics as [`slot_cycles`] does.
 #[must_use]
 pub const fn frame_cycles(servos: usize) -> u32 {
     (servos as u32 + 1) * slot_cycles(servos) as u32
@@ -57,7 +57,7 @@ pub const fn frame_cycles(servos: usize) -> u32 {
 /// The longest pulse that can be made, cycles.
 ///
 /// # Panics
-/// As [`slot_cycles`].
+/// Panics as [`slot_cycles`] does.
 #[must_use]
 pub const fn max_width(servos: usize) -> u16 {
     slot_cycles(servos) - MARGIN
@@ -85,7 +85,7 @@ mod tests {
                 max_width(servos) >= 2_400 * CYCLES_PER_US,
                 "{servos} servos"
             );
-            // Every 25 ms at least, every 8 ms at most: analogue servos take both.
+            // Analogue servos accept a pulse every 8 to 22.5 ms.
             let ms = f64::from(frame_cycles(servos)) / 16_000.0;
             assert!((8.0..=22.5).contains(&ms), "{servos} servos: {ms} ms");
         }

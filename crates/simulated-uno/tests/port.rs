@@ -1,9 +1,8 @@
 //! The simulated UNO behind a serial port, as another program meets it.
 //!
-//! A program of its own, in which nothing is started while a port is open: a compiler that
-//! another test starts has a copy of every open file between `fork` and `exec`. A port
-//! closed then is still open in that copy, so that the next opening is not the first and
-//! resets nothing, as with a board on USB.
+//! A separate test binary. A process that another test forks would inherit the open port until
+//! its `exec`, so closing the port here would not close the last copy, and reopening it would
+//! not reset the board.
 
 use std::fs::{File, OpenOptions};
 use std::io::{Read, Write};
@@ -39,7 +38,7 @@ const ECHO: &str = r#"
         }
     }"#;
 
-/// Compiled once, and before any test has a port: each begins with an [`echo`].
+/// Compiled once, forced by [`echo`] before any port opens.
 static IMAGE: LazyLock<Image> = LazyLock::new(|| avr_gcc::c(ECHO));
 
 fn echo() -> Uno {
@@ -55,7 +54,7 @@ fn serve_board() -> Background {
 
 fn stop_board(board: Background) -> Uno {
     let uno = LIMIT.within("the end of the port's thread", || board.stop());
-    uno.expect("the port was well")
+    uno.expect("the port had no error")
 }
 
 fn open(path: &Path) -> File {
@@ -68,16 +67,16 @@ fn read(port: &File, count: usize) -> String {
 }
 
 fn bytes(port: &File, count: usize) -> Vec<u8> {
-    let mut port = port.try_clone().expect("another of it");
+    let mut port = port.try_clone().expect("a cloned handle");
     let what = format!("{count} bytes from the chip");
     LIMIT.within(&what, move || {
         let mut bytes = vec![0; count];
-        port.read_exact(&mut bytes).expect("bytes come");
+        port.read_exact(&mut bytes).expect("bytes arrive");
         bytes
     })
 }
 
-/// Lets the chip live for so long by its own time, however slow the machine.
+/// Serves the port until the chip has run for `ms`.
 fn serve(port: &mut Port, uno: &mut Uno, ms: u64) {
     let end = uno.cycle() + ms * CYCLES_PER_MS;
     LIMIT.expect("the chip's time to pass", || {
@@ -110,10 +109,11 @@ fn a_program_at_another_speed_than_the_chip_reads_other_bytes() {
     assert_eq!(read(&port, 2), "<r");
     let mut settings = tcgetattr(&port).expect("its settings");
     settings.set_speed(57_600).expect("a speed");
-    tcsetattr(&port, OptionalActions::Now, &settings).expect("they are taken");
+    tcsetattr(&port, OptionalActions::Now, &settings).expect("settings accepted");
     port.write_all(b"0").expect("it takes bytes");
-    // The chip reads 0, as data_sheet/serial.rs has it, and sends 1 twice as fast as is read:
-    // at its bits 3.1, 5.1 and 7.1, which are 0, at its stop bit and in the silence.
+    // The chip reads 0, as data_sheet/serial.rs has it, and sends 1. The host samples the byte
+    // at half the rate, at 3.1, 5.1 and 7.1 of the chip's bit times, which are 0, in its stop
+    // bit and in the silence.
     assert_eq!(bytes(&port, 1), [0b1111_1000]);
     drop(port);
     stop_board(board);
@@ -187,8 +187,8 @@ fn the_chip_keeps_time_with_the_wall_clock() {
     serve(&mut port, &mut uno, 100);
     let wall = start.elapsed().as_secs_f64();
     let chip = uno.cycle() as f64 / FREQUENCY as f64;
-    // Never ahead by more than the slice under way. It is behind where this test was held
-    // up, nobody knows how far.
+    // Never ahead by more than the slice under way. It may lag by any amount on a loaded
+    // machine, so only the lead is checked.
     assert!(chip <= wall + 0.01, "{chip} s in {wall} s");
 }
 

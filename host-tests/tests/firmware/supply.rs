@@ -7,21 +7,21 @@ use simulated_uno::{Fidelity, Pin};
 use crate::kept::{flashes, pulses_in, widths_now};
 use crate::{Status, awake, first_moving_gait, robot_after};
 
-/// The largest error of a reading, V: a step of the converter at 5.5 V, and two decimals.
-const STEP: f64 = 0.04;
+/// The largest error of a reading of the board's supply, V: a step of the converter at 5.5 V, and two decimals.
+const BOARD_ERROR_V: f64 = 0.04;
 
 /// The first pin that can measure a rail, by its Arduino number.
 const ANALOGUE: u8 = 14;
 
-/// The lines about the supply since line `from`, and the voltage that each tells.
+/// The lines about the supply since line `from`, and the voltage in each.
 fn notes(bench: &mut FirmwareBench, from: usize) -> Vec<(String, f64)> {
     let lines = &bench.lines()[from..];
     let printed = lines
         .iter()
         .filter_map(|line| line.text.strip_prefix("# supply: "));
     let printed = printed.map(|text| {
-        let (volts, what) = text.split_once(" V, ").expect("volts and what follows");
-        (what.to_owned(), volts.parse().expect("a number"))
+        let (volts, reaction) = text.split_once(" V, ").expect("volts and the reaction");
+        (reaction.to_owned(), volts.parse().expect("a number"))
     });
     printed.collect()
 }
@@ -29,22 +29,22 @@ fn notes(bench: &mut FirmwareBench, from: usize) -> Vec<(String, f64)> {
 #[test]
 fn status_tells_the_supply_within_thirty_millivolts() {
     let mut bench = awake(Fidelity::DataSheet);
-    let mut farthest = 0f64;
+    let mut max_error = 0f64;
     for mv in (2_700..=5_500).step_by(35) {
         bench.uno.set_supply_mv(f64::from(mv));
         bench.run_ms(120);
         let printed = Status::of(&mut bench).number("vcc");
-        farthest = farthest.max((printed - f64::from(mv) / 1000.0).abs());
+        max_error = max_error.max((printed - f64::from(mv) / 1000.0).abs());
     }
-    assert!(farthest <= 0.030, "{farthest} V");
+    assert!(max_error <= 0.030, "{max_error} V");
 }
 
 /// Lowers a supply through its thresholds, V: at each, the robot must report its reaction, and the
-/// voltage to within `step`.
-fn assert_sinks(
+/// voltage to within `tolerance`.
+fn assert_reacts_at(
     bench: &mut FirmwareBench,
     thresholds: [f64; 3],
-    step: f64,
+    tolerance: f64,
     set: impl Fn(&mut FirmwareBench, f64),
 ) {
     let from = bench.lines().len();
@@ -59,7 +59,10 @@ fn assert_sinks(
         }
     }
     let printed = notes(bench, from);
-    let words: Vec<&str> = printed.iter().map(|(what, _)| what.as_str()).collect();
+    let words: Vec<&str> = printed
+        .iter()
+        .map(|(reaction, _)| reaction.as_str())
+        .collect();
     assert_eq!(
         words,
         [
@@ -69,18 +72,21 @@ fn assert_sinks(
         ]
     );
     for ((truth, (_, printed)), threshold) in true_at.iter().zip(&printed).zip(thresholds) {
-        assert!((truth - threshold).abs() <= step, "{truth}, {threshold}");
-        assert!((printed - truth).abs() <= step, "{printed}, {truth}");
+        assert!(
+            (truth - threshold).abs() <= tolerance,
+            "{truth}, {threshold}"
+        );
+        assert!((printed - truth).abs() <= tolerance, "{printed}, {truth}");
     }
 }
 
 #[test]
 fn a_sinking_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
     let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
-    assert_sinks(
+    assert_reacts_at(
         &mut bench,
         robot().supplies().board,
-        STEP,
+        BOARD_ERROR_V,
         |bench, volts| {
             bench.uno.set_supply_mv(1000.0 * volts);
         },
@@ -146,14 +152,14 @@ fn a_supply_that_has_recovered_allows_everything_and_begins_nothing() {
         if good_at.is_none()
             && notes(&mut bench, from)
                 .iter()
-                .any(|(what, _)| what == "good")
+                .any(|(reaction, _)| reaction == "good")
         {
             good_at = Some(f64::from(mv) / 1000.0);
         }
     }
     let good_at = good_at.expect("it is good at last");
     assert!(
-        (good_at - slow - 0.150).abs() <= STEP,
+        (good_at - slow - 0.150).abs() <= BOARD_ERROR_V,
         "{good_at}: 150 mV above"
     );
     assert_eq!(widths_now(&mut bench), held, "nothing has moved");
@@ -175,7 +181,7 @@ fn a_supply_that_has_recovered_allows_everything_and_begins_nothing() {
 fn a_short_dip_and_a_supply_that_wavers_change_little() {
     let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
     let from = bench.lines().len();
-    // A servo's start takes a few milliseconds of it.
+    // A starting servo pulls the supply down for some milliseconds.
     for n in 0..200u64 {
         bench.uno.set_supply_mv(3_300.0);
         bench.uno.run_cycles(15 * 16_000 + n * 997);
@@ -195,7 +201,7 @@ fn a_short_dip_and_a_supply_that_wavers_change_little() {
     assert_eq!(printed.len(), 1, "{printed:?}");
 }
 
-/// A robot whose rail has this many volts.
+/// Sets the voltage of the servos' rail, as the divider shows it to the pin.
 fn set_rail(bench: &mut FirmwareBench, rail: &Rail, volts: f64) {
     let mv = (1000.0 * volts / rail.ratio).round() as u16;
     bench.uno.set_analog_mv(Pin::arduino(rail.pin), mv);
@@ -236,27 +242,27 @@ fn status_tells_the_servos_rail_where_robot_toml_names_its_pin() {
         set_rail(&mut bench, &rail, volts);
         bench.run_ms(120);
         let printed = Status::of(&mut bench).number("rail");
-        let limit = rail_step(&rail, volts);
-        assert!((printed - volts).abs() <= limit, "{printed}, {volts}");
+        let tolerance = rail_tolerance(&rail, volts);
+        assert!((printed - volts).abs() <= tolerance, "{printed}, {volts}");
     }
 }
 
 /// The largest error of a rail's reading, V: a step of the converter either way for the
 /// rail and for the reference, and two decimals.
-fn rail_step(rail: &Rail, volts: f64) -> f64 {
+fn rail_tolerance(rail: &Rail, volts: f64) -> f64 {
     0.01 + rail.ratio * 5.0 / 1024.0 + volts / 225.0
 }
 
 #[test]
-fn a_sinking_rail_slows_stops_and_rests_the_robot_with_any_board_supply() {
+fn a_sinking_rail_slows_stops_and_rests_the_robot_with_a_good_board_supply() {
     let Some(rail) = robot().supplies().rail else {
         return assert_no_rail();
     };
     let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
-    let step = rail_step(&rail, rail.thresholds[0]);
-    assert_sinks(&mut bench, rail.thresholds, step, |bench, volts| {
+    let tolerance = rail_tolerance(&rail, rail.thresholds[0]);
+    assert_reacts_at(&mut bench, rail.thresholds, tolerance, |bench, volts| {
         set_rail(bench, &rail, volts);
     });
     assert!(pulses_in(&mut bench, 200).iter().all(Vec::is_empty));
-    assert!((Status::of(&mut bench).number("vcc") - 5.0).abs() <= STEP);
+    assert!((Status::of(&mut bench).number("vcc") - 5.0).abs() <= BOARD_ERROR_V);
 }

@@ -10,7 +10,7 @@ use object::elf;
 
 use crate::code::Code;
 use crate::edit::{Edit, Reference};
-use crate::instruction::{is_branch, is_near_jump, skips};
+use crate::instruction::{is_branch, is_rjmp, skips};
 
 /// The reach of a branch, bytes. Later edits bring code no farther apart.
 const REACH: u64 = 2 * 60;
@@ -29,7 +29,7 @@ pub fn edit(
         .find_map(|(index, pair)| {
             let [branch, jump] = pair else { return None };
             let skipped = index > 0 && skips(code.instructions[index - 1].code);
-            if skipped || !is_branch(branch.code) || !is_near_jump(jump.code) {
+            if skipped || !is_branch(branch.code) || !is_rjmp(jump.code) {
                 return None;
             }
             let next = jump.offset + 2;

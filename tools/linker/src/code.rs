@@ -1,7 +1,7 @@
 //! The code of one function: its instructions and their references.
 
 use crate::edit::Reference;
-use crate::instruction::{is_long, is_relative};
+use crate::instruction::{is_relative, is_two_words};
 
 /// An instruction and its offset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,7 +36,7 @@ impl Code {
                 offset: at as u64,
                 code,
             });
-            at += if is_long(code) { 4 } else { 2 };
+            at += if is_two_words(code) { 4 } else { 2 };
         }
         let code = Self {
             instructions,

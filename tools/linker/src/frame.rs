@@ -41,8 +41,8 @@ use object::elf;
 use crate::code::Code;
 use crate::edit::{Edit, Reference};
 use crate::instruction::{
-    CALL, JMP, POINTER_FROM_STACK, RET, RETI, STACK_FROM_POINTER, has_frame_pointer,
-    has_stack_pointer, load_r26, popped, pushed,
+    CALL, JMP, READ_STACK_POINTER, RET, RETI, WRITE_STACK_POINTER, accesses_stack_pointer,
+    encode_ldi_r26, may_use_frame_pointer, popped_register, pushed_register,
 };
 
 /// The call-saved registers, in the order in which they are pushed.
@@ -78,7 +78,7 @@ pub struct Frame {
 impl Frame {
     /// Recognizes the frame of a function; `None` if it has another form.
     pub fn of(code: &Code) -> Option<Self> {
-        let registers: Vec<u8> = code.words(0).map_while(pushed).collect();
+        let registers: Vec<u8> = code.words(0).map_while(pushed_register).collect();
         let ascending = registers.windows(2).all(|pair| pair[0] < pair[1]);
         let lowest = *registers.first()?;
         if !ascending || !registers.iter().all(|register| SAVED.contains(register)) {
@@ -107,9 +107,9 @@ impl Frame {
                 let start = code.offset(index);
                 ends.push((start, code.offset(index + words) - start));
                 index += words;
-            } else if has_stack_pointer(at.code)
-                || popped(at.code).is_some()
-                || pushed(at.code).is_some()
+            } else if accesses_stack_pointer(at.code)
+                || popped_register(at.code).is_some()
+                || pushed_register(at.code).is_some()
                 || at.code == RET
                 || at.code == RETI
                 || has_room && !is_same && !is_local(code, index, room)
@@ -132,7 +132,7 @@ impl Frame {
         let goes = |at, remove, code, symbol| Edit {
             at,
             remove,
-            insert: vec![load_r26(self.room), code, 0],
+            insert: vec![encode_ldi_r26(self.room), code, 0],
             references: vec![Reference {
                 offset: 2,
                 kind: elf::R_AVR_CALL,
@@ -153,7 +153,7 @@ impl Frame {
 /// The room that a prologue makes below the registers, and the number of instructions for it.
 fn room(code: &Code, index: usize) -> Option<(u8, usize)> {
     let words: Vec<u16> = code.words(index).take(9).collect();
-    let (down, rest) = words.strip_prefix(&POINTER_FROM_STACK)?.split_first()?;
+    let (down, rest) = words.strip_prefix(&READ_STACK_POINTER)?.split_first()?;
     let (room, rest, count) = match (down, rest.split_first()) {
         // sbiw r28
         (down, _) if down & 0xff30 == 0x9720 => (down >> 2 & 0x30 | down & 0x0f, rest, 8),
@@ -163,7 +163,7 @@ fn room(code: &Code, index: usize) -> Option<(u8, usize)> {
         }
         _ => return None,
     };
-    rest.starts_with(&STACK_FROM_POINTER)
+    rest.starts_with(&WRITE_STACK_POINTER)
         .then_some((room as u8, count))
 }
 
@@ -172,7 +172,7 @@ fn room(code: &Code, index: usize) -> Option<(u8, usize)> {
 fn is_local(code: &Code, index: usize, room: u8) -> bool {
     let words: Vec<u16> = code.words(index).take(3).collect();
     let distance = match *words.as_slice() {
-        [word, ..] if !has_frame_pointer(word) => return true,
+        [word, ..] if !may_use_frame_pointer(word) => return true,
         // ldd and std with Y+q, of other registers than r28 and r29
         [word, ..] if word & 0xd008 == 0x8008 && word & 0x01e0 != 0x01c0 => {
             word >> 8 & 0x20 | word >> 7 & 0x18 | word & 7
@@ -218,15 +218,15 @@ fn end(code: &Code, index: usize, registers: &[u8], room: u8, has_room: bool) ->
             }
             count += 1;
         }
-        for word in STACK_FROM_POINTER {
+        for word in WRITE_STACK_POINTER {
             if words.next()? != word {
                 return None;
             }
         }
-        count += STACK_FROM_POINTER.len();
+        count += WRITE_STACK_POINTER.len();
     }
     for register in registers.iter().rev() {
-        if popped(words.next()?) != Some(*register) {
+        if popped_register(words.next()?) != Some(*register) {
             return None;
         }
     }

@@ -1,26 +1,27 @@
 //! The properties of an AVR instruction that matter here, from the AVR Instruction Set
 //! Manual.
 
-/// The code of `ret`.
+/// The opcode of `ret`.
 pub const RET: u16 = 0x9508;
-/// The code of `reti`.
+/// The opcode of `reti`.
 pub const RETI: u16 = 0x9518;
 /// The first word of `call`, whose target is in the next word.
 pub const CALL: u16 = 0x940e;
-/// The first word of `jmp`, likewise.
+/// The first word of `jmp`, whose target is in the next word.
 pub const JMP: u16 = 0x940c;
-/// `in r28, SPL` and `in r29, SPH`.
-pub const POINTER_FROM_STACK: [u16; 2] = [0xb7cd, 0xb7de];
-/// `in r0, SREG`, `cli`, `out SPH, r29`, `out SREG, r0`, `out SPL, r28`.
-pub const STACK_FROM_POINTER: [u16; 5] = [0xb60f, 0x94f8, 0xbfde, 0xbe0f, 0xbfcd];
+/// Copies the stack pointer to the frame pointer: `in r28, SPL`, `in r29, SPH`.
+pub const READ_STACK_POINTER: [u16; 2] = [0xb7cd, 0xb7de];
+/// Copies the frame pointer to the stack pointer, in a prologue and in an epilogue: `in r0, SREG`,
+/// `cli`, `out SPH, r29`, `out SREG, r0`, `out SPL, r28`.
+pub const WRITE_STACK_POINTER: [u16; 5] = [0xb60f, 0x94f8, 0xbfde, 0xbe0f, 0xbfcd];
 
 /// True for an instruction of two words: `lds`, `sts`, `jmp`, `call`.
-pub const fn is_long(code: u16) -> bool {
+pub const fn is_two_words(code: u16) -> bool {
     code & 0xfe0f == 0x9000 || code & 0xfe0f == 0x9200 || code & 0xfe0c == 0x940c
 }
 
 /// The register that an instruction pushes, if it is a `push`.
-pub const fn pushed(code: u16) -> Option<u8> {
+pub const fn pushed_register(code: u16) -> Option<u8> {
     if code & 0xfe0f == 0x920f {
         Some((code >> 4 & 0x1f) as u8)
     } else {
@@ -29,7 +30,7 @@ pub const fn pushed(code: u16) -> Option<u8> {
 }
 
 /// The register that an instruction pops, if it is a `pop`.
-pub const fn popped(code: u16) -> Option<u8> {
+pub const fn popped_register(code: u16) -> Option<u8> {
     if code & 0xfe0f == 0x900f {
         Some((code >> 4 & 0x1f) as u8)
     } else {
@@ -38,7 +39,7 @@ pub const fn popped(code: u16) -> Option<u8> {
 }
 
 /// The instruction `ldi r26, value`.
-pub const fn load_r26(value: u8) -> u16 {
+pub const fn encode_ldi_r26(value: u8) -> u16 {
     let value = value as u16;
     0xe0a0 | value << 4 & 0x0f00 | value & 0x0f
 }
@@ -54,7 +55,7 @@ pub const fn is_branch(code: u16) -> bool {
 }
 
 /// True for `rjmp`.
-pub const fn is_near_jump(code: u16) -> bool {
+pub const fn is_rjmp(code: u16) -> bool {
     code & 0xf000 == 0xc000
 }
 
@@ -69,35 +70,38 @@ pub const fn skips(code: u16) -> bool {
 }
 
 /// True if an instruction reads or writes the stack pointer by `in` or `out`.
-pub const fn has_stack_pointer(code: u16) -> bool {
+pub const fn accesses_stack_pointer(code: u16) -> bool {
     let port = code >> 5 & 0x30 | code & 0x0f;
     code & 0xf000 == 0xb000 && (port == 0x3d || port == 0x3e)
 }
 
 /// True if an instruction has r28 or r29 as an operand, or uses Y. `lpm`, which has no operand,
 /// is also counted as one that does.
-pub fn has_frame_pointer(code: u16) -> bool {
+pub fn may_use_frame_pointer(code: u16) -> bool {
     let is = |register: u16| register == 28 || register == 29;
     let first = code >> 4 & 0x1f;
     let second = code >> 5 & 0x10 | code & 0x0f;
     let upper = 16 + (code >> 4 & 0x0f);
     match code {
-        // nop and movw, of pairs; products of r16 to r31
+        // nop and movw, of register pairs
         0x0000..=0x01ff => upper == 16 + 14 || code & 0x0f == 14,
+        // muls, mulsu and fmul*, of r16 to r31
         0x0200..=0x03ff => is(upper) || is(16 + (code & 0x0f)),
-        // With two registers; mul
+        // Two register operands; mul
         0x0400..=0x2fff | 0x9c00..=0x9fff => is(first) || is(second),
-        // With a number
+        // Immediate operand
         0x3000..=0x7fff | 0xe000..=0xefff => is(upper),
         // ldd and std
         0x8000..=0x8fff | 0xa000..=0xafff => is(first) || code & 8 != 0,
-        // Other loads and stores; with one register; adiw and sbiw
+        // Other loads and stores
         0x9000..=0x93ff => is(first) || code & 0x0f == 9 || code & 0x0f == 10,
+        // One register operand
         0x9400..=0x95ff => is(first),
+        // adiw and sbiw
         0x9600..=0x97ff => code & 0x30 == 0x20,
-        // cbi and its like; rjmp, rcall and branches
+        // cbi, sbi, sbic, sbis; rjmp, rcall and branches
         0x9800..=0x9bff | 0xc000..=0xdfff | 0xf000..=0xf7ff => false,
-        // in and out; bld and its like
+        // in and out; bld, bst, sbrc, sbrs
         0xb000..=0xbfff | 0xf800..=0xffff => is(first),
     }
 }
@@ -106,6 +110,6 @@ pub fn has_frame_pointer(code: u16) -> bool {
 /// call: a compiler ends a function only with a call that never returns.
 pub const fn falls_through(code: u16) -> bool {
     let is_return = code == RET || code == RETI;
-    let is_jump = is_near_jump(code) || code & 0xfe0e == JMP || code & 0xffef == 0x9409;
+    let is_jump = is_rjmp(code) || code & 0xfe0e == JMP || code & 0xffef == 0x9409;
     !(is_return || is_jump || is_call(code))
 }

@@ -1,5 +1,5 @@
-//! The gaits of `robots/grain.toml` on pads that grip more backward than forward: how fast the
-//! robot is then, and what it costs where a gait goes against the grain.
+//! Pads can grip more backward than forward: the grain. Compares the speeds that the model and
+//! MuJoCo give the gaits of `robots/grain.toml` at five ratios of friction.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -14,9 +14,9 @@ use crate::mujoco::{Jobs, MujocoError};
 
 /// The name of the robot's file.
 pub const ROBOT: &str = "grain";
-/// Frictions backward over forward.
+/// Ratios of backward to forward friction.
 pub const RATIOS: [f64; 5] = [1.0, 1.1, 1.2, 1.5, 2.0];
-/// The gaits of which none is another's mirror image; true for those that push some pads against
+/// The gaits measured, without mirror images. The flag is true if a gait pushes some pads against
 /// the grain.
 pub const GAITS: [(&str, bool); 5] = [
     ("run", false),
@@ -25,14 +25,27 @@ pub const GAITS: [(&str, bool); 5] = [
     ("left", true),
     ("arc-left", false),
 ];
-/// Largest ratio at which a gait against the grain has to agree. Beyond it the pads that push hold
-/// hardly longer than the one that returns, and a little inertia decides.
-const AGAINST: f64 = 1.5;
-/// The allowed difference between MuJoCo and the model in a cycle: mm, share of the distance, deg.
-const BOUND: (f64, f64, f64) = (3.0, 0.2, 2.0);
+/// Largest ratio at which a gait against the grain has to agree. Above it the pushing pads have
+/// barely more grip than the returning one, so the result depends on inertia, which the model
+/// ignores.
+const MAX_RATIO_AGAINST: f64 = 1.5;
+/// The allowed difference between MuJoCo and the model in a cycle. For the distance, the larger
+/// of its two bounds counts.
+struct Bound {
+    mm: f64,
+    /// Share of the model's distance.
+    share: f64,
+    deg: f64,
+}
+
+const BOUND: Bound = Bound {
+    mm: 3.0,
+    share: 0.2,
+    deg: 2.0,
+};
 /// Time until a gait repeats from cycle to cycle, s: it starts from rest and has to bring the body
 /// to its speed first.
-const SETTLED: f64 = 1.5;
+const SETTLING_S: f64 = 1.5;
 
 /// The answers by gait, in the order of [`RATIOS`].
 pub type Grains = BTreeMap<String, Vec<Answers>>;
@@ -59,7 +72,8 @@ pub fn text(grains: &Grains) -> String {
     format!("{{\n{}\n}}\n", gaits.collect::<Vec<_>>().join(",\n"))
 }
 
-/// The model's answer for level feet; `None` where it depends on ties.
+/// The model's answer for level feet; `None` where it depends on a tie (two feet
+/// against two).
 pub fn model(robot: &Robot, gait: &CheckedGait, ratio: f64) -> Option<Displacement> {
     let ground = Ground {
         stance: Stance {
@@ -90,7 +104,7 @@ pub fn measure(robot: &Robot) -> Result<Grains, MujocoError> {
         ratios.map(|(index, ratio)| scene(name(gait.name(), index), &assembly, gait, ratio))
     });
     jobs.add(&assembly, scenes.map(|scene| (Legs::Rigid, scene)))?;
-    let by_mujoco = jobs.start()?.done()?;
+    let by_mujoco = jobs.start()?.wait()?;
     let grains = gaits.iter().map(|gait| {
         let answers = RATIOS
             .into_iter()
@@ -106,7 +120,7 @@ pub fn measure(robot: &Robot) -> Result<Grains, MujocoError> {
 
 fn scene(name: String, assembly: &Assembly, gait: &CheckedGait, ratio: f64) -> Scene {
     let robot = assembly.robot();
-    let cycles = (SETTLED / gait.period()).ceil() as u32 + 1;
+    let cycles = (SETTLING_S / gait.period()).ceil() as u32 + 1;
     Scene {
         name,
         ratio,
@@ -118,17 +132,17 @@ fn scene(name: String, assembly: &Assembly, gait: &CheckedGait, ratio: f64) -> S
 
 /// The messages for answers of MuJoCo that are too far from the model's.
 pub fn disagreements(grains: &Grains) -> Vec<String> {
-    let (mm, share, deg) = BOUND;
     let mut words = Vec::new();
     for (gait, against) in GAITS {
         for (ratio, answers) in RATIOS.into_iter().zip(&grains[gait]) {
             let Some(model) = answers.model else { continue };
-            let (off, turned) = answers.mujoco.distance_to(&model);
+            let (distance_error, turn_error) = answers.mujoco.distance_to(&model);
             let displacement = model.0[0].hypot(model.0[1]);
-            let far = off > mm.max(share * displacement) || turned > deg;
-            if far && !(against && ratio > AGAINST) {
+            let max_distance_error = BOUND.mm.max(BOUND.share * displacement);
+            let is_too_far = distance_error > max_distance_error || turn_error > BOUND.deg;
+            if is_too_far && !(against && ratio > MAX_RATIO_AGAINST) {
                 words.push(format!(
-                    "{ROBOT}: {gait} (r {ratio}): MuJoCo is {off:.1} mm and {turned:.1} deg from the model"
+                    "{ROBOT}: {gait} (r {ratio}): MuJoCo is {distance_error:.1} mm and {turn_error:.1} deg from the model"
                 ));
             }
         }

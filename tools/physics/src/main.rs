@@ -100,7 +100,7 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         "physics: {} walks by MuJoCo take some minutes",
         jobs.count()
     );
-    let by_mujoco = jobs.start()?.done()?;
+    let by_mujoco = jobs.start()?.wait()?;
 
     let (mut found, mut faults) = (Figures::default(), Vec::new());
     for ((of, robot), rows) in robots.iter().zip(&all) {

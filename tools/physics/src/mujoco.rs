@@ -149,7 +149,7 @@ impl RunningJudge {
     ///
     /// # Errors
     /// Fails if the judge ended early, or MuJoCo warned of a walk.
-    pub fn done(self) -> Result<BTreeMap<String, Displacement>, MujocoError> {
+    pub fn wait(self) -> Result<BTreeMap<String, Displacement>, MujocoError> {
         let output = self.judge.wait_with_output()?;
         if !output.status.success() {
             return Err(MujocoError::Ended(output.status));

@@ -34,8 +34,8 @@ export interface Simulated extends Link {
   contact(pin: number, isClosed: boolean): void;
 }
 
-/** Waits in simulated time. */
-export class Waits {
+/** Timers in simulated time. */
+export class Timers {
   private waiting: { due: number; done: () => void }[] = [];
 
   until(due: number): Promise<void> {

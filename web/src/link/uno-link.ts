@@ -2,14 +2,17 @@
 import type { Four } from '../robot';
 import { SimulatedBoard, FREQUENCY } from '../uno/board';
 import { Frames } from '../uno/frames';
-import { type Simulated, Waits } from './link';
+import { type Simulated, Timers } from './link';
 
 const CYCLES_PER_MS = FREQUENCY / 1000;
 /** Time that the chip runs between two reads of its output, ms. */
 const SLICE = 2;
 
+/** Callbacks for the servo pulses of the simulated board. */
 export interface UnoEvents {
+  /** Receives a frame: the width of each servo's pulse in cycles, 0 for none, and the cycle at which the first rose. */
   frame(widths: Four<number>, cycle: number): void;
+  /** Receives a pulse: its pin by the Arduino number, the cycle at which it rose, and its width in cycles. */
   pulse(pin: number, rise: number, width: number): void;
 }
 
@@ -18,12 +21,13 @@ export class UnoLink implements Simulated {
   readonly name = 'simulated UNO';
   onBytes: (bytes: Uint8Array) => void = () => {};
   onGone: (why: string) => void = () => {};
-  private readonly waits = new Waits();
+  private readonly timers = new Timers();
   private readonly frames: Frames;
   private sent: number[] = [];
   /** Time that the chip still has to run, cycles. */
-  private owed = 0;
+  private cyclesToRun = 0;
 
+  /** Takes the Arduino numbers of the servos' pins, A1 to A4. */
   constructor(
     readonly board: SimulatedBoard,
     pins: number[],
@@ -37,44 +41,51 @@ export class UnoLink implements Simulated {
     };
   }
 
+  /** Runs the board for this time, and passes on its bytes and pulses. */
   advance(ms: number): void {
     // Whole cycles only.
-    this.owed += Math.round(ms * CYCLES_PER_MS);
-    while (this.owed > 0) {
-      const slice = Math.min(this.owed, SLICE * CYCLES_PER_MS);
+    this.cyclesToRun += Math.round(ms * CYCLES_PER_MS);
+    while (this.cyclesToRun > 0) {
+      const slice = Math.min(this.cyclesToRun, SLICE * CYCLES_PER_MS);
       const before = this.board.cycle;
       this.board.run(slice);
-      // The last instruction may end some cycles late.
-      this.owed -= this.board.cycle - before;
+      // The last instruction may overrun the slice.
+      this.cyclesToRun -= this.board.cycle - before;
       this.frames.at(this.board.cycle);
       if (this.sent.length > 0) {
         const bytes = Uint8Array.from(this.sent);
         this.sent = [];
         this.onBytes(bytes);
       }
-      this.waits.at(this.board.cycle);
+      this.timers.at(this.board.cycle);
     }
   }
 
+  /** Sends bytes to the board. */
   async write(bytes: Uint8Array): Promise<void> {
     this.board.send(bytes);
   }
 
+  /** Resets the board by its reset pin. */
   async reset(): Promise<void> {
     this.board.reset('external');
   }
 
+  /** Sets the voltage of the board's supply. */
   supply(volts: number): void {
     this.board.supply(volts);
   }
 
+  /** Opens or closes a contact between a pin, by its Arduino number, and ground. */
   contact(pin: number, isClosed: boolean): void {
     this.board.contact(pin, isClosed);
   }
 
+  /** Waits for this time of the simulated board. */
   wait(ms: number): Promise<void> {
-    return this.waits.until(this.board.cycle + ms * CYCLES_PER_MS);
+    return this.timers.until(this.board.cycle + ms * CYCLES_PER_MS);
   }
 
+  /** Does nothing: no port is open. */
   async close(): Promise<void> {}
 }

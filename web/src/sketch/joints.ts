@@ -13,12 +13,12 @@ export interface Bar {
 export interface Joint {
   name: string;
   at: Point;
-  /** The lengths with the joint at a point; `alike` keeps left and right equal. */
-  moved(to: Point, alike: boolean): Edits;
+  /** The edits that put the joint at `to`. If `isSymmetric`, the other side changes with it. */
+  lengthsAt(to: Point, isSymmetric: boolean): Edits;
 }
 
-const links = (n: number) => `links.l${n}`;
-/** Lengths are whole halves of a mm. */
+const linkKey = (n: number) => `links.l${n}`;
+/** Rounds to 0.5 mm. */
 const round = (mm: number) => Math.round(mm * 2) / 2;
 const distance = ([x, y]: Point, [u, v]: Point) => Math.hypot(x - u, y - v);
 
@@ -40,25 +40,26 @@ const ENDS = [
   { name: 'tail', left: 3, right: 2, base: 5, leftCrank: 6, leftCoupler: 7, rightCoupler: 8, rightCrank: 9 },
 ] as const;
 
+/** The bars of the robot's loops and legs, in its neutral pose. */
 export function bars({ shafts, tips, points, sliders, legs }: Scene): Bar[] {
   const bar = (key: string, from: Point, to: Point): Bar => ({ key, from, to });
   return [
     ...SIDES.flatMap((side, n) => {
       const { tips: [front, rear], tube } = sliders[n];
       return [
-        bar(links(side.chassis), shafts[side.front], shafts[side.rear]),
-        bar(links(side.frontArm), shafts[side.front], front),
-        bar(links(side.rearArm), shafts[side.rear], rear),
-        bar(links(side.rearHalf), rear, tube),
-        bar(links(side.frontHalf), tube, front),
+        bar(linkKey(side.chassis), shafts[side.front], shafts[side.rear]),
+        bar(linkKey(side.frontArm), shafts[side.front], front),
+        bar(linkKey(side.rearArm), shafts[side.rear], rear),
+        bar(linkKey(side.rearHalf), rear, tube),
+        bar(linkKey(side.frontHalf), tube, front),
       ];
     }),
     ...ENDS.flatMap((end, n) => [
-      bar(links(end.base), shafts[end.left], shafts[end.right]),
-      bar(links(end.leftCrank), shafts[end.left], tips[end.left]),
-      bar(links(end.rightCrank), shafts[end.right], tips[end.right]),
-      bar(links(end.leftCoupler), tips[end.left], points[n]),
-      bar(links(end.rightCoupler), tips[end.right], points[n]),
+      bar(linkKey(end.base), shafts[end.left], shafts[end.right]),
+      bar(linkKey(end.leftCrank), shafts[end.left], tips[end.left]),
+      bar(linkKey(end.rightCrank), shafts[end.right], tips[end.right]),
+      bar(linkKey(end.leftCoupler), tips[end.left], points[n]),
+      bar(linkKey(end.rightCoupler), tips[end.right], points[n]),
     ]),
     ...legs.flatMap(({ pivots, joints }) => [
       bar('leg.ground', pivots[0], pivots[1]),
@@ -69,45 +70,46 @@ export function bars({ shafts, tips, points, sliders, legs }: Scene): Bar[] {
   ];
 }
 
+/** The joints that can be dragged; `value` is a length in robot.toml by its key, mm. */
 export function joints({ shafts, tips, points, sliders, legs }: Scene, value: (key: string) => number): Joint[] {
   /** Changes both halves of a slider with the distance of its ends, so that its travel is unchanged. */
-  const halves = (side: (typeof SIDES)[number], longer: number): Edits => [
-    [links(side.rearHalf), round(value(links(side.rearHalf)) + longer / 2)],
-    [links(side.frontHalf), round(value(links(side.frontHalf)) + longer / 2)],
+  const halves = (side: (typeof SIDES)[number], change: number): Edits => [
+    [linkKey(side.rearHalf), round(value(linkKey(side.rearHalf)) + change / 2)],
+    [linkKey(side.frontHalf), round(value(linkKey(side.frontHalf)) + change / 2)],
   ];
   const cranks = ENDS.flatMap((end): Joint[] =>
     (['left', 'right'] as const).map((hand) => {
       const servo = end[hand];
-      const [own, other] = hand === 'left' ? [end.leftCrank, end.rightCrank] : [end.rightCrank, end.leftCrank];
+      const [ownKey, otherKey] = hand === 'left' ? [end.leftCrank, end.rightCrank] : [end.rightCrank, end.leftCrank];
       return {
         name: `end of the ${end.name}'s ${hand} crank`,
         at: tips[servo],
-        moved: (to, alike) => [own, ...(alike ? [other] : [])].map((n) => [links(n), round(along(shafts[servo], tips[servo], to))]),
+        lengthsAt: (to, isSymmetric) => [ownKey, ...(isSymmetric ? [otherKey] : [])].map((n) => [linkKey(n), round(along(shafts[servo], tips[servo], to))]),
       };
     }),
   );
   const ends = ENDS.map((end, n): Joint => ({
     name: `point of the ${end.name}`,
     at: points[n],
-    moved(to, alike) {
+    lengthsAt(to, isSymmetric) {
       const middle = (tips[end.left][0] + tips[end.right][0]) / 2;
-      const at: Point = alike ? [middle, to[1]] : to;
-      return [[links(end.leftCoupler), round(distance(tips[end.left], at))], [links(end.rightCoupler), round(distance(tips[end.right], at))]];
+      const at: Point = isSymmetric ? [middle, to[1]] : to;
+      return [[linkKey(end.leftCoupler), round(distance(tips[end.left], at))], [linkKey(end.rightCoupler), round(distance(tips[end.right], at))]];
     },
   }));
   const arms = SIDES.flatMap((side, n): Joint[] =>
-    (['front', 'rear'] as const).map((place, which) => {
+    (['front', 'rear'] as const).map((place) => {
       const { tips: [front, rear] } = sliders[n];
       const [shaft, tip, key] = place === 'front' ? [shafts[side.front], front, 'frontArm' as const] : [shafts[side.rear], rear, 'rearArm' as const];
       return {
         name: `end of the ${place} ${side.name} arm`,
-        at: [front, rear][which],
-        moved(to, alike) {
+        at: tip,
+        lengthsAt(to, isSymmetric) {
           const length = round(along(shaft, tip, to));
-          const share = length / distance(shaft, tip);
-          const moved: Point = [shaft[0] + share * (tip[0] - shaft[0]), shaft[1] + share * (tip[1] - shaft[1])];
-          const longer = place === 'front' ? distance(moved, rear) - distance(front, rear) : distance(front, moved) - distance(front, rear);
-          return (alike ? SIDES : [side]).flatMap((each): Edits => [[links(each[key]), length], ...halves(each, longer)]);
+          const scale = length / distance(shaft, tip);
+          const movedTip: Point = [shaft[0] + scale * (tip[0] - shaft[0]), shaft[1] + scale * (tip[1] - shaft[1])];
+          const change = place === 'front' ? distance(movedTip, rear) - distance(front, rear) : distance(front, movedTip) - distance(front, rear);
+          return (isSymmetric ? SIDES : [side]).flatMap((each): Edits => [[linkKey(each[key]), length], ...halves(each, change)]);
         },
       };
     }),
@@ -116,20 +118,21 @@ export function joints({ shafts, tips, points, sliders, legs }: Scene, value: (k
     (['left', 'right'] as const).map((hand) => ({
       name: `the ${end.name}'s ${hand} servo`,
       at: shafts[end[hand]],
-      moved(to) {
+      lengthsAt(to) {
         const [own, other] = [shafts[end[hand]], shafts[end[hand === 'left' ? 'right' : 'left']]];
         const middle = (own[0] + other[0]) / 2;
-        const longer = round((n === 0 ? 1 : -1) * (to[1] - own[1]));
-        // Both sides, so that the chassis stays a rectangle or a trapezium.
-        const chassis = SIDES.flatMap((side): Edits => (longer === 0 ? [] : [[links(side.chassis), value(links(side.chassis)) + longer], ...halves(side, longer)]));
-        return [[links(end.base), round(2 * Math.abs(to[0] - middle))], ...chassis];
+        // The head's servos move outward by +y, the tail's by -y.
+        const change = round((n === 0 ? 1 : -1) * (to[1] - own[1]));
+        // Both sides change, so that equal sides stay equal: a rectangle or an isosceles trapezium.
+        const chassis = SIDES.flatMap((side): Edits => (change === 0 ? [] : [[linkKey(side.chassis), value(linkKey(side.chassis)) + change], ...halves(side, change)]));
+        return [[linkKey(end.base), round(2 * Math.abs(to[0] - middle))], ...chassis];
       },
     })),
   );
   const knees = legs.map(({ pivots, joints }, n): Joint => ({
     name: `knee of leg ${n + 1}`,
     at: joints[0],
-    moved: (to, alike) => ['leg.crank', ...(alike ? ['leg.follower'] : [])].map((key) => [key, round(along(pivots[0], joints[0], to))]),
+    lengthsAt: (to, isSymmetric) => ['leg.crank', ...(isSymmetric ? ['leg.follower'] : [])].map((key) => [key, round(along(pivots[0], joints[0], to))]),
   }));
   return [...bases, ...arms, ...knees, ...cranks, ...ends];
 }

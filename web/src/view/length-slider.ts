@@ -9,7 +9,7 @@ export type TryOut = (edits: Edits, isLast: boolean) => void;
 export class LengthSlider {
   private readonly slide = element<HTMLInputElement>('length-slide');
   private readonly out = element('length-out');
-  private readonly alike = element<HTMLInputElement>('alike');
+  private readonly symmetric = element<HTMLInputElement>('alike');
   private readonly printed = element('length-printed');
   private readonly marks = element('length-marks');
   private lengths: Length[] = [];
@@ -24,10 +24,10 @@ export class LengthSlider {
   ) {
     element('lengths').addEventListener('focusin', ({ target }) => this.choose((target as HTMLInputElement).name));
     this.slide.addEventListener('focus', () => this.choose(this.key));
-    this.alike.addEventListener('change', () => this.onChoice());
+    this.symmetric.addEventListener('change', () => this.onChoice());
     const moved = (isLast: boolean) => {
       this.write(this.slide.valueAsNumber);
-      tryOut(withTwin(this.key, this.slide.valueAsNumber, this.lengths, this.alike.checked), isLast);
+      tryOut(withTwin(this.key, this.slide.valueAsNumber, this.lengths, this.symmetric.checked), isLast);
     };
     this.slide.addEventListener('input', () => moved(false));
     this.slide.addEventListener('change', () => moved(true));
@@ -35,7 +35,7 @@ export class LengthSlider {
 
   /** The lengths that the slider sets. */
   get keys(): string[] {
-    return withTwin(this.key, 0, this.lengths, this.alike.checked).map(([key]) => key);
+    return withTwin(this.key, 0, this.lengths, this.symmetric.checked).map(([key]) => key);
   }
 
   private get length(): Length | undefined {

@@ -8,7 +8,7 @@ import { refusalOf, showOffers, withTwin } from './tried-lengths';
 
 export class Lengths {
   private readonly list = element('lengths');
-  private readonly alike = element<HTMLInputElement>('alike');
+  private readonly symmetric = element<HTMLInputElement>('alike');
   private readonly refusal = element('lengths-refusal');
   private inputs = new Map<string, HTMLInputElement>();
 
@@ -50,7 +50,7 @@ export class Lengths {
     const input = this.inputs.get(key);
     const value = input?.valueAsNumber;
     if (!input || value === undefined || !Number.isFinite(value)) return;
-    const edits = withTwin(key, value, session.description.lengths, this.alike.checked);
+    const edits = withTwin(key, value, session.description.lengths, this.symmetric.checked);
     const { text, refusal } = session.robot.lengths(session.toml, edits, false);
     if (!refusal) return void (await session.change(text));
     const { lengths } = session.description;

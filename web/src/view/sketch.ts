@@ -20,7 +20,7 @@ export class Sketch {
   private readonly panel = element<HTMLDetailsElement>('lengths-panel');
   private readonly picture = element<HTMLElement>('sketch') as unknown as SVGSVGElement;
   private readonly said = element('sketch-said');
-  private readonly alike = element<HTMLInputElement>('alike');
+  private readonly symmetric = element<HTMLInputElement>('alike');
   private readonly drawnBars = this.picture.appendChild(document.createElementNS(SVG, 'g'));
   private readonly drawnJoints = this.picture.appendChild(document.createElementNS(SVG, 'g'));
   private sketches: LatestQuestion<Question, Answer> | null = null;
@@ -179,7 +179,7 @@ export class Sketch {
     const place = this.picture.getScreenCTM();
     if (!place) return;
     const { x, y } = new DOMPoint(clientX, clientY).matrixTransform(place.inverse());
-    this.tryOut(joint.moved([x, -y], this.alike.checked), isLast);
+    this.tryOut(joint.lengthsAt([x, -y], this.symmetric.checked), isLast);
   }
 
   /** Highlights the number of a clicked bar. */

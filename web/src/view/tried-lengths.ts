@@ -4,10 +4,10 @@ import type { Session } from '../session';
 import { element } from './canvas';
 import { button } from './make';
 
-/** A length and, where left and right are alike, its twin. */
-export function withTwin(key: string, value: number, lengths: Length[], alike: boolean): Edits {
+/** A length and, where left and right are kept equal, its twin. */
+export function withTwin(key: string, value: number, lengths: Length[], isSymmetric: boolean): Edits {
   const twin = lengths.find((length) => length.key === key)?.twin ?? key;
-  return [...new Set(alike ? [key, twin] : [key])].map((each) => [each, value]);
+  return [...new Set(isSymmetric ? [key, twin] : [key])].map((each) => [each, value]);
 }
 
 /** Lists lengths in words; a length that is equal on both sides once. */

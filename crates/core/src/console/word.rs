@@ -72,8 +72,8 @@ macro_rules! words {
 
 // Each row: name = word and the arguments of an example, effect.
 words! {
-    // No gait's name may begin with one of these. The list is closed: a robot that has been
-    // accepted once is accepted by every later version.
+    // No gait's name may begin with one of these. The list is closed: a robot file that
+    // has been accepted once is accepted by every later version.
     reserved: {
         Help = "help" "", None;
         QuestionMark = "?" "", None;
@@ -109,11 +109,11 @@ flash! {
 }
 
 impl Word {
-    /// Finds the word that is spelled like this.
+    /// Finds the word with this spelling.
     #[inline(never)]
     pub fn find(written: &[u8]) -> Option<Self> {
         let mut number = 0;
-        // The rest of `written` after a word's beginning, if it begins so.
+        // The part of `written` not matched yet; `None` once it differs from the current word.
         let mut left = Some(written);
         for index in 0..LIST.len() {
             let character = CHARACTERS.at(index).load();
@@ -142,7 +142,7 @@ impl Word {
         let mut is_printed = true;
         for index in 0..LIST.len() - 1 {
             let character = CHARACTERS.at(index).load();
-            // Costs no instruction as long as no word yields.
+            // Compiles to nothing while no word yields.
             if YIELDING < Self::ALL.len() && character == BAR {
                 number += 1;
                 is_printed = number < YIELDING || !is_gait(index + 1, robot);

@@ -1,4 +1,4 @@
-//! A routine with inputs through a robot's gaits, for measurements and random tests.
+//! Adds a routine that uses both inputs and most gaits, for measurements and random tests.
 
 use lizard_robot::{Error, Robot};
 
@@ -7,18 +7,18 @@ use super::sim::tour;
 /// The name of the routine.
 pub const PATROL: &str = "patrol";
 
-/// The largest number of gaits of a patrol besides the first.
+/// Most gaits in a patrol after the first.
 const MAX_MORE_GAITS: usize = 8;
 
 /// The pins that are tried for a missing input, in this order.
 const PINS: [&str; 8] = ["A1", "A2", "A3", "A4", "A5", "D12", "D8", "D7"];
 
-/// Adds a button, a nose contact and the routine [`PATROL`] to the robot of this text. The routine
+/// Adds a button, a nose contact and the routine [`PATROL`] to the robot file `text`. The routine
 /// waits for the button, walks to a wall, goes through up to nine gaits that move and does the
 /// last steps. A robot that has a routine of this name is returned as it is.
 ///
 /// # Errors
-/// Fails if the text is no valid robot, or has no room for the inputs or the routine.
+/// Fails if the text is not a valid robot file, or has no room for the inputs or the routine.
 pub fn with_patrol(text: &str, last_steps: &[&str]) -> Result<Robot, Error> {
     let robot = Robot::parse(text)?;
     if robot.routine(PATROL).is_some() {
@@ -31,6 +31,7 @@ pub fn with_patrol(text: &str, last_steps: &[&str]) -> Result<Robot, Error> {
         }
         let with = |pin: &str| format!("{text}\n[input.{name}]\npin = \"{pin}\"\n");
         let free = PINS.iter().find(|pin| Robot::parse(&with(pin)).is_ok());
+        // With no pin free, an occupied one, so that the last `parse` reports the error.
         text = with(free.unwrap_or(&PINS[0]));
     }
     let gaits: Vec<String> = tour::moving(&robot)

@@ -1,7 +1,7 @@
 //! A part as a STEP file (ISO 10303-21, AP214): a solid of planes and cylinders.
 //!
 //! This is our own writer, because existing ones turn circles into splines: then a
-//! drawing program no longer knows that a hole is round, or where its centre is.
+//! CAD program no longer knows that a hole is round, or where its centre is.
 
 use std::fmt::Write;
 
@@ -12,7 +12,7 @@ use crate::layers::outline::Side;
 
 /// The text of a STEP file.
 pub fn step(name: &str, solid: &Solid) -> String {
-    let mut file = File::default();
+    let mut file = StepWriter::default();
     let solid = file.solid(name, solid);
     file.add_product(name, solid);
     let data = file.text;
@@ -26,10 +26,13 @@ pub fn step(name: &str, solid: &Solid) -> String {
 
 const PRODUCT: &str = include_str!("product.step");
 
+/// The index of the entity PRODUCT_DEFINITION_SHAPE in [`PRODUCT`].
+const PRODUCT_SHAPE: usize = 7;
+
 #[derive(Default)]
-struct File {
+struct StepWriter {
     text: String,
-    last: usize,
+    last_id: usize,
 }
 
 /// A number in the format's notation: with a point, and without an exponent, which some
@@ -45,11 +48,11 @@ fn list(ids: &[usize]) -> String {
     format!("({})", ids.join(","))
 }
 
-impl File {
+impl StepWriter {
     fn add(&mut self, entity: &str) -> usize {
-        self.last += 1;
-        let _ = writeln!(self.text, "#{}={entity};", self.last);
-        self.last
+        self.last_id += 1;
+        let _ = writeln!(self.text, "#{}={entity};", self.last_id);
+        self.last_id
     }
 
     fn triple(&mut self, kind: &str, [x, y, z]: [f64; 3]) -> usize {
@@ -68,17 +71,17 @@ impl File {
         let mut corners = std::collections::BTreeMap::new();
         let mut edges = Vec::new();
         for edge in &solid.edges {
-            let places = edge.ends.map(|(point, level)| {
+            let ends = edge.ends.map(|(point, level)| {
                 let (at, z) = (solid.points[point], solid.heights[level]);
                 [at.x, at.y, z]
             });
             let [from, to] = [0, 1].map(|i| {
                 *corners.entry(edge.ends[i]).or_insert_with(|| {
-                    let at = self.triple("CARTESIAN_POINT", places[i]);
+                    let at = self.triple("CARTESIAN_POINT", ends[i]);
                     self.add(&format!("VERTEX_POINT('',#{at})"))
                 })
             });
-            let curve = self.curve(places, edge.bulge);
+            let curve = self.curve(ends, edge.bulge);
             edges.push(self.add(&format!("EDGE_CURVE('',#{from},#{to},#{curve},.T.)")));
         }
         let faces = solid
@@ -93,18 +96,18 @@ impl File {
     fn face(&mut self, solid: &Solid, face: &Face, edges: &[usize]) -> usize {
         let logical = |value: bool| if value { "T" } else { "F" };
         let mut bounds = Vec::new();
-        for trail in &face.loops {
+        for edge_loop in &face.loops {
             let mut oriented = Vec::new();
-            for &(edge, forward) in trail {
-                let (edge, way) = (edges[edge], logical(forward));
-                oriented.push(self.add(&format!("ORIENTED_EDGE('',*,*,#{edge},.{way}.)")));
+            for &(edge, forward) in edge_loop {
+                let (edge, orientation) = (edges[edge], logical(forward));
+                oriented.push(self.add(&format!("ORIENTED_EDGE('',*,*,#{edge},.{orientation}.)")));
             }
-            let trail = self.add(&format!("EDGE_LOOP('',{})", list(&oriented)));
+            let edge_loop = self.add(&format!("EDGE_LOOP('',{})", list(&oriented)));
             let kind = match bounds.is_empty() {
                 true => "FACE_OUTER_BOUND",
                 false => "FACE_BOUND",
             };
-            bounds.push(self.add(&format!("{kind}('',#{trail},.T.)")));
+            bounds.push(self.add(&format!("{kind}('',#{edge_loop},.T.)")));
         }
         let (surface, sense) = self.surface(solid, face.surface);
         let (bounds, sense) = (list(&bounds), logical(sense));
@@ -161,7 +164,7 @@ impl File {
 
     /// The product's header, which readers require, and its units.
     fn add_product(&mut self, name: &str, solid: usize) {
-        let context = self.last + 1;
+        let context = self.last_id + 1;
         // `#+3` is the third entity of the list, `#NAME` the part's name.
         for entity in PRODUCT.lines() {
             let mut entity = entity.replace("#NAME", name);
@@ -174,7 +177,7 @@ impl File {
             }
             self.add(&entity);
         }
-        let (shape, space) = (context + 7, self.last);
+        let (shape, space) = (context + PRODUCT_SHAPE, self.last_id);
         let frame = self.frame([0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
         let parts = format!("(#{frame},#{solid})");
         let body = self.add(&format!(

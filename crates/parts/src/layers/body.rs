@@ -42,7 +42,7 @@ impl Prism {
     }
 }
 
-/// The kind of thing that a body is, which decides how it is bought or made.
+/// A body's kind, which decides how it is bought or made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     /// A part to print, or to cut where all its layers have one outline.
@@ -53,7 +53,7 @@ pub enum Kind {
     Horn,
     /// A screw that is a joint or holds parts together, by its length below the head, mm.
     Screw(f64),
-    /// A screw with a hexagonal head, which the part that it is put into holds.
+    /// A screw with a hexagonal head, held from turning by the part's hexagonal recess.
     HexScrew(f64),
     /// A self-tapping screw from a servo's bag.
     ServoScrew,
@@ -164,7 +164,7 @@ fn sorted([a, b]: [usize; 2]) -> Vec<usize> {
 pub struct Body {
     /// The unique name, such as `link A1` or `strut LF`.
     pub name: String,
-    /// The kind of thing that it is.
+    /// Its kind.
     pub kind: Kind,
     /// The mount that it moves with.
     pub mount: Mount,
@@ -186,7 +186,7 @@ impl Body {
     }
 }
 
-/// The end at which a servo stands and whether it is its left or right one, 0 or 1.
+/// The servo's end, and its index there: 0 left, 1 right.
 pub(crate) fn at_end(servo: usize) -> (End, usize) {
     let end = End::of_servo(servo);
     (end, usize::from(end.servos()[1] == servo))

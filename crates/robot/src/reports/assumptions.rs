@@ -1,5 +1,5 @@
-//! The assumptions of a prediction, each changed over its plausible range: the ones that matter, and
-//! how much.
+//! Sensitivity analysis: varies each assumption of the prediction over its plausible range and
+//! lists those that change a gait's movement by 10 % or more.
 
 use std::fmt;
 
@@ -9,15 +9,15 @@ use crate::checks::CheckedGait;
 use crate::measures::ServoType;
 use crate::robot::Robot;
 
-/// Smallest change of a movement that counts, percent.
-const COUNTS: f64 = 10.0;
-/// Smallest movement of a cycle that counts: mm ahead, deg of turn.
+/// Smallest change of a movement that is listed, percent.
+const MIN_CHANGE_PERCENT: f64 = 10.0;
+/// Smallest noticeable movement of a cycle: mm ahead, deg of turn.
 const MIN_MOVEMENT: (f64, f64) = (1.0, 0.5);
 /// Movements that differ by less belong to a gait and its mirror image or its reverse: mm,
 /// deg.
-const ALIKE: f64 = 0.02;
+const MIRROR_TOLERANCE: f64 = 0.02;
 
-/// Everything that a prediction takes for granted.
+/// The inputs that an assumption varies.
 #[derive(Clone, Copy)]
 struct Inputs {
     ground: Ground,
@@ -28,39 +28,39 @@ struct Inputs {
     scale: f64,
 }
 
-/// An assumption: its words, its unit, the ends of its range, and what it is about.
+/// An assumption: its words, its unit, its range, and the inputs that it varies.
 struct Assumption {
     words: &'static str,
     unit: &'static str,
-    ends: [f64; 2],
-    subject: Subject,
+    range: [f64; 2],
+    variation: Variation,
 }
 
-/// What an assumption is about.
-enum Subject {
-    /// A number.
-    Number(fn(&mut Inputs) -> &mut f64),
-    /// A case that the prediction does not assume, 0, or does, 1.
-    Case(fn(&mut Inputs)),
-    /// A number that matters only after another change.
-    After(fn(&mut Inputs), fn(&mut Inputs) -> &mut f64),
+/// The way in which an assumption varies the inputs.
+enum Variation {
+    /// One input takes each value.
+    Value(fn(&mut Inputs) -> &mut f64),
+    /// A change that is off (0) in the prediction and on (1) in the comparison.
+    Switch(fn(&mut Inputs)),
+    /// An input that matters only after another change.
+    ValueAfterChange(fn(&mut Inputs), fn(&mut Inputs) -> &mut f64),
 }
 
-impl Subject {
+impl Variation {
     /// The value in the prediction.
     fn value(&self, mut inputs: Inputs) -> f64 {
         match self {
-            Self::Number(number) | Self::After(_, number) => *number(&mut inputs),
-            Self::Case(_) => 0.0,
+            Self::Value(number) | Self::ValueAfterChange(_, number) => *number(&mut inputs),
+            Self::Switch(_) => 0.0,
         }
     }
 
     fn set(&self, inputs: &mut Inputs, value: f64) {
         match self {
-            Self::Number(number) => *number(inputs) = value,
-            Self::Case(change) if value > 0.0 => change(inputs),
-            Self::Case(_) => {}
-            Self::After(change, number) => {
+            Self::Value(number) => *number(inputs) = value,
+            Self::Switch(change) if value > 0.0 => change(inputs),
+            Self::Switch(_) => {}
+            Self::ValueAfterChange(change, number) => {
                 change(inputs);
                 *number(inputs) = value;
             }
@@ -74,14 +74,14 @@ macro_rules! assumptions {
         [$(Assumption {
             words: $words,
             unit: $unit,
-            ends: [$from, $to],
-            subject: assumptions!(@$kind $($of)+),
+            range: [$from, $to],
+            variation: assumptions!(@$kind $($of)+),
         }),+]
     };
-    (@number $($field:tt)+) => { Subject::Number(|inputs| &mut inputs.$($field)+) };
-    (@case $change:expr) => { Subject::Case($change) };
+    (@number $($field:tt)+) => { Variation::Value(|inputs| &mut inputs.$($field)+) };
+    (@case $change:expr) => { Variation::Switch($change) };
     (@after $change:expr, $($field:tt)+) => {
-        Subject::After($change, |inputs| &mut inputs.$($field)+)
+        Variation::ValueAfterChange($change, |inputs| &mut inputs.$($field)+)
     };
 }
 
@@ -119,7 +119,7 @@ const ALL: [Assumption; 21] = assumptions! {
         |inputs| inputs.ground.stance.twist = 0.5,
         ground.stance.stiffness
     );
-    "copies, stiff joints, friction 1, 50 g more", "(0 no, 1 yes)", 0.0 to 1.0, case(|inputs| {
+    "clone servos, stiff joints, friction 1, 50 g heavier", "(0 no, 1 yes)", 0.0 to 1.0, case(|inputs| {
         inputs.servo.stall_kg_cm = 1.2;
         inputs.servo.s_per_60_deg = 0.15;
         inputs.joints = [17.0, 0.5];
@@ -133,13 +133,13 @@ const ALL: [Assumption; 21] = assumptions! {
 struct Row {
     words: &'static str,
     unit: &'static str,
-    own: f64,
-    ends: [f64; 2],
-    /// Change of each gait's movement at both ends, percent.
+    nominal: f64,
+    range: [f64; 2],
+    /// Change of each gait's movement at both ends of the range, percent.
     changes: Vec<[f64; 2]>,
 }
 
-/// The effects of all assumptions on gaits that lead somewhere.
+/// The effects of all assumptions on gaits that move the robot noticeably.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assumptions {
     gaits: Vec<String>,
@@ -157,27 +157,27 @@ impl Assumptions {
             joints: [joints.drag, joints.slider],
             scale: 1.0,
         };
-        let walked = |gait: &CheckedGait, inputs: &Inputs| {
+        let simulate = |gait: &CheckedGait, inputs: &Inputs| {
             let Motors { each, mut joints } = robot.motors_of(&inputs.servo, inputs.servo.volts);
             [joints.drag, joints.slider] = inputs.joints;
             gait.driven_scaled(&inputs.ground, &Motors { each, joints }, 1.0, inputs.scale)
         };
-        let gaits = different(robot, |gait| walked(gait, &nominal));
+        let gaits = without_mirror_images(robot, |gait| simulate(gait, &nominal));
         let row = |assumption: &Assumption| {
-            let change = |gait: &CheckedGait, before: &Travel, end: f64| {
+            let change = |gait: &CheckedGait, before: &Travel, value: f64| {
                 let mut changed = nominal;
-                assumption.subject.set(&mut changed, end);
-                let part = main(before);
-                100.0 * (part(&walked(gait, &changed)) / part(before) - 1.0)
+                assumption.variation.set(&mut changed, value);
+                let component = principal_component(before);
+                100.0 * (component(&simulate(gait, &changed)) / component(before) - 1.0)
             };
             let changes = |(gait, before): &(&CheckedGait, Travel)| {
-                assumption.ends.map(|end| change(gait, before, end))
+                assumption.range.map(|value| change(gait, before, value))
             };
             Row {
                 words: assumption.words,
                 unit: assumption.unit,
-                own: assumption.subject.value(nominal),
-                ends: assumption.ends,
+                nominal: assumption.variation.value(nominal),
+                range: assumption.range,
                 changes: gaits.iter().map(changes).collect(),
             }
         };
@@ -193,11 +193,11 @@ impl Assumptions {
     }
 }
 
-/// The gaits that lead somewhere, each with its movement, without mirror images and
+/// The gaits that move the robot noticeably, each with its movement, without mirror images and
 /// reverses.
-fn different(
+fn without_mirror_images(
     robot: &Robot,
-    walked: impl Fn(&CheckedGait) -> Travel,
+    simulate: impl Fn(&CheckedGait) -> Travel,
 ) -> Vec<(&CheckedGait, Travel)> {
     let mut gaits: Vec<(&CheckedGait, Travel)> = Vec::new();
     let rigid = robot.ground().rigid();
@@ -205,13 +205,14 @@ fn different(
         if !gait.predict(&rigid).is_decided() {
             continue;
         }
-        let movement = walked(gait);
+        let movement = simulate(gait);
         let alike = |(_, other): &(_, Travel)| {
-            let is_close = |a: f64, b: f64| (a.abs() - b.abs()).abs() < ALIKE;
+            let is_close = |a: f64, b: f64| (a.abs() - b.abs()).abs() < MIRROR_TOLERANCE;
             is_close(movement.forward, other.forward) && is_close(movement.turn, other.turn)
         };
-        let leads = movement.forward.abs() > MIN_MOVEMENT.0 || movement.turn.abs() > MIN_MOVEMENT.1;
-        if leads && !gaits.iter().any(alike) {
+        let moves_noticeably =
+            movement.forward.abs() > MIN_MOVEMENT.0 || movement.turn.abs() > MIN_MOVEMENT.1;
+        if moves_noticeably && !gaits.iter().any(alike) {
             gaits.push((gait, movement));
         }
     }
@@ -220,7 +221,7 @@ fn different(
 
 /// The part of the movement that a gait is for: ahead, or the turn of a gait that turns on
 /// the spot.
-fn main(movement: &Travel) -> fn(&Travel) -> f64 {
+fn principal_component(movement: &Travel) -> fn(&Travel) -> f64 {
     match movement.forward.abs() > movement.turn.abs() {
         true => |movement| movement.forward,
         false => |movement| movement.turn,
@@ -239,24 +240,26 @@ impl fmt::Display for Assumptions {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         writeln!(
             f,
-            "What a cycle leads to at the least and at the greatest value, compared with the value taken, in percent.\n"
+            "Change of the movement per cycle, in percent, at the lowest and at the highest value of each assumption.\n"
         )?;
         let width = self
             .rows
             .iter()
             .map(|row| row.words.len())
             .fold(0, usize::max);
-        write!(f, "{:width$}    taken        from to         ", "")?;
+        write!(f, "{:width$}  assumed        from to         ", "")?;
         for gait in &self.gaits {
             write!(f, "{gait:>13}")?;
         }
         writeln!(f)?;
-        let (count, rest): (Vec<&Row>, Vec<&Row>) =
-            self.rows.iter().partition(|row| row.most() >= COUNTS);
+        let (count, rest): (Vec<&Row>, Vec<&Row>) = self
+            .rows
+            .iter()
+            .partition(|row| row.most() >= MIN_CHANGE_PERCENT);
         for row in count {
-            let [least, most] = row.ends;
+            let [least, most] = row.range;
             let range = format!("{least} to {most} {}", row.unit);
-            write!(f, "{:<width$} {:>8} {range:>19}", row.words, row.own)?;
+            write!(f, "{:<width$} {:>8} {range:>19}", row.words, row.nominal)?;
             for [low, high] in &row.changes {
                 // Adding positive zero turns a negative one positive.
                 let [low, high] = [low, high].map(|change| change.round() + 0.0);
@@ -265,7 +268,7 @@ impl fmt::Display for Assumptions {
             writeln!(f)?;
         }
         let columns = |row: &Row| {
-            let [least, most] = row.ends;
+            let [least, most] = row.range;
             format!("  {}, {least} to {most} {}", row.words, row.unit)
                 .trim_end()
                 .to_string()
@@ -273,7 +276,11 @@ impl fmt::Display for Assumptions {
         let rest: Vec<String> = rest.into_iter().map(columns).collect();
         match rest.is_empty() {
             true => Ok(()),
-            false => writeln!(f, "\nLess than {COUNTS:.0} %:\n{}", rest.join("\n")),
+            false => writeln!(
+                f,
+                "\nLess than {MIN_CHANGE_PERCENT:.0} %:\n{}",
+                rest.join("\n")
+            ),
         }
     }
 }

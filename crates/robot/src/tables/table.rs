@@ -32,7 +32,7 @@ impl Tables {
     /// Builds the tables.
     ///
     /// # Errors
-    /// Returns the first gait that the fixed point does not hold.
+    /// Returns the first gait that does not fit the fixed-point tables.
     pub fn new(gaits: &[Gait]) -> Checked<Self> {
         let mut bank = WaveformBank::default();
         let mut parts = Vec::new();
@@ -51,28 +51,28 @@ impl Tables {
             }
             if bank.samples.len() > MAX_WAVES {
                 let message = format!(
-                    "needs one waveform too many: the firmware numbers them with a byte, so gaits may share {MAX_WAVES}; those that differ only in amplitude, start, gain, period or direction share one"
+                    "needs one waveform more than the {MAX_WAVES} that the firmware can number with a byte; gaits that differ only in amplitude, start, gain, period or direction share one"
                 );
                 return Err(Fault::new(key, message));
             }
         }
-        let largest = bank.largest(&parts);
+        let peaks = bank.peak_amplitudes(&parts);
         if bank.samples.is_empty() {
             // A robot that only stands still reads one table, of zeros.
             bank.samples.push([0.0; SAMPLES]);
         }
-        let waves =
-            bank.samples
-                .iter()
-                .zip(largest.iter().chain([&1.0]))
-                .map(|(samples, largest)| {
-                    samples.map(|value| (value * largest * STEPS_PER_DEGREE).round() as i16)
-                });
+        let waves = bank
+            .samples
+            .iter()
+            .zip(peaks.iter().chain([&1.0]))
+            .map(|(samples, peak)| {
+                samples.map(|value| (value * peak * STEPS_PER_DEGREE).round() as i16)
+            });
         let channel = |part: &Part| {
-            let gain = part.amplitude / largest.get(part.wave).copied().unwrap_or(1.0);
+            let gain = part.amplitude / peaks.get(part.wave).copied().unwrap_or(1.0);
             Channel {
                 wave: part.wave as u16,
-                // A shift of a whole cycle is none: the cast to u16 wraps.
+                // A shift of one whole cycle wraps to 0.
                 offset: (part.ahead.rem_euclid(1.0) * PHASES).round() as u32 as u16,
                 gain: (gain * ONE_Q14).round() as i16,
             }
@@ -113,10 +113,10 @@ fn increment(gait: &Gait) -> i32 {
     if gait.reversed { -step } else { step }
 }
 
-/// A stride as amplitude times a waveform of the bank.
+/// A stride as a waveform of the bank times an amplitude.
 struct Part {
     wave: usize,
-    /// Cycles by which it reads the waveform ahead.
+    /// Its lead over the stored waveform, cycles.
     ahead: f64,
     /// Amplitude, deg, counter-clockwise positive.
     amplitude: f64,
@@ -148,15 +148,15 @@ impl WaveformBank {
         }
         let offset = -stride.start - shift;
         let samples = samples.map(|value| value / peak);
-        let match_found = self.samples.iter().enumerate().find_map(|(wave, known)| {
-            let rotation = same(known, &samples, SAME_DEG / amplitude.abs())?;
+        let shared = self.samples.iter().enumerate().find_map(|(wave, known)| {
+            let rotation = find_rotation(known, &samples, SAME_DEG / amplitude.abs())?;
             Some(Part {
                 wave,
                 ahead: offset + rotation as f64 / SAMPLES as f64,
                 amplitude,
             })
         });
-        Some(match_found.unwrap_or_else(|| {
+        Some(shared.unwrap_or_else(|| {
             self.samples.push(samples);
             Part {
                 wave: self.samples.len() - 1,
@@ -168,14 +168,14 @@ impl WaveformBank {
 
     /// Computes the largest amplitude that each waveform needs, deg. Tables are
     /// stored at that size, so that no gain exceeds 1.
-    fn largest(&self, parts: &[Part]) -> Vec<f64> {
-        let largest_of_wave = |wave| {
+    fn peak_amplitudes(&self, parts: &[Part]) -> Vec<f64> {
+        let peak_amplitude = |wave| {
             parts
                 .iter()
                 .filter(|p| p.wave == wave)
                 .fold(0.0f64, |max, p| max.max(p.amplitude.abs()))
         };
-        (0..self.samples.len()).map(largest_of_wave).collect()
+        (0..self.samples.len()).map(peak_amplitude).collect()
     }
 }
 
@@ -201,7 +201,11 @@ fn peak(samples: &[f64; SAMPLES]) -> f64 {
 }
 
 /// Finds the rotation that turns `existing` into `samples` within `tolerance`.
-fn same(existing: &[f64; SAMPLES], samples: &[f64; SAMPLES], tolerance: f64) -> Option<usize> {
+fn find_rotation(
+    existing: &[f64; SAMPLES],
+    samples: &[f64; SAMPLES],
+    tolerance: f64,
+) -> Option<usize> {
     (0..SAMPLES).find(|rotation| {
         (0..SAMPLES).all(|i| (samples[i] - existing[(i + rotation) % SAMPLES]).abs() <= tolerance)
     })
@@ -232,7 +236,7 @@ mod tests {
         }
         let (on, once) = (gait("stroll-on"), gait("stroll"));
         assert_eq!(on.channels, once.channels);
-        // 2.4 s are half as many frames again as 1.6 s: 120 of 2^24 cycles.
+        // 2.4 s are 120 frames: 2^24 / 120.
         assert_eq!(on.increment, 139_810);
     }
 
@@ -297,10 +301,10 @@ mod tests {
             for phase in 0..=u16::MAX {
                 let [a1, a2, a3, a4] = a.table_sweeps(phase);
                 let mirrored = [-a2, -a1, -a4, -a3];
-                let there = b.table_sweeps(phase);
+                let other = b.table_sweeps(phase);
                 // Halves are rounded up on either side of zero.
                 assert!(
-                    mirrored.iter().zip(there).all(|(m, t)| m.abs_diff(t) <= 1),
+                    mirrored.iter().zip(other).all(|(m, o)| m.abs_diff(o) <= 1),
                     "{name} {} at {phase}",
                     a.name()
                 );
@@ -334,8 +338,8 @@ mod tests {
             let mut largest = vec![0; waves(&robot)];
             for gait in robot.gaits() {
                 for channel in firmware.gait(id(&robot, gait.index())).channels {
-                    let of = &mut largest[usize::from(channel.wave)];
-                    *of = channel.gain.unsigned_abs().max(*of);
+                    let max_gain = &mut largest[usize::from(channel.wave)];
+                    *max_gain = channel.gain.unsigned_abs().max(*max_gain);
                 }
             }
             assert!(

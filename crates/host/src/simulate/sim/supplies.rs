@@ -10,21 +10,21 @@ use lizard_robot::{Robot, healthy_rail_mv};
 use simulated_uno::{Pin, Uno};
 
 /// The board's supply, mV.
-const BOARD: f64 = 5_000.0;
-/// Parts of the supply that the converter tells apart.
+const BOARD_MV: f64 = 5_000.0;
+/// ADC counts at full scale.
 const FULL_SCALE: f64 = 1_024.0;
 
-/// The analogue pin that measures the servos' rail, and the voltage there, mV. `None` if
-/// none does.
-pub fn at_pin(robot: &Robot) -> Option<(Pin, u16)> {
+/// The analogue pin that measures the servos' rail, and the voltage there, mV. `None` if no
+/// pin measures the rail.
+pub fn rail_pin(robot: &Robot) -> Option<(Pin, u16)> {
     let mv = healthy_rail_mv(&robot.firmware().supplies())?;
     Some((Pin::arduino(robot.firmware().rail_pin()?), mv as u16))
 }
 
-/// Gives the UNO the supplies of a robot in good order, and its contacts, all open.
+/// Gives the UNO the supplies of a healthy robot, and its contacts, all open.
 pub fn connect(uno: &mut Uno, robot: &Robot) {
     uno.set_bandgap_mv(robot.supplies().reference * 1_000.0);
-    if let Some((pin, mv)) = at_pin(robot) {
+    if let Some((pin, mv)) = rail_pin(robot) {
         uno.set_analog_mv(pin, mv);
     }
     for (_, pin) in robot.inputs().each() {
@@ -34,9 +34,9 @@ pub fn connect(uno: &mut Uno, robot: &Robot) {
 
 /// The converter's readings of the supplies.
 pub(super) fn reading(supplies: &Supplies) -> Reading {
-    let part = |mv: f64| (FULL_SCALE * mv / BOARD) as u16;
+    let counts = |mv: f64| (FULL_SCALE * mv / BOARD_MV) as u16;
     Reading {
-        reference: part(f64::from(supplies.reference)),
-        rail: healthy_rail_mv(supplies).map_or(0, part),
+        reference: counts(f64::from(supplies.reference)),
+        rail: healthy_rail_mv(supplies).map_or(0, counts),
     }
 }

@@ -14,10 +14,10 @@ pub struct Replay {
     /// The robot that walked.
     pub robot: Robot,
     /// Seconds from power-on to the first frame.
-    pub first: f64,
+    pub start_s: f64,
     /// The robot after each frame.
     pub states: Vec<State>,
-    /// The commands, in order.
+    /// The stages, in order.
     pub stages: Vec<Stage>,
 }
 
@@ -41,7 +41,7 @@ impl Replay {
         };
         Self {
             robot: robot.clone(),
-            first: log.seconds(0),
+            start_s: log.seconds(0),
             states: states.collect(),
             stages: spans.into_iter().map(stage).collect(),
         }
@@ -60,8 +60,8 @@ impl Replay {
         tally
     }
 
-    /// The frames of the last complete cycle under a command, if it is a gait's and a cycle
-    /// came before it.
+    /// The frames of the last complete cycle under a command. `None` unless the command is a
+    /// moving gait that ran for at least two cycles.
     pub fn last_cycle(&self, stage: &Stage) -> Option<(&CheckedGait, Range<usize>)> {
         let gait = self
             .robot

@@ -123,7 +123,7 @@ impl Report {
                 .map(|(_, frames)| replay.tally(frames.clone()));
             let round = round(robot, &stage.command, model).filter(|_| !is_paced);
             let known = prediction.as_ref().or(round.as_ref().map(|(_, way)| way));
-            let seconds = |n: usize| replay.first + n as f64 * lizard_twin::FRAME;
+            let seconds = |n: usize| replay.start_s + n as f64 * lizard_twin::FRAME;
             let cycle_or_stage: &Tally = last.as_ref().unwrap_or(&tally_of_stage);
             Row {
                 command: stage.command.clone(),

@@ -1,4 +1,4 @@
-//! The wiring: what is joined, read from the drawing alone.
+//! Checks the netlist that the wiring drawing shows.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ fn with_pins(pins: [&str; 4]) -> String {
     text
 }
 
-/// Pins in many orders: with 17 of them, steps of any size never meet a pin twice.
+/// Pins in many orders. 17 is prime, so four pins at equal steps are always distinct.
 fn many_pins() -> Vec<[String; 4]> {
     let name = |n: usize| {
         let n = n % 17;
@@ -38,18 +38,19 @@ fn many_pins() -> Vec<[String; 4]> {
         .collect()
 }
 
-/// Farthest that a wire may end from the terminal that it is in: two wires share some.
-const HOLE: f64 = 13.0;
+/// A wire's end may be this far from its terminal's centre, px, since two wires may share a
+/// terminal.
+const MAX_TERMINAL_DISTANCE: f64 = 13.0;
 
-/// What is joined in a drawing: names of terminals and pins by their net.
+/// The electrical nets of a drawing, as a union-find of the names of terminals and pins.
 struct Nets<'a> {
     drawing: &'a Drawing,
     parent: BTreeMap<String, String>,
 }
 
 impl<'a> Nets<'a> {
-    /// The nets that wires, links and the brass of ways make; not what fuse, switch or resistors
-    /// would join.
+    /// Joins the ends of wires, links and terminal positions. Components (fuse, switch,
+    /// resistors) do not join.
     fn of(drawing: &'a Drawing) -> Self {
         let mut nets = Self {
             drawing,
@@ -58,16 +59,19 @@ impl<'a> Nets<'a> {
         for (wire, path) in drawing.wires() {
             let is_option = wire.starts_with("radio-") || wire.starts_with("input-");
             if !wire.starts_with("resistor-") && !is_option {
-                nets.join(&nets.end(path[0]), &nets.end(path[path.len() - 1]));
+                nets.join(
+                    &nets.nearest_terminal(path[0]),
+                    &nets.nearest_terminal(path[path.len() - 1]),
+                );
             }
         }
-        for (strip, ways, sides) in [
+        for (strip, positions, sides) in [
             ("ground", 12, ["wire", "link"]),
             ("supply", 6, ["wire", "link"]),
             ("signals", 5, ["servo", "board"]),
         ] {
-            for way in 1..=ways {
-                let [one, other] = sides.map(|side| format!("end-{strip}-{way}-{side}"));
+            for position in 1..=positions {
+                let [one, other] = sides.map(|side| format!("end-{strip}-{position}-{side}"));
                 nets.join(&one, &other);
             }
         }
@@ -76,16 +80,16 @@ impl<'a> Nets<'a> {
     }
 
     /// The terminal or pin nearest to a point.
-    fn end(&self, point: Point) -> String {
-        let away = |end: &Point| (end.0 - point.0).hypot(end.1 - point.1);
+    fn nearest_terminal(&self, point: Point) -> String {
+        let distance = |end: &Point| (end.0 - point.0).hypot(end.1 - point.1);
         let ends = self.drawing.0.iter().filter(|element| {
             let id = element.text("id");
             element.tag == "circle" && (id.starts_with("end-") || id.starts_with("pin-"))
         });
-        let ends = ends.map(|element| (away(&element.points()[0]), element.text("id")));
+        let ends = ends.map(|element| (distance(&element.points()[0]), element.text("id")));
         let (nearest, name) = ends.min_by(|a, b| a.0.total_cmp(&b.0)).expect("an end");
         assert!(
-            nearest <= HOLE,
+            nearest <= MAX_TERMINAL_DISTANCE,
             "nothing is at {point:?}; {name} is {nearest} away"
         );
         name.to_owned()
@@ -106,9 +110,9 @@ impl<'a> Nets<'a> {
     }
 
     #[track_caller]
-    fn same(&self, names: &[&str]) {
+    fn assert_joined(&self, names: &[&str]) {
         for name in names {
-            // It is on the page.
+            // The name is in the drawing.
             self.drawing.named(name);
             assert_eq!(
                 self.root(name),
@@ -121,7 +125,7 @@ impl<'a> Nets<'a> {
 }
 
 #[test]
-fn every_thing_is_joined_to_what_it_needs_and_to_nothing_else() {
+fn every_component_is_joined_to_what_it_needs_and_to_nothing_else() {
     let many = many_pins();
     let many = many.iter().map(|pins| {
         let text = with_pins([0, 1, 2, 3].map(|servo| pins[servo].as_str()));
@@ -145,13 +149,13 @@ fn every_thing_is_joined_to_what_it_needs_and_to_nothing_else() {
             "end-signals-3-servo",
             "pin-GND",
         ];
-        nets.same(&[&ground[..], &grounds].concat());
+        nets.assert_joined(&[&ground[..], &grounds].concat());
         let five = ["end-converter-out-plus", "end-capacitor-plus"];
         let servos = ["end-A1-plus", "end-A2-plus", "end-A3-plus", "end-A4-plus"];
-        nets.same(&[&five[..], &servos].concat());
-        nets.same(&["end-battery-plus", "end-fuse-2"]);
-        nets.same(&["end-fuse-1", "end-switch-2"]);
-        nets.same(&[
+        nets.assert_joined(&[&five[..], &servos].concat());
+        nets.assert_joined(&["end-battery-plus", "end-fuse-2"]);
+        nets.assert_joined(&["end-fuse-1", "end-switch-2"]);
+        nets.assert_joined(&[
             "end-switch-1",
             "end-converter-in-plus",
             "end-round-plug-plus",
@@ -159,7 +163,7 @@ fn every_thing_is_joined_to_what_it_needs_and_to_nothing_else() {
         for number in 1..=3 {
             let [battery, alarm] =
                 ["battery-balance", "alarm"].map(|of| format!("end-{of}-{number}"));
-            nets.same(&[&battery, &alarm]);
+            nets.assert_joined(&[&battery, &alarm]);
         }
         let mut apart = vec![
             nets.root("end-battery-plus"),
@@ -171,16 +175,17 @@ fn every_thing_is_joined_to_what_it_needs_and_to_nothing_else() {
         for servo in SERVOS {
             let pin = value_of(&text, servo, "pin");
             let signal = format!("end-{servo}-signal");
-            nets.same(&[&signal, &format!("pin-{pin}")]);
+            nets.assert_joined(&[&signal, &format!("pin-{pin}")]);
             apart.push(nets.root(&signal));
             let words = format!("to {pin}");
             assert!(
                 drawing.0.iter().any(|element| element.words == words),
                 "{name}"
             );
-            // Its resistor leads from its way to ground.
-            let legs = drawing.path(&format!("resistor-{servo}"));
-            let ends = [legs[0], legs[legs.len() - 1]].map(|at| nets.root(&nets.end(at)));
+            // Its resistor leads from its terminal position to ground.
+            let leads = drawing.path(&format!("resistor-{servo}"));
+            let ends =
+                [leads[0], leads[leads.len() - 1]].map(|at| nets.root(&nets.nearest_terminal(at)));
             assert_eq!(
                 ends,
                 [nets.root(&signal), nets.root("pin-GND")],
@@ -191,15 +196,15 @@ fn every_thing_is_joined_to_what_it_needs_and_to_nothing_else() {
         apart.sort();
         apart.dedup();
         assert_eq!(apart.len(), count, "{name}: two nets are one");
-        // Ways that are spare are joined to nothing.
-        for way in ["end-ground-11-wire", "end-ground-12-wire"] {
-            assert_ne!(nets.root(way), nets.root("pin-GND"));
+        // Spare positions are joined to nothing.
+        for position in ["end-ground-11-wire", "end-ground-12-wire"] {
+            assert_ne!(nets.root(position), nets.root("pin-GND"));
         }
     }
 }
 
 #[test]
-fn without_one_of_its_links_a_strip_joins_no_longer() {
+fn removing_any_link_splits_its_strip() {
     let svg = wiring(&Robot::parse(&paper()).expect("a robot"));
     let links = (1..10).map(|link| format!("link-ground-{link}"));
     let links = links.chain((1..6).map(|link| format!("link-supply-{link}")));
@@ -211,11 +216,11 @@ fn without_one_of_its_links_a_strip_joins_no_longer() {
         );
         drawing.0.retain(|element| element.text("id") != link);
         let nets = Nets::of(&drawing);
-        let whole = match link.starts_with("link-ground") {
+        let ends = match link.starts_with("link-ground") {
             true => ["end-ground-1-wire", "end-ground-10-wire"],
             false => ["end-supply-1-wire", "end-supply-6-wire"],
         };
-        assert_ne!(nets.root(whole[0]), nets.root(whole[1]), "{link}");
+        assert_ne!(nets.root(ends[0]), nets.root(ends[1]), "{link}");
     }
 }
 

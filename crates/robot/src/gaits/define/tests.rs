@@ -203,7 +203,7 @@ fn waveforms_are_refused_that_the_section_has_no_room_for() {
         assert!(max.ends_with(LEAVE_OUT), "{max}");
     }
     let more = paper_with_gaits(&gaits(128)).expect_err("257").to_string();
-    assert!(more.contains("gait.nod127 needs one waveform too many: the firmware numbers them with a byte, so gaits may share 255"), "{more}");
+    assert!(more.contains("gait.nod127 needs one waveform more than the 255 that the firmware can number with a byte; gaits"), "{more}");
 }
 
 #[test]

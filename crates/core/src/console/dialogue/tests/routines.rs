@@ -24,7 +24,7 @@ fn robot(rounds: u16) -> Sample {
 }
 
 /// The gaits of a robot in these frames, one after another, and the lines printed.
-fn course(dialogue: &mut Dialogue, frames: u32) -> (Vec<String>, Vec<String>) {
+fn run_recording_gaits(dialogue: &mut Dialogue, frames: u32) -> (Vec<String>, Vec<String>) {
     let (mut gaits, mut printed): (Vec<String>, Vec<String>) = Default::default();
     for _ in 0..frames {
         printed.extend(dialogue.run(1));
@@ -39,7 +39,7 @@ fn course(dialogue: &mut Dialogue, frames: u32) -> (Vec<String>, Vec<String>) {
     (gaits, printed)
 }
 
-/// Robots at many moments of the routine.
+/// Snapshots of the dialogue at many moments of the routine.
 fn at_every_step(robot: fn() -> Sample) -> Vec<Dialogue> {
     let mut dialogue = awake(robot());
     dialogue.say("patrol");
@@ -60,7 +60,7 @@ fn a_routine_goes_through_its_steps_and_says_once_that_it_is_done() {
         let mut dialogue = awake(robot(rounds));
         assert_eq!(dialogue.say("Patrol"), "ok patrol");
         assert_eq!(dialogue.status("gait"), "patrol");
-        let (gaits, printed) = course(&mut dialogue, LONG_FRAMES * u32::from(rounds));
+        let (gaits, printed) = run_recording_gaits(&mut dialogue, LONG_FRAMES * u32::from(rounds));
         assert_eq!(printed, ["# done"]);
         let round = ["stand", "sway", "back", "sway left"];
         let (last, all) = gaits.split_last().expect("a course");
@@ -75,12 +75,12 @@ fn a_routine_goes_through_its_steps_and_says_once_that_it_is_done() {
 fn a_number_says_how_many_rounds_and_a_routine_without_an_end_has_none() {
     let mut counted = awake(robot(0));
     counted.say("patrol 2");
-    let (gaits, printed) = course(&mut counted, 3 * LONG_FRAMES);
+    let (gaits, printed) = run_recording_gaits(&mut counted, 3 * LONG_FRAMES);
     assert_eq!(printed, ["# done"]);
     assert_eq!(gaits.iter().filter(|gait| *gait == "back").count(), 2);
     let mut endless = awake(robot(0));
     endless.say("patrol");
-    let (gaits, printed) = course(&mut endless, 20 * LONG_FRAMES);
+    let (gaits, printed) = run_recording_gaits(&mut endless, 20 * LONG_FRAMES);
     assert!(printed.is_empty(), "{printed:?}");
     assert!(gaits.iter().filter(|gait| *gait == "back").count() > 20);
 }
@@ -89,9 +89,9 @@ fn a_number_says_how_many_rounds_and_a_routine_without_an_end_has_none() {
 fn a_step_of_some_time_lasts_that_time() {
     let mut dialogue = awake(robot(1));
     dialogue.say("patrol");
-    let (gaits, _) = course(&mut dialogue, 29);
+    let (gaits, _) = run_recording_gaits(&mut dialogue, 29);
     assert_eq!(gaits, ["stand"]);
-    let (gaits, _) = course(&mut dialogue, 1);
+    let (gaits, _) = run_recording_gaits(&mut dialogue, 1);
     assert_eq!(gaits, ["sway"]);
 }
 
@@ -117,11 +117,11 @@ fn help_boot_and_cal_know_a_routine_as_they_know_a_gait() {
 
 #[test]
 fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
-    for begun in at_every_step(|| robot(0)) {
+    for midway in at_every_step(|| robot(0)) {
         for line in ["stop", "rest", "stand", "sway", "back 1", NEUTRAL] {
-            let mut dialogue = begun.clone();
+            let mut dialogue = midway.clone();
             dialogue.accept(line);
-            let (gaits, printed) = course(&mut dialogue, 600);
+            let (gaits, printed) = run_recording_gaits(&mut dialogue, 600);
             assert!(gaits.len() <= 2, "{line}: {gaits:?}");
             assert_eq!(
                 printed.len(),
@@ -130,13 +130,16 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
             );
             assert_ne!(dialogue.status("gait"), "patrol");
         }
-        let mut again = begun.clone();
+        let mut again = midway.clone();
         again.say("patrol");
         assert_eq!(
-            course(&mut again, 30).0.last().map(String::as_str),
+            run_recording_gaits(&mut again, 30)
+                .0
+                .last()
+                .map(String::as_str),
             Some("sway")
         );
-        let mut weak = begun.clone();
+        let mut weak = midway.clone();
         supply(&mut weak, 4_200);
         weak.run(60);
         assert_eq!(
@@ -145,18 +148,18 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
         );
         supply(&mut weak, 5_000);
         assert_eq!(
-            course(&mut weak, 300).0,
+            run_recording_gaits(&mut weak, 300).0,
             ["Stop"],
             "it does not go on by itself"
         );
-        let mut empty = begun.clone();
+        let mut empty = midway.clone();
         supply(&mut empty, 3_900);
         empty.run(60);
         assert_eq!(empty.status("gait"), "rest");
         for cause in [Cause::External, Cause::BrownOut, Cause::Watchdog] {
-            let mut reset = begun.clone();
+            let mut reset = midway.clone();
             reset.reset(cause);
-            let (gaits, printed) = course(&mut reset, 400);
+            let (gaits, printed) = run_recording_gaits(&mut reset, 400);
             let still = ["stand", "Stop"].contains(&gaits[0].as_str());
             assert!(still && gaits.len() == 1, "{cause:?}: {gaits:?}");
             assert!(!printed.contains(&"# done".to_string()));
@@ -170,7 +173,10 @@ fn a_low_supply_slows_a_routine_and_does_not_end_it() {
     supply(&mut dialogue, 4_400);
     dialogue.run(40);
     dialogue.say("patrol");
-    assert_eq!(course(&mut dialogue, 2 * LONG_FRAMES).1, ["# done"]);
+    assert_eq!(
+        run_recording_gaits(&mut dialogue, 2 * LONG_FRAMES).1,
+        ["# done"]
+    );
 }
 
 #[test]
@@ -178,7 +184,7 @@ fn the_guard_ends_a_routine_as_it_ends_a_gait() {
     let stray = [(CYCLES, "stray", 3), (CYCLES, "sway", 1)];
     let mut dialogue = awake(Sample::odd().with_routine("patrol", 0, &stray));
     dialogue.say("patrol");
-    let (gaits, printed) = course(&mut dialogue, LONG_FRAMES);
+    let (gaits, printed) = run_recording_gaits(&mut dialogue, LONG_FRAMES);
     assert_eq!(gaits, ["stray", "Stop"]);
     assert_eq!(printed.len(), 1);
     assert!(printed[0].starts_with("# held"), "{printed:?}");
@@ -186,9 +192,9 @@ fn the_guard_ends_a_routine_as_it_ends_a_gait() {
 }
 
 #[test]
-fn silence_ends_a_routine_that_a_talker_began_and_not_one_that_boot_began() {
-    for begun in at_every_step(|| robot(0)) {
-        let mut dialogue = begun;
+fn silence_ends_a_routine_that_a_command_began_but_not_one_that_boot_began() {
+    for midway in at_every_step(|| robot(0)) {
+        let mut dialogue = midway;
         dialogue.say("deadman 200");
         let printed = dialogue.run(100);
         assert_eq!(
@@ -207,18 +213,18 @@ fn silence_ends_a_routine_that_a_talker_began_and_not_one_that_boot_began() {
         unattended.run(150);
         unattended
     };
-    let mut nobody = unattended();
-    assert!(nobody.run(5 * LONG_FRAMES).is_empty(), "it goes on");
-    // After a first line the next ones are expected within `deadman`.
-    nobody.say("speed 90");
-    assert_eq!(nobody.run(100).len(), 1);
-    assert_eq!(nobody.status("fault"), "link");
-    // A line that is not a command counts as nobody, and so does a byte.
-    let mut noise = unattended();
-    noise.board.send(b"x");
-    assert!(noise.run(LONG_FRAMES).is_empty());
-    noise.board.send(b"x\r");
-    assert_eq!(noise.run(100).len(), 1, "the refusal");
+    let mut idle = unattended();
+    assert!(idle.run(5 * LONG_FRAMES).is_empty(), "it goes on");
+    // The first valid line arms the dead-man timer.
+    idle.say("speed 90");
+    assert_eq!(idle.run(100).len(), 1);
+    assert_eq!(idle.status("fault"), "link");
+    // Neither single bytes nor an invalid line arm the dead-man timer.
+    let mut noisy = unattended();
+    noisy.board.send(b"x");
+    assert!(noisy.run(LONG_FRAMES).is_empty());
+    noisy.board.send(b"x\r");
+    assert_eq!(noisy.run(100).len(), 1, "the refusal");
 }
 
 #[test]
@@ -230,21 +236,24 @@ fn a_rest_in_a_routine_ends_the_pulses_and_the_servos_wake_one_by_one() {
     ];
     let mut dialogue = awake(Sample::odd().with_routine("patrol", 2, &steps));
     dialogue.say("patrol");
-    let (mut dark, mut awake) = (0, Vec::new());
+    let (mut frames_without_pulses, mut pulsing_counts) = (0, Vec::new());
     let mut printed = Vec::new();
     for _ in 0..LONG_FRAMES {
         printed.extend(dialogue.run(1));
         let pulses = dialogue.board.submitted().0;
         let count = pulses.iter().filter(|width| width.0 > 0).count();
-        dark += usize::from(count == 0);
-        if awake.last() != Some(&count) {
-            awake.push(count);
+        frames_without_pulses += usize::from(count == 0);
+        if pulsing_counts.last() != Some(&count) {
+            pulsing_counts.push(count);
         }
     }
     assert_eq!(printed, ["# done"]);
-    assert_eq!(awake, [4, 0, 1, 2, 3, 4, 0, 1, 2, 3, 4]);
+    assert_eq!(pulsing_counts, [4, 0, 1, 2, 3, 4, 0, 1, 2, 3, 4]);
     // 50 frames each, and five more until the first servo wakes.
-    assert!((100..=112).contains(&dark), "{dark}");
+    assert!(
+        (100..=112).contains(&frames_without_pulses),
+        "{frames_without_pulses}"
+    );
 }
 
 #[test]
