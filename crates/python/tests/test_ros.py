@@ -207,3 +207,8 @@ def test_the_node_publishes_joints_and_obeys_velocities(monkeypatch):
     assert len(state.position) == len(JOINTS)
     cranks = np.array([state.position[:4] for _, state in published])
     assert np.ptp(cranks) > 0.2
+
+
+def test_the_package_for_ros_has_the_version_of_the_wheel():
+    assert f"<version>{lizard.__version__}<" in (NODE / "package.xml").read_text()
+    assert f'version="{lizard.__version__}"' in (NODE / "setup.py").read_text()
