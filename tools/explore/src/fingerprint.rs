@@ -29,6 +29,8 @@ const RULES: &[Field] = &[
     ("Main", "ticks", Skip),
     // The last line; the next byte begins a new one.
     ("Console", "line", Skip),
+    // No action ends within a line, so no line waits for its rest.
+    ("Console", "silence", Skip),
     // A line at another rate has enough wrong bytes, whatever was before.
     ("RateFinder", "wrong_bytes", Skip),
     (
@@ -66,6 +68,7 @@ const RULES: &[Field] = &[
 const A_LINE_CAME: &[Field] = &[
     ("Main", "ticks", Skip),
     ("Console", "line", Skip),
+    ("Console", "silence", Skip),
     ("Console", "answer", Skip),
     ("RateFinder", "wrong_bytes", Skip),
     ("RateFinder", "has_received", Skip),
