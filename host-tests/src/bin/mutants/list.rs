@@ -22,6 +22,19 @@ pub struct Mutant {
 }
 
 impl Mutant {
+    /// No mistake, in a file of the core with this text.
+    pub fn none(file: &str, text: String) -> Self {
+        Self {
+            file: file.into(),
+            wrong: "nothing".into(),
+            package: Some("lizard-core".into()),
+            is_fresh: true,
+            new: text.clone(),
+            old: text,
+            ..Self::default()
+        }
+    }
+
     /// The file's text with the mistake in it.
     ///
     /// # Errors

@@ -76,6 +76,13 @@ fn sample(parts: &[String], count: usize, seed: u64) -> Result<usize, String> {
         }
     }
     println!("seed {seed}: {count} of {} fresh mistakes", mutants.len());
+    let unchanged = Mutant::none(
+        "crates/core/src/lib.rs",
+        text(&root().join("crates/core/src/lib.rs"))?,
+    );
+    if !matches!(scratch.judge(&unchanged)?, Outcome::Lives) {
+        return Err("a test fails without any mistake".into());
+    }
     // Noticed and tried: what moves a servo or a saved value, and the rest.
     let mut tally = [[0; 2]; 2];
     for mutant in fresh::drawn(mutants, seed) {
