@@ -32,7 +32,7 @@ use crate::control::supply::Reading;
 use crate::memory::restart::{Cause, Restart, Stance};
 use crate::numbers::pose::Pulses;
 use crate::numbers::rate::Rate;
-use crate::numbers::units::{CYCLES_PER_US, Width};
+use crate::numbers::units::{self, CYCLES_PER_US, Width};
 use crate::step::Board;
 
 pub use converter::{Converter, reading};
@@ -42,7 +42,7 @@ pub use running::{Running, is_final};
 pub use transmitter::Transmitter;
 
 /// Milliseconds from one tick to the next.
-pub const FRAME_MS: u8 = 20;
+pub const FRAME_MS: u8 = units::FRAME_MS as u8;
 
 /// Milliseconds from the tick to the hand-over, and from one servo's pulse to the
 /// next one's.

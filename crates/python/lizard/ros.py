@@ -99,7 +99,7 @@ class Driver:
         if wanted == going:
             return
         if wanted is None:
-            self._stop()
+            self.stop()
             return
         gait, pace = wanted
         self._robot.speed(pace)
@@ -111,8 +111,10 @@ class Driver:
     def watch_over(self) -> None:
         """Stops the robot if no velocity has come for `TIMEOUT`."""
         if self._going and time.monotonic() - self._heard > TIMEOUT:
-            self._stop()
+            self.stop()
 
-    def _stop(self) -> None:
+    def stop(self) -> None:
+        """Stops the robot, and gives its gaits their full pace back for whoever drives it next."""
         self._going = None
         self._robot.stop()
+        self._robot.speed(100)

@@ -110,9 +110,11 @@ def test_the_robot_goes_as_long_as_velocities_come(robot, model):
     time.sleep(TIMEOUT + 0.05)
     driver.watch_over()
     assert (robot.status().gait, robot.is_going) == ("stop", False)
-    driver.drive(0.03, 0)
+    driver.drive(0.01, 0)
+    assert robot.status().speed < 100
     driver.drive(0, 0)
-    assert robot.status().gait == "stop"
+    status = robot.status()
+    assert (status.gait, status.speed) == ("stop", 100)
 
 
 def test_a_robot_that_stopped_by_itself_says_why_once_and_goes_on(robot, model):
@@ -131,7 +133,7 @@ def test_a_robot_that_stopped_by_itself_says_why_once_and_goes_on(robot, model):
 
 def test_the_node_publishes_joints_and_obeys_velocities(monkeypatch):
     """With a stand-in for ROS, which no package index has."""
-    published, logged, callbacks = [], [], {}
+    published, walked, logged, callbacks = [], [], [], {}
 
     class Message(types.SimpleNamespace):
         def __getattr__(self, name):
@@ -164,11 +166,26 @@ def test_the_node_publishes_joints_and_obeys_velocities(monkeypatch):
             return types.SimpleNamespace(error=log, fatal=log)
 
     def spin(node):
-        twist = Message(linear=Message(x=0.03), angular=Message(z=0.0))
+        def walk():
+            callbacks["cmd_vel"](
+                Message(linear=Message(x=0.03), angular=Message(z=0.0))
+            )
+
         for _ in range(10):
-            callbacks["cmd_vel"](twist)
+            walk()
             callbacks["timer"]()
             time.sleep(0.1)
+        assert node.robot.is_going
+        # A board that is reset is followed again, and says it once.
+        node.robot._port.board.reset()
+        walked.extend(published)
+        published.clear()
+        end = time.monotonic() + 20
+        while len(published) < 20 and time.monotonic() < end:
+            time.sleep(0.1)
+        assert len(published) >= 20
+        walk()
+        walk()
         assert node.robot.is_going
         node.robot.ask = lambda line: (_ for _ in ()).throw(
             lizard.RobotError("refused")
@@ -195,17 +212,23 @@ def test_the_node_publishes_joints_and_obeys_velocities(monkeypatch):
     from lizard_ros.node import main
 
     main()
-    assert logged == ["refused"]
+    # Once by the poses, once by the velocity; then by the gait, and by the pace at the end.
+    assert logged == [
+        "the robot no longer sends its poses",
+        "the robot was reset",
+        "refused",
+        "refused",
+    ]
     assert not up[0]
-    assert len(published) > 20
-    topic, state = published[-1]
+    assert len(walked) > 20
+    topic, state = walked[-1]
     assert (topic, state.name, state.header.stamp) == (
         "joint_states",
         list(JOINTS),
         "now",
     )
     assert len(state.position) == len(JOINTS)
-    cranks = np.array([state.position[:4] for _, state in published])
+    cranks = np.array([state.position[:4] for _, state in walked])
     assert np.ptp(cranks) > 0.2
 
 

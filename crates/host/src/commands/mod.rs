@@ -255,32 +255,55 @@ mod tests {
 
     use super::*;
 
-    #[test]
+    /// With every feature.
     #[cfg(all(
         feature = "simulator",
         feature = "paper",
         feature = "console",
         feature = "parts"
     ))]
-    fn a_complete_build_has_every_command_under_its_name_and_aliases() {
-        let program = Cli::command();
-        let built: BTreeSet<String> = program
-            .get_subcommands()
-            .flat_map(|sub| std::iter::once(sub.get_name()).chain(sub.get_visible_aliases()))
-            .map(str::to_owned)
-            .collect();
-        let known: BTreeSet<String> = KNOWN
-            .iter()
-            .flat_map(|known| {
-                let also = known.also.iter().map(ToString::to_string);
-                std::iter::once(known.name()).chain(also)
-            })
-            .collect();
-        assert_eq!(built, known);
-        assert!(
-            known.contains("monitor") && known.contains("merge"),
-            "{known:?}"
-        );
+    mod complete {
+        use super::*;
+
+        #[test]
+        fn a_complete_build_has_every_command_under_its_name_and_aliases() {
+            let program = Cli::command();
+            let built: BTreeSet<String> = program
+                .get_subcommands()
+                .flat_map(|sub| std::iter::once(sub.get_name()).chain(sub.get_visible_aliases()))
+                .map(str::to_owned)
+                .collect();
+            let known: BTreeSet<String> = KNOWN
+                .iter()
+                .flat_map(|known| {
+                    let also = known.also.iter().map(ToString::to_string);
+                    std::iter::once(known.name()).chain(also)
+                })
+                .collect();
+            assert_eq!(built, known);
+            assert!(
+                known.contains("monitor") && known.contains("merge"),
+                "{known:?}"
+            );
+        }
+
+        #[test]
+        fn docs_commands_names_every_command_without_json() {
+            let page = include_str!("../../../../docs/commands.md");
+            let (_, list) = page.split_once("`--json`, except ").expect("the list");
+            let (list, _) = list.split_once(": they").expect("its end");
+            let named: BTreeSet<&str> = list.split('`').skip(1).step_by(2).collect();
+            let program = Cli::command();
+            let has_json =
+                |sub: &&clap::Command| sub.get_arguments().any(|arg| arg.get_id() == "json");
+            let without = program.get_subcommands().filter(|sub| !has_json(sub));
+            assert_eq!(
+                without
+                    .map(clap::Command::get_name)
+                    .collect::<BTreeSet<_>>(),
+                named
+            );
+        }
     }
 
     #[test]
@@ -310,29 +333,6 @@ mod tests {
         let gone =
             translate_old_arguments(words("lizard spring --wire 0.6")).expect_err("it is gone");
         assert!(gone.to_string().contains("[leg.drive]"), "{gone}");
-    }
-
-    #[test]
-    #[cfg(all(
-        feature = "simulator",
-        feature = "paper",
-        feature = "console",
-        feature = "parts"
-    ))]
-    fn docs_commands_names_every_command_without_json() {
-        let page = include_str!("../../../../docs/commands.md");
-        let (_, list) = page.split_once("`--json`, except ").expect("the list");
-        let (list, _) = list.split_once(": they").expect("its end");
-        let named: BTreeSet<&str> = list.split('`').skip(1).step_by(2).collect();
-        let program = Cli::command();
-        let has_json = |sub: &&clap::Command| sub.get_arguments().any(|arg| arg.get_id() == "json");
-        let without = program.get_subcommands().filter(|sub| !has_json(sub));
-        assert_eq!(
-            without
-                .map(clap::Command::get_name)
-                .collect::<BTreeSet<_>>(),
-            named
-        );
     }
 
     #[test]

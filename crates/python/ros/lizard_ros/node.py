@@ -1,6 +1,7 @@
 """The ROS node: `joint_states` from a robot, `cmd_vel` to it. All that can be wrong without ROS is in `lizard.ros`."""
 
 import threading
+from contextlib import closing
 
 import rclpy
 from geometry_msgs.msg import Twist
@@ -28,18 +29,24 @@ class Lizard(Node):
         threading.Thread(target=self.publish, daemon=True).start()
 
     def publish(self) -> None:
-        """Publishes every so many frames of 20 ms, until the robot is out of reach."""
-        try:
-            for frame in self.robot.watch(self.every):
-                state = JointState()
-                state.header.stamp = self.get_clock().now().to_msg()
-                state.name = list(JOINTS)
-                state.position = joint_values(self.model, frame.pose).tolist()
-                self.states.publish(state)
-        except (RobotError, OSError) as error:
-            if rclpy.ok():
+        """Publishes every so many frames of 20 ms, until the port is gone; a board that was reset is asked again."""
+        while rclpy.ok():
+            try:
+                with closing(self.robot.watch(self.every)) as frames:
+                    for frame in frames:
+                        if not rclpy.ok():
+                            return
+                        state = JointState()
+                        state.header.stamp = self.get_clock().now().to_msg()
+                        state.name = list(JOINTS)
+                        state.position = joint_values(self.model, frame.pose).tolist()
+                        self.states.publish(state)
+            except RobotError as error:
+                if rclpy.ok():
+                    self.get_logger().error(str(error))
+            except OSError as error:
                 self.get_logger().fatal(str(error))
-                rclpy.shutdown()
+                rclpy.try_shutdown()
 
     def drive(self, twist: Twist) -> None:
         """Takes a velocity."""
@@ -66,5 +73,6 @@ def main() -> None:
     except KeyboardInterrupt:
         pass
     finally:
-        node.robot.close()
         rclpy.try_shutdown()
+        node.attempt(node.driver.stop)
+        node.robot.close()
