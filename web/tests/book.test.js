@@ -25,7 +25,8 @@ after(async () => {
 test('the search of the book finds a word without a server', async () => {
   const book = await blank();
   await book.goto(`file://${folder}/index.html`);
-  await book.fill('input[name=query]', 'brownout');
+  // The theme reads the word when a key goes up; of a text that is put there it knows nothing.
+  await book.locator('input[name=query]').pressSequentially('brownout');
   const first = book.locator('.md-search-result__link').first();
   await first.waitFor();
   assert.match(await first.getAttribute('href'), /^file:.*(faults|firmware|quickstart|console)\.html/);
