@@ -1,4 +1,5 @@
 // The files that `make web` puts beside the page: robots, the firmware's code, the boot loader.
+import type { Predictions } from './robot';
 
 /** The text in the first comment of a robot.toml that is meant for tests. */
 const FOR_TESTS = /\bIt is for the tests\b/;
@@ -18,12 +19,16 @@ async function get(path: string): Promise<Response> {
 
 const text = async (path: string): Promise<string> => (await get(path)).text();
 
+const json = async <T>(path: string): Promise<T> => (await get(path)).json() as Promise<T>;
+
 const compiled = async (path: string): Promise<WebAssembly.Module> => WebAssembly.compile(await (await get(path)).arrayBuffer());
 
 export const files = {
   /** The names of the robots' files, without extension. */
-  robots: async (): Promise<string[]> => (await get('files/robots.json')).json() as Promise<string[]>,
+  robots: (): Promise<string[]> => json('files/robots.json'),
   toml: (name: string): Promise<string> => text(`files/${name}.toml`),
+  /** The predictions of a robot's gaits; null where they are not there, since the page can make them, too. */
+  predictions: (name: string): Promise<Predictions | null> => json<Predictions>(`files/${name}.predictions.json`).catch(() => null),
   /** The firmware without a robot, as a HEX file. */
   code: (): Promise<string> => text('files/code.hex'),
   bootLoader: (): Promise<string> => text('files/optiboot.hex'),

@@ -91,9 +91,10 @@ async function start(): Promise<void> {
     begin();
   });
   const predict = () => {
-    const { toml, floor, servos, description } = session;
+    const { toml, floor, servos, description, predicted } = session;
+    predicted?.forEach((prediction, gait) => prediction && drive.predicted(gait, prediction));
     const first = description.gaits.findIndex(({ command }) => command === session.gait);
-    predictor.ask({ toml, floor, servos, gaits: description.gaits.length, first: Math.max(0, first) });
+    predictor.ask({ toml, floor, servos, gaits: predicted ? 0 : description.gaits.length, first: Math.max(0, first) });
     routines.predict();
   };
   // The robot walks slowly when the page opens, unless the system asks for reduced motion.

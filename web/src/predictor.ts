@@ -1,8 +1,8 @@
-// Predicts each gait's displacement in a worker: a prediction takes tenths of a second, and the page
-// has 16 ms for a picture.
+// Predicts each gait's displacement in a worker: a prediction takes tenths of a second, on a phone seconds, and the page
+// has 16 ms for a picture. Those of the files' own robots come with the page.
 import type { Floor, GaitPrediction } from './robot';
 
-/** The question: every gait of a robot on a floor. */
+/** The question: every gait of a robot on a floor; none ends the question before. */
 export interface Question {
   toml: string;
   floor: Floor;
@@ -21,19 +21,27 @@ export interface Answer {
 }
 
 export class Predictor {
-  private readonly worker = new Worker(new URL('./predictor-worker.ts', import.meta.url), { type: 'module' });
+  private worker: Worker | null = null;
   private question = 0;
 
-  constructor(module: WebAssembly.Module, onPrediction: (gait: number, prediction: GaitPrediction) => void) {
-    this.worker.postMessage(module);
-    this.worker.addEventListener('message', ({ data: { question, gait, prediction } }: MessageEvent<Answer>) => {
-      if (question === this.question && prediction) onPrediction(gait, prediction);
-    });
-  }
+  constructor(
+    private readonly module: WebAssembly.Module,
+    private readonly onPrediction: (gait: number, prediction: GaitPrediction) => void,
+  ) {}
 
   /** Asks a new question; the previous one is not answered any further. */
   ask(question: Question): void {
     this.question += 1;
-    this.worker.postMessage({ ...question, question: this.question });
+    if (question.gaits > 0) this.worker ??= this.start();
+    this.worker?.postMessage({ ...question, question: this.question });
+  }
+
+  private start(): Worker {
+    const worker = new Worker(new URL('./predictor-worker.ts', import.meta.url), { type: 'module' });
+    worker.postMessage(this.module);
+    worker.addEventListener('message', ({ data: { question, gait, prediction } }: MessageEvent<Answer>) => {
+      if (question === this.question && prediction) this.onPrediction(gait, prediction);
+    });
+    return worker;
   }
 }

@@ -177,6 +177,9 @@ export interface GaitPrediction extends Displacement {
   lines: number[] | null;
 }
 
+/** The predictions of a robot's gaits in their order; null for what is no gait. */
+export type Predictions = (GaitPrediction | null)[];
+
 /** A routine as it is written, right or wrong. */
 export interface Routine {
   name: string;

@@ -13,6 +13,7 @@ import {
   type Four,
   type Frame,
   isRefused,
+  type Predictions,
   type Refused,
   type Robot,
 } from './robot';
@@ -104,6 +105,8 @@ export class Session {
   toml = '';
   /** The unchanged robot.toml of its file. */
   original = '';
+  /** The predictions of its gaits, made with the page. */
+  private predictions: Predictions | null = null;
   /** The robot's section of flash. */
   section: Uint8Array = new Uint8Array();
   last: Frame | null = null;
@@ -161,12 +164,11 @@ export class Session {
     const before = this.file;
     this.file = '';
     try {
-      const [toml, code] = await Promise.all([files.toml(name), this.code ?? files.code().then(imageOf)]);
+      const [toml, predictions, code] = await Promise.all([files.toml(name), files.predictions(name), this.code ?? files.code().then(imageOf)]);
       if (choice !== this.choices) return;
       this.code = code;
-      const refused = this.take(toml, null);
+      const refused = this.take(toml, null, [toml, predictions]);
       if (refused) throw new Error(`${name}.toml: ${refused.refused}`);
-      this.original = toml;
       await this.begin(false);
       this.file = name;
       this.keep();
@@ -208,10 +210,11 @@ export class Session {
     await this.change(this.original);
   }
 
-  private take(toml: string, set = this.set): Refused | null {
+  private take(toml: string, set = this.set, file: [string, Predictions | null] = [this.original, this.predictions]): Refused | null {
     const answer = this.robot.read(toml);
     if (isRefused(answer)) return answer;
     [this.toml, this.set] = [toml, set];
+    [this.original, this.predictions] = file;
     this.description = answer;
     this.section = this.robot.section();
     this.robot.setFloor(this.floor);
@@ -666,6 +669,11 @@ export class Session {
     const lags = this.way.slice(from + 1).flatMap(({ frame }) => frame.lag.map(Math.abs));
     const way = this.robot.between(this.way[from].frame.place, now.frame.place);
     return { ...way, lag: Math.max(0, ...lags) };
+  }
+
+  /** The predictions that were made with the page: of the file's robot, with its own floor and servos; null of any other. */
+  get predicted(): Predictions | null {
+    return this.toml === this.original && this.set === null && this.servos === 'own' ? this.predictions : null;
   }
 
   /** Takes the robot back to its start. */

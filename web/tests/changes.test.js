@@ -206,4 +206,36 @@ test('what moves nothing with rigid legs and ideal servos says so and cannot be 
   for (const label of ['Pad friction', 'Mass', 'Pull in the strut']) assert.ok(await opened.getByLabel(label).isEnabled(), label);
 });
 
+test('what is predicted of a robot comes with the page while it is as its file has it, and is made for every other', async () => {
+  const opened = await standing();
+  const made = () => opened.workers().filter((worker) => worker.url().includes('predictor-worker')).length;
+  const notes = () => opened.locator('#gaits button[data-command] small').allInnerTexts();
+  const robots = await opened.locator('#robot option').evaluateAll((options) => options.map(({ value }) => value));
+  assert.ok(robots.includes('own-gaits') && robots.length > 4);
+  for (const name of robots) {
+    await opened.locator('#robot').selectOption(name);
+    await opened.waitForFunction((name) => window.lizard.file === name, name);
+    const predicted = await opened.evaluate(() => {
+      const { robot, description } = window.lizard;
+      return description.gaits.map((_, gait) => robot.predict(gait));
+    });
+    const shown = await notes();
+    for (const [n, { forward, turn }] of predicted.entries()) {
+      const ahead = forward === null ? ['undetermined'] : Math.abs(forward) >= 0.5 ? [`${forward.toFixed(1)} mm`] : [];
+      const turned = turn !== null && Math.abs(turn) >= 0.05 ? [`${turn.toFixed(1)}°`] : [];
+      assert.equal(shown[n], [...ahead, ...turned].join(', '), `${name}, gait ${n}`);
+    }
+  }
+  assert.equal(made(), 0, 'nothing was computed for it');
+
+  await opened.locator('#robot').selectOption('robot');
+  await opened.waitForFunction(() => window.lizard.file === 'robot');
+  const [, walk] = await notes();
+  await slide(opened, 'Friction back : ahead', '1.5');
+  await opened.waitForFunction((walk) => document.querySelector('#gaits button[data-command="walk"] small').textContent !== walk, walk);
+  assert.equal(made(), 1);
+  await opened.locator('#floor-reset').click();
+  await opened.waitForFunction((walk) => document.querySelector('#gaits button[data-command="walk"] small').textContent === walk, walk);
+});
+
 test('nothing was complained of', () => assert.deepEqual(complaints, []));

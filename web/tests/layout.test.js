@@ -37,6 +37,8 @@ for (const [letters, height] of [
     test(`nothing moves after the first picture: ${letters} letters, ${width} x ${pixels} pixels`, async () => {
       const opened = await blank({ viewport: { width, height: pixels } });
       await opened.addInitScript(setLetters, height);
+      // Without those that come with the page, as for a robot of one's own.
+      await opened.route(/predictions/, (route) => route.fulfill({ status: 404 }));
       let predict;
       const asked = new Promise((done) => (predict = done));
       await opened.route(/predictor-worker/, (route) => asked.then(() => route.continue()));

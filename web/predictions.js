@@ -1,0 +1,13 @@
+// The predictions of the files' robots, made with the page, so that a phone need not: NAME.predictions.json beside NAME.toml in a
+// folder, which also has the robot in WebAssembly.
+import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+
+import { robotOf } from './wasm.js';
+
+const [folder] = process.argv.slice(2);
+const { ask } = await robotOf(readFileSync(join(folder, 'lizard.wasm')));
+for (const name of readdirSync(folder).filter((file) => file.endsWith('.toml'))) {
+  const { gaits } = ask('read', readFileSync(join(folder, name), 'utf8'));
+  writeFileSync(join(folder, name.replace(/toml$/, 'predictions.json')), JSON.stringify(gaits.map((_, gait) => ask('predict', gait))));
+}
