@@ -113,7 +113,7 @@ pub struct Bill {
     /// The sum of the price classes of all things to buy but options, euros.
     pub euros: [u32; 2],
     /// The robot's mass, g.
-    #[serde(serialize_with = "decimals::one::<10, _>")]
+    #[serde(serialize_with = "decimals::one::<1, _>")]
     pub grams: f64,
     /// The mass centre at neutral: ahead of, left of and above the plate's middle, mm.
     #[serde(serialize_with = "decimals::each::<10, _>")]

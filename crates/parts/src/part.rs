@@ -8,7 +8,7 @@ use lizard_robot::servo::{LEGS, NAMES};
 use crate::bodies::assembly::Assembly;
 use crate::layers::body::{Body, Kind, Mount, Prism};
 use crate::layers::mark;
-use crate::layers::outline::Outline;
+use crate::layers::outline::{self, Outline};
 use crate::layers::placement::Placement;
 use crate::layers::roof;
 use crate::layers::shape::Shape;
@@ -102,8 +102,7 @@ pub struct PrintToBody {
 
 /// The volume of some layers, mm^3.
 pub(crate) fn volume(prisms: &[Prism]) -> f64 {
-    let volume = |prism: &Prism| Outline::of(prism).area() * (prism.z[1] - prism.z[0]);
-    prisms.iter().map(volume).sum()
+    prisms.iter().map(outline::volume).sum()
 }
 
 impl Assembly {
@@ -202,6 +201,10 @@ fn as_printed(body: &Body) -> (Vec<Prism>, bool) {
         z: match turned {
             true => [high - prism.z[1], high - prism.z[0]],
             false => prism.z.map(|z| z - low),
+        },
+        inset: match turned {
+            true => [prism.inset[1], prism.inset[0]],
+            false => prism.inset,
         },
     };
     let mut prisms: Vec<Prism> = body.prisms.iter().map(prism).collect();

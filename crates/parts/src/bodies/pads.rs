@@ -18,8 +18,8 @@ const KEY_HOLE: f64 = 1.6;
 const RIM: f64 = 0.8;
 /// By how much the mouth above the head is narrower than the head all around, mm.
 const SNAP: f64 = 0.65;
-/// Height of the terraces that make the dome, mm: no printer shows smaller ones.
-const TERRACE: f64 = 0.1;
+/// Height of the cones that make the dome, mm: their slopes are within 0.02 mm of the ball.
+const CONE: f64 = 0.1;
 /// Least material under the head, mm.
 const UNDER_HEAD: f64 = 1.0;
 
@@ -50,20 +50,25 @@ pub(crate) fn layers(parts: &Parts, point: Vector, floor: f64) -> Vec<Prism> {
         };
         Shape::disc(point, radius)
     };
-    // A terrace is as wide as the ball is in its middle.
     let outline = |z: f64| {
         let high = (z - floor).min(pad.radius);
         let ball = (high * (2.0 * pad.radius - high)).sqrt();
-        Shape::disc(point, ball.max(KEY_HOLE + RIM).min(half))
+        ball.max(KEY_HOLE + RIM).min(half)
     };
-    let count = (dome / TERRACE).ceil() as u32;
-    let terraces = (0..=count).map(|number| floor + (f64::from(number) * TERRACE).min(dome));
-    let mut levels: Vec<f64> = terraces.chain([seat, top - PAD_LIP, top]).collect();
+    // The height at which the ball is as wide as the rim.
+    let rim = pad.radius - (pad.radius.powi(2) - (KEY_HOLE + RIM).powi(2)).sqrt();
+    let count = (dome / CONE).ceil() as u32;
+    let heights = (0..=count).map(|number| (f64::from(number) * CONE).min(dome));
+    let cones = heights.filter(|height| *height > rim + CONE / 2.0);
+    let mut levels: Vec<f64> = cones
+        .map(|height| floor + height)
+        .chain([floor, floor + rim, seat, top - PAD_LIP, top])
+        .collect();
     levels.sort_by(f64::total_cmp);
     levels.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
     let layer = |pair: &[f64]| {
-        let middle = f64::midpoint(pair[0], pair[1]);
-        Prism::new([outline(middle)], [hole(middle)], [pair[0], pair[1]])
+        let z = [pair[0], pair[1]];
+        Prism::cone(point, z.map(outline), hole(f64::midpoint(z[0], z[1])), z)
     };
     levels.windows(2).map(layer).collect()
 }

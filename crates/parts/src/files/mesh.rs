@@ -44,7 +44,9 @@ impl Mesh {
             match face.surface {
                 Surface::Top(_) => maker.add_flat(face, false),
                 Surface::Bottom(_) => maker.add_flat(face, true),
-                Surface::Wall(side, end) => maker.add_wall(face, side, end),
+                Surface::Wall(side, end) | Surface::Slope(side, end, ..) => {
+                    maker.add_wall(face, side, end);
+                }
             }
         }
         maker.mesh

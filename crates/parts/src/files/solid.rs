@@ -12,7 +12,7 @@ use cavalier_contours::polyline::{PlineSegIntr, PlineVertex, pline_seg_intr};
 use lizard_kinematics::Vector;
 
 use crate::layers::body::Prism;
-use crate::layers::outline::{Loop, Outline, SAME_POINT_MM, Side};
+use crate::layers::outline::{self, Loop, Outline, SAME_POINT_MM, Side};
 
 /// The surface of a part, as edges and faces.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -29,7 +29,7 @@ pub struct Solid {
     pub volume: f64,
 }
 
-/// An edge between two corners; upright if both are at one point.
+/// An edge between two corners; upright if both are at one point, along a slope if they are at two heights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge {
     /// Two corners, each as a point and a height.
@@ -47,7 +47,7 @@ pub struct Face {
     pub loops: Vec<Vec<(usize, bool)>>,
 }
 
-/// The plane or cylinder under a face.
+/// The plane, cylinder or cone under a face.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Surface {
     /// A plane at a height, seen from above.
@@ -56,6 +56,8 @@ pub enum Surface {
     Bottom(usize),
     /// A wall along a side of an outline, which ends at a point.
     Wall(Side, Vector),
+    /// A wall that leans: along a side, which ends at a point, at this height; and its arc's radius at the next height, mm.
+    Slope(Side, Vector, usize, f64),
 }
 
 /// A piece of an outline at a height.
@@ -71,25 +73,30 @@ struct Piece {
 impl Solid {
     /// The surface of some layers, which lie on each other from below to above.
     pub fn of(prisms: &[Prism]) -> Self {
-        let outlines: Vec<Outline> = prisms.iter().map(Outline::of).collect();
+        let cut_at = |share| {
+            let cut = |prism: &Prism| Outline::of(&prism.cut_at(share));
+            prisms.iter().map(cut).collect::<Vec<_>>()
+        };
+        let (bottoms, tops) = (cut_at(0.0), cut_at(1.0));
         let mut maker = SolidBuilder::default();
         let top = prisms.last().map(|last| last.z[1]);
         let heights = prisms.iter().map(|prism| prism.z[0]).chain(top);
         maker.solid.heights = heights.collect();
         let nothing = Outline::default();
         let mut below: Vec<Vec<Piece>> = Vec::new();
-        for level in 0..=outlines.len() {
-            let lower = level.checked_sub(1).map_or(&nothing, |k| &outlines[k]);
-            let upper = outlines.get(level).unwrap_or(&nothing);
+        for level in 0..=prisms.len() {
+            let lower = level.checked_sub(1).map_or(&nothing, |k| &tops[k]);
+            let upper = bottoms.get(level).unwrap_or(&nothing);
             let lower_pieces = maker.pieces(level, lower, upper);
             let upper_pieces = maker.pieces(level, upper, lower);
             maker.add_flats(level, (lower, &lower_pieces), (upper, &upper_pieces));
-            maker.add_walls(level, lower, &below, &lower_pieces);
+            if let Some(layer) = level.checked_sub(1) {
+                let outlines = [&bottoms[layer], &tops[layer]];
+                maker.add_walls(level, outlines, &below, &lower_pieces);
+            }
             below = upper_pieces;
         }
-        let layers = prisms.iter().zip(&outlines);
-        let volumes = layers.map(|(prism, outline)| outline.area() * (prism.z[1] - prism.z[0]));
-        maker.solid.volume = volumes.sum();
+        maker.solid.volume = prisms.iter().map(outline::volume).sum();
         maker.solid
     }
 
@@ -112,7 +119,7 @@ struct SolidBuilder {
     known: BTreeMap<(usize, usize, usize, usize), usize>,
     /// Middles of pieces, which tell two arcs between the same points apart.
     middles: Vec<Vector>,
-    uprights: BTreeMap<(usize, usize), usize>,
+    uprights: BTreeMap<(usize, usize, usize), usize>,
 }
 
 fn place(points: &mut Vec<Vector>, point: Vector) -> usize {
@@ -278,34 +285,42 @@ impl SolidBuilder {
     fn add_walls(
         &mut self,
         level: usize,
-        outline: &Outline,
+        [bottom, top]: [&Outline; 2],
         low: &[Vec<Piece>],
         high: &[Vec<Piece>],
     ) {
-        let sides = outline.loops().flat_map(Loop::ends);
-        for ((low, high), (side, end)) in low.iter().zip(high).zip(sides) {
-            let (Some(first), Some(last)) = (low.first(), low.last()) else {
+        let sides = |outline: &Outline| {
+            let ends = outline.loops().flat_map(Loop::ends);
+            ends.collect::<Vec<_>>()
+        };
+        let sides = sides(bottom).into_iter().zip(sides(top));
+        for ((low, high), ((side, end), (above, above_end))) in low.iter().zip(high).zip(sides) {
+            let ends = |pieces: &[Piece]| Some((pieces.first()?.from, pieces.last()?.to));
+            let (Some((from, to)), Some((high_from, high_to))) = (ends(low), ends(high)) else {
                 continue;
             };
-            let (from, to) = (first.from, last.to);
             let uprights = low.iter().map(|piece| (piece.edge, piece.forward));
             let mut edges: Vec<_> = uprights.collect();
-            edges.push((self.upright(to, level), true));
+            edges.push((self.upright([to, high_to], level), true));
             edges.extend(high.iter().rev().map(|piece| (piece.edge, !piece.forward)));
-            edges.push((self.upright(from, level), false));
-            self.solid.faces.push(Face {
-                surface: Surface::Wall(side, end),
-                loops: vec![edges],
-            });
+            edges.push((self.upright([from, high_from], level), false));
+            let surface = match above.arc(above_end) {
+                Some((_, radius)) if from != high_from => {
+                    Surface::Slope(side, end, level - 1, radius)
+                }
+                _ => Surface::Wall(side, end),
+            };
+            let loops = vec![edges];
+            self.solid.faces.push(Face { surface, loops });
         }
     }
 
-    /// The upright edge at a point from the level below to a level.
-    fn upright(&mut self, point: usize, level: usize) -> usize {
+    /// The edge from a point at the level below to one at a level: upright, or along a slope.
+    fn upright(&mut self, [low, high]: [usize; 2], level: usize) -> usize {
         let edges = &mut self.solid.edges;
-        *self.uprights.entry((point, level)).or_insert_with(|| {
+        *self.uprights.entry((low, high, level)).or_insert_with(|| {
             edges.push(Edge {
-                ends: [(point, level - 1), (point, level)],
+                ends: [(low, level - 1), (high, level)],
                 bulge: 0.0,
             });
             edges.len() - 1

@@ -1,4 +1,4 @@
-//! A part as a STEP file (ISO 10303-21, AP214): a solid of planes and cylinders.
+//! A part as a STEP file (ISO 10303-21, AP214): a solid of planes, cylinders and cones.
 //!
 //! This is our own writer, because existing ones turn circles into splines: then a
 //! CAD program no longer knows that a hole is round, or where its centre is.
@@ -143,6 +143,18 @@ impl StepWriter {
                 let at = [0.0, 0.0, solid.heights[level]];
                 let frame = self.frame(at, [0.0, 0.0, up], [1.0, 0.0, 0.0]);
                 (self.add(&format!("PLANE('',#{frame})")), true)
+            }
+            Surface::Slope(side, end, level, above) => {
+                let (centre, radius) = side.arc(end).expect("a slope is round");
+                let [low, high] = [level, level + 1].map(|level| solid.heights[level]);
+                // The angle of a cone in STEP is positive, so one that narrows upward stands on its head.
+                let narrows = radius > above;
+                let up = if narrows { -1.0 } else { 1.0 };
+                let frame = self.frame([centre.x, centre.y, low], [0.0, 0.0, up], [1.0, 0.0, 0.0]);
+                let angle = libm::atan((above - radius).abs() / (high - low));
+                let (radius, angle) = (real(radius), real(angle));
+                let cone = format!("CONICAL_SURFACE('',#{frame},{radius},{angle})");
+                (self.add(&cone), side.bulge > 0.0)
             }
             Surface::Wall(side, end) => match side.arc(end) {
                 Some((centre, radius)) => {

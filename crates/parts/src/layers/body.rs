@@ -1,6 +1,8 @@
 //! A rigid body of the robot: its layers, what it is, and what it moves with.
 
-use lizard_kinematics::{End, Side};
+use std::borrow::Cow;
+
+use lizard_kinematics::{End, Side, Vector};
 
 use lizard_robot::Robot;
 
@@ -8,7 +10,8 @@ use crate::layers::fitting::Fitting;
 use crate::layers::shape::Shape;
 use crate::layers::stack::Span;
 
-/// A layer of a body: a union of shapes less some holes, between two heights.
+/// A layer of a body: a union of shapes less some holes, between two heights. Its walls are upright, or lean outward by the
+/// difference of its insets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prism {
     /// Shapes whose union is filled, in the body's frame, mm.
@@ -17,13 +20,29 @@ pub struct Prism {
     pub cut: Vec<Shape>,
     /// Bottom and top, mm above the chassis plate's top.
     pub z: Span,
+    /// Lengths by which the filled shapes, which are discs then, are smaller in radius at the bottom and at the top, mm.
+    pub inset: [f64; 2],
 }
 
 impl Prism {
     /// A layer with holes.
     pub fn new(add: impl Into<Vec<Shape>>, cut: impl Into<Vec<Shape>>, z: Span) -> Self {
         let (add, cut) = (add.into(), cut.into());
-        Self { add, cut, z }
+        Self {
+            add,
+            cut,
+            z,
+            inset: [0.0; 2],
+        }
+    }
+
+    /// A layer of a cone, by its radii at the bottom and at the top, mm.
+    pub(crate) fn cone(middle: Vector, radii: [f64; 2], hole: Shape, z: Span) -> Self {
+        let widest = radii[0].max(radii[1]);
+        Self {
+            inset: radii.map(|radius| widest - radius),
+            ..Self::new([Shape::disc(middle, widest)], [hole], z)
+        }
     }
 
     /// A layer without holes.
@@ -38,7 +57,31 @@ impl Prism {
 
     /// The same layer between two other heights.
     pub fn at(&self, z: Span) -> Self {
-        Self { z, ..self.clone() }
+        let [low, high] = self.inset;
+        let slope = (high - low) / (self.z[1] - self.z[0]);
+        let inset = match low == high {
+            true => self.inset,
+            false => z.map(|height| low + slope * (height - self.z[0])),
+        };
+        Self {
+            z,
+            inset,
+            ..self.clone()
+        }
+    }
+
+    /// The layer as its walls are at a share of its height, 0 at the bottom to 1 at the top.
+    pub(crate) fn cut_at(&self, share: f64) -> Cow<'_, Self> {
+        if self.inset == [0.0; 2] {
+            return Cow::Borrowed(self);
+        }
+        let inset = self.inset[0] + share * (self.inset[1] - self.inset[0]);
+        let smaller = |shape: &Shape| Shape {
+            points: shape.points.clone(),
+            radius: shape.radius - inset,
+        };
+        let add: Vec<Shape> = self.add.iter().map(smaller).collect();
+        Cow::Owned(Self::new(add, self.cut.clone(), self.z))
     }
 }
 

@@ -291,6 +291,17 @@ fn polyline(shape: &Shape) -> Polyline<f64> {
     line
 }
 
+/// The volume of a layer, mm^3.
+pub(crate) fn volume(prism: &Prism) -> f64 {
+    let area = |share| Outline::of(&prism.cut_at(share)).area();
+    let mean = match prism.inset[0] == prism.inset[1] {
+        true => area(0.0),
+        // Simpson's rule, exact for the area of a cone.
+        false => (area(0.0) + 4.0 * area(0.5) + area(1.0)) / 6.0,
+    };
+    mean * (prism.z[1] - prism.z[0])
+}
+
 #[cfg(test)]
 mod tests {
     use std::f64::consts::PI;

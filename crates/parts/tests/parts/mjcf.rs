@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use lizard_kinematics::{End, Side, Solution, Vector};
-use lizard_parts::{Assembly, Bill, Block, Course, Pull, Scene, mjcf};
+use lizard_parts::{Assembly, Bill, Block, Course, Mesh, Pull, Scene, Solid, mjcf};
 use lizard_robot::Robot;
 use lizard_robot::servo::{LEGS, NAMES};
 use roxmltree::{Document, Node};
@@ -258,18 +258,38 @@ fn the_ball_that_touches_the_floor_is_that_of_the_pads_dome() {
         .filter(|node| node.has_tag_name("geom"));
     let ball = nodes.find(|node| node.attribute("name") == Some("pad LF"));
     let radius = 1000.0 * numbers(ball.expect("a ball"), "size")[0];
-    let floor = pad.z()[0];
-    let mut climbed: f64 = 0.0;
-    for prism in &pad.prisms {
-        let half = prism.add[0].radius;
-        let [low, high] = prism.z.map(|z| z - floor);
-        let ball = |z: f64| (z * (2.0 * radius - z)).sqrt();
-        if half < 10.9 && low > 0.15 {
-            assert!(ball(low) < half && half < ball(high), "{low} {half}");
-            climbed = climbed.max(high);
+    let parts = assembly.parts();
+    let part = parts.iter().find(|part| part.bodies[0] == pad.name);
+    let (layers, _) = part.expect("a pad to print").printed();
+    let mesh = Mesh::of(&Solid::of(&layers));
+    // The pad lies on its back, about its middle; nearer to it is the hole for the screw.
+    let top = mesh.corners.iter().fold(0.0, |top, [.., z]| z.max(top));
+    let (mut lowest, mut count) = (top, 0);
+    for triangle in &mesh.triangles {
+        let corners = triangle.map(|corner| mesh.corners[corner]);
+        let around = corners.map(|[x, y, _]| x.hypot(y));
+        let edge = around.map(|around| (3.05..10.95).contains(&around));
+        if edge == [false; 3] {
+            continue;
         }
+        count += 1;
+        for ([.., z], around) in corners.into_iter().zip(around) {
+            let ball = top - radius + (radius.powi(2) - around.powi(2)).sqrt();
+            assert!((z - ball).abs() < 0.002, "{z} where the ball has {ball}");
+            lowest = lowest.min(z);
+        }
+        let [a, b, c] = corners;
+        let ([ux, uy, _], [vx, vy, _]) = (
+            [0, 1, 2].map(|i| b[i] - a[i]),
+            [0, 1, 2].map(|i| c[i] - a[i]),
+        );
+        assert!(ux * vy - uy * vx > 1e-6, "upright, an edge: {corners:?}");
     }
-    assert!(climbed > 1.9, "a dome of {climbed} mm");
+    assert!(
+        count > 1000 && top - lowest > 1.9,
+        "a dome of {} mm",
+        top - lowest
+    );
 }
 
 #[test]
