@@ -330,10 +330,12 @@ fn led_shows_the_fault(record: &Record) -> Result<(), String> {
         let at = exchange.answer.as_ref()?.cycle;
         Some((at, led::code(exchange.status("fault")?)))
     };
-    let reports = record
-        .lines
-        .iter()
-        .filter(|line| line.text.starts_with("# fault") || line.text.starts_with("# held"));
+    // An order waits while older answers are printed, so its own answer tells when it was done.
+    let tells = |text: &str| {
+        let is_done = text.starts_with("ok ") && !text.starts_with("ok gait=");
+        is_done || text.starts_with("# fault") || text.starts_with("# held")
+    };
+    let reports = record.lines.iter().filter(|line| tells(&line.text));
     let changes = reports.map(|line| line.cycle);
     let changes = changes.chain(record.orders().map(|(received, _)| received.cycle));
     let changes: Vec<u64> = changes

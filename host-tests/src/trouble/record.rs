@@ -173,12 +173,16 @@ impl Record {
     /// The outcome of a line that nobody waited for, by what the board says soon.
     fn is_confirmed(&self, received: &Received) -> Option<bool> {
         let (from, to) = (received.cycle, received.cycle + 300 * MS);
-        let ok = format!("ok {}", received.text);
+        // A reset may have cut off the beginning.
+        let is_ok = |text: &str| {
+            let said = text.strip_prefix("ok ");
+            said.is_some_and(|said| received.text.ends_with(said))
+        };
         let soon = self
             .lines
             .iter()
             .filter(|line| (from..to).contains(&line.cycle));
-        if soon.clone().any(|line| line.text == ok) {
+        if soon.clone().any(|line| is_ok(&line.text)) {
             return Some(true);
         }
         // In this state any order is refused.

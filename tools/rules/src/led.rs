@@ -41,7 +41,9 @@ pub fn check_pattern(edges: &[(Time, bool)], from: Time, to: Time, code: u8) -> 
             }
             (_, 630..=650) if code == 0 => {}
             (high, ms) => {
-                return Err(format!("fault {code}: the LED is high={high} for {ms} ms"));
+                let at = pair[0].0 as f64 / MS as f64;
+                let seen = format!("the LED is high={high} for {ms} ms from {at:.3} ms on");
+                return Err(format!("fault {code}: {seen}"));
             }
         }
     }
