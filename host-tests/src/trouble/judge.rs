@@ -2,6 +2,7 @@
 
 use lizard_core::console::word::Effect;
 use lizard_core::memory::restart::Cause;
+use lizard_host::patrol::PATROL;
 use lizard_host::sim::lines::Line;
 use lizard_robot::Robot;
 use lizard_rules::{BrokenRule, Event, Limits, Observer, Pulse, Rule, Time, led};
@@ -212,7 +213,10 @@ fn refused_changes_nothing(record: &Record) -> Result<(), String> {
             let is_end = line.text == "# done" || line.text.contains("as long as deadman says");
             is_end && span.contains(&line.cycle)
         });
-        let is_troubled = ends_by_itself || record.is_troubled(from.cycle, to.cycle);
+        // A routine goes on, from a motion to a rest and back.
+        let is_routine =
+            before.status("gait") == Some(PATROL) || after.status("gait") == Some(PATROL);
+        let is_troubled = ends_by_itself || is_routine || record.is_troubled(from.cycle, to.cycle);
         if !is_refused || !have_status || is_troubled {
             continue;
         }

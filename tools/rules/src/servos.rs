@@ -290,8 +290,9 @@ impl Observer {
             || self.start > end - 25 * MS
             || self.booted_to_rest > end - 60 * MS
             || self.supply.time_below(rest, end - 600 * MS, end) > 0
-            // A routine that rests ends there if the robot may not move on.
-            || self.supply.time_below(stop, end, end + self.limits.longest_rest) > 0;
+            // A routine that rests ends there if the robot may not move on, or nobody is heard.
+            || self.supply.time_below(stop, end, end + self.limits.longest_rest) > 0
+            || self.reports.told > end;
         if !has_reason {
             let ms = (self.now - end) / MS;
             self.fail(
