@@ -103,7 +103,9 @@ impl Observer {
             self.begun += 1;
             self.permission.note_boot(self.now, boot);
         }
-        if line.ends_with("pulses ended") || line.contains("several times in a row") {
+        let is_end = line.ends_with("pulses ended") || line.contains("several times in a row");
+        // An order that came while it was printed has overtaken it.
+        if is_end && since > self.ordered {
             self.permission.end(self.now);
         }
     }
