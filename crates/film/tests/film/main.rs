@@ -1,0 +1,5 @@
+//! Films whose truth is known, rendered with all that spoils a picture.
+
+mod accuracy;
+mod render;
+mod walk;
