@@ -3,7 +3,9 @@
 //! A way per cycle means little without the phase at which a cycle begins: the body sways, so
 //! another beginning has another direction ahead. And a clock that is off by half a percent makes every cycle
 //! as much too long. So the beginning and the time of a cycle are fitted: the movement within a cycle must
-//! fit the predicted one. Its size does not count for that, only its ups and downs.
+//! fit the predicted one. Its size does not count for that, only its ups and downs. Cycles are compared
+//! at a time at which the robot moves evenly, since pictures are apart, and the result is seen from a cycle's
+//! beginning by the way from there to that time.
 
 use lizard_contact::{Place, Travel};
 
@@ -46,16 +48,37 @@ impl Gait {
         let within = phase.rem_euclid(1.0) * count as f64;
         let i = (within as usize).min(count - 1);
         let (a, b, share) = (self.path[i], self.path[i + 1], within - i as f64);
-        let mix = |part: fn(&Place) -> f64| part(&a) + share * (part(&b) - part(&a));
-        let mut place = Place {
-            forward: mix(|place| place.forward),
-            left: mix(|place| place.left),
-            heading: mix(|place| place.heading),
-        };
+        let mut place = path::mix(a, b, share);
         for _ in 0..phase.floor().max(0.0) as usize {
             place = path::compose(self.path[count], place);
         }
         place
+    }
+
+    /// The phase around which the predicted movement changes least: there a place between
+    /// pictures is known best.
+    fn calm(&self) -> f64 {
+        let count = 50;
+        let roughness = |i: usize| {
+            let part = |j: f64| {
+                let from = (i as f64 + j) / count as f64;
+                self.step(from, from + 1.0 / count as f64)
+            };
+            let parts = [-4.0, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0].map(part);
+            let changes = parts
+                .windows(2)
+                .map(|pair| size([0, 1, 2].map(|axis| pair[1][axis] - pair[0][axis])));
+            // Half as much counts a movement itself, because the clock is not known exactly.
+            changes.sum::<f64>() + 0.5 * parts.iter().map(|part| size(*part)).sum::<f64>()
+        };
+        let least = (0..count).min_by(|&a, &b| roughness(a).total_cmp(&roughness(b)));
+        least.unwrap_or(0) as f64 / count as f64
+    }
+
+    /// The movement at a phase, for a whole cycle: mm, mm, deg.
+    fn pace(&self, phase: f64) -> [f64; 3] {
+        let [forward, left, turn] = self.step(phase - NEAR / 2.0, phase + NEAR / 2.0);
+        [forward, left, (turn / ARM).to_degrees()].map(|part| part / NEAR)
     }
 
     /// The movement from a phase to a later one.
@@ -70,7 +93,9 @@ impl Gait {
 pub(crate) struct Cycles {
     /// Time of a cycle, s, and its standard error.
     pub period: [f64; 2],
-    /// The beginnings of all cycles, and the end of the last, s.
+    /// The predicted movement at the times between cycles, for a whole cycle: mm, mm, deg.
+    pub pace: [f64; 3],
+    /// The times between cycles, s.
     pub ends: Vec<f64>,
     /// The movement of each cycle.
     pub travels: Vec<Travel>,
@@ -105,33 +130,55 @@ pub(crate) fn find(path: &[Seen], gait: &Gait) -> Result<Cycles, Trouble> {
         return Err(too_short);
     }
     let (start, period) = clock(&steps, gait)?;
-    let first = ((begin - start) / period[0]).ceil();
-    let at = |cycle: f64| path::at(path, cycle, NEAR * gait.period);
-    let ends = (0..).map(|i| start + (first + f64::from(i)) * period[0]);
-    let places: Vec<(f64, Place)> = ends
+    let calm = gait.calm();
+    // The calm times of cycles from before the walk to after it.
+    let first = ((begin - start) / period[0] - calm).ceil() as i64;
+    let times = (first..).map(|i| start + (i as f64 + calm) * period[0]);
+    let near = NEAR * gait.period;
+    let places: Vec<(f64, Place)> = times
         .take_while(|&time| time <= end)
-        .map_while(|time| Some((time, at(time)?)))
+        .map_while(|time| Some((time, path::at(path, time, near)?)))
         .collect();
     if places.len() < 3 {
         return Err(too_short);
     }
+    let to_calm = to_calm(&walked, &places, calm * period[0]).unwrap_or_else(|| gait.at(calm));
+    let from_calm = path::inverse(to_calm);
+    let travel = |pair: &[(f64, Place)]| {
+        let cycle = path::of_travel(pair[1].1.seen_from(pair[0].1));
+        path::compose(path::compose(to_calm, cycle), from_calm).travel()
+    };
     Ok(Cycles {
         period,
+        pace: gait.pace(calm),
         ends: places.iter().map(|(time, _)| *time).collect(),
-        travels: places
-            .windows(2)
-            .map(|pair| pair[1].1.seen_from(pair[0].1))
-            .collect(),
+        travels: places.windows(2).map(travel).collect(),
+    })
+}
+
+/// The mean way from the beginning of a cycle to its calm time.
+fn to_calm(path: &[Seen], places: &[(f64, Place)], calm: f64) -> Option<Place> {
+    let ways: Vec<Place> = places
+        .iter()
+        .filter_map(|(time, place)| {
+            let begin = path::between(path, time - calm)?;
+            Some(path::of_travel(place.seen_from(begin)))
+        })
+        .collect();
+    let mean = |part: fn(&Place) -> f64| ways.iter().map(part).sum::<f64>() / ways.len() as f64;
+    (!ways.is_empty()).then(|| Place {
+        forward: mean(|way| way.forward),
+        left: mean(|way| way.left),
+        heading: mean(|way| way.heading),
     })
 }
 
 /// The time in which the robot walks evenly.
 fn walk(path: &[Seen], gait: &Gait) -> Result<[f64; 2], Trouble> {
-    let half = NEAR * gait.period;
     let moves: Vec<(f64, Travel)> = path
         .iter()
         .filter_map(|seen| {
-            let later = path::at(path, seen.seconds + gait.period, half)?;
+            let later = path::between(path, seen.seconds + gait.period)?;
             Some((seen.seconds, later.seen_from(seen.place)))
         })
         .collect();
@@ -187,7 +234,7 @@ fn walk(path: &[Seen], gait: &Gait) -> Result<[f64; 2], Trouble> {
 /// The movement from each picture to a later time: the time of the picture, the movement.
 fn steps(path: &[Seen], later: f64) -> Vec<(f64, [f64; 3])> {
     let step = |seen: &Seen| {
-        let there = path::at(path, seen.seconds + later, later / 3.0)?;
+        let there = path::between(path, seen.seconds + later)?;
         Some((seen.seconds, movement(there.seen_from(seen.place))))
     };
     path.iter().filter_map(step).collect()

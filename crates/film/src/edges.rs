@@ -13,8 +13,9 @@ use crate::sheet::SQUARES;
 const ENDS: f64 = 0.12;
 /// Distance across an edge that is looked at on either side, px, if the tag is large enough.
 const ACROSS: f64 = 4.0;
-/// The same for small tags, as a share of a square: beyond it the code begins.
-const ACROSS_SQUARE: f64 = 0.85;
+/// The same for small tags, as a share of a square: the code begins after a square, and the first corners are
+/// off by a pixel.
+const ACROSS_SQUARE: f64 = 0.6;
 /// Step across an edge, px.
 const STEP: f64 = 0.5;
 /// Least step of brightness of an edge.

@@ -12,7 +12,7 @@ use crate::sheet::{CODES, DECK_TAG, FLOOR_TAGS};
 use crate::tags;
 use crate::trouble::Trouble;
 
-/// Distance of a floor tag's corner from its mean that shows a moved camera, px.
+/// Distance of a floor tag's corner from its usual place that shows a moved camera, px.
 const MOVED: f64 = 1.0;
 /// Share of the pictures that need not show what is asked for.
 const LOST: f64 = 0.1;
@@ -62,7 +62,7 @@ pub struct Measured {
     pub period: [f64; 2],
     /// The movement of each cycle.
     pub cycles: Vec<Travel>,
-    /// The times of the cycles' beginnings and the last one's end, s.
+    /// The times between the cycles, s.
     pub ends: Vec<f64>,
     /// The path.
     pub path: Vec<Seen>,
@@ -159,7 +159,7 @@ impl Film {
         let doubts = self.doubts(&scene, &cycles, if moved { 5 } else { 11 }, place);
         let mean = |i: usize| {
             let mut mean = mean::of(&parts[i]);
-            let clock = mean.mean * cycles.period[1] / cycles.period[0];
+            let clock = cycles.pace[i] * cycles.period[1] / cycles.period[0];
             mean.error = (mean.error.powi(2) + clock.powi(2) + doubts[i]).sqrt();
             mean
         };
@@ -208,8 +208,9 @@ impl Film {
         Ok(())
     }
 
-    /// The mean corners of each floor tag.
-    fn means(&self) -> FloorCorners {
+    /// The corners of each floor tag where they are most often: a tag that is partly covered for a while has
+    /// others.
+    fn usual(&self) -> FloorCorners {
         std::array::from_fn(|id| {
             let seen: Vec<_> = self
                 .frames
@@ -217,25 +218,27 @@ impl Film {
                 .filter_map(|frame| frame.tags[id])
                 .collect();
             std::array::from_fn(|corner| {
-                [0, 1].map(|i| {
-                    let sum: f64 = seen.iter().map(|tag| tag[corner][i]).sum();
-                    sum / seen.len() as f64
-                })
+                [0, 1].map(|i| middle(seen.iter().map(|tag| tag[corner][i]).collect()))
             })
         })
     }
 
-    /// True if the camera moved.
+    /// True if the camera moved: then two tags are elsewhere, and not one that is partly covered.
     fn is_moved(&self) -> bool {
-        let means = self.means();
-        let far = |frame: &&Frame| {
-            (0..FLOOR_TAGS).any(|id| {
-                let corners = frame.tags[id].iter().flatten();
-                let distance = |(a, b): (&Pixel, &Pixel)| (a[0] - b[0]).hypot(a[1] - b[1]);
-                corners.zip(&means[id]).map(distance).any(|far| far > MOVED)
-            })
+        let usual = self.usual();
+        let is_elsewhere = |tag: &[Pixel; 4], usual: &[Pixel; 4]| {
+            let pairs = tag.iter().zip(usual);
+            pairs
+                .map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]))
+                .any(|far| far > MOVED)
         };
-        self.frames.iter().filter(far).count() > self.frames.len() / 50
+        let moved = |frame: &&Frame| {
+            let tags = (0..FLOOR_TAGS).filter_map(|id| Some((id, frame.tags[id]?)));
+            tags.filter(|(id, tag)| is_elsewhere(tag, &usual[*id]))
+                .count()
+                > 1
+        };
+        self.frames.iter().filter(moved).count() > self.frames.len() / 50
     }
 
     /// Pictures by which to find the scene.
@@ -256,7 +259,7 @@ impl Film {
                 .filter_map(|frame| frame.tags[DECK_TAG])
                 .collect();
             return Ok(vec![View {
-                floor: self.means(),
+                floor: self.usual(),
                 decks: spread(decks.len()).map(|i| decks[i]).collect(),
             }]);
         }
@@ -345,6 +348,14 @@ impl Film {
             pairs.map(term).sum::<f64>().max(0.0)
         })
     }
+}
+
+/// The mean of the middle half of values, which is not empty.
+fn middle(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let quarter = values.len() / 4;
+    let half = &values[quarter..values.len() - quarter];
+    half.iter().sum::<f64>() / half.len() as f64
 }
 
 /// The camera of a picture.

@@ -1,6 +1,6 @@
 //! The measured path: places at the times of pictures, and between them.
 
-use lizard_contact::Place;
+use lizard_contact::{Place, Travel};
 
 use crate::least;
 
@@ -26,6 +26,29 @@ pub(crate) fn compose(from: Place, seen: Place) -> Place {
     }
 }
 
+/// The place from which a place is seen as `place` sees its origin.
+pub(crate) fn inverse(place: Place) -> Place {
+    of_travel(Place::START.seen_from(place))
+}
+
+/// A movement as a place that is seen from its start.
+pub(crate) fn of_travel(travel: Travel) -> Place {
+    Place {
+        forward: travel.forward,
+        left: travel.left,
+        heading: travel.turn.to_radians(),
+    }
+}
+
+/// The place on the straight way between two places.
+pub(crate) fn mix(a: Place, b: Place, share: f64) -> Place {
+    Place {
+        forward: a.forward + share * (b.forward - a.forward),
+        left: a.left + share * (b.left - a.left),
+        heading: a.heading + share * (b.heading - a.heading),
+    }
+}
+
 /// Makes the headings continuous, so that two turns are not none.
 pub(crate) fn unwind(seen: &mut [Seen]) {
     for i in 1..seen.len() {
@@ -34,6 +57,20 @@ pub(crate) fn unwind(seen: &mut [Seen]) {
         let whole = (turned / std::f64::consts::TAU).round() * std::f64::consts::TAU;
         seen[i].place.heading -= whole;
     }
+}
+
+/// The place at a time between two pictures.
+pub(crate) fn between(path: &[Seen], seconds: f64) -> Option<Place> {
+    let after = path.partition_point(|seen| seen.seconds < seconds);
+    let b = path.get(after)?;
+    let a = &path[after.checked_sub(1).unwrap_or(after)];
+    let apart = b.seconds - a.seconds;
+    let share = if apart > 0.0 {
+        (seconds - a.seconds) / apart
+    } else {
+        1.0
+    };
+    (share >= 0.0 && seconds >= a.seconds.min(b.seconds)).then(|| mix(a.place, b.place, share))
 }
 
 /// The place at a time, by a parabola through the pictures within `half` seconds of it; `None` without

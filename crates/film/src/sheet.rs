@@ -40,9 +40,9 @@ pub const SPAN: f64 = 200.0;
 /// Length and width of a strip, mm: its tags with a white margin wider than one of their squares.
 pub const STRIP: [f64; 2] = [266.0, 66.0];
 /// Width and length of the deck's card, mm. The tag is at the lower end, and the upper one shows to the head.
-pub const CARD: [f64; 2] = [46.0, 56.0];
+pub const CARD: [f64; 2] = [50.0, 60.0];
 /// White margin around the deck's tag, mm.
-pub const CARD_MARGIN: f64 = 5.0;
+pub const CARD_MARGIN: f64 = 7.0;
 /// Length of the line that shows the printer's scale, mm.
 pub const RULER: f64 = 100.0;
 /// Name of the end of the robot that the card's arrow shows.
@@ -102,11 +102,11 @@ mod tests {
 
     #[test]
     fn any_two_tags_however_turned_differ_in_eleven_squares() {
-        for a in 0..CODES.len() {
-            assert_eq!(turned(a)[0], CODES[a]);
+        for (a, own) in CODES.into_iter().enumerate() {
+            assert_eq!(turned(a)[0], own);
             for b in 0..CODES.len() {
                 for (turn, code) in turned(b).into_iter().enumerate() {
-                    let differ = (CODES[a] ^ code).count_ones();
+                    let differ = (own ^ code).count_ones();
                     assert!(
                         (a == b && turn == 0) || differ >= 11,
                         "{a} {b} {turn}: {differ}"
@@ -124,7 +124,9 @@ mod tests {
             let half = FLOOR_EDGE / 2.0 + square;
             assert!(x + half < STRIP[0] / 2.0 && y + half < STRIP[1] / 2.0);
         }
-        assert!(CARD_MARGIN > DECK_EDGE / SQUARES as f64);
-        assert!(DECK_EDGE + 2.0 * CARD_MARGIN <= CARD[0]);
+        const {
+            assert!(CARD_MARGIN > DECK_EDGE / SQUARES as f64);
+            assert!(DECK_EDGE + 2.0 * CARD_MARGIN <= CARD[0]);
+        }
     }
 }

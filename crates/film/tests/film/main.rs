@@ -2,4 +2,6 @@
 
 mod accuracy;
 mod render;
+mod studio;
+mod troubles;
 mod walk;

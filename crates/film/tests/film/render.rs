@@ -3,6 +3,8 @@
 //! It shares only the design of the sheet with what it tests: its camera looks along rays and
 //! not through matrices.
 
+use std::f64::consts::PI;
+
 use fastrand::Rng;
 use lizard_film::{Picture, sheet};
 
@@ -76,7 +78,7 @@ impl Studio {
                 [
                     between(-10.0, 10.0),
                     between(155.0, 165.0),
-                    3.14 + between(-0.06, 0.06),
+                    PI + between(-0.06, 0.06),
                 ],
             ],
             print: [1.0; 2],
@@ -239,7 +241,10 @@ impl Background {
                 light[i] = BODY_GREY as f32;
             }
         });
-        let card = [sheet::CARD[0], sheet::CARD[1]];
+        let card = [
+            sheet::CARD[0] / 2.0 + 2.0,
+            sheet::CARD[1] - sheet::DECK_EDGE / 2.0 + 2.0,
+        ];
         self.each_pixel(spots[TIMES / 2], card, studio.deck, |i, [x, y]| {
             let behind = f64::from(light[i]);
             let at_time = |spot: &Turned| {

@@ -5,7 +5,7 @@ use lizard_film::Gait;
 use lizard_robot::{Place, Robot, Travel};
 use lizard_twin::{ServoModel, Twin};
 
-use crate::render::{Spot, normal};
+use super::render::{Spot, normal};
 
 /// Time before the start and after the stop, s.
 pub const REST: f64 = 0.5;

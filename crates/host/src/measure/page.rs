@@ -134,26 +134,27 @@ fn draw_card(content: &mut Content, [x, y]: Point) {
         [middle, y + CARD_MARGIN + DECK_EDGE / 2.0],
     );
     // The arrow keeps away from the tag by its margin.
-    let base = y + CARD_MARGIN + DECK_EDGE + CARD_MARGIN + 0.5;
+    let base = y + CARD_MARGIN + DECK_EDGE + CARD_MARGIN;
     let tip = y + CARD[1] - 1.0;
-    content.move_to(points(middle - 4.0), points(base + 2.0));
-    content.line_to(points(middle + 4.0), points(base + 2.0));
+    content.move_to(points(middle - 4.0), points(base + 1.0));
+    content.line_to(points(middle + 4.0), points(base + 1.0));
     content.line_to(points(middle), points(tip));
     content.close_path().fill_nonzero();
-    write(content, FORWARD_WORD, [middle + 6.0, base + 2.5]);
+    write(content, FORWARD_WORD, [middle + 6.0, base + 2.0]);
 }
 
-/// A tag around its middle, one rectangle for each run of black squares, so that no viewer shows seams
-/// in the frame.
+/// A tag around its middle: a black square and white ones on it, because between black ones that touch, printers
+/// and viewers may leave a seam.
 fn draw_tag(content: &mut Content, id: usize, [x, y]: Point) {
     let square = edge(id) / SQUARES as f64;
     let half = edge(id) / 2.0;
+    fill(content, [x - half, y - half], [edge(id); 2]);
+    content.set_fill_gray(1.0);
     for row in 0..SQUARES {
         let mut column = 0;
         while column < SQUARES {
-            let run = (column..SQUARES)
-                .take_while(|&at| !is_white(id, row, at))
-                .count();
+            let white = (column..SQUARES).take_while(|&at| is_white(id, row, at));
+            let run = white.count();
             if run > 0 {
                 let corner = [
                     x - half + column as f64 * square,
@@ -164,6 +165,7 @@ fn draw_tag(content: &mut Content, id: usize, [x, y]: Point) {
             column += run.max(1);
         }
     }
+    content.set_fill_gray(0.0);
 }
 
 fn fill(content: &mut Content, [x, y]: Point, [width, height]: Point) {
