@@ -20,6 +20,9 @@ const LOST: f64 = 0.1;
 const SAMPLES: usize = 8;
 /// Distance beyond the floor tags' middles in which places are still told, mm.
 const BEYOND: f64 = 200.0;
+/// Standard deviations of what a user measures: the deck tag's height, mm, and the ruler, as a share.
+const HEIGHT_SIGMA: f64 = 1.0;
+const RULER_SIGMA: f64 = 0.001;
 /// Largest difference of the deck tag's height from that by its size, mm.
 const HEIGHT: f64 = 12.0;
 
@@ -157,13 +160,16 @@ impl Film {
         let cycles = cycles::find(&path, gait)?;
         let parts = parts(&cycles.travels);
         let doubts = self.doubts(&scene, &cycles, if moved { 5 } else { 11 }, place);
+        let [height, tilt] = scene.camera().stand();
+        // A tag that is higher looks as if it went farther.
+        let scale = (HEIGHT_SIGMA / (height - setup.height)).hypot(RULER_SIGMA);
         let mean = |i: usize| {
             let mut mean = mean::of(&parts[i]);
+            let scale = if i < 2 { mean.mean * scale } else { 0.0 };
             let clock = cycles.pace[i] * cycles.period[1] / cycles.period[0];
-            mean.error = (mean.error.powi(2) + clock.powi(2) + doubts[i]).sqrt();
+            mean.error = (mean.error.powi(2) + clock.powi(2) + scale.powi(2) + doubts[i]).sqrt();
             mean
         };
-        let [height, tilt] = scene.camera().stand();
         Ok(Measured {
             forward: mean(0),
             left: mean(1),

@@ -58,8 +58,36 @@ pub struct Studio {
 }
 
 impl Studio {
-    /// A studio with a random camera on a tripod.
+    /// A studio with a random camera on a tripod that sees all of the strips.
     pub fn random(rng: &mut Rng) -> Self {
+        loop {
+            let studio = Self::any(rng);
+            if studio.sees_strips() {
+                return studio;
+            }
+        }
+    }
+
+    /// True if the corners of both strips are in the picture.
+    fn sees_strips(&self) -> bool {
+        let view = self.view();
+        let [length, width] = sheet::STRIP.map(|length| length / 2.0);
+        self.strips.iter().all(|&[x, y, heading]| {
+            let (sin, cos) = heading.sin_cos();
+            [
+                [length, width],
+                [length, -width],
+                [-length, width],
+                [-length, -width],
+            ]
+            .into_iter()
+            .map(|[u, v]| view.image([x + u * cos - v * sin, y + u * sin + v * cos], 0.0))
+            .all(|at| (0..2).all(|i| (0.0..self.size[i] as f64).contains(&at[i])))
+        })
+    }
+
+    /// A studio with a random camera, wherever it looks.
+    fn any(rng: &mut Rng) -> Self {
         let mut between = |low: f64, high: f64| low + (high - low) * rng.f64();
         Self {
             size: [1280, 720],
@@ -111,16 +139,21 @@ impl Studio {
         (eye, [right, cross(ahead, right), ahead])
     }
 
-    /// The floor and the strips without the robot.
-    pub fn background(&self, rng: &mut Rng) -> Background {
+    fn view(&self) -> View {
         let (eye, axes) = self.camera();
-        let [width, height] = self.size;
-        let view = View {
+        let [width, height] = self.size.map(|length| length as f64);
+        View {
             eye,
             axes,
-            focal: self.focal * width as f64,
-            middle: [(width as f64 - 1.0) / 2.0, (height as f64 - 1.0) / 2.0],
-        };
+            focal: self.focal * width,
+            middle: [(width - 1.0) / 2.0, (height - 1.0) / 2.0],
+        }
+    }
+
+    /// The floor and the strips without the robot.
+    pub fn background(&self, rng: &mut Rng) -> Background {
+        let [width, height] = self.size;
+        let view = self.view();
         let mut light = vec![0f32; width * height];
         for (i, light) in light.iter_mut().enumerate() {
             let (x, y) = ((i % width) as f64, (i / width) as f64);

@@ -46,11 +46,13 @@ pub struct Walk {
     extras: Vec<[f64; 3]>,
 }
 
-/// Deviations of a walk: of each cycle (mm, mm, rad), and of the clock.
+/// Deviations of a walk: of each cycle (mm, mm, rad), of the clock, and of what a user measures: of a height in
+/// mm and of a sheet in thousandths.
 #[derive(Clone, Copy, Default)]
 pub struct Varies {
     pub cycle: [f64; 3],
     pub clock: f64,
+    pub ruler: f64,
 }
 
 impl Walk {

@@ -32,7 +32,7 @@ pub(super) fn of_folder(folder: &Path, rate: Option<f64>) -> Result<Vec<(f64, Pa
             folder.display()
         )));
     }
-    files.sort_by(|(a, _), (b, _)| in_order(a).cmp(&in_order(b)));
+    files.sort_by_key(|(stem, _)| in_order(stem));
     let time = |(i, (stem, path)): (usize, (String, PathBuf))| match rate {
         Some(rate) => Ok((i as f64 / rate, path)),
         None => match seconds(&stem) {

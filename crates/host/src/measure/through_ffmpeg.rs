@@ -91,10 +91,10 @@ fn times(film: &Path) -> Result<Vec<f64>, Failure> {
         .output()
         .map_err(|error| missing("ffprobe", &error))?;
     let text = String::from_utf8_lossy(&output.stdout);
-    let times: Option<Vec<f64>> = text
-        .lines()
-        .map(|line| line.trim_end_matches(',').trim().parse().ok())
-        .collect();
+    // A picture with more to tell is followed by a comma and an empty line.
+    let lines = text.lines().map(|line| line.trim_end_matches(',').trim());
+    let lines = lines.filter(|line| !line.is_empty());
+    let times: Option<Vec<f64>> = lines.map(|line| line.parse().ok()).collect();
     match times {
         Some(times) if !times.is_empty() => Ok(times),
         _ => Err(Failure::Input(format!(
