@@ -3,7 +3,8 @@
 use lizard_contact::{Place, Travel};
 
 use crate::camera::Camera;
-use crate::cycles::{self, Cycles, Gait};
+use crate::cycles::{self, Cycles};
+use crate::gait::Gait;
 use crate::mean::{self, Mean};
 use crate::path::{Seen, unwind};
 use crate::picture::{Picture, Pixel};
@@ -99,7 +100,8 @@ impl Film {
     /// Reads the next picture, taken at this time.
     ///
     /// # Errors
-    /// Fails if it has another size than the first one, or is not later than the one before.
+    /// Fails if it has another size than the first one, is not later than the one before, or shows a
+    /// tag twice.
     pub fn add(&mut self, seconds: f64, picture: &Picture) -> Result<(), Trouble> {
         let number = self.frames.len() + 1;
         match self.frames.last() {
@@ -110,7 +112,9 @@ impl Film {
         }
         let mut tags = [None; CODES.len()];
         for tag in tags::read(picture) {
-            tags[tag.id] = Some(tag.corners);
+            if tags[tag.id].replace(tag.corners).is_some() {
+                return Err(Trouble::Twice { id: tag.id, number });
+            }
         }
         self.frames.push(Frame { seconds, tags });
         Ok(())

@@ -3,7 +3,7 @@
 //! A camera looks down on the robot from anywhere. Tags on the floor tell where the camera is, and
 //! a tag on the deck, whose height is known, tells where the robot is ([`sheet`] has the sheet of tags).
 //! [`Film::add`] reads the tags of each picture. [`Film::measure`] finds the camera (`scene.rs`), the path
-//! (`path.rs`), the cycles of the gait in it (`cycles.rs`), and their mean with its error (`mean.rs`). The crate
+//! (`path.rs`), the cycles of the gait in it (`cycles.rs`, `clock.rs`), and their mean with its error (`mean.rs`). The crate
 //! reads no file and prints nothing.
 //!
 //! # When not to use it
@@ -15,9 +15,11 @@
 
 mod blobs;
 mod camera;
+mod clock;
 mod cycles;
 mod edges;
 mod film;
+mod gait;
 mod homography;
 mod least;
 mod mean;
@@ -28,8 +30,8 @@ pub mod sheet;
 mod tags;
 mod trouble;
 
-pub use cycles::Gait;
 pub use film::{Film, Measured, Setup, Sight};
+pub use gait::Gait;
 pub use mean::Mean;
 pub use path::Seen;
 pub use picture::{Picture, Pixel};

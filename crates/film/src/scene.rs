@@ -129,6 +129,11 @@ impl Scene {
             floor_residuals(&self.parameters, &camera, &self.measures, floor)
         };
         let fit = least::fit(&start, model)?;
+        let error = FLOOR_SIGMA * (fit.squares / (4 * FLOOR_TAGS) as f64).sqrt();
+        // A tag that is partly covered has wrong corners, and makes a wrong camera.
+        if error > LARGEST_ERROR {
+            return None;
+        }
         fit.at.try_into().ok()
     }
 

@@ -20,6 +20,16 @@ pub enum Trouble {
         /// Number of the picture, from 1.
         number: usize,
     },
+    /// A tag is seen twice.
+    #[error(
+        "picture {number} shows tag {id} twice: which of them belongs to the robot is not guessed; take the other away"
+    )]
+    Twice {
+        /// Id of the tag.
+        id: usize,
+        /// Number of the picture, from 1.
+        number: usize,
+    },
     /// No tag of the sheet in any picture.
     #[error(
         "no picture has a tag of the sheet: film from above, near enough and in even light, and not \
@@ -115,10 +125,18 @@ pub enum Trouble {
         /// Time of a cycle, s.
         period: f64,
     },
+    /// The cycles take a multiple of their time.
+    #[error(
+        "the cycles take {times} times as long as they should: give the pace with --speed (a weak supply halves it), \
+         or, for a film in slow motion, the rate at which it was taken with --fps"
+    )]
+    AnotherPace {
+        /// The multiple.
+        times: u32,
+    },
     /// The path is not that of the gait.
     #[error(
-        "the path is not that of this gait in cycles of {period:.2} s: was it another gait, another pace, or a \
-         film in slow motion?"
+        "the path is not that of this gait in cycles of {period:.2} s: was it another gait, or another pace?"
     )]
     NotThisGait {
         /// Time of a cycle, s.

@@ -31,6 +31,8 @@ pub struct Studio {
     pub size: [usize; 2],
     /// Focal length over the picture's width.
     pub focal: f64,
+    /// Bend of the lens: the share by which it moves a point that is as far from the axis as the focal length.
+    pub lens: f64,
     /// Height of the camera above the middle of the scene, tilt, its direction and roll: mm, deg.
     pub height: f64,
     pub tilt: f64,
@@ -92,6 +94,7 @@ impl Studio {
         Self {
             size: [1280, 720],
             focal: between(0.72, 0.9),
+            lens: between(-0.006, 0.006),
             height: between(700.0, 900.0),
             tilt: between(10.0, 35.0),
             direction: between(-180.0, 180.0),
@@ -146,6 +149,7 @@ impl Studio {
             eye,
             axes,
             focal: self.focal * width,
+            lens: self.lens,
             middle: [(width - 1.0) / 2.0, (height - 1.0) / 2.0],
         }
     }
@@ -228,16 +232,23 @@ struct View {
     eye: Vector,
     axes: [Vector; 3],
     focal: f64,
+    lens: f64,
     middle: [f64; 2],
 }
 
 impl View {
     /// The point at a height that a pixel shows.
     fn meet(&self, [x, y]: [f64; 2], height: f64) -> [f64; 2] {
-        let (u, v) = (
+        let bent = [
             (x - self.middle[0]) / self.focal,
             (y - self.middle[1]) / self.focal,
-        );
+        ];
+        // The opposite of the lens, by its own steps: it bends little.
+        let [mut u, mut v] = bent;
+        for _ in 0..3 {
+            let factor = self.bend(u, v);
+            [u, v] = [bent[0] / factor, bent[1] / factor];
+        }
         let [right, down, ahead] = &self.axes;
         let ray = [0, 1, 2].map(|i| ahead[i] + u * right[i] + v * down[i]);
         let far = (height - self.eye[2]) / ray[2];
@@ -249,11 +260,14 @@ impl View {
         let from = [x - self.eye[0], y - self.eye[1], height - self.eye[2]];
         let along = |axis: &Vector| (0..3).map(|i| axis[i] * from[i]).sum::<f64>();
         let [right, down, ahead] = &self.axes;
-        let far = self.focal / along(ahead);
-        [
-            self.middle[0] + far * along(right),
-            self.middle[1] + far * along(down),
-        ]
+        let [u, v] = [along(right) / along(ahead), along(down) / along(ahead)];
+        let far = self.focal * self.bend(u, v);
+        [self.middle[0] + far * u, self.middle[1] + far * v]
+    }
+
+    /// The factor by which the lens moves a point away from the axis.
+    fn bend(&self, u: f64, v: f64) -> f64 {
+        1.0 + self.lens * (u * u + v * v)
     }
 }
 

@@ -10,10 +10,12 @@ use crate::walk::{Varies, Walk, gait, truth};
 /// Pictures in a second: few, because only the reason counts.
 const RATE: f64 = 8.0;
 
-/// A studio with a camera that is known.
+/// A studio with a camera that is known, and with few pixels, which the sheet fills.
 fn studio() -> Studio {
     let mut studio = Studio::random(&mut Rng::with_seed(5));
-    (studio.tilt, studio.direction, studio.roll) = (25.0, 80.0, 0.0);
+    (studio.size, studio.focal) = ([640, 360], 1.0);
+    (studio.height, studio.tilt, studio.direction) = (800.0, 20.0, 90.0);
+    (studio.roll, studio.aim) = (0.0, [0.0; 2]);
     studio
 }
 
@@ -212,8 +214,8 @@ fn a_robot_that_stands_has_not_moved() {
 #[test]
 fn a_robot_far_from_the_strips_is_out_of_the_sheet() {
     let mut studio = studio();
-    (studio.height, studio.tilt) = (1100.0, 10.0);
-    studio.aim = [150.0, 0.0];
+    (studio.size, studio.aim) = ([1280, 720], [150.0, 0.0]);
+    studio.height = 1000.0;
     let far = |_: f64| [430.0, 0.0, 0.0];
     let film = film_of(&studio, 1.0, RATE, far, &mut Rng::with_seed(2));
     let trouble = film
@@ -226,7 +228,7 @@ fn a_robot_far_from_the_strips_is_out_of_the_sheet() {
 }
 
 #[test]
-fn another_gait_and_slow_motion_are_not_this_gait() {
+fn another_gait_is_not_this_gait() {
     let another = moving(|time| [0.0, 0.0, 0.6 * time]);
     assert!(matches!(another, Trouble::NotThisGait { .. }), "{another}");
     let backward = moving(|time| [60.0 - 30.0 * time, 0.0, 0.0]);
@@ -234,8 +236,50 @@ fn another_gait_and_slow_motion_are_not_this_gait() {
         matches!(backward, Trouble::NotThisGait { .. }),
         "{backward}"
     );
-    let slow = moving(|time| [7.0 * time, 0.0, 0.0]);
-    assert!(matches!(slow, Trouble::NotThisGait { .. }), "{slow}");
+    let creeping = moving(|time| [1.5 * time, 0.0, 0.0]);
+    assert!(matches!(creeping, Trouble::NotMoved { .. }), "{creeping}");
+}
+
+#[test]
+fn half_the_pace_and_slow_motion_are_told_by_their_cycles() {
+    let gait = gait("walk");
+    for times in [2, 4] {
+        let slow = Gait {
+            period: gait.period * f64::from(times),
+            path: gait.path.clone(),
+        };
+        let walk = walk(&slow, 3);
+        let robot = |time: f64| walk.at(time);
+        let film = film_of(
+            &studio(),
+            walk.seconds(),
+            5.0,
+            robot,
+            &mut Rng::with_seed(2),
+        );
+        let trouble = film.measure(TRUE_SIZE, &gait).expect_err("it is too slow");
+        assert_eq!(trouble, Trouble::AnotherPace { times });
+    }
+}
+
+#[test]
+fn a_tag_that_is_seen_twice_is_not_guessed() {
+    let mut rng = Rng::with_seed(2);
+    let picture = studio()
+        .background(&mut rng)
+        .picture(0.0, |_| [0.0; 3], &mut rng);
+    let [width, height] = picture.size();
+    let twice: Vec<u8> = picture
+        .grey()
+        .chunks(width)
+        .flat_map(|row| [row, row].concat())
+        .collect();
+    let twice = Picture::new(2 * width, height, twice).expect("a picture");
+    let trouble = Film::default().add(0.0, &twice).expect_err("two of each");
+    assert!(
+        matches!(trouble, Trouble::Twice { number: 1, .. }),
+        "{trouble}"
+    );
 }
 
 #[test]
