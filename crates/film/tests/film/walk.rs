@@ -38,12 +38,16 @@ pub fn gait(name: &str) -> Gait {
     }
 }
 
+/// Parts of a cycle that vary independently of each other: a foot slips now and then.
+const PARTS: usize = 12;
+
 /// A walk of some cycles.
 pub struct Walk {
     gait: Gait,
     period: f64,
     begins: Vec<Place>,
-    extras: Vec<[f64; 3]>,
+    /// What each cycle has more than the gait, from its begin to its end.
+    extras: Vec<[[f64; 3]; PARTS + 1]>,
 }
 
 /// Deviations of a walk: of each cycle (mm, mm, rad), of the clock, and of what a user measures: of a height in
@@ -64,11 +68,17 @@ impl Walk {
         }];
         let mut extras = Vec::new();
         for _ in 0..cycles {
-            let extra = varies.cycle.map(|sigma| sigma * normal(rng));
+            let mut extra = [[0.0; 3]; PARTS + 1];
+            for i in 1..=PARTS {
+                let step = varies
+                    .cycle
+                    .map(|sigma| sigma * normal(rng) / (PARTS as f64).sqrt());
+                extra[i] = [0, 1, 2].map(|axis| extra[i - 1][axis] + step[axis]);
+            }
             let begin = begins[begins.len() - 1];
             begins.push(then(
                 then(begin, gait.path[gait.path.len() - 1]),
-                place(extra),
+                place(extra[PARTS]),
             ));
             extras.push(extra);
         }
@@ -98,7 +108,13 @@ impl Walk {
             mix(|place| place.left),
             mix(|place| place.heading),
         ]);
-        let extra = self.extras[cycle].map(|part| within * part);
+        let at = within * PARTS as f64;
+        let (i, share) = (at as usize, at.fract());
+        let [from, to] = [
+            self.extras[cycle][i],
+            self.extras[cycle][(i + 1).min(PARTS)],
+        ];
+        let extra = [0, 1, 2].map(|axis| from[axis] + share * (to[axis] - from[axis]));
         let place = then(then(self.begins[cycle], there), place(extra));
         [place.forward, place.left, place.heading]
     }
