@@ -31,7 +31,7 @@ define prepared
 	@$(MAKE) $(1)
 endef
 
-.PHONY: help fit parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants other-robots explore fuzz package code-image docs docs-check install release release-test parallel-test plain-test arduino-test python-test addresses-test desks clean trouble .fit .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .workspace .walks .test .bench .prove .physics .mutants .other-robots .explore .fuzz .package .code-image .docs .docs-check .install .release .release-test .parallel-test .plain-test .arduino-test .python-test .addresses-test .desks .trouble
+.PHONY: help fit measure-test parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants other-robots explore fuzz package code-image docs docs-check install release release-test parallel-test plain-test arduino-test python-test addresses-test desks clean trouble .fit .measure-test .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .workspace .walks .test .bench .prove .physics .mutants .other-robots .explore .fuzz .package .code-image .docs .docs-check .install .release .release-test .parallel-test .plain-test .arduino-test .python-test .addresses-test .desks .trouble
 
 help: ## this list
 	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 15
@@ -55,6 +55,8 @@ web-test: ## test the page in a real browser: walk, turn, refuse, calibrate, fla
 	$(call prepared,.web-test)
 lint: ## rustfmt, clippy and cargo doc, warnings are errors
 	$(call prepared,.lint)
+measure-test: ## films of a robot whose path is known, rendered and measured; FILMS=200 SEED=1
+	$(call prepared,.measure-test)
 parts-test: ## check the files of `lizard parts` and `lizard model` with ezdxf, FreeCAD, PrusaSlicer, urdfdom, libsdformat and others
 	$(call prepared,.parts-test)
 cli: ## build the host program, crates/target/release/lizard
@@ -208,6 +210,10 @@ WALKS := target/walks.log
 
 .fit: .cli
 	@$(LIZARD) fit $(FOR_ROBOT)
+
+# Apart from the other tests, because hundreds of films take minutes.
+.measure-test:
+	@cd crates && FILMS=$(or $(FILMS),200) SEED=$(or $(SEED),1) $(CARGO) test -p lizard-film --test film --quiet -- --ignored --nocapture
 
 # Apart from the other tests, because only this target installs MuJoCo.
 .physics: .firmware

@@ -7,9 +7,10 @@ use std::path::{Path, PathBuf};
 use lizard_host_tests::root;
 
 /// The crates whose modules are read.
-const CRATES: [&str; 14] = [
+const CRATES: [&str; 15] = [
     "crates/contact",
     "crates/core",
+    "crates/film",
     "crates/host",
     "crates/kinematics",
     "crates/parts",

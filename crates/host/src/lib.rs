@@ -6,6 +6,8 @@ pub mod commands;
 #[cfg(feature = "console")]
 mod drive;
 mod make;
+#[cfg(feature = "parts")]
+mod measure;
 #[cfg(feature = "paper")]
 mod paper;
 mod shared;

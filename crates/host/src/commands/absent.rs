@@ -138,7 +138,7 @@ mod tests {
             message("sim", &["paper"]),
             "`lizard sim` is missing: this program was built without the simulator; make cli builds all"
         );
-        assert!(message("ports", &[]).contains("without the commands for a board on USB;"));
+        assert!(message("info", &[]).contains("without the commands for a board on USB;"));
         assert!(message("parts", &["console"]).contains("without the parts to print;"));
         assert!(message("monitor", &[]).starts_with("`lizard console` is missing: "));
     }
@@ -153,7 +153,7 @@ mod tests {
         );
         assert_eq!(
             list_in_build(KNOWN, |feature| feature != "parts"),
-            "Not in this program: model, parts, fit. It was built without the parts to print.\n\n"
+            "Not in this program: measure, model, parts, fit. It was built without the parts to print.\n\n"
         );
     }
 

@@ -85,11 +85,11 @@ macro_rules! commands {
 
 commands! {
     Drive {
-        Ports(crate::drive::ports::Args) => crate::drive::ports::run, needs "console";
         Flash(With<crate::drive::flash::Args, nested::OfFlash>) => nested::flash, needs "console";
-        Info(crate::drive::console::info::Args) => crate::drive::console::info::run, needs "console";
+        Info(With<crate::drive::console::info::Args, nested::OfInfo>) => nested::info, needs "console";
         Console(With<crate::drive::console::interactive::ConsoleArgs, nested::OfConsole>) => nested::console, needs "console", also "monitor";
         Calibrate(With<crate::drive::console::calibrate::Args, nested::OfCalibrate>) => nested::calibrate, needs "console";
+        Measure(With<crate::measure::Args, nested::OfMeasure>) => nested::measure, needs "parts";
     }
     Simulate {
         Sim(With<crate::simulate::sim::Args, nested::OfSim>) => nested::sim, needs "simulator";
@@ -119,7 +119,7 @@ commands! {
 }
 
 /// Commands of the previous version, and the words that replace them.
-const RENAMED: [(&str, &[&str]); 16] = [
+const RENAMED: [(&str, &[&str]); 17] = [
     ("solve", &["pose"]),
     ("fk", &["pose"]),
     ("inverse", &["pose"]),
@@ -130,6 +130,7 @@ const RENAMED: [(&str, &[&str]); 16] = [
     ("mobility", &["pose", "--show", "freedoms"]),
     ("record", &["console", "--record"]),
     ("replay", &["console", "replay"]),
+    ("ports", &["info", "ports"]),
     ("image", &["flash", "image"]),
     ("backup", &["calibrate", "backup"]),
     ("restore", &["calibrate", "restore"]),

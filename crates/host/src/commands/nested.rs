@@ -44,6 +44,21 @@ pub fn flash(args: With<drive::flash::Args, OfFlash>) -> Result<(), Failure> {
 
 #[cfg(feature = "console")]
 #[derive(Subcommand)]
+pub enum OfInfo {
+    Ports(drive::ports::Args),
+}
+
+/// Runs `lizard info` or a command below it.
+#[cfg(feature = "console")]
+pub fn info(args: With<drive::console::info::Args, OfInfo>) -> Result<(), Failure> {
+    match args.below {
+        Some(OfInfo::Ports(args)) => drive::ports::run(args),
+        None => drive::console::info::run(args.own),
+    }
+}
+
+#[cfg(feature = "console")]
+#[derive(Subcommand)]
 pub enum OfConsole {
     #[cfg(feature = "simulator")]
     Replay(drive::console::replay::Args),
@@ -80,6 +95,21 @@ pub fn calibrate(args: With<drive::console::calibrate::Args, OfCalibrate>) -> Re
         Some(OfCalibrate::Backup(args)) => drive::console::backup::backup(args),
         Some(OfCalibrate::Restore(args)) => drive::console::backup::restore(args),
         None => drive::console::calibrate::run(args.own),
+    }
+}
+
+#[cfg(feature = "parts")]
+#[derive(Subcommand)]
+pub enum OfMeasure {
+    Sheet(crate::measure::SheetArgs),
+}
+
+/// Runs `lizard measure` or a command below it.
+#[cfg(feature = "parts")]
+pub fn measure(args: With<crate::measure::Args, OfMeasure>) -> Result<(), Failure> {
+    match args.below {
+        Some(OfMeasure::Sheet(args)) => crate::measure::write_sheet(args),
+        None => crate::measure::run(args.own),
     }
 }
 

@@ -4,6 +4,7 @@
 mod another_robot;
 mod draw;
 mod flash;
+mod measure;
 mod merge;
 mod model;
 mod outputs;

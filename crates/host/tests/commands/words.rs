@@ -227,9 +227,9 @@ fn every_command_has_a_manual_page_that_names_its_options() {
 #[test]
 fn ports_are_a_list_for_scripts_and_for_people_never_nothing() {
     let ports: serde_json::Value =
-        serde_json::from_str(&output(&["ports", "--json"])).expect("JSON");
+        serde_json::from_str(&output(&["info", "ports", "--json"])).expect("JSON");
     let ports = ports.as_array().expect("an array");
-    let text = output(&["ports"]);
+    let text = output(&["info", "ports"]);
     assert_eq!(
         text.contains("no USB serial port"),
         ports.is_empty(),

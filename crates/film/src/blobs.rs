@@ -1,0 +1,138 @@
+//! The dark blobs of a picture, and the four corners of those that are quadrilaterals.
+//!
+//! Light falls unevenly and a floor may be dark, so a pixel is dark by comparison with the mean
+//! of its surroundings. A tag has a black frame with white around it: its dark pixels hang
+//! together and no others hang on to them.
+
+use crate::picture::{Picture, Pixel};
+
+/// Half the edge of a pixel's surroundings, as a share of the picture's height.
+const AROUND: f64 = 1.0 / 24.0;
+/// Grey of a dark pixel over the mean of its surroundings, percent.
+const DARK_PERCENT: u32 = 88;
+/// Least width and height of a blob that is looked at, px: two for each square of a tag.
+const LEAST: usize = 16;
+/// Least distance of a corner from the other diagonal over that diagonal.
+const LEAST_SLIMNESS: f64 = 0.15;
+/// Least and largest number of a blob's pixels over the area of its quadrilateral.
+const FILLED: [f64; 2] = [0.3, 1.2];
+
+/// Four corners to within some pixels, clockwise as seen in the picture.
+pub(crate) type Quad = [Pixel; 4];
+
+/// Finds the blobs that are nearly quadrilaterals.
+pub(crate) fn quads(picture: &Picture) -> Vec<Quad> {
+    let [width, height] = picture.size();
+    let mut dark = dark(picture);
+    let mut quads = Vec::new();
+    let (mut blob, mut open) = (Vec::new(), Vec::new());
+    for start in 0..dark.len() {
+        if !dark[start] {
+            continue;
+        }
+        blob.clear();
+        dark[start] = false;
+        open.push(start);
+        while let Some(at) = open.pop() {
+            blob.push(at);
+            let column = at % width;
+            let mut visit = |next: usize| {
+                if dark[next] {
+                    dark[next] = false;
+                    open.push(next);
+                }
+            };
+            if column > 0 {
+                visit(at - 1);
+            }
+            if column + 1 < width {
+                visit(at + 1);
+            }
+            if at >= width {
+                visit(at - width);
+            }
+            if at + width < width * height {
+                visit(at + width);
+            }
+        }
+        quads.extend(quad(&blob, width, height));
+    }
+    quads
+}
+
+/// True for each pixel that is darker than its surroundings.
+fn dark(picture: &Picture) -> Vec<bool> {
+    let [width, height] = picture.size();
+    let reach = ((height as f64 * AROUND) as usize).max(LEAST / 2);
+    // The sum of all pixels above and to the left, of a table that is one wider and higher.
+    let mut sums = vec![0u32; (width + 1) * (height + 1)];
+    for (y, row) in picture.grey().chunks(width).enumerate() {
+        let mut sum = 0u32;
+        for (x, grey) in row.iter().enumerate() {
+            sum += u32::from(*grey);
+            sums[(y + 1) * (width + 1) + x + 1] = sums[y * (width + 1) + x + 1].wrapping_add(sum);
+        }
+    }
+    let mut dark = Vec::with_capacity(width * height);
+    for (y, row) in picture.grey().chunks(width).enumerate() {
+        let (top, bottom) = (y.saturating_sub(reach), (y + reach + 1).min(height));
+        let (above, below) = (top * (width + 1), bottom * (width + 1));
+        for (x, grey) in row.iter().enumerate() {
+            let (left, right) = (x.saturating_sub(reach), (x + reach + 1).min(width));
+            // Large sums wrap, their differences are right again.
+            let sum = sums[below + right]
+                .wrapping_sub(sums[below + left])
+                .wrapping_sub(sums[above + right])
+                .wrapping_add(sums[above + left]);
+            let count = ((right - left) * (bottom - top)) as u32;
+            dark.push(
+                u64::from(*grey) * u64::from(count) * 100
+                    < u64::from(sum) * u64::from(DARK_PERCENT),
+            );
+        }
+    }
+    dark
+}
+
+/// The corners of a blob, if it lies inside the picture and is nearly a quadrilateral.
+fn quad(blob: &[usize], width: usize, height: usize) -> Option<Quad> {
+    if blob.len() < LEAST * LEAST / 4 {
+        return None;
+    }
+    let place = |at: usize| [(at % width) as f64, (at / width) as f64];
+    let (mut low, mut high) = ([f64::INFINITY; 2], [0.0f64; 2]);
+    for &at in blob {
+        let place = place(at);
+        for i in 0..2 {
+            low[i] = low[i].min(place[i]);
+            high[i] = high[i].max(place[i]);
+        }
+    }
+    let is_inside = low[0] > 0.0
+        && low[1] > 0.0
+        && high[0] < (width - 1) as f64
+        && high[1] < (height - 1) as f64;
+    let is_large = (0..2).all(|i| high[i] - low[i] >= LEAST as f64);
+    if !is_inside || !is_large {
+        return None;
+    }
+    let farthest = |measure: &dyn Fn(Pixel) -> f64| {
+        let far = blob.iter().map(|&at| (measure(place(at)), at));
+        far.max_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    let from = |[x, y]: Pixel| move |[u, v]: Pixel| (u - x).hypot(v - y);
+    let middle = [(low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0];
+    let a = place(farthest(&from(middle))?.1);
+    let (diagonal, c) = farthest(&from(a))?;
+    let c = place(c);
+    // Positive to the right of the way from a to c as seen in the picture, where y is down.
+    let side = |[x, y]: Pixel| ((c[0] - a[0]) * (y - a[1]) - (c[1] - a[1]) * (x - a[0])) / diagonal;
+    let (left, b) = farthest(&|at| -side(at))?;
+    let (right, d) = farthest(&side)?;
+    if left.min(right) < LEAST_SLIMNESS * diagonal {
+        return None;
+    }
+    let filled = blob.len() as f64 / (diagonal * (left + right) / 2.0);
+    let is_filled = (FILLED[0]..FILLED[1]).contains(&filled);
+    is_filled.then_some([a, place(b), c, place(d)])
+}

@@ -1,0 +1,75 @@
+//! The camera: points of the floor and above it to points of the picture.
+//!
+//! A pinhole with square pixels and its axis through the middle of the picture. Phones straighten
+//! their pictures to some tenths of a percent, and what is left is in the fit's residuals.
+
+use nalgebra::{Matrix3, Rotation3, Vector3};
+
+use crate::homography::Homography;
+use crate::picture::Pixel;
+
+/// Place and direction of a camera: a rotation vector and a shift, mm.
+pub(crate) type Pose = [f64; 6];
+
+/// A camera at its place.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Camera {
+    focal: f64,
+    middle: Pixel,
+    rotation: Matrix3<f64>,
+    shift: Vector3<f64>,
+}
+
+impl Camera {
+    /// A camera of a focal length (px) for pictures of a size.
+    pub(crate) fn new(focal: f64, size: [usize; 2], pose: &[f64]) -> Self {
+        Self {
+            focal,
+            middle: middle(size),
+            rotation: Rotation3::new(Vector3::new(pose[0], pose[1], pose[2])).into_inner(),
+            shift: Vector3::new(pose[3], pose[4], pose[5]),
+        }
+    }
+
+    /// The image of a point: mm, z up from the floor.
+    pub(crate) fn project(&self, [x, y]: [f64; 2], z: f64) -> Pixel {
+        let seen = self.rotation * Vector3::new(x, y, z) + self.shift;
+        [
+            self.middle[0] + self.focal * seen.x / seen.z,
+            self.middle[1] + self.focal * seen.y / seen.z,
+        ]
+    }
+
+    /// The camera's height above the floor, mm, and its tilt from straight down, deg.
+    pub(crate) fn stand(&self) -> [f64; 2] {
+        let at = -(self.rotation.transpose() * self.shift);
+        let down = -self.rotation[(2, 2)];
+        [at.z, down.clamp(-1.0, 1.0).acos().to_degrees()]
+    }
+}
+
+/// The middle of a picture.
+fn middle(size: [usize; 2]) -> Pixel {
+    size.map(|length| (length as f64 - 1.0) / 2.0)
+}
+
+/// The pose of a camera of this focal length that makes a picture of the floor by this map.
+pub(crate) fn pose_of(map: &Homography, focal: f64, size: [usize; 2]) -> Option<Pose> {
+    let [cx, cy] = middle(size);
+    let calibration = Matrix3::new(focal, 0.0, cx, 0.0, focal, cy, 0.0, 0.0, 1.0);
+    let columns = calibration.try_inverse()? * map.0;
+    let (first, second, third) = (columns.column(0), columns.column(1), columns.column(2));
+    let mut scale = 2.0 / (first.norm() + second.norm());
+    if third.z < 0.0 {
+        // The floor is in front of the camera.
+        scale = -scale;
+    }
+    let x = (first * scale).normalize();
+    let y = second * scale;
+    let y = (y - x * x.dot(&y)).normalize();
+    let rotation = Matrix3::from_columns(&[x, y, x.cross(&y)]);
+    let turn = Rotation3::from_matrix_unchecked(rotation).scaled_axis();
+    let shift = third * scale;
+    let pose = [turn.x, turn.y, turn.z, shift.x, shift.y, shift.z];
+    pose.iter().all(|part| part.is_finite()).then_some(pose)
+}

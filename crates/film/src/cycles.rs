@@ -1,0 +1,155 @@
+//! The cycles of a path.
+//!
+//! A way per cycle means little without the phase at which a cycle begins: the body sways, so
+//! another beginning has another direction ahead. And a clock that is off by half a percent makes every cycle
+//! as much too long. So both are fitted (`clock.rs`). Cycles are compared
+//! at a time at which the robot moves evenly, since pictures are apart, and the result is seen from a cycle's
+//! beginning by the way from there to that time.
+
+use lizard_contact::{Place, Travel};
+
+use crate::clock::{Clock, Steps};
+use crate::gait::{Gait, NEAR, movement, size};
+use crate::path::{self, Seen};
+use crate::trouble::Trouble;
+
+/// Least movement in the time of a cycle, mm.
+const MOVED: f64 = 3.0;
+/// Share of the usual movement in the time of a cycle from which the robot counts as walking.
+const WALKS: f64 = 0.9;
+/// Part of a cycle that is left out after the start and before the stop.
+const MARGIN: f64 = 0.15;
+
+/// The cycles of a path.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Cycles {
+    /// Time of a cycle, s, and its standard error.
+    pub period: [f64; 2],
+    /// The predicted movement at the times between cycles, for a whole cycle: mm, mm, deg.
+    pub pace: [f64; 3],
+    /// The times between cycles, s.
+    pub ends: Vec<f64>,
+    /// The movement of each cycle.
+    pub travels: Vec<Travel>,
+}
+
+/// Finds the cycles of a path.
+///
+/// # Errors
+/// Fails if the robot does not move, moves otherwise than the gait, or for less than two cycles.
+pub(crate) fn find(path: &[Seen], gait: &Gait) -> Result<Cycles, Trouble> {
+    let [begin, end] = walk(path, gait)?;
+    let walked: Vec<Seen> = path
+        .iter()
+        .filter(|seen| (begin..=end).contains(&seen.seconds))
+        .copied()
+        .collect();
+    let steps = Steps::of(&walked, gait.period);
+    let too_short = Trouble::TooShort {
+        cycles: (end - begin).max(0.0) / gait.period,
+        period: gait.period,
+    };
+    if steps.are_few() || end - begin < 2.0 * gait.period {
+        return Err(too_short);
+    }
+    let Clock { start, period } = steps.clock(gait)?;
+    let calm = gait.calm();
+    // The calm times of cycles from before the walk to after it.
+    let first = ((begin - start) / period[0] - calm).ceil() as i64;
+    let times = (first..).map(|i| start + (i as f64 + calm) * period[0]);
+    let near = NEAR * gait.period;
+    let places: Vec<(f64, Place)> = times
+        .take_while(|&time| time <= end)
+        .map_while(|time| Some((time, path::at(path, time, near)?)))
+        .collect();
+    if places.len() < 3 {
+        return Err(too_short);
+    }
+    let to_calm = to_calm(&walked, &places, calm * period[0]).unwrap_or_else(|| gait.at(calm));
+    let from_calm = path::inverse(to_calm);
+    let travel = |pair: &[(f64, Place)]| {
+        let cycle = path::of_travel(pair[1].1.seen_from(pair[0].1));
+        path::compose(path::compose(to_calm, cycle), from_calm).travel()
+    };
+    Ok(Cycles {
+        period,
+        pace: gait.pace(calm),
+        ends: places.iter().map(|(time, _)| *time).collect(),
+        travels: places.windows(2).map(travel).collect(),
+    })
+}
+
+/// The mean way from the beginning of a cycle to its calm time.
+fn to_calm(path: &[Seen], places: &[(f64, Place)], calm: f64) -> Option<Place> {
+    let ways: Vec<Place> = places
+        .iter()
+        .filter_map(|(time, place)| {
+            let begin = path::between(path, time - calm)?;
+            Some(path::of_travel(place.seen_from(begin)))
+        })
+        .collect();
+    let mean = |part: fn(&Place) -> f64| ways.iter().map(part).sum::<f64>() / ways.len() as f64;
+    (!ways.is_empty()).then(|| Place {
+        forward: mean(|way| way.forward),
+        left: mean(|way| way.left),
+        heading: mean(|way| way.heading),
+    })
+}
+
+/// The time in which the robot walks evenly.
+fn walk(path: &[Seen], gait: &Gait) -> Result<[f64; 2], Trouble> {
+    let moves: Vec<(f64, Travel)> = path
+        .iter()
+        .filter_map(|seen| {
+            let later = path::between(path, seen.seconds + gait.period)?;
+            Some((seen.seconds, later.seen_from(seen.place)))
+        })
+        .collect();
+    let sizes: Vec<f64> = moves
+        .iter()
+        .map(|(_, travel)| size(movement(*travel)))
+        .collect();
+    let most = sizes.iter().copied().fold(0.0, f64::max);
+    if moves.is_empty() {
+        let length = path.last().map_or(0.0, |seen| seen.seconds)
+            - path.first().map_or(0.0, |seen| seen.seconds);
+        return Err(Trouble::TooShort {
+            cycles: length / gait.period,
+            period: gait.period,
+        });
+    }
+    if most < MOVED {
+        let way = moves
+            .iter()
+            .map(|(_, travel)| travel.forward.hypot(travel.left));
+        return Err(Trouble::NotMoved {
+            way: way.fold(0.0, f64::max),
+            turn: moves
+                .iter()
+                .map(|(_, travel)| travel.turn.abs())
+                .fold(0.0, f64::max),
+        });
+    }
+    let mut usual: Vec<f64> = sizes
+        .iter()
+        .copied()
+        .filter(|size| *size > most / 2.0)
+        .collect();
+    usual.sort_by(f64::total_cmp);
+    let usual = usual[usual.len() / 2];
+    // The longest run of times from which on it moves as far as usual.
+    let (mut best, mut run): (Option<[usize; 2]>, Option<usize>) = (None, None);
+    for (i, size) in sizes.iter().enumerate() {
+        if *size < WALKS * usual {
+            run = None;
+            continue;
+        }
+        let from = *run.get_or_insert(i);
+        if best.is_none_or(|[a, b]| i - from > b - a) {
+            best = Some([from, i]);
+        }
+    }
+    let [from, to] = best.unwrap_or_default();
+    let margin = MARGIN * gait.period;
+    Ok([moves[from].0 + margin, moves[to].0 + gait.period - margin])
+}

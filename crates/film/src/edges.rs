@@ -1,0 +1,142 @@
+//! The edges of a tag to a small part of a pixel.
+//!
+//! Lens and movement spread an edge over some pixels, but alike to both sides. So along a line
+//! across it, the place of the edge is where the whole step of brightness would be, if it had
+//! the same sum of grey. A straight line through many of these places has an error that is much
+//! smaller than a pixel, and two lines meet in a corner.
+
+use crate::blobs::Quad;
+use crate::picture::{Picture, Pixel};
+use crate::sheet::SQUARES;
+
+/// Share of an edge at either end that is left out, where the other edge is near.
+const ENDS: f64 = 0.12;
+/// Distance across an edge that is looked at on either side, px, if the tag is large enough.
+const ACROSS: f64 = 4.0;
+/// The same for small tags, as a share of a square: the code begins after a square, and the first corners are
+/// off by a pixel.
+const ACROSS_SQUARE: f64 = 0.6;
+/// Step across an edge, px.
+const STEP: f64 = 0.5;
+/// Least step of brightness of an edge.
+const LEAST_CONTRAST: f64 = 25.0;
+/// Largest mean distance of an edge's places from their line, px.
+const STRAIGHT: f64 = 0.7;
+/// Rounds in which the lines are found again from better corners.
+const ROUNDS: usize = 3;
+
+/// The corners of a black square to sub-pixel accuracy.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Square {
+    /// The corners, clockwise as seen in the picture.
+    pub corners: Quad,
+    /// The grey between black and white.
+    pub middle: f64,
+}
+
+/// A line: a point on it, and its direction.
+struct Line {
+    at: Pixel,
+    along: [f64; 2],
+}
+
+/// Refines the corners of a quadrilateral; `None` if it has no four straight edges from black
+/// inside to white outside.
+pub(crate) fn refine(picture: &Picture, quad: Quad) -> Option<Square> {
+    let mut square = Square {
+        corners: quad,
+        middle: 0.0,
+    };
+    for _ in 0..ROUNDS {
+        let corner = square.corners;
+        let edges: [Option<(Line, f64)>; 4] =
+            std::array::from_fn(|i| edge(picture, corner[i], corner[(i + 1) % 4]));
+        let mut lines = Vec::with_capacity(4);
+        square.middle = 0.0;
+        for edge in edges {
+            let (line, middle) = edge?;
+            lines.push(line);
+            square.middle += middle / 4.0;
+        }
+        for i in 0..4 {
+            square.corners[i] = meet(&lines[(i + 3) % 4], &lines[i])?;
+        }
+    }
+    Some(square)
+}
+
+/// The edge between two corners, and the grey in its middle.
+fn edge(picture: &Picture, from: Pixel, to: Pixel) -> Option<(Line, f64)> {
+    let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+    let length = dx.hypot(dy);
+    let across = ACROSS.min(ACROSS_SQUARE * length / SQUARES as f64);
+    if !(2.0 * STEP..1e4).contains(&across) {
+        return None;
+    }
+    let (along, out) = ([dx / length, dy / length], [dy / length, -dx / length]);
+    let half = (across / STEP) as usize;
+    let count = ((length * (1.0 - 2.0 * ENDS)) as usize).max(4);
+    let start = ENDS * length;
+    let stride = length * (1.0 - 2.0 * ENDS) / (count - 1) as f64;
+    let mut profiles = vec![0.0; count * (2 * half + 1)];
+    for (i, profile) in profiles.chunks_mut(2 * half + 1).enumerate() {
+        let s = start + i as f64 * stride;
+        for (j, grey) in profile.iter_mut().enumerate() {
+            let t = (j as f64 - half as f64) * STEP;
+            *grey = picture.at([
+                from[0] + s * along[0] + t * out[0],
+                from[1] + s * along[1] + t * out[1],
+            ]);
+        }
+    }
+    let column = |j: usize| {
+        let sum: f64 = profiles
+            .chunks(2 * half + 1)
+            .map(|profile| profile[j])
+            .sum();
+        sum / count as f64
+    };
+    let (black, white) = (
+        (column(0) + column(1)) / 2.0,
+        (column(2 * half) + column(2 * half - 1)) / 2.0,
+    );
+    if white - black < LEAST_CONTRAST {
+        return None;
+    }
+    // The straight line t = offset + slope s by least squares, s from the middle.
+    let (mut sum, mut moment, mut square) = (0.0, 0.0, 0.0);
+    let mut places = Vec::with_capacity(count);
+    for (i, profile) in profiles.chunks(2 * half + 1).enumerate() {
+        let ends = (profile[0] + profile[2 * half]) / 2.0;
+        let grey = profile.iter().sum::<f64>() - ends;
+        let bright = STEP * (grey - black * (2 * half) as f64) / (white - black);
+        let (s, t) = (
+            (i as f64 - (count - 1) as f64 / 2.0) * stride,
+            half as f64 * STEP - bright,
+        );
+        places.push((s, t));
+        sum += t;
+        moment += s * t;
+        square += s * s;
+    }
+    let (offset, slope) = (sum / count as f64, moment / square);
+    let off = places.iter().map(|(s, t)| (t - offset - slope * s).powi(2));
+    if (off.sum::<f64>() / count as f64).sqrt() > STRAIGHT {
+        return None;
+    }
+    let middle = length / 2.0;
+    let line = Line {
+        at: std::array::from_fn(|i| from[i] + middle * along[i] + offset * out[i]),
+        along: std::array::from_fn(|i| along[i] + slope * out[i]),
+    };
+    Some((line, (black + white) / 2.0))
+}
+
+/// The point in which two lines meet.
+fn meet(a: &Line, b: &Line) -> Option<Pixel> {
+    let cross = a.along[0] * b.along[1] - a.along[1] * b.along[0];
+    let [x, y] = [b.at[0] - a.at[0], b.at[1] - a.at[1]];
+    let far = (x * b.along[1] - y * b.along[0]) / cross;
+    let point = [a.at[0] + far * a.along[0], a.at[1] + far * a.along[1]];
+    point.iter().all(|part| part.is_finite()).then_some(point)
+}

@@ -1,0 +1,76 @@
+//! A gait as it is predicted, with which a path is compared.
+
+use lizard_contact::{Place, Travel};
+
+use crate::path;
+
+/// Weight of a turn, mm for each rad: the robot's legs are as far from its middle.
+const ARM: f64 = 60.0;
+/// Half of the time whose pictures tell the place at the end of a cycle, in cycles.
+pub(crate) const NEAR: f64 = 0.08;
+
+/// A gait as it is predicted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Gait {
+    /// Time of a cycle at the pace that was driven, s.
+    pub period: f64,
+    /// The path of a cycle, evenly in time, seen from its start; the last place is its end.
+    pub path: Vec<Place>,
+}
+
+impl Gait {
+    /// The place at a phase, seen from the start of cycle 0.
+    pub(crate) fn at(&self, phase: f64) -> Place {
+        let count = self.path.len() - 1;
+        let within = phase.rem_euclid(1.0) * count as f64;
+        let i = (within as usize).min(count - 1);
+        let (a, b, share) = (self.path[i], self.path[i + 1], within - i as f64);
+        let mut place = path::mix(a, b, share);
+        for _ in 0..phase.floor().max(0.0) as usize {
+            place = path::compose(self.path[count], place);
+        }
+        place
+    }
+
+    /// The phase around which the predicted movement changes least: there a place between
+    /// pictures is known best.
+    pub(crate) fn calm(&self) -> f64 {
+        let count = 50;
+        let roughness = |i: usize| {
+            let part = |j: f64| {
+                let from = (i as f64 + j) / count as f64;
+                self.step(from, from + 1.0 / count as f64)
+            };
+            let parts = [-4.0, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0].map(part);
+            let changes = parts
+                .windows(2)
+                .map(|pair| size([0, 1, 2].map(|axis| pair[1][axis] - pair[0][axis])));
+            // Half as much counts a movement itself, because the clock is not known exactly.
+            changes.sum::<f64>() + 0.5 * parts.iter().map(|part| size(*part)).sum::<f64>()
+        };
+        let least = (0..count).min_by(|&a, &b| roughness(a).total_cmp(&roughness(b)));
+        least.unwrap_or(0) as f64 / count as f64
+    }
+
+    /// The movement at a phase, for a whole cycle: mm, mm, deg.
+    pub(crate) fn pace(&self, phase: f64) -> [f64; 3] {
+        let [forward, left, turn] = self.step(phase - NEAR / 2.0, phase + NEAR / 2.0);
+        [forward, left, (turn / ARM).to_degrees()].map(|part| part / NEAR)
+    }
+
+    /// The movement from a phase to a later one.
+    pub(crate) fn step(&self, from: f64, to: f64) -> [f64; 3] {
+        let whole = from.floor();
+        movement(self.at(to - whole).seen_from(self.at(from - whole)))
+    }
+}
+
+/// A movement in mm: ahead, left, turn on the arm.
+pub(crate) fn movement(travel: Travel) -> [f64; 3] {
+    [travel.forward, travel.left, ARM * travel.turn.to_radians()]
+}
+
+/// The length of a movement, mm.
+pub(crate) fn size(movement: [f64; 3]) -> f64 {
+    movement.iter().map(|part| part * part).sum::<f64>().sqrt()
+}

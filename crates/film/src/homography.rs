@@ -1,0 +1,61 @@
+//! The map from a plane to a picture of it, from four points or more.
+
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+
+/// A map from one plane to another that keeps lines straight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Homography(pub Matrix3<f64>);
+
+impl Homography {
+    /// The map of four points.
+    pub(crate) fn of_four(from: [[f64; 2]; 4], to: [[f64; 2]; 4]) -> Option<Self> {
+        Self::of_points(&from, &to)
+    }
+
+    /// The map of points by least squares of their equations.
+    pub(crate) fn of_points(from: &[[f64; 2]], to: &[[f64; 2]]) -> Option<Self> {
+        let rows = 2 * from.len().min(to.len());
+        let mut matrix = DMatrix::zeros(rows, 8);
+        let mut right = DVector::zeros(rows);
+        // Units of the points' own size, so that all columns are alike.
+        let scale = from
+            .iter()
+            .flatten()
+            .fold(1e-9f64, |most, part| most.max(part.abs()));
+        for (i, (&[x, y], &[u, v])) in from.iter().zip(to).enumerate() {
+            let [x, y] = [x / scale, y / scale];
+            for (j, (row, part)) in [
+                ([x, y, 1.0, 0.0, 0.0, 0.0], u),
+                ([0.0, 0.0, 0.0, x, y, 1.0], v),
+            ]
+            .into_iter()
+            .enumerate()
+            {
+                for (column, value) in row.into_iter().chain([-part * x, -part * y]).enumerate() {
+                    matrix[(2 * i + j, column)] = value;
+                }
+                right[2 * i + j] = part;
+            }
+        }
+        let solved = if rows == 8 {
+            matrix.lu().solve(&right)?
+        } else {
+            matrix.svd(true, true).solve(&right, 1e-12).ok()?
+        };
+        let h = |i: usize| solved[i];
+        let map = Matrix3::new(h(0), h(1), h(2), h(3), h(4), h(5), h(6), h(7), 1.0);
+        let map = map * Matrix3::from_diagonal(&Vector3::new(1.0 / scale, 1.0 / scale, 1.0));
+        map.iter().all(|part| part.is_finite()).then_some(Self(map))
+    }
+
+    /// The image of a point.
+    pub(crate) fn map(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let image = self.0 * Vector3::new(x, y, 1.0);
+        [image.x / image.z, image.y / image.z]
+    }
+
+    /// The opposite map.
+    pub(crate) fn inverse(&self) -> Option<Self> {
+        self.0.try_inverse().map(Self)
+    }
+}

@@ -1,0 +1,39 @@
+//! The robot measured in a film: how far it goes in a cycle, and how well that is known.
+//!
+//! A camera looks down on the robot from anywhere. Tags on the floor tell where the camera is, and
+//! a tag on the deck, whose height is known, tells where the robot is ([`sheet`] has the sheet of tags).
+//! [`Film::add`] reads the tags of each picture. [`Film::measure`] finds the camera (`scene.rs`), the path
+//! (`path.rs`), the cycles of the gait in it (`cycles.rs`, `clock.rs`), and their mean with its error (`mean.rs`). The crate
+//! reads no file and prints nothing.
+//!
+//! # When not to use it
+//! For one robot in one plane. For places in space, or many markers, take AprilTag's own library.
+//!
+//! # Units
+//! mm, s, and px from the middle of a picture's top left pixel; a heading is in radians, a turn in degrees, both
+//! counter-clockwise as seen from above.
+
+mod blobs;
+mod camera;
+mod clock;
+mod cycles;
+mod edges;
+mod film;
+mod gait;
+mod homography;
+mod least;
+mod mean;
+mod path;
+mod picture;
+mod scene;
+pub mod sheet;
+mod tags;
+mod trouble;
+
+pub use film::{Film, Measured, Setup, Sight};
+pub use gait::Gait;
+pub use mean::Mean;
+pub use path::Seen;
+pub use picture::{Picture, Pixel};
+pub use tags::{Tag, read};
+pub use trouble::Trouble;

@@ -1,0 +1,113 @@
+//! The mean of a film's cycles and its honest standard error.
+//!
+//! A robot walks every cycle a little differently, by more than a tag's place is uncertain. So the
+//! spread of the cycles tells how well their mean is known. A few cycles tell their own spread badly: Student's
+//! distribution says by how much the error has to be larger for that. With it, the truth lies within two
+//! errors as often as for a film of many cycles.
+
+/// Share of a normal distribution within two standard deviations.
+const WITHIN_TWO: f64 = 0.9545;
+
+/// A mean over the cycles of a film.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mean {
+    /// The mean.
+    pub mean: f64,
+    /// Spread of single cycles: their standard deviation.
+    pub spread: f64,
+    /// Standard error of the mean: the truth lies within two of it with a probability of 95 %.
+    pub error: f64,
+}
+
+/// The mean of two cycles or more.
+pub(crate) fn of(cycles: &[f64]) -> Mean {
+    let count = cycles.len() as f64;
+    let mean = cycles.iter().sum::<f64>() / count;
+    let squares: f64 = cycles.iter().map(|cycle| (cycle - mean).powi(2)).sum();
+    let spread = (squares / (count - 1.0)).sqrt();
+    Mean {
+        mean,
+        spread,
+        error: spread / count.sqrt() * widening(cycles.len() - 1),
+    }
+}
+
+/// The factor on an error whose spread is known from a few degrees of freedom.
+fn widening(freedom: usize) -> f64 {
+    let (mut low, mut high) = (1.0, 100.0);
+    for _ in 0..60 {
+        let middle = (low + high) / 2.0;
+        *if student(2.0 * middle, freedom) < WITHIN_TWO {
+            &mut low
+        } else {
+            &mut high
+        } = middle;
+    }
+    high
+}
+
+/// The probability that Student's variable lies between `-t` and `t`.
+fn student(t: f64, freedom: usize) -> f64 {
+    let angle = (t / (freedom as f64).sqrt()).atan();
+    let (sin, cos) = angle.sin_cos();
+    // The terms of the finite series for whole degrees of freedom.
+    let odd = freedom % 2 == 1;
+    let mut term = if odd { cos } else { 1.0 };
+    let mut sum = 0.0;
+    for i in 0..freedom / 2 {
+        sum += term;
+        let above = if odd { 2 * i + 2 } else { 2 * i + 1 };
+        term *= cos * cos * above as f64 / (above + 1) as f64;
+    }
+    match odd {
+        true => (angle + sin * sum) * std::f64::consts::FRAC_2_PI,
+        false => sin * sum,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn student_is_that_of_the_tables() {
+        for (freedom, t) in [
+            (1, 12.706),
+            (2, 4.303),
+            (3, 3.182),
+            (4, 2.776),
+            (9, 2.262),
+            (30, 2.042),
+        ] {
+            let share = student(t, freedom);
+            assert!((share - 0.95).abs() < 1e-4, "{freedom}: {share}");
+        }
+    }
+
+    /// Random numbers of a normal distribution, the same in every run.
+    fn noise() -> impl FnMut() -> f64 {
+        let mut state = 1u64;
+        let mut uniform = move || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 33) as f64 / (1u64 << 31) as f64
+        };
+        move || (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+    }
+
+    #[test]
+    fn the_truth_lies_within_two_errors_as_often_for_three_cycles_as_for_ten() {
+        let mut noise = noise();
+        for count in [3, 5, 10] {
+            let films = 4000;
+            let within = (0..films).filter(|_| {
+                let cycles: Vec<f64> = (0..count).map(|_| 3.0 + noise()).collect();
+                let mean = of(&cycles);
+                (mean.mean - 3.0).abs() < 2.0 * mean.error
+            });
+            let share = within.count() as f64 / f64::from(films);
+            assert!((0.945..0.965).contains(&share), "{count}: {share}");
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! The measured path: places at the times of pictures, and between them.
+
+use lizard_contact::{Place, Travel};
+
+use crate::least;
+
+/// Least number of pictures for the place at a time between them.
+const LEAST: usize = 4;
+
+/// The robot's place in a picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Seen {
+    /// Time of the picture, s.
+    pub seconds: f64,
+    /// The robot's place on the floor; the first strip lies along the forward axis.
+    pub place: Place,
+}
+
+/// A place that is given as seen from another one, on the floor.
+pub(crate) fn compose(from: Place, seen: Place) -> Place {
+    let [forward, left] = from.on_floor([seen.forward, seen.left]);
+    Place {
+        forward,
+        left,
+        heading: from.heading + seen.heading,
+    }
+}
+
+/// The place from which a place is seen as `place` sees its origin.
+pub(crate) fn inverse(place: Place) -> Place {
+    of_travel(Place::START.seen_from(place))
+}
+
+/// A movement as a place that is seen from its start.
+pub(crate) fn of_travel(travel: Travel) -> Place {
+    Place {
+        forward: travel.forward,
+        left: travel.left,
+        heading: travel.turn.to_radians(),
+    }
+}
+
+/// The place on the straight way between two places.
+pub(crate) fn mix(a: Place, b: Place, share: f64) -> Place {
+    Place {
+        forward: a.forward + share * (b.forward - a.forward),
+        left: a.left + share * (b.left - a.left),
+        heading: a.heading + share * (b.heading - a.heading),
+    }
+}
+
+/// Makes the headings continuous, so that two turns are not none.
+pub(crate) fn unwind(seen: &mut [Seen]) {
+    for i in 1..seen.len() {
+        let before = seen[i - 1].place.heading;
+        let turned = seen[i].place.heading - before;
+        let whole = (turned / std::f64::consts::TAU).round() * std::f64::consts::TAU;
+        seen[i].place.heading -= whole;
+    }
+}
+
+/// The place at a time between two pictures.
+pub(crate) fn between(path: &[Seen], seconds: f64) -> Option<Place> {
+    let after = path.partition_point(|seen| seen.seconds < seconds);
+    let b = path.get(after)?;
+    let a = &path[after.checked_sub(1).unwrap_or(after)];
+    let apart = b.seconds - a.seconds;
+    let share = if apart > 0.0 {
+        (seconds - a.seconds) / apart
+    } else {
+        1.0
+    };
+    (share >= 0.0 && seconds >= a.seconds.min(b.seconds)).then(|| mix(a.place, b.place, share))
+}
+
+/// The place at a time, by a parabola through the pictures within `half` seconds of it; `None` without
+/// pictures before and after.
+pub(crate) fn at(path: &[Seen], seconds: f64, half: f64) -> Option<Place> {
+    let mut begin = path.partition_point(|seen| seen.seconds < seconds - half);
+    let mut end = path.partition_point(|seen| seen.seconds <= seconds + half);
+    while end - begin < LEAST {
+        if begin == 0 || end == path.len() {
+            return None;
+        }
+        (begin, end) = (begin - 1, end + 1);
+    }
+    let near = &path[begin..end];
+    if near[0].seconds > seconds || near[near.len() - 1].seconds < seconds {
+        return None;
+    }
+    let middle = |part: fn(&Place) -> f64| {
+        // The curve through the first of them is near enough to begin with: the model is linear.
+        let model = |at: &[f64]| -> Vec<f64> {
+            let residual = |seen: &Seen| {
+                let t = (seen.seconds - seconds) / half;
+                at[0] + at[1] * t + at[2] * t * t - part(&seen.place)
+            };
+            near.iter().map(residual).collect()
+        };
+        Some(least::fit(&[part(&near[0].place), 0.0, 0.0], model)?.at[0])
+    };
+    Some(Place {
+        forward: middle(|place| place.forward)?,
+        left: middle(|place| place.left)?,
+        heading: middle(|place| place.heading)?,
+    })
+}

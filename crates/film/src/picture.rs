@@ -1,0 +1,49 @@
+//! A grey picture.
+
+/// A point of a picture, px: to the right and down from the middle of the top left pixel.
+pub type Pixel = [f64; 2];
+
+/// A grey picture: rows from the top, 0 is black.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Picture {
+    width: usize,
+    height: usize,
+    grey: Vec<u8>,
+}
+
+impl Picture {
+    /// Makes a picture of its rows; `None` if `grey` has another length than `width * height`.
+    pub fn new(width: usize, height: usize, grey: Vec<u8>) -> Option<Self> {
+        let fits = width.checked_mul(height) == Some(grey.len()) && !grey.is_empty();
+        fits.then_some(Self {
+            width,
+            height,
+            grey,
+        })
+    }
+
+    /// Width and height, px.
+    pub fn size(&self) -> [usize; 2] {
+        [self.width, self.height]
+    }
+
+    /// The rows from the top.
+    pub fn grey(&self) -> &[u8] {
+        &self.grey
+    }
+
+    /// The grey at a point between pixels; beyond the edge that of the edge.
+    pub fn at(&self, [x, y]: Pixel) -> f64 {
+        let x = x.clamp(0.0, (self.width - 1) as f64);
+        let y = y.clamp(0.0, (self.height - 1) as f64);
+        let (column, row) = (x as usize, y as usize);
+        let (right, below) = (
+            (column + 1).min(self.width - 1),
+            (row + 1).min(self.height - 1),
+        );
+        let (u, v) = (x - column as f64, y - row as f64);
+        let grey = |row: usize, column: usize| f64::from(self.grey[row * self.width + column]);
+        (grey(row, column) * (1.0 - u) + grey(row, right) * u) * (1.0 - v)
+            + (grey(below, column) * (1.0 - u) + grey(below, right) * u) * v
+    }
+}

@@ -1,0 +1,337 @@
+//! The scene: the camera's focal length, the places of strips and camera, from the tags' corners.
+//!
+//! The first strip is the floor's frame. The other lies where it lies: three unknowns. Light and
+//! ink spread, so every black square is a little larger or smaller than it should be, by the same
+//! length: one more unknown, which the distance of a strip's tags tells from the scale. The size of
+//! the deck's tag, whose height is known, tells focal length from distance where the tilt does not.
+
+use lizard_contact::Place;
+use nalgebra::DMatrix;
+
+use crate::camera::{Camera, Pose, pose_of};
+use crate::homography::Homography;
+use crate::least::{self, Fit};
+use crate::picture::Pixel;
+use crate::sheet::{self, DECK_TAG, FLOOR_TAGS, TAGS_ON_STRIP};
+use crate::trouble::Trouble;
+
+/// Number of parameters that all views share: focal length, spread, the second strip's place.
+const SHARED: usize = 5;
+/// Error of a corner of the floor's tags, px: of its mean over a film, whose grid of pixels
+/// stays the same.
+const FLOOR_SIGMA: f64 = 0.03;
+/// Error of a corner of the deck's tag in one picture, px.
+const DECK_SIGMA: f64 = 0.08;
+/// Focal lengths over the picture's width with which the fit starts.
+const STARTS: [f64; 3] = [0.8, 1.1, 1.6];
+/// Largest mean error of a corner, px.
+const LARGEST_ERROR: f64 = 1.5;
+/// Largest spread of a tag's edge, mm.
+const LARGEST_SPREAD: f64 = 0.6;
+
+/// The corners of each floor tag in a picture or in the mean of some.
+pub(crate) type FloorCorners = [[Pixel; 4]; FLOOR_TAGS];
+
+/// Pictures from one place of the camera.
+pub(crate) struct View {
+    /// The floor's tags.
+    pub floor: FloorCorners,
+    /// The deck's tag, wherever it was.
+    pub decks: Vec<[Pixel; 4]>,
+}
+
+/// Known measures of the scene.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Measures {
+    /// Length of a printed mm, mm.
+    pub scale: f64,
+    /// Height of the deck's tag above the floor, mm.
+    pub height: f64,
+    /// Width and height of the pictures, px.
+    pub size: [usize; 2],
+}
+
+/// What the views share, and the first camera.
+#[derive(Debug, Clone)]
+pub(crate) struct Scene {
+    measures: Measures,
+    /// The shared parameters, then the first view's pose.
+    parameters: Vec<f64>,
+    /// Their covariance.
+    pub covariance: DMatrix<f64>,
+    /// Mean error of a floor tag's corner, px.
+    pub error: f64,
+}
+
+impl Scene {
+    /// Fits the scene to views.
+    ///
+    /// # Errors
+    /// Fails if the tags cannot lie as the sheet has them.
+    pub(crate) fn of(views: &[View], measures: Measures) -> Result<Self, Trouble> {
+        let width = measures.size[0] as f64;
+        let fits = STARTS
+            .iter()
+            .filter_map(|start| fit(views, &measures, start * width));
+        let best = fits.min_by(|a, b| a.squares.total_cmp(&b.squares));
+        let best = best.ok_or(Trouble::NoCamera)?;
+        let count = views.len() * FLOOR_TAGS * 4;
+        let floor = residuals(&best.at, views, &measures, false);
+        let error = FLOOR_SIGMA * (floor.iter().map(|r| r * r).sum::<f64>() / count as f64).sqrt();
+        if !error.is_finite() || error > LARGEST_ERROR {
+            return Err(Trouble::NotThisSheet { error });
+        }
+        let spread = best.at[1];
+        if spread.abs() > LARGEST_SPREAD * measures.scale {
+            return Err(Trouble::TagSize {
+                edge: sheet::FLOOR_EDGE + 2.0 * spread / measures.scale,
+            });
+        }
+        let kept = SHARED + 6;
+        let freedom = (2 * count + views.iter().map(|view| 8 * view.decks.len()).sum::<usize>())
+            .saturating_sub(best.at.len());
+        let excess = (best.squares / freedom.max(1) as f64).max(1.0);
+        Ok(Self {
+            measures,
+            parameters: best.at[..kept].to_vec(),
+            covariance: best.covariance.view((0, 0), (kept, kept)) * excess,
+            error,
+        })
+    }
+
+    /// The scene with a parameter changed.
+    pub(crate) fn moved(&self, parameter: usize, by: f64) -> Self {
+        let mut moved = self.clone();
+        moved.parameters[parameter] += by;
+        moved
+    }
+
+    /// The focal length, px.
+    pub(crate) fn focal(&self) -> f64 {
+        self.parameters[0]
+    }
+
+    /// The first view's camera.
+    pub(crate) fn camera(&self) -> Camera {
+        self.camera_at(&self.parameters[SHARED..])
+    }
+
+    /// A camera at another place.
+    pub(crate) fn camera_at(&self, pose: &[f64]) -> Camera {
+        Camera::new(self.focal(), self.measures.size, pose)
+    }
+
+    /// The pose of the camera in a picture with all floor tags.
+    pub(crate) fn pose(&self, floor: &FloorCorners) -> Option<Pose> {
+        let start = start_pose(floor, &self.measures, self.focal())?;
+        let model = |pose: &[f64]| {
+            let camera = self.camera_at(pose);
+            floor_residuals(&self.parameters, &camera, &self.measures, floor)
+        };
+        let fit = least::fit(&start, model)?;
+        let error = FLOOR_SIGMA * (fit.squares / (4 * FLOOR_TAGS) as f64).sqrt();
+        // A tag that is partly covered has wrong corners, and makes a wrong camera.
+        if error > LARGEST_ERROR {
+            return None;
+        }
+        fit.at.try_into().ok()
+    }
+
+    /// The place of the deck's tag, and its height if it is taken as unknown, mm.
+    pub(crate) fn place(&self, camera: &Camera, corners: &[Pixel; 4]) -> Option<Place> {
+        let start = deck_start(camera, corners, self.measures.height)?;
+        let model = |at: &[f64]| {
+            deck_residuals(
+                &self.parameters,
+                camera,
+                &self.measures,
+                at,
+                self.measures.height,
+                corners,
+            )
+        };
+        let [forward, left, heading]: [f64; 3] = least::fit(&start, model)?.at.try_into().ok()?;
+        Some(Place {
+            forward,
+            left,
+            heading,
+        })
+    }
+
+    /// The height of the deck's tag by its size, mm.
+    pub(crate) fn height(&self, camera: &Camera, corners: &[Pixel; 4]) -> Option<f64> {
+        let [a, b, c] = deck_start(camera, corners, self.measures.height)?;
+        let model = |at: &[f64]| {
+            deck_residuals(&self.parameters, camera, &self.measures, at, at[3], corners)
+        };
+        Some(least::fit(&[a, b, c, self.measures.height], model)?.at[3])
+    }
+
+    /// The middles of the floor's tags on the floor, mm.
+    pub(crate) fn floor_tags(&self) -> [[f64; 2]; FLOOR_TAGS] {
+        std::array::from_fn(|id| {
+            on_floor(
+                &self.parameters,
+                self.measures.scale,
+                id,
+                sheet::middle_on_strip(id),
+            )
+        })
+    }
+}
+
+/// A point of a strip, mm as designed, on the floor.
+fn on_floor(shared: &[f64], scale: f64, id: usize, point: [f64; 2]) -> [f64; 2] {
+    let point = point.map(|part| scale * part);
+    if sheet::strip_of(id) == 0 {
+        return point;
+    }
+    let strip = Place {
+        forward: shared[2],
+        left: shared[3],
+        heading: shared[4],
+    };
+    strip.on_floor(point)
+}
+
+/// The corners of a tag from its middle as they look, mm as designed.
+fn seen_corners(shared: &[f64], scale: f64, id: usize) -> [[f64; 2]; 4] {
+    sheet::corners(sheet::edge(id) + 2.0 * shared[1] / scale)
+}
+
+/// The errors of the floor's corners, over their sigma.
+fn floor_residuals(
+    shared: &[f64],
+    camera: &Camera,
+    measures: &Measures,
+    floor: &FloorCorners,
+) -> Vec<f64> {
+    let mut residuals = Vec::with_capacity(8 * FLOOR_TAGS);
+    for (id, corners) in floor.iter().enumerate() {
+        let [x, y] = sheet::middle_on_strip(id);
+        for ([u, v], seen) in seen_corners(shared, measures.scale, id).iter().zip(corners) {
+            let at = on_floor(shared, measures.scale, id, [x + u, y + v]);
+            let image = camera.project(at, 0.0);
+            residuals.extend([0, 1].map(|i| (image[i] - seen[i]) / FLOOR_SIGMA));
+        }
+    }
+    residuals
+}
+
+/// The errors of the corners of a deck's tag at a place and a height, over their sigma.
+fn deck_residuals(
+    shared: &[f64],
+    camera: &Camera,
+    measures: &Measures,
+    at: &[f64],
+    height: f64,
+    corners: &[Pixel; 4],
+) -> Vec<f64> {
+    let place = Place {
+        forward: at[0],
+        left: at[1],
+        heading: at[2],
+    };
+    let points = seen_corners(shared, measures.scale, DECK_TAG);
+    let pairs = points.iter().zip(corners);
+    pairs
+        .flat_map(|(&[x, y], seen)| {
+            // The tag's upper edge is ahead, and so its left one is on the left.
+            let floor = place.on_floor([measures.scale * y, -measures.scale * x]);
+            let image = camera.project(floor, height);
+            [0, 1].map(|i| (image[i] - seen[i]) / DECK_SIGMA)
+        })
+        .collect()
+}
+
+/// A first place of the deck's tag: where the rays through its corners meet its height.
+fn deck_start(camera: &Camera, corners: &[Pixel; 4], height: f64) -> Option<[f64; 3]> {
+    let square = [
+        [-100.0, -100.0],
+        [100.0, -100.0],
+        [100.0, 100.0],
+        [-100.0, 100.0],
+    ];
+    let images = square.map(|at| camera.project(at, height));
+    let map = Homography::of_four(images, square)?;
+    let [a, b, c, d] = corners.map(|corner| map.map(corner));
+    let mean = |i: usize| (a[i] + b[i] + c[i] + d[i]) / 4.0;
+    let ahead = |i: usize| a[i] + b[i] - c[i] - d[i];
+    Some([mean(0), mean(1), ahead(1).atan2(ahead(0))])
+}
+
+/// A first pose of the camera, by the first strip.
+fn start_pose(floor: &FloorCorners, measures: &Measures, focal: f64) -> Option<Pose> {
+    pose_of(&strip_map(floor, measures, 0)?, focal, measures.size)
+}
+
+/// The map from a strip's own frame to the picture.
+fn strip_map(floor: &FloorCorners, measures: &Measures, strip: usize) -> Option<Homography> {
+    let ids = strip * TAGS_ON_STRIP..(strip + 1) * TAGS_ON_STRIP;
+    let mut points = Vec::new();
+    for id in ids.clone() {
+        let [x, y] = sheet::middle_on_strip(id);
+        let corners = sheet::corners(sheet::edge(id));
+        points.extend(corners.map(|[u, v]| [x + u, y + v].map(|part| measures.scale * part)));
+    }
+    Homography::of_points(&points, &floor[ids].concat())
+}
+
+/// The errors of all corners of all views; without the decks if `decks` is false.
+fn residuals(at: &[f64], views: &[View], measures: &Measures, decks: bool) -> Vec<f64> {
+    let (shared, mut rest) = at.split_at(SHARED);
+    let mut all = Vec::new();
+    let mut take = |count: usize| {
+        let (taken, left) = rest.split_at(count);
+        rest = left;
+        taken
+    };
+    let cameras: Vec<Camera> = views
+        .iter()
+        .map(|_| Camera::new(shared[0], measures.size, take(6)))
+        .collect();
+    for (view, camera) in views.iter().zip(&cameras) {
+        all.extend(floor_residuals(shared, camera, measures, &view.floor));
+        for corners in view.decks.iter().filter(|_| decks) {
+            all.extend(deck_residuals(
+                shared,
+                camera,
+                measures,
+                take(3),
+                measures.height,
+                corners,
+            ));
+        }
+    }
+    all
+}
+
+/// Fits all parameters, from this focal length.
+fn fit(views: &[View], measures: &Measures, focal: f64) -> Option<Fit> {
+    let first = views.first()?;
+    let to_floor = strip_map(&first.floor, measures, 0)?.inverse()?;
+    let middle = |id: usize| {
+        let corners = first.floor[id].map(|corner| to_floor.map(corner));
+        [0, 1].map(|i| corners.iter().map(|corner| corner[i]).sum::<f64>() / 4.0)
+    };
+    let ends = [middle(TAGS_ON_STRIP), middle(TAGS_ON_STRIP + 1)];
+    let heading = (ends[1][1] - ends[0][1]).atan2(ends[1][0] - ends[0][0]);
+    let mut start = vec![
+        focal,
+        0.0,
+        (ends[0][0] + ends[1][0]) / 2.0,
+        (ends[0][1] + ends[1][1]) / 2.0,
+        heading,
+    ];
+    let mut decks = Vec::new();
+    for view in views {
+        let pose = start_pose(&view.floor, measures, focal)?;
+        let camera = Camera::new(focal, measures.size, &pose);
+        start.extend(pose);
+        for corners in &view.decks {
+            decks.extend(deck_start(&camera, corners, measures.height)?);
+        }
+    }
+    start.extend(decks);
+    least::fit(&start, |at| residuals(at, views, measures, true))
+}

@@ -1,0 +1,132 @@
+//! The printed sheet: which tags lie where, the one home of these figures.
+//!
+//! The robot covers more than a sheet of paper, so the sheet is cut: two strips lie on the floor
+//! beside the robot's way, one on either side, and a card lies on its deck. The two tags of a
+//! strip have a known distance, which gives every scale; where the strips lie is found in
+//! the film, so nobody has to measure it. A ruler line on a strip shows how large the printer
+//! made all of it.
+//!
+//! The tags are ids 0 to 4 of the AprilTag family 36h11, so other programs can read them, too.
+
+/// A point of the sheet or of a tag, mm: to the right, up.
+pub type Point = [f64; 2];
+
+/// The number of squares along an edge of a tag: six of its code, and a black one on either side.
+pub const SQUARES: usize = 8;
+
+/// The code of each tag by its id: 36 bits by rows from the top left one, 1 for white.
+pub const CODES: [u64; 5] = [
+    0xd_5d62_8584,
+    0xd_97f1_8b49,
+    0xd_d280_910e,
+    0xe_479e_9c98,
+    0xe_bcbc_a822,
+];
+
+/// The number of strips.
+pub const STRIPS: usize = 2;
+/// The number of tags on a strip.
+pub const TAGS_ON_STRIP: usize = 2;
+/// The number of tags on the floor. Their ids come first.
+pub const FLOOR_TAGS: usize = STRIPS * TAGS_ON_STRIP;
+/// The id of the tag on the deck.
+pub const DECK_TAG: usize = FLOOR_TAGS;
+/// Edge of a tag on the floor, mm.
+pub const FLOOR_EDGE: f64 = 50.0;
+/// Edge of the deck's tag, mm. A UNO is 53 mm wide.
+pub const DECK_EDGE: f64 = 36.0;
+/// Distance between the middles of a strip's tags, mm.
+pub const SPAN: f64 = 200.0;
+/// Length and width of a strip, mm: its tags with a white margin wider than one of their squares.
+pub const STRIP: [f64; 2] = [266.0, 66.0];
+/// Width and length of the deck's card, mm. The tag is at the lower end, and the upper one shows to the head.
+pub const CARD: [f64; 2] = [50.0, 60.0];
+/// White margin around the deck's tag, mm.
+pub const CARD_MARGIN: f64 = 7.0;
+/// Length of the line that shows the printer's scale, mm.
+pub const RULER: f64 = 100.0;
+/// Name of the end of the robot that the card's arrow shows.
+pub const FORWARD_WORD: &str = "HEAD";
+
+/// The strip of a floor tag.
+pub fn strip_of(id: usize) -> usize {
+    id / TAGS_ON_STRIP
+}
+
+/// The middle of a floor tag, mm, from the middle of its strip, along the strip.
+pub fn middle_on_strip(id: usize) -> Point {
+    let end = (id % TAGS_ON_STRIP) as f64 * 2.0 - 1.0;
+    [end * SPAN / 2.0, 0.0]
+}
+
+/// Edge of a tag, mm.
+pub fn edge(id: usize) -> f64 {
+    if id == DECK_TAG {
+        DECK_EDGE
+    } else {
+        FLOOR_EDGE
+    }
+}
+
+/// The corners of a tag from its middle, mm: top left, top right, bottom right, bottom left.
+pub fn corners(edge: f64) -> [Point; 4] {
+    let half = edge / 2.0;
+    [[-half, half], [half, half], [half, -half], [-half, -half]]
+}
+
+/// The colour of a tag's square: true if it is white. The first row is the top one.
+pub fn is_white(id: usize, row: usize, column: usize) -> bool {
+    let code = 1..SQUARES - 1;
+    let inside = code.contains(&row) && code.contains(&column);
+    let inner = SQUARES - 2;
+    inside && CODES[id] >> (inner * inner - 1 - ((row - 1) * inner + column - 1)) & 1 == 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The four codes that a tag shows as it is turned.
+    fn turned(id: usize) -> [u64; 4] {
+        let bit = |row: usize, column: usize| u64::from(is_white(id, row + 1, column + 1));
+        let read = |at: &dyn Fn(usize, usize) -> u64| {
+            (0..36).fold(0, |code, i| code << 1 | at(i / 6, i % 6))
+        };
+        [
+            read(&|row, column| bit(row, column)),
+            read(&|row, column| bit(5 - column, row)),
+            read(&|row, column| bit(5 - row, 5 - column)),
+            read(&|row, column| bit(column, 5 - row)),
+        ]
+    }
+
+    #[test]
+    fn any_two_tags_however_turned_differ_in_eleven_squares() {
+        for (a, own) in CODES.into_iter().enumerate() {
+            assert_eq!(turned(a)[0], own);
+            for b in 0..CODES.len() {
+                for (turn, code) in turned(b).into_iter().enumerate() {
+                    let differ = (own ^ code).count_ones();
+                    assert!(
+                        (a == b && turn == 0) || differ >= 11,
+                        "{a} {b} {turn}: {differ}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn every_tag_has_a_white_margin_of_a_square_on_its_piece() {
+        for id in 0..FLOOR_TAGS {
+            let [x, y] = middle_on_strip(id).map(f64::abs);
+            let square = FLOOR_EDGE / SQUARES as f64;
+            let half = FLOOR_EDGE / 2.0 + square;
+            assert!(x + half < STRIP[0] / 2.0 && y + half < STRIP[1] / 2.0);
+        }
+        const {
+            assert!(CARD_MARGIN > DECK_EDGE / SQUARES as f64);
+            assert!(DECK_EDGE + 2.0 * CARD_MARGIN <= CARD[0]);
+        }
+    }
+}

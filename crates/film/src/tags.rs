@@ -1,0 +1,67 @@
+//! The tags of the sheet in a picture.
+//!
+//! [`read`] finds dark quadrilaterals, refines their edges and reads their codes. Of the 587 codes of the family
+//! only the sheet's are known here. They differ in eleven squares or more, however a tag is turned,
+//! so a few squares that cannot be read do no harm.
+
+use crate::blobs;
+use crate::edges::{self, Square};
+use crate::homography::Homography;
+use crate::picture::{Picture, Pixel};
+use crate::sheet::{CODES, SQUARES, is_white};
+
+/// Largest number of a tag's squares that are read wrong.
+const LARGEST_ERROR: usize = 3;
+
+/// A tag in a picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tag {
+    /// Its id on the sheet.
+    pub id: usize,
+    /// Its corners: top left, top right, bottom right, bottom left, as it is printed.
+    pub corners: [Pixel; 4],
+}
+
+/// Finds the tags of the sheet. If an id is seen twice, both are returned.
+pub fn read(picture: &Picture) -> Vec<Tag> {
+    let quads = blobs::quads(picture).into_iter();
+    quads
+        .filter_map(|quad| edges::refine(picture, quad))
+        .filter_map(|square| decode(picture, &square))
+        .collect()
+}
+
+/// Reads the code of a square, from each of its corners.
+fn decode(picture: &Picture, square: &Square) -> Option<Tag> {
+    (0..4).find_map(|turn| {
+        let corners = std::array::from_fn(|i| square.corners[(i + turn) % 4]);
+        let edge = SQUARES as f64;
+        let to_picture = Homography::of_four(
+            [[0.0, 0.0], [edge, 0.0], [edge, edge], [0.0, edge]],
+            corners,
+        )?;
+        let white = |row: usize, column: usize| {
+            let near = [
+                [0.0, 0.0],
+                [0.2, 0.2],
+                [0.2, -0.2],
+                [-0.2, 0.2],
+                [-0.2, -0.2],
+            ];
+            let grey = near.map(|[x, y]| {
+                let at = [column as f64 + 0.5 + x, row as f64 + 0.5 + y];
+                picture.at(to_picture.map(at))
+            });
+            grey.iter().sum::<f64>() / near.len() as f64 > square.middle
+        };
+        let seen: [[bool; SQUARES]; SQUARES] =
+            std::array::from_fn(|row| std::array::from_fn(|column| white(row, column)));
+        let errors = |id: usize| {
+            let all = (0..SQUARES * SQUARES).map(|i| (i / SQUARES, i % SQUARES));
+            all.filter(|&(row, column)| seen[row][column] != is_white(id, row, column))
+                .count()
+        };
+        let id = (0..CODES.len()).find(|&id| errors(id) <= LARGEST_ERROR)?;
+        Some(Tag { id, corners })
+    })
+}

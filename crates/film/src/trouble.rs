@@ -1,0 +1,145 @@
+//! The reasons why a film cannot be measured, each as the sentence that the user sees.
+
+use crate::sheet::{FLOOR_EDGE, FLOOR_TAGS};
+
+/// A reason why a film cannot be measured.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum Trouble {
+    /// The film has no pictures.
+    #[error("the film has no pictures")]
+    NoPictures,
+    /// The pictures have several sizes.
+    #[error("picture {number} has another size than the first one")]
+    Size {
+        /// Number of the picture, from 1.
+        number: usize,
+    },
+    /// The times do not rise.
+    #[error("picture {number} is not later than the one before")]
+    Times {
+        /// Number of the picture, from 1.
+        number: usize,
+    },
+    /// A tag is seen twice.
+    #[error(
+        "picture {number} shows tag {id} twice: which of them belongs to the robot is not guessed; take the other away"
+    )]
+    Twice {
+        /// Id of the tag.
+        id: usize,
+        /// Number of the picture, from 1.
+        number: usize,
+    },
+    /// No tag of the sheet in any picture.
+    #[error(
+        "no picture has a tag of the sheet: film from above, near enough and in even light, and not \
+         mirrored"
+    )]
+    NoTag,
+    /// A tag of the floor is never seen.
+    #[error(
+        "tag {id} of the floor is in no picture: all {FLOOR_TAGS} tags of the two strips have to be seen"
+    )]
+    FloorTag {
+        /// Id of the tag.
+        id: usize,
+    },
+    /// The deck's tag is not seen.
+    #[error(
+        "the tag on the robot's deck is in {seen} of {pictures} pictures only; nine of ten have to show it"
+    )]
+    DeckTag {
+        /// Number of the pictures that show it.
+        seen: usize,
+        /// Number of pictures.
+        pictures: usize,
+    },
+    /// The camera moved, and not all of the floor's tags are seen meanwhile.
+    #[error(
+        "the camera moved, and {pictures} pictures do not show all tags of the floor: put it on a \
+         tripod, or keep all tags in sight"
+    )]
+    CameraMoved {
+        /// Number of the pictures without all tags.
+        pictures: usize,
+    },
+    /// No camera sees the tags as they are.
+    #[error("no camera sees the floor's tags like that: are they flat on the floor?")]
+    NoCamera,
+    /// The tags do not lie as on the sheet.
+    #[error(
+        "the floor's tags do not lie as on the sheet, by {error:.1} px: both tags of a strip have to be on one \
+         piece of paper, flat on the floor"
+    )]
+    NotThisSheet {
+        /// Mean error of a corner, px.
+        error: f64,
+    },
+    /// The tags have another size for their distance.
+    #[error(
+        "the floor's tags are {edge:.1} mm wide for their distance and not {FLOOR_EDGE}: were they cut apart, or \
+         printed with another scale in each direction?"
+    )]
+    TagSize {
+        /// Their width for their distance, mm.
+        edge: f64,
+    },
+    /// The deck's tag is not at its height.
+    #[error(
+        "the deck's tag is {found:.0} mm above the floor by its size, not {height:.0} mm: measure it and give \
+         --height, and print card and strips with one scale"
+    )]
+    Height {
+        /// Its height by its size, mm.
+        found: f64,
+        /// Its height as given, mm.
+        height: f64,
+    },
+    /// The robot leaves the sheet.
+    #[error(
+        "the robot is {distance:.0} mm away from the middle of the strips {seconds:.1} s after the beginning, \
+         farther than the tags tell places: move the strips, or film fewer cycles"
+    )]
+    OutOfSheet {
+        /// Its distance, mm.
+        distance: f64,
+        /// Time since the first picture, s.
+        seconds: f64,
+    },
+    /// The robot did not move.
+    #[error("the robot did not move: {way:.1} mm and {turn:.1} deg in the time of a cycle at most")]
+    NotMoved {
+        /// Largest distance in the time of a cycle, mm.
+        way: f64,
+        /// Largest turn in the time of a cycle, deg.
+        turn: f64,
+    },
+    /// The film has too few cycles.
+    #[error(
+        "the film shows {cycles:.1} cycles of {period:.2} s; it takes two whole ones and some time before \
+         and after: film at least four"
+    )]
+    TooShort {
+        /// Number of cycles.
+        cycles: f64,
+        /// Time of a cycle, s.
+        period: f64,
+    },
+    /// The cycles take a multiple of their time.
+    #[error(
+        "the cycles take {times} times as long as they should: give the pace with --speed (a weak supply halves it), \
+         or, for a film in slow motion, the rate at which it was taken with --fps"
+    )]
+    AnotherPace {
+        /// The multiple.
+        times: u32,
+    },
+    /// The path is not that of the gait.
+    #[error(
+        "the path is not that of this gait in cycles of {period:.2} s: was it another gait, or another pace?"
+    )]
+    NotThisGait {
+        /// Time of a cycle, s.
+        period: f64,
+    },
+}

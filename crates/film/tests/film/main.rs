@@ -1,0 +1,7 @@
+//! Films whose truth is known, rendered with all that spoils a picture.
+
+mod accuracy;
+mod render;
+mod studio;
+mod troubles;
+mod walk;

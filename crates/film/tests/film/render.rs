@@ -1,0 +1,407 @@
+//! A renderer: what a camera sees of the sheet and the robot, with all that spoils a picture.
+//!
+//! It shares only the design of the sheet with what it tests: its camera looks along rays and
+//! not through matrices.
+
+use std::f64::consts::PI;
+
+use fastrand::Rng;
+use lizard_film::{Picture, sheet};
+
+/// Position on the floor and heading: mm, rad.
+pub type Spot = [f64; 3];
+type Vector = [f64; 3];
+
+const BLACK: f64 = 35.0;
+const PAPER: f64 = 205.0;
+/// Half width and half length of the robot, mm, and its grey and height.
+const BODY: [f64; 2] = [75.0, 105.0];
+const BODY_GREY: f64 = 70.0;
+const BODY_HEIGHT: f64 = 55.0;
+/// Samples of a pixel to each side, and of the time that the shutter is open.
+const SAMPLES: usize = 3;
+const TIMES: usize = 3;
+/// Number of random numbers from which noise is taken, and of pixels that take them in a row.
+const NOISES: usize = 1 << 16;
+const IN_A_ROW: usize = 64;
+
+/// The floor, the sheet and the camera.
+#[derive(Clone)]
+pub struct Studio {
+    pub size: [usize; 2],
+    /// Focal length over the picture's width.
+    pub focal: f64,
+    /// Bend of the lens: the share by which it moves a point that is as far from the axis as the focal length.
+    pub lens: f64,
+    /// Height of the camera above the middle of the scene, tilt, its direction and roll: mm, deg.
+    pub height: f64,
+    pub tilt: f64,
+    pub direction: f64,
+    pub roll: f64,
+    /// The point of the floor on the camera's axis, mm.
+    pub aim: [f64; 2],
+    /// Places of the strips' middles.
+    pub strips: [Spot; 2],
+    /// Printed mm for each mm, along and across.
+    pub print: [f64; 2],
+    /// Scale of the distance of a strip's tags alone.
+    pub cut: f64,
+    /// Height of the deck's tag, mm.
+    pub deck: f64,
+    /// Ids of tags that are covered.
+    pub hidden: Vec<usize>,
+    /// Exposure time, s.
+    pub shutter: f64,
+    /// Standard deviation of the noise, grey levels.
+    pub noise: f64,
+    /// Grey of the floor, and the loss of light from one corner to the other.
+    pub floor: f64,
+    pub shade: f64,
+}
+
+impl Studio {
+    /// A studio with a random camera on a tripod that sees all of the strips.
+    pub fn random(rng: &mut Rng) -> Self {
+        loop {
+            let studio = Self::any(rng);
+            if studio.sees_strips() {
+                return studio;
+            }
+        }
+    }
+
+    /// True if the corners of both strips are in the picture.
+    fn sees_strips(&self) -> bool {
+        let view = self.view();
+        let [length, width] = sheet::STRIP.map(|length| length / 2.0);
+        self.strips.iter().all(|&[x, y, heading]| {
+            let (sin, cos) = heading.sin_cos();
+            [
+                [length, width],
+                [length, -width],
+                [-length, width],
+                [-length, -width],
+            ]
+            .into_iter()
+            .map(|[u, v]| view.image([x + u * cos - v * sin, y + u * sin + v * cos], 0.0))
+            .all(|at| (0..2).all(|i| (0.0..self.size[i] as f64).contains(&at[i])))
+        })
+    }
+
+    /// A studio with a random camera, wherever it looks.
+    fn any(rng: &mut Rng) -> Self {
+        let mut between = |low: f64, high: f64| low + (high - low) * rng.f64();
+        Self {
+            size: [1280, 720],
+            focal: between(0.72, 0.9),
+            lens: between(-0.006, 0.006),
+            height: between(700.0, 900.0),
+            tilt: between(10.0, 35.0),
+            direction: between(-180.0, 180.0),
+            roll: between(-20.0, 20.0),
+            aim: [between(-25.0, 25.0), between(-25.0, 25.0)],
+            strips: [
+                [
+                    between(-10.0, 10.0),
+                    between(-165.0, -155.0),
+                    between(-0.06, 0.06),
+                ],
+                [
+                    between(-10.0, 10.0),
+                    between(155.0, 165.0),
+                    PI + between(-0.06, 0.06),
+                ],
+            ],
+            print: [1.0; 2],
+            cut: 1.0,
+            deck: 83.0,
+            hidden: Vec::new(),
+            shutter: 1.0 / 80.0,
+            noise: 5.0,
+            floor: between(90.0, 160.0),
+            shade: between(0.0, 0.4),
+        }
+    }
+
+    /// The camera's place, and its axes: right, down, ahead.
+    fn camera(&self) -> (Vector, [Vector; 3]) {
+        let (tilt, direction) = (self.tilt.to_radians(), self.direction.to_radians());
+        let lean = [tilt.sin() * direction.cos(), tilt.sin() * direction.sin()];
+        let ahead = [lean[0], lean[1], -tilt.cos()];
+        let far = self.height / tilt.cos();
+        let eye = [
+            self.aim[0] - far * ahead[0],
+            self.aim[1] - far * ahead[1],
+            self.height,
+        ];
+        // Level, then rolled about the axis.
+        let level = [direction.sin(), -direction.cos(), 0.0];
+        let down = cross(ahead, level);
+        let (sin, cos) = self.roll.to_radians().sin_cos();
+        let right = [0, 1, 2].map(|i| cos * level[i] + sin * down[i]);
+        (eye, [right, cross(ahead, right), ahead])
+    }
+
+    fn view(&self) -> View {
+        let (eye, axes) = self.camera();
+        let [width, height] = self.size.map(|length| length as f64);
+        View {
+            eye,
+            axes,
+            focal: self.focal * width,
+            lens: self.lens,
+            middle: [(width - 1.0) / 2.0, (height - 1.0) / 2.0],
+        }
+    }
+
+    /// The floor and the strips without the robot.
+    pub fn background(&self, rng: &mut Rng) -> Background {
+        let [width, height] = self.size;
+        let view = self.view();
+        let mut light = vec![0f32; width * height];
+        for (i, light) in light.iter_mut().enumerate() {
+            let (x, y) = ((i % width) as f64, (i / width) as f64);
+            let middle = view.meet([x, y], 0.0);
+            let is_near = (0..2).any(|strip| {
+                let [u, v] = Turned::new(self.strips[strip]).sees(middle);
+                u.abs() < sheet::STRIP[0] && v.abs() < sheet::STRIP[1]
+            });
+            *light = match is_near {
+                true => mean(|dx, dy| self.floor_at(view.meet([x + dx, y + dy], 0.0))) as f32,
+                false => self.floor as f32,
+            };
+        }
+        Background {
+            studio: self.clone(),
+            view,
+            light,
+            noise: (0..NOISES)
+                .map(|_| (self.noise * normal(rng)) as f32)
+                .collect(),
+        }
+    }
+
+    /// The grey of a point of the floor.
+    fn floor_at(&self, at: [f64; 2]) -> f64 {
+        for (strip, spot) in self.strips.iter().enumerate() {
+            let [u, v] = Turned::new(*spot).sees(at);
+            let [u, v] = [u / self.print[0], v / self.print[1]];
+            if u.abs() > sheet::STRIP[0] / 2.0 || v.abs() > sheet::STRIP[1] / 2.0 {
+                continue;
+            }
+            for id in 2 * strip..2 * strip + 2 {
+                let [x, y] = sheet::middle_on_strip(id);
+                if let Some(grey) = tag(id, [u - self.cut * x, v - y]) {
+                    return if self.hidden.contains(&id) {
+                        BLACK
+                    } else {
+                        grey
+                    };
+                }
+            }
+            return PAPER;
+        }
+        self.floor
+    }
+
+    /// The grey of a point of the robot's card, from the middle of its tag: right, ahead.
+    fn card_at(&self, [x, y]: [f64; 2]) -> Option<f64> {
+        let [x, y] = [x / self.print[0], y / self.print[1]];
+        let low = -sheet::DECK_EDGE / 2.0 - sheet::CARD_MARGIN;
+        if x.abs() > sheet::CARD[0] / 2.0 || y < low || y > low + sheet::CARD[1] {
+            return None;
+        }
+        Some(match tag(sheet::DECK_TAG, [x, y]) {
+            Some(_) if self.hidden.contains(&sheet::DECK_TAG) => PAPER,
+            Some(grey) => grey,
+            None => PAPER,
+        })
+    }
+}
+
+/// A studio's picture without the robot.
+pub struct Background {
+    studio: Studio,
+    view: View,
+    light: Vec<f32>,
+    /// Random numbers, taken from another place for every few pixels.
+    noise: Vec<f32>,
+}
+
+struct View {
+    eye: Vector,
+    axes: [Vector; 3],
+    focal: f64,
+    lens: f64,
+    middle: [f64; 2],
+}
+
+impl View {
+    /// The point at a height that a pixel shows.
+    fn meet(&self, [x, y]: [f64; 2], height: f64) -> [f64; 2] {
+        let bent = [
+            (x - self.middle[0]) / self.focal,
+            (y - self.middle[1]) / self.focal,
+        ];
+        // The opposite of the lens, by its own steps: it bends little.
+        let [mut u, mut v] = bent;
+        for _ in 0..3 {
+            let factor = self.bend(u, v);
+            [u, v] = [bent[0] / factor, bent[1] / factor];
+        }
+        let [right, down, ahead] = &self.axes;
+        let ray = [0, 1, 2].map(|i| ahead[i] + u * right[i] + v * down[i]);
+        let far = (height - self.eye[2]) / ray[2];
+        [self.eye[0] + far * ray[0], self.eye[1] + far * ray[1]]
+    }
+
+    /// The pixel that shows a point.
+    fn image(&self, [x, y]: [f64; 2], height: f64) -> [f64; 2] {
+        let from = [x - self.eye[0], y - self.eye[1], height - self.eye[2]];
+        let along = |axis: &Vector| (0..3).map(|i| axis[i] * from[i]).sum::<f64>();
+        let [right, down, ahead] = &self.axes;
+        let [u, v] = [along(right) / along(ahead), along(down) / along(ahead)];
+        let far = self.focal * self.bend(u, v);
+        [self.middle[0] + far * u, self.middle[1] + far * v]
+    }
+
+    /// The factor by which the lens moves a point away from the axis.
+    fn bend(&self, u: f64, v: f64) -> f64 {
+        1.0 + self.lens * (u * u + v * v)
+    }
+}
+
+impl Background {
+    /// The picture of the robot, the shutter open around this time.
+    pub fn picture(&self, seconds: f64, robot: impl Fn(f64) -> Spot, rng: &mut Rng) -> Picture {
+        let studio = &self.studio;
+        let [width, height] = studio.size;
+        let mut light = self.light.clone();
+        let times: [f64; TIMES] = std::array::from_fn(|i| {
+            ((i as f64 + 0.5) / TIMES as f64 - 0.5) * studio.shutter + seconds
+        });
+        let spots = times.map(|time| Turned::new(robot(time)));
+        let body = [(BODY[0] + 5.0), (BODY[1] + 5.0)];
+        self.each_pixel(spots[TIMES / 2], body, BODY_HEIGHT, |i, [x, y]| {
+            let [u, v] = spots[TIMES / 2].frame(self.view.meet([x, y], BODY_HEIGHT));
+            if u.abs() < BODY[0] && v.abs() < BODY[1] {
+                light[i] = BODY_GREY as f32;
+            }
+        });
+        let card = [
+            sheet::CARD[0] / 2.0 + 2.0,
+            sheet::CARD[1] - sheet::DECK_EDGE / 2.0 + 2.0,
+        ];
+        self.each_pixel(spots[TIMES / 2], card, studio.deck, |i, [x, y]| {
+            let behind = f64::from(light[i]);
+            let at_time = |spot: &Turned| {
+                mean(|dx, dy| {
+                    let at = spot.frame(self.view.meet([x + dx, y + dy], studio.deck));
+                    studio.card_at(at).unwrap_or(behind)
+                })
+            };
+            light[i] = (spots.iter().map(at_time).sum::<f64>() / TIMES as f64) as f32;
+        });
+        let mut grey = Vec::with_capacity(light.len());
+        for (i, pixels) in light.chunks(IN_A_ROW).enumerate() {
+            let (row, column) = (i * IN_A_ROW / width, i * IN_A_ROW % width);
+            let share = (row as f64 / height as f64 + column as f64 / width as f64) / 2.0;
+            let shade = (1.0 - studio.shade * share) as f32;
+            let noise = &self.noise[rng.usize(..NOISES - IN_A_ROW)..];
+            grey.extend(
+                pixels
+                    .iter()
+                    .zip(noise)
+                    .map(|(light, noise)| (light * shade + noise + 0.5) as u8),
+            );
+        }
+        Picture::new(width, height, grey).expect("all rows")
+    }
+
+    /// Calls a function for every pixel around a part of the robot.
+    fn each_pixel(
+        &self,
+        Turned([x, y], [cos, sin]): Turned,
+        half: [f64; 2],
+        height: f64,
+        mut each: impl FnMut(usize, [f64; 2]),
+    ) {
+        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[a, b]| {
+            let (right, ahead) = (a * half[0], b * half[1]);
+            let floor = [x + ahead * cos + right * sin, y + ahead * sin - right * cos];
+            self.view.image(floor, height)
+        });
+        let size = self.studio.size;
+        let range = |i: usize| {
+            let low = corners
+                .iter()
+                .map(|corner| corner[i])
+                .fold(f64::INFINITY, f64::min);
+            let high = corners.iter().map(|corner| corner[i]).fold(0.0, f64::max);
+            (low.max(0.0) as usize)..((high + 1.0).max(0.0) as usize).min(size[i])
+        };
+        for row in range(1) {
+            for column in range(0) {
+                each(row * size[0] + column, [column as f64, row as f64]);
+            }
+        }
+    }
+}
+
+/// The mean over the samples of a pixel.
+fn mean(sample: impl Fn(f64, f64) -> f64) -> f64 {
+    let place = |i: usize| (i as f64 + 0.5) / SAMPLES as f64 - 0.5;
+    let all = (0..SAMPLES * SAMPLES).map(|i| sample(place(i % SAMPLES), place(i / SAMPLES)));
+    all.sum::<f64>() / (SAMPLES * SAMPLES) as f64
+}
+
+/// The grey of a tag at a point from its middle; `None` beside it.
+fn tag(id: usize, [x, y]: [f64; 2]) -> Option<f64> {
+    let square = sheet::edge(id) / sheet::SQUARES as f64;
+    let half = sheet::SQUARES as f64 / 2.0;
+    let (column, row) = ((x / square + half).floor(), (half - y / square).floor());
+    let inside = 0.0..sheet::SQUARES as f64;
+    let is_inside = inside.contains(&column) && inside.contains(&row);
+    is_inside.then(
+        || match sheet::is_white(id, row as usize, column as usize) {
+            true => PAPER,
+            false => BLACK,
+        },
+    )
+}
+
+/// A place: a point, and cosine and sine of its heading.
+#[derive(Clone, Copy)]
+struct Turned([f64; 2], [f64; 2]);
+
+impl Turned {
+    fn new([x, y, heading]: Spot) -> Self {
+        Self([x, y], [heading.cos(), heading.sin()])
+    }
+
+    /// A point of the floor as seen from here: along the heading, and to the left.
+    fn sees(&self, at: [f64; 2]) -> [f64; 2] {
+        let Self([x, y], [cos, sin]) = self;
+        let (dx, dy) = (at[0] - x, at[1] - y);
+        [dx * cos + dy * sin, dy * cos - dx * sin]
+    }
+
+    /// A point of the floor as seen from the robot: right, ahead.
+    fn frame(&self, at: [f64; 2]) -> [f64; 2] {
+        let [ahead, left] = self.sees(at);
+        [-left, ahead]
+    }
+}
+
+fn cross(a: Vector, b: Vector) -> Vector {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+/// A random number of a normal distribution.
+pub fn normal(rng: &mut Rng) -> f64 {
+    (0..12).map(|_| rng.f64()).sum::<f64>() - 6.0
+}

@@ -1,0 +1,36 @@
+//! Films of a walk in a studio.
+
+use fastrand::Rng;
+use lizard_film::{Film, Setup};
+
+use crate::render::{Spot, Studio};
+use crate::walk::Walk;
+
+/// Setup of a sheet in true size.
+pub const TRUE_SIZE: Setup = Setup {
+    scale: 1.0,
+    height: 83.0,
+};
+
+/// Films a walk on a tripod.
+pub fn film(studio: &Studio, walk: &Walk, rate: f64, rng: &mut Rng) -> Film {
+    film_of(studio, walk.seconds(), rate, |time| walk.at(time), rng)
+}
+
+/// Films a robot that is somewhere at any time.
+pub fn film_of(
+    studio: &Studio,
+    seconds: f64,
+    rate: f64,
+    robot: impl Fn(f64) -> Spot,
+    rng: &mut Rng,
+) -> Film {
+    let background = studio.background(rng);
+    let mut film = Film::default();
+    for i in 0..(seconds * rate) as usize {
+        let seconds = i as f64 / rate;
+        let picture = background.picture(seconds, &robot, rng);
+        film.add(seconds, &picture).expect("a picture");
+    }
+    film
+}

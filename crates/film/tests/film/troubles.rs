@@ -1,0 +1,301 @@
+//! Films that cannot be measured, each with its reason.
+
+use fastrand::Rng;
+use lizard_film::{Film, Gait, Picture, Setup, Trouble};
+
+use crate::render::{Spot, Studio};
+use crate::studio::{TRUE_SIZE, film_of};
+use crate::walk::{Varies, Walk, gait, truth};
+
+/// Pictures in a second: few, because only the reason counts.
+const RATE: f64 = 8.0;
+
+/// A studio with a camera that is known, and with few pixels, which the sheet fills.
+fn studio() -> Studio {
+    let mut studio = Studio::random(&mut Rng::with_seed(5));
+    (studio.size, studio.focal) = ([640, 360], 1.0);
+    (studio.height, studio.tilt, studio.direction) = (800.0, 20.0, 90.0);
+    (studio.roll, studio.aim) = (0.0, [0.0; 2]);
+    studio
+}
+
+/// The walk of a gait around the middle.
+fn walk(gait: &Gait, cycles: usize) -> Walk {
+    let start = -truth(gait).forward * cycles as f64 / 2.0;
+    Walk::new(
+        gait,
+        [start, 0.0, 0.0],
+        cycles,
+        Varies::default(),
+        &mut Rng::with_seed(1),
+    )
+}
+
+/// Films five cycles of `walk`.
+fn film(studio: &Studio) -> Film {
+    let walk = walk(&gait("walk"), 5);
+    film_of(
+        studio,
+        walk.seconds(),
+        RATE,
+        |time| walk.at(time),
+        &mut Rng::with_seed(2),
+    )
+}
+
+/// The reason why five cycles of `walk` are not measured in this studio.
+fn trouble(studio: &Studio, setup: Setup) -> Trouble {
+    film(studio)
+        .measure(setup, &gait("walk"))
+        .expect_err("it is no film to be measured")
+}
+
+#[test]
+fn without_a_tag_in_any_picture_there_is_nothing_to_measure() {
+    assert_eq!(
+        Film::default().measure(TRUE_SIZE, &gait("walk")),
+        Err(Trouble::NoPictures)
+    );
+    let mut film = Film::default();
+    let grey = Picture::new(320, 240, vec![128; 320 * 240]).expect("a picture");
+    film.add(0.0, &grey).expect("a picture");
+    assert_eq!(film.measure(TRUE_SIZE, &gait("walk")), Err(Trouble::NoTag));
+}
+
+#[test]
+fn a_covered_tag_is_named() {
+    let mut studio = studio();
+    studio.hidden = vec![2];
+    assert_eq!(trouble(&studio, TRUE_SIZE), Trouble::FloorTag { id: 2 });
+    studio.hidden = vec![4];
+    assert!(matches!(
+        trouble(&studio, TRUE_SIZE),
+        Trouble::DeckTag { seen: 0, .. }
+    ));
+}
+
+#[test]
+fn pictures_of_another_size_and_times_that_do_not_rise_are_refused() {
+    let picture = |size| Picture::new(size, size, vec![128; size * size]).expect("a picture");
+    let mut film = Film::default();
+    film.add(0.0, &picture(64)).expect("the first");
+    assert_eq!(
+        film.add(0.1, &picture(65)),
+        Err(Trouble::Size { number: 2 })
+    );
+    assert_eq!(
+        film.add(0.0, &picture(64)),
+        Err(Trouble::Times { number: 2 })
+    );
+}
+
+/// A film in which the camera changes its place in the middle.
+fn pushed(hidden: Vec<usize>) -> Film {
+    let gait = gait("walk");
+    let walk = walk(&gait, 5);
+    let mut rng = Rng::with_seed(3);
+    let mut film = Film::default();
+    let one = studio();
+    let mut other = one.clone();
+    (other.tilt, other.aim[0], other.hidden) = (one.tilt + 1.0, one.aim[0] + 12.0, hidden);
+    let backgrounds = [one, other].map(|studio| studio.background(&mut rng));
+    let count = (walk.seconds() * RATE) as usize;
+    for i in 0..count {
+        let seconds = i as f64 / RATE;
+        let background = &backgrounds[2 * i / count];
+        let picture = background.picture(seconds, |time| walk.at(time), &mut rng);
+        film.add(seconds, &picture).expect("a picture");
+    }
+    film
+}
+
+#[test]
+fn a_camera_that_moves_has_to_see_every_tag_of_the_floor() {
+    let gait = gait("walk");
+    let measured = pushed(Vec::new())
+        .measure(TRUE_SIZE, &gait)
+        .expect("all tags are seen");
+    assert!(measured.sight.moved);
+    let error = measured.forward.mean - truth(&gait).forward;
+    assert!(error.abs() < 0.3, "{:?}", measured.forward);
+    let trouble = pushed(vec![1])
+        .measure(TRUE_SIZE, &gait)
+        .expect_err("one is hidden");
+    assert!(
+        matches!(trouble, Trouble::CameraMoved { pictures } if pictures > 15),
+        "{trouble}"
+    );
+}
+
+#[test]
+fn a_tag_that_is_covered_for_a_while_does_no_harm_on_a_tripod() {
+    let gait = gait("walk");
+    let walk = walk(&gait, 5);
+    let mut rng = Rng::with_seed(3);
+    let mut film = Film::default();
+    let whole = studio();
+    let mut covered = whole.clone();
+    covered.hidden = vec![0];
+    let backgrounds = [whole, covered].map(|studio| studio.background(&mut rng));
+    for i in 0..(walk.seconds() * RATE) as usize {
+        let seconds = i as f64 / RATE;
+        let picture = backgrounds[i / 8 % 2].picture(seconds, |time| walk.at(time), &mut rng);
+        film.add(seconds, &picture).expect("a picture");
+    }
+    let measured = film.measure(TRUE_SIZE, &gait).expect("it is measured");
+    assert!(
+        (measured.forward.mean - truth(&gait).forward).abs() < 0.2,
+        "{:?}",
+        measured.forward
+    );
+}
+
+#[test]
+fn a_sheet_that_is_printed_too_small_is_right_with_its_ruler() {
+    let mut studio = studio();
+    studio.print = [0.972; 2];
+    let setup = Setup {
+        scale: 0.972,
+        ..TRUE_SIZE
+    };
+    let gait = gait("walk");
+    let measured = film(&studio).measure(setup, &gait).expect("it is measured");
+    assert!(
+        (measured.forward.mean - truth(&gait).forward).abs() < 0.2,
+        "{:?}",
+        measured.forward
+    );
+}
+
+#[test]
+fn tags_that_do_not_have_their_distance_are_refused() {
+    let mut studio = studio();
+    studio.cut = 0.95;
+    let trouble = trouble(&studio, TRUE_SIZE);
+    assert!(
+        matches!(trouble, Trouble::TagSize { edge } if edge > 51.5)
+            || matches!(trouble, Trouble::NotThisSheet { .. }),
+        "{trouble}"
+    );
+    let words = trouble.to_string();
+    assert!(words.starts_with("the floor's tags"), "{words}");
+}
+
+#[test]
+fn a_card_at_another_height_is_found_by_its_size() {
+    let mut studio = studio();
+    studio.deck = 83.0;
+    let wrong = Setup {
+        height: 40.0,
+        ..TRUE_SIZE
+    };
+    let trouble = trouble(&studio, wrong);
+    assert!(
+        matches!(trouble, Trouble::Height { found, .. } if found > 52.0),
+        "{trouble}"
+    );
+}
+
+/// Films a robot whose place follows from the time.
+fn moving(robot: impl Fn(f64) -> Spot) -> Trouble {
+    let film = film_of(&studio(), 4.0, RATE, robot, &mut Rng::with_seed(2));
+    film.measure(TRUE_SIZE, &gait("walk")).expect_err("no walk")
+}
+
+#[test]
+fn a_robot_that_stands_has_not_moved() {
+    let trouble = moving(|_| [0.0; 3]);
+    assert!(
+        matches!(trouble, Trouble::NotMoved { way, .. } if way < 1.0),
+        "{trouble}"
+    );
+}
+
+#[test]
+fn a_robot_far_from_the_strips_is_out_of_the_sheet() {
+    let mut studio = studio();
+    (studio.size, studio.aim) = ([1280, 720], [150.0, 0.0]);
+    studio.height = 1000.0;
+    let far = |_: f64| [430.0, 0.0, 0.0];
+    let film = film_of(&studio, 1.0, RATE, far, &mut Rng::with_seed(2));
+    let trouble = film
+        .measure(TRUE_SIZE, &gait("walk"))
+        .expect_err("it is too far");
+    assert!(
+        matches!(trouble, Trouble::OutOfSheet { distance, .. } if distance > 400.0),
+        "{trouble}"
+    );
+}
+
+#[test]
+fn another_gait_is_not_this_gait() {
+    let another = moving(|time| [0.0, 0.0, 0.6 * time]);
+    assert!(matches!(another, Trouble::NotThisGait { .. }), "{another}");
+    let backward = moving(|time| [60.0 - 30.0 * time, 0.0, 0.0]);
+    assert!(
+        matches!(backward, Trouble::NotThisGait { .. }),
+        "{backward}"
+    );
+    let creeping = moving(|time| [1.5 * time, 0.0, 0.0]);
+    assert!(matches!(creeping, Trouble::NotMoved { .. }), "{creeping}");
+}
+
+#[test]
+fn half_the_pace_and_slow_motion_are_told_by_their_cycles() {
+    let gait = gait("walk");
+    for times in [2, 4] {
+        let slow = Gait {
+            period: gait.period * f64::from(times),
+            path: gait.path.clone(),
+        };
+        let walk = walk(&slow, 3);
+        let robot = |time: f64| walk.at(time);
+        let film = film_of(
+            &studio(),
+            walk.seconds(),
+            5.0,
+            robot,
+            &mut Rng::with_seed(2),
+        );
+        let trouble = film.measure(TRUE_SIZE, &gait).expect_err("it is too slow");
+        assert_eq!(trouble, Trouble::AnotherPace { times });
+    }
+}
+
+#[test]
+fn a_tag_that_is_seen_twice_is_not_guessed() {
+    let mut rng = Rng::with_seed(2);
+    let picture = studio()
+        .background(&mut rng)
+        .picture(0.0, |_| [0.0; 3], &mut rng);
+    let [width, height] = picture.size();
+    let twice: Vec<u8> = picture
+        .grey()
+        .chunks(width)
+        .flat_map(|row| [row, row].concat())
+        .collect();
+    let twice = Picture::new(2 * width, height, twice).expect("a picture");
+    let trouble = Film::default().add(0.0, &twice).expect_err("two of each");
+    assert!(
+        matches!(trouble, Trouble::Twice { number: 1, .. }),
+        "{trouble}"
+    );
+}
+
+#[test]
+fn two_cycles_are_too_few() {
+    let gait = gait("walk");
+    let walk = walk(&gait, 2);
+    let film = film_of(
+        &studio(),
+        walk.seconds(),
+        RATE,
+        |time| walk.at(time),
+        &mut Rng::with_seed(2),
+    );
+    let trouble = film.measure(TRUE_SIZE, &gait).expect_err("too few");
+    assert!(
+        matches!(trouble, Trouble::TooShort { cycles, .. } if (1.0..2.5).contains(&cycles)),
+        "{trouble}"
+    );
+}

@@ -1,0 +1,140 @@
+//! Walks whose truth is known: the twin's path, cycle after cycle, with what a robot varies.
+
+use fastrand::Rng;
+use lizard_film::Gait;
+use lizard_robot::{Place, Robot, Travel};
+use lizard_twin::{ServoModel, Twin};
+
+use super::render::{Spot, normal};
+
+/// Time before the start and after the stop, s.
+pub const REST: f64 = 0.5;
+
+/// A gait of the paper's robot as the twin walks it: the second cycle, from its start.
+pub fn gait(name: &str) -> Gait {
+    let robot = Robot::parse(include_str!("../../../../robots/paper.toml")).expect("a robot");
+    let gait = robot.gait(name).expect("a gait");
+    let mut twin = Twin::new(&robot, ServoModel::of(&robot));
+    let frames = gait.frames().count() - 1;
+    let mut places = Vec::new();
+    for i in 0..=2 * frames {
+        let phase = gait.frames().nth(i % frames).expect("a frame").1;
+        let place = twin.push_angles(gait.table_angles(phase)).place;
+        if i >= frames {
+            places.push(place);
+        }
+    }
+    let seen = |place: &Place| {
+        let travel = place.seen_from(places[0]);
+        Place {
+            forward: travel.forward,
+            left: travel.left,
+            heading: travel.turn.to_radians(),
+        }
+    };
+    Gait {
+        period: gait.period(),
+        path: places.iter().map(seen).collect(),
+    }
+}
+
+/// Parts of a cycle that vary independently of each other: a foot slips now and then.
+const PARTS: usize = 12;
+
+/// A walk of some cycles.
+pub struct Walk {
+    gait: Gait,
+    period: f64,
+    begins: Vec<Place>,
+    /// What each cycle has more than the gait, from its begin to its end.
+    extras: Vec<[[f64; 3]; PARTS + 1]>,
+}
+
+/// Deviations of a walk: of each cycle (mm, mm, rad), of the clock, and of what a user measures: of a height in
+/// mm and of a sheet in thousandths.
+#[derive(Clone, Copy, Default)]
+pub struct Varies {
+    pub cycle: [f64; 3],
+    pub clock: f64,
+    pub ruler: f64,
+}
+
+impl Walk {
+    pub fn new(gait: &Gait, start: Spot, cycles: usize, varies: Varies, rng: &mut Rng) -> Self {
+        let mut begins = vec![Place {
+            forward: start[0],
+            left: start[1],
+            heading: start[2],
+        }];
+        let mut extras = Vec::new();
+        for _ in 0..cycles {
+            let mut extra = [[0.0; 3]; PARTS + 1];
+            for i in 1..=PARTS {
+                let step = varies
+                    .cycle
+                    .map(|sigma| sigma * normal(rng) / (PARTS as f64).sqrt());
+                extra[i] = [0, 1, 2].map(|axis| extra[i - 1][axis] + step[axis]);
+            }
+            let begin = begins[begins.len() - 1];
+            begins.push(then(
+                then(begin, gait.path[gait.path.len() - 1]),
+                place(extra[PARTS]),
+            ));
+            extras.push(extra);
+        }
+        Self {
+            gait: gait.clone(),
+            period: gait.period * (1.0 + varies.clock * normal(rng)),
+            begins,
+            extras,
+        }
+    }
+
+    /// The length of the film, s.
+    pub fn seconds(&self) -> f64 {
+        self.period * self.extras.len() as f64 + 2.0 * REST
+    }
+
+    /// The place at a time.
+    pub fn at(&self, seconds: f64) -> Spot {
+        let phase = ((seconds - REST) / self.period).clamp(0.0, self.extras.len() as f64 - 1e-9);
+        let (cycle, within) = (phase as usize, phase.fract());
+        let path = &self.gait.path;
+        let at = within * (path.len() - 1) as f64;
+        let (a, b, share) = (path[at as usize], path[at as usize + 1], at.fract());
+        let mix = |part: fn(&Place) -> f64| part(&a) + share * (part(&b) - part(&a));
+        let there = place([
+            mix(|place| place.forward),
+            mix(|place| place.left),
+            mix(|place| place.heading),
+        ]);
+        let at = within * PARTS as f64;
+        let (i, share) = (at as usize, at.fract());
+        let [from, to] = [
+            self.extras[cycle][i],
+            self.extras[cycle][(i + 1).min(PARTS)],
+        ];
+        let extra = [0, 1, 2].map(|axis| from[axis] + share * (to[axis] - from[axis]));
+        let place = then(then(self.begins[cycle], there), place(extra));
+        [place.forward, place.left, place.heading]
+    }
+}
+
+/// The true way of a cycle.
+pub fn truth(gait: &Gait) -> Travel {
+    gait.path[gait.path.len() - 1].travel()
+}
+
+fn place([forward, left, heading]: [f64; 3]) -> Place {
+    Place {
+        forward,
+        left,
+        heading,
+    }
+}
+
+/// A place as seen from another one, on the floor.
+fn then(from: Place, seen: Place) -> Place {
+    let [forward, left] = from.on_floor([seen.forward, seen.left]);
+    place([forward, left, from.heading + seen.heading])
+}

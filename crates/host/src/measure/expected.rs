@@ -1,0 +1,32 @@
+//! The path that a gait is predicted to take.
+
+use lizard_film::Gait;
+use lizard_robot::{CheckedGait, FRAMES_PER_SECOND, Place, Robot};
+use lizard_twin::{ServoModel, Twin};
+
+/// The second cycle of a gait at a pace, with the servos of robot.toml; the pace is 1 for the gait's own.
+pub(super) fn expected(robot: &Robot, gait: &CheckedGait, pace: f64) -> Gait {
+    let period = gait.period() / pace;
+    let frames = (period * FRAMES_PER_SECOND).round().max(1.0) as usize;
+    let mut twin = Twin::new(robot, ServoModel::of(robot));
+    let mut path = Vec::with_capacity(frames + 1);
+    let mut begin = Place::START;
+    for frame in 0..=2 * frames {
+        let seconds = frame as f64 / FRAMES_PER_SECOND * pace;
+        let phase = (gait.phase(seconds) * 65536.0).round() as i64;
+        let angles = gait.table_angles(phase.rem_euclid(65536) as u16);
+        let place = twin.push_angles(angles).place;
+        if frame == frames {
+            begin = place;
+        }
+        if frame >= frames {
+            let travel = place.seen_from(begin);
+            path.push(Place {
+                forward: travel.forward,
+                left: travel.left,
+                heading: travel.turn.to_radians(),
+            });
+        }
+    }
+    Gait { period, path }
+}

@@ -1,0 +1,107 @@
+//! The pictures of a folder in their order, and their times.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::Failure;
+
+/// The ends of the names of picture files.
+const ENDS: [&str; 3] = ["png", "jpg", "jpeg"];
+
+/// The pictures of a folder by the numbers in their names, each with its time, s.
+///
+/// # Errors
+/// Fails without pictures, or if neither the rate nor the names tell the times.
+pub(super) fn of_folder(folder: &Path, rate: Option<f64>) -> Result<Vec<(f64, PathBuf)>, Failure> {
+    let cannot = |error: std::io::Error| {
+        Failure::Input(format!("cannot read {}: {error}", folder.display()))
+    };
+    let mut files = Vec::new();
+    for entry in fs::read_dir(folder).map_err(cannot)? {
+        let path = entry.map_err(cannot)?.path();
+        let end = path
+            .extension()
+            .map(|end| end.to_string_lossy().to_lowercase());
+        if end.is_some_and(|end| ENDS.contains(&&*end)) {
+            files.push((stem(&path), path));
+        }
+    }
+    if files.is_empty() {
+        return Err(Failure::Input(format!(
+            "{} has no pictures: .png, .jpg or .jpeg",
+            folder.display()
+        )));
+    }
+    files.sort_by_key(|(stem, _)| in_order(stem));
+    let time = |(i, (stem, path)): (usize, (String, PathBuf))| match rate {
+        Some(rate) => Ok((i as f64 / rate, path)),
+        None => match seconds(&stem) {
+            Some(seconds) => Ok((seconds, path)),
+            None => Err(Failure::Input(format!(
+                "the times of the pictures are unknown: --fps 30 gives the film's frames per second, or name \
+                 the files by their times, as 1.033s.png or 1033ms.png; {} tells none",
+                path.display()
+            ))),
+        },
+    };
+    files.into_iter().enumerate().map(time).collect()
+}
+
+fn stem(path: &Path) -> String {
+    path.file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned()
+}
+
+/// A name as words and numbers, so that 10 comes after 9.
+fn in_order(name: &str) -> Vec<(u64, String)> {
+    let mut parts: Vec<(u64, String)> = Vec::new();
+    let mut was_digit = None;
+    for c in name.chars() {
+        if was_digit != Some(c.is_ascii_digit()) {
+            parts.push((0, String::new()));
+            was_digit = Some(c.is_ascii_digit());
+        }
+        if let Some((number, word)) = parts.last_mut() {
+            match c.to_digit(10) {
+                Some(digit) => *number = number.saturating_mul(10).saturating_add(u64::from(digit)),
+                None => word.push(c),
+            }
+        }
+    }
+    parts
+}
+
+/// The time at the end of a name, such as `walk-1.033s` or `walk-1033ms`, s.
+fn seconds(stem: &str) -> Option<f64> {
+    let (number, unit) = match stem.strip_suffix("ms") {
+        Some(number) => (number, 1e-3),
+        None => (stem.strip_suffix('s')?, 1.0),
+    };
+    let begin = number.rfind(|c: char| !(c.is_ascii_digit() || c == '.'));
+    let number = &number[begin.map_or(0, |at| at + 1)..];
+    let value: f64 = number.parse().ok()?;
+    Some(value * unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_tells_a_time_only_with_its_unit() {
+        assert_eq!(seconds("walk-1033ms"), Some(1.033));
+        assert_eq!(seconds("1.5s"), Some(1.5));
+        for none in ["frame-0001", "1.5", "s", "films", "1.2.3s"] {
+            assert_eq!(seconds(none), None, "{none}");
+        }
+    }
+
+    #[test]
+    fn ten_comes_after_nine() {
+        assert!(in_order("frame-9") < in_order("frame-10"));
+        assert!(in_order("0.9s") < in_order("0.10s"));
+        assert!(in_order("a2b1") < in_order("a2b3"));
+    }
+}

@@ -1,0 +1,13 @@
+//! Measure the real robot: a sheet of tags to print, and the way of a gait in a film.
+
+mod command;
+mod expected;
+mod frames;
+mod grey;
+mod page;
+mod report;
+mod sheet;
+mod through_ffmpeg;
+
+pub use command::{Args, run};
+pub use sheet::{SheetArgs, write_sheet};

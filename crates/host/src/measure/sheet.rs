@@ -1,0 +1,38 @@
+//! `lizard measure sheet`: the sheet of tags, to be printed in true size.
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+use super::page::{self, Paper};
+use crate::Failure;
+use crate::shared::files;
+
+/// Write the sheet of tags to print for `lizard measure`, as PDF
+///
+/// Two strips for the floor and a card for the robot's deck, in true size on one page, with how to lay and
+/// glue them, and a line of 100 mm that shows whether the printer kept the size.
+#[derive(clap::Args, Debug)]
+#[command(after_help = "Example:
+  lizard measure sheet --paper letter")]
+pub struct SheetArgs {
+    /// The paper in the printer
+    #[arg(long, value_enum, default_value_t)]
+    paper: Paper,
+    /// The file for the sheet
+    #[arg(long, short, value_name = "FILE", default_value = "out/sheet.pdf")]
+    output: PathBuf,
+}
+
+/// Writes the sheet.
+///
+/// # Errors
+/// Fails if the file cannot be written.
+pub fn write_sheet(args: SheetArgs) -> Result<(), Failure> {
+    files::write(&args.output, &page::pdf(args.paper))?;
+    let file = args.output.display();
+    writeln!(
+        io::stdout(),
+        "{file}: print it at 100 % (\"actual size\"), then measure the line of 100 mm on it"
+    )?;
+    Ok(())
+}

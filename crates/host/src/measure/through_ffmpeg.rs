@@ -1,0 +1,145 @@
+//! The pictures of a film file, by the programs ffmpeg and ffprobe.
+//!
+//! Decoders of films are large, and everybody who has films has one. ffprobe tells the time of each picture, because
+//! a phone's pictures are not evenly spaced, and ffmpeg sends the pictures as YUV4MPEG2: a line
+//! with the size, then a line and the grey pixels of each.
+
+use std::io::{BufRead, BufReader, ErrorKind, Read};
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use lizard_film::Picture;
+
+use crate::Failure;
+
+/// Arguments of ffmpeg around the file's name: one grey picture for each of the film.
+const PICTURES: &str = "-fps_mode passthrough -f yuv4mpegpipe -pix_fmt gray -strict -1 -";
+/// Arguments of ffprobe before the file's name: the times of the pictures.
+const TIMES: &str =
+    "-v error -select_streams v:0 -show_entries frame=best_effort_timestamp_time -of csv=p=0";
+/// Largest width or height of a picture, px.
+const LARGEST: usize = 10_000;
+
+/// Calls a function for each picture of a film with its time, s.
+///
+/// # Errors
+/// Fails without the programs, for a film that they cannot read, or if the function fails.
+pub(super) fn each(
+    film: &Path,
+    rate: Option<f64>,
+    mut picture: impl FnMut(f64, &Picture) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    let times = match rate {
+        Some(_) => Vec::new(),
+        None => times(film)?,
+    };
+    let unreadable = |reason: &str| {
+        Failure::Input(format!(
+            "{} is no film that ffmpeg can read: {reason}",
+            film.display()
+        ))
+    };
+    let mut ffmpeg = Command::new("ffmpeg")
+        .args(["-v", "error", "-nostdin", "-i"])
+        .arg(film)
+        .args(PICTURES.split(' '))
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .map_err(|error| missing("ffmpeg", &error))?;
+    let mut stream = BufReader::new(ffmpeg.stdout.take().expect("it is piped"));
+    let mut line = String::new();
+    let header = stream.read_line(&mut line).ok().and_then(|_| size(&line));
+    let outcome = match header {
+        None => Err(unreadable("it sends no pictures")),
+        Some([width, height]) => (0..)
+            .try_fold((), |(), i: usize| {
+                line.clear();
+                match stream.read_line(&mut line) {
+                    Ok(0) => return Err(None),
+                    Ok(_) => {}
+                    Err(error) => return Err(Some(unreadable(&error.to_string()))),
+                }
+                let mut grey = vec![0; width * height];
+                let whole = stream.read_exact(&mut grey);
+                whole.map_err(|_| Some(unreadable("its last picture is not whole")))?;
+                let seconds = match rate {
+                    Some(rate) => Some(i as f64 / rate),
+                    None => times.get(i).copied(),
+                };
+                let seconds = seconds.ok_or_else(|| {
+                    Some(unreadable("it has more pictures than times; give --fps"))
+                })?;
+                let grey = Picture::new(width, height, grey)
+                    .ok_or_else(|| Some(unreadable("no pixels")))?;
+                picture(seconds, &grey).map_err(Some)
+            })
+            .or_else(|end: Option<Failure>| end.map_or(Ok(()), Err)),
+    };
+    // It may still be sending what nobody reads any more.
+    drop(stream);
+    let _ = ffmpeg.kill();
+    let _ = ffmpeg.wait();
+    outcome
+}
+
+/// The times of a film's pictures, s.
+fn times(film: &Path) -> Result<Vec<f64>, Failure> {
+    let output = Command::new("ffprobe")
+        .args(TIMES.split(' '))
+        .arg(film)
+        .output()
+        .map_err(|error| missing("ffprobe", &error))?;
+    let text = String::from_utf8_lossy(&output.stdout);
+    // A picture with more to tell is followed by a comma and an empty line.
+    let lines = text.lines().map(|line| line.trim_end_matches(',').trim());
+    let lines = lines.filter(|line| !line.is_empty());
+    let times: Option<Vec<f64>> = lines.map(|line| line.parse().ok()).collect();
+    match times {
+        Some(times) if !times.is_empty() => Ok(times),
+        _ => Err(Failure::Input(format!(
+            "ffprobe tells no times of the pictures of {}; --fps 30 gives their number in a second",
+            film.display()
+        ))),
+    }
+}
+
+/// Width and height of a YUV4MPEG2 stream.
+fn size(header: &str) -> Option<[usize; 2]> {
+    let fields = header.trim().strip_prefix("YUV4MPEG2 ")?;
+    let field = |name: char| {
+        let mut values = fields
+            .split(' ')
+            .filter_map(|field| field.strip_prefix(name));
+        values
+            .next()?
+            .parse()
+            .ok()
+            .filter(|size| (1..=LARGEST).contains(size))
+    };
+    Some([field('W')?, field('H')?])
+}
+
+fn missing(program: &str, error: &std::io::Error) -> Failure {
+    Failure::Impossible(match error.kind() {
+        ErrorKind::NotFound => format!(
+            "a film is read by the program {program}, which is not installed: install ffmpeg, or give a folder of \
+             pictures"
+        ),
+        _ => format!("cannot run {program}: {error}"),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_size_is_read_from_the_header() {
+        let header = "YUV4MPEG2 W1280 H720 F30:1 Ip A1:1 Cmono\n";
+        assert_eq!(size(header), Some([1280, 720]));
+        for wrong in ["", "YUV4MPEG2 W0 H720", "YUV4MPEG2 W99999999 H1", "W1 H1"] {
+            assert_eq!(size(wrong), None, "{wrong}");
+        }
+    }
+}

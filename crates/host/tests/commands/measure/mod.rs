@@ -1,0 +1,276 @@
+//! `lizard measure` on films whose truth is known, and the sheet that they show.
+
+// The renderer has more than is needed here.
+#[allow(dead_code)]
+#[path = "../../../../film/tests/film/render.rs"]
+mod render;
+mod sheet;
+#[allow(dead_code)]
+#[path = "../../../../film/tests/film/walk.rs"]
+mod walk;
+
+use std::fs;
+use std::path::PathBuf;
+
+use fastrand::Rng;
+use serde_json::Value;
+
+use crate::program::{lizard, run_in, scratch};
+use render::Studio;
+use walk::{Varies, Walk, gait, truth};
+
+/// Pictures in a second.
+const RATE: f64 = 8.0;
+
+/// A studio with few pixels, which the sheet fills.
+fn studio() -> Studio {
+    let mut studio = Studio::random(&mut Rng::with_seed(4));
+    (studio.size, studio.focal) = ([640, 360], 1.0);
+    (studio.height, studio.tilt, studio.direction) = (800.0, 15.0, 90.0);
+    (studio.roll, studio.aim) = (0.0, [0.0; 2]);
+    studio.deck = 95.0;
+    studio
+}
+
+/// Five cycles of a robot that varies a little.
+fn walked() -> Walk {
+    let gait = gait("walk");
+    let start = -truth(&gait).forward * 2.5;
+    let varies = Varies {
+        cycle: [0.1, 0.1, 0.002],
+        ..Varies::default()
+    };
+    Walk::new(&gait, [start, 0.0, 0.0], 5, varies, &mut Rng::with_seed(4))
+}
+
+/// Films five cycles of `walk` into a folder of its own, as JPEG; each picture's name by its number.
+fn film(folder: &str, name: impl Fn(usize) -> String) -> PathBuf {
+    let folder = scratch().join(folder);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder");
+    let mut rng = Rng::with_seed(4);
+    let walk = walked();
+    let background = studio().background(&mut rng);
+    for i in 0..(walk.seconds() * RATE) as usize {
+        let picture = background.picture(i as f64 / RATE, |time| walk.at(time), &mut rng);
+        let path = folder.join(name(i));
+        let [width, height] = picture.size().map(|length| length as u16);
+        let encoder = jpeg_encoder::Encoder::new_file(path, 80).expect("a file");
+        let colour = jpeg_encoder::ColorType::Luma;
+        encoder
+            .encode(picture.grey(), width, height, colour)
+            .expect("it is written");
+    }
+    folder
+}
+
+/// The words of a table.
+fn without_figures(table: &str) -> Vec<&str> {
+    let is_word =
+        |word: &&str| word.chars().all(char::is_alphabetic) && *word != "more" && *word != "less";
+    table
+        .split_whitespace()
+        .filter(is_word)
+        .filter(|word| *word != "errors" && *word != "agrees")
+        .collect()
+}
+
+#[test]
+fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
+    let folder = film("walk film", |i| format!("walk-{}ms.jpg", i * 125));
+    let folder = folder.to_str().expect("a name");
+    let robot = crate::program::robot("paper");
+    let measure = |more: &[&str]| {
+        let line = [
+            "measure", folder, "--robot", &robot, "--gait", "walk", "--height", "95",
+        ];
+        run_in(scratch(), &[&line[..], more].concat(), "")
+    };
+    let object = measure(&["--json"]).json();
+    let part = |path: &[&str]| {
+        let value = path.iter().fold(&object, |value, key| &value[*key]);
+        value
+            .as_f64()
+            .unwrap_or_else(|| panic!("{path:?}: {object}"))
+    };
+    let truth = truth(&gait("walk"));
+    for (name, truth, largest) in [
+        ("forward", truth.forward, 0.2),
+        ("left", truth.left, 0.2),
+        ("turn", truth.turn, 0.5),
+    ] {
+        assert!(
+            (part(&[name, "mean"]) - truth).abs() < largest,
+            "{name}: {object}"
+        );
+        assert!(
+            (part(&[name, "predicted"]) - truth).abs() < 1e-2,
+            "{name}: {object}"
+        );
+    }
+    assert!(part(&["cycles"]) >= 3.0 && (part(&["period"]) - 1.0).abs() < 0.01);
+    assert_eq!(
+        object["each"].as_array().map(Vec::len),
+        Some(part(&["cycles"]) as usize)
+    );
+    let table = measure(&[]).success();
+    assert!(table.contains("agrees"), "{table}");
+    // The page's example is such a film.
+    let page = crate::program::read("docs/measure.md");
+    let (_, example) = page
+        .split_once("--gait walk --height 95\n")
+        .expect("an example");
+    let (example, _) = example.split_once("```").expect("its end");
+    assert_eq!(without_figures(example), without_figures(&table));
+    let path = measure(&["--csv"]).success();
+    assert!(
+        path.starts_with("seconds,forward,left,heading\n0.0000,"),
+        "{path}"
+    );
+    assert_eq!(path.lines().count(), 1 + part(&["pictures"]) as usize);
+    // Measured against another gait's prediction it is that gait no more.
+    let another = run_in(
+        scratch(),
+        &["measure", folder, "--gait", "left", "--height", "95"],
+        "",
+    );
+    assert!(another.refusal().contains("was it another gait"));
+}
+
+#[test]
+fn what_cannot_be_measured_is_refused_in_a_sentence() {
+    let folder = scratch().join("measure troubles");
+    let _ = fs::remove_dir_all(&folder);
+    let inside = |name: &str| folder.join(name);
+    fs::create_dir_all(inside("empty")).expect("a folder");
+    fs::create_dir_all(inside("text")).expect("a folder");
+    fs::create_dir_all(inside("untimed")).expect("a folder");
+    fs::write(inside("text/a.png"), "no picture").expect("a file");
+    fs::write(inside("untimed/frame-001.png"), "").expect("a file");
+    let words = |words: &str| {
+        let all: Vec<&str> = words.split(' ').collect();
+        run_in(&folder, &all, "").refusal()
+    };
+    for (line, message) in [
+        ("measure none --gait walk", "lizard: there is no film none"),
+        (
+            "measure empty --gait walk",
+            "lizard: empty has no pictures: .png, .jpg or .jpeg",
+        ),
+        (
+            "measure untimed --gait walk",
+            "lizard: the times of the pictures are unknown: --fps 30 gives the film's frames per second",
+        ),
+        (
+            "measure text --gait walk --fps 30",
+            "lizard: text/a.png is no picture that can be read: ",
+        ),
+        (
+            "measure text --gait wlak --fps 30",
+            "lizard: robot.toml has no gait `wlak`; those that move are",
+        ),
+        (
+            "measure text --gait stand --fps 30",
+            "lizard: the gait `stand` moves no servo",
+        ),
+        (
+            "measure text --gait walk --ruler 20",
+            "error: invalid value '20' for '--ruler <MM>': it is the line of 100 mm",
+        ),
+        (
+            "measure text",
+            "error: the following required arguments were not provided",
+        ),
+    ] {
+        let words = words(line);
+        assert!(words.starts_with(message), "{line}: {words}");
+    }
+}
+
+#[test]
+fn a_film_without_ffmpeg_says_what_to_install() {
+    let film = scratch().join("film.mp4");
+    fs::write(&film, "a film").expect("a file");
+    let program = env!("CARGO_BIN_EXE_lizard");
+    let mut command = std::process::Command::new(program);
+    command
+        .args(["measure", "--gait", "walk"])
+        .arg(&film)
+        .env("PATH", "");
+    let output = lizard_time_limit::LIMIT
+        .output(&mut command, b"")
+        .expect("it ends");
+    let words = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        words.contains("install ffmpeg, or give a folder of pictures"),
+        "{words}"
+    );
+    assert_eq!(output.status.code(), Some(1));
+}
+
+/// Programs in place of ffmpeg and ffprobe: the film is its pictures already, and the times are those of a phone.
+#[test]
+#[cfg(unix)]
+fn a_film_is_read_through_ffmpeg_at_the_times_that_ffprobe_tells() {
+    use std::fmt::Write as _;
+    use std::os::unix::fs::PermissionsExt;
+    let folder = scratch().join("ffmpeg");
+    fs::create_dir_all(&folder).expect("a folder");
+    let mut film = b"YUV4MPEG2 W640 H360 F8:1 Ip A1:1 Cmono\n".to_vec();
+    let mut times = String::new();
+    let (background, walk) = (studio(), walked());
+    let mut rng = Rng::with_seed(9);
+    let background = background.background(&mut rng);
+    for i in 0..(walk.seconds() * RATE) as usize {
+        let seconds = i as f64 / RATE + 0.01 * f64::from(i as u32 % 3);
+        let picture = background.picture(seconds, |time| walk.at(time), &mut rng);
+        film.extend(b"FRAME\n");
+        film.extend(picture.grey());
+        let _ = write!(times, "{seconds:.6},\n\n");
+    }
+    fs::write(folder.join("film"), film).expect("a file");
+    fs::write(folder.join("times"), times).expect("a file");
+    for (program, file) in [("ffmpeg", "film"), ("ffprobe", "times")] {
+        let path = folder.join(program);
+        let script = format!("#!/bin/sh\nexec cat '{}'\n", folder.join(file).display());
+        fs::write(&path, script).expect("a script");
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).expect("it may run");
+    }
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_lizard"));
+    let path = format!("{}:/usr/bin:/bin", folder.display());
+    command.args(["measure", "--gait", "walk", "--height", "95", "--json"]);
+    command.args(["--robot", &crate::program::robot("paper")]);
+    command.arg(folder.join("film")).env("PATH", path);
+    let output = lizard_time_limit::LIMIT
+        .output(&mut command, b"")
+        .expect("it ends");
+    let object: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let forward = object["forward"]["mean"].as_f64().expect("a way");
+    assert!(
+        (forward - truth(&gait("walk")).forward).abs() < 0.2,
+        "{object}"
+    );
+}
+
+#[test]
+fn json_of_a_film_has_no_value_that_is_no_number() {
+    // serde_json writes what is no number as null.
+    let folder = film("numbers", |i| format!("{i}.jpg"));
+    let line = [
+        "measure",
+        folder.to_str().expect("a name"),
+        "--fps",
+        "8",
+        "--height",
+        "95",
+    ];
+    let more = ["--gait", "walk", "--json"];
+    let object: Value = run_in(scratch(), &[&line[..], &more].concat(), "").json();
+    let text = object.to_string();
+    assert!(!text.contains("null"), "{text}");
+    assert!(
+        lizard("measure --help", "")
+            .success()
+            .contains("standard error of the mean")
+    );
+}

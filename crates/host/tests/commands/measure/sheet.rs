@@ -1,0 +1,137 @@
+//! The sheet's PDF, drawn here and read again by the detector.
+
+use std::fs;
+
+use lizard_film::{Picture, read, sheet};
+
+use crate::program::{run, scratch};
+
+/// Pixels for each mm.
+const PIXELS: f64 = 3.0;
+/// mm of a point of PDF.
+const POINT: f64 = 25.4 / 72.0;
+
+/// The numbers before an operator on each line of a text.
+fn operands<'a>(text: &'a str, operator: &'a str) -> impl Iterator<Item = Vec<f64>> + 'a {
+    let lines = text
+        .lines()
+        .filter_map(move |line| line.strip_suffix(operator));
+    lines.map(|line| {
+        line.split_whitespace()
+            .filter_map(|word| word.parse().ok())
+            .collect()
+    })
+}
+
+/// Writes the sheet and returns its text, width and height in mm.
+fn sheet_on(paper: &str) -> (String, [f64; 2]) {
+    let path = scratch().join(format!("sheets/{paper}.pdf"));
+    let name = path.to_str().expect("a name");
+    let said = run(&["measure", "sheet", "--paper", paper, "--output", name]).success();
+    assert!(said.contains("print it at 100 %"), "{said}");
+    let text = String::from_utf8_lossy(&fs::read(&path).expect("it is written")).into_owned();
+    let (_, media) = text.split_once("/MediaBox [").expect("a size");
+    let (media, _) = media.split_once(']').expect("its end");
+    let size: Vec<f64> = media
+        .split(' ')
+        .map(|word| word.parse().expect("a number"))
+        .collect();
+    let size = [size[2] * POINT, size[3] * POINT];
+    (text, size)
+}
+
+/// The filled rectangles of a page as a picture, and the largest reach of ink, mm from the left and from below.
+fn drawn(text: &str, [width, height]: [f64; 2]) -> (Picture, [[f64; 2]; 2]) {
+    let columns = (width * PIXELS) as usize;
+    let rows = (height * PIXELS) as usize;
+    let mut grey = vec![255; columns * rows];
+    let mut ink = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
+    let mut lines = text.lines().peekable();
+    let mut fill = 0;
+    while let Some(line) = lines.next() {
+        if let Some(grey) = operands(line, " g").next() {
+            fill = (255.0 * grey[0]) as u8;
+        }
+        let Some(rectangle) = operands(line, " re").next() else {
+            continue;
+        };
+        let [x, y, w, h] = [0, 1, 2, 3].map(|i| rectangle[i] * POINT);
+        for (i, (from, length)) in [(x, w), (y, h)].into_iter().enumerate() {
+            ink[i] = [ink[i][0].min(from), ink[i][1].max(from + length)];
+        }
+        if lines.peek() != Some(&"f") {
+            continue;
+        }
+        // The middle of a pixel decides.
+        let range =
+            |from: f64, to: f64| (from * PIXELS + 0.5) as usize..(to * PIXELS + 0.5) as usize;
+        for row in range(height - y - h, height - y) {
+            for column in range(x, x + w) {
+                grey[row * columns + column] = fill;
+            }
+        }
+    }
+    (Picture::new(columns, rows, grey).expect("a picture"), ink)
+}
+
+#[test]
+fn a_printed_sheet_has_the_tags_of_the_strips_and_the_card_in_true_size() {
+    for (paper, size) in [("a4", [297.0, 210.0]), ("letter", [279.4, 215.9])] {
+        let (text, page) = sheet_on(paper);
+        assert!(
+            (page[0] - size[0]).abs() < 0.1 && (page[1] - size[1]).abs() < 0.1,
+            "{page:?}"
+        );
+        let (picture, ink) = drawn(&text, page);
+        for (i, [low, high]) in ink.into_iter().enumerate() {
+            assert!(
+                low > 5.0 && high < page[i] - 5.0,
+                "printers leave a margin: {ink:?}"
+            );
+        }
+        let mut tags = read(&picture);
+        tags.sort_by_key(|tag| tag.id);
+        let ids: Vec<usize> = tags.iter().map(|tag| tag.id).collect();
+        assert_eq!(ids, [0, 1, 2, 3, 4], "{paper}");
+        let distance = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) / PIXELS;
+        for tag in &tags {
+            let [left, right, ..] = tag.corners;
+            let edge = distance(left, right);
+            assert!(
+                (edge - sheet::edge(tag.id)).abs() < 0.4,
+                "{paper} {}: {edge}",
+                tag.id
+            );
+            assert!(
+                left[0] < right[0] && (left[1] - right[1]).abs() < 1.0,
+                "it is upright"
+            );
+        }
+        for strip in [0, 2] {
+            let span = distance(tags[strip].corners[0], tags[strip + 1].corners[0]);
+            assert!((span - sheet::SPAN).abs() < 0.4, "{paper}: {span}");
+        }
+    }
+}
+
+#[test]
+fn a_strip_has_a_line_of_100_mm_from_end_to_end() {
+    let (text, _) = sheet_on("a4");
+    let rectangles: Vec<Vec<f64>> = operands(&text, " re").collect();
+    let lines = rectangles
+        .iter()
+        .filter(|line| (line[2] * POINT - sheet::RULER).abs() < 0.01);
+    assert_eq!(lines.count(), sheet::STRIPS);
+    // The ticks of the ends begin and end with it.
+    let ticks = rectangles
+        .iter()
+        .filter(|line| (line[3] * POINT - 8.0).abs() < 0.01);
+    let ticks: Vec<[f64; 2]> = ticks
+        .map(|tick| [tick[0] * POINT, (tick[0] + tick[2]) * POINT])
+        .collect();
+    assert_eq!(ticks.len(), 2 * sheet::STRIPS);
+    assert!(
+        (ticks[1][1] - ticks[0][0] - sheet::RULER).abs() < 0.01,
+        "{ticks:?}"
+    );
+}
