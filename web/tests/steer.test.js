@@ -180,7 +180,17 @@ test('the page opens with the robot walking slowly, but for those who want less 
 });
 
 test('it opens with walk, too, where walk and trot are predicted before the robot says what it is', async () => {
-  const opened = await page({ reducedMotion: 'no-preference' }, () => {});
+  const opened = await page({ reducedMotion: 'no-preference' }, () => {
+    // As for a robot of one's own, of which no prediction comes with the page.
+    const { fetch } = window;
+    window.fetch = (address, ...more) => (String(address).includes('predictions') ? Promise.reject(new TypeError('none')) : fetch(address, ...more));
+    // The other predictions never come.
+    window.Worker = class extends Worker {
+      addEventListener(kind, then) {
+        super.addEventListener(kind, (event) => (event.data.gait ?? 0) <= 2 && then(event));
+      }
+    };
+  });
   await opened.waitForFunction(() => document.querySelector('button[data-command="trot"] small').textContent.includes('mm'));
   assert.equal(await opened.locator('#where').textContent(), 'waiting for the simulated UNO');
   await advance(opened, 2500);
