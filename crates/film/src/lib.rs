@@ -34,6 +34,6 @@ pub use film::{Film, Measured, Setup, Sight};
 pub use gait::Gait;
 pub use mean::Mean;
 pub use path::Seen;
-pub use picture::{Picture, Pixel};
+pub use picture::{Picture, Pixel, luminance};
 pub use tags::{Tag, read};
 pub use trouble::Trouble;
