@@ -2,9 +2,9 @@
 //!
 //! A camera looks down on the robot from anywhere. Tags on the floor tell where the camera is, and
 //! a tag on the deck, whose height is known, tells where the robot is ([`sheet`] has the sheet of tags).
-//! [`Film::add`] reads the tags of each picture. [`Film::measure`] finds the camera (`scene.rs`), the path
-//! (`path.rs`), the cycles of the gait in it (`cycles.rs`, `clock.rs`), and their mean with its error (`mean.rs`). The crate
-//! reads no file and prints nothing.
+//! [`Film::add`] reads the tags of each picture. [`Film::watch`] finds the camera (`scene.rs`) and the path
+//! (`path.rs`), [`Watched::measure`] the cycles of a gait in it (`cycles.rs`, `clock.rs`) and their mean with its error
+//! (`mean.rs`). The crate reads no file and prints nothing.
 //!
 //! # When not to use it
 //! For one robot in one plane. For places in space, or many markers, take AprilTag's own library.
@@ -19,6 +19,7 @@ mod clock;
 mod cycles;
 mod edges;
 mod film;
+mod frame;
 mod gait;
 mod homography;
 mod least;
@@ -29,11 +30,13 @@ mod scene;
 pub mod sheet;
 mod tags;
 mod trouble;
+mod watched;
 
-pub use film::{Film, Measured, Setup, Sight};
+pub use film::{Film, Setup};
 pub use gait::Gait;
 pub use mean::Mean;
 pub use path::Seen;
 pub use picture::{Picture, Pixel, luminance};
 pub use tags::{Tag, read};
 pub use trouble::Trouble;
+pub use watched::{Measured, Sight, Watched};

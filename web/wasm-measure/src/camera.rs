@@ -1,6 +1,6 @@
 //! The film that the page takes, and the reports of the gaits in it.
 
-use lizard_film::{Film, Picture, Setup, Tag, sheet};
+use lizard_film::{Film, Picture, Setup, Tag, Watched, sheet};
 use lizard_measure::{Report, expected, height_of_board};
 use lizard_robot::Robot;
 use serde::{Deserialize, Serialize};
@@ -61,6 +61,8 @@ pub struct Results {
 #[derive(Debug, Default)]
 pub struct Camera {
     film: Film,
+    /// The path in the film, until it has another picture or other measures.
+    watched: Option<(Setup, Watched)>,
 }
 
 impl Camera {
@@ -70,7 +72,9 @@ impl Camera {
     /// Fails if it has another size.
     pub fn look(&self, size: [usize; 2], pixels: &[u8]) -> Result<Vec<TagEntry>, Refused> {
         let tags = lizard_film::read(&picture(size, pixels)?).into_iter();
-        Ok(tags.map(|Tag { id, corners }| TagEntry { id, corners }).collect())
+        Ok(tags
+            .map(|Tag { id, corners }| TagEntry { id, corners })
+            .collect())
     }
 
     /// Adds the next picture to the film, taken at this time, s, and finds its tags.
@@ -84,6 +88,7 @@ impl Camera {
         seconds: f64,
     ) -> Result<Vec<TagEntry>, Refused> {
         let picture = picture(size, pixels)?;
+        self.watched = None;
         let tags = self.film.add(seconds, &picture).map_err(Refused::of)?;
         let entry = |(id, corners): (usize, &Option<_>)| {
             Some(TagEntry {
@@ -98,7 +103,7 @@ impl Camera {
     ///
     /// # Errors
     /// Fails if the film does not show what is needed, or the robot has no such gait.
-    pub fn measure(&self, asked: &Asked) -> Result<Results, Refused> {
+    pub fn measure(&mut self, asked: &Asked) -> Result<Results, Refused> {
         let robot = Robot::parse(&asked.toml).map_err(Refused::of)?;
         let gait = robot.gait(&asked.gait).filter(|gait| gait.moves());
         let gait =
@@ -108,8 +113,23 @@ impl Camera {
             height: asked.height.unwrap_or_else(|| height_of_board(&robot)),
         };
         let expected = expected(&robot, gait, f64::from(asked.speed) / 100.0);
-        let measured = self.film.measure(setup, &expected).map_err(Refused::of)?;
-        let report = Report::new(&robot, gait, asked.speed, setup, &expected, &measured);
+        let watched = match self.watched.take() {
+            Some((with, watched)) if with == setup => watched,
+            _ => self.film.watch(setup).map_err(Refused::of)?,
+        };
+        let (_, watched) = self.watched.insert((setup, watched));
+        let measured = watched
+            .measure(&expected, asked.during)
+            .map_err(Refused::of)?;
+        let report = Report::new(
+            &robot,
+            gait,
+            asked.speed,
+            setup,
+            &expected,
+            watched,
+            &measured,
+        );
         Ok(Results {
             report: serde_json::to_value(&report).map_err(Refused::of)?,
             text: report.text(),
