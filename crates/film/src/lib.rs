@@ -36,7 +36,7 @@ pub use film::{Film, Setup};
 pub use gait::Gait;
 pub use mean::Mean;
 pub use path::Seen;
-pub use picture::{Picture, Pixel};
+pub use picture::{Picture, Pixel, luminance};
 pub use tags::{Tag, read};
 pub use trouble::Trouble;
 pub use watched::{Measured, Sight, Watched};
