@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod render;
+mod several;
 mod studio;
 mod troubles;
 mod walk;
