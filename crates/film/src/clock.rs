@@ -19,15 +19,17 @@ const SIGMA: f64 = 0.003;
 const BEGINNINGS: usize = 48;
 /// Difference from the predicted movement, as a share of the sum of both squares, from which it is another gait.
 const ANOTHER: f64 = 0.5;
+/// Difference of a cycle's movement from that of the next, as a share of the mean of both squares, from which it changes.
+const CHANGES: f64 = 0.15;
 /// Longer times of a cycle that are tried.
 const LONGER: [u32; 3] = [2, 4, 8];
 /// Share of the difference, and of the movement itself, that a longer time leaves if it is the right one.
 const MUCH_BETTER: f64 = 0.3;
 
-/// The beginning of cycles, and their time with its standard error, s.
+/// The beginning of cycles and their time, each with its standard error, s.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Clock {
-    pub start: f64,
+    pub start: [f64; 2],
     pub period: [f64; 2],
 }
 
@@ -64,20 +66,12 @@ impl Steps {
     /// # Errors
     /// Fails if the movement is that of another gait or pace.
     pub(crate) fn clock(&self, gait: &Gait) -> Result<Clock, Trouble> {
-        let tries = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|sigmas| gait.period * (1.0 + SIGMA * sigmas));
+        let tries = tries(gait);
         let near = |start: f64, period: f64| squares(&self.sways(gait, start, period));
         let (least, start, period) = self.best(gait.period, &tries, near);
-        let away = |start: f64, period: f64| squares(&self.differences(gait, start, period));
-        let here = away(start, period);
-        let moved: f64 = self.steps.iter().map(|(_, seen)| size(*seen).powi(2)).sum();
-        let longer = LONGER.map(|times| {
-            let period = f64::from(times) * gait.period;
-            (self.best(period, &[period], away).0, times)
-        });
-        let longer = longer.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
-        if let Some((there, times)) = longer
-            && there < MUCH_BETTER * here.min(moved)
-        {
+        let here = squares(&self.differences(gait, start, period));
+        let (there, times) = self.misfit_of_longer(gait);
+        if there < MUCH_BETTER * (here / self.moved()).min(1.0) {
             return Err(Trouble::AnotherPace { times });
         }
         let both = |(time, seen): &(f64, [f64; 3])| {
@@ -101,14 +95,64 @@ impl Steps {
         };
         Ok(match least::fit(&[start, period], model) {
             Some(fit) => Clock {
-                start: fit.at[0],
+                start: [fit.at[0], fit.covariance[(0, 0)].sqrt()],
                 period: [fit.at[1], fit.covariance[(1, 1)].sqrt()],
             },
             None => Clock {
-                start,
+                start: [start, gait.period / BEGINNINGS as f64],
                 period: [period, SIGMA * gait.period],
             },
         })
+    }
+
+    /// The least difference from the predicted movement, as a share of the movement's squares.
+    pub(crate) fn misfit(&self, gait: &Gait) -> f64 {
+        let away = |start: f64, period: f64| squares(&self.differences(gait, start, period));
+        self.best(gait.period, &tries(gait), away).0 / self.moved()
+    }
+
+    /// The least such difference from the movement in cycles that take a multiple of their time, and that multiple.
+    pub(crate) fn misfit_of_longer(&self, gait: &Gait) -> (f64, u32) {
+        let away = |start: f64, period: f64| squares(&self.differences(gait, start, period));
+        let longer = LONGER.map(|times| {
+            let period = f64::from(times) * gait.period;
+            (self.best(period, &[period], away).0 / self.moved(), times)
+        });
+        let least = longer.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
+        least.unwrap_or((f64::INFINITY, 1))
+    }
+
+    /// The sum of the movements' squares.
+    fn moved(&self) -> f64 {
+        self.steps.iter().map(|(_, seen)| size(*seen).powi(2)).sum()
+    }
+
+    /// The time at which a cycle begins that moves otherwise than the next one.
+    pub(crate) fn change(&self, period: f64) -> Option<f64> {
+        let first = self.steps.first()?.0;
+        let last = self.steps.last()?.0;
+        let cycles = ((last - first) / period) as usize;
+        let begins = (1..cycles).map(|i| first + (i - 1) as f64 * period);
+        begins.into_iter().find(|begin| {
+            let cycle = |(time, _): &&(f64, [f64; 3])| (*begin..begin + period).contains(time);
+            let (mut differ, mut both) = (0.0, 0.0);
+            for (time, step) in self.steps.iter().filter(cycle) {
+                if let Some(next) = self.at(time + period) {
+                    differ += size([0, 1, 2].map(|axis| next[axis] - step[axis])).powi(2);
+                    both += (size(next).powi(2) + size(*step).powi(2)) / 2.0;
+                }
+            }
+            differ > CHANGES * both
+        })
+    }
+
+    /// The movement from a time between pictures.
+    fn at(&self, seconds: f64) -> Option<[f64; 3]> {
+        let after = self.steps.partition_point(|(time, _)| *time < seconds);
+        let (b, later) = self.steps.get(after)?;
+        let (a, earlier) = self.steps.get(after.checked_sub(1)?)?;
+        let share = (seconds - a) / (b - a);
+        Some([0, 1, 2].map(|axis| earlier[axis] + share * (later[axis] - earlier[axis])))
     }
 
     /// The least value of a function of start and time of a cycle with both, over starts within a cycle of
@@ -160,6 +204,11 @@ impl Steps {
         }
         sways
     }
+}
+
+/// The times of a cycle that are tried.
+fn tries(gait: &Gait) -> [f64; 5] {
+    [-2.0, -1.0, 0.0, 1.0, 2.0].map(|sigmas| gait.period * (1.0 + SIGMA * sigmas))
 }
 
 fn squares(values: &[f64]) -> f64 {

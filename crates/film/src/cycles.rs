@@ -9,14 +9,16 @@
 use lizard_contact::{Place, Travel};
 
 use crate::clock::{Clock, Steps};
-use crate::gait::{Gait, NEAR, movement, size};
+use crate::gait::{Gait, MOVED, NEAR, movement, size};
 use crate::path::{self, Seen};
 use crate::trouble::Trouble;
 
-/// Least movement in the time of a cycle, mm.
-const MOVED: f64 = 3.0;
 /// Share of the usual movement in the time of a cycle from which the robot counts as walking.
 const WALKS: f64 = 0.9;
+/// Share of the usual movement from which a robot walks that does not walk evenly, and for how many cycles it may: as
+/// it starts and as it stops.
+const GOES: f64 = 0.25;
+const UNEVEN: f64 = 1.25;
 /// Part of a cycle that is left out after the start and before the stop.
 const MARGIN: f64 = 0.15;
 
@@ -31,28 +33,28 @@ pub(crate) struct Cycles {
     pub ends: Vec<f64>,
     /// The movement of each cycle.
     pub travels: Vec<Travel>,
+    /// Time and place of the beginning of each cycle, and of the end of the last one.
+    pub begins: Vec<Seen>,
+    /// Standard error of these times, s.
+    pub begin_error: f64,
 }
 
 /// Finds the cycles of a path.
 ///
 /// # Errors
-/// Fails if the robot does not move, moves otherwise than the gait, or for less than two cycles.
+/// Fails if the robot does not move, moves otherwise than the gait, changes its movement, or walks for less than two
+/// cycles.
 pub(crate) fn find(path: &[Seen], gait: &Gait) -> Result<Cycles, Trouble> {
-    let [begin, end] = walk(path, gait)?;
-    let walked: Vec<Seen> = path
-        .iter()
-        .filter(|seen| (begin..=end).contains(&seen.seconds))
-        .copied()
-        .collect();
-    let steps = Steps::of(&walked, gait.period);
-    let too_short = Trouble::TooShort {
-        cycles: (end - begin).max(0.0) / gait.period,
-        period: gait.period,
-    };
-    if steps.are_few() || end - begin < 2.0 * gait.period {
-        return Err(too_short);
+    let (walked, [begin, end]) = walked(path, gait)?;
+    let steps = Steps::of(walked, gait.period);
+    let Clock {
+        start: [start, begin_error],
+        period,
+    } = steps.clock(gait)?;
+    if let Some(seconds) = steps.change(period[0]) {
+        let seconds = seconds - path[0].seconds;
+        return Err(Trouble::Changes { seconds });
     }
-    let Clock { start, period } = steps.clock(gait)?;
     let calm = gait.calm();
     // The calm times of cycles from before the walk to after it.
     let first = ((begin - start) / period[0] - calm).ceil() as i64;
@@ -63,20 +65,50 @@ pub(crate) fn find(path: &[Seen], gait: &Gait) -> Result<Cycles, Trouble> {
         .map_while(|time| Some((time, path::at(path, time, near)?)))
         .collect();
     if places.len() < 3 {
-        return Err(too_short);
+        return Err(too_short(end - begin, gait));
     }
-    let to_calm = to_calm(&walked, &places, calm * period[0]).unwrap_or_else(|| gait.at(calm));
+    let to_calm = to_calm(walked, &places, calm * period[0]).unwrap_or_else(|| gait.at(calm));
     let from_calm = path::inverse(to_calm);
     let travel = |pair: &[(f64, Place)]| {
         let cycle = path::of_travel(pair[1].1.seen_from(pair[0].1));
         path::compose(path::compose(to_calm, cycle), from_calm).travel()
+    };
+    let begin = |(time, place): &(f64, Place)| Seen {
+        seconds: time - calm * period[0],
+        place: path::compose(*place, from_calm),
     };
     Ok(Cycles {
         period,
         pace: gait.pace(calm),
         ends: places.iter().map(|(time, _)| *time).collect(),
         travels: places.windows(2).map(travel).collect(),
+        begins: places.iter().map(begin).collect(),
+        begin_error,
     })
+}
+
+/// The movements of the time in which the robot walks evenly, if they are enough to compare with a gait.
+pub(crate) fn steps(path: &[Seen], gait: &Gait) -> Result<Steps, Trouble> {
+    Ok(Steps::of(walked(path, gait)?.0, gait.period))
+}
+
+/// The path of the time in which the robot walks evenly, and that time.
+fn walked<'a>(path: &'a [Seen], gait: &Gait) -> Result<(&'a [Seen], [f64; 2]), Trouble> {
+    let [begin, end] = walk(path, gait)?;
+    let first = path.partition_point(|seen| seen.seconds < begin);
+    let last = path.partition_point(|seen| seen.seconds <= end);
+    let walked = &path[first..last.max(first)];
+    if end - begin < 2.0 * gait.period || Steps::of(walked, gait.period).are_few() {
+        return Err(too_short(end - begin, gait));
+    }
+    Ok((walked, [begin, end]))
+}
+
+fn too_short(seconds: f64, gait: &Gait) -> Trouble {
+    Trouble::TooShort {
+        cycles: seconds.max(0.0) / gait.period,
+        period: gait.period,
+    }
 }
 
 /// The mean way from the beginning of a cycle to its calm time.
@@ -113,10 +145,7 @@ fn walk(path: &[Seen], gait: &Gait) -> Result<[f64; 2], Trouble> {
     if moves.is_empty() {
         let length = path.last().map_or(0.0, |seen| seen.seconds)
             - path.first().map_or(0.0, |seen| seen.seconds);
-        return Err(Trouble::TooShort {
-            cycles: length / gait.period,
-            period: gait.period,
-        });
+        return Err(too_short(length, gait));
     }
     if most < MOVED {
         let way = moves
@@ -150,6 +179,18 @@ fn walk(path: &[Seen], gait: &Gait) -> Result<[f64; 2], Trouble> {
         }
     }
     let [from, to] = best.unwrap_or_default();
+    let goes = |size: &f64| *size > GOES * usual;
+    let first = sizes.iter().position(goes).unwrap_or(from);
+    let last = sizes.iter().rposition(goes).unwrap_or(to);
+    for (start, end, seconds) in [
+        (first, from, moves[from].0),
+        (to, last, moves[to].0 + gait.period),
+    ] {
+        if moves[end].0 - moves[start].0 > UNEVEN * gait.period {
+            let seconds = seconds - path[0].seconds;
+            return Err(Trouble::Changes { seconds });
+        }
+    }
     let margin = MARGIN * gait.period;
     Ok([moves[from].0 + margin, moves[to].0 + gait.period - margin])
 }

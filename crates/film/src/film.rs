@@ -2,13 +2,14 @@
 
 use crate::frame::Frame;
 use crate::gait::Gait;
+use crate::measured::Measured;
 use crate::path::{Seen, unwind};
 use crate::picture::{Picture, Pixel};
 use crate::scene::{FloorCorners, Measures, Scene, View};
 use crate::sheet::{CODES, DECK_TAG, FLOOR_TAGS};
 use crate::tags;
 use crate::trouble::Trouble;
-use crate::watched::{Measured, Sight, Watched};
+use crate::watched::{Sight, Watched};
 
 /// Distance of a floor tag's corner from its usual place that shows a moved camera, px.
 const MOVED: f64 = 1.0;

@@ -6,6 +6,8 @@ use crate::path;
 
 /// Weight of a turn, mm for each rad: the robot's legs are as far from its middle.
 const ARM: f64 = 60.0;
+/// Least movement that counts as going somewhere, mm.
+pub(crate) const MOVED: f64 = 3.0;
 /// Half of the time whose pictures tell the place at the end of a cycle, in cycles.
 pub(crate) const NEAR: f64 = 0.08;
 
@@ -19,6 +21,13 @@ pub struct Gait {
 }
 
 impl Gait {
+    /// True if the gait goes somewhere in a cycle, or turns.
+    pub fn goes(&self) -> bool {
+        self.path
+            .iter()
+            .any(|place| size(movement(place.travel())) > MOVED)
+    }
+
     /// The place at a phase, seen from the start of cycle 0.
     pub(crate) fn at(&self, phase: f64) -> Place {
         let count = self.path.len() - 1;

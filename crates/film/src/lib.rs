@@ -3,8 +3,9 @@
 //! A camera looks down on the robot from anywhere. Tags on the floor tell where the camera is, and
 //! a tag on the deck, whose height is known, tells where the robot is ([`sheet`] has the sheet of tags).
 //! [`Film::add`] reads the tags of each picture. [`Film::watch`] finds the camera (`scene.rs`) and the path
-//! (`path.rs`), [`Watched::measure`] the cycles of a gait in it (`cycles.rs`, `clock.rs`) and their mean with its error
-//! (`mean.rs`). The crate reads no file and prints nothing.
+//! (`path.rs`), [`Watched::walks`] what is between its rests (`walks.rs`), [`Watched::likeness`] the gait that a walk shows
+//! (`likeness.rs`), and [`Watched::measure`] its cycles (`cycles.rs`, `clock.rs`), their mean with its error (`mean.rs`) and the path within
+//! them (`within.rs`). The crate reads no file and prints nothing.
 //!
 //! # When not to use it
 //! For one robot in one plane. For places in space, or many markers, take AprilTag's own library.
@@ -23,20 +24,29 @@ mod frame;
 mod gait;
 mod homography;
 mod least;
+mod likeness;
 mod mean;
+mod measured;
 mod path;
 mod picture;
 mod scene;
 pub mod sheet;
 mod tags;
 mod trouble;
+mod walk;
+mod walks;
 mod watched;
+mod within;
 
 pub use film::{Film, Setup};
 pub use gait::Gait;
+pub use likeness::Likeness;
 pub use mean::Mean;
+pub use measured::Measured;
 pub use path::Seen;
 pub use picture::{Picture, Pixel, luminance};
 pub use tags::{Tag, read};
 pub use trouble::Trouble;
-pub use watched::{Measured, Sight, Watched};
+pub use walks::rest;
+pub use watched::{Sight, Watched};
+pub use within::Point;

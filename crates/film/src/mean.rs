@@ -4,6 +4,9 @@
 //! spread of the cycles tells how well their mean is known. A few cycles tell their own spread badly: Student's
 //! distribution says by how much the error has to be larger for that. With it, the truth lies within two
 //! errors as often as for a film of many cycles.
+//!
+//! A gait that is walked several times may differ more from one walk to the next than the cycles of a walk do: it
+//! starts elsewhere on the floor. Then the walks count, and not their cycles.
 
 /// Share of a normal distribution within two standard deviations.
 const WITHIN_TWO: f64 = 0.9545;
@@ -17,18 +20,46 @@ pub struct Mean {
     pub spread: f64,
     /// Standard error of the mean: the truth lies within two of it with a probability of 95 %.
     pub error: f64,
+    /// The part of the error that more cycles do not make smaller: that of camera, clock and ruler.
+    pub common: f64,
 }
 
-/// The mean of two cycles or more.
-pub(crate) fn of(cycles: &[f64]) -> Mean {
-    let count = cycles.len() as f64;
-    let mean = cycles.iter().sum::<f64>() / count;
-    let squares: f64 = cycles.iter().map(|cycle| (cycle - mean).powi(2)).sum();
-    let spread = (squares / (count - 1.0)).sqrt();
+/// The cycles of a walk, and the part of the error that they share.
+pub(crate) type Cycles = (Vec<f64>, f64);
+
+/// The mean over walks of two cycles or more.
+pub(crate) fn of(walks: &[Cycles]) -> Mean {
+    let count = walks.iter().map(|(cycles, _)| cycles.len()).sum::<usize>();
+    let own = |cycles: &[f64]| cycles.iter().sum::<f64>() / cycles.len() as f64;
+    let weighted = |value: &dyn Fn(&Cycles) -> f64| {
+        let terms = walks.iter().map(|walk| walk.0.len() as f64 * value(walk));
+        terms.sum::<f64>() / count as f64
+    };
+    let mean = weighted(&|(cycles, _)| own(cycles));
+    let around = |cycles: &[f64], middle: f64| {
+        let squares = cycles.iter().map(|cycle| (cycle - middle).powi(2));
+        squares.sum::<f64>()
+    };
+    let all: f64 = walks.iter().map(|(cycles, _)| around(cycles, mean)).sum();
+    let inside: f64 = walks
+        .iter()
+        .map(|(cycles, _)| around(cycles, own(cycles)))
+        .sum();
+    let freedom = count - walks.len();
+    let within = inside / freedom as f64;
+    let between = (all - inside) / walks.len().saturating_sub(1).max(1) as f64;
+    let (variance, freedom) = match between > within {
+        true => (between, walks.len() - 1),
+        false => (within, freedom),
+    };
+    let error = (variance / count as f64).sqrt() * widening(freedom);
+    // Camera, clock and ruler are the same for all walks, or nearly.
+    let common = weighted(&|(_, common)| *common);
     Mean {
         mean,
-        spread,
-        error: spread / count.sqrt() * widening(cycles.len() - 1),
+        spread: (all / (count - 1) as f64).sqrt(),
+        error: error.hypot(common),
+        common,
     }
 }
 
@@ -103,11 +134,31 @@ mod tests {
             let films = 4000;
             let within = (0..films).filter(|_| {
                 let cycles: Vec<f64> = (0..count).map(|_| 3.0 + noise()).collect();
-                let mean = of(&cycles);
+                let mean = of(&[(cycles, 0.0)]);
                 (mean.mean - 3.0).abs() < 2.0 * mean.error
             });
             let share = within.count() as f64 / f64::from(films);
             assert!((0.945..0.965).contains(&share), "{count}: {share}");
+        }
+    }
+
+    #[test]
+    fn walks_that_differ_make_the_error_that_of_a_few_walks() {
+        let mut noise = noise();
+        for (differ, walks) in [(0.0, 2), (0.0, 3), (1.0, 2), (1.0, 3), (3.0, 2), (3.0, 3)] {
+            let films = 2000;
+            let within = (0..films).filter(|_| {
+                let mut walk = |_| {
+                    let own = differ * noise();
+                    ((0..4).map(|_| 3.0 + own + noise()).collect(), 0.0)
+                };
+                let all: Vec<_> = (0..walks).map(&mut walk).collect();
+                let mean = of(&all);
+                (mean.mean - 3.0).abs() < 2.0 * mean.error
+            });
+            let share = within.count() as f64 / f64::from(films);
+            // Whether two walks differ is known badly.
+            assert!((0.9..0.99).contains(&share), "{differ} {walks}: {share}");
         }
     }
 }

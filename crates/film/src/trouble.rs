@@ -137,11 +137,23 @@ pub enum Trouble {
     },
     /// The path is not that of the gait.
     #[error(
-        "the path is not that of this gait in cycles of {period:.2} s: was it another gait, or another pace, or does the \
-         arrow of the deck's card not show to the head?"
+        "the path is not that of this gait in cycles of {period:.2} s: was it another gait, another pace, several gaits \
+         without a rest between them, or does the arrow of the deck's card not show to the head?"
     )]
     NotThisGait {
         /// Time of a cycle, s.
         period: f64,
     },
+    /// The path changes from one cycle to the next.
+    #[error(
+        "from one cycle to the next, {seconds:.1} s after the beginning, the robot moves otherwise: between two gaits \
+         it has to rest"
+    )]
+    Changes {
+        /// Time since the first picture, s.
+        seconds: f64,
+    },
+    /// There is no gait to compare with.
+    #[error("there is no gait that goes anywhere to compare with")]
+    NoGait,
 }

@@ -5,10 +5,13 @@ use lizard_contact::Travel;
 use crate::cycles::{self, Cycles};
 use crate::frame::Frame;
 use crate::gait::Gait;
-use crate::mean::{self, Mean};
+use crate::likeness::{self, Likeness};
+use crate::measured::Measured;
 use crate::path::{Seen, unwind};
 use crate::scene::Scene;
 use crate::trouble::Trouble;
+use crate::walk::{Walk, parts};
+use crate::{walks, within};
 
 /// Standard deviations of what a user measures: the deck tag's height, mm, and the ruler, as a share.
 const HEIGHT_SIGMA: f64 = 1.0;
@@ -29,23 +32,6 @@ pub struct Sight {
     pub moved: bool,
     /// Height of the deck's tag by its size, mm.
     pub deck: f64,
-}
-
-/// A gait in a film.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Measured {
-    /// Way ahead of a cycle, seen from its start, mm.
-    pub forward: Mean,
-    /// Drift to the left, mm.
-    pub left: Mean,
-    /// Turn, deg, counter-clockwise positive.
-    pub turn: Mean,
-    /// Time of a cycle, s, and its standard error.
-    pub period: [f64; 2],
-    /// The movement of each cycle.
-    pub cycles: Vec<Travel>,
-    /// The times between the cycles, s.
-    pub ends: Vec<f64>,
 }
 
 /// A film whose camera and path are known.
@@ -85,26 +71,29 @@ impl Watched {
     /// # Errors
     /// Fails if the path there is not that of the gait, or too short.
     pub fn measure(&self, gait: &Gait, during: Option<[f64; 2]>) -> Result<Measured, Trouble> {
-        let cycles = cycles::find(self.part(during), gait)?;
-        let parts = parts(&cycles.travels);
+        let path = self.part(during);
+        let cycles = cycles::find(path, gait)?;
         let doubts = self.doubts(&cycles);
         // A tag that is higher looks as if it went farther.
         let scale = (HEIGHT_SIGMA / (self.sight.height - self.deck)).hypot(RULER_SIGMA);
-        let mean = |i: usize| {
-            let mut mean = mean::of(&parts[i]);
-            let scale = if i < 2 { mean.mean * scale } else { 0.0 };
-            let clock = cycles.pace[i] * cycles.period[1] / cycles.period[0];
-            mean.error = (mean.error.powi(2) + clock.powi(2) + scale.powi(2) + doubts[i]).sqrt();
-            mean
+        let offs = within::offs(path, &cycles, gait);
+        let walk = Walk {
+            cycles,
+            doubts,
+            scale,
+            offs,
         };
-        Ok(Measured {
-            forward: mean(0),
-            left: mean(1),
-            turn: mean(2),
-            period: cycles.period,
-            cycles: cycles.travels,
-            ends: cycles.ends,
-        })
+        Ok(Measured::of(vec![walk], gait))
+    }
+
+    /// Finds the walks: from the middle of one rest to that of the next, s. The robot rests if it stands still for `rest` seconds, at least those of [`rest`](crate::rest).
+    pub fn walks(&self, rest: f64) -> Vec<[f64; 2]> {
+        walks::of(&self.path, rest)
+    }
+
+    /// Finds which of some gaits the robot walks between two times, s.
+    pub fn likeness(&self, gaits: &[Gait], during: [f64; 2]) -> Likeness {
+        likeness::of(self.part(Some(during)), gaits)
     }
 
     /// The path between two times, or all of it.
@@ -162,14 +151,4 @@ impl Watched {
             pairs.map(term).sum::<f64>().max(0.0)
         })
     }
-}
-
-/// Forward, left and turn of each cycle.
-fn parts(travels: &[Travel]) -> [Vec<f64>; 3] {
-    let part = |part: fn(&Travel) -> f64| travels.iter().map(part).collect();
-    [
-        part(|travel| travel.forward),
-        part(|travel| travel.left),
-        part(|travel| travel.turn),
-    ]
 }

@@ -3,6 +3,7 @@
 mod accuracy;
 mod cameras;
 mod render;
+mod several;
 mod studio;
 mod troubles;
 mod walk;

@@ -12,6 +12,15 @@ pub const TRUE_SIZE: Setup = Setup {
     height: 83.0,
 };
 
+/// A studio with a camera that is known, and with few pixels, which the sheet fills.
+pub fn small(seed: u64, tilt: f64) -> Studio {
+    let mut studio = Studio::random(&mut Rng::with_seed(seed));
+    (studio.size, studio.focal) = ([640, 360], 1.0);
+    (studio.height, studio.tilt, studio.direction) = (800.0, tilt, 90.0);
+    (studio.roll, studio.aim) = (0.0, [0.0; 2]);
+    studio
+}
+
 /// Films a walk on a tripod.
 pub fn film(studio: &Studio, walk: &Walk, rate: f64, rng: &mut Rng) -> Film {
     film_of(studio, walk.seconds(), rate, |time| walk.at(time), rng)

@@ -4,19 +4,14 @@ use fastrand::Rng;
 use lizard_film::{Film, Gait, Measured, Picture, Setup, Trouble};
 
 use crate::render::{Spot, Studio};
-use crate::studio::{TRUE_SIZE, film_of};
+use crate::studio::{TRUE_SIZE, film_of, small};
 use crate::walk::{Varies, Walk, gait, truth};
 
 /// Pictures in a second: few, because only the reason counts.
 const RATE: f64 = 8.0;
 
-/// A studio with a camera that is known, and with few pixels, which the sheet fills.
 fn studio() -> Studio {
-    let mut studio = Studio::random(&mut Rng::with_seed(5));
-    (studio.size, studio.focal) = ([640, 360], 1.0);
-    (studio.height, studio.tilt, studio.direction) = (800.0, 20.0, 90.0);
-    (studio.roll, studio.aim) = (0.0, [0.0; 2]);
-    studio
+    small(5, 20.0)
 }
 
 /// The walk of a gait around the middle.

@@ -120,6 +120,60 @@ impl Walk {
     }
 }
 
+/// Walks one after another, each from where the one before ended, with rests between them.
+pub struct Show {
+    /// Each walk and the time at which it has its first rest, s.
+    walks: Vec<(f64, Walk)>,
+    seconds: f64,
+}
+
+impl Show {
+    /// Walks of so many cycles of gaits. Between two of them the robot rests for `rest` seconds.
+    pub fn new(
+        start: Spot,
+        walks: &[(&Gait, usize)],
+        rest: f64,
+        varies: Varies,
+        rng: &mut Rng,
+    ) -> Self {
+        let mut show = Self {
+            walks: Vec::new(),
+            seconds: 2.0 * REST - rest,
+        };
+        let mut start = start;
+        for (gait, cycles) in walks {
+            let walk = Walk::new(gait, start, *cycles, varies, rng);
+            let at = show.seconds + rest - 2.0 * REST;
+            show.seconds = at + walk.seconds();
+            start = walk.at(walk.seconds());
+            show.walks.push((at, walk));
+        }
+        show
+    }
+
+    pub fn seconds(&self) -> f64 {
+        self.seconds
+    }
+
+    /// The times in which the robot moves.
+    pub fn spans(&self) -> Vec<[f64; 2]> {
+        let span = |(at, walk): &(f64, Walk)| [at + REST, at + walk.seconds() - REST];
+        self.walks.iter().map(span).collect()
+    }
+
+    /// The place at a time.
+    pub fn at(&self, seconds: f64) -> Spot {
+        let begun = |(at, _): &&(f64, Walk)| at + REST <= seconds;
+        let (at, walk) = self
+            .walks
+            .iter()
+            .rev()
+            .find(begun)
+            .unwrap_or(&self.walks[0]);
+        walk.at(seconds - at)
+    }
+}
+
 /// The true way of a cycle.
 pub fn truth(gait: &Gait) -> Travel {
     gait.path[gait.path.len() - 1].travel()

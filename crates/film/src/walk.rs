@@ -1,0 +1,52 @@
+//! A walk from one rest to the next: the cycles of one gait, and what makes them uncertain.
+
+use lizard_contact::Travel;
+
+use crate::cycles::Cycles;
+
+/// The measured cycles of a walk.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Walk {
+    pub cycles: Cycles,
+    /// The variances of a mean cycle that follow from those of the scene: forward, left, turn.
+    pub doubts: [f64; 3],
+    /// Standard error of all lengths, as a share.
+    pub scale: f64,
+    /// The pictures' places within the cycles.
+    pub offs: Vec<Off>,
+}
+
+impl Walk {
+    /// The errors of a mean cycle that its cycles share: of ruler and height, clock and camera.
+    pub(crate) fn common(&self) -> [f64; 3] {
+        let ways = parts(&self.cycles.travels);
+        let [period, error] = self.cycles.period;
+        [0, 1, 2].map(|i| {
+            let way = ways[i].iter().sum::<f64>() / ways[i].len() as f64;
+            let scale = if i < 2 { way * self.scale } else { 0.0 };
+            let clock = self.cycles.pace[i] * error / period;
+            (scale.powi(2) + clock.powi(2) + self.doubts[i]).sqrt()
+        })
+    }
+}
+
+/// The place in a picture less that predicted, both seen from the beginning of the cycle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Off {
+    /// Number of the cycle.
+    pub cycle: usize,
+    /// Phase of the picture, 0 to 1.
+    pub phase: f64,
+    /// Forward and left, mm, and turn, deg.
+    pub off: [f64; 3],
+}
+
+/// Forward, left and turn of each cycle.
+pub(crate) fn parts(travels: &[Travel]) -> [Vec<f64>; 3] {
+    let part = |part: fn(&Travel) -> f64| travels.iter().map(part).collect();
+    [
+        part(|travel| travel.forward),
+        part(|travel| travel.left),
+        part(|travel| travel.turn),
+    ]
+}

@@ -1,0 +1,94 @@
+//! The walks of a path: the times in which the robot moves, between its rests.
+//!
+//! A robot that goes slowly within a cycle does not rest: a rest lasts longer than any part of a cycle in which a
+//! gait stands still.
+
+use crate::gait::{Gait, MOVED, movement, size};
+use crate::path::Seen;
+
+/// Shortest rest, s.
+const REST: f64 = 0.8;
+/// Distance of the places of a rest from their mean, mm: root of the mean square. A tag's place is uncertain by less.
+const STILL: f64 = 0.5;
+/// Least number of pictures of a rest.
+const LEAST: usize = 3;
+/// Shortest rest over the longest time for which a gait stands still.
+const MORE: f64 = 1.4;
+
+/// Finds the times from the middle of one rest to that of the next in which the robot gets somewhere, s. A rest lasts `rest`
+/// seconds or more.
+pub(crate) fn of(path: &[Seen], rest: f64) -> Vec<[f64; 2]> {
+    let mut rests = vec![false; path.len()];
+    for (first, seen) in path.iter().enumerate() {
+        let end = path.partition_point(|later| later.seconds < seen.seconds + rest) + 1;
+        // A rest at the beginning or at the end of the film may have lasted longer.
+        let parts = match first {
+            0 => LEAST.min(end)..end + 1,
+            _ => end..end + 1,
+        };
+        for end in parts.map(|end| end.min(path.len())) {
+            if is_still(&path[first..end]) {
+                rests[first..end].fill(true);
+            }
+        }
+    }
+    let mut walks = Vec::new();
+    let mut next = 0;
+    while next < path.len() {
+        let is_rest = rests[next];
+        let end = (next..path.len())
+            .find(|&i| rests[i] != is_rest)
+            .unwrap_or(path.len());
+        // From one picture of a rest to the next.
+        let walk = &path[next.saturating_sub(1)..(end + 1).min(path.len())];
+        let [first, last] = [0, walk.len() - 1].map(|i| walk[i].seconds);
+        if !is_rest && goes(walk) {
+            // A gait may begin and end with a time in which the robot stands still.
+            let from = path[0].seconds.max(first - rest / 2.0);
+            walks.push([from, path[path.len() - 1].seconds.min(last + rest / 2.0)]);
+        }
+        next = end;
+    }
+    walks
+}
+
+/// The shortest rest between two walks of these gaits, s: no part of their cycles is still for so long.
+pub fn rest(gaits: &[Gait]) -> f64 {
+    let longest = gaits.iter().map(longest_still).fold(0.0, f64::max);
+    (longest * MORE).max(REST)
+}
+
+/// The longest time of a cycle in which the robot stands still, s.
+fn longest_still(gait: &Gait) -> f64 {
+    let count = gait.path.len() - 1;
+    let seconds = |i: usize| i as f64 * gait.period / count as f64;
+    let seen = |i: usize| Seen {
+        seconds: seconds(i),
+        place: gait.at(i as f64 / count as f64),
+    };
+    let path: Vec<Seen> = (0..2 * count).map(seen).collect();
+    let still = |first: usize| {
+        let ends = (first + LEAST..first + count).take_while(|end| is_still(&path[first..*end]));
+        ends.last().map_or(0.0, |end| seconds(end - 1 - first))
+    };
+    (0..count).map(still).fold(0.0, f64::max)
+}
+
+/// True if these places differ by no more than pictures of one place do.
+fn is_still(path: &[Seen]) -> bool {
+    let count = path.len() as f64;
+    let moves: Vec<[f64; 3]> = path
+        .iter()
+        .map(|seen| movement(seen.place.seen_from(path[0].place)))
+        .collect();
+    let mean = [0, 1, 2].map(|axis| moves.iter().map(|to| to[axis]).sum::<f64>() / count);
+    let away = |to: &[f64; 3]| size([0, 1, 2].map(|axis| to[axis] - mean[axis])).powi(2);
+    path.len() >= LEAST && (moves.iter().map(away).sum::<f64>() / count).sqrt() < STILL
+}
+
+/// True if the robot gets away from the first place.
+fn goes(path: &[Seen]) -> bool {
+    let start = path[0].place;
+    path.iter()
+        .any(|seen| size(movement(seen.place.seen_from(start))) > MOVED)
+}

@@ -1,0 +1,161 @@
+//! Films of several gaits with rests between them.
+
+use fastrand::Rng;
+use lizard_film::{Gait, Likeness, Measured, Trouble, Watched, rest};
+
+use crate::render::Studio;
+use crate::studio::{TRUE_SIZE, film_of, small};
+use crate::walk::{Show, Varies, gait, truth};
+
+/// Pictures in a second.
+const RATE: f64 = 8.0;
+/// A robot that varies a little, as built ones do.
+const VARIES: Varies = Varies {
+    cycle: [0.2, 0.2, 0.004],
+    clock: 0.0,
+    ruler: 0.0,
+};
+
+/// Films walks with rests of a time, and finds camera and path.
+fn watched(walks: &[(&Gait, usize)], rest: f64) -> (Watched, Show) {
+    let mut rng = Rng::with_seed(6);
+    let show = Show::new([-60.0, 0.0, 0.0], walks, rest, VARIES, &mut rng);
+    let robot = |time: f64| show.at(time);
+    let film = film_of(&studio(), show.seconds(), RATE, robot, &mut rng);
+    (film.watch(TRUE_SIZE).expect("all tags are seen"), show)
+}
+
+fn studio() -> Studio {
+    small(5, 20.0)
+}
+
+/// Checks that a result is that of a gait.
+fn is_way_of(measured: &Measured, gait: &Gait) {
+    let truth = truth(gait);
+    let parts = [
+        (measured.forward, truth.forward, 0.4),
+        (measured.left, truth.left, 0.4),
+        (measured.turn, truth.turn, 0.6),
+    ];
+    for (part, truth, largest) in parts {
+        assert!((part.mean - truth).abs() < largest, "{part:?} {truth}");
+        assert!(
+            (part.mean - truth).abs() < 4.0 * part.error,
+            "{part:?} {truth}"
+        );
+    }
+}
+
+#[test]
+fn each_gait_of_a_film_is_found_between_its_rests_and_measured() {
+    let names = ["walk", "left", "back", "trot"];
+    let gaits = names.map(gait);
+    let order = [0, 1, 2, 0];
+    let (watched, show) = watched(&order.map(|i| (&gaits[i], 4)), 1.6);
+    let walks = watched.walks(rest(&gaits));
+    assert_eq!(walks.len(), order.len(), "{walks:?}");
+    for (found, truth) in walks.iter().zip(show.spans()) {
+        // With the rests around it, and without a picture at which it already moves.
+        let early = truth[0] - found[0];
+        let late = found[1] - truth[1];
+        assert!((-0.2..1.2).contains(&early), "{found:?} {truth:?}");
+        assert!((-0.2..1.2).contains(&late), "{found:?} {truth:?}");
+    }
+    for (walk, i) in walks.iter().zip(order) {
+        assert_eq!(watched.likeness(&gaits, *walk), Likeness::One(i));
+        let measured = watched
+            .measure(&gaits[i], Some(*walk))
+            .expect("it is measured");
+        is_way_of(&measured, &gaits[i]);
+    }
+    // Both walks are one result, which is known better.
+    let [one, other] = [0, 3].map(|i| watched.measure(&gaits[0], Some(walks[i])).expect("a walk"));
+    let both = Measured::together(&[one.clone(), other.clone()], &gaits[0]);
+    is_way_of(&both, &gaits[0]);
+    assert_eq!(both.cycles, [&one.cycles[..], &other.cycles[..]].concat());
+    // The wrong order is no guess.
+    let wrong = watched
+        .measure(&gaits[2], Some(walks[1]))
+        .expect_err("it is left");
+    assert!(matches!(wrong, Trouble::NotThisGait { .. }), "{wrong}");
+}
+
+#[test]
+fn a_gait_that_nobody_tells_from_another_is_named_with_it() {
+    let walk = gait("walk");
+    let gaits = [gait("back"), walk.clone(), walk.clone()];
+    let (watched, _) = watched(&[(&walk, 4)], 1.0);
+    let walks = watched.walks(rest(&gaits));
+    let likeness = watched.likeness(&gaits, walks[0]);
+    assert!(
+        matches!(likeness, Likeness::Two(1, 2) | Likeness::Two(2, 1)),
+        "{likeness:?}"
+    );
+}
+
+#[test]
+fn a_walk_in_slow_motion_or_of_an_unknown_gait_is_like_none() {
+    let gaits = ["walk", "left", "back", "trot"].map(gait);
+    let slow = Gait {
+        period: 2.0 * gaits[0].period,
+        path: gaits[0].path.clone(),
+    };
+    let (at_half, _) = watched(&[(&slow, 3)], 1.0);
+    let walks = at_half.walks(2.0 * rest(&gaits));
+    assert_eq!(
+        at_half.likeness(&gaits, walks[0]),
+        Likeness::None(Trouble::AnotherPace { times: 2 })
+    );
+    let unknown = gait("right");
+    let (watched, _) = watched(&[(&unknown, 4)], 1.0);
+    let walks = watched.walks(rest(&gaits));
+    let likeness = watched.likeness(&gaits, walks[0]);
+    assert!(matches!(likeness, Likeness::None(_)), "{likeness:?}");
+}
+
+#[test]
+fn gaits_without_a_rest_between_them_are_not_mixed() {
+    let [walk, arc, left] = ["walk", "arc-left", "left"].map(gait);
+    for (first, second) in [(&walk, &arc), (&walk, &left), (&arc, &walk)] {
+        let (watched, _) = watched(&[(first, 4), (second, 4)], 0.0);
+        let gaits = [walk.clone(), arc.clone(), left.clone()];
+        let walks = watched.walks(rest(&gaits));
+        assert_eq!(walks.len(), 1);
+        for gait in [first, second] {
+            match watched.measure(gait, Some(walks[0])) {
+                // It is found that one of them goes farther.
+                Ok(measured) => is_way_of(&measured, gait),
+                Err(trouble) => assert!(
+                    matches!(
+                        trouble,
+                        Trouble::NotThisGait { .. }
+                            | Trouble::Changes { .. }
+                            | Trouble::AnotherPace { .. }
+                    ),
+                    "{trouble}"
+                ),
+            }
+        }
+    }
+}
+
+#[test]
+fn a_robot_that_turns_its_head_between_walks_has_not_walked() {
+    let walk = gait("walk");
+    let nod = |time: f64| {
+        if (4.0..4.5).contains(&time) {
+            0.02
+        } else {
+            0.0
+        }
+    };
+    let mut rng = Rng::with_seed(6);
+    let show = Show::new([-60.0, 0.0, 0.0], &[(&walk, 3)], 1.0, VARIES, &mut rng);
+    let robot = |time: f64| {
+        let [x, y, heading] = show.at(time);
+        [x, y, heading + nod(time - 2.0)]
+    };
+    let film = film_of(&studio(), 8.0, RATE, robot, &mut rng);
+    let watched = film.watch(TRUE_SIZE).expect("all tags are seen");
+    assert_eq!(watched.walks(rest(&[walk])).len(), 1);
+}
