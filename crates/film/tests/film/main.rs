@@ -2,6 +2,8 @@
 
 mod accuracy;
 mod render;
+mod servo;
 mod studio;
 mod troubles;
+mod turns;
 mod walk;
