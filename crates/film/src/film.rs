@@ -1,17 +1,14 @@
-//! A film: its pictures one after another, then the robot's way per cycle.
+//! A film: its pictures one after another, then the camera and the robot's path.
 
-use lizard_contact::{Place, Travel};
-
-use crate::camera::Camera;
-use crate::cycles::{self, Cycles};
+use crate::frame::Frame;
 use crate::gait::Gait;
-use crate::mean::{self, Mean};
 use crate::path::{Seen, unwind};
 use crate::picture::{Picture, Pixel};
 use crate::scene::{FloorCorners, Measures, Scene, View};
 use crate::sheet::{CODES, DECK_TAG, FLOOR_TAGS};
 use crate::tags;
 use crate::trouble::Trouble;
+use crate::watched::{Measured, Sight, Watched};
 
 /// Distance of a floor tag's corner from its usual place that shows a moved camera, px.
 const MOVED: f64 = 1.0;
@@ -21,9 +18,6 @@ const LOST: f64 = 0.1;
 const SAMPLES: usize = 8;
 /// Distance beyond the floor tags' middles in which places are still told, mm.
 const BEYOND: f64 = 200.0;
-/// Standard deviations of what a user measures: the deck tag's height, mm, and the ruler, as a share.
-const HEIGHT_SIGMA: f64 = 1.0;
-const RULER_SIGMA: f64 = 0.001;
 /// Largest difference of the deck tag's height from that by its size, mm.
 const HEIGHT: f64 = 12.0;
 
@@ -34,59 +28,6 @@ pub struct Setup {
     pub scale: f64,
     /// Height of the deck's tag above the floor, mm.
     pub height: f64,
-}
-
-/// The camera as it was found.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sight {
-    /// Focal length, px.
-    pub focal: f64,
-    /// Height above the floor, mm, in the first picture.
-    pub height: f64,
-    /// Tilt from straight down, deg, in the first picture.
-    pub tilt: f64,
-    /// Mean error of a corner on the floor, px.
-    pub error: f64,
-    /// True if the camera moved.
-    pub moved: bool,
-    /// Height of the deck's tag by its size, mm.
-    pub deck: f64,
-}
-
-/// A measured film.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Measured {
-    /// Way ahead of a cycle, seen from its start, mm.
-    pub forward: Mean,
-    /// Drift to the left, mm.
-    pub left: Mean,
-    /// Turn, deg, counter-clockwise positive.
-    pub turn: Mean,
-    /// Time of a cycle, s, and its standard error.
-    pub period: [f64; 2],
-    /// The movement of each cycle.
-    pub cycles: Vec<Travel>,
-    /// The times between the cycles, s.
-    pub ends: Vec<f64>,
-    /// The path.
-    pub path: Vec<Seen>,
-    /// The camera.
-    pub sight: Sight,
-}
-
-/// The tags of a picture.
-#[derive(Debug, Clone)]
-struct Frame {
-    seconds: f64,
-    tags: [Option<[Pixel; 4]>; CODES.len()],
-}
-
-impl Frame {
-    /// The floor's tags, if all are seen.
-    fn floor(&self) -> Option<FloorCorners> {
-        let [a, b, c, d, _] = self.tags;
-        Some([a?, b?, c?, d?])
-    }
 }
 
 /// A film, of which the tags are kept.
@@ -120,11 +61,19 @@ impl Film {
         Ok(())
     }
 
-    /// Measures a gait.
+    /// Measures a gait that is walked in the whole of the film.
     ///
     /// # Errors
     /// Fails if the film does not show what is needed.
     pub fn measure(&self, setup: Setup, gait: &Gait) -> Result<Measured, Trouble> {
+        self.watch(setup)?.measure(gait, None)
+    }
+
+    /// Finds the camera and the robot's path.
+    ///
+    /// # Errors
+    /// Fails if the tags do not tell them, or not as they should.
+    pub fn watch(&self, setup: Setup) -> Result<Watched, Trouble> {
         self.check_tags()?;
         let moved = self.is_moved();
         let measures = Measures {
@@ -133,21 +82,19 @@ impl Film {
             size: self.size,
         };
         let scene = Scene::of(&self.views(moved)?, measures)?;
-        let place = |scene: &Scene, frame: &Frame| {
-            let camera = camera(scene, frame, moved)?;
-            scene.place(&camera, frame.tags[DECK_TAG].as_ref()?)
-        };
+        let mut frames = Vec::with_capacity(self.frames.len());
         let mut path: Vec<Seen> = Vec::with_capacity(self.frames.len());
         let mut heights = Vec::with_capacity(self.frames.len());
         for frame in &self.frames {
-            if let Some(place) = place(&scene, frame) {
+            if let Some(place) = frame.place(&scene, moved) {
+                frames.push(frame.clone());
                 path.push(Seen {
                     seconds: frame.seconds,
                     place,
                 });
             }
             if let (Some(camera), Some(corners)) =
-                (camera(&scene, frame, moved), frame.tags[DECK_TAG])
+                (frame.camera(&scene, moved), frame.tags[DECK_TAG])
             {
                 heights.extend(scene.height(&camera, &corners));
             }
@@ -161,36 +108,16 @@ impl Film {
             });
         }
         self.check_place(&scene, &path)?;
-        let cycles = cycles::find(&path, gait)?;
-        let parts = parts(&cycles.travels);
-        let doubts = self.doubts(&scene, &cycles, if moved { 5 } else { 11 }, place);
         let [height, tilt] = scene.camera().stand();
-        // A tag that is higher looks as if it went farther.
-        let scale = (HEIGHT_SIGMA / (height - setup.height)).hypot(RULER_SIGMA);
-        let mean = |i: usize| {
-            let mut mean = mean::of(&parts[i]);
-            let scale = if i < 2 { mean.mean * scale } else { 0.0 };
-            let clock = cycles.pace[i] * cycles.period[1] / cycles.period[0];
-            mean.error = (mean.error.powi(2) + clock.powi(2) + scale.powi(2) + doubts[i]).sqrt();
-            mean
+        let sight = Sight {
+            focal: scene.focal(),
+            height,
+            tilt,
+            error: scene.error,
+            moved,
+            deck,
         };
-        Ok(Measured {
-            forward: mean(0),
-            left: mean(1),
-            turn: mean(2),
-            period: cycles.period,
-            cycles: cycles.travels,
-            ends: cycles.ends,
-            path,
-            sight: Sight {
-                focal: scene.focal(),
-                height,
-                tilt,
-                error: scene.error,
-                moved,
-                deck,
-            },
-        })
+        Ok(Watched::new(path, sight, scene, frames, setup.height))
     }
 
     /// Checks that every tag is seen often enough.
@@ -303,61 +230,6 @@ impl Film {
         }
         Ok(())
     }
-
-    /// The variances of a mean cycle that follow from those of the first `count` parameters of
-    /// the scene: forward, left, turn.
-    fn doubts(
-        &self,
-        scene: &Scene,
-        cycles: &Cycles,
-        count: usize,
-        place: impl Fn(&Scene, &Frame) -> Option<Place>,
-    ) -> [f64; 3] {
-        let nearest = |time: &f64| {
-            let seen = self
-                .frames
-                .iter()
-                .filter(|frame| place(scene, frame).is_some());
-            seen.min_by(|a, b| {
-                (a.seconds - time)
-                    .abs()
-                    .total_cmp(&(b.seconds - time).abs())
-            })
-        };
-        let frames: Vec<&Frame> = cycles.ends.iter().filter_map(nearest).collect();
-        let mean = |scene: &Scene| -> [f64; 3] {
-            let mut seen: Vec<Seen> = frames
-                .iter()
-                .filter_map(|frame| {
-                    Some(Seen {
-                        seconds: 0.0,
-                        place: place(scene, frame)?,
-                    })
-                })
-                .collect();
-            unwind(&mut seen);
-            let travels: Vec<Travel> = seen
-                .windows(2)
-                .map(|pair| pair[1].place.seen_from(pair[0].place))
-                .collect();
-            parts(&travels).map(|part| part.iter().sum::<f64>() / part.len().max(1) as f64)
-        };
-        let here = mean(scene);
-        let slopes: Vec<[f64; 3]> = (0..count)
-            .map(|i| {
-                let step = scene.covariance[(i, i)].sqrt().max(1e-12);
-                let there = mean(&scene.moved(i, step));
-                [0, 1, 2].map(|part| (there[part] - here[part]) / step)
-            })
-            .collect();
-        [0, 1, 2].map(|part| {
-            let pairs = (0..count).flat_map(|i| (0..count).map(move |j| (i, j)));
-            let term = |(i, j): (usize, usize)| {
-                slopes[i][part] * scene.covariance[(i, j)] * slopes[j][part]
-            };
-            pairs.map(term).sum::<f64>().max(0.0)
-        })
-    }
 }
 
 /// The mean of the middle half of values, which is not empty.
@@ -366,22 +238,4 @@ fn middle(mut values: Vec<f64>) -> f64 {
     let quarter = values.len() / 4;
     let half = &values[quarter..values.len() - quarter];
     half.iter().sum::<f64>() / half.len() as f64
-}
-
-/// The camera of a picture.
-fn camera(scene: &Scene, frame: &Frame, moved: bool) -> Option<Camera> {
-    match moved {
-        false => Some(scene.camera()),
-        true => Some(scene.camera_at(&scene.pose(&frame.floor()?)?)),
-    }
-}
-
-/// Forward, left and turn of each cycle.
-fn parts(travels: &[Travel]) -> [Vec<f64>; 3] {
-    let part = |part: fn(&Travel) -> f64| travels.iter().map(part).collect();
-    [
-        part(|travel| travel.forward),
-        part(|travel| travel.left),
-        part(|travel| travel.turn),
-    ]
 }

@@ -2,9 +2,9 @@
 //!
 //! A camera looks down on the robot from anywhere. Tags on the floor tell where the camera is, and
 //! a tag on the deck, whose height is known, tells where the robot is ([`sheet`] has the sheet of tags).
-//! [`Film::add`] reads the tags of each picture. [`Film::measure`] finds the camera (`scene.rs`), the path
-//! (`path.rs`), the cycles of the gait in it (`cycles.rs`, `clock.rs`), and their mean with its error (`mean.rs`). The crate
-//! reads no file and prints nothing.
+//! [`Film::add`] reads the tags of each picture. [`Film::watch`] finds the camera (`scene.rs`) and the path
+//! (`path.rs`), [`Watched::measure`] the cycles of a gait in it (`cycles.rs`, `clock.rs`) and their mean with its error
+//! (`mean.rs`). The crate reads no file and prints nothing.
 //!
 //! # When not to use it
 //! For one robot in one plane. For places in space, or many markers, take AprilTag's own library.
@@ -20,6 +20,7 @@ mod cycles;
 mod edges;
 mod figure;
 mod film;
+mod frame;
 mod gait;
 mod homography;
 mod least;
@@ -33,9 +34,10 @@ mod spin;
 mod tags;
 mod trouble;
 mod turns;
+mod watched;
 
 pub use figure::Figure;
-pub use film::{Film, Measured, Setup, Sight};
+pub use film::{Film, Setup};
 pub use gait::Gait;
 pub use mean::Mean;
 pub use path::Seen;
@@ -43,3 +45,4 @@ pub use picture::{Picture, Pixel};
 pub use tags::{Tag, read};
 pub use trouble::Trouble;
 pub use turns::{DeadBand, Jig, Turns, TurnsTrouble};
+pub use watched::{Measured, Sight, Watched};

@@ -100,9 +100,12 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let spinner = Spinner::new("reading the pictures");
     let film = read(path, args.fps, about)?;
     let expected = expected(&robot, gait, pace);
-    let measured = film.measure(setup, &expected).map_err(about)?;
+    let watched = film.watch(setup).map_err(about)?;
+    let measured = watched.measure(&expected, None).map_err(about)?;
     drop(spinner);
-    let report = Report::new(&robot, gait, args.speed, setup, &expected, &measured);
+    let report = Report::new(
+        &robot, gait, args.speed, setup, &expected, &watched, &measured,
+    );
     match args.csv {
         true => report.print_path(),
         false => report.print(args.json),

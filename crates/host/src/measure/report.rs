@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
 
-use lizard_film::{Gait, Mean, Measured, Setup};
+use lizard_film::{Gait, Mean, Measured, Setup, Watched};
 use lizard_robot::{CheckedGait, Prediction, Robot, Travel, UNDECIDED};
 use serde::Serialize;
 
@@ -34,7 +34,7 @@ pub(super) struct Report<'a> {
     pictures: usize,
     camera: CameraLine,
     #[serde(skip)]
-    measured: &'a Measured,
+    watched: &'a Watched,
 }
 
 /// One part of a cycle's movement.
@@ -114,7 +114,8 @@ impl<'a> Report<'a> {
         speed: u8,
         setup: Setup,
         expected: &Gait,
-        measured: &'a Measured,
+        watched: &'a Watched,
+        measured: &Measured,
     ) -> Self {
         let way = expected.path.last().map(|place| place.travel());
         let decided = robot.predict(gait);
@@ -124,7 +125,7 @@ impl<'a> Report<'a> {
             left,
             turn,
         } = predicted;
-        let sight = &measured.sight;
+        let sight = &watched.sight;
         let way = |travel: &Travel| Way {
             forward: travel.forward,
             left: travel.left,
@@ -141,7 +142,7 @@ impl<'a> Report<'a> {
             left: Part::new(measured.left, left),
             turn: Part::new(measured.turn, turn),
             each: measured.cycles.iter().map(way).collect(),
-            pictures: measured.path.len(),
+            pictures: watched.path.len(),
             camera: CameraLine {
                 height: sight.height,
                 tilt: sight.tilt,
@@ -151,7 +152,7 @@ impl<'a> Report<'a> {
                 deck: setup.height,
                 deck_by_size: sight.deck,
             },
-            measured,
+            watched,
         }
     }
 
@@ -197,7 +198,7 @@ impl<'a> Report<'a> {
     /// Prints the path as CSV.
     pub(super) fn print_path(&self) -> Result<(), Failure> {
         let mut text = "seconds,forward,left,heading\n".to_owned();
-        for seen in &self.measured.path {
+        for seen in &self.watched.path {
             let place = seen.place;
             let _ = writeln!(
                 text,

@@ -1,0 +1,39 @@
+//! The tags of a picture, and where the robot is by them.
+
+use lizard_contact::Place;
+
+use crate::camera::Camera;
+use crate::picture::Pixel;
+use crate::scene::{FloorCorners, Scene};
+use crate::sheet::{CODES, DECK_TAG};
+
+/// The tags of a picture.
+#[derive(Debug, Clone)]
+pub(crate) struct Frame {
+    /// Time of the picture, s.
+    pub seconds: f64,
+    /// The corners of each tag that is seen, by its id.
+    pub tags: [Option<[Pixel; 4]>; CODES.len()],
+}
+
+impl Frame {
+    /// The floor's tags, if all are seen.
+    pub(crate) fn floor(&self) -> Option<FloorCorners> {
+        let [a, b, c, d, _] = self.tags;
+        Some([a?, b?, c?, d?])
+    }
+
+    /// The camera of the picture: the scene's, unless it moved.
+    pub(crate) fn camera(&self, scene: &Scene, moved: bool) -> Option<Camera> {
+        match moved {
+            false => Some(scene.camera()),
+            true => Some(scene.camera_at(&scene.pose(&self.floor()?)?)),
+        }
+    }
+
+    /// The robot's place.
+    pub(crate) fn place(&self, scene: &Scene, moved: bool) -> Option<Place> {
+        let camera = self.camera(scene, moved)?;
+        scene.place(&camera, self.tags[DECK_TAG].as_ref()?)
+    }
+}

@@ -1,0 +1,175 @@
+//! A watched film: the camera and the robot's path are known, and gaits are measured in it.
+
+use lizard_contact::Travel;
+
+use crate::cycles::{self, Cycles};
+use crate::frame::Frame;
+use crate::gait::Gait;
+use crate::mean::{self, Mean};
+use crate::path::{Seen, unwind};
+use crate::scene::Scene;
+use crate::trouble::Trouble;
+
+/// Standard deviations of what a user measures: the deck tag's height, mm, and the ruler, as a share.
+const HEIGHT_SIGMA: f64 = 1.0;
+const RULER_SIGMA: f64 = 0.001;
+
+/// The camera as it was found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sight {
+    /// Focal length, px.
+    pub focal: f64,
+    /// Height above the floor, mm, in the first picture.
+    pub height: f64,
+    /// Tilt from straight down, deg, in the first picture.
+    pub tilt: f64,
+    /// Mean error of a corner on the floor, px.
+    pub error: f64,
+    /// True if the camera moved.
+    pub moved: bool,
+    /// Height of the deck's tag by its size, mm.
+    pub deck: f64,
+}
+
+/// A gait in a film.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    /// Way ahead of a cycle, seen from its start, mm.
+    pub forward: Mean,
+    /// Drift to the left, mm.
+    pub left: Mean,
+    /// Turn, deg, counter-clockwise positive.
+    pub turn: Mean,
+    /// Time of a cycle, s, and its standard error.
+    pub period: [f64; 2],
+    /// The movement of each cycle.
+    pub cycles: Vec<Travel>,
+    /// The times between the cycles, s.
+    pub ends: Vec<f64>,
+}
+
+/// A film whose camera and path are known.
+#[derive(Debug, Clone)]
+pub struct Watched {
+    /// The robot's path.
+    pub path: Vec<Seen>,
+    /// The camera.
+    pub sight: Sight,
+    scene: Scene,
+    /// The pictures of the path.
+    frames: Vec<Frame>,
+    /// Height of the deck's tag above the floor, mm.
+    deck: f64,
+}
+
+impl Watched {
+    /// A film with one frame for each place of the path.
+    pub(crate) fn new(
+        path: Vec<Seen>,
+        sight: Sight,
+        scene: Scene,
+        frames: Vec<Frame>,
+        deck: f64,
+    ) -> Self {
+        Self {
+            path,
+            sight,
+            scene,
+            frames,
+            deck,
+        }
+    }
+
+    /// Measures a gait between two times, s, or in the whole film.
+    ///
+    /// # Errors
+    /// Fails if the path there is not that of the gait, or too short.
+    pub fn measure(&self, gait: &Gait, during: Option<[f64; 2]>) -> Result<Measured, Trouble> {
+        let cycles = cycles::find(self.part(during), gait)?;
+        let parts = parts(&cycles.travels);
+        let doubts = self.doubts(&cycles);
+        // A tag that is higher looks as if it went farther.
+        let scale = (HEIGHT_SIGMA / (self.sight.height - self.deck)).hypot(RULER_SIGMA);
+        let mean = |i: usize| {
+            let mut mean = mean::of(&parts[i]);
+            let scale = if i < 2 { mean.mean * scale } else { 0.0 };
+            let clock = cycles.pace[i] * cycles.period[1] / cycles.period[0];
+            mean.error = (mean.error.powi(2) + clock.powi(2) + scale.powi(2) + doubts[i]).sqrt();
+            mean
+        };
+        Ok(Measured {
+            forward: mean(0),
+            left: mean(1),
+            turn: mean(2),
+            period: cycles.period,
+            cycles: cycles.travels,
+            ends: cycles.ends,
+        })
+    }
+
+    /// The path between two times, or all of it.
+    fn part(&self, during: Option<[f64; 2]>) -> &[Seen] {
+        let [from, to] = during.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+        let begin = self.path.partition_point(|seen| seen.seconds < from);
+        let end = self.path.partition_point(|seen| seen.seconds <= to);
+        &self.path[begin..end.max(begin)]
+    }
+
+    /// The variances of a mean cycle that follow from those of the scene: forward, left, turn.
+    fn doubts(&self, cycles: &Cycles) -> [f64; 3] {
+        // A camera that moves has a pose for each picture, from the parameters that all of them share.
+        let count = if self.sight.moved { 5 } else { 11 };
+        let scene = &self.scene;
+        let nearest = |time: &f64| {
+            let frames = self.frames.iter();
+            frames.min_by(|a, b| {
+                (a.seconds - time)
+                    .abs()
+                    .total_cmp(&(b.seconds - time).abs())
+            })
+        };
+        let frames: Vec<&Frame> = cycles.ends.iter().filter_map(nearest).collect();
+        let mean = |scene: &Scene| -> [f64; 3] {
+            let mut seen: Vec<Seen> = frames
+                .iter()
+                .filter_map(|frame| {
+                    Some(Seen {
+                        seconds: 0.0,
+                        place: frame.place(scene, self.sight.moved)?,
+                    })
+                })
+                .collect();
+            unwind(&mut seen);
+            let travels: Vec<Travel> = seen
+                .windows(2)
+                .map(|pair| pair[1].place.seen_from(pair[0].place))
+                .collect();
+            parts(&travels).map(|part| part.iter().sum::<f64>() / part.len().max(1) as f64)
+        };
+        let here = mean(scene);
+        let slopes: Vec<[f64; 3]> = (0..count)
+            .map(|i| {
+                let step = scene.covariance[(i, i)].sqrt().max(1e-12);
+                let there = mean(&scene.moved(i, step));
+                [0, 1, 2].map(|part| (there[part] - here[part]) / step)
+            })
+            .collect();
+        [0, 1, 2].map(|part| {
+            let pairs = (0..count).flat_map(|i| (0..count).map(move |j| (i, j)));
+            let term = |(i, j): (usize, usize)| {
+                slopes[i][part] * scene.covariance[(i, j)] * slopes[j][part]
+            };
+            pairs.map(term).sum::<f64>().max(0.0)
+        })
+    }
+}
+
+/// Forward, left and turn of each cycle.
+fn parts(travels: &[Travel]) -> [Vec<f64>; 3] {
+    let part = |part: fn(&Travel) -> f64| travels.iter().map(part).collect();
+    [
+        part(|travel| travel.forward),
+        part(|travel| travel.left),
+        part(|travel| travel.turn),
+    ]
+}
