@@ -23,7 +23,7 @@ const VISITS: [(f64, bool); 19] = [
     (0.0, false), (15.0, false),
 ];
 /// The small steps, deg, there and back from the last visit.
-const SWINGS: [f64; 9] = [0.2, 0.4, 0.6, 0.8, 1.0, 1.25, 1.6, 2.0, 3.0];
+const SWINGS: [f64; 10] = [0.2, 0.4, 0.6, 0.8, 1.0, 1.25, 1.6, 2.0, 2.5, 3.0];
 
 /// An order to the servo.
 #[derive(Debug, Clone, Copy, PartialEq)]

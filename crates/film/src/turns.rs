@@ -5,7 +5,7 @@
 
 use crate::figure::Figure;
 use crate::least;
-use crate::mean::{self, Mean, widening};
+use crate::mean::{self, widening};
 use crate::orders::{self, Order, PAUSE};
 use crate::path::Seen;
 use crate::spin::{Rates, Step};
@@ -32,9 +32,9 @@ const CAMERA: f64 = 0.002;
 const MOVED: f64 = 0.05;
 const MOVED_SIGMAS: f64 = 3.0;
 /// Largest movement of a small step that tells the dead band, deg: after a larger one the servo overshoots.
-const SMALL: f64 = 1.0;
-/// Least standard error of a dead band, deg.
-const DEAD_BAND_ERROR: f64 = 0.05;
+const SMALL: f64 = 1.6;
+/// Standard error of a dead band in which the servo does not always stop at its edge, deg.
+const DEAD_BAND_ERROR: f64 = 0.06;
 /// Standard error of the load's torque, as a share: half a millimetre of 20.
 const LOAD: f64 = 0.025;
 
@@ -101,8 +101,8 @@ pub enum TurnsTrouble {
         /// Slew limit of the orders, deg/s.
         slew: f64,
     },
-    /// The loaded servo is faster.
-    #[error("with the load the servo turns faster in both ways: were the two films swapped?")]
+    /// The servo without load is slower to one side than with it.
+    #[error("the servo turns less evenly to both sides without the load than with it: were the two films swapped?")]
     Swapped,
     /// The load does not slow the servo down enough.
     #[error(
@@ -205,19 +205,17 @@ impl Turns {
             Some(fit.figure(1.0 - slow / free, &[slow / free.powi(2), -1.0 / free]))
         };
         let losses = [loss(0).ok_or(few)?, loss(1).ok_or(few)?];
-        let gains = losses.map(|loss| Figure {
-            value: -loss.value,
-            ..loss
-        });
-        if gains.iter().all(|gain| gain.is_above(0.0)) {
-            return Err(TurnsTrouble::Swapped);
-        }
         let loss = losses[usize::from(losses[1].value > losses[0].value)];
         if !loss.is_above(0.0) {
             return Err(TurnsTrouble::LoadNotSeen {
                 percent: 100.0 * loss.value,
                 error: 100.0 * loss.error,
             });
+        }
+        // Only a load makes one way slower than the other.
+        let uneven = |turns: &Self| (turns.ways[0].value - turns.ways[1].value).abs();
+        if uneven(self) > uneven(loaded) {
+            return Err(TurnsTrouble::Swapped);
         }
         let value = torque / loss.value;
         Ok(Figure {
@@ -419,25 +417,26 @@ impl Path {
         let variance = squares / freedom.max(1) as f64;
         let error = (2.0 * variance / in_a_rest.max(1.0)).sqrt() / gain.abs();
         let least = MOVED.max(MOVED_SIGMAS * error);
-        let (mut lost, mut still) = (Vec::new(), 0.0f64);
+        let (mut lost, mut still, mut has_moved) = (Vec::new(), 0.0f64, false);
         for i in orders::swings() {
             let (Some(from), Some(to)) = (rests[i - 1], rests[i]) else {
                 continue;
             };
             let ordered = orders[i].asked() - orders[i - 1].asked();
             let moved = (to - from) / gain * ordered.signum();
-            if moved < least {
+            let had_moved = std::mem::replace(&mut has_moved, moved > least);
+            if !has_moved {
                 still = still.max(ordered.abs());
-            } else if moved < SMALL {
+            } else if had_moved && moved < SMALL {
+                // Now it stood at the edge of its dead band; before, anywhere in it.
                 lost.push(ordered.abs() - moved);
             }
         }
         let width = (lost.len() > 1).then(|| {
-            // The steps do not differ at random: the servo stops a little short, or a little too far.
-            let Mean { mean, spread, .. } = mean::of(&lost);
+            let mean = mean::of(&lost);
             Figure {
-                value: mean,
-                error: spread.hypot(DEAD_BAND_ERROR),
+                value: mean.mean,
+                error: mean.error.hypot(DEAD_BAND_ERROR),
             }
         });
         DeadBand { width, still }

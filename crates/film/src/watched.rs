@@ -2,6 +2,7 @@
 
 use lizard_contact::Travel;
 
+use crate::camera::Camera;
 use crate::cycles::{self, Cycles};
 use crate::frame::Frame;
 use crate::gait::Gait;
@@ -105,6 +106,12 @@ impl Watched {
             cycles: cycles.travels,
             ends: cycles.ends,
         })
+    }
+
+    /// The camera in each picture of the path.
+    pub(crate) fn cameras(&self) -> impl Iterator<Item = Camera> {
+        let camera = |frame: &Frame| frame.camera(&self.scene, self.sight.moved);
+        self.frames.iter().filter_map(camera)
     }
 
     /// The path between two times, or all of it.

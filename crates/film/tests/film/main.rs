@@ -3,6 +3,7 @@
 mod accuracy;
 mod render;
 mod servo;
+mod slide;
 mod studio;
 mod troubles;
 mod turns;

@@ -52,6 +52,11 @@ impl Default for Servo {
 }
 
 impl Servo {
+    /// The steady rate that friction leaves without load, deg/s.
+    pub fn own_rate(&self) -> f64 {
+        self.rate * (1.0 - FRICTION)
+    }
+
     /// The time at which all orders are carried out, s.
     pub fn end(&self) -> f64 {
         self.begin + PAUSE * orders(1.0).len() as f64
