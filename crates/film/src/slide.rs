@@ -176,10 +176,12 @@ impl Slide {
         let (begin, error) = begin(&points, sliding.value, moments[from.max(1) - 1].seconds);
         let near = |seconds: f64| {
             let at = moments.partition_point(|moment| moment.seconds < seconds);
-            tilts[at.min(tilts.len() - 1)].to_degrees()
+            at.min(moments.len() - 1)
         };
-        let tilt = near(begin);
-        let rate = (near(begin) - near(begin - 2.0 * AROUND)) / (2.0 * AROUND);
+        let (now, before) = (near(begin), near(begin - 2.0 * AROUND).saturating_sub(1));
+        let tilt = tilts[now].to_degrees();
+        let apart = moments[now].seconds - moments[before].seconds;
+        let rate = (tilt - tilts[before].to_degrees()) / apart.max(AROUND);
         if rate > LIFTED {
             return Err(SlideTrouble::Fast { rate });
         }
