@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { address, advance, close, open, standing } from './tests/browser.js';
 
 const [, , folder, colorScheme = 'light'] = process.argv;
-const ROOMS = ['start', 'drive', 'gaits', 'build', 'board', 'learn'];
+const ROOMS = ['start', 'drive', 'gaits', 'build', 'board', 'measure', 'learn'];
 const SIZES = [[390, 844], [360, 640], [844, 390], [1280, 800]];
 
 await mkdir(folder, { recursive: true });

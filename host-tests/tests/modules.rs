@@ -7,12 +7,13 @@ use std::path::{Path, PathBuf};
 use lizard_host_tests::root;
 
 /// The crates whose modules are read.
-const CRATES: [&str; 15] = [
+const CRATES: [&str; 17] = [
     "crates/contact",
     "crates/core",
     "crates/film",
     "crates/host",
     "crates/kinematics",
+    "crates/measure",
     "crates/parts",
     "crates/pulses",
     "crates/python",
@@ -22,6 +23,7 @@ const CRATES: [&str; 15] = [
     "crates/twin",
     "tools/linker",
     "web/wasm",
+    "web/wasm-measure",
     "web/wasm-parts",
 ];
 

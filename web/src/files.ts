@@ -37,4 +37,6 @@ export const files = {
   tune: (): Promise<WebAssembly.Module> => compiled('files/tune.wasm'),
   /** The parts; loaded when their panel is opened. */
   parts: (): Promise<WebAssembly.Module> => compiled('files/parts.wasm'),
+  /** Tags, paths and reports of films; loaded when a camera, a film or the sheet is asked for. */
+  measure: (): Promise<WebAssembly.Module> => compiled('files/measure.wasm'),
 };

@@ -28,6 +28,7 @@ import { Lengths } from './view/lengths';
 import { Log } from './view/log';
 import { MapsView } from './view/maps';
 import { MarginsView } from './view/margins';
+import { MeasureView } from './view/measure';
 import { Pace } from './view/pace';
 import { OwnRobot } from './view/own-robot';
 import { PartsView } from './view/parts';
@@ -87,12 +88,14 @@ async function start(): Promise<void> {
   const pace = new Pace((line) => drive.ask(line));
   const predictor = new Predictor(module, (gait, prediction) => {
     drive.predicted(gait, prediction);
+    measure.predicted();
     texts();
     begin();
   });
   const predict = () => {
     const { toml, floor, servos, description, predicted } = session;
     predicted?.forEach((prediction, gait) => prediction && drive.predicted(gait, prediction));
+    measure.predicted();
     const first = description.gaits.findIndex(({ command }) => command === session.gait);
     predictor.ask({ toml, floor, servos, gaits: predicted ? 0 : description.gaits.length, first: Math.max(0, first) });
     routines.predict();
@@ -136,6 +139,7 @@ async function start(): Promise<void> {
   });
   const path = new PathView(module, now, (line) => drive.ask(line), writer);
   const flash = new FlashView(now, writer);
+  const measure = new MeasureView(now, () => drive.choices(), isBarred);
   const setup: Setup = new Setup(now, writer, () => connectBoard());
 
   const boardRobot = new BoardRobot(now, module, troubles, ({ file, toml }) => {
@@ -168,6 +172,7 @@ async function start(): Promise<void> {
       routines.showRobot();
       text.showRobot();
       keep.showRobot(description);
+      measure.showRobot(description);
       predict();
       void boardRobot.follow();
     },
@@ -181,10 +186,14 @@ async function start(): Promise<void> {
       latest = rise + width;
       scope.pulse(pin, rise, width);
     },
-    sent: (line) => log.sent(line),
+    sent(line) {
+      log.sent(line);
+      measure.sent(line);
+    },
     received(line) {
       log.received(line);
       setup.received(line);
+      measure.received(line);
       if (line.startsWith('# fault')) remote.buzz();
     },
     isUno: (from) =>
@@ -195,6 +204,7 @@ async function start(): Promise<void> {
     doing(gait) {
       drive.doing(gait);
       keep.doing(gait);
+      measure.did(gait);
       routines.doing(gait);
       texts();
     },
@@ -229,6 +239,7 @@ async function start(): Promise<void> {
       radio.hidden = session.isReal || noBluetooth() !== null;
       element<HTMLButtonElement>('reset').disabled = link.kind === 'radio';
       flash.update();
+      measure.link(session.isReal);
       setup.link();
     },
     trouble(cause, said) {
@@ -370,6 +381,7 @@ async function start(): Promise<void> {
         sinceTexts = 0;
         texts();
         keep.write();
+        measure.write();
         scope.write(session.last?.scene ?? null);
         margins.write(session.last?.scene ?? null);
       }

@@ -161,7 +161,7 @@ export interface Frame {
   errors: Four<number>;
 }
 
-/** Displacement per cycle, mm and deg; null where the model leaves it undetermined. */
+/** Displacement per cycle, mm and deg; null where two feet pull against two, so that the model does not tell it. */
 export interface Displacement {
   forward: number | null;
   left: number | null;

@@ -49,7 +49,7 @@ const KEPT_SECONDS = 31;
 /** The fault of a robot that has heard nothing for as long as `deadman` says. */
 const LINK_FAULT = 'link';
 /** The line at the end of a gait with a count, and of a routine. */
-const DONE = '# done';
+export const DONE = '# done';
 /** The reason why nothing is written by radio. */
 export const BY_CABLE = 'a radio does not reset a board and is too slow for it: connect its USB cable to write to it';
 

@@ -17,6 +17,7 @@ const ROOMS = {
   gaits: ['#gait-editor', '#routines', '#path-editor'],
   build: ['#lengths-panel', '#parts', '#robot-editor'],
   board: ['#calibrate', '#flash'],
+  measure: [],
   learn: ['#maps', '#margins-panel', '#pulses', '#console'],
 };
 

@@ -221,7 +221,7 @@ test('what is predicted of a robot comes with the page while it is as its file h
     });
     const shown = await notes();
     for (const [n, { forward, turn }] of predicted.entries()) {
-      const ahead = forward === null ? ['undetermined'] : Math.abs(forward) >= 0.5 ? [`${forward.toFixed(1)} mm`] : [];
+      const ahead = forward === null ? ['may drift'] : Math.abs(forward) >= 0.5 ? [`${forward.toFixed(1)} mm`] : [];
       const turned = turn !== null && Math.abs(turn) >= 0.05 ? [`${turn.toFixed(1)}°`] : [];
       assert.equal(shown[n], [...ahead, ...turned].join(', '), `${name}, gait ${n}`);
     }

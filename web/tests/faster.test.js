@@ -15,7 +15,7 @@ afterEach(tidy);
 after(close);
 
 const text = (page, id) => page.locator(`#${id}`).innerText();
-const predicted = (page) => page.waitForFunction(() => /mm$|undetermined/.test(document.querySelector('#gait-way').textContent));
+const predicted = (page) => page.waitForFunction(() => /mm$|may drift/.test(document.querySelector('#gait-way').textContent));
 
 /** The gait editor with a gait of the robot in it, and a search of so many rounds set. */
 async function opened({ gait = 'walk', rounds = 1, seed = 3, rate = '' } = {}, options = {}) {
@@ -118,6 +118,35 @@ test('what was found walks beside what there was, and goes as much farther as wa
   assert.ok(Math.abs(far / near / (found / before) - 1) < 0.1, `${ways} ${found} and ${before} mm/s`);
   assert.ok(await page.locator('#faster-result').isVisible(), 'the result stays');
   assert.equal((await page.evaluate(() => window.lizard.toml)).match(/\[gait\.mine\]/g).length, 1);
+});
+
+test('of a turn the page shows the way round of both, and what was found turns as much faster as was promised', async () => {
+  const page = await opened({ gait: 'left', rounds: 200 });
+  // The search does not surpass the robot's own turn, but one with half the stroke in front.
+  for (const [leg, share] of [['LF', '-0.5'], ['RF', '0.5']]) {
+    await page.getByLabel(`${leg} share`).fill(share);
+    await page.keyboard.press('Tab');
+  }
+  await start(page);
+  await tried(page, 41);
+  await page.getByRole('button', { name: 'Stop the search' }).click();
+  await ended(page);
+  const rows = (await page.locator('#faster-rows tr').allInnerTexts()).map((row) => row.split('\t'));
+  const [, before, found] = rows.find(([name]) => name === 'speed');
+  assert.ok([before, found].every((speed) => /^[0-9.]+ °\/s$/.test(speed)), `${before} and ${found}`);
+  const promised = Number.parseFloat(found) / Number.parseFloat(before);
+  assert.ok(promised > 1.2, `${before} and ${found}`);
+  await page.getByRole('button', { name: 'See both walk' }).click();
+  await page.waitForFunction(() => window.lizard.toml.includes('[gait.mine]'));
+  await advance(page, 3000);
+  await page.waitForFunction(() => window.lizard.gait === 'mine');
+  await advance(page, 40_000);
+  await page.keyboard.press('Escape');
+  await advance(page, 1000);
+  const ways = await text(page, 'faster-ways');
+  const [, far, near] = /^Found: .*?(-?[0-9.]+)°\. Before: .*?(-?[0-9.]+)°\.$/.exec(ways) ?? assert.fail(ways);
+  assert.ok(Math.abs(far / near / promised - 1) < 0.1, `${ways} ${found} and ${before}`);
+  assert.ok(Number(far) > 360, `${far} is more than a whole turn`);
 });
 
 test('a robot that is changed midway ends the search of the one of before', async () => {

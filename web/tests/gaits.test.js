@@ -17,7 +17,7 @@ async function opened(options) {
 
 const text = (page, id) => page.locator(`#gait-${id}`).innerText();
 /** Waits until what is shown has an answer. */
-const predicted = (page) => page.waitForFunction(() => /mm$|undetermined/.test(document.querySelector('#gait-way').textContent));
+const predicted = (page) => page.waitForFunction(() => /mm$|may drift/.test(document.querySelector('#gait-way').textContent));
 const changes = (page, id, before) => page.waitForFunction(([id, before]) => document.querySelector(`#gait-${id}`).textContent !== before, [id, before]);
 
 /** Drags from a point of the circle to another: ring 0 to 3 from outside, phases 0 to 1. */

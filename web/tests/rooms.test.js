@@ -10,9 +10,9 @@ afterEach(tidy);
 after(close);
 
 const AXE = createRequire(import.meta.url).resolve('axe-core/axe.min.js');
-const ROOMS = ['start', 'drive', 'gaits', 'build', 'board', 'learn'];
+const ROOMS = ['start', 'drive', 'gaits', 'build', 'board', 'measure', 'learn'];
 /** What each room is for, which a phone shows without scrolling. */
-const ACTS = { start: '.doors', drive: '#speed', gaits: '#gait-try', build: '#sketch', board: '#setup-open', learn: '#learn-title' };
+const ACTS = { start: '.doors', drive: '#speed', gaits: '#gait-try', build: '#sketch', board: '#setup-open', measure: '#measure-camera', learn: '#learn-title' };
 const SIZES = [
   { viewport: { width: 360, height: 640 }, hasTouch: true, isMobile: true },
   { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true },

@@ -38,12 +38,16 @@ pub struct Film {
 }
 
 impl Film {
-    /// Reads the next picture, taken at this time.
+    /// Reads the next picture, taken at this time, and returns the corners of its tags by their ids.
     ///
     /// # Errors
     /// Fails if it has another size than the first one, is not later than the one before, or shows a
     /// tag twice.
-    pub fn add(&mut self, seconds: f64, picture: &Picture) -> Result<(), Trouble> {
+    pub fn add(
+        &mut self,
+        seconds: f64,
+        picture: &Picture,
+    ) -> Result<[Option<[Pixel; 4]>; CODES.len()], Trouble> {
         let number = self.frames.len() + 1;
         match self.frames.last() {
             None => self.size = picture.size(),
@@ -58,7 +62,7 @@ impl Film {
             }
         }
         self.frames.push(Frame { seconds, tags });
-        Ok(())
+        Ok(tags)
     }
 
     /// Measures a gait that is walked in the whole of the film.

@@ -42,7 +42,7 @@ pub use film::{Film, Setup};
 pub use gait::Gait;
 pub use mean::Mean;
 pub use path::Seen;
-pub use picture::{Picture, Pixel};
+pub use picture::{Picture, Pixel, luminance};
 pub use slide::{Slide, SlideTrouble};
 pub use tags::{Tag, read};
 pub use trouble::Trouble;

@@ -22,6 +22,16 @@ impl Picture {
         })
     }
 
+    /// Makes a grey picture of a colourful one, four bytes for each pixel: red, green, blue, and one that does not count.
+    pub fn of_colours(width: usize, height: usize, pixels: &[u8]) -> Option<Self> {
+        let (pixels, rest) = pixels.as_chunks::<4>();
+        let grey = pixels
+            .iter()
+            .map(|&[red, green, blue, _]| luminance(red, green, blue));
+        rest.is_empty()
+            .then(|| Self::new(width, height, grey.collect()))?
+    }
+
     /// Width and height, px.
     pub fn size(&self) -> [usize; 2] {
         [self.width, self.height]
@@ -46,4 +56,10 @@ impl Picture {
         (grey(row, column) * (1.0 - u) + grey(row, right) * u) * (1.0 - v)
             + (grey(below, column) * (1.0 - u) + grey(below, right) * u) * v
     }
+}
+
+/// The grey of a colour, by BT.601.
+pub fn luminance(red: u8, green: u8, blue: u8) -> u8 {
+    let sum = 299 * u32::from(red) + 587 * u32::from(green) + 114 * u32::from(blue);
+    (sum / 1000) as u8
 }

@@ -32,13 +32,14 @@ pub enum Trouble {
     },
     /// No tag of the sheet in any picture.
     #[error(
-        "no picture has a tag of the sheet: film from above, near enough and in even light, and not \
-         mirrored"
+        "no picture has a tag of the sheet: film from above and near enough, without glare, in more light if the \
+         pictures are dark, and not mirrored"
     )]
     NoTag,
     /// A tag of the floor is never seen.
     #[error(
-        "tag {id} of the floor is in no picture: all {FLOOR_TAGS} tags of the two strips have to be seen"
+        "tag {id} of the floor is not seen whole in any picture: each of the {FLOOR_TAGS} tags of the two strips has to be, \
+         with its white edge"
     )]
     FloorTag {
         /// Id of the tag.
@@ -136,7 +137,8 @@ pub enum Trouble {
     },
     /// The path is not that of the gait.
     #[error(
-        "the path is not that of this gait in cycles of {period:.2} s: was it another gait, or another pace?"
+        "the path is not that of this gait in cycles of {period:.2} s: was it another gait, or another pace, or does the \
+         arrow of the deck's card not show to the head?"
     )]
     NotThisGait {
         /// Time of a cycle, s.

@@ -16,7 +16,7 @@ const LONGEST = '-999.9 mm, -99.9°';
 export function short(displacement: Displacement | null): string {
   if (!displacement) return '';
   const parts = [
-    displacement.forward === null ? 'undetermined' : Math.abs(displacement.forward) >= 0.5 ? `${displacement.forward.toFixed(1)} mm` : '',
+    displacement.forward === null ? 'may drift' : Math.abs(displacement.forward) >= 0.5 ? `${displacement.forward.toFixed(1)} mm` : '',
     displacement.turn !== null && Math.abs(displacement.turn) >= 0.05 ? `${displacement.turn.toFixed(1)}°` : '',
   ];
   return parts.filter(Boolean).join(', ');

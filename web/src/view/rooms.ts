@@ -1,6 +1,9 @@
 // The rooms beside the stage. One is open; the part `room` of the address names it, so links and the browser's Back lead to it.
 import { partsOf } from '../address';
 
+/** The document's event when another room is open. */
+export const OPENED = 'room';
+
 const FIRST = 'start';
 const NAME = document.title;
 
@@ -21,6 +24,7 @@ export function openRoom(hash: string): void {
   document.body.dataset.at = room.id;
   document.title = `${room.querySelector('h2')?.textContent}, ${NAME}`;
   scrollTo(0, 0);
+  document.dispatchEvent(new Event(OPENED));
   // Its panels show what they have missed.
   for (const panel of room.querySelectorAll('details[open]')) panel.dispatchEvent(new Event('toggle'));
 }

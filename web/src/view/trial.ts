@@ -18,7 +18,7 @@ export interface GaitEditor {
   change(what: Alternative, value: number): void;
 }
 
-const number = (value: number | null, unit: string) => (value === null ? 'undetermined' : `${(Number(value.toFixed(1)) + 0).toFixed(1)}${unit}`);
+const number = (value: number | null, unit: string) => (value === null ? 'may drift' : `${(Number(value.toFixed(1)) + 0).toFixed(1)}${unit}`);
 
 /** Formats the figures of a trial; the speed is in deg/s for a turn on the spot. */
 export function figures({ forward, turn, period, least, limit, margin, servo, speed }: Trial, unit = 'mm/s') {

@@ -63,7 +63,7 @@ fn a_cycle_is_measured_to_a_fifth_of_a_millimetre_and_half_a_degree() {
 }
 
 /// Reads a number from the environment.
-fn number(name: &str, or: usize) -> usize {
+pub fn number(name: &str, or: usize) -> usize {
     let number = std::env::var(name).ok().and_then(|word| word.parse().ok());
     number.unwrap_or(or)
 }

@@ -1,6 +1,7 @@
 //! Films whose truth is known, rendered with all that spoils a picture.
 
 mod accuracy;
+mod cameras;
 mod render;
 mod servo;
 mod slide;

@@ -54,8 +54,13 @@ pub struct Studio {
     pub deck: f64,
     /// Ids of tags that are covered.
     pub hidden: Vec<usize>,
-    /// Exposure time, s.
+    /// Round things that lie on the floor or shine on it: x, y, radius, mm, and their grey.
+    pub discs: Vec<[f64; 4]>,
+    /// Exposure time, and the time from the first row to the last one, s.
     pub shutter: f64,
+    pub readout: f64,
+    /// Light, as a share of the usual one.
+    pub light: f64,
     /// Standard deviation of the noise, grey levels.
     pub noise: f64,
     /// Grey of the floor, and the loss of light from one corner to the other.
@@ -121,7 +126,10 @@ impl Studio {
             cut: 1.0,
             deck: 83.0,
             hidden: Vec::new(),
+            discs: Vec::new(),
             shutter: 1.0 / 80.0,
+            readout: 0.0,
+            light: 1.0,
             noise: 5.0,
             floor: between(90.0, 160.0),
             shade: between(0.0, 0.4),
@@ -197,6 +205,10 @@ impl Studio {
 
     /// The grey of a point of the floor.
     fn floor_at(&self, at: [f64; 2]) -> f64 {
+        let is_in = |[x, y, radius, _]: &&[f64; 4]| (at[0] - x).hypot(at[1] - y) < *radius;
+        if let Some([.., grey]) = self.discs.iter().find(is_in) {
+            return *grey;
+        }
         for (strip, spot) in self.strips.iter().enumerate() {
             let [u, v] = Turned::new(*spot).sees(at);
             let [u, v] = [u / self.print[0], v / self.print[1]];
@@ -291,13 +303,19 @@ impl Background {
         let studio = &self.studio;
         let [width, height] = studio.size;
         let mut light = self.light.clone();
-        let times: [f64; TIMES] = std::array::from_fn(|i| {
-            ((i as f64 + 0.5) / TIMES as f64 - 0.5) * studio.shutter + seconds
-        });
-        let spots = times.map(|time| Turned::new(robot(time)));
+        // Where the robot is while the shutter is open for a row.
+        let spots = |row: usize| -> [Turned; TIMES] {
+            let late = (row as f64 / height as f64 - 0.5) * studio.readout;
+            std::array::from_fn(|i| {
+                let open = ((i as f64 + 0.5) / TIMES as f64 - 0.5) * studio.shutter;
+                Turned::new(robot(seconds + late + open))
+            })
+        };
+        let rows: Vec<_> = (0..height).map(spots).collect();
+        let near = rows[height / 2][TIMES / 2];
         let body = [(BODY[0] + 5.0), (BODY[1] + 5.0)];
-        self.each_pixel(spots[TIMES / 2], body, BODY_HEIGHT, |i, [x, y]| {
-            let [u, v] = spots[TIMES / 2].frame(self.view.meet([x, y], BODY_HEIGHT));
+        self.each_pixel(near, body, BODY_HEIGHT, |i, [x, y]| {
+            let [u, v] = near.frame(self.view.meet([x, y], BODY_HEIGHT));
             if u.abs() < BODY[0] && v.abs() < BODY[1] {
                 light[i] = BODY_GREY as f32;
             }
@@ -306,7 +324,8 @@ impl Background {
             sheet::CARD[0] / 2.0 + 2.0,
             sheet::CARD[1] - sheet::DECK_EDGE / 2.0 + 2.0,
         ];
-        self.each_pixel(spots[TIMES / 2], card, studio.deck, |i, [x, y]| {
+        self.each_pixel(near, card, studio.deck, |i, [x, y]| {
+            let spots = &rows[i / width];
             let behind = f64::from(light[i]);
             let at_time = |spot: &Turned| {
                 mean(|dx, dy| {
@@ -320,7 +339,7 @@ impl Background {
         for (i, pixels) in light.chunks(IN_A_ROW).enumerate() {
             let (row, column) = (i * IN_A_ROW / width, i * IN_A_ROW % width);
             let share = (row as f64 / height as f64 + column as f64 / width as f64) / 2.0;
-            let shade = (1.0 - studio.shade * share) as f32;
+            let shade = (studio.light * (1.0 - studio.shade * share)) as f32;
             let noise = &self.noise[rng.usize(..NOISES - IN_A_ROW)..];
             grey.extend(
                 pixels

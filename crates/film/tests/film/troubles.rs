@@ -75,6 +75,43 @@ fn a_covered_tag_is_named() {
 }
 
 #[test]
+fn a_tag_with_a_cable_over_its_corner_counts_as_hidden() {
+    let mut studio = studio();
+    let [x, y, _] = studio.strips[0];
+    studio.discs = vec![[x + 128.0, y + 22.0, 10.0, 40.0]];
+    assert_eq!(trouble(&studio, TRUE_SIZE), Trouble::FloorTag { id: 1 });
+}
+
+#[test]
+fn in_the_dark_and_in_the_glare_no_tag_is_found() {
+    let mut studio = studio();
+    studio.light = 0.05;
+    assert_eq!(trouble(&studio, TRUE_SIZE), Trouble::NoTag);
+    studio.light = 10.0;
+    assert_eq!(trouble(&studio, TRUE_SIZE), Trouble::NoTag);
+}
+
+#[test]
+fn a_card_whose_arrow_shows_to_the_tail_is_another_gait() {
+    let gait = gait("walk");
+    let walk = walk(&gait, 5);
+    let turned = |time| {
+        let [x, y, heading] = walk.at(time);
+        [x, y, heading + std::f64::consts::PI]
+    };
+    let film = film_of(
+        &studio(),
+        walk.seconds(),
+        RATE,
+        turned,
+        &mut Rng::with_seed(2),
+    );
+    let trouble = film.measure(TRUE_SIZE, &gait).expect_err("it goes back");
+    assert!(matches!(trouble, Trouble::NotThisGait { .. }), "{trouble}");
+    assert!(trouble.to_string().contains("arrow"), "{trouble}");
+}
+
+#[test]
 fn pictures_of_another_size_and_times_that_do_not_rise_are_refused() {
     let picture = |size| Picture::new(size, size, vec![128; size * size]).expect("a picture");
     let mut film = Film::default();

@@ -1,15 +1,15 @@
 //! `lizard measure`: the way of a gait in a film.
 
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use lizard_film::{Film, Setup, Trouble, sheet};
-use lizard_parts::Assembly;
+use lizard_measure::{Report, expected, height_of_board};
 use lizard_robot::{CheckedGait, Robot};
 
-use super::expected::expected;
-use super::report::Report;
 use super::{frames, grey, through_ffmpeg};
 use crate::shared::files::note_input;
+use crate::shared::json;
 use crate::shared::progress::Spinner;
 use crate::shared::suggestion::did_you_mean;
 use crate::{Failure, RobotFile};
@@ -106,10 +106,11 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let report = Report::new(
         &robot, gait, args.speed, setup, &expected, &watched, &measured,
     );
-    match args.csv {
-        true => report.print_path(),
-        false => report.print(args.json),
+    if args.csv {
+        io::stdout().lock().write_all(report.path().as_bytes())?;
+        return Ok(());
     }
+    json::print_json_or(args.json, &report, || report.text())
 }
 
 /// Reads a film.
@@ -132,7 +133,7 @@ fn read(
         )));
     }
     through_ffmpeg::each(note_input(path), rate, |seconds, picture| {
-        film.add(seconds, picture).map_err(&about)
+        film.add(seconds, picture).map(|_| ()).map_err(&about)
     })?;
     Ok(film)
 }
@@ -152,12 +153,4 @@ fn gait<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failure> {
             )))
         }
     }
-}
-
-/// The height of the board's top above the floor, mm, where the card lies.
-fn height_of_board(robot: &Robot) -> f64 {
-    let assembly = Assembly::new(robot);
-    let board = assembly.body("board").into_iter();
-    let tops = board.flat_map(|body| &body.prisms).map(|prism| prism.z[1]);
-    tops.fold(0.0, f64::max) - assembly.stack().floor
 }

@@ -4,7 +4,7 @@ use std::fs;
 use std::io::Cursor;
 use std::path::Path;
 
-use lizard_film::Picture;
+use lizard_film::{Picture, luminance};
 use zune_jpeg::JpegDecoder;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
@@ -53,10 +53,4 @@ fn jpeg(bytes: Vec<u8>) -> Result<Picture, String> {
     let grey = decoder.decode().map_err(|error| error.to_string())?;
     let (width, height) = decoder.dimensions().ok_or("it has no size")?;
     Picture::new(width, height, grey).ok_or_else(|| "it has no pixels".to_owned())
-}
-
-/// The grey of a colour, by BT.601.
-fn luminance(red: u8, green: u8, blue: u8) -> u8 {
-    let sum = 299 * u32::from(red) + 587 * u32::from(green) + 114 * u32::from(blue);
-    (sum / 1000) as u8
 }

@@ -1,11 +1,8 @@
 //! Measure the real robot: a sheet of tags to print, and the way of a gait in a film.
 
 mod command;
-mod expected;
 mod frames;
 mod grey;
-mod page;
-mod report;
 mod sheet;
 mod through_ffmpeg;
 

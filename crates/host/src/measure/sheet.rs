@@ -3,9 +3,20 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use super::page::{self, Paper};
+use lizard_measure::Paper;
+
 use crate::Failure;
 use crate::shared::files;
+
+/// The paper in a printer, as it is named in a command.
+#[derive(clap::ValueEnum, Clone, Copy, Debug, Default)]
+enum PaperName {
+    /// 297 x 210 mm
+    #[default]
+    A4,
+    /// 11 x 8.5 inches
+    Letter,
+}
 
 /// Write the sheet of tags to print for `lizard measure`, as PDF
 ///
@@ -17,7 +28,7 @@ use crate::shared::files;
 pub struct SheetArgs {
     /// The paper in the printer
     #[arg(long, value_enum, default_value_t)]
-    paper: Paper,
+    paper: PaperName,
     /// The file for the sheet
     #[arg(long, short, value_name = "FILE", default_value = "out/sheet.pdf")]
     output: PathBuf,
@@ -28,7 +39,11 @@ pub struct SheetArgs {
 /// # Errors
 /// Fails if the file cannot be written.
 pub fn write_sheet(args: SheetArgs) -> Result<(), Failure> {
-    files::write(&args.output, &page::pdf(args.paper))?;
+    let paper = match args.paper {
+        PaperName::A4 => Paper::A4,
+        PaperName::Letter => Paper::Letter,
+    };
+    files::write(&args.output, &paper.sheet())?;
     let file = args.output.display();
     writeln!(
         io::stdout(),

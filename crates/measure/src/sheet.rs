@@ -32,12 +32,12 @@ const WORDS: [&str; 9] = [
 ];
 
 /// The paper of a printer.
-#[derive(clap::ValueEnum, Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Paper {
-    /// 297 x 210 mm
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Paper {
+    /// 297 x 210 mm.
     #[default]
     A4,
-    /// 11 x 8.5 inches
+    /// 11 x 8.5 inches.
     Letter,
 }
 
@@ -49,30 +49,30 @@ impl Paper {
             Self::Letter => [279.4, 215.9],
         }
     }
-}
 
-/// The page as PDF.
-pub(super) fn pdf(paper: Paper) -> Vec<u8> {
-    let [catalog, pages, page, font, content, info] = [1, 2, 3, 4, 5, 6].map(Ref::new);
-    let size = paper.size().map(points);
-    let mut pdf = Pdf::new();
-    let mut root = pdf.catalog(catalog);
-    root.pages(pages);
-    // Printers' dialogs offer to fit a page to the paper; this asks them not to.
-    root.viewer_preferences()
-        .pair(Name(b"PrintScaling"), Name(b"None"));
-    root.finish();
-    pdf.document_info(info)
-        .title(TextStr("Tags for lizard measure"));
-    pdf.pages(pages).kids([page]).count(1);
-    let mut only = pdf.page(page);
-    only.media_box(Rect::new(0.0, 0.0, size[0], size[1]));
-    only.parent(pages).contents(content);
-    only.resources().fonts().pair(FONT, font);
-    only.finish();
-    pdf.type1_font(font).base_font(Name(b"Helvetica"));
-    pdf.stream(content, &drawing(paper).finish());
-    pdf.finish()
+    /// The sheet of tags as PDF.
+    pub fn sheet(self) -> Vec<u8> {
+        let [catalog, pages, page, font, content, info] = [1, 2, 3, 4, 5, 6].map(Ref::new);
+        let size = self.size().map(points);
+        let mut pdf = Pdf::new();
+        let mut root = pdf.catalog(catalog);
+        root.pages(pages);
+        // Printers' dialogs offer to fit a page to the paper; this asks them not to.
+        root.viewer_preferences()
+            .pair(Name(b"PrintScaling"), Name(b"None"));
+        root.finish();
+        pdf.document_info(info)
+            .title(TextStr("Tags for lizard measure"));
+        pdf.pages(pages).kids([page]).count(1);
+        let mut only = pdf.page(page);
+        only.media_box(Rect::new(0.0, 0.0, size[0], size[1]));
+        only.parent(pages).contents(content);
+        only.resources().fonts().pair(FONT, font);
+        only.finish();
+        pdf.type1_font(font).base_font(Name(b"Helvetica"));
+        pdf.stream(content, &drawing(self).finish());
+        pdf.finish()
+    }
 }
 
 /// A length in points.

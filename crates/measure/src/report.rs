@@ -1,21 +1,17 @@
 //! The measured way of a gait beside the predicted one, for people and for scripts.
 
 use std::fmt::Write as _;
-use std::io::{self, Write as _};
 
 use lizard_film::{Gait, Mean, Measured, Setup, Watched};
 use lizard_robot::{CheckedGait, Prediction, Robot, Travel, UNDECIDED};
 use serde::Serialize;
 
-use crate::Failure;
-use crate::shared::json;
-
 /// Distance from the prediction, in standard errors, to which a measurement agrees with it.
 const AGREES: f64 = 2.0;
 
 /// The result under the names of `--json`.
-#[derive(Serialize)]
-pub(super) struct Report<'a> {
+#[derive(Debug, Serialize)]
+pub struct Report<'a> {
     gait: &'a str,
     /// Percent.
     speed: u8,
@@ -38,7 +34,7 @@ pub(super) struct Report<'a> {
 }
 
 /// One part of a cycle's movement.
-#[derive(Serialize)]
+#[derive(Debug, Serialize)]
 struct Part {
     mean: f64,
     /// Standard deviation of single cycles.
@@ -52,7 +48,7 @@ struct Part {
     agrees: Option<bool>,
 }
 
-#[derive(Serialize)]
+#[derive(Debug, Serialize)]
 struct Way {
     forward: f64,
     left: f64,
@@ -60,7 +56,7 @@ struct Way {
 }
 
 /// The camera as the tags show it.
-#[derive(Serialize)]
+#[derive(Debug, Serialize)]
 struct CameraLine {
     /// mm above the floor, deg from straight down, px.
     height: f64,
@@ -108,7 +104,8 @@ impl Part {
 }
 
 impl<'a> Report<'a> {
-    pub(super) fn new(
+    /// Sets a measured film beside a gait's predicted path, which it was compared with.
+    pub fn new(
         robot: &Robot,
         gait: &'a CheckedGait,
         speed: u8,
@@ -156,12 +153,8 @@ impl<'a> Report<'a> {
         }
     }
 
-    /// Prints the table or the JSON object.
-    pub(super) fn print(&self, json: bool) -> Result<(), Failure> {
-        json::print_json_or(json, self, || self.text())
-    }
-
-    fn text(&self) -> String {
+    /// The table for people.
+    pub fn text(&self) -> String {
         let camera = &self.camera;
         let moves = if camera.moved { ", moving" } else { "" };
         let mut text = format!(
@@ -195,8 +188,8 @@ impl<'a> Report<'a> {
         text
     }
 
-    /// Prints the path as CSV.
-    pub(super) fn print_path(&self) -> Result<(), Failure> {
+    /// The robot's path as CSV: mm and degrees on the floor.
+    pub fn path(&self) -> String {
         let mut text = "seconds,forward,left,heading\n".to_owned();
         for seen in &self.watched.path {
             let place = seen.place;
@@ -209,8 +202,6 @@ impl<'a> Report<'a> {
                 place.heading.to_degrees()
             );
         }
-        let mut out = io::stdout().lock();
-        out.write_all(text.as_bytes())?;
-        Ok(out.flush()?)
+        text
     }
 }

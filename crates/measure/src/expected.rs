@@ -5,7 +5,7 @@ use lizard_robot::{CheckedGait, FRAMES_PER_SECOND, Place, Robot};
 use lizard_twin::{ServoModel, Twin};
 
 /// The second cycle of a gait at a pace, with the servos of robot.toml; the pace is 1 for the gait's own.
-pub(super) fn expected(robot: &Robot, gait: &CheckedGait, pace: f64) -> Gait {
+pub fn expected(robot: &Robot, gait: &CheckedGait, pace: f64) -> Gait {
     let period = gait.period() / pace;
     let frames = (period * FRAMES_PER_SECOND).round().max(1.0) as usize;
     let mut twin = Twin::new(robot, ServoModel::of(robot));

@@ -1,0 +1,67 @@
+//! A film with known truth for the page's tests: FOLDER/film.mjpeg, a JPEG after the other, which a browser takes as its camera's
+//! pictures, 30 in a second; the same pictures in FOLDER/pictures; and the true way of a cycle in FOLDER/truth.json.
+//!
+//! `studio FOLDER WIDTH CYCLES [HIDDEN TAG]...`: so many cycles of the paper's `walk`, with a rest before and after.
+#![allow(dead_code, missing_docs)] // The tests use more of these modules.
+
+#[path = "../tests/film/render.rs"]
+mod render;
+#[path = "../tests/film/walk.rs"]
+mod walk;
+
+use std::error::Error;
+use std::path::PathBuf;
+use std::{env, fs};
+
+use fastrand::Rng;
+use jpeg_encoder::{ColorType, Encoder};
+
+use render::Studio;
+use walk::{Varies, Walk, gait, truth};
+
+/// Pictures in a second, as Chromium plays such a file.
+const RATE: f64 = 30.0;
+/// Standard deviations of a cycle: mm, mm, rad.
+const CYCLE: [f64; 3] = [0.1, 0.1, 0.002];
+const QUALITY: u8 = 85;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut words = env::args().skip(1);
+    let mut word = || words.next().ok_or("FOLDER WIDTH CYCLES [HIDDEN TAG]...");
+    let folder = PathBuf::from(word()?);
+    let (width, cycles): (usize, usize) = (word()?.parse()?, word()?.parse()?);
+    let rng = &mut Rng::with_seed(4);
+    let mut studio = Studio::random(rng);
+    (studio.size, studio.focal) = ([width, width * 9 / 16], 0.95);
+    (studio.height, studio.tilt, studio.direction) = (800.0, 15.0, 90.0);
+    (studio.roll, studio.aim) = (0.0, [0.0; 2]);
+    studio.deck = 95.0;
+    studio.hidden = words.map(|id| id.parse()).collect::<Result<_, _>>()?;
+    let gait = gait("walk");
+    let truth = truth(&gait);
+    let start = -truth.forward * cycles as f64 / 2.0;
+    let varies = Varies {
+        cycle: CYCLE,
+        ..Varies::default()
+    };
+    let walk = Walk::new(&gait, [start, 0.0, 0.0], cycles, varies, rng);
+    let background = studio.background(rng);
+    let pictures = folder.join("pictures");
+    fs::create_dir_all(&pictures)?;
+    let mut film = Vec::new();
+    for i in 0..(walk.seconds() * RATE) as usize {
+        let seconds = i as f64 / RATE;
+        let picture = background.picture(seconds, |time| walk.at(time), rng);
+        let [width, height] = picture.size().map(|length| length as u16);
+        let mut jpeg = Vec::new();
+        Encoder::new(&mut jpeg, QUALITY).encode(picture.grey(), width, height, ColorType::Luma)?;
+        fs::write(pictures.join(format!("{:.4}s.jpg", seconds)), &jpeg)?;
+        film.extend(jpeg);
+    }
+    fs::write(folder.join("film.mjpeg"), film)?;
+    let truth = format!(
+        "{{\"forward\":{},\"left\":{},\"turn\":{}}}\n",
+        truth.forward, truth.left, truth.turn
+    );
+    Ok(fs::write(folder.join("truth.json"), truth)?)
+}

@@ -1,0 +1,145 @@
+//! One walk through many cameras: each differs from a good one in a single way.
+
+use fastrand::Rng;
+use lizard_film::Film;
+
+use crate::accuracy::number;
+use crate::render::{Studio, normal};
+use crate::studio::{TRUE_SIZE, film_of};
+use crate::walk::{Varies, Walk, gait, truth};
+
+/// Cycles of a film.
+const CYCLES: usize = 6;
+/// Largest error of a mean cycle and largest spread of single ones: mm, mm, deg.
+const LARGEST: [f64; 3] = [0.2, 0.2, 0.5];
+
+/// A camera that a user may have.
+struct Camera {
+    name: &'static str,
+    studio: Studio,
+    /// Pictures in a second.
+    rate: f64,
+    /// Standard deviation of the hand's position, mm; its angles vary by a tenth of it, in deg.
+    shake: f64,
+}
+
+/// A good camera: 720p, 30 pictures in a second, on a tripod.
+fn good() -> Studio {
+    let mut studio = Studio::random(&mut Rng::with_seed(5));
+    (studio.focal, studio.height, studio.tilt) = (0.78, 780.0, 20.0);
+    (studio.direction, studio.roll, studio.aim) = (90.0, 3.0, [0.0; 2]);
+    studio
+}
+
+/// The cameras.
+fn cameras() -> Vec<Camera> {
+    let camera = |name, change: &dyn Fn(&mut Studio), rate, shake| {
+        let mut studio = good();
+        change(&mut studio);
+        Camera {
+            name,
+            studio,
+            rate,
+            shake,
+        }
+    };
+    let still = |name, change: &dyn Fn(&mut Studio)| camera(name, change, 30.0, 0.0);
+    vec![
+        still("720p, 30 pictures in a second", &|_| {}),
+        still("640 x 360", &|studio| studio.size = [640, 360]),
+        still("1920 x 1080", &|studio| studio.size = [1920, 1080]),
+        camera("12 pictures in a second", &|_| {}, 12.0, 0.0),
+        camera("60 pictures in a second", &|_| {}, 60.0, 0.0),
+        still("straight down", &|studio| studio.tilt = 2.0),
+        still("tilt 40 deg", &|studio| studio.tilt = 40.0),
+        still("600 mm above, wide lens", &|studio| {
+            (studio.height, studio.focal) = (600.0, 0.6);
+        }),
+        still("1100 mm above", &|studio| {
+            (studio.height, studio.focal) = (1100.0, 1.1);
+        }),
+        still("rolling shutter of 30 ms", &|studio| studio.readout = 0.03),
+        still("rolling shutter upside down", &|studio| {
+            (studio.readout, studio.roll) = (0.03, 177.0);
+        }),
+        still("shutter open for 1/30 s", &|studio| {
+            studio.shutter = 1.0 / 30.0;
+        }),
+        still("evening: 40 % of the light, noise of 10", &|studio| {
+            (studio.light, studio.noise) = (0.4, 10.0);
+        }),
+        still("glare between the tags", &|studio| {
+            studio.discs = vec![[0.0, 150.0, 40.0, 255.0]];
+        }),
+        camera("in the hand", &|_| {}, 12.0, 3.0),
+        camera(
+            "in the hand, rolling shutter",
+            &|studio| studio.readout = 0.02,
+            12.0,
+            3.0,
+        ),
+    ]
+}
+
+fn film(camera: &Camera, walk: &Walk, rng: &mut Rng) -> Film {
+    let Camera {
+        studio,
+        rate,
+        shake,
+        ..
+    } = camera;
+    if *shake == 0.0 {
+        return film_of(studio, walk.seconds(), *rate, |time| walk.at(time), rng);
+    }
+    let mut film = Film::default();
+    for i in 0..(walk.seconds() * rate) as usize {
+        let mut here = studio.clone();
+        here.height += shake * normal(rng);
+        here.aim = here.aim.map(|at| at + shake * normal(rng));
+        here.tilt += shake / 10.0 * normal(rng);
+        here.roll += shake / 10.0 * normal(rng);
+        let seconds = i as f64 / rate;
+        let picture = here
+            .background(rng)
+            .picture(seconds, |time| walk.at(time), rng);
+        film.add(seconds, &picture).expect("a picture");
+    }
+    film
+}
+
+/// `make measure-test`.
+#[test]
+#[ignore = "takes minutes; make measure-test"]
+fn every_camera_measures_a_cycle_to_a_fifth_of_a_millimetre_and_half_a_degree() {
+    let seed = number("SEED", 1) as u64;
+    let gait = gait("walk");
+    println!("error of the mean and one cycle's sd: ahead, left, turn (mm, mm, deg)");
+    for camera in cameras() {
+        let mut rng = Rng::with_seed(seed);
+        let start = -truth(&gait).forward * CYCLES as f64 / 2.0;
+        let walk = Walk::new(
+            &gait,
+            [start, 0.0, 0.05],
+            CYCLES,
+            Varies::default(),
+            &mut rng,
+        );
+        let measured = film(&camera, &walk, &mut rng)
+            .measure(TRUE_SIZE, &gait)
+            .unwrap_or_else(|trouble| panic!("{}: {trouble}", camera.name));
+        let truth = truth(&gait);
+        let parts = [
+            (measured.forward, truth.forward),
+            (measured.left, truth.left),
+            (measured.turn, truth.turn),
+        ];
+        let [ahead, left, turn] = parts.map(|(part, truth)| (part.mean - truth, part.spread));
+        println!(
+            "{:<42} {:+.3} {:.3}   {:+.3} {:.3}   {:+.3} {:.3}",
+            camera.name, ahead.0, ahead.1, left.0, left.1, turn.0, turn.1
+        );
+        for ((error, spread), largest) in [ahead, left, turn].into_iter().zip(LARGEST) {
+            assert!(error.abs() < largest && spread < largest, "{}", camera.name);
+        }
+    }
+}

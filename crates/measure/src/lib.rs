@@ -1,0 +1,18 @@
+//! A measured gait beside its prediction, for the program `lizard` and for the page.
+//!
+//! A film tells how far the robot goes in a cycle; by itself that says little. [`expected`] is the path that a gait should take,
+//! which the film is compared with, and [`Report`] sets both side by side, as a table, as JSON or as CSV. [`Paper::sheet`] is the sheet
+//! of tags that a film has to show, and [`height_of_board`] where its card lies. The crate reads no file and prints nothing.
+//!
+//! # When not to use it
+//! For a path without a prediction, `lizard_film` is enough.
+
+mod board;
+mod expected;
+mod report;
+mod sheet;
+
+pub use board::height_of_board;
+pub use expected::expected;
+pub use report::Report;
+pub use sheet::Paper;

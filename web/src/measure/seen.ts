@@ -1,0 +1,91 @@
+// The tags of the last pictures: which are missing, where the robot is, and how it went there. Lengths are those of the
+// picture, with the floor's tags as the scale: near enough to say that the robot is about to leave, not to measure it.
+import type { Pixel, Sight, Tag } from './question';
+
+/** Names of the tags by their ids. */
+const NAMES = ['the left tag of strip 1', 'the right tag of strip 1', 'the left tag of strip 2', 'the right tag of strip 2', 'the tag on the deck'];
+const DECK = 4;
+/** Edge of a tag on the floor, mm. */
+const EDGE = 50;
+/** Distance beyond the floor's tags, and from the picture's edge, at which the robot is near the end, mm. */
+const NEAR = 50;
+const FROM_EDGE = 150;
+/** Time over which the rate of pictures is counted, ms. */
+const RECENT = 2000;
+/** Pictures without a tag after which it counts as hidden. */
+const MISSED = 3;
+
+const minus = (a: Pixel, b: Pixel): Pixel => [a[0] - b[0], a[1] - b[1]];
+const length = ([x, y]: Pixel) => Math.hypot(x, y);
+const mean = (points: Pixel[]): Pixel => [0, 1].map((i) => points.reduce((sum, point) => sum + (point[i] ?? 0), 0) / points.length) as Pixel;
+
+export class Seen {
+  size: [number, number] = [1, 1];
+  /** The tags of the last picture. */
+  tags: Tag[] = [];
+  /** Middles of the deck's tag. */
+  path: Pixel[] = [];
+  /** Time that the last picture took, ms. */
+  ms = 0;
+  private readonly floor: (Tag | undefined)[] = [];
+  private readonly missed = NAMES.map(() => MISSED);
+  private readonly times: number[] = [];
+
+  take({ tags, size, ms }: Sight): void {
+    Object.assign(this, { tags, size, ms });
+    for (const id of NAMES.keys()) this.missed[id] = tags.some((tag) => tag.id === id) ? 0 : (this.missed[id] ?? 0) + 1;
+    for (const tag of tags) if (tag.id !== DECK) this.floor[tag.id] = tag;
+    if (this.deck) this.path.push(mean(this.deck.corners));
+    this.times.push(performance.now());
+    while ((this.times[0] ?? 0) < performance.now() - RECENT) this.times.shift();
+  }
+
+  /** Pictures in a second. */
+  get rate(): number {
+    const [first, last] = [this.times[0], this.times.at(-1)];
+    return first === undefined || last === undefined || last === first ? 0 : (1000 * (this.times.length - 1)) / (last - first);
+  }
+
+  get deck(): Tag | undefined {
+    return this.tags.find(({ id }) => id === DECK);
+  }
+
+  /** Direction of the robot's head in the picture. */
+  get heading(): Pixel | null {
+    if (!this.deck) return null;
+    const [a, b, c, d] = this.deck.corners;
+    return minus(mean([a, b]), mean([c, d]));
+  }
+
+  /** The tags that are not seen, as a sentence; empty if all are. */
+  get trouble(): string {
+    const hidden = NAMES.filter((_, id) => (this.missed[id] ?? 0) >= MISSED);
+    if (hidden.length === 0) return '';
+    if (hidden.length === NAMES.length) return 'No tag of the sheet is seen: film from above, near enough and in even light, and not mirrored.';
+    const last = hidden.pop() ?? '';
+    return `Not seen: ${hidden.length > 0 ? `${hidden.join(', ')} and ${last}` : last}.`;
+  }
+
+  /** The way of the deck's tag to the middle of the floor's, mm: ahead, and to the side; null if it is unknown. */
+  get back(): { ahead: number; aside: number; isNear: boolean } | null {
+    const { heading, deck, size } = this;
+    const floor = this.floor.filter((tag) => tag !== undefined);
+    if (!heading || !deck || floor.length === 0) return null;
+    const middles = floor.map(({ corners }) => mean(corners));
+    const edges = floor.map(({ corners }) => length(minus(corners[0], corners[1])));
+    const scale = EDGE / (edges.reduce((sum, edge) => sum + edge, 0) / edges.length);
+    const [at, middle] = [mean(deck.corners), mean(middles)];
+    const way = minus(middle, at);
+    const far = length(heading);
+    const ahead = ((way[0] * heading[0] + way[1] * heading[1]) / far) * scale;
+    const aside = ((way[0] * heading[1] - way[1] * heading[0]) / far) * scale;
+    const reach = Math.max(...middles.map((each) => length(minus(each, middle)))) * scale;
+    const edge = Math.min(at[0], at[1], size[0] - at[0], size[1] - at[1]) * scale;
+    return { ahead, aside, isNear: Math.hypot(ahead, aside) > reach + NEAR || edge < FROM_EDGE };
+  }
+
+  /** Forgets the path. */
+  clear(): void {
+    this.path = [];
+  }
+}

@@ -1,0 +1,123 @@
+// Pictures from a camera or from a film file, each with its time on the film's clock.
+import { messageOf } from '../trouble';
+
+/** Longest list of a film file's pictures that wait to be looked at. */
+const LONGEST = 4;
+const CAMERA = { video: { facingMode: 'environment', width: { ideal: 1280 }, height: { ideal: 720 }, frameRate: { ideal: 30 } }, audio: false };
+
+/** Takes a picture and its time, s; resolves when it has been looked at. */
+type Take = (picture: VideoFrame | ImageBitmap, seconds: number) => Promise<void>;
+
+export class Source {
+  private stream: MediaStream | null = null;
+  /** Number of the beginnings so far: a picture of an earlier one is dropped. */
+  private begun = 0;
+  private owed = 0;
+  /** The page's time less the film's, s; the delay of a picture makes it larger. */
+  private ahead = Infinity;
+
+  constructor(
+    private readonly video: HTMLVideoElement,
+    private readonly take: Take,
+  ) {}
+
+  get isCamera(): boolean {
+    return this.stream !== null;
+  }
+
+  /** The present time on the film's clock, s. */
+  get now(): number {
+    return performance.now() / 1000 - this.ahead;
+  }
+
+  /** Opens the rear camera; `onEnd` is called if it goes away. Throws a message for the user. */
+  async camera(onEnd: () => void): Promise<void> {
+    this.stop();
+    const { begun } = this;
+    const { mediaDevices } = navigator as { mediaDevices?: MediaDevices };
+    if (!mediaDevices) throw new Error('This page may not use a camera: open it by an address that begins with https. A film file works here, too.');
+    const stream = await mediaDevices.getUserMedia(CAMERA).catch((error: unknown) => {
+      throw new Error(refusal(error));
+    });
+    if (this.begun !== begun) {
+      for (const track of stream.getTracks()) track.stop();
+      return;
+    }
+    this.stream = stream;
+    stream.getVideoTracks()[0]?.addEventListener('ended', onEnd);
+    this.video.srcObject = stream;
+    this.follow(1);
+    await this.video.play();
+  }
+
+  /** Plays a film file; resolves at its end. Throws a message for the user. */
+  async file(file: File): Promise<void> {
+    this.stop();
+    const { video, begun } = this;
+    const address = URL.createObjectURL(file);
+    try {
+      const ended = new Promise<void>((done, fail) => {
+        video.onended = () => done();
+        video.onerror = () => fail(new Error(`${file.name} is no film that this browser can play; MP4 or WebM with H.264 or VP9 will do.`));
+        video.onemptied = () => this.begun !== begun && done();
+      });
+      video.src = address;
+      this.follow(LONGEST);
+      await Promise.race([video.play().then(() => ended), ended]);
+      while (this.owed > 0 && this.begun === begun) await new Promise((later) => setTimeout(later, 20));
+    } finally {
+      URL.revokeObjectURL(address);
+    }
+  }
+
+  /** Switches the camera off, or leaves the film. */
+  stop(): void {
+    this.begun += 1;
+    this.ahead = Infinity;
+    for (const track of this.stream?.getTracks() ?? []) track.stop();
+    this.stream = null;
+    this.video.srcObject = null;
+    this.video.removeAttribute('src');
+    this.video.load();
+  }
+
+  /** Gives each picture to `take`, as long as fewer than `most` wait. A film file waits meanwhile, and a camera's picture is left out. */
+  private follow(most: number): void {
+    const { video, begun } = this;
+    this.owed = 0;
+    const next = (_: number, { mediaTime }: VideoFrameCallbackMetadata) => {
+      if (this.begun !== begun) return;
+      this.ahead = Math.min(this.ahead, performance.now() / 1000 - mediaTime);
+      video.requestVideoFrameCallback(next);
+      if (this.isCamera && this.owed >= most) return;
+      this.owed += 1;
+      if (!this.isCamera && this.owed >= most) video.pause();
+      void pictureOf(video)
+        .then((picture) => this.take(picture, mediaTime))
+        .finally(() => {
+          if (this.begun !== begun) return;
+          this.owed -= 1;
+          if (!this.isCamera && video.paused && !video.ended) void video.play();
+        });
+    };
+    video.requestVideoFrameCallback(next);
+  }
+}
+
+/** The picture that a video shows. A VideoFrame is not copied. */
+const pictureOf = async (video: HTMLVideoElement) => ('VideoFrame' in window ? new VideoFrame(video) : createImageBitmap(video));
+
+function refusal(error: unknown): string {
+  const { name } = error as { name?: string };
+  switch (name) {
+    case 'NotAllowedError':
+      return 'The browser was not allowed to use the camera. Allow it for this page in the browser\'s settings, or take a film and open it here.';
+    case 'NotFoundError':
+    case 'OverconstrainedError':
+      return 'This machine has no camera. Take a film with another one and open it here.';
+    case 'NotReadableError':
+      return 'Another program uses the camera. Close it and try again.';
+    default:
+      return `The camera cannot be opened: ${messageOf(error)}`;
+  }
+}

@@ -1,0 +1,357 @@
+// The room in which a camera measures the robot: what it sees, the protocol or a film of somebody, and the results.
+import { Film } from '../measure/film';
+import { Interrupted, Protocol, type Walk } from '../measure/protocol';
+import type { Results } from '../measure/question';
+import { Seen } from '../measure/seen';
+import { Source } from '../measure/source';
+import type { Description, GaitPrediction } from '../robot';
+import type { Session } from '../session';
+import { messageOf } from '../trouble';
+import { WORDS } from '../words';
+import { element } from './canvas';
+import { save } from './download';
+import { make } from './make';
+import { Measured } from './measured';
+import { numberInput, putNumber, type Range } from './number';
+import { OPENED } from './rooms';
+import { drawSight } from './sight';
+
+/** Least way of a cycle of a gait that goes somewhere: mm, deg. */
+const LEAST = { way: 3, turn: 2 };
+/** Cycles of a way back at most, and the largest part of it that may lead aside. */
+const BACK = 12;
+const ASIDE = 0.7;
+const NUMBERS: Record<string, Range & { value: number | null }> = {
+  speed: { min: 10, max: 100, step: 5, value: 100 },
+  cycles: { min: 4, max: 50, step: 1, value: 8 },
+  pause: { min: 0.5, max: 30, step: 0.5, value: 1 },
+  height: { min: 0, max: 500, step: 0.5, value: null },
+  ruler: { min: 85, max: 115, step: 0.1, value: 100 },
+};
+
+/** `record` keeps the camera's pictures until the user is done, `drive` while the page drives, `play` those of a film file. */
+type Doing = 'nothing' | 'record' | 'drive' | 'play' | 'compute';
+
+export class MeasureView {
+  private readonly room = element('room-measure');
+  private readonly view = element('measure-view');
+  private readonly driver = element<HTMLSelectElement>('measure-driver');
+  private readonly gait = element<HTMLSelectElement>('measure-gait');
+  private readonly boxes = element('measure-gaits');
+  private readonly startButton = element<HTMLButtonElement>('measure-start');
+  private readonly cameraButton = element<HTMLButtonElement>('measure-camera');
+  private readonly goButton = element<HTMLButtonElement>('measure-go');
+  private readonly values: Record<string, number | null> = {};
+  private readonly measured: Measured;
+  private readonly source: Source;
+  private film: Promise<Film> | null = null;
+  private seen = new Seen();
+  private doing: Doing = 'nothing';
+  private protocol: Protocol | null = null;
+  /** True while the robot is put back by hand, which does not belong to the film. */
+  private isPutBack = false;
+  /** True if the film of a file can be measured again. */
+  private hasFilm = false;
+  /** The gaits that the user has ticked or not. */
+  private readonly ticked = new Map<string, boolean>();
+
+  /** Takes the predictions of gaits so far, and a function that is true while hands are in the robot. */
+  constructor(
+    private readonly session: () => Session,
+    private readonly choices: () => { command: string; displacement: GaitPrediction }[],
+    private readonly isBarred: () => boolean,
+  ) {
+    this.measured = new Measured(() => this.session().description.name);
+    const video = this.view.querySelector('video');
+    if (!video) throw new Error('the page has no video for the camera');
+    this.source = new Source(video, (picture, seconds) => this.look(picture, seconds));
+    for (const [name, { value, ...range }] of Object.entries(NUMBERS)) {
+      const input = element<HTMLInputElement>(`measure-${name}`);
+      this.values[name] = value;
+      numberInput(input, range, (typed) => (this.values[name] = typed ?? value));
+      if (value !== null) putNumber(input, value);
+    }
+    this.cameraButton.addEventListener('click', () => void this.tell(() => this.toggleCamera()));
+    element('measure-file').addEventListener('change', ({ target }) => {
+      const file = (target as HTMLInputElement).files?.[0];
+      if (file) void this.tell(() => this.play(file));
+    });
+    element('measure-sheet').addEventListener('click', () => void this.tell(() => this.saveSheet()));
+    this.startButton.addEventListener('click', () => void this.tell(() => this.start()));
+    this.driver.addEventListener('change', () => this.show());
+    document.addEventListener(OPENED, () => this.room.hidden && this.leave());
+    this.show();
+  }
+
+  /** Takes another robot. */
+  showRobot({ gaits }: Description): void {
+    this.protocol?.end('another robot was chosen');
+    const moving = gaits.filter(({ moves }) => moves).map(({ command }) => command);
+    const chosen = this.gait.value;
+    this.gait.replaceChildren(...moving.map((command) => new Option(command)));
+    if (moving.includes(chosen)) this.gait.value = chosen;
+    this.boxes.replaceChildren(
+      make('legend', {}, 'Gaits'),
+      ...moving.map((command) => {
+        const box = make('input', { type: 'checkbox', name: command, onchange: () => this.ticked.set(command, box.checked) });
+        return make('label', { className: 'check' }, box, ` ${command}`);
+      }),
+    );
+    this.predicted();
+  }
+
+  /** Ticks the gaits that go somewhere, once that is known. */
+  predicted(): void {
+    const goes = new Map(this.choices().map(({ command, displacement: { forward, turn } }) => [command, Math.abs(forward ?? 0) >= LEAST.way || Math.abs(turn ?? 0) >= LEAST.turn]));
+    for (const box of this.boxes.querySelectorAll('input')) box.checked = this.ticked.get(box.name) ?? goes.get(box.name) ?? false;
+  }
+
+  /** Takes another link: a real robot is driven by the page. */
+  link(isReal: boolean): void {
+    this.driver.value = isReal ? 'page' : 'other';
+    this.show();
+  }
+
+  /** Takes a line that was sent to the robot, its lines, and its activity. */
+  sent(line: string): void {
+    this.protocol?.sent(line);
+  }
+
+  received(line: string): void {
+    this.protocol?.received(line);
+  }
+
+  did(activity: string): void {
+    this.protocol?.doing(activity);
+  }
+
+  /** Updates words some times a second. */
+  write(): void {
+    if (this.room.hidden || this.view.hidden) return;
+    const { rate, trouble, ms } = this.seen;
+    this.put('measure-rate', `${rate.toFixed(0)} pictures a second, each looked at in ${ms.toFixed(0)} ms`);
+    this.put('measure-seen', trouble || 'All five tags are seen.');
+    element('measure-seen').classList.toggle('refusal', trouble !== '');
+  }
+
+  private loaded(): Promise<Film> {
+    this.film ??= Film.load();
+    this.film.catch(() => (this.film = null));
+    return this.film;
+  }
+
+  /** Does what the user has asked for, and shows why it cannot be done. */
+  private async tell(act: () => Promise<void>): Promise<void> {
+    try {
+      await act();
+    } catch (error) {
+      this.say(messageOf(error), true);
+    } finally {
+      this.show();
+    }
+  }
+
+  private async toggleCamera(): Promise<void> {
+    if (this.source.isCamera) {
+      this.leave();
+      return this.say('');
+    }
+    this.say('Opening the camera…');
+    this.hasFilm = false;
+    await this.loaded();
+    await this.source.camera(() => {
+      this.leave();
+      this.say('The camera is gone.', true);
+      this.show();
+    });
+    this.seen = new Seen();
+    this.say('Place the camera so that all five tags are seen.');
+  }
+
+  /** Switches the camera off and ends what uses it. */
+  private leave(): void {
+    this.protocol?.end('the camera was switched off');
+    this.source.stop();
+    if (this.doing !== 'compute') this.doing = 'nothing';
+    this.show();
+  }
+
+  private async look(picture: VideoFrame | ImageBitmap, seconds: number): Promise<void> {
+    const film = await this.loaded();
+    const isKept = this.doing === 'record' || this.doing === 'play' || (this.doing === 'drive' && !this.isPutBack);
+    try {
+      this.seen.take(await film.look(picture, seconds, isKept));
+      drawSight(this.view.querySelector('canvas') as HTMLCanvasElement, this.seen);
+    } catch (error) {
+      this.say(messageOf(error), true);
+    }
+  }
+
+  private async play(file: File): Promise<void> {
+    this.leave();
+    const film = await this.loaded();
+    await film.clear();
+    this.seen = new Seen();
+    this.doing = 'play';
+    this.hasFilm = false;
+    this.say(`Reading ${file.name}…`);
+    this.show();
+    try {
+      await this.source.file(file);
+      if (this.doing !== 'play') return;
+      this.hasFilm = true;
+      await this.compute([this.whole]);
+    } finally {
+      this.doing = 'nothing';
+    }
+  }
+
+  /** The chosen gait in the whole film. */
+  private get whole(): Omit<Walk, 'during'> {
+    return { gait: this.gait.value, speed: this.values.speed ?? 100 };
+  }
+
+  /** Starts to record or to drive; ends that; or measures the file again. */
+  private async start(): Promise<void> {
+    if (this.doing === 'record') return this.compute([this.whole]);
+    if (this.doing === 'drive') return void this.session().ask(WORDS.stop);
+    if (this.hasFilm) return this.compute([this.whole]);
+    const isPage = this.driver.value === 'page';
+    const gaits = isPage ? this.drivable() : [];
+    await (await this.loaded()).clear();
+    this.seen.clear();
+    if (isPage) return this.drive(gaits);
+    this.doing = 'record';
+    this.say('Recording. Let the robot walk at least four cycles, then press Done.');
+  }
+
+  /** The gaits to drive. Throws the reason why none can be. */
+  private drivable(): string[] {
+    const session = this.session();
+    const gaits = [...this.boxes.querySelectorAll('input')].filter(({ checked }) => checked).map(({ name }) => name);
+    if (this.isBarred()) throw new Error('Hands may be in the robot: leave the set-up first.');
+    if (session.otherRobot) throw new Error(`The board has another robot, ${session.otherRobot.name}: choose that one, or write this one to the board.`);
+    if (!session.answers) throw new Error(`No robot answers from the ${session.link.name}.`);
+    if (gaits.length === 0) throw new Error('Tick at least one gait.');
+    return gaits;
+  }
+
+  private async drive(gaits: string[]): Promise<void> {
+    const session = this.session();
+    const { speed, cycles, pause } = this.values;
+    const protocol = new Protocol({
+      ask: async (line) => (await session.ask(line))?.ok === true,
+      now: () => this.source.now,
+      wait: (seconds) => session.link.wait(1000 * seconds),
+      inside: () => this.inside(protocol),
+      say: (text) => this.say(text),
+    });
+    this.protocol = protocol;
+    this.doing = 'drive';
+    this.show();
+    try {
+      await protocol.run({ gaits, cycles: cycles ?? 8, speed: speed ?? 100, pause: pause ?? 1 });
+      await this.compute(protocol.walks);
+    } catch (error) {
+      if (!(error instanceof Interrupted) || protocol.walks.length === 0) throw error;
+      await this.compute(protocol.walks);
+      this.say(`Ended before all gaits were walked: ${error.message}. Those before are measured.`, true);
+    } finally {
+      this.protocol = null;
+      this.isPutBack = false;
+      this.doing = 'nothing';
+      this.goButton.hidden = true;
+    }
+  }
+
+  /** Drives the robot back to the middle where a gait leads there, or else has it put there, if it is near the end of the sheet. */
+  private async inside(protocol: Protocol): Promise<void> {
+    for (let n = 0; this.seen.back?.isNear ?? !this.seen.deck; n++) {
+      const back = this.seen.back;
+      const far = back ? Math.hypot(back.ahead, back.aside) : 0;
+      const gait = back && Math.abs(back.ahead) > ASIDE * far ? this.toward(back.ahead) : null;
+      if (!back || !gait || n > 1) {
+        await this.putBack(protocol);
+        continue;
+      }
+      this.say(`Back to the middle by ${gait.command}`);
+      await protocol.walk(gait.command, Math.min(BACK, Math.max(1, Math.round(back.ahead / (gait.displacement.forward ?? Infinity)))));
+    }
+  }
+
+  /** The gait that goes farthest ahead, or back, and hardly turns. */
+  private toward(ahead: number): { command: string; displacement: GaitPrediction } | null {
+    const way = ({ displacement: { forward, turn } }: { displacement: GaitPrediction }) => (Math.abs(turn ?? Infinity) < LEAST.turn ? (forward ?? 0) * Math.sign(ahead) : 0);
+    const best = this.choices().reduce<ReturnType<typeof this.choices>[number] | null>((best, each) => (way(each) > (best ? way(best) : LEAST.way) ? each : best), null);
+    return best;
+  }
+
+  private async putBack(protocol: Protocol): Promise<void> {
+    this.isPutBack = true;
+    this.goButton.hidden = false;
+    this.say('The robot is near the end of what the camera measures: put it back to the middle of the strips, and press the button.', true);
+    await new Promise<void>((done) => {
+      this.goButton.onclick = () => done();
+      protocol.onEnd = done;
+    });
+    this.goButton.hidden = true;
+    this.isPutBack = false;
+  }
+
+  /** Measures walks in the film, and shows the results and what could not be measured. */
+  private async compute(walks: (Omit<Walk, 'during'> & Partial<Walk>)[]): Promise<void> {
+    this.doing = 'compute';
+    this.say('Measuring…');
+    this.show();
+    const film = await this.loaded();
+    const { toml } = this.session();
+    const { height = null, ruler } = this.values;
+    const [results, refusals]: [Results[], string[]] = [[], []];
+    for (const { gait, speed, during = null } of walks) {
+      try {
+        results.push(await film.measure({ toml, gait: this.nameOf(gait), speed, height, ruler: ruler ?? 100, during }));
+      } catch (error) {
+        refusals.push(`${gait}: ${messageOf(error)}.`);
+      }
+    }
+    this.doing = 'nothing';
+    this.measured.show(results);
+    this.say(refusals.join(' '), true);
+  }
+
+  /** The name of a gait in robot.toml by its command. */
+  private nameOf(command: string): string {
+    return this.session().description.gaits.find((gait) => gait.command === command)?.name ?? command;
+  }
+
+  private async saveSheet(): Promise<void> {
+    const isLetter = element<HTMLSelectElement>('measure-paper').value === 'letter';
+    save('sheet.pdf', [await (await this.loaded()).sheet(isLetter)], 'application/pdf');
+    this.say('sheet.pdf: print it at 100 % ("actual size"), then measure the line of 100 mm on it.');
+  }
+
+  /** Shows what can be done now. */
+  private show(): void {
+    const { doing, source, hasFilm } = this;
+    const isPage = this.driver.value === 'page' && !hasFilm;
+    this.view.hidden = !source.isCamera && doing !== 'play';
+    element('measure-rate').hidden = element('measure-seen').hidden = this.view.hidden;
+    this.cameraButton.setAttribute('aria-pressed', String(source.isCamera));
+    element('measure-one').hidden = isPage;
+    this.boxes.hidden = !isPage;
+    for (const label of this.room.querySelectorAll<HTMLElement>('[data-driver]')) label.hidden = !isPage;
+    this.startButton.textContent = doing === 'record' ? 'Done' : doing === 'drive' ? 'Stop' : hasFilm ? 'Measure again' : isPage ? 'Drive and measure' : 'Record';
+    this.startButton.disabled = doing === 'play' || doing === 'compute' || (!source.isCamera && !hasFilm);
+    this.driver.disabled = doing !== 'nothing';
+  }
+
+  private say(text: string, isTrouble = false): void {
+    this.put('measure-said', text);
+    element('measure-said').classList.toggle('refusal', isTrouble && text !== '');
+  }
+
+  private put(id: string, text: string): void {
+    const box = element(id);
+    if (box.textContent !== text) box.textContent = text;
+  }
+}

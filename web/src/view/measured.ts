@@ -1,0 +1,44 @@
+// The results of the room that measures: a table, and the same to keep, to share and to print.
+import { card, COLUMN_NAMES, csv, rows } from '../measure/card';
+import type { Results } from '../measure/question';
+import { element } from './canvas';
+import { save } from './download';
+import { table } from './make';
+
+/** Pixels of the PNG for each unit of the SVG. */
+const SHARP = 2;
+
+export class Measured {
+  private results: Results[] = [];
+
+  /** Takes a function that returns the robot's name. */
+  constructor(private readonly name: () => string) {
+    const on = (id: string, act: () => void) => element(`measured-${id}`).addEventListener('click', act);
+    on('svg', () => save('measured.svg', [this.card], 'image/svg+xml'));
+    on('png', () => void this.savePng());
+    on('csv', () => save('measured.csv', [csv(this.results)], 'text/csv'));
+    on('json', () => save('measured.json', [JSON.stringify(this.results.map(({ report }) => report), null, 2)], 'application/json'));
+    on('print', () => print());
+  }
+
+  /** Shows the results of some gaits. */
+  show(results: Results[]): void {
+    this.results = results;
+    element('measure-results').hidden = results.length === 0;
+    element('measured').replaceChildren(table('A cycle as measured', COLUMN_NAMES, rows(results)));
+  }
+
+  private get card(): string {
+    return card(this.name(), this.results);
+  }
+
+  private async savePng(): Promise<void> {
+    const image = new Image();
+    image.src = `data:image/svg+xml,${encodeURIComponent(this.card)}`;
+    await image.decode();
+    const canvas = Object.assign(document.createElement('canvas'), { width: SHARP * image.width, height: SHARP * image.height });
+    canvas.getContext('2d')?.drawImage(image, 0, 0, canvas.width, canvas.height);
+    const blob = await new Promise<Blob | null>((made) => canvas.toBlob(made));
+    if (blob) save('measured.png', [blob], 'image/png');
+  }
+}

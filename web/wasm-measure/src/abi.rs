@@ -1,0 +1,110 @@
+//! The interface to JavaScript: a plain C interface, as that of the page's first module.
+//!
+//! The page allocates an input (`measure_input`), writes a picture or a question in JSON there, calls a function, and reads
+//! the answer at `measure_output`, `measure_output_length` bytes: JSON, or a PDF.
+#![allow(unsafe_code)] // `no_mangle` needs it; nothing here is unsafe to call.
+
+use std::cell::RefCell;
+
+use lizard_measure::Paper;
+use serde::{Deserialize, Serialize};
+
+use crate::camera::Asked;
+use crate::camera::{Camera, Refused};
+
+/// A question of the page, with its arguments.
+#[derive(Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Question {
+    /// Begins a new film.
+    Clear,
+    /// [`Camera::measure`].
+    Measure(Asked),
+    /// [`Camera::height`] of a robot.toml.
+    Height(String),
+}
+
+#[derive(Default)]
+struct Door {
+    camera: Camera,
+    input: Vec<u8>,
+    output: Vec<u8>,
+}
+
+thread_local! {
+    static DOOR: RefCell<Door> = RefCell::default();
+}
+
+/// An answer or a refusal, written as JSON without a tag.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Either<A, B> {
+    Well(A),
+    Refused(B),
+}
+
+fn json<T: Serialize>(result: Result<T, Refused>) -> Vec<u8> {
+    let either = match result {
+        Ok(well) => Either::Well(well),
+        Err(refused) => Either::Refused(refused),
+    };
+    serde_json::to_vec(&either).unwrap_or_else(|_| b"null".to_vec())
+}
+
+/// Allocates an input of so many bytes and returns its address. Its bytes are those of the input before where
+/// that was as long, as of a picture.
+#[unsafe(no_mangle)]
+pub extern "C" fn measure_input(length: usize) -> *mut u8 {
+    DOOR.with_borrow_mut(|door| {
+        door.input.resize(length, 0);
+        door.input.as_mut_ptr()
+    })
+}
+
+/// The address of the last answer.
+#[unsafe(no_mangle)]
+pub extern "C" fn measure_output() -> *const u8 {
+    DOOR.with_borrow(|door| door.output.as_ptr())
+}
+
+/// The length of the last answer, bytes.
+#[unsafe(no_mangle)]
+pub extern "C" fn measure_output_length() -> usize {
+    DOOR.with_borrow(|door| door.output.len())
+}
+
+/// Answers with the tags of the picture in the input, by [`Camera::add`] if it is to be kept, or else by
+/// [`Camera::look`].
+#[unsafe(no_mangle)]
+pub extern "C" fn measure_picture(width: usize, height: usize, seconds: f64, is_kept: bool) {
+    let size = [width, height];
+    DOOR.with_borrow_mut(|door| {
+        door.output = json(match is_kept {
+            true => door.camera.add(size, &door.input, seconds),
+            false => door.camera.look(size, &door.input),
+        });
+    });
+}
+
+/// Answers the question in the input; `null` if it is unknown.
+#[unsafe(no_mangle)]
+pub extern "C" fn measure_ask() {
+    DOOR.with_borrow_mut(|door| {
+        door.output = match serde_json::from_slice(&door.input) {
+            Ok(Question::Measure(asked)) => json(door.camera.measure(&asked)),
+            Ok(Question::Height(toml)) => json(Camera::height(&toml)),
+            Ok(Question::Clear) => {
+                door.camera = Camera::default();
+                json(Ok(()))
+            }
+            Err(_) => b"null".to_vec(),
+        };
+    });
+}
+
+/// Answers with the sheet of tags as PDF, for A4 or for paper of 11 x 8.5 inches.
+#[unsafe(no_mangle)]
+pub extern "C" fn measure_sheet(is_letter: bool) {
+    let paper = if is_letter { Paper::Letter } else { Paper::A4 };
+    DOOR.with_borrow_mut(|door| door.output = paper.sheet());
+}

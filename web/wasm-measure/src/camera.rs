@@ -1,0 +1,154 @@
+//! The film that the page takes, and the reports of the gaits in it.
+
+use lizard_film::{Film, Picture, Setup, Tag, Watched, sheet};
+use lizard_measure::{Report, expected, height_of_board};
+use lizard_robot::Robot;
+use serde::{Deserialize, Serialize};
+
+/// A refusal: the reason as a sentence.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Refused {
+    /// The reason.
+    pub refused: String,
+}
+
+impl Refused {
+    fn of(reason: impl ToString) -> Self {
+        Self {
+            refused: reason.to_string(),
+        }
+    }
+}
+
+/// A tag in a picture.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TagEntry {
+    /// Its id on the sheet.
+    pub id: usize,
+    /// Its corners, px: top left, top right, bottom right, bottom left, as it is printed.
+    pub corners: [[f64; 2]; 4],
+}
+
+/// A gait that the robot walked in the film.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct Asked {
+    /// The robot.toml.
+    pub toml: String,
+    /// The gait's name.
+    pub gait: String,
+    /// The pace, percent.
+    pub speed: u8,
+    /// Height of the deck's tag above the floor, mm; `None` for that of the board.
+    pub height: Option<f64>,
+    /// Length of the line that should be 100 mm long, mm.
+    pub ruler: f64,
+    /// Begin and end of the walk on the film's clock, s; `None` for the whole film.
+    pub during: Option<[f64; 2]>,
+}
+
+/// The report of a gait in its three forms.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Results {
+    /// As `lizard measure --json` writes it.
+    pub report: serde_json::Value,
+    /// As a table.
+    pub text: String,
+    /// The path as CSV.
+    pub path: String,
+}
+
+/// A film that is being taken.
+#[derive(Debug, Default)]
+pub struct Camera {
+    film: Film,
+    /// The path in the film, until it has another picture or other measures.
+    watched: Option<(Setup, Watched)>,
+}
+
+impl Camera {
+    /// Finds the tags of a picture, four bytes for each pixel.
+    ///
+    /// # Errors
+    /// Fails if it has another size.
+    pub fn look(&self, size: [usize; 2], pixels: &[u8]) -> Result<Vec<TagEntry>, Refused> {
+        let tags = lizard_film::read(&picture(size, pixels)?).into_iter();
+        Ok(tags
+            .map(|Tag { id, corners }| TagEntry { id, corners })
+            .collect())
+    }
+
+    /// Adds the next picture to the film, taken at this time, s, and finds its tags.
+    ///
+    /// # Errors
+    /// Fails if it does not belong to the film, or shows a tag twice.
+    pub fn add(
+        &mut self,
+        size: [usize; 2],
+        pixels: &[u8],
+        seconds: f64,
+    ) -> Result<Vec<TagEntry>, Refused> {
+        let picture = picture(size, pixels)?;
+        self.watched = None;
+        let tags = self.film.add(seconds, &picture).map_err(Refused::of)?;
+        let entry = |(id, corners): (usize, &Option<_>)| {
+            Some(TagEntry {
+                id,
+                corners: (*corners)?,
+            })
+        };
+        Ok(tags.iter().enumerate().filter_map(entry).collect())
+    }
+
+    /// Measures a gait in the film.
+    ///
+    /// # Errors
+    /// Fails if the film does not show what is needed, or the robot has no such gait.
+    pub fn measure(&mut self, asked: &Asked) -> Result<Results, Refused> {
+        let robot = Robot::parse(&asked.toml).map_err(Refused::of)?;
+        let gait = robot.gait(&asked.gait).filter(|gait| gait.moves());
+        let gait =
+            gait.ok_or_else(|| Refused::of(format!("no gait `{}` moves this robot", asked.gait)))?;
+        let setup = Setup {
+            scale: asked.ruler / sheet::RULER,
+            height: asked.height.unwrap_or_else(|| height_of_board(&robot)),
+        };
+        let expected = expected(&robot, gait, f64::from(asked.speed) / 100.0);
+        let watched = match self.watched.take() {
+            Some((with, watched)) if with == setup => watched,
+            _ => self.film.watch(setup).map_err(Refused::of)?,
+        };
+        let (_, watched) = self.watched.insert((setup, watched));
+        let measured = watched
+            .measure(&expected, asked.during)
+            .map_err(Refused::of)?;
+        let report = Report::new(
+            &robot,
+            gait,
+            asked.speed,
+            setup,
+            &expected,
+            watched,
+            &measured,
+        );
+        Ok(Results {
+            report: serde_json::to_value(&report).map_err(Refused::of)?,
+            text: report.text(),
+            path: report.path(),
+        })
+    }
+
+    /// The height of a robot's board, where the card lies, mm.
+    ///
+    /// # Errors
+    /// Fails for a robot.toml that is refused.
+    pub fn height(toml: &str) -> Result<f64, Refused> {
+        Robot::parse(toml)
+            .map(|robot| height_of_board(&robot))
+            .map_err(Refused::of)
+    }
+}
+
+fn picture([width, height]: [usize; 2], pixels: &[u8]) -> Result<Picture, Refused> {
+    Picture::of_colours(width, height, pixels)
+        .ok_or_else(|| Refused::of("the picture is not whole"))
+}
