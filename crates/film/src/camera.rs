@@ -40,6 +40,16 @@ impl Camera {
         ]
     }
 
+    /// The direction away from the floor, in the camera's own axes: right, down, ahead.
+    pub(crate) fn up(&self) -> Vector3<f64> {
+        self.rotation.column(2).into_owned()
+    }
+
+    /// A direction of the camera's own axes, in those of the floor.
+    pub(crate) fn on_floor(&self, direction: &Vector3<f64>) -> Vector3<f64> {
+        self.rotation.tr_mul(direction)
+    }
+
     /// The camera's height above the floor, mm, and its tilt from straight down, deg.
     pub(crate) fn stand(&self) -> [f64; 2] {
         let at = -(self.rotation.transpose() * self.shift);

@@ -64,7 +64,7 @@ pub(crate) fn of(walks: &[Cycles]) -> Mean {
 }
 
 /// The factor on an error whose spread is known from a few degrees of freedom.
-fn widening(freedom: usize) -> f64 {
+pub(crate) fn widening(freedom: usize) -> f64 {
     let (mut low, mut high) = (1.0, 100.0);
     for _ in 0..60 {
         let middle = (low + high) / 2.0;

@@ -2,6 +2,7 @@
 
 use lizard_contact::Travel;
 
+use crate::camera::Camera;
 use crate::cycles::{self, Cycles};
 use crate::frame::Frame;
 use crate::gait::Gait;
@@ -94,6 +95,12 @@ impl Watched {
     /// Finds which of some gaits the robot walks between two times, s.
     pub fn likeness(&self, gaits: &[Gait], during: [f64; 2]) -> Likeness {
         likeness::of(self.part(Some(during)), gaits)
+    }
+
+    /// The camera in each picture of the path.
+    pub(crate) fn cameras(&self) -> impl Iterator<Item = Camera> {
+        let camera = |frame: &Frame| frame.camera(&self.scene, self.sight.moved);
+        self.frames.iter().filter_map(camera)
     }
 
     /// The path between two times, or all of it.

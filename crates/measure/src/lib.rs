@@ -14,5 +14,5 @@ mod sheet;
 
 pub use board::height_of_board;
 pub use expected::expected;
-pub use report::Report;
+pub use report::{AGREES, Report};
 pub use sheet::Paper;

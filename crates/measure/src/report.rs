@@ -7,7 +7,7 @@ use lizard_robot::{CheckedGait, Prediction, Robot, Travel, UNDECIDED};
 use serde::Serialize;
 
 /// Distance from the prediction, in standard errors, to which a measurement agrees with it.
-const AGREES: f64 = 2.0;
+pub const AGREES: f64 = 2.0;
 
 /// The result under the names of `--json`.
 #[derive(Debug, Serialize)]

@@ -3,7 +3,10 @@
 mod accuracy;
 mod cameras;
 mod render;
+mod servo;
 mod several;
+mod slide;
 mod studio;
 mod troubles;
+mod turns;
 mod walk;

@@ -18,6 +18,8 @@ const PAPER: f64 = 205.0;
 const BODY: [f64; 2] = [75.0, 105.0];
 const BODY_GREY: f64 = 70.0;
 const BODY_HEIGHT: f64 = 55.0;
+/// Edge about which a board is tilted, mm: its other end is lifted.
+const EDGE: f64 = -200.0;
 /// Samples of a pixel to each side, and of the time that the shutter is open.
 const SAMPLES: usize = 3;
 const TIMES: usize = 3;
@@ -40,6 +42,8 @@ pub struct Studio {
     pub roll: f64,
     /// The point of the floor on the camera's axis, mm.
     pub aim: [f64; 2],
+    /// Tilt of the board with strips and robot about its edge at x = [`EDGE`], deg.
+    pub board: f64,
     /// Places of the strips' middles.
     pub strips: [Spot; 2],
     /// Printed mm for each mm, along and across.
@@ -105,6 +109,7 @@ impl Studio {
             direction: between(-180.0, 180.0),
             roll: between(-20.0, 20.0),
             aim: [between(-25.0, 25.0), between(-25.0, 25.0)],
+            board: 0.0,
             strips: [
                 [
                     between(-10.0, 10.0),
@@ -147,7 +152,16 @@ impl Studio {
         let down = cross(ahead, level);
         let (sin, cos) = self.roll.to_radians().sin_cos();
         let right = [0, 1, 2].map(|i| cos * level[i] + sin * down[i]);
-        (eye, [right, cross(ahead, right), ahead])
+        // The camera as the board sees it.
+        let [x, y, z] = self.on_board([eye[0] - EDGE, eye[1], eye[2]]);
+        let axes = [right, cross(ahead, right), ahead].map(|axis| self.on_board(axis));
+        ([x + EDGE, y, z], axes)
+    }
+
+    /// A direction of the room as the tilted board sees it.
+    fn on_board(&self, [x, y, z]: Vector) -> Vector {
+        let (sin, cos) = self.board.to_radians().sin_cos();
+        [x * cos + z * sin, y, z * cos - x * sin]
     }
 
     fn view(&self) -> View {

@@ -102,6 +102,9 @@ pub fn calibrate(args: With<drive::console::calibrate::Args, OfCalibrate>) -> Re
 #[derive(Subcommand)]
 pub enum OfMeasure {
     Sheet(crate::measure::SheetArgs),
+    Servo(crate::measure::ServoArgs),
+    Steps(crate::measure::StepsArgs),
+    Slope(crate::measure::SlopeArgs),
 }
 
 /// Runs `lizard measure` or a command below it.
@@ -109,6 +112,9 @@ pub enum OfMeasure {
 pub fn measure(args: With<crate::measure::Args, OfMeasure>) -> Result<(), Failure> {
     match args.below {
         Some(OfMeasure::Sheet(args)) => crate::measure::write_sheet(args),
+        Some(OfMeasure::Servo(args)) => crate::measure::measure_servo(args),
+        Some(OfMeasure::Steps(args)) => crate::measure::print_steps(args),
+        Some(OfMeasure::Slope(args)) => crate::measure::measure_slope(args),
         None => crate::measure::run(args.own),
     }
 }

@@ -57,7 +57,7 @@ pub struct Args {
     robot: RobotFile,
 }
 
-fn number(word: &str, [low, high]: [f64; 2], meaning: &str) -> Result<f64, String> {
+pub(super) fn number(word: &str, [low, high]: [f64; 2], meaning: &str) -> Result<f64, String> {
     let number = word
         .parse()
         .ok()
@@ -65,15 +65,15 @@ fn number(word: &str, [low, high]: [f64; 2], meaning: &str) -> Result<f64, Strin
     number.ok_or_else(|| format!("{meaning}, between {low} and {high}"))
 }
 
-fn rate(word: &str) -> Result<f64, String> {
+pub(super) fn rate(word: &str) -> Result<f64, String> {
     number(word, [1.0, 1000.0], "it is pictures in a second")
 }
 
-fn height(word: &str) -> Result<f64, String> {
+pub(super) fn height(word: &str) -> Result<f64, String> {
     number(word, [0.0, 500.0], "it is mm")
 }
 
-fn ruler(word: &str) -> Result<f64, String> {
+pub(super) fn ruler(word: &str) -> Result<f64, String> {
     number(
         word,
         RULER,
@@ -114,7 +114,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 }
 
 /// Reads a film.
-fn read(
+pub(super) fn read(
     path: &Path,
     rate: Option<f64>,
     about: impl Fn(Trouble) -> Failure,

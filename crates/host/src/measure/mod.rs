@@ -1,10 +1,18 @@
-//! Measure the real robot: a sheet of tags to print, and the way of a gait in a film.
+//! Measure the real robot in films: the way of a gait, a servo in a jig, friction on a slope; and the sheet of tags
+//! that they show.
 
 mod command;
+mod figures;
 mod frames;
 mod grey;
+mod servo;
 mod sheet;
+mod slope;
+mod steps;
 mod through_ffmpeg;
 
 pub use command::{Args, run};
+pub use servo::{ServoArgs, measure_servo};
 pub use sheet::{SheetArgs, write_sheet};
+pub use slope::{SlopeArgs, measure_slope};
+pub use steps::{StepsArgs, print_steps};

@@ -1,0 +1,107 @@
+//! The steps that a servo in the jig is ordered to make, one home for who sends them and who measures them.
+//!
+//! A servo shows its rate only if its pulse jumps faster than it turns. A move to a pose is too smooth for that, but a
+//! direction that is reversed (`dir`) takes the pulse to the other side of neutral at the slew limit.
+//! Then the same angle is approached from both sides, and at the end small steps grow until the servo notices them.
+
+use std::ops::Range;
+
+/// Time from one order to the next, s.
+pub const PAUSE: f64 = 1.0;
+/// Half of a large step, deg from neutral.
+const SIDE: f64 = 30.0;
+/// Number of large steps.
+const FLIPS: usize = 8;
+/// The visits: deg from neutral, and true if the direction is reversed. In steps of 15 deg they go from one side to the other and
+/// back, twice. The direction changes at neutral, where that moves nothing.
+#[rustfmt::skip]
+const VISITS: [(f64, bool); 19] = [
+    (15.0, false), (0.0, false),
+    (0.0, true), (15.0, true), (30.0, true), (15.0, true), (0.0, true),
+    (0.0, false), (15.0, false), (30.0, false), (15.0, false), (0.0, false),
+    (0.0, true), (15.0, true), (30.0, true), (15.0, true), (0.0, true),
+    (0.0, false), (15.0, false),
+];
+/// The small steps, deg, there and back from the last visit.
+const SWINGS: [f64; 10] = [0.2, 0.4, 0.6, 0.8, 1.0, 1.25, 1.6, 2.0, 2.5, 3.0];
+
+/// An order to the servo.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Order {
+    /// Angle of the pose from neutral, deg, counter-clockwise positive.
+    pub sweep: f64,
+    /// True while the servo's direction is the opposite of robot.toml's.
+    pub is_reversed: bool,
+}
+
+impl Order {
+    /// The angle that the pulse stands for by robot.toml, deg from neutral.
+    pub fn asked(&self) -> f64 {
+        match self.is_reversed {
+            true => -self.sweep,
+            false => self.sweep,
+        }
+    }
+}
+
+/// All orders; the poses are counter-clockwise from neutral, or clockwise if `way` is -1.
+pub fn orders(way: f64) -> Vec<Order> {
+    let order = |sweep: f64, is_reversed| Order {
+        sweep: way * sweep,
+        is_reversed,
+    };
+    let mut all = vec![order(0.0, false), order(SIDE, false)];
+    all.extend((0..FLIPS).map(|i| order(SIDE, i % 2 == 0)));
+    all.extend(VISITS.map(|(sweep, is_reversed)| order(sweep, is_reversed)));
+    let (rest, _) = VISITS[VISITS.len() - 1];
+    for swing in SWINGS {
+        all.extend([order(rest - swing, false), order(rest, false)]);
+    }
+    all
+}
+
+/// The orders of the large steps.
+pub(crate) fn flips() -> Range<usize> {
+    2..2 + FLIPS
+}
+
+/// The orders of the visits.
+pub(crate) fn visits() -> Range<usize> {
+    flips().end..flips().end + VISITS.len()
+}
+
+/// The orders of the small steps.
+pub(crate) fn swings() -> Range<usize> {
+    let begin = visits().end;
+    begin..begin + 2 * SWINGS.len()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn large_steps_are_of_60_deg_to_both_sides_and_small_ones_go_there_and_back() {
+        let orders = orders(-1.0);
+        let step = |i: usize| orders[i].asked() - orders[i - 1].asked();
+        for i in flips() {
+            let side = if i % 2 == 0 { 1.0 } else { -1.0 };
+            assert_eq!(step(i), 2.0 * SIDE * side, "{i}");
+        }
+        assert_eq!(swings().end, orders.len());
+        for i in swings().step_by(2) {
+            assert!(
+                (step(i) + step(i + 1)).abs() < 1e-12 && step(i) > 0.0,
+                "{i}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_last_visit_comes_from_the_side_from_which_small_steps_turn_back() {
+        let (orders, swing) = (orders(1.0), swings().start);
+        let last = orders[swing - 1].asked() - orders[swing - 2].asked();
+        let first = orders[swing].asked() - orders[swing - 1].asked();
+        assert!(last * first < 0.0);
+    }
+}

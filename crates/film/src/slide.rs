@@ -1,0 +1,317 @@
+//! The friction of pads on a board that is tilted until the robot slides.
+//!
+//! The camera stands still, and the board with the strips is lifted at one end. In the first second it is level, so the
+//! normal of the board as the camera sees it then is the vertical, and every later picture shows the tilt by the camera's
+//! pose. A robot that begins to slide shows its static friction, the tangent of the tilt. How it speeds up then shows the friction
+//! of sliding pads, which is the one of the contact model: its acceleration is `g (sin tilt - friction cos tilt)`.
+
+use lizard_contact::GRAVITY;
+use nalgebra::Vector3;
+
+use crate::figure::Figure;
+use crate::least;
+use crate::mean::widening;
+use crate::path::Seen;
+use crate::watched::Watched;
+
+/// Time at the beginning in which the board lies level, s.
+const LEVEL: f64 = 1.0;
+/// Largest change of the tilt meanwhile, deg.
+const MOVED: f64 = 1.0;
+/// Standard error of "level", and of a tilt by the camera, deg.
+const LEVEL_SIGMA: f64 = 0.3;
+const TILT_SIGMA: f64 = 0.2;
+/// Slides, mm: the least one that counts, and the part of it by which friction is found.
+const SLID: f64 = 15.0;
+const PART: [f64; 2] = [1.0, 60.0];
+/// Least number of pictures of a slide.
+const LEAST: usize = 6;
+/// Largest angle between the slide and the way down, and between the robot and the slide, deg.
+const ASIDE: f64 = 30.0;
+/// Largest rate at which the board is lifted, deg/s.
+const LIFTED: f64 = 15.0;
+/// Time around a picture in which its tilt is averaged, s.
+const AROUND: f64 = 0.15;
+
+/// A reason why a film of a tilted board cannot be measured.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum SlideTrouble {
+    /// The board does not rest at the beginning.
+    #[error(
+        "the board tilts by {angle:.1} deg in the first second: begin the film with the board level and at rest"
+    )]
+    NotAtRest {
+        /// Change of its tilt, deg.
+        angle: f64,
+    },
+    /// The robot does not slide.
+    #[error(
+        "the robot did not slide: {slid:.1} mm at a tilt of up to {tilt:.1} deg; lift the board farther, and keep the \
+         camera where it is"
+    )]
+    NotSlid {
+        /// Largest distance, mm.
+        slid: f64,
+        /// Largest tilt, deg.
+        tilt: f64,
+    },
+    /// The robot does not slide down.
+    #[error(
+        "the robot slides {aside:.0} deg beside the way down: was it pushed, or the camera moved instead of the board?"
+    )]
+    NotDown {
+        /// Angle between its slide and the way down, deg.
+        aside: f64,
+    },
+    /// The robot lies across the slope.
+    #[error(
+        "the robot's head shows {aside:.0} deg away from the way down: put its head straight uphill or downhill"
+    )]
+    Across {
+        /// Angle between its head and the way down, deg.
+        aside: f64,
+    },
+    /// The board is lifted fast.
+    #[error("the board is lifted at {rate:.0} deg/s as the robot begins to slide: lift it slowly")]
+    Fast {
+        /// Rate, deg/s.
+        rate: f64,
+    },
+    /// Too few pictures of the slide.
+    #[error("the slide is in {pictures} pictures only: film more pictures a second, in more light")]
+    FewPictures {
+        /// Number of pictures.
+        pictures: usize,
+    },
+}
+
+/// A measured slide.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slide {
+    /// True if the robot slides head first.
+    pub is_ahead: bool,
+    /// Time at which it begins, s.
+    pub begin: f64,
+    /// Tilt at that time, deg.
+    pub tilt: Figure,
+    /// Coefficient of static friction.
+    pub resting: Figure,
+    /// Coefficient of friction while it slides.
+    pub sliding: Figure,
+}
+
+/// A picture: its time, the tilt in rad, the way down on the board, and the robot's place on it, mm.
+struct Moment {
+    seconds: f64,
+    tilt: f64,
+    down: [f64; 2],
+    at: [f64; 2],
+    heading: f64,
+}
+
+impl Slide {
+    /// Measures the first slide of a film.
+    ///
+    /// # Errors
+    /// Fails if the film does not show a robot that slides down a board.
+    pub fn of(watched: &Watched) -> Result<Self, SlideTrouble> {
+        let cameras: Vec<_> = watched.cameras().collect();
+        let first = watched.path.first().map_or(0.0, |seen| seen.seconds);
+        let is_level = |seen: &Seen| seen.seconds < first + LEVEL;
+        let level = watched
+            .path
+            .iter()
+            .take_while(|seen| is_level(seen))
+            .count();
+        let up = cameras[..level].iter().map(|camera| camera.up());
+        let vertical = up.sum::<Vector3<f64>>().normalize();
+        let moments: Vec<Moment> = watched
+            .path
+            .iter()
+            .zip(&cameras)
+            .map(|(seen, camera)| {
+                let up = camera.on_floor(&vertical);
+                Moment {
+                    seconds: seen.seconds,
+                    tilt: up.x.hypot(up.y).atan2(up.z),
+                    down: [-up.x, -up.y],
+                    at: [seen.place.forward, seen.place.left],
+                    heading: seen.place.heading,
+                }
+            })
+            .collect();
+        let most =
+            |moments: &[Moment]| moments.iter().map(|moment| moment.tilt).fold(0.0, f64::max);
+        let angle = most(&moments[..level]).to_degrees();
+        if angle > MOVED {
+            return Err(SlideTrouble::NotAtRest { angle });
+        }
+        let rest = mean(&moments[..level]);
+        let away = |moment: &Moment| (moment.at[0] - rest[0]).hypot(moment.at[1] - rest[1]);
+        let Some(slid) = moments.iter().position(|moment| away(moment) > SLID) else {
+            return Err(SlideTrouble::NotSlid {
+                slid: moments.iter().map(away).fold(0.0, f64::max),
+                tilt: most(&moments).to_degrees(),
+            });
+        };
+        let from = moments[..slid]
+            .iter()
+            .rposition(|moment| away(moment) < PART[0]);
+        let from = from.map_or(0, |at| at + 1);
+        let way = [0, 1].map(|i| moments[slid].at[i] - rest[i]);
+        check_ways(&moments[slid], way)?;
+        let length = way[0].hypot(way[1]);
+        let along = |moment: &Moment| {
+            (0..2)
+                .map(|i| (moment.at[i] - rest[i]) * way[i])
+                .sum::<f64>()
+                / length
+        };
+        let tilts = smooth(&moments);
+        // The end of the slide: it is far enough, or something stops it.
+        let mut to = slid;
+        let pace = |i: usize| {
+            (along(&moments[i]) - along(&moments[i - 1]))
+                / (moments[i].seconds - moments[i - 1].seconds)
+        };
+        while to + 1 < moments.len()
+            && along(&moments[to]) < PART[1]
+            && pace(to + 1) > 0.8 * pace(to)
+        {
+            to += 1;
+        }
+        let points: Vec<[f64; 3]> = (from..=to)
+            .map(|i| [moments[i].seconds, tilts[i], along(&moments[i])])
+            .collect();
+        let sliding = sliding(&points)?;
+        let (begin, error) = begin(&points, sliding.value, moments[from.max(1) - 1].seconds);
+        let near = |seconds: f64| {
+            let at = moments.partition_point(|moment| moment.seconds < seconds);
+            at.min(moments.len() - 1)
+        };
+        let (now, before) = (near(begin), near(begin - 2.0 * AROUND).saturating_sub(1));
+        let tilt = tilts[now].to_degrees();
+        let apart = moments[now].seconds - moments[before].seconds;
+        let rate = (tilt - tilts[before].to_degrees()) / apart.max(AROUND);
+        if rate > LIFTED {
+            return Err(SlideTrouble::Fast { rate });
+        }
+        let angle_error = LEVEL_SIGMA.hypot(TILT_SIGMA);
+        let tilt = Figure {
+            value: tilt,
+            error: angle_error.hypot(rate * error),
+        };
+        let resting = tilt.value.to_radians().tan();
+        let slope = 1.0 + resting * resting;
+        Ok(Self {
+            is_ahead: aside(moments[slid].heading, moments[slid].down) < 90.0,
+            begin,
+            tilt,
+            resting: Figure {
+                value: resting,
+                error: slope * tilt.error.to_radians(),
+            },
+            sliding: Figure {
+                value: sliding.value,
+                error: sliding.error.hypot(slope * angle_error.to_radians()),
+            },
+        })
+    }
+}
+
+/// Checks that the robot slides down, with head or tail first.
+fn check_ways(moment: &Moment, way: [f64; 2]) -> Result<(), SlideTrouble> {
+    let beside = aside(way[1].atan2(way[0]), moment.down);
+    if beside > ASIDE {
+        return Err(SlideTrouble::NotDown { aside: beside });
+    }
+    let head = aside(moment.heading, moment.down);
+    match head.min(180.0 - head) > ASIDE {
+        true => Err(SlideTrouble::Across { aside: head }),
+        false => Ok(()),
+    }
+}
+
+/// The angle between a heading in rad and a direction, deg, without its sign.
+fn aside(heading: f64, [x, y]: [f64; 2]) -> f64 {
+    let (sin, cos) = (heading - y.atan2(x)).sin_cos();
+    sin.atan2(cos).to_degrees().abs()
+}
+
+/// The mean place.
+fn mean(moments: &[Moment]) -> [f64; 2] {
+    [0, 1].map(|i| moments.iter().map(|moment| moment.at[i]).sum::<f64>() / moments.len() as f64)
+}
+
+/// The tilt in each picture by a straight line through those around it, rad.
+fn smooth(moments: &[Moment]) -> Vec<f64> {
+    let at = |seconds: f64| moments.partition_point(|moment| moment.seconds < seconds);
+    let one = |moment: &Moment| {
+        let near = &moments[at(moment.seconds - AROUND)..at(moment.seconds + AROUND)];
+        let count = near.len() as f64;
+        let (mut time, mut tilt) = (0.0, 0.0);
+        for other in near {
+            time += (other.seconds - moment.seconds) / count;
+            tilt += other.tilt / count;
+        }
+        let (mut with, mut squares) = (0.0, 1e-12);
+        for other in near {
+            let apart = other.seconds - moment.seconds - time;
+            with += apart * (other.tilt - tilt);
+            squares += apart * apart;
+        }
+        tilt - time * with / squares
+    };
+    moments.iter().map(one).collect()
+}
+
+/// The friction of a slide: times in s, tilts in rad, places in mm.
+fn sliding(points: &[[f64; 3]]) -> Result<Figure, SlideTrouble> {
+    let few = SlideTrouble::FewPictures {
+        pictures: points.len(),
+    };
+    if points.len() < LEAST {
+        return Err(few);
+    }
+    // Ways without friction, and those that a friction of 1 takes away, by the trapezoids of both speeds.
+    let mut ways = vec![[0.0; 2]];
+    let mut speeds = [0.0; 2];
+    for pair in points.windows(2) {
+        let apart = pair[1][0] - pair[0][0];
+        let before = ways[ways.len() - 1];
+        let parts: [fn(f64) -> f64; 2] = [f64::sin, f64::cos];
+        let next = [0, 1].map(|i| {
+            let mean = (parts[i](pair[0][1]) + parts[i](pair[1][1])) / 2.0;
+            let gained = 1000.0 * GRAVITY * mean * apart;
+            let way = before[i] + (speeds[i] + gained / 2.0) * apart;
+            speeds[i] += gained;
+            way
+        });
+        ways.push(next);
+    }
+    let begin = points[0][0];
+    let model = |at: &[f64]| -> Vec<f64> {
+        let residual = |([seconds, _, place], [down, held]): (&[f64; 3], &[f64; 2])| {
+            at[0] + at[1] * 100.0 * (seconds - begin) + down - at[2] * held - place
+        };
+        points.iter().zip(&ways).map(residual).collect()
+    };
+    let fit = least::fit(&[points[0][2], 0.0, points[0][1].tan()], model).ok_or(few)?;
+    let freedom = points.len() - 3;
+    let variance = fit.squares / freedom as f64 * fit.covariance[(2, 2)];
+    Ok(Figure {
+        value: fit.at[2],
+        error: widening(freedom) * variance.sqrt(),
+    })
+}
+
+/// The time at which a slide begins with its standard error, s: by its acceleration from the first picture in which it moved.
+fn begin(points: &[[f64; 3]], friction: f64, before: f64) -> (f64, f64) {
+    let [seconds, tilt, slid] = points[0];
+    let acceleration = 1000.0 * GRAVITY * (tilt.sin() - friction * tilt.cos());
+    let back = (2.0 * slid / acceleration.max(1.0)).sqrt();
+    let gap = seconds - before;
+    let begin = (seconds - back).max(before - gap - 1.0);
+    // Where the acceleration grows from zero, the way back is longer.
+    (begin, (gap / 2.0).hypot(back / 2.0))
+}

@@ -1,0 +1,458 @@
+//! A servo in a film: how far it turns for its pulses, how fast, and what it does not notice.
+//!
+//! The servo got the steps of [`crate::orders`], evenly in time, but nobody knows when in the film. They are found
+//! by the angles at which the horn rests, which must follow the orders in a line.
+
+use crate::figure::Figure;
+use crate::least;
+use crate::mean::{self, widening};
+use crate::orders::{self, Order, PAUSE};
+use crate::path::Seen;
+use crate::spin::{Rates, Step};
+
+/// Part of the time of an order in which the horn rests.
+const REST: [f64; 2] = [0.45, 0.92];
+/// Distance of the beginnings that are tried, s.
+const TRIES: f64 = 0.02;
+/// Share of the orders whose rest must be seen.
+const SEEN: f64 = 0.9;
+/// Time from an order to half of its large step, s.
+const HALF_WAY: f64 = 0.1;
+/// Least turn of a servo that moved, deg.
+const TURNED: f64 = 5.0;
+/// Largest share of the rests' variance that the orders do not explain.
+const UNEXPLAINED: f64 = 0.02;
+/// Other times of an order that are tried, as multiples.
+const MULTIPLES: [f64; 5] = [0.25, 0.5, 2.0, 4.0, 8.0];
+/// Largest share of the slew limit at which a servo turns at its own rate.
+const OWN_RATE: f64 = 0.8;
+/// Standard error of the camera, as a share of an angle.
+const CAMERA: f64 = 0.002;
+/// Least angle that counts as a movement, deg, and as multiple of its standard error.
+const MOVED: f64 = 0.05;
+const MOVED_SIGMAS: f64 = 3.0;
+/// Largest movement of a small step that tells the dead band, deg: after a larger one the servo overshoots.
+const SMALL: f64 = 1.6;
+/// Standard error of a dead band in which the servo does not always stop at its edge, deg.
+const DEAD_BAND_ERROR: f64 = 0.06;
+/// Standard error of the load's torque, as a share: half a millimetre of 20.
+const LOAD: f64 = 0.025;
+
+/// Known figures of the jig.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Jig {
+    /// Side of neutral to which the poses go: 1 counter-clockwise, -1 clockwise.
+    pub way: f64,
+    /// Slew limit of the orders, deg/s.
+    pub slew: f64,
+    /// Expected time constant of the rotor, s.
+    pub spin_up: f64,
+}
+
+/// A reason why a film of a servo cannot be measured.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum TurnsTrouble {
+    /// The horn did not turn.
+    #[error(
+        "the horn did not turn: {turn:.1} deg at most; is this the right servo, and has it power?"
+    )]
+    NotTurned {
+        /// Largest turn, deg.
+        turn: f64,
+    },
+    /// The film is too short.
+    #[error(
+        "the film lasts {seconds:.0} s and the steps take {needed:.0} s: film from before the first to after the last"
+    )]
+    TooShort {
+        /// Length of the film, s.
+        seconds: f64,
+        /// Time of the steps, s.
+        needed: f64,
+    },
+    /// The steps take another time.
+    #[error(
+        "the steps take {times} times as long as they should: for a film in slow motion, give the rate at which it \
+         was taken with --fps"
+    )]
+    AnotherPace {
+        /// The multiple.
+        times: f64,
+    },
+    /// The angles are not those of the steps.
+    #[error(
+        "the horn does not turn in the steps of `lizard measure steps`: does the film show all of them, and does the \
+         servo follow?"
+    )]
+    NotTheSteps,
+    /// Too few pictures of the turning horn.
+    #[error(
+        "the card is seen in too few pictures while the horn turns ({rate:.0} pictures a second): film at 120 pictures a \
+         second or more, in more light"
+    )]
+    FewPictures {
+        /// Pictures in a second.
+        rate: f64,
+    },
+    /// The servo is held back by the slew limit.
+    #[error(
+        "the servo turns at {rate:.0} deg/s, and the orders at {slew:.0} deg/s: it shows the orders' rate and not its \
+         own; flash a robot with [limits] slew = 1000"
+    )]
+    Ordered {
+        /// Measured rate, deg/s.
+        rate: f64,
+        /// Slew limit of the orders, deg/s.
+        slew: f64,
+    },
+    /// The servo without load is slower to one side than with it.
+    #[error(
+        "the servo turns less evenly to both sides without the load than with it: were the two films swapped?"
+    )]
+    Swapped,
+    /// The load does not slow the servo down enough.
+    #[error(
+        "the load makes the servo slower by {percent:.1} % with an error of {error:.1} %: too little to tell its torque; \
+         take a heavier weight, or film more pictures a second"
+    )]
+    LoadNotSeen {
+        /// Loss of rate, percent.
+        percent: f64,
+        /// Its standard error.
+        error: f64,
+    },
+}
+
+/// What small steps show.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DeadBand {
+    /// Its width, deg by robot.toml; `None` if no step was large enough.
+    pub width: Option<Figure>,
+    /// Largest small step that moved nothing, deg by robot.toml; 0 if all did.
+    pub still: f64,
+}
+
+/// A measured servo.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Turns {
+    /// Angle that it turns for each deg by robot.toml; negative if it turns the other way.
+    pub gain: Figure,
+    /// Distance of the angles at which it stops as it comes from either side, deg by robot.toml.
+    pub hysteresis: Figure,
+    /// What it does not notice.
+    pub dead_band: DeadBand,
+    /// Rate, deg/s, of both ways together.
+    pub rate: Figure,
+    /// Rate counter-clockwise and clockwise, deg/s.
+    pub ways: [Figure; 2],
+    /// Time constant of the rotor, s; `None` if the film has too few pictures for it.
+    pub spin_up: Option<Figure>,
+    /// Time of the first order, s.
+    pub begin: f64,
+    /// Pictures in a second.
+    pub pictures: f64,
+    /// The large steps counter-clockwise and clockwise.
+    steps: [Vec<Step>; 2],
+    /// Expected time constant of the rotor, s.
+    expected: f64,
+}
+
+impl Turns {
+    /// Measures the path of the card on the horn.
+    ///
+    /// # Errors
+    /// Fails if the horn does not turn as it was ordered, or is seen too rarely.
+    pub fn of(path: &[Seen], jig: Jig) -> Result<Self, TurnsTrouble> {
+        let turns = Path::new(path);
+        let orders = orders::orders(jig.way);
+        let begin = turns.begin(&orders)?;
+        let rests: Vec<Option<f64>> = (0..orders.len())
+            .map(|i| turns.rest(begin, PAUSE, i))
+            .collect();
+        let [gain, hysteresis] = line(&orders, &rests).ok_or(TurnsTrouble::NotTheSteps)?;
+        let steps = turns.steps(begin, &rests);
+        let few = TurnsTrouble::FewPictures { rate: turns.rate() };
+        let groups: Vec<&[Step]> = steps.iter().map(Vec::as_slice).collect();
+        let fit = Rates::of(&groups, jig.spin_up).ok_or(few)?;
+        let (a, b) = (fit.rates[0], fit.rates[1]);
+        let rate = fit.figure((a + b) / 2.0, &[0.5, 0.5]);
+        if rate.value > OWN_RATE * jig.slew {
+            return Err(TurnsTrouble::Ordered {
+                rate: rate.value,
+                slew: jig.slew,
+            });
+        }
+        Ok(Self {
+            gain,
+            hysteresis,
+            dead_band: turns.dead_band(begin, &orders, &rests, gain.value),
+            rate: of_camera(rate),
+            ways: [fit.figure(a, &[1.0, 0.0]), fit.figure(b, &[0.0, 1.0])].map(of_camera),
+            spin_up: fit.spin_up,
+            begin,
+            pictures: turns.rate(),
+            steps,
+            expected: jig.spin_up,
+        })
+    }
+
+    /// The torque at a stall, in the unit of the load's torque: the rate falls with the torque in a line. The load
+    /// pulls one way only, which is the one that it makes slower.
+    ///
+    /// # Errors
+    /// Fails if the load does not make the servo slower.
+    pub fn stall(&self, loaded: &Self, torque: f64) -> Result<Figure, TurnsTrouble> {
+        let few = TurnsTrouble::FewPictures {
+            rate: self.pictures.min(loaded.pictures),
+        };
+        let loss = |way: usize| {
+            let fit = Rates::of(&[&self.steps[way], &loaded.steps[way]], self.expected)?;
+            let (free, slow) = (fit.rates[0], fit.rates[1]);
+            Some(fit.figure(1.0 - slow / free, &[slow / free.powi(2), -1.0 / free]))
+        };
+        let losses = [loss(0).ok_or(few)?, loss(1).ok_or(few)?];
+        let loss = losses[usize::from(losses[1].value > losses[0].value)];
+        if !loss.is_above(0.0) {
+            return Err(TurnsTrouble::LoadNotSeen {
+                percent: 100.0 * loss.value,
+                error: 100.0 * loss.error,
+            });
+        }
+        // Only a load makes one way slower than the other.
+        let uneven = |turns: &Self| (turns.ways[0].value - turns.ways[1].value).abs();
+        if uneven(self) > uneven(loaded) {
+            return Err(TurnsTrouble::Swapped);
+        }
+        let value = torque / loss.value;
+        Ok(Figure {
+            value,
+            error: value * (loss.error / loss.value).hypot(LOAD),
+        })
+    }
+}
+
+/// A rate with the error of the camera.
+fn of_camera(figure: Figure) -> Figure {
+    Figure {
+        error: figure.error.hypot(CAMERA * figure.value),
+        ..figure
+    }
+}
+
+/// Gain and hysteresis by the visits: moves of one length, after which the horn stops alike.
+fn line(orders: &[Order], rests: &[Option<f64>]) -> Option<[Figure; 2]> {
+    let seen: Vec<(f64, f64, f64)> = orders::visits()
+        .filter_map(|i| {
+            let (before, now) = (orders[i - 1].asked(), orders[i].asked());
+            (now != before).then_some((now, (now - before).signum(), rests[i]?))
+        })
+        .collect();
+    let start = [seen.first()?.2, 1.0, 0.0];
+    let residuals = |at: &[f64]| -> Vec<f64> {
+        let residual =
+            |(asked, way, rest): &(f64, f64, f64)| at[0] + at[1] * asked - at[2] * way / 2.0 - rest;
+        seen.iter().map(residual).collect()
+    };
+    let fit = least::fit(&start, residuals)?;
+    let freedom = seen.len().checked_sub(start.len()).filter(|n| *n > 0)?;
+    let variance = fit.squares / freedom as f64;
+    let error = |i: usize| widening(freedom) * (variance * fit.covariance[(i, i)]).sqrt();
+    let gain = of_camera(Figure {
+        value: fit.at[1],
+        error: error(1),
+    });
+    let hysteresis = Figure {
+        value: fit.at[2] / gain.value,
+        error: error(2) / gain.value.abs(),
+    };
+    Some([gain, hysteresis])
+}
+
+/// The horn's angles in a film, and their sums.
+struct Path {
+    /// Times, s, and angles, deg.
+    turns: Vec<(f64, f64)>,
+    /// Sums of the angles before each picture.
+    sums: Vec<f64>,
+}
+
+impl Path {
+    fn new(path: &[Seen]) -> Self {
+        let turn = |seen: &Seen| (seen.seconds, seen.place.heading.to_degrees());
+        let turns: Vec<_> = path.iter().map(turn).collect();
+        let mut sums = vec![0.0];
+        for (i, (_, angle)) in turns.iter().enumerate() {
+            sums.push(sums[i] + angle);
+        }
+        Self { turns, sums }
+    }
+
+    /// Pictures in a second, where none is missing.
+    fn rate(&self) -> f64 {
+        let gaps = self.turns.windows(2).map(|pair| pair[1].0 - pair[0].0);
+        let mut gaps: Vec<f64> = gaps.collect();
+        gaps.sort_by(f64::total_cmp);
+        gaps.get(gaps.len() / 2).map_or(0.0, |gap| 1.0 / gap)
+    }
+
+    /// The numbers of the pictures in a time.
+    fn within(&self, from: f64, to: f64) -> std::ops::Range<usize> {
+        let at = |time: f64| self.turns.partition_point(|(seen, _)| *seen < time);
+        at(from)..at(to)
+    }
+
+    /// The pictures in which the horn rests after an order.
+    fn resting(&self, begin: f64, pause: f64, order: usize) -> std::ops::Range<usize> {
+        let [from, to] = REST.map(|part| begin + pause * (order as f64 + part));
+        self.within(from, to)
+    }
+
+    /// The angle at which the horn rests after an order.
+    fn rest(&self, begin: f64, pause: f64, order: usize) -> Option<f64> {
+        let seen = self.resting(begin, pause, order);
+        let sum = self.sums[seen.end] - self.sums[seen.start];
+        (!seen.is_empty()).then(|| sum / seen.len() as f64)
+    }
+
+    /// Share of the rests' variance that the orders do not explain, if they began at this time.
+    fn unexplained(&self, orders: &[Order], begin: f64, pause: f64) -> Option<f64> {
+        let pair = |i: usize| Some((orders[i].asked(), self.rest(begin, pause, i)?));
+        let pairs: Vec<(f64, f64)> = (0..orders.len()).filter_map(pair).collect();
+        if (pairs.len() as f64) < SEEN * orders.len() as f64 {
+            return None;
+        }
+        let mean =
+            |part: fn(&(f64, f64)) -> f64| pairs.iter().map(part).sum::<f64>() / pairs.len() as f64;
+        let (x, y) = (mean(|pair| pair.0), mean(|pair| pair.1));
+        let mut sums = [0.0; 3];
+        for (a, b) in &pairs {
+            let (a, b) = (a - x, b - y);
+            sums = [sums[0] + a * a, sums[1] + a * b, sums[2] + b * b];
+        }
+        Some(1.0 - sums[1] * sums[1] / (sums[0] * sums[2]).max(1e-9))
+    }
+
+    /// The beginning that leaves least unexplained, with that share.
+    fn best(&self, orders: &[Order], pause: f64) -> Option<(f64, f64)> {
+        let (first, last) = (self.turns.first()?.0, self.turns.last()?.0);
+        let end = last - pause * (orders.len() as f64 - 1.0 + REST[0]);
+        let tries = ((end - first + pause) / (TRIES * pause)).max(0.0) as usize;
+        (0..=tries)
+            .map(|i| first - pause + i as f64 * TRIES * pause)
+            .filter_map(|begin| Some((self.unexplained(orders, begin, pause)?, begin)))
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(left, begin)| (begin, left))
+    }
+
+    /// The time of the first order, s.
+    fn begin(&self, orders: &[Order]) -> Result<f64, TurnsTrouble> {
+        let angles = || self.turns.iter().map(|(_, angle)| *angle);
+        let turn = angles().fold(f64::MIN, f64::max) - angles().fold(f64::MAX, f64::min);
+        if !(turn > TURNED) {
+            return Err(TurnsTrouble::NotTurned {
+                turn: turn.max(0.0),
+            });
+        }
+        let is_right = |best: &(f64, f64)| best.1 < UNEXPLAINED;
+        if let Some((begin, _)) = self.best(orders, PAUSE).filter(is_right) {
+            return Ok(self.refined(begin));
+        }
+        for times in MULTIPLES {
+            if self
+                .best(orders, times * PAUSE)
+                .is_some_and(|best| is_right(&best))
+            {
+                return Err(TurnsTrouble::AnotherPace { times });
+            }
+        }
+        let seconds = self.turns[self.turns.len() - 1].0 - self.turns[0].0;
+        let needed = PAUSE * orders.len() as f64;
+        Err(match seconds < needed - PAUSE {
+            true => TurnsTrouble::TooShort { seconds, needed },
+            false => TurnsTrouble::NotTheSteps,
+        })
+    }
+
+    /// The time of the first order by the times at which the large steps are half done.
+    fn refined(&self, begin: f64) -> f64 {
+        let half_way = |i: usize| {
+            let (from, to) = (self.rest(begin, PAUSE, i - 1)?, self.rest(begin, PAUSE, i)?);
+            let middle = (from + to) / 2.0;
+            let seen = self.resting(begin, PAUSE, i - 1).start..self.resting(begin, PAUSE, i).end;
+            let pairs = self.turns[seen].windows(2);
+            let mut crossed = pairs.filter(|pair| (pair[0].1 < middle) != (pair[1].1 < middle));
+            let pair = crossed.next()?;
+            let share = (middle - pair[0].1) / (pair[1].1 - pair[0].1);
+            let time = pair[0].0 + share * (pair[1].0 - pair[0].0);
+            Some(time - PAUSE * i as f64 - HALF_WAY)
+        };
+        let mut begins: Vec<f64> = orders::flips().filter_map(half_way).collect();
+        begins.sort_by(f64::total_cmp);
+        begins.get(begins.len() / 2).copied().unwrap_or(begin)
+    }
+
+    /// The large steps, counter-clockwise and clockwise.
+    fn steps(&self, begin: f64, rests: &[Option<f64>]) -> [Vec<Step>; 2] {
+        let mut steps = [Vec::new(), Vec::new()];
+        for i in orders::flips() {
+            let (Some(from), Some(to)) = (rests[i - 1], rests[i]) else {
+                continue;
+            };
+            let seen = self.resting(begin, PAUSE, i - 1).end..self.resting(begin, PAUSE, i).end;
+            let turned = self.turns[seen]
+                .iter()
+                .map(|(time, angle)| (*time, angle - from));
+            steps[usize::from(to < from)].push(Step::new(turned, to - from));
+        }
+        steps
+    }
+
+    /// The dead band by the small steps: what a step moves less than it was ordered.
+    fn dead_band(
+        &self,
+        begin: f64,
+        orders: &[Order],
+        rests: &[Option<f64>],
+        gain: f64,
+    ) -> DeadBand {
+        // Deviations of single pictures from their rests.
+        let (mut squares, mut freedom, mut pictures) = (0.0, 0usize, 0usize);
+        for (i, rest) in rests.iter().enumerate() {
+            let seen = &self.turns[self.resting(begin, PAUSE, i)];
+            let Some(rest) = rest else { continue };
+            squares += seen
+                .iter()
+                .map(|(_, angle)| (angle - rest).powi(2))
+                .sum::<f64>();
+            freedom += seen.len().saturating_sub(1);
+            pictures += seen.len();
+        }
+        let in_a_rest = pictures as f64 / rests.len() as f64;
+        let variance = squares / freedom.max(1) as f64;
+        let error = (2.0 * variance / in_a_rest.max(1.0)).sqrt() / gain.abs();
+        let least = MOVED.max(MOVED_SIGMAS * error);
+        let (mut lost, mut still, mut has_moved) = (Vec::new(), 0.0f64, false);
+        for i in orders::swings() {
+            let (Some(from), Some(to)) = (rests[i - 1], rests[i]) else {
+                continue;
+            };
+            let ordered = orders[i].asked() - orders[i - 1].asked();
+            let moved = (to - from) / gain * ordered.signum();
+            let had_moved = std::mem::replace(&mut has_moved, moved > least);
+            if !has_moved {
+                still = still.max(ordered.abs());
+            } else if had_moved && moved < SMALL {
+                // Now it stood at the edge of its dead band; before, anywhere in it.
+                lost.push(ordered.abs() - moved);
+            }
+        }
+        let width = (lost.len() > 1).then(|| {
+            let mean = mean::of(&[(lost, 0.0)]);
+            Figure {
+                value: mean.mean,
+                error: mean.error.hypot(DEAD_BAND_ERROR),
+            }
+        });
+        DeadBand { width, still }
+    }
+}

@@ -1,0 +1,126 @@
+//! A servo whose truth is known: a motor behind its pulses, with what a servo has of its own.
+
+use lizard_film::orders::{Order, PAUSE, orders};
+
+/// Time of a frame of the firmware, and step of the simulation, s.
+const FRAME: f64 = 0.02;
+const STEP: f64 = 0.0005;
+/// Frames of a move to a pose.
+const MOVE: usize = 8;
+/// Error beyond the dead band with the full torque, deg.
+pub const FULL: f64 = 3.0;
+/// Dry friction of the gears, as a share of the torque at a stall.
+pub const FRICTION: f64 = 0.02;
+
+/// A servo in the jig.
+#[derive(Clone)]
+pub struct Servo {
+    /// Angle turned for each deg ordered.
+    pub gain: f64,
+    /// deg/s without load.
+    pub rate: f64,
+    /// Time constant of the rotor, s.
+    pub spin_up: f64,
+    /// Width of the dead band, deg ordered.
+    pub dead_band: f64,
+    /// Free play of the horn on its shaft, deg in all.
+    pub play: f64,
+    /// The load's torque, clockwise, as a share of that at a stall.
+    pub load: f64,
+    /// Change of the pulse in a large step, deg/s.
+    pub slew: f64,
+    /// Time of the first order, s.
+    pub begin: f64,
+    /// Heading of the card at neutral, deg.
+    pub neutral: f64,
+}
+
+impl Default for Servo {
+    fn default() -> Self {
+        Self {
+            gain: 1.0,
+            rate: 500.0,
+            spin_up: 0.02,
+            dead_band: 1.0,
+            play: 0.0,
+            load: 0.0,
+            slew: 1000.0,
+            begin: 0.7,
+            neutral: 20.0,
+        }
+    }
+}
+
+impl Servo {
+    /// The steady rate that friction leaves without load, deg/s.
+    pub fn own_rate(&self) -> f64 {
+        self.rate * (1.0 - FRICTION)
+    }
+
+    /// The time at which all orders are carried out, s.
+    pub fn end(&self) -> f64 {
+        self.begin + PAUSE * orders(1.0).len() as f64
+    }
+
+    /// The angles of the card, deg, each [`STEP`] seconds from the time 0, with orders to a side.
+    pub fn turns(&self, way: f64) -> Turning {
+        let orders = orders(way);
+        let pulses = self.pulses(&orders);
+        let (mut at, mut rate, mut horn) = (0.0, 0.0, 0.0f64);
+        let mut angles = Vec::new();
+        for pulse in pulses {
+            for _ in 0..(FRAME / STEP).round() as usize {
+                let error = pulse - at / self.gain;
+                let beyond = (error.abs() - self.dead_band / 2.0).max(0.0);
+                let drive = (beyond / FULL).min(1.0) * (error * self.gain).signum() - self.load;
+                // Friction stops what turns slowly, and holds what stands.
+                let push = self.rate * drive - rate;
+                let held = self.rate * FRICTION;
+                let most = held * STEP / self.spin_up;
+                rate += push * STEP / self.spin_up;
+                rate -= rate.clamp(-most, most);
+                at += rate * STEP;
+                horn = horn.clamp(at - self.play / 2.0, at + self.play / 2.0);
+                angles.push(self.neutral + horn);
+            }
+        }
+        Turning(angles)
+    }
+
+    /// The pulse in each frame, as the angle that it stands for.
+    fn pulses(&self, orders: &[Order]) -> Vec<f64> {
+        let frames = (self.end() / FRAME) as usize + 1;
+        let (mut from, mut pulse) = (0.0, 0.0);
+        let mut last = 0;
+        let one = |i: usize| {
+            let seconds = i as f64 * FRAME - self.begin;
+            let order = ((seconds / PAUSE).max(0.0) as usize).min(orders.len() - 1);
+            if order != last {
+                (last, from) = (order, pulse);
+            }
+            let asked = orders[order].asked();
+            let is_flip = order > 0 && orders[order].is_reversed != orders[order - 1].is_reversed;
+            pulse = if is_flip {
+                let most = self.slew * FRAME;
+                pulse + (asked - pulse).clamp(-most, most)
+            } else {
+                let begin = PAUSE * order as f64;
+                let share = ((seconds - begin) / (MOVE as f64 * FRAME)).clamp(0.0, 1.0);
+                from + (asked - from) * share * share * (3.0 - 2.0 * share)
+            };
+            pulse
+        };
+        (0..frames).map(one).collect()
+    }
+}
+
+/// The angles of a card over time.
+pub struct Turning(Vec<f64>);
+
+impl Turning {
+    /// The angle at a time, deg.
+    pub fn at(&self, seconds: f64) -> f64 {
+        let at = (seconds / STEP).max(0.0) as usize;
+        self.0[at.min(self.0.len() - 1)]
+    }
+}

@@ -1,0 +1,297 @@
+//! How well films of a servo whose truth is known are measured.
+
+use fastrand::Rng;
+use lizard_contact::Place;
+use lizard_film::{Figure, Film, Jig, Seen, Setup, Trouble, Turns, TurnsTrouble};
+
+use crate::render::{Studio, normal};
+use crate::servo::{FRICTION, FULL, Servo};
+
+/// The jig of steps counter-clockwise.
+const JIG: Jig = Jig {
+    way: 1.0,
+    slew: 1000.0,
+    spin_up: 0.02,
+};
+/// The load's torque as a share of that at a stall: 19.6 N mm of 176.5.
+const LOAD: f64 = 0.111;
+
+/// A camera without a picture: pictures in a second, exposure time, and spread of an angle, deg.
+#[derive(Clone, Copy)]
+struct Eye {
+    rate: f64,
+    shutter: f64,
+    noise: f64,
+}
+
+impl Eye {
+    /// A phone in daylight.
+    fn of_rate(rate: f64) -> Self {
+        Self {
+            rate,
+            shutter: 1.0 / 120.0,
+            noise: 0.15,
+        }
+    }
+
+    /// The path of a card as its tag tells it: the mean of the angles while the shutter is open.
+    fn path(self, servo: &Servo, rng: &mut Rng) -> Vec<Seen> {
+        const BEGIN: f64 = 0.3;
+        let turning = servo.turns(1.0);
+        let seen = |i: usize| {
+            let seconds = i as f64 / self.rate + BEGIN;
+            let parts = [-0.4, -0.2, 0.0, 0.2, 0.4];
+            let open = parts.map(|part| turning.at(seconds + part * self.shutter));
+            let angle = open.iter().sum::<f64>() / 5.0 + self.noise * normal(rng);
+            seen_at(seconds, angle)
+        };
+        let pictures = (servo.end() - BEGIN) * self.rate;
+        (0..pictures as usize).map(seen).collect()
+    }
+}
+
+fn seen_at(seconds: f64, angle: f64) -> Seen {
+    Seen {
+        seconds,
+        place: Place {
+            forward: 0.0,
+            left: 0.0,
+            heading: angle.to_radians(),
+        },
+    }
+}
+
+/// A random servo.
+fn any(rng: &mut Rng) -> Servo {
+    let mut between = |low: f64, high: f64| low + (high - low) * rng.f64();
+    Servo {
+        gain: between(0.9, 1.1),
+        rate: between(350.0, 700.0),
+        spin_up: between(0.012, 0.03),
+        dead_band: between(0.3, 1.6),
+        begin: between(0.3, 1.5),
+        neutral: between(-180.0, 180.0),
+        ..Servo::default()
+    }
+}
+
+/// Figures and their truths: the share of those that are off by two errors at most, and their mean error.
+fn judged(figures: &[(Figure, f64)]) -> [f64; 2] {
+    let within = figures
+        .iter()
+        .filter(|(figure, truth)| (figure.value - truth).abs() <= 2.0 * figure.error);
+    let errors: f64 = figures.iter().map(|(figure, _)| figure.error).sum();
+    let count = figures.len() as f64;
+    [within.count() as f64 / count, errors / count]
+}
+
+/// The dead band that small steps show, of those between the controller's own and with the gears' friction.
+fn dead_band(servo: &Servo, found: f64) -> f64 {
+    let friction = 2.0 * FRICTION * FULL;
+    found.clamp(servo.dead_band, servo.dead_band + friction)
+}
+
+#[test]
+fn the_truth_lies_within_two_errors_at_60_to_240_pictures_a_second() {
+    let mut rng = Rng::with_seed(1);
+    for pictures in [60.0, 120.0, 240.0] {
+        let mut figures: [Vec<(Figure, f64)>; 4] = Default::default();
+        for _ in 0..60 {
+            let servo = any(&mut rng);
+            let path = Eye::of_rate(pictures).path(&servo, &mut rng);
+            let turns = Turns::of(&path, JIG).expect("it is measured");
+            let width = turns.dead_band.width.expect("a dead band");
+            figures[0].push((turns.gain, servo.gain));
+            figures[1].push((turns.rate, servo.own_rate()));
+            figures[2].push((width, dead_band(&servo, width.value)));
+            figures[3].extend(turns.spin_up.map(|spin_up| (spin_up, servo.spin_up)));
+        }
+        for (i, largest) in [0.005, 8.0, 0.2, 0.002].into_iter().enumerate() {
+            let [within, error] = judged(&figures[i]);
+            println!("{pictures} pictures a second, figure {i}: {within:.2}, error {error:.4}");
+            assert!(within > 0.9, "{pictures} {i}: {within}");
+            assert!(error < largest, "{pictures} {i}: {error}");
+        }
+        assert!(figures[3].len() > 30, "{}", figures[3].len());
+    }
+}
+
+#[test]
+fn a_load_on_a_drum_tells_the_torque_at_a_stall() {
+    let mut rng = Rng::with_seed(2);
+    let eye = Eye::of_rate(120.0);
+    let films = |rng: &mut Rng| {
+        let free = any(rng);
+        let loaded = Servo {
+            load: LOAD,
+            begin: 1.1,
+            ..free.clone()
+        };
+        [free, loaded].map(|servo| Turns::of(&eye.path(&servo, rng), JIG).expect("measured"))
+    };
+    let mut stalls = Vec::new();
+    for _ in 0..30 {
+        let [free, loaded] = films(&mut rng);
+        let stall = free.stall(&loaded, 19.6).expect("a stall");
+        // The line of a motor with friction ends at what friction leaves.
+        stalls.push((stall, 19.6 / LOAD * (1.0 - FRICTION)));
+        assert_eq!(loaded.stall(&free, 19.6), Err(TurnsTrouble::Swapped));
+    }
+    let [within, error] = judged(&stalls);
+    println!("stall: {within:.2}, error {error:.1} N mm");
+    assert!(within > 0.9 && error < 25.0, "{within} {error}");
+}
+
+#[test]
+fn a_load_that_slows_nothing_down_tells_no_torque() {
+    let mut rng = Rng::with_seed(3);
+    let films = [0, 1].map(|_| {
+        let path = Eye::of_rate(120.0).path(&Servo::default(), &mut rng);
+        Turns::of(&path, JIG).expect("it is measured")
+    });
+    let refused = films[0].stall(&films[1], 19.6).expect_err("no torque");
+    let words = refused.to_string();
+    assert!(words.contains("take a heavier weight"), "{words}");
+}
+
+/// The reason why a path is not measured.
+fn trouble(path: &[Seen]) -> TurnsTrouble {
+    Turns::of(path, JIG).expect_err("it is not measured")
+}
+
+#[test]
+fn a_servo_that_turns_the_wrong_way_has_a_negative_gain() {
+    let servo = Servo {
+        gain: -1.05,
+        ..Servo::default()
+    };
+    let path = Eye::of_rate(120.0).path(&servo, &mut Rng::with_seed(4));
+    let gain = Turns::of(&path, JIG).expect("it is measured").gain;
+    assert!((gain.value + 1.05).abs() < 2.0 * gain.error, "{gain:?}");
+}
+
+#[test]
+fn steps_that_move_nothing_show_only_how_wide_the_dead_band_is_at_least() {
+    let servo = Servo {
+        dead_band: 4.0,
+        ..Servo::default()
+    };
+    let path = Eye::of_rate(60.0).path(&servo, &mut Rng::with_seed(5));
+    let dead_band = Turns::of(&path, JIG).expect("it is measured").dead_band;
+    assert_eq!((dead_band.width, dead_band.still), (None, 3.0));
+}
+
+#[test]
+fn a_horn_that_stands_still_or_turns_otherwise_is_named() {
+    let mut rng = Rng::with_seed(6);
+    let mut angle = 0.0;
+    let mut path = |turn: &mut dyn FnMut(f64) -> f64| -> Vec<Seen> {
+        (0..60 * 55)
+            .map(|i| {
+                angle += turn(f64::from(i) / 60.0);
+                seen_at(f64::from(i) / 60.0, angle)
+            })
+            .collect()
+    };
+    assert_eq!(trouble(&[]), TurnsTrouble::NotTurned { turn: 0.0 });
+    let still = path(&mut |_| 0.0);
+    assert_eq!(trouble(&still), TurnsTrouble::NotTurned { turn: 0.0 });
+    let to_and_fro = path(&mut |seconds| seconds.sin());
+    assert_eq!(trouble(&to_and_fro), TurnsTrouble::NotTheSteps);
+    let whole = Eye::of_rate(60.0).path(&Servo::default(), &mut rng);
+    let half = trouble(&whole[..whole.len() / 2]);
+    assert!(matches!(half, TurnsTrouble::TooShort { .. }), "{half}");
+}
+
+#[test]
+fn a_film_in_slow_motion_or_with_few_pictures_is_named() {
+    let mut rng = Rng::with_seed(7);
+    let mut path = Eye::of_rate(240.0).path(&Servo::default(), &mut rng);
+    path.iter_mut().for_each(|seen| seen.seconds *= 4.0);
+    assert_eq!(trouble(&path), TurnsTrouble::AnotherPace { times: 4.0 });
+    let path = Eye::of_rate(15.0).path(&Servo::default(), &mut rng);
+    let few = trouble(&path);
+    assert!(matches!(few, TurnsTrouble::FewPictures { rate } if (rate - 15.0).abs() < 0.1));
+    assert!(
+        few.to_string()
+            .contains("film at 120 pictures a second or more")
+    );
+}
+
+#[test]
+fn orders_that_are_slower_than_the_servo_do_not_pass_for_its_rate() {
+    let slew = 300.0;
+    let servo = Servo {
+        slew,
+        ..Servo::default()
+    };
+    let path = Eye::of_rate(120.0).path(&servo, &mut Rng::with_seed(8));
+    let refused = Turns::of(&path, Jig { slew, ..JIG }).expect_err("it follows the orders");
+    assert!(matches!(refused, TurnsTrouble::Ordered { .. }), "{refused}");
+}
+
+/// Films the horn from above in low resolution, with many pictures only where it turns fast.
+fn film(studio: &Studio, servo: &Servo) -> Film {
+    let mut rng = Rng::with_seed(9);
+    let turning = servo.turns(1.0);
+    let background = studio.background(&mut rng);
+    let mut film = Film::default();
+    let mut seconds = 0.0;
+    while seconds < servo.end() {
+        // The axis is 8 mm beside the middle of the tag.
+        let at = |time: f64| {
+            let heading = turning.at(time).to_radians();
+            [8.0 * heading.cos(), 8.0 * heading.sin(), heading]
+        };
+        let picture = background.picture(seconds, at, &mut rng);
+        film.add(seconds, &picture).expect("a picture");
+        let is_fast = (turning.at(seconds + 0.25) - turning.at(seconds - 0.08)).abs() > 30.0;
+        seconds += if is_fast { 1.0 / 100.0 } else { 1.0 / 5.0 };
+    }
+    film
+}
+
+/// A studio with few pixels, which the sheet fills.
+fn studio() -> Studio {
+    let mut studio = Studio::random(&mut Rng::with_seed(5));
+    (studio.size, studio.focal) = ([640, 360], 1.0);
+    (studio.height, studio.tilt, studio.direction) = (800.0, 25.0, 60.0);
+    (studio.roll, studio.aim, studio.deck) = (0.0, [0.0; 2], 40.0);
+    studio.shutter = 1.0 / 250.0;
+    studio
+}
+
+#[test]
+fn a_rendered_film_of_a_horn_shows_rate_gain_and_dead_band() {
+    let servo = Servo {
+        gain: 0.93,
+        rate: 430.0,
+        dead_band: 0.8,
+        ..Servo::default()
+    };
+    let setup = Setup {
+        scale: 1.0,
+        height: 40.0,
+    };
+    let film = film(&studio(), &servo);
+    let watched = film.watch(setup).expect("it is watched");
+    let turns = Turns::of(&watched.path, JIG).expect("it is measured");
+    let width = turns.dead_band.width.expect("a dead band");
+    for (figure, truth, largest) in [
+        (turns.gain, servo.gain, 0.005),
+        (turns.rate, servo.own_rate(), 10.0),
+        (width, dead_band(&servo, width.value), 0.2),
+    ] {
+        println!("{figure:?}, truth {truth}");
+        assert!(
+            (figure.value - truth).abs() < 2.0 * figure.error,
+            "{figure:?} {truth}"
+        );
+        assert!(figure.error < largest, "{figure:?}");
+    }
+    let wrong = film.watch(Setup {
+        height: 80.0,
+        ..setup
+    });
+    assert!(matches!(wrong, Err(Trouble::Height { .. })), "{wrong:?}");
+}

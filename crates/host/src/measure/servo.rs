@@ -1,0 +1,262 @@
+//! `lizard measure servo`: a servo in the jig.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use lizard_film::{Figure, Jig, Setup, Turns, Watched, sheet};
+use lizard_robot::servo::NAMES;
+use lizard_robot::{GRAVITY, Robot};
+use serde::Serialize;
+
+use super::command::{height, number, rate, read, ruler};
+use super::figures::{self, Key};
+use super::steps::{self, servo};
+use crate::shared::json;
+use crate::shared::progress::Spinner;
+use crate::{Failure, RobotFile};
+
+/// N mm for each kg cm.
+const N_MM: f64 = 10.0 * GRAVITY;
+
+/// Measure in a film how far and how fast a servo turns, for robot.toml
+///
+/// FILM shows the sheet's card on the servo's horn, between the two strips, while `lizard measure steps` turns it. Prints
+/// the figures of [servo] in robot.toml with their standard errors, the file's own beside them, and the lines to write.
+/// The stall torque needs a second film, in which the servo winds a thread with a weight on a drum.
+#[derive(clap::Args, Debug)]
+#[command(after_help = "Examples:
+  lizard measure steps --servo A1 --robot jig.toml | lizard console
+  lizard measure servo film.mp4 --servo A1 --height 42 --robot jig.toml
+  lizard measure servo film.mp4 --servo A1 --height 42 --robot jig.toml \\
+      --load loaded.mp4 --grams 100 --arm 20")]
+pub struct ServoArgs {
+    /// A folder of pictures (PNG or JPEG), or a film
+    film: PathBuf,
+    /// The servo: A1, A2, A3 or A4
+    #[arg(long, value_name = "NAME", value_parser = servo)]
+    servo: usize,
+    /// Height of the card above the strips, mm
+    #[arg(long, value_name = "MM", value_parser = height)]
+    height: f64,
+    /// A film of the same steps with a weight on a thread
+    #[arg(long, value_name = "FILM", requires_all = ["grams", "arm"])]
+    load: Option<PathBuf>,
+    /// The weight, g
+    #[arg(long, requires = "load", value_parser = grams)]
+    grams: Option<f64>,
+    /// Distance of the thread's middle from the axis of the servo, mm
+    #[arg(long, value_name = "MM", requires = "load", value_parser = arm)]
+    arm: Option<f64>,
+    /// Supply at the servo while it moves, V [default: volts of robot.toml]
+    #[arg(long, value_parser = volts)]
+    volts: Option<f64>,
+    /// Pictures in a second [default: by the film, or by the names of pictures, as 1.033s.png]
+    #[arg(long, value_name = "RATE", value_parser = rate)]
+    fps: Option<f64>,
+    /// Length of the line on a strip that should be 100 mm long
+    #[arg(long, value_name = "MM", default_value_t = sheet::RULER, value_parser = ruler)]
+    ruler: f64,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    robot: RobotFile,
+}
+
+fn grams(word: &str) -> Result<f64, String> {
+    number(word, [1.0, 10_000.0], "it is the weight in g")
+}
+
+fn arm(word: &str) -> Result<f64, String> {
+    number(word, [1.0, 200.0], "it is mm")
+}
+
+fn volts(word: &str) -> Result<f64, String> {
+    number(word, [2.0, 9.0], "it is V")
+}
+
+/// The result under the names of `--json`.
+#[derive(Serialize)]
+struct Report {
+    servo: &'static str,
+    /// Pictures in a second.
+    pictures: f64,
+    /// Height of the card above the strips, mm: as given, and by its size.
+    height: f64,
+    height_by_size: f64,
+    figures: Vec<Key>,
+    /// Rates counter-clockwise and clockwise with their errors, deg/s.
+    rates: [[f64; 2]; 2],
+    /// Distance of the horn's angles as it comes from either side, deg, and its error.
+    sides: [f64; 2],
+    /// The largest small step that moved nothing, us.
+    still_us: f64,
+    is_spin_up_known: bool,
+    is_dead_band_known: bool,
+    turns_the_other_way: bool,
+    /// Supply for which the figures hold, V, and true if it is measured.
+    volts: f64,
+    is_volts_measured: bool,
+}
+
+/// Measures a servo and prints the result.
+///
+/// # Errors
+/// Fails for a film that cannot be read, or one that does not show what is needed.
+pub fn measure_servo(args: ServoArgs) -> Result<(), Failure> {
+    let robot = args.robot.load()?;
+    let jig = Jig {
+        way: steps::way(&robot, args.servo)?,
+        slew: robot.pace().slew,
+        spin_up: robot.servo_type().spin_up_ms / 1000.0,
+    };
+    let setup = Setup {
+        scale: args.ruler / sheet::RULER,
+        height: args.height,
+    };
+    let spinner = Spinner::new("reading the pictures");
+    let film = |path: &Path| -> Result<(Watched, Turns), Failure> {
+        let about = |trouble: &dyn std::fmt::Display| {
+            Failure::Input(format!("{}: {trouble}", path.display()))
+        };
+        let film = read(path, args.fps, |trouble| about(&trouble))?;
+        let watched = film.watch(setup).map_err(|trouble| about(&trouble))?;
+        let turns = Turns::of(&watched.path, jig).map_err(|trouble| about(&trouble))?;
+        Ok((watched, turns))
+    };
+    let (watched, free) = film(&args.film)?;
+    let stall = match (&args.load, args.grams, args.arm) {
+        (Some(path), Some(grams), Some(arm)) => {
+            let (_, loaded) = film(path)?;
+            let torque = grams / 1000.0 * GRAVITY * arm;
+            let stall = free.stall(&loaded, torque);
+            Some(stall.map_err(|trouble| Failure::Input(trouble.to_string()))?)
+        }
+        _ => None,
+    };
+    drop(spinner);
+    let report = Report::new(&robot, &args, &watched, &free, stall);
+    json::print_json_or(args.json, &report, || report.text())
+}
+
+impl Report {
+    fn new(
+        robot: &Robot,
+        args: &ServoArgs,
+        watched: &Watched,
+        turns: &Turns,
+        stall: Option<Figure>,
+    ) -> Self {
+        let (name, servo) = (NAMES[args.servo], &robot.servos()[args.servo]);
+        let kind = robot.servo_type();
+        let volts = args.volts.unwrap_or(kind.volts);
+        let supply = volts / kind.at_volts;
+        let scaled = |figure: Figure, scale: f64| Figure {
+            value: figure.value * scale,
+            error: figure.error * scale.abs(),
+        };
+        let inverse = |of: f64, figure: Figure| {
+            let value = of / figure.value;
+            let error = (value / figure.value * figure.error).abs();
+            Figure { value, error }
+        };
+        let us = servo.us_per_degree;
+        let mut figures = Vec::new();
+        let mut of_type = |key, decimals, figure: Figure, robot: f64| {
+            figures.push(Key::new("servo", key, decimals, figure, robot));
+        };
+        let time = inverse(60.0, turns.rate);
+        of_type("s_per_60_deg", 4, time, kind.s_per_60_deg / supply);
+        if let Some(stall) = stall {
+            let stall = scaled(stall, 1.0 / N_MM);
+            of_type("stall_kg_cm", 2, stall, kind.stall_kg_cm * supply);
+        }
+        if let Some(width) = turns.dead_band.width {
+            of_type(
+                "dead_band_us",
+                1,
+                scaled(width, us.abs()),
+                kind.dead_band_us,
+            );
+        }
+        if let Some(spin_up) = turns.spin_up {
+            of_type("spin_up_ms", 1, scaled(spin_up, 1000.0), kind.spin_up_ms);
+        }
+        let table = format!("servo.{name}");
+        figures.push(Key::new(
+            &table,
+            "us_per_degree",
+            2,
+            inverse(us, turns.gain),
+            us,
+        ));
+        let pair = |figure: Figure| [figure.value, figure.error];
+        Self {
+            servo: name,
+            pictures: turns.pictures,
+            height: args.height,
+            height_by_size: watched.sight.deck,
+            figures,
+            rates: turns.ways.map(pair),
+            sides: pair(turns.hysteresis),
+            still_us: turns.dead_band.still * us.abs(),
+            is_spin_up_known: turns.spin_up.is_some(),
+            is_dead_band_known: turns.dead_band.width.is_some(),
+            turns_the_other_way: turns.gain.value < 0.0,
+            volts,
+            is_volts_measured: args.volts.is_some(),
+        }
+    }
+
+    fn text(&self) -> String {
+        let [[left, _], [right, _]] = self.rates;
+        let mut text = format!(
+            "{} at {} V, {:.0} pictures a second; card {:.0} mm above the strips, by its size {:.0} mm\n\n{}\n",
+            self.servo,
+            self.volts,
+            self.pictures,
+            self.height,
+            self.height_by_size,
+            figures::table(&self.figures),
+        );
+        let _ = writeln!(
+            text,
+            "counter-clockwise {left:.0} deg/s, clockwise {right:.0} deg/s; a step of {:.1} us moved nothing",
+            self.still_us
+        );
+        let [sides, error] = self.sides;
+        let _ = writeln!(
+            text,
+            "as it comes from either side, it stops {:.2} deg {}, to {error:.2} deg",
+            sides.abs(),
+            if sides < 0.0 { "too far" } else { "apart" },
+        );
+        if self.turns_the_other_way {
+            text +=
+                "It turns the other way than robot.toml says: the sign of us_per_degree changes.\n";
+        }
+        let _ = write!(text, "\n{}", figures::lines(&self.figures));
+        let volts = self.volts;
+        let _ = match self.is_volts_measured {
+            true => writeln!(
+                text,
+                "and under [servo]: at_volts = {volts}, volts = {volts}"
+            ),
+            false => writeln!(
+                text,
+                "and under [servo]: at_volts = {volts}, if that is the supply at the servo while it moves: measure it \
+                 (--volts)"
+            ),
+        };
+        if !self.is_spin_up_known {
+            text += "Not told: spin_up_ms, which takes 120 pictures a second or more.\n";
+        }
+        if !self.is_dead_band_known {
+            text += "Not told: dead_band_us, which is wider than the largest small step.\n";
+        }
+        if self.figures.iter().all(|key| key.name() != "stall_kg_cm") {
+            text += "Not told: stall_kg_cm, which takes a second film with a weight (--load).\n";
+        }
+        text + "Never told by such a film: full_torque_deg, and neutral_us, which `lizard calibrate` sets.\n"
+    }
+}

@@ -1,0 +1,173 @@
+//! `lizard measure slope`: friction by a robot that slides down a tilted board.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use lizard_film::{Figure, Setup, Slide, sheet};
+use lizard_measure::height_of_board;
+use lizard_robot::Robot;
+use serde::Serialize;
+
+use super::command::{height, rate, read, ruler};
+use super::figures::{self, Key};
+use crate::shared::json;
+use crate::shared::progress::Spinner;
+use crate::{Failure, RobotFile};
+
+/// Measure in films of a tilted board the friction of the robot's pads, for robot.toml
+///
+/// Each FILM shows the robot on a board between the two strips, from a camera that stands still. It begins with the board
+/// level; then one end is lifted slowly until the robot slides. Prints the friction of sliding pads with its standard
+/// error, and static friction beside it. Films with the head downhill give friction forward, with the head uphill backward.
+#[derive(clap::Args, Debug)]
+#[command(after_help = "Example:
+  lizard measure slope downhill.mp4 uphill.mp4")]
+pub struct SlopeArgs {
+    /// Folders of pictures (PNG or JPEG), or films
+    #[arg(value_name = "FILM", required = true)]
+    films: Vec<PathBuf>,
+    /// Height of the deck's tag above the strips, mm [default: the top of the board, by the robot's parts]
+    #[arg(long, value_name = "MM", value_parser = height)]
+    height: Option<f64>,
+    /// Pictures in a second [default: by the film, or by the names of pictures, as 1.033s.png]
+    #[arg(long, value_name = "RATE", value_parser = rate)]
+    fps: Option<f64>,
+    /// Length of the line on a strip that should be 100 mm long
+    #[arg(long, value_name = "MM", default_value_t = sheet::RULER, value_parser = ruler)]
+    ruler: f64,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    robot: RobotFile,
+}
+
+/// The result under the names of `--json`.
+#[derive(Serialize)]
+struct Report {
+    films: Vec<Line>,
+    figures: Vec<Key>,
+}
+
+/// A film's slide; pairs are a figure and its standard error.
+#[derive(Serialize)]
+struct Line {
+    film: String,
+    is_head_first: bool,
+    /// Tilt at which it begins, deg.
+    tilt: [f64; 2],
+    /// Coefficients of static friction, and of friction while it slides.
+    resting: [f64; 2],
+    sliding: [f64; 2],
+}
+
+/// Measures slides and prints the result.
+///
+/// # Errors
+/// Fails for a film that cannot be read, or one that does not show what is needed.
+pub fn measure_slope(args: SlopeArgs) -> Result<(), Failure> {
+    let robot = args.robot.load()?;
+    let setup = Setup {
+        scale: args.ruler / sheet::RULER,
+        height: args.height.unwrap_or_else(|| height_of_board(&robot)),
+    };
+    let spinner = Spinner::new("reading the pictures");
+    let slide = |path: &PathBuf| {
+        let about = |trouble: &dyn std::fmt::Display| {
+            Failure::Input(format!("{}: {trouble}", path.display()))
+        };
+        let film = read(path, args.fps, |trouble| about(&trouble))?;
+        let watched = film.watch(setup).map_err(|trouble| about(&trouble))?;
+        let slide = Slide::of(&watched).map_err(|trouble| about(&trouble))?;
+        Ok((path.display().to_string(), slide))
+    };
+    let slides: Vec<(String, Slide)> = args
+        .films
+        .iter()
+        .map(slide)
+        .collect::<Result<_, Failure>>()?;
+    drop(spinner);
+    let report = Report::new(&robot, &slides);
+    json::print_json_or(args.json, &report, || report.text())
+}
+
+/// The mean of figures whose errors are common, as that of the level is; `None` without any.
+fn mean(figures: &[Figure]) -> Option<Figure> {
+    let count = figures.len() as f64;
+    let mean = |part: &dyn Fn(&Figure) -> f64| figures.iter().map(part).sum::<f64>() / count;
+    let value = mean(&|figure| figure.value);
+    let variance = mean(&|figure| (figure.value - value).powi(2)) / (count - 1.0).max(1.0);
+    (!figures.is_empty()).then(|| Figure {
+        value,
+        error: mean(&|figure| figure.error).hypot(variance.sqrt()),
+    })
+}
+
+impl Report {
+    fn new(robot: &Robot, slides: &[(String, Slide)]) -> Self {
+        let of = |is_ahead: bool| {
+            let slides = slides
+                .iter()
+                .filter(|(_, slide)| slide.is_ahead == is_ahead);
+            mean(&slides.map(|(_, slide)| slide.sliding).collect::<Vec<_>>())
+        };
+        let (forward, backward) = (of(true), of(false));
+        let mut figures = Vec::new();
+        let ground = robot.ground();
+        if let Some(forward) = forward {
+            figures.push(Key::new("ground", "friction", 3, forward, ground.friction));
+            if let Some(backward) = backward {
+                let value = backward.value / forward.value;
+                let error = (backward.error / backward.value).hypot(forward.error / forward.value);
+                let ratio = Figure {
+                    value,
+                    error: value * error,
+                };
+                let key = "friction_back_over_forward";
+                figures.push(Key::new("ground", key, 3, ratio, ground.ratio));
+            }
+        }
+        let pair = |figure: Figure| [figure.value, figure.error];
+        let line = |(film, slide): &(String, Slide)| Line {
+            film: film.clone(),
+            is_head_first: slide.is_ahead,
+            tilt: pair(slide.tilt),
+            resting: pair(slide.resting),
+            sliding: pair(slide.sliding),
+        };
+        Self {
+            films: slides.iter().map(line).collect(),
+            figures,
+        }
+    }
+
+    fn text(&self) -> String {
+        let mut text =
+            "slides first  begins at, deg   static friction  sliding friction\n".to_owned();
+        for line in &self.films {
+            let first = if line.is_head_first { "head" } else { "tail" };
+            let pair = |[value, error]: [f64; 2], digits: usize| {
+                format!("{value:.digits$} to {error:.digits$}")
+            };
+            let _ = writeln!(
+                text,
+                "{first:<14}{:<17}{:<17}{:<18}{}",
+                pair(line.tilt, 1),
+                pair(line.resting, 3),
+                pair(line.sliding, 3),
+                line.film
+            );
+        }
+        if self.figures.is_empty() {
+            return text
+                + "\nfriction in robot.toml is that of pads which slide head first: film the robot with its head \
+                   downhill, too\n";
+        }
+        let table = figures::table(&self.figures);
+        let _ = write!(text, "\n{table}\n{}", figures::lines(&self.figures));
+        if self.figures.len() == 1 {
+            text += "A film with the head uphill gives friction_back_over_forward.\n";
+        }
+        text
+    }
+}

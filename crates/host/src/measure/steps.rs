@@ -1,0 +1,133 @@
+//! `lizard measure steps`: the lines for the console that turn a servo in the jig.
+
+use std::io::{self, Write};
+use std::thread;
+use std::time::Duration;
+
+use lizard_film::orders::{Order, PAUSE, orders};
+use lizard_robot::Robot;
+use lizard_robot::servo::NAMES;
+
+use crate::{Failure, RobotFile};
+
+/// Time before the first step, s: the console waits for the board meanwhile.
+const LEAD: f64 = 6.0;
+/// Slew limit of the robot in the jig, deg/s: the largest of robot.toml, faster than servos turn.
+const SLEW: f64 = 1000.0;
+/// Distance of the poses that are checked on the way, deg.
+const CHECKED: f64 = 1.0;
+
+/// Print the lines that turn a servo for `lizard measure servo`, one each second
+///
+/// Pipe them into `lizard console`: the time between them counts. The robot must stand free, or the servo without its
+/// link, because it jumps by 60 deg. The robot's file needs `slew = 1000.0` under [limits], in a copy that is flashed for
+/// this trial alone, and the board's calibration is set back with `factory` until the next reset.
+#[derive(clap::Args, Debug)]
+#[command(after_help = "Example:
+  lizard measure steps --servo A1 --robot jig.toml | lizard console")]
+pub struct StepsArgs {
+    /// The servo: A1, A2, A3 or A4
+    #[arg(long, value_name = "NAME", value_parser = servo)]
+    servo: usize,
+    /// Print all of them at once, to read them
+    #[arg(long)]
+    list: bool,
+    #[command(flatten)]
+    robot: RobotFile,
+}
+
+/// Reads a servo's name.
+pub(super) fn servo(word: &str) -> Result<usize, String> {
+    let found = NAMES
+        .iter()
+        .position(|name| name.eq_ignore_ascii_case(word));
+    found.ok_or_else(|| "it is A1, A2, A3 or A4".to_owned())
+}
+
+/// Prints the lines.
+///
+/// # Errors
+/// Fails for a robot whose pulses change slowly, or if nobody reads the lines.
+pub fn print_steps(args: StepsArgs) -> Result<(), Failure> {
+    let robot = args.robot.load()?;
+    check_slew(&robot)?;
+    let lines = lines(&robot, args.servo)?;
+    let mut out = io::stdout().lock();
+    for (line, pause) in lines {
+        writeln!(out, "{line}")?;
+        out.flush()?;
+        if !args.list {
+            thread::sleep(Duration::from_secs_f64(pause));
+        }
+    }
+    Ok(())
+}
+
+/// Checks that the pulse changes faster than a servo turns.
+pub(super) fn check_slew(robot: &Robot) -> Result<(), Failure> {
+    let slew = robot.pace().slew;
+    if slew < SLEW {
+        return Err(Failure::Input(format!(
+            "robot {} changes its pulses by {slew} deg/s at most, so its servos cannot show their own rate: write \
+             slew = {SLEW:.1} under [limits] into a copy, flash that one, and give it with --robot",
+            robot.name()
+        )));
+    }
+    Ok(())
+}
+
+/// The lines, each with the time until the next one, s.
+fn lines(robot: &Robot, servo: usize) -> Result<Vec<(String, f64)>, Failure> {
+    let way = way(robot, servo)?;
+    let neutral = |sweep: f64| pose(robot, servo, sweep);
+    let mut lines = vec![("factory".to_owned(), PAUSE), (neutral(0.0), LEAD - PAUSE)];
+    let sign = |is_reversed: bool| {
+        let is_positive = robot.servos()[servo].us_per_degree > 0.0;
+        if is_positive == is_reversed { '-' } else { '+' }
+    };
+    let mut was_reversed = false;
+    for Order { sweep, is_reversed } in orders(way) {
+        let line = match is_reversed == was_reversed {
+            true => neutral(sweep),
+            false => format!("dir {} {}", servo + 1, sign(is_reversed)),
+        };
+        was_reversed = is_reversed;
+        lines.push((line, PAUSE));
+    }
+    lines.push((neutral(0.0), 0.0));
+    Ok(lines)
+}
+
+fn angles(robot: &Robot, servo: usize, sweep: f64) -> [f64; 4] {
+    let mut angles = robot.servos().map(|servo| servo.neutral);
+    angles[servo] += sweep;
+    angles
+}
+
+fn pose(robot: &Robot, servo: usize, sweep: f64) -> String {
+    let [a, b, c, d] = angles(robot, servo, sweep).map(|angle| format!("{angle:.2}"));
+    format!("pose {a} {b} {c} {d}")
+}
+
+/// The side of neutral to which the linkage lets a servo turn by all steps: 1 counter-clockwise, -1 clockwise.
+pub(super) fn way(robot: &Robot, servo: usize) -> Result<f64, Failure> {
+    let is_free = |way: &f64| {
+        orders(*way).iter().all(|order| {
+            let Order { sweep, .. } = *order;
+            let steps = (sweep.abs() / CHECKED).ceil().max(1.0);
+            let on_the_way = (0..=steps as usize).all(|i| {
+                let angles = angles(robot, servo, sweep * i as f64 / steps);
+                robot.accepted(angles).is_some()
+            });
+            let travel = robot.servos()[servo].travel();
+            on_the_way && (travel.0..=travel.1).contains(&order.asked())
+        })
+    };
+    [1.0, -1.0].into_iter().find(is_free).ok_or_else(|| {
+        let name = NAMES[servo];
+        Failure::Input(format!(
+            "the linkage of robot {} lets {name} turn to neither side by the steps' 30 deg, or its pulses do",
+            robot.name()
+        ))
+    })
+}
