@@ -81,7 +81,8 @@ pub(crate) fn solve(
     let all: Vec<usize> = (0..UNKNOWNS).collect();
     let full = problem.fit(&all, &problem.before()).ok_or(Trouble::NoFit)?;
     let freedom = freedom(&problem, &full);
-    let explains = freedom < 1.0 || full.chi_square <= rare(freedom);
+    let limit = if freedom < 1.0 { 0.0 } else { rare(freedom) };
+    let explains = freedom < 1.0 || full.chi_square <= limit;
     let widened = if explains {
         1.0
     } else {
@@ -125,6 +126,7 @@ pub(crate) fn solve(
             figures: problem.figures(),
             chi_square: [still.chi_square, last.chi_square, full.chi_square],
             freedom,
+            limit,
             explains,
             widened,
             worst: worst.ok_or(Trouble::NoWay)?,

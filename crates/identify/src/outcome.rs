@@ -56,6 +56,8 @@ pub struct Goodness {
     pub chi_square: [f64; 3],
     /// Figures less what the fit of all keys used up of them.
     pub freedom: f64,
+    /// The sum of squares that 1 % of true models exceed; 0 without a degree of freedom.
+    pub limit: f64,
     /// False if less than 1 % of true models differ as much from the ways.
     pub explains: bool,
     /// Factor by which all errors were widened.

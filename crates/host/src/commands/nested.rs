@@ -102,6 +102,7 @@ pub fn calibrate(args: With<drive::console::calibrate::Args, OfCalibrate>) -> Re
 #[derive(Subcommand)]
 pub enum OfMeasure {
     Sheet(crate::measure::SheetArgs),
+    Keys(crate::measure::KeysArgs),
 }
 
 /// Runs `lizard measure` or a command below it.
@@ -109,6 +110,7 @@ pub enum OfMeasure {
 pub fn measure(args: With<crate::measure::Args, OfMeasure>) -> Result<(), Failure> {
     match args.below {
         Some(OfMeasure::Sheet(args)) => crate::measure::write_sheet(args),
+        Some(OfMeasure::Keys(args)) => crate::measure::find_keys(args),
         None => crate::measure::run(args.own),
     }
 }
