@@ -5,7 +5,7 @@
 //! its errors, while it is nearer than two. The others follow each time, so of two keys that look alike one
 //! takes what both have to explain.
 
-use lizard_robot::{Robot, Travel};
+use lizard_robot::{CheckedGait, Robot, Travel};
 use nalgebra::DMatrix;
 
 use crate::card::{self, Card};
@@ -23,12 +23,16 @@ const TOLD: f64 = 0.5;
 /// Correlation from which on two keys are said to look alike.
 const ALIKE: f64 = 0.8;
 
-/// Finds the keys of a robot by ways that were measured on it.
+/// Calls a function for each of some numbers from 0 on, and returns the results in order: one after another, or on all cores.
+pub type Each<'a> = &'a dyn Fn(usize, &(dyn Fn(usize) -> Travel + Sync)) -> Vec<Travel>;
+
+/// Finds the keys of a robot by ways that were measured on it. `each` walks the gaits of the model, some hundreds of them
+/// for a tenth of a second each.
 ///
 /// # Errors
 /// Fails for a way of a gait that the robot does not have or that stands, for figures that are no numbers, and if no way tells
 /// anything.
-pub fn identify(robot: &Robot, ways: &[Way]) -> Result<Identified, Trouble> {
+pub fn identify(robot: &Robot, ways: &[Way], each: Each) -> Result<Identified, Trouble> {
     let mut ways = ways.to_vec();
     let mut walks = Vec::new();
     for way in &mut ways {
@@ -59,10 +63,10 @@ pub fn identify(robot: &Robot, ways: &[Way]) -> Result<Identified, Trouble> {
         for (key, value) in KEYS.iter().zip(values) {
             key.set(&mut ground, *value);
         }
-        let walks = walks.iter();
-        walks
-            .map(|(gait, pace)| gait.driven(&ground, &motors, *pace))
-            .collect()
+        each(walks.len(), &|i| {
+            let (gait, pace): (&CheckedGait, f64) = walks[i];
+            gait.driven(&ground, &motors, pace)
+        })
     };
     let start = std::array::from_fn(|i| KEYS[i].of(robot.ground()));
     solve(&ways, start, &predict)
@@ -223,3 +227,6 @@ fn alike(covariance: &DMatrix<f64>) -> Vec<(&'static crate::Key, &'static crate:
     let is_high = |(_, _, correlation): &(_, _, f64)| correlation.abs() > ALIKE;
     correlated.filter(is_high).collect()
 }
+
+#[cfg(test)]
+mod tests;

@@ -30,7 +30,7 @@ mod trouble;
 mod way;
 
 pub use card::Card;
-pub use identify::identify;
+pub use identify::{Each, identify};
 pub use key::{KEYS, Key};
 pub use outcome::{Found, Goodness, Identified, Row, Verdict};
 pub use trouble::Trouble;

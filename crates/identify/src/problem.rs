@@ -18,8 +18,9 @@ use crate::way::Way;
 pub(crate) type Values = [f64; COUNT];
 /// Number of unknowns: the keys, then the card's parts.
 pub(crate) const UNKNOWNS: usize = COUNT + card::COUNT;
-/// Least standard error, mm and deg: the model's own steps are no finer.
-const LEAST_ERROR: f64 = 0.01;
+/// Standard deviation of the model's own ways around smooth ones, mm and deg: servos have a dead band and pads stick, so
+/// a key that moves a little may shift a step by a frame.
+const MODEL_ERROR: f64 = 0.02;
 /// Gain of a step in the sum of squares below which a fit has ended; a parameter is then within a third of its error.
 const ENOUGH: f64 = 0.1;
 /// Gain that a step promised and did not have, up to which it counts as rough ground and not as wrong slopes.
@@ -100,7 +101,7 @@ impl<'a> Problem<'a> {
     fn scaled(&self, parts: &[[f64; 3]], of: impl Fn(f64, f64) -> f64) -> Vec<[f64; 3]> {
         let each = self.ways.iter().zip(parts);
         let scaled = |(way, parts): (&Way, &[f64; 3])| {
-            std::array::from_fn(|i| of(parts[i], way.mean[i]) / way.error[i].max(LEAST_ERROR))
+            std::array::from_fn(|i| of(parts[i], way.mean[i]) / way.error[i].hypot(MODEL_ERROR))
         };
         each.map(scaled).collect()
     }

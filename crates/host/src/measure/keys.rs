@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use lizard_identify::{Trouble, Way, identify};
 use lizard_robot::Robot;
+use rayon::prelude::*;
 use serde::Deserialize;
 use serde_json::{Deserializer, Value};
 
@@ -76,7 +77,10 @@ pub fn find_keys(args: KeysArgs) -> Result<(), Failure> {
     files::check_replaceable(&args.output)?;
     let spinner = Spinner::new("walking the model");
     let refused = |trouble: Trouble| Failure::Input(trouble.to_string());
-    let identified = identify(&robot, &ways).map_err(refused)?;
+    let identified = identify(&robot, &ways, &|count, walk| {
+        (0..count).into_par_iter().map(walk).collect()
+    })
+    .map_err(refused)?;
     drop(spinner);
     let is_moved = identified.moved().next().is_some();
     if is_moved {
