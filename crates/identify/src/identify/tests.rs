@@ -1,9 +1,10 @@
-//! The choice of the keys and their errors, on a smooth model that takes no time: a thousand robots.
+//! The choice of the keys and their errors, on a smooth model that takes no time: three hundred robots.
 
 use fastrand::Rng;
 
 use super::*;
 use crate::key::PLAY;
+use crate::problem::MODEL_ERROR;
 
 /// Number of gaits, and the standard error of each figure.
 const GAITS: usize = 8;
@@ -46,7 +47,7 @@ fn measured(values: &Values, card: Card, rng: &mut Rng) -> Vec<Way> {
         Way {
             gait: "walk".to_owned(),
             pace: 1.0,
-            mean: parts.map(|part| part + ERROR * deviate(rng)),
+            mean: parts.map(|part| part + ERROR.hypot(MODEL_ERROR) * deviate(rng)),
             error: [ERROR; 3],
         }
     };
