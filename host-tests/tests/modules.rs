@@ -7,11 +7,12 @@ use std::path::{Path, PathBuf};
 use lizard_host_tests::root;
 
 /// The crates whose modules are read.
-const CRATES: [&str; 17] = [
+const CRATES: [&str; 18] = [
     "crates/contact",
     "crates/core",
     "crates/film",
     "crates/host",
+    "crates/identify",
     "crates/kinematics",
     "crates/measure",
     "crates/parts",

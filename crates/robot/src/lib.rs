@@ -50,7 +50,7 @@ pub use measures::{
 pub use reports::verdict;
 pub use reports::{
     Assumptions, Report, Round, Row, Sensitivity, ServoTable, SpringCost, UNDECIDED,
-    WITHOUT_CONTACTS,
+    WITHOUT_CONTACTS, plausible,
 };
 pub use robot::Robot;
 pub use tables::{CellMaps, CoreRobot, flash};

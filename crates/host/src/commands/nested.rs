@@ -105,6 +105,7 @@ pub enum OfMeasure {
     Servo(crate::measure::ServoArgs),
     Steps(crate::measure::StepsArgs),
     Slope(crate::measure::SlopeArgs),
+    Keys(crate::measure::KeysArgs),
 }
 
 /// Runs `lizard measure` or a command below it.
@@ -115,6 +116,7 @@ pub fn measure(args: With<crate::measure::Args, OfMeasure>) -> Result<(), Failur
         Some(OfMeasure::Servo(args)) => crate::measure::measure_servo(args),
         Some(OfMeasure::Steps(args)) => crate::measure::print_steps(args),
         Some(OfMeasure::Slope(args)) => crate::measure::measure_slope(args),
+        Some(OfMeasure::Keys(args)) => crate::measure::find_keys(args),
         None => crate::measure::run(args.own),
     }
 }

@@ -1,10 +1,12 @@
-//! Measure the real robot in films: the way of a gait, a servo in a jig, friction on a slope; and the sheet of tags
-//! that they show.
+//! Measure the real robot in films: the way of a gait, the keys of robot.toml that ways tell, a servo in a jig, friction
+//! on a slope; and the sheet of tags that they show.
 
 mod command;
 mod figures;
 mod frames;
 mod grey;
+mod keys;
+mod keys_report;
 mod servo;
 mod sheet;
 mod slope;
@@ -12,6 +14,7 @@ mod steps;
 mod through_ffmpeg;
 
 pub use command::{Args, run};
+pub use keys::{KeysArgs, find_keys};
 pub use servo::{ServoArgs, measure_servo};
 pub use sheet::{SheetArgs, write_sheet};
 pub use slope::{SlopeArgs, measure_slope};

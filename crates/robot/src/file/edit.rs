@@ -8,7 +8,7 @@ use toml::de::{DeTable, DeValue};
 pub const HIPS: [&str; 2] = ["leg.hip_forward", "leg.hip_side"];
 
 /// Keys that a robot.toml may leave out, and that are added when they get a value.
-const OPTIONAL: [&str; 10] = [
+const OPTIONAL: [&str; 11] = [
     HIPS[0],
     HIPS[1],
     "leg.drive.kind",
@@ -19,6 +19,7 @@ const OPTIONAL: [&str; 10] = [
     "feet.twist",
     "ground.friction",
     "body.mass",
+    "body.centre",
 ];
 
 /// The error for a key that the text does not have, or that cannot be changed.
@@ -43,6 +44,34 @@ pub fn with_number(text: &str, key: &str, value: f64) -> Result<String, NoSuchKe
     with_value(text, key, &format!("{value:?}"), |value| {
         matches!(value, DeValue::Float(_) | DeValue::Integer(_))
     })
+}
+
+/// Sets the list of numbers of a key, as [`with_number`] sets a number.
+///
+/// # Errors
+/// Fails if the text is not TOML or has no list at this key.
+pub fn with_numbers(text: &str, key: &str, values: &[f64]) -> Result<String, NoSuchKey> {
+    with_value(text, key, &format!("{values:?}"), |value| {
+        matches!(value, DeValue::Array(_))
+    })
+}
+
+/// Adds a comment behind the line of a key, in place of one that begins with the same word.
+///
+/// # Errors
+/// Fails if the text is not TOML or does not have the key.
+pub fn with_comment(text: &str, key: &str, word: &str, rest: &str) -> Result<String, NoSuchKey> {
+    let missing = || NoSuchKey(key.to_string());
+    let document = DeTable::parse(text).map_err(|_| missing())?;
+    let value = find(document.get_ref(), key).ok_or_else(missing)?;
+    let start = value.span().end;
+    let line = &text[start..line_end(text, start)];
+    let comment = format!(" # {word} ");
+    let kept = line.find(&comment).map_or(line, |old| &line[..old]);
+    let end = start + kept.trim_end().len();
+    let blanks = &line[line.trim_end().len()..];
+    let after = &text[start + line.len()..];
+    Ok(format!("{}{comment}{rest}{blanks}{after}", &text[..end]))
 }
 
 /// Sets the string of a key, as [`with_number`] sets a number.
@@ -256,6 +285,46 @@ mod tests {
         ] {
             assert!(with_number(text, "leg.hip_side", 36.0).is_err(), "{text}");
         }
+    }
+
+    #[test]
+    fn a_list_changes_as_a_whole_or_is_added() {
+        let changed = with_numbers("[body]\ncentre = [0, 0] # mm\n", "body.centre", &[1.5, 0.0]);
+        assert_eq!(changed, Ok("[body]\ncentre = [1.5, 0.0] # mm\n".to_owned()));
+        let added = with_numbers("[body]\nmass = 250.0\n", "body.centre", &[1.5, -2.0]);
+        assert_eq!(
+            added,
+            Ok("[body]\nmass = 250.0\ncentre = [1.5, -2.0]\n".to_owned())
+        );
+        assert!(with_numbers(TEXT, "links.l0", &[1.0]).is_err());
+        assert!(with_number("[body]\ncentre = [0, 0]\n", "body.centre", 1.0).is_err());
+    }
+
+    #[test]
+    fn a_comment_goes_behind_what_is_there_and_replaces_its_like() {
+        for (before, after) in [
+            ("[links]\nl0 = 1.0", "[links]\nl0 = 1.0 # was: 2"),
+            (
+                "[links]\nl0 = 1.0 # base\n",
+                "[links]\nl0 = 1.0 # base # was: 2\n",
+            ),
+            (
+                "[links]\r\nl0 = 1.0\r\nl1 = 1\r\n",
+                "[links]\r\nl0 = 1.0 # was: 2\r\nl1 = 1\r\n",
+            ),
+            (
+                "[links]\nl0 = 1.0 # base # was: 3\n",
+                "[links]\nl0 = 1.0 # base # was: 2\n",
+            ),
+            (
+                "links = { l0 = 1.0, l1 = 2.0 }\n",
+                "links = { l0 = 1.0, l1 = 2.0 } # was: 2\n",
+            ),
+        ] {
+            let commented = with_comment(before, "links.l0", "was:", "2");
+            assert_eq!(commented, Ok(after.to_owned()));
+        }
+        assert!(with_comment("[links]\nl0 = 1.0", "links.l1", "was:", "2").is_err());
     }
 
     #[test]

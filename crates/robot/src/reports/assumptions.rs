@@ -128,6 +128,12 @@ const ALL: [Assumption; 21] = assumptions! {
     });
 };
 
+/// The plausible range of an assumption with these words.
+pub fn plausible(words: &str) -> Option<[f64; 2]> {
+    let assumption = ALL.iter().find(|assumption| assumption.words == words);
+    assumption.map(|assumption| assumption.range)
+}
+
 /// An assumption's effect on each gait.
 #[derive(Debug, Clone, PartialEq)]
 struct Row {

@@ -1,5 +1,6 @@
 //! `lizard measure` on films whose truth is known, and the sheet that they show.
 
+mod keys;
 // The renderer has more than is needed here.
 #[allow(dead_code)]
 #[path = "../../../../film/tests/film/render.rs"]

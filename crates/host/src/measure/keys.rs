@@ -1,0 +1,142 @@
+//! `lizard measure keys`: the keys of robot.toml by ways that were measured.
+
+use std::path::{Path, PathBuf};
+
+use lizard_identify::{Trouble, Way, identify};
+use lizard_robot::Robot;
+use rayon::prelude::*;
+use serde::Deserialize;
+use serde_json::{Deserializer, Value};
+
+use super::keys_report::{KeysReport, text};
+use crate::shared::files;
+use crate::shared::json;
+use crate::shared::progress::Spinner;
+use crate::{Failure, RobotFile};
+
+/// Largest difference between the times of a cycle by two robot.toml that are the same, s.
+const SAME_PERIOD: f64 = 0.005;
+
+/// Find the keys of robot.toml with which the model goes as far as the robot did
+///
+/// Each FILE has what `lizard measure --json` printed, for one gait or more; walk, trot, crawl, back, left, right
+/// and the arcs tell most. Finds the play of the legs, their mounting, mass centre, a foot too long, and the friction, by
+/// least squares. A key that these gaits do not tell, or that is right within two standard errors, stays as it is. Writes a new
+/// robot.toml with a comment at each changed line, and prints the predictions before and after.
+#[derive(clap::Args, Debug)]
+#[command(after_help = "Example:
+  lizard measure walk.mp4 --gait walk --json > walk.json
+  lizard measure left.mp4 --gait left --json > left.json
+  lizard measure keys walk.json left.json --output measured.toml
+  lizard gaits --robot measured.toml")]
+pub struct KeysArgs {
+    /// Files with what `lizard measure --json` printed
+    #[arg(value_name = "FILE", required = true)]
+    files: Vec<PathBuf>,
+    /// The file for the new robot.toml
+    #[arg(long, short, value_name = "FILE", default_value = "out/measured.toml")]
+    output: PathBuf,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    robot: RobotFile,
+}
+
+/// The part of the output of `lizard measure --json` that counts here.
+#[derive(Deserialize)]
+struct Measured {
+    gait: String,
+    /// Percent.
+    speed: f64,
+    /// Time of a cycle by the robot.toml of that run, s.
+    period_expected: Option<f64>,
+    forward: Part,
+    left: Part,
+    turn: Part,
+}
+
+#[derive(Deserialize)]
+struct Part {
+    mean: f64,
+    error: f64,
+}
+
+/// Finds the keys, prints them, and writes the new robot.toml.
+///
+/// # Errors
+/// Fails for files that are not from `lizard measure`, or from another robot; for ways that tell nothing; if the
+/// output would replace something, or cannot be written.
+pub fn find_keys(args: KeysArgs) -> Result<(), Failure> {
+    let before = args.robot.text()?;
+    let robot = args.robot.load()?;
+    let mut ways = Vec::new();
+    for file in &args.files {
+        ways.append(&mut read(file, &robot)?);
+    }
+    files::check_replaceable(&args.output)?;
+    let spinner = Spinner::new("walking the model");
+    let refused = |trouble: Trouble| Failure::Input(trouble.to_string());
+    let identified = identify(&robot, &ways, &|count, walk| {
+        (0..count).into_par_iter().map(walk).collect()
+    })
+    .map_err(refused)?;
+    drop(spinner);
+    let is_moved = identified.moved().next().is_some();
+    if is_moved {
+        let new = identified.text(&before).map_err(refused)?;
+        files::write(&args.output, new.as_bytes())?;
+    }
+    let written = is_moved.then_some(args.output.as_path());
+    let report = KeysReport::new(&identified, written);
+    json::print_json_or(args.json, &report, || text(&identified, written))
+}
+
+/// Reads the ways of a file: objects of one gait each, or with a list of such objects under `gaits`.
+fn read(path: &Path, robot: &Robot) -> Result<Vec<Way>, Failure> {
+    let about = |problem: String| Failure::Input(format!("{}: {problem}", path.display()));
+    let foreign = |error: serde_json::Error| {
+        about(format!(
+            "this is not what `lizard measure --json` prints: {error}"
+        ))
+    };
+    let text = files::read_text(path)?;
+    let mut ways = Vec::new();
+    for object in Deserializer::from_str(&text).into_iter::<Value>() {
+        let mut object = object.map_err(foreign)?;
+        let gaits = match object.get_mut("gaits") {
+            Some(Value::Array(gaits)) => std::mem::take(gaits),
+            _ => vec![object],
+        };
+        for gait in gaits {
+            let measured: Measured = serde_json::from_value(gait).map_err(foreign)?;
+            ways.push(way(&measured, robot).map_err(about)?);
+        }
+    }
+    if ways.is_empty() {
+        return Err(about("it has no gait".to_owned()));
+    }
+    Ok(ways)
+}
+
+/// The way of a measured gait, if it was measured with this robot.toml.
+fn way(measured: &Measured, robot: &Robot) -> Result<Way, String> {
+    let Measured { gait, speed, .. } = measured;
+    let pace = speed / 100.0;
+    let own = robot.gait(gait).map(|gait| gait.period() / pace);
+    if let (Some(own), Some(then)) = (own, measured.period_expected)
+        && (own - then).abs() > SAME_PERIOD
+    {
+        return Err(format!(
+            "a cycle of `{gait}` takes {own:.2} s by this robot.toml, but took {then:.2} s by that of the measurement; \
+             give the same one with --robot"
+        ));
+    }
+    let parts = [&measured.forward, &measured.left, &measured.turn];
+    Ok(Way {
+        gait: gait.clone(),
+        pace,
+        mean: parts.map(|part| part.mean),
+        error: parts.map(|part| part.error),
+    })
+}

@@ -1,0 +1,271 @@
+//! The keys that ways tell, for people and for scripts.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use lizard_identify::{Card, Found, Goodness, Identified, PARTS, Row, Verdict};
+use serde::Serialize;
+
+/// The result under the names of `--json`.
+#[derive(Serialize)]
+pub(super) struct KeysReport {
+    keys: Vec<KeyLine>,
+    card: CardLine,
+    /// Pairs of keys with the correlation of their errors.
+    alike: Vec<(String, String, f64)>,
+    fit: FitLine,
+    gaits: Vec<GaitLine>,
+    /// The new robot.toml; null if no key is moved.
+    written: Option<PathBuf>,
+}
+
+#[derive(Serialize)]
+struct KeyLine {
+    key: String,
+    unit: &'static str,
+    before: f64,
+    after: f64,
+    error: f64,
+    /// "moved", "right", "untold" or "impossible".
+    verdict: &'static str,
+}
+
+/// The card on the deck: values and standard errors, deg and mm.
+#[derive(Serialize)]
+struct CardLine {
+    turn: [f64; 2],
+    ahead: [f64; 2],
+    left: [f64; 2],
+}
+
+#[derive(Serialize)]
+struct FitLine {
+    figures: usize,
+    chi_square_before: f64,
+    chi_square: f64,
+    chi_square_all_free: f64,
+    freedom: f64,
+    explains: bool,
+    errors_widened: f64,
+}
+
+/// A gait: measured, its errors (null without a decision), by the file, and with the new values; mm, mm, deg.
+#[derive(Serialize)]
+struct GaitLine {
+    gait: String,
+    speed: f64,
+    measured: [f64; 3],
+    error: [Option<f64>; 3],
+    before: [f64; 3],
+    after: [f64; 3],
+}
+
+impl KeysReport {
+    pub(super) fn new(identified: &Identified, written: Option<&Path>) -> Self {
+        let [card, error] = &identified.card;
+        let pair = |of: fn(&Card) -> f64| [of(card), of(error)];
+        let Goodness {
+            chi_square: [chi_square_before, chi_square, chi_square_all_free],
+            ..
+        } = identified.goodness;
+        let names = |(a, b, correlation): &(&lizard_identify::Key, &lizard_identify::Key, f64)| {
+            (a.full_name(), b.full_name(), *correlation)
+        };
+        Self {
+            keys: identified.keys.iter().map(KeyLine::new).collect(),
+            card: CardLine {
+                turn: pair(|card| card.turn),
+                ahead: pair(|card| card.ahead),
+                left: pair(|card| card.left),
+            },
+            alike: identified.alike.iter().map(names).collect(),
+            fit: FitLine {
+                figures: identified.goodness.figures,
+                chi_square_before,
+                chi_square,
+                chi_square_all_free,
+                freedom: identified.goodness.freedom,
+                explains: identified.goodness.explains,
+                errors_widened: identified.goodness.widened,
+            },
+            gaits: identified.rows.iter().map(GaitLine::new).collect(),
+            written: written.map(Path::to_owned),
+        }
+    }
+}
+
+impl KeyLine {
+    fn new(found: &Found) -> Self {
+        Self {
+            key: found.key.full_name(),
+            unit: found.key.unit,
+            before: found.before,
+            after: found.after,
+            error: found.error,
+            verdict: match found.verdict {
+                Verdict::Moved => "moved",
+                Verdict::Right => "right",
+                Verdict::Untold => "untold",
+                Verdict::Impossible(_) => "impossible",
+            },
+        }
+    }
+}
+
+impl GaitLine {
+    fn new(row: &Row) -> Self {
+        Self {
+            gait: row.way.gait.clone(),
+            speed: 100.0 * row.way.pace,
+            measured: row.way.mean,
+            error: row
+                .way
+                .error
+                .map(|error| Some(error).filter(|error| error.is_finite())),
+            before: row.before,
+            after: row.after,
+        }
+    }
+}
+
+/// The result for people.
+pub(super) fn text(identified: &Identified, written: Option<&Path>) -> String {
+    let mut text = format!(
+        "{:<35}{:>10}{:>10}{:>9}\n",
+        "key", "before", "after", "error"
+    );
+    for found in &identified.keys {
+        text += &key_line(found);
+    }
+    let [card, error] = &identified.card;
+    let _ = writeln!(
+        text,
+        "\nThe card on the deck lies {:+.1} +- {:.1} mm ahead of the middle, {:+.1} +- {:.1} mm to the left, and is turned by \
+         {:+.2} +- {:.2} deg.",
+        card.ahead, error.ahead, card.left, error.left, card.turn, error.turn
+    );
+    for (a, b, correlation) in &identified.alike {
+        let _ = writeln!(
+            text,
+            "{} and {} look alike in these gaits: their errors are correlated by {correlation:+.2}.",
+            a.full_name(),
+            b.full_name()
+        );
+    }
+    text += "\n";
+    text += &goodness(identified);
+    let _ = writeln!(
+        text,
+        "\n{:<28}{:>9}{:>7}{:>9}{:>9}",
+        "a cycle", "measured", "error", "before", "after"
+    );
+    for row in &identified.rows {
+        text += &row_lines(row);
+    }
+    text += "\n";
+    match written {
+        Some(path) => {
+            let path = path.display();
+            let _ = writeln!(
+                text,
+                "{path}: the robot with the values above; lizard gaits --robot {path}"
+            );
+        }
+        None => text += "No key is changed, so nothing is written.\n",
+    }
+    text
+}
+
+fn key_line(found: &Found) -> String {
+    let digits = found.digits();
+    let key = found.key;
+    let name = match key.unit {
+        "" => key.full_name(),
+        unit => format!("{}, {unit}", key.full_name()),
+    };
+    let verdict = match found.verdict {
+        Verdict::Moved => "changed".to_owned(),
+        Verdict::Right => "right".to_owned(),
+        Verdict::Untold => format!("these gaits do not tell it: {}", key.otherwise),
+        Verdict::Impossible(value) => {
+            format!("would have to be {value:.digits$}, which it cannot; left")
+        }
+    };
+    format!(
+        "{name:<35}{:>10}{:>10}{:>9.digits$}  {verdict}\n",
+        format!("{:?}", found.before),
+        if found.verdict == Verdict::Moved {
+            format!("{:.digits$}", found.after)
+        } else {
+            "-".to_owned()
+        },
+        found.error,
+    )
+}
+
+/// How well the model explains the ways.
+fn goodness(identified: &Identified) -> String {
+    let Goodness {
+        figures,
+        chi_square: [before, after, free],
+        freedom,
+        limit,
+        explains,
+        widened,
+        worst: (row, part, errors),
+    } = identified.goodness;
+    let mut text = format!(
+        "{figures} figures: chi-square {before:.1} by robot.toml, {after:.1} with the values above, for {freedom:.0} degrees of freedom.\n"
+    );
+    let (name, _) = PARTS[part];
+    let gait = &identified.rows[row].way.gait;
+    let more = if errors > 0.0 { "more" } else { "less" };
+    let worst = format!(
+        "`{gait}`, {name}: {:.1} errors {more} than the model",
+        errors.abs()
+    );
+    if !explains {
+        let _ = writeln!(
+            text,
+            "The model does not explain these ways, whatever its keys: chi-square {free:.1} at best, and 1 % of true models exceed \
+             {limit:.1}. Worst is {worst}. All errors above are therefore {widened:.1} times as large. Look for a servo that is not \
+             as robot.toml has it, a foot that catches, another floor."
+        );
+    } else if freedom >= 1.0 && after > limit {
+        let _ = writeln!(
+            text,
+            "The keys that were left would explain more only together ({free:.1}), and these gaits do not tell which of them. \
+             Film further gaits. Worst is {worst}."
+        );
+    } else if freedom < 1.0 {
+        text += "That is too few figures to tell whether the model is right: film further gaits.\n";
+    } else {
+        let _ = writeln!(text, "The model explains these ways. Worst is {worst}.");
+    }
+    text
+}
+
+fn row_lines(row: &Row) -> String {
+    let way = &row.way;
+    let gait = match way.pace {
+        1.0 => way.gait.clone(),
+        pace => format!("{} at {:.0} %", way.gait, 100.0 * pace),
+    };
+    let mut lines = String::new();
+    for (i, (part, unit)) in PARTS.iter().enumerate() {
+        let name = if i == 0 { gait.as_str() } else { "" };
+        let error = match way.error[i].is_finite() {
+            true => format!("{:.2}", way.error[i]),
+            false => "tie".to_owned(),
+        };
+        let _ = writeln!(
+            lines,
+            "{name:<17}{:<11}{:>+9.2}{error:>7}{:>+9.2}{:>+9.2}",
+            format!("{part}, {unit}"),
+            way.mean[i],
+            row.before[i],
+            row.after[i]
+        );
+    }
+    lines
+}

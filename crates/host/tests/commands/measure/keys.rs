@@ -1,0 +1,102 @@
+//! `lizard measure keys` on ways that are written down.
+
+use std::fs;
+use std::path::PathBuf;
+
+use crate::program::{Outcome, read, robot, run_in, scratch};
+
+/// A way as `lizard measure --json` prints it; all errors 0.05.
+fn object(gait: &str, [forward, left, turn]: [f64; 3]) -> String {
+    let part = |mean: f64| format!(r#"{{"mean":{mean},"sd":0.1,"error":0.05}}"#);
+    format!(
+        r#"{{"gait":"{gait}","speed":100,"forward":{},"left":{},"turn":{}}}"#,
+        part(forward),
+        part(left),
+        part(turn)
+    )
+}
+
+/// Writes a file with ways.
+fn file(name: &str, text: &str) -> PathBuf {
+    let path = scratch().join(name);
+    fs::write(&path, text).expect("it is written");
+    path
+}
+
+fn keys(files: &[&PathBuf], more: &[&str]) -> Outcome {
+    let paper = robot("paper");
+    let files: Vec<&str> = files.iter().filter_map(|file| file.to_str()).collect();
+    let line = [&["measure", "keys", "--robot", &paper], &files[..], more].concat();
+    run_in(scratch(), &line, "")
+}
+
+#[test]
+fn files_that_tell_nothing_are_refused_with_what_to_do() {
+    let foreign = file("foreign.json", r#"{"gait":"walk","speed":100}"#);
+    let message = keys(&[&foreign], &[]).refusal();
+    assert!(
+        message.contains("foreign.json") && message.contains("missing field `forward`"),
+        "{message}"
+    );
+    let empty = file("empty.json", "");
+    assert!(keys(&[&empty], &[]).refusal().contains("no gait"));
+    let unknown = file("unknown.json", &object("wakl", [30.0, 0.0, 0.0]));
+    assert!(keys(&[&unknown], &[]).refusal().contains("no gait `wakl`"));
+    let still = file("still.json", &object("stand", [0.0; 3]));
+    assert!(keys(&[&still], &[]).refusal().contains("moves no servo"));
+    let other = object("walk", [30.0, 0.0, 0.0])
+        .replace(r#""speed":100"#, r#""speed":100,"period_expected":1.25"#);
+    let other = file("other.json", &other);
+    assert!(
+        keys(&[&other], &[])
+            .refusal()
+            .contains("1.00 s by this robot.toml, but took 1.25 s")
+    );
+}
+
+#[test]
+fn no_robot_and_no_input_is_replaced() {
+    let way = file("way.json", &object("walk", [30.0, 0.0, 0.0]));
+    let message = keys(&[&way], &["--output", &robot("grain")]).refusal();
+    assert!(message.contains("describes a robot"), "{message}");
+    let message = keys(&[&way], &["--output", way.to_str().expect("a name")]).refusal();
+    assert!(message.contains("this command reads it"), "{message}");
+}
+
+#[test]
+fn a_new_robot_differs_in_the_lines_that_were_measured_and_in_no_other() {
+    // Pads that hold backward: both gaits go farther than by the file, which has a ratio of 1.
+    let walk = object("walk", [33.9, 0.08, 0.0]);
+    let back = object("back", [-32.7, 0.08, 0.0]);
+    let ways = file("ways.json", &format!(r#"{{"gaits":[{walk},{back}]}}"#));
+    let output = scratch().join("measured.toml");
+    let _ = fs::remove_file(&output);
+    let shown = output.to_str().expect("a name");
+    let result = keys(&[&ways], &["--output", shown, "--json"]).json();
+    let verdict = |key: &str| {
+        let mut all = result["keys"].as_array().into_iter().flatten();
+        let found = all.find(|found| found["key"] == key).expect(key);
+        found["verdict"].as_str().expect("a word").to_owned()
+    };
+    assert_eq!(verdict("ground.friction_back_over_forward"), "moved");
+    assert_eq!(verdict("ground.friction"), "untold", "{result}");
+    assert_eq!(result["written"], shown);
+    let (old, new) = (
+        read("robots/paper.toml"),
+        fs::read_to_string(&output).expect("it is written"),
+    );
+    let changed = new
+        .lines()
+        .filter(|line| !old.lines().any(|known| known == *line));
+    for line in changed {
+        let is_measured =
+            line.contains("# measured: ") && line.contains("+-") && line.contains("was ");
+        assert!(
+            is_measured || line.is_empty() || line.starts_with('['),
+            "{line}"
+        );
+    }
+    assert!(new.contains("friction_back_over_forward = ") && new != old);
+    let check = run_in(scratch(), &["gaits", "--robot", shown], "");
+    assert!(check.success().contains("walk"));
+}

@@ -1,0 +1,89 @@
+//! The card with the tag on the robot's deck, which nobody glues on exactly.
+//!
+//! A card that is turned sees a part of the way ahead as drift, and one beside the middle of the robot is carried around it
+//! in a turn. Both look like a mass centre or a foot that they are not.
+
+use lizard_robot::{Place, Travel};
+
+/// The place of the card on the robot.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Card {
+    /// Turn from the robot's direction, deg, counter-clockwise.
+    pub turn: f64,
+    /// Distance of its middle ahead of the chassis centre, mm.
+    pub ahead: f64,
+    /// The same to the left, mm.
+    pub left: f64,
+}
+
+/// Number of the card's parts.
+pub(crate) const COUNT: usize = 3;
+
+impl Card {
+    /// Standard deviations of cards that people glue on: deg, mm, mm.
+    pub(crate) const DOUBTS: [f64; COUNT] = [2.0, 2.0, 2.0];
+
+    /// The movement of the card in a movement of the robot.
+    pub(crate) fn seen(&self, travel: Travel) -> Travel {
+        let at = |body: Place| {
+            let [forward, left] = body.on_floor([self.ahead, self.left]);
+            let heading = body.heading + self.turn.to_radians();
+            Place {
+                forward,
+                left,
+                heading,
+            }
+        };
+        let end = Place {
+            forward: travel.forward,
+            left: travel.left,
+            heading: travel.turn.to_radians(),
+        };
+        at(end).seen_from(at(Place::START))
+    }
+}
+
+impl From<[f64; COUNT]> for Card {
+    fn from([turn, ahead, left]: [f64; COUNT]) -> Self {
+        Self { turn, ahead, left }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn assert_seen(card: [f64; COUNT], way: [f64; 3], seen: [f64; 3]) {
+        let [forward, left, turn] = way;
+        let found = Card::from(card).seen(Travel {
+            forward,
+            left,
+            turn,
+        });
+        let found = [found.forward, found.left, found.turn];
+        for (found, wanted) in found.into_iter().zip(seen) {
+            assert!((found - wanted).abs() < 1e-9, "{card:?}: {found} {wanted}");
+        }
+    }
+
+    #[test]
+    fn a_card_in_its_place_goes_as_the_robot_does() {
+        assert_seen([0.0; 3], [30.0, 2.0, 15.0], [30.0, 2.0, 15.0]);
+    }
+
+    #[test]
+    fn a_card_turned_to_the_left_drifts_to_the_right() {
+        let (sin, cos) = 30f64.to_radians().sin_cos();
+        assert_seen(
+            [30.0, 4.0, 5.0],
+            [10.0, 0.0, 0.0],
+            [10.0 * cos, -10.0 * sin, 0.0],
+        );
+    }
+
+    #[test]
+    fn a_card_ahead_of_the_middle_is_carried_around_it() {
+        // A quarter turn about the middle leads from 10 mm ahead to 10 mm to the left.
+        assert_seen([0.0, 10.0, 0.0], [0.0, 0.0, 90.0], [-10.0, 10.0, 90.0]);
+    }
+}

@@ -1,0 +1,232 @@
+//! The fit of all keys, and the choice of those that are moved.
+//!
+//! First all keys are free: their errors are those that hold if none of the file's values is trusted, and they
+//! are the errors that are stated. Then keys go back to the file's value, always the one that is nearest to it in
+//! its errors, while it is nearer than two. The others follow each time, so of two keys that look alike one
+//! takes what both have to explain.
+
+use lizard_robot::{CheckedGait, Robot, Travel};
+use nalgebra::DMatrix;
+
+use crate::card::{self, Card};
+use crate::chi_square::rare;
+use crate::key::{COUNT, KEYS};
+use crate::outcome::{Found, Goodness, Identified, Row, Verdict};
+use crate::problem::{Problem, Solution, UNKNOWNS, Values, split};
+use crate::trouble::Trouble;
+use crate::way::Way;
+
+/// Distance from the file's value, in standard errors, from which on a key is moved.
+const MOVES: f64 = 2.0;
+/// Share of its doubt that the ways may leave of a key that counts as told.
+const TOLD: f64 = 0.5;
+/// Correlation from which on two keys are said to look alike.
+const ALIKE: f64 = 0.8;
+
+/// Calls a function for each of some numbers from 0 on, and returns the results in order: one after another, or on all cores.
+pub type Each<'a> = &'a dyn Fn(usize, &(dyn Fn(usize) -> Travel + Sync)) -> Vec<Travel>;
+
+/// Finds the keys of a robot by ways that were measured on it. `each` walks the gaits of the model, some hundreds of them
+/// for a tenth of a second each.
+///
+/// # Errors
+/// Fails for a way of a gait that the robot does not have or that stands, for figures that are no numbers, and if no way tells
+/// anything.
+pub fn identify(robot: &Robot, ways: &[Way], each: Each) -> Result<Identified, Trouble> {
+    let mut ways = ways.to_vec();
+    let mut walks = Vec::new();
+    for way in &mut ways {
+        let gait = robot.gait(&way.gait);
+        let gait = gait.ok_or_else(|| Trouble::NoSuchGait(way.gait.clone()))?;
+        if !gait.moves() {
+            return Err(Trouble::Still(way.gait.clone()));
+        }
+        let numbers = way.mean.iter().chain(&way.error);
+        let right = numbers.chain([&way.pace]).all(|figure| figure.is_finite());
+        if !right || way.pace <= 0.0 || way.error.iter().any(|error| *error < 0.0) {
+            return Err(Trouble::NoNumber(way.gait.clone()));
+        }
+        let decided = robot.predict(gait);
+        for (i, part) in [decided.forward, decided.left, decided.turn]
+            .iter()
+            .enumerate()
+        {
+            if part.is_none() {
+                way.error[i] = f64::INFINITY;
+            }
+        }
+        walks.push((gait, way.pace));
+    }
+    let motors = robot.motors();
+    let predict = |values: &Values| -> Vec<Travel> {
+        let mut ground = *robot.ground();
+        for (key, value) in KEYS.iter().zip(values) {
+            key.set(&mut ground, *value);
+        }
+        each(walks.len(), &|i| {
+            let (gait, pace): (&CheckedGait, f64) = walks[i];
+            gait.driven(&ground, &motors, pace)
+        })
+    };
+    let start = std::array::from_fn(|i| KEYS[i].of(robot.ground()));
+    solve(&ways, start, &predict)
+}
+
+/// Finds the keys with which a model goes the ways.
+pub(crate) fn solve(
+    ways: &[Way],
+    start: Values,
+    predict: &dyn Fn(&Values) -> Vec<Travel>,
+) -> Result<Identified, Trouble> {
+    let problem = Problem::new(ways, start, predict);
+    if problem.figures() == 0 {
+        return Err(Trouble::NoWay);
+    }
+    let all: Vec<usize> = (0..UNKNOWNS).collect();
+    let full = problem.fit(&all, &problem.before()).ok_or(Trouble::NoFit)?;
+    let freedom = freedom(&problem, &full);
+    let limit = if freedom < 1.0 { 0.0 } else { rare(freedom) };
+    let explains = freedom < 1.0 || full.chi_square <= limit;
+    let widened = if explains {
+        1.0
+    } else {
+        (full.chi_square / freedom).sqrt()
+    };
+    let errors: [f64; UNKNOWNS] =
+        std::array::from_fn(|i| widened * full.covariance[(i, i)].max(0.0).sqrt());
+    let (last, verdicts) = choose(&problem, &full, &errors)?;
+    let still = problem.fit(&all[COUNT..], &problem.before());
+    let still = still.ok_or(Trouble::NoFit)?;
+    let differences = problem.differences(&last.at).into_iter().enumerate();
+    let each = differences.flat_map(|(row, parts)| {
+        let parts = parts.into_iter().enumerate();
+        parts.map(move |(part, difference)| (row, part, difference))
+    });
+    let worst = each.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()));
+    let after = split(&last.at).0;
+    let found = |(i, key): (usize, &'static crate::Key)| Found {
+        key,
+        before: start[i],
+        after: after[i],
+        error: errors[i],
+        verdict: verdicts[i],
+    };
+    let seen = problem
+        .seen(&still.at)
+        .into_iter()
+        .zip(problem.seen(&last.at));
+    let rows = ways.iter().zip(seen);
+    let row = |(way, (before, after)): (&Way, _)| Row {
+        way: way.clone(),
+        before,
+        after,
+    };
+    let card: [f64; card::COUNT] = std::array::from_fn(|i| errors[COUNT + i]);
+    Ok(Identified {
+        keys: KEYS.iter().enumerate().map(found).collect(),
+        card: [split(&last.at).1, Card::from(card)],
+        alike: alike(&full.covariance),
+        goodness: Goodness {
+            figures: problem.figures(),
+            chi_square: [still.chi_square, last.chi_square, full.chi_square],
+            freedom,
+            limit,
+            explains,
+            widened,
+            worst: worst.ok_or(Trouble::NoWay)?,
+        },
+        rows: rows.map(row).collect(),
+    })
+}
+
+/// The figures less what the fit of all unknowns used up: of each as much as the ways, and not its doubt, tell of it.
+fn freedom(problem: &Problem, full: &Solution) -> f64 {
+    let told = (0..UNKNOWNS).map(|i| 1.0 - full.covariance[(i, i)] / problem.doubts[i].powi(2));
+    problem.figures() as f64 - told.sum::<f64>()
+}
+
+/// Returns keys to the file's values until the others are far from theirs.
+fn choose(
+    problem: &Problem,
+    full: &Solution,
+    errors: &[f64; UNKNOWNS],
+) -> Result<(Solution, [Verdict; COUNT]), Trouble> {
+    let mut verdicts = [Verdict::Moved; COUNT];
+    let mut guess = full.at;
+    let mut covariance = full.covariance.clone();
+    let before = problem.before();
+    for key in 0..COUNT {
+        if errors[key] > TOLD * problem.doubts[key] {
+            verdicts[key] = Verdict::Untold;
+            hold(key, &before, &mut guess, &mut covariance);
+        }
+    }
+    loop {
+        // In the linear model first, which costs nothing.
+        while let Some((key, verdict)) = next(&verdicts, &guess, &before, errors) {
+            verdicts[key] = verdict;
+            hold(key, &before, &mut guess, &mut covariance);
+        }
+        let is_free = |i: &usize| {
+            verdicts
+                .get(*i)
+                .is_none_or(|verdict| *verdict == Verdict::Moved)
+        };
+        let free: Vec<usize> = (0..UNKNOWNS).filter(is_free).collect();
+        let last = problem.fit(&free, &guess).ok_or(Trouble::NoFit)?;
+        guess = last.at;
+        if next(&verdicts, &guess, &before, errors).is_none() {
+            return Ok((last, verdicts));
+        }
+    }
+}
+
+/// The free key that is to be held next, and the reason.
+fn next(
+    verdicts: &[Verdict; COUNT],
+    at: &[f64; UNKNOWNS],
+    before: &[f64; UNKNOWNS],
+    errors: &[f64; UNKNOWNS],
+) -> Option<(usize, Verdict)> {
+    let free = || (0..COUNT).filter(|&i| verdicts[i] == Verdict::Moved);
+    let distance = |i: usize| (at[i] - before[i]).abs() / errors[i];
+    let nearest = free().min_by(|&a, &b| distance(a).total_cmp(&distance(b)))?;
+    if distance(nearest) < MOVES {
+        return Some((nearest, Verdict::Right));
+    }
+    let low = free().find(|&i| at[i] < KEYS[i].least)?;
+    Some((low, Verdict::Impossible(at[low])))
+}
+
+/// Holds a key at its value before, and lets the others follow as they are correlated with it.
+fn hold(
+    key: usize,
+    before: &[f64; UNKNOWNS],
+    at: &mut [f64; UNKNOWNS],
+    covariance: &mut DMatrix<f64>,
+) {
+    let variance = covariance[(key, key)];
+    let column: Vec<f64> = covariance.column(key).iter().copied().collect();
+    let back = (at[key] - before[key]) / variance;
+    for i in 0..UNKNOWNS {
+        at[i] -= column[i] * back;
+        for j in 0..UNKNOWNS {
+            covariance[(i, j)] -= column[i] * column[j] / variance;
+        }
+    }
+    at[key] = before[key];
+}
+
+/// The pairs of keys whose errors are correlated.
+fn alike(covariance: &DMatrix<f64>) -> Vec<(&'static crate::Key, &'static crate::Key, f64)> {
+    let pairs = (0..COUNT).flat_map(|i| (0..i).map(move |j| (j, i)));
+    let correlated = pairs.map(|(i, j)| {
+        let scale = (covariance[(i, i)] * covariance[(j, j)]).sqrt();
+        (&KEYS[i], &KEYS[j], covariance[(i, j)] / scale)
+    });
+    let is_high = |(_, _, correlation): &(_, _, f64)| correlation.abs() > ALIKE;
+    correlated.filter(is_high).collect()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,157 @@
+//! The keys of robot.toml that ways can tell.
+
+use lizard_robot::{Ground, plausible};
+
+/// A number of robot.toml that changes the ways of the gaits.
+#[derive(Debug)]
+pub struct Key {
+    /// Full name in robot.toml.
+    pub name: &'static str,
+    /// Index in a key that is a list.
+    pub(crate) of_list: Option<usize>,
+    /// Meaning of the number.
+    pub words: &'static str,
+    /// Unit, empty for a ratio.
+    pub unit: &'static str,
+    /// Another way to measure it.
+    pub otherwise: &'static str,
+    /// Words of the assumption whose plausible range it has.
+    assumed: &'static str,
+    /// Difference by which its influence is measured: large beside the roughness of a model with dead bands
+    /// and sticking pads, small beside the curvature.
+    pub(crate) step: f64,
+    /// Least value.
+    pub(crate) least: f64,
+    field: fn(&mut Ground) -> &mut f64,
+}
+
+/// Number of keys.
+pub(crate) const COUNT: usize = 7;
+
+/// The keys, in the order of robot.toml. Its other numbers of the ground cannot be told from these: a stiffer foot is a longer one, and
+/// more mass is more friction.
+pub const KEYS: [Key; COUNT] = [
+    Key {
+        name: "leg.mount",
+        of_list: None,
+        words: "mounting of the legs",
+        unit: "deg",
+        otherwise: "a photo from above shows it",
+        assumed: "mounting of the legs",
+        step: 1.0,
+        least: f64::NEG_INFINITY,
+        field: |ground| &mut ground.feet.mount,
+    },
+    Key {
+        name: "leg.drive.play",
+        of_list: None,
+        words: "play of a leg",
+        unit: "deg",
+        otherwise: "trial 2 of docs/measure.md measures it",
+        assumed: "play of a leg",
+        step: 0.1,
+        least: 0.0,
+        field: |ground| &mut ground.drive.play,
+    },
+    Key {
+        name: "body.centre",
+        of_list: Some(0),
+        words: "mass centre ahead",
+        unit: "mm",
+        otherwise: "balance the robot on an edge",
+        assumed: "mass centre ahead",
+        step: 1.0,
+        least: f64::NEG_INFINITY,
+        field: |ground| &mut ground.body.centre[0],
+    },
+    Key {
+        name: "body.centre",
+        of_list: Some(1),
+        words: "mass centre to the left",
+        unit: "mm",
+        otherwise: "balance the robot on an edge",
+        assumed: "mass centre ahead",
+        step: 1.0,
+        least: f64::NEG_INFINITY,
+        field: |ground| &mut ground.body.centre[1],
+    },
+    Key {
+        name: "feet.twist",
+        of_list: None,
+        words: "front left foot too long",
+        unit: "mm",
+        otherwise: "a scale under each foot tells it, by docs/measure.md",
+        assumed: "front left foot too long",
+        step: 0.2,
+        least: f64::NEG_INFINITY,
+        field: |ground| &mut ground.stance.twist,
+    },
+    Key {
+        name: "ground.friction",
+        of_list: None,
+        words: "friction of a pad",
+        unit: "",
+        otherwise: "it cancels, but for the load of the servos; a board that is tilted until the robot slides gives it",
+        assumed: "friction of a pad",
+        step: 0.05,
+        least: 0.05,
+        field: |ground| &mut ground.friction,
+    },
+    Key {
+        name: "ground.friction_back_over_forward",
+        of_list: None,
+        words: "friction backward over forward",
+        unit: "",
+        otherwise: "trial 1 of docs/measure.md measures it",
+        assumed: "friction backward over forward",
+        step: 0.03,
+        least: 0.1,
+        field: |ground| &mut ground.ratio,
+    },
+];
+
+/// Index of `leg.drive.play`.
+pub(crate) const PLAY: usize = 1;
+
+impl Key {
+    /// The name with its index, as in `body.centre[0]`.
+    pub fn full_name(&self) -> String {
+        match self.of_list {
+            Some(index) => format!("{}[{index}]", self.name),
+            None => self.name.to_owned(),
+        }
+    }
+
+    /// The value on a ground.
+    pub fn of(&self, ground: &Ground) -> f64 {
+        *(self.field)(&mut { *ground })
+    }
+
+    pub(crate) fn set(&self, ground: &mut Ground, value: f64) {
+        *(self.field)(ground) = value;
+    }
+
+    /// Standard deviation of the value before anything is measured: half of its plausible range.
+    pub fn doubt(&self) -> f64 {
+        let [low, high] = plausible(self.assumed).expect("a test looks for each");
+        (high - low) / 2.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_key_has_a_plausible_range_in_which_its_step_is_small() {
+        for key in KEYS {
+            assert!(
+                key.doubt() >= 5.0 * key.step,
+                "{} {}",
+                key.name,
+                key.doubt()
+            );
+        }
+        assert_eq!(KEYS[PLAY].name, "leg.drive.play");
+    }
+}

@@ -1,0 +1,66 @@
+//! The robot.toml with the new values.
+
+use lizard_robot::{Robot, edit};
+
+use crate::outcome::{Found, Identified};
+use crate::trouble::Trouble;
+
+impl Identified {
+    /// Writes the moved keys into the text of the robot's file, each with a comment; all else stays as it is, byte for
+    /// byte.
+    ///
+    /// # Errors
+    /// Fails if the text has no place for a key, or the robot with the new values is refused.
+    pub fn text(&self, text: &str) -> Result<String, Trouble> {
+        let mut new = text.to_owned();
+        let mut names: Vec<&str> = self.moved().map(|found| found.key.name).collect();
+        names.dedup();
+        for name in names {
+            let of_key = self.keys.iter().filter(|found| found.key.name == name);
+            new = with_key(&new, &of_key.collect::<Vec<_>>())
+                .map_err(|error| Trouble::Text(error.to_string()))?;
+        }
+        Robot::parse(&new).map_err(|error| Trouble::Refused(error.to_string()))?;
+        Ok(new)
+    }
+}
+
+/// Writes the numbers of a key, one or a list.
+fn with_key(text: &str, numbers: &[&Found]) -> Result<String, edit::NoSuchKey> {
+    let name = numbers[0].key.name;
+    let values: Vec<f64> = numbers.iter().map(|found| found.written()).collect();
+    let new = match numbers[0].key.of_list {
+        Some(_) => edit::with_numbers(text, name, &values)?,
+        None => edit::with_number(text, name, values[0])?,
+    };
+    let moved = numbers.iter().filter(|found| found.is_moved());
+    let words: Vec<String> = moved.map(|found| found.comment()).collect();
+    edit::with_comment(&new, name, "measured:", &words.join("; "))
+}
+
+impl Found {
+    fn is_moved(&self) -> bool {
+        self.verdict == crate::Verdict::Moved
+    }
+
+    /// The value in the new file.
+    fn written(&self) -> f64 {
+        if !self.is_moved() {
+            return self.before;
+        }
+        let scale = 10f64.powi(self.digits() as i32);
+        (self.after * scale).round() / scale
+    }
+
+    fn comment(&self) -> String {
+        let digits = self.digits();
+        let place = match self.key.of_list {
+            Some(index) => format!("[{index}] "),
+            None => String::new(),
+        };
+        format!(
+            "{place}{:.digits$} +- {:.digits$}, was {:?}",
+            self.after, self.error, self.before
+        )
+    }
+}

@@ -1,0 +1,31 @@
+//! Ways from which nothing can be identified.
+
+/// The reason why nothing is identified.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Trouble {
+    /// The robot has no such gait.
+    #[error("robot.toml has no gait `{0}`; give the robot that was filmed")]
+    NoSuchGait(String),
+    /// The gait stands.
+    #[error("the gait `{0}` moves no servo, so its way tells nothing; leave it out")]
+    Still(String),
+    /// A figure of a way is no number, or its error is below zero.
+    #[error("the way of `{0}` has a figure that is no number; measure it again")]
+    NoNumber(String),
+    /// There is no way, or two feet pull against two in all of them.
+    #[error(
+        "in none of these gaits three feet decide the way; measure some that walk or turn, as walk, trot, crawl, left, right"
+    )]
+    NoWay,
+    /// The fit has no minimum.
+    #[error("no robot goes like this; look for a way with a wrong sign or unit")]
+    NoFit,
+    /// The text of the robot cannot take a value.
+    #[error("{0}; write its table as [table] with one key a line")]
+    Text(String),
+    /// The robot with the new keys is refused.
+    #[error(
+        "the robot that goes like this is refused: {0}; look for a way with a wrong sign or unit"
+    )]
+    Refused(String),
+}
