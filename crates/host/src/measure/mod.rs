@@ -1,10 +1,13 @@
-//! Measure the real robot: a sheet of tags to print, and the way of a gait in a film.
+//! Measure the real robot: a sheet of tags to print, and the ways of gaits in films.
 
 mod command;
 mod expected;
+mod film;
 mod frames;
 mod grey;
+mod named;
 mod page;
+mod picture;
 mod report;
 mod sheet;
 mod through_ffmpeg;
