@@ -62,12 +62,15 @@ pub(crate) fn find(path: &[Seen], gait: &Gait) -> Result<Cycles, Trouble> {
     let near = NEAR * gait.period;
     let places: Vec<(f64, Place)> = times
         .take_while(|&time| time <= end)
-        .map_while(|time| Some((time, path::at(path, time, near)?)))
+        .map(|time| Some((time, path::at(path, time, near)?)))
+        // The first may have too few pictures before it.
+        .skip_while(Option::is_none)
+        .map_while(|place| place)
         .collect();
     if places.len() < 3 {
         return Err(too_short(end - begin, gait));
     }
-    let to_calm = to_calm(walked, &places, calm * period[0]).unwrap_or_else(|| gait.at(calm));
+    let to_calm = to_calm(walked, &places, calm, period[0], gait).unwrap_or_else(|| gait.at(calm));
     let from_calm = path::inverse(to_calm);
     let travel = |pair: &[(f64, Place)]| {
         let cycle = path::of_travel(pair[1].1.seen_from(pair[0].1));
@@ -111,12 +114,18 @@ fn too_short(seconds: f64, gait: &Gait) -> Trouble {
     }
 }
 
-/// The mean way from the beginning of a cycle to its calm time.
-fn to_calm(path: &[Seen], places: &[(f64, Place)], calm: f64) -> Option<Place> {
+/// The mean way from the beginning of a cycle to its calm phase.
+fn to_calm(
+    path: &[Seen],
+    places: &[(f64, Place)],
+    calm: f64,
+    period: f64,
+    gait: &Gait,
+) -> Option<Place> {
     let ways: Vec<Place> = places
         .iter()
         .filter_map(|(time, place)| {
-            let begin = path::between(path, time - calm)?;
+            let begin = begin(path, time - calm * period, period, gait)?;
             Some(path::of_travel(place.seen_from(begin)))
         })
         .collect();
@@ -126,6 +135,20 @@ fn to_calm(path: &[Seen], places: &[(f64, Place)], calm: f64) -> Option<Place> {
         left: mean(|way| way.left),
         heading: mean(|way| way.heading),
     })
+}
+
+/// The place at the beginning of a cycle, from the picture on either side of it by the predicted movement in between: the
+/// straight line between them is not the path of a gait that begins with a jerk.
+fn begin(path: &[Seen], seconds: f64, period: f64, gait: &Gait) -> Option<Place> {
+    let after = path.partition_point(|seen| seen.seconds < seconds);
+    let (a, b) = (path.get(after.checked_sub(1)?)?, path.get(after)?);
+    let by = |seen: &Seen| {
+        let phase = 1.0 + (seen.seconds - seconds) / period;
+        let moved = path::of_travel(gait.at(phase).seen_from(gait.at(1.0)));
+        path::compose(seen.place, path::inverse(moved))
+    };
+    let share = (seconds - a.seconds) / (b.seconds - a.seconds);
+    Some(path::mix(by(a), by(b), share))
 }
 
 /// The time in which the robot walks evenly.

@@ -21,11 +21,10 @@ pub struct Gait {
 }
 
 impl Gait {
-    /// True if the gait goes somewhere in a cycle, or turns.
-    pub fn goes(&self) -> bool {
-        self.path
-            .iter()
-            .any(|place| size(movement(place.travel())) > MOVED)
+    /// The distance of a cycle's end from its start over the time of a cycle, mm/s; a turn counts as the way of the legs.
+    pub fn speed(&self) -> f64 {
+        let way = self.path[self.path.len() - 1].travel();
+        size(movement(way)) / self.period
     }
 
     /// The place at a phase, seen from the start of cycle 0.

@@ -9,10 +9,14 @@
 
 mod board;
 mod expected;
+mod named;
 mod report;
 mod sheet;
+mod watched_film;
 
 pub use board::height_of_board;
 pub use expected::expected;
-pub use report::{AGREES, Report};
+pub use named::{Gaits, NamedWalk};
+pub use report::{AGREES, GaitReport, PARTS, Part, Report, Within};
 pub use sheet::Paper;
+pub use watched_film::WatchedFilm;

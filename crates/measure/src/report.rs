@@ -1,48 +1,114 @@
-//! The measured way of a gait beside the predicted one, for people and for scripts.
+//! The measured ways of gaits beside the predicted ones, for people and for scripts.
 
 use std::fmt::Write as _;
 
-use lizard_film::{Gait, Mean, Measured, Setup, Watched};
-use lizard_robot::{CheckedGait, Prediction, Robot, Travel, UNDECIDED};
+use lizard_film::{Mean, Measured, Point, Setup};
+use lizard_robot::{Place, Prediction, Robot, Travel, UNDECIDED};
 use serde::Serialize;
+
+use crate::named::{Candidate, Gaits, NamedWalk};
+use crate::watched_film::WatchedFilm;
 
 /// Distance from the prediction, in standard errors, to which a measurement agrees with it.
 pub const AGREES: f64 = 2.0;
+/// The same for the largest of the differences within a cycle: of 72 that happen by chance, one is larger in one of 30 films.
+const ALL_AGREE: f64 = 3.5;
+/// The names of a movement's parts.
+pub const PARTS: [&str; 3] = ["ahead, mm", "left, mm", "turn, deg"];
 
 /// The result under the names of `--json`.
 #[derive(Debug, Serialize)]
 pub struct Report<'a> {
-    gait: &'a str,
-    /// Percent.
+    films: Vec<FilmLine<'a>>,
+    /// The gaits, in the order of their first walks.
+    pub gaits: Vec<GaitReport<'a>>,
+}
+
+/// A film and its camera.
+#[derive(Debug, Serialize)]
+struct FilmLine<'a> {
+    film: &'a str,
+    pictures: usize,
+    camera: CameraLine,
+}
+
+/// The result of a gait.
+#[derive(Debug, Serialize)]
+pub struct GaitReport<'a> {
+    /// Its name.
+    pub gait: &'a str,
+    /// Pace, percent.
     speed: u8,
+    walks: Vec<Span<'a>>,
     /// Number of whole cycles, and the mean time of one with its standard error, s.
-    cycles: usize,
+    pub cycles: usize,
     period: f64,
     period_error: f64,
     /// Time of a cycle by robot.toml, s.
     period_expected: f64,
-    /// mm, mm, deg counter-clockwise, seen from the beginning of the cycle.
-    forward: Part,
-    left: Part,
-    turn: Part,
+    /// Way ahead of a cycle, mm, seen from its beginning.
+    pub forward: Part,
+    /// Drift to the left, mm.
+    pub left: Part,
+    /// Turn, deg, counter-clockwise positive.
+    pub turn: Part,
     /// The movement of each cycle.
     each: Vec<Way>,
-    pictures: usize,
-    camera: CameraLine,
+    /// The mean path within a cycle, and the point at which it is farthest from the predicted one.
+    pub within: Vec<Within>,
+    farthest: Option<Farthest>,
+    /// The predicted path of a cycle, evenly in time.
     #[serde(skip)]
-    watched: &'a Watched,
+    pub expected: &'a [Place],
 }
 
-/// One part of a cycle's movement.
+/// A walk between two rests.
 #[derive(Debug, Serialize)]
-struct Part {
-    mean: f64,
+struct Span<'a> {
+    film: &'a str,
+    /// Times in the film, s, with a part of the rests.
+    from: f64,
+    to: f64,
+    /// The gait of robot.toml that the path is like, if that is clear and another one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    like: Option<&'a str>,
+}
+
+/// A point of the path within a cycle.
+#[derive(Debug, Serialize)]
+pub struct Within {
+    /// 0 to 1.
+    phase: f64,
+    /// Way ahead since the beginning of the cycle, mm.
+    pub forward: Part,
+    /// Way to the left, mm.
+    pub left: Part,
+    /// Turn, deg.
+    pub turn: Part,
+}
+
+/// The largest difference within a cycle.
+#[derive(Debug, Serialize)]
+struct Farthest {
+    phase: f64,
+    part: &'static str,
+    /// Measured less predicted, mm or deg, and in standard errors.
+    difference: f64,
+    differs: f64,
+    agrees: bool,
+}
+
+/// One part of a movement.
+#[derive(Debug, Serialize)]
+pub struct Part {
+    /// The mean.
+    pub mean: f64,
     /// Standard deviation of single cycles.
     sd: f64,
     /// Standard error of the mean.
-    error: f64,
+    pub error: f64,
     /// Null if two feet pull against two.
-    predicted: Option<f64>,
+    pub predicted: Option<f64>,
     /// The mean less the prediction, in standard errors.
     differs: Option<f64>,
     agrees: Option<bool>,
@@ -84,123 +150,248 @@ impl Part {
         }
     }
 
-    fn line(&self, name: &str) -> String {
-        let predicted = self
-            .predicted
-            .map_or("-".to_owned(), |value| format!("{value:+.2}"));
-        let verdict = match (self.agrees, self.differs) {
+    /// Agreement with the prediction in a word, or by how many errors it differs.
+    pub fn verdict(&self) -> String {
+        match (self.agrees, self.differs) {
             (Some(true), _) => "agrees".to_owned(),
             (Some(false), Some(differs)) => {
                 let word = if differs > 0.0 { "more" } else { "less" };
                 format!("{:.1} errors {word}", differs.abs())
             }
             _ => "-".to_owned(),
-        };
+        }
+    }
+
+    fn line(&self, name: &str) -> String {
+        let predicted = self
+            .predicted
+            .map_or("-".to_owned(), |value| format!("{value:+.2}"));
         format!(
-            "{name:<12}{:>+9.2}{:>8.2}{:>8.2}{predicted:>11}   {verdict}\n",
-            self.mean, self.sd, self.error
+            "{name:<12}{:>+9.2}{:>8.2}{:>8.2}{predicted:>11}   {}\n",
+            self.mean,
+            self.sd,
+            self.error,
+            self.verdict()
         )
     }
 }
 
-impl<'a> Report<'a> {
-    /// Sets a measured film beside a gait's predicted path, which it was compared with.
-    pub fn new(
+impl<'a> Span<'a> {
+    fn new(gaits: &Gaits<'a>, own: &NamedWalk<'a>, differs: bool) -> Self {
+        let [from, to] = own.walk.during;
+        let name = gaits.known()[own.gait].name();
+        // Where all agrees, nobody asks.
+        let like = if differs { gaits.like(own.walk) } else { None };
+        Self {
+            film: &own.walk.film.name,
+            from,
+            to,
+            like: like.filter(|like| *like != name),
+        }
+    }
+}
+
+impl Farthest {
+    /// The point that is farthest off in errors, of those that are predicted.
+    fn of(points: &[Point], predicted: [Option<f64>; 3]) -> Option<Self> {
+        let all = points.iter().flat_map(|point| {
+            let differs = point.differs();
+            (0..3).map(move |axis| (point, axis, differs[axis]))
+        });
+        let known = all.filter(|(_, axis, _)| predicted[*axis].is_some());
+        let (point, axis, differs) = known.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()))?;
+        Some(Self {
+            phase: point.phase,
+            part: PARTS[axis],
+            difference: point.measured[axis].mean - point.predicted[axis],
+            differs,
+            agrees: differs.abs() <= ALL_AGREE,
+        })
+    }
+
+    fn line(&self, points: usize) -> String {
+        let Self {
+            phase,
+            part,
+            difference,
+            differs,
+            agrees,
+        } = self;
+        let verdict = if *agrees { "agrees" } else { "differs" };
+        let (name, unit) = part.split_once(", ").unwrap_or((part, ""));
+        format!(
+            "path within a cycle {verdict}: of {points} phases farthest off at {phase:.2}, by {difference:+.2} {unit} {name}, \
+             {:.1} errors\n",
+            differs.abs()
+        )
+    }
+}
+
+impl<'a> GaitReport<'a> {
+    /// The mean over the walks of a gait.
+    fn new(
         robot: &Robot,
-        gait: &'a CheckedGait,
         speed: u8,
-        setup: Setup,
-        expected: &Gait,
-        watched: &'a Watched,
-        measured: &Measured,
+        gaits: &Gaits<'a>,
+        own: &'a Candidate,
+        walks: &[&NamedWalk<'a>],
     ) -> Self {
-        let way = expected.path.last().map(|place| place.travel());
-        let decided = robot.predict(gait);
-        let predicted = way.map_or(decided, |way| decided.keep_known(way));
+        let results: Vec<Measured> = walks.iter().map(|walk| walk.measured.clone()).collect();
+        let measured = Measured::together(&results, &own.expected);
+        let way = own.expected.path.last().map(|place| place.travel());
+        let decided = robot.predict(own.gait);
         let Prediction {
             forward,
             left,
             turn,
-        } = predicted;
-        let sight = &watched.sight;
+        } = way.map_or(decided, |way| decided.keep_known(way));
+        let predicted = [forward, left, turn];
+        let means = [measured.forward, measured.left, measured.turn];
+        let [forward, left, turn] = [0, 1, 2].map(|i| Part::new(means[i], predicted[i]));
+        let differs = [&forward, &left, &turn]
+            .iter()
+            .any(|part| part.agrees == Some(false));
+        let within = |point: &Point| {
+            let part = |i: usize| {
+                let known = predicted[i].is_some().then_some(point.predicted[i]);
+                Part::new(point.measured[i], known)
+            };
+            Within {
+                phase: point.phase,
+                forward: part(0),
+                left: part(1),
+                turn: part(2),
+            }
+        };
         let way = |travel: &Travel| Way {
             forward: travel.forward,
             left: travel.left,
             turn: travel.turn,
         };
         Self {
-            gait: gait.name(),
+            gait: own.name(),
             speed,
+            walks: walks
+                .iter()
+                .map(|walk| Span::new(gaits, walk, differs))
+                .collect(),
             cycles: measured.cycles.len(),
             period: measured.period[0],
             period_error: measured.period[1],
-            period_expected: expected.period,
-            forward: Part::new(measured.forward, forward),
-            left: Part::new(measured.left, left),
-            turn: Part::new(measured.turn, turn),
+            period_expected: own.expected.period,
+            forward,
+            left,
+            turn,
             each: measured.cycles.iter().map(way).collect(),
-            pictures: watched.path.len(),
-            camera: CameraLine {
-                height: sight.height,
-                tilt: sight.tilt,
-                focal: sight.focal,
-                corners: sight.error,
-                moved: sight.moved,
-                deck: setup.height,
-                deck_by_size: sight.deck,
-            },
-            watched,
+            within: measured.within.iter().map(within).collect(),
+            farthest: Farthest::of(&measured.within, predicted),
+            expected: &own.expected.path,
         }
     }
 
-    /// The table for people.
-    pub fn text(&self) -> String {
-        let camera = &self.camera;
-        let moves = if camera.moved { ", moving" } else { "" };
+    /// The parts of the movement.
+    pub fn parts(&self) -> [&Part; 3] {
+        [&self.forward, &self.left, &self.turn]
+    }
+
+    fn text(&self) -> String {
         let mut text = format!(
-            "{} at {} %: {} whole cycles of {:.3} s (by robot.toml {:.3} s) in {} pictures\n\
-             camera {:.0} mm above the floor{moves}, {:.0} deg from straight down; corners to {:.2} px\n\
-             deck's tag {:.0} mm above the floor, by its size {:.0} mm\n\n\
-             a cycle      measured      sd   error  predicted\n",
-            self.gait,
-            self.speed,
-            self.cycles,
-            self.period,
-            self.period_expected,
-            self.pictures,
-            camera.height,
-            camera.tilt,
-            camera.corners,
-            camera.deck,
-            camera.deck_by_size,
+            "\n{} at {} %: {} whole cycles of {:.3} s (by robot.toml {:.3} s)\n",
+            self.gait, self.speed, self.cycles, self.period, self.period_expected,
         );
-        let parts = [
-            ("ahead, mm", &self.forward),
-            ("left, mm", &self.left),
-            ("turn, deg", &self.turn),
-        ];
-        for (name, part) in parts {
+        for Span {
+            film,
+            from,
+            to,
+            like,
+        } in &self.walks
+        {
+            let like = like.map_or(String::new(), |name| format!(", more like {name}"));
+            let _ = writeln!(text, "{film}, {from:.1} to {to:.1} s{like}");
+        }
+        text += "a cycle      measured      sd   error  predicted\n";
+        for (name, part) in PARTS.iter().zip(self.parts()) {
             text += &part.line(name);
         }
-        if parts.iter().any(|(_, part)| part.predicted.is_none()) {
-            let _ = write!(text, "\n{UNDECIDED}");
+        if let Some(farthest) = &self.farthest {
+            text += &farthest.line(self.within.len());
         }
         text
     }
+}
 
-    /// The robot's path as CSV: mm and degrees on the floor.
-    pub fn path(&self) -> String {
-        let mut text = "seconds,forward,left,heading\n".to_owned();
-        for seen in &self.watched.path {
-            let place = seen.place;
+impl<'a> Report<'a> {
+    /// The report of walks in films at a pace in percent; walks of the same gait count together.
+    pub fn new(
+        robot: &Robot,
+        speed: u8,
+        setup: Setup,
+        films: &'a [WatchedFilm],
+        gaits: &'a Gaits<'a>,
+        walks: &[NamedWalk<'a>],
+    ) -> Self {
+        let mut of_gaits: Vec<(&Candidate, Vec<&NamedWalk>)> = Vec::new();
+        for walk in walks {
+            let own = &gaits.known()[walk.gait];
+            match of_gaits
+                .iter_mut()
+                .find(|(other, _)| other.name() == own.name())
+            {
+                Some((_, walks)) => walks.push(walk),
+                None => of_gaits.push((own, vec![walk])),
+            }
+        }
+        let film = |film: &'a WatchedFilm| {
+            let sight = &film.watched.sight;
+            FilmLine {
+                film: &film.name,
+                pictures: film.watched.path.len(),
+                camera: CameraLine {
+                    height: sight.height,
+                    tilt: sight.tilt,
+                    focal: sight.focal,
+                    corners: sight.error,
+                    moved: sight.moved,
+                    deck: setup.height,
+                    deck_by_size: sight.deck,
+                },
+            }
+        };
+        let gait = |(own, walks): &(&'a Candidate, Vec<&NamedWalk<'a>>)| {
+            GaitReport::new(robot, speed, gaits, own, walks)
+        };
+        Self {
+            films: films.iter().map(film).collect(),
+            gaits: of_gaits.iter().map(gait).collect(),
+        }
+    }
+
+    /// The tables, for people.
+    pub fn text(&self) -> String {
+        let mut text = String::new();
+        for line in &self.films {
+            let camera = &line.camera;
+            let moves = if camera.moved { ", moving" } else { "" };
             let _ = writeln!(
                 text,
-                "{:.4},{:.3},{:.3},{:.3}",
-                seen.seconds,
-                place.forward,
-                place.left,
-                place.heading.to_degrees()
+                "{}: {} pictures\n\
+                 camera {:.0} mm above the floor{moves}, {:.0} deg from straight down; corners to {:.2} px\n\
+                 deck's tag {:.0} mm above the floor, by its size {:.0} mm",
+                line.film,
+                line.pictures,
+                camera.height,
+                camera.tilt,
+                camera.corners,
+                camera.deck,
+                camera.deck_by_size,
             );
+        }
+        for gait in &self.gaits {
+            text += &gait.text();
+        }
+        let mut parts = self.gaits.iter().flat_map(GaitReport::parts);
+        if parts.any(|part| part.predicted.is_none()) {
+            let _ = write!(text, "\n{UNDECIDED}");
         }
         text
     }

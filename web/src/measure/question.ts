@@ -24,7 +24,7 @@ export interface Part {
   agrees: boolean | null;
 }
 
-/** As `lizard measure --json` prints it. */
+/** A gait as `lizard measure --json` prints it. */
 export interface Report {
   gait: string;
   /** Percent. */

@@ -17,7 +17,7 @@ export class Measured {
     on('svg', () => save('measured.svg', [this.card], 'image/svg+xml'));
     on('png', () => void this.savePng());
     on('csv', () => save('measured.csv', [csv(this.results)], 'text/csv'));
-    on('json', () => save('measured.json', [JSON.stringify(this.results.map(({ report }) => report), null, 2)], 'application/json'));
+    on('json', () => save('measured.json', [JSON.stringify({ gaits: this.results.map(({ report }) => report) }, null, 2)], 'application/json'));
     on('print', () => print());
   }
 

@@ -1,7 +1,7 @@
 //! The film that the page takes, and the reports of the gaits in it.
 
-use lizard_film::{Film, Picture, Setup, Tag, Watched, sheet};
-use lizard_measure::{Report, expected, height_of_board};
+use lizard_film::{Film, Picture, Setup, Tag, sheet};
+use lizard_measure::{Gaits, Report, WatchedFilm, height_of_board};
 use lizard_robot::Robot;
 use serde::{Deserialize, Serialize};
 
@@ -49,7 +49,7 @@ pub struct Asked {
 /// The report of a gait in its three forms.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Results {
-    /// As `lizard measure --json` writes it.
+    /// A gait as `lizard measure --json` writes it.
     pub report: serde_json::Value,
     /// As a table.
     pub text: String,
@@ -62,7 +62,7 @@ pub struct Results {
 pub struct Camera {
     film: Film,
     /// The path in the film, until it has another picture or other measures.
-    watched: Option<(Setup, Watched)>,
+    watched: Option<(Setup, WatchedFilm)>,
 }
 
 impl Camera {
@@ -112,28 +112,22 @@ impl Camera {
             scale: asked.ruler / sheet::RULER,
             height: asked.height.unwrap_or_else(|| height_of_board(&robot)),
         };
-        let expected = expected(&robot, gait, f64::from(asked.speed) / 100.0);
-        let watched = match self.watched.take() {
-            Some((with, watched)) if with == setup => watched,
-            _ => self.film.watch(setup).map_err(Refused::of)?,
+        let gaits = Gaits::new(&robot, &[gait], f64::from(asked.speed) / 100.0);
+        let film = match self.watched.take() {
+            Some((with, film)) if with == setup => film,
+            _ => WatchedFilm {
+                name: "the film".to_owned(),
+                watched: self.film.watch(setup).map_err(Refused::of)?,
+            },
         };
-        let (_, watched) = self.watched.insert((setup, watched));
-        let measured = watched
-            .measure(&expected, asked.during)
-            .map_err(Refused::of)?;
-        let report = Report::new(
-            &robot,
-            gait,
-            asked.speed,
-            setup,
-            &expected,
-            watched,
-            &measured,
-        );
+        let (_, film) = self.watched.insert((setup, film));
+        let walk = gaits.walk(film, asked.during).map_err(Refused::of)?;
+        let films = std::slice::from_ref(&*film);
+        let report = Report::new(&robot, asked.speed, setup, films, &gaits, &[walk]);
         Ok(Results {
-            report: serde_json::to_value(&report).map_err(Refused::of)?,
+            report: serde_json::to_value(report.gaits.first()).map_err(Refused::of)?,
             text: report.text(),
-            path: report.path(),
+            path: film.path(),
         })
     }
 

@@ -159,3 +159,32 @@ fn a_robot_that_turns_its_head_between_walks_has_not_walked() {
     let watched = film.watch(TRUE_SIZE).expect("all tags are seen");
     assert_eq!(watched.walks(rest(&[walk])).len(), 1);
 }
+
+/// The phase, axis and errors of the largest difference within a cycle.
+fn farthest(measured: &Measured) -> (f64, usize, f64) {
+    let all = measured.within.iter().flat_map(|point| {
+        let differs = point.differs().map(f64::abs);
+        (0..3).map(move |axis| (point.phase, axis, differs[axis]))
+    });
+    all.max_by(|a, b| a.2.total_cmp(&b.2)).expect("a point")
+}
+
+#[test]
+fn a_path_that_leaves_the_predicted_one_within_a_cycle_is_found_at_its_phase() {
+    let walk = gait("walk");
+    let mut swerving = walk.clone();
+    let count = walk.path.len() - 1;
+    for (i, place) in swerving.path.iter_mut().enumerate() {
+        let apart = (i as f64 / count as f64 - 0.6) / 0.12;
+        place.left += 1.5 * (-apart.powi(2)).exp();
+    }
+    let measure = |robot: &Gait| {
+        let (watched, _) = watched(&[(robot, 6)], 1.0);
+        watched.measure(&walk, None).expect("it is measured")
+    };
+    let (phase, axis, errors) = farthest(&measure(&swerving));
+    assert!((phase - 0.6).abs() < 0.1 && axis == 1, "{phase} {axis}");
+    assert!(errors > 5.0, "{errors}");
+    let (_, _, errors) = farthest(&measure(&walk));
+    assert!(errors < 3.5, "{errors}");
+}

@@ -1,40 +1,42 @@
-//! `lizard measure`: the way of a gait in a film.
+//! `lizard measure`: the ways of gaits in films.
 
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use lizard_film::{Film, Setup, Trouble, sheet};
-use lizard_measure::{Report, expected, height_of_board};
+use lizard_film::{Setup, sheet};
+use lizard_measure::{Gaits, Report, height_of_board};
 use lizard_robot::{CheckedGait, Robot};
 
-use super::{frames, grey, through_ffmpeg};
-use crate::shared::files::note_input;
-use crate::shared::json;
+use super::{film, picture};
 use crate::shared::progress::Spinner;
 use crate::shared::suggestion::did_you_mean;
+use crate::shared::{files, json};
 use crate::{Failure, RobotFile};
 
 /// Lengths of the ruler of 100 mm that a printer may make of it, mm.
 const RULER: [f64; 2] = [85.0, 115.0];
 
-/// Measure in a film how far the robot goes in a cycle of a gait, beside the prediction
+/// Measure in films how far the robot goes in a cycle of its gaits, beside the prediction
 ///
 /// FILM is a folder of pictures, or a film that the program ffmpeg can read. It shows the robot from
-/// above with the tags of `lizard measure sheet`. Prints way ahead, drift to the left and turn of a
-/// cycle: the mean, the spread of single cycles, the standard error of the mean (the truth lies
-/// within two of it in 95 % of films), and what the contact model predicts with the servos of robot.toml.
+/// above with the tags of `lizard measure sheet`, and one gait or several with rests between them. Prints for each gait way ahead,
+/// drift to the left and turn of a cycle: the mean, the spread of single cycles, the standard error of the mean (the truth lies
+/// within two of it in 95 % of films), and what the contact model predicts with the servos of robot.toml; then
+/// where in the cycle the path is farthest from the predicted one.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
   lizard measure sheet
   lizard measure film.mp4 --gait walk
-  lizard measure pictures --fps 30 --gait left --height 85 --ruler 97.2")]
+  lizard measure film.mp4 --gait walk,left,walk --picture measured.svg
+  lizard measure pictures --fps 30 --height 85 --ruler 97.2")]
 pub struct Args {
-    /// A folder of pictures (PNG or JPEG), or a film
+    /// Folders of pictures (PNG or JPEG), or films
     #[arg(value_name = "FILM", required = true)]
-    film: Option<PathBuf>,
-    /// The gait that the robot walks in the film
-    #[arg(long, value_hint = clap::ValueHint::Other, value_name = "NAME", required = true)]
-    gait: Option<String>,
+    films: Vec<PathBuf>,
+    /// The gaits of the walks between rests, in their order, or one for all [default: the gaits of robot.toml that
+    /// the paths are clearly like]
+    #[arg(long, value_hint = clap::ValueHint::Other, value_name = "NAMES", value_delimiter = ',')]
+    gait: Vec<String>,
     /// The pace at which it was driven, percent
     #[arg(long, value_name = "PERCENT", default_value_t = 100, value_parser = clap::value_parser!(u8).range(1..=100))]
     speed: u8,
@@ -47,11 +49,14 @@ pub struct Args {
     /// Length of the line on a strip that should be 100 mm long
     #[arg(long, value_name = "MM", default_value_t = sheet::RULER, value_parser = ruler)]
     ruler: f64,
+    /// Draw the paths within a cycle and the ways beside the predicted ones, as SVG
+    #[arg(long, value_name = "FILE")]
+    picture: Option<PathBuf>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
-    /// Print instead the robot's path as CSV: seconds,forward,left,heading; mm and degrees on the floor
-    #[arg(long, conflicts_with = "json")]
+    /// Print instead the robot's path in one film as CSV: seconds,forward,left,heading; mm and degrees on the floor
+    #[arg(long, conflicts_with_all = ["json", "picture", "gait"])]
     csv: bool,
     #[command(flatten)]
     robot: RobotFile,
@@ -81,65 +86,42 @@ pub(super) fn ruler(word: &str) -> Result<f64, String> {
     )
 }
 
-/// Measures a film and prints the result.
+/// Measures films and prints the result.
 ///
 /// # Errors
 /// Fails for a gait that the robot does not have, a film that cannot be read, or one that does not show
 /// what is needed.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
-    let gait = gait(&robot, args.gait.as_deref().unwrap_or_default())?;
     let pace = f64::from(args.speed) / 100.0;
-    let height = args.height.unwrap_or_else(|| height_of_board(&robot));
+    let named = args.gait.iter().map(|name| find(&robot, name));
+    let gaits = Gaits::new(&robot, &named.collect::<Result<Vec<_>, _>>()?, pace);
     let setup = Setup {
         scale: args.ruler / sheet::RULER,
-        height,
+        height: args.height.unwrap_or_else(|| height_of_board(&robot)),
     };
-    let path = args.film.as_deref().unwrap_or(Path::new(""));
-    let about = |trouble: Trouble| Failure::Input(format!("{}: {trouble}", path.display()));
     let spinner = Spinner::new("reading the pictures");
-    let film = read(path, args.fps, about)?;
-    let expected = expected(&robot, gait, pace);
-    let watched = film.watch(setup).map_err(about)?;
-    let measured = watched.measure(&expected, None).map_err(about)?;
-    drop(spinner);
-    let report = Report::new(
-        &robot, gait, args.speed, setup, &expected, &watched, &measured,
-    );
+    let read = |path: &PathBuf| film::watch(path, args.fps, setup);
+    let films = args.films.iter().map(read);
+    let films = films.collect::<Result<Vec<_>, Failure>>()?;
     if args.csv {
-        io::stdout().lock().write_all(report.path().as_bytes())?;
-        return Ok(());
+        drop(spinner);
+        return match &films[..] {
+            [film] => Ok(io::stdout().lock().write_all(film.path().as_bytes())?),
+            _ => Err(Failure::Input("--csv has the path of one film".to_owned())),
+        };
+    }
+    let walks = gaits.walks(&films).map_err(Failure::Input)?;
+    let report = Report::new(&robot, args.speed, setup, &films, &gaits, &walks);
+    drop(spinner);
+    if let Some(path) = args.picture {
+        files::write(&path, picture::draw(&report).as_bytes())?;
     }
     json::print_json_or(args.json, &report, || report.text())
 }
 
-/// Reads a film.
-pub(super) fn read(
-    path: &Path,
-    rate: Option<f64>,
-    about: impl Fn(Trouble) -> Failure,
-) -> Result<Film, Failure> {
-    let mut film = Film::default();
-    if path.is_dir() {
-        for (seconds, file) in frames::of_folder(path, rate)? {
-            film.add(seconds, &grey::read(&file)?).map_err(&about)?;
-        }
-        return Ok(film);
-    }
-    if !path.is_file() {
-        return Err(Failure::Input(format!(
-            "there is no film {}",
-            path.display()
-        )));
-    }
-    through_ffmpeg::each(note_input(path), rate, |seconds, picture| {
-        film.add(seconds, picture).map(|_| ()).map_err(&about)
-    })?;
-    Ok(film)
-}
-
 /// The gait of this name, if it moves a servo.
-fn gait<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failure> {
+fn find<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failure> {
     match robot.gait(name) {
         Some(gait) if gait.moves() => Ok(gait),
         Some(_) => Err(Failure::Input(format!("the gait `{name}` moves no servo"))),

@@ -1,12 +1,14 @@
-//! Measure the real robot in films: the way of a gait, the keys of robot.toml that ways tell, a servo in a jig, friction
+//! Measure the real robot in films: the ways of gaits, the keys of robot.toml that ways tell, a servo in a jig, friction
 //! on a slope; and the sheet of tags that they show.
 
 mod command;
 mod figures;
+mod film;
 mod frames;
 mod grey;
 mod keys;
 mod keys_report;
+mod picture;
 mod servo;
 mod sheet;
 mod slope;

@@ -8,8 +8,9 @@ use lizard_robot::servo::NAMES;
 use lizard_robot::{GRAVITY, Robot};
 use serde::Serialize;
 
-use super::command::{height, number, rate, read, ruler};
+use super::command::{height, number, rate, ruler};
 use super::figures::{self, Key};
+use super::film::read;
 use super::steps::{self, servo};
 use crate::shared::json;
 use crate::shared::progress::Spinner;

@@ -8,8 +8,9 @@ use lizard_measure::height_of_board;
 use lizard_robot::Robot;
 use serde::Serialize;
 
-use super::command::{height, rate, read, ruler};
+use super::command::{height, rate, ruler};
 use super::figures::{self, Key};
+use super::film::read;
 use crate::shared::json;
 use crate::shared::progress::Spinner;
 use crate::{Failure, RobotFile};

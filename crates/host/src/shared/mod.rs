@@ -18,6 +18,7 @@ pub mod ink;
 pub mod json;
 pub mod number;
 pub mod plain;
+pub mod plot;
 pub mod pose_args;
 pub mod progress;
 pub mod robot_file;

@@ -1,7 +1,6 @@
 //! `lizard draw charts`: the paper's figures, and those that it lacks, as SVG.
 
 mod performance;
-mod plot;
 mod reach;
 mod singularity;
 mod stroke;

@@ -4,9 +4,9 @@ use std::collections::HashMap;
 
 use svg::node::element::Group;
 
-use super::plot::{Axis, Plot, Scale, VIRIDIS};
 use crate::paper::design::{Point, Proportions, SUM};
 use crate::shared::ink::{circle, edged, line, page, text_start, title};
+use crate::shared::plot::{Axis, Plot, Scale, VIRIDIS};
 
 const SIZE: (f64, f64) = (1530.0, 570.0);
 const PANEL: f64 = 340.0;

@@ -10,8 +10,8 @@ use lizard_kinematics::{End, Pose, Side, Solution, Vector, Workspace};
 use lizard_robot::Robot;
 use svg::node::element::Group;
 
-use super::plot::{Axis, Plot, draw_entry};
 use crate::shared::ink::{DARK, GREY, circle, edged, page, rectangle, text_start, title};
+use crate::shared::plot::{Axis, Plot, draw_entry};
 
 const SIZE: (f64, f64) = (1120.0, 900.0);
 const AXES: [Axis<'static>; 2] = [

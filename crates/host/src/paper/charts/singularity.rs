@@ -5,8 +5,8 @@ use lizard_kinematics::{Check, End, FiveBar, Pose, SingularPose, Singularity, wr
 use lizard_robot::{CheckedGait, Robot};
 use svg::node::element::Group;
 
-use super::plot::{Axis, BLUES, IMPOSSIBLE, Plot, Scale, draw_entry};
 use crate::shared::ink::{DARK, circle, cross, edged, line, page, rectangle, text_start, title};
+use crate::shared::plot::{Axis, BLUES, IMPOSSIBLE, Plot, Scale, draw_entry};
 
 const SIZE: (f64, f64) = (1500.0, 860.0);
 const WHOLE: (f64, f64) = (0.0, 180.0);

@@ -3,9 +3,9 @@
 use lizard_robot::{CheckedGait, Robot};
 use svg::node::element::Group;
 
-use super::plot::{Axis, IMPOSSIBLE, Plot, draw_entry};
 use crate::shared::ink::{Anchor, GREY, page, rectangle, text, text_start, title};
 use crate::shared::number::tidy;
+use crate::shared::plot::{Axis, IMPOSSIBLE, Plot, draw_entry};
 
 const COLUMNS: usize = 4;
 const PANEL: (f64, f64) = (255.0, 150.0);

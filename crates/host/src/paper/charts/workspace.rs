@@ -4,9 +4,9 @@ use lizard_kinematics::{Circle, End, Vector, Workspace};
 use lizard_robot::Robot;
 use svg::node::element::{Circle as Ring, Group};
 
-use super::plot::{Axis, IMPOSSIBLE, Plot, Scale, VIRIDIS, draw_entry};
 use crate::paper::design::{CLAIM, Performance, lci};
 use crate::shared::ink::{DARK, GREY, circle, edged, page, text_start, title};
+use crate::shared::plot::{Axis, IMPOSSIBLE, Plot, Scale, VIRIDIS, draw_entry};
 
 const SIZE: (f64, f64) = (1120.0, 900.0);
 const MM: Axis<'static> = Axis::new(20.0, "x, mm from the middle of l0");

@@ -17,8 +17,8 @@ use fastrand::Rng;
 use serde_json::Value;
 
 use crate::program::{lizard, run_in, scratch};
-use render::Studio;
-use walk::{Varies, Walk, gait, truth};
+use render::{Spot, Studio};
+use walk::{Show, Varies, Walk, gait, truth};
 
 /// Pictures in a second.
 const RATE: f64 = 8.0;
@@ -44,16 +44,26 @@ fn walked() -> Walk {
     Walk::new(&gait, [start, 0.0, 0.0], 5, varies, &mut Rng::with_seed(4))
 }
 
-/// Films five cycles of `walk` into a folder of its own, as JPEG; each picture's name by its number.
+/// Films five cycles of `walk` into a folder of its own.
 fn film(folder: &str, name: impl Fn(usize) -> String) -> PathBuf {
+    let walk = walked();
+    film_of(folder, name, walk.seconds(), |time| walk.at(time))
+}
+
+/// Films a robot into a folder of its own, as JPEG; each picture's name by its number.
+fn film_of(
+    folder: &str,
+    name: impl Fn(usize) -> String,
+    seconds: f64,
+    robot: impl Fn(f64) -> Spot,
+) -> PathBuf {
     let folder = scratch().join(folder);
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).expect("a folder");
     let mut rng = Rng::with_seed(4);
-    let walk = walked();
     let background = studio().background(&mut rng);
-    for i in 0..(walk.seconds() * RATE) as usize {
-        let picture = background.picture(i as f64 / RATE, |time| walk.at(time), &mut rng);
+    for i in 0..(seconds * RATE) as usize {
+        let picture = background.picture(i as f64 / RATE, &robot, &mut rng);
         let path = folder.join(name(i));
         let [width, height] = picture.size().map(|length| length as u16);
         let encoder = jpeg_encoder::Encoder::new_file(path, 80).expect("a file");
@@ -67,12 +77,25 @@ fn film(folder: &str, name: impl Fn(usize) -> String) -> PathBuf {
 
 /// The words of a table.
 fn without_figures(table: &str) -> Vec<&str> {
-    let is_word =
-        |word: &&str| word.chars().all(char::is_alphabetic) && *word != "more" && *word != "less";
+    let verdict = ["more", "less", "errors", "agrees"];
+    let part = ["ahead", "left", "turn", "mm", "deg"];
     table
-        .split_whitespace()
-        .filter(is_word)
-        .filter(|word| *word != "errors" && *word != "agrees")
+        .lines()
+        .flat_map(|line| {
+            // Which part is farthest off is a figure, too.
+            let skipped = if line.starts_with("path") {
+                &part[..]
+            } else {
+                &[]
+            };
+            let words = line
+                .split_whitespace()
+                .map(|word| word.trim_end_matches(','));
+            words.filter(move |word| {
+                word.chars().all(char::is_alphabetic) && !skipped.contains(word)
+            })
+        })
+        .filter(|word| !verdict.contains(word))
         .collect()
 }
 
@@ -88,6 +111,8 @@ fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
         run_in(scratch(), &[&line[..], more].concat(), "")
     };
     let object = measure(&["--json"]).json();
+    let film = object["films"][0].clone();
+    let object = object["gaits"][0].clone();
     let part = |path: &[&str]| {
         let value = path.iter().fold(&object, |value, key| &value[*key]);
         value
@@ -122,20 +147,114 @@ fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
         .split_once("--gait walk --height 95\n")
         .expect("an example");
     let (example, _) = example.split_once("```").expect("its end");
+    let table = table.replace(folder, "film.mp4");
     assert_eq!(without_figures(example), without_figures(&table));
-    let path = measure(&["--csv"]).success();
+    let path = run_in(
+        scratch(),
+        &["measure", folder, "--height", "95", "--csv"],
+        "",
+    )
+    .success();
     assert!(
         path.starts_with("seconds,forward,left,heading\n0.0000,"),
         "{path}"
     );
-    assert_eq!(path.lines().count(), 1 + part(&["pictures"]) as usize);
+    assert_eq!(
+        Some(path.lines().count() as u64 - 1),
+        film["pictures"].as_u64()
+    );
     // Measured against another gait's prediction it is that gait no more.
     let another = run_in(
         scratch(),
         &["measure", folder, "--gait", "left", "--height", "95"],
         "",
     );
-    assert!(another.refusal().contains("was it another gait"));
+    let words = another.refusal();
+    assert!(words.contains("was it another gait"), "{words}");
+    assert!(words.trim_end().ends_with("; it is like walk"), "{words}");
+}
+
+/// The gaits of a result with the number of their walks.
+fn gaits(object: &Value) -> Vec<(&str, usize)> {
+    let gaits = object["gaits"].as_array().expect("a list");
+    let gait = |gait: &Value| gait["walks"].as_array().expect("a list").len();
+    gaits
+        .iter()
+        .map(|own| (own["gait"].as_str().expect("a name"), gait(own)))
+        .collect()
+}
+
+#[test]
+fn a_film_of_several_gaits_is_told_apart_by_their_names_or_by_their_paths() {
+    let [walk, left] = ["walk", "left"].map(gait);
+    let varies = Varies {
+        cycle: [0.1, 0.1, 0.002],
+        ..Varies::default()
+    };
+    let order = [(&walk, 3), (&left, 4), (&walk, 3)];
+    let show = Show::new(
+        [-90.0, -20.0, 0.0],
+        &order,
+        2.2,
+        varies,
+        &mut Rng::with_seed(4),
+    );
+    let folder = film_of(
+        "gaits",
+        |i| format!("{i}.jpg"),
+        show.seconds(),
+        |time| show.at(time),
+    );
+    let folder = folder.to_str().expect("a name");
+    let robot = crate::program::robot("paper");
+    let measure = |more: &[&str]| {
+        let line = [
+            "measure", folder, "--robot", &robot, "--fps", "8", "--height", "95",
+        ];
+        run_in(scratch(), &[&line[..], more].concat(), "")
+    };
+    let svg = scratch().join("measured.svg");
+    let picture = ["--json", "--picture", svg.to_str().expect("a name")];
+    let found = measure(&picture).json();
+    assert_eq!(gaits(&found), [("walk", 2), ("left", 1)], "{found}");
+    let named = measure(&["--json", "--gait", "walk,left,walk"]).json();
+    assert_eq!(gaits(&named), gaits(&found));
+    for (own, gait) in found["gaits"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .zip([&walk, &left])
+    {
+        let truth = truth(gait);
+        for (part, truth, largest) in [("forward", truth.forward, 0.3), ("turn", truth.turn, 0.5)] {
+            let mean = own[part]["mean"].as_f64().expect("a mean");
+            assert!((mean - truth).abs() < largest, "{part}: {own}");
+        }
+        assert_eq!(own["farthest"]["agrees"], true, "{own}");
+        assert!(
+            own["within"].as_array().expect("a path").len() >= 6,
+            "{own}"
+        );
+    }
+    let drawn = fs::read_to_string(svg).expect("a picture");
+    for words in ["walk, ", "left, ", "measured", "predicted", "turn, deg"] {
+        assert!(drawn.contains(words), "{words}: {drawn}");
+    }
+    // A gait that did not run, and a wrong order.
+    let missing = measure(&["--gait", "walk,left,walk,back"]).refusal();
+    assert!(
+        missing.starts_with("lizard: 3 walks between rests of")
+            && missing.contains("names 4: walk, left, walk, back\n")
+            && missing.contains(" s long: like left\n")
+            && missing.trim_end().ends_with("no walk is like back"),
+        "{missing}"
+    );
+    let order = measure(&["--gait", "left,walk,walk"]).refusal();
+    assert!(
+        order.contains(" s, left: the path is not that of this gait")
+            && order.trim_end().ends_with("; it is like walk"),
+        "{order}"
+    );
 }
 
 #[test]
@@ -179,8 +298,12 @@ fn what_cannot_be_measured_is_refused_in_a_sentence() {
             "error: invalid value '20' for '--ruler <MM>': it is the line of 100 mm",
         ),
         (
-            "measure text",
+            "measure --gait walk",
             "error: the following required arguments were not provided",
+        ),
+        (
+            "measure text --csv --gait walk",
+            "error: the argument '--csv' cannot be used with '--gait <NAMES>'",
         ),
     ] {
         let words = words(line);
@@ -246,7 +369,9 @@ fn a_film_is_read_through_ffmpeg_at_the_times_that_ffprobe_tells() {
         .output(&mut command, b"")
         .expect("it ends");
     let object: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-    let forward = object["forward"]["mean"].as_f64().expect("a way");
+    let forward = object["gaits"][0]["forward"]["mean"]
+        .as_f64()
+        .expect("a way");
     assert!(
         (forward - truth(&gait("walk")).forward).abs() < 0.2,
         "{object}"

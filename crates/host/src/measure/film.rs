@@ -1,0 +1,46 @@
+//! A film's file, read and watched.
+
+use std::path::Path;
+
+use lizard_film::{Film, Setup, Trouble};
+use lizard_measure::WatchedFilm;
+
+use super::{frames, grey, through_ffmpeg};
+use crate::Failure;
+use crate::shared::files::note_input;
+
+/// Reads a film, and finds camera and path in it.
+///
+/// # Errors
+/// Fails for a film that cannot be read, or one whose tags tell no path.
+pub(super) fn watch(path: &Path, rate: Option<f64>, setup: Setup) -> Result<WatchedFilm, Failure> {
+    let name = path.display().to_string();
+    let about = |trouble: Trouble| Failure::Input(format!("{name}: {trouble}"));
+    let watched = read(path, rate, about)?.watch(setup).map_err(about)?;
+    Ok(WatchedFilm { name, watched })
+}
+
+/// Reads a film.
+pub(super) fn read(
+    path: &Path,
+    rate: Option<f64>,
+    about: impl Fn(Trouble) -> Failure,
+) -> Result<Film, Failure> {
+    let mut film = Film::default();
+    if path.is_dir() {
+        for (seconds, file) in frames::of_folder(path, rate)? {
+            film.add(seconds, &grey::read(&file)?).map_err(&about)?;
+        }
+        return Ok(film);
+    }
+    if !path.is_file() {
+        return Err(Failure::Input(format!(
+            "there is no film {}",
+            path.display()
+        )));
+    }
+    through_ffmpeg::each(note_input(path), rate, |seconds, picture| {
+        film.add(seconds, picture).map(|_| ()).map_err(&about)
+    })?;
+    Ok(film)
+}

@@ -1,0 +1,225 @@
+//! The gaits of a film's walks: as the user names them, or as their paths show them.
+
+use std::cell::OnceCell;
+use std::fmt::Write as _;
+
+use lizard_film::{Gait, Likeness, Measured, Trouble, rest};
+use lizard_robot::{CheckedGait, Robot};
+
+use crate::expected::expected;
+use crate::watched_film::{Walk, WatchedFilm};
+
+/// Speed of the slowest gait that is looked for where the user names none, mm/s at full pace.
+const SLOWEST: f64 = 3.0;
+
+/// A gait and the path that it is predicted to take.
+#[derive(Debug)]
+pub(crate) struct Candidate<'a> {
+    pub gait: &'a CheckedGait,
+    pub expected: Gait,
+}
+
+impl<'a> Candidate<'a> {
+    fn new(robot: &Robot, gait: &'a CheckedGait, pace: f64) -> Self {
+        let expected = expected(robot, gait, pace);
+        Self { gait, expected }
+    }
+
+    pub(crate) fn name(&self) -> &'a str {
+        self.gait.name()
+    }
+}
+
+/// A walk whose gait is known, measured.
+#[derive(Debug)]
+pub struct NamedWalk<'f> {
+    pub(crate) walk: Walk<'f>,
+    /// Number of its gait in [`Gaits::known`].
+    pub(crate) gait: usize,
+    pub(crate) measured: Measured,
+}
+
+/// The gaits that a film may show.
+#[derive(Debug)]
+pub struct Gaits<'a> {
+    robot: &'a Robot,
+    pace: f64,
+    /// The gaits that the user names, in their order.
+    named: Vec<Candidate<'a>>,
+    /// All that go somewhere; computed when they are asked for.
+    all: OnceCell<Vec<Candidate<'a>>>,
+}
+
+impl<'a> Gaits<'a> {
+    /// The gaits that the user names in their order, or none; at a pace of 1 for each gait's own.
+    pub fn new(robot: &'a Robot, named: &[&'a CheckedGait], pace: f64) -> Self {
+        let candidate = |gait: &&'a CheckedGait| Candidate::new(robot, gait, pace);
+        Self {
+            robot,
+            pace,
+            named: named.iter().map(candidate).collect(),
+            all: OnceCell::new(),
+        }
+    }
+
+    /// The gaits that walks are called by: those that the user names, or else all.
+    pub(crate) fn known(&self) -> &[Candidate<'a>] {
+        match self.named.is_empty() {
+            true => self.all(),
+            false => &self.named,
+        }
+    }
+
+    fn all(&self) -> &[Candidate<'a>] {
+        self.all.get_or_init(|| {
+            let moving = self.robot.gaits().iter().filter(|gait| gait.moves());
+            let all = moving.map(|gait| Candidate::new(self.robot, gait, self.pace));
+            // A gait that stays in its place pauses for longer than a robot between two walks.
+            let goes = |own: &Candidate| own.expected.speed() > SLOWEST * self.pace;
+            all.filter(goes).collect()
+        })
+    }
+
+    /// Finds the walks of films, and measures each with its gait.
+    ///
+    /// # Errors
+    /// Fails with a sentence for the user if the names are not those of the walks, or no gait is clear.
+    pub fn walks<'f>(&self, films: &'f [WatchedFilm]) -> Result<Vec<NamedWalk<'f>>, String> {
+        let expected: Vec<Gait> = self
+            .known()
+            .iter()
+            .map(|own| own.expected.clone())
+            .collect();
+        let rest = rest(&expected);
+        let walks: Vec<Walk> = films.iter().flat_map(|film| film.walks(rest)).collect();
+        let names = self.named.len();
+        if names > 1 && names != walks.len() {
+            return Err(self.other_number(&walks, rest));
+        }
+        let measured = walks.into_iter().enumerate().map(|(i, walk)| {
+            let gait = match names {
+                0 => self.recognized(walk)?,
+                1 => 0,
+                _ => i,
+            };
+            let own = &self.known()[gait];
+            let measured = walk.film.watched.measure(&own.expected, Some(walk.during));
+            let measured = measured.map_err(|trouble| self.not(walk, own, trouble))?;
+            Ok(NamedWalk {
+                walk,
+                gait,
+                measured,
+            })
+        });
+        measured.collect()
+    }
+
+    /// Measures the first of the named gaits between two times of a film, s, or in all of it.
+    ///
+    /// # Errors
+    /// Fails with a sentence for the user if the film does not show the gait then.
+    pub fn walk<'f>(
+        &self,
+        film: &'f WatchedFilm,
+        during: Option<[f64; 2]>,
+    ) -> Result<NamedWalk<'f>, String> {
+        let own = self.known().first();
+        let own = own.ok_or_else(|| Trouble::NoGait.to_string())?;
+        let walk = Walk {
+            film,
+            during: during.or_else(|| film.all()).unwrap_or_default(),
+        };
+        let measured = film.watched.measure(&own.expected, during);
+        let measured = measured.map_err(|trouble| self.not(walk, own, trouble))?;
+        Ok(NamedWalk {
+            walk,
+            gait: 0,
+            measured,
+        })
+    }
+
+    /// The gait that a walk shows clearly, by its number.
+    fn recognized(&self, walk: Walk) -> Result<usize, String> {
+        let name = |number: usize| self.all()[number].name();
+        let (why, hint) = match self.likeness(walk) {
+            Likeness::One(number) => return Ok(number),
+            Likeness::Two(best, rival) => (
+                format!(
+                    "the path is most like {}, and nearly as much like {}",
+                    name(best),
+                    name(rival)
+                ),
+                true,
+            ),
+            Likeness::None(Trouble::NotThisGait { .. }) => (
+                "the path is like no gait of robot.toml at this pace".to_owned(),
+                true,
+            ),
+            Likeness::None(trouble) => (trouble.to_string(), false),
+        };
+        let hint = match hint {
+            true => "; name the gaits of all walks with --gait",
+            false => "",
+        };
+        Err(format!("{}: {why}{hint}", walk.at()))
+    }
+
+    /// The gait of robot.toml that a walk is like.
+    fn likeness(&self, walk: Walk) -> Likeness {
+        let all: Vec<Gait> = self.all().iter().map(|own| own.expected.clone()).collect();
+        walk.film.watched.likeness(&all, walk.during)
+    }
+
+    /// The name of the gait that a walk is clearly like.
+    pub(crate) fn like(&self, walk: Walk) -> Option<&'a str> {
+        match self.likeness(walk) {
+            Likeness::One(number) => Some(self.all()[number].name()),
+            _ => None,
+        }
+    }
+
+    /// The failure of a walk that is not of its gait.
+    fn not(&self, walk: Walk, own: &Candidate, trouble: Trouble) -> String {
+        let like = match trouble {
+            Trouble::NotThisGait { .. } | Trouble::AnotherPace { .. } => self.like(walk),
+            _ => None,
+        };
+        let like = like.filter(|name| *name != own.name());
+        let like = like.map_or(String::new(), |name| format!("; it is like {name}"));
+        format!("{}, {}: {trouble}{like}", walk.at(), own.name())
+    }
+
+    /// The failure of films that show another number of walks than there are names.
+    fn other_number(&self, walks: &[Walk], rest: f64) -> String {
+        let names: Vec<&str> = self.named.iter().map(Candidate::name).collect();
+        let mut text = format!(
+            "{} walks between rests of {rest:.1} s or more, and --gait names {}: {}",
+            walks.len(),
+            names.len(),
+            names.join(", ")
+        );
+        let mut missing = names;
+        let mut is_clear = true;
+        for walk in walks {
+            let like = self.like(*walk);
+            let [from, to] = walk.during;
+            let _ = write!(
+                text,
+                "\n  {}, {:.1} s long: like {}",
+                walk.at(),
+                to - from,
+                like.unwrap_or("no gait clearly")
+            );
+            match like.and_then(|like| missing.iter().position(|name| *name == like)) {
+                Some(at) => {
+                    missing.remove(at);
+                }
+                None => is_clear = false,
+            }
+        }
+        if is_clear && !missing.is_empty() {
+            let _ = write!(text, "\nno walk is like {}", missing.join(", "));
+        }
+        text
+    }
+}

@@ -1,0 +1,67 @@
+//! A watched film with its name, and the walks in it.
+
+use std::fmt::Write as _;
+
+use lizard_film::Watched;
+
+/// A film with its name.
+#[derive(Debug, Clone)]
+pub struct WatchedFilm {
+    /// The name in messages, such as its path.
+    pub name: String,
+    /// Its camera and the robot's path in it.
+    pub watched: Watched,
+}
+
+impl WatchedFilm {
+    /// The walks between rests; without any, all of the film, which cannot be measured for a reason.
+    pub(crate) fn walks(&self, rest: f64) -> Vec<Walk<'_>> {
+        let mut walks = self.watched.walks(rest);
+        if walks.is_empty() {
+            walks.extend(self.all());
+        }
+        let walk = |during| Walk { film: self, during };
+        walks.into_iter().map(walk).collect()
+    }
+
+    /// Begin and end of the film, s.
+    pub(crate) fn all(&self) -> Option<[f64; 2]> {
+        match &self.watched.path[..] {
+            [first, .., last] => Some([first.seconds, last.seconds]),
+            _ => None,
+        }
+    }
+
+    /// The robot's path as CSV: seconds,forward,left,heading; mm and degrees on the floor.
+    pub fn path(&self) -> String {
+        let mut text = "seconds,forward,left,heading\n".to_owned();
+        for seen in &self.watched.path {
+            let place = seen.place;
+            let _ = writeln!(
+                text,
+                "{:.4},{:.3},{:.3},{:.3}",
+                seen.seconds,
+                place.forward,
+                place.left,
+                place.heading.to_degrees()
+            );
+        }
+        text
+    }
+}
+
+/// A walk between two rests.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Walk<'f> {
+    pub film: &'f WatchedFilm,
+    /// Its times in the film, s, with a part of the rests.
+    pub during: [f64; 2],
+}
+
+impl Walk<'_> {
+    /// The place of a message.
+    pub(crate) fn at(&self) -> String {
+        let [from, to] = self.during;
+        format!("{}, {from:.1} to {to:.1} s", self.film.name)
+    }
+}
