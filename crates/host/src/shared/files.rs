@@ -73,7 +73,7 @@ fn is_robot(path: &Path) -> bool {
     };
     let has_lengths = |bytes: Vec<u8>| {
         let text = String::from_utf8_lossy(&bytes);
-        text.lines().any(|line| line.trim() == "[links]")
+        text.lines().any(|line| line.trim().starts_with("[links]"))
     };
     end.ends_with("robot.toml") || fs::read(end).is_ok_and(has_lengths)
 }
