@@ -90,7 +90,10 @@ mod tests {
         }
         assert_eq!(swings().end, orders.len());
         for i in swings().step_by(2) {
-            assert!((step(i) + step(i + 1)).abs() < 1e-12 && step(i) > 0.0, "{i}");
+            assert!(
+                (step(i) + step(i + 1)).abs() < 1e-12 && step(i) > 0.0,
+                "{i}"
+            );
         }
     }
 

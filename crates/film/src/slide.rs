@@ -118,7 +118,11 @@ impl Slide {
         let cameras: Vec<_> = watched.cameras().collect();
         let first = watched.path.first().map_or(0.0, |seen| seen.seconds);
         let is_level = |seen: &Seen| seen.seconds < first + LEVEL;
-        let level = watched.path.iter().take_while(|seen| is_level(seen)).count();
+        let level = watched
+            .path
+            .iter()
+            .take_while(|seen| is_level(seen))
+            .count();
         let up = cameras[..level].iter().map(|camera| camera.up());
         let vertical = up.sum::<Vector3<f64>>().normalize();
         let moments: Vec<Moment> = watched
@@ -136,7 +140,8 @@ impl Slide {
                 }
             })
             .collect();
-        let most = |moments: &[Moment]| moments.iter().map(|moment| moment.tilt).fold(0.0, f64::max);
+        let most =
+            |moments: &[Moment]| moments.iter().map(|moment| moment.tilt).fold(0.0, f64::max);
         let angle = most(&moments[..level]).to_degrees();
         if angle > MOVED {
             return Err(SlideTrouble::NotAtRest { angle });
@@ -149,19 +154,25 @@ impl Slide {
                 tilt: most(&moments).to_degrees(),
             });
         };
-        let from = moments[..slid].iter().rposition(|moment| away(moment) < PART[0]);
+        let from = moments[..slid]
+            .iter()
+            .rposition(|moment| away(moment) < PART[0]);
         let from = from.map_or(0, |at| at + 1);
         let way = [0, 1].map(|i| moments[slid].at[i] - rest[i]);
         check_ways(&moments[slid], way)?;
         let length = way[0].hypot(way[1]);
         let along = |moment: &Moment| {
-            (0..2).map(|i| (moment.at[i] - rest[i]) * way[i]).sum::<f64>() / length
+            (0..2)
+                .map(|i| (moment.at[i] - rest[i]) * way[i])
+                .sum::<f64>()
+                / length
         };
         let tilts = smooth(&moments);
         // The end of the slide: it is far enough, or something stops it.
         let mut to = slid;
         let pace = |i: usize| {
-            (along(&moments[i]) - along(&moments[i - 1])) / (moments[i].seconds - moments[i - 1].seconds)
+            (along(&moments[i]) - along(&moments[i - 1]))
+                / (moments[i].seconds - moments[i - 1].seconds)
         };
         while to + 1 < moments.len()
             && along(&moments[to]) < PART[1]

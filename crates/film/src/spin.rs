@@ -84,7 +84,9 @@ impl Rates {
         };
         let first = least::fit(&start, |at| residuals(at, SIGMA))?;
         let pictures: usize = steps.iter().map(|(_, step)| step.0.len()).sum();
-        let freedom = pictures.checked_sub(steps.len() + count).filter(|n| *n > 0)?;
+        let freedom = pictures
+            .checked_sub(steps.len() + count)
+            .filter(|n| *n > 0)?;
         let sigma = SIGMA * (first.squares / freedom as f64).sqrt().max(0.05);
         let fit = least::fit(&first.at, |at| residuals(at, sigma))?;
         let widening = widening(freedom).powi(2);
@@ -93,7 +95,11 @@ impl Rates {
         Some(Self {
             rates: fit.at[..count].to_vec(),
             covariance: (0..count)
-                .map(|i| (0..count).map(|j| widening * fit.covariance[(i, j)]).collect())
+                .map(|i| {
+                    (0..count)
+                        .map(|j| widening * fit.covariance[(i, j)])
+                        .collect()
+                })
                 .collect(),
             spin_up: (error < TOLD).then_some(Figure {
                 value: constant,
@@ -105,7 +111,9 @@ impl Rates {
     /// A figure of the rates with its error, by its derivative for each rate.
     pub(crate) fn figure(&self, value: f64, slopes: &[f64]) -> Figure {
         let pairs = slopes.iter().zip(&self.covariance).flat_map(|(a, row)| {
-            row.iter().zip(slopes).map(move |(covariance, b)| a * covariance * b)
+            row.iter()
+                .zip(slopes)
+                .map(move |(covariance, b)| a * covariance * b)
         });
         Figure {
             value,

@@ -53,13 +53,17 @@ pub struct Jig {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum TurnsTrouble {
     /// The horn did not turn.
-    #[error("the horn did not turn: {turn:.1} deg at most; is this the right servo, and has it power?")]
+    #[error(
+        "the horn did not turn: {turn:.1} deg at most; is this the right servo, and has it power?"
+    )]
     NotTurned {
         /// Largest turn, deg.
         turn: f64,
     },
     /// The film is too short.
-    #[error("the film lasts {seconds:.0} s and the steps take {needed:.0} s: film from before the first to after the last")]
+    #[error(
+        "the film lasts {seconds:.0} s and the steps take {needed:.0} s: film from before the first to after the last"
+    )]
     TooShort {
         /// Length of the film, s.
         seconds: f64,
@@ -102,7 +106,9 @@ pub enum TurnsTrouble {
         slew: f64,
     },
     /// The servo without load is slower to one side than with it.
-    #[error("the servo turns less evenly to both sides without the load than with it: were the two films swapped?")]
+    #[error(
+        "the servo turns less evenly to both sides without the load than with it: were the two films swapped?"
+    )]
     Swapped,
     /// The load does not slow the servo down enough.
     #[error(
@@ -243,9 +249,8 @@ fn line(orders: &[Order], rests: &[Option<f64>]) -> Option<[Figure; 2]> {
         .collect();
     let start = [seen.first()?.2, 1.0, 0.0];
     let residuals = |at: &[f64]| -> Vec<f64> {
-        let residual = |(asked, way, rest): &(f64, f64, f64)| {
-            at[0] + at[1] * asked - at[2] * way / 2.0 - rest
-        };
+        let residual =
+            |(asked, way, rest): &(f64, f64, f64)| at[0] + at[1] * asked - at[2] * way / 2.0 - rest;
         seen.iter().map(residual).collect()
     };
     let fit = least::fit(&start, residuals)?;
@@ -316,9 +321,8 @@ impl Path {
         if (pairs.len() as f64) < SEEN * orders.len() as f64 {
             return None;
         }
-        let mean = |part: fn(&(f64, f64)) -> f64| {
-            pairs.iter().map(part).sum::<f64>() / pairs.len() as f64
-        };
+        let mean =
+            |part: fn(&(f64, f64)) -> f64| pairs.iter().map(part).sum::<f64>() / pairs.len() as f64;
         let (x, y) = (mean(|pair| pair.0), mean(|pair| pair.1));
         let mut sums = [0.0; 3];
         for (a, b) in &pairs {
@@ -345,14 +349,19 @@ impl Path {
         let angles = || self.turns.iter().map(|(_, angle)| *angle);
         let turn = angles().fold(f64::MIN, f64::max) - angles().fold(f64::MAX, f64::min);
         if !(turn > TURNED) {
-            return Err(TurnsTrouble::NotTurned { turn: turn.max(0.0) });
+            return Err(TurnsTrouble::NotTurned {
+                turn: turn.max(0.0),
+            });
         }
         let is_right = |best: &(f64, f64)| best.1 < UNEXPLAINED;
         if let Some((begin, _)) = self.best(orders, PAUSE).filter(is_right) {
             return Ok(self.refined(begin));
         }
         for times in MULTIPLES {
-            if self.best(orders, times * PAUSE).is_some_and(|best| is_right(&best)) {
+            if self
+                .best(orders, times * PAUSE)
+                .is_some_and(|best| is_right(&best))
+            {
                 return Err(TurnsTrouble::AnotherPace { times });
             }
         }
@@ -390,7 +399,9 @@ impl Path {
                 continue;
             };
             let seen = self.resting(begin, PAUSE, i - 1).end..self.resting(begin, PAUSE, i).end;
-            let turned = self.turns[seen].iter().map(|(time, angle)| (*time, angle - from));
+            let turned = self.turns[seen]
+                .iter()
+                .map(|(time, angle)| (*time, angle - from));
             steps[usize::from(to < from)].push(Step::new(turned, to - from));
         }
         steps
@@ -409,7 +420,10 @@ impl Path {
         for (i, rest) in rests.iter().enumerate() {
             let seen = &self.turns[self.resting(begin, PAUSE, i)];
             let Some(rest) = rest else { continue };
-            squares += seen.iter().map(|(_, angle)| (angle - rest).powi(2)).sum::<f64>();
+            squares += seen
+                .iter()
+                .map(|(_, angle)| (angle - rest).powi(2))
+                .sum::<f64>();
             freedom += seen.len().saturating_sub(1);
             pictures += seen.len();
         }

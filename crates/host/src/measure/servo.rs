@@ -116,8 +116,9 @@ pub fn measure_servo(args: ServoArgs) -> Result<(), Failure> {
     };
     let spinner = Spinner::new("reading the pictures");
     let film = |path: &Path| -> Result<(Watched, Turns), Failure> {
-        let about =
-            |trouble: &dyn std::fmt::Display| Failure::Input(format!("{}: {trouble}", path.display()));
+        let about = |trouble: &dyn std::fmt::Display| {
+            Failure::Input(format!("{}: {trouble}", path.display()))
+        };
         let film = read(path, args.fps, |trouble| about(&trouble))?;
         let watched = film.watch(setup).map_err(|trouble| about(&trouble))?;
         let turns = Turns::of(&watched.path, jig).map_err(|trouble| about(&trouble))?;
@@ -171,13 +172,24 @@ impl Report {
             of_type("stall_kg_cm", 2, stall, kind.stall_kg_cm * supply);
         }
         if let Some(width) = turns.dead_band.width {
-            of_type("dead_band_us", 1, scaled(width, us.abs()), kind.dead_band_us);
+            of_type(
+                "dead_band_us",
+                1,
+                scaled(width, us.abs()),
+                kind.dead_band_us,
+            );
         }
         if let Some(spin_up) = turns.spin_up {
             of_type("spin_up_ms", 1, scaled(spin_up, 1000.0), kind.spin_up_ms);
         }
         let table = format!("servo.{name}");
-        figures.push(Key::new(&table, "us_per_degree", 2, inverse(us, turns.gain), us));
+        figures.push(Key::new(
+            &table,
+            "us_per_degree",
+            2,
+            inverse(us, turns.gain),
+            us,
+        ));
         let pair = |figure: Figure| [figure.value, figure.error];
         Self {
             servo: name,
@@ -220,12 +232,16 @@ impl Report {
             if sides < 0.0 { "too far" } else { "apart" },
         );
         if self.turns_the_other_way {
-            text += "It turns the other way than robot.toml says: the sign of us_per_degree changes.\n";
+            text +=
+                "It turns the other way than robot.toml says: the sign of us_per_degree changes.\n";
         }
         let _ = write!(text, "\n{}", figures::lines(&self.figures));
         let volts = self.volts;
         let _ = match self.is_volts_measured {
-            true => writeln!(text, "and under [servo]: at_volts = {volts}, volts = {volts}"),
+            true => writeln!(
+                text,
+                "and under [servo]: at_volts = {volts}, volts = {volts}"
+            ),
             false => writeln!(
                 text,
                 "and under [servo]: at_volts = {volts}, if that is the supply at the servo while it moves: measure it \

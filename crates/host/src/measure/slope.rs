@@ -73,14 +73,19 @@ pub fn measure_slope(args: SlopeArgs) -> Result<(), Failure> {
     };
     let spinner = Spinner::new("reading the pictures");
     let slide = |path: &PathBuf| {
-        let about =
-            |trouble: &dyn std::fmt::Display| Failure::Input(format!("{}: {trouble}", path.display()));
+        let about = |trouble: &dyn std::fmt::Display| {
+            Failure::Input(format!("{}: {trouble}", path.display()))
+        };
         let film = read(path, args.fps, |trouble| about(&trouble))?;
         let watched = film.watch(setup).map_err(|trouble| about(&trouble))?;
         let slide = Slide::of(&watched).map_err(|trouble| about(&trouble))?;
         Ok((path.display().to_string(), slide))
     };
-    let slides: Vec<(String, Slide)> = args.films.iter().map(slide).collect::<Result<_, Failure>>()?;
+    let slides: Vec<(String, Slide)> = args
+        .films
+        .iter()
+        .map(slide)
+        .collect::<Result<_, Failure>>()?;
     drop(spinner);
     let report = Report::new(&robot, &slides);
     json::print_json_or(args.json, &report, || report.text())
@@ -101,7 +106,9 @@ fn mean(figures: &[Figure]) -> Option<Figure> {
 impl Report {
     fn new(robot: &Robot, slides: &[(String, Slide)]) -> Self {
         let of = |is_ahead: bool| {
-            let slides = slides.iter().filter(|(_, slide)| slide.is_ahead == is_ahead);
+            let slides = slides
+                .iter()
+                .filter(|(_, slide)| slide.is_ahead == is_ahead);
             mean(&slides.map(|(_, slide)| slide.sliding).collect::<Vec<_>>())
         };
         let (forward, backward) = (of(true), of(false));
@@ -135,7 +142,8 @@ impl Report {
     }
 
     fn text(&self) -> String {
-        let mut text = "slides first  begins at, deg   static friction  sliding friction\n".to_owned();
+        let mut text =
+            "slides first  begins at, deg   static friction  sliding friction\n".to_owned();
         for line in &self.films {
             let first = if line.is_head_first { "head" } else { "tail" };
             let pair = |[value, error]: [f64; 2], digits: usize| {

@@ -80,10 +80,7 @@ pub(super) fn check_slew(robot: &Robot) -> Result<(), Failure> {
 fn lines(robot: &Robot, servo: usize) -> Result<Vec<(String, f64)>, Failure> {
     let way = way(robot, servo)?;
     let neutral = |sweep: f64| pose(robot, servo, sweep);
-    let mut lines = vec![
-        ("factory".to_owned(), PAUSE),
-        (neutral(0.0), LEAD - PAUSE),
-    ];
+    let mut lines = vec![("factory".to_owned(), PAUSE), (neutral(0.0), LEAD - PAUSE)];
     let sign = |is_reversed: bool| {
         let is_positive = robot.servos()[servo].us_per_degree > 0.0;
         if is_positive == is_reversed { '-' } else { '+' }
