@@ -28,6 +28,8 @@ const MULTIPLES: [f64; 5] = [0.25, 0.5, 2.0, 4.0, 8.0];
 const OWN_RATE: f64 = 0.8;
 /// Standard error of the camera, as a share of an angle.
 const CAMERA: f64 = 0.002;
+/// Standard error of a rate by the simple motor, as a share: a real one does not follow it exactly.
+const MOTOR: f64 = 0.003;
 /// Least angle that counts as a movement, deg, and as multiple of its standard error.
 const MOVED: f64 = 0.05;
 const MOVED_SIGMAS: f64 = 3.0;
@@ -186,8 +188,8 @@ impl Turns {
             gain,
             hysteresis,
             dead_band: turns.dead_band(begin, &orders, &rests, gain.value),
-            rate: of_camera(rate),
-            ways: [fit.figure(a, &[1.0, 0.0]), fit.figure(b, &[0.0, 1.0])].map(of_camera),
+            rate: of_motor(rate),
+            ways: [fit.figure(a, &[1.0, 0.0]), fit.figure(b, &[0.0, 1.0])].map(of_motor),
             spin_up: fit.spin_up,
             begin,
             pictures: turns.rate(),
@@ -231,11 +233,20 @@ impl Turns {
     }
 }
 
-/// A rate with the error of the camera.
+/// A figure with the error of the camera.
 fn of_camera(figure: Figure) -> Figure {
     Figure {
         error: figure.error.hypot(CAMERA * figure.value),
         ..figure
+    }
+}
+
+/// A rate with the errors of the camera and of the motor's model.
+fn of_motor(rate: Figure) -> Figure {
+    let Figure { value, error } = of_camera(rate);
+    Figure {
+        value,
+        error: error.hypot(MOTOR * value),
     }
 }
 
@@ -348,7 +359,7 @@ impl Path {
     fn begin(&self, orders: &[Order]) -> Result<f64, TurnsTrouble> {
         let angles = || self.turns.iter().map(|(_, angle)| *angle);
         let turn = angles().fold(f64::MIN, f64::max) - angles().fold(f64::MAX, f64::min);
-        if !(turn > TURNED) {
+        if turn <= TURNED {
             return Err(TurnsTrouble::NotTurned {
                 turn: turn.max(0.0),
             });

@@ -1,6 +1,7 @@
 //! Films whose truth is known, rendered with all that spoils a picture.
 
 mod accuracy;
+mod board;
 mod cameras;
 mod render;
 mod servo;

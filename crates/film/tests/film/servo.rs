@@ -1,6 +1,10 @@
 //! A servo whose truth is known: a motor behind its pulses, with what a servo has of its own.
 
+use fastrand::Rng;
+use lizard_film::Picture;
 use lizard_film::orders::{Order, PAUSE, orders};
+
+use super::render::Studio;
 
 /// Time of a frame of the firmware, and step of the simulation, s.
 const FRAME: f64 = 0.02;
@@ -85,6 +89,30 @@ impl Servo {
             }
         }
         Turning(angles)
+    }
+
+    /// Takes pictures of the card on the horn, at the rate only while it turns fast, and hands them on with their times.
+    pub fn pictures(
+        &self,
+        studio: &Studio,
+        way: f64,
+        rate: f64,
+        rng: &mut Rng,
+        mut take: impl FnMut(f64, &Picture),
+    ) {
+        let turning = self.turns(way);
+        let background = studio.background(rng);
+        let mut seconds = 0.0;
+        while seconds < self.end() {
+            // The axis is 8 mm beside the middle of the tag.
+            let at = |time: f64| {
+                let heading = turning.at(time).to_radians();
+                [8.0 * heading.cos(), 8.0 * heading.sin(), heading]
+            };
+            take(seconds, &background.picture(seconds, at, rng));
+            let turn = turning.at(seconds + 0.25) - turning.at(seconds - 0.08);
+            seconds += if turn.abs() > 30.0 { 1.0 / rate } else { 0.2 };
+        }
     }
 
     /// The pulse in each frame, as the angle that it stands for.

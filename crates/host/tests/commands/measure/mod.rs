@@ -1,10 +1,17 @@
 //! `lizard measure` on films whose truth is known, and the sheet that they show.
 
+#[allow(dead_code)]
+#[path = "../../../../film/tests/film/board.rs"]
+mod board;
+mod jig;
 mod keys;
 // The renderer has more than is needed here.
 #[allow(dead_code)]
 #[path = "../../../../film/tests/film/render.rs"]
 mod render;
+#[allow(dead_code)]
+#[path = "../../../../film/tests/film/servo.rs"]
+mod servo;
 mod sheet;
 #[allow(dead_code)]
 #[path = "../../../../film/tests/film/walk.rs"]

@@ -1,0 +1,152 @@
+//! `lizard measure servo`, `steps` and `slope` on films whose truth is known.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use fastrand::Rng;
+use lizard_film::Picture;
+use serde_json::Value;
+
+use super::board::{self, BOARD, Board};
+use super::servo::Servo;
+use crate::program::{read, run_in, scratch};
+
+/// An empty folder.
+fn folder(name: &str) -> PathBuf {
+    let folder = scratch().join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+/// Writes a picture as JPEG under the name of its time.
+fn write(folder: &Path, seconds: f64, picture: &Picture) {
+    let [width, height] = picture.size().map(|length| length as u16);
+    let path = folder.join(format!("{seconds:.4}s.jpg"));
+    let encoder = jpeg_encoder::Encoder::new_file(path, 90).expect("a file");
+    let colour = jpeg_encoder::ColorType::Luma;
+    encoder
+        .encode(picture.grey(), width, height, colour)
+        .expect("it is written");
+}
+
+/// The robot that is flashed for the jig.
+fn jig(folder: &Path) {
+    let text = read("robots/paper.toml").replace("slew = 300.0", "slew = 1000.0");
+    fs::write(folder.join("jig.toml"), text).expect("a file");
+}
+
+/// Checks a figure of an object against its truth, and its error against the largest useful one.
+fn check(object: &Value, key: &str, truth: f64, largest: f64) {
+    let figures = object["figures"].as_array().expect("figures");
+    let figure = figures.iter().find(|figure| figure["key"] == key);
+    let figure = figure.unwrap_or_else(|| panic!("{key}: {object}"));
+    let part = |name: &str| figure[name].as_f64().expect("a number");
+    let error = part("error");
+    assert!(
+        (part("measured") - truth).abs() < 2.0 * error,
+        "{figure} {truth}"
+    );
+    assert!(error < largest, "{figure}");
+}
+
+#[test]
+fn a_film_of_a_horn_gives_the_lines_of_a_servo_that_turns_the_other_way() {
+    let folder = folder("horn");
+    jig(&folder);
+    let servo = Servo {
+        gain: -0.9,
+        rate: 420.0,
+        dead_band: 0.8,
+        ..Servo::default()
+    };
+    let mut studio = super::studio();
+    (studio.deck, studio.shutter) = (40.0, 1.0 / 250.0);
+    // The poses of A1 go clockwise: outward the leg would come too near to its singularity.
+    servo.pictures(
+        &studio,
+        -1.0,
+        90.0,
+        &mut Rng::with_seed(9),
+        |seconds, picture| {
+            write(&folder, seconds, picture);
+        },
+    );
+    let line = [
+        "measure", "servo", ".", "--servo", "A1", "--robot", "jig.toml", "--height",
+    ];
+    let measure = |more: &[&str]| run_in(&folder, &[&line[..], more].concat(), "");
+    let object = measure(&["40", "--json"]).json();
+    check(&object, "us_per_degree", 10.0 / servo.gain, 0.05);
+    check(&object, "s_per_60_deg", 60.0 / servo.own_rate(), 0.003);
+    assert_eq!(object["turns_the_other_way"], true);
+    let text = measure(&["40"]).success();
+    for words in [
+        "It turns the other way than robot.toml says",
+        "[servo.A1]\nus_per_degree = -11.",
+        "Not told: stall_kg_cm",
+    ] {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+    let refused = measure(&["90"]).refusal();
+    assert!(refused.contains("above the floor by its size"), "{refused}");
+}
+
+#[test]
+fn steps_are_printed_only_for_a_robot_whose_pulses_outrun_its_servos() {
+    let folder = folder("steps");
+    jig(&folder);
+    let steps = |servo: &str, robot: &str| {
+        let line = [
+            "measure", "steps", "--list", "--servo", servo, "--robot", robot,
+        ];
+        run_in(&folder, &line, "")
+    };
+    let lines = steps("A1", "jig.toml").success();
+    assert!(
+        lines.starts_with("factory\npose 138.59 41.41 318.59 221.41\n"),
+        "{lines}"
+    );
+    assert!(
+        lines.contains("\npose 108.59 41.41 318.59 221.41\ndir 1 -\ndir 1 +\n"),
+        "{lines}"
+    );
+    let slow = steps("A1", "paper").refusal();
+    assert!(
+        slow.contains("write slew = 1000.0 under [limits]"),
+        "{slow}"
+    );
+    let none = steps("B1", "jig.toml").refusal();
+    assert!(none.contains("it is A1, A2, A3 or A4"), "{none}");
+}
+
+#[test]
+fn a_film_of_a_slide_gives_friction_and_says_what_another_film_would_tell() {
+    let folder = folder("slope");
+    let slide = Board {
+        resting: 0.45,
+        sliding: 0.4,
+        lift: 8.0,
+        ..BOARD
+    };
+    slide.pictures(&board::studio(), 30.0, |seconds, picture| {
+        write(&folder, seconds, picture);
+    });
+    let line = [
+        "measure", "slope", ".", "--robot", "paper", "--height", "83",
+    ];
+    let measure = |more: &[&str]| run_in(&folder, &[&line[..], more].concat(), "");
+    check(
+        &measure(&["--json"]).json(),
+        "friction",
+        slide.sliding,
+        0.02,
+    );
+    let text = measure(&[]).success();
+    for words in [
+        "[ground]\nfriction = 0.",
+        "A film with the head uphill gives friction_back_over_forward",
+    ] {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+}
