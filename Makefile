@@ -148,7 +148,7 @@ clean: ## remove everything that was built
 	@scripts/setup-web --test
 	@scripts/setup-book
 	@scripts/build-web
-	@cd crates && cargo build $(ALL) --bin lizard --quiet
+	@cd crates && cargo build $(ALL) --bin lizard --quiet && cargo build -p lizard-film --example studio --quiet
 	@LIZARD=$(HOST)/debug/lizard $$(cat target/web-node) --test --test-concurrency=2 --test-timeout=900000 web/tests/*.test.js
 
 # The second line puts the program at the path that the documentation names.
