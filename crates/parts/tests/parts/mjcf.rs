@@ -220,13 +220,18 @@ fn pads_of_other_shapes_touch_the_floor_and_light_limbs_leave_the_robots_mass() 
         // The dome is 2.08 mm high at its rim, 11 mm from its axis.
         (Pads::Terraces(0.1), 21),
     ] {
-        let text = written(&robot("paper"), |scene| scene.pads = pads);
+        let text = written(&robot("paper"), |scene| {
+            (scene.pads, scene.shapes) = (pads, false);
+        });
         let document = Document::parse(&text).expect("well formed");
         let all = bodies(&document);
         let (placed, foot) = &all["foot LF"];
         let geoms: Vec<_> = foot
             .children()
-            .filter(|node| node.has_tag_name("geom"))
+            .filter(|node| {
+                node.attribute("name")
+                    .is_some_and(|name| name.starts_with("pad "))
+            })
             .collect();
         assert_eq!(geoms.len(), count, "{pads:?}");
         for (layer, geom) in geoms.iter().enumerate() {
