@@ -228,10 +228,7 @@ fn pads_of_other_shapes_touch_the_floor_and_light_limbs_leave_the_robots_mass() 
         let (placed, foot) = &all["foot LF"];
         let geoms: Vec<_> = foot
             .children()
-            .filter(|node| {
-                node.attribute("name")
-                    .is_some_and(|name| name.starts_with("pad "))
-            })
+            .filter(|node| node.has_attribute("friction"))
             .collect();
         assert_eq!(geoms.len(), count, "{pads:?}");
         for (layer, geom) in geoms.iter().enumerate() {
