@@ -7,8 +7,35 @@ set until the next frame begins, as by the pulses of the board. The last keyfram
 import math
 
 import mujoco
+import numpy
 
 from grain import Grain
+
+
+FRAME = 0.02
+"""The time between two pulses, s."""
+
+
+class Bursts:
+    """Analog servos: each looks at its angle when a pulse comes, and then drives at its full torque for
+    a part of the time to the next pulse that is in proportion to the error."""
+
+    def __init__(self, model):
+        # A target that is far off asks for the full torque, and the servo's own angle for none.
+        model.actuator_ctrllimited[:] = 0
+        self.angles = model.jnt_qposadr[model.actuator_trnid[:, 0]]
+        self.full = model.actuator_forcerange[:, 1] / model.actuator_gainprm[:, 0]
+        self.pulse, self.error = None, None
+
+    def drive(self, data, targets):
+        """Sets the servos for the next step."""
+        pulse = int((data.time + 1e-9) / FRAME)
+        angles = data.qpos[self.angles]
+        if pulse != self.pulse:
+            self.pulse, self.error = pulse, targets - angles
+        share = (data.time - pulse * FRAME) / FRAME
+        drives = share < abs(self.error) / self.full
+        data.ctrl[:] = angles + drives * numpy.sign(self.error) * 2 * self.full
 
 
 class Walk:
@@ -19,6 +46,8 @@ class Walk:
         self.data = mujoco.MjData(self.model)
         ratio = float(self.model.numeric("back over forward").data[0])
         self.grain = None if ratio == 1 else Grain(self.model, ratio)
+        names = [self.model.numeric(at).name for at in range(self.model.nnumeric)]
+        self.bursts = Bursts(self.model) if "bursts" in names else None
         self.begin, self.period, self.count = None, None, None
         self.frames = self.model.nkey - 1
         if self.frames > 0:
@@ -37,7 +66,11 @@ class Walk:
     def step(self):
         """Makes one step of the engine, with the servos set to the present frame's angles."""
         if self.frames > 0:
-            self.data.ctrl[:] = self.model.key_ctrl[self.frame(self.data.time)]
+            targets = self.model.key_ctrl[self.frame(self.data.time)]
+            if self.bursts:
+                self.bursts.drive(self.data, targets)
+            else:
+                self.data.ctrl[:] = targets
         if self.grain:
             self.grain.set(self.data)
         mujoco.mj_step(self.model, self.data)

@@ -13,7 +13,7 @@ use crate::bodies::assembly::Assembly;
 use crate::decimals;
 use crate::hold::SpringEffect;
 use crate::layers::body::{Body, Kind, Prism};
-use crate::layers::fitting::Fitting;
+use crate::layers::fitting::{BATTERIES, Fitting};
 use crate::layers::outline::Outline;
 use crate::part::{Part, volume};
 use crate::price::Price;
@@ -120,6 +120,9 @@ pub struct Bill {
     pub centre: [f64; 3],
     /// The effect of the springs on the legs; `None` for rigid struts.
     pub hold: Option<SpringEffect>,
+    /// The room of the battery: to the right, forward, up, mm.
+    #[serde(skip)]
+    battery: [f64; 3],
 }
 
 /// The line of the bill for a bought body, empty if it is printed or comes with another
@@ -246,6 +249,7 @@ impl Bill {
             grams,
             centre: moment.map(|sum| sum / grams),
             hold,
+            battery: assembly.robot().parts().battery,
         }
     }
 
@@ -327,7 +331,7 @@ impl fmt::Display for Bill {
         writeln!(
             f,
             "Where everything has its place, and what fits there:\n\n{}",
-            places()
+            places(self.battery)
         )?;
         let (grams, beside, up) = (self.grams, self.centre_in_words(), self.centre[2]);
         writeln!(
@@ -371,12 +375,23 @@ pub fn to_buy(items: &[Item]) -> String {
     text
 }
 
-/// The places of the fittings as a table: room, hold, and two products that fit.
-pub fn places() -> String {
+/// The places of the battery, of a size, and of the fittings as a table: room, hold, and two
+/// products that fit.
+pub fn places(battery: [f64; 3]) -> String {
     let size = |[x, y, z]: [f64; 3]| format!("{x} x {y} x {z}");
     let mut text =
         "| thing | place | room, mm | held by | for example, mm |\n|---|---|---|---|---|\n"
             .to_owned();
+    let fits = |mm: [f64; 3]| (0..3).all(|axis| mm[axis] <= battery[axis]);
+    let batteries = BATTERIES.into_iter().filter(|(_, mm)| fits(*mm));
+    let batteries: Vec<String> = batteries
+        .map(|(name, mm)| format!("{name}: {}", size(mm)))
+        .collect();
+    text += &format!(
+        "| battery | on the plate, in the middle | {} | the battery strap | {} |\n",
+        size(battery),
+        batteries.join("; ")
+    );
     for fitting in Fitting::ALL {
         let facts = fitting.facts();
         let examples = facts

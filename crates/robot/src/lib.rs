@@ -49,7 +49,7 @@ pub use measures::{
 };
 pub use reports::verdict;
 pub use reports::{
-    Assumptions, Report, Round, Row, Sensitivity, ServoTable, SpringCost, UNDECIDED,
+    Assumptions, PACES, Report, Round, Row, Sensitivity, ServoTable, SpringCost, UNDECIDED,
     WITHOUT_CONTACTS, plausible,
 };
 pub use robot::Robot;

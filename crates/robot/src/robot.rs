@@ -203,6 +203,14 @@ impl Robot {
         &self.measures.servo_type
     }
 
+    /// The supplies of the servos for which figures are given, V: their own, and those at which the
+    /// robot slows down and stops.
+    pub fn reported_volts(&self) -> [f64; 3] {
+        let supplies = self.supplies();
+        let [slow, stop, _] = supplies.rail.map_or(supplies.board, |rail| rail.thresholds);
+        [self.servo_type().volts, slow, stop]
+    }
+
     /// The servos' motors and the friction of the joints, at the servos' own supply.
     pub fn motors(&self) -> Motors {
         self.motors_at(self.servo_type().volts)

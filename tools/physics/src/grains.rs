@@ -118,9 +118,21 @@ pub fn measure(robot: &Robot) -> Result<Grains, MujocoError> {
     Ok(grains.collect())
 }
 
+/// The number of cycles until a gait repeats from cycle to cycle.
+pub(crate) fn settling(gait: &CheckedGait) -> u32 {
+    (SETTLING_S / gait.period()).ceil() as u32
+}
+
+/// The answers at the ratio of the robot's file, of those of a gait.
+pub(crate) fn at_own_ratio(answers: &[Answers]) -> Answers {
+    let own = crate::robot(ROBOT).ground().ratio;
+    let index = RATIOS.iter().position(|ratio| *ratio == own);
+    answers[index.expect("the file's ratio is one of the table's")]
+}
+
 fn scene(name: String, assembly: &Assembly, gait: &CheckedGait, ratio: f64) -> Scene {
     let robot = assembly.robot();
-    let cycles = (SETTLING_S / gait.period()).ceil() as u32 + 1;
+    let cycles = settling(gait) + 1;
     Scene {
         name,
         ratio,

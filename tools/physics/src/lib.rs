@@ -9,17 +9,22 @@
 //! `figures.json`, and prints all of it. The tables of the documentation are made from the
 //! stored figures ([`Figures`], [`table`]), so a test without the engine keeps them current.
 
+pub mod assumptions;
 mod case;
+mod crossing;
 mod expected;
 mod figures;
 pub mod grains;
 pub mod mujoco;
+pub mod pads;
 mod row;
 pub mod servos;
 pub mod surface;
 mod table;
+pub mod text;
 
 pub use case::{Case, Feet, Legs};
+pub use crossing::Crossing;
 pub use expected::expected;
 pub use figures::{Answers, Displacement, Figures};
 pub use row::{Row, rows};

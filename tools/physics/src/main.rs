@@ -1,15 +1,19 @@
 //! `make physics`: walks every gait of every file of robots/ by the contact model and by MuJoCo,
-//! and the paper's gaits on floors with edges, blocks, slopes and uneven friction by MuJoCo.
+//! and by MuJoCo those that walk over edges and blocks, the paper's also on slopes and other floors.
 //! With `--write` the new results replace the stored ones; with `--one-in N` only every N-th gait
 //! is walked.
 
+use std::collections::BTreeMap;
 use std::process::ExitCode;
 
 use lizard_parts::Assembly;
+use lizard_physics::assumptions::{self, Assumption, Assumptions};
 use lizard_physics::grains::{self, Grains};
 use lizard_physics::mujoco::{Jobs, MujocoError};
+use lizard_physics::pads::{self, SURFACES, Shape, Shapes};
 use lizard_physics::servos::{self, Servos, Variant, servos_table};
-use lizard_physics::surface::{self, GAITS, Surface, Surfaces, surfaces_table};
+use lizard_physics::surface::{self, Surface, Surfaces, surfaces_table};
+use lizard_physics::text::{blocks, lines};
 use lizard_physics::{Answers, Displacement, Figures, Legs, ROBOTS, Row, here, robot, rows, table};
 use lizard_robot::Robot;
 
@@ -21,6 +25,8 @@ const NOT_KEPT: &str = "no figures are kept; `make physics WRITE=1` keeps these"
 /// The beginnings of the files' names of walks on other floors and with other servos.
 const SURFACE: &str = "surface";
 const SERVOS: &str = "servos";
+const ASSUMPTIONS: &str = "assumptions";
+const PADS: &str = "pads";
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -72,8 +78,11 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         .iter()
         .map(|(_, robot)| rows(robot).into_iter().filter(|_| is_one()).collect())
         .collect();
-    let uneven = GAITS.map(|gait| Surface::ALL.map(|surface| (gait, surface)));
-    let uneven: Vec<(&str, Surface)> = uneven.concat().into_iter().filter(|_| is_one()).collect();
+    let kept = Figures::stored();
+    let uneven: Vec<Uneven> = Uneven::all(&kept)
+        .into_iter()
+        .filter(|_| is_one())
+        .collect();
     let mut jobs = Jobs::new()?;
     for ((of, robot), rows) in robots.iter().zip(&all) {
         let assembly = Assembly::new(robot);
@@ -81,14 +90,13 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         let walks = named.map(|(index, row)| row.scene(&name(of, index), &assembly));
         jobs.add(&assembly, walks)?;
     }
-    let kept = Figures::stored();
-    let paper = Assembly::new(&robot("paper"));
-    let walks = uneven.iter().enumerate().map(|(index, (gait, surface))| {
-        let level = surface::level(&kept, gait);
-        let scene = surface.scene(&name(SURFACE, index), &paper, gait, level);
-        (Legs::Rigid, scene)
-    });
-    jobs.add(&paper, walks)?;
+    for (index, walk) in uneven.iter().enumerate() {
+        let assembly = Assembly::new(&robot(walk.robot));
+        let scene = walk
+            .surface
+            .scene(&name(SURFACE, index), &assembly, &walk.gait, walk.level);
+        jobs.add(&assembly, std::iter::once((Legs::Rigid, scene)))?;
+    }
     let driven = Variant::ALL.map(|variant| servos::GAITS.map(|(gait, _)| (variant, gait)));
     let driven: Vec<(Variant, &str)> = driven.concat().into_iter().filter(|_| is_one()).collect();
     for (index, (variant, gait)) in driven.iter().enumerate() {
@@ -96,6 +104,27 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         let scene = variant.scene(&name(SERVOS, index), &assembly, gait);
         jobs.add(&assembly, std::iter::once((Legs::Rigid, scene)))?;
     }
+    let assumed =
+        Assumption::ALL.map(|assumption| assumptions::GAITS.map(|gait| (assumption, gait)));
+    let assumed: Vec<(Assumption, &str)> =
+        assumed.concat().into_iter().filter(|_| is_one()).collect();
+    for (index, (assumption, gait)) in assumed.iter().enumerate() {
+        let assembly = Assembly::new(&assumption.robot());
+        let level = surface::level(&kept, gait);
+        let scene = assumption.scene(&name(ASSUMPTIONS, index), &assembly, gait, level);
+        jobs.add(&assembly, std::iter::once((Legs::Rigid, scene)))?;
+    }
+    let shapes = Shape::ALL.map(|shape| SURFACES.map(|surface| (shape, surface)));
+    let shapes: Vec<(Shape, Surface)> = shapes.concat().into_iter().filter(|_| is_one()).collect();
+    let paper = Assembly::new(&robot("paper"));
+    let walks = shapes.iter().enumerate().map(|(index, (shape, surface))| {
+        let level = surface::level(&kept, pads::GAIT);
+        (
+            Legs::Rigid,
+            shape.scene(&name(PADS, index), &paper, *surface, level),
+        )
+    });
+    jobs.add(&paper, walks)?;
     println!(
         "physics: {} walks by MuJoCo take some minutes",
         jobs.count()
@@ -123,25 +152,38 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         println!("\n{}", table(of, robot, &found));
     }
     let (before, mut surfaces) = (surface::stored(), Surfaces::new());
-    for (index, (gait, surface)) in uneven.iter().enumerate() {
+    for (index, walk) in uneven.iter().enumerate() {
+        let Uneven {
+            robot,
+            gait,
+            level,
+            surface,
+        } = walk;
         let displacement = by_mujoco[&name(SURFACE, index)];
-        let level = surface::level(&kept, gait);
-        let mut words = surface::excess_losses(*surface, level, displacement);
+        let mut words = surface::excess_losses(*surface, *level, displacement);
+        if surface::is_below(robot, gait, *surface) {
+            words.clear();
+        }
         if !write {
-            let was = before
-                .get(*gait)
-                .and_then(|of| of.get(&surface.to_string()));
+            let of = before.get(*robot).and_then(|of| of.get(gait));
+            let was = of.and_then(|of| of.get(&surface.to_string()));
             words.extend(match was {
                 Some(was) => differs("MuJoCo", *was, displacement),
                 None => Some(NOT_KEPT.to_owned()),
             });
         }
-        let what = |words| format!("paper: {gait} ({surface}): {words}");
+        let what = |words| format!("{robot}: {gait} ({surface}): {words}");
         faults.extend(words.into_iter().map(what));
-        let of = surfaces.entry((*gait).to_owned()).or_default();
+        let of = surfaces.entry((*robot).to_owned()).or_default();
+        let of = of.entry(gait.clone()).or_default();
         of.insert(surface.to_string(), displacement);
     }
-    println!("\n{}", surfaces_table(&kept, &surfaces));
+    for robot in surface::ROBOTS {
+        println!(
+            "\nrobots/{robot}.toml\n{}",
+            surfaces_table(robot, &kept, &surfaces)
+        );
+    }
     let (before, mut by_servos) = (servos::kept(), Servos::new());
     for (index, (variant, gait)) in driven.iter().enumerate() {
         let answers = Answers {
@@ -159,6 +201,24 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         of.insert((*gait).to_owned(), answers);
     }
     println!("\n{}", servos_table(&by_servos));
+    let mut by_assumption = Assumptions::new();
+    for (index, (assumption, gait)) in assumed.iter().enumerate() {
+        let displacement = by_mujoco[&name(ASSUMPTIONS, index)];
+        let of = by_assumption
+            .entry(assumption.words.to_owned())
+            .or_default();
+        of.insert((*gait).to_owned(), displacement);
+    }
+    let mut by_shape = Shapes::new();
+    for (index, (shape, surface)) in shapes.iter().enumerate() {
+        let of = by_shape.entry(shape.name()).or_default();
+        of.insert(surface.to_string(), by_mujoco[&name(PADS, index)]);
+    }
+    println!("\n{}", pads::table(&by_shape));
+    if !write {
+        faults.extend(changed(&assumptions::stored(), &by_assumption));
+        faults.extend(changed(&pads::stored(), &by_shape));
+    }
     let pads = robot(grains::ROBOT);
     // With `--one-in` only some rows are walked, to save time: then these are left out.
     if one_in == 1 {
@@ -172,7 +232,9 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     }
     if write {
         std::fs::write(here().join("figures.json"), found.text())?;
-        std::fs::write(here().join("surfaces.json"), surface::text(&surfaces))?;
+        std::fs::write(here().join("surfaces.json"), blocks(&surfaces))?;
+        std::fs::write(here().join("assumptions.json"), lines(&by_assumption))?;
+        std::fs::write(here().join("pads.json"), lines(&by_shape))?;
         std::fs::write(here().join("servos.json"), servos::text(&by_servos))?;
         println!("physics: written to tools/physics; `make docs` puts it into the pages");
     } else if one_in == 1 && kept.count() != found.count() {
@@ -183,6 +245,33 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         ));
     }
     Ok(faults)
+}
+
+/// A walk on a floor that is not level and even.
+struct Uneven {
+    robot: &'static str,
+    gait: String,
+    /// The gait's displacement on a level floor.
+    level: Displacement,
+    surface: Surface,
+}
+
+impl Uneven {
+    fn all(figures: &Figures) -> Vec<Self> {
+        let mut all = Vec::new();
+        for robot in surface::ROBOTS {
+            for (gait, level) in surface::gaits(figures, robot) {
+                let of = |surface| Self {
+                    robot,
+                    gait: gait.clone(),
+                    level,
+                    surface,
+                };
+                all.extend(Surface::of(robot).into_iter().map(of));
+            }
+        }
+        all
+    }
 }
 
 /// The messages for answers on pads with a grain that differ from the stored ones.
@@ -197,6 +286,24 @@ fn other(kept: &Grains, now: &Grains) -> Vec<String> {
         })
     });
     each.collect()
+}
+
+/// Displacements by two names.
+type Named = BTreeMap<String, BTreeMap<String, Displacement>>;
+
+/// The messages for displacements by two names that differ from the stored ones.
+fn changed(stored: &Named, now: &Named) -> Vec<String> {
+    let all = now
+        .iter()
+        .flat_map(|(what, of)| of.iter().map(move |(name, is)| (what, name, is)));
+    let words = all.filter_map(|(what, name, is)| {
+        let words = match stored.get(what).and_then(|of| of.get(name)) {
+            Some(was) => differs("MuJoCo", *was, *is)?,
+            None => NOT_KEPT.to_owned(),
+        };
+        Some(format!("paper, {what}: {name}: {words}"))
+    });
+    words.collect()
 }
 
 /// The messages for answers that differ from the stored ones.

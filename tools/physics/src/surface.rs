@@ -10,21 +10,58 @@ use lizard_parts::{Assembly, Block, Course, Floor, Scene};
 use lizard_robot::Robot;
 
 use crate::case::Case;
+use crate::crossing::Crossing;
 use crate::figures::{Displacement, Figures};
+use crate::grains;
 use crate::mujoco::scene_of;
 use crate::table::Part;
 
-/// The gaits of the paper's robot that are walked.
-pub const GAITS: [&str; 8] = [
-    "walk",
-    "trot",
-    "crawl",
-    "back",
-    "arc-left",
-    "arc-right",
-    "left",
-    "right",
-];
+/// The names of the robots that are walked over edges and blocks: the paper's on every surface, the
+/// others on the highest.
+pub const ROBOTS: [&str; 5] = ["paper", "own-gaits", "large", "unequal", grains::ROBOT];
+
+/// A gait that moves less by a cycle, mm and deg, is not for walking: it looks around or wags.
+const WALKS: (f64, f64) = (9.0, 3.0);
+
+/// The parts of a gait's displacement on a level floor that it is for: a way, a turn, or both.
+pub(crate) fn parts(Displacement([ahead, _, turn]): Displacement) -> Vec<Part> {
+    let all = [
+        (Part::Ahead, ahead.abs() > WALKS.0),
+        (Part::Turn, turn.abs() > WALKS.1),
+    ];
+    all.into_iter()
+        .filter(|(_, is_for)| *is_for)
+        .map(|(part, _)| part)
+        .collect()
+}
+
+/// The gaits of a robot that walk, each with its displacement on a level floor by MuJoCo.
+///
+/// # Panics
+/// If none of a gait is stored.
+pub fn gaits(figures: &Figures, robot: &str) -> Vec<(String, Displacement)> {
+    if robot == grains::ROBOT {
+        let stored = grains::stored();
+        return grains::GAITS
+            .map(|(gait, _)| (gait.to_owned(), grains::at_own_ratio(&stored[gait]).mujoco))
+            .into();
+    }
+    let known = crate::robot(robot);
+    let moving = known.gaits().iter().filter(|gait| gait.moves());
+    let level = moving.map(|gait| {
+        let answers = figures.get(robot, gait.name(), Case::ALL[0]);
+        (
+            gait.name().to_owned(),
+            *answers.expect("figures.json has it"),
+        )
+    });
+    // Of a gait that depends on ties nobody knows where it leads.
+    level
+        .filter(|(_, answers)| answers.model.is_some())
+        .map(|(gait, answers)| (gait, answers.mujoco))
+        .filter(|(_, level)| !parts(*level).is_empty())
+        .collect()
+}
 
 /// A kind of floor, or a fault of a foot on a level one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,6 +91,14 @@ impl Surface {
         Self::NoPad,
     ];
 
+    /// The surfaces that a robot walks on.
+    pub fn of(robot: &str) -> Vec<Self> {
+        match robot {
+            "paper" => Self::ALL.into(),
+            _ => vec![Self::Edge(20), Self::Blocks(10)],
+        }
+    }
+
     /// True for edges and blocks, which a pad has to climb.
     pub fn is_climbed(self) -> bool {
         matches!(self, Self::Edge(_) | Self::Blocks(_))
@@ -70,17 +115,12 @@ impl Surface {
         (self != Self::NoPad).then_some(0.75)
     }
 
-    /// The number of cycles to walk: with most gaits all four feet pass an edge in six.
-    fn cycles(self) -> u32 {
-        if self.is_climbed() { 6 } else { 1 }
-    }
-
-    /// The floor in front of the robot, or behind it for a gait that goes back.
-    fn floor(self, assembly: &Assembly, direction: f64) -> Floor {
+    /// The floor on the way of a gait.
+    fn floor(self, assembly: &Assembly, crossing: &Crossing, direction: f64) -> Floor {
         let robot = assembly.robot();
         let mut floor = Floor::of(robot);
         match self {
-            Self::Edge(tenths) => floor.blocks.push(edge(robot, direction, mm(tenths))),
+            Self::Edge(tenths) => floor.blocks.push(crossing.block(mm(tenths))),
             Self::Blocks(tenths) => floor.blocks = strewn_blocks(robot, mm(tenths)),
             Self::Slope(deg) => floor.rises = direction * f64::from(deg),
             Self::Uneven => {
@@ -99,13 +139,22 @@ impl Surface {
     /// If the robot has no such gait.
     pub fn scene(self, name: &str, assembly: &Assembly, gait: &str, level: Displacement) -> Scene {
         let robot = assembly.robot();
-        let case = Case::ALL[0];
-        let direction = if level.0[0] < -1.0 { -1.0 } else { 1.0 };
-        let mut scene = scene_of(name, assembly, gait, case);
+        let direction = if level.0[0] < -WALKS.0 { -1.0 } else { 1.0 };
+        let mut scene = scene_of(name, assembly, gait, Case::ALL[0]);
+        scene.ratio = robot.ground().ratio;
         let gait = robot.gait(gait).expect("it is the robot's");
-        let cycles = self.cycles();
-        scene.course = Some(Course::of(robot, gait, cycles.max(2), cycles));
-        scene.floor = self.floor(assembly, direction);
+        // On even pads a gait is at its speed from the first cycle on.
+        let settling = match scene.ratio == 1.0 {
+            true => 0,
+            false => grains::settling(gait),
+        };
+        let crossing = Crossing::of(robot, level, settling);
+        let [cycles, measured] = match self.is_climbed() {
+            true => [settling + crossing.cycles, crossing.cycles],
+            false => [2, 1],
+        };
+        scene.course = Some(Course::of(robot, gait, cycles, measured));
+        scene.floor = self.floor(assembly, &crossing, direction);
         if self == Self::NoPad {
             // The foot stands on the head of its screw.
             scene.long[0] = -assembly.stack().under_head(robot.parts());
@@ -116,19 +165,6 @@ impl Surface {
 
 fn mm(tenths: u8) -> f64 {
     f64::from(tenths) / 10.0
-}
-
-/// A step up, beginning this far ahead of the feet, mm.
-const AHEAD: f64 = 25.0;
-
-fn edge(robot: &Robot, direction: f64, high: f64) -> Block {
-    /// The length of the floor beyond the edge, mm.
-    const STEP_LENGTH: f64 = 1000.0;
-    let [forward, _] = robot.ground().feet.at([0.0; 4])[0];
-    Block {
-        at: [0.0, direction * (forward.abs() + AHEAD + STEP_LENGTH / 2.0)],
-        size: [STEP_LENGTH, STEP_LENGTH, high],
-    }
 }
 
 /// Blocks of 10 to 20 mm in places that look random and are the same each time: one in each
@@ -152,7 +188,8 @@ fn strewn_blocks(robot: &Robot, high: f64) -> Vec<Block> {
             let away = |[forward, left]: [f64; 2]| (at[0] + left).hypot(at[1] - forward);
             if feet.into_iter().map(away).fold(f64::INFINITY, f64::min) > SQUARE {
                 let size = [wide, long, high];
-                blocks.push(Block { at, size });
+                let turned = 0.0;
+                blocks.push(Block { at, size, turned });
             }
         }
     }
@@ -171,8 +208,8 @@ impl fmt::Display for Surface {
     }
 }
 
-/// MuJoCo's displacements on each surface, by gait and surface.
-pub type Surfaces = BTreeMap<String, BTreeMap<String, Displacement>>;
+/// MuJoCo's displacements by robot, gait and surface.
+pub type Surfaces = BTreeMap<String, BTreeMap<String, BTreeMap<String, Displacement>>>;
 
 /// The displacements stored in `surfaces.json`.
 ///
@@ -182,25 +219,33 @@ pub fn stored() -> Surfaces {
     serde_json::from_str(include_str!("../surfaces.json")).expect("surfaces.json")
 }
 
-/// The text of `surfaces.json`: a line for each gait.
-///
-/// # Panics
-/// Never: they are names and numbers.
-pub fn text(surfaces: &Surfaces) -> String {
-    let line = |(gait, of): (&String, &BTreeMap<String, Displacement>)| {
-        format!("{gait:?}: {}", serde_json::to_string(of).expect("numbers"))
-    };
-    let lines: Vec<String> = surfaces.iter().map(line).collect();
-    format!("{{\n{}\n}}\n", lines.join(",\n"))
-}
-
-/// A gait's displacement on a level floor by MuJoCo.
+/// The displacement of a gait of the paper's robot on a level floor by MuJoCo.
 ///
 /// # Panics
 /// If none is stored.
 pub fn level(figures: &Figures, gait: &str) -> Displacement {
     let answers = figures.get("paper", gait, Case::ALL[0]);
     answers.expect("figures.json has it").mujoco
+}
+
+/// The gaits that keep less than they should, each with its robot and surface. Those of `own-gaits`
+/// step slowly or little, and the slower, the more they lose; `back` of pads with a grain pushes
+/// against the grain.
+pub const BELOW: [(&str, &str, Surface); 9] = [
+    ("own-gaits", "stroll", Surface::Edge(20)),
+    ("own-gaits", "stroll-on", Surface::Edge(20)),
+    ("own-gaits", "veer-left", Surface::Edge(20)),
+    ("own-gaits", "veer-right", Surface::Edge(20)),
+    ("own-gaits", "veer-right-back", Surface::Edge(20)),
+    ("own-gaits", "veer-left-back", Surface::Edge(20)),
+    ("own-gaits", "creep", Surface::Edge(20)),
+    (grains::ROBOT, "back", Surface::Edge(20)),
+    (grains::ROBOT, "back", Surface::Blocks(10)),
+];
+
+/// True for a gait of [`BELOW`].
+pub fn is_below(robot: &str, gait: &str, surface: Surface) -> bool {
+    BELOW.contains(&(robot, gait, surface))
 }
 
 /// The least share of a displacement's part that a gait must keep on a surface.
@@ -225,34 +270,43 @@ pub fn excess_losses(
             format!("{is:.1} {unit} a cycle of {was:.1} on a level floor; {least:.2} must be kept")
         })
     };
-    Part::of(level).into_iter().filter_map(loss).collect()
+    parts(level).into_iter().filter_map(loss).collect()
 }
 
-/// The table of all surfaces, as Markdown.
-pub fn surfaces_table(figures: &Figures, surfaces: &Surfaces) -> String {
-    let heads = Surface::ALL.map(|surface| format!(" {surface} |")).concat();
-    let lines = "---|".repeat(Surface::ALL.len());
-    let mut text = format!("| gait | level |{heads}\n|---|---|{lines}\n");
-    for gait in GAITS {
-        let flat = level(figures, gait);
-        for part in Part::of(flat) {
-            let cell = |displacement| format!(" {:+.1} |", part.value(displacement));
-            let displacements = Surface::ALL.map(|surface| {
-                let displacement = surfaces
-                    .get(gait)
-                    .and_then(|of| of.get(&surface.to_string()));
-                displacement.map_or(" - |".to_owned(), |displacement| cell(*displacement))
+/// The table of a robot's gaits on its surfaces, as Markdown.
+pub fn surfaces_table(robot: &str, figures: &Figures, surfaces: &Surfaces) -> String {
+    let of_robot = Surface::of(robot);
+    let heads = of_robot.iter().map(|surface| format!(" {surface} |"));
+    let lines = "---|".repeat(of_robot.len());
+    let mut text = format!(
+        "| gait | level |{}\n|---|---|{lines}\n",
+        heads.collect::<String>()
+    );
+    for (gait, flat) in gaits(figures, robot) {
+        let stored = surfaces.get(robot).and_then(|of| of.get(&gait));
+        for part in parts(flat) {
+            let cell = |displacement| format!(" {:+.1}", part.value(displacement));
+            let displacements = of_robot.iter().map(|surface| {
+                let displacement = stored.and_then(|of| of.get(&surface.to_string()));
+                let Some(displacement) = displacement else {
+                    return " - |".to_owned();
+                };
+                let share = part.value(*displacement) / part.value(flat);
+                let is_less = least(*surface, part).is_some_and(|least| share < least);
+                let mark = if is_less { "!" } else { "" };
+                format!("{}{mark} |", cell(*displacement))
             });
-            let (flat, displacements) = (cell(flat), displacements.concat());
-            _ = writeln!(text, "| {gait}, {} |{flat}{displacements}", part.unit());
+            let (flat, displacements) = (cell(flat), displacements.collect::<String>());
+            _ = writeln!(text, "| {gait}, {} |{flat} |{displacements}", part.unit());
         }
     }
     for (name, part) in [("a way", Part::Ahead), ("a turn", Part::Turn)] {
-        let bars = Surface::ALL.map(|surface| match least(surface, part) {
+        let bars = of_robot.iter().map(|surface| match least(*surface, part) {
             Some(share) => format!(" {:.0} % |", 100.0 * share),
             None => " - |".to_owned(),
         });
-        _ = writeln!(text, "| at least, of {name} | 100 % |{}", bars.concat());
+        let bars = bars.collect::<String>();
+        _ = writeln!(text, "| at least, of {name} | 100 % |{bars}");
     }
     text
 }

@@ -4,9 +4,13 @@
 
 use lizard_robot::Robot;
 
-use lizard_physics::surface::{self, GAITS, Surface, surfaces_table};
+use lizard_physics::assumptions::{self, Assumption};
+use lizard_physics::pads::{self, SURFACES, Shape};
+use lizard_physics::surface::{self, Surface, surfaces_table};
+use lizard_physics::text::{blocks, lines};
 use lizard_physics::{
-    Case, Displacement, Feet, Figures, Legs, ROBOTS, expected, here, robot, rows, spread, table,
+    Case, Crossing, Displacement, Feet, Figures, Legs, ROBOTS, expected, here, robot, rows, spread,
+    table,
 };
 
 /// Replaces or compares the text between a marker and the next end.
@@ -42,8 +46,16 @@ fn the_pages_have_the_displacements_of_model_and_engine() {
             }
         }
     }
-    let surfaces = surfaces_table(&kept, &surface::stored());
-    check_block("docs/judges.md", "surfaces of robots/paper.toml", &surfaces);
+    let surfaces = surface::stored();
+    for name in surface::ROBOTS {
+        let table = surfaces_table(name, &kept, &surfaces);
+        let marker = format!("surfaces of robots/{name}.toml");
+        check_block("docs/judges.md", &marker, &table);
+    }
+    check_block("docs/judges.md", "pads", &pads::table(&pads::stored()));
+    let changes = assumptions::table(&kept, &surfaces, &assumptions::stored());
+    let fenced = format!("```text\n{changes}```\n");
+    check_block("docs/limits.md", "assumptions by MuJoCo", &fenced);
     let robot = robot("paper");
     check_block(
         "docs/measure.md",
@@ -68,17 +80,25 @@ fn the_stored_figures_are_written_as_they_are_read() {
 fn every_gait_keeps_its_way_over_edges_and_blocks_and_its_turn_on_every_floor() {
     let (figures, kept) = (Figures::stored(), surface::stored());
     let mut count = 0;
-    for gait in GAITS {
-        let level = surface::level(&figures, gait);
-        for surface in Surface::ALL {
-            let displacement = kept[gait][&surface.to_string()];
-            let losses = surface::excess_losses(surface, level, displacement);
-            assert!(losses.is_empty(), "{gait}, {surface}: {losses:?}");
-            count += 1;
+    for name in surface::ROBOTS {
+        for (gait, level) in surface::gaits(&figures, name) {
+            for surface in Surface::of(name) {
+                let displacement = kept[name][&gait][&surface.to_string()];
+                let losses = surface::excess_losses(surface, level, displacement);
+                let is_below = surface::is_below(name, &gait, surface);
+                assert_eq!(
+                    !losses.is_empty(),
+                    is_below,
+                    "{name}: {gait}, {surface}: {losses:?}"
+                );
+                count += 1;
+            }
         }
     }
-    let all = kept.values().map(std::collections::BTreeMap::len);
+    let all = kept.values().flat_map(|gaits| gaits.values());
+    let all = all.map(std::collections::BTreeMap::len);
     assert_eq!(all.sum::<usize>(), count, "and no others are kept");
+    assert!(count > 100, "{count}");
     // The rule refuses a robot that an edge stops, ahead and around, or that turns the wrong way.
     let stopped = Displacement([0.0; 3]);
     for (gait, losses) in [("walk", 1), ("back", 1), ("left", 1), ("arc-right", 2)] {
@@ -91,6 +111,95 @@ fn every_gait_keeps_its_way_over_edges_and_blocks_and_its_turn_on_every_floor() 
         surface::excess_losses(Surface::Slope(8), left, right),
         ["-14.9 deg a cycle of 14.9 on a level floor; 0.75 must be kept"]
     );
+}
+
+#[test]
+fn every_foot_is_before_the_edge_at_the_start_and_past_it_at_the_end_but_of_gaits_that_only_turn() {
+    let figures = Figures::stored();
+    let mut turns = Vec::new();
+    for name in surface::ROBOTS {
+        let feet = robot(name).ground().feet.at([0.0; 4]);
+        for (gait, level) in surface::gaits(&figures, name) {
+            let crossing = Crossing::of(&robot(name), level, 0);
+            if !crossing.passes {
+                turns.push(gait);
+                continue;
+            }
+            let block = crossing.block(2.0);
+            // The edge as a line: a point on it and the direction across it, from the block alone.
+            let (sin, cos) = block.turned.to_radians().sin_cos();
+            let half = block.size[1] / 2.0;
+            let edge = [block.at[0] + half * sin, block.at[1] - half * cos];
+            let beyond =
+                |[right, ahead]: [f64; 2]| (ahead - edge[1]) * cos - (right - edge[0]) * sin;
+            let mut pose = [0.0; 3];
+            for [ahead, left] in feet {
+                assert!(
+                    beyond([-left, ahead]) < -20.0,
+                    "{name}: {gait} starts behind it"
+                );
+            }
+            for _ in 0..crossing.cycles {
+                pose = moved(pose, level.0);
+            }
+            for [ahead, left] in feet {
+                let [ahead, left, _] = moved(pose, [ahead, left, 0.0]);
+                assert!(
+                    beyond([-left, ahead]) > 20.0,
+                    "{name}: {gait} ends beyond it"
+                );
+            }
+        }
+    }
+    turns.sort_unstable();
+    turns.dedup();
+    let wanted = [
+        "left",
+        "right",
+        "turn-slowly-on-the-spot-all-the-way-to-the-left",
+        "turn-slowly-to-the-right",
+    ];
+    assert_eq!(turns, wanted);
+}
+
+/// A pose (mm ahead, mm to the left, deg) after a displacement in its own frame.
+fn moved([x, y, turn]: [f64; 3], [ahead, left, by]: [f64; 3]) -> [f64; 3] {
+    let (sin, cos) = turn.to_radians().sin_cos();
+    [
+        x + ahead * cos - left * sin,
+        y + ahead * sin + left * cos,
+        turn + by,
+    ]
+}
+
+#[test]
+fn every_other_assumption_and_pad_is_stored_as_it_is_written() {
+    let (assumed, shapes) = (assumptions::stored(), pads::stored());
+    for Assumption { words, .. } in Assumption::ALL {
+        assert_eq!(assumed[words].len(), assumptions::GAITS.len(), "{words}");
+    }
+    assert_eq!(assumed.len(), Assumption::ALL.len());
+    for shape in Shape::ALL {
+        assert_eq!(shapes[&shape.name()].len(), SURFACES.len());
+    }
+    assert_eq!(shapes.len(), Shape::ALL.len());
+    for (file, text) in [
+        ("assumptions.json", lines(&assumed)),
+        ("pads.json", lines(&shapes)),
+        ("surfaces.json", blocks(&surface::stored())),
+    ] {
+        assert_eq!(
+            std::fs::read_to_string(here().join(file)).expect(file),
+            text
+        );
+    }
+    // The pads of robot.toml are the last row: the same walk as in the other table.
+    let own = &shapes["30"];
+    for surface in SURFACES {
+        let name = surface.to_string();
+        let (mm, _) = own[&name].distance_to(&surface::stored()["paper"]["walk"][&name]);
+        assert!(mm < 0.05, "{name}: {mm}");
+    }
 }
 
 #[test]

@@ -12,6 +12,13 @@ pub const STRAP: [f64; 2] = [16.0, 1.5];
 /// Pitch of the ways of a terminal strip of the 3 A size, mm.
 pub const PITCH: f64 = 8.0;
 
+/// Batteries of two lithium cells that go into the room of `[parts] battery`, with the size that
+/// people who have them give, mm.
+pub const BATTERIES: [(&str, [f64; 3]); 2] = [
+    ("GL Racing 2S 450 mAh", [21.0, 56.0, 14.0]),
+    ("JJRC H8D 2S 500 mAh", [25.0, 55.0, 12.5]),
+];
+
 /// A thing that is bought and put on the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fitting {
@@ -60,7 +67,8 @@ pub struct FittingFacts {
     pub place: &'static str,
     /// What fastens it there.
     pub hold: &'static str,
-    /// Two products, with a usual size, mm; no maker's drawing was at hand.
+    /// Two products, or kinds of them where shops name no make, with a usual size, mm; no maker's
+    /// drawing was at hand.
     pub examples: [(&'static str, [f64; 3]); 2],
 }
 
@@ -115,8 +123,8 @@ impl Fitting {
                 place: "under the plate, behind the strip for +5 V",
                 hold: "the same cable tie as the strip",
                 examples: [
-                    ("1000 uF, 10 V", [8.0, 20.0, 8.0]),
-                    ("1000 uF, 16 V", [10.0, 20.0, 10.0]),
+                    ("Rubycon 10ZLH1000MEFC8X16, 10 V", [8.0, 16.0, 8.0]),
+                    ("Rubycon 16ZLH1000MEFC10X16, 16 V", [10.0, 16.0, 10.0]),
                 ],
             },
             Self::Alarm => FittingFacts {
@@ -175,8 +183,8 @@ impl Fitting {
                 place: "beside the signal strip, outside",
                 hold: "its own wires, screwed into the strip",
                 examples: [
-                    ("carbon film, 0.25 W", [2.4, 6.3, 2.4]),
-                    ("metal film, 0.25 W", [2.5, 6.3, 2.5]),
+                    ("Yageo CFR-25JB-52-10K, carbon film", [2.4, 6.3, 2.4]),
+                    ("Yageo MFR-25FBF52-10K, metal film", [2.4, 6.3, 2.4]),
                 ],
             },
             Self::Switch => FittingFacts {

@@ -13,13 +13,15 @@ pub struct Floor {
     pub friction: [f64; 4],
 }
 
-/// A block on the floor, beside the axes.
+/// A block on the floor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Block {
     /// The middle: to the right and forward of the robot's place at the start, mm.
     pub at: [f64; 2],
-    /// The size to the right, forward and up, mm.
+    /// The size to the right, forward and up, mm, before it is turned.
     pub size: [f64; 3],
+    /// The angle by which it is turned about its middle, deg counter-clockwise.
+    pub turned: f64,
 }
 
 impl Floor {

@@ -39,7 +39,7 @@ use crate::unfit::Unfit;
 pub use floor::{Block, Floor};
 use node::Node;
 use pieces::{Piece, pieces};
-pub use scene::{Course, Pull, Scene};
+pub use scene::{Course, Pads, Pull, Scene};
 use text::Xml;
 use writer::Writer;
 

@@ -27,6 +27,13 @@ pub struct Scene {
     pub pins: f64,
     /// The floor that it stands on.
     pub floor: Floor,
+    /// The shape of its pads.
+    pub pads: Pads,
+    /// Mass of everything that moves on the chassis, as a share of its own; the chassis has the
+    /// rest.
+    pub limbs: f64,
+    /// True if the servos drive in bursts, as analog ones do.
+    pub bursts: bool,
     /// The servos' angles; `None` to let the robot stand.
     pub course: Option<Course>,
     /// True to include the parts' shapes; without them the file is a fiftieth as long.
@@ -52,10 +59,25 @@ impl Scene {
             motors: assembly.robot().motors(),
             pins: 0.0,
             floor: Floor::of(assembly.robot()),
+            pads: Pads::Domes(assembly.robot().parts().pad.radius),
+            limbs: 1.0,
+            bursts: false,
             course: None,
             shapes: true,
         }
     }
+}
+
+/// A shape of pads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pads {
+    /// Smooth domes of this radius, mm.
+    Domes(f64),
+    /// Domes of the radius of `[parts.pad]` as a printer makes them: discs of this height, mm, with
+    /// sharp edges.
+    Terraces(f64),
+    /// Flat discs of this diameter, mm.
+    Flat(f64),
 }
 
 /// A tension spring in a slotted strut.

@@ -73,9 +73,16 @@ impl<'a> Writer<'a> {
         let own = self.pieces.iter().filter(|piece| piece.node == node);
         let drawn = own.fold(Inertia::default(), |sum, piece| sum.and(&piece.inertia));
         match self.parent(node) {
-            Some(_) => drawn,
-            None => self.weighed(&drawn),
+            Some(_) => drawn.scaled(self.scene.limbs),
+            None => self.weighed(&drawn).and(&Inertia::point(self.from_limbs())),
         }
+    }
+
+    /// The mass that the chassis has from lighter limbs, g.
+    fn from_limbs(&self) -> f64 {
+        let limbs = self.pieces.iter();
+        let limbs = limbs.filter(|piece| self.parent(piece.node).is_some());
+        (1.0 - self.scene.limbs) * limbs.map(|piece| piece.inertia.mass).sum::<f64>()
     }
 
     /// The chassis of a robot that has the mass and the mass centre of `[body]`. What is not

@@ -79,7 +79,11 @@ fn the_pages_quote_the_lists_of_the_bill() {
             "the list for a radio",
             &to_buy(&bill.radio),
         ),
-        ("docs/build.md", "the places on the robot", &places()),
+        (
+            "docs/build.md",
+            "the places on the robot",
+            &places(assembly.robot().parts().battery),
+        ),
     ] {
         let start = format!("<!-- {mark}; a test holds it -->\n");
         quoted(path, &start, list);

@@ -1,6 +1,6 @@
 //! Supply, strips and plugs: each has a room, and products that fit into it.
 
-use lizard_parts::{Assembly, Body, Fitting, Kind, Price, Shape};
+use lizard_parts::{Assembly, BATTERIES, Body, Fitting, Kind, Price, Shape, places};
 use lizard_robot::{FUSE, SWITCH};
 
 use crate::{ROBOTS, assembly};
@@ -46,6 +46,21 @@ fn both_products_named_for_a_fitting_go_into_the_room_of_its_body() {
                 }
             }
         }
+    }
+}
+
+#[test]
+fn both_batteries_that_are_named_go_into_the_room_of_every_robots_battery() {
+    for name in ROBOTS {
+        let assembly = assembly(name, "");
+        let room = assembly.robot().parts().battery;
+        for (product, size) in BATTERIES {
+            let fits = size.iter().zip(room).all(|(of, room)| *of <= room);
+            assert!(fits, "{name}: {product}: {size:?} in {room:?}");
+            assert!(places(room).contains(product));
+        }
+        // A room in which none fits names none.
+        assert!(!places([20.0, 30.0, 10.0]).contains(BATTERIES[0].0));
     }
 }
 

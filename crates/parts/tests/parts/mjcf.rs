@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use lizard_kinematics::{End, Side, Solution, Vector};
-use lizard_parts::{Assembly, Bill, Block, Course, Mesh, Pull, Scene, Solid, mjcf};
+use lizard_parts::{Assembly, Bill, Block, Course, Mesh, Pads, Pull, Scene, Solid, mjcf};
 use lizard_robot::Robot;
 use lizard_robot::servo::{LEGS, NAMES};
 use roxmltree::{Document, Node};
@@ -209,10 +209,57 @@ fn each_foot_stands_where_the_contact_model_has_it_and_a_long_one_is_lower() {
 }
 
 #[test]
+fn pads_of_other_shapes_touch_the_floor_and_light_limbs_leave_the_robots_mass() {
+    let before = weighed(&written(&robot("paper"), |_| {}));
+    let after = weighed(&written(&robot("paper"), |scene| scene.limbs = 0.2));
+    assert!((before.0 - after.0).abs() < 1e-3, "{before:?} {after:?}");
+    let radius = robot("paper").parts().pad.radius;
+    for (pads, count) in [
+        (Pads::Domes(5.0), 1),
+        (Pads::Flat(8.0), 1),
+        // The dome is 2.08 mm high at its rim, 11 mm from its axis.
+        (Pads::Terraces(0.1), 21),
+    ] {
+        let text = written(&robot("paper"), |scene| {
+            (scene.pads, scene.shapes) = (pads, false);
+        });
+        let document = Document::parse(&text).expect("well formed");
+        let all = bodies(&document);
+        let (placed, foot) = &all["foot LF"];
+        let geoms: Vec<_> = foot
+            .children()
+            .filter(|node| node.has_attribute("friction"))
+            .collect();
+        assert_eq!(geoms.len(), count, "{pads:?}");
+        for (layer, geom) in geoms.iter().enumerate() {
+            let size = numbers(*geom, "size");
+            let [_, _, z] = placed
+                .point(&numbers(*geom, "pos"))
+                .map(|part| 1000.0 * part);
+            let high = 1000.0 * size[size.len() - 1];
+            let floor = 0.1 * layer as f64;
+            assert!(
+                (z - high - floor).abs() < 1e-5,
+                "{pads:?} {layer}: {z} {high}"
+            );
+            if let Pads::Terraces(_) = pads {
+                // Pythagoras: its rim is on the ball.
+                let from_middle = (1000.0 * size[0]).hypot(radius - z);
+                assert!(
+                    (from_middle - radius).abs() < 1e-3,
+                    "{layer}: {from_middle}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
 fn a_floor_has_its_blocks_its_slope_and_its_grip_on_each_pad() {
     let text = written(&robot("paper"), |scene| {
         let (at, size) = ([20.0, 300.0], [10.0, 40.0, 2.0]);
-        scene.floor.blocks.push(Block { at, size });
+        let turned = 30.0;
+        scene.floor.blocks.push(Block { at, size, turned });
         scene.floor.rises = 30.0;
         scene.floor.friction = [0.1, 0.2, 0.3, 0.4];
     });
@@ -236,6 +283,8 @@ fn a_floor_has_its_blocks_its_slope_and_its_grip_on_each_pad() {
     let block = block.expect("a block");
     let [at, half] = ["pos", "size"].map(|of| numbers(block, of));
     assert_eq!((at[0], at[1]), (0.02, 0.3));
+    let euler = numbers(block, "euler");
+    assert!((euler[2] - 30f64.to_radians()).abs() < 1e-6 && euler[..2] == [0.0; 2]);
     assert_eq!((half[0], half[1], at[2] + half[2]), (0.005, 0.02, 0.002));
     for (leg, friction) in LEGS.into_iter().zip([0.1, 0.2, 0.3, 0.4]) {
         let name = format!("pad {leg}");

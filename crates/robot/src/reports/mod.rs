@@ -15,5 +15,5 @@ pub use assumptions::{Assumptions, plausible};
 pub use report::{Report, Row, UNDECIDED, WITHOUT_CONTACTS};
 pub use round::Round;
 pub use sensitivity::Sensitivity;
-pub use servos::ServoTable;
+pub use servos::{PACES, ServoTable};
 pub use spring_cost::SpringCost;

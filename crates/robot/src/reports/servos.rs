@@ -9,8 +9,8 @@ use crate::measures::ServoType;
 use crate::reports::report::{UNDECIDED, known, widest};
 use crate::robot::Robot;
 
-/// Paces of the table, as `speed` has them: percent of a gait's own.
-const PACES: [f64; 2] = [100.0, 50.0];
+/// Paces of the tables about servos, as `speed` has them: percent of a gait's own.
+pub const PACES: [f64; 2] = [100.0, 50.0];
 
 /// A gait at one supply and pace.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,10 +41,7 @@ pub struct ServoTable {
 impl ServoTable {
     /// Predicts a robot's gaits at all supplies and paces; takes some seconds.
     pub fn of(robot: &Robot) -> Self {
-        let servo = *robot.servo_type();
-        let supplies = robot.supplies();
-        let [slow, stop, _] = supplies.rail.map_or(supplies.board, |rail| rail.thresholds);
-        let volts = [servo.volts, slow, stop];
+        let (servo, volts) = (*robot.servo_type(), robot.reported_volts());
         let ground = robot.ground();
         let row = |gait: &CheckedGait| {
             let effort = Effort::of(gait, ground, &robot.motors());

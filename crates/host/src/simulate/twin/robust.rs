@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use lizard_robot::{CheckedGait, Effort, Ground, Robot, TIGHT, Travel};
+use lizard_robot::{CheckedGait, Effort, Ground, PACES, Robot, TIGHT, Travel};
 use lizard_tune::{FRICTION, PLAY_SPREAD, SPREAD, Variation, quantiles};
 use lizard_twin::ServoModel;
 use serde::Serialize;
@@ -24,9 +24,41 @@ struct Spread {
     left: [f64; 3],
     /// Turn, deg counter-clockwise.
     turn: [f64; 3],
-    /// Largest share of a servo's torque-speed line: on the robot's own floor, and with the most
-    /// friction.
-    line: [f64; 2],
+    /// The servos' effort at each pace on each supply.
+    lines: Vec<Line>,
+}
+
+/// The largest share of a servo's torque-speed line that a gait uses.
+#[derive(Debug, Serialize)]
+struct Line {
+    /// Percent of the gait's own pace.
+    pace: f64,
+    /// Supply of the servos, V.
+    volts: f64,
+    /// The share on the robot's own floor, and with the most friction.
+    share: [f64; 2],
+}
+
+impl Line {
+    /// The lines of a gait: all supplies at its own pace, then at half of it.
+    fn all(robot: &Robot, gait: &CheckedGait) -> Vec<Self> {
+        let efforts = [1.0, FRICTION.1].map(|more| {
+            let ground = Ground {
+                friction: robot.ground().friction * more,
+                ..*robot.ground()
+            };
+            Effort::of(gait, &ground, &robot.motors())
+        });
+        let line = |pace: f64, volts: f64| Self {
+            pace,
+            volts,
+            share: efforts
+                .each_ref()
+                .map(|effort| effort.line_share(pace / 100.0, volts / robot.servo_type().volts)),
+        };
+        let at = |pace| robot.reported_volts().map(|volts| line(pace, volts));
+        PACES.into_iter().flat_map(at).collect()
+    }
 }
 
 /// Walks every gait of the run `times` times.
@@ -62,14 +94,7 @@ pub fn run(
                 .walked(robot, gait, model)
         };
         let paths: Vec<Travel> = (0..u64::from(times)).map(path).collect();
-        let line = [1.0, FRICTION.1].map(|more| {
-            let ground = Ground {
-                friction: robot.ground().friction * more,
-                ..*robot.ground()
-            };
-            Effort::of(gait, &ground, &robot.motors()).line_share(1.0, 1.0)
-        });
-        spreads.push(Spread::of(gait.name(), &paths, line));
+        spreads.push(Spread::of(gait.name(), &paths, Line::all(robot, gait)));
     }
     bar.finish_and_clear();
     if json {
@@ -83,7 +108,7 @@ pub fn run(
 }
 
 impl Spread {
-    fn of(gait: &str, paths: &[Travel], line: [f64; 2]) -> Self {
+    fn of(gait: &str, paths: &[Travel], lines: Vec<Line>) -> Self {
         let part = |quantity: fn(&Travel) -> f64| {
             quantiles(paths.iter().map(quantity).collect(), [0.05, 0.5, 0.95])
         };
@@ -93,7 +118,7 @@ impl Spread {
             forward: part(|path| path.forward),
             left: part(|path| path.left),
             turn: part(|path| path.turn),
-            line,
+            lines,
         }
     }
 }
@@ -118,19 +143,41 @@ fn print(spreads: &[Spread], times: u32, out: &mut impl Write) -> io::Result<()>
     columns
         .iter()
         .try_for_each(|name| write!(out, "{name:>11}"))?;
-    writeln!(out, "  line      most")?;
+    writeln!(out)?;
     for spread in spreads {
         write!(out, "{:<12}", spread.gait)?;
         let parts = [spread.forward, spread.left, spread.turn];
         for value in parts.into_iter().flatten() {
             write!(out, "{:>11}", format_part(Some(value), 1))?;
         }
-        let [line, most] = spread.line;
-        writeln!(out, "{line:>6.2} {most:>9.2}")?;
+        writeln!(out)?;
     }
     writeln!(
         out,
-        "\nline: the largest share of a servo's torque-speed line, on the robot's own floor and with the most friction.\n\
-         Above {TIGHT} little is left; above 1 a servo falls behind: `lizard gaits --servos`"
-    )
+        "\nThe largest share of a servo's torque-speed line, on the robot's own floor and with the most friction.\n\
+         Above {TIGHT}, marked with !, little is left; above 1 a servo falls behind: `lizard gaits --servos`\n"
+    )?;
+    let Some(first) = spreads.first() else {
+        return Ok(());
+    };
+    write!(out, "{:<12}", "gait")?;
+    for Line { pace, volts, .. } in &first.lines {
+        write!(out, "{:>18}", format!("{pace:.0} %, {volts:.2} V"))?;
+    }
+    writeln!(out)?;
+    for spread in spreads {
+        write!(out, "{:<12}", spread.gait)?;
+        for line in &spread.lines {
+            let [own, most] = line.share.map(mark);
+            write!(out, "{:>18}", format!("{own} {most}"))?;
+        }
+        writeln!(out)?;
+    }
+    Ok(())
+}
+
+/// A share of a line, with a mark if little is left.
+fn mark(share: f64) -> String {
+    let mark = if share >= TIGHT { '!' } else { ' ' };
+    format!("{share:.2}{mark}")
 }

@@ -25,6 +25,9 @@ impl Writer<'_> {
         let ratio = round(self.scene.ratio);
         let data = format!(r#"numeric name="back over forward" data="{ratio}""#);
         self.xml.leaf(data);
+        if self.scene.bursts {
+            self.xml.leaf(r#"numeric name="bursts" data="1""#);
+        }
         if let Some(course) = &self.scene.course {
             let (begin, period) = (round(course.begin), round(course.period));
             let count = course.count;

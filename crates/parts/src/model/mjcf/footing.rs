@@ -2,10 +2,20 @@
 
 use super::document::CONTACT;
 use crate::model::floor::{Block, Floor};
+use crate::model::scene::Pads;
 use crate::model::text::{MILLI, joined, metres, round};
 use crate::model::writer::Writer;
 use lizard_robot::GRAVITY;
 use lizard_robot::servo::LEGS;
+
+/// Height of a flat pad, mm.
+const FLAT: f64 = 3.0;
+
+/// The attributes of a disc of a radius and a height, mm.
+fn disc(radius: f64, high: f64) -> String {
+    let [radius, half] = [radius, high / 2.0].map(|length| round(length * MILLI));
+    format!(r#"type="cylinder" size="{radius} {half}""#)
+}
 
 impl Floor {
     /// Gravity as the floor feels it: right, forward, up, m/s^2.
@@ -20,7 +30,12 @@ impl Writer<'_> {
         self.xml.leaf(
             r#"geom name="floor" type="plane" size="0 0 0.05" material="floor" conaffinity="1""#,
         );
-        for Block { at: [x, y], size } in &self.scene.floor.blocks {
+        for block in &self.scene.floor.blocks {
+            let Block {
+                at: [x, y],
+                size,
+                turned,
+            } = block;
             // Half of it is under the floor, where nothing comes.
             let [wide, long, high] = *size;
             let (half, at) = (
@@ -28,7 +43,8 @@ impl Writer<'_> {
                 metres([*x, *y, 0.0]),
             );
             self.xml.leaf(format!(
-                r#"geom type="box" size="{half}" pos="{at}" rgba="0.7 0.6 0.5 1" conaffinity="1""#
+                r#"geom type="box" size="{half}" pos="{at}" euler="0 0 {}" rgba="0.7 0.6 0.5 1" conaffinity="1""#,
+                round(turned.to_radians())
             ));
         }
     }
@@ -36,12 +52,36 @@ impl Writer<'_> {
     /// A pad. Viewers hide it and show the part. It has friction against sliding only, not
     /// against turning or rolling, and the same on all that lies on the floor.
     pub(super) fn pad(&mut self, servo: usize) {
-        let radius = self.assembly.robot().parts().pad.radius;
-        let (leg, at) = (LEGS[servo], metres(self.pad_middle(servo)));
-        let size = round(radius * MILLI);
-        let friction = self.scene.floor.friction[servo];
+        let pad = self.assembly.robot().parts().pad;
+        let [x, y, middle] = self.pad_middle(servo);
+        let lowest = middle - pad.radius;
+        match self.scene.pads {
+            Pads::Domes(radius) => {
+                let shape = format!(r#"type="sphere" size="{}""#, round(radius * MILLI));
+                self.pad_shape(servo, "", &shape, [x, y, lowest + radius]);
+            }
+            Pads::Terraces(layer) => {
+                // A layer is as wide as the dome in the layer's middle.
+                let wide = |up: f64| (up * (2.0 * pad.radius - up)).sqrt();
+                let layers = (0..).map(|number| (f64::from(number) + 0.5) * layer);
+                let layers = layers.take_while(|up| wide(*up) < pad.width / 2.0);
+                for (number, up) in layers.enumerate() {
+                    let name = format!(" {number}");
+                    let at = [x, y, lowest + up];
+                    self.pad_shape(servo, &name, &disc(wide(up), layer), at);
+                }
+            }
+            Pads::Flat(diameter) => {
+                let at = [x, y, lowest + FLAT / 2.0];
+                self.pad_shape(servo, "", &disc(diameter / 2.0, FLAT), at);
+            }
+        }
+    }
+
+    fn pad_shape(&mut self, servo: usize, name: &str, shape: &str, at: [f64; 3]) {
+        let (leg, at, friction) = (LEGS[servo], metres(at), self.scene.floor.friction[servo]);
         self.xml.leaf(format!(
-            r#"geom name="pad {leg}" type="sphere" size="{size}" pos="{at}" group="3" contype="1" priority="1" condim="3" friction="{friction} 0 0" solref="{CONTACT}" solimp="0.95 0.99 0.0005""#
+            r#"geom name="pad {leg}{name}" {shape} pos="{at}" group="3" contype="1" priority="1" condim="3" friction="{friction} 0 0" solref="{CONTACT}" solimp="0.95 0.99 0.0005""#
         ));
     }
 }

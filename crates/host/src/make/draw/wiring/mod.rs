@@ -209,7 +209,8 @@ fn at_board() -> Group {
 fn remarks(robot: &Robot) -> Vec<String> {
     let mut lines = vec![
         "Thick lines: wire of 0.5 mm\u{b2} (20 AWG), red or black. Thin lines: jumpers (26 AWG), a".to_string(),
-        "servo's are orange (signal), red (+5 V), brown (ground). A gap is a crossing, no joint.".into(),
+        "servo's are orange (signal), red (+5 V), brown (ground). The thinnest belong to a part.".into(),
+        "A gap is a crossing, no joint.".into(),
         "A terminal strip does not join its ways. The bows beside it are links of 0.5 mm\u{b2}: one".into(),
         "from way 1 to 2, one from 2 to 3, and so on, two ends in a hole. Ways 11, 12 are spare.".into(),
         format!("The fuse has {FUSE} A: the converter draws 2.8 A at most. It must not be larger than the"),

@@ -122,7 +122,9 @@ pub fn resistor_bodies() -> Group {
         group = group.add(edged(body, DARK, 1.5));
     }
     let point = (signal_x(4) + 22.0, SIGNALS_AT.1 + 31.0);
-    group.add(text_start("4 x 10 k\u{3a9}", point, 13.0))
+    group
+        .add(text_start("4 x 10 k\u{3a9}", point, 13.0))
+        .add(text_start("own legs", (point.0, point.1 + 16.0), 12.0))
 }
 
 /// A way: its brass, its two screws and its number.

@@ -138,18 +138,12 @@ pub fn wires(socket: Point) -> Vec<Wire> {
         ),
     ];
     let [above, below] = capacitor();
-    wires.push(Wire::new(
+    wires.push(thick(
         "capacitor-ground",
         straight(above, way("capacitor")),
         BLACK,
-        LEG,
     ));
-    wires.push(Wire::new(
-        "capacitor-supply",
-        straight(below, supply(1)),
-        RED,
-        LEG,
-    ));
+    wires.push(thick("capacitor-supply", straight(below, supply(1)), RED));
     for (number, (y, colour)) in (1..).zip(BALANCE.into_iter().zip([RED, GREY_WIRE, BLACK])) {
         let path = straight((BATTERY, y), (ALARM, y));
         wires.push(Wire::new(format!("balance-{number}"), path, colour, LEG));
@@ -258,7 +252,11 @@ fn draw_alarm(group: Group) -> Group {
     let mut group = draw_case(group, (ALARM - 92.0, 58.0), (92.0, 38.0), "#e6eef7")
         .add(text_start("low-voltage", (ALARM - 84.0, 74.0), 13.0))
         .add(text_start("alarm", (ALARM - 84.0, 90.0), 13.0))
-        .add(text_start("balance plug", (ALARM - 40.0, 112.0), 12.0));
+        .add(text_end(
+            "balance plug, its own wires",
+            (ALARM + 26.0, 113.0),
+            12.0,
+        ));
     for (number, y) in (1..).zip(BALANCE) {
         group = group.add(end(&format!("alarm-{number}"), (ALARM, y), DARK));
     }

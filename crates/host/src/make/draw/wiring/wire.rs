@@ -13,7 +13,8 @@ pub const BLACK: &str = "#1b1b1b";
 /// The middle wire of a balance plug.
 pub const GREY_WIRE: &str = "#9a9a9a";
 
-/// A wire of 0.5 mm2, and one of a thin jumper; the leg of a component, pixels.
+/// Widths, pixels: a wire of 0.5 mm2, a thin jumper, and what comes with a component or the battery
+/// and is not bought as a wire.
 pub const THICK: f64 = 4.5;
 /// See [`THICK`].
 pub const THIN: f64 = 2.8;

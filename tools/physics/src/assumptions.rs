@@ -1,0 +1,184 @@
+//! Assumptions that the contact model cannot vary, and what they change in MuJoCo: the floor, how a
+//! printer makes pads, how an analog servo drives, where mass is.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use lizard_parts::{Assembly, Pads, Scene};
+use lizard_robot::Robot;
+
+use crate::case::Case;
+use crate::figures::{Displacement, Figures};
+use crate::here;
+use crate::mujoco::scene_of;
+use crate::surface::{self, Surface, Surfaces};
+use crate::table::Part;
+
+/// The gaits that are walked, as `lizard gaits --assumptions` has them.
+pub const GAITS: [&str; 5] = ["walk", "trot", "crawl", "left", "arc-left"];
+/// The least change that matters, percent.
+const MIN_CHANGE_PERCENT: f64 = 10.0;
+
+/// A change of the paper's robot.
+#[derive(Clone, Copy)]
+pub struct Assumption {
+    /// What is changed.
+    pub words: &'static str,
+    /// A table of robot.toml, and keys that are added to it.
+    keys: Option<(&'static str, &'static str)>,
+    /// The floor, if it is not level and even.
+    surface: Option<Surface>,
+    change: fn(&mut Scene),
+}
+
+const UNCHANGED: Assumption = Assumption {
+    words: "",
+    keys: None,
+    surface: None,
+    change: |_| {},
+};
+
+impl Assumption {
+    /// All of them but the surfaces, which have a table of their own.
+    pub const ALL: [Self; 6] = [
+        Self {
+            words: "analog servos that drive in bursts",
+            change: |scene| scene.bursts = true,
+            ..UNCHANGED
+        },
+        Self {
+            words: "bursts, and a rotor of 5 ms",
+            keys: Some(("[servo.A1]", "[servo]\nspin_up_ms = 5.0\n[servo.A1]")),
+            change: |scene| scene.bursts = true,
+            ..UNCHANGED
+        },
+        Self {
+            words: "legs and links of a fifth of their mass",
+            change: |scene| scene.limbs = 0.2,
+            ..UNCHANGED
+        },
+        Self {
+            words: "mass centre 25 mm ahead",
+            keys: Some(("[body]", "[body]\ncentre = [25.0, 0.0]")),
+            ..UNCHANGED
+        },
+        Self {
+            words: "mass centre 25 mm behind",
+            keys: Some(("[body]", "[body]\ncentre = [-25.0, 0.0]")),
+            ..UNCHANGED
+        },
+        Self {
+            words: "edge of 1 mm, pads with terraces of 0.1 mm",
+            surface: Some(Surface::Edge(10)),
+            change: |scene| scene.pads = Pads::Terraces(0.1),
+            ..UNCHANGED
+        },
+    ];
+
+    /// The robot.
+    ///
+    /// # Panics
+    /// If robots/paper.toml does not have the table that is changed.
+    pub fn robot(&self) -> Robot {
+        match self.keys {
+            Some((table, keys)) => paper_with(table, keys),
+            None => crate::robot("paper"),
+        }
+    }
+
+    /// A gait's walk; `level` is its displacement as the paper's robot has it.
+    ///
+    /// # Panics
+    /// If the robot has no such gait.
+    pub fn scene(&self, name: &str, assembly: &Assembly, gait: &str, level: Displacement) -> Scene {
+        let mut scene = match self.surface {
+            Some(surface) => surface.scene(name, assembly, gait, level),
+            None => scene_of(name, assembly, gait, Case::ALL[0]),
+        };
+        (self.change)(&mut scene);
+        scene
+    }
+}
+
+/// The paper's robot with a line of its file replaced.
+fn paper_with(old: &str, new: &str) -> Robot {
+    let text = std::fs::read_to_string(here().join("../../robots/paper.toml"));
+    let text = text.expect("robots/paper.toml");
+    let line = format!("\n{old}");
+    assert!(text.contains(&line), "{old}");
+    Robot::parse(&text.replacen(&line, &format!("\n{new}"), 1)).expect(new)
+}
+
+/// MuJoCo's displacements by assumption and gait.
+pub type Assumptions = BTreeMap<String, BTreeMap<String, Displacement>>;
+
+/// The displacements stored in `assumptions.json`.
+///
+/// # Panics
+/// If `assumptions.json` is not a table of displacements.
+pub fn stored() -> Assumptions {
+    serde_json::from_str(include_str!("../assumptions.json")).expect("assumptions.json")
+}
+
+/// The changes of all gaits by the assumptions and by the surfaces, from the largest to the
+/// smallest, in percent of MuJoCo's displacement on a level floor.
+///
+/// # Panics
+/// If a displacement is missing.
+pub fn table(figures: &Figures, surfaces: &Surfaces, assumptions: &Assumptions) -> String {
+    let on = Surface::ALL.map(|surface| {
+        let words = surface.to_string();
+        let of = GAITS.map(|gait| surfaces["paper"][gait][&words]);
+        (words, of)
+    });
+    let changed = Assumption::ALL.map(|Assumption { words, .. }| {
+        let of = GAITS.map(|gait| assumptions[words][gait]);
+        (words.to_owned(), of)
+    });
+    let percent = |of: [Displacement; GAITS.len()]| {
+        let mut changes = of.into_iter().zip(GAITS).map(|(displacement, gait)| {
+            let level = surface::level(figures, gait);
+            let part = match level.0[0].abs() > level.0[2].abs() {
+                true => Part::Ahead,
+                false => Part::Turn,
+            };
+            100.0 * (part.value(displacement) / part.value(level) - 1.0)
+        });
+        std::array::from_fn(|_| changes.next().expect("one of each gait"))
+    };
+    let most =
+        |changes: &[f64; GAITS.len()]| changes.iter().fold(0.0, |most: f64, of| most.max(of.abs()));
+    let mut rows: Vec<(String, [f64; GAITS.len()])> = on
+        .into_iter()
+        .chain(changed)
+        .map(|(words, of)| (words, percent(of)))
+        .collect();
+    rows.sort_by(|(_, a), (_, b)| most(b).total_cmp(&most(a)));
+    let wide = rows
+        .iter()
+        .map(|(words, _)| words.len())
+        .fold(0, usize::max);
+    let mut text = format!("{:wide$}", "");
+    for gait in GAITS {
+        _ = write!(text, "{gait:>10}");
+    }
+    text.push('\n');
+    let (large, small): (Vec<_>, Vec<_>) = rows
+        .into_iter()
+        .partition(|(_, changes)| most(changes) >= MIN_CHANGE_PERCENT);
+    for (words, changes) in large {
+        _ = write!(text, "{words:wide$}");
+        for change in changes {
+            // Adding positive zero turns a negative one positive.
+            _ = write!(text, "{:>+10.0}", change.round() + 0.0);
+        }
+        text.push('\n');
+    }
+    if !small.is_empty() {
+        _ = write!(text, "\nLess than {MIN_CHANGE_PERCENT:.0} %:\n");
+        for (words, _) in small {
+            _ = writeln!(text, "  {words}");
+        }
+    }
+    text
+}

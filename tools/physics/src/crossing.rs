@@ -1,0 +1,116 @@
+//! The place of an edge on the way of a gait. Before the measured cycles all feet are on the one
+//! side of it, and afterwards on the other, so front and hind feet have climbed it.
+
+use lizard_parts::Block;
+use lizard_robot::Robot;
+
+use crate::figures::Displacement;
+use crate::surface::parts;
+use crate::table::Part;
+
+/// The distance of the nearest foot from the edge before and after the measured cycles, mm: feet
+/// swing by 15 mm, and a dome touches an edge of 2 mm 11 mm before its middle.
+const CLEARANCE: f64 = 25.0;
+/// The angle after which a gait that turns on the spot has brought other feet to the edge, deg.
+const MAX_TURN: f64 = 180.0;
+
+/// An edge across the way of a gait, and the cycles in which it is crossed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossing {
+    /// The number of cycles to measure.
+    pub cycles: u32,
+    /// True if all feet pass the edge; false for a gait that turns on the spot.
+    pub passes: bool,
+    /// The direction in which the floor rises, deg counter-clockwise from ahead.
+    heading: f64,
+    /// The distance of the edge from the robot's place at the start, mm.
+    distance: f64,
+}
+
+impl Crossing {
+    /// The crossing of a gait with this displacement by a cycle, after some cycles that are not
+    /// measured.
+    pub fn of(robot: &Robot, by_cycle: Displacement, unmeasured: u32) -> Self {
+        let feet = robot.ground().feet.at([0.0; 4]);
+        let along = |place: &Place, heading: f64| {
+            let (sin, cos) = heading.to_radians().sin_cos();
+            place
+                .feet(feet)
+                .map(|[ahead, left]| ahead * cos + left * sin)
+        };
+        let begin = (0..unmeasured).fold(Place::default(), |place, _| place.after(by_cycle));
+        let is_turn = !matches!(parts(by_cycle)[..], [Part::Ahead, ..]);
+        let mut end = begin;
+        for cycles in 1.. {
+            end = end.after(by_cycle);
+            let heading = if is_turn {
+                0.0
+            } else {
+                end.direction_from(&begin)
+            };
+            // A foot that stands ahead at the beginning may be behind at the end of an arc.
+            let distance = along(&begin, heading).into_iter().fold(f64::MIN, f64::max) + CLEARANCE;
+            let last = along(&end, heading).into_iter().fold(f64::MAX, f64::min);
+            let passes = last > distance + CLEARANCE;
+            if passes || (end.heading - begin.heading).abs() >= MAX_TURN {
+                return Self {
+                    cycles,
+                    passes,
+                    heading,
+                    distance,
+                };
+            }
+        }
+        unreachable!("every gait that is walked moves")
+    }
+
+    /// The floor beyond the edge.
+    pub fn block(&self, high: f64) -> Block {
+        /// The size of that floor, mm.
+        const SIZE: f64 = 1000.0;
+        let (sin, cos) = self.heading.to_radians().sin_cos();
+        let middle = self.distance + SIZE / 2.0;
+        Block {
+            at: [-middle * sin, middle * cos],
+            size: [SIZE, SIZE, high],
+            turned: self.heading,
+        }
+    }
+}
+
+/// A place of the robot on the floor: mm ahead and left of the start, deg counter-clockwise.
+#[derive(Clone, Copy, Default)]
+struct Place {
+    ahead: f64,
+    left: f64,
+    heading: f64,
+}
+
+impl Place {
+    fn after(self, Displacement([ahead, left, turn]): Displacement) -> Self {
+        let [ahead, left] = self.to_floor([ahead, left]);
+        Self {
+            ahead,
+            left,
+            heading: self.heading + turn,
+        }
+    }
+
+    fn to_floor(self, [ahead, left]: [f64; 2]) -> [f64; 2] {
+        let (sin, cos) = self.heading.to_radians().sin_cos();
+        [
+            self.ahead + ahead * cos - left * sin,
+            self.left + ahead * sin + left * cos,
+        ]
+    }
+
+    fn feet(&self, feet: [[f64; 2]; 4]) -> [[f64; 2]; 4] {
+        feet.map(|foot| self.to_floor(foot))
+    }
+
+    fn direction_from(&self, other: &Self) -> f64 {
+        (self.left - other.left)
+            .atan2(self.ahead - other.ahead)
+            .to_degrees()
+    }
+}

@@ -1,0 +1,96 @@
+//! Pads of other shapes: which dome is flat enough for an edge.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use lizard_parts::{Assembly, Pads, Scene};
+
+use crate::figures::Displacement;
+use crate::surface::Surface;
+
+/// The gait that is walked.
+pub const GAIT: &str = "walk";
+/// The surfaces of the table.
+pub const SURFACES: [Surface; 4] = [
+    Surface::Edge(10),
+    Surface::Edge(20),
+    Surface::Blocks(5),
+    Surface::Blocks(10),
+];
+
+/// A pad of the table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// A flat disc, 8 mm wide.
+    Flat,
+    /// A dome of this radius, mm.
+    Dome(u8),
+}
+
+impl Shape {
+    /// All of them, in the order of the table.
+    pub const ALL: [Self; 7] = [
+        Self::Flat,
+        Self::Dome(5),
+        Self::Dome(10),
+        Self::Dome(15),
+        Self::Dome(20),
+        Self::Dome(25),
+        Self::Dome(30),
+    ];
+
+    /// The name in the table.
+    pub fn name(self) -> String {
+        match self {
+            Self::Flat => "flat, 8 mm wide".to_owned(),
+            Self::Dome(radius) => radius.to_string(),
+        }
+    }
+
+    /// The walk on a surface; `level` is the gait's displacement on a level floor.
+    pub fn scene(
+        self,
+        name: &str,
+        paper: &Assembly,
+        surface: Surface,
+        level: Displacement,
+    ) -> Scene {
+        let mut scene = surface.scene(name, paper, GAIT, level);
+        scene.pads = match self {
+            Self::Flat => Pads::Flat(8.0),
+            Self::Dome(radius) => Pads::Domes(f64::from(radius)),
+        };
+        scene
+    }
+}
+
+/// MuJoCo's displacements by shape and surface.
+pub type Shapes = BTreeMap<String, BTreeMap<String, Displacement>>;
+
+/// The displacements stored in `pads.json`.
+///
+/// # Panics
+/// If `pads.json` is not a table of displacements.
+pub fn stored() -> Shapes {
+    serde_json::from_str(include_str!("../pads.json")).expect("pads.json")
+}
+
+/// The table, as Markdown, mm a cycle; a dash where a walk is missing.
+pub fn table(shapes: &Shapes) -> String {
+    let heads = SURFACES.map(|surface| format!(" {surface} |")).concat();
+    let mut text = format!(
+        "| radius, mm |{heads}\n|---|{}\n",
+        "---|".repeat(SURFACES.len())
+    );
+    for shape in Shape::ALL {
+        let of = shapes.get(&shape.name());
+        let cells = SURFACES.map(|surface| {
+            let displacement = of.and_then(|of| of.get(&surface.to_string()));
+            // Adding positive zero turns a negative one positive.
+            let ahead = displacement.map(|of| of.0[0].round() + 0.0);
+            ahead.map_or(" - |".to_owned(), |ahead| format!(" {ahead} |"))
+        });
+        _ = writeln!(text, "| {} |{}", shape.name(), cells.concat());
+    }
+    text
+}

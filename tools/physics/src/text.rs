@@ -1,0 +1,28 @@
+//! The stored displacements as JSON that shows in a diff what has changed.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+/// An object with a line for each key.
+///
+/// # Panics
+/// Never: the values are names and numbers.
+pub fn lines<T: Serialize>(map: &BTreeMap<String, T>) -> String {
+    joined(map, |value| serde_json::to_string(value).expect("numbers")) + "\n"
+}
+
+/// An object of objects with a line for each inner key.
+///
+/// # Panics
+/// Never: the values are names and numbers.
+pub fn blocks<T: Serialize>(map: &BTreeMap<String, BTreeMap<String, T>>) -> String {
+    joined(map, |inner| lines(inner).trim_end().to_owned()) + "\n"
+}
+
+fn joined<T>(map: &BTreeMap<String, T>, text: impl Fn(&T) -> String) -> String {
+    let lines = map
+        .iter()
+        .map(|(key, value)| format!("{key:?}: {}", text(value)));
+    format!("{{\n{}\n}}", lines.collect::<Vec<_>>().join(",\n"))
+}
