@@ -74,12 +74,12 @@ impl<'a> Writer<'a> {
         let drawn = own.fold(Inertia::default(), |sum, piece| sum.and(&piece.inertia));
         match self.parent(node) {
             Some(_) => drawn.scaled(self.scene.limbs),
-            None => self.weighed(&drawn).and(&Inertia::point(self.from_limbs())),
+            None => self.weighed(&drawn).and(&Inertia::point(self.limbs_lost())),
         }
     }
 
-    /// The mass that the chassis has from lighter limbs, g.
-    fn from_limbs(&self) -> f64 {
+    /// The mass that lighter limbs have lost to the chassis, g.
+    fn limbs_lost(&self) -> f64 {
         let limbs = self.pieces.iter();
         let limbs = limbs.filter(|piece| self.parent(piece.node).is_some());
         (1.0 - self.scene.limbs) * limbs.map(|piece| piece.inertia.mass).sum::<f64>()
