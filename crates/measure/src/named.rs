@@ -104,7 +104,14 @@ impl<'a> Gaits<'a> {
             };
             let own = &self.known()[gait];
             let measured = walk.film.watched.measure(&own.expected, Some(walk.during));
-            let measured = measured.map_err(|trouble| self.not(walk, own, trouble))?;
+            let measured = measured.map_err(|trouble| {
+                format!(
+                    "{}, {}: {}",
+                    walk.at(),
+                    own.name(),
+                    self.not(walk, own, trouble)
+                )
+            })?;
             Ok(NamedWalk {
                 walk,
                 gait,
@@ -178,7 +185,7 @@ impl<'a> Gaits<'a> {
         }
     }
 
-    /// The failure of a walk that is not of its gait.
+    /// The reason why a walk is not of its gait.
     fn not(&self, walk: Walk, own: &Candidate, trouble: Trouble) -> String {
         let like = match trouble {
             Trouble::NotThisGait { .. } | Trouble::AnotherPace { .. } => self.like(walk),
@@ -186,7 +193,7 @@ impl<'a> Gaits<'a> {
         };
         let like = like.filter(|name| *name != own.name());
         let like = like.map_or(String::new(), |name| format!("; it is like {name}"));
-        format!("{}, {}: {trouble}{like}", walk.at(), own.name())
+        format!("{trouble}{like}")
     }
 
     /// The failure of films that show another number of walks than there are names.
