@@ -224,7 +224,10 @@ async function start(): Promise<void> {
       routines.phase(phase);
       calibrate.answered();
     },
-    silent: (isSilent) => alarm.silent(isSilent),
+    silent(isSilent) {
+      alarm.silent(isSilent);
+      if (isSilent) measure.end('the robot is silent');
+    },
     stopping: (isStopping) => alarm.stopping(isStopping),
     link(link) {
       latest = 0;

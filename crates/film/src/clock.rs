@@ -15,6 +15,11 @@ const PART: f64 = 0.25;
 const LEAST: usize = 8;
 /// Standard deviation of a cycle's time, as a share: the board has a ceramic resonator.
 const SIGMA: f64 = 0.003;
+/// Largest share by which a wrong rate of pictures makes a cycle longer or shorter: 25 in a second taken for 24 or 27, and
+/// the step in which it is looked for; the standard deviation of what is then expected.
+const OFF: f64 = 0.08;
+const OFF_STEP: f64 = 0.005;
+const OFF_SIGMA: f64 = 0.01;
 /// Number of beginnings that are tried.
 const BEGINNINGS: usize = 48;
 /// Difference from the predicted movement, as a share of the sum of both squares, from which it is another gait.
@@ -68,7 +73,14 @@ impl Steps {
     pub(crate) fn clock(&self, gait: &Gait) -> Result<Clock, Trouble> {
         let tries = tries(gait);
         let near = |start: f64, period: f64| squares(&self.sways(gait, start, period));
-        let (least, start, period) = self.best(gait.period, &tries, near);
+        let (mut least, mut start, mut period) = self.best(gait.period, &tries, near);
+        let (mut expected, mut doubt) = (gait.period, SIGMA);
+        // The rate of pictures is off: then the path itself tells the time of a cycle.
+        let off = self.best(gait.period, &off(gait), near);
+        if off.0 < MUCH_BETTER * least {
+            (least, start, period) = off;
+            (expected, doubt) = (period, OFF_SIGMA);
+        }
         let here = squares(&self.differences(gait, start, period));
         let (there, times) = self.misfit_of_longer(gait);
         if there < MUCH_BETTER * (here / self.moved()).min(1.0) {
@@ -88,7 +100,7 @@ impl Steps {
         let model = |at: &[f64]| {
             let mut all = self.sways(gait, at[0], at[1]);
             all.iter_mut().for_each(|value| *value /= sigma);
-            all.push((at[1] / gait.period - 1.0) / SIGMA);
+            all.push((at[1] / expected - 1.0) / doubt);
             // Keeps the start where nothing within a cycle tells it.
             all.push((at[0] - start) / gait.period);
             all
@@ -100,7 +112,7 @@ impl Steps {
             },
             None => Clock {
                 start: [start, gait.period / BEGINNINGS as f64],
-                period: [period, SIGMA * gait.period],
+                period: [period, doubt * period],
             },
         })
     }
@@ -204,6 +216,13 @@ impl Steps {
         }
         sways
     }
+}
+
+/// The times of a cycle that are tried where the rate of pictures may be off.
+fn off(gait: &Gait) -> Vec<f64> {
+    let steps = (OFF / OFF_STEP) as i32;
+    let time = |step: i32| gait.period * (1.0 + OFF_STEP * f64::from(step));
+    (-steps..=steps).map(time).collect()
 }
 
 /// The times of a cycle that are tried.

@@ -85,7 +85,7 @@ export class MeasureView {
 
   /** Takes another robot. */
   showRobot({ gaits }: Description): void {
-    this.protocol?.end('another robot was chosen');
+    this.end('another robot was chosen');
     const moving = gaits.filter(({ moves }) => moves).map(({ command }) => command);
     const chosen = this.gait.value;
     this.gait.replaceChildren(...moving.map((command) => new Option(command)));
@@ -106,8 +106,14 @@ export class MeasureView {
     for (const box of this.boxes.querySelectorAll('input')) box.checked = this.ticked.get(box.name) ?? goes.get(box.name) ?? false;
   }
 
+  /** Ends driving for a reason from outside. */
+  end(why: string): void {
+    this.protocol?.end(why);
+  }
+
   /** Takes another link: a real robot is driven by the page. */
   link(isReal: boolean): void {
+    this.end('the link to the robot has changed');
     this.driver.value = isReal ? 'page' : 'other';
     this.show();
   }
@@ -170,7 +176,7 @@ export class MeasureView {
 
   /** Switches the camera off and ends what uses it. */
   private leave(): void {
-    this.protocol?.end('the camera was switched off');
+    this.end('the camera was switched off');
     this.source.stop();
     if (this.doing !== 'compute') this.doing = 'nothing';
     this.show();

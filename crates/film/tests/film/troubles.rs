@@ -294,6 +294,30 @@ fn half_the_pace_and_slow_motion_are_told_by_their_cycles() {
 }
 
 #[test]
+fn a_film_whose_rate_is_off_by_some_percent_shows_the_way_of_a_cycle_and_its_time() {
+    let gait = gait("walk");
+    for off in [0.94, 1.04] {
+        let stretched = Gait {
+            period: gait.period * off,
+            path: gait.path.clone(),
+        };
+        let walk = walk(&stretched, 6);
+        let robot = |time: f64| walk.at(time);
+        let film = film_of(
+            &studio(),
+            walk.seconds(),
+            12.0,
+            robot,
+            &mut Rng::with_seed(2),
+        );
+        let measured = film.measure(TRUE_SIZE, &gait).expect("it is measured");
+        goes_as_far(&measured, &gait);
+        let time = measured.period[0] / stretched.period;
+        assert!((time - 1.0).abs() < 0.005, "{off}: {time}");
+    }
+}
+
+#[test]
 fn a_tag_that_is_seen_twice_is_not_guessed() {
     let mut rng = Rng::with_seed(2);
     let picture = studio()
