@@ -28,14 +28,14 @@ import { Lengths } from './view/lengths';
 import { Log } from './view/log';
 import { MapsView } from './view/maps';
 import { MarginsView } from './view/margins';
-import { MeasureView } from './view/measure';
+import type { MeasureView } from './view/measure';
 import { Pace } from './view/pace';
 import { OwnRobot } from './view/own-robot';
 import { PartsView } from './view/parts';
 import { PathView } from './view/path';
 import { Remote } from './view/remote';
 import { RobotText } from './view/robot-text';
-import { openRoom } from './view/rooms';
+import { OPENED, openRoom } from './view/rooms';
 import { RoutinesView } from './view/routines';
 import { ScopeView } from './view/scope';
 import { Steer, gaitFor } from './view/steer';
@@ -88,14 +88,14 @@ async function start(): Promise<void> {
   const pace = new Pace((line) => drive.ask(line));
   const predictor = new Predictor(module, (gait, prediction) => {
     drive.predicted(gait, prediction);
-    measure.predicted();
+    measure?.predicted();
     texts();
     begin();
   });
   const predict = () => {
     const { toml, floor, servos, description, predicted } = session;
     predicted?.forEach((prediction, gait) => prediction && drive.predicted(gait, prediction));
-    measure.predicted();
+    measure?.predicted();
     const first = description.gaits.findIndex(({ command }) => command === session.gait);
     predictor.ask({ toml, floor, servos, gaits: predicted ? 0 : description.gaits.length, first: Math.max(0, first) });
     routines.predict();
@@ -139,7 +139,17 @@ async function start(): Promise<void> {
   });
   const path = new PathView(module, now, (line) => drive.ask(line), writer);
   const flash = new FlashView(now, writer);
-  const measure = new MeasureView(now, () => drive.choices(), isBarred);
+  // Loaded when its room is opened.
+  let measure: MeasureView | null = null;
+  const openMeasure = async () => {
+    if (element('room-measure').hidden || measure) return;
+    const { MeasureView } = await import('./view/measure');
+    if (measure) return;
+    measure = new MeasureView(now, () => drive.choices(), isBarred);
+    measure.showRobot(session.description);
+    measure.link(session.isReal);
+  };
+  document.addEventListener(OPENED, () => void openMeasure());
   const setup: Setup = new Setup(now, writer, () => connectBoard());
 
   const boardRobot = new BoardRobot(now, module, troubles, ({ file, toml }) => {
@@ -172,7 +182,8 @@ async function start(): Promise<void> {
       routines.showRobot();
       text.showRobot();
       keep.showRobot(description);
-      measure.showRobot(description);
+      measure?.showRobot(description);
+      void openMeasure();
       predict();
       void boardRobot.follow();
     },
@@ -188,12 +199,12 @@ async function start(): Promise<void> {
     },
     sent(line) {
       log.sent(line);
-      measure.sent(line);
+      measure?.sent(line);
     },
     received(line) {
       log.received(line);
       setup.received(line);
-      measure.received(line);
+      measure?.received(line);
       if (line.startsWith('# fault')) remote.buzz();
     },
     isUno: (from) =>
@@ -204,7 +215,7 @@ async function start(): Promise<void> {
     doing(gait) {
       drive.doing(gait);
       keep.doing(gait);
-      measure.did(gait);
+      measure?.did(gait);
       routines.doing(gait);
       texts();
     },
@@ -226,7 +237,7 @@ async function start(): Promise<void> {
     },
     silent(isSilent) {
       alarm.silent(isSilent);
-      if (isSilent) measure.end('the robot is silent');
+      if (isSilent) measure?.end('the robot is silent');
     },
     stopping: (isStopping) => alarm.stopping(isStopping),
     link(link) {
@@ -242,7 +253,7 @@ async function start(): Promise<void> {
       radio.hidden = session.isReal || noBluetooth() !== null;
       element<HTMLButtonElement>('reset').disabled = link.kind === 'radio';
       flash.update();
-      measure.link(session.isReal);
+      measure?.link(session.isReal);
       setup.link();
     },
     trouble(cause, said) {
@@ -384,7 +395,7 @@ async function start(): Promise<void> {
         sinceTexts = 0;
         texts();
         keep.write();
-        measure.write();
+        measure?.write();
         scope.write(session.last?.scene ?? null);
         margins.write(session.last?.scene ?? null);
       }
