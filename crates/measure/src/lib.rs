@@ -17,6 +17,6 @@ mod watched_film;
 pub use board::height_of_board;
 pub use expected::expected;
 pub use named::{Gaits, NamedWalk};
-pub use report::{AGREES, GaitReport, PARTS, Part, Report, Within};
+pub use report::{AGREES, GaitReport, PARTS, Part, Report, Within, verdict};
 pub use sheet::Paper;
 pub use watched_film::WatchedFilm;

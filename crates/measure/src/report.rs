@@ -136,6 +136,15 @@ struct CameraLine {
     deck_by_size: f64,
 }
 
+/// Agreement in a word, or by how many standard errors a figure differs.
+pub fn verdict(differs: f64) -> String {
+    if differs.abs() <= AGREES {
+        return "agrees".to_owned();
+    }
+    let word = if differs > 0.0 { "more" } else { "less" };
+    format!("{:.1} errors {word}", differs.abs())
+}
+
 impl Part {
     fn new(mean: Mean, predicted: Option<f64>) -> Self {
         // A film without any spread is a drawing; its error is not zero.
@@ -152,14 +161,7 @@ impl Part {
 
     /// Agreement with the prediction in a word, or by how many errors it differs.
     pub fn verdict(&self) -> String {
-        match (self.agrees, self.differs) {
-            (Some(true), _) => "agrees".to_owned(),
-            (Some(false), Some(differs)) => {
-                let word = if differs > 0.0 { "more" } else { "less" };
-                format!("{:.1} errors {word}", differs.abs())
-            }
-            _ => "-".to_owned(),
-        }
+        self.differs.map_or("-".to_owned(), verdict)
     }
 
     fn line(&self, name: &str) -> String {

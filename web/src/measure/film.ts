@@ -30,11 +30,6 @@ export class Film {
     return new Film(worker);
   }
 
-  /** The number of questions without an answer. */
-  get owed(): number {
-    return this.waiting.length;
-  }
-
   /** Finds the tags of a picture that was taken at a time, s; one that is kept belongs to the film. */
   look(picture: VideoFrame | ImageBitmap, seconds: number, isKept: boolean): Promise<Sight> {
     return this.ask({ ask: 'picture', picture, seconds, isKept }, [picture]);
@@ -48,11 +43,6 @@ export class Film {
   /** Measures a gait in the film. Throws the reason where the film does not show it. */
   measure(asked: Asked): Promise<Results> {
     return this.ask({ ask: 'measure', asked });
-  }
-
-  /** The height of a robot's board, where the deck's tag lies, mm. */
-  height(toml: string): Promise<number> {
-    return this.ask({ ask: 'height', toml });
   }
 
   /** The sheet of tags as PDF, for A4 or for letter paper. */

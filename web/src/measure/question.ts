@@ -61,7 +61,6 @@ export type Question =
   | { ask: 'picture'; picture: VideoFrame | ImageBitmap; seconds: number; isKept: boolean }
   | { ask: 'clear' }
   | { ask: 'measure'; asked: Asked }
-  | { ask: 'height'; toml: string }
   | { ask: 'sheet'; isLetter: boolean };
 
 /** The tags of a picture, the picture's size, and the time that it took, ms. */

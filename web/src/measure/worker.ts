@@ -34,8 +34,6 @@ async function answer(question: Question): Promise<unknown> {
       return ask(exports, 'clear');
     case 'measure':
       return ask(exports, { measure: question.asked });
-    case 'height':
-      return ask(exports, { height: question.toml });
   }
 }
 

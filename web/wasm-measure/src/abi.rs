@@ -9,8 +9,7 @@ use std::cell::RefCell;
 use lizard_measure::Paper;
 use serde::{Deserialize, Serialize};
 
-use crate::camera::Asked;
-use crate::camera::{Camera, Refused};
+use crate::camera::{Asked, Camera, Refused};
 
 /// A question of the page, with its arguments.
 #[derive(Deserialize)]
@@ -20,8 +19,6 @@ enum Question {
     Clear,
     /// [`Camera::measure`].
     Measure(Asked),
-    /// [`Camera::height`] of a robot.toml.
-    Height(String),
 }
 
 #[derive(Default)]
@@ -92,7 +89,6 @@ pub extern "C" fn measure_ask() {
     DOOR.with_borrow_mut(|door| {
         door.output = match serde_json::from_slice(&door.input) {
             Ok(Question::Measure(asked)) => json(door.camera.measure(&asked)),
-            Ok(Question::Height(toml)) => json(Camera::height(&toml)),
             Ok(Question::Clear) => {
                 door.camera = Camera::default();
                 json(Ok(()))

@@ -130,16 +130,6 @@ impl Camera {
             path: film.path(),
         })
     }
-
-    /// The height of a robot's board, where the card lies, mm.
-    ///
-    /// # Errors
-    /// Fails for a robot.toml that is refused.
-    pub fn height(toml: &str) -> Result<f64, Refused> {
-        Robot::parse(toml)
-            .map(|robot| height_of_board(&robot))
-            .map_err(Refused::of)
-    }
 }
 
 fn picture([width, height]: [usize; 2], pixels: &[u8]) -> Result<Picture, Refused> {

@@ -3,18 +3,15 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use lizard_film::{Setup, sheet};
 use lizard_measure::{Gaits, Report, height_of_board};
 use lizard_robot::{CheckedGait, Robot};
 
-use super::{film, picture};
+use super::filming::{Filming, height};
+use super::picture;
 use crate::shared::progress::Spinner;
 use crate::shared::suggestion::did_you_mean;
 use crate::shared::{files, json};
 use crate::{Failure, RobotFile};
-
-/// Lengths of the ruler of 100 mm that a printer may make of it, mm.
-const RULER: [f64; 2] = [85.0, 115.0];
 
 /// Measure in films how far the robot goes in a cycle of its gaits, beside the prediction
 ///
@@ -40,15 +37,11 @@ pub struct Args {
     /// The pace at which it was driven, percent
     #[arg(long, value_name = "PERCENT", default_value_t = 100, value_parser = clap::value_parser!(u8).range(1..=100))]
     speed: u8,
-    /// Pictures in a second [default: by the film, or by the names of pictures, as 1.033s.png]
-    #[arg(long, value_name = "RATE", value_parser = rate)]
-    fps: Option<f64>,
     /// Height of the deck's tag above the floor, mm [default: the top of the board, by the robot's parts]
     #[arg(long, value_name = "MM", value_parser = height)]
     height: Option<f64>,
-    /// Length of the line on a strip that should be 100 mm long
-    #[arg(long, value_name = "MM", default_value_t = sheet::RULER, value_parser = ruler)]
-    ruler: f64,
+    #[command(flatten)]
+    filming: Filming,
     /// Draw the paths within a cycle and the ways beside the predicted ones, as SVG
     #[arg(long, value_name = "FILE")]
     picture: Option<PathBuf>,
@@ -62,30 +55,6 @@ pub struct Args {
     robot: RobotFile,
 }
 
-pub(super) fn number(word: &str, [low, high]: [f64; 2], meaning: &str) -> Result<f64, String> {
-    let number = word
-        .parse()
-        .ok()
-        .filter(|value| (low..=high).contains(value));
-    number.ok_or_else(|| format!("{meaning}, between {low} and {high}"))
-}
-
-pub(super) fn rate(word: &str) -> Result<f64, String> {
-    number(word, [1.0, 1000.0], "it is pictures in a second")
-}
-
-pub(super) fn height(word: &str) -> Result<f64, String> {
-    number(word, [0.0, 500.0], "it is mm")
-}
-
-pub(super) fn ruler(word: &str) -> Result<f64, String> {
-    number(
-        word,
-        RULER,
-        "it is the line of 100 mm as a ruler measures it in mm",
-    )
-}
-
 /// Measures films and prints the result.
 ///
 /// # Errors
@@ -96,12 +65,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let pace = f64::from(args.speed) / 100.0;
     let named = args.gait.iter().map(|name| find(&robot, name));
     let gaits = Gaits::new(&robot, &named.collect::<Result<Vec<_>, _>>()?, pace);
-    let setup = Setup {
-        scale: args.ruler / sheet::RULER,
-        height: args.height.unwrap_or_else(|| height_of_board(&robot)),
-    };
+    let height = args.height.unwrap_or_else(|| height_of_board(&robot));
+    let setup = args.filming.setup(height);
     let spinner = Spinner::new("reading the pictures");
-    let read = |path: &PathBuf| film::watch(path, args.fps, setup);
+    let read = |path: &PathBuf| args.filming.watch(path, setup);
     let films = args.films.iter().map(read);
     let films = films.collect::<Result<Vec<_>, Failure>>()?;
     if args.csv {

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use lizard_film::Figure;
-use lizard_measure::AGREES;
+use lizard_measure::{AGREES, verdict};
 use serde::Serialize;
 
 /// A measured key of robot.toml.
@@ -54,11 +54,7 @@ impl Key {
 pub(super) fn table(keys: &[Key]) -> String {
     let mut text = format!("{:<28}measured   error  robot.toml\n", "");
     for key in keys {
-        let verdict = match (key.agrees, key.differs > 0.0) {
-            (true, _) => "agrees".to_owned(),
-            (false, true) => format!("{:.1} errors more", key.differs),
-            (false, false) => format!("{:.1} errors less", -key.differs),
-        };
+        let verdict = verdict(key.differs);
         let digits = key.decimals;
         let _ = writeln!(
             text,

@@ -1,5 +1,6 @@
 //! A film's file, read and watched.
 
+use std::fmt::Display;
 use std::path::Path;
 
 use lizard_film::{Film, Setup, Trouble};
@@ -15,13 +16,18 @@ use crate::shared::files::note_input;
 /// Fails for a film that cannot be read, or one whose tags tell no path.
 pub(super) fn watch(path: &Path, rate: Option<f64>, setup: Setup) -> Result<WatchedFilm, Failure> {
     let name = path.display().to_string();
-    let about = |trouble: Trouble| Failure::Input(format!("{name}: {trouble}"));
+    let about = |trouble: Trouble| about(&name, &trouble);
     let watched = read(path, rate, about)?.watch(setup).map_err(about)?;
     Ok(WatchedFilm { name, watched })
 }
 
+/// The failure of a film for a reason.
+pub(super) fn about(name: &str, trouble: &dyn Display) -> Failure {
+    Failure::Input(format!("{name}: {trouble}"))
+}
+
 /// Reads a film.
-pub(super) fn read(
+fn read(
     path: &Path,
     rate: Option<f64>,
     about: impl Fn(Trouble) -> Failure,

@@ -6,7 +6,6 @@ use lizard_identify::{Trouble, Way, identify};
 use lizard_robot::Robot;
 use rayon::prelude::*;
 use serde::Deserialize;
-use serde_json::{Deserializer, Value};
 
 use super::keys_report::{KeysReport, text};
 use crate::shared::files;
@@ -25,9 +24,8 @@ const SAME_PERIOD: f64 = 0.005;
 /// robot.toml with a comment at each changed line, and prints the predictions before and after.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Example:
-  lizard measure walk.mp4 --gait walk --json > walk.json
-  lizard measure left.mp4 --gait left --json > left.json
-  lizard measure keys walk.json left.json --output measured.toml
+  lizard measure film.mp4 --json > film.json
+  lizard measure keys film.json --output measured.toml
   lizard gaits --robot measured.toml")]
 pub struct KeysArgs {
     /// Files with what `lizard measure --json` printed
@@ -44,6 +42,11 @@ pub struct KeysArgs {
 }
 
 /// The part of the output of `lizard measure --json` that counts here.
+#[derive(Deserialize)]
+struct Output {
+    gaits: Vec<Measured>,
+}
+
 #[derive(Deserialize)]
 struct Measured {
     gait: String,
@@ -92,31 +95,16 @@ pub fn find_keys(args: KeysArgs) -> Result<(), Failure> {
     json::print_json_or(args.json, &report, || text(&identified, written))
 }
 
-/// Reads the ways of a file: objects of one gait each, or with a list of such objects under `gaits`.
+/// Reads the ways of a file.
 fn read(path: &Path, robot: &Robot) -> Result<Vec<Way>, Failure> {
     let about = |problem: String| Failure::Input(format!("{}: {problem}", path.display()));
-    let foreign = |error: serde_json::Error| {
+    let output: Output = serde_json::from_str(&files::read_text(path)?).map_err(|error| {
         about(format!(
             "this is not what `lizard measure --json` prints: {error}"
         ))
-    };
-    let text = files::read_text(path)?;
-    let mut ways = Vec::new();
-    for object in Deserializer::from_str(&text).into_iter::<Value>() {
-        let mut object = object.map_err(foreign)?;
-        let gaits = match object.get_mut("gaits") {
-            Some(Value::Array(gaits)) => std::mem::take(gaits),
-            _ => vec![object],
-        };
-        for gait in gaits {
-            let measured: Measured = serde_json::from_value(gait).map_err(foreign)?;
-            ways.push(way(&measured, robot).map_err(about)?);
-        }
-    }
-    if ways.is_empty() {
-        return Err(about("it has no gait".to_owned()));
-    }
-    Ok(ways)
+    })?;
+    let ways = output.gaits.iter().map(|measured| way(measured, robot));
+    ways.collect::<Result<_, _>>().map_err(about)
 }
 
 /// The way of a measured gait, if it was measured with this robot.toml.

@@ -4,6 +4,7 @@
 mod command;
 mod figures;
 mod film;
+mod filming;
 mod frames;
 mod grey;
 mod keys;

@@ -3,14 +3,15 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use lizard_film::{Figure, Jig, Setup, Turns, Watched, sheet};
+use lizard_film::{Figure, Jig, Turns, Watched};
+use lizard_measure::WatchedFilm;
 use lizard_robot::servo::NAMES;
 use lizard_robot::{GRAVITY, Robot};
 use serde::Serialize;
 
-use super::command::{height, number, rate, ruler};
 use super::figures::{self, Key};
-use super::film::read;
+use super::film::about;
+use super::filming::{Filming, height, number};
 use super::steps::{self, servo};
 use crate::shared::json;
 use crate::shared::progress::Spinner;
@@ -51,12 +52,8 @@ pub struct ServoArgs {
     /// Supply at the servo while it moves, V [default: volts of robot.toml]
     #[arg(long, value_parser = volts)]
     volts: Option<f64>,
-    /// Pictures in a second [default: by the film, or by the names of pictures, as 1.033s.png]
-    #[arg(long, value_name = "RATE", value_parser = rate)]
-    fps: Option<f64>,
-    /// Length of the line on a strip that should be 100 mm long
-    #[arg(long, value_name = "MM", default_value_t = sheet::RULER, value_parser = ruler)]
-    ruler: f64,
+    #[command(flatten)]
+    filming: Filming,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -111,18 +108,11 @@ pub fn measure_servo(args: ServoArgs) -> Result<(), Failure> {
         slew: robot.pace().slew,
         spin_up: robot.servo_type().spin_up_ms / 1000.0,
     };
-    let setup = Setup {
-        scale: args.ruler / sheet::RULER,
-        height: args.height,
-    };
+    let setup = args.filming.setup(args.height);
     let spinner = Spinner::new("reading the pictures");
     let film = |path: &Path| -> Result<(Watched, Turns), Failure> {
-        let about = |trouble: &dyn std::fmt::Display| {
-            Failure::Input(format!("{}: {trouble}", path.display()))
-        };
-        let film = read(path, args.fps, |trouble| about(&trouble))?;
-        let watched = film.watch(setup).map_err(|trouble| about(&trouble))?;
-        let turns = Turns::of(&watched.path, jig).map_err(|trouble| about(&trouble))?;
+        let WatchedFilm { name, watched } = args.filming.watch(path, setup)?;
+        let turns = Turns::of(&watched.path, jig).map_err(|trouble| about(&name, &trouble))?;
         Ok((watched, turns))
     };
     let (watched, free) = film(&args.film)?;

@@ -3,14 +3,14 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use lizard_film::{Figure, Setup, Slide, sheet};
-use lizard_measure::height_of_board;
+use lizard_film::{Figure, Slide};
+use lizard_measure::{WatchedFilm, height_of_board};
 use lizard_robot::Robot;
 use serde::Serialize;
 
-use super::command::{height, rate, ruler};
 use super::figures::{self, Key};
-use super::film::read;
+use super::film::about;
+use super::filming::{Filming, height};
 use crate::shared::json;
 use crate::shared::progress::Spinner;
 use crate::{Failure, RobotFile};
@@ -30,12 +30,8 @@ pub struct SlopeArgs {
     /// Height of the deck's tag above the strips, mm [default: the top of the board, by the robot's parts]
     #[arg(long, value_name = "MM", value_parser = height)]
     height: Option<f64>,
-    /// Pictures in a second [default: by the film, or by the names of pictures, as 1.033s.png]
-    #[arg(long, value_name = "RATE", value_parser = rate)]
-    fps: Option<f64>,
-    /// Length of the line on a strip that should be 100 mm long
-    #[arg(long, value_name = "MM", default_value_t = sheet::RULER, value_parser = ruler)]
-    ruler: f64,
+    #[command(flatten)]
+    filming: Filming,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -68,19 +64,13 @@ struct Line {
 /// Fails for a film that cannot be read, or one that does not show what is needed.
 pub fn measure_slope(args: SlopeArgs) -> Result<(), Failure> {
     let robot = args.robot.load()?;
-    let setup = Setup {
-        scale: args.ruler / sheet::RULER,
-        height: args.height.unwrap_or_else(|| height_of_board(&robot)),
-    };
+    let height = args.height.unwrap_or_else(|| height_of_board(&robot));
+    let setup = args.filming.setup(height);
     let spinner = Spinner::new("reading the pictures");
     let slide = |path: &PathBuf| {
-        let about = |trouble: &dyn std::fmt::Display| {
-            Failure::Input(format!("{}: {trouble}", path.display()))
-        };
-        let film = read(path, args.fps, |trouble| about(&trouble))?;
-        let watched = film.watch(setup).map_err(|trouble| about(&trouble))?;
-        let slide = Slide::of(&watched).map_err(|trouble| about(&trouble))?;
-        Ok((path.display().to_string(), slide))
+        let WatchedFilm { name, watched } = args.filming.watch(path, setup)?;
+        let slide = Slide::of(&watched).map_err(|trouble| about(&name, &trouble))?;
+        Ok((name, slide))
     };
     let slides: Vec<(String, Slide)> = args
         .films

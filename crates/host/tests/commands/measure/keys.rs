@@ -16,7 +16,12 @@ fn object(gait: &str, [forward, left, turn]: [f64; 3]) -> String {
     )
 }
 
-/// Writes a file with ways.
+/// Ways as `lizard measure --json` prints them.
+fn ways(objects: &[String]) -> String {
+    format!(r#"{{"gaits":[{}]}}"#, objects.join(","))
+}
+
+/// Writes a file.
 fn file(name: &str, text: &str) -> PathBuf {
     let path = scratch().join(name);
     fs::write(&path, text).expect("it is written");
@@ -32,19 +37,26 @@ fn keys(files: &[&PathBuf], more: &[&str]) -> Outcome {
 
 #[test]
 fn files_that_tell_nothing_are_refused_with_what_to_do() {
-    let foreign = file("foreign.json", r#"{"gait":"walk","speed":100}"#);
+    let foreign = file("foreign.json", r#"{"gaits":[{"gait":"walk","speed":100}]}"#);
     let message = keys(&[&foreign], &[]).refusal();
     assert!(
         message.contains("foreign.json") && message.contains("missing field `forward`"),
         "{message}"
     );
     let empty = file("empty.json", "");
-    assert!(keys(&[&empty], &[]).refusal().contains("no gait"));
-    let unknown = file("unknown.json", &object("wakl", [30.0, 0.0, 0.0]));
+    let message = keys(&[&empty], &[]).refusal();
+    assert!(
+        message.contains("empty.json: this is not what"),
+        "{message}"
+    );
+    let without = file("without.json", &ways(&[]));
+    let message = keys(&[&without], &[]).refusal();
+    assert!(message.contains("none of these gaits"), "{message}");
+    let unknown = file("unknown.json", &ways(&[object("wakl", [30.0, 0.0, 0.0])]));
     assert!(keys(&[&unknown], &[]).refusal().contains("no gait `wakl`"));
-    let still = file("still.json", &object("stand", [0.0; 3]));
+    let still = file("still.json", &ways(&[object("stand", [0.0; 3])]));
     assert!(keys(&[&still], &[]).refusal().contains("moves no servo"));
-    let other = object("walk", [30.0, 0.0, 0.0])
+    let other = ways(&[object("walk", [30.0, 0.0, 0.0])])
         .replace(r#""speed":100"#, r#""speed":100,"period_expected":1.25"#);
     let other = file("other.json", &other);
     assert!(
@@ -56,7 +68,7 @@ fn files_that_tell_nothing_are_refused_with_what_to_do() {
 
 #[test]
 fn no_robot_and_no_input_is_replaced() {
-    let way = file("way.json", &object("walk", [30.0, 0.0, 0.0]));
+    let way = file("way.json", &ways(&[object("walk", [30.0, 0.0, 0.0])]));
     let text = read("robots/grain.toml");
     let other = file("other-robot.toml", &text);
     let message = keys(&[&way], &["--output", other.to_str().expect("a name")]).refusal();
@@ -69,18 +81,18 @@ fn no_robot_and_no_input_is_replaced() {
 #[test]
 fn a_new_robot_differs_in_the_lines_that_were_measured_and_in_no_other() {
     // As the model goes on pads with a ratio of 1.1, by its slopes at the file's ratio of 1.
-    let ways = [
+    let measured = [
         object("walk", [33.57, 0.07, 0.0]),
         object("trot", [25.63, -0.02, 0.0]),
         object("crawl", [29.72, 0.3, -0.11]),
         object("back", [-32.91, 0.08, 0.0]),
         object("left", [1.09, 0.29, 14.53]),
     ];
-    let ways = file("ways.json", &format!(r#"{{"gaits":[{}]}}"#, ways.join(",")));
+    let measured = file("ways.json", &ways(&measured));
     let output = scratch().join("measured.toml");
     let _ = fs::remove_file(&output);
     let shown = output.to_str().expect("a name");
-    let result = keys(&[&ways], &["--output", shown, "--json"]).json();
+    let result = keys(&[&measured], &["--output", shown, "--json"]).json();
     let verdict = |key: &str| {
         let mut all = result["keys"].as_array().into_iter().flatten();
         let found = all.find(|found| found["key"] == key).expect(key);

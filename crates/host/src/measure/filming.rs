@@ -1,0 +1,65 @@
+//! The options that say how films were taken, and their numbers.
+
+use std::path::Path;
+
+use lizard_film::{Setup, sheet};
+use lizard_measure::WatchedFilm;
+
+use super::film;
+use crate::Failure;
+
+/// Lengths of the ruler of 100 mm that a printer may make of it, mm.
+const RULER: [f64; 2] = [85.0, 115.0];
+
+/// How films were taken.
+#[derive(clap::Args, Debug)]
+pub(super) struct Filming {
+    /// Pictures in a second [default: by the film, or by the names of pictures, as 1.033s.png]
+    #[arg(long, value_name = "RATE", value_parser = rate)]
+    fps: Option<f64>,
+    /// Length of the line on a strip that should be 100 mm long
+    #[arg(long, value_name = "MM", default_value_t = sheet::RULER, value_parser = ruler)]
+    ruler: f64,
+}
+
+impl Filming {
+    /// The measures of a sheet whose card is at a height above the strips, mm.
+    pub(super) fn setup(&self, height: f64) -> Setup {
+        Setup {
+            scale: self.ruler / sheet::RULER,
+            height,
+        }
+    }
+
+    /// Reads a film, and finds camera and path in it.
+    ///
+    /// # Errors
+    /// Fails for a film that cannot be read, or one whose tags tell no path.
+    pub(super) fn watch(&self, path: &Path, setup: Setup) -> Result<WatchedFilm, Failure> {
+        film::watch(path, self.fps, setup)
+    }
+}
+
+pub(super) fn number(word: &str, [low, high]: [f64; 2], meaning: &str) -> Result<f64, String> {
+    let number = word
+        .parse()
+        .ok()
+        .filter(|value| (low..=high).contains(value));
+    number.ok_or_else(|| format!("{meaning}, between {low} and {high}"))
+}
+
+fn rate(word: &str) -> Result<f64, String> {
+    number(word, [1.0, 1000.0], "it is pictures in a second")
+}
+
+pub(super) fn height(word: &str) -> Result<f64, String> {
+    number(word, [0.0, 500.0], "it is mm")
+}
+
+fn ruler(word: &str) -> Result<f64, String> {
+    number(
+        word,
+        RULER,
+        "it is the line of 100 mm as a ruler measures it in mm",
+    )
+}
