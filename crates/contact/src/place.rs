@@ -47,6 +47,16 @@ impl Place {
         }
     }
 
+    /// The place after a movement that is seen from this one: the opposite of [`Place::seen_from`].
+    pub fn after(self, movement: Travel) -> Self {
+        let [forward, left] = self.on_floor([movement.forward, movement.left]);
+        Self {
+            forward,
+            left,
+            heading: self.heading + movement.turn.to_radians(),
+        }
+    }
+
     /// Converts a point of the body (forward, left, mm) to the floor.
     pub fn on_floor(self, [forward, left]: [f64; 2]) -> [f64; 2] {
         let (sin, cos) = self.heading.sin_cos();
@@ -109,6 +119,17 @@ mod tests {
                 && (movement.left - expected.left).abs() < 1e-12
         );
         assert!((movement.turn - expected.turn).abs() < 1e-12);
+        assert!(
+            start
+                .after(movement)
+                .seen_from(start.moved(twist))
+                .forward
+                .abs()
+                < 1e-12
+        );
+        let back = start.after(movement).travel();
+        let there = start.moved(twist).travel();
+        assert!((back.left - there.left).hypot(back.turn - there.turn) < 1e-12);
     }
 
     #[test]

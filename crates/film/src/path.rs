@@ -18,12 +18,7 @@ pub struct Seen {
 
 /// A place that is given as seen from another one, on the floor.
 pub(crate) fn compose(from: Place, seen: Place) -> Place {
-    let [forward, left] = from.on_floor([seen.forward, seen.left]);
-    Place {
-        forward,
-        left,
-        heading: from.heading + seen.heading,
-    }
+    from.after(seen.travel())
 }
 
 /// The place from which a place is seen as `place` sees its origin.
@@ -33,11 +28,7 @@ pub(crate) fn inverse(place: Place) -> Place {
 
 /// A movement as a place that is seen from its start.
 pub(crate) fn of_travel(travel: Travel) -> Place {
-    Place {
-        forward: travel.forward,
-        left: travel.left,
-        heading: travel.turn.to_radians(),
-    }
+    Place::START.after(travel)
 }
 
 /// The place on the straight way between two places.

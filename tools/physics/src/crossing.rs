@@ -2,7 +2,7 @@
 //! side of it, and afterwards on the other, so front and hind feet have climbed it.
 
 use lizard_parts::Block;
-use lizard_robot::Robot;
+use lizard_robot::{Place, Robot, Travel};
 
 use crate::figures::Displacement;
 use crate::surface::parts;
@@ -32,27 +32,31 @@ impl Crossing {
     /// measured.
     pub fn of(robot: &Robot, by_cycle: Displacement, unmeasured: u32) -> Self {
         let feet = robot.ground().feet.at([0.0; 4]);
-        let along = |place: &Place, heading: f64| {
+        let along = |place: Place, heading: f64| {
             let (sin, cos) = heading.to_radians().sin_cos();
-            place
-                .feet(feet)
-                .map(|[ahead, left]| ahead * cos + left * sin)
+            feet_at(place, feet).map(|[ahead, left]| ahead * cos + left * sin)
         };
-        let begin = (0..unmeasured).fold(Place::default(), |place, _| place.after(by_cycle));
+        let Displacement([forward, left, turn]) = by_cycle;
+        let cycle = Travel {
+            forward,
+            left,
+            turn,
+        };
+        let begin = (0..unmeasured).fold(Place::START, |place, _| place.after(cycle));
         let is_turn = !matches!(parts(by_cycle)[..], [Part::Ahead, ..]);
         let mut end = begin;
         for cycles in 1.. {
-            end = end.after(by_cycle);
+            end = end.after(cycle);
             let heading = if is_turn {
                 0.0
             } else {
-                end.direction_from(&begin)
+                direction_from(end, begin)
             };
             // A foot that stands ahead at the beginning may be behind at the end of an arc.
-            let distance = along(&begin, heading).into_iter().fold(f64::MIN, f64::max) + CLEARANCE;
-            let last = along(&end, heading).into_iter().fold(f64::MAX, f64::min);
+            let distance = along(begin, heading).into_iter().fold(f64::MIN, f64::max) + CLEARANCE;
+            let last = along(end, heading).into_iter().fold(f64::MAX, f64::min);
             let passes = last > distance + CLEARANCE;
-            if passes || (end.heading - begin.heading).abs() >= MAX_TURN {
+            if passes || end.seen_from(begin).turn.abs() >= MAX_TURN {
                 return Self {
                     cycles,
                     passes,
@@ -78,39 +82,13 @@ impl Crossing {
     }
 }
 
-/// A place of the robot on the floor: mm ahead and left of the start, deg counter-clockwise.
-#[derive(Clone, Copy, Default)]
-struct Place {
-    ahead: f64,
-    left: f64,
-    heading: f64,
+/// The feet at a place on the floor.
+fn feet_at(place: Place, feet: [[f64; 2]; 4]) -> [[f64; 2]; 4] {
+    feet.map(|foot| place.on_floor(foot))
 }
 
-impl Place {
-    fn after(self, Displacement([ahead, left, turn]): Displacement) -> Self {
-        let [ahead, left] = self.to_floor([ahead, left]);
-        Self {
-            ahead,
-            left,
-            heading: self.heading + turn,
-        }
-    }
-
-    fn to_floor(self, [ahead, left]: [f64; 2]) -> [f64; 2] {
-        let (sin, cos) = self.heading.to_radians().sin_cos();
-        [
-            self.ahead + ahead * cos - left * sin,
-            self.left + ahead * sin + left * cos,
-        ]
-    }
-
-    fn feet(&self, feet: [[f64; 2]; 4]) -> [[f64; 2]; 4] {
-        feet.map(|foot| self.to_floor(foot))
-    }
-
-    fn direction_from(&self, other: &Self) -> f64 {
-        (self.left - other.left)
-            .atan2(self.ahead - other.ahead)
-            .to_degrees()
-    }
+/// The direction of a place from another one, deg counter-clockwise from ahead.
+fn direction_from(place: Place, other: Place) -> f64 {
+    let way = [place.left - other.left, place.forward - other.forward];
+    way[0].atan2(way[1]).to_degrees()
 }
