@@ -97,7 +97,7 @@ async function start({ type, ...options }) {
 export const open = () => start(CHROMIUM);
 /** With Web Bluetooth, which Chromium on Linux has behind a flag. */
 export const openWithBluetooth = () => start({ ...CHROMIUM, args: [...CHROMIUM.args, '--enable-features=WebBluetooth'] });
-/** With a film, pictures of JPEG one after another, as its camera; without one it has no camera. */
+/** With a film in Y4M as its camera; without one it has no camera. */
 export const openWithCamera = (film) => start({ ...CHROMIUM, args: [...CHROMIUM.args, ...(film ? ['--use-fake-device-for-media-stream', '--use-fake-ui-for-media-stream', `--use-file-for-fake-video-capture=${film}`] : [])] });
 export const openFirefox = () => start(FIREFOX);
 

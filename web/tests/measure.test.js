@@ -58,11 +58,13 @@ async function put(opened, id, number) {
   await box.pressSequentially(String(number));
 }
 
+/** Switches the camera on once all is set, so that little of the film is over, and has the page drive. */
 async function drives(opened, gaits, cycles) {
   await opened.locator('#measure-driver').selectOption('page');
   for (const box of await opened.locator('#measure-gaits input').all()) await box.setChecked(gaits.includes(await box.getAttribute('name')));
   await put(opened, 'cycles', cycles);
   await put(opened, 'pause', 0.5);
+  await camera(opened);
   await opened.locator('#measure-start').click();
 }
 
@@ -83,9 +85,8 @@ function assertTrue(report) {
 }
 
 test('the page drives the simulated robot before a camera, and measures the gait in the film, as the command does', async () => {
-  await openWithCamera(join(walk, 'film.mjpeg'));
+  await openWithCamera(join(walk, 'film.y4m'));
   const opened = await room({ acceptDownloads: true });
-  await camera(opened);
   await drives(opened, ['walk'], 5);
   await opened.waitForFunction(() => window.lizard.gait === 'walk');
   await opened.locator('#measure-results').waitFor();
@@ -106,7 +107,7 @@ test('the page drives the simulated robot before a camera, and measures the gait
 });
 
 test('a film file that the browser recorded is measured, and again for another gait', async () => {
-  await openWithCamera(join(walk, 'film.mjpeg'));
+  await openWithCamera(join(walk, 'film.y4m'));
   const recorder = await blank();
   await recorder.goto(address());
   const bytes = await recorder.evaluate(async () => {
@@ -140,7 +141,7 @@ test('a film file that the browser recorded is measured, and again for another g
 });
 
 test('somebody else drives: what is recorded until Done is measured', async () => {
-  await openWithCamera(join(walk, 'film.mjpeg'));
+  await openWithCamera(join(walk, 'film.y4m'));
   const opened = await room({ acceptDownloads: true });
   await camera(opened);
   await opened.getByRole('button', { name: 'Record' }).click();
@@ -151,7 +152,7 @@ test('somebody else drives: what is recorded until Done is measured', async () =
 });
 
 test('a hidden tag is named while the camera looks, and no figure is made', async () => {
-  await openWithCamera(join(film('hidden', 640, 1, 2), 'film.mjpeg'));
+  await openWithCamera(join(film('hidden', 640, 1, 2), 'film.y4m'));
   const opened = await room();
   await camera(opened, 'Not seen: the left tag of strip 2.');
   await opened.getByRole('button', { name: 'Record' }).click();
@@ -162,7 +163,7 @@ test('a hidden tag is named while the camera looks, and no figure is made', asyn
 });
 
 test('a film without any tag says so', async () => {
-  await openWithCamera(join(film('none', 640, 1, 0, 1, 2, 3, 4), 'film.mjpeg'));
+  await openWithCamera(join(film('none', 640, 1, 0, 1, 2, 3, 4), 'film.y4m'));
   const opened = await room();
   await camera(opened, 'No tag of the sheet is seen');
 });
@@ -178,9 +179,8 @@ test('a machine without a camera, and a person who refuses it, are told what els
 });
 
 test('Stop ends the protocol, and the robot stands; leaving the room does so, too, and switches the camera off', async () => {
-  await openWithCamera(join(walk, 'film.mjpeg'));
+  await openWithCamera(join(walk, 'film.y4m'));
   const opened = await room();
-  await camera(opened);
   await drives(opened, ['walk', 'left'], 20);
   await opened.waitForFunction(() => window.lizard.gait === 'walk');
   await opened.keyboard.press('Escape');
