@@ -55,7 +55,7 @@ web-test: ## test the page in a real browser: walk, turn, refuse, calibrate, fla
 	$(call prepared,.web-test)
 lint: ## rustfmt, clippy and cargo doc, warnings are errors
 	$(call prepared,.lint)
-measure-test: ## films of a robot whose path is known, rendered and measured; FILMS=200 SEED=1
+measure-test: ## films of a robot whose path is known, and keys of robots that were changed; FILMS=200 SEED=1
 	$(call prepared,.measure-test)
 parts-test: ## check the files of `lizard parts` and `lizard model` with ezdxf, FreeCAD, PrusaSlicer, urdfdom, libsdformat and others
 	$(call prepared,.parts-test)
@@ -214,7 +214,7 @@ WALKS := target/walks.log
 
 # Apart from the other tests, because hundreds of films take minutes.
 .measure-test:
-	@cd crates && FILMS=$(or $(FILMS),200) SEED=$(or $(SEED),1) $(CARGO) test -p lizard-film --test film --quiet -- --ignored --nocapture
+	@cd crates && FILMS=$(or $(FILMS),200) SEED=$(or $(SEED),1) $(CARGO) test -p lizard-film --test film -p lizard-identify --test robots --quiet -- --ignored --nocapture
 
 # Apart from the other tests, because only this target installs MuJoCo.
 .physics: .firmware

@@ -110,8 +110,10 @@ pub const KEYS: [Key; COUNT] = [
     },
 ];
 
-/// Index of `leg.drive.play`.
+/// Indices of some keys.
 pub(crate) const PLAY: usize = 1;
+pub(crate) const TWIST: usize = 4;
+pub(crate) const RATIO: usize = 6;
 
 impl Key {
     /// The name with its index, as in `body.centre[0]`.
@@ -152,6 +154,14 @@ mod tests {
                 key.doubt()
             );
         }
-        assert_eq!(KEYS[PLAY].name, "leg.drive.play");
+        let names = [PLAY, TWIST, RATIO].map(|key| KEYS[key].name);
+        assert_eq!(
+            names,
+            [
+                "leg.drive.play",
+                "feet.twist",
+                "ground.friction_back_over_forward"
+            ]
+        );
     }
 }

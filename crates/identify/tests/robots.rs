@@ -1,0 +1,167 @@
+//! Keys that were changed on purpose are found by the ways of the changed robot, for every robot of `robots/`.
+
+use std::path::{Path, PathBuf};
+use std::thread;
+
+use fastrand::Rng;
+use lizard_identify::{Found, Identified, KEYS, Verdict, Way, identify};
+use lizard_robot::{CheckedGait, Ground, Robot, Travel};
+
+/// Standard error of a measured mean, mm and deg: that of some eight cycles.
+const ERROR: f64 = 0.03;
+/// Number of gaits that are filmed.
+const GAITS: usize = 8;
+/// Changes of the keys, in their order, of which a robot has two or three.
+const CHANGES: [f64; 7] = [2.0, 0.5, 6.0, -5.0, 0.5, 0.15, 0.08];
+
+fn set(ground: &mut Ground, key: usize, change: f64) {
+    let value = match key {
+        0 => &mut ground.feet.mount,
+        1 => &mut ground.drive.play,
+        2 => &mut ground.body.centre[0],
+        3 => &mut ground.body.centre[1],
+        4 => &mut ground.stance.twist,
+        5 => &mut ground.friction,
+        _ => &mut ground.ratio,
+    };
+    *value += change;
+}
+
+/// A random number of a normal distribution.
+fn normal(rng: &mut Rng) -> f64 {
+    (0..12).map(|_| rng.f64()).sum::<f64>() - 6.0
+}
+
+/// One after another.
+fn in_turn(count: usize, walk: &(dyn Fn(usize) -> Travel + Sync)) -> Vec<Travel> {
+    (0..count).map(walk).collect()
+}
+
+/// The gaits of a robot that go farthest, and the ways of a robot on another ground, as a film measures them.
+fn ways(robot: &Robot, ground: &Ground, rng: &mut Rng) -> Vec<Way> {
+    let far = |gait: &CheckedGait| {
+        let way = robot.predict(gait);
+        let [ahead, turn] = [way.forward, way.turn].map(|part| part.unwrap_or(0.0).abs());
+        (ahead + turn) / gait.period()
+    };
+    let mut gaits: Vec<&CheckedGait> = robot.gaits().iter().filter(|gait| gait.moves()).collect();
+    gaits.sort_by(|a, b| far(b).total_cmp(&far(a)));
+    gaits.truncate(GAITS);
+    let motors = robot.motors();
+    let way = |gait: &&CheckedGait| {
+        let Travel {
+            forward,
+            left,
+            turn,
+        } = gait.driven(ground, &motors, 1.0);
+        Way {
+            gait: gait.name().to_owned(),
+            pace: 1.0,
+            mean: [forward, left, turn].map(|part| part + ERROR * normal(rng)),
+            error: [ERROR; 3],
+        }
+    };
+    gaits.iter().map(way).collect()
+}
+
+/// A robot whose keys were changed: the true changes, and what its ways tell.
+struct Trial {
+    name: String,
+    changes: [f64; 7],
+    identified: Identified,
+}
+
+impl Trial {
+    fn new(file: &Path, seed: u64) -> Self {
+        let mut rng = Rng::with_seed(seed);
+        let robot =
+            Robot::parse(&std::fs::read_to_string(file).expect("a robot")).expect("it is right");
+        let mut ground = *robot.ground();
+        let mut changes = [0.0; 7];
+        for _ in 0..3 {
+            let key = rng.usize(..CHANGES.len());
+            // No play is less than none.
+            let sign = if key == 1 || rng.bool() { 1.0 } else { -1.0 };
+            changes[key] = sign * CHANGES[key];
+        }
+        for (key, change) in changes.into_iter().enumerate() {
+            set(&mut ground, key, change);
+        }
+        let ways = ways(&robot, &ground, &mut rng);
+        Self {
+            name: format!(
+                "{} {seed}",
+                file.file_stem().expect("a name").to_string_lossy()
+            ),
+            changes,
+            identified: identify(&robot, &ways, &in_turn).expect("the ways tell something"),
+        }
+    }
+
+    fn keys(&self) -> impl Iterator<Item = (f64, &Found)> {
+        self.changes.into_iter().zip(&self.identified.keys)
+    }
+}
+
+/// `make measure-test`.
+#[test]
+#[ignore = "takes minutes; make measure-test"]
+fn keys_that_were_changed_are_found_within_two_errors_and_right_ones_stay() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots");
+    let mut files: Vec<PathBuf> = std::fs::read_dir(folder)
+        .expect("the robots")
+        .map(|file| file.expect("a file").path())
+        .collect();
+    files.sort();
+    assert_eq!(files.len(), 5);
+    let seeds = [1, 2].map(|seed| (&files, seed));
+    let trials: Vec<Trial> = thread::scope(|scope| {
+        let run = |(files, seed): (&'_ Vec<PathBuf>, u64)| {
+            let files = files.clone();
+            scope.spawn(move || {
+                files
+                    .iter()
+                    .map(|file| Trial::new(file, seed))
+                    .collect::<Vec<_>>()
+            })
+        };
+        let threads: Vec<_> = seeds.into_iter().map(run).collect();
+        threads
+            .into_iter()
+            .flat_map(|thread| thread.join().expect("a trial"))
+            .collect()
+    });
+    let (mut told, mut within, mut right, mut moved) = (0, 0, 0, 0);
+    for trial in &trials {
+        let goodness = &trial.identified.goodness;
+        println!(
+            "{}: chi-square {:.0} of {:.0}",
+            trial.name, goodness.chi_square[1], goodness.limit
+        );
+        for (change, found) in trial.keys() {
+            let by = found.after - found.before;
+            let is_near = (by - change).abs() < 2.0 * found.error;
+            println!(
+                "  {:<34} {change:+.3}: {by:+.3} +- {:.3} {:?}{}",
+                found.key.full_name(),
+                found.error,
+                found.verdict,
+                if is_near { "" } else { " !" }
+            );
+            if found.verdict == Verdict::Untold {
+                continue;
+            }
+            match change == 0.0 {
+                true => (right, moved) = (right + 1, moved + usize::from(by != 0.0)),
+                false => (told, within) = (told + 1, within + usize::from(is_near)),
+            }
+        }
+    }
+    println!(
+        "{within} of {told} changed keys within two errors, {moved} of {right} right ones moved"
+    );
+    assert!(told >= 12 && right >= 20, "{told} {right}");
+    assert!(within as f64 >= 0.8 * f64::from(told), "{within} of {told}");
+    assert!(moved as f64 <= 0.1 * f64::from(right), "{moved} of {right}");
+    assert_eq!(KEYS.len(), CHANGES.len());
+}
