@@ -51,11 +51,11 @@ const SG90: ServoType = ServoType {
 };
 
 impl ServoType {
-    /// A servo with a fast digital controller.
+    /// A servo of the size of an SG-90 with a digital controller: Hitec's HS-5065MG.
     pub(crate) const DIGITAL: Self = Self {
         model: "digital",
-        source: "assumed: an MG90S with half the rotor, full torque at 1 deg and a dead band of 2 us",
-        s_per_60_deg: 0.1,
+        source: "Hitec's list for the HS-5065MG; dead band, rotor and full torque assumed",
+        s_per_60_deg: 0.14,
         dead_band_us: 2.0,
         spin_up_ms: 10.0,
         full_torque_deg: 1.0,

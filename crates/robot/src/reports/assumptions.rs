@@ -95,7 +95,7 @@ const ALL: [Assumption; 21] = assumptions! {
     "dead band of a servo", "us", 2.0 to 20.0, number(servo.dead_band_us);
     // A servo that trial 3 of docs/measure.md accepts: 11 or 9 us for each deg, not 10.
     "angle of the servos over the one sent", "", 0.91 to 1.11, number(scale);
-    "fast digital servos", "(0 no, 1 yes)", 0.0 to 1.0, case(|inputs| {
+    "digital servos", "(0 no, 1 yes)", 0.0 to 1.0, case(|inputs| {
         inputs.servo = ServoType {
             volts: inputs.servo.volts,
             ..ServoType::DIGITAL
