@@ -168,7 +168,7 @@ test('the pace slider has what the robot has, after a typed line and after a res
   assert.match(await type(opened, 'status', 'ok gait=stand'), / speed=100( |$)/);
 });
 
-test("the share of the servos' line is that of the robot's pace", async () => {
+test("the share of the servos' line is that of the robot's pace and of the servos' supply", async () => {
   const opened = await standing();
   await unfold(opened, '#power');
   const note = async (pace) => {
@@ -182,6 +182,17 @@ test("the share of the servos' line is that of the robot's pace", async () => {
   const half = await note(50);
   // docs/gaits.md: the hardest gait uses 0.81 and 0.50.
   assert.deepEqual([full, half], [0.81, 0.5]);
+  const lines = () => opened.locator('#gaits .line').allInnerTexts();
+  const of = (...shares) => shares.map((share) => `${share >= 0.9 ? '⚠ ' : ''}line ${share.toFixed(2)}`);
+  assert.deepEqual(await lines(), of(0.45, 0.48, 0.5, 0.45, 0.5, 0.5, 0.45, 0.45, 0.24));
+  await type(opened, 'speed 100', 'ok speed 100');
+  await slide(opened, 'Supply of the servos', '4.2');
+  await opened.locator('#gaits .line', { hasText: '⚠ line 0.93' }).waitFor();
+  await opened.locator('#line-note.warning').waitFor();
+  assert.deepEqual(await lines(), of(0.82, 0.91, 0.93, 0.82, 0.92, 0.92, 0.82, 0.82, 0.33));
+  // Another model comes with a supply of its own.
+  await opened.locator('#servos').selectOption('MG90S');
+  assert.equal(await opened.getByLabel('Supply of the servos').inputValue(), '4.8');
 });
 
 test('what moves nothing with rigid legs and ideal servos says so and cannot be set', async () => {
