@@ -7,6 +7,7 @@ import { dirname, join } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
 
 import { address, blank, close, complaints, openWithCamera, page, tidy } from './browser.js';
+import { fakeSerial } from './fake-serial.js';
 
 const { LIZARD } = process.env;
 const ROBOT = new URL('../../robots/paper.toml', import.meta.url).pathname;
@@ -194,6 +195,24 @@ test('Stop ends the protocol, and the robot stands; leaving the room does so, to
   await opened.locator('nav a', { hasText: 'Drive' }).click();
   await opened.waitForFunction(() => window.lizard.gait === 'stop');
   assert.equal(await opened.evaluate(() => document.querySelector('#measure-view video').srcObject), null);
+});
+
+test('a board whose link is cut is driven no more, the room says so, and what was seen of its gait is measured', async () => {
+  await openWithCamera(join(walk, 'film.y4m'));
+  const opened = await room({ acceptDownloads: true });
+  await opened.evaluate(fakeSerial);
+  // Nobody begins to set up a robot by radio.
+  await opened.evaluate(() => Object.assign(window, { flashed: 'paper', awake: true, profile: '00001101-0000-1000-8000-00805f9b34fb' }));
+  await opened.locator('#connect').click();
+  await opened.waitForFunction(() => window.lizard.isReal && window.lizard.gait === 'stand' && window.lizard.mayAsk);
+  await drives(opened, ['walk', 'left'], 8);
+  await opened.waitForFunction(() => window.lizard.gait === 'walk');
+  await opened.waitForTimeout(6000);
+  await opened.evaluate(() => window.unplug());
+  await says(opened, 'said', 'Ended before all gaits were walked: the link to the robot was cut');
+  assertTrue(JSON.parse(await downloaded(opened, 'json')).gaits[0]);
+  assert.ok(!/left/.test(await opened.evaluate(() => window.heard)), 'no further gait was sent');
+  assert.equal(await opened.evaluate(() => window.lizard.gait), 'stand', 'and none to the simulated board that follows');
 });
 
 test('the sheet is the one of the command, for both papers', async () => {
