@@ -233,7 +233,7 @@ async function start(): Promise<void> {
     },
     state({ phase }) {
       routines.phase(phase);
-      calibrate.answered();
+      calibrate.refresh();
     },
     silent(isSilent) {
       alarm.silent(isSilent);
