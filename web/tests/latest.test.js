@@ -1,12 +1,12 @@
-// Of questions that come faster than a worker answers, only the last is answered.
+// If questions arrive faster than a worker answers, only the last one is answered.
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { createRequire } from 'node:module';
 import { test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 
-/** The class as a browser gets it. */
-async function latest() {
+/** Loads the class as a browser would, compiled to JavaScript. */
+async function loadClass() {
   const source = new URL('../src/latest.ts', import.meta.url);
   const vite = createRequire(new URL('../package.json', import.meta.url)).resolve('vite');
   const { transformWithOxc } = await import(pathToFileURL(vite));
@@ -34,7 +34,7 @@ class FakeWorker {
 test('what is asked while the worker is at work is answered last, and what was asked before that not at all', async () => {
   const worker = new FakeWorker();
   const said = [];
-  const questions = new (await latest())(worker, 'module', (answer) => said.push(answer));
+  const questions = new (await loadClass())(worker, 'module', (answer) => said.push(answer));
   for (const question of ['first', 'second', 'third']) questions.ask(question);
   assert.deepEqual(worker.asked, ['module', 'first']);
   worker.answer();
@@ -46,7 +46,7 @@ test('what is asked while the worker is at work is answered last, and what was a
 test('who asks when an answer comes is answered after what was waiting, or in its place', async () => {
   const worker = new FakeWorker();
   const said = [];
-  const questions = new (await latest())(worker, 'module', (answer) => {
+  const questions = new (await loadClass())(worker, 'module', (answer) => {
     said.push(answer);
     if (answer === 'answer to first') questions.ask('newest');
   });
