@@ -1,7 +1,7 @@
-// The project's addresses, which crates/Cargo.toml has, in the page.
+// Puts the project's addresses, which crates/Cargo.toml has, into the page.
 import { readFileSync } from 'node:fs';
 
-/** Shows what the page has for the repository, or nothing while it has no address. */
+/** Fills in the address of the repository, or removes what mentions it while it has none. */
 export function quoted(html, cargo) {
   const [, repository] = /^repository = "(.*)"/m.exec(cargo);
   return html.replace(/<!-- with a repository: (.*) -->/g, (_, shown) => (repository ? shown.replaceAll('REPOSITORY', repository) : ''));

@@ -1,4 +1,4 @@
-// Pictures of every room on a phone and on a desk, for whoever changes the page to look at: node web/room-pictures.js FOLDER [dark]
+// Takes pictures of every room on a phone and on a desktop, to look at after a change of the page: node web/room-pictures.js FOLDER [dark]
 import { mkdir } from 'node:fs/promises';
 import { join } from 'node:path';
 

@@ -256,11 +256,11 @@ async function start(): Promise<void> {
       measure?.link(session.isReal);
       setup.link();
     },
-    trouble(cause, said) {
-      if (cause === 'fault' && said !== null) remote.buzz();
+    trouble(cause, message) {
+      if (cause === 'fault' && message !== null) remote.buzz();
       // Offers this firmware to a board without it.
       const remedy = { label: 'Write firmware and robot to it', act: () => flash.write('all') };
-      troubles.say(cause, said, cause === 'board' && session.link.kind !== 'radio' ? remedy : null);
+      troubles.say(cause, message, cause === 'board' && session.link.kind !== 'radio' ? remedy : null);
     },
   });
   let latest = 0;
@@ -350,8 +350,8 @@ async function start(): Promise<void> {
   const isAsked = asked !== null || partsOf(location.hash).has('robot');
   if (before && session.file === before.file && !(await session.recall(before)) && !isAsked) {
     const remedy = { label: 'Download what was changed', act: () => void download(robot, before.toml, before.floor) };
-    const said = `${before.file}.toml is not the file of last time, so what was changed of it then is not taken.`;
-    troubles.say('robot', said, remedy);
+    const message = `${before.file}.toml is not the file of last time, so what was changed of it then is not taken.`;
+    troubles.say('robot', message, remedy);
   }
   if (await text.fromAddress()) address.begin();
   if (isAsked) own.replaced(before);

@@ -5,7 +5,7 @@
 const QUICK = 34;
 /** Pause after a slow picture, as a multiple of its time. */
 const PAUSE = 2;
-/** Longest pause, ms: a hidden page measures too long times. */
+/** Longest pause, ms, since a hidden page measures times that are too long. */
 const LONGEST = 1500;
 /** Least resolution, as a share of the screen's points to a side. */
 const COARSEST = 0.5;

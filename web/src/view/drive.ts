@@ -29,7 +29,7 @@ export class Drive {
   /** The robot's pace, percent. */
   private pace = 100;
 
-  private readonly said = element('drive-said');
+  private readonly message = element('drive-said');
   /** The commands of the buttons in index.html, which every robot has. */
   readonly words: string[] = [...document.querySelectorAll<HTMLElement>('[data-command]')].map(({ dataset }) => dataset.command ?? '');
 
@@ -48,8 +48,8 @@ export class Drive {
   async ask(line: string): Promise<void> {
     const answer = await this.send(line);
     if (!answer) return;
-    this.said.hidden = answer.ok;
-    this.said.textContent = answer.ok ? '' : `${line}: ${answer.text.replace(/^err \d+ /, '')}`;
+    this.message.hidden = answer.ok;
+    this.message.textContent = answer.ok ? '' : `${line}: ${answer.text.replace(/^err \d+ /, '')}`;
   }
 
   /** Takes another robot. */
@@ -67,7 +67,7 @@ export class Drive {
       return { command, button, note, moves };
     });
     this.predictions.clear();
-    this.said.hidden = true;
+    this.message.hidden = true;
   }
 
   /** Shows the prediction of a gait; the old one stays until then. */

@@ -32,7 +32,7 @@ interface Pair {
   /** What they are called in the figures. */
   names: [string, string];
   /** Where the figures are written. */
-  told: HTMLElement;
+  output: HTMLElement;
 }
 
 export class Keep {
@@ -152,12 +152,12 @@ export class Keep {
       const of = this.isRecording ? '' : ` of ${recording.seconds.toFixed(1)}`;
       element('moment-out').textContent = `${time.toFixed(1)}${of} s`;
     }
-    const panel = pair?.told.closest('details');
+    const panel = pair?.output.closest('details');
     if (!pair || !panel || !companion?.frame || this.isWaiting || !isShown(panel)) return;
     const { last, robot } = this.session();
     const start = { x: 0, y: 0, heading: 0 };
     const displacement = (frame: Frame | null) => (frame ? short(robot.between(start, frame.place)) : '');
-    this.say(`${pair.names[0]}: ${displacement(last)}. ${pair.names[1]}: ${displacement(companion.frame)}.`, pair.told);
+    this.say(`${pair.names[0]}: ${displacement(last)}. ${pair.names[1]}: ${displacement(companion.frame)}.`, pair.output);
   }
 
   private record(on: boolean): void {
@@ -241,18 +241,18 @@ export class Keep {
 
   private chosen(): Pair {
     const gaits: [string, string] = [this.mine.value, this.other.value];
-    return { toml: this.session().toml, gaits, names: [gaits[0], `Beside it, ${gaits[1]}`], told: element('keep-said') };
+    return { toml: this.session().toml, gaits, names: [gaits[0], `Beside it, ${gaits[1]}`], output: element('keep-said') };
   }
 
   /** Lets a gait that was found walk beside the one before it; the robot takes the found one. */
-  async compare(before: Bars, found: Bars, told: HTMLElement): Promise<void> {
+  async compare(before: Bars, found: Bars, output: HTMLElement): Promise<void> {
     const session = this.session();
     const toml = session.robot.putGait(session.toml, before);
-    this.say('The robot restarts with this gait…', told);
+    this.say('The robot restarts with this gait…', output);
     const refused = await wakeWith(session, found);
-    if (refused) return this.say(refused.refused, told);
+    if (refused) return this.say(refused.refused, output);
     const gait = found.name.replaceAll('-', ' ');
-    await this.startBoth({ toml, gaits: [gait, gait], names: ['Found', 'Before'], told });
+    await this.startBoth({ toml, gaits: [gait, gait], names: ['Found', 'Before'], output });
   }
 
   /** Starts both robots in the same frame, each from its own start. */
@@ -260,7 +260,7 @@ export class Keep {
     const session = this.session();
     const { toml, floor, servos, volts } = session;
     this.removeCompanion();
-    this.say('Switching on the second robot…', pair.told);
+    this.say('Switching on the second robot…', pair.output);
     try {
       const companion = await Companion.create(this.module, pair.toml, floor, servos, volts);
       if (toml !== this.session().toml) return;
@@ -274,12 +274,12 @@ export class Keep {
       this.floor.fitTwoRobots();
       await this.ask(pair.gaits[0]);
     } catch (error) {
-      this.say(`The second robot cannot start: ${messageOf(error)}`, pair.told);
+      this.say(`The second robot cannot start: ${messageOf(error)}`, pair.output);
     }
   }
 
   private removeCompanion(): void {
-    if (this.pair) this.say('', this.pair.told);
+    if (this.pair) this.say('', this.pair.output);
     Object.assign(this, { companion: null, pair: null, isWaiting: false });
     this.updateButtons();
   }
