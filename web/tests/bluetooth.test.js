@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { close, complaints, openWithBluetooth, page, closePages, unfold } from './browser.js';
+import { close, closePages, complaints, openWithBluetooth, page, text, unfold } from './browser.js';
 import { HM10, NORDIC, Radio } from './radio.js';
 
 let radio;
@@ -15,7 +15,6 @@ afterEach(async () => {
 });
 after(close);
 
-const text = (opened, selector) => opened.locator(selector).innerText();
 const doing = (opened) => opened.evaluate(() => window.lizard.gait);
 const now = (opened) => opened.evaluate(() => performance.now());
 

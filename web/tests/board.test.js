@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { close, complaints, open, page, closePages, unfold } from './browser.js';
+import { close, closePages, complaints, open, page, text, unfold } from './browser.js';
 import { openWithBoard, until } from './board.js';
 import { fakeSerial } from './fake-serial.js';
 
@@ -10,7 +10,6 @@ before(open);
 afterEach(closePages);
 after(close);
 
-const text = (opened, selector) => opened.locator(selector).innerText();
 
 /** Waits until the console has `times` lines with this text. */
 const waitForLine = (opened, line, times = 1) =>

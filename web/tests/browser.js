@@ -178,6 +178,9 @@ export async function openBlank(options = {}) {
 export const overflow = (opened) =>
   opened.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
 
+/** Returns the text of an element. */
+export const text = (opened, selector) => opened.locator(selector).innerText();
+
 /** Waits until a question to the page is answered with true. */
 export function until(opened, question, value) {
   const answered = async () => {

@@ -3,14 +3,13 @@ import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
 import { openWithBoard, until } from './board.js';
-import { advance, close, complaints, open, page, openStanding, closePages } from './browser.js';
+import { advance, close, closePages, complaints, open, openStanding, page, text } from './browser.js';
 import { fakeSerial } from './fake-serial.js';
 
 before(open);
 afterEach(closePages);
 after(close);
 
-const text = (opened, selector) => opened.locator(selector).innerText();
 const receivedText = (opened) => opened.evaluate(() => window.heard);
 const isStopping = (opened) => opened.evaluate(() => document.body.classList.contains('stopping'));
 

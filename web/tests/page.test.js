@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { after, afterEach, before, test } from 'node:test';
 
-import { advance, close, complaints, open, page, openStanding, assertStops, closePages, type, unfold } from './browser.js';
+import { advance, assertStops, close, closePages, complaints, open, openStanding, page, text, type, unfold } from './browser.js';
 import { fakeSerial } from './fake-serial.js';
 import { hexOf, imageOf } from './image.js';
 
@@ -11,7 +11,6 @@ before(open);
 afterEach(closePages);
 after(close);
 
-const text = (opened, selector) => opened.locator(selector).innerText();
 const gait = (opened, name) => opened.locator(`#gaits button[data-command="${name}"]`);
 
 /** Returns the page's prediction for a gait, and the body's displacement in the last cycle. */

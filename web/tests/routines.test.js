@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
 import { openWithBoard, until } from './board.js';
-import { address, advance, close, complaints, open, openStanding, closePages, unfold } from './browser.js';
+import { address, advance, close, closePages, complaints, open, openStanding, text, unfold } from './browser.js';
 
 before(open);
 afterEach(closePages);
@@ -11,7 +11,6 @@ after(close);
 
 const PATROL = ['stand 1 s', 'walk 2', 'left 3', 'look 1'];
 
-const text = (page, selector) => page.locator(selector).innerText();
 const toml = (page) => page.evaluate(() => window.lizard.toml);
 const gait = (page, name) => page.locator(`#gaits button[data-command="${name}"]`);
 const steps = (page) => page.locator('#routine-steps input').evaluateAll((inputs) => inputs.map(({ value }) => value));

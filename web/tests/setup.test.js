@@ -8,7 +8,7 @@ import { after, afterEach, before, test } from 'node:test';
 import { promisify } from 'node:util';
 
 import { openWithBoard, until } from './board.js';
-import { PATIENCE, advance, close, complaints, open, page, overflow, openStanding, closePages, unfold } from './browser.js';
+import { advance, close, closePages, complaints, open, openStanding, overflow, page, PATIENCE, text, unfold } from './browser.js';
 import { fakeSerial } from './fake-serial.js';
 
 before(open);
@@ -18,7 +18,6 @@ after(close);
 /** Arduino pins of A1 to A4, as robot.toml has them. */
 const PINS = [9, 10, 11, 3];
 const setup = (opened) => opened.locator('#setup');
-const text = (opened, selector) => opened.locator(selector).innerText();
 const press = async (opened, name) => {
   await setup(opened).scrollIntoViewIfNeeded();
   await setup(opened).getByRole('button', { name, exact: true }).click();

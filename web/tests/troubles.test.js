@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { address, advance, openBlank, close, complaints, openForbidden, open, page, openStanding, closePages, type, unfold } from './browser.js';
+import { address, advance, close, closePages, complaints, open, openBlank, openForbidden, openStanding, page, text, type, unfold } from './browser.js';
 import { fakeSerial } from './fake-serial.js';
 
 before(open);
@@ -10,7 +10,6 @@ afterEach(closePages);
 after(close);
 
 const trouble = (opened) => opened.locator('#trouble');
-const text = (opened, selector) => opened.locator(selector).innerText();
 
 test('a robot file that cannot be read stays said while the robot of before goes on', async () => {
   const opened = await openStanding();

@@ -3,13 +3,12 @@ import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
 import { openWithBoard } from './board.js';
-import { close, complaints, open, page, closePages, within } from './browser.js';
+import { close, closePages, complaints, open, page, text, within } from './browser.js';
 
 before(open);
 afterEach(closePages);
 after(close);
 
-const text = (opened, selector) => opened.locator(selector).innerText();
 const doing = (opened) => text(opened, '#doing');
 const walk = (opened) => opened.locator('#gaits button[data-command="walk"]').click();
 

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
 import { openWithBoard, until } from './board.js';
-import { close, complaints, open, page, openStanding, closePages, unfold } from './browser.js';
+import { close, closePages, complaints, open, openStanding, page, text, unfold } from './browser.js';
 import { fakeSerial } from './fake-serial.js';
 import { imageOf } from './image.js';
 
@@ -12,7 +12,6 @@ afterEach(closePages);
 after(close);
 
 const START = 0x6e00;
-const text = (opened, selector) => opened.locator(selector).innerText();
 const flash = async (opened, from, to) => Buffer.from(await opened.evaluate(([from, to]) => Array.from(window.otherBoard.flash.subarray(from, to)), [from, to]));
 const section = async (name) => Buffer.from((await imageOf(name)).subarray(START));
 /** Waits until this message is shown below a panel's buttons. */

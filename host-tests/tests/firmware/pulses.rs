@@ -14,8 +14,8 @@ pub fn servo_edges(bench: &FirmwareBench) -> Vec<Edge> {
     bench.uno.edges().into_iter().filter(of_servo).collect()
 }
 
-/// Checks the pulses' times: one of each servo in each frame, 20 ms
-/// apart to the cycle, one pin high at a time.
+/// Asserts that each servo has one pulse in each frame, 20 ms apart to the cycle, and that one pin
+/// is high at a time.
 fn assert_in_step(bench: &FirmwareBench, frames: &[Frame]) {
     for frame in frames {
         for (servo, start) in frame.starts.into_iter().enumerate() {
@@ -36,7 +36,7 @@ pub fn first_pulse(bench: &FirmwareBench) -> u64 {
 }
 
 /// The widths that the core commands when it receives only the first `received` bytes.
-pub fn commanded(
+pub fn commanded_widths(
     bench: &FirmwareBench,
     first: u64,
     received: usize,
@@ -82,7 +82,7 @@ fn every_width_is_the_one_that_was_asked_for() {
             let received = bench.uno.received_by_uno().len();
             for (frame, asked) in frames
                 .iter()
-                .zip(commanded(&bench, first, received, &frames))
+                .zip(commanded_widths(&bench, first, received, &frames))
             {
                 assert_eq!(frame.widths(), asked, "{}: {frame:?}", gait.name());
             }
@@ -108,7 +108,7 @@ fn a_saturated_line_both_ways_moves_no_edge() {
             assert_in_step(&bench, &frames);
             for (frame, asked) in frames
                 .iter()
-                .zip(commanded(&bench, first, received, &frames))
+                .zip(commanded_widths(&bench, first, received, &frames))
             {
                 assert_eq!(frame.widths(), asked, "{flood:?}: {frame:?}");
             }

@@ -377,7 +377,7 @@ fn a_pose_in_all_four_maps_is_certified_and_the_guard_accepts_it() {
         for n in 0..20_000 {
             let mut pose = Pose::NEUTRAL;
             for (sweep, travel) in pose.0.iter_mut().zip(robot.calibration()) {
-                // All sweeps that there are, those of the travel, and those near neutral.
+                // All sweeps, those of the travel, and those near neutral.
                 *sweep = Sweep(match n % 3 {
                     0 => rng.i16(..),
                     1 => rng.i16(travel.min.0..=travel.max.0),

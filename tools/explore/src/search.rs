@@ -1,8 +1,8 @@
-//! Breadth first through all sequences of [`Action`]s, as many states as time allows.
+//! Searches breadth first through all sequences of [`Action`]s, as far as time allows.
 //!
-//! All states of one length are processed before any of the next, by as many threads as
-//! there are processors. So the first sequence that breaks a rule is one of the shortest.
-//! For a processed state only its number is kept, and how it was reached.
+//! All states of one length are processed before any of the next, by as many threads as there are
+//! processors. So the first sequence that breaks a rule is one of the shortest. Of a processed
+//! state only its number is kept, and the step that reached it.
 
 use std::collections::{BTreeMap, HashSet};
 use std::fmt::Write as _;
@@ -64,7 +64,7 @@ pub fn search(robot: Robot<'static>, max: usize) -> SearchResult {
         }
     }
     let states = AtomicUsize::new(now.len());
-    // Each is reported as a broken rule.
+    // Each panic is reported as a broken rule.
     let hook = panic::take_hook();
     panic::set_hook(Box::new(|_| {}));
     while !now.is_empty() && states.load(Ordering::Relaxed) < max {
@@ -181,9 +181,9 @@ impl Part {
 fn apply_catching_panics(world: &mut World, action: Action) -> Verdict {
     let applied = panic::catch_unwind(AssertUnwindSafe(|| world.apply(action)));
     applied.unwrap_or_else(|reason| {
-        let said = reason.downcast_ref::<String>().cloned();
-        let said = said.or_else(|| reason.downcast_ref::<&str>().map(ToString::to_string));
-        Err(BrokenRule::new(Rule::Lives, said.unwrap_or_default()))
+        let message = reason.downcast_ref::<String>().cloned();
+        let message = message.or_else(|| reason.downcast_ref::<&str>().map(ToString::to_string));
+        Err(BrokenRule::new(Rule::Lives, message.unwrap_or_default()))
     })
 }
 

@@ -1,5 +1,5 @@
-//! Assumptions that the contact model cannot vary, and what they change in MuJoCo: the floor, how a
-//! printer makes pads, how an analog servo drives, where mass is.
+//! Assumptions that the contact model cannot vary, and their effect in MuJoCo: the floor, the
+//! printed shape of pads, the drive of an analog servo, the distribution of mass.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -39,7 +39,7 @@ const UNCHANGED: Assumption = Assumption {
 };
 
 impl Assumption {
-    /// All of them but the surfaces, which have a table of their own.
+    /// All changes but the surfaces, which have a table of their own.
     pub const ALL: [Self; 6] = [
         Self {
             words: "analog servos that drive in bursts",
