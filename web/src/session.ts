@@ -663,8 +663,8 @@ export class Session {
     const now = this.way[this.way.length - 1];
     if (!gait?.moves || !now) return null;
     // The nearest known frame: a board on USB does not send every frame.
-    const begun = now.time - (gait.period * FULL_PACE) / this.pace;
-    const from = this.way.findLastIndex(({ time }) => time <= begun + this.step / 2);
+    const start = now.time - (gait.period * FULL_PACE) / this.pace;
+    const from = this.way.findLastIndex(({ time }) => time <= start + this.step / 2);
     if (from < 0) return null;
     const lags = this.way.slice(from + 1).flatMap(({ frame }) => frame.lag.map(Math.abs));
     const way = this.robot.between(this.way[from].frame.place, now.frame.place);

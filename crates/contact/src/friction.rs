@@ -55,7 +55,7 @@ pub(crate) struct Pads {
     pub body: Option<Inertia>,
 }
 
-/// A body that goes on as in the step before unless forces change that.
+/// A body that keeps the motion of the previous step unless forces change it.
 #[derive(Clone, Copy)]
 pub(crate) struct Inertia {
     /// Force for each mm of change, and torque for each rad.

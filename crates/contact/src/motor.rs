@@ -53,7 +53,8 @@ impl Motor {
     }
 }
 
-/// The motors of the four servos, and the friction of what they turn besides the feet.
+/// The motors of the four servos, and the friction of pins and sliders, which they turn besides the
+/// feet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Motors {
     /// The motors in servo order.

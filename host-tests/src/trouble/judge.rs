@@ -128,8 +128,8 @@ pub fn events(record: &Record) -> Vec<(Time, Event<'_>)> {
     }
     for line in &record.lines {
         let length = BYTE * line.text.len() as u64;
-        let begun = time(line.cycle.saturating_sub(length));
-        add(line.cycle, Event::Printed(begun, &line.text));
+        let beginning = time(line.cycle.saturating_sub(length));
+        add(line.cycle, Event::Printed(beginning, &line.text));
     }
     for exchange in &record.exchanges {
         let (asked, line) = (time(exchange.asked), exchange.line.as_str());

@@ -157,11 +157,11 @@ impl Stage<'_> {
 
     /// Adds random bytes to the line, half of the time without pauses.
     fn add_noise(&mut self, cycles: u64) {
-        let most = cycles / BYTE;
+        let largest = cycles / BYTE;
         let count = if self.noise.bool() {
-            most
+            largest
         } else {
-            self.noise.u64(..=most / 20)
+            self.noise.u64(..=largest / 20)
         };
         for _ in 0..count {
             let byte = match self.noise.u8(..4) {

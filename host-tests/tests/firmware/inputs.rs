@@ -129,11 +129,11 @@ fn after_power_on_and_a_press_the_robot_patrols_without_a_computer() {
         for _ in 0..2 {
             let walked = bench.lines().len();
             bench.uno.set_contact(NOSE, true);
-            let mut away = bench.run_for_frames(2 * SECOND);
+            let mut frames = bench.run_for_frames(2 * SECOND);
             bench.uno.set_contact(NOSE, false);
-            away.extend(bench.run_for_frames(6 * SECOND));
-            let away = travel(&away);
-            assert!(away.turn > 75.0, "it has turned: {away:?}");
+            frames.extend(bench.run_for_frames(6 * SECOND));
+            let displacement = travel(&frames);
+            assert!(displacement.turn > 75.0, "it has turned: {displacement:?}");
             assert!(notes(&mut bench, walked).is_empty());
             // No second press: only the wall is waited for.
             bench.run_ms(2_500);

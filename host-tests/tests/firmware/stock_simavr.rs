@@ -185,20 +185,20 @@ fn the_elf_file_walks_in_debians_simavr() {
     let widths = widths(&vcd);
     for (servo, calibration) in robot().firmware().calibration().iter().enumerate() {
         let all = &widths[&format!("A{}", servo + 1)];
-        let [least, most] =
+        let [smallest, largest] =
             [f64::min, f64::max].map(|pick| all.iter().copied().reduce(pick).expect("pulses"));
         assert!(all.len() > 150, "{} pulses", all.len());
         assert!(
-            most - least > 50.0,
-            "A{} turns: {least} to {most} us",
+            largest - smallest > 50.0,
+            "A{} turns: {smallest} to {largest} us",
             servo + 1
         );
         let ends = [calibration.min, calibration.max]
             .map(|end| f64::from(calibration.pulse(end)) / f64::from(CYCLES_PER_US));
         let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
         assert!(
-            low - 0.1 <= least && most <= high + 0.1,
-            "A{}: {least} to {most} us",
+            low - 0.1 <= smallest && largest <= high + 0.1,
+            "A{}: {smallest} to {largest} us",
             servo + 1
         );
     }

@@ -266,8 +266,8 @@ fn a_mirrored_gait_is_the_other_one_with_left_and_right_exchanged() {
             for phase in phases() {
                 let pose = mirror(one.pose(robot.firmware().waves(), phase));
                 // Halves are rounded up on either side, gains are rounded.
-                let off = pose.farthest(&other.pose(robot.firmware().waves(), phase));
-                assert!(off <= 1, "{name}: {off} steps");
+                let deviation = pose.farthest(&other.pose(robot.firmware().waves(), phase));
+                assert!(deviation <= 1, "{name}: {deviation} steps");
             }
         }
     }

@@ -92,7 +92,7 @@ impl Findings {
 
     /// Compares every value with the truth.
     fn compare(&mut self, robot: &Robot, core: &Clearance, truth: &Truth) {
-        for (index, (value, meant)) in core.margins.iter().zip(truth.margins).enumerate() {
+        for (index, (value, expected)) in core.margins.iter().zip(truth.margins).enumerate() {
             let end = ENDS.get(index).copied();
             if let Some(end) = end
                 && (truth.margins[end] < MIN_TYPE2 || truth.is_at_crossing(end))
@@ -110,7 +110,7 @@ impl Findings {
                 2..6 => &mut self.type1,
                 _ => &mut self.leg,
             };
-            let error = sine(*value) - meant;
+            let error = sine(*value) - expected;
             spread.add(error);
             self.in_bands[index] = self.in_bands[index].max(error.abs() / truth.bands[index]);
         }
@@ -139,8 +139,11 @@ impl Findings {
             self.in_bands.into_iter().fold(0.0, f64::max),
             self.named
         );
-        for (margin, off) in MARGINS.iter().zip(self.in_bands) {
-            assert!(off <= 1.0, "{name}: {margin:?} is {off} bands off");
+        for (margin, deviation) in MARGINS.iter().zip(self.in_bands) {
+            assert!(
+                deviation <= 1.0,
+                "{name}: {margin:?} is {deviation} bands off"
+            );
         }
         assert!(
             self.stroke.max <= STEPS_BAND,

@@ -221,7 +221,7 @@ impl World {
 
     /// Lets frames pass, main running.
     fn frames(&mut self, count: u8) -> Verdict {
-        let begun = self.now;
+        let start = self.now;
         let fault = (self.fault(), self.observer.stopped_since());
         let mut edges = Vec::new();
         for _ in 0..count {
@@ -239,8 +239,8 @@ impl World {
             return broken(Rule::Answered, "frames went by");
         }
         let is_same = (self.fault(), self.observer.stopped_since()) == fault;
-        if is_same && self.observer.runs_for() > self.now - begun {
-            led::check_pattern(&edges, begun + 3 * FRAME, self.now, fault.0)
+        if is_same && self.observer.runs_for() > self.now - start {
+            led::check_pattern(&edges, start + 3 * FRAME, self.now, fault.0)
                 .map_err(|seen| BrokenRule::new(Rule::Led, seen))?;
         }
         Ok(())

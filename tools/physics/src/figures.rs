@@ -71,11 +71,11 @@ impl Answers {
 
     /// The message for a difference beyond the allowed one.
     pub fn disagreement(&self, case: Case) -> Option<String> {
-        let (off, turned) = self.mujoco.distance_to(&self.model?);
+        let (error, turned) = self.mujoco.distance_to(&self.model?);
         let (mm, deg) = self.bound(case);
-        (off > mm || turned > deg).then(|| {
+        (error > mm || turned > deg).then(|| {
             format!(
-                "MuJoCo is {off:.1} mm and {turned:.1} deg from the model; {mm:.1} and {deg:.1} are allowed"
+                "MuJoCo is {error:.1} mm and {turned:.1} deg from the model; {mm:.1} and {deg:.1} are allowed"
             )
         })
     }

@@ -187,8 +187,8 @@ fn strewn_blocks(robot: &Robot, high: f64) -> Vec<Block> {
             let [wide, long] = [random(10.0, 20.0), random(10.0, 20.0)];
             let mut place = |square: i32| SQUARE * f64::from(square) + random(0.0, SQUARE);
             let at = [place(column), place(row)];
-            let away = |[forward, left]: [f64; 2]| (at[0] + left).hypot(at[1] - forward);
-            if feet.into_iter().map(away).fold(f64::INFINITY, f64::min) > SQUARE {
+            let distance = |[forward, left]: [f64; 2]| (at[0] + left).hypot(at[1] - forward);
+            if feet.into_iter().map(distance).fold(f64::INFINITY, f64::min) > SQUARE {
                 let size = [wide, long, high];
                 let turned = 0.0;
                 blocks.push(Block { at, size, turned });

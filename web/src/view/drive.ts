@@ -89,15 +89,15 @@ export class Drive {
   /** Shows the gait that asks most of the servos at the robot's pace, once all are predicted. */
   private showLine(): void {
     const isKnown = this.buttons.every(({ command, moves }) => !moves || this.predictions.has(command));
-    let [hardest, most] = ['', 0];
+    let [hardest, largest] = ['', 0];
     for (const [command, { lines }] of isKnown ? this.predictions : []) {
       const line = lines?.[Math.ceil((this.pace * lines.length) / 100) - 1] ?? 0;
-      if (line > most) [hardest, most] = [command, line];
+      if (line > largest) [hardest, largest] = [command, line];
     }
     const note = element('line-note');
-    note.classList.toggle('warning', most >= TIGHT);
-    const meaning = most >= 1 ? ': they fall behind their pulses; a slower pace asks less' : most >= TIGHT ? ': little is left' : '';
-    note.textContent = hardest === '' ? '' : `${hardest} asks most of its servos, ${most.toFixed(2)} of their torque-speed line at ${this.pace} % of its pace${meaning}.`;
+    note.classList.toggle('warning', largest >= TIGHT);
+    const meaning = largest >= 1 ? ': they fall behind their pulses; a slower pace asks less' : largest >= TIGHT ? ': little is left' : '';
+    note.textContent = hardest === '' ? '' : `${hardest} asks most of its servos, ${largest.toFixed(2)} of their torque-speed line at ${this.pace} % of its pace${meaning}.`;
   }
 
   /** The prediction for a command; null until it is known. */

@@ -64,8 +64,8 @@ export class LengthSlider {
   }
 
   /** Sets the ends, with which the robot walks. */
-  setRange([least, most]: [number, number]): void {
-    Object.assign(this.slide, { min: String(least), max: String(most) });
+  setRange([smallest, largest]: [number, number]): void {
+    Object.assign(this.slide, { min: String(smallest), max: String(largest) });
     if (this.length) this.write(this.length.value);
   }
 

@@ -278,9 +278,9 @@ export class RoutinesView {
     if (!path || !end) return;
     const [xs, ys] = [path.places.map(({ x }) => x), path.places.map(({ y }) => -y)];
     const side = (values: number[]) => {
-      const [least, most] = [Math.min(...values), Math.max(...values)];
-      const size = Math.max(LEAST, most - least) + 2 * RIM;
-      return { from: (least + most - size) / 2, size };
+      const [smallest, largest] = [Math.min(...values), Math.max(...values)];
+      const size = Math.max(LEAST, largest - smallest) + 2 * RIM;
+      return { from: (smallest + largest - size) / 2, size };
     };
     const [across, down] = [side(xs), side(ys)];
     this.path.setAttribute('viewBox', `${across.from} ${down.from} ${across.size} ${down.size}`);

@@ -145,10 +145,10 @@ export class Sketch {
   }
 
   private joint(joint: Joint, at: Point): SVGCircleElement {
-    let begun: [number, number] | null = null;
+    let start: [number, number] | null = null;
     const isDragged = ({ clientX, clientY }: PointerEvent) => {
-      if (begun && Math.hypot(clientX - begun[0], clientY - begun[1]) > STILL) begun = null;
-      return this.held === joint && begun === null;
+      if (start && Math.hypot(clientX - start[0], clientY - start[1]) > STILL) start = null;
+      return this.held === joint && start === null;
     };
     const mark = document.createElementNS(SVG, 'circle');
     mark.setAttribute('r', '3.6');
@@ -158,7 +158,7 @@ export class Sketch {
     mark.addEventListener('pointerdown', (event) => {
       if (this.isEnding) return;
       mark.setPointerCapture(event.pointerId);
-      begun = [event.clientX, event.clientY];
+      start = [event.clientX, event.clientY];
       this.held = joint;
     });
     mark.addEventListener('pointermove', (event) => isDragged(event) && this.drag(joint, event));

@@ -56,10 +56,10 @@ const KEYS: Record<string, Direction> = {
 export function gaitFor({ ahead, left }: Direction, choices: Choice[]): string | null {
   const size = Math.hypot(ahead, left);
   if (size < DEAD) return null;
-  const most = (of: (displacement: Displacement) => number | null) => Math.max(...choices.map(({ displacement }) => Math.abs(of(displacement) ?? 0)), 0);
-  const [farthest, widest] = [most(({ forward }) => forward), most(({ turn }) => turn)];
+  const largest = (of: (displacement: Displacement) => number | null) => Math.max(...choices.map(({ displacement }) => Math.abs(of(displacement) ?? 0)), 0);
+  const [farthest, widest] = [largest(({ forward }) => forward), largest(({ turn }) => turn)];
   // A drift counts as none, also where no gait that turns is predicted yet.
-  const share = (value: number | null, least: number, most: number) => (value !== null && Math.abs(value) >= least ? value / most : 0);
+  const share = (value: number | null, smallest: number, largest: number) => (value !== null && Math.abs(value) >= smallest ? value / largest : 0);
   let best: { command: string; value: number } | null = null;
   for (const { command, displacement } of choices) {
     const x = share(displacement.forward, LEAST.ahead, farthest);

@@ -37,7 +37,7 @@ export class Writer {
     const session = this.session();
     const { isReal } = session;
     const { name } = session.link;
-    const begun = performance.now();
+    const start = performance.now();
     const hash = typeof what === 'string' ? session.description.hash : null;
     this.isWriting = true;
     this.busy(true);
@@ -56,7 +56,7 @@ export class Writer {
       isWritten = true;
       // The simulation must not be mistaken for a board.
       const where = isReal ? '' : ` to the ${name}`;
-      message.textContent = `written${where} and verified in ${written(performance.now() - begun)}`;
+      message.textContent = `written${where} and verified in ${written(performance.now() - start)}`;
     } catch (error) {
       message.textContent = `not written: ${messageOf(error)}${isTouched && !(error instanceof Unfit) ? TORN[what === 'robot' ? 'robot' : 'all'] : ''}`;
     }

@@ -196,8 +196,8 @@ mod tests {
                     .expect("it closes")
                     .end(end)
                     .end_point;
-                let away = (point.x - x).hypot(point.y - y);
-                assert!((away - 6.0).abs() < 0.05, "{end} {i}: {away} mm");
+                let distance = (point.x - x).hypot(point.y - y);
+                assert!((distance - 6.0).abs() < 0.05, "{end} {i}: {distance} mm");
             }
         }
     }

@@ -96,7 +96,7 @@ pub fn range(text: &str, keys: &[String]) -> Option<(f64, f64)> {
     let own = own
         .iter()
         .find(|length| Some(&length.key) == keys.first())?;
-    let (least, most) = match own.unit {
+    let (smallest, largest) = match own.unit {
         "deg" => (own.value - 45.0, own.value + 45.0),
         _ => (0.5 * own.value, 2.0 * own.value),
     };
@@ -111,7 +111,7 @@ pub fn range(text: &str, keys: &[String]) -> Option<(f64, f64)> {
             (Some(_), None) => own.value,
         }
     };
-    Some((end(least), end(most)))
+    Some((end(smallest), end(largest)))
 }
 
 fn with_lengths(text: &str, wanted: &Wanted) -> Result<String, NoSuchKey> {
@@ -204,12 +204,12 @@ mod tests {
     #[test]
     fn the_range_of_a_length_ends_where_half_a_millimetre_more_is_refused() {
         let keys: Vec<_> = crank(0.0).into_iter().map(|(key, _)| key).collect();
-        let (least, most) = range(PAPER, &keys).expect("a crank");
-        assert!(least < 45.0 && 45.0 < most, "{least} to {most}");
+        let (smallest, largest) = range(PAPER, &keys).expect("a crank");
+        assert!(smallest < 45.0 && 45.0 < largest, "{smallest} to {largest}");
         let refused = |mm: f64| Lengths::of(PAPER, &crank(mm), false).refusal.is_some();
-        assert!(!refused(least) && !refused(most));
-        assert!(least == 22.5 || refused(least - STEP), "{least}");
-        assert!(most == 90.0 || refused(most + STEP), "{most}");
+        assert!(!refused(smallest) && !refused(largest));
+        assert!(smallest == 22.5 || refused(smallest - STEP), "{smallest}");
+        assert!(largest == 90.0 || refused(largest + STEP), "{largest}");
         assert_eq!(range(PAPER, &["links.l99".to_string()]), None);
     }
 

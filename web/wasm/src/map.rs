@@ -93,11 +93,11 @@ fn evaluate(
         return (None, false);
     };
     let margins = bars.conditions(end).into_iter();
-    let least = margins
+    let smallest = margins
         .filter(|(check, _)| !Check::UNCROSSED.contains(check))
-        .fold(1.0f64, |least, (_, value)| least.min(value));
+        .fold(1.0f64, |smallest, (_, value)| smallest.min(value));
     let safe = limits.end_violations(end, &bars).next().is_none();
-    (Some((least * 100.0).round() as i8), safe)
+    (Some((smallest * 100.0).round() as i8), safe)
 }
 
 fn curves(robot: &Robot, end: End) -> Vec<Curve> {

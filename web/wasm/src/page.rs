@@ -256,8 +256,8 @@ impl Page {
     /// Returns the reason why there is nothing to search.
     #[cfg(feature = "tune")]
     pub fn make_faster(&mut self, wish: &SearchTask) -> Option<Result<SearchExtent, Refused>> {
-        let begun = Faster::begin(self.twin.as_ref()?, wish);
-        Some(begun.map(|faster| self.faster.insert(faster).begun()))
+        let search = Faster::begin(self.twin.as_ref()?, wish);
+        Some(search.map(|faster| self.faster.insert(faster).begun()))
     }
 
     /// The search that was started last.

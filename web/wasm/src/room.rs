@@ -59,9 +59,9 @@ impl ReachArea {
         };
         // The allowed points, and a rim around them.
         let span = |has: &dyn Fn(i32) -> bool| {
-            let least = (-half..=half).find(|at| has(*at)).unwrap_or(0);
-            let most = (-half..=half).rev().find(|at| has(*at)).unwrap_or(0);
-            (least - RIM)..=(most + RIM)
+            let smallest = (-half..=half).find(|at| has(*at)).unwrap_or(0);
+            let largest = (-half..=half).rev().find(|at| has(*at)).unwrap_or(0);
+            (smallest - RIM)..=(largest + RIM)
         };
         let columns = span(&|column| (-half..=half).any(|row| is_allowed(column, row)));
         let rows = span(&|row| (-half..=half).any(|column| is_allowed(column, row)));

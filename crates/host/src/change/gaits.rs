@@ -185,10 +185,10 @@ impl From<Prediction> for Predicted {
 
 impl<'a> GaitLine<'a> {
     fn new(row: &'a Row) -> Self {
-        let least_margin = |least: lizard_robot::LeastMargin| LeastMargin {
-            margin: least.value,
-            what: Check::name(least.what),
-            phase: least.phase,
+        let least_margin = |smallest: lizard_robot::LeastMargin| LeastMargin {
+            margin: smallest.value,
+            what: Check::name(smallest.what),
+            phase: smallest.phase,
         };
         let audit = &row.audit;
         Self {

@@ -212,8 +212,12 @@ impl Report {
                     .map_or("-".to_owned(), |(_, value)| format!("{value:.3}")),
                 row.margin.map_or("", |(name, _)| name),
             )?;
-            let [least, most] = row.stroke.unwrap_or_default();
-            write!(out, " {least:>+6.1} {most:>+5.1} {:>7.0}", row.servo_rate)?;
+            let [smallest, largest] = row.stroke.unwrap_or_default();
+            write!(
+                out,
+                " {smallest:>+6.1} {largest:>+5.1} {:>7.0}",
+                row.servo_rate
+            )?;
             if springs {
                 let share = cycle.share_of_rigid.map(|share| 100.0 * share);
                 let share = share.map_or("-".to_owned(), |share| format!("{share:.0}"));
