@@ -1,7 +1,7 @@
-// The project's addresses, which crates/Cargo.toml has, in the page.
+// Puts the project's addresses, which crates/Cargo.toml has, into the page.
 import { readFileSync } from 'node:fs';
 
-/** Shows what the page has for the repository and for its own address, or nothing while they are empty. */
+/** Fills in the addresses of the repository and of the page, or removes what mentions one while it is empty. */
 export const quoted = (html, cargo) =>
   ['repository', 'homepage'].reduce((html, name) => {
     const [, address] = new RegExp(`^${name} = "(.*?)"`, 'm').exec(cargo);

@@ -1,4 +1,4 @@
-// The page's service worker, with the list of all files that were built.
+// Builds the page's service worker, with the list of all files of the page.
 import { createHash } from 'node:crypto';
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -21,5 +21,5 @@ export function writeServiceWorker(folder) {
   writeFileSync(join(folder, NAME), `const BUILD = '${build}';\nconst FILES = [\n${list}\n];\n\n${source}`);
 }
 
-/** As the last thing that Vite does. */
+/** A plugin that writes the service worker when Vite has built everything else. */
 export const offline = () => ({ name: 'offline', apply: 'build', closeBundle: () => writeServiceWorker(new URL('dist', import.meta.url).pathname) });

@@ -1,5 +1,5 @@
-// The moving picture of README: the page, walking, a cycle of the gait; one of the gait editor, for docs/web.md; and one that
-// a chat shows beside a link. Writes pictures into the folder that is named; scripts/page-picture makes files of them.
+// The frames of two animations: of the README, one cycle of a walk in the page; of docs/web.md, the gait editor. And the picture
+// that a chat shows beside a link. Writes them into a folder; scripts/page-picture makes the animations.
 import { mkdir } from 'node:fs/promises';
 import { join } from 'node:path';
 
@@ -11,7 +11,7 @@ const [CYCLE, BEFORE, PICTURES] = [1000, 3, 16];
 
 await mkdir(folder, { recursive: true });
 await open();
-// Its clock is that of this script, so that all pictures are equally far apart and the view follows the robot.
+// This script drives the page's clock, so that frames are evenly spaced and the view follows the robot.
 const opened = await page({ viewport: { width: 1240, height: 800 }, deviceScaleFactor: 0.75, colorScheme: 'light' }, () => {});
 await opened.goto(`${address()}#room=drive`);
 await opened.clock.runFor(3000);
@@ -20,14 +20,14 @@ await opened.evaluate(() => {
   document.activeElement.blur();
   scrollTo(0, 0);
 });
-// Every gait that moves has its prediction on its button.
+// Waits until every gait that moves shows its prediction.
 await opened.waitForFunction(() => [...document.querySelectorAll('#gaits button:not([data-command="stand"]) small')].every((way) => way.textContent !== ''));
 await opened.clock.runFor(BEFORE * CYCLE);
 for (let n = 0; n < PICTURES; n++) {
   await opened.clock.runFor(CYCLE / PICTURES);
   await opened.screenshot({ path: join(folder, `${String(n).padStart(2, '0')}.png`) });
 }
-// A short search, and what it found on the screen.
+// A short search, and its result on the screen.
 await opened.setViewportSize({ width: 1240, height: 1300 });
 await opened.goto(`${address()}#room=gaits`);
 await opened.getByLabel('Rounds of 40 gaits').fill('1');

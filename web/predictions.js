@@ -1,5 +1,5 @@
-// The predictions of the files' robots, made with the page, so that a phone need not: NAME.predictions.json beside NAME.toml in a
-// folder, which also has the robot in WebAssembly.
+// Computes the predictions of the page's robots when the page is built, so that a phone need not: NAME.predictions.json beside
+// NAME.toml in a folder, which also has the robot in WebAssembly.
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 

@@ -1,8 +1,8 @@
-// Pictures of every room on a phone and on a desk, for whoever changes the page to look at: node web/room-pictures.js FOLDER [dark]
+// Takes pictures of every room on a phone and on a desktop, to look at after a change of the page: node web/room-pictures.js FOLDER [dark]
 import { mkdir } from 'node:fs/promises';
 import { join } from 'node:path';
 
-import { address, advance, close, open, standing } from './tests/browser.js';
+import { address, advance, close, open, openStanding } from './tests/browser.js';
 
 const [, , folder, colorScheme = 'light'] = process.argv;
 const ROOMS = ['start', 'drive', 'gaits', 'build', 'board', 'measure', 'learn'];
@@ -12,7 +12,7 @@ await mkdir(folder, { recursive: true });
 await open();
 for (const [width, height] of SIZES) {
   const isPhone = Math.min(width, height) < 500;
-  const opened = await standing({ viewport: { width, height }, colorScheme, hasTouch: isPhone, isMobile: isPhone });
+  const opened = await openStanding({ viewport: { width, height }, colorScheme, hasTouch: isPhone, isMobile: isPhone });
   await opened.evaluate(() => window.lizard.ask('walk'));
   for (const room of ROOMS) {
     await opened.goto(`${address()}#room=${room}`);

@@ -1,6 +1,5 @@
-// Keeps the page on the machine that has opened it once, so that it works without a network: all of its files, as they
-// were built together. The build puts in front of this the list of
-// them, FILES, each path with the SHA-256 of its bytes, and BUILD, that of the list.
+// Stores all files of one build of the page when it is first opened, so that it works without a network. The build puts two constants
+// in front of this code: FILES, each path with the SHA-256 of its bytes, and BUILD, the SHA-256 of that list.
 
 /** Other pages of the same origin have caches of their own. */
 const PREFIX = `lizard ${new URL(self.registration.scope).pathname} `;
@@ -13,8 +12,8 @@ async function hashOf(bytes) {
   return Array.from(sum, (byte) => byte.toString(16).padStart(2, '0')).join('');
 }
 
-/** A file as it was built: from an older cache if that has the same, or else from the server. Throws if that has another. */
-async function right(path, hash) {
+/** Returns a file of this build, from an older cache or from the server. Throws if the server has another version. */
+async function verifiedFile(path, hash) {
   for (const name of await caches.keys()) {
     if (!name.startsWith(PREFIX)) continue;
     const kept = await (await caches.open(name)).match(addressOf(path));
@@ -26,11 +25,11 @@ async function right(path, hash) {
   return response;
 }
 
-// All files or none: while one is missing, what was kept before goes on.
+// All files or none: while one is missing, the older build stays in use.
 self.addEventListener('install', (event) => {
   event.waitUntil(
     (async () => {
-      const found = await Promise.all(FILES.map(async ([path, hash]) => [path, await right(path, hash)]));
+      const found = await Promise.all(FILES.map(async ([path, hash]) => [path, await verifiedFile(path, hash)]));
       const cache = await caches.open(VERSION);
       for (const [path, response] of found) await cache.put(addressOf(path), response);
     })(),
@@ -46,7 +45,7 @@ self.addEventListener('activate', (event) => {
   );
 });
 
-// A person has asked for the newer page.
+// The user has asked for the newer page.
 self.addEventListener('message', ({ data }) => {
   if (data === 'take over') void self.skipWaiting();
 });

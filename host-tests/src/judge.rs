@@ -81,7 +81,7 @@ impl Account {
     }
 }
 
-/// avr8js's account of a run, and its cost.
+/// The result of avr8js for a run, and its cost.
 #[derive(Debug, Clone, Default)]
 pub struct Verdict {
     /// The firmware's account of the run.
@@ -110,7 +110,7 @@ pub fn judge(
     std::fs::write(&flash, image.flash()).map_err(|error| error.to_string())?;
     let mut objcopy = Command::new("avr-objcopy");
     objcopy.args(["-I", "binary", "-O", "ihex"]);
-    done(objcopy.args([&flash, &hex]), "binutils-avr", "")?;
+    run_program(objcopy.args([&flash, &hex]), "binutils-avr", "")?;
     let mut script = String::new();
     if let Some((pin, mv)) = supplies::rail_pin(robot) {
         script += &format!("analogue {} {mv}\n", pin.number());
@@ -119,7 +119,7 @@ pub fn judge(
         script += &format!("{} {byte:02x}\n", cycle.saturating_add_signed(AVR8JS_LAG));
     }
     script += &format!("end {end}\n");
-    let printed = done(
+    let printed = run_program(
         node()?.arg(judge_folder().join("run.js")).arg(hex),
         "nodejs",
         &script,
@@ -139,9 +139,9 @@ pub fn own_tests() -> Result<String, String> {
     let folder = judge_folder().join("test");
     let files = std::fs::read_dir(&folder).map_err(|error| error.to_string())?;
     let paths = files.filter_map(|file| Some(file.ok()?.path()));
-    // By name: what Node makes of a folder differs from version to version.
+    // Files by name, because versions of Node treat a folder differently.
     let tests = paths.filter(|path| path.to_string_lossy().ends_with(".test.js"));
-    done(node()?.arg("--test").args(tests), "nodejs", "")
+    run_program(node()?.arg("--test").args(tests), "nodejs", "")
 }
 
 fn judge_folder() -> PathBuf {
@@ -158,7 +158,7 @@ fn node() -> Result<Command, String> {
 }
 
 /// Runs a program on `input` and returns its output.
-fn done(command: &mut Command, debian: &str, input: &str) -> Result<String, String> {
+fn run_program(command: &mut Command, debian: &str, input: &str) -> Result<String, String> {
     let program = command.get_program().to_string_lossy().into_owned();
     let output = LIMIT.output(command, input.as_bytes());
     let output = output.map_err(|error| match error.kind() {
@@ -212,10 +212,10 @@ pub struct Agreement {
     pub what: &'static str,
     /// The number of records.
     pub count: usize,
-    /// Cycles by which avr8js's all come later.
+    /// Cycles by which all records of avr8js come later.
     pub offset: i64,
-    /// The largest deviation from that offset, cycles.
-    pub wander: u64,
+    /// The largest deviation from this offset, cycles.
+    pub jitter: u64,
 }
 
 impl fmt::Display for Agreement {
@@ -224,11 +224,11 @@ impl fmt::Display for Agreement {
             what,
             count,
             offset,
-            wander,
+            jitter,
         } = self;
         write!(
             f,
-            "{count} {what} {offset} cycles later, {wander} more or less"
+            "{count} {what} {offset} cycles later, {jitter} more or less"
         )
     }
 }
@@ -278,7 +278,7 @@ pub fn compare_pulses(
         what: "pulses",
         count,
         offset,
-        wander: 0,
+        jitter: 0,
     })
 }
 
@@ -292,7 +292,7 @@ pub fn compare_console(simavr: &Account, avr8js: &Account) -> Result<Agreement, 
     };
     let offset = other.cycle as i64 - first.cycle as i64;
     let both = simavr.sent.iter().zip(&avr8js.sent);
-    let mut wander = 0;
+    let mut jitter = 0;
     for (n, (a, b)) in both.enumerate() {
         if a.byte != b.byte {
             return Err(format!(
@@ -302,7 +302,7 @@ pub fn compare_console(simavr: &Account, avr8js: &Account) -> Result<Agreement, 
                 tail(&avr8js.sent, n)
             ));
         }
-        wander = wander.max(b.cycle.saturating_add_signed(-offset).abs_diff(a.cycle));
+        jitter = jitter.max(b.cycle.saturating_add_signed(-offset).abs_diff(a.cycle));
     }
     let count = simavr.sent.len().min(avr8js.sent.len());
     for (name, account) in [("simavr", simavr), ("avr8js", avr8js)] {
@@ -317,7 +317,7 @@ pub fn compare_console(simavr: &Account, avr8js: &Account) -> Result<Agreement, 
         what: "bytes",
         count,
         offset,
-        wander,
+        jitter,
     })
 }
 

@@ -51,9 +51,9 @@ pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
         .expect("one draft in a few is a valid robot")
 }
 
-/// The same robot with as many more gaits as the board has room for, so that none is left
-/// for the maps of certified cells. Their names have `length` characters and differ in the
-/// last two alone.
+/// The same robot with as many more gaits as the board has room for, so that no room is left for
+/// the maps of certified cells. Their names have `length` characters and differ in the last two
+/// alone.
 ///
 /// # Panics
 /// If the robot has no gait that moves, or is not valid.
@@ -227,7 +227,7 @@ fn neutral(rng: &mut Rng, lizard: &Lizard, limits: &Limits) -> Option<[f64; 4]> 
     })
 }
 
-/// A rail on an analogue pin that no servo is on, with voltages of its own.
+/// A rail on an analogue pin without a servo, with random thresholds.
 fn rail(rng: &mut Rng, pins: &[&'static str]) -> String {
     let free = pins[4..].iter().find(|pin| pin.starts_with('A'));
     let pin = free.expect("six analogue pins and four servos");
@@ -243,7 +243,7 @@ fn rail(rng: &mut Rng, pins: &[&'static str]) -> String {
     )
 }
 
-/// A gait's text for a size from 0 to 1; or a gait that has no size of its own.
+/// A function that returns a gait's text for a size from 0 to 1; some gaits ignore the size.
 type Sized = Box<dyn Fn(f64) -> String>;
 
 /// Gaits of every kind.

@@ -54,7 +54,7 @@ fn millions_of_random_bytes_do_no_harm_to_the_core() {
         for byte in b"stop\n" {
             board.take(*byte);
         }
-        assert!(board.said().starts_with("ok ") || board.said().contains("err 7"));
+        assert!(board.output().starts_with("ok ") || board.output().contains("err 7"));
     });
 }
 
@@ -68,7 +68,7 @@ fn millions_of_lines_that_are_nearly_right_do_no_harm_to_the_core() {
                 board.take(byte);
             }
             board.take(b'\n');
-            accepted += u64::from(board.said().contains("ok "));
+            accepted += u64::from(board.output().contains("ok "));
             if n % 16 == 0 {
                 board.frame();
             }

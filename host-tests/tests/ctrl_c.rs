@@ -26,6 +26,6 @@ fn ctrl_c_ends_a_command_even_if_the_tests_ignore_it() {
     again.args(["--ignore-signal=INT"]).arg(this);
     again.args(["--exact", "ctrl_c_ends_a_command_that_reads_and_prints"]);
     let output = LIMIT.output(&mut again, b"").expect("it ends");
-    let said = String::from_utf8_lossy(&output.stdout);
-    assert!(said.contains("1 passed"), "{said}");
+    let printed = String::from_utf8_lossy(&output.stdout);
+    assert!(printed.contains("1 passed"), "{printed}");
 }

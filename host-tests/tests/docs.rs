@@ -255,10 +255,10 @@ fn links(text: &str) -> Vec<&str> {
 fn anchors(text: &str) -> Vec<String> {
     let anchor = |line: &str| {
         let title = line.trim_start_matches('#').trim().to_lowercase();
-        let kept = title
+        let letters = title
             .chars()
             .filter(|c| c.is_alphanumeric() || " -_".contains(*c));
-        kept.collect::<String>().replace(' ', "-")
+        letters.collect::<String>().replace(' ', "-")
     };
     text.lines()
         .filter(|line| line.starts_with('#'))

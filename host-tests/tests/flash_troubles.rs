@@ -23,8 +23,8 @@ fn check_as(user: &[&str], ports: &Path, port: Option<&Path>) -> (String, bool) 
         command.env("RAVEDUDE_PORT", port);
     }
     let output = LIMIT.output(&mut command, b"").expect("the script ends");
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    (said, output.status.success())
+    let printed = String::from_utf8_lossy(&output.stderr).into_owned();
+    (printed, output.status.success())
 }
 
 fn check(ports: &Path) -> (String, bool) {
@@ -59,10 +59,10 @@ fn scripts() -> TempDir {
 
 #[test]
 fn without_a_board_it_says_what_to_connect() {
-    let (said, goes_on) = check(folder().path());
+    let (printed, goes_on) = check(folder().path());
     assert!(!goes_on);
-    assert!(said.contains("no board found"), "{said}");
-    assert!(said.contains("cable that carries data"), "{said}");
+    assert!(printed.contains("no board found"), "{printed}");
+    assert!(printed.contains("cable that carries data"), "{printed}");
 }
 
 #[test]
@@ -78,10 +78,10 @@ fn of_several_boards_one_must_be_named() {
     for name in ["ttyACM0", "ttyUSB3"] {
         File::create(ports.path().join(name)).expect("a file");
     }
-    let (said, goes_on) = check(ports.path());
+    let (printed, goes_on) = check(ports.path());
     assert!(!goes_on);
-    assert!(said.contains("several boards found"), "{said}");
-    assert!(said.contains("make flash RAVEDUDE_PORT="), "{said}");
+    assert!(printed.contains("several boards found"), "{printed}");
+    assert!(printed.contains("make flash RAVEDUDE_PORT="), "{printed}");
     let named = ports.path().join("ttyUSB3");
     assert!(check_as(&[], ports.path(), Some(&named)).1);
 }
@@ -89,10 +89,13 @@ fn of_several_boards_one_must_be_named() {
 #[test]
 fn a_port_that_is_not_there_is_named() {
     let missing = Path::new("/dev/no-such-port");
-    let (said, goes_on) = check_as(&[], folder().path(), Some(missing));
+    let (printed, goes_on) = check_as(&[], folder().path(), Some(missing));
     assert!(!goes_on);
-    assert!(said.contains("there is no /dev/no-such-port"), "{said}");
-    assert!(said.contains("of this machine: none"), "{said}");
+    assert!(
+        printed.contains("there is no /dev/no-such-port"),
+        "{printed}"
+    );
+    assert!(printed.contains("of this machine: none"), "{printed}");
 }
 
 #[test]
@@ -103,12 +106,12 @@ fn a_port_that_another_program_has_open_names_the_program() {
     assert_eq!(check(ports.path()), (String::new(), true));
     let mut options = OpenOptions::new();
     let other = options.read(true).write(true).open(port.path());
-    let (said, goes_on) = check(ports.path());
+    let (printed, goes_on) = check(ports.path());
     assert!(!goes_on);
     let ours = format!("(process {})", std::process::id());
     assert!(
-        said.contains("is open in ") && said.contains(&ours),
-        "{said}"
+        printed.contains("is open in ") && printed.contains(&ours),
+        "{printed}"
     );
     drop(other);
     assert!(check(ports.path()).1);
@@ -125,19 +128,19 @@ fn without_permission_it_says_which_group_to_join() {
         // Only root can run it as another user; a port that even its owner may not open
         // does as well.
         fs::set_permissions(&port, Permissions::from_mode(0o000)).expect("it is ours");
-        let (said, goes_on) = check_as(&[], ports.path(), None);
+        let (printed, goes_on) = check_as(&[], ports.path(), None);
         assert!(!goes_on);
-        assert!(said.contains("may not open"), "{said}");
+        assert!(printed.contains("may not open"), "{printed}");
         return;
     }
     let mut dialout = Command::new("chgrp");
     dialout.arg("dialout").arg(&port);
     let dialout = LIMIT.output(&mut dialout, b"").expect("chgrp ends");
     assert!(dialout.status.success(), "the group dialout is Debian's");
-    let (said, goes_on) = check_as(&as_nobody, ports.path(), None);
+    let (printed, goes_on) = check_as(&as_nobody, ports.path(), None);
     assert!(!goes_on);
-    assert!(said.contains("nobody may not open"), "{said}");
-    assert!(said.contains("usermod -aG dialout nobody"), "{said}");
+    assert!(printed.contains("nobody may not open"), "{printed}");
+    assert!(printed.contains("usermod -aG dialout nobody"), "{printed}");
 }
 
 #[test]
@@ -165,11 +168,11 @@ fn a_missing_avrdude_says_what_to_install() {
     command.arg(script).env("PATH", bin.path());
     let output = LIMIT.output(&mut command, b"");
     let output = output.expect("setpriv starts (Debian package util-linux)");
-    let said = String::from_utf8_lossy(&output.stdout);
-    assert!(said.contains("setup:"), "{said}");
+    let printed = String::from_utf8_lossy(&output.stdout);
+    assert!(printed.contains("setup:"), "{printed}");
     assert!(!output.status.success());
     assert!(
-        said.contains("As root, run:\n    apt-get install -y avrdude"),
-        "{said}"
+        printed.contains("As root, run:\n    apt-get install -y avrdude"),
+        "{printed}"
     );
 }

@@ -64,7 +64,7 @@ fn check_agreement(bench: &mut FirmwareBench, what: &str, apart: Apart) {
         let console = compare_console(&simavr, &verdict.account);
         let console = console.unwrap_or_else(|difference| panic!("{what}: {difference}"));
         assert!(
-            console.offset.abs() <= 1 && console.wander <= limit,
+            console.offset.abs() <= 1 && console.jitter <= limit,
             "{what}: the console's times differ: {console:?}"
         );
         println!("{what}: {console}");

@@ -1,4 +1,4 @@
-//! The linker's order of functions does not change a program.
+//! The order in which our linker places functions does not change a program.
 
 use lizard_host_tests::avr_gcc::compile_c_with_edited_object;
 use lizard_linker::{ROUTINES, Savings, shrink};

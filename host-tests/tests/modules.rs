@@ -33,7 +33,7 @@ const ROOMS: [&str; 6] = ["console", "control", "motion", "guard", "memory", "nu
 
 /// Folders whose `mod.rs` counts as a module of its own, which must not be part of a circle
 /// either.
-const WITH_FACE: [(&str, &str); 2] = [
+const WITH_OWN_FILE: [(&str, &str); 2] = [
     ("crates/host", "crate::"),
     ("crates/host", "crate::commands::"),
 ];
@@ -46,7 +46,7 @@ fn no_modules_use_each_other_in_a_circle() {
     let mut count = 0;
     for name in CRATES {
         for folder in folders(&root().join(name).join("src")) {
-            let uses = folder.uses(WITH_FACE.contains(&(name, &folder.path)));
+            let uses = folder.uses(WITH_OWN_FILE.contains(&(name, &folder.path)));
             count += uses.values().map(BTreeSet::len).sum::<usize>();
             let circles = in_circles(uses);
             assert!(
@@ -94,14 +94,14 @@ fn a_cycle_is_found_without_the_modules_that_lead_to_it_or_from_it() {
 }
 
 #[test]
-fn a_use_of_a_module_above_is_read_as_its_path_and_a_faces_own_items_are_found() {
+fn a_use_of_a_module_above_is_read_as_its_path_and_a_roots_own_items_are_found() {
     let text = "use super::{Link, status};\nuse super::super::recorder::Event;";
     assert_eq!(
         resolve_super(text, "crate::drive::console::"),
         "use crate::drive::console::{Link, status};\nuse crate::drive::recorder::Event;"
     );
-    let face = "mod menu;\npub fn run() {}\nconst KNOWN: u8 = 1;\nuse menu::Choice;";
-    assert_eq!(items(face).collect::<Vec<_>>(), ["run", "KNOWN"]);
+    let root = "mod menu;\npub fn run() {}\nconst KNOWN: u8 = 1;\nuse menu::Choice;";
+    assert_eq!(items(root).collect::<Vec<_>>(), ["run", "KNOWN"]);
 }
 
 /// The modules that use each other in circles: those that are left after removing,
@@ -126,7 +126,7 @@ struct Folder {
     /// The path prefix of its names: `crate::`, or `crate::measures::`.
     path: String,
     /// The file that declares its modules, without comments and tests.
-    face: String,
+    root: String,
     /// The folder of its modules.
     place: PathBuf,
 }
@@ -135,16 +135,16 @@ struct Folder {
 fn folders(source: &Path) -> Vec<Folder> {
     let mut all = vec![Folder {
         path: "crate::".to_owned(),
-        face: read(&source.join("lib.rs")),
+        root: read(&source.join("lib.rs")),
         place: source.to_owned(),
     }];
     let mut next = 0;
     while let Some(folder) = all.get(next) {
         let within = folder.modules().into_iter().filter_map(|module| {
             let place = folder.place.join(module);
-            let face = read(&place.join("mod.rs")) + &read(&place.with_extension("rs"));
+            let root = read(&place.join("mod.rs")) + &read(&place.with_extension("rs"));
             let path = format!("{}{module}::", folder.path);
-            place.is_dir().then_some(Folder { path, face, place })
+            place.is_dir().then_some(Folder { path, root, place })
         });
         let within: Vec<_> = within.collect();
         all.extend(within);
@@ -155,17 +155,17 @@ fn folders(source: &Path) -> Vec<Folder> {
 
 impl Folder {
     fn modules(&self) -> BTreeSet<&str> {
-        self.face.lines().filter_map(module).collect()
+        self.root.lines().filter_map(module).collect()
     }
 
-    /// The uses among its modules, including its `mod.rs` if `with_face`. A module and its
+    /// The uses among its modules, including its `mod.rs` if `with_root`. A module and its
     /// submodules count as one; tests do not count.
-    fn uses(&self, with_face: bool) -> Uses {
+    fn uses(&self, with_root: bool) -> Uses {
         let modules = self.modules();
-        // `crate::Name` uses the module that the folder's face has the name from.
+        // `crate::Name` uses the module from which the folder's root file exports the name.
         let mut homes: BTreeMap<&str, &str> = modules.iter().map(|name| (*name, *name)).collect();
         for export in self
-            .face
+            .root
             .split(';')
             .filter_map(|item| item.split_once("use "))
         {
@@ -176,12 +176,12 @@ impl Folder {
             }
         }
         let mut uses = Uses::new();
-        if with_face {
-            homes.extend(items(&self.face).map(|name| (name, FACE)));
+        if with_root {
+            homes.extend(items(&self.root).map(|name| (name, ROOT)));
             let used = modules
                 .iter()
-                .filter(|module| self.face.contains(&format!("{module}::")));
-            uses.insert(FACE.to_owned(), used.map(ToString::to_string).collect());
+                .filter(|module| self.root.contains(&format!("{module}::")));
+            uses.insert(ROOT.to_owned(), used.map(ToString::to_string).collect());
         }
         for module in &modules {
             let place = self.place.join(module);
@@ -212,8 +212,8 @@ impl Folder {
     }
 }
 
-/// The name of a folder's face among its modules.
-const FACE: &str = "(mod.rs)";
+/// The name of a folder's root file among its modules.
+const ROOT: &str = "(mod.rs)";
 
 /// The names of the functions, types and constants that a text defines.
 fn items(text: &str) -> impl Iterator<Item = &str> {
@@ -239,7 +239,7 @@ fn resolve_super(text: &str, above: &str) -> String {
     text
 }
 
-/// The name that a line of a folder's face declares a module by.
+/// The module that a line of a folder's root file declares.
 fn module(line: &str) -> Option<&str> {
     let line = line
         .trim_start_matches("pub(crate) ")
@@ -247,7 +247,7 @@ fn module(line: &str) -> Option<&str> {
     line.strip_prefix("mod ")?.strip_suffix(';')
 }
 
-/// The names behind each `crate::`, or another path, in a text: one, or those in braces.
+/// The names after each `crate::`, or another path, in a text: one, or those in braces.
 fn names_after<'a>(text: &'a str, path: &str) -> BTreeSet<&'a str> {
     let after = text.split(path).skip(1);
     after
@@ -276,8 +276,8 @@ fn read(path: &Path) -> String {
         .filter(|line| !line.trim_start().starts_with("//"))
         .collect();
     let for_tests = |i: usize| i > 0 && lines[i - 1].trim() == "#[cfg(test)]";
-    let kept = (0..lines.len()).filter(|i| !for_tests(*i));
-    kept.map(|i| format!("{}\n", lines[i])).collect()
+    let indices = (0..lines.len()).filter(|i| !for_tests(*i));
+    indices.map(|i| format!("{}\n", lines[i])).collect()
 }
 
 /// The Rust files of a module's folder and of the folders in it, except for its tests.
@@ -286,10 +286,11 @@ fn files(folder: &Path) -> Vec<PathBuf> {
         return Vec::new();
     };
     let paths = entries.map(|entry| entry.expect("an entry").path());
-    let ours = paths.filter(|path| path.file_stem().is_some_and(|name| name != "tests"));
-    ours.flat_map(|path| match path.is_dir() {
-        true => files(&path),
-        false => vec![path],
-    })
-    .collect()
+    let sources = paths.filter(|path| path.file_stem().is_some_and(|name| name != "tests"));
+    sources
+        .flat_map(|path| match path.is_dir() {
+            true => files(&path),
+            false => vec![path],
+        })
+        .collect()
 }

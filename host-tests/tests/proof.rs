@@ -59,7 +59,7 @@ fn a_guard_with_another_robots_lengths_does_not_pass() {
     let text =
         std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../robots/paper.toml"));
     let text = text.expect("the paper's robot is there");
-    // Without the one gait that other couplers would make unsafe.
+    // Without the one gait that is unsafe with other couplers.
     let text = text.split("[gait.look]").next().unwrap_or_default();
     let robot = Robot::parse(text).expect("it is right");
     let longer = text

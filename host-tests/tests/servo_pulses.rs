@@ -1,4 +1,4 @@
-//! `servo-pulses` apart from the lizard: its example, eight servos beside a flood of serial
+//! `servo-pulses` without the lizard: its example, eight servos beside a flood of serial
 //! bytes, measured in the simulated UNO.
 
 use lizard_host_tests::{FirmwareBench, root};
@@ -8,7 +8,7 @@ use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin, State, Uno, most_pins_high};
 /// The example's pins, in its order.
 const PINS: [u8; 8] = [2, 3, 7, 8, 9, 12, 14, 19];
 
-/// Cycles that the example's servo has in its frame, by its description: up from 1000 us
+/// Width of a servo's pulse in a frame, cycles, by the description of the example: up from 1000 us
 /// by a step of its own in every frame, to 2000 us and down again.
 fn width(servo: u64, frame: u64) -> u64 {
     // It counts its position in 16 bits.

@@ -11,7 +11,7 @@ use lizard_host_tests::{FirmwareBench, robot};
 use lizard_twin::ServoModel;
 use simulated_uno::{Fidelity, Uno};
 
-/// Every gait that moves after a second at its beginning, for three cycles.
+/// Walks every gait that moves for three cycles, each after a second at its first pose.
 fn walk_all(model: ServoModel) -> Replay {
     let mut ms = 1000;
     let mut steps = Vec::new();

@@ -13,9 +13,9 @@ export function run(advance: (ms: number) => void, draw: () => void): void {
   const frame = async (now: number) => {
     let left = before === null ? 0 : Math.min(MOST, Math.max(0, now - before));
     before = now;
-    const begun = performance.now();
+    const start = performance.now();
     try {
-      while (left > 0 && !failed && performance.now() - begun < BUDGET) {
+      while (left > 0 && !failed && performance.now() - start < BUDGET) {
         advance(Math.min(PART, left));
         left -= PART;
         await Promise.resolve();

@@ -35,8 +35,8 @@ export class Companion {
 
   /** Advances by one frame of 20 ms. */
   step(): void {
-    const said = this.robot.coreFrame(this.line, this.volts);
+    const output = this.robot.coreFrame(this.line, this.volts);
     this.line = '';
-    if (said) this.frame = this.robot.pulses(said.widths) ?? this.frame;
+    if (output) this.frame = this.robot.pulses(output.widths) ?? this.frame;
   }
 }

@@ -3,7 +3,7 @@ import type { Bars, Floor } from './robot';
 
 /** A robot and the user's changes to it. */
 export interface SavedChanges {
-  /** The name of its file. */
+  /** The name of the robot's file. */
   file: string;
   /** The robot.toml of the file at that time: the changes apply only to this text. */
   original: string;
@@ -15,7 +15,7 @@ export interface SavedChanges {
   volts: number;
 }
 
-/** Pages of another address on the same server have their own. */
+/** The prefix of the keys: pages at other addresses of the same server have their own. */
 const KEY = `lizard ${location.pathname}`;
 const ASIDE = `${KEY} aside`;
 const GAIT = `${KEY} gait`;
@@ -54,7 +54,7 @@ function isGait(value: unknown): value is Bars {
 }
 
 export const kept = {
-  /** Stores it; a browser without storage loses it at a reload. */
+  /** Stores a state; without storage in the browser it is lost at a reload. */
   put: (state: SavedChanges) => store(KEY, state),
 
   /** The stored state; null if there is none that can be used. */

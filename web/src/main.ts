@@ -101,15 +101,15 @@ async function start(): Promise<void> {
     routines.predict();
   };
   // The robot walks slowly when the page opens, unless the system asks for reduced motion.
-  let begun = matchMedia('(prefers-reduced-motion: reduce)').matches;
+  let isOver = matchMedia('(prefers-reduced-motion: reduce)').matches;
   const begin = () => {
     const gait = gaitFor({ ahead: 1, left: 0 }, drive.choices());
-    if (begun || !gait || isBarred() || session.isReal || session.gait !== session.description.gaits[0]?.command) return;
-    begun = true;
+    if (isOver || !gait || isBarred() || session.isReal || session.gait !== session.description.gaits[0]?.command) return;
+    isOver = true;
     void drive.ask(`${WORDS.speed} 50`).then(() => drive.ask(gait));
   };
   // The user has taken over.
-  for (const act of ['pointerdown', 'keydown']) document.addEventListener(act, () => (begun = true), { once: true });
+  for (const act of ['pointerdown', 'keydown']) document.addEventListener(act, () => (isOver = true), { once: true });
   const world = new World(now, predict);
   const health = new Health(now);
   const lengths: Lengths = new Lengths(now, (edits) => sketch.offer(edits));
@@ -132,10 +132,10 @@ async function start(): Promise<void> {
   const remote = new Remote();
   const text: RobotText = new RobotText(now, writer, () => routines.show());
   const routines = new RoutinesView(module, now, text, () => pace.percent, (line) => drive.ask(line), writer);
-  const gaits = new GaitsView(module, now, (line) => drive.ask(line), writer, (before, found, told) => {
+  const gaits = new GaitsView(module, now, (line) => drive.ask(line), writer, (before, found, output) => {
     // The second robot is drawn from above alone.
     parts.set3d(false);
-    return keep.compare(before, found, told);
+    return keep.compare(before, found, output);
   });
   const path = new PathView(module, now, (line) => drive.ask(line), writer);
   const flash = new FlashView(now, writer);
@@ -233,7 +233,7 @@ async function start(): Promise<void> {
     },
     state({ phase }) {
       routines.phase(phase);
-      calibrate.answered();
+      calibrate.refresh();
     },
     silent(isSilent) {
       alarm.silent(isSilent);
@@ -256,11 +256,11 @@ async function start(): Promise<void> {
       measure?.link(session.isReal);
       setup.link();
     },
-    trouble(cause, said) {
-      if (cause === 'fault' && said !== null) remote.buzz();
+    trouble(cause, message) {
+      if (cause === 'fault' && message !== null) remote.buzz();
       // Offers this firmware to a board without it.
       const remedy = { label: 'Write firmware and robot to it', act: () => flash.write('all') };
-      troubles.say(cause, said, cause === 'board' && session.link.kind !== 'radio' ? remedy : null);
+      troubles.say(cause, message, cause === 'board' && session.link.kind !== 'radio' ? remedy : null);
     },
   });
   let latest = 0;
@@ -350,8 +350,8 @@ async function start(): Promise<void> {
   const isAsked = asked !== null || partsOf(location.hash).has('robot');
   if (before && session.file === before.file && !(await session.recall(before)) && !isAsked) {
     const remedy = { label: 'Download what was changed', act: () => void download(robot, before.toml, before.floor) };
-    const said = `${before.file}.toml is not the file of last time, so what was changed of it then is not taken.`;
-    troubles.say('robot', said, remedy);
+    const message = `${before.file}.toml is not the file of last time, so what was changed of it then is not taken.`;
+    troubles.say('robot', message, remedy);
   }
   if (await text.fromAddress()) address.begin();
   if (isAsked) own.replaced(before);

@@ -24,7 +24,7 @@ async function answer({ question, toml, floor, servos, gaits, first }: Question 
     const gait = (first + n) % gaits;
     await new Promise((turn) => setTimeout(turn));
     if (question !== asked) return;
-    const said: Answer = { question, gait, prediction: known.predict(gait) };
-    postMessage(said);
+    const reply: Answer = { question, gait, prediction: known.predict(gait) };
+    postMessage(reply);
   }
 }

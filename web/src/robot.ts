@@ -81,7 +81,7 @@ export type Kind = 'rigid' | 'strut';
 export interface Floor {
   /** Friction of a pad that slides forward. */
   friction: number;
-  /** Friction of a pad that slides backward, over `friction`. */
+  /** Friction of a pad that slides backward, relative to `friction`. */
   ratio: number;
   /** Mass, g. */
   mass: number;
@@ -103,7 +103,7 @@ export const lags = ({ kind, play }: Floor) => kind !== 'rigid' || play > 0;
 /** A model of the servos. */
 export interface ServoModel {
   name: string;
-  /** Torque at a stall, kg cm, and time for 60 deg, s, both at a supply in V; and their supply in the robot, V. Null for ideal servos. */
+  /** Stall torque, kg cm, and time for 60 deg, s, both at a supply in V; and their supply in the robot, V. Null for ideal servos. */
   figures: [number, number, number, number] | null;
 }
 
@@ -161,7 +161,7 @@ export interface Frame {
   errors: Four<number>;
 }
 
-/** Displacement per cycle, mm and deg; null where two feet pull against two, so that the model does not tell it. */
+/** Displacement per cycle, mm and deg; null where two feet pull against two, so that the model does not determine it. */
 export interface Displacement {
   forward: number | null;
   left: number | null;
@@ -334,7 +334,7 @@ export class Robot {
     return this.ask('lengths', [toml, edits, searches]);
   }
 
-  /** The least and the greatest value with which the robot walks if all these lengths have it; null for a key that there is not. */
+  /** The least and the greatest value with which the robot walks if all these lengths have it; null for an unknown key. */
   lengthRange(toml: string, keys: string[]): [number, number] | null {
     return this.ask('length_range', [toml, keys]);
   }
@@ -396,7 +396,7 @@ export class Robot {
     return this.ask('reversed', bars);
   }
 
-  /** A gait as bars; null for a gait along a path and for one that stands. */
+  /** A gait as bars; null for a gait along a path and for one without motion. */
   bars(gait: number): Bars | null {
     return this.ask('bars', gait);
   }

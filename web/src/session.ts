@@ -46,7 +46,7 @@ const PART = 5;
 /** Seconds of path kept for measuring a cycle: 3 s at a tenth of the pace. */
 const KEPT_SECONDS = 31;
 
-/** The fault of a robot that has heard nothing for as long as `deadman` says. */
+/** The fault of a robot that has received nothing for the time of `deadman`. */
 const LINK_FAULT = 'link';
 /** The reason why nothing is written by radio. */
 export const BY_CABLE = 'a radio does not reset a board and is too slow for it: connect its USB cable to write to it';
@@ -62,7 +62,7 @@ export interface Listener {
   pulse(pin: number, rise: number, width: number): void;
   sent(line: string): void;
   received(line: string): void;
-  /** Called when the robot does something else: a gait or a command. */
+  /** Called when the robot's activity changes: a gait or a command. */
   doing(gait: string): void;
   /** Called when the board's firmware and robot are known. */
   found(has: BoardBanner): void;
@@ -121,12 +121,12 @@ export class Session {
   link!: Link;
   dialogue!: Dialogue;
   private deadman!: Deadman;
-  /** Lines without an answer that make the robot walk. */
+  /** Unanswered lines that make the robot walk. */
   private drives = 0;
   /** Number of stops so far. */
   private stops = 0;
   /** The time of the robot's last line, on the page's clock, ms. */
-  private heard = performance.now();
+  private lastLineAt = performance.now();
   /** Banners received: a board that restarts has lost its unsaved settings. */
   beginnings = 0;
   /** The firmware, which is the same for every robot. */
@@ -135,7 +135,7 @@ export class Session {
   private bootLoader: string | null = null;
   private way: { time: number; frame: Frame }[] = [];
   private time = 0;
-  /** Time for which the robot was followed so far, s: simulated, or as a board's poses came. */
+  /** Time for which the robot was followed so far, s: simulated, or measured by a board's poses. */
   clock = 0;
   private step = FRAME_SECONDS;
   private onBanner: () => void = () => {};
@@ -187,7 +187,7 @@ export class Session {
     return null;
   }
 
-  /** Restores the changes of before a reload, if the robot's file is still the same; returns true if it did. */
+  /** Restores the changes from before a reload, if the robot's file is still the same; returns true if it did. */
   async recall({ original, toml, floor, servos, volts }: SavedChanges): Promise<boolean> {
     if (original !== this.original) return false;
     this.setServos(servos);
@@ -261,9 +261,9 @@ export class Session {
     return isBanner(this.there) && !this.hasThis ? this.there.robot : null;
   }
 
-  /** Time since the robot last said something, s. */
+  /** Time since the robot's last line, s. */
   get age(): number {
-    return (performance.now() - this.heard) / 1000;
+    return (performance.now() - this.lastLineAt) / 1000;
   }
 
   get isReal(): boolean {
@@ -312,13 +312,13 @@ export class Session {
     this.listener.trouble('board', `The module is connected, but no robot answers from the ${link.name}: is its TXD on D0, and is the robot switched on?`);
   }
 
-  /** Says that a radio has lost its board, or goes on with it. A robot that walked has stopped by itself meanwhile. */
+  /** Reports that a radio has lost its board, or continues with it. A robot that walked has stopped by itself meanwhile. */
   private async reach(link: Link, isInReach: boolean): Promise<void> {
     if (this.link !== link) return;
     this.deadman.letGo();
     this.listener.silent(!isInReach);
-    const said = `The ${link.name} is out of reach. A robot that was driven stops by itself; the page connects again as soon as it can.`;
-    this.listener.trouble('port', isInReach ? null : said);
+    const message = `The ${link.name} is out of reach. A robot that was driven stops by itself; the page connects again as soon as it can.`;
+    this.listener.trouble('port', isInReach ? null : message);
     if (!isInReach) return;
     for (let n = 0; n < ASKS.radio && this.link === link; n++) {
       if ((await this.status()) === null) continue;
@@ -343,19 +343,19 @@ export class Session {
   /** Identifies a board without this firmware by its boot loader. */
   private async identify(link: Link): Promise<void> {
     this.hasLoader = false;
-    let said = 'The board is an Arduino UNO, an ATmega328P by its boot loader, and this firmware is not on it.';
+    let message = 'The board is an Arduino UNO, an ATmega328P by its boot loader, and this firmware is not on it.';
     this.dialogue.end();
     try {
       await identify(link);
       this.hasLoader = true;
     } catch (error) {
-      said = `The board does not speak as this firmware does, and asked for its boot loader ${messageOf(error)}. Is it the right port, and a UNO?`;
+      message = `The board does not speak as this firmware does, and asked for its boot loader ${messageOf(error)}. Is it the right port, and a UNO?`;
     } finally {
       if (this.link === link) this.listen();
     }
     if (this.link !== link) return;
     this.found(null);
-    this.listener.trouble('board', said);
+    this.listener.trouble('board', message);
   }
 
   /** Makes a board send its poses. */
@@ -396,7 +396,7 @@ export class Session {
     if (this.drives === 0 && !this.walksAlone) this.deadman.end();
   }
 
-  /** Stops a robot that nobody may see any more, and leaves it to `deadman` if it does not hear that. */
+  /** Stops a robot that may be out of sight, and leaves it to `deadman` if `stop` does not arrive. */
   letGo(): void {
     if (!this.walksAlone) return;
     this.deadman.letGo();
@@ -428,8 +428,8 @@ export class Session {
     this.dialogue = new Dialogue(this.link, {
       sent: (line) => this.listener.sent(line),
       received: (line) => this.received(line),
-      heard: (line) => {
-        this.heard = performance.now();
+      arrived: (line) => {
+        this.lastLineAt = performance.now();
         const read = status(line);
         if (read) this.state(read);
       },
@@ -510,7 +510,7 @@ export class Session {
       if (isDrive) {
         const { stops } = this;
         const isSure = await deadman.begin();
-        // Somebody has stopped the robot meanwhile.
+        // The robot was stopped meanwhile.
         if (stops !== this.stops) return null;
         if (!isSure) throw new Error(`"${line}" was not sent, since the robot has not confirmed that it stops when it hears nothing`);
       }
@@ -524,7 +524,7 @@ export class Session {
       deadman.follow(command, answer.ok);
       return answer;
     } catch (error) {
-      // A quiet line is asked again, and meanwhile the page shows that the robot is silent.
+      // A quiet line is sent again; until then the page shows that the robot is silent.
       if (!quiet && !(error instanceof DroppedQuestion)) this.listener.trouble('line', `${messageOf(error)}.`);
       return null;
     } finally {
@@ -540,14 +540,14 @@ export class Session {
     return answer && status(answer.text);
   }
 
-  /** Takes the robot's state when its line is read: some turns later it would be older than what the robot said then. */
+  /** Takes the robot's state at once when its line is read: later it could overwrite a newer one. */
   private state(read: Status): void {
     if (read.speed !== null) this.setPace(read.speed);
     this.listener.trouble('fault', read.fault === LINK_FAULT && this.isReal ? 'The robot has stopped by itself: no line had reached it for too long.' : null);
     const gait = read.gait.replaceAll('-', ' ');
     // `center` is a pose for the robot, and a routine that rests is still under way.
     const isKnown = (gait === WORDS.pose && this.gait === WORDS.center) || (gait === WORDS.rest && this.isRoutine && read.fault === 'none');
-    // An activity that the page has not heard of, as when its link was cut.
+    // The page has missed the start of this activity, for example because its link was cut.
     if (gait !== this.gait && !isKnown) this.doing(gait);
     this.listener.state(read);
   }
@@ -622,7 +622,7 @@ export class Session {
   advance(ms: number): void {
     try {
       const { simulated } = this;
-      // In parts, so that what the robot says meanwhile has its own moment, also where a slow machine has much to catch up with.
+      // In parts, so that each of the robot's lines gets its own time, even if a slow machine has much to catch up with.
       for (let left = simulated ? ms : 0; left > 0; left -= PART) {
         const part = Math.min(left, PART);
         this.clock += part / 1000;
@@ -661,15 +661,15 @@ export class Session {
     const now = this.way[this.way.length - 1];
     if (!gait?.moves || !now) return null;
     // The nearest known frame: a board on USB does not send every frame.
-    const begun = now.time - (gait.period * FULL_PACE) / this.pace;
-    const from = this.way.findLastIndex(({ time }) => time <= begun + this.step / 2);
+    const start = now.time - (gait.period * FULL_PACE) / this.pace;
+    const from = this.way.findLastIndex(({ time }) => time <= start + this.step / 2);
     if (from < 0) return null;
     const lags = this.way.slice(from + 1).flatMap(({ frame }) => frame.lag.map(Math.abs));
     const way = this.robot.between(this.way[from].frame.place, now.frame.place);
     return { ...way, lag: Math.max(0, ...lags) };
   }
 
-  /** The predictions that were made with the page: of the file's robot, with its own floor and servos; null of any other. */
+  /** The predictions that came with the page: for the file's robot with its own floor and servos; null for any other. */
   get predicted(): Predictions | null {
     return this.toml === this.original && this.set === null && this.servos === 'own' ? this.predictions : null;
   }

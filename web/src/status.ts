@@ -83,8 +83,8 @@ export function calibration(lines: string[]): ServoSettings[] | null {
   const found = lines.flatMap((line) => {
     const match = pattern.exec(line);
     if (!match) return [];
-    const [, , trim, least, most, dir, scale] = match;
-    const limit: [number, number] = [Number(least), Number(most)];
+    const [, , trim, smallest, largest, dir, scale] = match;
+    const limit: [number, number] = [Number(smallest), Number(largest)];
     return [{ trim: Number(trim), limit, dir: dir as '+' | '-', scale: Number(scale) }];
   });
   return found.length === 4 ? found : null;

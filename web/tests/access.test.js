@@ -3,10 +3,10 @@ import assert from 'node:assert/strict';
 import { createRequire } from 'node:module';
 import { after, afterEach, before, test } from 'node:test';
 
-import { advance, close, complaints, open, sideways, standing, tidy, unfold } from './browser.js';
+import { advance, close, complaints, open, overflow, openStanding, closePages, unfold } from './browser.js';
 
 before(open);
-afterEach(tidy);
+afterEach(closePages);
 after(close);
 
 const AXE = createRequire(import.meta.url).resolve('axe-core/axe.min.js');
@@ -21,10 +21,10 @@ const ROOMS = {
   learn: ['#maps', '#margins-panel', '#pulses', '#console'],
 };
 
-/** The page, and for each room with all its panels unfolded what `act` does. */
-async function everywhere(options, act) {
-  // axe-core is put into the page, which its policy would not have.
-  const page = await standing({ ...options, bypassCSP: true });
+/** Opens the page and calls `act` in each room, with all its panels unfolded. */
+async function inEveryRoom(options, act) {
+  // The page's own policy would not allow axe-core to be put into it.
+  const page = await openStanding({ ...options, bypassCSP: true });
   for (const [room, panels] of Object.entries(ROOMS)) {
     for (const panel of panels) await unfold(page, panel);
     if (room === 'gaits') {
@@ -46,7 +46,7 @@ for (const [name, options] of [
   ['on a phone', PHONE],
 ]) {
   test(`axe-core finds nothing, ${name}`, async () => {
-    await everywhere(options, async (page, room) => {
+    await inEveryRoom(options, async (page, room) => {
       if (room === 'drive') await page.addScriptTag({ path: AXE });
       const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ['violations'] }));
       const found = violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join('\n')}`);
@@ -61,7 +61,7 @@ for (const [name, options] of [
   ['in colours of the user\'s own', { forcedColors: 'active' }],
 ]) {
   test(`axe-core finds nothing in any step of the first connection, ${name}`, async () => {
-    const page = await standing({ ...options, bypassCSP: true });
+    const page = await openStanding({ ...options, bypassCSP: true });
     await page.addScriptTag({ path: AXE });
     await page.locator('#setup-open').click();
     const steps = await page.locator('#setup-steps button').all();
@@ -76,16 +76,16 @@ for (const [name, options] of [
   });
 }
 
-// Each machine has its own fonts, and in some of them words are wider.
+// Fonts differ from machine to machine, and some are wider.
 test('nothing scrolls sideways on any screen, in narrow fonts or wide ones', async () => {
   const found = [];
-  await everywhere(PHONE, async (page, room) => {
+  await inEveryRoom(PHONE, async (page, room) => {
     for (const width of [320, 340, 360, 375, 390, 412, 430, 480, 560, 641, 700, 761, 1001, 1400]) {
       await page.setViewportSize({ width, height: 844 });
       for (const spacing of ['0', '0.05em', '0.1em']) {
         assert.equal(await page.evaluate(() => document.documentElement.clientWidth), width);
         await page.evaluate((spacing) => { document.body.style.letterSpacing = spacing; }, spacing);
-        const beyond = await sideways(page);
+        const beyond = await overflow(page);
         if (beyond > 0) found.push(`${room}: ${beyond} pixels more than ${width}, letters ${spacing} apart`);
       }
     }
@@ -95,7 +95,7 @@ test('nothing scrolls sideways on any screen, in narrow fonts or wide ones', asy
 });
 
 test('the floor is moved by keys, and drags by a pointer', async () => {
-  const page = await standing();
+  const page = await openStanding();
   const floor = page.locator('#floor');
   const follow = page.getByRole('button', { name: 'Follow' });
   assert.equal(await follow.getAttribute('aria-pressed'), 'true');

@@ -2,24 +2,23 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { close, complaints, openWithBluetooth, page, tidy, unfold } from './browser.js';
+import { close, closePages, complaints, openWithBluetooth, page, text, unfold } from './browser.js';
 import { HM10, NORDIC, Radio } from './radio.js';
 
 let radio;
 
 before(openWithBluetooth);
 afterEach(async () => {
-  await tidy();
+  await closePages();
   await radio?.end();
   radio = undefined;
 });
 after(close);
 
-const text = (opened, selector) => opened.locator(selector).innerText();
 const doing = (opened) => opened.evaluate(() => window.lizard.gait);
 const now = (opened) => opened.evaluate(() => performance.now());
 
-async function driven(module) {
+async function openDriven(module) {
   radio = await Radio.near(module);
   const { opened } = radio;
   await radio.pick();
@@ -32,7 +31,7 @@ async function driven(module) {
 
 for (const module of [HM10, NORDIC]) {
   test(`a robot behind a module of the kind ${module.name} is driven and stopped`, async () => {
-    const opened = await driven(module);
+    const opened = await openDriven(module);
     await radio.run(3000);
     assert.equal(await doing(opened), 'walk', 'it is kept walking');
     assert.ok((await now(opened)) - (await opened.evaluate(() => window.moved)) < 100, 'it walks');
@@ -49,7 +48,7 @@ for (const module of [HM10, NORDIC]) {
 }
 
 test('a robot whose link is cut stands still, and the page goes on with it by itself', async () => {
-  const opened = await driven(HM10);
+  const opened = await openDriven(HM10);
   await radio.run(1000);
   const at = await now(opened);
   await radio.cut();
@@ -85,7 +84,7 @@ test('a trim that was set out of reach is shown as the robot has it, once it is 
 });
 
 test('a stop that was pressed out of reach is the first thing that the robot hears', async () => {
-  const opened = await driven(HM10);
+  const opened = await openDriven(HM10);
   await radio.cut();
   await radio.run(300);
   await opened.keyboard.press('Escape');
@@ -131,7 +130,7 @@ test('a browser that may not use Bluetooth says where to allow it', async () => 
 });
 
 test('a phone whose screen goes off stops its robot with its last line', async () => {
-  const opened = await driven(HM10);
+  const opened = await openDriven(HM10);
   await radio.run(1000);
   const at = await opened.evaluate(() => {
     Object.defineProperty(document, 'hidden', { value: true });
@@ -146,7 +145,7 @@ test('a phone whose screen goes off stops its robot with its last line', async (
 });
 
 test('a phone that sleeps without a word leaves a robot that stands still, and is told of it when it wakes', async () => {
-  const opened = await driven(HM10);
+  const opened = await openDriven(HM10);
   const at = await opened.evaluate(() => window.boardMs());
   await radio.sleep(3000);
   const last = await opened.evaluate(() => window.movedAt);

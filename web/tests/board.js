@@ -1,9 +1,9 @@
-// A board behind the page's Web Serial, in the page's own time.
+// A board at the page's Web Serial port, run by the page's own clock.
 import { page, within } from './browser.js';
 import { fakeSerial } from './fake-serial.js';
 
-/** The page with a board that has the firmware and this robot, or nothing where it is null, so long after it was connected. */
-export async function connected(robot, ms) {
+/** Opens the page and connects a board with the firmware and a robot, or an empty one for null; `ms` pass after that. */
+export async function openWithBoard(robot, ms) {
   const opened = await page({}, fakeSerial);
   await opened.evaluate((robot) => (window.flashed = robot), robot);
   await opened.locator('#connect').click();
@@ -12,11 +12,11 @@ export async function connected(robot, ms) {
   return opened;
 }
 
-/** Lets the page's time go on until this is so. It is not counted, since the page may wait for the machine, too. */
+/** Advances the page's clock until `isSo` holds. There is no limit in page time, since the page may also wait for the machine. */
 export async function until(opened, what, isSo, step = 100) {
-  let waits = true;
-  const goes = async () => {
-    while (waits && !(await isSo())) await opened.clock.runFor(step);
+  let isWaiting = true;
+  const advance = async () => {
+    while (isWaiting && !(await isSo())) await opened.clock.runFor(step);
   };
-  await within(what, goes()).finally(() => (waits = false));
+  await within(what, advance()).finally(() => (isWaiting = false));
 }

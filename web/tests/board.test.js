@@ -2,29 +2,28 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { close, complaints, open, page, tidy, unfold } from './browser.js';
-import { connected, until } from './board.js';
+import { close, closePages, complaints, open, page, text, unfold } from './browser.js';
+import { openWithBoard, until } from './board.js';
 import { fakeSerial } from './fake-serial.js';
 
 before(open);
-afterEach(tidy);
+afterEach(closePages);
 after(close);
 
-const text = (opened, selector) => opened.locator(selector).innerText();
 
-/** Until so many lines of the console are this one. */
-const said = (opened, line, times = 1) =>
+/** Waits until the console has `times` lines with this text. */
+const waitForLine = (opened, line, times = 1) =>
   until(opened, `${line} is said ${times} times`, async () => (await opened.locator('#log div', { hasText: line }).count()) >= times);
 
-async function walking() {
-  const opened = await connected('robot', 4000);
+async function openWalking() {
+  const opened = await openWithBoard('robot', 4000);
   await opened.locator('#gaits button[data-command="walk"]').click();
-  await said(opened, /^ok walk$/);
+  await waitForLine(opened, /^ok walk$/);
   return opened;
 }
 
 test('a new UNO is named after some seconds, and is given the firmware by one button', async () => {
-  const opened = await connected(null, 8000);
+  const opened = await openWithBoard(null, 8000);
   await opened.locator('#trouble', { hasText: 'The board is an Arduino UNO, an ATmega328P by its boot loader, and this firmware is not on it.' }).waitFor();
   assert.equal(await text(opened, '#where'), 'on a board on USB without this firmware');
   await opened.getByRole('button', { name: 'Write firmware and robot to it' }).click();
@@ -63,7 +62,7 @@ test('a board that its port does not reset is asked what it does, and followed',
 });
 
 test('a robot is chosen for a board that is connected, and the board stays', async () => {
-  const opened = await walking();
+  const opened = await openWalking();
   await opened.locator('#robot').selectOption('large');
   await opened.waitForFunction(() => window.lizard.file === 'large');
   assert.match(await text(opened, '#where'), /^on a board on USB with another robot, robot paper [0-9a-f]{8}: choose that one, or write this one$/);
@@ -76,7 +75,7 @@ test('a robot is chosen for a board that is connected, and the board stays', asy
 });
 
 test('a board with another robot of the list is said to be drawn as this one, and its own is one press away', async () => {
-  const opened = await connected('large', 8000);
+  const opened = await openWithBoard('large', 8000);
   const offer = opened.locator('#trouble').getByRole('button', { name: 'Show large' });
   await offer.waitFor();
   assert.match(await text(opened, '#trouble'), /^The board on USB has another robot, large, and is drawn and predicted here as robot\.toml\./);
@@ -85,7 +84,7 @@ test('a board with another robot of the list is said to be drawn as this one, an
   assert.match(await text(opened, '#where'), /^on a board on USB, robot large [0-9a-f]{8}$/);
   await opened.locator('#trouble', { hasText: 'another robot' }).waitFor({ state: 'detached' });
   assert.equal(await opened.evaluate(() => window.lizard.isReal), true);
-  // Its own lengths are in no file any more.
+  // No file has its lengths any more.
   await opened.evaluate(() => window.lizard.change(window.lizard.toml.replace('name = "large"', 'name = "longer"').replace('period = 1.25', 'period = 1.3')).then(() => null));
   await opened.locator('#trouble', { hasText: 'is drawn and predicted here as large.toml with your changes' }).waitFor();
   await opened.evaluate(() => {
@@ -97,7 +96,7 @@ test('a board with another robot of the list is said to be drawn as this one, an
 });
 
 test('a board that is left has been stopped', async () => {
-  const opened = await walking();
+  const opened = await openWalking();
   await opened.locator('#connect').click();
   await opened.clock.runFor(1500);
   await opened.locator('#log div', { hasText: /^ok stop$/ }).waitFor();
@@ -106,7 +105,7 @@ test('a board that is left has been stopped', async () => {
 });
 
 test('a board that does not say that it stops is spoken of', async () => {
-  const opened = await walking();
+  const opened = await openWalking();
   await opened.evaluate(() => (window.otherBoard.send = () => {}));
   await opened.locator('#connect').click();
   await opened.clock.runFor(3000);
@@ -114,9 +113,9 @@ test('a board that does not say that it stops is spoken of', async () => {
 });
 
 test('a page that is closed while a board walks stops it, and the browser asks', async () => {
-  const opened = await walking();
+  const opened = await openWalking();
   const asked = opened.waitForEvent('dialog');
-  // The browser's answer is for the dialog, and comes after it.
+  // The browser's answer belongs to the dialog and comes after it.
   const left = opened.evaluate(() => location.reload());
   const dialog = await asked;
   assert.equal(dialog.type(), 'beforeunload');
@@ -127,21 +126,21 @@ test('a page that is closed while a board walks stops it, and the browser asks',
 });
 
 test('after a reset the board is followed again', async () => {
-  const opened = await walking();
+  const opened = await openWalking();
   const followed = await opened.locator('#log div', { hasText: /^ok watch 2$/ }).count();
   await opened.locator('#reset').click();
-  await said(opened, /^ok watch 2$/, followed + 1);
+  await waitForLine(opened, /^ok watch 2$/, followed + 1);
   const place = () => opened.evaluate(() => window.lizard.last.place.y);
   await opened.locator('#gaits button[data-command="walk"]').click();
-  await said(opened, /^ok walk$/, 2);
+  await waitForLine(opened, /^ok walk$/, 2);
   const before = await place();
   await until(opened, 'the robot of the page has gone 5 mm', async () => (await place()) - before > 5);
 });
 
 test('a board that restarts in the middle of an answer is followed again', async () => {
-  const opened = await connected('robot', 4000);
-  await said(opened, /^ok watch 2$/);
-  // Its status is asked twice a second.
+  const opened = await openWithBoard('robot', 4000);
+  await waitForLine(opened, /^ok watch 2$/);
+  // The page asks for the status twice a second.
   await opened.evaluate(() => {
     const board = window.otherBoard;
     const { onByte } = board;
@@ -154,11 +153,11 @@ test('a board that restarts in the middle of an answer is followed again', async
       setTimeout(() => board.reset('external'));
     };
   });
-  await said(opened, /^ok watch 2$/, 2);
+  await waitForLine(opened, /^ok watch 2$/, 2);
 });
 
 test('pulses that a board does not show are not made up', async () => {
-  const opened = await connected('robot', 5000);
+  const opened = await openWithBoard('robot', 5000);
   await unfold(opened, '#pulses');
   await opened.clock.runFor(500);
   const cells = await opened.locator('#widths td:nth-child(3)').allInnerTexts();
@@ -167,9 +166,9 @@ test('pulses that a board does not show are not made up', async () => {
 });
 
 test('a HEX file of another program is named, and written only when a person says so', async () => {
-  const opened = await connected('robot', 8000);
+  const opened = await openWithBoard('robot', 8000);
   await unfold(opened, '#flash');
-  // A program that loops for ever: rjmp .-2.
+  // A program that loops forever: rjmp .-2.
   const blink = ':02000000FFCF30\n:00000001FF\n';
   const choose = () =>
     opened.getByLabel('HEX file').setInputFiles({ name: 'blink.hex', mimeType: 'text/plain', buffer: Buffer.from(blink) });

@@ -1,4 +1,4 @@
-// The book from a file: its search finds a word.
+// The book, opened from a file: its search finds a word.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { mkdtemp, rm } from 'node:fs/promises';
@@ -6,7 +6,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 
-import { blank, close, open, tidy } from './browser.js';
+import { openBlank, close, open, closePages } from './browser.js';
 
 let folder;
 
@@ -17,15 +17,15 @@ before(async () => {
   assert.equal(built.status, 0, built.stderr);
 });
 after(async () => {
-  await tidy();
+  await closePages();
   await close();
   await rm(folder, { recursive: true });
 });
 
 test('the search of the book finds a word without a server', async () => {
-  const book = await blank();
+  const book = await openBlank();
   await book.goto(`file://${folder}/index.html`);
-  // The theme reads the word when a key goes up; of a text that is put there it knows nothing.
+  // The theme reads the input on key-up only, so the text is typed, not set.
   await book.locator('input[name=query]').pressSequentially('brownout');
   const first = book.locator('.md-search-result__link').first();
   await first.waitFor();

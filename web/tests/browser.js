@@ -1,4 +1,4 @@
-// A browser, and the page as any web server would serve it, below a folder of its own.
+// The browser of the tests, and a web server that serves the page below a folder, as any server may.
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { createServer } from 'node:http';
@@ -18,11 +18,11 @@ const TYPES = {
   '.png': 'image/png',
   '.webmanifest': 'application/manifest+json',
 };
-/** Debian's; CHROMIUM and FIREFOX name others. */
+/** Debian's Chromium; the variable CHROMIUM names another. */
 const CHROMIUM = { type: chromium, executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args: ['--no-sandbox'] };
 /**
- * By WebDriver BiDi, which Debian's Firefox speaks itself. playwright-core 1.65 asks it for emulated media features, which only a
- * newer Firefox has; this one takes them from its preferences.
+ * Debian's Firefox, driven by WebDriver BiDi; the variable FIREFOX names another. Emulated media features come from its
+ * preferences, because the command that playwright-core 1.65 sends for them needs a newer Firefox.
  */
 const FIREFOX = {
   type: firefox,
@@ -30,7 +30,7 @@ const FIREFOX = {
   executablePath: process.env.FIREFOX ?? '/usr/bin/firefox-esr',
   firefoxUserPrefs: { 'ui.prefersReducedMotion': 1 },
 };
-/** A machine may be busy: only what hangs is to fail by time. PATIENCE names another one, ms, for who writes a test. */
+/** Time limit of a wait, ms: long, so that only a hang fails on a busy machine. PATIENCE sets another while a test is written. */
 export const PATIENCE = Number(process.env.PATIENCE ?? 300_000);
 
 /** Awaits a promise; fails with the name of the wait if it does not settle in time. */
@@ -43,7 +43,7 @@ export function within(what, promise) {
   return Promise.race([promise, late]).finally(() => clearTimeout(timer));
 }
 
-/** Playwright gives these no limit of their own. */
+/** Adds time limits to calls that Playwright leaves without one. */
 function limit(object, name, methods) {
   for (const method of methods) {
     const unlimited = object[method].bind(object);
@@ -64,12 +64,12 @@ const servers = [];
 export const devTools = () => browser.newBrowserCDPSession();
 
 /** Closes the pages of a test, which would go on walking. */
-export async function tidy() {
+export async function closePages() {
   await within('the pages to close', Promise.all(pages.splice(0).map((opened) => opened.close())));
   for (const strict of servers.splice(0)) strict.close();
 }
 
-/** A web server with a folder's files and these headers, below a path of its own; `asked` has the path of each request. */
+/** Starts a web server for a folder's files with some headers, below a path of its own; `asked` lists the paths of the requests. */
 export async function serve(folder, asked = [], headers = {}) {
   const made = createServer(async (request, response) => {
     const path = request.url.split('?')[0].replace(FOLDER, '/');
@@ -95,9 +95,9 @@ async function start({ type, ...options }) {
 }
 
 export const open = () => start(CHROMIUM);
-/** With Web Bluetooth, which Chromium on Linux has behind a flag. */
+/** Opens the browser with Web Bluetooth, which Chromium on Linux hides behind a flag. */
 export const openWithBluetooth = () => start({ ...CHROMIUM, args: [...CHROMIUM.args, '--enable-features=WebBluetooth'] });
-/** With a film in Y4M as its camera; without one it has no camera. */
+/** Opens the browser with a film in Y4M as its camera, or without a camera if there is no film. */
 export const openWithCamera = (film) => start({ ...CHROMIUM, args: [...CHROMIUM.args, ...(film ? ['--use-fake-device-for-media-stream', '--use-fake-ui-for-media-stream', `--use-file-for-fake-video-capture=${film}`] : [])] });
 export const openFirefox = () => start(FIREFOX);
 
@@ -106,7 +106,7 @@ export async function close() {
   server?.close();
 }
 
-/** Opens the room of an element, and the panels around it, by the links and headings that a person would press. */
+/** Opens the room and the panels of an element, by the links and headings that a user would press. */
 async function reveal(locator) {
   const [element] = await locator.elementHandles();
   await element?.evaluate(async (element) => {
@@ -123,12 +123,12 @@ async function reveal(locator) {
   });
 }
 
-/** Unfolds a panel in its room, unless that is done. */
+/** Unfolds a panel in its room, unless it is unfolded. */
 export async function unfold(opened, panel) {
   await reveal(opened.locator(`${panel} > :not(summary)`).first());
 }
 
-/** Whatever a test uses is in one of the rooms: the test is about the thing, and its room is opened for it. */
+/** Opens the room of any element that a test uses, so that tests need not mention rooms. */
 function openRooms(opened) {
   const prototype = Object.getPrototypeOf(opened.locator('body'));
   if (prototype.opensRooms) return;
@@ -154,10 +154,10 @@ function openRooms(opened) {
 export const address = (of = server) => `http://127.0.0.1:${of.address().port}${FOLDER}`;
 
 /**
- * A page of the browser with nothing in it yet. It is to move only when a test says so, and has its files from the server
- * unless a test asks for service workers.
+ * Opens an empty page with reduced motion, so that nothing moves unless a test asks for it. Files come from the server, unless a test
+ * asks for service workers.
  */
-export async function blank(options = {}) {
+export async function openBlank(options = {}) {
   const opened = await within('a new page', browser.newPage({ reducedMotion: 'reduce', serviceWorkers: 'block', ...options }));
   pages.push(opened);
   openRooms(opened);
@@ -174,11 +174,14 @@ export async function blank(options = {}) {
   return opened;
 }
 
-/** By how many pixels the page is wider than its window, 0 if it fits. */
-export const sideways = (opened) =>
+/** The number of pixels by which the page is wider than its window; 0 if it fits. */
+export const overflow = (opened) =>
   opened.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
 
-/** Until the page answers a question with yes, which may take it a while. */
+/** Returns the text of an element. */
+export const text = (opened, selector) => opened.locator(selector).innerText();
+
+/** Waits until a question to the page is answered with true. */
 export function until(opened, question, value) {
   const answered = async () => {
     while (!(await opened.evaluate(question, value))) await new Promise((next) => setTimeout(next, 50));
@@ -187,24 +190,24 @@ export function until(opened, question, value) {
 }
 
 /**
- * The page, loaded; `before` runs in it before anything else, and then its timers only run when
- * the test says so. `at` is its address.
+ * Loads the page. `before` runs in it before anything else; the page's timers then run only when the test says so. `at` is the
+ * address.
  */
 export async function page(options = {}, before = undefined, at = address()) {
-  const opened = await blank(options);
+  const opened = await openBlank(options);
   opened.on('console', (message) => {
-    // Said of the pages that are to have their files from the server.
+    // Expected: these pages take their files from the server.
     if (message.text() === 'Service Worker registration blocked by Playwright') return;
-    // Without a graphics chip the browser's own painter says of itself that it is slow.
+    // Without a graphics chip the browser warns that its software painter is slow.
     if (message.text().includes('GL Driver Message (OpenGL, Performance')) return;
-    // What a test forbids.
+    // Expected where a test forbids a feature.
     if (message.text().startsWith('Permissions policy violation:')) return;
     if (message.text().startsWith('Web Bluetooth is experimental on this platform')) return;
     if (['error', 'warning'].includes(message.type())) complaints.push(message.text());
   });
   opened.on('pageerror', (error) => complaints.push(error.stack ?? String(error)));
   if (before) {
-    // The clock takes a turn of the browser for each timer, and a chain of turns is slowed to one in 4 ms.
+    // The clock needs an event-loop turn for each timer, and the browser limits nested ones to one in 4 ms.
     await opened.addInitScript(() => {
       const { setTimeout } = window;
       window.setTimeout = (then, ms, ...more) => {
@@ -215,7 +218,7 @@ export async function page(options = {}, before = undefined, at = address()) {
       };
     });
     await opened.clock.install({ time: 0 });
-    // Else it would also go on by itself, and how far would depend on the machine.
+    // Otherwise the clock would also advance by itself, at a pace that depends on the machine.
     await opened.clock.pauseAt(1000);
     await opened.addInitScript(before);
   }
@@ -224,16 +227,16 @@ export async function page(options = {}, before = undefined, at = address()) {
   return opened;
 }
 
-/** The page from a server that forbids it one of the browser's features, such as `serial`: the browser itself refuses it. */
-export async function forbidden(feature, before) {
+/** Opens the page from a server whose policy forbids a browser feature, such as `serial`. */
+export async function openForbidden(feature, before) {
   const strict = await serve(DIST, [], { 'permissions-policy': `${feature}=()` });
   servers.push(strict);
   return page({}, before, address(strict));
 }
 
-/** Lets the simulation run, as fast as it goes. */
+/** Runs the simulation as fast as possible. */
 export async function advance(opened, ms) {
-  // In parts, so that answers and what follows from them come in between.
+  // In parts, so that answers and their consequences come in between.
   await opened.evaluate(async (ms) => {
     for (let left = ms; left > 0; left -= 4) {
       window.lizard.advance(Math.min(4, left));
@@ -242,15 +245,15 @@ export async function advance(opened, ms) {
   }, ms);
 }
 
-/** The page with a robot that has woken and stands. */
-export async function standing(options) {
+/** Opens the page and waits until its robot stands. */
+export async function openStanding(options) {
   const opened = await page(options);
   await advance(opened, 2500);
   return opened;
 }
 
-/** After Esc: the robot stays where it stands, but for the last way of its servos to their targets, a hair's width. */
-export async function stops(opened) {
+/** Asserts that the robot stays where it was after Esc, except for a hair's width while the servos reach their targets. */
+export async function assertStops(opened) {
   const place = () => opened.evaluate(() => window.lizard.last.place);
   await opened.keyboard.press('Escape');
   await advance(opened, 500);
@@ -260,7 +263,7 @@ export async function stops(opened) {
   for (const key of ['x', 'y']) assert.ok(Math.abs(later[key] - stopped[key]) < 0.05, `${key}: ${stopped[key]} mm, then ${later[key]}`);
 }
 
-/** Types a line and waits for a line of the log that begins so; the room that was open is open again afterwards. */
+/** Types a line, waits for a line of the log that begins with `answer`, and returns to the room that was open. */
 export async function type(opened, line, answer) {
   const room = await opened.evaluate(() => document.body.dataset.at);
   await opened.getByLabel('A line for the robot').fill(line);

@@ -3,26 +3,26 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { after, afterEach, before, test } from 'node:test';
 
-import { address, advance, close, complaints, open, standing, tidy, type, unfold } from './browser.js';
+import { address, advance, close, complaints, open, openStanding, closePages, type, unfold } from './browser.js';
 
 before(open);
-afterEach(tidy);
+afterEach(closePages);
 after(close);
 
-/** Sets a slider as a person does, by its value. */
-async function slide(opened, label, value) {
+/** Sets a slider to a value, as a user would. */
+async function setSlider(opened, label, value) {
   await opened.getByLabel(label).fill(value);
 }
 
-async function downloaded(opened, button = 'Download robot.toml') {
+async function download(opened, button = 'Download robot.toml') {
   const coming = opened.waitForEvent('download');
   await opened.getByRole('button', { name: button }).click();
   const file = await (await coming).path();
   return readFile(file, 'utf8');
 }
 
-/** The number of a key in a table of a robot.toml, by its lines alone. */
-function number(toml, table, key) {
+/** Reads the number of a key in a table of a robot.toml line by line, without a parser. */
+function readNumber(toml, table, key) {
   const lines = toml.split('\n');
   const begin = lines.findIndex((line) => line.startsWith(`[${table}]`));
   const length = lines.slice(begin + 1).findIndex((line) => line.startsWith('['));
@@ -31,16 +31,16 @@ function number(toml, table, key) {
   return line && parseFloat(line.split('=')[1]);
 }
 
-async function changed() {
-  const opened = await standing();
+async function openChanged() {
+  const opened = await openStanding();
   await opened.getByLabel('Driven by').selectOption('strut');
-  await slide(opened, 'Pull in the strut', '2.5');
-  await slide(opened, 'Play of a leg', '0.5');
-  await slide(opened, 'Front left foot too long', '-0.6');
-  await slide(opened, 'Stiffness of a foot', '2');
-  await slide(opened, 'Pad friction', '0.5');
-  await slide(opened, 'Friction back : ahead', '1.5');
-  await slide(opened, 'Mass', '412');
+  await setSlider(opened, 'Pull in the strut', '2.5');
+  await setSlider(opened, 'Play of a leg', '0.5');
+  await setSlider(opened, 'Front left foot too long', '-0.6');
+  await setSlider(opened, 'Stiffness of a foot', '2');
+  await setSlider(opened, 'Pad friction', '0.5');
+  await setSlider(opened, 'Friction back : ahead', '1.5');
+  await setSlider(opened, 'Mass', '412');
   await unfold(opened, '#lengths-panel');
   const crank = opened.locator('input[name="leg.crank"]');
   await crank.fill('40');
@@ -50,8 +50,8 @@ async function changed() {
 }
 
 test('the downloaded robot.toml has lengths, drive, feet, floor and mass', async () => {
-  const opened = await changed();
-  const toml = await downloaded(opened);
+  const opened = await openChanged();
+  const toml = await download(opened);
   const found = [
     ['leg', 'crank'],
     ['leg.drive', 'force'],
@@ -61,13 +61,13 @@ test('the downloaded robot.toml has lengths, drive, feet, floor and mass', async
     ['ground', 'friction'],
     ['ground', 'friction_back_over_forward'],
     ['body', 'mass'],
-  ].map(([table, key]) => number(toml, table, key));
+  ].map(([table, key]) => readNumber(toml, table, key));
   assert.deepEqual(found, [40, 2.5, 0.5, -0.6, 2, 0.5, 1.5, 412]);
   assert.match(toml, /^kind = "strut"$/m);
 });
 
-/** Types a length that is refused; returns what is said of it, and the button with what would do. */
-async function refused(opened, key, value) {
+/** Types a length that is refused; returns the message, and the text of the button with the nearest valid one. */
+async function typeRefused(opened, key, value) {
   const box = opened.locator(`#lengths input[name="${key}"]`);
   await box.fill(String(value));
   await box.press('Enter');
@@ -79,17 +79,17 @@ async function refused(opened, key, value) {
 const length = (opened, name) => opened.evaluate((name) => window.lizard.description.lengths.find(({ key }) => key === name).value, name);
 
 test('a length is refused by what would happen to the robot, with the nearest that does', async () => {
-  const opened = await standing();
+  const opened = await openStanding();
   await unfold(opened, '#lengths-panel');
   await opened.locator('#sketch circle').first().waitFor();
-  const [said, way] = await refused(opened, 'links.l12', 80);
+  const [said, way] = await typeRefused(opened, 'links.l12', 80);
   assert.equal(said, '80 mm is too long: in the neutral pose the left slider would run into its end.');
   const nearest = Number(/^Try ([0-9.]+) mm$/.exec(way)?.[1]);
   assert.ok(nearest > 45 && nearest < 80, way);
   await opened.locator('#lengths-instead button').click();
   await opened.waitForFunction((nearest) => window.lizard.description.lengths.find(({ key }) => key === 'links.l12').value === nearest, nearest);
   assert.equal(await opened.locator('#lengths-instead button').count(), 0);
-  // Half a mm more is refused, so it is the nearest.
+  // Half a millimetre more is refused, so this one is the nearest.
   const box = opened.locator('#lengths input[name="links.l12"]');
   await box.fill(String(nearest + 0.5));
   await box.press('Enter');
@@ -98,10 +98,10 @@ test('a length is refused by what would happen to the robot, with the nearest th
 });
 
 test('the gait that is in the way is dropped, and the length is taken', async () => {
-  const opened = await standing();
+  const opened = await openStanding();
   await unfold(opened, '#lengths-panel');
   await opened.locator('#sketch circle').first().waitFor();
-  assert.deepEqual(await refused(opened, 'links.l2', 60), ['60 mm is too long: in "look" the left front leg would lock.', 'Drop “look”']);
+  assert.deepEqual(await typeRefused(opened, 'links.l2', 60), ['60 mm is too long: in "look" the left front leg would lock.', 'Drop “look”']);
   await opened.locator('#lengths-instead button', { hasText: 'Drop' }).click();
   await opened.waitForFunction(() => window.lizard.description.lengths.find(({ key }) => key === 'links.l2').value === 60);
   const gaits = await opened.evaluate(() => window.lizard.description.gaits.map(({ name }) => name));
@@ -112,14 +112,14 @@ test('the gait that is in the way is dropped, and the length is taken', async ()
 });
 
 test('a file of which nothing was changed is given as it is', async () => {
-  const opened = await standing();
+  const opened = await openStanding();
   await unfold(opened, '#lengths-panel');
   const own = await readFile(new URL('../dist/files/robot.toml', import.meta.url), 'utf8');
-  assert.equal(await downloaded(opened), own);
+  assert.equal(await download(opened), own);
 });
 
 test('a reload keeps what was changed', async () => {
-  const opened = await changed();
+  const opened = await openChanged();
   await opened.locator('#servos').selectOption('ideal');
   await opened.reload();
   await opened.waitForFunction(() => window.lizard);
@@ -138,30 +138,30 @@ test('a reload keeps what was changed', async () => {
 });
 
 test('changes of a file that is another now are not taken, and that is said', async () => {
-  const opened = await changed();
+  const opened = await openChanged();
   await opened.evaluate(() => {
     const key = Object.keys(localStorage)[0];
     const kept = JSON.parse(localStorage.getItem(key));
     localStorage.setItem(key, JSON.stringify({ ...kept, original: `${kept.original}\n` }));
   });
-  // With the robot in the address nothing would be lost.
+  // While the address holds the robot, nothing would be lost.
   await opened.waitForFunction(() => location.hash.includes('robot='));
   await opened.goto(address());
   await opened.waitForFunction(() => window.lizard);
   await opened.locator('#trouble', { hasText: 'robot.toml is not the file of last time' }).waitFor();
   assert.equal(await opened.evaluate(() => window.lizard.toml), await readFile(new URL('../dist/files/robot.toml', import.meta.url), 'utf8'));
-  const lost = await downloaded(opened, 'Download what was changed');
-  assert.deepEqual([number(lost, 'leg', 'crank'), number(lost, 'body', 'mass')], [40, 412], 'they are not lost');
+  const lost = await download(opened, 'Download what was changed');
+  assert.deepEqual([readNumber(lost, 'leg', 'crank'), readNumber(lost, 'body', 'mass')], [40, 412], 'they are not lost');
 });
 
 test('the pace slider has what the robot has, after a typed line and after a reset', async () => {
-  const opened = await standing();
+  const opened = await openStanding();
   await advance(opened, 3000);
   await type(opened, 'speed 35', 'ok speed 35');
   const slider = opened.getByLabel('Pace');
   assert.equal(await slider.inputValue(), '35');
   await opened.locator('#reset').click();
-  // Nobody has asked for a status yet.
+  // No status has been asked for yet.
   await advance(opened, 2000);
   assert.equal(await slider.inputValue(), '100');
   assert.equal(await opened.locator('#speed-out').innerText(), '100 %');
@@ -169,7 +169,7 @@ test('the pace slider has what the robot has, after a typed line and after a res
 });
 
 test("the share of the servos' line is that of the robot's pace and of the servos' supply", async () => {
-  const opened = await standing();
+  const opened = await openStanding();
   await unfold(opened, '#power');
   const note = async (pace) => {
     const line = opened.locator('#line-note', { hasText: `line at ${pace} % of its pace` });
@@ -204,7 +204,7 @@ test("the share of the servos' line is that of the robot's pace and of the servo
 });
 
 test('what moves nothing with rigid legs and ideal servos says so and cannot be set', async () => {
-  const opened = await standing();
+  const opened = await openStanding();
   for (const panel of ['#world', '#power']) await unfold(opened, panel);
   const note = opened.getByText('The legs are rigid, the servos ideal, and the feet stand evenly: friction and mass cancel out');
   assert.equal(await note.isVisible(), false, 'the torque of real servos is not for nothing');
@@ -213,12 +213,12 @@ test('what moves nothing with rigid legs and ideal servos says so and cannot be 
   assert.ok(await note.isVisible());
   for (const label of ['Pad friction', 'Mass', 'Pull in the strut']) assert.ok(await opened.getByLabel(label).isDisabled(), label);
   assert.ok(await opened.getByLabel('Friction back : ahead').isEnabled());
-  // With a foot that is too long, weight counts, and so does what the feet are like.
-  await slide(opened, 'Front left foot too long', '1');
+  // With a foot that is too long, the weight and the feet's stiffness matter.
+  await setSlider(opened, 'Front left foot too long', '1');
   assert.equal(await note.isVisible(), false);
   for (const label of ['Mass', 'Stiffness of a foot']) assert.ok(await opened.getByLabel(label).isEnabled(), label);
   assert.ok(await opened.getByLabel('Pad friction').isDisabled());
-  await slide(opened, 'Front left foot too long', '0');
+  await setSlider(opened, 'Front left foot too long', '0');
   assert.ok(await opened.getByLabel('Stiffness of a foot').isDisabled());
   await opened.getByLabel('Driven by').selectOption('strut');
   assert.equal(await note.isVisible(), false);
@@ -226,7 +226,7 @@ test('what moves nothing with rigid legs and ideal servos says so and cannot be 
 });
 
 test('what is predicted of a robot comes with the page while it is as its file has it, and is made for every other', async () => {
-  const opened = await standing();
+  const opened = await openStanding();
   const made = () => opened.workers().filter((worker) => worker.url().includes('predictor-worker')).length;
   const notes = () => opened.locator('#gaits button[data-command] small').allInnerTexts();
   const robots = await opened.locator('#robot option').evaluateAll((options) => options.map(({ value }) => value));
@@ -250,7 +250,7 @@ test('what is predicted of a robot comes with the page while it is as its file h
   await opened.locator('#robot').selectOption('robot');
   await opened.waitForFunction(() => window.lizard.file === 'robot');
   const [, walk] = await notes();
-  await slide(opened, 'Friction back : ahead', '1.5');
+  await setSlider(opened, 'Friction back : ahead', '1.5');
   await opened.waitForFunction((walk) => document.querySelector('#gaits button[data-command="walk"] small').textContent !== walk, walk);
   assert.equal(made(), 1);
   await opened.locator('#floor-reset').click();

@@ -2,12 +2,12 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { connected, until } from './board.js';
-import { close, complaints, open, tidy, unfold } from './browser.js';
+import { openWithBoard, until } from './board.js';
+import { close, closePages, complaints, open, text, unfold } from './browser.js';
 import { imageOf } from './image.js';
 
 before(open);
-afterEach(tidy);
+afterEach(closePages);
 after(close);
 
 /** SEED names other moments. */
@@ -16,7 +16,6 @@ const random = () => ((seed = (seed * 1103515245 + 12345) % 2147483648) >> 8) / 
 /** Moments in a time of so many ms, one in each of `count` equal parts. */
 const moments = (count, ms) => Array.from({ length: count }, (_, n) => Math.round(((n + random()) / count) * ms));
 const START = 0x6e00;
-const text = (opened, selector) => opened.locator(selector).innerText();
 const bytes = async (opened, memory, from, to) => Buffer.from(await opened.evaluate(([memory, from, to]) => Array.from(window.otherBoard[memory].slice(from, to)), [memory, from, to]));
 const isConnected = async (opened) => (await text(opened, '#connect')) === 'Back to the simulation';
 
@@ -34,7 +33,7 @@ async function plug(opened, robot) {
 }
 
 test('a robot is said to be written only if its bytes are on the board, wherever the cable is pulled', async (t) => {
-  const opened = await connected('large', 8000);
+  const opened = await openWithBoard('large', 8000);
   await unfold(opened, '#flash');
   const whole = (await imageOf('robot')).subarray(START);
   const large = await bytes(opened, 'flash', START, START + whole.length);
@@ -64,7 +63,7 @@ test('a robot is said to be written only if its bytes are on the board, wherever
 });
 
 test('a calibration is said to be saved only if the board begins with it, wherever the cable is pulled', async (t) => {
-  const opened = await connected('robot', 8000);
+  const opened = await openWithBoard('robot', 8000);
   const setup = opened.locator('#setup');
   const press = (name) => setup.getByRole('button', { name, exact: true }).click();
   const step = (name) => setup.getByRole('list', { name: 'Steps' }).getByRole('button', { name: new RegExp(`${name}$`) }).click();

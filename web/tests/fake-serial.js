@@ -1,25 +1,24 @@
-// A Web Serial whose one port is a second simulated UNO; runs in the page, before anything else.
+// A replacement for Web Serial whose only port is a second simulated UNO; runs in the page before anything else.
 
 /**
- * With `window.flashed` set to the name of a robot, or to null for an erased flash, the board has firmware and that one;
- * `window.same` has the port open the board that it had before;
- * `window.awake` has it run for four seconds and not be reset by its port; `window.pick` throws in place of a choice
- * of the port; `window.garbage` has the board say bytes without a meaning; `window.profile` is the Bluetooth service of a port that is no
- * cable; `window.baud` is the rate at which that port talks to the board. `window.pulses` has the last width of
- * each pin, us; `window.vendor` is the USB vendor of its chip.
+ * Replaces Web Serial. Properties of `window` set what a test wants: `flashed`, the robot's name after the firmware in the board's
+ * flash, or null for an erased flash; `same`, true to open the previous board again; `awake`, true for a board that has run for four
+ * seconds and is not reset by its port; `pick`, a function that may throw instead of choosing the port; `garbage`, true for a board
+ * that sends meaningless bytes; `profile`, the Bluetooth service of a port that is no cable; `baud`, that port's rate; `vendor`, the
+ * USB vendor of the board's chip. `pulses` has the last width at each pin, us.
  */
 export function fakeSerial() {
   let board;
   const image = async (name) => {
     const { robot, image } = window.lizard;
-    // Another one than the page's, which stays as it is.
+    // A second instance, so that the page's own robot stays unchanged.
     const other = await robot.constructor.load(await WebAssembly.compile(await (await fetch('files/lizard.wasm')).arrayBuffer()));
     const { start } = other.read(await (await fetch(`files/${name}.toml`)).text());
     const section = other.section();
-    const whole = new Uint8Array(start + section.length);
-    whole.set(image.subarray(0, start));
-    whole.set(section, start);
-    return whole;
+    const flash = new Uint8Array(start + section.length);
+    flash.set(image.subarray(0, start));
+    flash.set(section, start);
+    return flash;
   };
   const port = {
     readable: null,
@@ -30,7 +29,7 @@ export function fakeSerial() {
       const name = window.flashed === undefined ? 'robot' : window.flashed;
       if (!window.same) board = new first.constructor(name && (await image(name)), await (await fetch('files/optiboot.hex')).text());
       if (window.baud) board.baud = window.baud;
-      // Bytes that it sends before the port is open are lost.
+      // Bytes sent before the port is open are lost.
       if (window.awake) board.run(16_000 * 4000);
       let out;
       port.readable = new ReadableStream({ start: (controller) => (out = controller) });

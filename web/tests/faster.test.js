@@ -6,22 +6,22 @@ import { join, resolve } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
 import { promisify } from 'node:util';
 
-import { advance, close, complaints, open, sideways, standing, tidy, unfold, within } from './browser.js';
+import { advance, close, complaints, open, overflow, openStanding, closePages, unfold, within } from './browser.js';
 
 const ROOT = new URL('../../', import.meta.url).pathname;
 
 before(open);
-afterEach(tidy);
+afterEach(closePages);
 after(close);
 
 const text = (page, id) => page.locator(`#${id}`).innerText();
-const predicted = (page) => page.waitForFunction(() => /mm$|may drift/.test(document.querySelector('#gait-way').textContent));
+const waitForPrediction = (page) => page.waitForFunction(() => /mm$|may drift/.test(document.querySelector('#gait-way').textContent));
 
-/** The gait editor with a gait of the robot in it, and a search of so many rounds set. */
-async function opened({ gait = 'walk', rounds = 1, seed = 3, rate = '' } = {}, options = {}) {
-  const page = await standing(options);
+/** Opens the gait editor with a gait of the robot, and sets the number of rounds of a search. */
+async function openEditor({ gait = 'walk', rounds = 1, seed = 3, rate = '' } = {}, options = {}) {
+  const page = await openStanding(options);
   await unfold(page, '#gait-editor');
-  await predicted(page);
+  await waitForPrediction(page);
   await page.locator('#gait-from').selectOption({ label: gait });
   await page.getByLabel('Servos at most').fill(String(rate));
   await page.getByLabel('Rounds of 40 gaits').fill(String(rounds));
@@ -30,18 +30,18 @@ async function opened({ gait = 'walk', rounds = 1, seed = 3, rate = '' } = {}, o
 }
 
 const start = (page) => page.getByRole('button', { name: 'Make it faster' }).click();
-const ended = (page) => page.waitForFunction(() => document.querySelector('#faster-start').textContent === 'Make it faster' && document.querySelector('#faster-said').textContent !== '');
-/** Waits until so many gaits have been tried. */
-const tried = (page, count) => page.waitForFunction((count) => document.querySelector('#faster-progress').value >= count, count);
+const waitForEnd = (page) => page.waitForFunction(() => document.querySelector('#faster-start').textContent === 'Make it faster' && document.querySelector('#faster-said').textContent !== '');
+/** Waits until a number of gaits have been tried. */
+const waitForTries = (page, count) => page.waitForFunction((count) => document.querySelector('#faster-progress').value >= count, count);
 
 test('it finds the gait that lizard tune finds with the same seed, which is tried and undone', async () => {
-  const page = await opened();
+  const page = await openEditor();
   const loaded = [];
   page.on('request', (request) => loaded.push(new URL(request.url()).pathname));
   const words = ['tune', '--rounds', '1', '--seed', '3', '--name', 'mine', '--json', '--robot', join(ROOT, 'robot.toml')];
   const [{ stdout }] = await Promise.all([
     within('lizard tune', promisify(execFile)(resolve(ROOT, process.env.LIZARD), words)),
-    start(page).then(() => ended(page)),
+    start(page).then(() => waitForEnd(page)),
   ]);
   assert.equal(loaded.filter((path) => path.endsWith('/files/tune.wasm')).length, 1, 'the search comes when it is asked for');
   const known = JSON.parse(stdout);
@@ -75,11 +75,11 @@ test('it finds the gait that lizard tune finds with the same seed, which is trie
 });
 
 test('stopped midway it has the best so far, and the page can search again', async () => {
-  const page = await opened({ rounds: 200 });
+  const page = await openEditor({ rounds: 200 });
   await start(page);
-  await tried(page, 21);
+  await waitForTries(page, 21);
   await page.getByRole('button', { name: 'Stop the search' }).click();
-  await ended(page);
+  await waitForEnd(page);
   const said = await text(page, 'faster-said');
   const [, done] = /^Stopped after (\d+) of 8040 gaits\. Faster on \d+ of 200 random robots/.exec(said) ?? assert.fail(said);
   assert.ok(Number(done) >= 21 && Number(done) < 8040, said);
@@ -88,19 +88,19 @@ test('stopped midway it has the best so far, and the page can search again', asy
   await page.waitForFunction(() => Number(document.querySelector('#gait-amplitude').value) > 20);
   // From the gait that was taken.
   await start(page);
-  await tried(page, 1);
+  await waitForTries(page, 1);
   assert.ok(await page.locator('#faster-result').isHidden());
   await page.getByRole('button', { name: 'Stop the search' }).click();
-  await ended(page);
+  await waitForEnd(page);
 });
 
 test('what was found walks beside what there was, and goes as much farther as was promised', async () => {
-  const page = await opened({ rounds: 200 });
+  const page = await openEditor({ rounds: 200 });
   await page.locator('#solid').click();
   await start(page);
-  await tried(page, 21);
+  await waitForTries(page, 21);
   await page.getByRole('button', { name: 'Stop the search' }).click();
-  await ended(page);
+  await waitForEnd(page);
   const rows = await page.locator('#faster-rows tr').allInnerTexts();
   const [, before, found] = rows.map((row) => row.split('\t')).find(([name]) => name === 'speed').map(Number.parseFloat);
   assert.ok(found > before, rows.join());
@@ -121,16 +121,16 @@ test('what was found walks beside what there was, and goes as much farther as wa
 });
 
 test('of a turn the page shows the way round of both, and what was found turns as much faster as was promised', async () => {
-  const page = await opened({ gait: 'left', rounds: 200 });
-  // The search does not surpass the robot's own turn, but one with half the stroke in front.
+  const page = await openEditor({ gait: 'left', rounds: 200 });
+  // The search cannot surpass the robot's own turn, so it starts from one with half the stroke in front.
   for (const [leg, share] of [['LF', '-0.5'], ['RF', '0.5']]) {
     await page.getByLabel(`${leg} share`).fill(share);
     await page.keyboard.press('Tab');
   }
   await start(page);
-  await tried(page, 41);
+  await waitForTries(page, 41);
   await page.getByRole('button', { name: 'Stop the search' }).click();
-  await ended(page);
+  await waitForEnd(page);
   const rows = (await page.locator('#faster-rows tr').allInnerTexts()).map((row) => row.split('\t'));
   const [, before, found] = rows.find(([name]) => name === 'speed');
   assert.ok([before, found].every((speed) => /^[0-9.]+ °\/s$/.test(speed)), `${before} and ${found}`);
@@ -150,31 +150,31 @@ test('of a turn the page shows the way round of both, and what was found turns a
 });
 
 test('a robot that is changed midway ends the search of the one of before', async () => {
-  const page = await opened({ rounds: 200 });
+  const page = await openEditor({ rounds: 200 });
   await start(page);
-  await tried(page, 1);
+  await waitForTries(page, 1);
   await unfold(page, '#lengths-panel');
   await page.locator('#lengths input[name="links.l12"]').fill('46');
   await page.keyboard.press('Enter');
   await page.waitForFunction(() => window.lizard.toml !== window.lizard.original);
-  await ended(page);
+  await waitForEnd(page);
   assert.equal(await text(page, 'faster-said'), 'The robot has changed, so the search for the previous one has ended.');
   assert.ok((await page.locator('#faster-progress').isHidden()) && (await page.locator('#faster-result').isHidden()));
 });
 
 test('a gait that cannot be made faster says so', async () => {
-  // So slow a servo has no time for a better stride than the one that `left` has.
-  const page = await opened({ gait: 'left', rate: 200, seed: 1 });
+  // With servos this slow no stride is better than that of `left`.
+  const page = await openEditor({ gait: 'left', rate: 200, seed: 1 });
   await start(page);
-  await ended(page);
+  await waitForEnd(page);
   assert.equal(await text(page, 'faster-said'), 'No gait was found that is faster than this one on the slow ones of the random robots and floors. More rounds or another seed may find one.');
   assert.ok(await page.locator('#faster-result').isHidden());
 });
 
 test('what cannot be searched is refused with a message, and a number out of range is not taken', async () => {
-  const page = await opened({ gait: 'arc-left' });
+  const page = await openEditor({ gait: 'arc-left' });
   await start(page);
-  await ended(page);
+  await waitForEnd(page);
   assert.match(await text(page, 'faster-said'), /^This gait cannot be made faster: the gait `mine` goes ahead and turns; /);
   await page.locator('#gait-from').selectOption({ label: 'walk' });
   const rate = page.getByLabel('Servos at most');
@@ -189,18 +189,18 @@ test('what cannot be searched is refused with a message, and a number out of ran
 });
 
 test('it is used by the keyboard alone, fits a phone, and axe-core finds nothing in what it shows', async () => {
-  const page = await opened({ rounds: 200 }, { viewport: { width: 320, height: 640 }, bypassCSP: true });
+  const page = await openEditor({ rounds: 200 }, { viewport: { width: 320, height: 640 }, bypassCSP: true });
   await page.getByLabel('Seed of the random numbers').focus();
   await page.keyboard.press('Tab');
   assert.equal(await page.evaluate(() => document.activeElement.id), 'faster-start');
   await page.keyboard.press('Enter');
   await page.locator('#faster-result').waitFor();
-  assert.equal(await sideways(page), 0);
+  assert.equal(await overflow(page), 0);
   await page.addScriptTag({ path: createRequire(import.meta.url).resolve('axe-core/axe.min.js') });
   const { violations } = await page.evaluate(() => window.axe.run('.faster', { resultTypes: ['violations'] }));
   assert.deepEqual(violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join('\n')}`), []);
   await page.keyboard.press('Enter');
-  await ended(page);
+  await waitForEnd(page);
   assert.match(await text(page, 'faster-said'), /^Stopped after /);
   assert.equal(await page.evaluate(() => document.activeElement.id), 'faster-start', 'the focus stays');
 });

@@ -1,12 +1,12 @@
-// The page in Debian's Firefox. Boards behind a port are Chromium's, whose clock a test can hold: a simulated board on a busy
-// machine is slower than the clock on the wall.
+// The page in Debian's Firefox. Boards at a port are tested in Chromium only, whose clock a test can stop: on a busy machine a
+// simulated board is slower than real time.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { DIST, address, advance, blank, close, complaints, openFirefox, serve, sideways, standing, stops, tidy, until, within } from './browser.js';
+import { DIST, address, advance, openBlank, close, complaints, openFirefox, serve, overflow, openStanding, assertStops, closePages, until, within } from './browser.js';
 
 before(openFirefox);
-afterEach(tidy);
+afterEach(closePages);
 after(close);
 
 const click = (opened, selector) => opened.evaluate((selector) => document.querySelector(selector).click(), selector);
@@ -14,7 +14,7 @@ const text = (opened, selector) => opened.evaluate((selector) => document.queryS
 const place = (opened) => opened.evaluate(() => window.lizard.last.place);
 
 test('the image of the board walks the predicted way, and Esc stops it', async () => {
-  const opened = await standing();
+  const opened = await openStanding();
   assert.match(await text(opened, '#where'), /^on a simulated UNO, robot [a-z-]+ [0-9a-f]{8}$/);
   await click(opened, '#gaits button[data-command="walk"]');
   await advance(opened, 5500);
@@ -24,11 +24,11 @@ test('the image of the board walks the predicted way, and Esc stops it', async (
     return { predicted: robot.predict(walk), measured: window.lizard.measured() };
   });
   assert.ok(Math.abs(measured.forward / predicted.forward - 1) < 0.03, `${measured.forward} of ${predicted.forward} mm`);
-  await stops(opened);
+  await assertStops(opened);
 });
 
 test('it says that no board can be connected exactly where this Firefox has no Web Serial', async () => {
-  const opened = await standing();
+  const opened = await openStanding();
   const { has, note, isOff } = await opened.evaluate(() => ({
     has: typeof navigator.serial?.requestPort === 'function',
     note: document.querySelector('#no-serial').hidden ? '' : document.querySelector('#no-serial').textContent,
@@ -38,7 +38,7 @@ test('it says that no board can be connected exactly where this Firefox has no W
 });
 
 test('every step of the first connection can be tried with the simulated board', async () => {
-  const opened = await standing();
+  const opened = await openStanding();
   await click(opened, '#setup-open');
   const count = await opened.evaluate(() => document.querySelectorAll('#setup-steps button').length);
   assert.equal(count, 9);
@@ -57,13 +57,13 @@ test('every step of the first connection can be tried with the simulated board',
 
 test('a phone\'s width shows it without scrolling sideways, and so does a large screen', async () => {
   for (const [width, height] of [[500, 800], [3840, 2160]]) {
-    assert.equal(await sideways(await standing({ viewport: { width, height } })), 0);
+    assert.equal(await overflow(await openStanding({ viewport: { width, height } })), 0);
   }
 });
 
 test('once opened, it walks without a server', async () => {
   const server = await serve(DIST);
-  const opened = await blank({ serviceWorkers: 'allow' });
+  const opened = await openBlank({ serviceWorkers: 'allow' });
   await opened.goto(address(server));
   await until(opened, async () => (await navigator.serviceWorker.ready) && navigator.serviceWorker.controller !== null);
   server.closeAllConnections();

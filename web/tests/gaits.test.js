@@ -1,26 +1,26 @@
-// A gait is made by dragging bars: what is predicted comes true, and what would break a limit is refused with what would do.
+// A gait is made by dragging bars: its prediction comes true, and one that breaks a limit is refused with the nearest valid value.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { advance, close, complaints, open, standing, tidy, unfold } from './browser.js';
+import { advance, close, complaints, open, openStanding, closePages, unfold } from './browser.js';
 
 before(open);
-afterEach(tidy);
+afterEach(closePages);
 after(close);
 
-async function opened(options) {
-  const page = await standing(options);
+async function openEditor(options) {
+  const page = await openStanding(options);
   await unfold(page, '#gait-editor');
-  await predicted(page);
+  await waitForPrediction(page);
   return page;
 }
 
 const text = (page, id) => page.locator(`#gait-${id}`).innerText();
-/** Waits until what is shown has an answer. */
-const predicted = (page) => page.waitForFunction(() => /mm$|may drift/.test(document.querySelector('#gait-way').textContent));
-const changes = (page, id, before) => page.waitForFunction(([id, before]) => document.querySelector(`#gait-${id}`).textContent !== before, [id, before]);
+/** Waits until the shown gait has been tried. */
+const waitForPrediction = (page) => page.waitForFunction(() => /mm$|may drift/.test(document.querySelector('#gait-way').textContent));
+const waitForChange = (page, id, before) => page.waitForFunction(([id, before]) => document.querySelector(`#gait-${id}`).textContent !== before, [id, before]);
 
-/** Drags from a point of the circle to another: ring 0 to 3 from outside, phases 0 to 1. */
+/** Drags from one phase to another, 0 to 1, on a ring of the circle, 0 to 3 from the outside. */
 async function drag(page, ring, from, to) {
   await page.locator('#gait-circle').scrollIntoViewIfNeeded();
   const { x, y, width, height } = await page.locator('#gait-circle').boundingBox();
@@ -33,7 +33,7 @@ async function drag(page, ring, from, to) {
 }
 
 test('a gait to begin with is predicted as its button of Drive is', async () => {
-  const page = await opened();
+  const page = await openEditor();
   const button = page.locator('#gaits button[data-command="walk"] small');
   await page.waitForFunction(() => document.querySelector('#gaits button[data-command="walk"] small').textContent !== '');
   assert.equal(await text(page, 'way'), await button.innerText());
@@ -41,28 +41,28 @@ test('a gait to begin with is predicted as its button of Drive is', async () => 
 });
 
 test('a bar and its end are dragged, and the numbers follow', async () => {
-  const page = await opened();
+  const page = await openEditor();
   const before = await text(page, 'way');
   // walk has LF from 0.25 to 0.25 + 0.75.
   await drag(page, 0, 0.5, 0.6);
   assert.ok(Math.abs(Number(await page.getByLabel('LF starts at').inputValue()) - 0.35) < 0.011);
-  await changes(page, 'way', before);
+  await waitForChange(page, 'way', before);
   await drag(page, 1, 0.5, 0.42);
   assert.ok(Math.abs(Number(await page.locator('#gait-duty').inputValue()) - 0.67) < 0.011);
-  // By the numbers alone the same is done.
+  // The number boxes do the same.
   await page.getByLabel('LF starts at').fill('0.25');
   await page.locator('#gait-duty').fill('0.75');
   await page.waitForFunction((way) => document.querySelector('#gait-way').textContent === way, before);
 });
 
 test('a gait that is being made is there after a reload, and a stored one that is none is dropped', async () => {
-  const page = await opened();
+  const page = await openEditor();
   await page.locator('#gait-name').fill('waddle');
   await page.getByLabel('LF starts at').fill('0.35');
   await page.reload();
   await page.waitForFunction(() => window.lizard);
   await unfold(page, '#gait-editor');
-  await predicted(page);
+  await waitForPrediction(page);
   assert.equal(await page.locator('#gait-name').inputValue(), 'waddle');
   assert.equal(await page.getByLabel('LF starts at').inputValue(), '0.35');
   assert.match(await text(page, 'table'), /^\[gait\.waddle\]/);
@@ -71,13 +71,13 @@ test('a gait that is being made is there after a reload, and a stored one that i
     await page.reload();
     await page.waitForFunction(() => window.lizard);
     await unfold(page, '#gait-editor');
-    await predicted(page);
+    await waitForPrediction(page);
     assert.match(await text(page, 'table'), /^\[gait\.mine\]/);
   }
 });
 
 test('what would break a limit is refused, and a button has the nearest value that would do', async () => {
-  const page = await opened();
+  const page = await openEditor();
   await page.locator('#gait-amplitude').fill('40');
   const button = page.locator('#gait-instead button', { hasText: 'Amplitude' });
   await button.waitFor();
@@ -85,7 +85,7 @@ test('what would break a limit is refused, and a button has the nearest value th
   assert.ok(await page.locator('#gait-try').isDisabled());
   const value = Number(/Amplitude ([0-9.]+)°/.exec(await button.innerText())[1]);
   await button.click();
-  await predicted(page);
+  await waitForPrediction(page);
   assert.equal(Number(await page.locator('#gait-amplitude').inputValue()), value);
   assert.ok(await page.locator('#gait-no').isHidden());
   // It is the nearest: a tenth of a degree more is refused again.
@@ -94,7 +94,7 @@ test('what would break a limit is refused, and a button has the nearest value th
 });
 
 test('a number out of its range is marked and not taken, and is gone when it is left', async () => {
-  const page = await opened();
+  const page = await openEditor();
   const table = await text(page, 'table');
   for (const [input, wrong, own] of [
     [page.locator('#gait-amplitude'), '61', '20'],
@@ -107,18 +107,18 @@ test('a number out of its range is marked and not taken, and is gone when it is 
     await page.keyboard.press('Tab');
     assert.deepEqual([await input.inputValue(), await input.getAttribute('aria-invalid')], [own, null]);
   }
-  // Whatever was asked of the worker is answered by now, in its order.
+  // By now the worker has answered everything, in order.
   await page.locator('#gait-name').fill('other');
   await page.waitForFunction(() => document.querySelector('#gait-table').textContent.startsWith('[gait.other]'));
   assert.equal(await text(page, 'table'), table.replace('mine', 'other'));
 });
 
 test('a gait that is tried walks as far as was predicted, and stands in robot.toml', async () => {
-  const page = await opened();
+  const page = await openEditor();
   const before = await text(page, 'way');
   await page.locator('#gait-name').fill('stride');
   await page.locator('#gait-amplitude').fill('16');
-  await changes(page, 'way', before);
+  await waitForChange(page, 'way', before);
   const way = Number(/^([0-9.]+) mm$/.exec(await text(page, 'way'))[1]);
   await page.locator('#gait-try').click();
   await page.waitForFunction(() => window.lizard.toml.includes('[gait.stride]'));
@@ -129,14 +129,14 @@ test('a gait that is tried walks as far as was predicted, and stands in robot.to
   assert.ok(Math.abs(went - way) < 0.03 * way, `${went} mm of ${way}`);
   const toml = await page.evaluate(() => window.lizard.toml);
   assert.ok(toml.includes(await text(page, 'table')), toml.slice(-400));
-  // The robot of before is one click away.
+  // One click restores the previous robot.
   await unfold(page, '#lengths-panel');
   await page.locator('#lengths-reset').click();
   await page.waitForFunction(() => !window.lizard.toml.includes('[gait.stride]'));
 });
 
 test('a gait that walks back can be changed, and any gait is turned round', async () => {
-  const page = await opened();
+  const page = await openEditor();
   const ahead = Number.parseFloat(await text(page, 'way'));
   await page.getByRole('button', { name: 'Reverse' }).click();
   await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-way').textContent) < -1);
@@ -153,7 +153,7 @@ test('a gait that walks back can be changed, and any gait is turned round', asyn
 });
 
 test('left and right are exchanged', async () => {
-  const page = await opened();
+  const page = await openEditor();
   await page.locator('#gait-from').selectOption({ label: 'arc-left' });
   await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-turn').textContent) > 1);
   const turn = Number.parseFloat(await text(page, 'turn'));

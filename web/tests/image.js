@@ -1,8 +1,8 @@
-// Images of robots as the page makes them, made here from the files that it is served with.
+// Images of robots as the page makes them, made here from the page's own files.
 import { load } from '../../tools/judge/src/hex.js';
 import { file, robot } from './wasm.js';
 
-/** The image of flash for a robot file of the page. */
+/** Makes the image of flash for a robot file of the page. */
 export async function imageOf(name) {
   const { ask } = await robot();
   const { start } = ask('read', await file(`${name}.toml`, 'utf8'));

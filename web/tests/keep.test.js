@@ -1,16 +1,16 @@
-// A run is kept as it was, and two robots walk on one floor.
+// A run is recorded as it was, and two robots walk on one floor.
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { after, afterEach, before, test } from 'node:test';
 
-import { advance, close, complaints, open, standing, tidy, type, unfold } from './browser.js';
+import { advance, close, complaints, open, openStanding, closePages, type, unfold } from './browser.js';
 
 before(open);
-afterEach(tidy);
+afterEach(closePages);
 after(close);
 
-async function opened(options) {
-  const page = await standing(options);
+async function openKeep(options) {
+  const page = await openStanding(options);
   await unfold(page, '#keep');
   return page;
 }
@@ -18,27 +18,27 @@ async function opened(options) {
 /** Cycles of the simulated board in a frame of 20 ms, and the frames since it was switched on. */
 const FRAME = 320_000;
 const frames = (page) => page.evaluate((cycles) => window.lizard.link.board.cycle / cycles, FRAME);
-/** Waits until the page itself has run so many frames. */
-const passes = async (page, count) =>
+/** Waits until the page itself has run a number of frames. */
+const waitForFrames = async (page, count) =>
   page.waitForFunction((end) => window.lizard.link.board.cycle > end, FRAME * ((await frames(page)) + count));
 const button = (page, name) => page.locator('#keep').getByRole('button', { name, exact: true });
 
-/** The file that a button saves. */
-async function saved(page, name) {
+/** Presses a button and returns the file that it saves. */
+async function save(page, name) {
   const download = page.waitForEvent('download');
   await button(page, name).click();
   const file = await download;
   return { name: file.suggestedFilename(), bytes: await readFile(await file.path()) };
 }
 
-/** The table's lines, by the names of its columns. */
-function table(csv) {
+/** Reads the rows of a CSV table as objects with the columns' names as keys. */
+function parseCsv(csv) {
   const [head, ...lines] = csv.trim().split('\n').map((line) => line.split(','));
   return lines.map((fields) => Object.fromEntries(head.map((name, n) => [name, fields[n]])));
 }
 
 test('the table of a run has its poses, places and pulses, frame by frame', async () => {
-  const page = await opened();
+  const page = await openKeep();
   await type(page, 'walk', 'ok walk');
   const begun = await frames(page);
   await button(page, 'Record').click();
@@ -47,13 +47,13 @@ test('the table of a run has its poses, places and pulses, frame by frame', asyn
   await advance(page, 100);
   await button(page, 'Stop recording').click();
   const passed = (await frames(page)) - begun;
-  const { name, bytes } = await saved(page, 'Table (CSV)');
+  const { name, bytes } = await save(page, 'Table (CSV)');
   assert.equal(name, 'run.csv');
-  const rows = table(bytes.toString());
+  const rows = parseCsv(bytes.toString());
   assert.ok(rows.length >= 150 && rows.length <= passed + 1, `${rows.length} of ${passed} frames`);
   rows.forEach((row, n) => assert.equal(Number(row.time_s), Number((n * 0.02).toFixed(2))));
   assert.ok(rows.every(({ doing }) => doing === '"walk"'));
-  // The pulses ask for the angles, by the servo's line in robot.toml: 10 us for a degree about 1500 us.
+  // The angles that the pulses ask for, by the servo's line in robot.toml: 10 us per degree around 1500 us.
   const servo = (row) => 138.590378 + (Number(row.pulse_a1_us) - 1500) / 10;
   const off = rows.map((row) => Math.abs(servo(row) - Number(row.a1_deg)));
   assert.ok(Math.max(...off) < 8, `A1 is ${Math.max(...off)} deg from what its pulse asks for`);
@@ -63,7 +63,7 @@ test('the table of a run has its poses, places and pulses, frame by frame', asyn
 });
 
 test('a run is seen again from any moment, while the robot goes on', async () => {
-  const page = await opened();
+  const page = await openKeep();
   await type(page, 'walk', 'ok walk');
   await button(page, 'Record').click();
   await advance(page, 2000);
@@ -76,19 +76,19 @@ test('a run is seen again from any moment, while the robot goes on', async () =>
   await button(page, 'Back to the robot').click();
   await button(page, 'Replay').click();
   await page.waitForFunction(() => Number(document.querySelector('#moment').value) > 1.1);
-  // Another robot has nothing to do with that run.
+  // The recording does not belong to another robot.
   await page.locator('#robot').selectOption('large');
   await page.waitForFunction(() => window.lizard.file === 'large');
   assert.ok(await button(page, 'Replay').isDisabled());
 });
 
 test('pictures of the floor are points or lines, and a film moves', async () => {
-  const page = await opened();
+  const page = await openKeep();
   await type(page, 'walk', 'ok walk');
-  const png = await saved(page, 'Picture (PNG)');
+  const png = await save(page, 'Picture (PNG)');
   assert.equal(png.bytes.subarray(1, 4).toString(), 'PNG');
   assert.ok(png.bytes.length > 5000, `${png.bytes.length} bytes`);
-  const svg = await saved(page, 'Picture (SVG)');
+  const svg = await save(page, 'Picture (SVG)');
   const shapes = await page.evaluate((text) => {
     const parsed = new DOMParser().parseFromString(text, 'image/svg+xml');
     return parsed.querySelector('parsererror') ? 0 : parsed.querySelectorAll('path').length;
@@ -96,14 +96,14 @@ test('pictures of the floor are points or lines, and a film moves', async () => 
   assert.ok(shapes > 50, `${shapes} shapes`);
   assert.match(svg.bytes.toString(), />100 mm<|>50 mm</, 'its scale');
   await button(page, 'Film').click();
-  await passes(page, 50);
-  const film = await saved(page, 'Stop the film');
+  await waitForFrames(page, 50);
+  const film = await save(page, 'Stop the film');
   assert.match(film.name, /^run\.(webm|mp4)$/);
   assert.ok(film.bytes.length > 2000, `${film.bytes.length} bytes`);
 });
 
 test('two robots walk side by side, each as far as its gait leads alone', async () => {
-  const page = await opened();
+  const page = await openKeep();
   await page.getByLabel('This one').selectOption('back');
   await page.getByLabel('Beside it').selectOption('walk');
   await button(page, 'Start both').click();
@@ -112,12 +112,12 @@ test('two robots walk side by side, each as far as its gait leads alone', async 
   const said = page.locator('#keep-said');
   await page.getByText(/^back: -[0-9.]+ mm.*Beside it, walk: [0-9.]+ mm/).waitFor();
   const [, back, walk] = /^back: -([0-9.]+) mm.*walk: ([0-9.]+) mm/.exec(await said.innerText()).map(Number);
-  // The gait back is walk, backwards: it leads as far.
+  // The gait `back` is `walk` in reverse, so it covers the same distance.
   assert.ok(walk > 40 && Math.abs(walk - back) < 0.25 * walk, `${walk} mm ahead, ${back} mm back`);
   await page.locator('.stop').click();
-  // Texts are written ten times in a second of the page's own time.
+  // Texts are updated ten times per second of page time.
   const written = async () => {
-    await passes(page, 20);
+    await waitForFrames(page, 20);
     return said.innerText();
   };
   await advance(page, 3000);

@@ -3,10 +3,10 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { address, advance, blank, close, open, standing, tidy } from './browser.js';
+import { address, advance, openBlank, close, open, openStanding, closePages } from './browser.js';
 
 before(open);
-afterEach(tidy);
+afterEach(closePages);
 after(close);
 
 /** Left, top, width and height of everything that has a border, CSS pixels. */
@@ -35,9 +35,9 @@ for (const [letters, height] of [
     [390, 844],
   ]) {
     test(`nothing moves after the first picture: ${letters} letters, ${width} x ${pixels} pixels`, async () => {
-      const opened = await blank({ viewport: { width, height: pixels } });
+      const opened = await openBlank({ viewport: { width, height: pixels } });
       await opened.addInitScript(setLetters, height);
-      // Without those that come with the page, as for a robot of one's own.
+      // Without the predictions that come with the page, as for a user's own robot.
       await opened.route(/predictions/, (route) => route.fulfill({ status: 404 }));
       let predict;
       const asked = new Promise((done) => (predict = done));
@@ -59,10 +59,10 @@ for (const [letters, height] of [
   }
 }
 
-/** The view's zoom, CSS pixels in a mm, and the one at which 420 mm of the floor fit. */
+/** The view's zoom, CSS pixels per mm, and the zoom at which 420 mm of the floor fit. */
 const zooms = (opened) =>
   opened.evaluate(async () => {
-    // A picture is drawn of the size that there is now.
+    // The next picture is drawn with the current size.
     for (let n = 0; n < 3; n++) await new Promise(requestAnimationFrame);
     const { dataset, clientWidth, clientHeight } = document.querySelector('#floor');
     return [dataset.zoom, (Math.min(clientWidth, clientHeight) / 420).toFixed(4)];
@@ -70,7 +70,7 @@ const zooms = (opened) =>
 
 test('the view follows the size of the floor until the user zooms, and again from the start', async () => {
   const [large, small] = [{ width: 1400, height: 700 }, { width: 390, height: 568 }];
-  const opened = await standing({ viewport: large });
+  const opened = await openStanding({ viewport: large });
   const [first, fitting] = await zooms(opened);
   assert.equal(first, fitting);
   await opened.setViewportSize(small);

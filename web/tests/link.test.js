@@ -1,21 +1,20 @@
-// A link that loses lines: the robot stops when somebody says so, and what the page shows is what the robot said.
+// A link that loses lines: the robot stops when it is told to, and the page shows only what the robot has reported.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { connected, until } from './board.js';
-import { advance, close, complaints, open, page, standing, tidy } from './browser.js';
+import { openWithBoard, until } from './board.js';
+import { advance, close, closePages, complaints, open, openStanding, page, text } from './browser.js';
 import { fakeSerial } from './fake-serial.js';
 
 before(open);
-afterEach(tidy);
+afterEach(closePages);
 after(close);
 
-const text = (opened, selector) => opened.locator(selector).innerText();
-const heard = (opened) => opened.evaluate(() => window.heard);
+const receivedText = (opened) => opened.evaluate(() => window.heard);
 const isStopping = (opened) => opened.evaluate(() => document.body.classList.contains('stopping'));
 
-/** Loses what the page sends while it has one of these words, or everything for an empty list. */
-const lose = (opened, words) =>
+/** Drops lines of the page that contain one of these words; all lines for an empty list. */
+const dropLines = (opened, words) =>
   opened.evaluate((words) => {
     const board = window.otherBoard;
     window.send ??= board.send;
@@ -26,7 +25,7 @@ const lose = (opened, words) =>
       window.lost += 1;
     };
   }, words);
-const loseNothing = (opened) => opened.evaluate(() => (window.otherBoard.send = window.send));
+const dropNothing = (opened) => opened.evaluate(() => (window.otherBoard.send = window.send));
 
 async function type(opened, line) {
   const answers = () => opened.locator('#log div', { hasText: `ok ${line}` }).count();
@@ -37,37 +36,37 @@ async function type(opened, line) {
   await opened.locator('#log').focus();
 }
 
-async function walking() {
-  const opened = await connected('robot', 8000);
+async function openWalking() {
+  const opened = await openWithBoard('robot', 8000);
   await opened.locator('#gaits button[data-command="walk"]').click();
   await until(opened, 'it walks', async () => (await text(opened, '#doing')) === 'walk');
   return opened;
 }
 
 test('stop goes out at once, and a line that waits behind a lost answer is not sent after it', async () => {
-  const opened = await walking();
-  await lose(opened, ['status']);
+  const opened = await openWalking();
+  await dropLines(opened, ['status']);
   await until(opened, 'a question has no answer', async () => (await opened.evaluate(() => window.lost)) > 0, 20);
   await opened.locator('#gaits button[data-command="left"]').click();
-  const before = (await heard(opened)).length;
+  const before = (await receivedText(opened)).length;
   await opened.keyboard.press('Escape');
   await opened.clock.runFor(40);
-  assert.ok((await heard(opened)).slice(before).startsWith('stop\n'));
+  assert.ok((await receivedText(opened)).slice(before).startsWith('stop\n'));
   await opened.clock.runFor(4000);
-  assert.ok(!(await heard(opened)).slice(before).includes('left'), 'it does not go on after stop');
+  assert.ok(!(await receivedText(opened)).slice(before).includes('left'), 'it does not go on after stop');
   assert.equal(await text(opened, '#doing'), 'stop');
 });
 
 test('a stop that is lost is sent again until it is answered, and the page is red until then', async () => {
-  const opened = await walking();
-  await lose(opened, []);
+  const opened = await openWalking();
+  await dropLines(opened, []);
   await opened.keyboard.press('Escape');
   await opened.clock.runFor(600);
   assert.ok(await isStopping(opened));
   assert.equal(await text(opened, '#doing'), 'walk', 'the robot has not said anything else');
   await opened.clock.runFor(700);
   await opened.locator('#alarm', { hasText: /^No answer: it may walk on\. "stop" is sent until it answers\. 1\.\d s$/ }).waitFor();
-  await loseNothing(opened);
+  await dropNothing(opened);
   await until(opened, 'it is answered', async () => (await opened.locator('#log div', { hasText: /^ok stop$/ }).count()) > 0);
   await opened.clock.runFor(100);
   assert.equal(await text(opened, '#doing'), 'stop');
@@ -76,40 +75,40 @@ test('a stop that is lost is sent again until it is answered, and the page is re
 });
 
 test('a robot that rests is not asked to stop again', async () => {
-  const opened = await connected('robot', 8000);
+  const opened = await openWithBoard('robot', 8000);
   await type(opened, 'rest');
-  const before = (await heard(opened)).length;
+  const before = (await receivedText(opened)).length;
   await opened.keyboard.press('Escape');
   await opened.clock.runFor(1500);
-  const sent = (await heard(opened)).slice(before).split('\n');
+  const sent = (await receivedText(opened)).slice(before).split('\n');
   assert.equal(sent.filter((line) => line === 'stop').length, 1);
   assert.equal(await isStopping(opened), false);
 });
 
 test('the beginning of a refusal that a radio has cut off is no answer to stop', async () => {
-  const opened = await walking();
-  await lose(opened, ['stop']);
+  const opened = await openWalking();
+  await dropLines(opened, ['stop']);
   await opened.keyboard.press('Escape');
   await opened.evaluate(() => {
     for (const letter of 'err 7 servos are resting, senok walk\r\n') window.otherBoard.onByte(letter.charCodeAt(0));
   });
   await opened.clock.runFor(600);
   assert.ok(await isStopping(opened));
-  await loseNothing(opened);
+  await dropNothing(opened);
   await until(opened, 'it is answered', async () => !(await isStopping(opened)));
 });
 
 test('the answers to a stop that was sent often are not those of the next lines', async () => {
-  const opened = await walking();
+  const opened = await openWalking();
   await opened.evaluate(() => {
     const board = window.otherBoard;
     const { onByte } = board;
-    // What the robot says comes a second late.
+    // The robot's lines arrive a second late.
     board.onByte = (byte) => setTimeout(() => onByte(byte), 1000);
   });
   await opened.keyboard.press('Escape');
   await opened.clock.runFor(1100);
-  assert.ok((await heard(opened)).split('stop').length > 4, 'it was sent again');
+  assert.ok((await receivedText(opened)).split('stop').length > 4, 'it was sent again');
   await opened.locator('#gaits button[data-command="left"]').click();
   await until(opened, 'it turns', async () => (await text(opened, '#doing')) === 'left');
   await opened.keyboard.press('Escape');
@@ -118,8 +117,8 @@ test('the answers to a stop that was sent often are not those of the next lines'
 });
 
 test('a robot that is silent for 0.8 s is said to be, and for how long', async () => {
-  const opened = await walking();
-  await lose(opened, []);
+  const opened = await openWalking();
+  await dropLines(opened, []);
   await opened.evaluate(() => (window.otherBoard.onByte = () => {}));
   await opened.clock.runFor(700);
   await opened.clock.runFor(1600);
@@ -128,7 +127,7 @@ test('a robot that is silent for 0.8 s is said to be, and for how long', async (
 });
 
 test('a gait that ended while nothing was heard is shown as ended', async () => {
-  const opened = await walking();
+  const opened = await openWalking();
   await opened.evaluate(() => {
     const board = window.otherBoard;
     const { onByte } = board;
@@ -141,7 +140,7 @@ test('a gait that ended while nothing was heard is shown as ended', async () => 
 });
 
 test('the simulated UNO is stopped in the same way', async () => {
-  const opened = await standing();
+  const opened = await openStanding();
   await opened.locator('#gaits button[data-command="walk"]').click();
   await advance(opened, 400);
   await opened.evaluate(() => {
@@ -155,8 +154,8 @@ test('the simulated UNO is stopped in the same way', async () => {
   assert.equal(await text(opened, '#doing'), 'stop');
 });
 
-/** Gaps between the moments when the board had heard a whole line, ms of the page's time. */
-const gaps = (opened) =>
+/** Times between the ends of lines that the board received, ms of page time. */
+const recordGaps = (opened) =>
   opened.evaluate(() => {
     const at = [];
     const { onReceived } = window.otherBoard;
@@ -167,11 +166,11 @@ const gaps = (opened) =>
     window.gaps = () => at.slice(1).map((time, n) => time - at[n]);
   });
 
-/** True if a servo turns within so many ms: a pulse becomes longer or shorter by more than 1 us. */
-async function moves(opened, ms) {
+/** True if a servo turns within some ms, that is, if a pulse changes by more than 1 us. */
+async function isMoving(opened, ms) {
   const seen = [];
   for (let left = ms; left > 0; left -= 20) {
-    // The LED's pin is none of a servo.
+    // The LED's pin belongs to no servo.
     seen.push(await opened.evaluate(() => window.lizard.description.servos.map(({ pin }) => window.pulses[pin])));
     await opened.clock.runFor(20);
   }
@@ -179,10 +178,10 @@ async function moves(opened, ms) {
 }
 
 test('while a person drives, the board has a deadman and hears a line in every third of it', async () => {
-  const opened = await walking();
-  const lines = (await heard(opened)).split('\n');
+  const opened = await openWalking();
+  const lines = (await receivedText(opened)).split('\n');
   assert.ok(lines.indexOf('deadman 901') > 0 && lines.indexOf('deadman 901') < lines.indexOf('walk'), 'before it walks');
-  await gaps(opened);
+  await recordGaps(opened);
   await opened.clock.runFor(5000);
   const longest = Math.max(...(await opened.evaluate(() => window.gaps())));
   assert.ok(longest <= 310, `${longest} ms without a line`);
@@ -191,41 +190,41 @@ test('while a person drives, the board has a deadman and hears a line in every t
 });
 
 test('a robot out of reach stands still, and says why when it is heard again', async () => {
-  const opened = await walking();
-  assert.ok(await moves(opened, 500));
-  await lose(opened, []);
+  const opened = await openWalking();
+  assert.ok(await isMoving(opened, 500));
+  await dropLines(opened, []);
   await opened.clock.runFor(901 + 40);
-  assert.equal(await moves(opened, 500), false);
-  await loseNothing(opened);
+  assert.equal(await isMoving(opened, 500), false);
+  await dropNothing(opened);
   await opened.clock.runFor(3000);
   assert.equal(await text(opened, '#doing'), 'stop');
   await opened.locator('#log div', { hasText: '# fault: no line for as long as deadman says' }).waitFor();
 });
 
 test('a robot that its person has stopped has its own deadman again', async () => {
-  const opened = await connected('robot', 8000);
+  const opened = await openWithBoard('robot', 8000);
   await type(opened, 'deadman 5000');
   await opened.locator('#gaits button[data-command="walk"]').click();
   await opened.clock.runFor(1500);
-  // What is kept is the robot's own.
+  // The robot's own setting is saved.
   await type(opened, 'save');
   await type(opened, 'cal');
   await opened.locator('#log div', { hasText: /^# deadman 5000$/ }).waitFor();
   assert.equal(await text(opened, '#doing'), 'walk');
   await opened.keyboard.press('Escape');
   await opened.clock.runFor(1500);
-  assert.match(await heard(opened), /deadman 901\n[^]*save\n[^]*deadman 901\n[^]*stop\n[^]*deadman 5000\n(status\n)*$/);
+  assert.match(await receivedText(opened), /deadman 901\n[^]*save\n[^]*deadman 901\n[^]*stop\n[^]*deadman 5000\n(status\n)*$/);
 });
 
 test('a deadman that a page has left behind is not taken for the robot\'s own', async () => {
-  const opened = await connected('robot', 8000);
+  const opened = await openWithBoard('robot', 8000);
   await opened.evaluate(() => window.otherBoard.send([...'deadman 901\n'].map((letter) => letter.charCodeAt(0))));
   await opened.clock.runFor(500);
   await opened.locator('#gaits button[data-command="walk"]').click();
   await opened.clock.runFor(1000);
   await opened.keyboard.press('Escape');
   await opened.clock.runFor(1000);
-  assert.match(await heard(opened), /stop\n[^]*deadman 0\n(status\n)*$/);
+  assert.match(await receivedText(opened), /stop\n[^]*deadman 0\n(status\n)*$/);
 });
 
 test('an HC-05 at 9600 baud, which the system knows as a serial port, is driven as a radio', async () => {
@@ -236,7 +235,7 @@ test('an HC-05 at 9600 baud, which the system knows as a serial port, is driven 
   await opened.waitForFunction(() => window.otherBoard);
   await until(opened, 'it is found', async () => (await text(opened, '#where')).startsWith('on a board on Bluetooth that has not restarted'));
   assert.deepEqual(await opened.evaluate(() => window.wanted.allowedBluetoothServiceClassIds), [serialProfile]);
-  assert.match(await heard(opened), /^(status\n)+watch 10\n/, 'it is not waited for a reset');
+  assert.match(await receivedText(opened), /^(status\n)+watch 10\n/, 'it is not waited for a reset');
   const rate = await opened.evaluate(() => window.otherBoard.uno.usart.baudRate);
   assert.ok(Math.abs(rate / 9600 - 1) < 0.03, `the chip has found the rate: ${rate} baud`);
   assert.ok(await opened.locator('#flash-write').isDisabled());
@@ -247,7 +246,7 @@ test('an HC-05 at 9600 baud, which the system knows as a serial port, is driven 
 });
 
 test('a page that nobody sees lets go', async () => {
-  const opened = await walking();
+  const opened = await openWalking();
   await opened.evaluate(() => {
     Object.defineProperty(document, 'hidden', { value: true });
     document.dispatchEvent(new Event('visibilitychange'));
@@ -257,14 +256,14 @@ test('a page that nobody sees lets go', async () => {
 });
 
 test('a page that nobody sees sends no more of what keeps a robot walking', async () => {
-  const opened = await walking();
-  await lose(opened, ['stop']);
+  const opened = await openWalking();
+  await dropLines(opened, ['stop']);
   await opened.evaluate(() => {
     Object.defineProperty(document, 'hidden', { value: true });
     document.dispatchEvent(new Event('visibilitychange'));
   });
   await opened.clock.runFor(3000);
-  assert.equal(await moves(opened, 500), false);
+  assert.equal(await isMoving(opened, 500), false);
 });
 
 test('nothing was complained of', () => assert.deepEqual(complaints, []));

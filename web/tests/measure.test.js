@@ -1,4 +1,4 @@
-// The room that measures, with a rendered film as the browser's camera: what is true is known.
+// The measuring room, with a rendered film as the browser's camera, so that the truth is known.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -6,7 +6,7 @@ import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
 
-import { address, blank, close, complaints, openWithCamera, page, tidy } from './browser.js';
+import { address, openBlank, close, complaints, openWithCamera, page, closePages } from './browser.js';
 import { fakeSerial } from './fake-serial.js';
 
 const { LIZARD } = process.env;
@@ -16,7 +16,7 @@ const folder = mkdtempSync(join(tmpdir(), 'lizard-film-'));
 const BARS = { forward: 0.3, left: 0.3, turn: 0.5 };
 
 /** Films with a width and number of cycles, and with hidden tags. */
-function film(name, ...more) {
+function renderFilm(name, ...more) {
   const path = join(folder, name);
   execFileSync(join(dirname(LIZARD), 'examples/studio'), [path, ...more.map(String)]);
   return path;
@@ -25,58 +25,58 @@ function film(name, ...more) {
 let walk;
 let truth;
 before(() => {
-  walk = film('walk', 640, 14);
+  walk = renderFilm('walk', 640, 14);
   truth = JSON.parse(readFileSync(join(walk, 'truth.json'), 'utf8'));
 });
 afterEach(async () => {
-  await tidy();
+  await closePages();
   await close();
 });
 after(() => rmSync(folder, { recursive: true }));
 
 const at = () => `${address()}#room=measure&file=paper`;
 
-/** The room, with the paper's robot, which stands. */
-async function room(options = {}) {
+/** Opens the room with the paper's robot, and waits until it stands. */
+async function openRoom(options = {}) {
   const opened = await page(options, undefined, at());
   await opened.waitForFunction(() => window.lizard?.gait === 'stand' && window.lizard.mayAsk);
-  // The box of a height takes keys as a person types them.
+  // The box of the height takes keys as a user types them.
   await opened.locator('#measure-height').pressSequentially('95');
   return opened;
 }
 
-const says = (opened, id, words) => opened.locator(`#measure-${id}`, { hasText: words }).waitFor();
+const waitForMessage = (opened, id, words) => opened.locator(`#measure-${id}`, { hasText: words }).waitFor();
 
-async function camera(opened, words = 'All five tags are seen.') {
+async function switchCameraOn(opened, words = 'All five tags are seen.') {
   await opened.getByRole('button', { name: 'Camera' }).click();
-  await says(opened, 'seen', words);
+  await waitForMessage(opened, 'seen', words);
 }
 
 /** Types a number into a box of the room. */
-async function put(opened, id, number) {
+async function typeNumber(opened, id, number) {
   const box = opened.locator(`#measure-${id}`);
   await box.press('Control+a');
   await box.pressSequentially(String(number));
 }
 
-/** Switches the camera on once all is set, so that little of the film is over, and has the page drive. */
-async function drives(opened, gaits, cycles) {
+/** Switches the camera on last, so that little of the film has passed, and lets the page drive. */
+async function startDriving(opened, gaits, cycles) {
   await opened.locator('#measure-driver').selectOption('page');
   for (const box of await opened.locator('#measure-gaits input').all()) await box.setChecked(gaits.includes(await box.getAttribute('name')));
-  await put(opened, 'cycles', cycles);
-  await put(opened, 'pause', 0.5);
-  await camera(opened);
+  await typeNumber(opened, 'cycles', cycles);
+  await typeNumber(opened, 'pause', 0.5);
+  await switchCameraOn(opened);
   await opened.locator('#measure-start').click();
 }
 
-/** What a download of the results has in it. */
-async function downloaded(opened, button) {
+/** Downloads the results and returns the content of the file. */
+async function download(opened, button) {
   const [download] = await Promise.all([opened.waitForEvent('download'), opened.locator(`#measured-${button}`).click()]);
   return readFileSync(await download.path());
 }
 
-/** The command's report of the gait on the same pictures. */
-const command = () => JSON.parse(execFileSync(LIZARD, ['measure', join(walk, 'pictures'), '--robot', ROBOT, '--gait', 'walk', '--height', '95', '--json'], { encoding: 'utf8' })).gaits[0];
+/** Returns the report of `lizard measure` on the same pictures. */
+const commandReport = () => JSON.parse(execFileSync(LIZARD, ['measure', join(walk, 'pictures'), '--robot', ROBOT, '--gait', 'walk', '--height', '95', '--json'], { encoding: 'utf8' })).gaits[0];
 
 function assertTrue(report) {
   for (const [part, most] of Object.entries(BARS)) {
@@ -87,29 +87,29 @@ function assertTrue(report) {
 
 test('the page drives the simulated robot before a camera, and measures the gait in the film, as the command does', async () => {
   await openWithCamera(join(walk, 'film.y4m'));
-  const opened = await room({ acceptDownloads: true });
-  await drives(opened, ['walk'], 5);
+  const opened = await openRoom({ acceptDownloads: true });
+  await startDriving(opened, ['walk'], 5);
   await opened.waitForFunction(() => window.lizard.gait === 'walk');
   await opened.locator('#measure-results').waitFor();
-  const { gaits: [report] } = JSON.parse(await downloaded(opened, 'json'));
+  const { gaits: [report] } = JSON.parse(await download(opened, 'json'));
   assertTrue(report);
-  const expected = command();
+  const expected = commandReport();
   assertTrue(expected);
   for (const part of Object.keys(BARS)) {
     // Two libraries compute a sine to the last bit but one.
     assert.ok(Math.abs(report[part].predicted - expected[part].predicted) < 1e-9, part);
-    // Some of the same cycles, at other times, as the browser's decoder shows them.
+    // The browser's decoder shows some of the same cycles at other times.
     assert.ok(Math.abs(report[part].mean - expected[part].mean) < 2 * (report[part].error + expected[part].error), part);
   }
   assert.ok(report.cycles >= 2 && report.cycles <= 5, `${report.cycles}`);
-  assert.match(String(await downloaded(opened, 'csv')), /^gait,speed,cycles,forward_mean.*\nwalk,100,\d/);
-  assert.match(String(await downloaded(opened, 'svg')), /^<svg .*ahead, mm.*<\/svg>$/);
-  assert.deepEqual([...(await downloaded(opened, 'png')).subarray(1, 4)], [...Buffer.from('PNG')]);
+  assert.match(String(await download(opened, 'csv')), /^gait,speed,cycles,forward_mean.*\nwalk,100,\d/);
+  assert.match(String(await download(opened, 'svg')), /^<svg .*ahead, mm.*<\/svg>$/);
+  assert.deepEqual([...(await download(opened, 'png')).subarray(1, 4)], [...Buffer.from('PNG')]);
 });
 
 test('a film file that the browser recorded is measured, and again for another gait', async () => {
   await openWithCamera(join(walk, 'film.y4m'));
-  const recorder = await blank();
+  const recorder = await openBlank();
   await recorder.goto(address());
   const bytes = await recorder.evaluate(async () => {
     const stream = await navigator.mediaDevices.getUserMedia({ video: { width: 640, height: 360 } });
@@ -127,67 +127,67 @@ test('a film file that the browser recorded is measured, and again for another g
     return reader.result.split(',')[1];
   });
   writeFileSync(join(folder, 'film.webm'), Buffer.from(bytes, 'base64'));
-  const opened = await room({ acceptDownloads: true });
+  const opened = await openRoom({ acceptDownloads: true });
   await opened.locator('#measure-file').setInputFiles(join(folder, 'film.webm'));
   await opened.locator('#measure-results').waitFor();
-  const { gaits: [report] } = JSON.parse(await downloaded(opened, 'json'));
+  const { gaits: [report] } = JSON.parse(await download(opened, 'json'));
   assertTrue(report);
   await opened.locator('#measure-gait').selectOption('left');
   await opened.getByRole('button', { name: 'Measure again' }).click();
-  await says(opened, 'said', /^left: the path is not that of this gait/);
+  await waitForMessage(opened, 'said', /^left: the path is not that of this gait/);
   assert.ok(!(await opened.locator('#measure-results').isVisible()));
-  // A file that is none.
+  // A file that is no film.
   await opened.locator('#measure-file').setInputFiles({ name: 'words.mp4', mimeType: 'video/mp4', buffer: Buffer.from('words') });
-  await says(opened, 'said', /^words\.mp4 is no film that this browser can play/);
+  await waitForMessage(opened, 'said', /^words\.mp4 is no film that this browser can play/);
 });
 
 test('somebody else drives: what is recorded until Done is measured', async () => {
   await openWithCamera(join(walk, 'film.y4m'));
-  const opened = await room({ acceptDownloads: true });
-  await camera(opened);
+  const opened = await openRoom({ acceptDownloads: true });
+  await switchCameraOn(opened);
   await opened.getByRole('button', { name: 'Record' }).click();
   await opened.waitForTimeout(6000);
   await opened.getByRole('button', { name: 'Done' }).click();
   await opened.locator('#measure-results').waitFor();
-  assertTrue(JSON.parse(await downloaded(opened, 'json')).gaits[0]);
+  assertTrue(JSON.parse(await download(opened, 'json')).gaits[0]);
 });
 
 test('a hidden tag is named while the camera looks, and no figure is made', async () => {
-  await openWithCamera(join(film('hidden', 640, 1, 2), 'film.y4m'));
-  const opened = await room();
-  await camera(opened, 'Not seen: the left tag of strip 2.');
+  await openWithCamera(join(renderFilm('hidden', 640, 1, 2), 'film.y4m'));
+  const opened = await openRoom();
+  await switchCameraOn(opened, 'Not seen: the left tag of strip 2.');
   await opened.getByRole('button', { name: 'Record' }).click();
   await opened.waitForTimeout(1000);
   await opened.getByRole('button', { name: 'Done' }).click();
-  await says(opened, 'said', /tag 2 of the floor is not seen whole/);
+  await waitForMessage(opened, 'said', /tag 2 of the floor is not seen whole/);
   assert.ok(!(await opened.locator('#measure-results').isVisible()));
 });
 
 test('a film without any tag says so', async () => {
-  await openWithCamera(join(film('none', 640, 1, 0, 1, 2, 3, 4), 'film.y4m'));
-  const opened = await room();
-  await camera(opened, 'No tag of the sheet is seen');
+  await openWithCamera(join(renderFilm('none', 640, 1, 0, 1, 2, 3, 4), 'film.y4m'));
+  const opened = await openRoom();
+  await switchCameraOn(opened, 'No tag of the sheet is seen');
 });
 
 test('a machine without a camera, and a person who refuses it, are told what else to do', async () => {
   await openWithCamera(null);
-  const opened = await room();
+  const opened = await openRoom();
   await opened.getByRole('button', { name: 'Camera' }).click();
-  await says(opened, 'said', /This machine has no camera|not allowed to use the camera/);
+  await waitForMessage(opened, 'said', /This machine has no camera|not allowed to use the camera/);
   await opened.evaluate(() => (navigator.mediaDevices.getUserMedia = () => Promise.reject(new DOMException('no', 'NotAllowedError'))));
   await opened.getByRole('button', { name: 'Camera' }).click();
-  await says(opened, 'said', /not allowed to use the camera.*take a film and open it here/);
+  await waitForMessage(opened, 'said', /not allowed to use the camera.*take a film and open it here/);
 });
 
 test('Stop ends the protocol, and the robot stands; leaving the room does so, too, and switches the camera off', async () => {
   await openWithCamera(join(walk, 'film.y4m'));
-  const opened = await room();
-  await drives(opened, ['walk', 'left'], 20);
+  const opened = await openRoom();
+  await startDriving(opened, ['walk', 'left'], 20);
   await opened.waitForFunction(() => window.lizard.gait === 'walk');
   await opened.keyboard.press('Escape');
-  await says(opened, 'said', 'it was stopped');
+  await waitForMessage(opened, 'said', 'it was stopped');
   await opened.waitForFunction(() => window.lizard.gait === 'stop');
-  // A robot that was stopped stays so.
+  // A robot that was stopped stays stopped.
   await opened.waitForTimeout(2000);
   assert.equal(await opened.evaluate(() => window.lizard.gait), 'stop');
   await opened.getByRole('button', { name: 'Drive and measure' }).click();
@@ -199,25 +199,25 @@ test('Stop ends the protocol, and the robot stands; leaving the room does so, to
 
 test('a board whose link is cut is driven no more, the room says so, and what was seen of its gait is measured', async () => {
   await openWithCamera(join(walk, 'film.y4m'));
-  const opened = await room({ acceptDownloads: true });
+  const opened = await openRoom({ acceptDownloads: true });
   await opened.evaluate(fakeSerial);
   // Nobody begins to set up a robot by radio.
   await opened.evaluate(() => Object.assign(window, { flashed: 'paper', awake: true, profile: '00001101-0000-1000-8000-00805f9b34fb' }));
   await opened.locator('#connect').click();
   await opened.waitForFunction(() => window.lizard.isReal && window.lizard.gait === 'stand' && window.lizard.mayAsk);
-  await drives(opened, ['walk', 'left'], 8);
+  await startDriving(opened, ['walk', 'left'], 8);
   await opened.waitForFunction(() => window.lizard.gait === 'walk');
   await opened.waitForTimeout(6000);
   await opened.evaluate(() => window.unplug());
-  await says(opened, 'said', 'Ended before all gaits were walked: the link to the robot was cut');
-  assertTrue(JSON.parse(await downloaded(opened, 'json')).gaits[0]);
+  await waitForMessage(opened, 'said', 'Ended before all gaits were walked: the link to the robot was cut');
+  assertTrue(JSON.parse(await download(opened, 'json')).gaits[0]);
   assert.ok(!/left/.test(await opened.evaluate(() => window.heard)), 'no further gait was sent');
   assert.equal(await opened.evaluate(() => window.lizard.gait), 'stand', 'and none to the simulated board that follows');
 });
 
 test('the sheet is the one of the command, for both papers', async () => {
   await openWithCamera(null);
-  const opened = await room({ acceptDownloads: true });
+  const opened = await openRoom({ acceptDownloads: true });
   for (const [name, paper] of [['A4', 'a4'], ['letter', 'letter']]) {
     await opened.locator('#measure-paper').selectOption(name);
     const [download] = await Promise.all([opened.waitForEvent('download'), opened.getByRole('button', { name: 'Print the sheet' }).click()]);

@@ -2,16 +2,16 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, test } from 'node:test';
 
-import { address, close, complaints, open, page, tidy } from './browser.js';
+import { address, close, complaints, open, page, closePages } from './browser.js';
 import { file, robot } from './wasm.js';
 
-afterEach(tidy);
+afterEach(closePages);
 after(close);
 
 const toml = await file('robot.toml', 'utf8');
 
-/** Growth of the memory over a number of repetitions, bytes, after a warm-up. */
-async function grown(times, does) {
+/** Measures the growth of the memory over a number of repetitions, bytes, after a warm-up. */
+async function memoryGrowth(times, does) {
   const page = await robot();
   page.ask('read', toml);
   const warm = times / 10;
@@ -22,9 +22,9 @@ async function grown(times, does) {
 }
 
 test('ten thousand robots with another length each are not kept', async () => {
-  // The gaits only take time: a robot that stands has a section of flash, too.
+  // With `stand` alone, because other gaits would only take time.
   const standing = toml.slice(0, toml.indexOf('[gait.walk]'));
-  const grew = await grown(10_000, (page, n) => {
+  const grew = await memoryGrowth(10_000, (page, n) => {
     const { text, refusal } = page.ask('lengths', [standing, [['links.l0', 20 + n / 5000]], false]);
     assert.equal(refusal, null);
     assert.ok(text.includes('[gait.stand]') && text.includes('l0 = 2'));
@@ -34,7 +34,7 @@ test('ten thousand robots with another length each are not kept', async () => {
 
 test('gaits that are refused are not kept, nor those that are tried to offer what would do', async () => {
   let bars;
-  const grew = await grown(100, (page, n) => {
+  const grew = await memoryGrowth(100, (page, n) => {
     bars ??= page.ask('bars', 1);
     const { refused, instead } = page.ask('trial', { ...bars, amplitude: 30 + n / 20 });
     assert.match(refused, /margin/);

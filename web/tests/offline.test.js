@@ -1,4 +1,4 @@
-// The page once it was opened: without a network, updated as a whole, and asking nobody else for anything.
+// A page that was opened once works without a network, is updated as a whole, and contacts no other server.
 import assert from 'node:assert/strict';
 import { cp, mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
@@ -7,7 +7,7 @@ import { after, afterEach, before, test } from 'node:test';
 import { gzipSync } from 'node:zlib';
 
 import { writeServiceWorker } from '../offline.js';
-import { DIST, PATIENCE, address, advance, blank, close, complaints, open, serve, tidy, until, within } from './browser.js';
+import { DIST, PATIENCE, address, advance, openBlank, close, complaints, open, serve, closePages, until, within } from './browser.js';
 
 let folder;
 const servers = [];
@@ -17,7 +17,7 @@ before(async () => {
   folder = await mkdtemp(join(tmpdir(), 'lizard-page-'));
 });
 afterEach(async () => {
-  await tidy();
+  await closePages();
   for (const each of servers.splice(0)) {
     each.closeAllConnections();
     each.close();
@@ -28,8 +28,8 @@ after(async () => {
   if (folder) await rm(folder, { recursive: true });
 });
 
-/** A copy of the page on a server of its own. */
-async function copied(name, asked = []) {
+/** Serves a copy of the page on a server of its own. */
+async function serveCopy(name, asked = []) {
   const own = join(folder, name);
   await cp(DIST, own, { recursive: true });
   const server = await serve(own, asked);
@@ -37,24 +37,24 @@ async function copied(name, asked = []) {
   return { own, server, asked };
 }
 
-const allowed = () => blank({ serviceWorkers: 'allow' });
-const begun = (opened) => opened.waitForFunction(() => window.lizard);
+const openWithWorkers = () => openBlank({ serviceWorkers: 'allow' });
+const waitUntilStarted = (opened) => opened.waitForFunction(() => window.lizard);
 
-/** Until the page is kept, and is the one that answers. */
-async function kept(opened) {
-  await begun(opened);
+/** Waits until the service worker has stored the page and answers its requests. */
+async function waitUntilStored(opened) {
+  await waitUntilStarted(opened);
   await until(opened, async () => (await navigator.serviceWorker.ready) && navigator.serviceWorker.controller !== null);
 }
 
 test('once opened, the page walks without a server, with any of its robots', async () => {
-  const { server } = await copied('offline');
-  const opened = await allowed();
+  const { server } = await serveCopy('offline');
+  const opened = await openWithWorkers();
   await opened.goto(address(server));
-  await kept(opened);
+  await waitUntilStored(opened);
   server.closeAllConnections();
   await within('the server to close', new Promise((closed) => server.close(closed)));
   await opened.reload();
-  await begun(opened);
+  await waitUntilStarted(opened);
   await opened.locator('#robot').selectOption('large');
   await opened.waitForFunction(() => window.lizard.file === 'large');
   await advance(opened, 3000);
@@ -65,10 +65,10 @@ test('once opened, the page walks without a server, with any of its robots', asy
 });
 
 test('a newer page is offered, taken as a whole when a person says so, and the older one is gone then', async () => {
-  const { own, server } = await copied('newer');
-  const opened = await allowed();
+  const { own, server } = await serveCopy('newer');
+  const opened = await openWithWorkers();
   await opened.goto(address(server));
-  await kept(opened);
+  await waitUntilStored(opened);
   const caches = () => opened.evaluate(() => window.caches.keys());
   const [first] = await caches();
   const page = await readFile(join(own, 'index.html'), 'utf8');
@@ -76,29 +76,29 @@ test('a newer page is offered, taken as a whole when a person says so, and the o
   await writeFile(join(own, 'index.html'), page.replace('>lizard</a>', '>lizard, newer</a>'));
   writeServiceWorker(own);
   await opened.reload();
-  await begun(opened);
+  await waitUntilStarted(opened);
   assert.equal(await opened.locator('h1').innerText(), 'lizard', 'nothing changes under a person');
   await opened.getByRole('button', { name: 'Load it now' }).click();
   await opened.locator('h1', { hasText: 'lizard, newer' }).waitFor();
-  await begun(opened);
+  await waitUntilStarted(opened);
   await until(opened, async (first) => !(await window.caches.keys()).includes(first), first);
   assert.equal((await caches()).length, 1);
 });
 
 test('a page of which a part is missing on the server is not taken, and the one that is kept goes on', async () => {
-  const { own, server, asked } = await copied('torn');
-  const opened = await allowed();
+  const { own, server, asked } = await serveCopy('torn');
+  const opened = await openWithWorkers();
   await opened.goto(address(server));
-  await kept(opened);
+  await waitUntilStored(opened);
   const before = await opened.evaluate(() => window.caches.keys());
   const page = await readFile(join(own, 'index.html'), 'utf8');
   await writeFile(join(own, 'index.html'), page.replace('>lizard</a>', '>lizard, newer</a>'));
   writeServiceWorker(own);
-  // It was put there by halves: the list is new, the page is not.
+  // A half-finished update of the server: the list is new, the page is not.
   await writeFile(join(own, 'index.html'), page);
   asked.length = 0;
   await opened.reload();
-  await begun(opened);
+  await waitUntilStarted(opened);
   await until(opened, async () => {
     const registration = await navigator.serviceWorker.ready;
     return !registration.installing && !registration.waiting;
@@ -109,19 +109,19 @@ test('a page of which a part is missing on the server is not taken, and the one 
   assert.ok((await opened.evaluate(() => window.caches.keys())).includes(before[0]));
   server.closeAllConnections();
   await opened.reload();
-  await begun(opened);
+  await waitUntilStarted(opened);
 });
 
 test('the first load is below 500 KB compressed, and nothing is asked of another origin', async () => {
   const asked = [];
-  const { server } = await copied('size', asked);
-  const opened = await blank();
+  const { server } = await serveCopy('size', asked);
+  const opened = await openBlank();
   const strangers = [];
   opened.on('request', (request) => {
     if (!request.url().startsWith(address(server)) && !/^(data|blob):/.test(request.url())) strangers.push(request.url());
   });
   await opened.goto(address(server));
-  await begun(opened);
+  await waitUntilStarted(opened);
   await advance(opened, 3000);
   await opened.waitForFunction(() => document.querySelector('#gaits button[data-command="walk"] small').textContent !== '');
   const paths = [...new Set(asked)].map((path) => (path === '/' ? '/index.html' : path));

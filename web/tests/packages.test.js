@@ -1,4 +1,4 @@
-// A machine on which another program installs packages: `make web` waits for it, and not for ever.
+// While another program installs packages, `make web` waits for it, but not forever.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { chmod, mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
@@ -8,8 +8,8 @@ import { test } from 'node:test';
 
 const SCRIPT = new URL('../../scripts/packages.sh', import.meta.url).pathname;
 
-/** Runs scripts/packages.sh with an apt-get that fails a number of times with a message. */
-async function updates(times, message, wait) {
+/** Runs scripts/packages.sh with an apt-get that fails with a message a number of times. */
+async function runUpdates(times, message, wait) {
   const folder = await mkdtemp(join(tmpdir(), 'lizard-apt-'));
   try {
     const apt = `#!/bin/sh\nn=$(cat ${folder}/n)\necho $((n + 1)) > ${folder}/n\n[ $n -lt ${times} ] || exit 0\necho '${message}'\nexit 100\n`;
@@ -30,21 +30,21 @@ async function updates(times, message, wait) {
 const HELD = 'E: Could not get lock /var/lib/apt/lists/lock. It is held by process 4711 (apt-get)';
 
 test('a lock that is held is waited for', async () => {
-  const { status, stdout, tries } = await updates(2, HELD, 60);
+  const { status, stdout, tries } = await runUpdates(2, HELD, 60);
   assert.equal(status, 0, stdout);
   assert.equal(tries, 3);
   assert.match(stdout, /^setup: another program installs packages; waiting for it, up to 60 s$/m);
 });
 
 test('a lock that is held for ever is waited for no longer than was said', async () => {
-  const { status, stdout, tries } = await updates(1000, HELD, 3);
+  const { status, stdout, tries } = await runUpdates(1000, HELD, 3);
   assert.notEqual(status, 0);
   assert.match(stdout, /held by process 4711/);
   assert.ok(tries <= 4, `${tries}`);
 });
 
 test('another trouble is said at once', async () => {
-  const { status, stdout, tries } = await updates(1000, 'E: The repository has no Release file.', 60);
+  const { status, stdout, tries } = await runUpdates(1000, 'E: The repository has no Release file.', 60);
   assert.notEqual(status, 0);
   assert.match(stdout, /no Release file/);
   assert.equal(tries, 1);

@@ -1,57 +1,56 @@
-// The page in a real browser, driven as a person would.
+// The page in a real browser, used as a person would.
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { after, afterEach, before, test } from 'node:test';
 
-import { advance, close, complaints, open, page, standing, stops, tidy, type, unfold } from './browser.js';
+import { advance, assertStops, close, closePages, complaints, open, openStanding, page, text, type, unfold } from './browser.js';
 import { fakeSerial } from './fake-serial.js';
 import { hexOf, imageOf } from './image.js';
 
 before(open);
-afterEach(tidy);
+afterEach(closePages);
 after(close);
 
-const text = (opened, selector) => opened.locator(selector).innerText();
 const gait = (opened, name) => opened.locator(`#gaits button[data-command="${name}"]`);
 
-/** The page's prediction for a gait, and the body's displacement in the last cycle. */
-const ways = (opened, name) =>
+/** Returns the page's prediction for a gait, and the body's displacement in the last cycle. */
+const displacements = (opened, name) =>
   opened.evaluate((name) => {
     const { robot, description } = window.lizard;
     const index = description.gaits.findIndex(({ command }) => command === name);
     return { predicted: robot.predict(index), measured: window.lizard.measured() };
   }, name);
 
-function near(value, wanted, share, what) {
+function assertNear(value, wanted, share, what) {
   assert.ok(Math.abs(value - wanted) <= share * Math.abs(wanted), `${what}: ${value}, predicted ${wanted}`);
 }
 
-async function walks(opened, name) {
+async function assertWalks(opened, name) {
   await gait(opened, name).click();
   await advance(opened, 5500);
-  const { predicted, measured } = await ways(opened, name);
+  const { predicted, measured } = await displacements(opened, name);
   assert.ok(measured, `${name} has gone on for a whole cycle`);
   return { predicted, measured };
 }
 
 test('the banner of the image is seen', async () => {
-  const opened = await standing();
+  const opened = await openStanding();
   assert.match(await text(opened, '#log'), /# lizard \d.* robot [a-z-]+ [0-9a-f]{8}, send help/);
   assert.match(await text(opened, '#where'), /simulated UNO/);
 });
 
 test('walk moves the body by the predicted way', async () => {
-  const opened = await standing();
-  const { predicted, measured } = await walks(opened, 'walk');
-  near(measured.forward, predicted.forward, 0.03, 'mm ahead in a cycle');
+  const opened = await openStanding();
+  const { predicted, measured } = await assertWalks(opened, 'walk');
+  assertNear(measured.forward, predicted.forward, 0.03, 'mm ahead in a cycle');
   assert.ok(Math.abs(measured.turn) < 0.3, `it goes straight: ${measured.turn} deg`);
   await opened.waitForFunction(() => / mm$/.test(document.querySelector('#cycle').textContent));
   assert.equal(await gait(opened, 'walk').getAttribute('aria-pressed'), 'true');
-  await stops(opened);
+  await assertStops(opened);
 });
 
 test('a gait that begins while the robot is asked for its state is not taken back', async () => {
-  const opened = await standing();
+  const opened = await openStanding();
   await opened.evaluate(() => {
     const { lizard } = window;
     const { listener } = lizard;
@@ -69,7 +68,7 @@ test('a gait that begins while the robot is asked for its state is not taken bac
 });
 
 test('a pace that is set while the robot is asked for its state is not taken back', async () => {
-  const opened = await standing();
+  const opened = await openStanding();
   await opened.evaluate(() => {
     const { lizard } = window;
     const { listener } = lizard;
@@ -79,7 +78,7 @@ test('a pace that is set while the robot is asked for its state is not taken bac
       window.paces.push(percent);
       speed(percent);
     };
-    // What comes for the page, it comes for at once, as from a port that was busy.
+    // All lines arrive at once, as from a port that was busy.
     const { link } = lizard;
     const { onBytes } = link;
     const came = [];
@@ -97,24 +96,24 @@ test('a pace that is set while the robot is asked for its state is not taken bac
 });
 
 test('left turns left', async () => {
-  const opened = await standing();
-  const { predicted, measured } = await walks(opened, 'left');
+  const opened = await openStanding();
+  const { predicted, measured } = await assertWalks(opened, 'left');
   assert.ok(predicted.turn > 10);
-  near(measured.turn, predicted.turn, 0.03, 'deg in a cycle');
+  assertNear(measured.turn, predicted.turn, 0.03, 'deg in a cycle');
 });
 
 test('a singular pose shows its refusal', async () => {
-  const opened = await standing();
+  const opened = await openStanding();
   const answer = await type(opened, 'pose 75 105 318.59 221.41', 'err 4');
   assert.match(answer, /^err 4 type-2 margin of the head/);
 });
 
 test('changed lengths make other gaits', async () => {
-  const opened = await standing();
-  const before = (await ways(opened, 'walk')).predicted;
+  const opened = await openStanding();
+  const before = (await displacements(opened, 'walk')).predicted;
   const hash = await opened.evaluate(() => window.lizard.description.hash);
   await unfold(opened, '#lengths-panel');
-  // A shorter leg makes shorter steps.
+  // Shorter legs make shorter steps.
   const crank = opened.locator('input[name="leg.crank"]');
   await crank.fill('35');
   await crank.press('Enter');
@@ -122,9 +121,9 @@ test('changed lengths make other gaits', async () => {
   await has(35);
   assert.equal(await opened.locator('input[name="leg.follower"]').inputValue(), '35', 'its twin follows');
   await advance(opened, 2500);
-  const { predicted, measured } = await walks(opened, 'walk');
-  near(predicted.forward, (before.forward * 35) / 45, 0.1, 'shorter steps');
-  near(measured.forward, predicted.forward, 0.03, 'mm ahead in a cycle');
+  const { predicted, measured } = await assertWalks(opened, 'walk');
+  assertNear(predicted.forward, (before.forward * 35) / 45, 0.1, 'shorter steps');
+  assertNear(measured.forward, predicted.forward, 0.03, 'mm ahead in a cycle');
 
   const base = opened.locator('input[name="links.l2"]');
   await base.fill('15');
@@ -134,7 +133,7 @@ test('changed lengths make other gaits', async () => {
   assert.match(await refusal.innerText(), /^15 mm is too short: head coupler, (left|right) is 15 mm, which is short beside the rest of its loop/);
   assert.equal(await base.getAttribute('aria-invalid'), 'true');
   assert.equal(await base.inputValue(), '50', 'the box has what the file has');
-  assert.equal((await ways(opened, 'walk')).predicted.forward, predicted.forward, 'the robot of before stays');
+  assert.equal((await displacements(opened, 'walk')).predicted.forward, predicted.forward, 'the robot of before stays');
 
   await opened.locator('#lengths-reset').click();
   await has(45);
@@ -157,7 +156,7 @@ test('every robot of robots/ can be chosen, and is in the image that runs', asyn
 });
 
 /** Moves the trim of A1 by the keyboard, saves, and resets the board. */
-async function calibrates(opened, forward) {
+async function calibrate(opened, forward) {
   await unfold(opened, '#calibrate');
   await forward(500);
   const trim = opened.locator('#calibration fieldset').first().getByLabel('trim');
@@ -183,23 +182,23 @@ async function calibrates(opened, forward) {
 }
 
 test('a calibration is set, saved and kept', async () => {
-  const opened = await standing();
-  await calibrates(opened, (ms) => advance(opened, ms));
+  const opened = await openStanding();
+  await calibrate(opened, (ms) => advance(opened, ms));
 });
 
 test('what boot is set to is done after a reset', async () => {
-  const opened = await standing();
+  const opened = await openStanding();
   await type(opened, 'boot walk', 'ok boot walk');
   await type(opened, 'save', '> save');
   await advance(opened, 2000);
   await opened.locator('#reset').click();
   await advance(opened, 7000);
   await opened.locator('#log div', { hasText: '# boot: walk' }).waitFor();
-  assert.ok((await ways(opened, 'walk')).measured.forward > 20, 'the page knows that it walks');
+  assert.ok((await displacements(opened, 'walk')).measured.forward > 20, 'the page knows that it walks');
 });
 
 test('a refused setting shows why and takes the slider back', async () => {
-  const opened = await standing();
+  const opened = await openStanding();
   await unfold(opened, '#calibrate');
   await advance(opened, 500);
   const least = opened.locator('#calibration fieldset').first().getByLabel('from, deg');
@@ -210,8 +209,8 @@ test('a refused setting shows why and takes the slider back', async () => {
   assert.equal(await least.inputValue(), '48.59');
 });
 
-/** Chooses the image of another robot, and waits until it is written and has begun. */
-async function flashes(opened, forward, where = '') {
+/** Chooses the image of another robot, and waits until it is written and has started. */
+async function writeImage(opened, forward, where = '') {
   await unfold(opened, '#flash');
   const buffer = Buffer.from(hexOf(await imageOf('large')));
   await opened.getByLabel('HEX file').setInputFiles({ name: 'large.hex', mimeType: 'text/plain', buffer });
@@ -229,9 +228,9 @@ async function flashes(opened, forward, where = '') {
 }
 
 test('an image is flashed by the real boot loader', async () => {
-  const opened = await standing();
+  const opened = await openStanding();
   const before = await text(opened, '#log');
-  const banner = await flashes(opened, (ms) => advance(opened, ms), ' to the simulated UNO');
+  const banner = await writeImage(opened, (ms) => advance(opened, ms), ' to the simulated UNO');
   assert.ok(!before.includes(banner), banner);
   assert.match(await text(opened, '#where'), /with another robot, robot large [0-9a-f]{8}:/);
   const image = await imageOf('large');
@@ -240,7 +239,7 @@ test('an image is flashed by the real boot loader', async () => {
 });
 
 test('a HEX file that is none is refused before anything is written', async () => {
-  const opened = await standing();
+  const opened = await openStanding();
   await unfold(opened, '#flash');
   const input = opened.getByLabel('HEX file');
   await input.setInputFiles({ name: 'x.hex', mimeType: 'text/plain', buffer: Buffer.from('hello\n') });
@@ -258,12 +257,12 @@ test('a board by Web Serial is driven, mirrored, calibrated and flashed', async 
   await opened.locator('#log div', { hasText: 'ok watch 2' }).waitFor();
   await gait(opened, 'walk').click();
   await forward(5000);
-  const { predicted, measured } = await ways(opened, 'walk');
-  near(measured.forward, predicted.forward, 0.05, 'mm ahead in a cycle, from poses of every second frame');
+  const { predicted, measured } = await displacements(opened, 'walk');
+  assertNear(measured.forward, predicted.forward, 0.05, 'mm ahead in a cycle, from poses of every second frame');
   await opened.keyboard.press('Escape');
   await forward(200);
-  await calibrates(opened, forward);
-  assert.match(await flashes(opened, forward), / robot large /);
+  await calibrate(opened, forward);
+  assert.match(await writeImage(opened, forward), / robot large /);
   assert.match(await text(opened, '#where'), /with another robot, robot large [0-9a-f]{8}:/);
   await opened.locator('#connect').click();
   await forward(2000);
@@ -282,26 +281,26 @@ test('a board that is unplugged is said to be gone, and the simulation goes on',
 });
 
 test('a supply that sinks stops the robot, and its fault is shown', async () => {
-  const opened = await standing();
-  await walks(opened, 'walk');
+  const opened = await openStanding();
+  await assertWalks(opened, 'walk');
   await opened.locator('#supply').fill('3.9');
   await advance(opened, 2000);
-  // First in this room, since the status is shown where it is seen; the console is in another one.
+  // First, while its room is open, since a hidden panel shows no status; the console is in another room.
   await opened.locator('#health dd', { hasText: 'supply' }).waitFor();
   await opened.locator('#log div', { hasText: '# supply: ' }).first().waitFor();
 });
 
 test('pads that grip more one way change the prediction', async () => {
-  const opened = await standing();
-  const before = (await ways(opened, 'back')).predicted.forward;
+  const opened = await openStanding();
+  const before = (await displacements(opened, 'back')).predicted.forward;
   await opened.getByLabel('Friction back : ahead').fill('1.5');
-  const { predicted, measured } = await walks(opened, 'back');
+  const { predicted, measured } = await assertWalks(opened, 'back');
   assert.notEqual(predicted.forward, before);
   assert.ok(Math.abs(measured.forward - predicted.forward) < 1.5, `${measured.forward} ${predicted.forward}`);
 });
 
-/** Sets a slider by the keyboard, as far as it is from its right end. */
-async function fromTheRight(opened, label, steps) {
+/** Sets a slider by the keyboard to a number of steps from its right end. */
+async function setFromRight(opened, label, steps) {
   const slider = opened.getByLabel(label);
   await slider.focus();
   await slider.press('End');
@@ -310,15 +309,15 @@ async function fromTheRight(opened, label, steps) {
 }
 
 test('weak springs take of the way what the contact model says', async () => {
-  const opened = await standing();
-  // The contact model's own answer, without what a dead band costs.
+  const opened = await openStanding();
+  // The contact model's own answer, without the loss by a dead band.
   await opened.locator('#servos').selectOption('ideal');
   await opened.locator('#robot').selectOption('paper');
   await opened.waitForFunction(() => window.lizard.file === 'paper');
   await advance(opened, 2500);
-  const rigid = (await walks(opened, 'walk')).measured.forward;
+  const rigid = (await assertWalks(opened, 'walk')).measured.forward;
   assert.equal(await opened.locator('.sprung').first().isVisible(), false, 'rigid legs do not lag');
-  // The table of docs/twin.md: mm in a cycle of the paper's robot, and the lag in deg.
+  // The table of docs/twin.md: mm per cycle of the paper's robot, and the lag in deg.
   const twin = await readFile(new URL('../../docs/twin.md', import.meta.url), 'utf8');
   const row = (name) => twin.split('\n').find((line) => line.startsWith(`| ${name}`)).split('|').slice(2).map(Number);
   const [pulls, walked, lags] = ['pull in a slotted strut', '`walk`', 'lag in `walk`'].map(row);
@@ -329,35 +328,35 @@ test('weak springs take of the way what the contact model says', async () => {
     await slider.fill(`${pull}`);
     await slider.dispatchEvent('change');
     await advance(opened, 4000);
-    const { predicted, measured } = await ways(opened, 'walk');
-    near(predicted.forward, mm, 0.01, 'mm predicted, as the docs have it');
-    // The waveforms' corners are cut, which tells in so short a way.
-    near(measured.forward, predicted.forward, 0.04, 'mm ahead in a cycle');
-    near(measured.lag, lag, 0.15, 'deg of lag');
-    near(predicted.share, predicted.forward / rigid, 0.03, 'share of rigid legs');
+    const { predicted, measured } = await displacements(opened, 'walk');
+    assertNear(predicted.forward, mm, 0.01, 'mm predicted, as the docs have it');
+    // The servos cut the corners of the waveforms, which matters over so short a distance.
+    assertNear(measured.forward, predicted.forward, 0.04, 'mm ahead in a cycle');
+    assertNear(measured.lag, lag, 0.15, 'deg of lag');
+    assertNear(predicted.share, predicted.forward / rigid, 0.03, 'share of rigid legs');
     await opened.locator('#share', { hasText: `${(100 * predicted.share).toFixed(0)} %` }).waitFor();
     await opened.waitForFunction((lag) => document.querySelector('#lag').textContent === lag, `${measured.lag.toFixed(1)}°`);
     const hooked = await opened.evaluate(() => window.lizard.last.scene.legs.every(({ sprung }) => sprung));
     assert.ok(hooked, 'each leg shows its spring');
   }
   // The legs of a heavy robot lag more.
-  const light = (await ways(opened, 'walk')).predicted;
-  await fromTheRight(opened, 'Mass', 0);
-  const heavy = (await ways(opened, 'walk')).predicted;
+  const light = (await displacements(opened, 'walk')).predicted;
+  await setFromRight(opened, 'Mass', 0);
+  const heavy = (await displacements(opened, 'walk')).predicted;
   assert.ok(heavy.lag > 1.2 * light.lag, `${heavy.lag} deg with 1 kg, ${light.lag} deg`);
   await opened.locator('#floor-reset').click();
   await advance(opened, 2500);
-  const again = await ways(opened, 'walk');
-  near(again.predicted.forward, rigid, 0.03, 'rigid again');
-  near(again.measured.forward, rigid, 0.03, 'rigid again');
+  const again = await displacements(opened, 'walk');
+  assertNear(again.predicted.forward, rigid, 0.03, 'rigid again');
+  assertNear(again.measured.forward, rigid, 0.03, 'rigid again');
   assert.deepEqual([again.predicted.lag, again.measured.lag], [null, 0]);
 });
 
 test('a foot that is too long costs what the contact model says, and on soft feet nothing', async () => {
-  const opened = await standing();
+  const opened = await openStanding();
   await opened.locator('#servos').selectOption('ideal');
   await advance(opened, 2500);
-  const level = (await walks(opened, 'walk')).measured.forward;
+  const level = (await assertWalks(opened, 'walk')).measured.forward;
   const set = async (label, value) => {
     const slider = opened.getByLabel(label);
     await slider.fill(`${value}`);
@@ -365,31 +364,31 @@ test('a foot that is too long costs what the contact model says, and on soft fee
   };
   await set('Front left foot too long', 1);
   await advance(opened, 4000);
-  const soft = await ways(opened, 'walk');
-  near(soft.measured.forward, soft.predicted.forward, 0.03, 'mm ahead on soft feet');
+  const soft = await displacements(opened, 'walk');
+  assertNear(soft.measured.forward, soft.predicted.forward, 0.03, 'mm ahead on soft feet');
   assert.ok(soft.measured.forward > 0.9 * level, `${soft.measured.forward} of ${level} mm`);
   await set('Stiffness of a foot', 3.3);
   await advance(opened, 4000);
-  const stiff = await ways(opened, 'walk');
+  const stiff = await displacements(opened, 'walk');
   assert.ok(Math.abs(stiff.measured.forward - stiff.predicted.forward) < 1.5, JSON.stringify(stiff));
   assert.ok(stiff.measured.forward < 0.3 * level, `${stiff.measured.forward} of ${level} mm`);
   assert.equal(await opened.locator('.sprung').first().isVisible(), false, 'rigid legs do not lag');
 });
 
 test('a dead band costs its share of the stroke, as predicted', async () => {
-  const opened = await standing();
+  const opened = await openStanding();
   const went = [];
   for (const servos of ['ideal', 'own']) {
     await opened.locator('#servos').selectOption(servos);
-    const { predicted, measured } = await walks(opened, 'walk');
-    near(measured.forward, predicted.forward, 0.01, `mm ahead in a cycle, ${servos}`);
+    const { predicted, measured } = await assertWalks(opened, 'walk');
+    assertNear(measured.forward, predicted.forward, 0.01, `mm ahead in a cycle, ${servos}`);
     went.push(measured.forward);
   }
-  near(went[1] / went[0], 39 / 40, 0.01, 'a degree of 40');
+  assertNear(went[1] / went[0], 39 / 40, 0.01, 'a degree of 40');
 });
 
 test('at half the pace the last cycle is as long as predicted', async () => {
-  const opened = await standing();
+  const opened = await openStanding();
   await type(opened, 'speed 50', 'ok speed 50');
   await type(opened, 'walk', 'ok walk');
   await advance(opened, 8000);

@@ -1,5 +1,5 @@
-// The parts in the page are those of `lizard parts`: the same files, the same steps, at the robot's own pose;
-// and whoever does not open their panel pays nothing for them.
+// The parts in the page are those of `lizard parts`: the same files, the same steps, at the robot's own pose. They are not loaded
+// before their panel is opened.
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
 import { mkdtemp, readFile, readdir, rm, writeFile } from 'node:fs/promises';
@@ -11,10 +11,10 @@ import { gzipSync } from 'node:zlib';
 
 import { unzipSync } from 'fflate';
 
-import { advance, blank, address, close, complaints, open, standing, tidy, type, unfold, within } from './browser.js';
+import { advance, openBlank, address, close, complaints, open, openStanding, closePages, type, unfold, within } from './browser.js';
 
 const ROOT = new URL('../../', import.meta.url).pathname;
-/** First load of the page, compressed, bytes. */
+/** Limit of the page's first load, compressed, bytes. */
 const FIRST_LOAD = 500_000;
 
 let folder;
@@ -25,36 +25,36 @@ before(async () => {
   const made = promisify(execFile)(resolve(ROOT, process.env.LIZARD), ['parts', folder, '--robot', join(ROOT, 'robot.toml')]);
   await within('lizard parts', made);
 });
-afterEach(tidy);
+afterEach(closePages);
 after(async () => {
   await rm(folder, { recursive: true, force: true });
   await close();
 });
 
-const said = (page) => page.locator('#parts-said');
+const message = (page) => page.locator('#parts-said');
 
-async function opened(options) {
-  const page = await standing(options);
+async function openParts(options) {
+  const page = await openStanding(options);
   await unfold(page, '#parts');
   await page.getByText('Click a part for its name').waitFor();
   await page.locator('#parts').evaluate((panel) => panel.scrollIntoView());
   return page;
 }
 
-/** A click on the picture, as a share of its width and height. */
-async function click(page, across, down) {
+/** Clicks on the picture, at a share of its width and height; returns the message. */
+async function clickAt(page, across, down) {
   const { x, y, width, height } = await page.locator('#space').boundingBox();
   await page.mouse.click(x + across * width, y + down * height);
-  return said(page).innerText();
+  return message(page).innerText();
 }
 
-/** Looks from straight above. */
-async function fromAbove(page) {
+/** Turns the view to straight above. */
+async function lookFromAbove(page) {
   for (let n = 0; n < 12; n++) await page.locator('#space').press('ArrowUp');
 }
 
 test('lengths that cannot be printed are told at once, with the nearest that can, as the program says it', async () => {
-  const page = await standing();
+  const page = await openStanding();
   await unfold(page, '#lengths-panel');
   const length = page.locator('#lengths input[name="leg.crank"]');
   await length.fill('46');
@@ -104,7 +104,7 @@ test('lengths that cannot be printed are told at once, with the nearest that can
 });
 
 test('while a length is dragged, the two parts that meet are red in 3D, with their millimetres', async () => {
-  const page = await standing();
+  const page = await openStanding();
   await unfold(page, '#lengths-panel');
   await page.locator('#solid').click();
   await page.getByText('Click a part for its name').waitFor();
@@ -137,19 +137,19 @@ test('while a length is dragged, the two parts that meet are red in 3D, with the
   const [, pair, mm] = /printed: (.*) would overlap by ([\d.]+) mm/.exec(await said.innerText());
   await page.locator('#parts-said', { hasText: `${pair}: ${mm} mm too much.` }).waitFor();
   assert.equal(await page.evaluate(() => window.lizard.toml), before, 'it is not let go');
-  // Stop is red, too. A picture follows within a moment.
+  // The stop button is red, too. The picture follows within a moment.
   const paints = async (isRed) => {
     while ((await reds()) > atRest + 50 !== isRed) await page.waitForTimeout(200);
   };
   await within('red parts', paints(true));
-  // Back where it was: all is well again.
+  // At the old length the parts fit again.
   await drag(45);
   await page.locator('#fit-said', { hasText: /^The parts fit/ }).waitFor();
   await within('no red parts', paints(false));
 });
 
 test('the files that another length changes are listed, and can be had alone', async () => {
-  const page = await standing();
+  const page = await openStanding();
   await unfold(page, '#parts');
   assert.ok(await page.locator('#parts-changed').isHidden(), 'nothing is changed');
   assert.equal(await page.evaluate(() => window.lizard.change(window.lizard.robot.lengths(window.lizard.toml, [['leg.crank', 46], ['leg.follower', 46]], false).text)), null);
@@ -178,7 +178,7 @@ test('the files that another length changes are listed, and can be had alone', a
 });
 
 test('whoever opens the page loads no parts, and less than half a megabyte', async () => {
-  const page = await blank();
+  const page = await openBlank();
   const loaded = new Map();
   page.on('response', (response) => loaded.set(response.url().replace(address(), ''), response.body()));
   await page.goto(address());
@@ -196,10 +196,10 @@ test('whoever opens the page loads no parts, and less than half a megabyte', asy
 });
 
 test('the archive has the files of lizard parts, byte for byte', async () => {
-  const page = await standing();
+  const page = await openStanding();
   await unfold(page, '#parts');
   const download = page.waitForEvent('download');
-  // All of them are kept as they are said, since a busy browser would be asked too late.
+  // Every message is recorded when it appears; polling a busy browser would miss some.
   await page.evaluate(() => {
     const box = document.querySelector('#files-said');
     window.said = [];
@@ -223,11 +223,11 @@ test('the archive has the files of lizard parts, byte for byte', async () => {
 });
 
 test('what is being made can be stopped, and is then not saved', async () => {
-  const page = await standing();
+  const page = await openStanding();
   let downloads = 0;
   page.on('download', () => (downloads += 1));
   await unfold(page, '#parts');
-  // At once, since a slow browser would be told to stop what has ended.
+  // At once: in a slow browser the work might have ended before it is stopped.
   await page.evaluate(() => {
     const box = document.querySelector('#files-said');
     const observer = new MutationObserver(() => {
@@ -244,19 +244,19 @@ test('what is being made can be stopped, and is then not saved', async () => {
 });
 
 test('a part that is clicked says its name and its file', async () => {
-  const page = await opened();
-  await fromAbove(page);
-  assert.match(await click(page, 0.5, 0.5), /^board: board, bought; put on in step 3\.$/);
+  const page = await openParts();
+  await lookFromAbove(page);
+  assert.match(await clickAt(page, 0.5, 0.5), /^board: board, bought; put on in step 3\.$/);
   assert.equal(await page.locator('#part option:checked').innerText(), 'board');
-  assert.match(await click(page, 0.02, 0.98), /^Click a part/);
-  // By keys alone: the list names all parts.
+  assert.match(await clickAt(page, 0.02, 0.98), /^Click a part/);
+  // By keyboard: the list names all parts.
   await page.locator('#part').selectOption({ label: 'link A1' });
-  const [, file] = /stl\/(.*)\.stl/.exec(await said(page).innerText());
+  const [, file] = /stl\/(.*)\.stl/.exec(await message(page).innerText());
   assert.ok((await readdir(join(folder, 'stl'))).includes(`${file}.stl`), file);
 });
 
 test('the guide is gone through step by step', async () => {
-  const page = await opened();
+  const page = await openParts();
   const guide = await readFile(join(folder, 'guide/guide.md'), 'utf8');
   const titles = [...guide.matchAll(/^## ([0-9]+)\. (.*)$/gm)];
   assert.equal(titles.length, 15);
@@ -266,17 +266,17 @@ test('the guide is gone through step by step', async () => {
   }
   assert.ok(await page.getByRole('button', { name: 'Next step' }).isDisabled());
   await page.getByRole('button', { name: 'Whole robot' }).click();
-  await fromAbove(page);
-  assert.match(await click(page, 0.5, 0.5), /^board:/);
-  // In the first step there is no board yet: what lies below it is seen.
+  await lookFromAbove(page);
+  assert.match(await clickAt(page, 0.5, 0.5), /^board:/);
+  // In the first step there is no board yet, so the parts below it are visible.
   await page.getByRole('button', { name: 'Next step' }).click();
-  assert.doesNotMatch(await click(page, 0.5, 0.5), /^board:/);
+  assert.doesNotMatch(await clickAt(page, 0.5, 0.5), /^board:/);
 });
 
 test('the parts go where the robot goes', async () => {
-  const page = await opened();
-  await fromAbove(page);
-  // The middle of the points that show the head's plate: from above, ahead is to the left and up.
+  const page = await openParts();
+  await lookFromAbove(page);
+  // The centre of the pixels that show the head's plate: seen from above, ahead is to the left and up.
   const look = () =>
     page.evaluate(() => {
       const space = document.querySelector('#space');
@@ -313,14 +313,14 @@ test('the parts go where the robot goes', async () => {
 });
 
 test('a robot that cannot be built says why', async () => {
-  const page = await opened();
+  const page = await openParts();
   const low = '\n[parts]\nheight = 10.0\n';
   assert.equal(await page.evaluate((low) => window.lizard.change(window.lizard.toml + low), low), null);
   await page.getByText('There are no parts of this robot: parts.height is 10 mm').waitFor();
 });
 
 test('pictures in space leave the processor time where no chip paints them', async (t) => {
-  const page = await opened();
+  const page = await openParts();
   const browser = await within('the processes', page.context().browser().newBrowserCDPSession());
   const used = async () => {
     const { processInfo } = await within('the processes', browser.send('SystemInfo.getProcessInfo'));

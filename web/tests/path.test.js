@@ -1,20 +1,20 @@
-// A gesture is drawn: the point of head or tail goes along the line, and what cannot be is refused with what would do.
+// A gesture is drawn: the point of head or tail follows the line, and a line out of reach is refused with a valid size.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { advance, close, complaints, open, sideways, standing, tidy, unfold } from './browser.js';
+import { advance, close, complaints, open, overflow, openStanding, closePages, unfold } from './browser.js';
 
 before(open);
-afterEach(tidy);
+afterEach(closePages);
 after(close);
 
 const text = (page, id) => page.locator(`#path-${id}`).innerText();
-const isAsked = (page, id) => page.waitForFunction((id) => document.querySelector(`#path-${id}`).textContent !== '–', id);
+const waitForAnswer = (page, id) => page.waitForFunction((id) => document.querySelector(`#path-${id}`).textContent !== '–', id);
 
-async function opened(options) {
-  const page = await standing(options);
+async function openPanel(options) {
+  const page = await openStanding(options);
   await unfold(page, '#path-editor');
-  await isAsked(page, 'least');
+  await waitForAnswer(page, 'least');
   return page;
 }
 
@@ -38,11 +38,11 @@ async function draw(page, radius, corners = 40) {
   return [x, y];
 }
 
-/** The head's point in the chassis' own middle line, mm, as the page draws it. */
+/** The head's point relative to the middle of the chassis, mm, as the page draws it. */
 const head = (page) => page.evaluate(() => window.lizard.last.scene.points[0]);
 
 test('a circle that was drawn is the way of the head, and stands in robot.toml', async () => {
-  const page = await opened();
+  const page = await openPanel();
   await draw(page, 6);
   await page.waitForFunction(() => /k = 1, amplitude = [56]\./.test(document.querySelector('#path-table').textContent));
   assert.equal(await page.locator('#path-shape').inputValue(), 'own');
@@ -64,7 +64,7 @@ test('a circle that was drawn is the way of the head, and stands in robot.toml',
 });
 
 test('a line that is too large is refused, and a button has the largest size that would do', async () => {
-  const page = await opened();
+  const page = await openPanel();
   await draw(page, 45);
   const button = page.locator('#path-instead button', { hasText: 'A size of' });
   await button.waitFor();
@@ -72,7 +72,7 @@ test('a line that is too large is refused, and a button has the largest size tha
   for (const id of ['try', 'write', 'copy']) assert.ok(await page.locator(`#path-${id}`).isDisabled(), id);
   const size = Number(/A size of (\d+) %/.exec(await button.innerText())[1]);
   await button.click();
-  await isAsked(page, 'least');
+  await waitForAnswer(page, 'least');
   await page.waitForFunction(() => document.querySelector('#path-no').hidden);
   assert.equal(Number(await page.locator('#path-size').inputValue()), size);
   await page.locator('#path-size').fill(String(size + 1));
@@ -80,7 +80,7 @@ test('a line that is too large is refused, and a button has the largest size tha
 });
 
 test('by the keyboard a shape is chosen, for the tail as well', async () => {
-  const page = await opened();
+  const page = await openPanel();
   const before = await text(page, 'table');
   await page.locator('#path-end').selectOption('tail');
   await page.waitForFunction((before) => document.querySelector('#path-table').textContent !== before, before);
@@ -94,7 +94,7 @@ test('by the keyboard a shape is chosen, for the tail as well', async () => {
 });
 
 test('a tap is not a line, and that is said', async () => {
-  const page = await opened();
+  const page = await openPanel();
   const before = await text(page, 'table');
   await page.locator('#path-plane').evaluate((plane) => plane.scrollIntoView({ block: 'center' }));
   await page.locator('#path-plane').click();
@@ -103,11 +103,11 @@ test('a tap is not a line, and that is said', async () => {
 });
 
 test('a finger draws on a phone, and the page does not scroll meanwhile', async () => {
-  const page = await opened({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+  const page = await openPanel({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
   assert.equal(await page.locator('#path-plane').evaluate((plane) => getComputedStyle(plane).touchAction), 'none');
   await draw(page, 6);
   await page.waitForFunction(() => /k = 1, amplitude = [56]\./.test(document.querySelector('#path-table').textContent));
-  assert.equal(await sideways(page), 0);
+  assert.equal(await overflow(page), 0);
 });
 
 test('nothing was complained of', () => assert.deepEqual(complaints, []));

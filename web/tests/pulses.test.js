@@ -1,5 +1,5 @@
-// The image in the page against the compiler's, byte for byte, and its pulses against those of the simulated UNO on
-// libsimavr, width for width, also for a robot that only the page has.
+// The page's image equals the compiler's, byte for byte, and its pulses equal those of the simulated UNO on libsimavr, width for
+// width, also for a robot that only the page has.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -8,18 +8,18 @@ import { join } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
 
 import { load } from '../../tools/judge/src/hex.js';
-import { PATIENCE, close, complaints, open, page, tidy } from './browser.js';
+import { PATIENCE, close, complaints, open, page, closePages } from './browser.js';
 
 before(open);
-afterEach(tidy);
+afterEach(closePages);
 after(close);
 
 const ROOT = new URL('../../', import.meta.url).pathname;
 const FILE = join(ROOT, 'robot.toml');
-/** The image that the compiler makes of it. */
+/** The image of the same robot from the compiler. */
 const HEX = join(ROOT, 'target/avr-atmega328p/release/lizard.hex');
 
-/** ms since power-on, and what is said then. */
+/** Script of a run: ms since power-on, and the line sent then. */
 const SCRIPT = [
   [1503, 'walk'],
   [4007, 'left'],
@@ -30,11 +30,11 @@ const SCRIPT = [
   [15011, 'rest'],
 ];
 const END = 16_011;
-/** A pulse's width is a whole number of CPU cycles; one of them turns a servo so far, deg. */
+/** Turn of a servo for one CPU cycle of pulse width, deg. */
 const CYCLE = 1 / 160;
 
 /** The servo angles of each frame that `lizard sim` reads from the pins. */
-function simulated(toml) {
+function simulate(toml) {
   const folder = mkdtempSync(join(tmpdir(), 'lizard-'));
   try {
     const script = join(folder, 'script');
@@ -67,7 +67,7 @@ test('the image of robot.toml is what the compiler makes, to the byte', async ()
 });
 
 const TOML = readFileSync(FILE, 'utf8');
-/** With a shorter walk and a gait of its own. */
+/** Returns a robot with a shorter walk and a gait of its own. */
 const OWN = `${TOML.replace('amplitude = 20.0', 'amplitude = 17.0')}
 [gait.limp]
 period = 1.4
@@ -101,7 +101,7 @@ for (const [what, toml] of [['robot.toml', TOML], ['a robot that was typed into 
         if (which === pin) rises.push(rise);
         pulse(which, rise, width);
       };
-      // The page may have lived for some pictures.
+      // The page may have run for some pictures.
       let now = board.cycle / 16_000;
       for (const [ms, line] of [...script, [end, '']]) {
         lizard.advance(ms - now);
@@ -112,7 +112,7 @@ for (const [what, toml] of [['robot.toml', TOML], ['a robot that was typed into 
     },
     [SCRIPT, END],
   );
-  const expected = simulated(toml);
+  const expected = simulate(toml);
   assert.ok(frames.length > 600, `${frames.length} frames`);
   assert.equal(frames.length, expected.length);
   frames.forEach((angles, frame) =>

@@ -1,7 +1,6 @@
-// A Bluetooth module near the browser, by Chromium's own emulation, with a simulated UNO at its serial line. What
-// the page writes comes out of the emulation; what the robot says is given to the page as the event that a
-// notification is, since the emulation has none.
-import { devTools, forbidden, page, within } from './browser.js';
+// A Bluetooth module in Chromium's own emulation, with a simulated UNO at its serial line. The emulation delivers what the page writes.
+// It has no notifications, so the robot's bytes reach the page as the event that a notification would cause.
+import { devTools, openForbidden, page, within } from './browser.js';
 
 const uuid = (short) => `0000${short}-0000-1000-8000-00805f9b34fb`;
 export const HM10 = { name: 'HMSoft', service: uuid('ffe0'), to: 'ffe1', characteristics: { [uuid('ffe1')]: ['notify', 'writeWithoutResponse'] } };
@@ -12,9 +11,9 @@ export const NORDIC = {
 };
 const ADDRESS = '09:09:09:09:09:09';
 const CONFIGURATION = '00002902-0000-1000-8000-00805f9b34fb';
-/** The error of a module that is not there. */
+/** The error of a missing module. */
 const NOBODY = 0x3e;
-/** The page's time from one look at the radio to the next, ms. */
+/** Interval at which the radio is polled, ms of page time. */
 const STEP = 20;
 
 /** Runs in the page before anything else. */
@@ -42,7 +41,7 @@ function inPage() {
   window.powerOn = () => {
     const { link, image } = window.lizard;
     const board = new link.board.constructor(image, null, null);
-    // A module out of its bag.
+    // A new module, with its default name.
     board.baud = 9600;
     board.run(16_000 * 4000);
     const out = [];
@@ -69,7 +68,7 @@ function inPage() {
 }
 
 export class Radio {
-  /** Writes that have come out of the emulation, and their lengths. */
+  /** Writes that the emulation has delivered, and their lengths. */
   packets = [];
   /** True while the module is in reach. */
   isInReach = true;
@@ -78,9 +77,9 @@ export class Radio {
     Object.assign(this, { opened, root, prompts, module });
   }
 
-  /** The page with such a module near by; `adapter` is the state of the browser's own radio, and `allowed` if it may use that. */
+  /** Opens the page with such a module in reach; `adapter` is the state of the browser's radio, `allowed` its permission to use it. */
   static async near(module, { adapter = 'powered-on', robot = true, allowed = true } = {}) {
-    const opened = allowed ? await page({}, inPage) : await forbidden('bluetooth', inPage);
+    const opened = allowed ? await page({}, inPage) : await openForbidden('bluetooth', inPage);
     const root = await devTools();
     await root.send('BluetoothEmulation.enable', { state: adapter, leSupported: true });
     const radio = new Radio(opened, root, await opened.context().newCDPSession(opened), module);
@@ -88,7 +87,7 @@ export class Radio {
     if (adapter !== 'powered-on') return radio;
     const { name, service } = module;
     await root.send('BluetoothEmulation.simulatePreconnectedPeripheral', { address: ADDRESS, name, manufacturerData: [], knownServiceUuids: [service] });
-    // What fails after the page was closed is of no interest; what fails before does not arrive, and the test waits in vain.
+    // A failure after the page was closed does not matter; an earlier one shows as a test that times out.
     root.on('BluetoothEmulation.gattOperationReceived', (event) => radio.gatt(event).catch(() => {}));
     root.on('BluetoothEmulation.characteristicOperationReceived', (event) => radio.characteristic(event).catch(() => {}));
     await radio.prompts.send('DeviceAccess.enable');
@@ -102,7 +101,7 @@ export class Radio {
     await this.root.send('BluetoothEmulation.simulateGATTOperationResponse', { address: ADDRESS, type, code }).catch(() => {});
   }
 
-  /** An HM-10 says so to the robot, without a line end. */
+  /** Sends the text that an HM-10 sends to the robot when its link changes, without a line end. */
   async reached() {
     await this.opened.evaluate(() => {
       window.inReach = true;
@@ -129,7 +128,7 @@ export class Radio {
     await this.root.send('BluetoothEmulation.simulateCharacteristicOperationResponse', { characteristicId, type, code: 0 }).catch(() => {});
   }
 
-  /** Lets the page's time go on; what is written arrives in the step in which it was written. */
+  /** Advances the page's clock; writes arrive within the step in which they were made. */
   async run(ms) {
     for (let left = ms; left > 0; left -= STEP) {
       await this.opened.clock.runFor(STEP);
@@ -148,7 +147,7 @@ export class Radio {
     await within(what, goes()).finally(() => (waits = false));
   }
 
-  /** Presses the button and picks the module, or nothing. */
+  /** Presses the button and picks the module, or none. */
   async pick(isPicked = true) {
     const prompted = new Promise((done) => this.prompts.once('DeviceAccess.deviceRequestPrompted', done));
     await this.opened.locator('#radio').click();
@@ -157,7 +156,7 @@ export class Radio {
     else await this.prompts.send('DeviceAccess.cancelPrompt', { id });
   }
 
-  /** A phone that sleeps: none of the page's timers runs, while the robot goes on. */
+  /** Simulates a phone that sleeps: the page's timers stop, while the robot goes on. */
   async sleep(ms) {
     await this.opened.evaluate((ms) => {
       for (let left = ms; left > 0; left -= 2) window.otherBoard.run(16_000 * 2);
@@ -175,7 +174,7 @@ export class Radio {
   }
 
   async back() {
-    // Writes that failed have not come out.
+    // Failed writes are not delivered.
     await this.opened.evaluate((count) => (window.written = count), this.packets.length);
     this.isInReach = true;
   }

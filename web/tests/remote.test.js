@@ -3,19 +3,19 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { after, afterEach, before, test } from 'node:test';
 
-import { DIST, address, advance, close, complaints, open, standing, tidy } from './browser.js';
+import { DIST, address, advance, close, complaints, open, openStanding, closePages } from './browser.js';
 
 before(open);
-afterEach(tidy);
+afterEach(closePages);
 after(close);
 
 const PHONE = { viewport: { width: 844, height: 390 }, hasTouch: true, isMobile: true };
-/** A thumb's reach from its corner, and what it hits without a look, CSS pixels. */
+/** A thumb's reach from its corner, and the size of a target that it hits without looking, CSS pixels. */
 const REACH = 220;
 const THUMB = 120;
 
-async function remote() {
-  const opened = await standing(PHONE);
+async function openRemote() {
+  const opened = await openStanding(PHONE);
   await opened.evaluate(() => {
     window.locks = 0;
     window.buzzes = 0;
@@ -36,7 +36,7 @@ test('a phone can install the page, with its icon and without a network', async 
     assert.equal(type, bytes[0] === 0x89 ? 'image/png' : 'image/svg+xml');
     assert.ok(worker.includes(`"${src}"`), `${src} is kept`);
   }
-  const opened = await standing(PHONE);
+  const opened = await openStanding(PHONE);
   const tools = await opened.context().newCDPSession(opened);
   const { url, errors, data } = await tools.send('Page.getAppManifest');
   assert.equal(url, `${address()}manifest.webmanifest`);
@@ -46,7 +46,7 @@ test('a phone can install the page, with its icon and without a network', async 
 });
 
 test('stick and stop are under the thumbs, and the robot fills the screen', async () => {
-  const opened = await remote();
+  const opened = await openRemote();
   const { width, height } = PHONE.viewport;
   const [stick, stop, floor] = await Promise.all(['#stick', 'button.stop', 'section.floor'].map((name) => opened.locator(name).boundingBox()));
   for (const box of [stick, stop]) assert.ok(Math.min(box.width, box.height) >= THUMB, JSON.stringify(box));
@@ -58,7 +58,7 @@ test('stick and stop are under the thumbs, and the robot fills the screen', asyn
 });
 
 test('it drives and stops, keeps the screen on, and lets it go dark afterwards', async () => {
-  const opened = await remote();
+  const opened = await openRemote();
   await opened.waitForFunction(() => document.querySelector('#gaits [data-command="walk"] small').textContent !== '');
   const { x, y, width } = await opened.locator('#stick').boundingBox();
   await opened.mouse.move(x + width / 2, y + width / 2);
@@ -74,7 +74,7 @@ test('it drives and stops, keeps the screen on, and lets it go dark afterwards',
 });
 
 test('a robot that stops by itself buzzes', async () => {
-  const opened = await remote();
+  const opened = await openRemote();
   await opened.evaluate(() => window.lizard.ask('walk'));
   await opened.evaluate(() => window.lizard.setSupply(3));
   await advance(opened, 2000);

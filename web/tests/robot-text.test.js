@@ -1,4 +1,4 @@
-// The robot as text: what is wrong is said with its line, and a file, a drop and a link are the same robot.
+// The robot as text: a mistake is reported with its line, and a file, a drop and a link load the same robot.
 import assert from 'node:assert/strict';
 import { mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
@@ -8,14 +8,14 @@ import { after, afterEach, before, test } from 'node:test';
 import jsQR from 'jsqr';
 import { parse } from 'smol-toml';
 
-import { address, close, complaints, open, page as load, standing, tidy, unfold, until } from './browser.js';
+import { address, close, complaints, open, page as load, openStanding, closePages, unfold, until } from './browser.js';
 
 const LARGE = new URL('../../robots/large.toml', import.meta.url).pathname;
 let folder;
 
 before(open);
 before(async () => (folder = await mkdtemp(join(tmpdir(), 'robot-'))));
-afterEach(tidy);
+afterEach(closePages);
 after(async () => {
   await rm(folder, { recursive: true, force: true });
   await close();
@@ -23,16 +23,16 @@ after(async () => {
 
 const box = (page) => page.locator('#robot-text');
 const toml = (page) => page.evaluate(() => window.lizard.toml);
-const takes = (page, text) => page.waitForFunction((text) => window.lizard?.toml === text, text);
+const waitForRobot = (page, text) => page.waitForFunction((text) => window.lizard?.toml === text, text);
 
-async function opened(options) {
-  const page = await standing(options);
+async function openText(options) {
+  const page = await openStanding(options);
   await unfold(page, '#robot-editor');
   return page;
 }
 
 test('a text that is wrong is refused with its line, and the robot of before stays', async () => {
-  const page = await opened();
+  const page = await openText();
   const before = await toml(page);
   assert.equal(await box(page).inputValue(), before);
   const wrong = before.replace('l1 = 30.0', 'l1 = "long"');
@@ -48,7 +48,7 @@ test('a text that is wrong is refused with its line, and the robot of before sta
 });
 
 test('a gait that cannot be is refused by what would happen to the robot, then by its place', async () => {
-  const page = await opened();
+  const page = await openText();
   const wrong = (await toml(page)).replace('amplitude = 20.0', 'amplitude = 40.0');
   const line = wrong.split('\n').findIndex((text) => text.startsWith('[gait.walk]')) + 1;
   await box(page).fill(wrong);
@@ -60,51 +60,51 @@ test('a gait that cannot be is refused by what would happen to the robot, then b
 });
 
 test('a text that is right becomes the robot, and is undone and done again step by step', async () => {
-  const page = await opened();
+  const page = await openText();
   const first = await toml(page);
   const second = first.replace('amplitude = 15.0', 'amplitude = 14.0');
   const third = second.replace('period = 1.25', 'period = 1.5');
   for (const text of [second, third]) {
     await box(page).fill(text);
     await box(page).press('Control+Enter');
-    await takes(page, text);
+    await waitForRobot(page, text);
   }
   assert.equal(await page.evaluate(() => window.lizard.description.gaits.find(({ name }) => name === 'trot').period), 1.5);
   for (const text of [second, first]) {
     await page.locator('#robot-undo').click();
-    await takes(page, text);
+    await waitForRobot(page, text);
   }
   assert.ok(await page.locator('#robot-undo').isDisabled());
   const redo = page.locator('#robot-redo');
   for (const text of [second, third]) {
     await redo.click();
-    await takes(page, text);
+    await waitForRobot(page, text);
   }
   assert.ok(await redo.isDisabled());
-  // A change after an undo is another way on.
+  // A change after an undo drops the undone steps.
   await page.locator('#robot-undo').click();
-  await takes(page, second);
+  await waitForRobot(page, second);
   assert.ok(await redo.isEnabled());
   await box(page).fill(first);
   await box(page).press('Control+Enter');
-  await takes(page, first);
+  await waitForRobot(page, first);
   assert.ok(await redo.isDisabled());
   await page.locator('#robot-undo').click();
-  await takes(page, second);
+  await waitForRobot(page, second);
 });
 
 test('a file is opened, or dropped anywhere on the page', async () => {
-  const page = await opened();
+  const page = await openText();
   const large = await readFile(LARGE, 'utf8');
   await page.locator('#robot-open').setInputFiles(LARGE);
-  await takes(page, large);
+  await waitForRobot(page, large);
   const other = large.replace(/^/, '# dropped\n');
   await page.evaluate((text) => {
     const dropped = new DataTransfer();
     dropped.items.add(new File([text], 'robot.toml'));
     document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: dropped, bubbles: true, cancelable: true }));
   }, other);
-  await takes(page, other);
+  await waitForRobot(page, other);
   const picture = join(folder, 'x.toml');
   await writeFile(picture, Buffer.from([0x89, 0x50, 0x4e, 0x47, 0, 0, 0]));
   await page.locator('#robot-open').setInputFiles(picture);
@@ -112,14 +112,14 @@ test('a file is opened, or dropped anywhere on the page', async () => {
   assert.equal(await toml(page), other);
 });
 
-/** Until the page has the robot of a text, which may have lost its comments on the way. */
-async function arrives(page, wanted) {
+/** Waits until the page has the robot of a text; a link may have dropped its comments. */
+async function waitForText(page, wanted) {
   await page.waitForFunction((name) => window.lizard?.toml.includes(`name = "${name}"`), parse(wanted).name);
   assert.deepEqual(parse(await toml(page)), parse(wanted));
 }
 
-/** The text of the QR code that is drawn, as a camera sees it. */
-async function scanned(page) {
+/** Reads the shown QR code as a camera would, and returns its text. */
+async function scanCode(page) {
   const { data, side } = await page.locator('#robot-drawn svg').evaluate(async (svg) => {
     const side = 3 * svg.viewBox.baseVal.width;
     const drawn = svg.cloneNode(true);
@@ -137,11 +137,11 @@ async function scanned(page) {
 }
 
 test('a link is a robot, also over a reload, and a phone reads it from the screen', async () => {
-  const page = await opened();
+  const page = await openText();
   await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
   const large = await readFile(LARGE, 'utf8');
   await page.locator('#robot-open').setInputFiles(LARGE);
-  await takes(page, large);
+  await waitForRobot(page, large);
   await page.getByRole('button', { name: 'Copy a link' }).click();
   await page.getByText('The link is copied').waitFor();
   const link = await page.evaluate(() => navigator.clipboard.readText());
@@ -149,21 +149,21 @@ test('a link is a robot, also over a reload, and a phone reads it from the scree
   const other = await load();
   assert.notEqual(await toml(other), large);
   await other.goto(link);
-  await arrives(other, large);
+  await waitForText(other, large);
   await other.reload();
-  await arrives(other, large);
-  // Half of a link is not a robot, and says so.
+  await waitForText(other, large);
+  // Half of a link is refused with a message.
   await other.goto(link.slice(0, -200));
   await other.getByText('The robot in the address is incomplete').waitFor();
 
   const code = page.getByRole('button', { name: 'QR code' });
   await code.click();
   await page.getByRole('img', { name: 'QR code' }).waitFor();
-  assert.equal(await scanned(page), link);
+  assert.equal(await scanCode(page), link);
   await page.getByText('a phone reaches the page only where a web server serves it').waitFor();
   await code.click();
   assert.equal(await page.locator('#robot-drawn svg').count(), 0);
-  // The code of a robot goes with its robot.
+  // Another robot removes the code.
   await code.click();
   await page.getByRole('img', { name: 'QR code' }).waitFor();
   await box(page).fill(large.replace('name = "large"', 'name = "other"'));
@@ -172,40 +172,40 @@ test('a link is a robot, also over a reload, and a phone reads it from the scree
 });
 
 test('a link keeps each # that is no comment', async () => {
-  const page = await opened();
+  const page = await openText();
   await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
   const text = `# one\n${(await toml(page)).replace('name = "paper"', 'name = "paper" # "two"')}\n  # three # "four"\n`;
   await box(page).fill(text);
   await page.locator('#robot-take').click();
-  await takes(page, text);
+  await waitForRobot(page, text);
   await page.getByRole('button', { name: 'Copy a link' }).click();
   await page.getByText('The link is copied').waitFor();
   const other = await load();
   await other.goto(await page.evaluate(() => navigator.clipboard.readText()));
-  await arrives(other, text);
+  await waitForText(other, text);
   assert.doesNotMatch(await toml(other), /one|three/);
 });
 
 test('the address is the robot that is shown, at every change', async () => {
-  const page = await opened();
+  const page = await openText();
   const first = await toml(page);
   assert.equal(page.url(), `${address()}#room=build`, 'the robot of the page itself needs none');
   const changed = first.replace('amplitude = 15.0', 'amplitude = 14.0');
   await box(page).fill(changed);
   await page.locator('#robot-take').click();
   await page.waitForFunction(() => location.hash.startsWith('#room=build&robot='));
-  // A page that knows nothing of the first has it from the address alone.
+  // A new browser gets the robot from the address alone.
   const other = await load();
   await other.evaluate(() => localStorage.clear());
   await other.goto(await page.evaluate(() => location.href));
-  await takes(other, changed);
+  await waitForRobot(other, changed);
   await page.locator('#robot-undo').click();
   await page.waitForFunction(() => location.hash === '#room=build');
   await page.locator('#robot').selectOption('large');
   await page.waitForFunction(() => location.hash === '#room=build&file=large');
   await other.goto(await page.evaluate(() => location.href));
   await other.waitForFunction(() => window.lizard.file === 'large');
-  // The address follows the robot again before the page hears of it.
+  // The address is overwritten before the page handles the change.
   await other.evaluate(() => {
     location.hash = '#file=nothing';
     history.replaceState(null, '', '#file=large');
@@ -214,7 +214,7 @@ test('the address is the robot that is shown, at every change', async () => {
 });
 
 test('a hostile file runs no script', async () => {
-  const page = await opened();
+  const page = await openText();
   const hostile = `${await toml(page)}\n[gait."<img src=x onerror=alert(1)>"]\nperiod = 1.0\nwaveform = "still"\n`;
   await box(page).fill(hostile);
   await page.locator('#robot-take').click();
@@ -223,19 +223,19 @@ test('a hostile file runs no script', async () => {
 });
 
 test('a link and the list of robots put the own robot aside, and a button brings it back', async () => {
-  const page = await opened();
+  const page = await openText();
   const own = (await toml(page)).replace('amplitude = 15.0', 'amplitude = 14.0');
   await box(page).fill(own);
   await page.locator('#robot-take').click();
-  await takes(page, own);
+  await waitForRobot(page, own);
   const back = page.locator('#trouble').getByRole('button', { name: 'Back to my own robot' });
-  // A friend's link, which is opened in a tab of its own.
+  // A link from somebody else, opened in another tab.
   await page.goto('about:blank');
   await page.goto(`${address()}#file=large`);
   await page.waitForFunction(() => window.lizard?.file === 'large');
   await back.click();
-  await takes(page, own);
-  // In the same tab, once the address has followed.
+  await waitForRobot(page, own);
+  // The same in this tab, after the address was updated.
   await page.waitForFunction(() => location.hash.startsWith('#robot='));
   await page.evaluate(() => (location.hash = '#file=large'));
   await page.waitForFunction(() => window.lizard.file === 'large');
@@ -243,16 +243,16 @@ test('a link and the list of robots put the own robot aside, and a button brings
   await page.reload();
   await page.waitForFunction(() => window.lizard?.file === 'large');
   await page.locator('#robot').selectOption({ label: 'paper' });
-  await takes(page, own);
+  await waitForRobot(page, own);
   await page.locator('#robot').selectOption('large');
   await page.waitForFunction(() => window.lizard.file === 'large');
   await back.click();
-  await takes(page, own);
+  await waitForRobot(page, own);
   assert.equal(await page.locator('#robot optgroup[label="your own"]').count(), 0, 'none is left');
 });
 
 test('own robots stand in the list by their names, and each comes back as it was', async () => {
-  const page = await opened();
+  const page = await openText();
   const first = await toml(page);
   const own = (name) => first.replace('name = "paper"', `name = "${name}"`);
   const list = page.locator('#robot');
@@ -264,12 +264,12 @@ test('own robots stand in the list by their names, and each comes back as it was
     await page.waitForFunction(() => window.lizard.file === 'robot');
     await box(page).fill(own(name));
     await page.locator('#robot-take').click();
-    await takes(page, own(name));
+    await waitForRobot(page, own(name));
   }
   assert.deepEqual(await names(), ['anna']);
   await list.selectOption({ label: 'anna' });
-  await takes(page, own('anna'));
-  // The address follows a little later, and wins over what is stored.
+  await waitForRobot(page, own('anna'));
+  // The address is updated a little later, and takes priority over the stored robot.
   await until(page, async (wanted) => {
     const part = new URLSearchParams(location.hash.slice(1)).get('robot') ?? '';
     const bytes = Uint8Array.from(atob(part.replaceAll('-', '+').replaceAll('_', '/')), (letter) => letter.charCodeAt(0));
@@ -278,10 +278,10 @@ test('own robots stand in the list by their names, and each comes back as it was
   }, own('anna'));
   assert.deepEqual(await names(), ['bert'], 'what was shown is put aside');
   await page.reload();
-  await takes(page, own('anna'));
+  await waitForRobot(page, own('anna'));
   assert.deepEqual(await names(), ['bert']);
   await list.selectOption({ label: 'bert' });
-  await takes(page, own('bert'));
+  await waitForRobot(page, own('bert'));
   assert.deepEqual(await names(), ['anna']);
 });
 

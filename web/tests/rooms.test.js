@@ -1,17 +1,17 @@
-// The rooms beside the stage: each has an address, fits its screen, has stop in reach, and draws only while it is open.
+// The rooms beside the stage: each has an address, fits its screen, keeps `stop` in reach, and draws only while it is open.
 import assert from 'node:assert/strict';
 import { createRequire } from 'node:module';
 import { after, afterEach, before, test } from 'node:test';
 
-import { address, advance, close, complaints, open, page, sideways, standing, tidy, unfold } from './browser.js';
+import { address, advance, close, complaints, open, page, overflow, openStanding, closePages, unfold } from './browser.js';
 
 before(open);
-afterEach(tidy);
+afterEach(closePages);
 after(close);
 
 const AXE = createRequire(import.meta.url).resolve('axe-core/axe.min.js');
 const ROOMS = ['start', 'drive', 'gaits', 'build', 'board', 'measure', 'learn'];
-/** What each room is for, which a phone shows without scrolling. */
+/** The main element of each room, which a phone shows without scrolling. */
 const ACTS = { start: '.doors', drive: '#speed', gaits: '#gait-try', build: '#sketch', board: '#setup-open', measure: '#measure-camera', learn: '#learn-title' };
 const SIZES = [
   { viewport: { width: 360, height: 640 }, hasTouch: true, isMobile: true },
@@ -31,19 +31,19 @@ const box = (opened, selector) => opened.evaluate((selector) => document.querySe
 for (const options of SIZES.flatMap((size) => THEMES.map((colorScheme) => ({ ...size, colorScheme })))) {
   const { width, height } = options.viewport;
   test(`every room fits ${width} x ${height} pixels in ${options.colorScheme} colours, with its act and stop on the screen, and without a fault of axe`, async () => {
-    const opened = await standing({ ...options, bypassCSP: true });
+    const opened = await openStanding({ ...options, bypassCSP: true });
     await opened.addScriptTag({ path: AXE });
     for (const room of ROOMS) {
       await opened.evaluate((room) => (location.hash = `room=${room}`), room);
       await isOpen(opened, room);
       await opened.waitForFunction(() => document.querySelector('#floor').dataset.zoom);
-      assert.equal(await sideways(opened), 0, room);
+      assert.equal(await overflow(opened), 0, room);
       const [act, stop, bar] = await Promise.all([ACTS[room], '.stop', 'nav'].map((selector) => box(opened, selector)));
       const bottom = options.hasTouch ? bar.top : height;
       assert.ok(act.top >= 0 && act.bottom <= bottom + 1, `${room}: ${ACTS[room]} ends at ${act.bottom} of ${bottom}`);
       assert.ok(stop.right <= width && stop.bottom <= height && Math.min(stop.width, stop.height) >= 44, room);
       if (options.hasTouch) assert.ok(width - stop.left <= REACH && height - stop.top <= REACH, JSON.stringify(stop));
-      // Nothing lies over it, wherever the page is scrolled to.
+      // Nothing covers it, wherever the page is scrolled to.
       await opened.evaluate(() => scrollTo(0, document.documentElement.scrollHeight));
       assert.equal(await opened.evaluate(([x, y]) => document.elementFromPoint(x, y).className, [stop.left + stop.width / 2, stop.top + stop.height / 2]), 'stop', room);
       const { violations } = await opened.evaluate(() => window.axe.run(document, { resultTypes: ['violations'] }));
@@ -70,7 +70,7 @@ test('an address opens its room, with the robot that it names, and the tabs, the
   assert.equal(await link(opened, 'build').getAttribute('aria-current'), 'page');
   await opened.goForward();
   await isOpen(opened, 'gaits');
-  // A room that there is not.
+  // An unknown room.
   await opened.goto(`${address()}#room=cellar`);
   await isOpen(opened, 'start');
 });
@@ -107,7 +107,7 @@ test('the three doors of the first screen lead to rooms', async () => {
 });
 
 test('a room that is closed draws nothing, also where its panels are unfolded', async () => {
-  const opened = await standing();
+  const opened = await openStanding();
   for (const panel of ['#maps', '#margins-panel', '#pulses', '#keep', '#power', '#routines', '#path-editor', '#parts']) await unfold(opened, panel);
   await opened.locator('#solid').click();
   await link(opened, 'board').click();
@@ -118,7 +118,7 @@ test('a room that is closed draws nothing, also where its panels are unfolded', 
     const drawn = [];
     const hidden = [...document.querySelectorAll('.room[hidden]')];
     const watcher = new MutationObserver((changes) => {
-      // What the robot says is kept.
+      // The log keeps the robot's lines.
       for (const { target } of changes) if (!target.closest?.('#log') && !target.parentElement?.closest('#log')) drawn.push(target.id || target.nodeName);
     });
     for (const room of hidden) watcher.observe(room, { subtree: true, childList: true, attributes: true, characterData: true });
@@ -135,7 +135,7 @@ test('a room that is closed draws nothing, also where its panels are unfolded', 
 
 test('3D and the drawing from above are one press apart, and three.js is loaded for 3D alone', async () => {
   const loaded = [];
-  const opened = await standing();
+  const opened = await openStanding();
   opened.on('request', (request) => loaded.push(new URL(request.url()).pathname));
   for (const room of ROOMS.slice(1)) await link(opened, room).click();
   assert.deepEqual(loaded.filter((path) => /space|parts/.test(path)), []);

@@ -1,17 +1,16 @@
-// Routines: a drive becomes steps by what the robot did, the steps are a view of robot.toml, and the robot does them again.
+// Routines: a drive is recorded as steps, the steps are a view of robot.toml, and the robot repeats them.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { connected, until } from './board.js';
-import { address, advance, close, complaints, open, standing, tidy, unfold } from './browser.js';
+import { openWithBoard, until } from './board.js';
+import { address, advance, close, closePages, complaints, open, openStanding, text, unfold } from './browser.js';
 
 before(open);
-afterEach(tidy);
+afterEach(closePages);
 after(close);
 
 const PATROL = ['stand 1 s', 'walk 2', 'left 3', 'look 1'];
 
-const text = (page, selector) => page.locator(selector).innerText();
 const toml = (page) => page.evaluate(() => window.lizard.toml);
 const gait = (page, name) => page.locator(`#gaits button[data-command="${name}"]`);
 const steps = (page) => page.locator('#routine-steps input').evaluateAll((inputs) => inputs.map(({ value }) => value));
@@ -20,48 +19,48 @@ const press = async (page, name) => {
   await unfold(page, '#routines');
   await page.locator('#routines').getByRole('button', { name, exact: true }).click();
 };
-/** Until the steps are these ones. */
-const shows = (page, wanted) =>
+/** Waits until the panel shows these steps. */
+const waitForSteps = (page, wanted) =>
   page.waitForFunction(
     (wanted) => JSON.stringify([...document.querySelectorAll('#routine-steps input')].map(({ value }) => value)) === wanted,
     JSON.stringify(wanted),
   );
-/** The steps as they are written in the text of the robot. */
-const written = (page) => page.evaluate(() => window.lizard.robot.routines(window.lizard.toml).at(-1)?.steps);
-const predicted = (page) => page.waitForFunction(() => document.querySelector('#routine-round').textContent !== '');
+/** Reads the steps in the text of the robot. */
+const readSteps = (page) => page.evaluate(() => window.lizard.robot.routines(window.lizard.toml).at(-1)?.steps);
+const waitForPrediction = (page) => page.waitForFunction(() => document.querySelector('#routine-round').textContent !== '');
 const track = (page) => page.locator('#routine-path .track').getAttribute('d');
 
 /** Puts a routine into the page's robot, at the end of its text. */
-async function put(page, steps, name = 'patrol') {
+async function putRoutine(page, steps, name = 'patrol') {
   await page.evaluate(([name, steps]) => {
     const { lizard } = window;
     return lizard.change(lizard.robot.putSteps(lizard.toml, { name, steps }).text).then(() => null);
   }, [name, steps]);
 }
 
-/** The panel with this routine, before a robot that stands. */
-async function opened(routine = PATROL, options = {}) {
-  const page = await standing(options);
+/** Opens the panel with a routine, for a robot that stands. */
+async function openRoutine(routine = PATROL, options = {}) {
+  const page = await openStanding(options);
   await unfold(page, '#routines');
   if (!routine) return page;
-  await put(page, routine);
-  await shows(page, routine);
+  await putRoutine(page, routine);
+  await waitForSteps(page, routine);
   return page;
 }
 
-/** Lets the simulation run for so many seconds of its own time. */
-async function drives(page, seconds) {
+/** Runs the simulation for some seconds of its own time. */
+async function drive(page, seconds) {
   const time = () => page.evaluate(() => window.lizard.clock);
   const end = (await time()) + seconds;
   for (let n = 0; (await time()) < end - 0.01; n++) {
-    // The page asks twice a second of real time, which is none beside a simulation that is fast.
+    // The page asks for the status twice a second of real time, too rarely for a simulation this fast.
     if (n % 25 === 0) await page.evaluate(() => void window.lizard.status());
     await advance(page, 20);
   }
 }
 
 test('a drive is recorded as the robot did it, and its replay goes where it is predicted to go', async () => {
-  const page = await opened(null);
+  const page = await openRoutine(null);
   await page.waitForFunction(() => ['walk', 'left'].every((name) => document.querySelector(`#gaits button[data-command="${name}"] small`).textContent));
   await page.getByText('This robot has no routine yet.').waitFor();
   await press(page, 'Record a drive');
@@ -70,30 +69,30 @@ test('a drive is recorded as the robot did it, and its replay goes where it is p
   const before = await place();
   await page.keyboard.down('ArrowUp');
   await page.waitForFunction(() => window.lizard.gait === 'walk');
-  await drives(page, 3.6);
+  await drive(page, 3.6);
   await page.keyboard.up('ArrowUp');
   await page.waitForFunction(() => window.lizard.gait === 'stop');
-  // The way of the body says how many cycles are gone.
+  // The body's displacement shows how many cycles have passed.
   const cycles = ((await place()).y - before.y) / 33.2;
-  await drives(page, 2);
+  await drive(page, 2);
   await page.keyboard.down('ArrowLeft');
   await page.waitForFunction(() => window.lizard.gait === 'left');
-  await drives(page, 2.6);
+  await drive(page, 2.6);
   await page.keyboard.up('ArrowLeft');
   await page.waitForFunction(() => window.lizard.gait === 'stop');
-  await drives(page, 1);
+  await drive(page, 1);
   await press(page, 'Stop recording');
   const said = await text(page, '#routine-said');
   const [, walked, pause, turns] = (/^Recorded: walk (\d+), stand ([\d.]+) s, left (\d+)$/.exec(said) ?? assert.fail(said)).map(Number);
   assert.ok(walked >= 3 && walked < cycles + 0.2 && walked > cycles - 1.2, `${said}, ${cycles} cycles`);
-  // The page goes on by itself, too, so it is at least this.
+  // The page also advances by itself, so this is a lower bound.
   assert.ok(pause >= 1.9, said);
   assert.equal(await page.locator('#routine-name').inputValue(), 'patrol');
   await press(page, 'Keep it');
   const recorded = [`walk ${walked}`, `stand ${pause} s`, `left ${turns}`];
-  await shows(page, recorded);
+  await waitForSteps(page, recorded);
   assert.ok((await toml(page)).endsWith(`\n[routine.patrol]\nsteps = ["${recorded.join('", "')}"]\n`));
-  await predicted(page);
+  await waitForPrediction(page);
   const [, seconds, ahead, , , turned] = /^A round takes ([\d.]+) s and ends (-?\d+) mm ahead and (\d+) mm to the (right|left) of its start, turned by (-?\d+)°\.$/
     .exec(await text(page, '#routine-round'));
   assert.ok(Math.abs(ahead - 33.2 * walked) < 15 && Math.abs(turned - 14.1 * turns) < 10, `${ahead} mm, ${turned} deg`);
@@ -111,36 +110,36 @@ test('a drive is recorded as the robot did it, and its replay goes where it is p
 });
 
 test('what the robot said is recorded, and not what was pressed', async () => {
-  const page = await opened(null);
+  const page = await openRoutine(null);
   await press(page, 'Record a drive');
-  // A line of three cycles ends by itself, and a refused one is no gait.
+  // A line with three cycles ends by itself; a refused line starts no gait.
   for (const [line, seconds] of [['walk 3', 5], ['rest', 2], ['walk', 1], ['stand', 1.5], ['look', 0.8], ['center', 1]]) {
     await page.evaluate((line) => void window.lizard.ask(line), line);
-    await drives(page, seconds);
+    await drive(page, seconds);
   }
   await press(page, 'Stop recording');
   const said = await text(page, '#routine-said');
-  // The page goes on by itself, too, so the times are at least these.
+  // The page also advances by itself, so these times are lower bounds.
   const [, rest, stand, look] = (/^Recorded: walk 3, stand [\d.]+ s, rest ([\d.]+) s, stand ([\d.]+) s, look ([\d.]+) s$/.exec(said) ?? assert.fail(said)).map(Number);
   assert.ok(rest >= 2.9 && stand >= 1.4 && look >= 0.7, said);
   await press(page, 'Drop it');
   assert.equal(await page.locator('#routine-recorded').isVisible(), false);
   await press(page, 'Record a drive');
-  await drives(page, 1);
+  await drive(page, 1);
   await press(page, 'Stop recording');
   await page.getByText('Nothing is recorded: the robot has not walked.').waitFor();
 });
 
 test('as many cycles are recorded as were walked, at whatever phase of the gait before the walk began', async () => {
-  const page = await opened(null);
+  const page = await openRoutine(null);
   for (let tenth = 0; tenth < 10; tenth++) {
     await press(page, 'Record a drive');
     await page.evaluate(() => void window.lizard.ask('stand'));
-    await drives(page, 0.5 + 0.1 * tenth);
+    await drive(page, 0.5 + 0.1 * tenth);
     await page.evaluate(() => void window.lizard.ask('walk 2'));
     await advance(page, 60);
     await page.evaluate(() => void window.lizard.status());
-    await drives(page, 3);
+    await drive(page, 3);
     await press(page, 'Stop recording');
     assert.match(await text(page, '#routine-said'), /^Recorded: walk 2$/, `after ${tenth} tenths`);
     await press(page, 'Drop it');
@@ -148,18 +147,18 @@ test('as many cycles are recorded as were walked, at whatever phase of the gait 
 });
 
 test('a drive of a board is recorded by its own phase, also where its link was cut', async () => {
-  const page = await connected('robot', 8000);
+  const page = await openWithBoard('robot', 8000);
   await unfold(page, '#routines');
   await press(page, 'Record a drive');
   const doing = (name) => until(page, `it does ${name}`, async () => (await page.evaluate(() => window.lizard.gait)) === name, 20);
   await gait(page, 'walk').click();
   await doing('walk');
-  // A walk begins with the way to its first pose, a quarter of a second: less than four cycles are gone.
+  // A walk begins with a quarter of a second to its first pose, so less than four cycles have passed.
   await page.clock.runFor(4100);
   await gait(page, 'back').click();
   await doing('back');
   await page.clock.runFor(2600);
-  // Nobody reaches it any more: it stops by itself after 0.9 s.
+  // The link is lost: the robot stops by itself after 0.9 s.
   await page.evaluate(() => {
     const board = window.otherBoard;
     const { send, onByte } = board;
@@ -174,11 +173,11 @@ test('a drive of a board is recorded by its own phase, also where its link was c
 });
 
 test('steps are changed, moved, copied and deleted by keys alone, and each is undone', async () => {
-  const page = await opened();
+  const page = await openRoutine();
   const known = [PATROL];
   const does = async (act, wanted) => {
     await act();
-    await shows(page, wanted);
+    await waitForSteps(page, wanted);
     await page.waitForFunction((wanted) => window.lizard.toml.includes(`steps = ${wanted}`), `["${wanted.join('", "')}"]`);
     known.push(wanted);
   };
@@ -202,13 +201,13 @@ test('steps are changed, moved, copied and deleted by keys alone, and each is un
   await does(() => press(page, 'Add a step'), ['left 3', 'left 3', 'walk 5', 'look 1', 'look 1']);
   for (const wanted of known.slice(0, -1).reverse()) {
     await page.locator('#routine-undo').click();
-    await shows(page, wanted);
+    await waitForSteps(page, wanted);
   }
-  assert.deepEqual(await written(page), PATROL);
+  assert.deepEqual(await readSteps(page), PATROL);
 });
 
 test('the list follows the text, and the text the list, with all its other lines', async () => {
-  const page = await opened();
+  const page = await openRoutine();
   await unfold(page, '#robot-editor');
   const own = `${await toml(page)}repeat = 3 # rounds\n\n[routine.about]\nsteps = [\n  "left 12", # half a turn\n]\n`;
   await page.locator('#robot-text').fill(own);
@@ -216,7 +215,7 @@ test('the list follows the text, and the text the list, with all its other lines
   assert.deepEqual(await page.locator('#routine option').allInnerTexts(), ['patrol', 'about'], 'before it is used');
   await page.locator('#robot-take').click();
   await page.locator('#routine').selectOption('about');
-  await shows(page, ['left 12']);
+  await waitForSteps(page, ['left 12']);
   await page.locator('#routine').selectOption('patrol');
   await press(page, 'Delete step 4');
   await page.waitForFunction((wanted) => window.lizard.toml === wanted, own.replace('"left 3", "look 1"', '"left 3"'));
@@ -225,8 +224,8 @@ test('the list follows the text, and the text the list, with all its other lines
 });
 
 test('while a step is dragged its path is drawn, and the text changes when it is let go', async () => {
-  const page = await opened(['walk 3', 'left 6', 'walk 1']);
-  await predicted(page);
+  const page = await openRoutine(['walk 3', 'left 6', 'walk 1']);
+  await waitForPrediction(page);
   const [before, first] = [await toml(page), await track(page)];
   const grip = (number) => page.locator('#routine-steps .grip').nth(number - 1);
   const middle = async (number) => {
@@ -253,7 +252,7 @@ test('while a step is dragged its path is drawn, and the text changes when it is
 });
 
 test('a finger drags a step, too', async () => {
-  const page = await opened(['walk 3', 'left 6'], { viewport: { width: 360, height: 740 }, hasTouch: true, isMobile: true });
+  const page = await openRoutine(['walk 3', 'left 6'], { viewport: { width: 360, height: 740 }, hasTouch: true, isMobile: true });
   const touch = await page.context().newCDPSession(page);
   const grip = page.locator('#routine-steps .grip');
   await grip.first().scrollIntoViewIfNeeded();
@@ -266,7 +265,7 @@ test('a finger drags a step, too', async () => {
 });
 
 test('a mistake is named at its block with its line and its step, and the robot of before goes on', async () => {
-  const page = await opened();
+  const page = await openRoutine();
   const before = await toml(page);
   const line = before.split('\n').findIndex((text) => text.startsWith('steps = ')) + 1;
   await step(page, 2).fill('wolk 4');
@@ -278,27 +277,27 @@ test('a mistake is named at its block with its line and its step, and the robot 
   assert.equal(await toml(page), before);
   assert.ok((await page.locator('#routine-start').isDisabled()) && (await page.locator('#routine-write').isDisabled()));
   assert.equal(await page.locator('#robot-editor').getAttribute('open'), null, 'nobody is led away');
-  // What is not known goes with its block, letter by letter.
+  // Unknown text moves with its block, letter by letter.
   await press(page, 'Move down step 2');
   await page.locator('#routine-steps li', { has: step(page, 3) }).getByText(message.replace('step 2', 'step 3')).waitFor();
-  await shows(page, ['stand 1 s', 'left 3', 'wolk 4', 'look 1']);
+  await waitForSteps(page, ['stand 1 s', 'left 3', 'wolk 4', 'look 1']);
   await page.locator('#routine-undo').click();
-  await shows(page, PATROL);
+  await waitForSteps(page, PATROL);
   assert.equal(await page.locator('#routine-refusal').isVisible(), false);
-  // Without steps it is no routine.
-  await put(page, ['walk 1']);
-  await shows(page, ['walk 1']);
+  // A routine needs steps.
+  await putRoutine(page, ['walk 1']);
+  await waitForSteps(page, ['walk 1']);
   await press(page, 'Delete step 1');
   await page.getByText('routine.patrol.steps has 0 steps; it must have 1 to 99').first().waitFor();
   await press(page, 'Add a step');
-  await shows(page, ['stand 1 s']);
+  await waitForSteps(page, ['stand 1 s']);
 });
 
 test('a name that is no name, or taken, is refused, and what was recorded stays', async () => {
-  const page = await opened();
+  const page = await openRoutine();
   await press(page, 'Record a drive');
   await page.evaluate(() => void window.lizard.ask('walk 2'));
-  await drives(page, 3);
+  await drive(page, 3);
   await press(page, 'Stop recording');
   assert.equal(await page.locator('#routine-name').inputValue(), 'patrol-2', 'the first one is taken');
   for (const [name, refusal] of [
@@ -318,17 +317,17 @@ test('a name that is no name, or taken, is refused, and what was recorded stays'
 });
 
 test('a step that waits for ever, or many of them, do not hold the page up', async () => {
-  const page = await opened(['walk 1', ...Array(98).fill('stand 999 s')]);
+  const page = await openRoutine(['walk 1', ...Array(98).fill('stand 999 s')]);
   await page.getByText('The first 120 s of a round end 3').waitFor();
   await page.locator('#routine-steps li').nth(98).waitFor();
 });
 
 test('a routine is written to a board, which patrols by its name and says that it is done', async () => {
-  const page = await connected('robot', 8000);
+  const page = await openWithBoard('robot', 8000);
   await unfold(page, '#routines');
-  await put(page, ['walk 2', 'rest 2 s', 'left 1']);
-  await shows(page, ['walk 2', 'rest 2 s', 'left 1']);
-  // The board has the robot without it until it is written.
+  await putRoutine(page, ['walk 2', 'rest 2 s', 'left 1']);
+  await waitForSteps(page, ['walk 2', 'rest 2 s', 'left 1']);
+  // Until it is written, the board has the robot without it.
   await press(page, 'Start it');
   await until(page, 'it is refused', async () => (await text(page, '#drive-said')) === 'patrol: unknown command, send help for the list');
   await press(page, 'Write it to the board');
@@ -338,7 +337,7 @@ test('a routine is written to a board, which patrols by its name and says that i
   await gait(page, 'patrol').click();
   const doing = () => page.evaluate(() => window.lizard.gait);
   await until(page, 'it patrols', async () => (await doing()) === 'patrol', 20);
-  // While it rests it is still under way, and whoever drives goes on talking.
+  // While the robot rests, the routine is still under way, and the page keeps sending lines.
   await page.clock.runFor(3500);
   assert.equal(await doing(), 'patrol');
   assert.ok(!(await page.evaluate(() => window.heard)).includes('deadman 0'));
@@ -349,8 +348,8 @@ test('a routine is written to a board, which patrols by its name and says that i
 });
 
 test('a routine that rests is stopped when nobody sees the page any more', async () => {
-  const page = await connected('robot', 8000);
-  await put(page, ['walk 1', 'rest 9 s', 'walk 99']);
+  const page = await openWithBoard('robot', 8000);
+  await putRoutine(page, ['walk 1', 'rest 9 s', 'walk 99']);
   await page.locator('#flash-robot').evaluate((button) => button.click());
   await until(page, 'it is written', async () => /^written and verified/.test(await page.locator('#flash-said').textContent()));
   await page.clock.runFor(6000);
@@ -367,16 +366,16 @@ test('a routine that rests is stopped when nobody sees the page any more', async
 });
 
 test('a board that is unplugged while a routine is written says so, and gets it when it is back', async () => {
-  const page = await connected('robot', 8000);
+  const page = await openWithBoard('robot', 8000);
   await unfold(page, '#routines');
-  await put(page, ['walk 1']);
-  await shows(page, ['walk 1']);
+  await putRoutine(page, ['walk 1']);
+  await waitForSteps(page, ['walk 1']);
   await press(page, 'Write it to the board');
   await until(page, 'it is being written', async () => (await text(page, '#routine-said')).startsWith('writing'), 20);
   await page.clock.runFor(60);
   await page.evaluate(() => window.unplug());
   await until(page, 'it says so', async () => /^not written: .*\. Perhaps only a part of the robot is on the board, which then moves nothing: try again$/.test(await text(page, '#routine-said')));
-  assert.deepEqual(await written(page), ['walk 1'], 'the routine is still in the page');
+  assert.deepEqual(await readSteps(page), ['walk 1'], 'the routine is still in the page');
   await until(page, 'it may be connected', () => page.locator('#connect').isEnabled());
   await page.evaluate(() => (window.same = true));
   await page.locator('#connect').click();
@@ -386,7 +385,7 @@ test('a board that is unplugged while a routine is written says so, and gets it 
 });
 
 test('a firmware that reads another form of robot, as one without routines, says so, and the page says what to write', async () => {
-  const page = await connected('robot', 8000);
+  const page = await openWithBoard('robot', 8000);
   await page.evaluate(() => {
     const { start } = window.lizard.description;
     window.otherBoard.flash[start + 4] ^= 1;
@@ -397,21 +396,21 @@ test('a firmware that reads another form of robot, as one without routines, says
 });
 
 test('two pages in one browser keep a routine each', async () => {
-  const one = await opened();
+  const one = await openRoutine();
   const [other] = await Promise.all([one.waitForEvent('popup'), one.evaluate((address) => void window.open(address), address())]);
   await other.waitForFunction(() => window.lizard);
-  // It begins with what the first one has kept, and goes its own way.
-  assert.deepEqual(await written(other), PATROL);
+  // It begins with the copy that the first page has stored; later changes are its own.
+  assert.deepEqual(await readSteps(other), PATROL);
   const own = [[one, ['right 2']], [other, ['left 2']]];
   for (const [page, wanted] of own) {
     const before = page.url();
-    await put(page, wanted);
+    await putRoutine(page, wanted);
     await page.waitForFunction((before) => location.href !== before, before);
   }
   for (const [page, wanted] of own) {
     await page.reload();
     await page.waitForFunction(() => window.lizard?.toml.includes('[routine.'));
-    assert.deepEqual(await written(page), wanted);
+    assert.deepEqual(await readSteps(page), wanted);
   }
 });
 

@@ -1,12 +1,12 @@
-// The page on a phone, beside a mouse, in a person's own colours, and where it cannot run.
+// The page on a phone, with a mouse, in the user's colours, and in browsers that cannot run it.
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { after, afterEach, before, test } from 'node:test';
 
-import { address, advance, blank, close, complaints, open, page, sideways, standing, tidy, unfold, within } from './browser.js';
+import { address, advance, openBlank, close, complaints, open, page, overflow, openStanding, closePages, unfold, within } from './browser.js';
 
 before(open);
-afterEach(tidy);
+afterEach(closePages);
 after(close);
 
 const PORTRAIT = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
@@ -22,7 +22,7 @@ async function isOnScreen(opened, selector) {
   return top >= 0 && left >= 0 && bottom <= height && right <= width;
 }
 
-/** Does what a finger does that moves from the middle of an element, so many pixels right and down. */
+/** Moves a finger from the middle of an element, some pixels right and down. */
 async function swipe(opened, selector, right, down) {
   const { left, top, width, height } = await place(opened, selector);
   const session = await within('the touch screen', opened.context().newCDPSession(opened));
@@ -38,7 +38,7 @@ for (const [name, options] of [
   ['on its side', LANDSCAPE],
 ]) {
   test(`stop is on the screen of a phone ${name}, wherever it is scrolled to`, async () => {
-    const opened = await standing(options);
+    const opened = await openStanding(options);
     for (const panel of ['#world', '#power', '#keep']) await unfold(opened, panel);
     await opened.evaluate(() => scrollTo(0, 0));
     assert.ok(await isOnScreen(opened, '.stop'), 'at the top');
@@ -53,7 +53,7 @@ for (const [name, options] of [
   });
 
   test(`a phone ${name} shows the robot and its buttons on one screen`, async () => {
-    const opened = await standing(options);
+    const opened = await openStanding(options);
     await opened.goto(`${address()}#room=drive`);
     for (const selector of ['#floor', '#gaits', '#reset', '#speed']) {
       assert.ok(await isOnScreen(opened, selector), selector);
@@ -64,24 +64,24 @@ for (const [name, options] of [
 }
 
 test('a finger that moves up over the floor scrolls the page', async () => {
-  const opened = await standing(PORTRAIT);
+  const opened = await openStanding(PORTRAIT);
   await opened.goto(`${address()}#room=gaits`);
   const follow = opened.getByRole('button', { name: 'Follow' });
   await swipe(opened, '#floor', 120, 0);
   assert.equal(await follow.getAttribute('aria-pressed'), 'false', 'a finger aside drags the floor');
   assert.equal(await opened.evaluate(() => scrollY), 0);
   await follow.click();
-  // Last, because the page rolls on for a while.
+  // Last, because the page keeps scrolling for a while.
   await swipe(opened, '#floor', 0, -150);
   await opened.waitForFunction(() => scrollY > 100);
   assert.equal(await follow.getAttribute('aria-pressed'), 'true', 'the floor was not dragged');
 });
 
-/** CSS pixels in a mm of the floor. */
+/** Zoom of the floor, CSS pixels per mm. */
 const zoom = (opened) => opened.evaluate(() => Number(document.querySelector('#floor').dataset.zoom));
 
 test('the wheel scrolls the page, and zooms with Ctrl as far as the robot is to be seen', async () => {
-  const opened = await standing({ viewport: { width: 1400, height: 700 } });
+  const opened = await openStanding({ viewport: { width: 1400, height: 700 } });
   await opened.goto(`${address()}#room=gaits`);
   await opened.waitForFunction(() => document.querySelector('#floor').dataset.zoom);
   const first = await zoom(opened);
@@ -94,7 +94,7 @@ test('the wheel scrolls the page, and zooms with Ctrl as far as the robot is to 
   await opened.locator('#floor').dispatchEvent('wheel', { deltaY: 5000, ctrlKey: true, offsetX: 200, offsetY: 200 });
   await opened.waitForFunction((first) => Number(document.querySelector('#floor').dataset.zoom) < first, first);
   assert.ok(250 * (await zoom(opened)) > 60, 'pixels for a robot of 250 mm');
-  // And back, wherever the view had gone to.
+  // Back, wherever the view was.
   const follow = opened.getByRole('button', { name: 'Follow' });
   await opened.locator('#floor').press('ArrowLeft');
   assert.equal(await follow.getAttribute('aria-pressed'), 'false');
@@ -104,7 +104,7 @@ test('the wheel scrolls the page, and zooms with Ctrl as far as the robot is to 
 });
 
 test('forced colours show which button is pressed and how long a bar is', async () => {
-  const opened = await standing({ forcedColors: 'active' });
+  const opened = await openStanding({ forcedColors: 'active' });
   await opened.locator('#gaits button[data-command="walk"]').click();
   await advance(opened, 300);
   const colour = (selector) =>
@@ -121,7 +121,7 @@ for (const [name, viewport] of [
   ['a large desk', { width: 3840, height: 2160 }],
 ]) {
   test(`${name} wide, with every panel open, nothing is beside the screen`, async () => {
-    const opened = await standing({ viewport });
+    const opened = await openStanding({ viewport });
     for (const panel of ['#lengths-panel', '#calibrate', '#flash', '#world', '#gait-editor', '#maps']) {
       await unfold(opened, panel);
       await advance(opened, 500);
@@ -130,7 +130,7 @@ for (const [name, viewport] of [
           .filter((each) => each.getBoundingClientRect().right > document.documentElement.clientWidth + 0.5)
           .map(({ id, textContent }) => id || textContent),
       );
-      assert.equal(await sideways(opened), 0);
+      assert.equal(await overflow(opened), 0);
       assert.deepEqual(outside, []);
     }
   });
@@ -138,7 +138,7 @@ for (const [name, viewport] of [
 
 test('where a finger points, no key is told of, and the list of robots shows a whole name', async () => {
   for (const viewport of [{ width: 360, height: 640 }, { width: 844, height: 390 }, { width: 1024, height: 1366 }]) {
-    const opened = await standing({ viewport, hasTouch: true, isMobile: true });
+    const opened = await openStanding({ viewport, hasTouch: true, isMobile: true });
     for (const room of ['drive', 'build', 'board']) {
       await opened.goto(`${address()}#room=${room}`);
       const keys = await opened.evaluate(() => [...document.querySelectorAll('button kbd')].filter((key) => key.checkVisibility()).map(({ textContent }) => textContent));
@@ -158,7 +158,7 @@ test('where a finger points, no key is told of, and the list of robots shows a w
 });
 
 test('a page without JavaScript says what it needs', async () => {
-  const opened = await blank({ javaScriptEnabled: false });
+  const opened = await openBlank({ javaScriptEnabled: false });
   await opened.goto(address());
   const said = opened.locator('noscript p');
   await said.waitFor();
@@ -166,14 +166,14 @@ test('a page without JavaScript says what it needs', async () => {
 });
 
 test('a page that was opened as a file says what it needs', async () => {
-  const opened = await blank();
+  const opened = await openBlank();
   await opened.goto(new URL('../dist/index.html', import.meta.url).href);
   await opened.locator('#where', { hasText: 'it needs a web server' }).waitFor();
 });
 
 test('long names of gaits have room, and no letter is outside of its button', async () => {
   for (const options of [PORTRAIT, { viewport: { width: 1400, height: 1000 } }]) {
-    const opened = await standing(options);
+    const opened = await openStanding(options);
     await opened.locator('#robot').selectOption('own-gaits');
     await opened.waitForFunction(() => window.lizard.file === 'own-gaits');
     const buttons = await opened.locator('#gaits button').evaluateAll((buttons) =>
@@ -203,7 +203,7 @@ test('robots that say that they are for the tests come last, under that name', a
 });
 
 test('a word that the core spells otherwise is said to be unknown', async () => {
-  const opened = await blank();
+  const opened = await openBlank();
   const wasm = await readFile(new URL('../dist/files/lizard.wasm', import.meta.url), 'latin1');
   assert.ok(wasm.includes('factory'));
   const body = Buffer.from(wasm.replaceAll('factory', 'faktory'), 'latin1');
@@ -213,7 +213,7 @@ test('a word that the core spells otherwise is said to be unknown', async () => 
 });
 
 test('the core knows every word that a button sends', async () => {
-  const opened = await standing();
+  const opened = await openStanding();
   assert.equal(await opened.locator('#trouble').isVisible(), false);
   const sent = await opened.locator('[data-command]').evaluateAll((buttons) => buttons.map(({ dataset }) => dataset.command));
   const { words, gaits } = await opened.evaluate(() => window.lizard.description);

@@ -1,5 +1,4 @@
-// The first connection, from a board as it comes out of its box to a robot that walks and is saved; and everything that may
-// come between.
+// The first connection, from a new board to a robot that walks and whose calibration is saved, with every interruption in between.
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
 import { mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
@@ -8,18 +7,17 @@ import { join } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
 import { promisify } from 'node:util';
 
-import { connected, until } from './board.js';
-import { PATIENCE, advance, close, complaints, open, page, sideways, standing, tidy, unfold } from './browser.js';
+import { openWithBoard, until } from './board.js';
+import { advance, close, closePages, complaints, open, openStanding, overflow, page, PATIENCE, text, unfold } from './browser.js';
 import { fakeSerial } from './fake-serial.js';
 
 before(open);
-afterEach(tidy);
+afterEach(closePages);
 after(close);
 
 /** Arduino pins of A1 to A4, as robot.toml has them. */
 const PINS = [9, 10, 11, 3];
 const setup = (opened) => opened.locator('#setup');
-const text = (opened, selector) => opened.locator(selector).innerText();
 const press = async (opened, name) => {
   await setup(opened).scrollIntoViewIfNeeded();
   await setup(opened).getByRole('button', { name, exact: true }).click();
@@ -30,21 +28,21 @@ const step = async (opened, name) => {
 };
 const pulses = (opened) => opened.evaluate((pins) => pins.map((pin) => window.pulses[pin]), PINS);
 
-/** Lets time go on until this is said. */
-const said = (opened, what) => until(opened, `${what} is said`, async () => what.test(await text(opened, '#setup-said')));
+/** Advances the clock until the dialog shows this message. */
+const waitForMessage = (opened, what) => until(opened, `${what} is said`, async () => what.test(await text(opened, '#setup-said')));
 
-/** Presses a button and waits for what is said of it. */
-async function does(opened, name, what) {
+/** Presses a button and waits for a message. */
+async function pressAndWait(opened, name, what) {
   await press(opened, name);
-  await said(opened, what);
+  await waitForMessage(opened, what);
 }
 
-function near(found, wanted, by, what) {
+function assertNear(found, wanted, by, what) {
   found.forEach((value, n) => assert.ok(Math.abs(value - wanted[n]) <= by, `${what}: ${found}, not ${wanted}`));
 }
 
-/** The lines that the robot itself says of its calibration. */
-async function cal(opened) {
+/** The robot's own answer to `cal`. */
+async function readCalibration(opened) {
   const before = await opened.locator('#log div', { hasText: /^ok cal$/ }).count();
   await opened.getByLabel('A line for the robot').fill('cal');
   await opened.getByRole('button', { name: 'Send' }).click();
@@ -53,81 +51,81 @@ async function cal(opened) {
 }
 
 test('a new UNO becomes a robot that walks, is saved, and has a file that lizard calibrate restore takes', async () => {
-  const opened = await connected(null, 8000);
+  const opened = await openWithBoard(null, 8000);
   await setup(opened).getByText('2 of 9: Write the firmware').waitFor();
   await setup(opened).getByText('The board on USB is a UNO by its boot loader, and this firmware is not on it.').waitFor();
-  await does(opened, 'Write firmware and robot', /^written and verified in [\d.]+ s$/);
+  await pressAndWait(opened, 'Write firmware and robot', /^written and verified in [\d.]+ s$/);
   await until(opened, 'it greets', async () => (await setup(opened).getByText('has this firmware and this robot, robot.toml.').count()) > 0);
   await press(opened, 'Go on');
 
   // Before the servos get power there are no pulses.
-  await does(opened, 'Let the servos rest', /^No pulses now/);
+  await pressAndWait(opened, 'Let the servos rest', /^No pulses now/);
   await opened.clock.runFor(200);
   await opened.evaluate(() => (window.pulses = {}));
   await opened.clock.runFor(500);
   assert.deepEqual(await pulses(opened), [undefined, undefined, undefined, undefined]);
 
-  // Horns: the pins themselves say that every servo stands in its middle.
-  await does(opened, 'Turn all servos to their middle', /1500 µs/);
-  near(await pulses(opened), [1500, 1500, 1500, 1500], 0.5, 'us of the middle');
+  // Horns: by its pin, every servo stands in its middle.
+  await pressAndWait(opened, 'Turn all servos to their middle', /1500 µs/);
+  assertNear(await pulses(opened), [1500, 1500, 1500, 1500], 0.5, 'us of the middle');
 
-  // Signs: A2 is mounted upside down, so a person says no to it.
+  // Signs: A2 is mounted upside down, so the user answers no.
   await step(opened, 'Signs');
   for (const [servo, isWrong] of [[1, false], [2, true], [3, false], [4, false]]) {
-    await does(opened, `Turn A${servo}`, new RegExp(`^A${servo} was told to turn 10° counter-clockwise`));
-    near(await pulses(opened), [1, 2, 3, 4].map((n) => (n === servo ? 1600 : 1500)), 0.6, 'one servo alone');
+    await pressAndWait(opened, `Turn A${servo}`, new RegExp(`^A${servo} was told to turn 10° counter-clockwise`));
+    assertNear(await pulses(opened), [1, 2, 3, 4].map((n) => (n === servo ? 1600 : 1500)), 0.6, 'one servo alone');
     if (isWrong) {
-      await does(opened, 'No, the other way', new RegExp(`^The sign of A${servo} is "-" now`));
-      await does(opened, `Turn A${servo}`, new RegExp(`^A${servo} was told to turn 10° counter-clockwise`));
-      near(await pulses(opened), [1500, 1400, 1500, 1500], 0.6, 'the other way');
+      await pressAndWait(opened, 'No, the other way', new RegExp(`^The sign of A${servo} is "-" now`));
+      await pressAndWait(opened, `Turn A${servo}`, new RegExp(`^A${servo} was told to turn 10° counter-clockwise`));
+      assertNear(await pulses(opened), [1500, 1400, 1500, 1500], 0.6, 'the other way');
     }
     await press(opened, 'Yes');
   }
-  await said(opened, /^All four turn the right way/);
+  await waitForMessage(opened, /^All four turn the right way/);
   await setup(opened).getByText('5 of 9: Straighten the cranks').waitFor();
 
   await press(opened, 'A3 back right');
-  await does(opened, '↻ 0.5°', /^The trim of A3 is -0\.50°/);
-  await does(opened, '↺ 0.1°', /^The trim of A3 is -0\.40°/);
+  await pressAndWait(opened, '↻ 0.5°', /^The trim of A3 is -0\.50°/);
+  await pressAndWait(opened, '↺ 0.1°', /^The trim of A3 is -0\.40°/);
 
   await step(opened, 'Scale');
-  await does(opened, 'Turn A1 by 20°', /^A1 was told to turn 20°/);
-  near(await pulses(opened), [1700, 1500, 1496, 1500], 0.6, 'twenty degrees of one servo');
+  await pressAndWait(opened, 'Turn A1 by 20°', /^A1 was told to turn 20°/);
+  assertNear(await pulses(opened), [1700, 1500, 1496, 1500], 0.6, 'twenty degrees of one servo');
   await setup(opened).getByLabel('It turned by, degrees').fill('18.5');
   await setup(opened).getByLabel('It turned by, degrees').press('Enter');
-  // 10 us per degree, times 20, over 18.5.
-  await said(opened, /^The scale of A1 is 10\.81 µs per degree/);
+  // 10 us per degree, times 20, divided by 18.5.
+  await waitForMessage(opened, /^The scale of A1 is 10\.81 µs per degree/);
 
   await step(opened, 'Limits');
   await until(opened, 'it stands', async () => (await text(opened, '#doing')) === 'stand');
   await press(opened, 'A4 back left');
-  await does(opened, '↻ 5°', /^A4 points to 216\.41°/);
+  await pressAndWait(opened, '↻ 5°', /^A4 points to 216\.41°/);
   await press(opened, 'A4 back left');
   await setup(opened).getByLabel('From, degrees').fill('150');
   await setup(opened).getByLabel('From, degrees').press('Enter');
-  await said(opened, /^A4 goes from 150\.00° to 311\.41°/);
+  await waitForMessage(opened, /^A4 goes from 150\.00° to 311\.41°/);
 
   await step(opened, 'First walk');
   assert.equal(await setup(opened).getByText('Not proven yet').count(), 0);
   await until(opened, 'it stands', async () => (await text(opened, '#doing')) === 'stand');
-  await does(opened, 'Let it walk', /^The robot does "walk"/);
+  await pressAndWait(opened, 'Let it walk', /^The robot does "walk"/);
   const place = await opened.evaluate(() => window.lizard.last.place.y);
   await opened.clock.runFor(3000);
   assert.ok((await opened.evaluate(() => window.lizard.last.place.y)) - place > 10, 'it walks');
-  await does(opened, 'Let it stand', /^The robot stands/);
+  await pressAndWait(opened, 'Let it stand', /^The robot stands/);
 
   await setup(opened).getByRole('button', { name: 'Save it before', exact: true }).waitFor();
   await step(opened, 'Keep');
   await setup(opened).getByText('Not saved yet.').waitFor();
-  await does(opened, 'Save in the board', /^Saved: the board begins with it/);
+  await pressAndWait(opened, 'Save in the board', /^Saved: the board begins with it/);
   const coming = opened.waitForEvent('download');
   await press(opened, 'Save as a file');
   const file = await (await coming).path();
 
-  // The board, restarted, has it; and so has the file, as the host's own program reads it.
+  // The restarted board has the calibration, and so has the file, as the host's program reads it.
   await opened.evaluate(() => window.otherBoard.reset('external'));
   await opened.clock.runFor(5000);
-  assert.deepEqual(await cal(opened), [
+  assert.deepEqual(await readCalibration(opened), [
     '# A1 trim 0.00 limit 48.59 228.59 dir + scale 10.81',
     '# A2 trim 0.00 limit 311.41 131.41 dir - scale 10.00',
     '# A3 trim -0.40 limit 228.59 48.59 dir + scale 10.00',
@@ -147,9 +145,9 @@ test('a new UNO becomes a robot that walks, is saved, and has a file that lizard
 });
 
 test('a board with another robot is told from this one, and is given this one alone', async () => {
-  const opened = await connected('large', 5000);
+  const opened = await openWithBoard('large', 5000);
   await setup(opened).getByText('has this firmware and another robot, large ').waitFor();
-  await does(opened, 'Write this robot alone', /^written and verified in [\d.]+ s$/);
+  await pressAndWait(opened, 'Write this robot alone', /^written and verified in [\d.]+ s$/);
   await until(opened, 'it greets', async () => (await setup(opened).getByText('has this firmware and this robot, robot.toml.').count()) > 0);
 });
 
@@ -161,7 +159,7 @@ test('a board that answers nothing is asked about, and no step is a dead end', a
   await opened.evaluate(() => (window.otherBoard.send = () => {}));
   await opened.clock.runFor(10000);
   await setup(opened).getByText('answers neither as this firmware nor as a boot loader').waitFor();
-  await does(opened, 'Write firmware and robot', /^not written: the board does not answer/);
+  await pressAndWait(opened, 'Write firmware and robot', /^not written: the board does not answer/);
   await step(opened, 'Horns');
   await setup(opened).getByText('No robot with this firmware answers').waitFor();
   await press(opened, 'To the board');
@@ -175,7 +173,7 @@ test('a board that says bytes without a meaning is told from a robot', async () 
   await opened.locator('#connect').click();
   await opened.waitForFunction(() => window.otherBoard);
   await until(opened, 'it is asked about', async () => setup(opened).getByText('answers neither as this firmware nor as a boot loader').isVisible());
-  await does(opened, 'Write firmware and robot', /^not written: /);
+  await pressAndWait(opened, 'Write firmware and robot', /^not written: /);
   const lengths = await opened.locator('#log div').evaluateAll((lines) => lines.map(({ textContent }) => textContent.length));
   assert.ok(Math.max(0, ...lengths) < 1000, 'a line that never ends is cut');
 });
@@ -191,7 +189,7 @@ test('a board that is unplugged at any step is said to be gone, and the path goe
     await opened.clock.runFor(4500);
     await step(opened, name);
     await opened.clock.runFor(400);
-    // In the middle of something, where there is something to do.
+    // While an action is under way, if the step has one.
     const acts = setup(opened).locator('#setup-what button.main');
     const act = (await acts.count()) > 0 && !['Board', 'Firmware'].includes(name) ? acts.first() : null;
     if (act) await act.click();
@@ -204,7 +202,7 @@ test('a board that is unplugged at any step is said to be gone, and the path goe
 });
 
 test('a board that is unplugged while it is written says so, and can be written when it is back', async () => {
-  const opened = await connected(null, 8000);
+  const opened = await openWithBoard(null, 8000);
   await press(opened, 'Write firmware and robot');
   await opened.clock.runFor(1500);
   await opened.evaluate(() => window.unplug());
@@ -214,11 +212,11 @@ test('a board that is unplugged while it is written says so, and can be written 
   await opened.locator('#connect').click();
   await opened.waitForFunction(() => window.otherBoard);
   await opened.clock.runFor(8000);
-  await does(opened, 'Write firmware and robot', /^written and verified/);
+  await pressAndWait(opened, 'Write firmware and robot', /^written and verified/);
 });
 
 test('what began on a board does not go on in the simulation when it is unplugged', async () => {
-  const opened = await connected('robot', 4500);
+  const opened = await openWithBoard('robot', 4500);
   await step(opened, 'Trims');
   await opened.clock.runFor(500);
   await opened.evaluate(() => window.unplug());
@@ -233,7 +231,7 @@ test('what began on a board does not go on in the simulation when it is unplugge
 });
 
 test('the robot does not walk while somebody fits it together', async () => {
-  const opened = await connected('robot', 8000);
+  const opened = await openWithBoard('robot', 8000);
   await until(opened, 'the ways are known', async () => (await text(opened, '#gaits button[data-command="walk"] small')) !== '');
   await step(opened, 'Trims');
   await opened.clock.runFor(500);
@@ -257,32 +255,32 @@ test('the robot does not walk while somebody fits it together', async () => {
 });
 
 test('a board that restarts in between is said to have lost what was not saved', async () => {
-  const opened = await connected('robot', 4500);
+  const opened = await openWithBoard('robot', 4500);
   await setup(opened).getByText('3 of 9: Fit the horns').waitFor();
   await step(opened, 'Trims');
   await opened.clock.runFor(500);
-  await does(opened, '↺ 0.5°', /^The trim of A1 is 0\.50°/);
+  await pressAndWait(opened, '↺ 0.5°', /^The trim of A1 is 0\.50°/);
   await opened.evaluate(() => window.otherBoard.reset('external'));
-  await said(opened, /^The board has restarted\. What was not saved is lost\.$/);
-  await does(opened, '↺ 0.5°', /^The trim of A1 is 0\.50°/);
+  await waitForMessage(opened, /^The board has restarted\. What was not saved is lost\.$/);
+  await pressAndWait(opened, '↺ 0.5°', /^The trim of A1 is 0\.50°/);
 });
 
 test('who leaves leaves the robot as it was, and comes back to the same step', async () => {
-  const opened = await connected('robot', 4500);
-  const before = await cal(opened);
+  const opened = await openWithBoard('robot', 4500);
+  const before = await readCalibration(opened);
   await step(opened, 'Trims');
   await opened.clock.runFor(500);
-  await does(opened, '↺ 0.5°', /^The trim of A1 is 0\.50°/);
-  assert.notDeepEqual(await cal(opened), before);
+  await pressAndWait(opened, '↺ 0.5°', /^The trim of A1 is 0\.50°/);
+  assert.notDeepEqual(await readCalibration(opened), before);
   await press(opened, 'Leave');
   await until(opened, 'it is left', async () => !(await setup(opened).isVisible()));
   await opened.getByText('the robot has the calibration that it had before').waitFor();
-  assert.deepEqual(await cal(opened), before);
+  assert.deepEqual(await readCalibration(opened), before);
   await opened.locator('#setup-open').click();
   await setup(opened).getByText('5 of 9: Straighten the cranks').waitFor();
-  // Proven signs stay proven unless they are taken back.
+  // Proven signs stay proven unless they are reset.
   await step(opened, 'Signs');
-  await does(opened, 'Turn A1', /^A1 was told to turn 10°/);
+  await pressAndWait(opened, 'Turn A1', /^A1 was told to turn 10°/);
   await press(opened, 'Yes');
   await press(opened, 'Leave');
   await until(opened, 'it is left', async () => !(await setup(opened).isVisible()));
@@ -292,15 +290,15 @@ test('who leaves leaves the robot as it was, and comes back to the same step', a
 });
 
 test('what the robot refuses is said in its words, and changes nothing', async () => {
-  const opened = await connected('robot', 4500);
-  const before = await cal(opened);
+  const opened = await openWithBoard('robot', 4500);
+  const before = await readCalibration(opened);
   await step(opened, 'Limits');
   await opened.clock.runFor(1000);
   await setup(opened).getByLabel('From, degrees').fill('125');
   await setup(opened).getByLabel('From, degrees').press('Enter');
-  await said(opened, /^The robot refuses "limit 1 125\.00 228\.59": A1 would not reach what the gaits need/);
+  await waitForMessage(opened, /^The robot refuses "limit 1 125\.00 228\.59": A1 would not reach what the gaits need/);
   assert.equal(await setup(opened).getByLabel('From, degrees').inputValue(), '48.59');
-  assert.deepEqual(await cal(opened), before);
+  assert.deepEqual(await readCalibration(opened), before);
 });
 
 const KEPT = `format = "lizard calibration 1"
@@ -309,15 +307,15 @@ deadman = 0
 ${[1, 2, 3, 4].map((n) => `[servo.A${n}]\ntrim = ${n}.25\nlimit = [${[48.59, 311.41, 228.59, 131.41][n - 1]}, ${[228.59, 131.41, 48.59, 311.41][n - 1]}]\ndir = "+"\nscale = 10.0\n`).join('')}`;
 
 test('a kept file is given to the robot, and one that is none says what is wrong with it', async () => {
-  const opened = await connected('robot', 4500);
+  const opened = await openWithBoard('robot', 4500);
   await step(opened, 'Keep');
   await opened.clock.runFor(1500);
   const choose = (name, body) =>
     setup(opened).getByLabel('Open a saved file').setInputFiles({ name, mimeType: 'text/plain', buffer: Buffer.from(body) });
   await choose('mine.toml', KEPT);
-  await said(opened, /^The robot has the calibration of mine\.toml\. It is not saved yet\.$/);
-  assert.match((await cal(opened))[2], /^# A3 trim 3\.25 /);
-  const before = await cal(opened);
+  await waitForMessage(opened, /^The robot has the calibration of mine\.toml\. It is not saved yet\.$/);
+  assert.match((await readCalibration(opened))[2], /^# A3 trim 3\.25 /);
+  const before = await readCalibration(opened);
   const wrong = [
     ['<img src=x onerror="window.strange=1">.toml', 'hello', /^<img .*>\.toml: line 1: this is not TOML$/],
     ['a.toml', 'format = "lizard calibration 2"', /^a\.toml: the key format = "lizard calibration 1" is missing/],
@@ -327,18 +325,18 @@ test('a kept file is given to the robot, and one that is none says what is wrong
   ];
   for (const [name, body, message] of wrong) {
     await choose(name, body);
-    await said(opened, message);
-    assert.deepEqual(await cal(opened), before, `${name} changes nothing`);
+    await waitForMessage(opened, message);
+    assert.deepEqual(await readCalibration(opened), before, `${name} changes nothing`);
   }
   assert.equal(await opened.evaluate(() => window.strange), undefined);
 });
 
 test('without a board every step can be tried, by the keyboard alone', async () => {
-  const opened = await standing();
+  const opened = await openStanding();
   await opened.locator('#setup-open').focus();
   await opened.keyboard.press('Enter');
   assert.equal(await opened.evaluate(() => document.activeElement.id), 'setup-step');
-  /** Goes to a control by the tab key, as far as there may be controls. */
+  /** Goes to a control by the Tab key, past all other controls if needed. */
   const tabTo = async (name) => {
     for (let n = 0; n < 40; n++) {
       if ((await opened.evaluate(() => document.activeElement.textContent)) === name) return;
@@ -353,7 +351,7 @@ test('without a board every step can be tried, by the keyboard alone', async () 
   }
   await tabTo('Turn all servos to their middle');
   await opened.keyboard.press('Enter');
-  // Keys that drive do not while somebody has their fingers at the links.
+  // Keys must not drive while the user's fingers may be in the robot.
   await opened.keyboard.down('ArrowUp');
   for (let n = 0; n < 40 && (await text(opened, '#setup-said')) === ''; n++) await advance(opened, 250);
   assert.match(await text(opened, '#setup-said'), /^Every servo holds its middle now/);
@@ -370,7 +368,7 @@ for (const [name, options] of [
   ['the narrowest screen', { viewport: { width: 320, height: 640 }, hasTouch: true, isMobile: true }],
 ]) {
   test(`every step fits on ${name} without scrolling sideways`, async () => {
-    const opened = await standing(options);
+    const opened = await openStanding(options);
     await opened.locator('#setup-open').tap();
     for (const button of await opened.locator('#setup-steps button').all()) {
       await button.tap();
@@ -378,9 +376,9 @@ for (const [name, options] of [
       const outside = await opened.evaluate(() =>
         [...document.querySelectorAll('#setup :not(#setup-steps *):is(button, table, svg)')].filter((each) => each.getBoundingClientRect().right > innerWidth).map(({ textContent }) => textContent),
       );
-      assert.equal(await sideways(opened), 0, await text(opened, '#setup-step'));
+      assert.equal(await overflow(opened), 0, await text(opened, '#setup-step'));
       assert.deepEqual(outside, []);
-      // The row of the steps is drawn aside: where one is, is in sight, by its name.
+      // The row of steps scrolls, so that the current step's name is visible.
       const at = await opened.locator('#setup-steps [aria-current]').evaluate((button) => {
         const { left, right } = button.getBoundingClientRect();
         return { isSeen: left >= 0 && right <= innerWidth, isWhole: button.scrollWidth <= button.clientWidth, size: Number.parseFloat(getComputedStyle(button).fontSize) };

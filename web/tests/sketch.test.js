@@ -1,15 +1,15 @@
-// Joints are dragged on the drawing of the robot: its lengths follow, and what cannot walk is refused meanwhile.
+// Joints are dragged on the drawing of the robot: its lengths follow, and a robot that cannot walk is refused during the drag.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { advance, close, complaints, open, sideways, standing, tidy, unfold } from './browser.js';
+import { advance, close, complaints, open, overflow, openStanding, closePages, unfold } from './browser.js';
 
 before(open);
-afterEach(tidy);
+afterEach(closePages);
 after(close);
 
-async function opened(options) {
-  const page = await standing(options);
+async function openSketch(options) {
+  const page = await openStanding(options);
   await unfold(page, '#lengths-panel');
   await page.locator('#sketch circle').first().waitFor();
   await page.locator('#sketch').evaluate((sketch) => sketch.scrollIntoView({ block: 'center' }));
@@ -19,9 +19,9 @@ async function opened(options) {
 const length = (page, key) => page.evaluate((key) => window.lizard.description.lengths.find((each) => each.key === key).value, key);
 const joint = (page, name) => page.locator(`#sketch circle[data-joint="${name}"]`);
 
-/** Takes a joint and moves it so far, mm to the right and ahead, in ten steps; it is not let go. */
+/** Grabs a joint and moves it, mm to the right and ahead, in ten steps, without releasing it. */
 async function drag(page, name, [right, ahead]) {
-  // Both places in one turn of the page, which draws its joints anew with each answer: a joint that was replaced is nowhere.
+  // Both places in one call, because the page redraws its joints with each answer, and a replaced joint has no place.
   const [from, to] = await page.evaluate(
     ({ name, right, ahead }) => {
       const mark = document.querySelector(`#sketch circle[data-joint="${name}"]`);
@@ -38,25 +38,25 @@ async function drag(page, name, [right, ahead]) {
   for (let step = 1; step <= 10; step++) await page.mouse.move(from[0] + ((to[0] - from[0]) * step) / 10, from[1] + ((to[1] - from[1]) * step) / 10);
 }
 
-const said = (page) => page.locator('#sketch-said').innerText();
-const isSaid = (page, what) => page.waitForFunction((what) => new RegExp(what).test(document.querySelector('#sketch-said').textContent), what.source);
+const message = (page) => page.locator('#sketch-said').innerText();
+const waitForMessage = (page, what) => page.waitForFunction((what) => new RegExp(what).test(document.querySelector('#sketch-said').textContent), what.source);
 
 test('the point of the head is dragged, and both couplers follow', async () => {
-  const page = await opened();
+  const page = await openSketch();
   const before = [await length(page, 'links.l2'), await length(page, 'links.l3')];
   assert.deepEqual(before, [50, 50]);
-  // From the tip of a crank the coupler goes inward and ahead.
+  // From the tip of a crank the coupler leads inward and ahead.
   const tip = await joint(page, "end of the head's left crank").evaluate((mark) => [Number(mark.getAttribute('cx')), -Number(mark.getAttribute('cy'))]);
   const point = await joint(page, 'point of the head').evaluate((mark) => [Number(mark.getAttribute('cx')), -Number(mark.getAttribute('cy'))]);
   const wanted = Math.round(2 * Math.hypot(point[0] - tip[0], point[1] - 4 - tip[1])) / 2;
   await drag(page, 'point of the head', [0, -4]);
-  await isSaid(page, new RegExp(`^l2 = l3 = ${wanted} mm\\.$`));
+  await waitForMessage(page, new RegExp(`^l2 = l3 = ${wanted} mm\\.$`));
   assert.equal(await length(page, 'links.l2'), 50, 'not before it is let go');
   await page.mouse.up();
   await page.waitForFunction((wanted) => window.lizard.description.lengths.find(({ key }) => key === 'links.l2').value === wanted, wanted);
   assert.equal(await length(page, 'links.l3'), wanted);
   assert.equal(await page.locator('#lengths input[name="links.l2"]').inputValue(), String(wanted));
-  // It walks on the simulated UNO with it.
+  // The simulated UNO walks with the new robot.
   await advance(page, 3000);
   await page.locator('#gaits button[data-command="walk"]').click();
   await advance(page, 2000);
@@ -67,17 +67,17 @@ test('the point of the head is dragged, and both couplers follow', async () => {
 });
 
 test('where a joint may not be, that is said while it is held, and it goes to the nearest place that does', async () => {
-  const page = await opened();
+  const page = await openSketch();
   await drag(page, 'point of the head', [0, -40]);
-  await isSaid(page, /^l2 = l3 = [0-9.]+ mm is too short: /);
+  await waitForMessage(page, /^l2 = l3 = [0-9.]+ mm is too short: /);
   await page.mouse.up();
-  await isSaid(page, /(the nearest that does|It stays as it was)\.$/);
-  const wanted = Number(/It is l2 = l3 = ([0-9.]+) mm, the nearest that does\.$/.exec(await said(page))[1]);
+  await waitForMessage(page, /(the nearest that does|It stays as it was)\.$/);
+  const wanted = Number(/It is l2 = l3 = ([0-9.]+) mm, the nearest that does\.$/.exec(await message(page))[1]);
   await page.waitForFunction((wanted) => window.lizard.description.lengths.find(({ key }) => key === 'links.l2').value === wanted, wanted);
 });
 
 test('a crank is made longer on one side alone where both need not be alike', async () => {
-  const page = await opened();
+  const page = await openSketch();
   await page.locator('#alike').uncheck();
   const [from, to] = await page.evaluate(() => {
     const bar = document.querySelector('#sketch line[data-key="links.l1"]');
@@ -85,26 +85,26 @@ test('a crank is made longer on one side alone where both need not be alike', as
   });
   const long = Math.hypot(to[0] - from[0], to[1] - from[1]);
   await drag(page, "end of the head's left crank", [to[0] - from[0], from[1] - to[1]].map((way) => (5 * way) / long));
-  await isSaid(page, /^l1 = 35 mm\.$/);
+  await waitForMessage(page, /^l1 = 35 mm\.$/);
   await page.mouse.up();
   await page.waitForFunction(() => window.lizard.description.lengths.find(({ key }) => key === 'links.l1').value === 35);
   assert.equal(await length(page, 'links.l4'), 30);
 });
 
 test('a bar that is pressed leads to its number', async () => {
-  const page = await opened();
+  const page = await openSketch();
   await page.locator('#sketch line[data-key="links.l2"]').click({ force: true });
   assert.equal(await page.evaluate(() => document.activeElement.name), 'links.l2');
 });
 
 test('every joint and bar of a robot is on the drawing, also on a phone, and a tap changes nothing', async () => {
-  const page = await opened({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+  const page = await openSketch({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
   assert.equal(await page.locator('#sketch circle').count(), 18);
   assert.equal(await page.locator('#sketch line').count(), 36);
   const toml = await page.evaluate(() => window.lizard.toml);
   await joint(page, 'point of the tail').tap();
   assert.equal(await page.evaluate(() => window.lizard.toml), toml);
-  assert.equal(await sideways(page), 0);
+  assert.equal(await overflow(page), 0);
 });
 
 test('nothing was complained of', () => assert.deepEqual(complaints, []));

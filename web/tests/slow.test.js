@@ -2,10 +2,10 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { address, blank, close, complaints, open, page, tidy, within } from './browser.js';
+import { address, close, complaints, open, openBlank, page, closePages, within } from './browser.js';
 
 before(open);
-afterEach(tidy);
+afterEach(closePages);
 after(close);
 
 const TRIES = 3;
@@ -27,7 +27,7 @@ async function least(measure) {
 
 test('the first step comes soon after the page was asked for', async (t) => {
   const time = await least(async () => {
-    const opened = await blank(MOVING);
+    const opened = await openBlank(MOVING);
     await opened.goto(address());
     await opened.waitForFunction(walks);
     const time = await opened.evaluate(() => performance.now());
@@ -40,7 +40,7 @@ test('the first step comes soon after the page was asked for', async (t) => {
 
 test('on a slow phone the opening walk begins, and Stop stops it in 0.3 s', async (t) => {
   const phone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true, ...MOVING };
-  const opened = await blank(phone);
+  const opened = await openBlank(phone);
   await (await tools(opened)).send('Emulation.setCPUThrottlingRate', { rate: SLOW });
   await opened.goto(address());
   await opened.waitForFunction(walks);

@@ -2,14 +2,14 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { advance, close, complaints, open, page, tidy } from './browser.js';
+import { advance, close, complaints, open, page, closePages } from './browser.js';
 
 before(open);
-afterEach(tidy);
+afterEach(closePages);
 after(close);
 
-/** The page, once the ways of all gaits are predicted. */
-async function ready(options = {}) {
+/** Opens the page and waits until all gaits are predicted. */
+async function openReady(options = {}) {
   const opened = await page(options);
   await opened.waitForFunction(() => {
     const notes = [...document.querySelectorAll('#gaits button[data-command]')];
@@ -19,31 +19,31 @@ async function ready(options = {}) {
   return opened;
 }
 
-const doing = (opened, gait) => opened.waitForFunction((gait) => document.querySelector('#doing').textContent === gait, gait);
+const waitForGait = (opened, gait) => opened.waitForFunction((gait) => document.querySelector('#doing').textContent === gait, gait);
 
 test('arrow keys walk, bend and turn for as long as they are held, and then it stops', async () => {
-  const opened = await ready();
+  const opened = await openReady();
   const { keyboard } = opened;
   await keyboard.down('ArrowUp');
-  await doing(opened, 'walk');
+  await waitForGait(opened, 'walk');
   await keyboard.down('ArrowLeft');
-  await doing(opened, 'arc left');
+  await waitForGait(opened, 'arc left');
   await keyboard.up('ArrowUp');
-  await doing(opened, 'left');
+  await waitForGait(opened, 'left');
   await keyboard.up('ArrowLeft');
-  await doing(opened, 'stop');
+  await waitForGait(opened, 'stop');
   await keyboard.down('ArrowDown');
-  await doing(opened, 'back');
+  await waitForGait(opened, 'back');
   await keyboard.up('ArrowDown');
-  await doing(opened, 'stop');
+  await waitForGait(opened, 'stop');
 });
 
 test('letters drive as arrows do, but not where somebody types', async () => {
-  const opened = await ready();
+  const opened = await openReady();
   await opened.keyboard.down('d');
-  await doing(opened, 'right');
+  await waitForGait(opened, 'right');
   await opened.keyboard.up('d');
-  await doing(opened, 'stop');
+  await waitForGait(opened, 'stop');
   const typed = opened.locator('#typed');
   await typed.focus();
   await opened.keyboard.press('w');
@@ -53,7 +53,7 @@ test('letters drive as arrows do, but not where somebody types', async () => {
 });
 
 test('the stick on the screen walks where it is held', async () => {
-  const opened = await ready();
+  const opened = await openReady();
   const stick = opened.locator('#stick');
   await stick.scrollIntoViewIfNeeded();
   const { x, y, width, height } = await stick.boundingBox();
@@ -61,15 +61,15 @@ test('the stick on the screen walks where it is held', async () => {
   await opened.mouse.move(middle, centre);
   await opened.mouse.down();
   await opened.mouse.move(middle, y + 2);
-  await doing(opened, 'walk');
+  await waitForGait(opened, 'walk');
   await opened.mouse.move(x + width - 2, centre);
-  await doing(opened, 'right');
+  await waitForGait(opened, 'right');
   await opened.mouse.up();
-  await doing(opened, 'stop');
+  await waitForGait(opened, 'stop');
 });
 
 test('half a stick goes at half the pace, and the pace is the old one when it is let go', async () => {
-  const opened = await ready();
+  const opened = await openReady();
   await opened.evaluate(() => {
     window.pad = { axes: [0, 0], buttons: [{ pressed: false }] };
     navigator.getGamepads = () => [window.pad];
@@ -79,9 +79,9 @@ test('half a stick goes at half the pace, and the pace is the old one when it is
   const push = (ahead, pressed = false) => opened.evaluate(([ahead, pressed]) => (window.pad = { axes: [0, -ahead], buttons: [{ pressed }] }), [ahead, pressed]);
   await paces(80);
   await push(0.5);
-  await doing(opened, 'walk');
+  await waitForGait(opened, 'walk');
   await paces(40);
-  // A thumb that trembles at the border does not change the pace with each picture.
+  // A thumb that trembles at the boundary must not change the pace with each picture.
   await push(0.7);
   await advance(opened, 500);
   await paces(40);
@@ -90,42 +90,42 @@ test('half a stick goes at half the pace, and the pace is the old one when it is
   await push(0.5);
   await paces(40);
   await push(0);
-  await doing(opened, 'stop');
+  await waitForGait(opened, 'stop');
   await paces(80);
   await push(0.5);
   await paces(40);
   await push(0.5, true);
-  await doing(opened, 'stop');
+  await waitForGait(opened, 'stop');
   await paces(80);
 });
 
 test('a page that is left does not walk on', async () => {
-  const opened = await ready();
+  const opened = await openReady();
   await opened.keyboard.down('w');
-  await doing(opened, 'walk');
+  await waitForGait(opened, 'walk');
   await opened.evaluate(() => void window.dispatchEvent(new Event('blur')));
-  await doing(opened, 'stop');
+  await waitForGait(opened, 'stop');
 });
 
 test('a gamepad drives', async () => {
-  const opened = await ready();
+  const opened = await openReady();
   await opened.evaluate(() => {
     window.pad = { axes: [0, -1], buttons: [] };
     navigator.getGamepads = () => [null, window.pad];
   });
-  await doing(opened, 'walk');
+  await waitForGait(opened, 'walk');
   await opened.evaluate(() => {
     window.pad = { axes: [-0.8, -0.8], buttons: [] };
   });
-  await doing(opened, 'arc left');
+  await waitForGait(opened, 'arc left');
   await opened.evaluate(() => {
     window.pad = { axes: [0.1, 0], buttons: [] };
   });
-  await doing(opened, 'stop');
+  await waitForGait(opened, 'stop');
 });
 
 test('a button of a gamepad stops the robot, once, and it goes on only when the stick was let go', async () => {
-  const opened = await ready();
+  const opened = await openReady();
   await opened.evaluate(() => {
     window.sent = [];
     const { ask } = window.lizard;
@@ -133,55 +133,55 @@ test('a button of a gamepad stops the robot, once, and it goes on only when the 
     window.pad = { axes: [0, -1], buttons: [{ pressed: false }] };
     navigator.getGamepads = () => [null, window.pad];
   });
-  await doing(opened, 'walk');
+  await waitForGait(opened, 'walk');
   await opened.evaluate(() => (window.pad.buttons = [{ pressed: true }]));
-  await doing(opened, 'stop');
+  await waitForGait(opened, 'stop');
   await opened.waitForTimeout(500);
   assert.deepEqual((await opened.evaluate(() => window.sent)).filter((line) => line !== 'status'), ['walk', 'stop']);
   await opened.evaluate(() => (window.pad = { axes: [0, 0], buttons: [] }));
   await opened.waitForTimeout(200);
   await opened.evaluate(() => (window.pad = { axes: [0, -1], buttons: [] }));
-  await doing(opened, 'walk');
+  await waitForGait(opened, 'walk');
 });
 
 test('a button of a gamepad stops a gait that the page began', async () => {
-  const opened = await ready();
+  const opened = await openReady();
   await opened.locator('#gaits button[data-command="walk"]').click();
-  await doing(opened, 'walk');
+  await waitForGait(opened, 'walk');
   await opened.evaluate(() => (navigator.getGamepads = () => [{ axes: [0, 0], buttons: [{ pressed: true }] }]));
-  await doing(opened, 'stop');
+  await waitForGait(opened, 'stop');
 });
 
 test('a second gamepad and the cross of buttons drive, too', async () => {
-  const opened = await ready();
+  const opened = await openReady();
   await opened.evaluate(() => {
     const buttons = Array.from({ length: 16 }, (_, n) => ({ pressed: n === 12 }));
     navigator.getGamepads = () => [{ axes: [0, 0], buttons: [] }, { axes: [0, 0], buttons }];
   });
-  await doing(opened, 'walk');
+  await waitForGait(opened, 'walk');
 });
 
 test('a gamepad that is held while another window gets the keyboard does not walk on', async () => {
-  const opened = await ready();
+  const opened = await openReady();
   await opened.evaluate(() => (navigator.getGamepads = () => [{ axes: [0, -1], buttons: [] }]));
-  await doing(opened, 'walk');
+  await waitForGait(opened, 'walk');
   await opened.evaluate(() => void window.dispatchEvent(new Event('blur')));
-  await doing(opened, 'stop');
+  await waitForGait(opened, 'stop');
   await opened.waitForTimeout(500);
   assert.equal(await opened.locator('#doing').textContent(), 'stop');
 });
 
 test('the page opens with the robot walking slowly, but for those who want less motion', async () => {
   const moving = await page({ reducedMotion: 'no-preference' });
-  await doing(moving, 'walk');
+  await waitForGait(moving, 'walk');
   await moving.waitForFunction(() => document.querySelector('#speed').value === '50');
-  const still = await ready();
+  const still = await openReady();
   assert.equal(await still.locator('#doing').textContent(), 'stand');
 });
 
 test('it opens with walk, too, where walk and trot are predicted before the robot says what it is', async () => {
   const opened = await page({ reducedMotion: 'no-preference' }, () => {
-    // As for a robot of one's own, of which no prediction comes with the page.
+    // As for a user's own robot, whose predictions do not come with the page.
     const { fetch } = window;
     window.fetch = (address, ...more) => (String(address).includes('predictions') ? Promise.reject(new TypeError('none')) : fetch(address, ...more));
     // The other predictions never come.
@@ -195,11 +195,11 @@ test('it opens with walk, too, where walk and trot are predicted before the robo
   assert.equal(await opened.locator('#where').textContent(), 'waiting for the simulated UNO');
   await advance(opened, 2500);
   await opened.clock.runFor(1000);
-  await doing(opened, 'walk');
+  await waitForGait(opened, 'walk');
 });
 
 test('a robot of other gaits is driven by its own', async () => {
-  const opened = await ready();
+  const opened = await openReady();
   await opened.locator('#robot').selectOption('own-gaits');
   await opened.waitForFunction(() => {
     const notes = [...document.querySelectorAll('#gaits button[data-command]')];
@@ -208,20 +208,20 @@ test('a robot of other gaits is driven by its own', async () => {
   await opened.keyboard.down('ArrowUp');
   await opened.waitForFunction(() => !['stand', 'stop', '–'].includes(document.querySelector('#doing').textContent));
   await opened.keyboard.up('ArrowUp');
-  await doing(opened, 'stop');
+  await waitForGait(opened, 'stop');
 });
 
 test('after a click on the pace, on the list of robots or on the floor the arrows still drive; after Tab they do not', async () => {
-  const opened = await ready();
+  const opened = await openReady();
   const pace = opened.locator('#speed');
   for (const selector of ['#speed', '#floor', '#robot']) {
     await opened.locator(selector).click();
     if (selector === '#robot') await opened.keyboard.press('Escape');
     const before = await opened.evaluate(() => [document.querySelector('#speed').value, document.querySelector('#robot').value]);
     await opened.keyboard.down('ArrowUp');
-    await doing(opened, 'walk');
+    await waitForGait(opened, 'walk');
     await opened.keyboard.up('ArrowUp');
-    await doing(opened, 'stop');
+    await waitForGait(opened, 'stop');
     assert.deepEqual(await opened.evaluate(() => [document.querySelector('#speed').value, document.querySelector('#robot').value]), before, selector);
   }
   assert.equal(await opened.getByRole('button', { name: 'Follow' }).getAttribute('aria-pressed'), 'true', 'the view stays');

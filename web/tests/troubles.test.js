@@ -2,18 +2,17 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { address, advance, blank, close, complaints, forbidden, open, page, standing, tidy, type, unfold } from './browser.js';
+import { address, advance, close, closePages, complaints, open, openBlank, openForbidden, openStanding, page, text, type, unfold } from './browser.js';
 import { fakeSerial } from './fake-serial.js';
 
 before(open);
-afterEach(tidy);
+afterEach(closePages);
 after(close);
 
 const trouble = (opened) => opened.locator('#trouble');
-const text = (opened, selector) => opened.locator(selector).innerText();
 
 test('a robot file that cannot be read stays said while the robot of before goes on', async () => {
-  const opened = await standing();
+  const opened = await openStanding();
   await opened.route('**/files/large.toml', (route) => route.fulfill({ status: 404 }));
   await opened.locator('#robot').selectOption('large');
   const said = trouble(opened).getByText('files/large.toml is not there (404)');
@@ -29,12 +28,12 @@ test('a robot file that cannot be read stays said while the robot of before goes
   await opened.locator('#robot').selectOption('large');
   await opened.waitForFunction(() => window.lizard.file === 'large');
   assert.equal(await trouble(opened).isVisible(), false, 'a robot that can be read ends it');
-  // The browser itself complains of what the test took away.
+  // The browser itself reports what the test removed.
   complaints.splice(0, complaints.length, ...complaints.filter((said) => !/404/.test(said)));
 });
 
 test('a page whose first robot cannot be read says so, and takes another one', async () => {
-  const opened = await blank();
+  const opened = await openBlank();
   await opened.route('**/files/robot.toml', (route) => route.fulfill({ status: 404 }));
   await opened.goto(address());
   await trouble(opened).getByText('files/robot.toml is not there (404)').waitFor();
@@ -80,7 +79,7 @@ test('a person who picks no port is not told of a trouble', async () => {
 });
 
 test('a browser that may not use ports says why, and the simulation goes on', async () => {
-  const opened = await forbidden('serial');
+  const opened = await openForbidden('serial');
   await opened.locator('#connect').click();
   await trouble(opened).getByText('Access to the feature "serial" is disallowed by permissions policy.').waitFor();
   assert.match(await trouble(opened).innerText(), /^No board is connected: /);
@@ -93,7 +92,7 @@ test('a browser without Web Serial says so to whoever only reads', async () => {
 });
 
 test('a refused button says why beside the buttons, on a phone too', async () => {
-  const opened = await standing({ viewport: { width: 390, height: 844 }, hasTouch: true });
+  const opened = await openStanding({ viewport: { width: 390, height: 844 }, hasTouch: true });
   await opened.locator('[data-command="rest"]').click();
   await advance(opened, 300);
   await opened.locator('#gaits button[data-command="walk"]').click();

@@ -1,15 +1,14 @@
-// Two pages on one robot: one has the board's cable, the other a module at the same serial line.
+// Two pages at one robot: one by the board's cable, the other by a module at the same serial line.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { connected } from './board.js';
-import { close, complaints, open, page, tidy, within } from './browser.js';
+import { openWithBoard } from './board.js';
+import { close, closePages, complaints, open, page, text, within } from './browser.js';
 
 before(open);
-afterEach(tidy);
+afterEach(closePages);
 after(close);
 
-const text = (opened, selector) => opened.locator(selector).innerText();
 const doing = (opened) => text(opened, '#doing');
 const walk = (opened) => opened.locator('#gaits button[data-command="walk"]').click();
 
@@ -30,9 +29,9 @@ function farSerial() {
   Object.defineProperty(navigator, 'serial', { value: { requestPort: async () => port } });
 }
 
-/** Both pages, and what lets the time of both go on until something is so. */
-async function two() {
-  const first = await connected('robot', 8000);
+/** Opens both pages; returns them, and a function that advances both clocks until a condition holds. */
+async function openTwoPages() {
+  const first = await openWithBoard('robot', 8000);
   await first.evaluate(() => {
     const { otherBoard } = window;
     const { onByte } = otherBoard;
@@ -64,7 +63,7 @@ async function two() {
 }
 
 test('each of two pages shows what the robot does and stops what the other has begun', async () => {
-  const { first, second, until } = await two();
+  const { first, second, until } = await openTwoPages();
   for (const [driver, other] of [
     [first, second],
     [second, first],

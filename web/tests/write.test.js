@@ -1,41 +1,40 @@
-// The robot alone, written behind the firmware that a board has.
+// The robot alone is written after the firmware that a board has.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { connected, until } from './board.js';
-import { close, complaints, open, page, standing, tidy, unfold } from './browser.js';
+import { openWithBoard, until } from './board.js';
+import { close, closePages, complaints, open, openStanding, page, text, unfold } from './browser.js';
 import { fakeSerial } from './fake-serial.js';
 import { imageOf } from './image.js';
 
 before(open);
-afterEach(tidy);
+afterEach(closePages);
 after(close);
 
 const START = 0x6e00;
-const text = (opened, selector) => opened.locator(selector).innerText();
 const flash = async (opened, from, to) => Buffer.from(await opened.evaluate(([from, to]) => Array.from(window.otherBoard.flash.subarray(from, to)), [from, to]));
 const section = async (name) => Buffer.from((await imageOf(name)).subarray(START));
-/** Until this is said below a panel's buttons. */
-const said = (opened, what, of = '#flash-said') => until(opened, `${what} is said`, async () => what.test(await text(opened, of)));
+/** Waits until this message is shown below a panel's buttons. */
+const waitForMessage = (opened, what, of = '#flash-said') => until(opened, `${what} is said`, async () => what.test(await text(opened, of)));
 const robotAlone = (opened) => opened.locator('#flash-robot').click();
 
-/** Servo pins that a pulse was on; the LED has a pin, too. */
-const moved = (opened) => opened.evaluate(() => window.lizard.description.servos.map(({ pin }) => pin).filter((pin) => pin in window.pulses));
+/** Servo pins that had a pulse; the LED's pin does not count. */
+const pulsedPins = (opened) => opened.evaluate(() => window.lizard.description.servos.map(({ pin }) => pin).filter((pin) => pin in window.pulses));
 
-async function panel(opened) {
+async function openPanel(opened) {
   await unfold(opened, '#flash');
   return opened;
 }
 
 test('a robot is on a board in a second or two, and the firmware and what is saved stay as they are', async () => {
-  const opened = await panel(await connected('large', 8000));
+  const opened = await openPanel(await openWithBoard('large', 8000));
   await opened.evaluate(() => window.lizard.ask('trim 1 2').then(() => window.lizard.ask('save')) && null);
   await opened.clock.runFor(1500);
   const code = await flash(opened, 0, START);
   const saved = await opened.evaluate(() => Array.from(window.otherBoard.eeprom));
   assert.ok(saved.some((byte) => byte !== 0xff), 'something is saved');
   await robotAlone(opened);
-  await said(opened, /^written and verified in [\d.]+ s$/);
+  await waitForMessage(opened, /^written and verified in [\d.]+ s$/);
   const seconds = Number(/in ([\d.]+) s/.exec(await text(opened, '#flash-said'))[1]);
   assert.ok(seconds > 0.5 && seconds < 2.5, `${seconds} s`);
   await until(opened, 'it greets', async () => /^on a board on USB, robot paper [0-9a-f]{8}$/.test(await text(opened, '#where')));
@@ -46,13 +45,13 @@ test('a robot is on a board in a second or two, and the firmware and what is sav
 });
 
 test('a gait that was made is written to a board, and the board walks so', async () => {
-  const opened = await connected('robot', 8000);
+  const opened = await openWithBoard('robot', 8000);
   await unfold(opened, '#gait-editor');
   await opened.waitForFunction(() => /mm$/.test(document.querySelector('#gait-way').textContent));
   await opened.locator('#gait-name').fill('stride');
   await opened.waitForFunction(() => document.querySelector('#gait-table').textContent.startsWith('[gait.stride]'));
   await opened.locator('#gait-write').click();
-  await said(opened, /^written and verified in [\d.]+ s\. The board has restarted; stride is a button of Drive\.$/, '#gait-said');
+  await waitForMessage(opened, /^written and verified in [\d.]+ s\. The board has restarted; stride is a button of Drive\.$/, '#gait-said');
   await opened.clock.runFor(3000);
   assert.equal(await text(opened, '#doing'), 'stand', 'a board does not walk by itself');
   await opened.evaluate(() => (window.pulses = {}));
@@ -64,34 +63,34 @@ test('a gait that was made is written to a board, and the board walks so', async
 });
 
 test('a text that was edited is written to the board by one button', async () => {
-  const opened = await connected('robot', 8000);
+  const opened = await openWithBoard('robot', 8000);
   await unfold(opened, '#robot-editor');
   const toml = (await opened.locator('#robot-text').inputValue()).replace('name = "paper"', 'name = "mine"').replace('period = 1.25', 'period = 1.5');
   await opened.locator('#robot-text').fill(toml);
   await opened.locator('#robot-write').click();
-  await said(opened, /^written and verified in [\d.]+ s$/, '#robot-said');
+  await waitForMessage(opened, /^written and verified in [\d.]+ s$/, '#robot-said');
   await until(opened, 'it greets', async () => /^on a board on USB, robot mine [0-9a-f]{8}$/.test(await text(opened, '#where')));
 });
 
 test('without a board the buttons say what is missing', async () => {
-  const opened = await standing();
+  const opened = await openStanding();
   await unfold(opened, '#robot-editor');
   await opened.locator('#robot-write').click();
   await opened.locator('#robot-said', { hasText: 'No board is connected: Connect a board…' }).waitFor();
 });
 
 test('behind a firmware of another version no robot is written', async () => {
-  const opened = await panel(await connected('large', 8000));
+  const opened = await openPanel(await openWithBoard('large', 8000));
   const before = await flash(opened, 0, 0x7e00);
   await opened.evaluate(() => (window.lizard.description.version = '9.9.9'));
   await robotAlone(opened);
-  await said(opened, /^not written: the board has firmware [\d.]+, and this robot is for 9\.9\.9: write firmware and robot$/);
+  await waitForMessage(opened, /^not written: the board has firmware [\d.]+, and this robot is for 9\.9\.9: write firmware and robot$/);
   assert.deepEqual(await flash(opened, 0, 0x7e00), before);
   assert.match(await text(opened, '#where'), /^on a board on USB with another robot/, 'it goes on');
 });
 
-/** A board that its port has not reset: it has not said what firmware it has. */
-async function unasked() {
+/** Opens a board that its port has not reset, so that its firmware is unknown. */
+async function openUnknownBoard() {
   const opened = await page({}, fakeSerial);
   await opened.evaluate(() => {
     window.awake = true;
@@ -102,19 +101,19 @@ async function unasked() {
   await opened.clock.runFor(5000);
   assert.match(await text(opened, '#where'), /that has not restarted/);
   await opened.evaluate(() => (window.awake = false));
-  return panel(opened);
+  return openPanel(opened);
 }
 
 test('where a board has not said its firmware, its code is read and compared', async () => {
-  const opened = await unasked();
+  const opened = await openUnknownBoard();
   await robotAlone(opened);
-  await said(opened, /^comparing with the firmware on the board/);
-  await said(opened, /^written and verified in [\d.]+ s$/);
+  await waitForMessage(opened, /^comparing with the firmware on the board/);
+  await waitForMessage(opened, /^written and verified in [\d.]+ s$/);
   const wanted = await section('robot');
   assert.deepEqual(await flash(opened, START, START + wanted.length), wanted);
 
-  const other = await unasked();
-  // A letter of a word that nobody types here: with another instruction the firmware might not run at all.
+  const other = await openUnknownBoard();
+  // A changed letter in a word that is not typed here; a changed instruction might keep the firmware from running.
   await other.evaluate(() => {
     const { flash } = window.otherBoard;
     const word = new TextEncoder().encode('|scale|');
@@ -124,34 +123,34 @@ test('where a board has not said its firmware, its code is read and compared', a
   });
   const before = await flash(other, START, 0x7e00);
   await robotAlone(other);
-  await said(other, /^not written: the firmware of the board is another one, in which this robot may not fit: write firmware and robot$/);
+  await waitForMessage(other, /^not written: the firmware of the board is another one, in which this robot may not fit: write firmware and robot$/);
   assert.deepEqual(await flash(other, START, 0x7e00), before);
   await until(other, 'it goes on', async () => / robot large /.test(await text(other, '#where')));
 });
 
 test('a board that is unplugged half way has no robot, says so, moves nothing, and is written again', async () => {
-  const opened = await panel(await connected('large', 8000));
+  const opened = await openPanel(await openWithBoard('large', 8000));
   await robotAlone(opened);
   // Some of its twenty pages, which take 17 ms each.
   await until(opened, 'it is written', async () => (await text(opened, '#flash-said')).startsWith('writing'), 20);
   await opened.clock.runFor(60);
   await opened.evaluate(() => window.unplug());
-  await said(opened, /^not written: .*\. Perhaps only a part of the robot is on the board, which then moves nothing: try again$/);
+  await waitForMessage(opened, /^not written: .*\. Perhaps only a part of the robot is on the board, which then moves nothing: try again$/);
   await until(opened, 'it may be connected', () => opened.locator('#connect').isEnabled());
   await opened.evaluate(() => (window.same = true));
   await opened.locator('#connect').click();
   await until(opened, 'it greets', async () => (await text(opened, '#where')) === 'on a board on USB with this firmware and no robot in it: write this one');
   await opened.clock.runFor(5000);
-  assert.deepEqual(await moved(opened), []);
+  assert.deepEqual(await pulsedPins(opened), []);
   await opened.locator('#log div', { hasText: '# fault: the robot in the flash is damaged, write it again' }).first().waitFor();
   await opened.locator('#setup').getByText('has this firmware and no robot, so it moves nothing.').waitFor();
   await robotAlone(opened);
-  await said(opened, /^written and verified in [\d.]+ s$/);
-  await until(opened, 'it stands', async () => (await moved(opened)).length === 4);
+  await waitForMessage(opened, /^written and verified in [\d.]+ s$/);
+  await until(opened, 'it stands', async () => (await pulsedPins(opened)).length === 4);
 });
 
 test('nothing is asked of a board that is written as soon as it has greeted', async () => {
-  const opened = await panel(await connected('robot', 2000));
+  const opened = await openPanel(await openWithBoard('robot', 2000));
   assert.match(await text(opened, '#where'), /^on a board on USB, robot paper /);
   await opened.locator('#flash-write').click();
   await opened.clock.runFor(4000);
@@ -160,13 +159,13 @@ test('nothing is asked of a board that is written as soon as it has greeted', as
 });
 
 test('a board that is unplugged while the firmware is written does nothing, and is written again', async () => {
-  const opened = await panel(await connected('robot', 8000));
-  assert.equal((await moved(opened)).length, 4, 'it stands');
+  const opened = await openPanel(await openWithBoard('robot', 8000));
+  assert.equal((await pulsedPins(opened)).length, 4, 'it stands');
   await opened.locator('#flash-write').click();
-  await said(opened, /^writing/);
+  await waitForMessage(opened, /^writing/);
   await opened.clock.runFor(1500);
   await opened.evaluate(() => window.unplug());
-  await said(opened, /^not written: .*\. Perhaps only a part of it is on the board, which then does nothing: try again$/);
+  await waitForMessage(opened, /^not written: .*\. Perhaps only a part of it is on the board, which then does nothing: try again$/);
   // Its own behaviour, without the page.
   const pulses = await opened.evaluate(() => {
     window.otherBoard.reset('external');
@@ -182,7 +181,7 @@ test('a board that is unplugged while the firmware is written does nothing, and 
   await opened.locator('#connect').click();
   await until(opened, 'it is named', async () => /without this firmware$/.test(await text(opened, '#where')));
   await opened.locator('#flash-write').click();
-  await said(opened, /^written and verified in [\d.]+ s$/);
+  await waitForMessage(opened, /^written and verified in [\d.]+ s$/);
   const wanted = Buffer.from(await imageOf('robot'));
   assert.deepEqual(await flash(opened, 0, wanted.length), wanted);
 });
@@ -190,10 +189,10 @@ test('a board that is unplugged while the firmware is written does nothing, and 
 test('nothing was complained of', () => assert.deepEqual(complaints, []));
 
 test('what would ruin a Nano is written only where a person says that the board is a UNO', async () => {
-  const opened = await connected('robot', 8000);
+  const opened = await openWithBoard('robot', 8000);
   await opened.evaluate(() => (window.vendor = 0x1a86));
   await opened.locator('#robot').selectOption('own-gaits');
-  await panel(opened);
+  await openPanel(opened);
   const before = await flash(opened, 0, 0x7e00);
   const asked = [];
   let says = 'dismiss';
@@ -202,12 +201,12 @@ test('what would ruin a Nano is written only where a person says that the board 
     void dialog[says]();
   });
   await robotAlone(opened);
-  await said(opened, /^not written: a Nano has 30720 bytes of flash before its boot section, and this takes 3\d{4}; gaits can be left out/);
+  await waitForMessage(opened, /^not written: a Nano has 30720 bytes of flash before its boot section, and this takes 3\d{4}; gaits can be left out/);
   assert.match(asked[0], /^Is this board an Arduino UNO\? By its USB chip it may also be a Nano/);
   assert.deepEqual(await flash(opened, 0, 0x7e00), before, 'nothing was written');
   says = 'accept';
   await robotAlone(opened);
-  await said(opened, /^written and verified in [\d.]+ s$/);
+  await waitForMessage(opened, /^written and verified in [\d.]+ s$/);
   const wanted = await section('own-gaits');
   assert.deepEqual(await flash(opened, START, START + wanted.length), wanted);
   assert.equal(asked.length, 2);
@@ -215,6 +214,6 @@ test('what would ruin a Nano is written only where a person says that the board 
   await opened.locator('#robot').selectOption('robot');
   await opened.clock.runFor(3000);
   await robotAlone(opened);
-  await said(opened, /^written and verified in [\d.]+ s$/);
+  await waitForMessage(opened, /^written and verified in [\d.]+ s$/);
   assert.equal(asked.length, 2);
 });

@@ -96,9 +96,9 @@ mod tests {
         );
         let ahead = feet.at([90.0; 4]);
         let expected = [[100.0, 35.0], [100.0, -35.0], [-10.0, -35.0], [-10.0, 35.0]];
-        for (foot, wanted) in ahead.into_iter().zip(expected) {
+        for (foot, point) in ahead.into_iter().zip(expected) {
             assert!(
-                (foot[0] - wanted[0]).hypot(foot[1] - wanted[1]) < 1e-12,
+                (foot[0] - point[0]).hypot(foot[1] - point[1]) < 1e-12,
                 "{foot:?}"
             );
         }

@@ -45,9 +45,9 @@ pub(crate) struct Pads {
     pub at: [Point; 4],
     /// Swings of the pads in the body frame by their legs, at unchanged lags, mm.
     pub swing: [Point; 4],
-    /// Friction backward over forward.
+    /// Ratio of backward to forward friction.
     pub ratio: f64,
-    /// Load of each pad, over the mean.
+    /// Load of each pad, relative to the mean.
     pub load: [f64; 4],
     /// Drives of the legs that lag; `None` if legs are rigid.
     pub compliance: Option<Compliance>,
@@ -55,7 +55,7 @@ pub(crate) struct Pads {
     pub body: Option<Inertia>,
 }
 
-/// A body that goes on as in the step before unless forces change that.
+/// A body that keeps the motion of the previous step unless forces change it.
 #[derive(Clone, Copy)]
 pub(crate) struct Inertia {
     /// Force for each mm of change, and torque for each rad.
@@ -119,7 +119,7 @@ impl Pads {
 
     /// Finds the displacement with the least cost, starting at a guess.
     pub fn minimum_near(&self, guess: Option<&Displacement>) -> Displacement {
-        let size = largest(&self.swing).max(self.jump_back());
+        let size = largest(&self.swing).max(self.free_move());
         if size < STILL {
             return self.moved_by([0.0; 3], [0.0; 4]);
         }
@@ -147,9 +147,9 @@ impl Pads {
             // The slide of a pad that holds shrinks with the rounding, so the solutions of two
             // stages extrapolate to the next one. A guess counts as the last stage's solution.
             if let [Some((far, far_x, far_z)), Some((near, ..))] = answers {
-                let on = (near - eps) / (far - near);
-                let next_x: [f64; 3] = std::array::from_fn(|i| x[i] + on * (x[i] - far_x[i]));
-                let next_z: [f64; 4] = std::array::from_fn(|i| z[i] + on * (z[i] - far_z[i]));
+                let step = (near - eps) / (far - near);
+                let next_x: [f64; 3] = std::array::from_fn(|i| x[i] + step * (x[i] - far_x[i]));
+                let next_z: [f64; 4] = std::array::from_fn(|i| z[i] + step * (z[i] - far_z[i]));
                 let candidate = around(next_x, next_z);
                 if candidate.cost < current.cost {
                     (x, z, current) = (next_x, next_z, candidate);
@@ -203,25 +203,25 @@ impl Pads {
         }
     }
 
-    /// Largest distance that a leg may jump back, mm, because its spring pulls harder than its pad
-    /// holds: 0 unless pads or springs were changed. Or the distance that its motor may add.
-    fn jump_back(&self) -> f64 {
+    /// Largest distance that a leg may move without a swing, mm: back, if its spring pulls harder
+    /// than its pad holds, which needs a change of pads or springs; or on, by its motor.
+    fn free_move(&self) -> f64 {
         let Some(compliance) = &self.compliance else {
             return 0.0;
         };
-        let back = |i: usize| {
+        let jump = |i: usize| {
             if let Some(motor) = &compliance.lag_energy[i].motor {
                 let [x, y] = compliance.along[i];
                 return x.hypot(y) * motor.unloaded_end().abs();
             }
             let ([x, y], lag) = (compliance.along[i], compliance.before[i]);
-            let holds = self.load[i] * self.ratio.max(1.0) * x.hypot(y);
-            match compliance.lag_energy[i].pulls(lag) > holds * (1.0 + 1e-6) {
+            let held_torque = self.load[i] * self.ratio.max(1.0) * x.hypot(y);
+            match compliance.lag_energy[i].spring_torque(lag) > held_torque * (1.0 + 1e-6) {
                 true => x.hypot(y) * lag.abs(),
                 false => 0.0,
             }
         };
-        (0..4).map(back).fold(0.0, f64::max)
+        (0..4).map(jump).fold(0.0, f64::max)
     }
 
     /// The slide of each pad over the floor.
@@ -232,10 +232,10 @@ impl Pads {
             let [bx, by] = self
                 .compliance
                 .map_or([0.0; 2], |compliance| compliance.along[i]);
-            let back = displacement.change[i];
+            let change = displacement.change[i];
             [
-                forward - turn * y + dx - back * bx,
-                left + turn * x + dy - back * by,
+                forward - turn * y + dx - change * bx,
+                left + turn * x + dy - change * by,
             ]
         })
     }
@@ -285,16 +285,18 @@ impl Pads {
             let unit = scale.lag[i];
             let [bx, by] = compliance.along[i];
             let row = [-wx * bx * unit, -wy * by * unit];
-            let back = slope(row);
+            let lag_slope = slope(row);
             let (energy, torque, stiffness) =
                 compliance.lag_energy[i].expand(displacement.lag[i], eps / scale.size * unit);
             cost += energy;
             let leg = Row {
-                slope: load * back + torque * unit,
-                curvature: load * (row[0] * row[0] + row[1] * row[1] - back * back) / length
+                slope: load * lag_slope + torque * unit,
+                curvature: load * (row[0] * row[0] + row[1] * row[1] - lag_slope * lag_slope)
+                    / length
                     + stiffness * unit * unit,
                 mixed: std::array::from_fn(|k| {
-                    load * (rows[k][0] * row[0] + rows[k][1] * row[1] - along[k] * back) / length
+                    load * (rows[k][0] * row[0] + rows[k][1] * row[1] - along[k] * lag_slope)
+                        / length
                 }),
             };
             for (i, mixed) in leg.mixed.into_iter().enumerate() {

@@ -44,7 +44,7 @@ impl Ground {
         }
     }
 
-    /// Loads of the feet at these places (forward, left in mm, servo order), over the mean.
+    /// Loads of the feet at these places (forward, left in mm, servo order), relative to the mean.
     pub fn loads(&self, feet: [[f64; 2]; 4]) -> [f64; 4] {
         self.stance.loads(&self.body, feet)
     }

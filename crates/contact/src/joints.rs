@@ -33,14 +33,14 @@ impl Joints {
             [x * cos - y * sin, x * sin + y * cos]
         });
         for [front, hind] in SIDES {
-            let way = [
+            let slider = [
                 self.base + arms[front][0] - arms[hind][0],
                 arms[front][1] - arms[hind][1],
             ];
-            let length = way[0].hypot(way[1]);
+            let length = slider[0].hypot(slider[1]);
             for (servo, sign) in [(front, 1.0), (hind, -1.0)] {
                 let [x, y] = arms[servo];
-                levers[servo] = sign * FORWARD[servo] * (x * way[1] - y * way[0]) / length;
+                levers[servo] = sign * FORWARD[servo] * (x * slider[1] - y * slider[0]) / length;
             }
         }
         levers
@@ -55,8 +55,8 @@ impl Joints {
         let levers = self.levers(sweeps);
         let mut torques = [0.0; 4];
         for side in SIDES {
-            let grows: f64 = side.map(|i| levers[i] * rates[i]).iter().sum();
-            let force = -self.slider * (grows / slow).clamp(-1.0, 1.0);
+            let speed: f64 = side.map(|i| levers[i] * rates[i]).iter().sum();
+            let force = -self.slider * (speed / slow).clamp(-1.0, 1.0);
             for i in side {
                 torques[i] = force * levers[i];
             }

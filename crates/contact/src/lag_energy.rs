@@ -47,16 +47,16 @@ pub(crate) enum Side {
 /// the leg's arm and the line from the leg's pivot to the strut's other end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stretch {
-    /// Length of the line from the pivot to the strut's other end, mm.
-    far: f64,
+    /// Distance from the pivot to the strut's other end, mm.
+    line: f64,
     /// Length of the leg's arm, mm.
-    near: f64,
+    arm: f64,
     /// Angle between both while the leg does not lag, rad; a lag adds to it.
     angle: f64,
     /// Sine and cosine of that angle without its sign.
     sin_cos: (f64, f64),
     /// Length of the strut while the leg does not lag, mm.
-    still: f64,
+    unlagged_length: f64,
 }
 
 /// The part of x above 0, rounded off within `eps`.
@@ -70,27 +70,27 @@ fn above(x: f64, eps: f64) -> Expansion {
         true => x + length,
         false => eps * eps / (length - x),
     };
-    let bend = eps / length;
-    (sum / 2.0, sum / length / 2.0, bend * bend / length / 2.0)
+    let ratio = eps / length;
+    (sum / 2.0, sum / length / 2.0, ratio * ratio / length / 2.0)
 }
 
 impl Stretch {
     /// Makes the triangle of a line and an arm (mm) with an angle between them, rad.
-    pub fn new(far: f64, near: f64, angle: f64) -> Self {
+    pub fn new(line: f64, arm: f64, angle: f64) -> Self {
         let sin_cos = angle.abs().sin_cos();
         Self {
-            far,
-            near,
+            line,
+            arm,
             angle,
             sin_cos,
-            still: (far * far + near * near - 2.0 * far * near * sin_cos.1).sqrt(),
+            unlagged_length: (line * line + arm * arm - 2.0 * line * arm * sin_cos.1).sqrt(),
         }
     }
 
     /// Lever of the strut's pull while the leg does not lag: the derivative of its length by the
     /// lag, mm/rad. It is negative if a lag makes the strut shorter.
     pub fn lever(&self) -> f64 {
-        (self.far * self.near * self.sin_cos.0 / self.still).copysign(self.angle)
+        (self.line * self.arm * self.sin_cos.0 / self.unlagged_length).copysign(self.angle)
     }
 
     /// Magnitude of the lever after a lag in the direction in which the strut grows.
@@ -100,10 +100,10 @@ impl Stretch {
 
     /// Magnitude of the lag at which the strut has grown by this length, rad; infinite if it
     /// cannot grow so far.
-    pub fn lag_at_growth(&self, longer: f64) -> f64 {
-        let Self { far, near, .. } = self;
-        let length = self.still + longer;
-        let cos = (far * far + near * near - length * length) / (2.0 * far * near);
+    pub fn lag_at_growth(&self, growth: f64) -> f64 {
+        let Self { line, arm, .. } = self;
+        let length = self.unlagged_length + growth;
+        let cos = (line * line + arm * arm - length * length) / (2.0 * line * arm);
         match cos < -1.0 {
             true => f64::INFINITY,
             false => cos.acos() - self.angle.abs(),
@@ -116,27 +116,27 @@ impl Stretch {
     /// Lags are often a hundred-thousandth of a radian. The difference of two lengths
     /// would then be mostly rounding, and Newton's method would look for a minimum in it.
     fn at(&self, lag: f64) -> (f64, f64, f64) {
-        let (product, (sin, cos)) = (self.far * self.near, self.sin_cos);
+        let (product, (sin, cos)) = (self.line * self.arm, self.sin_cos);
         let (half_sin, half_cos) = (lag / 2.0).sin_cos();
         let (lag_sin, lag_cos) = (2.0 * half_sin * half_cos, 1.0 - 2.0 * half_sin * half_sin);
         let extra = 4.0 * product * (sin * half_cos + cos * half_sin) * half_sin;
-        let length = (self.still * self.still + extra).sqrt();
+        let length = (self.unlagged_length * self.unlagged_length + extra).sqrt();
         let lever = product * (sin * lag_cos + cos * lag_sin) / length;
-        let grows = (product * (cos * lag_cos - sin * lag_sin) - lever * lever) / length;
-        (extra / (length + self.still), lever, grows)
+        let lever_slope = (product * (cos * lag_cos - sin * lag_sin) - lever * lever) / length;
+        (extra / (length + self.unlagged_length), lever, lever_slope)
     }
 
     /// Energy of a spring that pulls the strut together with `force` and `rate`, less
     /// `preload * lag`; `lag` is in the direction in which the strut grows.
     fn energy(&self, lag: f64, force: f64, rate: f64, preload: f64) -> Expansion {
-        let (longer, lever, grows) = self.at(lag);
-        let pull = force + rate * longer;
+        let (growth, lever, lever_slope) = self.at(lag);
+        let pull = force + rate * growth;
         (
-            force * longer - preload * lag + rate * longer * longer / 2.0,
+            force * growth - preload * lag + rate * growth * growth / 2.0,
             pull * lever - preload,
             // A lever that shrinks faster than the pull grows would bend the cost the
             // other way, which Newton's method takes for flat.
-            (rate * lever * lever + pull * grows).max(0.0),
+            (rate * lever * lever + pull * lever_slope).max(0.0),
         )
     }
 }
@@ -154,9 +154,9 @@ impl Side {
 
     /// Energy of a lag beyond the play.
     fn expand(&self, beyond: f64, eps: f64, stop: f64) -> Expansion {
-        let (far, slope, bend) = above(beyond, eps);
-        let kink = |height: f64| (height * far, height * slope, height * bend);
-        let sum = |a: Expansion, b: Expansion| (a.0 + b.0, a.1 + b.1, a.2 + b.2);
+        let (excess, slope, curvature) = above(beyond, eps);
+        let kink = |torque: f64| (torque * excess, torque * slope, torque * curvature);
+        let add = |a: Expansion, b: Expansion| (a.0 + b.0, a.1 + b.1, a.2 + b.2);
         match *self {
             Self::Stop => kink(stop),
             Self::Strut {
@@ -167,22 +167,22 @@ impl Side {
             } => {
                 // The kink holds the preload; the rest begins smoothly.
                 let preload = force * stretch.lever().abs();
-                let rest = match beyond > 0.0 {
+                let stretching = match beyond > 0.0 {
                     true => stretch.energy(beyond, force, rate, preload),
                     false => (0.0, 0.0, 0.0),
                 };
-                let (past, slope, bend) = above(beyond - end_lag, eps);
+                let (value, slope, curvature) = above(beyond - end_lag, eps);
                 let end = match end_lag.is_finite() {
-                    true => (stop * past, stop * slope, stop * bend),
+                    true => (stop * value, stop * slope, stop * curvature),
                     false => (0.0, 0.0, 0.0),
                 };
-                sum(sum(kink(preload), rest), end)
+                add(add(kink(preload), stretching), end)
             }
         }
     }
 
     /// Torque of the spring at a lag beyond the play.
-    fn pulls(&self, beyond: f64) -> f64 {
+    fn spring_torque(&self, beyond: f64) -> f64 {
         match *self {
             _ if beyond <= 0.0 => 0.0,
             Self::Stop => 0.0,
@@ -216,9 +216,13 @@ impl LagEnergy {
         }
         // Leg and servo are in series: both have the same torque.
         let place = self.servo(lag, eps);
-        let (turned, torque, stiff) = motor.expand(place, eps);
-        let (yields, _, soft) = self.expand_leg(lag - place, eps);
-        (turned + yields, torque, stiff * soft / (stiff + soft))
+        let (motor_energy, torque, motor_stiffness) = motor.expand(place, eps);
+        let (leg_energy, _, leg_stiffness) = self.expand_leg(lag - place, eps);
+        (
+            motor_energy + leg_energy,
+            torque,
+            motor_stiffness * leg_stiffness / (motor_stiffness + leg_stiffness),
+        )
     }
 
     /// The servo's place behind its reference at a lag of leg and servo together, rad.
@@ -243,14 +247,20 @@ impl LagEnergy {
 
     /// The energy of a leg's lag behind its servo.
     fn expand_leg(&self, lag: f64, eps: f64) -> Expansion {
-        let (up, by_up, bend_up) = self.upper.expand(lag - self.play, eps, self.stop);
-        let (down, by_down, bend_down) = self.lower.expand(-lag - self.play, eps, self.stop);
-        (up + down, by_up - by_down, bend_up + bend_down)
+        let (energy_up, slope_up, curvature_up) =
+            self.upper.expand(lag - self.play, eps, self.stop);
+        let (energy_down, slope_down, curvature_down) =
+            self.lower.expand(-lag - self.play, eps, self.stop);
+        (
+            energy_up + energy_down,
+            slope_up - slope_down,
+            curvature_up + curvature_down,
+        )
     }
 
     /// Magnitude of the torque with which the spring pulls the leg back.
-    pub fn pulls(&self, lag: f64) -> f64 {
-        self.upper.pulls(lag - self.play) + self.lower.pulls(-lag - self.play)
+    pub fn spring_torque(&self, lag: f64) -> f64 {
+        self.upper.spring_torque(lag - self.play) + self.lower.spring_torque(-lag - self.play)
     }
 
     /// Least and greatest lag that the stops allow, rad.
@@ -294,9 +304,9 @@ mod tests {
     /// A strut with arms of 22 mm across a line of 30.2 mm, turned by `angle` deg.
     fn strut(angle: f64) -> Stretch {
         let (sin, cos) = f64::to_radians(angle).sin_cos();
-        let far = [22.0 * cos - 30.2, 22.0 * sin];
-        let between = f64::to_radians(angle) - f64::atan2(far[1], far[0]);
-        Stretch::new(f64::hypot(far[0], far[1]), 22.0, between)
+        let line = [22.0 * cos - 30.2, 22.0 * sin];
+        let between = f64::to_radians(angle) - f64::atan2(line[1], line[0]);
+        Stretch::new(f64::hypot(line[0], line[1]), 22.0, between)
     }
 
     fn assert_slopes(drive: LagEnergy, lags: impl IntoIterator<Item = f64>) {
@@ -349,24 +359,24 @@ mod tests {
         for lag in [-0.1, -0.05, 0.0, 0.1] {
             assert_eq!(drive.expand(lag, 0.0).0, 0.0, "{lag}");
         }
-        let (longer, lever, _) = strut.at(0.01);
-        let torque = (8.0 + 0.7 * longer) * lever;
+        let (growth, lever, _) = strut.at(0.01);
+        let torque = (8.0 + 0.7 * growth) * lever;
         assert!((drive.expand(0.11, 0.0).1 - torque).abs() < 1e-9);
         assert_eq!(drive.expand(-0.11, 0.0).1, -STOP);
         assert_eq!(drive.stops(), [-0.1, 0.1 + strut.lag_at_growth(5.0)]);
-        assert!((drive.pulls(0.11) - torque).abs() < 1e-9);
-        assert_eq!(drive.pulls(-0.2), 0.0, "a stop does not pull");
+        assert!((drive.spring_torque(0.11) - torque).abs() < 1e-9);
+        assert_eq!(drive.spring_torque(-0.2), 0.0, "a stop does not pull");
     }
 
     #[test]
     fn a_strut_is_the_third_side_of_a_triangle() {
         let strut = strut(70.0);
-        assert!((strut.still - 30.2).abs() < 1e-9, "parallel arms");
+        assert!((strut.unlagged_length - 30.2).abs() < 1e-9, "parallel arms");
         // The arm's part square to the strut.
         assert!((strut.lever().abs() - 22.0 * 70f64.to_radians().sin()).abs() < 1e-9);
         let end_lag = strut.lag_at_growth(5.0);
-        let (longer, ..) = strut.at(end_lag);
-        assert!((longer - 5.0).abs() < 1e-9, "{longer}");
+        let (growth, ..) = strut.at(end_lag);
+        assert!((growth - 5.0).abs() < 1e-9, "{growth}");
         assert_eq!(strut.lag_at_growth(50.0), f64::INFINITY);
     }
 
@@ -375,15 +385,15 @@ mod tests {
         let strut = strut(70.0);
         for lag in [1e-12, 1e-9, 1e-6] {
             // A series: the lever to first order, half its slope to second order.
-            let (longer, ..) = strut.at(lag);
+            let (growth, ..) = strut.at(lag);
             let (_, lever, grows) = strut.at(0.0);
             let series = lever * lag + grows * lag * lag / 2.0;
-            assert!((longer / series - 1.0).abs() < 1e-11, "{lag} {longer}");
+            assert!((growth / series - 1.0).abs() < 1e-11, "{lag} {growth}");
         }
         // Far below a kink the rounded value is eps^2 / 4 |x|, even where that is 1e16 times less
         // than x.
-        let (far, slope, _) = above(-0.5, 1e-9);
-        assert!((far / 5e-19 - 1.0).abs() < 1e-9, "{far}");
+        let (line, slope, _) = above(-0.5, 1e-9);
+        assert!((line / 5e-19 - 1.0).abs() < 1e-9, "{line}");
         assert!((slope / 1e-18 - 1.0).abs() < 1e-9, "{slope}");
     }
 }

@@ -1,6 +1,6 @@
 //! A servo's motor: its torque falls as it turns faster, and its rotor takes time to spin up.
 //!
-//! A DC motor on a supply has a line: full torque at a stall, none at its no-load rate. Below
+//! A DC motor on a supply has a line: full torque at stall, none at its no-load speed. Below
 //! its limit a servo applies torque in proportion to its error. Its rotor, seen through
 //! hundreds to one of gears, is far harder to turn than a leg, so rotor and friction alone decide
 //! how well the servo follows its pulses.
@@ -14,9 +14,9 @@ use crate::joints::Joints;
 /// A servo's motor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Motor {
-    /// Torque at a stall, N mm.
+    /// Stall torque, N mm.
     pub stall: f64,
-    /// Speed without load, deg/s.
+    /// No-load speed, deg/s.
     pub rate: f64,
     /// Time constant of the rotor without load, s.
     pub spin_up: f64,
@@ -36,7 +36,7 @@ impl Motor {
         }
     }
 
-    /// Torque that the motor loses for each rad/s, N mm s: that of its own voltage.
+    /// Torque that the motor loses for each rad/s by its back EMF, N mm s.
     pub fn damping(&self) -> f64 {
         self.stall / self.rate.to_radians()
     }
@@ -53,19 +53,20 @@ impl Motor {
     }
 }
 
-/// The motors of the four servos, and the friction of what they turn besides the feet.
+/// The motors of the four servos, and the friction of pins and sliders, which they turn besides the
+/// feet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Motors {
     /// The motors in servo order.
     pub each: [Motor; 4],
-    /// Pins and sliders.
+    /// Friction of pins and sliders.
     pub joints: Joints,
 }
 
-/// Longest step of time, s; and a step as a share of the time in which a servo swings by a radian of
-/// its own vibration.
-const STEP: f64 = 0.0025;
-const SWING: f64 = 0.25;
+/// Longest time step, s.
+const MAX_STEP: f64 = 0.0025;
+/// Time step relative to the time in which the vibration of a servo advances by one radian.
+const STEP_PER_RADIAN: f64 = 0.25;
 
 impl Motors {
     /// The time step of the simulation of the motors, s: a light rotor with a high gain swings
@@ -76,8 +77,8 @@ impl Motors {
             // Without a rotor nothing swings.
             false => f64::INFINITY,
         };
-        let swings = self.each.iter().map(|motor| SWING * swing(motor));
-        swings.fold(STEP, f64::min)
+        let swings = self.each.iter().map(|motor| STEP_PER_RADIAN * swing(motor));
+        swings.fold(MAX_STEP, f64::min)
     }
 
     /// The speed of a slider, mm/s, below which its friction fades so that in a step of time it
@@ -85,13 +86,17 @@ impl Motors {
     pub(crate) fn fade_speed(&self, seconds: f64) -> f64 {
         let arm = |[x, y]: [f64; 2]| x * x + y * y;
         let square = self.joints.arms.map(arm).into_iter().fold(0.0, f64::max);
-        let inert = |motor: &Motor| motor.inertia() + motor.damping() * seconds;
-        let smallest = self.each.iter().map(inert).fold(f64::INFINITY, f64::min);
+        let resistance = |motor: &Motor| motor.inertia() + motor.damping() * seconds;
+        let smallest = self
+            .each
+            .iter()
+            .map(resistance)
+            .fold(f64::INFINITY, f64::min);
         2.0 * self.joints.slider * square * seconds / smallest
     }
 }
 
-/// The turn of a servo at the beginning of a step: all in rad, and rad/s.
+/// The motion of a servo at the beginning of a step, in rad and rad/s.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ServoState {
     /// Angle that the pulse asks for.
@@ -102,32 +107,36 @@ pub(crate) struct ServoState {
     pub rate: f64,
 }
 
-/// The energy, its slope and its curvature.
+/// The value, slope and curvature of an energy.
 pub(crate) type Expansion = (f64, f64, f64);
 
-/// A motor in a short step of time, as a function of the servo's place behind a reference, rad:
-/// the angle that it would have at an unchanged rate.
+/// The energy of a motor in a short time step, as a function of the servo's place: the angle, rad,
+/// by which it is behind a reference, the angle that it would have at an unchanged rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct MotorStep {
     /// Target ahead of the reference, rad.
     ahead: f64,
-    /// Error without torque, and error beyond it at the full torque, rad.
+    /// Half the dead band: the error up to which there is no torque, rad.
     idle: f64,
+    /// Error beyond the dead band at which the torque is full, rad.
     full: f64,
+    /// Torque at stall.
     stall: f64,
-    /// Stiffness of rotor and damping, and the place that both alone lead to.
-    inert: f64,
-    free: f64,
-    /// Place at which the servo has not turned, and the dry friction of turning.
-    still: f64,
+    /// Stiffness that the rotor's inertia and the damping have in a step of this length.
+    inertial_stiffness: f64,
+    /// Place to which inertia and damping alone would lead, rad.
+    unloaded: f64,
+    /// Place of a servo that does not turn in this step, rad.
+    unmoved: f64,
+    /// Torque of dry friction.
     drag: f64,
     /// Torque of the slider on the servo.
     slider: f64,
 }
 
 impl MotorStep {
-    /// Describes a step of `seconds`, with dry friction and a slider's torque in N mm; the unit of
-    /// forces is `force` N.
+    /// Describes a step of `seconds`. `drag` and `slider` are the torques of dry friction and of
+    /// the slider, N mm; the unit of all forces inside is `force` N.
     pub fn new(
         motor: &Motor,
         turn: ServoState,
@@ -136,16 +145,16 @@ impl MotorStep {
         force: f64,
     ) -> Self {
         let inertia = motor.inertia() / (seconds * seconds);
-        let inert = inertia + motor.damping() / seconds;
+        let inertial_stiffness = inertia + motor.damping() / seconds;
         let unloaded_turn = turn.rate * seconds;
         Self {
             ahead: turn.target - turn.servo - unloaded_turn,
             idle: motor.idle.to_radians(),
             full: motor.full.to_radians(),
             stall: motor.stall / force,
-            inert: inert / force,
-            free: unloaded_turn * (1.0 - inertia / inert),
-            still: unloaded_turn,
+            inertial_stiffness: inertial_stiffness / force,
+            unloaded: unloaded_turn * (1.0 - inertia / inertial_stiffness),
+            unmoved: unloaded_turn,
             drag: drag / force,
             slider: slider / force,
         }
@@ -155,33 +164,36 @@ impl MotorStep {
     /// within `eps` rad.
     pub fn expand(&self, place: f64, eps: f64) -> Expansion {
         let error = self.ahead + place;
-        let past = (error.abs() - self.idle).max(0.0);
+        let excess = (error.abs() - self.idle).max(0.0);
         let gain = self.stall / self.full;
-        let (energy, torque, stiffness) = match past < self.full {
-            true if past > 0.0 => (gain * past * past / 2.0, gain * past, gain),
+        let (energy, torque, stiffness) = match excess < self.full {
+            true if excess > 0.0 => (gain * excess * excess / 2.0, gain * excess, gain),
             true => (0.0, 0.0, 0.0),
-            false => (self.stall * (past - self.full / 2.0), self.stall, 0.0),
+            false => (self.stall * (excess - self.full / 2.0), self.stall, 0.0),
         };
-        let deviation = place - self.free;
-        let from_still = place - self.still;
+        let deviation = place - self.unloaded;
+        let from_still = place - self.unmoved;
         let length = (from_still * from_still + eps * eps).sqrt();
-        let (rubs, bend) = match length > 0.0 {
+        let (direction, curvature) = match length > 0.0 {
             true => (from_still / length, eps * eps / (length * length * length)),
             false => (0.0, 0.0),
         };
         (
             energy
-                + self.inert * deviation * deviation / 2.0
+                + self.inertial_stiffness * deviation * deviation / 2.0
                 + self.drag * length
                 + self.slider * place,
-            torque.copysign(error) + self.inert * deviation + self.drag * rubs + self.slider,
-            stiffness + self.inert + self.drag * bend,
+            torque.copysign(error)
+                + self.inertial_stiffness * deviation
+                + self.drag * direction
+                + self.slider,
+            stiffness + self.inertial_stiffness + self.drag * curvature,
         )
     }
 
     /// Place at the end of the step without a load, to the first order, rad.
     pub fn unloaded_end(&self) -> f64 {
-        -self.expand(0.0, 0.0).1 / self.inert
+        -self.expand(0.0, 0.0).1 / self.inertial_stiffness
     }
 
     /// The place at which the motor's torque equals the load's. `slope` gives the load's torque
@@ -193,12 +205,12 @@ impl MotorStep {
         eps: f64,
         slope: impl Fn(f64) -> (f64, f64),
     ) -> f64 {
-        let reach = (self.stall + self.drag + self.slider.abs() + max) / self.inert;
-        let (mut low, mut high) = (self.free - reach, self.free + reach);
+        let reach = (self.stall + self.drag + self.slider.abs() + max) / self.inertial_stiffness;
+        let (mut low, mut high) = (self.unloaded - reach, self.unloaded + reach);
         let guess = self.unloaded_end().max(kinks[0]).min(kinks[1]);
         let mut place = guess.max(low).min(high);
         let mut longest = reach;
-        for _ in 0..ROUNDS {
+        for _ in 0..MAX_ITERATIONS {
             let (_, torque, stiffness) = self.expand(place, eps);
             let (load, load_stiffness) = slope(place);
             let error = torque - load;
@@ -227,8 +239,8 @@ impl MotorStep {
     }
 }
 
-/// The largest number of rounds of a balance, as many as a bisection alone would need.
-const ROUNDS: usize = 60;
+/// Iterations of a balance at most: as many as bisection alone would need.
+const MAX_ITERATIONS: usize = 60;
 
 #[cfg(test)]
 mod tests {

@@ -90,7 +90,7 @@ mod tests {
     fn a_body_moves_along_its_own_axes() {
         assert_at(Place::START.moved([10.0, 0.0, 0.0]), 10.0, 0.0, 0.0);
         assert_at(Place::START.moved([0.0, 10.0, 0.0]), 0.0, 10.0, 0.0);
-        // Having turned left, ahead is to the left and left is behind.
+        // After a turn to the left, ahead is to the left and left is behind.
         let turned = Place::START.moved([0.0, 0.0, FRAC_PI_2]);
         assert_at(turned.moved([10.0, 0.0, 0.0]), 0.0, 10.0, 90.0);
         assert_at(turned.moved([0.0, 10.0, 0.0]), -10.0, 0.0, 90.0);

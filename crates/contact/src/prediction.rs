@@ -47,7 +47,7 @@ impl Uneven {
     /// Takes the servos to these sweeps while the even pads move by `twists`.
     fn follow(&mut self, sweeps: [f64; 4], twists: &[Twist]) {
         let (mut part, differs) = (twists.iter(), &mut self.differs);
-        self.walker.parts(sweeps, |_, displacement| {
+        self.walker.move_servos(sweeps, |_, displacement| {
             let even = part.next().copied().unwrap_or_default();
             for i in 0..3 {
                 differs[i] += (displacement.twist[i] - even[i]).abs();
@@ -77,7 +77,7 @@ impl Ground {
         let mut twists = Vec::new();
         for next in sweeps {
             twists.clear();
-            even.parts(next, |_, displacement| {
+            even.move_servos(next, |_, displacement| {
                 let [forward, left, turn] = displacement.twist;
                 length += forward.hypot(left);
                 turned += turn.abs();
@@ -90,14 +90,14 @@ impl Ground {
         let mm = DECIDED_LENGTH.max(DECIDED_SHARE * length);
         let rad = DECIDED_TURN.max(DECIDED_SHARE * turned);
         let place = even.place();
-        let off = |movement: &Uneven| {
+        let deviation = |movement: &Uneven| {
             let other = movement.walker.place();
             [other.forward - place.forward, other.left - place.left].map(f64::abs)
         };
         let all = |within: &dyn Fn(&Uneven) -> bool| uneven.iter().all(within);
         let decided = [
-            all(&|movement| movement.differs[0] <= mm && off(movement)[0] <= mm),
-            all(&|movement| off(movement)[1] <= mm),
+            all(&|movement| movement.differs[0] <= mm && deviation(movement)[0] <= mm),
+            all(&|movement| deviation(movement)[1] <= mm),
             all(&|movement| movement.differs[2] <= rad),
         ];
         let travel = place.travel();

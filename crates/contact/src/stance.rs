@@ -58,7 +58,7 @@ impl Stance {
     /// the foot's own length and a part that is linear in its place. Three equations of balance
     /// determine the latter.
     pub fn loads(&self, body: &Body, feet: [Point; 4]) -> [f64; 4] {
-        let alone = [
+        let by_length = [
             self.stiffness * self.twist / body.mean_load(),
             0.0,
             0.0,
@@ -68,7 +68,7 @@ impl Stance {
         // pulls and none is below the floor.
         let all_but = |lifted: Option<usize>| {
             let stands = std::array::from_fn(|i| lifted != Some(i));
-            (stands, pressures(feet, alone, body.centre, stands))
+            (stands, pressures(feet, by_length, body.centre, stands))
         };
         let cases = [None, Some(0), Some(1), Some(2), Some(3)].map(all_but);
         let is_consistent = |(stands, pressures): &&([bool; 4], [f64; 4])| {
@@ -92,20 +92,20 @@ impl Stance {
 
 /// Computes the load of each foot as a share of the mean, if only some of them stand; a foot with
 /// a negative load is above the floor.
-fn pressures(feet: [Point; 4], alone: [f64; 4], centre: Point, stands: [bool; 4]) -> [f64; 4] {
+fn pressures(feet: [Point; 4], by_length: [f64; 4], centre: Point, stands: [bool; 4]) -> [f64; 4] {
     let mut matrix = [[0.0; 3]; 3];
     let mut moments = [4.0, 4.0 * centre[0], 4.0 * centre[1]];
     for i in (0..4).filter(|&i| stands[i]) {
         let row = [1.0, feet[i][0], feet[i][1]];
         for j in 0..3 {
-            moments[j] -= alone[i] * row[j];
+            moments[j] -= by_length[i] * row[j];
             for k in 0..3 {
                 matrix[j][k] += row[j] * row[k];
             }
         }
     }
-    let [sinks, nods, rolls] = solve(matrix, moments);
-    std::array::from_fn(|i| alone[i] + sinks + nods * feet[i][0] + rolls * feet[i][1])
+    let [heave, pitch, roll] = solve(matrix, moments);
+    std::array::from_fn(|i| by_length[i] + heave + pitch * feet[i][0] + roll * feet[i][1])
 }
 
 #[cfg(test)]
@@ -130,26 +130,26 @@ mod tests {
         }
     }
 
-    /// Computes the loads by letting the body sink until its feet carry it: heave, nod and roll
+    /// Computes the loads by letting the body sink until its feet carry it: heave, pitch and roll
     /// follow their forces.
     fn settled(stance: &Stance, body: &Body, feet: [Point; 4]) -> [f64; 4] {
-        let (mut sinks, mut nods, mut rolls) = (0.0, 0.0, 0.0);
+        let (mut heave, mut pitch, mut roll) = (0.0, 0.0, 0.0);
         let stiffness = stance.stiffness / body.mean_load();
-        let loads = |sinks: f64, nods: f64, rolls: f64| -> [f64; 4] {
+        let loads = |heave: f64, pitch: f64, roll: f64| -> [f64; 4] {
             std::array::from_fn(|i| {
                 let excess = if i == 0 { stance.twist } else { 0.0 };
-                let pressed = excess + sinks + nods * feet[i][0] + rolls * feet[i][1];
+                let pressed = excess + heave + pitch * feet[i][0] + roll * feet[i][1];
                 (stiffness * pressed).max(0.0)
             })
         };
         for _ in 0..200_000 {
-            let now = loads(sinks, nods, rolls);
+            let now = loads(heave, pitch, roll);
             let sum = |arm: &dyn Fn(usize) -> f64| -> f64 { (0..4).map(|i| now[i] * arm(i)).sum() };
-            sinks += 0.05 * (4.0 - sum(&|_| 1.0));
-            nods += 1e-5 * (4.0 * body.centre[0] - sum(&|i| feet[i][0]));
-            rolls += 1e-5 * (4.0 * body.centre[1] - sum(&|i| feet[i][1]));
+            heave += 0.05 * (4.0 - sum(&|_| 1.0));
+            pitch += 1e-5 * (4.0 * body.centre[0] - sum(&|i| feet[i][0]));
+            roll += 1e-5 * (4.0 * body.centre[1] - sum(&|i| feet[i][1]));
         }
-        loads(sinks, nods, rolls)
+        loads(heave, pitch, roll)
     }
 
     #[test]
@@ -176,8 +176,8 @@ mod tests {
     fn feet_in_a_rectangle_share_by_lever() {
         // The centre is halfway to the front feet, which then carry 1.5 times the mean.
         let loads = Stance::LEVEL.loads(&body([27.5, 0.0]), AT);
-        for (load, wanted) in loads.into_iter().zip([1.5, 1.5, 0.5, 0.5]) {
-            assert!((load - wanted).abs() < 1e-9, "{loads:?}");
+        for (load, expected) in loads.into_iter().zip([1.5, 1.5, 0.5, 0.5]) {
+            assert!((load - expected).abs() < 1e-9, "{loads:?}");
         }
         for load in Stance::LEVEL.loads(&Body::DEFAULT, AT) {
             assert!((load - 1.0).abs() < 1e-9);
@@ -196,8 +196,8 @@ mod tests {
         }
         // One that is much too long carries half the robot, and so does the one across.
         let loads = twisted(10.0).loads(&Body::DEFAULT, AT);
-        for (load, wanted) in loads.into_iter().zip([2.0, 0.0, 2.0, 0.0]) {
-            assert!((load - wanted).abs() < 1e-6, "{loads:?}");
+        for (load, expected) in loads.into_iter().zip([2.0, 0.0, 2.0, 0.0]) {
+            assert!((load - expected).abs() < 1e-6, "{loads:?}");
         }
     }
 

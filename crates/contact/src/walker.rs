@@ -12,26 +12,26 @@ use crate::motor::{MotorStep, Motors, ServoState};
 use crate::place::Place;
 
 /// Largest sweep of a step, deg. A larger one is divided into equal steps.
-const PART: f64 = 0.5;
-/// The largest number of rounds of a step. The pads are taken in the middle of a step, which depends on the lags
-/// after it; each round improves the middle.
-const ROUNDS: usize = 4;
-/// Largest change of a lag in a round that counts as settled, rad.
-const KNOWN: f64 = 1e-4;
-/// A rounding error of a number of steps.
-const EVEN: f64 = 1e-6;
-/// Rounding of kinks after a step, rad.
-const ROUNDED: f64 = 1e-12;
+const MAX_SWEEP: f64 = 0.5;
+/// Iterations of a step at most. The pads are taken in the middle of a step, which depends on the
+/// lags after it; each iteration improves the middle.
+const MAX_ITERATIONS: usize = 4;
+/// Change of a lag in an iteration below which the lag counts as settled, rad.
+const SETTLED: f64 = 1e-4;
+/// Rounding error allowed in a number of steps.
+const STEPS_ERROR: f64 = 1e-6;
+/// Width to which kinks are rounded off after a step, rad.
+const KINK_WIDTH: f64 = 1e-12;
 
 /// A robot that walks on a floor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Walker {
     ground: Ground,
-    /// Factors on the load of each pad, and on the friction backward over forward.
+    /// Factors on the load of each pad, and on the ratio of backward to forward friction.
     uneven: ([f64; 4], f64),
     /// Sweeps of the servos, deg.
     servos: [f64; 4],
-    /// Speeds of the servos that a motor has turned, deg/s.
+    /// Speeds of the servos while motors turn them, deg/s.
     rates: [f64; 4],
     /// Lags of the legs behind their servos, deg.
     lag: [f64; 4],
@@ -45,7 +45,7 @@ pub struct Walker {
 pub struct Slip {
     /// Distance that each foot slid over the floor, mm.
     pub feet: [f64; 4],
-    /// Load of each foot at the end, over the mean.
+    /// Load of each foot at the end, relative to the mean.
     pub loads: [f64; 4],
 }
 
@@ -70,8 +70,8 @@ impl Walker {
         Self::with_unevenness(ground, sweeps, [1.0; 4], 1.0)
     }
 
-    /// Makes such a robot with factors on the loads of the pads and on the friction backward over
-    /// forward.
+    /// Makes such a robot with factors on the loads of the pads and on the ratio of backward to
+    /// forward friction.
     pub fn with_unevenness(ground: Ground, sweeps: [f64; 4], load: [f64; 4], ratio: f64) -> Self {
         Self {
             ground,
@@ -126,17 +126,17 @@ impl Walker {
     /// target does not turn, because its gears hold it.
     pub fn drive(&mut self, targets: [Option<f64>; 4], seconds: f64, motors: &Motors) -> Slip {
         let mut slip = Slip::NONE;
-        let steps = (seconds / motors.step() - EVEN).ceil().max(1.0);
+        let steps = (seconds / motors.step() - STEPS_ERROR).ceil().max(1.0);
         for _ in 0..steps as usize {
-            let (pads, displacement) = self.driven(targets, seconds / steps, motors);
+            let (pads, displacement) = self.drive_step(targets, seconds / steps, motors);
             self.place = self.place.moved(displacement.twist);
             slip.add(&pads, &displacement);
         }
         slip
     }
 
-    /// Finds the displacement in a short step of time, and turns servos and legs.
-    fn driven(
+    /// Finds the displacement in a short time step, and turns servos and legs.
+    fn drive_step(
         &mut self,
         targets: [Option<f64>; 4],
         seconds: f64,
@@ -178,7 +178,7 @@ impl Walker {
         let displacement = pads.minimum();
         for (i, behind) in displacement.lag.into_iter().enumerate() {
             let servo = pads.compliance.map_or(0.0, |compliance| {
-                compliance.lag_energy[i].servo(behind, ROUNDED)
+                compliance.lag_energy[i].servo(behind, KINK_WIDTH)
             });
             self.servos[i] = reference[i] - servo.to_degrees();
             self.rates[i] = (self.servos[i] - servos[i]) / seconds;
@@ -209,22 +209,26 @@ impl Walker {
     /// Moves the servos to these sweeps, deg.
     pub fn step(&mut self, sweeps: [f64; 4]) -> Slip {
         let mut slip = Slip::NONE;
-        self.parts(sweeps, |pads, displacement| slip.add(pads, displacement));
+        self.move_servos(sweeps, |pads, displacement| slip.add(pads, displacement));
         slip
     }
 
     /// Moves the servos to these sweeps in small steps and calls `visit` after each.
-    pub(crate) fn parts(&mut self, sweeps: [f64; 4], mut visit: impl FnMut(&Pads, &Displacement)) {
+    pub(crate) fn move_servos(
+        &mut self,
+        sweeps: [f64; 4],
+        mut visit: impl FnMut(&Pads, &Displacement),
+    ) {
         let servos = self.servos;
         (self.rates, self.speed) = ([0.0; 4], [0.0; 3]);
         let furthest = (0..4).fold(0.0f64, |largest, i| {
             largest.max((sweeps[i] - servos[i]).abs())
         });
-        let parts = (furthest / PART).ceil().max(1.0) as usize;
+        let parts = (furthest / MAX_SWEEP).ceil().max(1.0) as usize;
         for part in 1..=parts {
             let share = part as f64 / parts as f64;
             let next = std::array::from_fn(|i| servos[i] + share * (sweeps[i] - servos[i]));
-            let (pads, displacement) = self.part(next);
+            let (pads, displacement) = self.find_step(next);
             self.place = self.place.moved(displacement.twist);
             self.servos = next;
             self.lag = displacement.lag.map(f64::to_degrees);
@@ -233,16 +237,16 @@ impl Walker {
     }
 
     /// Finds the displacement of a small step of the servos to these sweeps.
-    fn part(&self, servos: [f64; 4]) -> (Pads, Displacement) {
+    fn find_step(&self, servos: [f64; 4]) -> (Pads, Displacement) {
         let from = self.ground.feet.at(self.legs());
         let mut lag = self.lag.map(f64::to_radians);
         let mut pads = self.pads(from, servos, lag, [None; 4]);
         let mut displacement = pads.minimum();
-        for _ in 1..ROUNDS {
+        for _ in 1..MAX_ITERATIONS {
             let error = (0..4).fold(0.0f64, |error, i| {
                 error.max((displacement.lag[i] - lag[i]).abs())
             });
-            if error < KNOWN {
+            if error < SETTLED {
                 break;
             }
             lag = displacement.lag;

@@ -120,7 +120,7 @@ pub fn sin_cos_all<const N: usize>(degrees: [f64; N]) -> ([f64; N], [f64; N]) {
         let r = (degrees[i] - (rounded - ROUND) * 90.0) * (PI / 180.0);
         let z = r * r;
         let sin = r + r * (z * horner(&SIN, z));
-        // 1 - z/2 is rounded; what it lost goes back in with the small terms.
+        // 1 - z/2 is rounded; its error is added with the small terms.
         let half = 0.5 * z;
         let near = 1.0 - half;
         let cos = near + (((1.0 - near) - half) + z * (z * horner(&COS, z)));

@@ -86,7 +86,7 @@ impl fmt::Display for SpringEffect {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let (installed, force, rate) = (self.installed, self.force, self.rate);
         let (preload, friction, stall) = (self.preload, self.friction, self.stall);
-        let ([near, far], [least, most], [low, high]) = (self.lever, self.way, self.end);
+        let ([near, far], [smallest, largest], [low, high]) = (self.lever, self.way, self.end);
         let spared = match self.lets_servo_turn() {
             true => "So much less spares it.",
             false => {
@@ -99,7 +99,7 @@ impl fmt::Display for SpringEffect {
              {near:.1} to {far:.1} mm in gaits. So a leg follows its servo up to {preload:.0} N mm, and the pad's friction \
              asks for about {friction:.0}: what the spring does is to take up the play of its strut's two screws. With foot \
              and body both held, a front foot on its way forward or a hind foot on its way back, the slot ends after \
-             {least:.0} to {most:.0} deg, at {low:.0} to {high:.0} N mm; the other way the strut is a bar. Its servo stalls \
+             {smallest:.0} to {largest:.0} deg, at {low:.0} to {high:.0} N mm; the other way the strut is a bar. Its servo stalls \
              at {stall:.0} N mm. {spared}"
         )?;
         match preload < friction {

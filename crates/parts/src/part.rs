@@ -100,7 +100,7 @@ pub struct PrintToBody {
     pub frame: Placement,
 }
 
-/// The volume of some layers, mm^3.
+/// The volume of layers, mm^3.
 pub(crate) fn volume(prisms: &[Prism]) -> f64 {
     prisms.iter().map(outline::volume).sum()
 }

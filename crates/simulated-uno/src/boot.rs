@@ -32,7 +32,7 @@ impl Uno {
     /// If they do not fit into flash.
     pub fn set_flash(&mut self, address: u16, bytes: &[u8]) {
         let start = usize::from(address);
-        // SAFETY: as in `flash`, and `self` is borrowed by nobody else.
+        // SAFETY: as in `flash`, and `self` is borrowed nowhere else.
         let flash = unsafe {
             std::slice::from_raw_parts_mut(ffi::uno_flash(self.raw), FLASH_SIZE as usize)
         };

@@ -69,7 +69,7 @@ impl Uno {
     /// Sets the contents, which may be done at any time. Those of a new board are all 0xff. They
     /// survive every reset and power cycle.
     pub fn set_eeprom(&mut self, contents: &[u8; EEPROM_SIZE]) {
-        // SAFETY: as in `eeprom`, and `self` is borrowed by nobody else.
+        // SAFETY: as in `eeprom`, and `self` is borrowed nowhere else.
         unsafe { *ffi::uno_eeprom(self.raw).cast() = *contents }
     }
 

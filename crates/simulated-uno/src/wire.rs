@@ -1,8 +1,8 @@
 //! One wire with two talkers, as the UNO's D0 has where a radio module shares it with USB.
 //!
 //! Each talker pulls the wire low, and it is high while none does. If both talk at once, their bits
-//! mix, and the receiver reads bytes that nobody has sent, some without a stop bit. What it has read is
-//! for [`Uno::send`](crate::Uno::send) and
+//! mix, and the receiver reads bytes that neither has sent, some without a stop bit. What it has
+//! read is for [`Uno::send`](crate::Uno::send) and
 //! [`Uno::send_with_framing_error`](crate::Uno::send_with_framing_error).
 
 use std::collections::VecDeque;
@@ -50,7 +50,7 @@ pub struct Wire {
 }
 
 impl Wire {
-    /// A wire on which nobody talks, with the rates of both talkers, baud.
+    /// An idle wire, with the rates of both talkers, baud.
     #[must_use]
     pub fn new(rates: [f64; 2]) -> Self {
         Self {

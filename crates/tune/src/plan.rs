@@ -50,14 +50,14 @@ pub const MAX_PERIOD_S: f64 = 60.0;
 /// The space of the search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Space {
-    /// Direction in which the gait is to lead.
+    /// Direction in which the gait should lead.
     pub goal: Goal,
     /// The largest amplitude that is tried, deg.
     pub widest: f64,
 }
 
-/// The gait that parameters from 0 to 1 mean, rounded as it is written; its period is still to be
-/// set. A parameter outside is taken for the nearest.
+/// The gait for parameters from 0 to 1, rounded as in the file; its period is still unset. A
+/// parameter out of range counts as the nearest in it.
 pub fn planned(kind: Kind, space: Space, name: &str, parameters: &[f64]) -> Bars {
     let Space { goal, widest } = space;
     let at = |i: usize| {

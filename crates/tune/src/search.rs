@@ -62,7 +62,7 @@ impl Search {
     }
 
     /// Takes the scores of this round's trials, in their order, and makes the trials of the next
-    /// round. A trial is refused if its score is none or left out.
+    /// round. A trial counts as refused if its score is `None` or missing.
     pub fn score(&mut self, scores: impl IntoIterator<Item = Option<f64>>) {
         let scores = scores.into_iter().chain(std::iter::repeat(None));
         let trials = std::mem::take(&mut self.trials).into_iter().zip(scores);

@@ -24,8 +24,8 @@ pub enum NoTuning {
     Goal(#[from] NoGoal),
     /// Servos so slow that the robot does not walk, or faster than its limits allow.
     #[error(
-        "{rate}: from {least} to {most} deg/s, which is limits.gait_slew in robot.toml",
-        least = MIN_SERVO_SPEED
+        "{rate}: from {smallest} to {most} deg/s, which is limits.gait_slew in robot.toml",
+        smallest = MIN_SERVO_SPEED
     )]
     Rate {
         /// The speed of the servos that was asked for, deg/s.

@@ -37,7 +37,7 @@ pub struct Variation {
     ground: Ground,
     /// Factor on the load of each pad.
     pads: [f64; 4],
-    /// Factor on the ground's friction backward over forward.
+    /// Factor on the ground's ratio of backward to forward friction.
     ratio: f64,
 }
 

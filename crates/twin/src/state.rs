@@ -32,16 +32,7 @@ pub struct State {
     pub strokes: Option<[f64; 2]>,
 }
 
-/// Largest slide in a frame of a foot that holds, mm. The contact model leaves such a foot a
-/// millionth of its step.
-const HOLDS: f64 = 0.01;
-
 impl State {
-    /// True for each foot that did not slide in this frame.
-    pub fn holding_feet(&self) -> [bool; 4] {
-        self.slip.map(|slip| slip < HOLDS)
-    }
-
     /// The name and the value of the smallest margin.
     pub fn least_margin(&self) -> Option<(Check, f64)> {
         self.margins.map(|margins| margins.min())

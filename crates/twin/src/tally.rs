@@ -52,11 +52,12 @@ impl Tally {
         self.length += (to.forward - from.forward).hypot(to.left - from.left);
         self.end = to;
         self.frames += 1;
-        let most =
-            |values: [f64; 4], most: f64| values.into_iter().map(f64::abs).fold(most, f64::max);
-        self.lag = most(state.lag, self.lag);
-        self.rate = most(state.rates, self.rate);
-        self.error = most(state.errors, self.error);
+        let largest = |values: [f64; 4], largest: f64| {
+            values.into_iter().map(f64::abs).fold(largest, f64::max)
+        };
+        self.lag = largest(state.lag, self.lag);
+        self.rate = largest(state.rates, self.rate);
+        self.error = largest(state.errors, self.error);
         for (sum, slip) in self.slip.iter_mut().zip(state.slip) {
             *sum += slip;
         }

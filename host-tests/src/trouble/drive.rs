@@ -13,10 +13,10 @@ use simulated_uno::{Air, Radio, Uno, Wire};
 use super::record::{MS, Record, Span};
 use super::setup;
 
-/// One byte in so many loses its stop bit on the wire.
+/// One byte in this many loses its stop bit on the wire.
 const SPOILT: u16 = 300;
 
-/// The talkers on the wire to the board.
+/// The senders on the wire to the board.
 const RADIO: usize = 0;
 const CABLE: usize = 1;
 
@@ -26,12 +26,12 @@ pub struct Drive<'a> {
     radio: Radio,
     wire: Wire,
     session: Session,
-    /// The moment of cycle 0.
-    began: Instant,
+    /// The time of cycle 0.
+    start: Instant,
     random: Rng,
     /// The phone's part of a line.
     text: String,
-    /// Until this cycle the phone's screen is locked.
+    /// The cycle until which the phone's screen is locked.
     locked: u64,
     has_left: bool,
 }
@@ -39,13 +39,13 @@ pub struct Drive<'a> {
 impl<'a> Drive<'a> {
     /// A person who has just connected.
     pub fn new(air: Air, robot: &'a Robot) -> Self {
-        let began = Instant::now();
+        let start = Instant::now();
         Self {
             robot,
             radio: Radio::new(air),
             wire: Wire::new([air.baud; 2]),
-            session: Session::new(began, true, false).with_person(),
-            began,
+            session: Session::new(start, true, false).with_person(),
+            start,
             random: Rng::with_seed(air.seed),
             text: String::new(),
             locked: 0,
@@ -64,14 +64,14 @@ impl<'a> Drive<'a> {
         self.wire.write(CABLE, bytes, now);
     }
 
-    /// Passes on all bytes, with those that the board has just sent. To be called every
+    /// Passes on all bytes, including those that the board has just sent. Call it every
     /// millisecond.
-    pub fn pass(&mut self, said: &[u8], uno: &mut Uno, record: &mut Record) {
+    pub fn pass(&mut self, sent: &[u8], uno: &mut Uno, record: &mut Record) {
         let (now, chip_baud) = (uno.cycle(), uno.chip_baud());
-        let received = self.radio.received_bytes(said, chip_baud);
+        let received = self.radio.received_bytes(sent, chip_baud);
         let [to_uno, to_phone] = self.radio.pass(&received, now);
         self.wire.write(RADIO, &to_uno, now);
-        // The wire has read them at the chip's rate already.
+        // The wire has already read them at the chip's rate.
         uno.set_baud(chip_baud);
         for received in self.wire.receive(now, chip_baud) {
             let is_spoilt = !self.has_left && self.random.u16(..SPOILT) == 0;
@@ -96,13 +96,13 @@ impl<'a> Drive<'a> {
         }
     }
 
-    /// Has the phone read its lines and the person act.
+    /// Lets the phone read its lines and the person act.
     fn talk(&mut self, now: u64, record: &mut Record) {
         while let Some((line, rest)) = self.text.split_once('\n') {
             self.session.receive(line.trim_end_matches('\r'));
             self.text = rest.to_owned();
         }
-        let moment = self.began + Duration::from_nanos(now * 125 / 2);
+        let moment = self.start + Duration::from_nanos(now * 125 / 2);
         match self.random.u16(..4_000) {
             0 => self.locked = now + self.random.u64(..3_000) * MS,
             1 => {

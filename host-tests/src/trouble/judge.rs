@@ -27,7 +27,7 @@ fn limits(robot: &Robot, scenario: &Scenario) -> Limits {
         let mut steps = scenario.steps.iter();
         steps.any(|step| step.to_string().contains(text))
     };
-    // With other numbers of a servo: the largest of both.
+    // If a servo's numbers are changed, the larger of both.
     let wide = if mentions("scale ") { WIDE_SCALE } else { "0" };
     let wide: f64 = wide.parse().expect("a number");
     let servos = robot.servos().each_ref();
@@ -39,7 +39,7 @@ fn limits(robot: &Robot, scenario: &Scenario) -> Limits {
         frame_left: 25 * lizard_rules::MS,
         report_time: 300 * lizard_rules::MS,
         queued: 150 * lizard_rules::MS,
-        // A patrol rests for a second, and longer at half the pace.
+        // A patrol rests for a second, or longer at half the pace.
         longest_rest: 2_500 * lizard_rules::MS,
         boots_to_rest: mentions("boot rest"),
         brown_outs_clear_ram: true,
@@ -62,12 +62,12 @@ pub fn broken_rules(record: &Record, robot: &Robot, scenario: &Scenario) -> Vec<
     }
     let checks: [(Rule, Result<(), String>); 7] = [
         (Rule::Lives, check_alive(record)),
-        (Rule::Stands, stands(record)),
-        (Rule::Refused, refused_changes_nothing(record)),
-        (Rule::Led, led_shows_the_fault(record)),
-        (Rule::OnTime, pulses_are_on_time(record)),
-        (Rule::Sent, nothing_is_done_that_nobody_sent(record)),
-        (Rule::Stopped, stop_is_insisted_on(record)),
+        (Rule::Stands, check_stand(record)),
+        (Rule::Refused, check_refusals(record)),
+        (Rule::Led, check_led(record)),
+        (Rule::OnTime, check_pulse_times(record)),
+        (Rule::Sent, check_orders_were_sent(record)),
+        (Rule::Stopped, check_stop_is_answered(record)),
     ];
     for (rule, held) in checks {
         all.extend(held.err().map(|seen| BrokenRule::new(rule, seen)));
@@ -128,8 +128,8 @@ pub fn events(record: &Record) -> Vec<(Time, Event<'_>)> {
     }
     for line in &record.lines {
         let length = BYTE * line.text.len() as u64;
-        let begun = time(line.cycle.saturating_sub(length));
-        add(line.cycle, Event::Printed(begun, &line.text));
+        let beginning = time(line.cycle.saturating_sub(length));
+        add(line.cycle, Event::Printed(beginning, &line.text));
     }
     for exchange in &record.exchanges {
         let (asked, line) = (time(exchange.asked), exchange.line.as_str());
@@ -153,7 +153,7 @@ pub fn events(record: &Record) -> Vec<(Time, Event<'_>)> {
     for write in &record.written {
         events.push((time(write.cycle), Event::Written));
     }
-    // Some rules count from a moment at which nothing is seen.
+    // Some rules count from a time at which nothing is observed.
     let often = (0..record.end).step_by(100 * MS as usize);
     events.extend(often.map(|at| (time(at), Event::Pass)));
     events.push((time(record.end), Event::Pass));
@@ -170,7 +170,7 @@ fn check_alive(record: &Record) -> Result<(), String> {
 }
 
 /// Checks the last `stand` of the scenario, long after all trouble.
-fn stands(record: &Record) -> Result<(), String> {
+fn check_stand(record: &Record) -> Result<(), String> {
     let mut exchanges = record.exchanges.iter().rev();
     let status = exchanges.next().ok_or("nothing was asked")?;
     let stand = exchanges
@@ -197,7 +197,7 @@ fn stands(record: &Record) -> Result<(), String> {
 
 /// Checks that `status` is the same before and after a refused command, unless `deadman` or the
 /// end of a count stopped the robot meanwhile.
-fn refused_changes_nothing(record: &Record) -> Result<(), String> {
+fn check_refusals(record: &Record) -> Result<(), String> {
     for three in record.exchanges.windows(3) {
         let [before, refused, after] = three else {
             continue;
@@ -232,7 +232,7 @@ fn refused_changes_nothing(record: &Record) -> Result<(), String> {
 
 /// Checks the distance of each pulse from the one before, unless a reset or blocked interrupts
 /// came between.
-fn pulses_are_on_time(record: &Record) -> Result<(), String> {
+fn check_pulse_times(record: &Record) -> Result<(), String> {
     const FRAME: u64 = 20 * MS;
     for servo in 0..4 {
         let pulses = record
@@ -242,7 +242,7 @@ fn pulses_are_on_time(record: &Record) -> Result<(), String> {
         let begins: Vec<u64> = pulses.map(|(at, _)| *at).collect();
         for pair in begins.windows(2) {
             let (from, to) = (pair[0], pair[1]);
-            // A frame that is left out is judged elsewhere.
+            // Another rule judges frames that are left out.
             let is_next = to - from < FRAME + FRAME / 2;
             let is_held = record.holds.iter().any(|hold| hold.overlaps(from, to));
             let is_new = record
@@ -259,8 +259,8 @@ fn pulses_are_on_time(record: &Record) -> Result<(), String> {
     Ok(())
 }
 
-/// Checks that each line which the board has carried out is one that somebody had sent.
-fn nothing_is_done_that_nobody_sent(record: &Record) -> Result<(), String> {
+/// Checks that every line that the board carried out was really sent.
+fn check_orders_were_sent(record: &Record) -> Result<(), String> {
     for line in &record.lines {
         // A banner follows what a reset has cut off.
         let Some(done) = line.text.strip_prefix("ok ").filter(|it| !it.contains('#')) else {
@@ -295,11 +295,11 @@ fn nothing_is_done_that_nobody_sent(record: &Record) -> Result<(), String> {
 }
 
 /// Checks that each `stop` of the person at the phone is answered, once the link holds for a while.
-fn stop_is_insisted_on(record: &Record) -> Result<(), String> {
+fn check_stop_is_answered(record: &Record) -> Result<(), String> {
     const HOLDS: u64 = 2_000 * MS;
     // Until the robot has found the line's rate, for which it needs up to five lines.
     const FINDS: u64 = 3_500 * MS;
-    // Meanwhile the answer to an earlier one may be on its way.
+    // Meanwhile the answer to an earlier `stop` may be on its way.
     const UNDER_WAY: u64 = 300 * MS;
     for stop in &record.stops {
         let ends = |line: &&Line| {
@@ -327,14 +327,14 @@ fn stop_is_insisted_on(record: &Record) -> Result<(), String> {
 }
 
 /// Checks the LED from the report of a fault, or from the last order, to the last `status`.
-fn led_shows_the_fault(record: &Record) -> Result<(), String> {
+fn check_led(record: &Record) -> Result<(), String> {
     let led = record.edges.iter().filter(|edge| edge.pin == LED);
     let led: Vec<(Time, bool)> = led.map(|edge| (edge.cycle as Time, edge.high)).collect();
     let shown_code = |exchange: &'_ Exchange| {
         let at = exchange.answer.as_ref()?.cycle;
         Some((at, led::code(exchange.status("fault")?)))
     };
-    // An order waits while older answers are printed, so its own answer tells when it was done.
+    // An order waits while older answers are printed, so the time of its own answer counts.
     let tells = |text: &str| {
         let is_done = text.starts_with("ok ") && !text.starts_with("ok gait=");
         is_done || text.starts_with("# fault") || text.starts_with("# held")
@@ -346,7 +346,7 @@ fn led_shows_the_fault(record: &Record) -> Result<(), String> {
         .chain(record.starts.iter().map(|start| start.cycle))
         .collect();
     for (at, code) in record.exchanges.iter().filter_map(shown_code) {
-        // Light from before is not a flash of this pattern.
+        // A flash that began earlier does not belong to this pattern.
         let since = changes.iter().filter(|change| **change < at).max();
         let from = since.unwrap_or(&0) + 60 * MS;
         if !record.is_disturbed(from.saturating_sub(100 * MS), at) {

@@ -121,7 +121,7 @@ pub struct Record {
 impl Record {
     /// Finds the servos' pulses among the edges.
     pub(super) fn find_pulses(&mut self, pins: [Pin; 4]) {
-        // Within these a reset has taken the pins back.
+        // Within these a reset has released the pins.
         const AT_ONCE: u64 = MS / 10;
         for (servo, pin) in pins.into_iter().enumerate() {
             for pulse in pulses(&self.edges, pin) {
@@ -158,7 +158,7 @@ impl Record {
                     exchange.line == received.text && exchange.asked <= received.cycle
                 };
                 let exchange = self.exchanges.iter().rev().find(asked);
-                // Within a line's length.
+                // Within the duration of a line.
                 let exchange = exchange.filter(|one| received.cycle - one.asked < 10 * MS);
                 let answer = exchange.and_then(|exchange| exchange.answer.as_ref());
                 let done = answer.and_then(|answer| match answer.text.get(..3)? {
@@ -170,13 +170,13 @@ impl Record {
             })
     }
 
-    /// The outcome of a line that nobody waited for, by what the board says soon.
+    /// The outcome of a line that nobody waited for, by the board's next lines.
     fn is_confirmed(&self, received: &Received) -> Option<bool> {
         let (from, to) = (received.cycle, received.cycle + 300 * MS);
         // A reset may have cut off the beginning.
         let is_ok = |text: &str| {
-            let said = text.strip_prefix("ok ");
-            said.is_some_and(|said| received.text.ends_with(said))
+            let echo = text.strip_prefix("ok ");
+            echo.is_some_and(|echo| received.text.ends_with(echo))
         };
         let soon = self
             .lines

@@ -240,7 +240,7 @@ impl<'a> Script<'a> {
         self.wait_up_to(120);
     }
 
-    /// Starts the routine, and often presses the button that it waits for; then others.
+    /// Starts the routine, and often presses the button that it waits for, then other inputs.
     fn start_patrol(&mut self) {
         self.say(PATROL);
         if self.rng.u8(0..4) > 0 {
@@ -272,7 +272,7 @@ impl<'a> Script<'a> {
         }
     }
 
-    /// Has a person drive by radio, perhaps after noise at a module without a phone.
+    /// Lets a person drive by radio, perhaps after noise at a module without a phone.
     fn start_drive(&mut self) {
         if self.rng.u8(0..4) == 0 {
             self.add_noise();

@@ -40,7 +40,7 @@ fn travel(servo: usize, degrees: f64, robot: &Robot) -> String {
     format!("limit {} {low:.2} {high:.2}", servo + 1)
 }
 
-/// us per degree, far from robot.toml's.
+/// A scale far from that of robot.toml, us per degree.
 pub const WIDE_SCALE: &str = "17.77";
 
 /// A line that makes main settle the servos again.

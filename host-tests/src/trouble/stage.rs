@@ -142,7 +142,7 @@ impl Stage<'_> {
         self.record.sent.push((now, line.to_owned()));
     }
 
-    /// Asks for the status until it is answered.
+    /// Asks for the status until there is an answer.
     fn find(&mut self) {
         for _ in 0..MAX_QUESTIONS {
             let from = self.record.lines.len();
@@ -155,13 +155,13 @@ impl Stage<'_> {
         }
     }
 
-    /// Puts bytes on the line that nobody has sent, half of the time without pause.
+    /// Adds random bytes to the line, half of the time without pauses.
     fn add_noise(&mut self, cycles: u64) {
-        let most = cycles / BYTE;
+        let largest = cycles / BYTE;
         let count = if self.noise.bool() {
-            most
+            largest
         } else {
-            self.noise.u64(..=most / 20)
+            self.noise.u64(..=largest / 20)
         };
         for _ in 0..count {
             let byte = match self.noise.u8(..4) {

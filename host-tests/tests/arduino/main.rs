@@ -29,7 +29,8 @@ fn edges_since_the_first(uno: &Uno) -> Vec<(u64, Pin, bool)> {
     edges.iter().map(since).collect()
 }
 
-/// The widths of a pin's pulses in 10 s, cycles, while bytes arrive and are echoed without a pause.
+/// The widths of each pin's pulses in 10 s, cycles, while bytes arrive and are echoed without a
+/// pause.
 fn widths_in_a_flood(uno: &mut Uno, pins: &[u8]) -> Vec<Vec<u64>> {
     uno.run_ms(100);
     uno.take_edges();

@@ -39,13 +39,13 @@ fn cr_and_lf_and_crlf_each_end_one_line() {
             let text = format!("{end}{end} \t{end}stand{end}{end}stop{end}status{end}");
             bench.uno.send(text.as_bytes());
             bench.run_ms(300);
-            let said: Vec<&str> = bench.lines()[before..]
+            let lines: Vec<&str> = bench.lines()[before..]
                 .iter()
                 .map(|line| line.text.as_str())
                 .collect();
-            assert_eq!(said.len(), 3, "{end:?}: {said:?}");
-            assert_eq!(said[..2], ["ok stand", "ok stop"]);
-            assert!(said[2].starts_with("ok gait=stop "));
+            assert_eq!(lines.len(), 3, "{end:?}: {lines:?}");
+            assert_eq!(lines[..2], ["ok stand", "ok stop"]);
+            assert!(lines[2].starts_with("ok gait=stop "));
         }
     });
 }
@@ -85,7 +85,7 @@ fn refused_poses() -> Vec<(String, u8)> {
     let mut found: [Option<String>; 3] = [None, None, None];
     let servos = robot().servos();
     for n in 0..400_000 {
-        // All around, and nearer to neutral, where fewer limits are broken at once.
+        // Poses everywhere, and others near neutral, where fewer limits are broken at once.
         let largest = [175.0, 90.0, 45.0, 25.0][n % 4];
         let sweeps: [f64; 4] = std::array::from_fn(|_| largest * (2.0 * rng.f64() - 1.0));
         let within = |by: f64| {
@@ -196,7 +196,7 @@ fn every_refusal_has_its_code_and_changes_nothing() {
                 "{line}: {answer}"
             );
         }
-        // Both have been walking for the same time when they are compared.
+        // Both have walked for the same time when they are compared.
         for board in [&mut bench, &mut quiet] {
             let left = 4 * FREQUENCY - board.uno.cycle();
             board.uno.run_cycles(left);
@@ -268,8 +268,11 @@ fn status_tells_what_the_pulses_show() {
         let sent = instants(robot(), &bench.run_for_frames(1))[0]
             .angles
             .expect("four pulses");
-        for (servo, (said, sent)) in status.pose().into_iter().zip(sent).enumerate() {
-            assert!((said - sent).abs() <= PRINTED, "{servo}: {said} and {sent}");
+        for (servo, (printed, sent)) in status.pose().into_iter().zip(sent).enumerate() {
+            assert!(
+                (printed - sent).abs() <= PRINTED,
+                "{servo}: {printed} and {sent}"
+            );
         }
         let solution = robot().lizard().solve(&sent.into()).expect("a safe pose");
         let margin = solution.margins.min().1;
@@ -296,9 +299,13 @@ fn status_counts_fifty_frames_a_second_and_follows_the_phase() {
             let counted = now.1.number("frames") - before.number("frames");
             assert_eq!(counted, frames.round());
             let turned = now.1.number("phase") - before.number("phase");
-            let gone = frames.round() / 50.0 / gait.period();
-            let gone = if gait.is_reversed() { -gone } else { gone };
-            let error = (turned - gone).rem_euclid(1.0);
+            let expected = frames.round() / 50.0 / gait.period();
+            let expected = if gait.is_reversed() {
+                -expected
+            } else {
+                expected
+            };
+            let error = (turned - expected).rem_euclid(1.0);
             // A phase is printed to a thousandth.
             assert!(
                 error.min(1.0 - error) <= 0.0021,
@@ -333,10 +340,10 @@ fn watch_reports_the_pose_of_every_nth_frame_until_it_is_told_not_to() {
             let time: u64 = time.parse().expect("a frame");
             assert!(last.is_none_or(|last| time == last + 7), "{lines:?}");
             last = Some(time);
-            let said = angles(pose);
+            let printed = angles(pose);
             let is_sent = sent.iter().any(|at| {
                 let sent = at.angles.expect("four pulses");
-                (0..4).all(|i| (said[i] - sent[i]).abs() <= PRINTED)
+                (0..4).all(|i| (printed[i] - sent[i]).abs() <= PRINTED)
             });
             assert!(is_sent, "{line} was never sent");
         }

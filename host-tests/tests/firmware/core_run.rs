@@ -53,9 +53,9 @@ fn line(rng: &mut Rng) -> String {
     }
 }
 
-/// Sends lines until a second before the end. Each is complete at a random moment of a frame, a
-/// millisecond or more from the ticks, so that there is no doubt about the frame
-/// that it is received before; and each waits for the answer to the one before.
+/// Sends lines until a second before the end. Each line ends at a random time of a frame, at least
+/// a millisecond from the ticks, so that its frame is certain; and each waits for the answer to the
+/// previous one.
 fn talk(bench: &mut FirmwareBench, first: u64, rng: &mut Rng) -> u32 {
     let mut count = 0;
     let mut written = 0;
@@ -73,7 +73,7 @@ fn talk(bench: &mut FirmwareBench, first: u64, rng: &mut Rng) -> u32 {
             .run_until_cycle(tick + frame * FRAME + within - sending);
         bench.say(&line);
         count += 1;
-        // Main takes no input while it keeps the pose of a rest, or forgets it.
+        // Main reads no input while it stores the pose of a rest, or erases it.
         written = if line == "rest" { 250 } else { 10 } * CYCLES_PER_MS;
     }
     bench.run_ms(250);
@@ -128,7 +128,7 @@ fn random_commands_give_the_same_widths_on_the_avr_and_here() {
         let enough = [2_900, 100, 500].map(|each| each * minutes());
         assert!(count > enough[0] && sent_lines > enough[1] && poses > enough[2]);
 
-        // And the same answers, except for the counters of faults, which are 0 here.
+        // The answers are the same, too, except for the counters of faults, which are 0 here.
         // Which frame a report is told in also depends on the room in the line.
         let is_answer = |line: &&str| !line.starts_with('#');
         let printed = |line: &'_ str| comparable_line(line, fidelity);

@@ -87,22 +87,22 @@ fn a_count_that_carries_while_main_reads_it_is_read_as_before_or_after() {
     });
 }
 
-/// Asks for the status so that the line's last byte has arrived at cycle `comes`.
-fn ask_at(walk: &mut Walk, comes: u64) {
-    walk.run_to(comes - 12_000);
+/// Asks for the status so that the line's last byte arrives at cycle `arrival`.
+fn ask_at(walk: &mut Walk, arrival: u64) {
+    walk.run_to(arrival - 12_000);
     walk.bench.uno.send(b"status");
     // The receiver has a byte 9.5 bits after its start.
-    walk.run_to(comes - 1_320);
+    walk.run_to(arrival - 1_320);
     walk.bench.uno.send(b"\n");
 }
 
-/// Cycles from the last byte of `status`, which comes at cycle `comes`, to the last part
+/// Cycles from the last byte of `status`, which arrives at cycle `arrival`, to the last part
 /// of its answer, the one with the counts.
-fn last_part(walk: &mut Walk, comes: u64) -> u64 {
-    ask_at(walk, comes);
+fn last_part(walk: &mut Walk, arrival: u64) -> u64 {
+    ask_at(walk, arrival);
     let parts = walk.bench.time_calls("print::answer", 30);
     assert_eq!(parts.len(), 3, "{parts:?}");
-    parts[2].enter - comes
+    parts[2].enter - arrival
 }
 
 #[test]

@@ -8,8 +8,8 @@ use crate::kept::{flashes, pulses, pulses_in, widths_now};
 use crate::walk::Walk;
 use crate::{Status, first_moving_gait, robot_after};
 
-/// Checks a fault's effects: nothing moves, `status` and one line name it, the LED flashes so
-/// many times.
+/// Checks a fault's effects: nothing moves, `status` and one line name it, and the LED flashes as
+/// often as given.
 fn assert_stopped(bench: &mut FirmwareBench, word: &str, message: &str, code: usize) {
     let status = Status::of(bench);
     assert_eq!((status.text("gait"), status.text("fault")), ("stop", word));
@@ -34,7 +34,7 @@ fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says() {
     bench.say("speed 90");
     bench.run_ms(700);
     bench.say("speed 100");
-    // Bytes alone are no line.
+    // Bytes without a line end are no line.
     bench.uno.send(b"  ");
     bench.run_ms(1500);
     let stopped = bench
@@ -96,12 +96,12 @@ fn a_stack_that_has_reached_the_data_stops_the_motion_for_good() {
     for byte in 0..4 {
         let mut walk = Walk::begin(Fidelity::DataSheet);
         let guard = walk.address("lizard_stack_guard") + byte;
-        let was = walk.bench.uno.peek(guard);
-        walk.bench.uno.poke(guard, was ^ 0x10);
+        let before = walk.bench.uno.peek(guard);
+        walk.bench.uno.poke(guard, before ^ 0x10);
         walk.bench.run_ms(100);
         let message = "the stack has grown into the data, stopped";
         assert_stopped(&mut walk.bench, "stack", message, 6);
-        // Whatever the data says now is not to be trusted: it does not move again.
+        // The data can no longer be trusted, so the robot does not move again.
         walk.bench.say(&first_moving_gait());
         walk.bench.run_ms(100);
         let held = widths_now(&mut walk.bench);

@@ -1,5 +1,4 @@
-//! The gaits as the servos get them, against the gaits in floating point, and
-//! where they lead.
+//! The gaits as the servos get them, and their travel, compared with the gaits in floating point.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -12,14 +11,14 @@ use crate::{SECOND, awake, for_each};
 
 /// Largest deviation of the tables from floating point, deg: the project's promise.
 const TABLES: f64 = 0.50;
-/// Rounding by a cycle of 62.5 ns, deg: half a cycle each for the width and for the neutral width.
+/// Rounding to a cycle of 62.5 ns, deg: half a cycle each for the width and for the neutral width.
 fn cycle() -> f64 {
     let finest = robot().servos().map(|servo| servo.us_per_degree.abs());
     1.0 / 16.0 / finest.into_iter().fold(f64::INFINITY, f64::min)
 }
 
 /// Share of its pace by which a starting gait accelerates in each of seven frames.
-const GATHERS: (usize, f64) = (7, 147.0 / 1024.0);
+const ACCELERATION: (usize, f64) = (7, 147.0 / 1024.0);
 
 /// Servo angles frame by frame, deg, from a second after power-on, when the gait
 /// is asked for.
@@ -34,8 +33,8 @@ fn decode_angles(gait: &CheckedGait, fidelity: Fidelity) -> Vec<[f64; 4]> {
 
 /// The phase this many frames after a gait has begun.
 fn phase(gait: &CheckedGait, frames: usize) -> f64 {
-    let gone = |frame: usize| (frame as f64 * GATHERS.1).min(1.0);
-    let full: f64 = (1..=frames).map(gone).sum();
+    let pace = |frame: usize| (frame as f64 * ACCELERATION.1).min(1.0);
+    let full: f64 = (1..=frames).map(pace).sum();
     gait.phase(full / SECOND as f64)
 }
 
@@ -47,7 +46,9 @@ fn floating(gait: &CheckedGait, frames: usize) -> Vec<[f64; 4]> {
 /// The largest deviation of a servo from the gait that begins at frame `start`.
 fn worst(float: &[[f64; 4]], frames: &[[f64; 4]], start: usize) -> f64 {
     let pairs = frames[start..].iter().flatten().zip(float.iter().flatten());
-    pairs.fold(0.0, |largest, (is, meant)| (is - meant).abs().max(largest))
+    pairs.fold(0.0, |largest, (actual, expected)| {
+        (actual - expected).abs().max(largest)
+    })
 }
 
 /// The frame at which the gait begins: the one unknown of the comparison.
@@ -67,21 +68,21 @@ fn the_pulses_of_every_gait_follow_it_frame_by_frame() {
             let frames = decode_angles(gait, *fidelity);
             let float = floating(gait, frames.len());
             let start = first_frame(gait, &float, &frames);
-            let off = worst(&float, &frames, start);
+            let error = worst(&float, &frames, start);
             println!(
-                "{:<10} {} frames, max {off:.4} deg",
+                "{:<10} {} frames, max {error:.4} deg",
                 gait.name(),
                 frames.len() - start
             );
-            assert!(off <= TABLES + cycle(), "{}: {off} deg", gait.name());
+            assert!(error <= TABLES + cycle(), "{}: {error} deg", gait.name());
             // One frame earlier or later would exceed the bound, so the comparison can tell frames
             // apart.
             if gait.moves() {
-                assert!(off > 0.0, "{}: tables are rounded", gait.name());
+                assert!(error > 0.0, "{}: tables are rounded", gait.name());
                 // The very first frame has no earlier one.
                 let others = [Some(start + 1), start.checked_sub(1)];
                 for other in others.into_iter().flatten() {
-                    assert!(worst(&float, &frames, other) > off, "{}", gait.name());
+                    assert!(worst(&float, &frames, other) > error, "{}", gait.name());
                 }
             }
         }
@@ -94,8 +95,8 @@ fn the_pulses_of_every_gait_lead_where_the_contact_model_says() {
     let compared = AtomicUsize::new(0);
     for_each(&gaits, |&name| {
         let gait = robot().gait(name).expect("it is in robot.toml");
-        let meant = gait.predict(&robot().ground().rigid());
-        let (Some(forward), Some(turn)) = (meant.forward, meant.turn) else {
+        let expected = gait.predict(&robot().ground().rigid());
+        let (Some(forward), Some(turn)) = (expected.forward, expected.turn) else {
             println!("{name:<10} depends on a tie");
             return;
         };
@@ -113,7 +114,7 @@ fn the_pulses_of_every_gait_lead_where_the_contact_model_says() {
         // In other periods the missing part of a frame matters little.
         let length = (f64::from(cycles) * gait.period() * SECOND as f64) as usize;
         let step = 1.0 / (gait.period() * SECOND as f64);
-        let from = (start + GATHERS.0..frames.len())
+        let from = (start + ACCELERATION.0..frames.len())
             .find(|frame| {
                 let phase = phase(gait, frame - start);
                 if gait.is_reversed() {

@@ -1,4 +1,4 @@
-//! The guard on the chip: what it refuses, and that no frame gets past it.
+//! The guard on the chip: its refusals, and the proof that no frame gets past it.
 
 use fastrand::Rng;
 use lizard_core::guard::clearance::Clearance;
@@ -138,7 +138,7 @@ fn value(solution: &Solution, name: &str) -> Option<(f64, f64)> {
             margins.type2[end]
         }
     };
-    // Where couplers are nearly in line, a step of theirs turns them by much.
+    // Where couplers are nearly in line, a step of length turns them a lot.
     let of_end = |end: usize| margin_error(margins.type2[end].max(0.05)) + 0.0005;
     let of_stroke = stroke_band() + 0.005;
     let all = [
@@ -170,23 +170,23 @@ fn a_refusal_names_the_margin_and_its_value_or_says_that_it_knows_none() {
         if answer.starts_with("ok") || answer.starts_with("err 3") {
             continue;
         }
-        let (name, said) = parse_refusal(&answer);
+        let (name, printed) = parse_refusal(&answer);
         let solution = match robot().lizard().solve(&Pose::from(angles)) {
             Ok(solution) => solution,
             Err(open) => {
-                // A loop that does not close has no value to tell. The head is looked at
-                // before the tail, and may have one.
+                // A loop that does not close has no value. The head is checked before the tail, and
+                // may have one.
                 let head = robot().lizard().end(kinematics::End::Head);
                 let head = head.forward(angles[0], angles[1]);
                 match head {
-                    Ok(pose) if name.ends_with("head") && said.is_some() => {
+                    Ok(pose) if name.ends_with("head") && printed.is_some() => {
                         let max = margin_error(pose.type2.max(0.05)) + 0.0005;
-                        let error = said.expect("a number").abs() - pose.type2;
+                        let error = printed.expect("a number").abs() - pose.type2;
                         assert!(error.abs() <= max, "{angles:?}: {answer}, {open}");
                     }
                     _ => {
                         assert!(name.starts_with("4 type-2"), "{angles:?}: {answer}");
-                        let is_small = said.is_none_or(|said| said.abs() < 0.1);
+                        let is_small = printed.is_none_or(|printed| printed.abs() < 0.1);
                         assert!(is_small, "{angles:?}: {answer}, {open}");
                     }
                 }
@@ -195,9 +195,9 @@ fn a_refusal_names_the_margin_and_its_value_or_says_that_it_knows_none() {
             }
         };
         let (float, max) = value(&solution, name).unwrap_or_else(|| panic!("{answer}"));
-        match said {
-            Some(said) => {
-                let error = (said - float).abs();
+        match printed {
+            Some(printed) => {
+                let error = (printed - float).abs();
                 assert!(error <= max, "{angles:?}: {answer}, not {float}");
                 named += 1;
             }
@@ -208,7 +208,7 @@ fn a_refusal_names_the_margin_and_its_value_or_says_that_it_knows_none() {
             }
         }
     }
-    println!("{named} values told, {unknown} unknown");
+    println!("{named} values printed, {unknown} unknown");
     assert!(named > 20, "{named}");
 }
 
@@ -243,7 +243,7 @@ fn no_frame_breaks_a_limit_for_any_commands() {
             let angles = at.angles.expect("four pulses");
             assert!(is_safe(angles, &lax), "{at:?}");
         }
-        // Nothing jumps either: at most what a gait or a move may ask for.
+        // Nothing jumps either: a change is at most what a gait or a move may ask for.
         let pace = robot().pace();
         let fastest = pace.gait_slew.max(pace.slew) / 50.0;
         for (pair, times) in sent.windows(2).zip(frames.windows(2)) {
@@ -288,7 +288,7 @@ fn poses_with_unsafe_path_between() -> Option<[[f64; 4]; 2]> {
             if let Some(edge) = found {
                 return Some([*edge, pose]);
             }
-            // Few enough to try each with each: a robot may have no such path.
+            // Few enough to try each pair: a robot may have no such path.
             if edges.len() < 40 {
                 edges.push(pose);
             }
@@ -307,8 +307,11 @@ fn every_safe_pose_is_reached() {
         bench.run_ms(5000);
         let status = Status::of(&mut bench);
         assert_eq!(status.text("guard"), "clear", "the way to {pose:?}");
-        for (is, wanted) in status.pose().into_iter().zip(pose) {
-            assert!(wrap(is - wanted).abs() <= 0.02, "{is}, not {wanted}");
+        for (actual, expected) in status.pose().into_iter().zip(pose) {
+            assert!(
+                wrap(actual - expected).abs() <= 0.02,
+                "{actual}, not {expected}"
+            );
         }
     }
 }

@@ -8,10 +8,10 @@ use crate::pulses::servo_edges;
 use crate::walk::{SLOT, Walk};
 use crate::{in_both, neutral_widths};
 
-/// The most that other handlers and stretches with interrupts off may take, cycles.
+/// Cycles that other handlers and stretches with interrupts off may take at most.
 const MAY_TAKE: u64 = 160;
 
-/// A stretch with interrupts off for `length` cycles, this many before an edge.
+/// A stretch of `length` cycles with interrupts off, which begins some cycles before an edge.
 #[derive(Clone, Copy, Debug)]
 struct Hold {
     before: u64,
@@ -48,7 +48,7 @@ fn sweep(walk: &mut Walk, edges: Edges, holds: &[Hold]) -> Vec<(Frame, [u64; 4])
 
 /// Holds of several lengths beyond the allowed one, every few cycles, from one that ends
 /// before the edge to one that begins at it.
-fn too_long() -> Vec<Hold> {
+fn holds_beyond_limit() -> Vec<Hold> {
     [200, 230, 300, 500, 900]
         .into_iter()
         .flat_map(|length| {
@@ -77,7 +77,7 @@ fn a_stretch_that_the_rules_allow_moves_no_edge_wherever_it_begins() {
 fn a_late_rising_edge_drops_its_pulse_and_is_counted() {
     in_both(|fidelity| {
         let mut walk = Walk::stand(fidelity);
-        let holds = too_long();
+        let holds = holds_beyond_limit();
         let mut dropped = 0;
         for (n, (frame, asked)) in sweep(&mut walk, Edges::Rising, &holds).iter().enumerate() {
             for (sent, asked) in frame.widths.into_iter().zip(asked) {
@@ -102,7 +102,7 @@ fn a_late_rising_edge_drops_its_pulse_and_is_counted() {
 fn a_late_falling_edge_is_made_at_once_and_counted() {
     in_both(|fidelity| {
         let mut walk = Walk::stand(fidelity);
-        let holds = too_long();
+        let holds = holds_beyond_limit();
         let mut late = 0;
         for (n, (frame, asked)) in sweep(&mut walk, Edges::Falling, &holds).iter().enumerate() {
             let Hold { before, length } = holds[n];
@@ -195,7 +195,7 @@ fn a_falling_edge_that_is_missed_is_made_when_the_next_slot_begins() {
                     widths[1..].iter().all(|width| *width == neutral[servo]),
                     "{what}"
                 );
-                // No other servo misses its turn.
+                // No other servo misses its pulse.
                 let edges = servo_edges(&walk.bench);
                 let mut rises = edges.iter().filter(|edge| edge.high).map(|edge| edge.pin);
                 assert!(rises.any(|pin| pin == rise));

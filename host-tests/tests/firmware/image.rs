@@ -12,7 +12,7 @@ fn image() -> Image {
     FirmwareBench::image()
 }
 
-/// The functions whose path has one of these in it.
+/// The functions whose paths contain one of these parts.
 fn functions_with(parts: &[&str]) -> Vec<String> {
     let image = image();
     let functions = image.symbols().iter().filter(|symbol| symbol.is_function);
@@ -97,7 +97,7 @@ fn tables_and_messages_stay_in_flash() {
             assert!(!holds(&bytes), "wave {n} is in RAM");
         }
     }
-    // None of these has been said yet.
+    // None of these has been printed yet.
     for message in [
         "unknown command",
         "must be",
@@ -108,7 +108,10 @@ fn tables_and_messages_stay_in_flash() {
     ] {
         assert!(!holds(message.as_bytes()), "{message:?} is in RAM");
     }
-    assert!(holds(b"# lizard"), "the banner is where it was sent from");
+    assert!(
+        holds(b"# lizard"),
+        "the banner is in RAM, from where it was sent"
+    );
 }
 
 #[test]
@@ -140,8 +143,8 @@ fn an_image_without_room_is_refused_with_the_excess_and_what_is_largest() {
         .symbol("__code_end")
         .expect("it is in the ELF")
         .address;
-    // Whether it fits is judged by where the robot begins and ends.
-    let printed = |symbol: &str, address: u64| {
+    // The script decides by the addresses at which the robot begins and ends.
+    let check_with = |symbol: &str, address: u64| {
         let done = Command::new("avr-objcopy")
             .arg(format!("--strip-symbol={symbol}"))
             .args(["--add-symbol", &format!("{symbol}={address:#x}")])
@@ -157,8 +160,8 @@ fn an_image_without_room_is_refused_with_the_excess_and_what_is_largest() {
         let printed = String::from_utf8(run.stderr).expect("a text");
         (run.status.success(), printed)
     };
-    assert_eq!(printed("unused", 0), (true, String::new()));
-    let (fits, message) = printed("__robot_start", code - 300);
+    assert_eq!(check_with("unused", 0), (true, String::new()));
+    let (fits, message) = check_with("__robot_start", code - 300);
     assert!(!fits);
     let lines: Vec<&str> = message.lines().collect();
     let excess = format!(
@@ -182,7 +185,7 @@ fn an_image_without_room_is_refused_with_the_excess_and_what_is_largest() {
         .symbol("__robot_start")
         .expect("it is in the ELF")
         .address;
-    let (fits, message) = printed("__robot_end", start + 300);
+    let (fits, message) = check_with("__robot_end", start + 300);
     assert!(!fits);
     assert!(message.starts_with("the robot does not fit: "), "{message}");
 }

@@ -77,7 +77,7 @@ fn press(bench: &mut FirmwareBench, pin: Pin, ms: u64) {
     bench.uno.set_contact(pin, false);
 }
 
-/// The lines since this one that no command asked for, but for those of the start.
+/// The lines since line `since` that no command asked for, except for those of the start.
 fn notes(bench: &mut FirmwareBench, since: usize) -> Vec<String> {
     let lines = bench.lines()[since..].iter().map(|line| line.text.clone());
     let starts = ["# lizard", "# calibration"];
@@ -87,8 +87,8 @@ fn notes(bench: &mut FirmwareBench, since: usize) -> Vec<String> {
     lines.filter(is_note).collect()
 }
 
-/// The way that the contact model goes with these pulses.
-fn way(frames: &[Frame]) -> Travel {
+/// The travel of the contact model with these pulses.
+fn travel(frames: &[Frame]) -> Travel {
     let servos = robot().servos();
     let angles = |frame: &Frame| {
         let widths = frame.widths();
@@ -98,7 +98,7 @@ fn way(frames: &[Frame]) -> Travel {
 }
 
 /// True if the servos stand still for a second.
-fn stands(bench: &mut FirmwareBench) -> bool {
+fn is_still(bench: &mut FirmwareBench) -> bool {
     let frames = bench.run_for_frames(SECOND);
     frames.iter().all(|frame| frame.widths == frames[0].widths)
 }
@@ -113,33 +113,33 @@ fn after_power_on_and_a_press_the_robot_patrols_without_a_computer() {
         power_cycle(&mut bench);
         let since = bench.lines().len();
         bench.run_ms(10_000);
-        let said = notes(&mut bench, since);
-        assert_eq!(said, ["# boot: patrol", "# waiting for button"]);
-        assert!(stands(&mut bench));
+        let printed = notes(&mut bench, since);
+        assert_eq!(printed, ["# boot: patrol", "# waiting for button"]);
+        assert!(is_still(&mut bench));
         // The button bounces.
         for ms in [1, 3, 1, 2, 7, 1, 2] {
             press(&mut bench, BUTTON, ms);
             bench.run_ms(1);
         }
         press(&mut bench, BUTTON, 150);
-        // The way to the first pose is done after half a second.
+        // The move to the first pose ends within half a second.
         bench.run_ms(500);
-        let ahead = way(&bench.run_for_frames(3 * SECOND));
+        let ahead = travel(&bench.run_for_frames(3 * SECOND));
         assert!(ahead.forward > 90.0 && ahead.turn.abs() < 5.0, "{ahead:?}");
         for _ in 0..2 {
             let walked = bench.lines().len();
             bench.uno.set_contact(NOSE, true);
-            let mut away = bench.run_for_frames(2 * SECOND);
+            let mut frames = bench.run_for_frames(2 * SECOND);
             bench.uno.set_contact(NOSE, false);
-            away.extend(bench.run_for_frames(6 * SECOND));
-            let away = way(&away);
-            assert!(away.turn > 75.0, "it has turned: {away:?}");
+            frames.extend(bench.run_for_frames(6 * SECOND));
+            let displacement = travel(&frames);
+            assert!(displacement.turn > 75.0, "it has turned: {displacement:?}");
             assert!(notes(&mut bench, walked).is_empty());
             // No second press: only the wall is waited for.
             bench.run_ms(2_500);
-            let said = notes(&mut bench, walked);
-            assert_eq!(said, ["# waiting for nose"]);
-            let ahead = way(&bench.run_for_frames(3 * SECOND));
+            let printed = notes(&mut bench, walked);
+            assert_eq!(printed, ["# waiting for nose"]);
+            let ahead = travel(&bench.run_for_frames(3 * SECOND));
             assert!(ahead.forward > 90.0 && ahead.turn.abs() < 5.0, "{ahead:?}");
         }
         let status = Status::of(&mut bench);
@@ -154,16 +154,16 @@ fn a_button_that_is_stuck_or_only_touched_starts_nothing() {
         bench.uno.set_contact(BUTTON, true);
         bench.say("patrol");
         bench.run_ms(5_000);
-        assert!(stands(&mut bench));
+        assert!(is_still(&mut bench));
         bench.uno.set_contact(BUTTON, false);
         bench.run_ms(DEBOUNCED);
         for ms in 1..39 {
             press(&mut bench, BUTTON, ms);
             bench.run_ms(41);
         }
-        assert!(stands(&mut bench));
+        assert!(is_still(&mut bench));
         press(&mut bench, BUTTON, DEBOUNCED);
-        assert!(!stands(&mut bench));
+        assert!(!is_still(&mut bench));
     });
 }
 
@@ -221,13 +221,13 @@ fn contacts_on_the_ports_of_the_servos_leave_every_pulse_as_it_is() {
         }
         press(&mut bench, Pin::d(8), 100);
         bench.run_ms(2_000);
-        assert!(!stands(&mut bench));
+        assert!(!is_still(&mut bench));
         press(&mut bench, Pin::d(4), 100);
         bench.run_ms(10_000);
         assert_eq!(Status::of(&mut bench).text("late"), "0");
-        let said = notes(&mut bench, 0);
+        let printed = notes(&mut bench, 0);
         let expected = ["button", "nose", "nose"].map(|name| format!("# waiting for {name}"));
-        assert_eq!(said, expected);
+        assert_eq!(printed, expected);
     });
 }
 

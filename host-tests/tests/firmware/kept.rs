@@ -11,19 +11,19 @@ const LED: Pin = Pin::d(13);
 /// Cycles of a millisecond.
 pub const MS: u64 = simulated_uno::CYCLES_PER_MS;
 
-/// The pulses of A1 to A4 in the milliseconds to come, whatever happens meanwhile.
+/// Runs for some milliseconds and returns the pulses of A1 to A4, whatever happens meanwhile.
 pub fn pulses_in(bench: &mut FirmwareBench, ms: u64) -> [Vec<Pulse>; 4] {
     bench.uno.take_edges();
     bench.uno.run_ms(ms);
     pulses(bench)
 }
 
-/// The pulses of A1 to A4 among the edges that nobody has taken.
+/// The pulses of A1 to A4 among the edges not taken yet.
 pub fn pulses(bench: &FirmwareBench) -> [Vec<Pulse>; 4] {
     bench.pins().map(|pin| bench.uno.pulses(pin))
 }
 
-/// The widths that the servos get now, cycles; 0 without a pulse.
+/// The current widths of the servos, cycles; 0 without a pulse.
 pub fn widths_now(bench: &mut FirmwareBench) -> [u64; 4] {
     pulses_in(bench, 50).map(|pulses| pulses.last().map_or(0, |pulse| pulse.width))
 }
@@ -66,7 +66,7 @@ pub fn slew_limit(servo: usize) -> u64 {
 
 /// The same for a servo with this many us per degree, at a slew limit in deg/s.
 fn slew_limit_at(gain: f64, slew: f64) -> u64 {
-    // A cycle of rounding at each end, and the limit's own, half a step of an angle.
+    // A cycle of rounding at each end, and the rounding of the limit, half a step of an angle.
     (slew / 50.0 * gain.abs() * 16.0) as u64 + 3
 }
 

@@ -43,7 +43,7 @@ fn line(rng: &mut Rng) -> String {
         }
         11 => format!("speed {}", rng.u8(..)),
         12 => format!("watch {}", rng.u16(..300)),
-        // Long answers seldom.
+        // Lines with long answers rarely.
         13 => match rng.u8(..16) {
             0 => ["help", "?"][rng.usize(..2)].into(),
             1 => "cal".into(),

@@ -5,7 +5,7 @@
 //! and on one corrected by the data sheet: they differ in interrupt latency and
 //! in the receiver, and what holds in both does not depend on either.
 //!
-//! The ELF is the one that `make firmware` leaves. One that is older than the
+//! The ELF is that of `make firmware`. One that is older than the
 //! sources differs from the core that these tests are built with, and fails.
 
 use std::collections::HashMap;

@@ -6,8 +6,8 @@ use lizard_host::sim::frame::FRAME;
 use crate::walk::{SLOT, Walk};
 use crate::{Status, in_both, neutral_widths};
 
-/// Widths that a slot has room for, cycles.
-const ROOM: std::ops::RangeInclusive<u16> = 1_000..=63_000;
+/// Widths that fit into a slot, cycles.
+const WIDTHS: std::ops::RangeInclusive<u16> = 1_000..=63_000;
 
 #[test]
 fn a_width_that_a_slot_has_no_room_for_gives_no_pulse() {
@@ -25,14 +25,14 @@ fn a_width_that_a_slot_has_no_room_for_gives_no_pulse() {
             // After the hand-over and before A3's slot is planned.
             walk.run_to(start + 2_000);
             for (address, n) in a3.into_iter().flat_map(|a| [(a, 0), (a + 1, 1)]) {
-                let was = u16::from(walk.bench.uno.peek(address));
+                let before = u16::from(walk.bench.uno.peek(address));
                 let neutral = (neutral_widths()[2] as u16).to_le_bytes()[n];
-                assert_eq!(was, u16::from(neutral), "where A3's width is");
+                assert_eq!(before, u16::from(neutral), "where A3's width is");
                 walk.bench.uno.poke(address, u16::to_le_bytes(width)[n]);
             }
             walk.run_to(start + FRAME - SLOT / 2);
             let (frame, asked) = walk.frames_since(start)[0];
-            let expected = ROOM.contains(&width).then_some(u64::from(width));
+            let expected = WIDTHS.contains(&width).then_some(u64::from(width));
             assert_eq!(frame.widths[2], expected, "{width}");
             for other in [0, 1, 3] {
                 assert_eq!(frame.widths[other], Some(asked[other]), "{width}");

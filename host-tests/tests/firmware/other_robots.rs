@@ -22,7 +22,8 @@ fn count() -> u64 {
     given.map_or(4, |count| count.parse().expect("LIZARD_ROBOTS is a number"))
 }
 
-/// The seconds of a gait under a flood, frame by frame as the core computes them.
+/// Walks a gait under a flood for two seconds and asserts that each frame has the widths that the
+/// core computes for it.
 fn assert_in_time(robot: &Robot, gait: &str, flood: &str, what: &str) {
     let board = SimulatedBoard::power_on(&FirmwareBench::elf(), Fidelity::DataSheet, robot);
     let mut bench = FirmwareBench::with_board(board.expect("the firmware"));
@@ -48,7 +49,7 @@ fn no_frame_is_late_for_any_robot_in_any_gait_under_any_flood() {
         for n in (*half..count()).step_by(2) {
             let mut rng = rng(2_000 + n);
             let (text, mut robot) = random_robot(&mut rng);
-            // Of three, one as it is, one with many gaits and one with long names.
+            // Every third robot gets many gaits, every third long names.
             match n % 3 {
                 1 => robot = with_many_gaits(&text, 10),
                 2 => robot = with_many_gaits(&text, MAX_NAME_BYTES),
@@ -66,7 +67,7 @@ fn no_frame_is_late_for_any_robot_in_any_gait_under_any_flood() {
 
 #[test]
 fn no_step_of_main_delays_a_frame_too_long_however_many_gaits_there_are() {
-    /// The cycles of every robot's other commands, of which `factory` takes the longest.
+    /// Cycles of the longest command besides the search for a gait: `factory`.
     const OTHERS: usize = 34_000;
     let (text, robot) = random_robot(&mut rng(2_000));
     let lengths = [10, 24, MAX_NAME_BYTES];
@@ -75,14 +76,20 @@ fn no_step_of_main_delays_a_frame_too_long_however_many_gaits_there_are() {
         .iter()
         .chain([&robot])
     {
-        let took = longest_step(&FirmwareBench::elf(), robot).expect("it runs");
+        let cycles = longest_step(&FirmwareBench::elf(), robot).expect("it runs");
         let largest = robot.longest_search();
-        println!("{} gaits: {took} cycles of {largest}", robot.gaits().len());
-        assert!(took as usize <= largest.max(OTHERS), "{took} of {largest}");
+        println!(
+            "{} gaits: {cycles} cycles of {largest}",
+            robot.gaits().len()
+        );
+        assert!(
+            cycles as usize <= largest.max(OTHERS),
+            "{cycles} of {largest}"
+        );
         // Where the search takes longest, the bound is not far above it.
         assert!(
-            largest < OTHERS || took as usize > largest / 2,
-            "{took} of {largest}"
+            largest < OTHERS || cycles as usize > largest / 2,
+            "{cycles} of {largest}"
         );
     }
 }

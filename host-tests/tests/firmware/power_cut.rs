@@ -11,7 +11,7 @@ use crate::awake;
 use crate::kept::{calibration, power_cycle};
 
 /// Loads the settings of an EEPROM as the core does.
-fn loaded(contents: &[u8; EEPROM_SIZE]) -> (Settings, Outcome) {
+fn load(contents: &[u8; EEPROM_SIZE]) -> (Settings, Outcome) {
     let mut settings = Settings::of(robot().firmware());
     let outcome = copies::load(robot().firmware(), &Eeprom::with(*contents), &mut settings);
     settings.set_turn(0);
@@ -53,7 +53,7 @@ impl Saved {
     }
 
     /// Powers the board on with these contents, and returns the output of `cal`.
-    fn powered_on_with(&mut self, contents: &[u8; EEPROM_SIZE]) -> Vec<String> {
+    fn power_on_with(&mut self, contents: &[u8; EEPROM_SIZE]) -> Vec<String> {
         self.bench.uno.set_eeprom(contents);
         power_cycle(&mut self.bench);
         calibration(&mut self.bench)
@@ -66,7 +66,7 @@ fn a_power_cut_at_any_byte_of_a_save_torn_in_any_way_leaves_the_old_or_the_new()
     let mut contents = saved.before;
     let operations = saved.save();
     let after = saved.bench.uno.eeprom();
-    let [old, new] = [contents, after].map(|contents| loaded(&contents).0);
+    let [old, new] = [contents, after].map(|contents| load(&contents).0);
     assert_ne!(old, new);
     assert!(operations.len() > 10);
     let (mut found, mut images) = ([0, 0], 0u64);
@@ -76,17 +76,17 @@ fn a_power_cut_at_any_byte_of_a_save_torn_in_any_way_leaves_the_old_or_the_new()
             for torn in [operation.old | ones, operation.new | ones] {
                 let mut contents = contents;
                 contents[usize::from(operation.address)] = torn;
-                let (settings, outcome) = loaded(&contents);
+                let (settings, outcome) = load(&contents);
                 let is_new = settings == new;
                 assert!(
                     is_new || settings == old,
                     "{operation:?} torn to {torn:02x}: {outcome:?}"
                 );
                 found[usize::from(is_new)] += 1;
-                // The running image, for some of them.
+                // Some of the cuts also in the running image.
                 images += 1;
                 if images % 97 == 0 {
-                    let calibration = saved.powered_on_with(&contents);
+                    let calibration = saved.power_on_with(&contents);
                     assert_eq!(calibration, saved.calibrations[usize::from(is_new)]);
                 }
             }
@@ -113,7 +113,7 @@ fn a_power_cut_in_any_operation_of_a_running_save_leaves_the_old_or_the_new() {
             (PowerCut::InWrite(operation), 0x81),
             (PowerCut::InWrite(operation), 0xff),
         ] {
-            saved.powered_on_with(&before);
+            saved.power_on_with(&before);
             for line in ["trim 1 1.25", "trim 3 -1", "trim 4 2", "deadman 4321"] {
                 saved.bench.say(line);
             }
@@ -128,7 +128,7 @@ fn a_power_cut_in_any_operation_of_a_running_save_leaves_the_old_or_the_new() {
         }
     }
     assert!(found[0] > 0 && found[1] > 0, "{found:?}");
-    assert_ne!(loaded(&before).0, loaded(&after).0);
+    assert_ne!(load(&before).0, load(&after).0);
 }
 
 #[test]
@@ -136,21 +136,21 @@ fn any_flipped_bit_gives_the_settings_the_other_copy_or_the_defaults() {
     let mut saved = Saved::new();
     saved.save();
     let contents = saved.bench.uno.eeprom();
-    let [latest, older] = [contents, saved.before].map(|contents| loaded(&contents).0);
+    let [latest, older] = [contents, saved.before].map(|contents| load(&contents).0);
     let mut defaults = Settings::of(robot().firmware());
     defaults.set_turn(0);
     let mut found = [0, 0, 0];
     for bit in 0..8 * EEPROM_SIZE {
         let mut flipped = contents;
         flipped[bit / 8] ^= 1 << (bit % 8);
-        let (settings, outcome) = loaded(&flipped);
+        let (settings, outcome) = load(&flipped);
         let which = [&latest, &older, &defaults]
             .iter()
             .position(|known| **known == settings);
         let which = which.unwrap_or_else(|| panic!("bit {bit}: {outcome:?} {settings:?}"));
         found[which] += 1;
         if bit % 64 == 11 {
-            let calibration = saved.powered_on_with(&flipped);
+            let calibration = saved.power_on_with(&flipped);
             let expected = &saved.calibrations[if which == 0 { 1 } else { 0 }];
             assert_eq!(&calibration, expected, "bit {bit}");
         }

@@ -1,4 +1,4 @@
-//! Pulses to the cycle, whatever the serial line does.
+//! The pulses are exact to the cycle, whatever the serial line does.
 
 use lizard_host::sim::core_run;
 use lizard_host::sim::frame::{FRAME, Frame};
@@ -14,8 +14,8 @@ pub fn servo_edges(bench: &FirmwareBench) -> Vec<Edge> {
     bench.uno.edges().into_iter().filter(of_servo).collect()
 }
 
-/// Checks the pulses' times: one of each servo in each frame, 20 ms
-/// apart to the cycle, one pin high at a time.
+/// Asserts that each servo has one pulse in each frame, 20 ms apart to the cycle, and that one pin
+/// is high at a time.
 fn assert_in_step(bench: &FirmwareBench, frames: &[Frame]) {
     for frame in frames {
         for (servo, start) in frame.starts.into_iter().enumerate() {
@@ -36,7 +36,7 @@ pub fn first_pulse(bench: &FirmwareBench) -> u64 {
 }
 
 /// The widths that the core commands when it receives only the first `received` bytes.
-pub fn commanded(
+pub fn commanded_widths(
     bench: &FirmwareBench,
     first: u64,
     received: usize,
@@ -59,9 +59,9 @@ pub fn commanded(
 fn every_width_is_the_one_that_was_asked_for() {
     for_each(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
         for gait in robot().gaits() {
-            // Asked when nothing is being written any more, and again if the line ends so
-            // shortly before a tick that main may read it before or after.
-            let asked_in = |ms| {
+            // The line is sent while the firmware writes nothing; and once more, later, if it ended so
+            // shortly before a tick that main may have read it before the tick or after it.
+            let asked_after = |ms| {
                 let mut bench = awake(*fidelity);
                 let first = first_pulse(&bench);
                 bench.run_ms(ms);
@@ -73,13 +73,16 @@ fn every_width_is_the_one_that_was_asked_for() {
                     .next()
                     .is_none()
             };
-            let (mut bench, first) = (200..220).map(asked_in).find(is_decided).expect("a time");
+            let (mut bench, first) = (200..220)
+                .map(asked_after)
+                .find(is_decided)
+                .expect("a time");
             let frames = bench.run_for_frames(6 * SECOND);
             assert_in_step(&bench, &frames);
             let received = bench.uno.received_by_uno().len();
             for (frame, asked) in frames
                 .iter()
-                .zip(commanded(&bench, first, received, &frames))
+                .zip(commanded_widths(&bench, first, received, &frames))
             {
                 assert_eq!(frame.widths(), asked, "{}: {frame:?}", gait.name());
             }
@@ -105,7 +108,7 @@ fn a_saturated_line_both_ways_moves_no_edge() {
             assert_in_step(&bench, &frames);
             for (frame, asked) in frames
                 .iter()
-                .zip(commanded(&bench, first, received, &frames))
+                .zip(commanded_widths(&bench, first, received, &frames))
             {
                 assert_eq!(frame.widths(), asked, "{flood:?}: {frame:?}");
             }
@@ -115,29 +118,25 @@ fn a_saturated_line_both_ways_moves_no_edge() {
             let varies = robot().gaits().iter().any(|gait| gait.moves());
             assert!(
                 !varies || changed.count() as u64 > 2 * SECOND,
-                "the widths vary"
+                "the widths do not vary"
             );
-            // Both lines are busy: 11 520 bytes a second come in, and unless the
-            // flood is all one overlong line the answers fill the line back.
+            // Both directions are saturated: 11 520 bytes a second come in, and the answers fill the
+            // other direction, unless the flood is a single overlong line.
             let seconds = frames.len() as f64 / SECOND as f64;
-            let come = (bench.uno.received_by_uno().len() - received) as f64 / seconds;
+            let received_rate = (bench.uno.received_by_uno().len() - received) as f64 / seconds;
             assert!(
-                come > 11_000.0 || fidelity == Fidelity::Stock && come > 10_000.0,
-                "{come} bytes a second"
+                received_rate > 11_000.0 || fidelity == Fidelity::Stock && received_rate > 10_000.0,
+                "{received_rate} bytes a second"
             );
-            let back = sent as f64 / seconds;
+            let sent_rate = sent as f64 / seconds;
             assert!(
-                back > 9_500.0 || flood == "x",
-                "{flood:?}: {back} bytes a second back"
+                sent_rate > 9_500.0 || flood == "x",
+                "{flood:?}: {sent_rate} bytes a second back"
             );
             end_flood(&mut bench);
             let status = Status::of(&mut bench);
             assert_eq!(status.number("late"), 0.0, "{flood:?}");
-            assert_eq!(
-                bench.uno.overruns(),
-                0,
-                "the receiver is always read in time"
-            );
+            assert_eq!(bench.uno.overruns(), 0, "the receiver was not read in time");
         }
     });
 }

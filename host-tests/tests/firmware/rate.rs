@@ -11,13 +11,13 @@ use crate::{Status, awake, first_moving_gait, in_both, robot_after};
 /// one for each rate before it, and one whose end the robot does not trust.
 const RATES: [(f64, u32); 4] = [(115_200.0, 1), (57_600.0, 3), (38_400.0, 4), (9_600.0, 5)];
 
-/// Asks until there is an answer; returns the number of lines that it took.
+/// Asks until there is an answer; returns the number of lines sent.
 pub fn ask_until_answered(bench: &mut FirmwareBench) -> u32 {
     for asked in 1..=40 {
-        let said = bench.lines().len();
+        let printed = bench.lines().len();
         bench.uno.send(b"status\n");
         bench.run_ms(350);
-        if bench.lines()[said..]
+        if bench.lines()[printed..]
             .iter()
             .any(|line| line.text.starts_with("ok gait="))
         {
@@ -28,7 +28,7 @@ pub fn ask_until_answered(bench: &mut FirmwareBench) -> u32 {
 }
 
 /// A robot that was found at this rate.
-fn found_at(baud: f64) -> FirmwareBench {
+fn robot_at(baud: f64) -> FirmwareBench {
     let mut bench = awake(Fidelity::DataSheet);
     bench.uno.set_baud(baud);
     ask_until_answered(&mut bench);
@@ -57,10 +57,14 @@ fn a_guessed_rate_does_not_obey_what_a_pose_at_another_rate_looks_like() {
     let garbled = "err 1 the line came garbled, send it again";
     let mut answers = Vec::new();
     for _ in 0..12 {
-        let said = bench.lines().len();
+        let printed = bench.lines().len();
         bench.uno.send(b"cal\n");
         bench.run_ms(350);
-        answers.extend(bench.lines()[said..].iter().map(|line| line.text.clone()));
+        answers.extend(
+            bench.lines()[printed..]
+                .iter()
+                .map(|line| line.text.clone()),
+        );
     }
     let at_its_rate = answers.iter().filter(|answer| *answer == garbled).count();
     assert!(at_its_rate >= 2, "{answers:?}");
@@ -73,7 +77,7 @@ fn a_guessed_rate_does_not_obey_what_a_pose_at_another_rate_looks_like() {
 fn the_module_may_be_exchanged_for_one_of_any_other_rate() {
     for (first, _) in RATES {
         for (second, _) in RATES {
-            let mut bench = found_at(first);
+            let mut bench = robot_at(first);
             bench.uno.set_baud(second);
             ask_until_answered(&mut bench);
         }
@@ -83,7 +87,7 @@ fn the_module_may_be_exchanged_for_one_of_any_other_rate() {
 #[test]
 fn opening_the_port_on_usb_returns_to_its_rate_and_a_hang_does_not() {
     for (baud, _) in RATES {
-        let mut bench = found_at(baud);
+        let mut bench = robot_at(baud);
         let resets = bench.uno.resets();
         bench.uno.stall_main(1_000 * CYCLES_PER_MS);
         let hangs = bench
@@ -122,7 +126,7 @@ fn no_pulse_moves_by_a_cycle_while_the_rate_is_sought() {
             let mut rates = std::collections::BTreeSet::new();
             for _ in 0..120 {
                 if is_sought {
-                    // Never that of the chip, or the robot would obey.
+                    // Never the chip's rate, at which the robot would obey.
                     bench.uno.set_baud(4_800.0);
                     let line: Vec<u8> = (0..rng.usize(1..30)).map(|_| rng.u8(..)).collect();
                     bench.uno.send(&line);
@@ -141,7 +145,7 @@ fn no_pulse_moves_by_a_cycle_while_the_rate_is_sought() {
 #[test]
 fn noise_is_never_obeyed_and_the_robot_is_found_again() {
     let mut bench = awake(Fidelity::DataSheet);
-    let said = bench.lines().len();
+    let printed = bench.lines().len();
     let mut rng = Rng::with_seed(5);
     for _ in 0..400 {
         bench.uno.set_baud(300.0 + 200_000.0 * rng.f64());
@@ -149,7 +153,7 @@ fn noise_is_never_obeyed_and_the_robot_is_found_again() {
         bench.uno.send_with_framing_error(&noise);
         bench.run_ms(rng.u64(1..60));
     }
-    let obeyed = bench.lines()[said..]
+    let obeyed = bench.lines()[printed..]
         .iter()
         .any(|line| line.text.starts_with("ok "));
     assert!(!obeyed);
@@ -161,7 +165,7 @@ fn noise_is_never_obeyed_and_the_robot_is_found_again() {
 #[test]
 fn a_robot_that_is_driven_keeps_its_rate_beside_others_who_send_at_another() {
     let gait = first_moving_gait();
-    let mut bench = found_at(9_600.0);
+    let mut bench = robot_at(9_600.0);
     for _ in 0..40 {
         bench.uno.send_with_framing_error(&[0x55; 31]);
         bench.run_ms(100);

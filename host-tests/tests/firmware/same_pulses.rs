@@ -1,10 +1,9 @@
 //! The pulses of every robot of robots/, cycle for cycle, are those that were recorded.
 //!
-//! Each robot has one recorded number: a digest of every edge of its
-//! servos' pins in so many simulated minutes of random commands. A pulse that is one cycle
-//! longer, later or elsewhere gives another number. So does every change of a robot's
-//! numbers or of what a command does: then the pulses are meant to be others, and the
-//! numbers here are replaced by those that the failed test prints.
+//! Each robot has one recorded number: a digest of every edge of its servos' pins in some simulated
+//! minutes of random commands. A pulse that is one cycle longer, later or elsewhere gives another
+//! number. So does every change of a robot's numbers or of what a command does: then the pulses are
+//! meant to be others, and the numbers here are replaced by those that the failed test prints.
 
 use lizard_host::firmware::with_robot;
 use lizard_host::sim::frame::{FRAME, servo_pins};
@@ -15,7 +14,7 @@ use simulated_uno::{CYCLES_PER_MS, Edge, Fidelity, State, Uno};
 
 use crate::{SECOND, for_each};
 
-/// Random numbers that stay the same whatever a library does: xorshift64*, Vigna 2016.
+/// A generator of random numbers that no library can change: xorshift64*, Vigna 2016.
 struct Random(u64);
 
 impl Random {
@@ -93,7 +92,7 @@ fn digest(name: &str) -> (u64, u64) {
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     supplies::connect(&mut uno, &robot);
     let pins = servo_pins(&robot);
-    // From the first pulse on: how long the program needs before it is another matter.
+    // Times count from the first pulse, because the time until then depends on the code.
     let risen = |uno: &Uno| uno.is_high(pins[0]);
     assert!(uno.run_until(500 * CYCLES_PER_MS, 1_000, risen), "no pulse");
     let is_first = |edge: &&Edge| edge.high && edge.pin == pins[0];
@@ -111,7 +110,7 @@ fn digest(name: &str) -> (u64, u64) {
     let mut digest = 0xcbf2_9ce4_8422_2325u64;
     let mut count = 0;
     let mut commands = 0;
-    // The first command when all servos are awake.
+    // The first command comes when all servos are awake.
     let mut next = 50;
     for frame in 0..frames {
         let start = first + frame * FRAME;

@@ -37,7 +37,7 @@ fn a_sender_that_waits_for_answers_loses_nothing_at_full_line_rate() {
 
 #[test]
 fn a_whole_line_waits_in_the_buffer_while_an_answer_is_on_its_way() {
-    // Longest line right behind the longest answer, without waiting for it.
+    // The longest line right after a question with the longest answer, without waiting.
     in_both(|fidelity| {
         let mut bench = awake(fidelity);
         let before = bench.lines().len();
@@ -61,10 +61,10 @@ fn a_long_answer_comes_as_fast_as_the_line_carries_it() {
         let before = bench.bytes().len();
         wait_for(&mut bench, "help");
         let bytes = &bench.bytes()[before..];
-        let took = bytes[bytes.len() - 1].cycle - bytes[0].cycle;
-        // A byte takes 1360 cycles, in stock simavr 1496. To that come some frames, and
-        // the making of each line.
-        let rate = took / bytes.len() as u64;
+        let duration = bytes[bytes.len() - 1].cycle - bytes[0].cycle;
+        // A byte takes 1360 cycles, in stock simavr 1496. Some frames, and the composing of each
+        // line, add to that.
+        let rate = duration / bytes.len() as u64;
         assert!(bytes.len() > 200 && rate < 2_000, "{rate} cycles a byte");
     });
 }
@@ -82,14 +82,14 @@ fn bytes_lost_in_a_flood_are_counted() {
         let lost = Status::of(&mut bench).number("rx_lost");
         println!("{fidelity:?}: {received} received, {lost} lost, {answers} answers");
         assert!(answers > 1000.0 && lost > received / 2.0);
-        // Each answer is for a line of at least two bytes, and losing bytes makes
-        // lines that are not much longer.
-        let kept = received - lost;
+        // Each answer belongs to a line of at least two bytes, and lost bytes make lines only a
+        // little longer.
+        let read = received - lost;
         assert!(
-            (2.0 * answers..4.0 * answers).contains(&kept),
-            "{kept} for {answers} answers"
+            (2.0 * answers..4.0 * answers).contains(&read),
+            "{read} for {answers} answers"
         );
-        // A flood ends, and nothing of it stays.
+        // After the end of a flood nothing of it remains.
         wait_for(&mut bench, &first_moving_gait());
         assert_eq!(Status::of(&mut bench).number("rx_lost"), lost);
     });

@@ -197,8 +197,8 @@ fn no_pulse_leaps_after_a_stall_of_any_length_at_any_moment_of_any_gait() {
             let resets = bench.uno.resets();
             bench.uno.stall_main(length * MS);
             // Once its first stage has ended the pulses, the reset is certain.
-            let seen = if length < HARMLESS { length } else { 350 };
-            bench.uno.run_ms(seen + 60);
+            let wait = if length < HARMLESS { length } else { 350 };
+            bench.uno.run_ms(wait + 60);
             let was_reset = bench.uno.resets() > resets;
             assert!(length < SURELY_RESET || was_reset, "{length} ms");
             assert!(length >= HARMLESS || !was_reset, "{length} ms");

@@ -1,5 +1,5 @@
-//! Debian's own `simavr` runs the ELF file and the HEX file as they are: both start, and the
-//! robot that was told to walk after power-on walks.
+//! Debian's own `simavr` runs the unchanged ELF and HEX files: both start, and a robot that was told
+//! to walk after power-on does so.
 
 use std::collections::HashMap;
 use std::fs::{self, File};
@@ -12,7 +12,7 @@ use lizard_core::numbers::units::CYCLES_PER_US;
 use lizard_core::virtual_board::Running;
 use lizard_host_tests::{FirmwareBench, robot};
 
-/// The longest that simavr runs. It sleeps as long as the chip does, and a busy machine is slower.
+/// Time after which simavr is ended. It sleeps while the chip does, and a busy machine is slower.
 const TIMEOUT: Duration = Duration::from_secs(200);
 
 /// The gait that the robot walks: the first after `stand`.
@@ -21,7 +21,7 @@ fn gait() -> String {
 }
 
 /// Writes the EEPROM after `boot` and `save` as a HEX file.
-fn eeprom(folder: &Path) {
+fn write_eeprom(folder: &Path) {
     let mut running = Running::power_on(*robot().firmware());
     running.run(50);
     let boot = format!("boot {}", gait());
@@ -59,9 +59,9 @@ fn objcopy(arguments: &[&str], folder: &Path) {
     assert!(done.expect("avr-objcopy").success(), "{arguments:?}");
 }
 
-/// The output of simavr, which runs until it is enough and is ended by SIGTERM, so that it closes
-/// its files.
-fn simavr(arguments: &[&str], folder: &Path, enough: impl Fn(&str) -> bool) -> String {
+/// Runs simavr until its output is complete and returns the output. SIGTERM ends it, so that it
+/// closes its files.
+fn run_simavr(arguments: &[&str], folder: &Path, is_complete: impl Fn(&str) -> bool) -> String {
     let output = folder.join("output.txt");
     let file = File::create(&output).expect("a folder");
     let mut child = Command::new("simavr")
@@ -74,7 +74,7 @@ fn simavr(arguments: &[&str], folder: &Path, enough: impl Fn(&str) -> bool) -> S
         .expect("simavr, which scripts/setup installs");
     let printed = || String::from_utf8_lossy(&fs::read(&output).expect("it was made")).into_owned();
     let end = Instant::now() + TIMEOUT;
-    while !enough(&printed()) && Instant::now() < end {
+    while !is_complete(&printed()) && Instant::now() < end {
         sleep(Duration::from_millis(100));
     }
     let pid = rustix::process::Pid::from_child(&child);
@@ -84,7 +84,7 @@ fn simavr(arguments: &[&str], folder: &Path, enough: impl Fn(&str) -> bool) -> S
 }
 
 /// Tags of simavr's `avr_mcu_section.h`: a file of traces, and a pin to be traced.
-fn traces(pins: [u8; 4]) -> Vec<u8> {
+fn trace_tags(pins: [u8; 4]) -> Vec<u8> {
     let mut name = vec![12, 64];
     name.extend(b"pins.vcd");
     name.resize(2 + 64, 0);
@@ -129,7 +129,7 @@ fn widths(vcd: &str) -> HashMap<String, Vec<f64>> {
 fn the_elf_file_walks_in_debians_simavr() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
-    eeprom(folder);
+    write_eeprom(folder);
     fs::copy(FirmwareBench::elf(), folder.join("lizard.elf")).expect("the firmware");
     // The same file with four pins to be traced in addition to what it asks for.
     objcopy(
@@ -147,7 +147,7 @@ fn the_elf_file_walks_in_debians_simavr() {
     );
     let mut mmcu = fs::read(folder.join("mmcu.bin")).expect("what simavr reads");
     let end = mmcu.len() - 2;
-    mmcu.splice(end..end, traces(robot().firmware().pins()));
+    mmcu.splice(end..end, trace_tags(robot().firmware().pins()));
     fs::write(folder.join("mmcu.bin"), mmcu).expect("a folder");
     objcopy(
         &[
@@ -158,7 +158,7 @@ fn the_elf_file_walks_in_debians_simavr() {
         ],
         folder,
     );
-    let printed = simavr(
+    let printed = run_simavr(
         &[
             "-m",
             "atmega328p",
@@ -185,20 +185,20 @@ fn the_elf_file_walks_in_debians_simavr() {
     let widths = widths(&vcd);
     for (servo, calibration) in robot().firmware().calibration().iter().enumerate() {
         let all = &widths[&format!("A{}", servo + 1)];
-        let [least, most] =
+        let [smallest, largest] =
             [f64::min, f64::max].map(|pick| all.iter().copied().reduce(pick).expect("pulses"));
         assert!(all.len() > 150, "{} pulses", all.len());
         assert!(
-            most - least > 50.0,
-            "A{} turns: {least} to {most} us",
+            largest - smallest > 50.0,
+            "A{} turns: {smallest} to {largest} us",
             servo + 1
         );
         let ends = [calibration.min, calibration.max]
             .map(|end| f64::from(calibration.pulse(end)) / f64::from(CYCLES_PER_US));
         let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
         assert!(
-            low - 0.1 <= least && most <= high + 0.1,
-            "A{}: {least} to {most} us",
+            low - 0.1 <= smallest && largest <= high + 0.1,
+            "A{}: {smallest} to {largest} us",
             servo + 1
         );
     }
@@ -216,7 +216,7 @@ fn the_hex_files_start_in_debians_simavr_and_report_its_low_voltage() {
     let image = lizard_host::flash::image::Image::new(image.flash()).expect("an image");
     fs::write(folder.join("image.hex"), image.to_hex()).expect("a folder");
     for file in ["made.hex", "image.hex"] {
-        let printed = simavr(
+        let printed = run_simavr(
             &["-m", "atmega328p", "-f", "16000000", file],
             folder,
             |printed| printed.contains("3.30 V"),

@@ -10,8 +10,8 @@ use crate::{
     widths,
 };
 
-/// Cycles between interruptions of a gait: not a fraction of a frame, so that many phases of gait
-/// and frame are covered.
+/// Cycles between interruptions of a gait: no fraction of a frame, so that many phases of gait and
+/// frame are covered.
 const APART: u64 = 1_237_331;
 
 /// Sends a line at cycle `cycle` after a second of `gait`, and returns the bench and
@@ -123,7 +123,7 @@ fn servos_wake_one_after_another_a_tenth_of_a_second_apart() {
         let frames = bench.run_for_frames(100);
         let [a1, a2, a3, a4] = woken(&frames);
         assert_eq!([a2 - a1, a3 - a2, a4 - a3], [5, 5, 5]);
-        // They wake where they were, and stand up from there.
+        // The servos wake where they were, and move to `stand` from there.
         for (servo, at) in [a1, a2, a3, a4].into_iter().enumerate() {
             assert_eq!(frames[at].widths[servo], Some(pose[servo]));
         }
@@ -168,9 +168,9 @@ fn a_pose_is_reached_by_all_servos_together_and_not_too_fast() {
         };
         let whole = way(end);
         for widths in &sent {
-            let gone = way(*widths);
-            for (gone_here, whole_here) in gone.into_iter().zip(whole) {
-                let error = gone_here - gone[0] / whole[0] * whole_here;
+            let covered = way(*widths);
+            for (covered_here, whole_here) in covered.into_iter().zip(whole) {
+                let error = covered_here - covered[0] / whole[0] * whole_here;
                 assert!(error.abs() <= 8.0, "{widths:?}");
             }
         }

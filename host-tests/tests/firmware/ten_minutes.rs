@@ -1,4 +1,4 @@
-//! AVR against host: the same core, the same commands, the same bits.
+//! The core on the AVR and on this machine: the same commands give the same bits.
 
 use crate::comparable_line;
 use lizard_host::sim::core_run;

@@ -4,7 +4,7 @@ use lizard_host::sim::frame::{FRAME, Frame, frames, servo_pins};
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::Fidelity;
 
-use crate::pulses::{commanded, first_pulse};
+use crate::pulses::{commanded_widths, first_pulse};
 use crate::{awake, first_moving_gait};
 
 /// Cycles from one servo's pulse to the next one's.
@@ -68,7 +68,7 @@ impl Walk {
             widths: [None; 4],
         };
         let frames = vec![nothing; count as usize];
-        commanded(&self.bench, self.first, self.received, &frames)
+        commanded_widths(&self.bench, self.first, self.received, &frames)
     }
 
     /// True if the simulation is the one corrected by the data sheet.

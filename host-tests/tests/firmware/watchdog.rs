@@ -25,7 +25,7 @@ fn hold_pose() -> (FirmwareBench, [u64; 4]) {
     (bench, widths)
 }
 
-/// Runs until the watchdog has reset the chip; returns the cycles that it took.
+/// Runs until the watchdog has reset the chip; returns the cycles until then.
 fn run_until_reset(bench: &mut FirmwareBench) -> u64 {
     let (start, resets) = (bench.uno.cycle(), bench.uno.resets());
     let limit = TIMEOUT_MS * MS;
@@ -44,12 +44,12 @@ fn run_until_reset(bench: &mut FirmwareBench) -> u64 {
 fn a_main_that_hangs_is_reset_and_the_robot_held_without_a_wrong_pulse() {
     let (mut bench, widths) = hold_pose();
     for n in 0..40u64 {
-        // At any place in a frame.
+        // At any time in a frame.
         bench.uno.run_cycles(n * 7_919);
         bench.uno.take_edges();
         bench.uno.stall_main(2_000 * MS);
-        let took = run_until_reset(&mut bench);
-        assert!(took > 200 * MS, "{took}: not without need");
+        let cycles = run_until_reset(&mut bench);
+        assert!(cycles > 200 * MS, "{cycles}: too early");
         bench.uno.run_ms(300);
         for (servo, pulses) in pulses(&bench).iter().enumerate() {
             for pulse in pulses {
@@ -254,7 +254,7 @@ fn a_hang_that_ends_by_itself_is_reset_like_any_other() {
         assert!(began_anew || ms < 130, "{ms} ms");
         let fault = if began_anew { "watchdog" } else { "none" };
         assert_eq!(Status::of(&mut bench).text("fault"), fault, "{ms} ms");
-        // Another round begins without a fault, in the same pose.
+        // The next iteration begins without a fault, in the same pose.
         bench.say(&pose_at([5.0, -4.0, 3.0, -2.0]));
         bench.run_ms(500);
     }
@@ -296,7 +296,7 @@ fn a_robot_that_rests_and_is_reset_rests_until_boot_or_an_order() {
     bench.say("rest");
     bench.run_ms(300);
     bench.uno.reset();
-    // `boot` says stand, as long as nobody says anything else; nobody sends a byte.
+    // `boot` starts `stand` unless a byte arrives; here none does.
     let before = pulses_in(&mut bench, 2_900);
     assert!(before.iter().all(Vec::is_empty), "{before:?}");
     bench.uno.run_ms(2_500);

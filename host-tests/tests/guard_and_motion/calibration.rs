@@ -27,12 +27,12 @@ fn each_servo_has_the_neutral_the_gain_and_the_pin_that_the_file_gives_it() {
             );
             let mut checked = 0;
             for sweep in (i16::MIN..=i16::MAX).step_by(17) {
-                let meant =
+                let exact =
                     16.0 * (servo.neutral_us + servo.us_per_degree * f64::from(sweep) / STEPS);
-                if !(0.0..65536.0).contains(&meant) {
+                if !(0.0..65536.0).contains(&exact) {
                     continue;
                 }
-                let error = f64::from(core.width(Sweep(sweep)).0) - meant;
+                let error = f64::from(core.width(Sweep(sweep)).0) - exact;
                 assert!(
                     error.abs() <= 2.0,
                     "{name}: A{} is {error} cycles off",

@@ -21,12 +21,12 @@ pub const WAKING: u32 = 20;
 pub const STEP_PER_FRAME: f64 = 50.0 * 360.0 / 65536.0;
 
 /// Number of frames in which a motion accelerates to its pace, or brakes.
-const GATHERING: f64 = 7.0;
+const ACCELERATION_FRAMES: f64 = 7.0;
 
-/// The most that rounding may add to a change of speed, in steps of angle a frame.
+/// Largest error by rounding of a change of speed, in steps of angle per frame.
 const ROUNDING: f64 = 4.0;
 
-/// The most that a servo's speed may change from one frame to the next, deg/s, except
+/// The largest change of a servo's speed from one frame to the next, deg/s, except
 /// for `stop`, `rest` and the guard, which stop it at once.
 ///
 /// A point-to-point move changes speed the most where its shortest, of eight frames,
@@ -47,7 +47,8 @@ fn most_jerk(robot: &Robot) -> f64 {
     let moves = robot.pace().slew / 2.0;
     let gaits = GaitId::all(robot.gaits().len()).map(|id| {
         let (speed, change) = fastest(robot, id);
-        change.max(speed / GATHERING + robot.pace().slew / 4.0) + speed / GATHERING
+        change.max(speed / ACCELERATION_FRAMES + robot.pace().slew / 4.0)
+            + speed / ACCELERATION_FRAMES
     });
     gaits.fold(moves, f64::max) + ROUNDING * STEP_PER_FRAME
 }
@@ -76,7 +77,7 @@ fn fastest(robot: &Robot, id: GaitId) -> (f64, f64) {
 
 /// Number of frames within which any command ends: waking, braking, the longest move
 /// at the slew limit, gathering pace.
-pub fn long_enough(robot: &Robot) -> u32 {
+pub fn settling_frames(robot: &Robot) -> u32 {
     let travels = robot.firmware().calibration();
     let ranges = travels.map(|servo| f64::from(servo.max.0) - f64::from(servo.min.0));
     let farthest = ranges.into_iter().fold(0.0, f64::max);
@@ -84,12 +85,12 @@ pub fn long_enough(robot: &Robot) -> u32 {
     WAKING + 30 + (1.05 * frames) as u32
 }
 
-/// A robot whose every frame is checked as it is sent.
+/// A robot each frame of which is checked when it is sent.
 pub struct Walker<'a> {
     name: &'a str,
     robot: &'a Robot,
     running: Running,
-    /// Degrees a second of each servo in the last frame.
+    /// Speed of each servo in the last frame, deg/s.
     speeds: [f64; 4],
     /// True if the servos may stop at once in the next frame.
     may_stop: bool,
@@ -152,7 +153,7 @@ impl<'a> Walker<'a> {
     /// Moves to a pose; false if the guard stops the robot on the path.
     pub fn move_to(&mut self, pose: &Pose) -> bool {
         self.expect_ok(&self.pose_command(pose));
-        self.run(long_enough(self.robot));
+        self.run(settling_frames(self.robot));
         self.motion().hazard().is_none()
     }
 
@@ -227,8 +228,8 @@ impl<'a> Walker<'a> {
                 continue;
             }
             let sweep = f64::from(pose.0[n].0) * 360.0 / 65536.0;
-            let meant = 16.0 * (servo.neutral_us + servo.us_per_degree * sweep);
-            let error = f64::from(width.0) - meant;
+            let expected = 16.0 * (servo.neutral_us + servo.us_per_degree * sweep);
+            let error = f64::from(width.0) - expected;
             // Neutral, gain and product are rounded to half a cycle each; half a
             // step of the gain is a cycle at the ends of half a turn.
             assert!(

@@ -107,14 +107,14 @@ fn a_leg_of_a_wave_pushes_back_for_its_duty_and_returns_in_the_rest() {
                 continue;
             }
             legs += 1;
-            // The foot, forward positive, at so much of the cycle after the start.
+            // The foot's place, forward positive, at a share of the cycle after its start.
             let foot = |after: f64| {
                 let phase = (stride.start + after).rem_euclid(1.0) * f64::from(CYCLE);
                 let pose = gait.pose(robot.firmware().waves(), phase as u32);
                 FORWARD[servo] * f64::from(pose.0[servo].0) / STEPS_PER_DEGREE
             };
             let whom = format!("{name}: {} {}", float.name(), LEGS[servo]);
-            // In front at its start, a straight line to as far behind, and back.
+            // A stroke starts in front, goes in a straight line to as far behind, and returns.
             let front = foot(0.0);
             let share = front / stride.amplitude;
             assert!((0.5..1.01).contains(&share), "{whom} begins at {front} deg");
@@ -266,8 +266,8 @@ fn a_mirrored_gait_is_the_other_one_with_left_and_right_exchanged() {
             for phase in phases() {
                 let pose = mirror(one.pose(robot.firmware().waves(), phase));
                 // Halves are rounded up on either side, gains are rounded.
-                let off = pose.farthest(&other.pose(robot.firmware().waves(), phase));
-                assert!(off <= 1, "{name}: {off} steps");
+                let deviation = pose.farthest(&other.pose(robot.firmware().waves(), phase));
+                assert!(deviation <= 1, "{name}: {deviation} steps");
             }
         }
     }
@@ -278,7 +278,7 @@ fn a_mirrored_gait_is_the_other_one_with_left_and_right_exchanged() {
 fn the_wrap_of_the_phase_is_as_smooth_as_the_rest_of_the_cycle() {
     for (Named { name, robot }, float, gait) in gaits() {
         let pose = |phase: u32| gait.pose(robot.firmware().waves(), phase % CYCLE);
-        // The longest way between two neighbours, and that from the last phase to 0.
+        // The longest distance between two neighbours, including that from the last phase to 0.
         let way = |phase: u32| pose(phase).farthest(&pose(phase + (1 << 8)));
         let longest = phases().step_by(7).map(way).max();
         let around = phases().skip(PHASES as usize - 4).map(way).max();

@@ -5,7 +5,7 @@ use lizard_core::numbers::pose::Pulses;
 use lizard_host_tests::{Named, paper, robots};
 use lizard_robot::{CheckedGait, Robot, Travel};
 
-use crate::frames::{Walker, gait_command, long_enough};
+use crate::frames::{Walker, gait_command, settling_frames};
 
 /// Servo angles in the chassis frame, deg, from widths in cycles of 62.5 ns.
 fn angles(robot: &Robot, pulses: Pulses) -> [f64; 4] {
@@ -23,7 +23,7 @@ fn travel(named: &Named, gait: &CheckedGait, percent: f64) -> Option<Travel> {
     let mut walker = Walker::standing(named);
     walker.expect_ok(&format!("speed {percent}"));
     walker.expect_ok(&gait_command(gait));
-    walker.run(long_enough(robot));
+    walker.run(settling_frames(robot));
     if walker.motion().hazard().is_some() {
         return None;
     }
@@ -54,22 +54,22 @@ fn travel(named: &Named, gait: &CheckedGait, percent: f64) -> Option<Travel> {
 
 /// Compares a travel with the expected one, where that is known, within `largest` mm or a hundredth
 /// of it.
-fn check(whom: &str, travel: Travel, largest: f64, forward: Option<f64>, turn: Option<f64>) {
+fn check(name: &str, travel: Travel, largest: f64, forward: Option<f64>, turn: Option<f64>) {
     println!(
-        "{whom}: {:+.2} mm, {:+.2} deg, meant {forward:?} {turn:?}",
+        "{name}: {:+.2} mm, {:+.2} deg, expected {forward:?} {turn:?}",
         travel.forward, travel.turn
     );
     if let Some(forward) = forward {
         let largest = largest.max(0.01 * forward.abs());
         assert!(
             (travel.forward - forward).abs() <= largest,
-            "{whom}: {travel:?}, not {forward}"
+            "{name}: {travel:?}, not {forward}"
         );
     }
     if let Some(turn) = turn {
         assert!(
             (travel.turn - turn).abs() <= 0.2,
-            "{whom}: {travel:?}, not {turn}"
+            "{name}: {travel:?}, not {turn}"
         );
     }
 }
@@ -81,7 +81,7 @@ fn the_pulses_of_every_gait_lead_where_the_same_gait_in_floating_point_does() {
     for named in &robots()[..robots().len() - 5] {
         for gait in named.robot.gaits() {
             for percent in [100.0, 20.0] {
-                // One robot is enough for the lower pace.
+                // One robot suffices for the lower pace.
                 if percent < 100.0 && named.name.starts_with("random") {
                     continue;
                 }
@@ -89,11 +89,11 @@ fn the_pulses_of_every_gait_lead_where_the_same_gait_in_floating_point_does() {
                     continue;
                 };
                 seen += 1;
-                let meant = gait.predict(&named.robot.ground().rigid());
-                let whom = format!("{}: {} at {percent} %", named.name, gait.name());
+                let expected = gait.predict(&named.robot.ground().rigid());
+                let name = format!("{}: {} at {percent} %", named.name, gait.name());
                 // Without symmetry, which foot holds may depend on a tenth of a degree.
                 let max = 0.01 * named.robot.lizard().links.l10;
-                check(&whom, travel, max, meant.forward, meant.turn);
+                check(&name, travel, max, expected.forward, expected.turn);
             }
         }
     }
@@ -110,11 +110,11 @@ fn the_pulses_of_the_papers_gaits_lead_there_within_a_third_of_a_millimetre() {
     };
     let mut decided = 0;
     for gait in paper().gaits() {
-        let meant = gait.predict(&paper().ground().rigid());
-        decided += usize::from(meant.forward.is_some() && meant.turn.is_some());
+        let expected = gait.predict(&paper().ground().rigid());
+        decided += usize::from(expected.forward.is_some() && expected.turn.is_some());
         for percent in [100.0, 80.0, 50.0, 20.0] {
             let travel = travel(&named, gait, percent).expect("the way is clear");
-            check(gait.name(), travel, 0.3, meant.forward, meant.turn);
+            check(gait.name(), travel, 0.3, expected.forward, expected.turn);
         }
     }
     assert!(decided >= 9, "{decided}");

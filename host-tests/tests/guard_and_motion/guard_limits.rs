@@ -97,11 +97,12 @@ fn the_guards_limits_are_those_of_the_file_rounded_to_the_safe_side() {
             let slider = robot.firmware().side(side);
             let nominal = robot.lizard().side(of_file).nominal;
             let length = |steps: u16| f64::from(steps) / per_mm(slider.scale);
-            let [least, most] = [file.stroke_min, file.stroke_max].map(|travel| nominal + travel);
-            assert!(length(slider.min) >= least - 1e-9, "{name}: {side:?}");
-            assert!(length(slider.min - 1) < least, "{name}: {side:?}");
-            assert!(length(slider.max) <= most + 1e-9, "{name}: {side:?}");
-            assert!(length(slider.max + 1) > most, "{name}: {side:?}");
+            let [smallest, largest] =
+                [file.stroke_min, file.stroke_max].map(|travel| nominal + travel);
+            assert!(length(slider.min) >= smallest - 1e-9, "{name}: {side:?}");
+            assert!(length(slider.min - 1) < smallest, "{name}: {side:?}");
+            assert!(length(slider.max) <= largest + 1e-9, "{name}: {side:?}");
+            assert!(length(slider.max + 1) > largest, "{name}: {side:?}");
         }
     }
 }

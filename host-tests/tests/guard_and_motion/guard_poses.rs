@@ -21,20 +21,20 @@ const POSES: usize = 40_000;
 /// Pairs of neighbouring poses of each robot with a limit between them.
 const PAIRS: usize = 1500;
 
-/// The findings of a walk over many poses of one robot.
+/// The results for many poses of one robot.
 #[derive(Default)]
 struct Findings {
     type2: Spread,
     type1: Spread,
     leg: Spread,
-    /// In steps of the side's scale.
+    /// The errors of the strokes, in steps of the side's scale.
     stroke: Spread,
     /// The largest error of each margin, in bands.
     in_bands: [f64; 10],
     safe: usize,
     refused: usize,
-    /// Poses where the guard and floating point decide differently, and the
-    /// farthest from a limit that one of them was, in bands.
+    /// Poses where the guard and floating point decide differently, and the largest distance of one
+    /// of them from a limit, in bands.
     differ: usize,
     farthest: f64,
     /// The number of times that each of the twelve conditions was named.
@@ -57,7 +57,7 @@ impl Findings {
         let truth = match Truth::of(robot, angles(firmware, pose)) {
             Ok(truth) => truth,
             Err(fault) => {
-                // A head that does not close is found first.
+                // A head that does not close is detected first.
                 let end =
                     open_end(&fault).expect("the sliders of these robots always have a length");
                 assert!(
@@ -92,7 +92,7 @@ impl Findings {
 
     /// Compares every value with the truth.
     fn compare(&mut self, robot: &Robot, core: &Clearance, truth: &Truth) {
-        for (index, (value, meant)) in core.margins.iter().zip(truth.margins).enumerate() {
+        for (index, (value, expected)) in core.margins.iter().zip(truth.margins).enumerate() {
             let end = ENDS.get(index).copied();
             if let Some(end) = end
                 && (truth.margins[end] < MIN_TYPE2 || truth.is_at_crossing(end))
@@ -110,7 +110,7 @@ impl Findings {
                 2..6 => &mut self.type1,
                 _ => &mut self.leg,
             };
-            let error = sine(*value) - meant;
+            let error = sine(*value) - expected;
             spread.add(error);
             self.in_bands[index] = self.in_bands[index].max(error.abs() / truth.bands[index]);
         }
@@ -139,8 +139,11 @@ impl Findings {
             self.in_bands.into_iter().fold(0.0, f64::max),
             self.named
         );
-        for (margin, off) in MARGINS.iter().zip(self.in_bands) {
-            assert!(off <= 1.0, "{name}: {margin:?} is {off} bands off");
+        for (margin, deviation) in MARGINS.iter().zip(self.in_bands) {
+            assert!(
+                deviation <= 1.0,
+                "{name}: {margin:?} is {deviation} bands off"
+            );
         }
         assert!(
             self.stroke.max <= STEPS_BAND,

@@ -1,8 +1,7 @@
-//! The core's guard, gaits and motion with any robot, run on this machine and held
-//! against floating point: the robot under test, every file of robots/ and random
-//! robots without symmetry.
+//! The core's guard, gaits and motion with any robot, run on this machine and compared with
+//! floating point: the robot under test, every file of robots/ and random robots without symmetry.
 //!
-//! `truth` says what is right without the core; `frames` drives a robot through its
+//! `truth` computes the truth without the core; `frames` drives a robot through its
 //! console and checks every frame that comes.
 
 mod calibration;

@@ -5,7 +5,7 @@ use lizard_core::motion::Activity;
 use lizard_core::numbers::pose::Pose;
 use lizard_host_tests::{Named, rng, robots};
 
-use crate::frames::{WAKING, Walker, any_command, final_activity, jerk, long_enough};
+use crate::frames::{WAKING, Walker, any_command, final_activity, jerk, settling_frames};
 use crate::truth::safe_pose;
 
 /// Number of random dialogues with each robot.
@@ -53,15 +53,15 @@ fn every_command_comes_to_its_end_or_the_guard_says_why_not() {
             walker.say("stand");
             let last = any_command(&mut rng, robot);
             let answer = walker.say(&last);
-            walker.run(2 * long_enough(robot));
+            walker.run(2 * settling_frames(robot));
             if walker.motion().hazard().is_some() {
                 assert_eq!(walker.motion().activity(), Activity::Stop, "{name}: {last}");
                 continue;
             }
             let activity = walker.motion().activity();
             match final_activity(robot, &last) {
-                Some(meant) if answer.starts_with("ok") => {
-                    assert_eq!(activity, meant, "{name}: {last}")
+                Some(expected) if answer.starts_with("ok") => {
+                    assert_eq!(activity, expected, "{name}: {last}")
                 }
                 // After a speed, or a pose that was refused, the gait goes on.
                 _ => assert!(matches!(activity, Activity::Gait(_)), "{name}: {last}"),
@@ -154,7 +154,7 @@ fn servos_wake_one_after_another_where_they_were_left() {
         ] {
             if held != Pose::NEUTRAL {
                 walker.say(&walker.pose_command(&held));
-                walker.run(long_enough(&named.robot));
+                walker.run(settling_frames(&named.robot));
                 walker.expect_ok("rest");
                 walker.run(10);
                 walker.expect_ok("stand");
@@ -166,14 +166,14 @@ fn servos_wake_one_after_another_where_they_were_left() {
                     if width.0 > 0 && awake_since[servo] == 0 {
                         awake_since[servo] = frame;
                     }
-                    let meant = calibration[servo].width(held.0[servo]);
-                    assert!(width.0 == 0 || width == meant, "{}", named.name);
+                    let expected = calibration[servo].width(held.0[servo]);
+                    assert!(width.0 == 0 || width == expected, "{}", named.name);
                     assert_eq!(width.0 > 0, awake_since[servo] > 0, "awake for good");
                 }
             }
-            // A tenth of a second from one to the next.
+            // A tenth of a second between them.
             assert_eq!(awake_since, [5, 10, 15, 20], "{}", named.name);
-            walker.run(long_enough(&named.robot));
+            walker.run(settling_frames(&named.robot));
         }
     }
 }
@@ -204,7 +204,7 @@ fn stop_freezes_and_rest_silences_the_very_next_frame_and_a_gait_begins_anew() {
                 .nth(gait)
                 .expect("a gait");
             let first = firmware.gait(id).pose(firmware.waves(), 0);
-            let begins = (0..2 * long_enough(robot)).any(|_| {
+            let begins = (0..2 * settling_frames(robot)).any(|_| {
                 walker.run(1);
                 walker.motion().phase() == 0 && walker.pose() == first
             });

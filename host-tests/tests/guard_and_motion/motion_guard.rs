@@ -8,13 +8,13 @@ use lizard_core::numbers::units::Sweep;
 use lizard_host_tests::{Named, rng, robots};
 use lizard_robot::{CoreRobot, Robot};
 
-use crate::frames::{Walker, gait_command, long_enough};
+use crate::frames::{Walker, gait_command, settling_frames};
 use crate::truth::{Verdict, angles, is_safe, pose_within};
 
 /// Number of tries for each robot; some robots have no such paths.
 const TRIES: usize = 6000;
 /// Number of paths followed for each robot.
-const WAYS: usize = 12;
+const PATHS: usize = 12;
 
 /// Pairs of safe poses whose straight connection is unsafe, by floating point.
 fn crossings(rng: &mut Rng, robot: &Robot) -> Vec<[Pose; 2]> {
@@ -45,7 +45,7 @@ fn crossings(rng: &mut Rng, robot: &Robot) -> Vec<[Pose; 2]> {
         if (1..50).step_by(4).any(unsafe_at) {
             found.push([from, to]);
         }
-        if found.len() == WAYS {
+        if found.len() == PATHS {
             break;
         }
     }
@@ -70,14 +70,14 @@ fn the_last_safe_pose_is_held_and_the_reason_is_reported_once() {
             if !walker.say(&walker.pose_command(&from)).starts_with("ok") {
                 continue;
             }
-            walker.run(long_enough(robot));
+            walker.run(settling_frames(robot));
             if walker.motion().hazard().is_some()
                 || !walker.say(&walker.pose_command(&to)).starts_with("ok")
             {
                 continue;
             }
             let from = walker.pose();
-            walker.run(long_enough(robot)); // which checks that every frame is safe
+            walker.run(settling_frames(robot)); // which checks that every frame is safe
             // A step of a fast move may leap over a narrow hazard.
             let Some(hazard) = walker.motion().hazard() else {
                 assert!(walker.pose().farthest(&to) <= 1, "{name}");
@@ -91,7 +91,7 @@ fn the_last_safe_pose_is_held_and_the_reason_is_reported_once() {
                 printed[0].starts_with("# held in the last safe pose: "),
                 "{printed:?}"
             );
-            // The reason lies on the rest of the path.
+            // The cause is on the rest of the path.
             assert!(
                 lies_ahead(robot.firmware(), from, to, walker.pose(), hazard),
                 "{name}: {hazard:?}"
@@ -101,7 +101,7 @@ fn the_last_safe_pose_is_held_and_the_reason_is_reported_once() {
             assert_eq!(walker.pose(), pose, "{name}");
             assert!(walker.read().is_empty(), "{name}: told once");
             assert!(walker.say("status").contains(" guard=held "), "{name}");
-            // And from there it can go back.
+            // From there it can go back.
             assert!(
                 walker.move_to(&from) || walker.motion().hazard().is_some(),
                 "{name}"
@@ -150,8 +150,8 @@ fn a_gait_that_is_under_way_never_meets_the_guard() {
         for gait in named.robot.gaits() {
             let mut walker = Walker::standing(named);
             walker.expect_ok(&gait_command(gait));
-            // The way to its first pose may lead through an unsafe one.
-            walker.run(long_enough(&named.robot));
+            // The path to its first pose may lead through an unsafe one.
+            walker.run(settling_frames(&named.robot));
             if walker.motion().hazard().is_some() {
                 println!("{}: the way to {} is barred", named.name, gait.name());
                 barred += 1;

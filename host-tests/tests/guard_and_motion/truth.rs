@@ -84,7 +84,7 @@ pub enum Verdict {
     Safe,
     /// Beyond some limit by more than the band.
     Unsafe,
-    /// Too near to a limit to tell.
+    /// Too near to a limit to decide.
     Between,
 }
 
@@ -252,7 +252,7 @@ pub fn any_pose(rng: &mut Rng, calibration: &[Calibration; 4]) -> Pose {
     Pose(calibration.map(|servo| Sweep(rng.i16(servo.min.0..=servo.max.0))))
 }
 
-/// A pose within so much of every servo's travel, as a share from neutral.
+/// A pose within a share of every servo's travel from neutral.
 pub fn pose_within(rng: &mut Rng, calibration: &[Calibration; 4], share: f64) -> Pose {
     let pose = any_pose(rng, calibration);
     Pose(

@@ -4,7 +4,7 @@ use lizard_core::numbers::gaits::GaitId;
 use lizard_core::numbers::units::CYCLE;
 use lizard_host_tests::{Named, rng, robots};
 
-use crate::frames::{Walker, gait_command, long_enough};
+use crate::frames::{Walker, gait_command, settling_frames};
 use crate::gaits::{FULL_PACE, gaits};
 
 #[test]
@@ -13,9 +13,13 @@ fn a_hundred_cycles_take_a_hundred_periods() {
         let frames = (5000.0 * float.period()).round();
         let phase = (0..frames as u32).fold(0, |phase, _| gait.advance(phase, FULL_PACE));
         // The advance is rounded to 1/2^24 cycle, so each frame may be half off.
-        let meant = (frames / 50.0 / float.period()).fract();
+        let expected = (frames / 50.0 / float.period()).fract();
         let error = (f64::from(phase) / f64::from(CYCLE)
-            - if float.is_reversed() { -meant } else { meant })
+            - if float.is_reversed() {
+                -expected
+            } else {
+                expected
+            })
         .rem_euclid(1.0);
         let error = error.min(1.0 - error) * f64::from(CYCLE);
         assert!(
@@ -36,7 +40,7 @@ fn every_speed_gives_its_share_of_every_gaits_pace() {
         for float in named.robot.gaits().iter().skip(1) {
             let mut walker = Walker::standing(named);
             walker.expect_ok(&gait_command(float));
-            walker.run(long_enough(&named.robot));
+            walker.run(settling_frames(&named.robot));
             if walker.motion().hazard().is_some() {
                 barred += 1; // the path to its first pose is unsafe
                 continue;
@@ -45,15 +49,15 @@ fn every_speed_gives_its_share_of_every_gaits_pace() {
             for percent in [10, 100, rng.u8(11..100)] {
                 walker.expect_ok(&format!("speed {percent}"));
                 walker.run(10);
-                let mut gone = 0i64;
+                let mut advance = 0i64;
                 for _ in 0..FRAMES {
                     let before = walker.motion().phase();
                     walker.run(1);
-                    // The short way round: less than half a cycle in a frame.
+                    // The shorter direction: less than half a cycle in a frame.
                     let step = walker.motion().phase().wrapping_sub(before) << 8;
-                    gone += i64::from(step as i32 >> 8);
+                    advance += i64::from(step as i32 >> 8);
                 }
-                let cycles = gone as f64 / f64::from(CYCLE);
+                let cycles = advance as f64 / f64::from(CYCLE);
                 let sign = if float.is_reversed() { -1.0 } else { 1.0 };
                 let share = sign * f64::from(percent) / 100.0;
                 let error = cycles / (share * f64::from(FRAMES) / 50.0 / float.period()) - 1.0;
@@ -112,7 +116,7 @@ fn every_frame_of_a_gait_under_way_is_a_pose_of_it() {
             walker.expect_ok(&gait_command(gait));
             let firmware = named.robot.firmware();
             let table = firmware.gait(id);
-            walker.run(long_enough(&named.robot));
+            walker.run(settling_frames(&named.robot));
             if walker.motion().hazard().is_some() {
                 barred += 1; // the path to its first pose is unsafe
                 continue;

@@ -167,7 +167,7 @@ fn one_page_that_differs_is_written_alone() {
     let screen = end_well(&mut desk, &shell);
     let another = "the board has another build of lizard";
     assert!(screen.contains(another), "{screen}");
-    // It, and the page where the chip starts.
+    // This page, and the one where the chip starts.
     let two = "\n256 bytes written and verified";
     assert!(screen.contains(two), "{screen}");
 }

@@ -2,8 +2,8 @@
 
 use super::*;
 
-/// The board's output in the next simulated milliseconds.
-fn says(desk: &mut Desk, line: &str, ms: u64) -> String {
+/// Sends a line and returns the board's output in the next simulated milliseconds.
+fn run_line(desk: &mut Desk, line: &str, ms: u64) -> String {
     desk.uno.take_transmitted();
     desk.uno.send(line.as_bytes());
     desk.uno.run_ms(ms);
@@ -17,9 +17,9 @@ fn a_robot_alone_is_written_behind_the_firmware_and_the_trims_are_kept() {
     let (name, other) = another();
     let mut desk = with_firmware();
     desk.uno.power_cycle();
-    assert!(says(&mut desk, "", 2500).contains("# lizard "));
-    assert!(says(&mut desk, "trim 1 3.5\n", 200).contains("ok"));
-    assert!(says(&mut desk, "save\n", 500).contains("ok"));
+    assert!(run_line(&mut desk, "", 2500).contains("# lizard "));
+    assert!(run_line(&mut desk, "trim 1 3.5\n", 200).contains("ok"));
+    assert!(run_line(&mut desk, "save\n", 500).contains("ok"));
     unplug(&mut desk);
     let kept = desk.uno.eeprom();
 
@@ -37,7 +37,7 @@ fn a_robot_alone_is_written_behind_the_firmware_and_the_trims_are_kept() {
     let end = usize::from(START) + other.section().len();
     assert!(desk.uno.flash()[..end] == firmware_of(&other)[..end]);
 
-    // And the first robot again, by a script: its trims are there as they were.
+    // Then the first robot again, by a script: its trims are unchanged.
     let shell = lizard_flash(&desk, &["--only-robot", "--json"]);
     let screen = self::end(&mut desk, &shell);
     let (name, hash) = its.split_once(' ').expect("name and hash");
@@ -49,7 +49,7 @@ fn a_robot_alone_is_written_behind_the_firmware_and_the_trims_are_kept() {
     assert!(line.is_some_and(is_right), "{screen}");
     assert!(!screen.contains("\n# lizard"), "{screen}");
     assert_kept(&desk, &kept);
-    let answer = says(&mut desk, "cal\n", 500);
+    let answer = run_line(&mut desk, "cal\n", 500);
     assert!(answer.contains("3.5"), "{answer}");
 }
 
@@ -60,7 +60,7 @@ fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
     let words = ["--only-robot", "--robot", name];
     let shell = lizard_flash(&desk, &words);
     let section = other.section();
-    // The third page of the robot is there.
+    // The third page of the robot is written.
     let third = usize::from(START) + 0x100;
     let half = desk.until(|uno| {
         let there = uno.flash()[third..third + 0x80] == section[0x100..0x180];
@@ -75,11 +75,11 @@ fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
     // Plugged in again: the firmware says so, and no servo moves.
     desk.uno.power_cycle();
     desk.uno.take_edges();
-    let printed = says(&mut desk, "", 2500);
+    let printed = run_line(&mut desk, "", 2500);
     assert!(printed.contains("no robot in the flash"), "{printed}");
-    let printed = says(&mut desk, "walk\n", 300);
+    let printed = run_line(&mut desk, "walk\n", 300);
     assert!(printed.contains("err "), "{printed}");
-    assert!(says(&mut desk, "status\n", 300).contains("fault=robot"));
+    assert!(run_line(&mut desk, "status\n", 300).contains("fault=robot"));
     let edges = desk.uno.take_edges();
     let pins = servo_pins(&other);
     assert!(

@@ -27,8 +27,8 @@ fn damage(section: &[u8]) -> Option<Damage> {
     Robot::open(Region::new(section)).err()
 }
 
-/// The flash of a chip whose section was written only up to here.
-fn erased_behind(section: &[u8]) -> Vec<u8> {
+/// The flash of a chip into which only this beginning of a section was written.
+fn erased_after(section: &[u8]) -> Vec<u8> {
     let mut flash = section.to_vec();
     flash.resize(SPACE.into(), 0xff);
     flash
@@ -54,7 +54,7 @@ fn a_section_with_any_one_bit_flipped_is_refused() {
     let mut count = 0;
     for (named, section) in files {
         count += 1;
-        let mut section = erased_behind(section);
+        let mut section = erased_after(section);
         let length = u16::from_le_bytes([section[LENGTH.start], section[LENGTH.start + 1]]);
         for bit in 0..8 * usize::from(length) {
             section[bit / 8] ^= 1 << (bit % 8);
@@ -78,7 +78,7 @@ fn a_section_that_ends_at_any_byte_is_refused() {
             assert!(damage(cut).is_some(), "{} cut at {length}", named.name);
             // The last bytes may be those of erased flash themselves.
             if section[length..].iter().any(|byte| *byte != 0xff) {
-                let cut = erased_behind(cut);
+                let cut = erased_after(cut);
                 assert!(damage(&cut).is_some(), "{} erased at {length}", named.name);
             }
         }

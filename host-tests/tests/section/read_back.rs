@@ -214,7 +214,7 @@ fn the_curves_at_every_point_of_their_tables() {
             let scale = robot.end(end).bars().scale();
             let [a, b] = [a, b].map(|mm| steps(mm, scale));
             // Of squared distances in quarters of a step's square.
-            let [reach, least] = [(a + b) * (a + b) / 4.0, (a - b) * (a - b) / 4.0];
+            let [reach, smallest] = [(a + b) * (a + b) / 4.0, (a - b) * (a - b) / 4.0];
             let shapes = [Shape::Rise, Shape::Stretched, Shape::Folded, Shape::Skew];
             assert!(
                 curves[0] != 0 && (curves[3] != 0) == (a != b),
@@ -227,24 +227,24 @@ fn the_curves_at_every_point_of_their_tables() {
                         Shape::Rise | Shape::Skew => reach,
                         // Of whole numbers, as the core counts them.
                         Shape::Stretched => (reach.floor() / 4.0).floor(),
-                        Shape::Folded => least.floor(),
+                        Shape::Folded => smallest.floor(),
                     };
                     let value = argument(largest as u32, index) as f64;
                     let s = match shape {
-                        Shape::Rise => value.max(2.0 * reach * least / (reach + least)),
+                        Shape::Rise => value.max(2.0 * reach * smallest / (reach + smallest)),
                         Shape::Skew => value,
                         Shape::Stretched => reach - value,
-                        Shape::Folded => least + value,
+                        Shape::Folded => smallest + value,
                     };
                     let exact = match shape {
                         Shape::Skew => (a * a - b * b).abs() / 4.0 / s,
-                        _ if s <= least || s >= reach => 0.0,
-                        _ => ((reach - s) * (s - least)).sqrt() / s,
+                        _ if s <= smallest || s >= reach => 0.0,
+                        _ => ((reach - s) * (s - smallest)).sqrt() / s,
                     };
                     let exact = (1024.0 * exact).min(32_767.0);
                     // One of rounding, and a quarter of a step's square in `s`, which
                     // counts where the curve is steep.
-                    let hair = 1.01 + exact * 2.0 / (s - least).min(reach - s).max(1.0);
+                    let hair = 1.01 + exact * 2.0 / (s - smallest).min(reach - s).max(1.0);
                     let error = f64::from(entry) - exact;
                     assert!(
                         error.abs() <= hair,
@@ -302,10 +302,10 @@ fn maps(flash: Region<'_>) -> [Vec<[std::ops::RangeInclusive<i32>; 2]>; 4] {
     let mut next = 0;
     numbers.maps.map(|MapHead { first, rows: count }| {
         let map = (0..i32::from(count)).map(|row| {
-            let [least, most] = rows.get(next).expect("a row").load().map(i32::from);
+            let [smallest, most] = rows.get(next).expect("a row").load().map(i32::from);
             next += 1;
             let row = 256 * (i32::from(first) + row);
-            [row..=row + 255, 128 * least..=128 * most + 127]
+            [row..=row + 255, 128 * smallest..=128 * most + 127]
         });
         map.collect()
     })
@@ -377,7 +377,7 @@ fn a_pose_in_all_four_maps_is_certified_and_the_guard_accepts_it() {
         for n in 0..20_000 {
             let mut pose = Pose::NEUTRAL;
             for (sweep, travel) in pose.0.iter_mut().zip(robot.calibration()) {
-                // All sweeps that there are, those of the travel, and those near neutral.
+                // All sweeps, those of the travel, and those near neutral.
                 *sweep = Sweep(match n % 3 {
                     0 => rng.i16(..),
                     1 => rng.i16(travel.min.0..=travel.max.0),

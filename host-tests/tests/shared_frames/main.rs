@@ -84,7 +84,7 @@ fn address(image: &Image, name: &str) -> u16 {
     (image.symbol(name).expect("it has one").address - 0x80_0000) as u16
 }
 
-/// The results of the program, and how deep its stack got.
+/// The results of the program, and the depth of its stack.
 fn results(image: &Image) -> (Vec<u8>, u16) {
     let [done, results] = ["done", "results"].map(|name| address(image, name));
     let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);

@@ -1,7 +1,7 @@
 //! Random C functions compute the same whether the linker rewrote them or not.
 //!
-//! The arguments, up to 30 bytes, are more than fit into registers (18), their arrays lie on
-//! the stack, they call one another, and a timer interrupts them.
+//! They have up to 30 bytes of arguments, of which 18 fit into registers; their arrays lie on the
+//! stack, they call one another, and a timer interrupts them.
 
 use std::cell::Cell;
 use std::panic::catch_unwind;

@@ -1,9 +1,9 @@
-//! A command in the root of the repository, as a person types it: its screen can
-//! be read while it runs, lines can be typed, Ctrl-C ends it.
+//! A command in the root of the repository, as a user types it: its screen can be read while it
+//! runs, lines can be typed, Ctrl-C ends it.
 //!
-//! A program takes over from its parent which signals it ignores, and a shell without
-//! job control lets what it starts with `&` ignore Ctrl-C. Where these tests run so, a
-//! command would, too, until it sets a handler of its own. A person's does not.
+//! A program takes over from its parent which signals it ignores, and a shell without job control
+//! lets what it starts with `&` ignore Ctrl-C. Where these tests run so, a command would, too,
+//! until it sets a handler of its own. A user's shell does not.
 #![allow(dead_code)] // each test uses a part of it
 
 use std::io::{Read, Write};
@@ -33,7 +33,7 @@ impl Shell {
         let mut command = Command::new("env");
         command.args(["--default-signal=INT,QUIT", program]);
         command.args(arguments).current_dir(root());
-        // A person's shell knows nothing of the cargo and make around this test.
+        // A user's shell does not have the variables of the cargo and make around this test.
         for (name, _) in std::env::vars() {
             let of_cargo = name.starts_with("CARGO") && name != "CARGO_HOME";
             if of_cargo || name.starts_with("MAKE") || name == "MFLAGS" {

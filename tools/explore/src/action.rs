@@ -11,7 +11,7 @@ use crate::small::{BUTTON, NOSE};
 /// An event that the search applies to the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
-    /// A line is sent and executed; its output and its writes to the memory are still to do.
+    /// A line is sent and executed; its output and its writes to the memory are still pending.
     Say(&'static str),
     /// A line arrives in which noise has changed a byte.
     Noise,
@@ -42,7 +42,7 @@ pub enum Action {
     StopReading(bool),
 }
 
-/// Lines that are tried, besides an example of each other word.
+/// Lines that are tried besides an example of each other word.
 const LINES: [&str; 30] = [
     "stand",
     "walk",
@@ -95,9 +95,8 @@ impl Action {
         all.extend(LINES.map(Self::Say));
         all.extend(Rate::ALL.map(Self::SendAt));
         all.extend(others.map(|word| Self::Say(word.example())));
-        // The last hand-over was 16 ms ago. With these lengths main is late for
-        // nothing, for one hand-over, for three, for five; or the watchdog interrupts
-        // it and it continues; or it is reset.
+        // The last hand-over was 16 ms ago. With these lengths main misses no hand-over, one, three
+        // or five; or the watchdog interrupts it and it continues; or it is reset.
         all.extend([3, 15, 60, 100, 120, 130, 200, 229, 240].map(Self::Stall));
         all.extend([5_000, 4_100, 3_900, 3_500].map(Self::Supply));
         all.extend([Self::Weak(true), Self::Weak(false)]);

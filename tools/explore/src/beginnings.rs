@@ -22,7 +22,7 @@ pub struct InitialState {
     pub world: World,
 }
 
-/// Memories, each with the lines that made it, sent to a robot that stood.
+/// Memories, each with the actions of a standing robot that wrote it.
 const MEMORIES: [(&str, &[Action]); 5] = [
     ("a blank memory", &[]),
     (
@@ -117,7 +117,7 @@ pub fn all(robot: Robot<'static>) -> Vec<InitialState> {
         .iter()
         .map(|(name, actions)| {
             let mut world = World::power_on(robot, Eeprom::blank());
-            // Rules may be broken here; the walk finds that, too.
+            // Rules may be broken here; the search reports that, too.
             _ = world.apply(Frames(160));
             for action in *actions {
                 _ = world.apply(*action);

@@ -31,7 +31,7 @@ const RULES: &[Field] = &[
     ("Console", "line", Skip),
     // No action ends within a line, so no line waits for its rest.
     ("Console", "silence", Skip),
-    // A line at another rate has enough wrong bytes, whatever was before.
+    // A line at another rate has enough wrong bytes, whatever came before.
     ("RateFinder", "wrong_bytes", Skip),
     (
         "Motion",
@@ -77,7 +77,7 @@ const A_LINE_CAME: &[Field] = &[
     ("Safety", "boot", Skip),
     // A command shows that a program opened the port, which resets the board.
     ("Control", "has_heard_command", Skip),
-    // Nor does what `boot` began go on without anybody from then on.
+    // From then on, the motion that `boot` began counts as ordered.
     ("Control", "is_unattended", Skip),
 ];
 
@@ -175,27 +175,11 @@ impl Write for Reader {
             }
             "(" | "[" => self.within.push(0),
             " }" | ")" | "]" => {
-                if self.skipped == Some(self.within.len()) {
-                    self.skipped = None;
-                }
-                if self
-                    .number
-                    .is_some_and(|(_, depth)| depth == self.within.len())
-                {
-                    self.number = None;
-                }
+                self.end_field();
                 self.within.pop();
             }
             ", " => {
-                if self.skipped == Some(self.within.len()) {
-                    self.skipped = None;
-                }
-                if self
-                    .number
-                    .is_some_and(|(_, depth)| depth == self.within.len())
-                {
-                    self.number = None;
-                }
+                self.end_field();
                 self.names_field = self.within.last().is_some_and(|name| *name != 0);
             }
             ": " => {}
@@ -216,6 +200,13 @@ impl Write for Reader {
 }
 
 impl Reader {
+    /// Ends the treatment of the field at the current depth.
+    fn end_field(&mut self) {
+        let depth = self.within.len();
+        self.skipped = self.skipped.filter(|skipped| *skipped != depth);
+        self.number = self.number.filter(|(_, number)| *number != depth);
+    }
+
     fn name(&mut self, field: &str) {
         let name = hash(field);
         self.print.add(name);

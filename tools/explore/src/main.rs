@@ -1,4 +1,4 @@
-//! `make explore`: ten million states, or as many as the argument says.
+//! `make explore`: explores ten million states, or the number in the argument.
 
 use std::process::ExitCode;
 
@@ -13,13 +13,13 @@ fn main() -> ExitCode {
         return ExitCode::FAILURE;
     };
     let robot = small();
-    let begun = std::time::Instant::now();
+    let start = std::time::Instant::now();
     let found = search(robot, max);
     println!(
         "{} distinct states by {} actions in {:.0} s, the longest sequence of {}, {}",
         found.states,
         found.tried,
-        begun.elapsed().as_secs_f64(),
+        start.elapsed().as_secs_f64(),
         found.longest,
         if found.is_complete {
             "closed"

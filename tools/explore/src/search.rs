@@ -1,8 +1,8 @@
-//! Breadth first through all sequences of [`Action`]s, as many states as time allows.
+//! Searches breadth first through all sequences of [`Action`]s, as far as time allows.
 //!
-//! All states of one length are processed before any of the next, by as many threads as
-//! there are processors. So the first sequence that breaks a rule is one of the shortest.
-//! For a processed state only its number is kept, and how it was reached.
+//! All states of one length are processed before any of the next, by as many threads as there are
+//! processors. So the first sequence that breaks a rule is one of the shortest. Of a processed
+//! state only its number is kept, and the step that reached it.
 
 use std::collections::{BTreeMap, HashSet};
 use std::fmt::Write as _;
@@ -49,12 +49,12 @@ struct Step {
 /// Searches from all beginnings, until this many distinct states are reached or none is left.
 pub fn search(robot: Robot<'static>, max: usize) -> SearchResult {
     let actions = Action::all();
-    let begun = beginnings::all(robot);
+    let initial_states = beginnings::all(robot);
     let known: Vec<Mutex<SeenStates>> = (0..64).map(|_| Mutex::default()).collect();
     let mut steps: Vec<Step> = Vec::new();
     let mut found = SearchResult::default();
     let mut now: Vec<(World, u32)> = Vec::new();
-    for (index, beginning) in begun.iter().enumerate() {
+    for (index, beginning) in initial_states.iter().enumerate() {
         steps.push(Step {
             from: u32::MAX,
             action: 0,
@@ -64,7 +64,7 @@ pub fn search(robot: Robot<'static>, max: usize) -> SearchResult {
         }
     }
     let states = AtomicUsize::new(now.len());
-    // Each is reported as a broken rule.
+    // Each panic is reported as a broken rule.
     let hook = panic::take_hook();
     panic::set_hook(Box::new(|_| {}));
     while !now.is_empty() && states.load(Ordering::Relaxed) < max {
@@ -90,8 +90,9 @@ pub fn search(robot: Robot<'static>, max: usize) -> SearchResult {
         broken.sort_by_key(|(from, action, _)| (*from, *action));
         for (from, action, fault) in broken {
             let entry = found.broken.entry(fault.rule).or_insert_with(|| {
-                let printed = describe(&begun, &steps, &actions, Step { from, action });
-                (0, format!("{printed}\n  {}", fault.seen))
+                let description =
+                    describe(&initial_states, &steps, &actions, Step { from, action });
+                (0, format!("{description}\n  {}", fault.seen))
             });
             entry.0 += 1;
         }
@@ -181,28 +182,33 @@ impl Part {
 fn apply_catching_panics(world: &mut World, action: Action) -> Verdict {
     let applied = panic::catch_unwind(AssertUnwindSafe(|| world.apply(action)));
     applied.unwrap_or_else(|reason| {
-        let said = reason.downcast_ref::<String>().cloned();
-        let said = said.or_else(|| reason.downcast_ref::<&str>().map(ToString::to_string));
-        Err(BrokenRule::new(Rule::Lives, said.unwrap_or_default()))
+        let message = reason.downcast_ref::<String>().cloned();
+        let message = message.or_else(|| reason.downcast_ref::<&str>().map(ToString::to_string));
+        Err(BrokenRule::new(Rule::Lives, message.unwrap_or_default()))
     })
 }
 
 /// Describes a sequence in words.
-fn describe(begun: &[InitialState], steps: &[Step], actions: &[Action], last: Step) -> String {
+fn describe(
+    initial_states: &[InitialState],
+    steps: &[Step],
+    actions: &[Action],
+    last: Step,
+) -> String {
     let mut sequence = vec![actions[usize::from(last.action)]];
     let mut at = last.from;
     while steps[at as usize].from != u32::MAX {
         sequence.push(actions[usize::from(steps[at as usize].action)]);
         at = steps[at as usize].from;
     }
-    let beginning = &begun[at as usize];
+    let beginning = &initial_states[at as usize];
     let mut text = format!("  power on with {}", beginning.with);
-    let printed = beginning
+    let played = beginning
         .actions
         .iter()
         .copied()
         .chain(sequence.into_iter().rev());
-    for action in printed {
+    for action in played {
         _ = write!(text, "; {action}");
     }
     text

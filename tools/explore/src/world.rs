@@ -25,16 +25,17 @@ fn broken(rule: Rule, seen: impl Into<String>) -> Verdict {
     Err(BrokenRule::new(rule, seen))
 }
 
-/// A line as a receiver of another rate reads it: wrong bytes, enough for any rate to be left.
+/// A line as a receiver at another rate reads it: wrong bytes, enough to make the robot leave any
+/// rate.
 const UNREADABLE: [u8; 40] = [GARBLED; 40];
 
-/// Lines after which a robot has found the rate of who asks.
+/// Number of lines after which a robot has found the rate of the sender.
 const FOUND_AFTER: usize = 12;
 
 /// The cycles of a frame.
 const FRAME: Time = 20 * MS;
 
-/// A state of the walk.
+/// A state of the search.
 #[derive(Clone, Debug)]
 pub struct World {
     /// The firmware on its board.
@@ -50,7 +51,7 @@ pub struct World {
     unread: Option<&'static str>,
     /// The rate at which lines are sent.
     sender: Rate,
-    /// Lines whose answer is judged already and not printed yet.
+    /// Lines whose answers are judged already and not printed yet.
     known: u8,
 }
 
@@ -220,7 +221,7 @@ impl World {
 
     /// Lets frames pass, main running.
     fn frames(&mut self, count: u8) -> Verdict {
-        let begun = self.now;
+        let start = self.now;
         let fault = (self.fault(), self.observer.stopped_since());
         let mut edges = Vec::new();
         for _ in 0..count {
@@ -238,8 +239,8 @@ impl World {
             return broken(Rule::Answered, "frames went by");
         }
         let is_same = (self.fault(), self.observer.stopped_since()) == fault;
-        if is_same && self.observer.runs_for() > self.now - begun {
-            led::check_pattern(&edges, begun + 3 * FRAME, self.now, fault.0)
+        if is_same && self.observer.runs_for() > self.now - start {
+            led::check_pattern(&edges, start + 3 * FRAME, self.now, fault.0)
                 .map_err(|seen| BrokenRule::new(Rule::Led, seen))?;
         }
         Ok(())
@@ -268,7 +269,7 @@ impl World {
         if !was_held && self.running.motion().hazard().is_some() {
             self.observe(Event::Fault);
         }
-        // It was decided at the beginning of the frame.
+        // The decision was made at the beginning of the frame.
         self.listen(since + MS)?;
         self.judge_writes()?;
         let is_heard = !self.running.board.transmitter.is_held && !self.running.is_over();

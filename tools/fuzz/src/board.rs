@@ -16,7 +16,7 @@ pub struct Board {
     running: Running,
     observer: Observer,
     now: Time,
-    said: String,
+    output: String,
     /// The line so far, by an independent reader of lines.
     line: Vec<u8>,
     is_overlong: bool,
@@ -43,7 +43,7 @@ impl Board {
             running: Running::with(*robot.firmware(), memory, Restart::default()),
             observer: Observer::new(limits(robot)),
             now: 0,
-            said: String::new(),
+            output: String::new(),
             line: Vec::new(),
             is_overlong: false,
         };
@@ -66,18 +66,23 @@ impl Board {
         for line in text.lines() {
             self.observe(Event::Printed(self.now, line));
         }
-        self.said.push_str(&text);
+        self.output.push_str(&text);
         self.running.board.memory.log.clear();
     }
 
     fn assert_rules_hold(&mut self) {
         let verdict = self.observer.verdict();
-        assert!(verdict.is_ok(), "{}: {:?}", verdict.unwrap_err(), self.said);
+        assert!(
+            verdict.is_ok(),
+            "{}: {:?}",
+            verdict.unwrap_err(),
+            self.output
+        );
     }
 
     /// The output since the last byte.
-    pub fn said(&self) -> &str {
-        &self.said
+    pub fn output(&self) -> &str {
+        &self.output
     }
 
     /// The robot's memory.
@@ -90,7 +95,7 @@ impl Board {
     /// # Panics
     /// If the robot breaks a rule.
     pub fn take(&mut self, byte: u8) {
-        self.said.clear();
+        self.output.clear();
         let mut ended = None;
         match byte {
             b'\r' | b'\n' => {
@@ -128,9 +133,9 @@ impl Board {
             Rule::OneAnswer.sentence()
         );
         let effect = effect(line, self.robot.firmware());
-        let said = std::mem::take(&mut self.said);
+        let output = std::mem::take(&mut self.output);
         let is_answer = |line: &&str| !line.starts_with('#');
-        let text = said
+        let text = output
             .lines()
             .find(is_answer)
             .expect("the observer counts it");
@@ -145,7 +150,7 @@ impl Board {
             asked,
             text,
         });
-        self.said = said;
+        self.output = output;
     }
 
     /// Lets a frame pass.

@@ -1,5 +1,5 @@
-//! Assumptions that the contact model cannot vary, and what they change in MuJoCo: the floor, how a
-//! printer makes pads, how an analog servo drives, where mass is.
+//! Assumptions that the contact model cannot vary, and their effect in MuJoCo: the floor, the
+//! printed shape of pads, the drive of an analog servo, the distribution of mass.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -39,7 +39,7 @@ const UNCHANGED: Assumption = Assumption {
 };
 
 impl Assumption {
-    /// All of them but the surfaces, which have a table of their own.
+    /// All changes but the surfaces, which have a table of their own.
     pub const ALL: [Self; 6] = [
         Self {
             words: "analog servos that drive in bursts",
@@ -146,14 +146,17 @@ pub fn table(figures: &Figures, surfaces: &Surfaces, assumptions: &Assumptions) 
         });
         std::array::from_fn(|_| changes.next().expect("one of each gait"))
     };
-    let most =
-        |changes: &[f64; GAITS.len()]| changes.iter().fold(0.0, |most: f64, of| most.max(of.abs()));
+    let largest = |changes: &[f64; GAITS.len()]| {
+        changes
+            .iter()
+            .fold(0.0, |largest: f64, of| largest.max(of.abs()))
+    };
     let mut rows: Vec<(String, [f64; GAITS.len()])> = on
         .into_iter()
         .chain(changed)
         .map(|(words, of)| (words, percent(of)))
         .collect();
-    rows.sort_by(|(_, a), (_, b)| most(b).total_cmp(&most(a)));
+    rows.sort_by(|(_, a), (_, b)| largest(b).total_cmp(&largest(a)));
     let wide = rows
         .iter()
         .map(|(words, _)| words.len())
@@ -165,7 +168,7 @@ pub fn table(figures: &Figures, surfaces: &Surfaces, assumptions: &Assumptions) 
     text.push('\n');
     let (large, small): (Vec<_>, Vec<_>) = rows
         .into_iter()
-        .partition(|(_, changes)| most(changes) >= MIN_CHANGE_PERCENT);
+        .partition(|(_, changes)| largest(changes) >= MIN_CHANGE_PERCENT);
     for (words, changes) in large {
         _ = write!(text, "{words:wide$}");
         for change in changes {

@@ -1,5 +1,5 @@
-//! The place of an edge on the way of a gait. Before the measured cycles all feet are on the one
-//! side of it, and afterwards on the other, so front and hind feet have climbed it.
+//! The place of an edge on the path of a gait. Before the measured cycles all feet are on one side
+//! of it, and afterwards on the other, so that front and hind feet have climbed it.
 
 use lizard_parts::Block;
 use lizard_robot::{Place, Robot, Travel};
@@ -14,7 +14,7 @@ const CLEARANCE: f64 = 25.0;
 /// The angle after which a gait that turns on the spot has brought other feet to the edge, deg.
 const MAX_TURN: f64 = 180.0;
 
-/// An edge across the way of a gait, and the cycles in which it is crossed.
+/// An edge across the path of a gait, and the cycles in which it is crossed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
     /// The number of cycles to measure.
@@ -89,6 +89,6 @@ fn feet_at(place: Place, feet: [[f64; 2]; 4]) -> [[f64; 2]; 4] {
 
 /// The direction of a place from another one, deg counter-clockwise from ahead.
 fn direction_from(place: Place, other: Place) -> f64 {
-    let way = [place.left - other.left, place.forward - other.forward];
-    way[0].atan2(way[1]).to_degrees()
+    let offset = [place.left - other.left, place.forward - other.forward];
+    offset[0].atan2(offset[1]).to_degrees()
 }

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use lizard_robot::{CheckedGait, Effort, GRAVITY, Robot, ServoType, TIGHT};
 
-/// The table of `docs/measure.md`.
+/// The table in `docs/measure.md`.
 pub fn expected(robot: &Robot) -> String {
     let ground = robot.ground();
     let load = ground.body.mean_load();
@@ -139,11 +139,11 @@ pub fn expected(robot: &Robot) -> String {
     text
 }
 
-/// The gait that asks most of the servos.
+/// The gait with the highest load on the servos.
 struct HardestGait<'a> {
     robot: &'a Robot,
     gait: &'a CheckedGait,
-    /// Share of its servos' line.
+    /// Its largest share of a servo's torque-speed line.
     line: f64,
 }
 
@@ -161,8 +161,8 @@ impl<'a> HardestGait<'a> {
         Effort::of(gait, robot.ground(), &motors).line_share(1.0, 1.0)
     }
 
-    /// The value of a servo at which its line is nearly used up, between this one and four times
-    /// as much or as little.
+    /// The value of a servo's key at which its torque-speed line is nearly used up, within a factor
+    /// of four of its own value.
     fn limit(&self, own: f64, servo: impl Fn(f64) -> ServoType) -> f64 {
         let does = |value: f64| Self::line(self.robot, self.gait, &servo(value)) <= TIGHT;
         let mut good = own;

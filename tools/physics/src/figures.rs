@@ -48,8 +48,8 @@ pub struct Answers {
 const LEVEL: (f64, f64, f64) = (1.5, 0.08, 1.0);
 const SOFT: (f64, f64, f64) = (2.5, 0.08, 1.5);
 const STIFF: (f64, f64, f64) = (5.0, 0.35, 4.0);
-/// A gait that moves less than this by the model, mm and deg, may creep by `CREEPS`, mm: its
-/// movements in both directions are nearly equally fast, and inertia decides.
+/// A gait that moves less than this by the model, mm and deg, may creep by `CREEPS` mm: it moves
+/// nearly equally fast in both directions, so that inertia decides.
 const NOWHERE: (f64, f64) = (1.0, 0.5);
 const CREEPS: f64 = 3.5;
 
@@ -71,11 +71,11 @@ impl Answers {
 
     /// The message for a difference beyond the allowed one.
     pub fn disagreement(&self, case: Case) -> Option<String> {
-        let (off, turned) = self.mujoco.distance_to(&self.model?);
+        let (error, turned) = self.mujoco.distance_to(&self.model?);
         let (mm, deg) = self.bound(case);
-        (off > mm || turned > deg).then(|| {
+        (error > mm || turned > deg).then(|| {
             format!(
-                "MuJoCo is {off:.1} mm and {turned:.1} deg from the model; {mm:.1} and {deg:.1} are allowed"
+                "MuJoCo is {error:.1} mm and {turned:.1} deg from the model; {mm:.1} and {deg:.1} are allowed"
             )
         })
     }

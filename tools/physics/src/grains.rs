@@ -123,7 +123,7 @@ pub(crate) fn settling(gait: &CheckedGait) -> u32 {
     (SETTLING_S / gait.period()).ceil() as u32
 }
 
-/// The answers at the ratio of the robot's file, of those of a gait.
+/// The answers of a gait at the ratio of the robot's file.
 pub(crate) fn at_own_ratio(answers: &[Answers]) -> Answers {
     let own = crate::robot(ROBOT).ground().ratio;
     let index = RATIOS.iter().position(|ratio| *ratio == own);
@@ -173,7 +173,7 @@ pub fn table(robot: &Robot, grains: &Grains) -> String {
         _ = write!(text, "  {head:>13}");
     }
     text.push('\n');
-    // The part of the displacement that a gait is for: 0 is ahead, 2 the turn.
+    // The part of the displacement for which a gait is made: 0 is ahead, 2 the turn.
     let rows = GAITS.into_iter().flat_map(|(gait, _)| match gait {
         "left" => vec![(gait, 2)],
         "arc-left" => vec![(gait, 0), (gait, 2)],

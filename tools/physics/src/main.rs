@@ -20,9 +20,9 @@ use lizard_robot::Robot;
 /// A difference from the stored answer, mm and deg, beyond which the model, the engine or the robot
 /// must have changed.
 const TOLERANCES: (f64, f64) = (0.6, 0.4);
-/// The message for an answer of which no other is stored.
+/// The message for an answer without a stored one to compare.
 const NOT_KEPT: &str = "no figures are kept; `make physics WRITE=1` keeps these";
-/// The beginnings of the files' names of walks on other floors and with other servos.
+/// The prefixes of file names of walks on other floors and with other servos.
 const SURFACE: &str = "surface";
 const SERVOS: &str = "servos";
 const ASSUMPTIONS: &str = "assumptions";
@@ -184,7 +184,7 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
             surfaces_table(robot, &kept, &surfaces)
         );
     }
-    let (before, mut by_servos) = (servos::kept(), Servos::new());
+    let (before, mut by_servos) = (servos::stored(), Servos::new());
     for (index, (variant, gait)) in driven.iter().enumerate() {
         let answers = Answers {
             model: Some(variant.model(gait)),

@@ -1,4 +1,4 @@
-//! Pads of other shapes: which dome is flat enough for an edge.
+//! Pads of other shapes: a comparison of domes on edges.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -28,7 +28,7 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// All of them, in the order of the table.
+    /// All pads, in the order of the table.
     pub const ALL: [Self; 7] = [
         Self::Flat,
         Self::Dome(5),

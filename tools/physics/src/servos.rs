@@ -10,9 +10,10 @@ use lizard_robot::Robot;
 use crate::figures::{Answers, Displacement};
 use crate::here;
 
-/// The gaits that are walked, and the part of the way that each is for: 0 ahead, 2 turn.
+/// The gaits that are walked, and the part of the displacement that matters for each: 0 ahead, 2
+/// turn.
 pub const GAITS: [(&str, usize); 4] = [("walk", 0), ("trot", 0), ("crawl", 0), ("left", 2)];
-/// The allowed difference between the model and MuJoCo, as a share of MuJoCo's way.
+/// The allowed difference between the model and MuJoCo, as a share of MuJoCo's displacement.
 const ALLOWED: f64 = 0.10;
 
 /// The paper's robot with other servos, joints, mass and pads.
@@ -25,11 +26,11 @@ pub struct Variant {
     joints: &'static str,
     /// Friction of each pin of MuJoCo's robot, N mm, instead of the model's `drag`.
     pins: Option<f64>,
-    /// Mass that it weighs more, g.
-    more: f64,
+    /// Additional mass, g.
+    extra_mass: f64,
     friction: f64,
-    /// Gaits that are further off, with the share that is allowed instead.
-    further: &'static [(&'static str, f64)],
+    /// Gaits that differ more, with the share that is allowed instead.
+    exceptions: &'static [(&'static str, f64)],
 }
 
 const SG90: Variant = Variant {
@@ -37,14 +38,14 @@ const SG90: Variant = Variant {
     servo: "",
     joints: "",
     pins: None,
-    more: 0.0,
+    extra_mass: 0.0,
     friction: 0.7,
-    further: &[],
+    exceptions: &[],
 };
 const COPY: Variant = Variant {
     name: "copy, 50 g more, friction 1, joints that run easily",
     servo: "model = \"copy\"",
-    more: 50.0,
+    extra_mass: 50.0,
     friction: 1.0,
     ..SG90
 };
@@ -55,7 +56,7 @@ const STIFF: Variant = Variant {
 };
 
 impl Variant {
-    /// All of them, in the order of the table.
+    /// All variants, in the order of the table.
     pub const ALL: [Self; 7] = [
         SG90,
         COPY,
@@ -64,21 +65,21 @@ impl Variant {
             name: "the same, but 3 N mm in each pin of MuJoCo's robot",
             pins: Some(3.0),
             // The pins of head and tail turn if a leg returns alone; without them it is 6 %.
-            further: &[("crawl", 0.17)],
+            exceptions: &[("crawl", 0.17)],
             ..STIFF
         },
         Self {
             name: "the same copy on 4.2 V",
             servo: "model = \"copy\"\nvolts = 4.2",
             // The inertia of the legs and the height of the mass centre.
-            further: &[("left", 0.17)],
+            exceptions: &[("left", 0.17)],
             ..STIFF
         },
         Self {
             name: "a rotor of 2 ms",
             servo: "spin_up_ms = 2.0",
             // Each pulse throws the foot forward.
-            further: &[("walk", 0.13)],
+            exceptions: &[("walk", 0.13)],
             ..SG90
         },
         Self {
@@ -113,7 +114,7 @@ impl Variant {
         );
         replace(
             &format!("mass = {own:.1}"),
-            &format!("mass = {:.1}", own + self.more),
+            &format!("mass = {:.1}", own + self.extra_mass),
         );
         Robot::parse(&text).expect(self.name)
     }
@@ -148,14 +149,15 @@ impl Variant {
 
     /// The share by which the model may differ from MuJoCo in a gait.
     fn allowed(&self, gait: &str) -> f64 {
-        let further = self.further.iter().find(|(of, _)| *of == gait);
+        let further = self.exceptions.iter().find(|(of, _)| *of == gait);
         further.map_or(ALLOWED, |(_, share)| *share)
     }
 
     /// The message for a gait in which the model differs from MuJoCo too much.
     pub fn disagreement(&self, gait: &str, answers: &Answers) -> Option<String> {
         let (_, part) = GAITS.into_iter().find(|(name, _)| *name == gait)?;
-        let [model, mujoco] = [answers.model?, answers.mujoco].map(|way| way.0[part]);
+        let [model, mujoco] =
+            [answers.model?, answers.mujoco].map(|displacement| displacement.0[part]);
         let error = model / mujoco - 1.0;
         (error.abs() > self.allowed(gait)).then(|| {
             let percent = 100.0 * error;
@@ -171,7 +173,7 @@ pub type Servos = BTreeMap<String, BTreeMap<String, Answers>>;
 ///
 /// # Panics
 /// If `servos.json` is not as [`text`] makes it.
-pub fn kept() -> Servos {
+pub fn stored() -> Servos {
     serde_json::from_str(include_str!("../servos.json")).expect("servos.json")
 }
 

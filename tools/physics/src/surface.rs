@@ -1,7 +1,7 @@
 //! Floors that are not level, even and clean, and the walks on them.
 //!
-//! The contact model knows one floor. What a tile's edge, crumbs or a slope cost, only the engine
-//! says: no foot is lifted, so each edge has to be climbed by a pad that is pushed against it.
+//! The contact model knows one floor. Only the engine predicts the effect of a tile's edge, crumbs
+//! or a slope: no foot is lifted, so a pad that is pushed against an edge has to climb it.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Write as _};
@@ -23,7 +23,8 @@ pub const ROBOTS: [&str; 5] = ["paper", "own-gaits", "large", "unequal", grains:
 /// A gait that moves less by a cycle, mm and deg, is not for walking: it looks around or wags.
 const WALKS: (f64, f64) = (9.0, 3.0);
 
-/// The parts of a gait's displacement on a level floor that it is for: a way, a turn, or both.
+/// The parts of the displacement on a level floor for which a gait is made: distance, turn, or
+/// both.
 pub(crate) fn parts(Displacement([ahead, _, turn]): Displacement) -> Vec<Part> {
     let all = [
         (Part::Ahead, ahead.abs() > WALKS.0),
@@ -55,7 +56,7 @@ pub fn gaits(figures: &Figures, robot: &str) -> Vec<(String, Displacement)> {
             *answers.expect("figures.json has it"),
         )
     });
-    // Of a gait that depends on ties nobody knows where it leads.
+    // The path of a gait that depends on ties is not determined.
     level
         .filter(|(_, answers)| answers.model.is_some())
         .map(|(gait, answers)| (gait, answers.mujoco))
@@ -66,7 +67,7 @@ pub fn gaits(figures: &Figures, robot: &str) -> Vec<(String, Displacement)> {
 /// A kind of floor, or a fault of a foot on a level one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Surface {
-    /// A step up across the way, tenths of a mm high: the edge of a tile or of a thin carpet.
+    /// A step up across the path, tenths of a mm high: the edge of a tile or of a thin carpet.
     Edge(u8),
     /// Blocks strewn over a quarter of the floor, tenths of a mm high.
     Blocks(u8),
@@ -79,7 +80,7 @@ pub enum Surface {
 }
 
 impl Surface {
-    /// All of them, in the order of the table.
+    /// All surfaces, in the order of the table.
     pub const ALL: [Self; 8] = [
         Self::Edge(10),
         Self::Edge(20),
@@ -104,18 +105,19 @@ impl Surface {
         matches!(self, Self::Edge(_) | Self::Blocks(_))
     }
 
-    /// The least share of its distance that a gait must keep here, if it goes ahead or back.
-    pub fn least_way(self) -> Option<f64> {
+    /// The least share of its distance that a gait must keep on this surface, if it goes ahead or
+    /// back.
+    pub fn least_distance(self) -> Option<f64> {
         self.is_climbed().then_some(0.85)
     }
 
-    /// The least share of its angle that a gait must keep here, if it turns. A lost pad is a fault
-    /// to be mended: it halves some turns.
+    /// The least share of its angle that a gait must keep on this surface, if it turns. A lost pad
+    /// is a fault to be mended: it halves some turns.
     pub fn least_turn(self) -> Option<f64> {
         (self != Self::NoPad).then_some(0.75)
     }
 
-    /// The floor on the way of a gait.
+    /// The floor on the path of a gait.
     fn floor(self, assembly: &Assembly, crossing: &Crossing, direction: f64) -> Floor {
         let robot = assembly.robot();
         let mut floor = Floor::of(robot);
@@ -143,7 +145,7 @@ impl Surface {
         let mut scene = scene_of(name, assembly, gait, Case::ALL[0]);
         scene.ratio = robot.ground().ratio;
         let gait = robot.gait(gait).expect("it is the robot's");
-        // On even pads a gait is at its speed from the first cycle on.
+        // On even pads a gait has its full speed from the first cycle on.
         let settling = match scene.ratio == 1.0 {
             true => 0,
             false => grains::settling(gait),
@@ -185,8 +187,8 @@ fn strewn_blocks(robot: &Robot, high: f64) -> Vec<Block> {
             let [wide, long] = [random(10.0, 20.0), random(10.0, 20.0)];
             let mut place = |square: i32| SQUARE * f64::from(square) + random(0.0, SQUARE);
             let at = [place(column), place(row)];
-            let away = |[forward, left]: [f64; 2]| (at[0] + left).hypot(at[1] - forward);
-            if feet.into_iter().map(away).fold(f64::INFINITY, f64::min) > SQUARE {
+            let distance = |[forward, left]: [f64; 2]| (at[0] + left).hypot(at[1] - forward);
+            if feet.into_iter().map(distance).fold(f64::INFINITY, f64::min) > SQUARE {
                 let size = [wide, long, high];
                 let turned = 0.0;
                 blocks.push(Block { at, size, turned });
@@ -251,7 +253,7 @@ pub fn is_below(robot: &str, gait: &str, surface: Surface) -> bool {
 /// The least share of a displacement's part that a gait must keep on a surface.
 fn least(surface: Surface, part: Part) -> Option<f64> {
     match part {
-        Part::Ahead => surface.least_way(),
+        Part::Ahead => surface.least_distance(),
         Part::Turn => surface.least_turn(),
     }
 }

@@ -10,7 +10,7 @@ use crate::figures::{Displacement, Figures};
 /// A displacement below this counts as none: mm and deg.
 const MIN_DISPLACEMENT: (f64, f64) = (1.0, 0.5);
 
-/// The part of a displacement that a gait is for.
+/// The part of a displacement for which a gait is made.
 #[derive(Clone, Copy)]
 pub(crate) enum Part {
     Ahead,

@@ -1,4 +1,5 @@
-//! Tests of the figures on the pages: they are MuJoCo's, and close enough to the model's.
+//! Tests of the figures on the pages: they are MuJoCo's, and agree with the model's within the
+//! bounds.
 //!
 //! `BLESS_PHYSICS=1` writes the tables again; `make docs` does it.
 

@@ -1,4 +1,4 @@
-//! Tests of the speeds on pads with a grain, as model and MuJoCo last gave them.
+//! Tests of the speeds on pads with a grain, as computed last by the model and MuJoCo.
 //!
 //! `BLESS_PHYSICS=1` writes them into the page and into the robot's file; `make docs` does it.
 

@@ -1,19 +1,19 @@
 //! Tests of the contact model against rapier, on springs, at other frictions, on legs mounted
 //! outward.
 //!
-//! The displacements are the answers of rapier 0.36 for a chassis and four dragging balls, which
-//! had inertia and did not use the model. The engine is not compiled any more; its answers stay, so
-//! a wrong change of the model is noticed. A gait that depends on inertia was walked more slowly
-//! in the engine.
+//! The displacements were computed by the engine rapier 0.36 for a chassis with inertia and four
+//! dragging balls, without the model. The engine is no longer compiled; its results stay, so that a
+//! wrong change of the model is noticed. Gaits that depend on inertia were walked more slowly
+//! there.
 
 use lizard_physics::{Displacement, robot};
 use lizard_robot::{Body, Feet, Ground};
 
-/// The gaits of which none follows from another by symmetry.
-const KINDS: [&str; 5] = ["walk", "trot", "crawl", "left", "arc-left"];
+/// Gaits none of which is a mirror image or a reversal of another.
+const GAITS: [&str; 5] = ["walk", "trot", "crawl", "left", "arc-left"];
 
-/// The displacement by a cycle of each: mm forward, mm to the left, deg counter-clockwise.
-type Ways = [[f64; 3]; 5];
+/// The displacement in one cycle of each gait: mm forward, mm to the left, deg counter-clockwise.
+type Displacements = [[f64; 3]; 5];
 
 /// The paper's robot of 280 g.
 fn ground() -> Ground {
@@ -26,15 +26,15 @@ fn ground() -> Ground {
     }
 }
 
-/// Asserts that the model differs from the engine by at most this many mm and deg.
-fn assert_agreement(ground: &Ground, theirs: &Ways, mm: f64, deg: f64) {
+/// Asserts that model and engine differ by at most this many mm and deg.
+fn assert_agreement(ground: &Ground, expected: &Displacements, mm: f64, deg: f64) {
     let paper = robot("paper");
-    for (name, displacement) in KINDS.into_iter().zip(theirs) {
-        let ours = Displacement::from(paper.gait(name).expect(name).walked(ground).travel);
-        let (off, turned) = ours.distance_to(&Displacement(*displacement));
+    for (name, displacement) in GAITS.into_iter().zip(expected) {
+        let by_model = Displacement::from(paper.gait(name).expect(name).walked(ground).travel);
+        let (distance, turn) = by_model.distance_to(&Displacement(*displacement));
         assert!(
-            off <= mm && turned <= deg,
-            "{name} goes {displacement:?} by the engine, {ours:?} by the model, with {:?}",
+            distance <= mm && turn <= deg,
+            "{name} goes {displacement:?} by the engine, {by_model:?} by the model, with {:?}",
             ground.drive
         );
     }
@@ -66,13 +66,13 @@ fn the_tuned_gait_is_faster_than_walk_in_the_engine_too() {
     let (paper, tuned) = (robot("paper"), robot("own-gaits"));
     let stride = tuned.gait("stride").expect("stride");
     let walk = paper.gait("walk").expect("walk");
-    let ours = Displacement::from(stride.walked(&ground()).travel);
-    let (off, turned) = ours.distance_to(&Displacement([40.95, -0.44, 0.0]));
-    assert!(off <= 0.5 && turned <= 0.3, "{ours:?}");
-    let kept = lizard_physics::Figures::stored();
+    let by_model = Displacement::from(stride.walked(&ground()).travel);
+    let (distance, turn) = by_model.distance_to(&Displacement([40.95, -0.44, 0.0]));
+    assert!(distance <= 0.5 && turn <= 0.3, "{by_model:?}");
+    let stored = lizard_physics::Figures::stored();
     let speed = |robot: &str, gait: &str, period: f64| {
         let level = lizard_physics::Case::ALL[0];
-        kept.get(robot, gait, level).expect(gait).mujoco.0[0] / period
+        stored.get(robot, gait, level).expect(gait).mujoco.0[0] / period
     };
     let slow = speed("paper", "walk", walk.period());
     let fast = speed("own-gaits", "stride", stride.period());
@@ -80,7 +80,7 @@ fn the_tuned_gait_is_faster_than_walk_in_the_engine_too() {
 }
 
 /// On rigid legs at a friction of 0.4.
-const SLIPPERY: Ways = [
+const SLIPPERY: Displacements = [
     [34.58, -0.02, 0.0],
     [26.64, -0.08, 0.0],
     [30.63, 0.02, 0.02],
@@ -89,7 +89,7 @@ const SLIPPERY: Ways = [
 ];
 
 /// On rigid legs at a friction of 1.0.
-const ROUGH: Ways = [
+const ROUGH: Displacements = [
     [34.46, -0.02, 0.0],
     [26.66, -0.08, 0.0],
     [30.63, 0.07, 0.0],
@@ -98,7 +98,7 @@ const ROUGH: Ways = [
 ];
 
 /// On rigid legs mounted 45 degrees outward, at half the pace.
-const MOUNTED: Ways = [
+const MOUNTED: Displacements = [
     [5.57, 0.0, 0.0],
     [12.87, 0.27, 0.0],
     [22.81, -0.06, 0.01],

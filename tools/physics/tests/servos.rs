@@ -1,23 +1,23 @@
-//! Tests of servos that cannot follow, as model and MuJoCo last walked with them.
+//! Tests of servos that cannot follow, as computed last by the model and MuJoCo.
 //!
 //! `BLESS_PHYSICS=1` writes the table into the page; `make docs` does it.
 
 use lizard_physics::here;
-use lizard_physics::servos::{GAITS, Variant, kept, servos_table, text};
+use lizard_physics::servos::{GAITS, Variant, servos_table, stored, text};
 
 #[test]
 fn a_servo_that_cannot_follow_loses_in_the_model_what_it_loses_in_mujoco() {
-    let kept = kept();
+    let stored = stored();
     let mut count = 0;
     for variant in Variant::ALL {
         for (gait, part) in GAITS {
-            let answers = kept[variant.name][gait];
+            let answers = stored[variant.name][gait];
             let name = variant.name;
             assert_eq!(variant.disagreement(gait, &answers), None, "{name}, {gait}");
             let (was, is) = (answers.model.expect("a way"), variant.model(gait));
             let error = (was.0[part] - is.0[part]).abs();
             assert!(error < 0.05, "{name}, {gait}: {was:?} {is:?}");
-            // The rule refuses a servo that follows in the model only.
+            // The rule refuses servos that follow only in the model.
             let mut lost = answers;
             lost.mujoco.0[part] /= 2.0;
             assert!(
@@ -27,10 +27,10 @@ fn a_servo_that_cannot_follow_loses_in_the_model_what_it_loses_in_mujoco() {
             count += 1;
         }
     }
-    let all: usize = kept.values().map(std::collections::BTreeMap::len).sum();
-    assert_eq!(all, count, "and no others are kept");
+    let all: usize = stored.values().map(std::collections::BTreeMap::len).sum();
+    assert_eq!(all, count, "and no others are stored");
     let file = std::fs::read_to_string(here().join("servos.json")).expect("servos.json");
-    assert_eq!(file, text(&kept));
+    assert_eq!(file, text(&stored));
 }
 
 #[test]
@@ -43,7 +43,7 @@ fn the_page_has_the_ways_of_model_and_mujoco() {
     let now = format!(
         "{}{}{}",
         &page[..start],
-        servos_table(&kept()),
+        servos_table(&stored()),
         &page[end..]
     );
     if std::env::var_os("BLESS_PHYSICS").is_some() {

@@ -66,12 +66,12 @@ pub enum Event<'a> {
         line: &'a str,
         /// The line's effect on the servos.
         effect: Effect,
-        /// When it was sent.
+        /// The time at which it was sent.
         asked: Time,
         /// The answer.
         text: &'a str,
     },
-    /// A line that was sent at this time has got no answer.
+    /// A line that was sent at this time was not answered.
     Unanswered(Time, &'a str),
     /// A line of the robot, answers included, and the time at which its first byte was written.
     Printed(Time, &'a str),

@@ -1,5 +1,5 @@
-//! The LED: short flashes, as many as the fault's code, and a pause; without a fault long
-//! and slow.
+//! The LED's patterns: as many short flashes as the fault's code, then a pause; without a fault a
+//! slow beat.
 
 use crate::event::{MS, Time};
 

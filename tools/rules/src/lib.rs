@@ -1,5 +1,5 @@
-//! The rules of safety: a list of sentences that a user may rely on, and an observer who
-//! holds a robot to them.
+//! The rules of safety: a list of sentences that a user may rely on, and an observer who judges a
+//! robot by them.
 //!
 //! The model checker (`tools/explore`), the search for trouble on the simulated UNO
 //! (`make trouble`) and the search for harmful bytes (`tools/fuzz`) test the same promises.

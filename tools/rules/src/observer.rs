@@ -25,7 +25,7 @@ pub struct Limits {
     pub frame_left: Time,
     /// The longest time from a fault to its report on the console.
     pub report_time: Time,
-    /// The longest time for which a line of the robot waits behind others before it is said.
+    /// The longest time for which a line of the robot waits behind others before it is printed.
     pub queued: Time,
     /// The longest time for which a routine rests by itself; 0 without such a routine.
     pub longest_rest: Time,
@@ -83,11 +83,11 @@ pub struct Observer {
     pub(crate) last_byte: Time,
     pub(crate) deadman: Time,
     /// The latest time at which the last command may have been read.
-    pub(crate) heard: Time,
+    pub(crate) command_read: Time,
     /// True from the answer to a gait until a motion that `deadman` does not end.
     pub(crate) is_driven: bool,
     pub(crate) is_unsaved: bool,
-    /// Motions since the start that may still be done.
+    /// Number of motions since the start that may still be under way.
     pub(crate) begun: i32,
     pub(crate) permission: Permission,
     pub(crate) servos: [Servo; 4],
@@ -96,7 +96,7 @@ pub struct Observer {
     pub(crate) supply: Supply,
     pub(crate) reports: Reports,
     pub(crate) pending: Pending,
-    /// Time of the first of several `rest` in a row.
+    /// Time of the first of consecutive `rest` commands.
     pub(crate) rested: Time,
     pub(crate) brown_outs: [Time; 5],
 }
@@ -133,7 +133,7 @@ impl Observer {
             last_line: NEVER,
             last_byte: NEVER,
             deadman: 0,
-            heard: NEVER,
+            command_read: NEVER,
             is_driven: false,
             is_unsaved: false,
             begun: 0,
@@ -279,7 +279,7 @@ impl Observer {
                 self.lines += 1;
                 if is_command {
                     self.last_line = time;
-                    self.heard = time;
+                    self.command_read = time;
                 }
             }
             Event::Order { effect, done } => self.order(effect, done),
@@ -371,7 +371,7 @@ impl Observer {
         self.reports.start(cause, at);
     }
 
-    /// The time for which main was stalled in the last 300 ms; several short stalls may add up.
+    /// The time for which main was stalled in the last 300 ms: the sum of all stalls.
     pub(crate) fn stalled(&self, time: Time) -> Time {
         let recent = self.stalls.iter().filter(|(_, end)| *end > time - 300 * MS);
         recent.map(|(start, end)| end.min(&time) - start).sum()

@@ -73,7 +73,7 @@ impl Observer {
             (
                 self.reports.stopped.map(age),
                 self.reports.is_reported,
-                recent(self.reports.told, 400),
+                recent(self.reports.reported_at, 400),
             ),
             (brown_outs.count(), self.cause),
         )

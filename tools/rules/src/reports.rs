@@ -8,10 +8,10 @@ use crate::event::{MS, NEVER, Time};
 use crate::observer::Observer;
 use crate::rule::Rule;
 
-/// The last stop, and whether it was reported.
+/// The last stop, with a flag for its report.
 #[derive(Clone, Debug)]
 pub(crate) struct Reports {
-    /// Time at which a fault stopped the robot, until a person acts.
+    /// Time at which a fault stopped the robot, until the user acts.
     pub stopped: Option<Time>,
     /// True once the console has reported the reason.
     pub is_reported: bool,
@@ -19,7 +19,7 @@ pub(crate) struct Reports {
     /// stays stopped does not report it again.
     may_still_be_stopped: bool,
     /// Time of the last report of a fault on the console.
-    pub told: Time,
+    pub reported_at: Time,
 }
 
 impl Default for Reports {
@@ -28,7 +28,7 @@ impl Default for Reports {
             stopped: None,
             is_reported: false,
             may_still_be_stopped: false,
-            told: NEVER,
+            reported_at: NEVER,
         }
     }
 }
@@ -38,7 +38,7 @@ impl Reports {
     pub(crate) fn stop(&mut self, time: Time) {
         if self.stopped.is_none() {
             self.stopped = Some(time);
-            self.is_reported = self.may_still_be_stopped || time - self.told < 400 * MS;
+            self.is_reported = self.may_still_be_stopped || time - self.reported_at < 400 * MS;
         }
     }
 
@@ -49,7 +49,7 @@ impl Reports {
         }
     }
 
-    /// Ends a stop by an order to move, which may be lost unless it is sure.
+    /// Ends a stop by an order to move, which may have been lost unless it is sure.
     pub(crate) const fn order(&mut self, is_sure: bool) {
         let was_reported = self.stopped.is_some() && self.is_reported;
         self.may_still_be_stopped = !is_sure && (was_reported || self.may_still_be_stopped);
@@ -68,13 +68,13 @@ impl Observer {
             }
             if self.lines > 0 {
                 // The next one may have waited until this answer was written.
-                self.heard = self.now;
+                self.command_read = self.now;
             }
         }
         self.note_done(line);
         if line.starts_with("# fault: ") || line.starts_with("# held") {
             self.reports.is_reported = true;
-            self.reports.told = self.now;
+            self.reports.reported_at = self.now;
             if line.contains("no line for") {
                 // One that an order has overtaken is over already.
                 if since - self.ordered >= self.limits.queued {

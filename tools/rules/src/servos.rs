@@ -10,7 +10,7 @@ use crate::rule::Rule;
 /// Longest time between two pulses; beyond it a frame was left out.
 const MAX_PULSE_GAP: Time = 30 * MS;
 
-/// The most that a gait outlasts the time of `deadman`.
+/// The longest time by which a gait outlasts `deadman`.
 const LATE: Time = 40 * MS;
 
 /// Cycles by which the pulses of a servo that stands may differ.
@@ -23,11 +23,11 @@ const UNTIL_REST: Time = 45 * MS;
 /// passed.
 const BOOT: Time = 2_975 * MS;
 
-/// Pulses that begin so close to each other begin in one frame, or in two that follow:
-/// servos are to wake 0.1 s apart.
+/// First pulses closer together than this are in the same frame or in consecutive ones, although
+/// servos must wake 0.1 s apart.
 const MIN_WAKE_GAP: Time = 75 * MS;
 
-/// From the end of the pulses to the reset of a hang: the watchdog's second stage and a
+/// Time from the end of the pulses to the reset after a hang: the watchdog's second stage and a
 /// frame.
 const UNTIL_RESET: Time = 160 * MS;
 
@@ -231,9 +231,9 @@ impl Observer {
 
     /// Judges a pulse that differs from the one before by the time since the last command.
     fn judge_silence(&mut self, servo: usize) {
-        let silence = self.now - self.heard;
+        let silence = self.now - self.command_read;
         // After a stall main is late for a frame.
-        let is_calm = self.disturbed + 25 * MS <= self.heard;
+        let is_calm = self.disturbed + 25 * MS <= self.command_read;
         if self.is_driven && self.deadman > 0 && is_calm && silence > self.deadman + LATE {
             let (ms, says) = (silence / MS, self.deadman / MS);
             let seen = format!("deadman {says}, A{} moves after {ms} ms", servo + 1);
@@ -265,7 +265,7 @@ impl Observer {
         let (last_servo, last, last_after_hang) = self.last_begin;
         let is_soon = at - last < MIN_WAKE_GAP;
         if is_soon && pulse.servo == last_servo {
-            // A late pulse has cost it a frame or two: it does not wake once more.
+            // A late pulse has cost the servo a frame or two; it does not wake again.
             return;
         }
         if is_soon && !(is_after_hang && last_after_hang) {
@@ -290,9 +290,9 @@ impl Observer {
             || self.start > end - 25 * MS
             || self.booted_to_rest > end - 60 * MS
             || self.supply.time_below(rest, end - 600 * MS, end) > 0
-            // A routine that rests ends there if the robot may not move on, or nobody is heard.
+            // A routine that rests ends there if the robot may not move on, or if no line arrives.
             || self.supply.time_below(stop, end, end + self.limits.longest_rest) > 0
-            || self.reports.told > end;
+            || self.reports.reported_at > end;
         if !has_reason {
             let ms = (self.now - end) / MS;
             self.fail(

@@ -67,8 +67,8 @@ impl Supply {
 
     /// True if the supply has been below `mv` since this time.
     pub(crate) fn is_low_since(&self, mv: u32, since: Time) -> bool {
-        let begun = self.history.iter().rposition(|(_, volts)| *volts >= mv);
-        let low = self.history.get(begun.map_or(0, |last| last + 1));
+        let last_above = self.history.iter().rposition(|(_, volts)| *volts >= mv);
+        let low = self.history.get(last_above.map_or(0, |last| last + 1));
         low.is_some_and(|(at, _)| *at <= since)
     }
 

@@ -43,8 +43,8 @@ impl TimeLimit {
         Self(time)
     }
 
-    /// Waits for a condition; returns false if the limit comes first. For a test with a longer
-    /// message than that of [`TimeLimit::expect`].
+    /// Waits for a condition; returns false if the limit comes first. Use it in a test whose
+    /// message is longer than that of [`TimeLimit::expect`].
     pub fn wait_for(self, mut condition: impl FnMut() -> bool) -> bool {
         let end = Instant::now() + self.0;
         loop {

@@ -11,7 +11,7 @@ const ROBOTS = { look: 20, end: 200 };
 let isStopped = false;
 
 const say = (answer: Answer) => postMessage(answer);
-/** Lets messages that have arrived be handled. */
+/** Yields, so that waiting messages are handled. */
 const turn = () => new Promise((next) => setTimeout(next));
 
 addEventListener('message', ({ data }: MessageEvent<Question | 'stop'>) => {
@@ -24,9 +24,9 @@ async function search({ module, toml, floor, servos, wish }: Question): Promise<
   robot.read(toml);
   robot.setFloor(floor);
   robot.setServos(servos);
-  const begun = robot.makeFaster(wish);
-  if (isRefused(begun)) return say({ of: 'end', refused: begun.refused });
-  say({ of: 'begun', ...begun, before: robot.trial(wish.bars) as Trial });
+  const search = robot.makeFaster(wish);
+  if (isRefused(search)) return say({ of: 'end', refused: search.refused });
+  say({ of: 'begun', ...search, before: robot.trial(wish.bars) as Trial });
   const best = (robots: number): Best | null => {
     const found = robot.fasterFound(robots);
     // The search only returns gaits within the robot's limits.
@@ -34,13 +34,13 @@ async function search({ module, toml, floor, servos, wish }: Question): Promise<
   };
   let shown = -Infinity;
   let done = 0;
-  while (done < begun.all) {
+  while (done < search.all) {
     await turn();
     if (isStopped) break;
     const tried = robot.fasterStep();
     done = tried.done;
     say({ of: 'tried', done });
-    if (done % LOOK !== 0 || done === begun.all || tried.best === null || tried.best <= shown) continue;
+    if (done % LOOK !== 0 || done === search.all || tried.best === null || tried.best <= shown) continue;
     shown = tried.best;
     const now = best(ROBOTS.look);
     if (now) say({ of: 'best', best: now });

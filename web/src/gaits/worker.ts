@@ -17,6 +17,6 @@ async function answer({ toml, floor, servos, made }: Question): Promise<void> {
   known = toml;
   page.setFloor(floor);
   page.setServos(servos);
-  const said: Answer = { made, trial: page.trial(made) };
-  postMessage(said);
+  const reply: Answer = { made, trial: page.trial(made) };
+  postMessage(reply);
 }

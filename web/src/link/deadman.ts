@@ -1,9 +1,9 @@
-// A robot that is out of reach would walk on. So while a person drives it, `deadman` is set: it ends a gait by itself
-// when no line has come for that long. When the gait has ended, it gets its own setting back.
+// A robot out of reach would walk on. So while a user drives it, `deadman` is set, and the robot ends a gait by itself
+// when no line has come for that long. After the gait its own setting is restored.
 import { WORDS } from '../words';
 import type { Dialogue } from './dialogue';
 
-/** `deadman` while a person drives, ms. A person sets round numbers, so this one was left by a page that was closed. */
+/** `deadman` while a user drives, ms. Users choose round numbers, so a robot with this one got it from a page that was closed. */
 const DRIVEN = 901;
 /** Lines that the page sends within that time: two of three may be lost. */
 const LINES = 3;
@@ -11,7 +11,7 @@ const LINES = 3;
 export class Deadman {
   /** The robot's own setting, ms; null until it is read. */
   private own: number | null = null;
-  /** Present from the line that sets it until the one that takes it back; true once the robot has confirmed it. */
+  /** The result of setting it, true once the robot has confirmed it; null while the robot has its own setting. */
   private set: Promise<boolean> | null = null;
 
   constructor(private readonly dialogue: Dialogue) {}
@@ -20,7 +20,7 @@ export class Deadman {
     return this.set !== null;
   }
 
-  /** Sets it, before a gait; false if the robot does not confirm it, and then nobody may start one. */
+  /** Sets `deadman` before a gait; false if the robot does not confirm it, and then no gait may start. */
   begin(): Promise<boolean> {
     return (this.set ??= this.confirmed());
   }
@@ -40,7 +40,7 @@ export class Deadman {
     if (ms !== undefined) this.own = Number(ms) === DRIVEN ? 0 : Number(ms);
   }
 
-  /** Notes a person's own line. */
+  /** Notes a line of the user that changes the setting. */
   follow(line: string, isOk: boolean): void {
     if (!isOk) return;
     const [word, ms] = line.split(/\s+/);
@@ -48,7 +48,7 @@ export class Deadman {
     if (word === WORDS.load || word === WORDS.factory) this.own = null;
   }
 
-  /** Sends nothing more by itself: the robot stops if nobody else does. */
+  /** Stops sending lines, so that the robot stops unless somebody else sends some. */
   letGo(): void {
     this.dialogue.keepAlive(null);
   }
@@ -61,7 +61,7 @@ export class Deadman {
     if (this.own !== null) void this.quietly(`${WORDS.deadman} ${this.own}`);
   }
 
-  /** Forgets all: the robot has restarted. */
+  /** Resets this state after a restart of the robot. */
   forget(): void {
     this.letGo();
     this.set = null;

@@ -16,12 +16,12 @@ const TIMEOUT = 3000;
 const AGAIN = 250;
 /** Time within which the answers to earlier `stop` lines have come, ms. */
 const ECHOES = 500;
-/** Time without the answer that is due after which a robot counts as silent, ms. */
+/** Time without an expected answer after which a robot counts as silent, ms. */
 export const SILENCE = 800;
-/** The words that a Bluetooth module puts into the line when its link begins and ends. */
+/** The texts that a Bluetooth module inserts into the line when its link begins and ends. */
 const MODULE = /OK\+(CONN|LOST)/g;
 /**
- * The answers to `stop` of a robot without pulses: it rests, or its flash has no robot. All of a line counts: what a radio
+ * Answers to `stop` of a robot without pulses, which rests or has no robot in its flash. The whole line must match: one that a radio
  * has cut off may be the beginning of an older answer.
  */
 const CANNOT_MOVE = /^err (7 servos are resting, send stand first|10 no robot in the flash)$/;
@@ -42,7 +42,7 @@ export interface DialogueListener {
   /** Called with each line that is received and is to be shown. */
   received(line: string): void;
   /** Called with each line of the robot, also with one that is not shown. */
-  heard(line: string): void;
+  arrived(line: string): void;
   /** Called when the robot has left a line unanswered for `SILENCE`, and when it answers again. */
   silent(isSilent: boolean): void;
   /** Called when `stop` begins to be sent, and when the robot has answered it. */
@@ -71,11 +71,11 @@ interface Stop {
 
 const wordOf = (line: string) => line.trim().toLowerCase().split(/\s/)[0];
 
-/** True if a line that begins with `ok` or `err` can be the answer to this one; one that came too late is not. */
+/** True if a line that begins with `ok` or `err` can be the answer to `line`, and is not a late answer to another. */
 function fits(answer: string, line: string): boolean {
   const word = wordOf(line);
-  const said = { [WORDS.status]: 'gait=', '?': WORDS.help }[word] ?? word;
-  return answer.startsWith('err') || answer.startsWith(`ok ${said}`);
+  const expected = { [WORDS.status]: 'gait=', '?': WORDS.help }[word] ?? word;
+  return answer.startsWith('err') || answer.startsWith(`ok ${expected}`);
 }
 
 export class Dialogue {
@@ -85,12 +85,12 @@ export class Dialogue {
   private readonly waiting: Question[] = [];
   private asked: Question | null = null;
   private stop: Stop | null = null;
-  /** Present while answers to repeated `stop` lines may come, which belong to no other line. */
+  /** Pending while further answers to repeated `stop` lines may come, which belong to no other line. */
   private echoes: Promise<void> | null = null;
   private isSilent = false;
-  /** The line that is sent beside all others. */
+  /** The line that is sent repeatedly beside all others. */
   private beat: { line: string } | null = null;
-  /** The answer to the last such line. */
+  /** The expected answer to that line. */
   private beaten = '';
   private notes: string[] = [];
   /** True while the line serves another purpose. */
@@ -133,7 +133,7 @@ export class Dialogue {
     for (const { failed } of this.waiting.splice(0)) failed(new DroppedQuestion());
   }
 
-  /** Stops the robot. A line that waits would have it walk on, so it is dropped. */
+  /** Stops the robot. Waiting lines are dropped, since they could make it walk on. */
   private halt(ends: Ends): void {
     this.forgetWaiting();
     if (this.stop) {
@@ -150,13 +150,13 @@ export class Dialogue {
   private async insist(stop: Stop): Promise<void> {
     while (this.stop === stop) {
       stop.times += 1;
-      // A port that takes nothing more is reported by the link itself.
+      // The link itself reports a port that accepts no more bytes.
       this.link.write(this.encoder.encode(`${WORDS.stop}\n`)).catch(() => {});
       await this.link.wait(AGAIN);
     }
   }
 
-  /** Sends a line every so many ms, beside all others and without waiting for its answer; null ends that. */
+  /** Sends a line every `every` ms, beside all others and without waiting for its answer; null ends that. */
   keepAlive(line: string | null, every = 0): void {
     const beat = (this.beat = line === null ? null : { line });
     if (!beat) return;
@@ -231,7 +231,7 @@ export class Dialogue {
     // A reset cuts off the board's line, perhaps an answer, and the banner follows on the same line.
     const line = received.slice(Math.max(0, received.indexOf(GREETING))).replace(MODULE, '');
     if (line === '') return;
-    this.listener.heard(line);
+    this.listener.arrived(line);
     const { asked: question, stop } = this;
     const answers = /^(ok|err)\b/.test(line);
     if (!answers) {

@@ -5,7 +5,7 @@
 const QUICK = 34;
 /** Pause after a slow picture, as a multiple of its time. */
 const PAUSE = 2;
-/** Longest pause, ms: a hidden page measures too long times. */
+/** Longest pause, ms, since a hidden page measures times that are too long. */
 const LONGEST = 1500;
 /** Least resolution, as a share of the screen's points to a side. */
 const COARSEST = 0.5;
@@ -30,9 +30,9 @@ export class PaintBudget {
       if (gl.clientWaitSync(this.fence, 0, 0) === gl.TIMEOUT_EXPIRED) return false;
       gl.deleteSync(this.fence);
       this.fence = null;
-      const took = now - this.begun;
-      if (took > QUICK) {
-        this.next = now + Math.min(LONGEST, PAUSE * took);
+      const elapsed = now - this.begun;
+      if (elapsed > QUICK) {
+        this.next = now + Math.min(LONGEST, PAUSE * elapsed);
         this.sharpness = Math.max(COARSEST, this.sharpness * COARSER);
         this.quick = 0;
       } else if (++this.quick % STEADY === 0) this.sharpness = Math.min(1, this.sharpness / COARSER);

@@ -125,8 +125,8 @@ export class Space {
       const { target } = this.controls;
       const from = this.camera.position.clone().sub(target);
       const rise = Math.asin(Math.max(-1, Math.min(1, from.z / from.length())));
-      const most = Math.PI / 2 - 0.05;
-      const wanted = Math.max(-most, Math.min(most, rise + up));
+      const largest = Math.PI / 2 - 0.05;
+      const wanted = Math.max(-largest, Math.min(largest, rise + up));
       const round = Math.atan2(from.y, from.x) + about;
       const long = Math.max(this.controls.minDistance, Math.min(this.controls.maxDistance, from.length() * closer));
       this.camera.position.set(Math.cos(round) * Math.cos(wanted), Math.sin(round) * Math.cos(wanted), Math.sin(wanted));

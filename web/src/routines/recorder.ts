@@ -9,8 +9,8 @@ const PAUSE = 0.5;
 const SHORTEST = 0.1;
 /** Error of a count of cycles since the last phase that the robot reported. */
 const SLACK = 0.05;
-/** A phase is that of the cycle nearest to the count, which is rather too high: a gait begins with the way to its first pose. */
-const TOO_LOW = 0.4;
+/** Added before a count is rounded down to whole cycles; below 0.5, because a gait begins with a move to its first pose, which the count includes. */
+const ROUNDING = 0.4;
 /** The robot's activities between gaits; a routine has only `stand` for them. */
 const PAUSES: string[] = ['', GAITS.stand, WORDS.stop, WORDS.pose, WORDS.center];
 
@@ -41,7 +41,7 @@ export class Recorder {
     this.counted = since;
   }
 
-  /** Takes the robot's present activity. */
+  /** Takes the robot's current activity. */
   doing(gait: string, at: number): void {
     if (gait === this.gait) return;
     this.parts = this.closed(at);
@@ -55,15 +55,15 @@ export class Recorder {
   }
 
   /** Takes the reported phase of the robot's gait. */
-  phase(said: number, at: number): void {
+  phase(reported: number, at: number): void {
     this.count(at);
-    const phase = this.known?.reversed ? (1 - said) % 1 : said;
-    // The count is never too low: on the way to its first pose the robot still says the phase of the gait before.
+    const phase = this.known?.reversed ? (1 - reported) % 1 : reported;
+    // The count is never too low: during the move to its first pose the robot still reports the phase of the previous gait.
     if (phase > this.cycles + SLACK) {
       this.cycles = 0;
       return;
     }
-    this.cycles = Math.floor(this.cycles + TOO_LOW - phase) + phase;
+    this.cycles = Math.floor(this.cycles + ROUNDING - phase) + phase;
   }
 
   /** The steps until now, from the first gait to the last one. */
@@ -85,7 +85,7 @@ export class Recorder {
     this.counted = at;
   }
 
-  /** All parts, the present activity as the last one. */
+  /** All parts, the current activity as the last one. */
   private closed(at: number): Part[] {
     this.count(at);
     const { parts, gait, known } = this;

@@ -14,6 +14,6 @@ async function answer({ toml, floor, servos, routine }: Question): Promise<void>
   const isRight = !isRefused(page.read(toml));
   page.setFloor(floor);
   page.setServos(servos);
-  const said: Answer = isRight ? page.round(routine) : null;
-  postMessage(said);
+  const reply: Answer = isRight ? page.round(routine) : null;
+  postMessage(reply);
 }

@@ -61,7 +61,7 @@ export class Guide {
     return this.now;
   }
 
-  /** True if something is not saved. */
+  /** True if a setting is not saved. */
   get isChanged(): boolean {
     return !isSame(this.before, this.now);
   }

@@ -13,8 +13,8 @@ async function answer({ toml, edits, isLast, keys }: Question): Promise<void> {
   const page = await robot;
   const tried = page.lengths(toml, edits, isLast);
   const range = keys.length === 0 ? null : page.lengthRange(toml, keys);
-  const said: Answer = { ...tried, edits, scene: tried.refusal ? null : neutral(page, tried.text), isLast, range };
-  postMessage(said);
+  const reply: Answer = { ...tried, edits, scene: tried.refusal ? null : neutral(page, tried.text), isLast, range };
+  postMessage(reply);
 }
 
 /** The neutral pose of a robot. */

@@ -23,8 +23,8 @@ export class Alarm {
   /** Writes the time since the unanswered line. */
   write(): void {
     if (this.box.hidden) return;
-    const said = this.isStopping ? 'No answer: it may walk on. "stop" is sent until it answers.' : 'No answer from the robot.';
-    if (element('alarm-said').textContent !== said) element('alarm-said').textContent = said;
+    const message = this.isStopping ? 'No answer: it may walk on. "stop" is sent until it answers.' : 'No answer from the robot.';
+    if (element('alarm-said').textContent !== message) element('alarm-said').textContent = message;
     element('alarm-age').textContent = `${((performance.now() - this.since) / 1000).toFixed(1)} s`;
   }
 }

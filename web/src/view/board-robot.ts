@@ -1,4 +1,5 @@
-// A board with another robot than the page's, which would be drawn and predicted as this one: its own is looked for and offered.
+// A board may have another robot than the page, which would then be drawn and predicted wrongly. So its own robot is looked for and
+// offered.
 import { files } from '../files';
 import { kept } from '../kept';
 import { isRefused, Robot } from '../robot';
@@ -6,17 +7,17 @@ import type { Session } from '../session';
 import { nameOf } from './setup/board';
 import type { Troubles } from './troubles';
 
-/** A robot that the page can show: a file of the list, with the user's text where that is another. */
+/** A robot that the page can show: a file of the list, with the user's text if it was changed. */
 interface Known {
   file: string;
   toml: string;
 }
 
 export class BoardRobot {
-  /** A reader of its own, since reading a robot makes it the reader's. */
+  /** A separate reader, since reading a robot replaces the reader's previous one. */
   private reader: Promise<Robot> | null = null;
 
-  /** `show` makes a robot the page's. */
+  /** `show` loads a robot into the page. */
   constructor(
     private readonly session: () => Session,
     private readonly module: WebAssembly.Module,
@@ -24,7 +25,7 @@ export class BoardRobot {
     private readonly show: (known: Known) => void,
   ) {}
 
-  /** Says that the board's robot is another one, or that it is this one after all. */
+  /** Reports that the board has another robot, or removes that message if it has this one after all. */
   async follow(): Promise<void> {
     const session = this.session();
     const other = session.otherRobot;

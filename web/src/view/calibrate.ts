@@ -9,14 +9,14 @@ import { isShown } from './rooms';
 interface Row {
   trim: HTMLInputElement;
   scale: HTMLInputElement;
-  least: HTMLInputElement;
-  most: HTMLInputElement;
+  min: HTMLInputElement;
+  max: HTMLInputElement;
   dir: HTMLSelectElement;
 }
 
 export class Calibrate {
   private readonly box = element('calibration');
-  private readonly said = element('cal-said');
+  private readonly message = element('cal-said');
   private rows: Row[] = [];
   /** True after a line without an answer: the shown settings may not be the robot's. */
   private isUnsure = false;
@@ -41,8 +41,8 @@ export class Calibrate {
     settings.forEach((servo, n) => this.show(n, servo));
   }
 
-  /** Reads the settings again, since the robot answers, if it left a line unanswered. */
-  answered(): void {
+  /** Reads the settings again if the shown ones may be wrong; call it when the robot answers again. */
+  refresh(): void {
     if (this.isUnsure) void this.read();
   }
 
@@ -51,13 +51,13 @@ export class Calibrate {
     row.trim.value = String(trim);
     row.trim.dispatchEvent(new Event('shown'));
     row.scale.value = String(scale);
-    [row.least.value, row.most.value] = limit.map(String);
+    [row.min.value, row.max.value] = limit.map(String);
     row.dir.value = dir;
   }
 
   private async set(line: string): Promise<void> {
     const answer = await this.session().ask(line);
-    this.said.textContent = answer?.text ?? '';
+    this.message.textContent = answer?.text ?? '';
     this.isUnsure ||= answer === null;
     if (answer && !answer.ok) await this.read();
   }
@@ -65,7 +65,7 @@ export class Calibrate {
   private build(): void {
     this.rows = [1, 2, 3, 4].map((servo) => {
       const group = make('fieldset', {}, make('legend', {}, `A${servo}`));
-      const trim = this.trim(group, servo);
+      const trim = this.makeTrim(group, servo);
       const numbers = make('div', { className: 'numbers' });
       group.append(numbers);
       this.box.append(group);
@@ -74,21 +74,21 @@ export class Calibrate {
         numbers.append(make('label', {}, label, input));
         return input;
       };
-      const least = number('from, deg', '1');
-      const most = number('to, deg', '1');
+      const min = number('from, deg', '1');
+      const max = number('to, deg', '1');
       const scale = number('µs per deg', '0.01');
       const dir = make('select', {}, new Option('left (+)', '+'), new Option('right (−)', '-'));
       numbers.append(make('label', {}, 'longer pulse turns it', dir));
-      for (const input of [least, most]) {
-        input.addEventListener('change', () => void this.set(`${WORDS.limit} ${servo} ${least.value} ${most.value}`));
+      for (const input of [min, max]) {
+        input.addEventListener('change', () => void this.set(`${WORDS.limit} ${servo} ${min.value} ${max.value}`));
       }
       scale.addEventListener('change', () => void this.set(`${WORDS.scale} ${servo} ${scale.value}`));
       dir.addEventListener('change', () => void this.set(`${WORDS.dir} ${servo} ${dir.value}`));
-      return { trim, scale, least, most, dir };
+      return { trim, scale, min, max, dir };
     });
   }
 
-  private trim(group: HTMLElement, servo: number): HTMLInputElement {
+  private makeTrim(group: HTMLElement, servo: number): HTMLInputElement {
     const trim = make('input', { type: 'range', min: '-20', max: '20', step: '0.25' });
     const out = make('output', {});
     group.append(make('label', { className: 'slider' }, 'trim ', trim, out));

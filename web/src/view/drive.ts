@@ -30,7 +30,7 @@ export class Drive {
   /** The robot's pace, percent. */
   private pace = 100;
 
-  private readonly said = element('drive-said');
+  private readonly message = element('drive-said');
   /** The commands of the buttons in index.html, which every robot has. */
   readonly words: string[] = [...document.querySelectorAll<HTMLElement>('[data-command]')].map(({ dataset }) => dataset.command ?? '');
 
@@ -49,8 +49,8 @@ export class Drive {
   async ask(line: string): Promise<void> {
     const answer = await this.send(line);
     if (!answer) return;
-    this.said.hidden = answer.ok;
-    this.said.textContent = answer.ok ? '' : `${line}: ${answer.text.replace(/^err \d+ /, '')}`;
+    this.message.hidden = answer.ok;
+    this.message.textContent = answer.ok ? '' : `${line}: ${answer.text.replace(/^err \d+ /, '')}`;
   }
 
   /** Takes another robot. */
@@ -69,7 +69,7 @@ export class Drive {
       return { command, button, note, line, moves };
     });
     this.predictions.clear();
-    this.said.hidden = true;
+    this.message.hidden = true;
   }
 
   /** Shows the prediction of a gait; the old one stays until then. */
@@ -91,17 +91,17 @@ export class Drive {
   /** Shows how much each gait asks of the servos at the robot's pace, and, once all are predicted, which asks most. */
   private showLine(): void {
     const isKnown = this.buttons.every(({ command, moves }) => !moves || this.predictions.has(command));
-    let [hardest, most] = ['', 0];
+    let [hardest, largest] = ['', 0];
     for (const { command, line } of this.buttons) {
       const { lines } = this.predictions.get(command) ?? {};
       const share = lines?.[Math.ceil((this.pace * lines.length) / 100) - 1];
       line.textContent = share === undefined ? '' : `${share >= TIGHT ? '⚠ ' : ''}line ${share.toFixed(2)}`;
-      if (isKnown && share !== undefined && share > most) [hardest, most] = [command, share];
+      if (isKnown && share !== undefined && share > largest) [hardest, largest] = [command, share];
     }
     const note = element('line-note');
-    note.classList.toggle('warning', most >= TIGHT);
-    const meaning = most >= 1 ? ': they fall behind their pulses; a slower pace asks less' : most >= TIGHT ? ': little is left' : '';
-    note.textContent = hardest === '' ? '' : `${hardest} asks most of its servos, ${most.toFixed(2)} of their torque-speed line at ${this.pace} % of its pace${meaning}.`;
+    note.classList.toggle('warning', largest >= TIGHT);
+    const meaning = largest >= 1 ? ': they fall behind their pulses; a slower pace asks less' : largest >= TIGHT ? ': little is left' : '';
+    note.textContent = hardest === '' ? '' : `${hardest} asks most of its servos, ${largest.toFixed(2)} of their torque-speed line at ${this.pace} % of its pace${meaning}.`;
   }
 
   /** The prediction for a command; null until it is known. */

@@ -12,8 +12,8 @@ import { figures } from './trial';
 export interface Edited {
   gait(): Bars | null;
   setGait(gait: Bars): void;
-  /** Lets the found gait walk beside the one before it, and writes their figures. */
-  compare(before: Bars, found: Bars, told: HTMLElement): Promise<void>;
+  /** Lets the found gait walk beside the previous one, and writes their figures. */
+  compare(before: Bars, found: Bars, output: HTMLElement): Promise<void>;
 }
 
 const WORDS = { start: 'Make it faster', stop: 'Stop the search', take: 'Use this gait', back: 'Back to the previous gait' };
@@ -24,7 +24,7 @@ export class FasterView {
   private readonly start = element<HTMLButtonElement>('faster-start');
   private readonly takeIt = element<HTMLButtonElement>('faster-take');
   private readonly bar = element<HTMLProgressElement>('faster-progress');
-  private readonly said = element('faster-said');
+  private readonly message = element('faster-said');
   private readonly result = element('faster-result');
   private readonly numbers = { rate: null as number | null, rounds: 5, seed: 1 };
   private search: FasterSearch | null = null;
@@ -149,13 +149,13 @@ export class FasterView {
     const { beaten, best } = this;
     if (!beaten || !best) return;
     const { robot, toml, isReal } = this.session();
-    // The robot with the found gait is no other one, so the result stays.
+    // This change only put the found gait into the robot, so the result stays.
     if (!isReal) this.toml = robot.putGait(toml, best.bars);
     await this.edited.compare(beaten, best.bars, element('faster-ways'));
   }
 
   private say(text: string): void {
-    if (this.said.textContent !== text) this.said.textContent = text;
+    if (this.message.textContent !== text) this.message.textContent = text;
   }
 }
 

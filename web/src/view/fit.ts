@@ -1,5 +1,5 @@
-// The parts of changed lengths: a worker proves that they fit, also while a length is dragged. Where they do not, the two that meet are
-// red in 3D, and the nearest lengths that fit are looked for.
+// The parts of changed lengths: a worker proves that they fit, also while a length is dragged. If they do not, the two that meet are
+// red in 3D, and the nearest lengths that fit are searched.
 import type { Meeting } from '../parts/model';
 import type { Length } from '../robot';
 import type { Session } from '../session';
@@ -25,11 +25,11 @@ interface Work {
 interface Wish {
   keys: string[];
   range: [number, number];
-  show: (found: [number, number] | null, said: string) => void;
+  show: (found: [number, number] | null, message: string) => void;
 }
 
 export class FitView {
-  private readonly said = element('fit-said');
+  private readonly message = element('fit-said');
   private readonly use = element<HTMLButtonElement>('fit-use');
   private readonly where = element<HTMLButtonElement>('fit-where');
   /** The last lengths that fit, of robots from the same file. */
@@ -52,7 +52,7 @@ export class FitView {
     this.begin();
     this.parts.showRobot();
     const { file, toml, original } = this.session();
-    // A file of the list, which has no name while it is read, and what was changed elsewhere are not checked.
+    // Files of the list, which have no name while they are read, and changes made elsewhere are not checked.
     if (file === '' || toml === original || document.body.dataset.at !== 'room-build') this.fitting = wanted;
     const changed = [...wanted].filter(([key, value]) => this.fitting.get(key) !== value);
     if (changed.length > 0) this.soon((work) => this.check(wanted, new Map(changed), work));
@@ -68,7 +68,7 @@ export class FitView {
     });
   }
 
-  /** Looks for the least and the greatest value with which the parts fit, once the robot is known to fit. */
+  /** Searches the least and the greatest value with which the parts fit, once the robot is known to fit. */
   findRange(keys: string[], range: [number, number], show: Wish['show']): void {
     this.wish = { keys, range, show };
     if (this.isFitting) {
@@ -81,7 +81,7 @@ export class FitView {
     return this.session().description.lengths.every(({ key, value }) => this.fitting.get(key) === value);
   }
 
-  /** Ends the work of before. */
+  /** Ends the previous work. */
   private begin(): void {
     clearTimeout(this.timer);
     this.work.isOver = true;
@@ -96,7 +96,7 @@ export class FitView {
     this.timer = setTimeout(() => void run(), QUIET);
   }
 
-  /** Proves a robot's parts, and says the result; returns true if they fit. */
+  /** Proves that a robot's parts fit, and shows the result; returns true if they do. */
   private async prove(toml: string, work: Work): Promise<boolean> {
     this.say('Checking that the parts fit…', null);
     const result = await this.proved(toml, work);
@@ -125,11 +125,11 @@ export class FitView {
       return this.search(work);
     }
     if (work.isOver) return;
-    const refused = this.said.textContent ?? '';
-    this.said.textContent = `${refused} Looking for the nearest that can…`;
+    const refused = this.message.textContent ?? '';
+    this.message.textContent = `${refused} Looking for the nearest that can…`;
     const nearest = await this.nearest(changed, work);
     if (work.isOver) return;
-    this.said.textContent = refused;
+    this.message.textContent = refused;
     const { lengths } = this.session().description;
     const names = lengths.filter(({ key }) => changed.has(key)).map(({ key, label }) => `${label} ${nearest.lengths.get(key)}`);
     this.use.textContent = `Use what fits: ${names.join(', ')}`;
@@ -137,7 +137,7 @@ export class FitView {
     this.use.hidden = false;
   }
 
-  /** Looks for the range that was wished for. */
+  /** Searches the requested range. */
   private async search(work: Work): Promise<void> {
     const { wish } = this;
     if (!wish) return;
@@ -154,7 +154,7 @@ export class FitView {
     show([least, most], `Can be printed from ${least} to ${most} ${unit}.`);
   }
 
-  /** Halves the way from the last lengths that fit to those wanted, until it is as fine as a step; `isOpen` if these may fit, too. */
+  /** Bisects between the last lengths that fit and the wanted ones, down to one step; `isOpen` if the wanted ones may fit, too. */
   private async nearest(wanted: Lengths, work: Work, isOpen = false): Promise<{ lengths: Lengths; text: string }> {
     const { robot, toml } = this.session();
     const between = (share: number): Lengths =>
@@ -186,14 +186,14 @@ export class FitView {
 
   private say(text: string, meeting: Meeting | null): void {
     element('fit').hidden = text === '';
-    this.said.textContent = text;
+    this.message.textContent = text;
     this.use.hidden = true;
     this.where.hidden = meeting === null;
     this.parts.meet(meeting);
   }
 }
 
-/** Says which parts meet, or else what cannot be made. */
+/** Reports which parts meet, or else what cannot be made. */
 function refusal({ message, meeting }: { message: string; meeting: Meeting | null }): string {
   if (!meeting) return `These lengths cannot be printed: ${message.replace(/\.$/, '')}.`;
   const { first, second, mm } = meeting;

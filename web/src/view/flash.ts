@@ -13,7 +13,7 @@ export class FlashView {
   private readonly robot = element<HTMLButtonElement>('flash-robot');
   private readonly question = element('flash-question');
   readonly progress = element<HTMLProgressElement>('flash-progress');
-  readonly said = element('flash-said');
+  readonly message = element('flash-said');
   /** The image of the chosen file, until the user decides about it. */
   private chosen: Uint8Array | null = null;
 
@@ -50,7 +50,7 @@ export class FlashView {
   /** Scrolls to the panel, and writes the robot, the firmware with it, or an image. */
   write(what: WriteContent): void {
     reveal(this.note);
-    this.said.scrollIntoView({ block: 'nearest' });
+    this.message.scrollIntoView({ block: 'nearest' });
     this.forget();
     void this.writer.write(what, this);
   }
@@ -58,11 +58,11 @@ export class FlashView {
   /** Asks the user to confirm a file before it is written. */
   private async choose(file: File): Promise<void> {
     this.forget();
-    this.said.textContent = '';
+    this.message.textContent = '';
     try {
       this.chosen = imageOf(await file.text());
     } catch (error) {
-      this.said.textContent = `not written: ${messageOf(error)}`;
+      this.message.textContent = `not written: ${messageOf(error)}`;
       return;
     }
     const what = hasConsole(this.chosen)

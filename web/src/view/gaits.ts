@@ -131,8 +131,8 @@ export class GaitsView {
     end.setAttribute('r', '6');
     this.bars.push(bar);
     this.ends.push(end);
-    this.drag(bar, (by, begun) => this.setLeg('start', leg, round(wrapped((begun.start[leg] ?? 0) + by), 0.005)));
-    this.drag(end, (by, begun) => this.change({ duty: round(Math.min(0.95, Math.max(0.05, begun.duty + by)), 0.005) }));
+    this.drag(bar, (by, beginning) => this.setLeg('start', leg, round(wrapped((beginning.start[leg] ?? 0) + by), 0.005)));
+    this.drag(end, (by, beginning) => this.change({ duty: round(Math.min(0.95, Math.max(0.05, beginning.duty + by)), 0.005) }));
     const row = element('gait-legs').appendChild(tableRow([LEGS[leg] ?? '']));
     for (const [key, label, list] of [['start', 'starts at', this.start], ['gain', 'share', this.gain]] as const) {
       const input = make('input', { ariaLabel: `${LEGS[leg]} ${label}` });
@@ -143,27 +143,27 @@ export class GaitsView {
   }
 
   /** Calls back with the angle that a pointer has moved since it went down, in cycles. */
-  private drag(mark: SVGElement, move: (by: number, begun: Bars) => void): void {
+  private drag(mark: SVGElement, move: (by: number, beginning: Bars) => void): void {
     let last = 0;
     let by = 0;
-    let begun: Bars | null = null;
+    let beginning: Bars | null = null;
     const phase = ({ clientX, clientY }: PointerEvent) => {
       const { left, top, width, height } = this.circle.getBoundingClientRect();
       return Math.atan2(clientX - left - width / 2, top + height / 2 - clientY) / (2 * Math.PI);
     };
     mark.addEventListener('pointerdown', (event) => {
       mark.setPointerCapture(event.pointerId);
-      [last, by, begun] = [phase(event), 0, this.gait];
+      [last, by, beginning] = [phase(event), 0, this.gait];
     });
     mark.addEventListener('pointermove', (event) => {
-      if (!begun || !mark.hasPointerCapture(event.pointerId)) return;
+      if (!beginning || !mark.hasPointerCapture(event.pointerId)) return;
       const now = phase(event);
       // The shorter direction.
       by += wrapped(now - last + 0.5) - 0.5;
       last = now;
-      move(by, begun);
+      move(by, beginning);
     });
-    for (const end of ['pointerup', 'pointercancel']) mark.addEventListener(end, () => (begun = null));
+    for (const end of ['pointerup', 'pointercancel']) mark.addEventListener(end, () => (beginning = null));
   }
 
   private show(): void {

@@ -32,7 +32,7 @@ interface Pair {
   /** What they are called in the figures. */
   names: [string, string];
   /** Where the figures are written. */
-  told: HTMLElement;
+  output: HTMLElement;
 }
 
 export class Keep {
@@ -44,13 +44,13 @@ export class Keep {
   private isRecording = false;
   /** Start of the replay, ms of real time, and the moment it started from, s; null while it is paused or off. */
   private playing: { since: number; from: number } | null = null;
-  private isSeen = false;
+  private isReplaying = false;
   private film: MediaRecorder | null = null;
   private companion: Companion | null = null;
   private pair: Pair | null = null;
   /** True until the robot begins its gait, with which the companion begins. */
   private isWaiting = false;
-  private owed = 0;
+  private pendingTime = 0;
   private onDrawn: (() => void) | null = null;
 
   /** Takes functions that send a line and that return the pace, percent. */
@@ -61,17 +61,17 @@ export class Keep {
     private readonly ask: (line: string) => Promise<unknown>,
     private readonly pace: () => number,
   ) {
-    const on = (id: string, act: () => void) => element(id).addEventListener('click', act);
-    on('record', () => this.record(!this.isRecording));
-    on('replay', () => this.play(!this.isSeen));
-    on('csv', () => this.recording && save('run.csv', [this.recording.csv()], 'text/csv'));
-    on('png', () => this.takePicture(() => void this.savePng()));
-    on('svg', () => this.takePicture(() => void this.saveSvg()));
-    on('film', () => this.toggleFilm());
-    on('both', () => void this.startBoth(this.chosen()));
-    on('alone', () => this.removeCompanion());
+    const onClick = (id: string, act: () => void) => element(id).addEventListener('click', act);
+    onClick('record', () => this.record(!this.isRecording));
+    onClick('replay', () => this.play(!this.isReplaying));
+    onClick('csv', () => this.recording && save('run.csv', [this.recording.csv()], 'text/csv'));
+    onClick('png', () => this.takePicture(() => void this.savePng()));
+    onClick('svg', () => this.takePicture(() => void this.saveSvg()));
+    onClick('film', () => this.toggleFilm());
+    onClick('both', () => void this.startBoth(this.chosen()));
+    onClick('alone', () => this.removeCompanion());
     this.moment.addEventListener('input', () => {
-      this.isSeen = true;
+      this.isReplaying = true;
       this.playing = null;
       this.updateButtons();
     });
@@ -83,7 +83,7 @@ export class Keep {
   showRobot({ gaits }: Description): void {
     this.record(false);
     this.recording = null;
-    this.isSeen = false;
+    this.isReplaying = false;
     this.removeCompanion();
     const chosen = [this.mine.value, this.other.value];
     for (const list of [this.mine, this.other]) {
@@ -104,7 +104,7 @@ export class Keep {
       this.say(`The recording is full: ${LONGEST} s.`);
     }
     if (!this.companion || this.isWaiting) return;
-    for (this.owed += seconds; this.owed > FRAME / 2; this.owed -= FRAME) this.companion.step();
+    for (this.pendingTime += seconds; this.pendingTime > FRAME / 2; this.pendingTime -= FRAME) this.companion.step();
     const place = this.companion.frame?.place;
     if (place) this.floor.addToTrack(place, true);
   }
@@ -122,7 +122,7 @@ export class Keep {
   /** The frame that the floor shows: the current one, or one of the replay. */
   shown(now: Frame | null): Frame | null {
     const { recording } = this;
-    if (!this.isSeen || !recording) return now;
+    if (!this.isReplaying || !recording) return now;
     if (this.playing) {
       const time = this.playing.from + (performance.now() - this.playing.since) / 1000;
       this.moment.value = String(time);
@@ -148,24 +148,24 @@ export class Keep {
     const { recording, companion, pair } = this;
     if (recording && isShown(this.panel)) {
       if (this.isRecording) this.moment.max = String(recording.seconds);
-      const time = this.isRecording && !this.isSeen ? recording.seconds : this.moment.valueAsNumber;
+      const time = this.isRecording && !this.isReplaying ? recording.seconds : this.moment.valueAsNumber;
       const of = this.isRecording ? '' : ` of ${recording.seconds.toFixed(1)}`;
       element('moment-out').textContent = `${time.toFixed(1)}${of} s`;
     }
-    const panel = pair?.told.closest('details');
+    const panel = pair?.output.closest('details');
     if (!pair || !panel || !companion?.frame || this.isWaiting || !isShown(panel)) return;
     const { last, robot } = this.session();
     const start = { x: 0, y: 0, heading: 0 };
     const displacement = (frame: Frame | null) => (frame ? short(robot.between(start, frame.place)) : '');
-    this.say(`${pair.names[0]}: ${displacement(last)}. ${pair.names[1]}: ${displacement(companion.frame)}.`, pair.told);
+    this.say(`${pair.names[0]}: ${displacement(last)}. ${pair.names[1]}: ${displacement(companion.frame)}.`, pair.output);
   }
 
-  private record(on: boolean): void {
-    if (on === this.isRecording) return;
-    this.isRecording = on;
-    if (on) {
+  private record(isOn: boolean): void {
+    if (isOn === this.isRecording) return;
+    this.isRecording = isOn;
+    if (isOn) {
       this.recording = new Recording();
-      this.isSeen = false;
+      this.isReplaying = false;
       this.playing = null;
     } else if (this.recording) {
       this.moment.max = String(this.recording.seconds);
@@ -175,11 +175,11 @@ export class Keep {
     this.updateButtons();
   }
 
-  private play(on: boolean): void {
-    this.isSeen = on;
+  private play(isOn: boolean): void {
+    this.isReplaying = isOn;
     const { recording } = this;
     const from = recording && this.moment.valueAsNumber < recording.seconds - FRAME ? this.moment.valueAsNumber : 0;
-    this.playing = on ? { since: performance.now(), from } : null;
+    this.playing = isOn ? { since: performance.now(), from } : null;
     this.updateButtons();
   }
 
@@ -241,18 +241,18 @@ export class Keep {
 
   private chosen(): Pair {
     const gaits: [string, string] = [this.mine.value, this.other.value];
-    return { toml: this.session().toml, gaits, names: [gaits[0], `Beside it, ${gaits[1]}`], told: element('keep-said') };
+    return { toml: this.session().toml, gaits, names: [gaits[0], `Beside it, ${gaits[1]}`], output: element('keep-said') };
   }
 
   /** Lets a gait that was found walk beside the one before it; the robot takes the found one. */
-  async compare(before: Bars, found: Bars, told: HTMLElement): Promise<void> {
+  async compare(before: Bars, found: Bars, output: HTMLElement): Promise<void> {
     const session = this.session();
     const toml = session.robot.putGait(session.toml, before);
-    this.say('The robot restarts with this gait…', told);
+    this.say('The robot restarts with this gait…', output);
     const refused = await wakeWith(session, found);
-    if (refused) return this.say(refused.refused, told);
+    if (refused) return this.say(refused.refused, output);
     const gait = found.name.replaceAll('-', ' ');
-    await this.startBoth({ toml, gaits: [gait, gait], names: ['Found', 'Before'], told });
+    await this.startBoth({ toml, gaits: [gait, gait], names: ['Found', 'Before'], output });
   }
 
   /** Starts both robots in the same frame, each from its own start. */
@@ -260,7 +260,7 @@ export class Keep {
     const session = this.session();
     const { toml, floor, servos, volts } = session;
     this.removeCompanion();
-    this.say('Switching on the second robot…', pair.told);
+    this.say('Switching on the second robot…', pair.output);
     try {
       const companion = await Companion.create(this.module, pair.toml, floor, servos, volts);
       if (toml !== this.session().toml) return;
@@ -269,23 +269,23 @@ export class Keep {
       this.floor.clear();
       companion.send(`${WORDS.speed} ${this.pace()}`);
       companion.step();
-      Object.assign(this, { companion, pair, isWaiting: true, owed: 0 });
+      Object.assign(this, { companion, pair, isWaiting: true, pendingTime: 0 });
       this.updateButtons();
       this.floor.fitTwoRobots();
       await this.ask(pair.gaits[0]);
     } catch (error) {
-      this.say(`The second robot cannot start: ${messageOf(error)}`, pair.told);
+      this.say(`The second robot cannot start: ${messageOf(error)}`, pair.output);
     }
   }
 
   private removeCompanion(): void {
-    if (this.pair) this.say('', this.pair.told);
+    if (this.pair) this.say('', this.pair.output);
     Object.assign(this, { companion: null, pair: null, isWaiting: false });
     this.updateButtons();
   }
 
   private updateButtons(): void {
-    const { recording, isRecording, isSeen, film } = this;
+    const { recording, isRecording, isReplaying, film } = this;
     const has = recording !== null && recording.moments.length > 0 && !isRecording;
     const set = (id: string, text: string, pressed: boolean, enabled = true) => {
       const button = element<HTMLButtonElement>(id);
@@ -294,7 +294,7 @@ export class Keep {
       button.disabled = !enabled;
     };
     set('record', isRecording ? 'Stop recording' : 'Record', isRecording);
-    set('replay', isSeen ? 'Back to the robot' : 'Replay', isSeen, has);
+    set('replay', isReplaying ? 'Back to the robot' : 'Replay', isReplaying, has);
     set('film', film ? 'Stop the film' : 'Film', film !== null, this.format !== undefined);
     element<HTMLButtonElement>('csv').disabled = !has;
     this.moment.disabled = !has;

@@ -3,7 +3,7 @@ import type { Edits, Length } from '../robot';
 import { element } from './canvas';
 import { withTwin } from './tried-lengths';
 
-/** Takes lengths while the slider is dragged, and at last. */
+/** Takes lengths while the slider is dragged and at the end. */
 export type TryOut = (edits: Edits, isLast: boolean) => void;
 
 export class LengthSlider {
@@ -13,7 +13,7 @@ export class LengthSlider {
   private readonly printed = element('length-printed');
   private readonly marks = element('length-marks');
   private lengths: Length[] = [];
-  /** True once the user has chosen a length: to prove which can be printed takes time. */
+  /** True once the user has chosen a length; before, no time is spent on proving which lengths can be printed. */
   isChosen = false;
 
   /** `onChoice` is called for another length, or another twin. */
@@ -64,14 +64,14 @@ export class LengthSlider {
   }
 
   /** Sets the ends, with which the robot walks. */
-  setRange([least, most]: [number, number]): void {
-    Object.assign(this.slide, { min: String(least), max: String(most) });
+  setRange([smallest, largest]: [number, number]): void {
+    Object.assign(this.slide, { min: String(smallest), max: String(largest) });
     if (this.length) this.write(this.length.value);
   }
 
   /** Marks the values that can be printed; null while they are not known. */
-  mark(range: [number, number] | null, said: string): void {
-    this.printed.textContent = said;
+  mark(range: [number, number] | null, message: string): void {
+    this.printed.textContent = message;
     this.marks.hidden = range === null;
     const { min, max } = this.slide;
     const share = (value: number) => `${(100 * (value - Number(min))) / (Number(max) - Number(min))}%`;

@@ -12,7 +12,7 @@ export class Lengths {
   private readonly refusal = element('lengths-refusal');
   private inputs = new Map<string, HTMLInputElement>();
 
-  /** `offer` looks for what would do where lengths are refused. */
+  /** `offer` searches valid lengths when some are refused. */
   constructor(
     private readonly session: () => Session,
     private readonly offer: (edits: Edits) => void,
@@ -55,7 +55,7 @@ export class Lengths {
     if (!refusal) return void (await session.change(text));
     const { lengths } = session.description;
     const kept = lengths.filter((length) => edits.some(([each]) => each === length.key));
-    // The boxes have the robot's numbers again.
+    // The boxes show the robot's numbers again.
     for (const length of kept) {
       const box = this.inputs.get(length.key);
       if (!box) continue;

@@ -2,7 +2,7 @@
 import { element } from './canvas';
 import { make } from './make';
 
-/** Most lines that are kept. */
+/** Largest number of lines that are kept. */
 const MOST = 400;
 
 export class Log {

@@ -1,4 +1,4 @@
-// The user's own robot: a link, or the list of robots, puts it aside and never erases it.
+// The user's own robot: opening a link or another robot puts it aside and never erases it.
 import { kept, type SavedChanges } from '../kept';
 import type { Session } from '../session';
 import type { Troubles } from './troubles';
@@ -17,14 +17,14 @@ export class OwnRobot {
     this.show();
   }
 
-  /** Puts the changed robot of before aside, if another one has replaced it, and offers it. */
+  /** Puts the user's previous robot aside, if another one has replaced it, and offers to restore it. */
   replaced(before: SavedChanges | null): void {
     if (!before || before.toml === before.original || before.toml === this.session().toml) return;
     this.setAside([before, ...kept.aside().filter(({ toml }) => toml !== before.toml)]);
     this.troubles.say('own', 'This is another robot. Your own one is put aside, and stays in the list of robots.', { label: 'Back to my own robot', act: () => void this.restore() });
   }
 
-  /** Makes a robot that was put aside the page's, and puts the one of before aside. */
+  /** Restores a robot that was put aside, and puts the current one aside. */
   async restore(number = 0): Promise<void> {
     const all = kept.aside();
     const own = all[number];

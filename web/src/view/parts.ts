@@ -24,7 +24,7 @@ export class PartsView {
   private readonly canvas = element<HTMLCanvasElement>('space');
   private readonly apart = element<HTMLInputElement>('apart');
   private readonly list = element<HTMLSelectElement>('part');
-  /** The buttons that make files: all, and those that another robot of the same file has not. */
+  /** The buttons that make files: all of them, or only those that changed lengths change. */
   private readonly buttons = { all: element<HTMLButtonElement>('parts-save'), changed: element<HTMLButtonElement>('parts-changed') };
   private space: Space | null = null;
   private solids: Solids | null = null;
@@ -43,7 +43,7 @@ export class PartsView {
 
   constructor(private readonly session: () => Session) {
     this.button3d.addEventListener('click', () => this.set3d(!this.is3d));
-    // The guide is about what the stage shows.
+    // The guide describes the robot on the stage.
     this.panel.addEventListener('toggle', () => isShown(this.panel) && this.set3d(true));
     this.apart.addEventListener('input', () => this.show());
     this.list.addEventListener('change', () => this.pick(this.list.value === '' ? null : Number(this.list.value)));
@@ -95,7 +95,7 @@ export class PartsView {
       const [{ Solids }, { Space }] = await Promise.all([import('../parts/workshop'), import('../parts/space')]);
       const { solids, model, meshes } = await Solids.of(toml);
       if (toml !== this.toml) return solids.end();
-      // The robot of before is shown until then.
+      // The previous robot is shown until then.
       this.solids?.end();
       this.solids = solids;
       this.model = model;

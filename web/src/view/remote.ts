@@ -1,5 +1,5 @@
-// The phone as a remote control: the whole screen, lying, with the stick under one thumb and `stop` under the other. A
-// screen that went dark would let go of the robot, so it stays on.
+// The phone as a remote control: the whole screen in landscape, with the stick under one thumb and `stop` under the other. The
+// screen stays on, since a dark screen would stop the robot.
 import { element } from './canvas';
 
 /** A short buzz, ms. */
@@ -13,7 +13,7 @@ export class Remote {
     this.button.addEventListener('click', () => void (this.isOn ? this.leave() : this.enter()));
     // The system's own gesture also ends it.
     document.addEventListener('fullscreenchange', () => !document.fullscreenElement && this.show(false));
-    // A screen that comes back has forgotten it.
+    // The lock is lost while the page is hidden.
     document.addEventListener('visibilitychange', () => !document.hidden && this.isOn && void this.keepLight());
   }
 
@@ -21,14 +21,14 @@ export class Remote {
     return document.body.classList.contains('remote');
   }
 
-  /** Tells the hand that the robot has stopped by itself. */
+  /** Buzzes because the robot has stopped by itself. */
   buzz(): void {
     if (navigator.userActivation?.hasBeenActive) navigator.vibrate?.(BUZZ);
   }
 
   private async enter(): Promise<void> {
     this.show(true);
-    // A browser that has one of these not, such as that of an iPhone, shows the remote all the same.
+    // The remote also works in a browser that lacks one of these features, such as an iPhone's.
     await document.documentElement.requestFullscreen?.().catch(() => {});
     const { orientation } = screen as Screen & { orientation?: { lock?(to: string): Promise<void> } };
     await orientation?.lock?.('landscape').catch(() => {});

@@ -112,7 +112,7 @@ export class RobotText {
     return false;
   }
 
-  /** Loads a text, and shows its mistake where it stands. */
+  /** Loads a text, and shows its mistake at its place. */
   private async loadAndShow(toml: string): Promise<boolean> {
     if (await this.loadText(toml)) return true;
     reveal(this.box);
@@ -125,12 +125,12 @@ export class RobotText {
     const session = this.session();
     if (this.box.value !== session.toml) await this.loadAndShow(this.box.value);
     if (this.box.value !== session.toml) return;
-    const said = element('robot-said');
-    if (!session.isReal) said.textContent = NO_BOARD;
-    else await this.writer.write('robot', { said, progress: element<HTMLProgressElement>('robot-progress') });
+    const message = element('robot-said');
+    if (!session.isReal) message.textContent = NO_BOARD;
+    else await this.writer.write('robot', { message, progress: element<HTMLProgressElement>('robot-progress') });
   }
 
-  /** Restores the robot before the last change; a text with a mistake never was one. */
+  /** Restores the robot before the last change; texts with a mistake do not count. */
   async back(): Promise<void> {
     if (this.refused) return this.showRobot();
     const { before, undone, shown } = this;
@@ -204,7 +204,7 @@ export class RobotText {
     button.hidden = refused?.line == null;
     button.textContent = `Go to line ${refused?.line}`;
     this.tell('');
-    // A code that was drawn is another robot's.
+    // The code that was shown belongs to another robot.
     element('robot-drawn').replaceChildren();
     element('robot-code').setAttribute('aria-pressed', 'false');
     this.box.setAttribute('aria-invalid', String(refused !== null));

@@ -127,7 +127,7 @@ export class RoutinesView {
     this.tell();
   }
 
-  /** Says the steps that are recorded so far. */
+  /** Shows the steps recorded so far. */
   private tell(): void {
     if (this.recorder) this.say(`Recording: ${this.recorder.steps(this.session().clock).join(', ') || 'drive now'}`);
   }
@@ -164,7 +164,7 @@ export class RoutinesView {
     this.input(steps.length)?.select();
   }
 
-  /** Gives the chosen routine other steps. */
+  /** Replaces the steps of the chosen routine. */
   private async change(steps: string[], name = this.choice.value): Promise<void> {
     this.say('');
     await this.text.loadText(this.session().robot.putSteps(this.text.draft, { name, steps }).text);
@@ -184,9 +184,9 @@ export class RoutinesView {
   }
 
   private async write(): Promise<void> {
-    const said = element('routine-said');
+    const message = element('routine-said');
     if (!this.session().isReal) this.say(NO_BOARD);
-    else await this.writer.write('robot', { said, progress: element<HTMLProgressElement>('routine-progress') });
+    else await this.writer.write('robot', { message, progress: element<HTMLProgressElement>('routine-progress') });
   }
 
   private input(at: number): HTMLInputElement | null {
@@ -228,7 +228,7 @@ export class RoutinesView {
     const button = (text: string, name: string, act: () => Promise<void>, next: () => number) => {
       const made = make('button', { type: 'button', ariaLabel: `${name} ${at + 1}` }, text);
       block.append(made);
-      // The step keeps the focus, wherever it goes.
+      // The step keeps the focus at its new place.
       made.addEventListener('click', () => void act().then(() => this.button(next(), name)?.focus()));
     };
     button('↑', 'Move up step', () => this.move(at, at - 1), () => Math.max(0, at - 1));
@@ -278,9 +278,9 @@ export class RoutinesView {
     if (!path || !end) return;
     const [xs, ys] = [path.places.map(({ x }) => x), path.places.map(({ y }) => -y)];
     const side = (values: number[]) => {
-      const [least, most] = [Math.min(...values), Math.max(...values)];
-      const size = Math.max(LEAST, most - least) + 2 * RIM;
-      return { from: (least + most - size) / 2, size };
+      const [smallest, largest] = [Math.min(...values), Math.max(...values)];
+      const size = Math.max(LEAST, largest - smallest) + 2 * RIM;
+      return { from: (smallest + largest - size) / 2, size };
     };
     const [across, down] = [side(xs), side(ys)];
     this.path.setAttribute('viewBox', `${across.from} ${down.from} ${across.size} ${down.size}`);

@@ -37,7 +37,7 @@ export class Setup implements Tools {
   private readonly what = element('setup-what');
   private readonly servos = element('setup-servos');
   private readonly picture = element('setup-drawing');
-  private readonly said = element('setup-said');
+  private readonly message = element('setup-said');
   private readonly progress = element<HTMLProgressElement>('setup-progress');
   /** Number of actions so far: the result of an outdated one is not shown. */
   private work = 0;
@@ -48,7 +48,7 @@ export class Setup implements Tools {
   private under: Promise<void> = Promise.resolve();
   private lastLink: Link | null = null;
   private wasReal = false;
-  /** True from the loss of a board until it is there again: what began on it does not go on elsewhere. */
+  /** True from the loss of a board until it returns: an action that began on it must not continue on another one. */
   private isLost = false;
   /** True if the board said that it has never saved a calibration. */
   private isNew = false;
@@ -68,7 +68,7 @@ export class Setup implements Tools {
     PLACES.forEach((place, servo) => {
       const choose = () => {
         this.servo = servo;
-        this.said.textContent = '';
+        this.message.textContent = '';
         this.show();
       };
       this.servos.append(button(`A${servo + 1} ${place}`, choose));
@@ -101,7 +101,7 @@ export class Setup implements Tools {
   /** Opens the step that a newly connected board needs first. */
   openNeededStep(): void {
     const { has, hasThis, link } = this.session;
-    // A radio writes nothing, and who has a module has had a first walk.
+    // A radio cannot write firmware, and the owner of a module has had a first walk.
     if (link.kind === 'radio' && this.box.hidden) return;
     const step = has === null || (has !== 'unknown' && !hasThis) ? firmware : this.isNew ? horns : null;
     if (this.box.hidden) {
@@ -155,13 +155,13 @@ export class Setup implements Tools {
   /** Closes the dialog and restores unsaved settings, after the current action. */
   private async leave(): Promise<void> {
     if (this.guide?.isCurrent) await this.under;
-    let said = '';
+    let message = '';
     const { guide } = this;
     if (guide?.isCurrent) {
       try {
-        if (await guide.takeBack()) said = 'The first connection was left: the robot has the calibration that it had before.';
+        if (await guide.takeBack()) message = 'The first connection was left: the robot has the calibration that it had before.';
       } catch (error) {
-        said = `The first connection was left, and the robot may have a calibration that is not saved, until its reset: ${messageOf(error)}`;
+        message = `The first connection was left, and the robot may have a calibration that is not saved, until its reset: ${messageOf(error)}`;
       }
     }
     this.box.hidden = true;
@@ -169,10 +169,10 @@ export class Setup implements Tools {
     const opener = element('setup-open');
     opener.setAttribute('aria-expanded', 'false');
     opener.focus();
-    this.drop(said !== '');
+    this.drop(message !== '');
     const left = element('setup-left');
-    left.textContent = said;
-    left.hidden = said === '';
+    left.textContent = message;
+    left.hidden = message === '';
   }
 
   readonly done = (step: string): void => {
@@ -190,9 +190,9 @@ export class Setup implements Tools {
   readonly write = (what: WriteContent): void => {
     this.guide = null;
     this.act(async () => {
-      const { said, progress } = this;
-      if (await this.writer.write(what, { said, progress })) this.done('Firmware');
-      return said.textContent ?? '';
+      const { message, progress } = this;
+      if (await this.writer.write(what, { message, progress })) this.done('Firmware');
+      return message.textContent ?? '';
     });
   };
 
@@ -231,10 +231,10 @@ export class Setup implements Tools {
     this.say('');
     this.under = work()
       .catch(messageOf)
-      .then((said) => {
+      .then((message) => {
         if (number !== this.work) return;
         this.hold(false);
-        this.say(said);
+        this.say(message);
         this.update();
         const { next } = this;
         this.next = null;
@@ -248,7 +248,7 @@ export class Setup implements Tools {
   }
 
   private say(text: string): void {
-    this.said.textContent = text;
+    this.message.textContent = text;
   }
 
   readonly go = (name: string): void => {

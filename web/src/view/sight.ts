@@ -1,10 +1,10 @@
-// What the camera sees, drawn over its picture: tags, the robot's path, its heading.
+// The overlay on the camera's picture: tags, the robot's path, its heading.
 import type { Pixel } from '../measure/question';
 import type { Seen } from '../measure/seen';
 import { surface } from './canvas';
 import { palette } from './palette';
 
-/** Length of the arrow over that of the deck's tag. */
+/** Length of the arrow relative to the deck's tag. */
 const ARROW = 1.6;
 
 /** Draws over a picture that fills its element with its whole width and height. */

@@ -19,7 +19,7 @@ const RIM = 14;
 export class Sketch {
   private readonly panel = element<HTMLDetailsElement>('lengths-panel');
   private readonly picture = element<HTMLElement>('sketch') as unknown as SVGSVGElement;
-  private readonly said = element('sketch-said');
+  private readonly message = element('sketch-said');
   private readonly symmetric = element<HTMLInputElement>('alike');
   private readonly drawnBars = this.picture.appendChild(document.createElementNS(SVG, 'g'));
   private readonly drawnJoints = this.picture.appendChild(document.createElementNS(SVG, 'g'));
@@ -62,7 +62,7 @@ export class Sketch {
     this.sketches?.ask({ toml: this.toml, edits, isLast, keys: [] });
   }
 
-  /** Looks for what would do where lengths are refused, and offers it. */
+  /** Searches valid lengths when some are refused, and offers them. */
   offer(edits: Edits): void {
     this.sketches?.ask({ toml: this.toml, edits, isLast: true, keys: [] });
   }
@@ -80,8 +80,8 @@ export class Sketch {
     if (!isLast) this.fit.follow(refusal ? null : text);
     const { lengths } = this.session().description;
     const stays = !isLast ? '' : nearest ? ` It is ${words(nearest.lengths, lengths)}, the nearest that does.` : ' It stays as it was.';
-    this.said.textContent = refusal ? `${refusalOf(words(edits, lengths), edits, refusal, lengths)}${stays}` : `${words(edits, lengths)}.`;
-    this.said.classList.toggle('refusal', refusal !== null);
+    this.message.textContent = refusal ? `${refusalOf(words(edits, lengths), edits, refusal, lengths)}${stays}` : `${words(edits, lengths)}.`;
+    this.message.classList.toggle('refusal', refusal !== null);
     if (isLast) void this.end(refusal ? (nearest?.text ?? null) : text).then(() => showOffers({ nearest: null, without }, this.session()));
   }
 
@@ -104,7 +104,7 @@ export class Sketch {
 
   private ranged(range: [number, number]): void {
     this.slider.setRange(range);
-    if (this.slider.isChosen) this.fit.findRange(this.slider.keys, range, (found, said) => this.slider.mark(found, said));
+    if (this.slider.isChosen) this.fit.findRange(this.slider.keys, range, (found, message) => this.slider.mark(found, message));
   }
 
   /** Draws the robot; with `isWhole` also the joints, which stay during a drag. */
@@ -145,10 +145,10 @@ export class Sketch {
   }
 
   private joint(joint: Joint, at: Point): SVGCircleElement {
-    let begun: [number, number] | null = null;
+    let start: [number, number] | null = null;
     const isDragged = ({ clientX, clientY }: PointerEvent) => {
-      if (begun && Math.hypot(clientX - begun[0], clientY - begun[1]) > STILL) begun = null;
-      return this.held === joint && begun === null;
+      if (start && Math.hypot(clientX - start[0], clientY - start[1]) > STILL) start = null;
+      return this.held === joint && start === null;
     };
     const mark = document.createElementNS(SVG, 'circle');
     mark.setAttribute('r', '3.6');
@@ -158,7 +158,7 @@ export class Sketch {
     mark.addEventListener('pointerdown', (event) => {
       if (this.isEnding) return;
       mark.setPointerCapture(event.pointerId);
-      begun = [event.clientX, event.clientY];
+      start = [event.clientX, event.clientY];
       this.held = joint;
     });
     mark.addEventListener('pointermove', (event) => isDragged(event) && this.drag(joint, event));

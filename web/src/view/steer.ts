@@ -18,7 +18,7 @@ export interface Choice {
 
 /** Dead zone of a stick. */
 const DEAD = 0.35;
-/** Deflection of a stick below which the robot goes at half its pace, and from which at the whole again. */
+/** Deflection of a stick below which the robot goes at half its pace, and above which it returns to the full pace. */
 const HALF = 0.65;
 const WHOLE = 0.75;
 /** Lowest pace of the robot, percent. */
@@ -56,10 +56,10 @@ const KEYS: Record<string, Direction> = {
 export function gaitFor({ ahead, left }: Direction, choices: Choice[]): string | null {
   const size = Math.hypot(ahead, left);
   if (size < DEAD) return null;
-  const most = (of: (displacement: Displacement) => number | null) => Math.max(...choices.map(({ displacement }) => Math.abs(of(displacement) ?? 0)), 0);
-  const [farthest, widest] = [most(({ forward }) => forward), most(({ turn }) => turn)];
+  const largest = (of: (displacement: Displacement) => number | null) => Math.max(...choices.map(({ displacement }) => Math.abs(of(displacement) ?? 0)), 0);
+  const [farthest, widest] = [largest(({ forward }) => forward), largest(({ turn }) => turn)];
   // A drift counts as none, also where no gait that turns is predicted yet.
-  const share = (value: number | null, least: number, most: number) => (value !== null && Math.abs(value) >= least ? value / most : 0);
+  const share = (value: number | null, smallest: number, largest: number) => (value !== null && Math.abs(value) >= smallest ? value / largest : 0);
   let best: { command: string; value: number } | null = null;
   for (const { command, displacement } of choices) {
     const x = share(displacement.forward, LEAST.ahead, farthest);
@@ -100,7 +100,7 @@ export class Steer {
     private readonly isBarred: () => boolean,
     private readonly pace: () => number,
   ) {
-    // Before a slider or a view, which would take an arrow for itself.
+    // In the capture phase, before a slider or a view handles an arrow key.
     document.addEventListener('keydown', (event) => this.key(event, true), true);
     document.addEventListener('pointerdown', ({ target }) => (this.touched = target), true);
     document.addEventListener('keyup', (event) => this.key(event, false));
@@ -163,7 +163,7 @@ export class Steer {
       return;
     }
     const { target } = event;
-    // The keys belong to where somebody types and to the setup; to a slider, a list or a view, if Tab led there.
+    // The keys belong to a text field and to the setup; also to a slider, a list or a view that was reached with Tab.
     const typed = 'textarea, [type="text"], [type="number"], #setup';
     const taken = target instanceof Element && target.closest(target === this.touched ? typed : `${typed}, input, select, canvas, [role="log"]`) !== null;
     if (taken || event.ctrlKey || event.altKey || event.metaKey) return;

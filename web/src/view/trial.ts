@@ -104,9 +104,9 @@ export class TrialView {
     if (!session.isReal) return this.say(NO_BOARD);
     const refused = await takeGait(session, made);
     if (refused) return this.say(refused.refused);
-    const said = this.element('said');
-    if (!(await this.writer.write('robot', { said, progress: this.element<HTMLProgressElement>('progress') }))) return;
-    this.say(`${said.textContent}. The board has restarted; ${made.name.replaceAll('-', ' ')} is a button of Drive.`);
+    const message = this.element('said');
+    if (!(await this.writer.write('robot', { message, progress: this.element<HTMLProgressElement>('progress') }))) return;
+    this.say(`${message.textContent}. The board has restarted; ${made.name.replaceAll('-', ' ')} is a button of Drive.`);
   }
 
   private async copy(): Promise<void> {

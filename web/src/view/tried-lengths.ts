@@ -1,4 +1,4 @@
-// Lengths that were tried, in words: what a person reads of them, why they are refused, and buttons for what would do.
+// Lengths that were tried, in words: their names, the reason of a refusal, and buttons for valid ones.
 import type { Edits, Length, Refused, TriedLengths } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
@@ -18,7 +18,7 @@ export function words(edits: Edits, lengths: Length[]): string {
   return [...by].map(([value, keys]) => `${keys.map((key) => key.replace('links.', '')).join(' = ')} = ${value} ${unit(keys[0])}`).join(', ');
 }
 
-/** Says why lengths are refused, what it means for the robot first; `named` is what the user wanted. */
+/** Describes why lengths are refused, beginning with the consequence for the robot; `named` are the user's lengths in words. */
 export function refusalOf(named: string, edits: Edits, { refused, meaning, key }: Refused, lengths: Length[]): string {
   const known = new Map(lengths.map((length) => [length.key, length]));
   const ways = edits.map(([each, value]) => value - (known.get(each)?.value ?? value));
@@ -29,7 +29,7 @@ export function refusalOf(named: string, edits: Edits, { refused, meaning, key }
   return `${named} is ${how}: ${why}.`;
 }
 
-/** Shows a button for each way out of a refusal; none for null. */
+/** Shows a button for each solution of a refusal; none for null. */
 export function showOffers(tried: Pick<TriedLengths, 'nearest' | 'without'> | null, session: Session): void {
   const { nearest = null, without = null } = tried ?? {};
   const change = (text: string) => () => void session.change(text);

@@ -6,7 +6,7 @@ import { messageOf } from '../trouble';
 /** The elements that show the progress. */
 export interface Display {
   progress: HTMLProgressElement;
-  said: HTMLElement;
+  message: HTMLElement;
 }
 
 /** The page's robot alone, the firmware with it, or the image of a chosen file. */
@@ -32,33 +32,33 @@ export class Writer {
   }
 
   /** Writes and verifies, then waits for the board's banner; returns true if all of it succeeded. */
-  async write(what: WriteContent, { progress, said }: Display): Promise<boolean> {
+  async write(what: WriteContent, { progress, message }: Display): Promise<boolean> {
     if (this.isWriting) return false;
     const session = this.session();
     const { isReal } = session;
     const { name } = session.link;
-    const begun = performance.now();
+    const start = performance.now();
     const hash = typeof what === 'string' ? session.description.hash : null;
     this.isWriting = true;
     this.busy(true);
     progress.hidden = false;
     progress.value = 0;
-    said.textContent = 'calling the boot loader…';
+    message.textContent = 'calling the boot loader…';
     let isTouched = false;
     let isWritten = false;
     const show = (done: number, of: number, does: keyof typeof DOES) => {
       isTouched ||= does === 'writing';
       if (does !== 'comparing') progress.value = (50 * done) / of + (does === 'verifying' ? 50 : 0);
-      if (said.textContent !== DOES[does]) said.textContent = DOES[does];
+      if (message.textContent !== DOES[does]) message.textContent = DOES[does];
     };
     try {
       await (what === 'robot' ? session.flashRobot(show) : session.flash(what === 'all' ? session.image : what, show));
       isWritten = true;
-      // Nobody is to take the simulation for a board.
+      // The simulation must not be mistaken for a board.
       const where = isReal ? '' : ` to the ${name}`;
-      said.textContent = `written${where} and verified in ${written(performance.now() - begun)}`;
+      message.textContent = `written${where} and verified in ${written(performance.now() - start)}`;
     } catch (error) {
-      said.textContent = `not written: ${messageOf(error)}${isTouched && !(error instanceof Unfit) ? TORN[what === 'robot' ? 'robot' : 'all'] : ''}`;
+      message.textContent = `not written: ${messageOf(error)}${isTouched && !(error instanceof Unfit) ? TORN[what === 'robot' ? 'robot' : 'all'] : ''}`;
     }
     progress.hidden = true;
     this.isWriting = false;
@@ -66,7 +66,7 @@ export class Writer {
     if (!isWritten) return false;
     const wrong = await session.begins(hash);
     if (wrong === null) return true;
-    said.textContent = `written and verified; ${wrong}`;
+    message.textContent = `written and verified; ${wrong}`;
     return false;
   }
 }

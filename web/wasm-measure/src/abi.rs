@@ -21,53 +21,47 @@ enum Question {
     Measure(Asked),
 }
 
+/// The state of the interface between two calls of the page.
 #[derive(Default)]
-struct Door {
+struct Interface {
     camera: Camera,
     input: Vec<u8>,
     output: Vec<u8>,
 }
 
 thread_local! {
-    static DOOR: RefCell<Door> = RefCell::default();
+    static INTERFACE: RefCell<Interface> = RefCell::default();
 }
 
-/// An answer or a refusal, written as JSON without a tag.
-#[derive(Serialize)]
-#[serde(untagged)]
-enum Either<A, B> {
-    Well(A),
-    Refused(B),
-}
-
+/// An answer or a refusal as JSON, whose keys tell them apart.
 fn json<T: Serialize>(result: Result<T, Refused>) -> Vec<u8> {
-    let either = match result {
-        Ok(well) => Either::Well(well),
-        Err(refused) => Either::Refused(refused),
+    let bytes = match &result {
+        Ok(answer) => serde_json::to_vec(answer),
+        Err(refused) => serde_json::to_vec(refused),
     };
-    serde_json::to_vec(&either).unwrap_or_else(|_| b"null".to_vec())
+    bytes.unwrap_or_else(|_| b"null".to_vec())
 }
 
 /// Allocates an input of so many bytes and returns its address. Its bytes are those of the input before where
 /// that was as long, as of a picture.
 #[unsafe(no_mangle)]
 pub extern "C" fn measure_input(length: usize) -> *mut u8 {
-    DOOR.with_borrow_mut(|door| {
-        door.input.resize(length, 0);
-        door.input.as_mut_ptr()
+    INTERFACE.with_borrow_mut(|interface| {
+        interface.input.resize(length, 0);
+        interface.input.as_mut_ptr()
     })
 }
 
 /// The address of the last answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn measure_output() -> *const u8 {
-    DOOR.with_borrow(|door| door.output.as_ptr())
+    INTERFACE.with_borrow(|interface| interface.output.as_ptr())
 }
 
 /// The length of the last answer, bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn measure_output_length() -> usize {
-    DOOR.with_borrow(|door| door.output.len())
+    INTERFACE.with_borrow(|interface| interface.output.len())
 }
 
 /// Answers with the tags of the picture in the input, by [`Camera::add`] if it is to be kept, or else by
@@ -75,10 +69,10 @@ pub extern "C" fn measure_output_length() -> usize {
 #[unsafe(no_mangle)]
 pub extern "C" fn measure_picture(width: usize, height: usize, seconds: f64, is_kept: bool) {
     let size = [width, height];
-    DOOR.with_borrow_mut(|door| {
-        door.output = json(match is_kept {
-            true => door.camera.add(size, &door.input, seconds),
-            false => door.camera.look(size, &door.input),
+    INTERFACE.with_borrow_mut(|interface| {
+        interface.output = json(match is_kept {
+            true => interface.camera.add(size, &interface.input, seconds),
+            false => interface.camera.look(size, &interface.input),
         });
     });
 }
@@ -86,11 +80,11 @@ pub extern "C" fn measure_picture(width: usize, height: usize, seconds: f64, is_
 /// Answers the question in the input; `null` if it is unknown.
 #[unsafe(no_mangle)]
 pub extern "C" fn measure_ask() {
-    DOOR.with_borrow_mut(|door| {
-        door.output = match serde_json::from_slice(&door.input) {
-            Ok(Question::Measure(asked)) => json(door.camera.measure(&asked)),
+    INTERFACE.with_borrow_mut(|interface| {
+        interface.output = match serde_json::from_slice(&interface.input) {
+            Ok(Question::Measure(asked)) => json(interface.camera.measure(&asked)),
             Ok(Question::Clear) => {
-                door.camera = Camera::default();
+                interface.camera = Camera::default();
                 json(Ok(()))
             }
             Err(_) => b"null".to_vec(),
@@ -102,5 +96,5 @@ pub extern "C" fn measure_ask() {
 #[unsafe(no_mangle)]
 pub extern "C" fn measure_sheet(is_letter: bool) {
     let paper = if is_letter { Paper::Letter } else { Paper::A4 };
-    DOOR.with_borrow_mut(|door| door.output = paper.sheet());
+    INTERFACE.with_borrow_mut(|interface| interface.output = paper.sheet());
 }

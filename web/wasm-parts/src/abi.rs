@@ -26,70 +26,64 @@ mod page {
     pub fn progress(_: u32, _: u32) {}
 }
 
+/// The state of the interface between two calls of the page.
 #[derive(Default)]
-struct Door {
+struct Interface {
     model: Option<Model>,
     input: Vec<u8>,
     output: Vec<u8>,
 }
 
 thread_local! {
-    static DOOR: RefCell<Door> = RefCell::default();
+    static INTERFACE: RefCell<Interface> = RefCell::default();
 }
 
-/// An answer or a refusal, written as JSON without a tag.
-#[derive(Serialize)]
-#[serde(untagged)]
-enum Either<A, B> {
-    Well(A),
-    Refused(B),
-}
-
+/// An answer or a refusal as JSON, whose keys tell them apart.
 fn json<T: Serialize>(result: Result<T, Refused>) -> Vec<u8> {
-    let either = match result {
-        Ok(well) => Either::Well(well),
-        Err(refused) => Either::Refused(refused),
+    let bytes = match &result {
+        Ok(answer) => serde_json::to_vec(answer),
+        Err(refused) => serde_json::to_vec(refused),
     };
-    serde_json::to_vec(&either).unwrap_or_else(|_| b"null".to_vec())
+    bytes.unwrap_or_else(|_| b"null".to_vec())
 }
 
 /// Stores a model's answer as the output; without a model the output is empty.
 fn answer(call: impl FnOnce(&Model) -> Vec<u8>) {
-    DOOR.with_borrow_mut(|door| {
-        door.output = door.model.as_ref().map(call).unwrap_or_default();
+    INTERFACE.with_borrow_mut(|interface| {
+        interface.output = interface.model.as_ref().map(call).unwrap_or_default();
     });
 }
 
-/// Allocates an input of so many bytes and returns its address.
+/// Allocates an input of `length` bytes and returns its address.
 #[unsafe(no_mangle)]
 pub extern "C" fn parts_input(length: usize) -> *mut u8 {
-    DOOR.with_borrow_mut(|door| {
-        door.input = vec![0; length];
-        door.input.as_mut_ptr()
+    INTERFACE.with_borrow_mut(|interface| {
+        interface.input = vec![0; length];
+        interface.input.as_mut_ptr()
     })
 }
 
 /// The address of the last answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn parts_output() -> *const u8 {
-    DOOR.with_borrow(|door| door.output.as_ptr())
+    INTERFACE.with_borrow(|interface| interface.output.as_ptr())
 }
 
 /// The length of the last answer, bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn parts_output_length() -> usize {
-    DOOR.with_borrow(|door| door.output.len())
+    INTERFACE.with_borrow(|interface| interface.output.len())
 }
 
 /// Reads the input by [`Model::read`] and answers with [`Model::entry`]. It replaces the
 /// previous model.
 #[unsafe(no_mangle)]
 pub extern "C" fn parts_read() {
-    DOOR.with_borrow_mut(|door| {
-        let input = std::mem::take(&mut door.input);
+    INTERFACE.with_borrow_mut(|interface| {
+        let input = std::mem::take(&mut interface.input);
         let read = Model::read(&String::from_utf8_lossy(&input));
-        door.output = json(read.as_ref().map(Model::entry).map_err(Clone::clone));
-        door.model = read.ok();
+        interface.output = json(read.as_ref().map(Model::entry).map_err(Clone::clone));
+        interface.model = read.ok();
     });
 }
 

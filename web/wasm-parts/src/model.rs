@@ -9,7 +9,7 @@ use lizard_robot::Robot;
 use lizard_robot::servo::FORWARD;
 use serde::Serialize;
 
-/// A refusal: the reason why no parts can be made of a robot.
+/// The reason why the parts of a robot cannot be made.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Refused {
     /// The reason, as a message.
@@ -41,7 +41,7 @@ impl From<Unfit> for Refused {
 pub struct BodyEntry {
     /// The unique name.
     pub name: String,
-    /// The kind of thing that it is, in a word or two.
+    /// The kind of body, in a word or two.
     pub kind: &'static str,
     /// The index of the mount that it moves with.
     pub mount: usize,
@@ -170,7 +170,7 @@ impl Model {
             steps: self.steps.iter().map(step).collect(),
             mounts: self.mounts.len(),
             floor: -soles,
-            files: self.made().count() + 1,
+            files: self.ordered().count() + 1,
         }
     }
 
@@ -180,7 +180,7 @@ impl Model {
         &self.assembly
     }
 
-    /// The parts that the robot has, without those that may replace others.
+    /// The parts of the robot, without alternatives.
     pub(crate) fn needed(&self) -> impl Iterator<Item = &Part> {
         self.parts.iter().filter(|part| part.instead_of.is_none())
     }
@@ -228,20 +228,20 @@ impl Model {
     }
 
     /// The parts in the order in which `lizard parts` makes them.
-    fn made(&self) -> impl Iterator<Item = Part> {
+    fn ordered(&self) -> impl Iterator<Item = Part> {
         let coupon = coupon(self.assembly.robot().parts());
         coupon.into_iter().chain(self.parts.iter().cloned())
     }
 
-    /// Some of the files that `lizard parts` writes: of a part, and at last bill and guide.
-    /// None beyond the last.
+    /// Some of the files that `lizard parts` writes: those of a part, and last the bill and the
+    /// guide; none after that.
     ///
     /// # Errors
     /// Fails for a part whose layers make no body, a screw that cannot be reached.
     pub fn files(&self, number: usize) -> Result<Vec<File>, Refused> {
         let robot = self.assembly.robot();
-        let count = self.made().count();
-        if let Some(part) = self.made().nth(number) {
+        let count = self.ordered().count();
+        if let Some(part) = self.ordered().nth(number) {
             return Ok(part_files(&part, robot.parts().kerf)?);
         }
         if number > count {
@@ -271,7 +271,7 @@ impl Model {
 /// The result of a successful proof.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Proved {
-    /// No two parts that are not made to meet come nearer than this, mm.
+    /// Smallest distance of two parts that are not made to touch, mm.
     pub least: Option<f64>,
 }
 

@@ -9,29 +9,29 @@ use lizard_parts::{Body, Mesh, Prism, Solid};
 use crate::model::{Model, Refused};
 
 impl Model {
-    /// The triangles: first those of each printed part, the very ones of its STL file, then those
-    /// of each body that is bought.
+    /// The triangles: first those of each printed part, the same as in its STL file, then those of
+    /// each bought body.
     ///
     /// # Errors
     /// Fails for a part whose layers make no body.
     pub fn solids(&self) -> Result<Vec<u8>, Refused> {
         let mut bytes = Vec::new();
         for part in self.needed() {
-            put(&part.name, &part.printed().0, &mut bytes)?;
+            append_mesh(&part.name, &part.printed().0, &mut bytes)?;
         }
-        for body in self.bought() {
-            put(&body.name, &body.prisms, &mut bytes)?;
+        for body in self.bought_bodies() {
+            append_mesh(&body.name, &body.prisms, &mut bytes)?;
         }
         Ok(bytes)
     }
 
-    fn bought(&self) -> impl Iterator<Item = &Body> {
+    fn bought_bodies(&self) -> impl Iterator<Item = &Body> {
         let bodies = self.assembly().bodies().iter();
         bodies.filter(|body| !self.needed().any(|part| part.bodies.contains(&body.name)))
     }
 }
 
-fn put(name: &str, prisms: &[Prism], bytes: &mut Vec<u8>) -> Result<(), Refused> {
+fn append_mesh(name: &str, prisms: &[Prism], bytes: &mut Vec<u8>) -> Result<(), Refused> {
     let mesh = Mesh::of(&Solid::of(prisms));
     if !mesh.is_closed() {
         return Err(lizard_parts::Unfit::Surface(name.to_owned()).into());
@@ -39,8 +39,8 @@ fn put(name: &str, prisms: &[Prism], bytes: &mut Vec<u8>) -> Result<(), Refused>
     for count in [mesh.corners.len(), mesh.triangles.len()] {
         bytes.extend((count as u32).to_le_bytes());
     }
-    for at in mesh.corners.as_flattened() {
-        bytes.extend((*at as f32).to_le_bytes());
+    for coordinate in mesh.corners.as_flattened() {
+        bytes.extend((*coordinate as f32).to_le_bytes());
     }
     for corner in mesh.triangles.as_flattened() {
         bytes.extend((*corner as u32).to_le_bytes());

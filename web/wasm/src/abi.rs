@@ -75,7 +75,7 @@ enum Question {
     FasterFound(usize),
     /// [`Page::path`].
     Path(DrawnGait),
-    /// [`Page::room`].
+    /// [`Page::reach_area`].
     ReachArea(usize),
     /// [`Page::map`].
     Map(usize),
@@ -125,7 +125,7 @@ impl Question {
                 json(page.faster().and_then(|search| search.found(robots)))
             }
             Self::Path(drawn) => json(page.path(&drawn)),
-            Self::ReachArea(end) => json(page.room(end)),
+            Self::ReachArea(end) => json(page.reach_area(end)),
             Self::Map(end) => json(page.map(end)),
             Self::RunCore => {
                 page.run_core();

@@ -70,13 +70,13 @@ mod tests {
     use super::*;
     use lizard_robot::Robot;
 
-    fn run(said: &mut String, core: &mut CoreRun, line: &str, frames: usize) -> [u16; 4] {
+    fn run(printed: &mut String, core: &mut CoreRun, line: &str, frames: usize) -> [u16; 4] {
         let mut bytes = line.as_bytes();
         let mut widths = [0; 4];
         for _ in 0..frames {
             let frame = core.frame(bytes, 5.0);
             bytes = &[];
-            *said += &frame.text;
+            *printed += &frame.text;
             widths = frame.widths;
         }
         widths
@@ -86,29 +86,29 @@ mod tests {
     fn it_greets_walks_and_keeps_what_is_saved() {
         let robot = Robot::parse(include_str!("../../../robots/large.toml")).expect("right");
         let mut core = CoreRun::begin(*robot.firmware(), Eeprom::blank());
-        let mut said = String::new();
-        let stands = run(&mut said, &mut core, "", 200);
-        assert!(said.starts_with("# lizard "), "{said}");
+        let mut printed = String::new();
+        let stands = run(&mut printed, &mut core, "", 200);
+        assert!(printed.starts_with("# lizard "), "{printed}");
         assert!(stands.iter().all(|width| *width == 24_000), "{stands:?}");
-        let trimmed = run(&mut said, &mut core, "trim 1 3\nsave\n", 500);
+        let trimmed = run(&mut printed, &mut core, "trim 1 3\nsave\n", 500);
         assert!(
-            said.contains("ok trim 1 3") && said.contains("ok save"),
-            "{said}"
+            printed.contains("ok trim 1 3") && printed.contains("ok save"),
+            "{printed}"
         );
         let mut again = CoreRun::begin(*robot.firmware(), core.into_memory());
-        assert_eq!(run(&mut said, &mut again, "", 200), trimmed);
-        assert_ne!(run(&mut said, &mut again, "walk\n", 60), trimmed);
+        assert_eq!(run(&mut printed, &mut again, "", 200), trimmed);
+        assert_ne!(run(&mut printed, &mut again, "walk\n", 60), trimmed);
     }
 
     #[test]
     fn a_low_supply_stops_it() {
         let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
         let mut core = CoreRun::begin(*robot.firmware(), Eeprom::blank());
-        let mut said = String::new();
-        run(&mut said, &mut core, "", 200);
+        let mut printed = String::new();
+        run(&mut printed, &mut core, "", 200);
         for _ in 0..200 {
-            said += &core.frame(&[], 3.9).text;
+            printed += &core.frame(&[], 3.9).text;
         }
-        assert!(said.contains("# supply:"), "{said}");
+        assert!(printed.contains("# supply:"), "{printed}");
     }
 }

@@ -79,8 +79,8 @@ const IDEAL: &str = "ideal";
 pub struct ModelEntry {
     /// Name of the model.
     pub name: &'static str,
-    /// Torque at a stall, kg cm, and time for 60 deg, s, both at a supply in V; and their supply in
-    /// the robot, V. `None` for ideal servos.
+    /// Stall torque, kg cm, and time for 60 deg, s, both at a supply in V; and their supply in the
+    /// robot, V. `None` for ideal servos.
     pub figures: Option<[f64; 4]>,
 }
 
@@ -326,7 +326,7 @@ fn lengths(robot: &Robot) -> Vec<LinkEntry> {
         entry("leg.follower", "leg follower", "leg.crank", leg.follower),
         entry(ahead, "hip, fore and aft", ahead, feet.hip_forward),
     ];
-    // Hips that follow may be wider in front than behind; then no one number is both.
+    // Derived hips may be wider in front than behind; then one number cannot describe both.
     let aside = (front == hind).then(|| entry(aside, "hip, sideways", aside, front));
     let mount = entry(
         "leg.mount",
@@ -392,14 +392,15 @@ pub struct GaitPrediction {
     pub movement: Movement,
     /// Largest lag of a leg, deg; `None` if legs are rigid.
     pub lag: Option<f64>,
-    /// The movement over that of rigid legs; `None` if legs are rigid, or rigid legs go nowhere.
+    /// The distance relative to that of rigid legs; `None` if legs are rigid, or rigid legs go
+    /// nowhere.
     pub share: Option<f64>,
     /// Largest share of a servo's line at each step of the pace; none with ideal servos.
     pub lines: Option<[f64; PACES]>,
 }
 
 impl GaitPrediction {
-    /// Predicts a gait with the present floor and servos of a twin.
+    /// Predicts a gait with the current floor and servos of a twin.
     #[must_use]
     pub fn of(twin: &Twin, gait: &CheckedGait) -> Self {
         let prediction = Self::ideal(gait, twin.ground());

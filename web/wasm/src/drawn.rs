@@ -1,4 +1,4 @@
-//! A gait that is drawn: the point of head or tail follows a closed line.
+//! A drawn gait: the point of head or tail follows a closed line.
 //!
 //! A line drawn by hand has corners, which no servo follows. So only its first few harmonics are
 //! kept, passed at an even speed. Two servos then follow by the robot's inverse kinematics, and
@@ -18,7 +18,7 @@ const SAMPLES: usize = 256;
 const SHOWN: usize = 128;
 /// The smallest amplitude of a harmonic that is written, mm.
 const MIN_AMPLITUDE: f64 = 0.05;
-/// Most harmonics that a robot.toml takes.
+/// Largest number of harmonics in a robot.toml.
 const MAX_TERMS: usize = 16;
 
 /// A gait along a line that was drawn.
@@ -114,7 +114,7 @@ fn harmonics(values: &[f64], terms: usize) -> (f64, Vec<Harmonic>) {
         Harmonic {
             k,
             amplitude: cosine.hypot(sine),
-            // To the digits of the text, without the sign of a zero.
+            // Rounded to the digits of the text, without the sign of a zero.
             shift: (cosine.atan2(sine) / TAU * 1e4).round() / 1e4 + 0.0,
         }
     };
@@ -196,8 +196,8 @@ mod tests {
                     .expect("it closes")
                     .end(end)
                     .end_point;
-                let away = (point.x - x).hypot(point.y - y);
-                assert!((away - 6.0).abs() < 0.05, "{end} {i}: {away} mm");
+                let distance = (point.x - x).hypot(point.y - y);
+                assert!((distance - 6.0).abs() < 0.05, "{end} {i}: {distance} mm");
             }
         }
     }

@@ -1,4 +1,4 @@
-//! The search of a gait that walks faster than the one that is being made.
+//! The search for a gait that walks faster than the edited one.
 //!
 //! The search of `lizard tune` takes minutes, and the page has one thread for it. So it tries one
 //! gait at a time: its caller can show the progress and the best gait so far, and stop at any
@@ -186,7 +186,7 @@ mod tests {
         assert_eq!(faster.found(20), None, "nothing is tried yet");
         let best = (0..3).map(|_| faster.step()).last().expect("three").best;
         let found = faster.found(20).expect("one");
-        // The same without the page.
+        // The same search without the page.
         let walk = robot.gait("walk").expect("there");
         let tuning = Tuning::new(&robot, robot.ground(), walk, None, "walk", 3).expect("straight");
         let trials = tuning.search(Kind::Wave).trials().to_vec();
@@ -204,7 +204,7 @@ mod tests {
         assert_eq!(best, Some(scores.fold(f64::NEG_INFINITY, f64::max)));
         let alone = tuning.best(scored).expect("it walks");
         assert_eq!(found.comparison, tuning.compare(&alone, 20));
-        // What the page takes over is the gait that was found.
+        // The page takes over exactly the gait that was found.
         assert_eq!(found.bars.table(), alone.table());
         let tried = EditedGait::Bars(found.bars).trial(&twin).expect("bars");
         let tried = tried.expect("it walks");

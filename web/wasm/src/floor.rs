@@ -36,7 +36,7 @@ impl Legs {
 pub struct Floor {
     /// Friction of a pad that slides forward, above 0.
     pub friction: f64,
-    /// Friction of a pad that slides backward over that of one that slides forward, above 0.
+    /// Ratio of backward to forward friction of a pad, above 0.
     pub ratio: f64,
     /// Mass of the robot, g, above 0.
     pub mass: f64,

@@ -1,7 +1,7 @@
-//! Other lengths for a robot and, where they are refused, what would do instead.
+//! Other lengths for a robot and, if they are refused, valid ones instead.
 //!
-//! Both offers are tried as a whole robot: the nearest lengths on the way from those of the text to those wanted, and the
-//! lengths wanted without the gait that forbids them.
+//! Both offers are tried as a whole robot: the nearest lengths between those of the text and those
+//! wanted, and the lengths wanted without the gait that forbids them.
 
 use lizard_robot::Robot;
 use lizard_robot::edit::{NoSuchKey, with_number, without_gait};
@@ -10,13 +10,13 @@ use serde::Serialize;
 use crate::description::Description;
 use crate::refused::Refused;
 
-/// Lengths are offered in steps of this, mm.
+/// Step of the lengths that are offered, mm.
 const STEP: f64 = 0.5;
 
 /// Lengths by their keys, such as `links.l2`.
 type Wanted = [(String, f64)];
 
-/// The text of a robot.toml with other lengths, its refusal, and what would do.
+/// The text of a robot.toml with other lengths, its refusal, and valid alternatives.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Lengths {
     /// The text with the lengths wanted.
@@ -48,7 +48,7 @@ pub struct WithoutGait {
 }
 
 impl Lengths {
-    /// Sets lengths in the text of a robot.toml; `searches` also looks for what would do.
+    /// Sets lengths in the text of a robot.toml; if `searches`, also searches valid alternatives.
     #[must_use]
     pub fn of(text: &str, wanted: &Wanted, searches: bool) -> Self {
         let changed = match with_lengths(text, wanted) {
@@ -87,15 +87,16 @@ impl Lengths {
     }
 }
 
-/// The least and the greatest value that some lengths may have together, as far as a robot walks with them. Beyond a half
-/// and the double of their value nothing is looked for, nor farther than an eighth of a turn for an angle.
+/// The least and the greatest value that some lengths may have together, as far as a robot walks
+/// with them. The search ends at half and at twice their value, for an angle at an eighth of a turn
+/// to either side.
 #[must_use]
 pub fn range(text: &str, keys: &[String]) -> Option<(f64, f64)> {
     let own = Description::of(&Robot::parse(text).ok()?).lengths;
     let own = own
         .iter()
         .find(|length| Some(&length.key) == keys.first())?;
-    let (least, most) = match own.unit {
+    let (smallest, largest) = match own.unit {
         "deg" => (own.value - 45.0, own.value + 45.0),
         _ => (0.5 * own.value, 2.0 * own.value),
     };
@@ -110,7 +111,7 @@ pub fn range(text: &str, keys: &[String]) -> Option<(f64, f64)> {
             (Some(_), None) => own.value,
         }
     };
-    Some((end(least), end(most)))
+    Some((end(smallest), end(largest)))
 }
 
 fn with_lengths(text: &str, wanted: &Wanted) -> Result<String, NoSuchKey> {
@@ -121,7 +122,7 @@ fn with_lengths(text: &str, wanted: &Wanted) -> Result<String, NoSuchKey> {
     Ok(text)
 }
 
-/// Halves the way from the lengths of the text to those wanted, down to a step.
+/// Bisects between the lengths of the text and those wanted, down to a step.
 fn nearest(text: &str, wanted: &Wanted) -> Option<NearestLengths> {
     let own = Description::of(&Robot::parse(text).ok()?).lengths;
     let way: Vec<(&String, f64, f64)> = wanted
@@ -203,12 +204,12 @@ mod tests {
     #[test]
     fn the_range_of_a_length_ends_where_half_a_millimetre_more_is_refused() {
         let keys: Vec<_> = crank(0.0).into_iter().map(|(key, _)| key).collect();
-        let (least, most) = range(PAPER, &keys).expect("a crank");
-        assert!(least < 45.0 && 45.0 < most, "{least} to {most}");
+        let (smallest, largest) = range(PAPER, &keys).expect("a crank");
+        assert!(smallest < 45.0 && 45.0 < largest, "{smallest} to {largest}");
         let refused = |mm: f64| Lengths::of(PAPER, &crank(mm), false).refusal.is_some();
-        assert!(!refused(least) && !refused(most));
-        assert!(least == 22.5 || refused(least - STEP), "{least}");
-        assert!(most == 90.0 || refused(most + STEP), "{most}");
+        assert!(!refused(smallest) && !refused(largest));
+        assert!(smallest == 22.5 || refused(smallest - STEP), "{smallest}");
+        assert!(largest == 90.0 || refused(largest + STEP), "{largest}");
         assert_eq!(range(PAPER, &["links.l99".to_string()]), None);
     }
 

@@ -11,7 +11,7 @@ const STEP: f64 = 1.5;
 const FROM: f64 = 0.0;
 const TO: f64 = 180.0;
 /// Step of the curves, deg.
-const FINE: f64 = 0.5;
+const CURVE_STEP: f64 = 0.5;
 
 /// A point of the map: left and right crank, deg, in the end's own frame.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -60,7 +60,7 @@ impl Map {
         let points = (0..size).flat_map(|left| (0..size).map(move |right| (left, right)));
         let (margins, safe) = points
             .map(|(left, right)| {
-                at(
+                evaluate(
                     robot.lizard(),
                     robot.limits(),
                     end,
@@ -82,23 +82,29 @@ impl Map {
 }
 
 /// Computes the smallest margin of an end at its crank angles; true if the limits allow them.
-fn at(lizard: &Lizard, limits: &Limits, end: End, left: f64, right: f64) -> (Option<i8>, bool) {
+fn evaluate(
+    lizard: &Lizard,
+    limits: &Limits,
+    end: End,
+    left: f64,
+    right: f64,
+) -> (Option<i8>, bool) {
     let Ok(bars) = lizard.end(end).forward(left, right) else {
         return (None, false);
     };
     let margins = bars.conditions(end).into_iter();
-    let least = margins
+    let smallest = margins
         .filter(|(check, _)| !Check::UNCROSSED.contains(check))
-        .fold(1.0f64, |least, (_, value)| least.min(value));
+        .fold(1.0f64, |smallest, (_, value)| smallest.min(value));
     let safe = limits.end_violations(end, &bars).next().is_none();
-    (Some((least * 100.0).round() as i8), safe)
+    (Some((smallest * 100.0).round() as i8), safe)
 }
 
 fn curves(robot: &Robot, end: End) -> Vec<Curve> {
     let bars = robot.lizard().end(end);
-    let steps = ((TO - FROM) / FINE) as usize;
-    let found: Vec<SingularPose> = (0..=steps)
-        .flat_map(|i| bars.singular_with(FROM + FINE * i as f64))
+    let steps = ((TO - FROM) / CURVE_STEP) as usize;
+    let poses: Vec<SingularPose> = (0..=steps)
+        .flat_map(|i| bars.singular_with(FROM + CURVE_STEP * i as f64))
         .chain(bars.coinciding_tips())
         .filter(|pose| {
             let inside = |theta: f64| (FROM..=TO).contains(&theta);
@@ -113,7 +119,7 @@ fn curves(robot: &Robot, end: End) -> Vec<Curve> {
     .into_iter()
     .map(|(kind, name)| Curve {
         kind: name,
-        points: found
+        points: poses
             .iter()
             .filter(|pose| pose.kind == kind)
             .map(|pose| MapPoint(pose.theta_left, pose.theta_right))

@@ -114,7 +114,7 @@ impl Page {
     pub fn edit_floor(text: &str, floor: Floor) -> Result<Edited, Refused> {
         let robot = Robot::parse(text)?;
         let own = Floor::of(&robot);
-        // Out of its range a value is the robot's own.
+        // Values out of range are replaced by the robot's own.
         let wanted = floor.within(&robot);
         let mut text = text.to_string();
         let kind = wanted.kind.word();
@@ -212,7 +212,7 @@ impl Page {
         }
     }
 
-    /// Predicts a cycle of a gait on the present floor with the present servos.
+    /// Predicts a cycle of a gait on the current floor with the current servos.
     pub fn predict(&self, gait: usize) -> Option<GaitPrediction> {
         let twin = self.twin.as_ref()?;
         let gait = twin.robot().gaits().get(gait)?;
@@ -244,19 +244,20 @@ impl Page {
         Edited::of(with_steps(text, name, steps))
     }
 
-    /// The path of one round of a routine on the present floor with the present servos; `None` without the routine.
+    /// The path of one round of a routine on the current floor with the current servos; `None`
+    /// without the routine.
     pub fn round(&self, routine: &str) -> Option<RoundPath> {
         RoundPath::of(self.twin.as_ref()?, routine)
     }
 
-    /// Prepares the search of a faster gait for the page's robot; `None` without a robot.
+    /// Prepares the search for a faster gait for the page's robot; `None` without a robot.
     ///
     /// # Errors
     /// Returns the reason why there is nothing to search.
     #[cfg(feature = "tune")]
     pub fn make_faster(&mut self, wish: &SearchTask) -> Option<Result<SearchExtent, Refused>> {
-        let begun = Faster::begin(self.twin.as_ref()?, wish);
-        Some(begun.map(|faster| self.faster.insert(faster).begun()))
+        let search = Faster::begin(self.twin.as_ref()?, wish);
+        Some(search.map(|faster| self.faster.insert(faster).begun()))
     }
 
     /// The search that was started last.
@@ -265,13 +266,13 @@ impl Page {
         self.faster.as_mut()
     }
 
-    /// The line that the point of an end follows in a gait that was drawn.
+    /// The line that the point of an end follows in a drawn gait.
     pub fn path(&self, drawn: &DrawnGait) -> Option<Vec<[f64; 2]>> {
         drawn.path(self.robot()?)
     }
 
     /// The places that the point of the head (0) or the tail (1) may reach.
-    pub fn room(&self, end: usize) -> Option<ReachArea> {
+    pub fn reach_area(&self, end: usize) -> Option<ReachArea> {
         Some(ReachArea::of(self.robot()?, *End::ALL.get(end)?))
     }
 

@@ -50,13 +50,13 @@ mod tests {
     fn a_body_that_faces_left_and_goes_ahead_moves_to_the_left() {
         let place = |x, y, heading| Place { x, y, heading };
         let movement = place(0.0, 0.0, 90.0).movement_to(place(-10.0, -2.0, 95.0));
-        let off = (movement.forward - 10.0)
+        let error = (movement.forward - 10.0)
             .hypot(movement.left - 2.0)
             .hypot(movement.turn - 5.0);
-        assert!(off < 1e-12, "{movement:?}");
+        assert!(error < 1e-12, "{movement:?}");
         let there = place(3.0, -4.0, 170.0);
         let again = Place::from(Walked::from(there));
-        let off = (again.x - 3.0).hypot(again.y + 4.0) + (again.heading - 170.0).abs();
-        assert!(off < 1e-12, "{again:?}");
+        let error = (again.x - 3.0).hypot(again.y + 4.0) + (again.heading - 170.0).abs();
+        assert!(error < 1e-12, "{again:?}");
     }
 }

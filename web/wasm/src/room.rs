@@ -1,4 +1,4 @@
-//! The room of an end's point: the part of its plane in which a path can be drawn.
+//! The reach of an end's point: the part of its plane in which a path can be drawn.
 //!
 //! With the other end at neutral, a point is allowed if the inverse kinematics has crank angles
 //! for it and the limits allow the pose with these angles.
@@ -14,8 +14,8 @@ const RIM: i32 = 2;
 /// Largest distance of two points that count as the same, mm.
 const SAME_POINT_MM: f64 = 1e-6;
 
-/// The room of an end's point: mm in the end's own frame, from the middle of its base, outward
-/// positive in y.
+/// The area that an end's point can reach: mm in the end's own frame, from the middle of its base,
+/// outward positive in y.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ReachArea {
     /// The first point of the first row.
@@ -33,7 +33,7 @@ pub struct ReachArea {
 }
 
 impl ReachArea {
-    /// Computes the room of an end.
+    /// Computes the area that the point of an end can reach.
     #[must_use]
     pub fn of(robot: &Robot, end: End) -> Self {
         let bars = robot.lizard().end(end);
@@ -59,9 +59,9 @@ impl ReachArea {
         };
         // The allowed points, and a rim around them.
         let span = |has: &dyn Fn(i32) -> bool| {
-            let least = (-half..=half).find(|at| has(*at)).unwrap_or(0);
-            let most = (-half..=half).rev().find(|at| has(*at)).unwrap_or(0);
-            (least - RIM)..=(most + RIM)
+            let smallest = (-half..=half).find(|at| has(*at)).unwrap_or(0);
+            let largest = (-half..=half).rev().find(|at| has(*at)).unwrap_or(0);
+            (smallest - RIM)..=(largest + RIM)
         };
         let columns = span(&|column| (-half..=half).any(|row| is_allowed(column, row)));
         let rows = span(&|row| (-half..=half).any(|column| is_allowed(column, row)));
@@ -125,7 +125,7 @@ mod tests {
             // The first row is a rim of points that are not allowed, so that the
             // shape's edge is seen.
             assert!(room.allowed[..room.columns].iter().all(|allowed| !allowed));
-            // The gesture `look` lies in it: 10 mm to either side of 54 mm outward.
+            // The gesture `look` stays in it: 10 mm to either side of 54 mm outward.
             for x in [-10.0, 0.0, 10.0] {
                 assert!(place([x, 54.0]), "{end} {x}");
             }

@@ -7,7 +7,8 @@ use serde::Serialize;
 
 use crate::place::Place;
 
-/// Most frames of a path, two minutes: a step may wait for ever, and a routine may take hours.
+/// Largest number of frames of a path, two minutes: a step may wait forever, and a routine may take
+/// hours.
 const MAX_FRAMES: usize = 6_000;
 
 /// Frames from one place of the path to the next, a tenth of a second.
@@ -25,8 +26,8 @@ pub struct RoundPath {
 }
 
 impl RoundPath {
-    /// Goes through a routine once, with the floor and the servos of a twin, which does not move; `None` without the
-    /// routine.
+    /// Simulates one round of a routine, with the floor and the servos of a twin, which does not
+    /// move; `None` without the routine.
     #[must_use]
     pub fn of(twin: &Twin, name: &str) -> Option<Self> {
         let robot: &Robot = twin.robot();

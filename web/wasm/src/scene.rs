@@ -85,7 +85,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Computes the scene of a twin's present pose.
+    /// Computes the scene of a twin's current pose.
     ///
     /// # Errors
     /// Returns the message for the loop that does not close.
@@ -197,7 +197,7 @@ mod tests {
 
     #[test]
     fn a_loop_that_does_not_close_is_named() {
-        // Couplers that just reach at neutral.
+        // Couplers that barely reach at neutral.
         let short = ["l2", "l3"].iter().fold(TEXT.to_string(), |text, link| {
             text.replace(&format!("{link} = 50.0"), &format!("{link} = 34.0"))
         });

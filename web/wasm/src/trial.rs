@@ -1,4 +1,4 @@
-//! A gait that is being made, tried on a robot before it is in any file.
+//! An edited gait, tried on a robot before it is in any file.
 //!
 //! Only the gait that is tried is checked, so that an answer comes while a person drags. A
 //! refusal offers the nearest smaller gait and the nearest longer period that are possible.
@@ -17,7 +17,7 @@ const MIN_SIZE: i64 = 5;
 /// The longest period that is offered, in hundredths of a second.
 const MAX_PERIOD: i64 = 1000;
 
-/// A gait that is being made.
+/// An edited gait.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(untagged)]
 pub enum EditedGait {
@@ -27,7 +27,7 @@ pub enum EditedGait {
     Bars(Bars),
 }
 
-/// The figures of a gait that is possible.
+/// The figures of a valid gait.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Trial {
     /// Movement of a cycle.
@@ -49,7 +49,7 @@ pub struct Trial {
     pub period: f64,
 }
 
-/// A value that is possible in place of the one that was wanted.
+/// A valid value in place of the wanted one.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Alternative {
     /// Name of the value: `amplitude`, `size` or `period`.
@@ -92,7 +92,7 @@ impl EditedGait {
     #[must_use]
     pub fn trial(&self, twin: &Twin) -> Option<Result<Trial, NoTrial>> {
         let table = self.table(twin.robot())?;
-        Some(tried(table, twin).map_err(|refused| NoTrial {
+        Some(try_table(table, twin).map_err(|refused| NoTrial {
             refused,
             instead: self.instead(twin.robot()),
         }))
@@ -138,7 +138,7 @@ impl EditedGait {
 }
 
 /// Tries the gait of a table.
-fn tried(table: String, twin: &Twin) -> Result<Trial, Refused> {
+fn try_table(table: String, twin: &Twin) -> Result<Trial, Refused> {
     let robot = twin.robot().with_gait(&table).map_err(Refused::of_gait)?;
     let mut other = Twin::new(&robot, twin.servos());
     other.set_ground(*twin.ground());

@@ -65,11 +65,11 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     match args.trace {
         Some(name) => out.write_all(trace(&robot, &name)?.as_bytes())?,
-        None if args.sensitivity => write!(out, "{}", computed(|| Sensitivity::of(&robot)))?,
-        None if args.assumptions => write!(out, "{}", computed(|| Assumptions::of(&robot)))?,
-        None if args.servos => write!(out, "{}", computed(|| ServoTable::of(&robot)))?,
+        None if args.sensitivity => write!(out, "{}", with_spinner(|| Sensitivity::of(&robot)))?,
+        None if args.assumptions => write!(out, "{}", with_spinner(|| Assumptions::of(&robot)))?,
+        None if args.servos => write!(out, "{}", with_spinner(|| ServoTable::of(&robot)))?,
         None if args.json => {
-            let report = computed(|| Report::of(&robot));
+            let report = with_spinner(|| Report::of(&robot));
             for row in &report.rows {
                 json::line(&mut out, &GaitLine::new(row))?;
             }
@@ -77,13 +77,13 @@ pub fn run(args: Args) -> Result<(), Failure> {
                 json::line(&mut out, &RoutineLine::new(round))?;
             }
         }
-        None => write!(out, "{}", computed(|| Report::of(&robot)))?,
+        None => write!(out, "{}", with_spinner(|| Report::of(&robot)))?,
     }
     Ok(out.flush()?)
 }
 
 /// Computes a table while a spinner shows the elapsed time.
-fn computed<T>(table: impl FnOnce() -> T) -> T {
+fn with_spinner<T>(table: impl FnOnce() -> T) -> T {
     let _spinner = Spinner::new("walking every gait");
     table()
 }
@@ -185,10 +185,10 @@ impl From<Prediction> for Predicted {
 
 impl<'a> GaitLine<'a> {
     fn new(row: &'a Row) -> Self {
-        let least_margin = |least: lizard_robot::LeastMargin| LeastMargin {
-            margin: least.value,
-            what: Check::name(least.what),
-            phase: least.phase,
+        let least_margin = |smallest: lizard_robot::LeastMargin| LeastMargin {
+            margin: smallest.value,
+            what: Check::name(smallest.what),
+            phase: smallest.phase,
         };
         let audit = &row.audit;
         Self {

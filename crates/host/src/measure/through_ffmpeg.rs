@@ -76,7 +76,7 @@ pub(super) fn each(
             })
             .or_else(|end: Option<Failure>| end.map_or(Ok(()), Err)),
     };
-    // It may still be sending what nobody reads any more.
+    // It may still be sending pictures that are not read any more.
     drop(stream);
     let _ = ffmpeg.kill();
     let _ = ffmpeg.wait();

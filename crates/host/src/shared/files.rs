@@ -89,7 +89,7 @@ fn is_robot(path: &Path) -> bool {
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     check_replaceable(path)?;
     let outcome = if is_stream(path) {
-        // Opened as it is: neither created nor truncated.
+        // Opened without being created or truncated.
         File::options()
             .write(true)
             .open(path)

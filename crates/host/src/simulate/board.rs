@@ -256,7 +256,7 @@ impl SimulatedBoard {
         Ok(self.uno.time_calls(entry, ms * CYCLES_PER_MS))
     }
 
-    /// The cycles spent so far in the handlers of some vectors.
+    /// The cycles spent so far in the handlers of the counted vectors.
     pub fn handler_cycles(&self, is_counted: impl Fn(u8) -> bool) -> u64 {
         let all = self.uno.interrupts();
         let counted = all.iter().filter(|used| is_counted(used.vector));

@@ -59,8 +59,8 @@ fn a_urdf_or_sdf_comes_with_the_meshes_that_it_names() {
     let folder = tempfile::tempdir().expect("a folder");
     for ending in ["urdf", "sdf"] {
         let file = folder.path().join(format!("new/my.{ending}"));
-        let said = run(&["model", &file.display().to_string()]).success();
-        assert!(said.contains("my-meshes"), "{said}");
+        let printed = run(&["model", &file.display().to_string()]).success();
+        assert!(printed.contains("my-meshes"), "{printed}");
         let text = fs::read_to_string(&file).expect("a file");
         let names = text.split("my-meshes/").skip(1);
         let names: Vec<&str> = names
@@ -97,8 +97,8 @@ fn what_a_format_does_not_have_is_refused_and_nothing_is_written() {
         ),
     ] {
         let file = folder.path().join(name).display().to_string();
-        let said = run(&[&["model", &file], &words[..]].concat()).refusal();
-        assert!(said.contains(refusal), "{said}");
+        let printed = run(&[&["model", &file], &words[..]].concat()).refusal();
+        assert!(printed.contains(refusal), "{printed}");
     }
     let left = folder.path().read_dir().expect("a folder");
     assert_eq!(left.count(), 0);

@@ -72,8 +72,11 @@ fn no_command_writes_over_its_input_or_over_a_robot() {
 fn a_new_robot_is_one_that_walks_and_replaces_no_file() {
     let folder = tempfile::tempdir().expect("a folder");
     let here = folder.path();
-    let said = lizard(here, "new my.toml").success();
-    assert!(said.contains("lizard gaits --robot my.toml"), "{said}");
+    let printed = lizard(here, "new my.toml").success();
+    assert!(
+        printed.contains("lizard gaits --robot my.toml"),
+        "{printed}"
+    );
     let file = here.join("my.toml");
     let text = fs::read_to_string(&file).expect("it is written");
     assert!(

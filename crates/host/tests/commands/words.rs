@@ -115,7 +115,7 @@ fn a_word_of_20_000_letters_is_not_repeated_in_full() {
 #[test]
 fn a_mistyped_word_is_answered_with_the_one_that_was_meant() {
     let paper = &robot("paper");
-    for (words, meant) in [
+    for (words, expected) in [
         (&["claibrate"][..], "'calibrate'"),
         (&["sim", "--durration", "5"], "'--duration'"),
         (&["draw", "--wirring"], "'--wiring'"),
@@ -138,7 +138,7 @@ fn a_mistyped_word_is_answered_with_the_one_that_was_meant() {
         ),
     ] {
         let error = complaint(words);
-        assert!(error.contains(meant), "{words:?}: {error}");
+        assert!(error.contains(expected), "{words:?}: {error}");
     }
 }
 

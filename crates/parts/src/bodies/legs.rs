@@ -130,8 +130,8 @@ fn add_foot(builder: &mut Builder, servo: usize) {
     let clamps = clamps(builder);
     let half = builder.half_bar();
     // The column begins at the end of the leaf's free length.
-    let away = clamps[0] - at;
-    let toward = away * (1.0 / away.length());
+    let outward = clamps[0] - at;
+    let toward = outward * (1.0 / outward.length());
     let root = at + toward * (leaf_length(builder.parts.bar) + COLUMN);
     let column = vec![
         Shape::bar(clamps[0], clamps[1], COLUMN),

@@ -71,7 +71,7 @@ struct Piece {
 }
 
 impl Solid {
-    /// The surface of some layers, which lie on each other from below to above.
+    /// The surface of layers that lie on each other, from the lowest to the highest.
     pub fn of(prisms: &[Prism]) -> Self {
         let cut_at = |share| {
             let cut = |prism: &Prism| Outline::of(&prism.cut_at(share));

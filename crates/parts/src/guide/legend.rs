@@ -40,7 +40,7 @@ pub fn called(body: &Body, parts: &[Part]) -> Option<String> {
     })
 }
 
-/// Names of some bodies with their numbers, such as `4 x M3 x 12`; printed parts first.
+/// The names of bodies with their counts, such as `4 x M3 x 12`; printed parts first.
 pub fn counted(bodies: &[&Body], parts: &[Part]) -> Vec<String> {
     let mut counts: BTreeMap<(bool, usize, String), usize> = BTreeMap::new();
     for body in bodies {
@@ -69,7 +69,7 @@ pub fn names(
             continue;
         };
         let at = assembly.place(body.mount, pose).map(prism.add[0].middle());
-        let away = (at - Vector::new(-60.0, 80.0)).length();
+        let distance = (at - Vector::new(-60.0, 80.0)).length();
         let label = Label {
             at,
             z: (body.z()[0] + body.z()[1]) / 2.0 + lift,
@@ -78,10 +78,10 @@ pub fn names(
         };
         let entry = labels_by_name
             .entry(name)
-            .or_insert((away, 0, label.clone()));
+            .or_insert((distance, 0, label.clone()));
         entry.1 += 1;
-        if away < entry.0 {
-            (entry.0, entry.2) = (away, label);
+        if distance < entry.0 {
+            (entry.0, entry.2) = (distance, label);
         }
     }
     let labels = labels_by_name.into_values().map(|(_, count, mut label)| {

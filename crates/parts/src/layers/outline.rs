@@ -13,7 +13,7 @@ use lizard_kinematics::Vector;
 use crate::layers::body::Prism;
 use crate::layers::shape::Shape;
 
-/// The smallest and the largest x and y of some points.
+/// The smallest and the largest x and y of these points.
 pub(crate) fn bounds(points: impl Iterator<Item = Vector>) -> [Vector; 2] {
     let [low, high] = [f64::INFINITY, f64::NEG_INFINITY].map(|end| Vector::new(end, end));
     points.fold([low, high], |[low, high], at| {
@@ -232,7 +232,7 @@ impl Side {
 
 type Lines = Vec<Polyline<f64>>;
 
-/// The union of some outlines: the outer lines, and the gaps that they enclose.
+/// The union of outlines: the outer lines, and the gaps that they enclose.
 fn unite(outlines: impl Iterator<Item = Polyline<f64>>) -> (Lines, Lines) {
     let (mut pieces, mut gaps) = (Lines::new(), Lines::new());
     for outline in outlines {

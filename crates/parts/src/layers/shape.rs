@@ -92,8 +92,8 @@ impl Shape {
 
     /// The largest distance of any of its points from one point, mm.
     pub fn farthest(&self, from: Vector) -> f64 {
-        let away = self.points.iter().map(|&point| (point - from).length());
-        away.fold(0.0, f64::max) + self.radius
+        let distances = self.points.iter().map(|&point| (point - from).length());
+        distances.fold(0.0, f64::max) + self.radius
     }
 
     /// The greatest distance of two of its points, mm.

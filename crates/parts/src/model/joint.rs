@@ -39,8 +39,8 @@ impl Writer<'_> {
         let robot = self.assembly.robot();
         let range = match (self.motor_on(node), node) {
             (Some(servo), _) => {
-                let (least, most) = robot.servos()[servo].travel();
-                [least, most].map(f64::to_radians)
+                let (smallest, largest) = robot.servos()[servo].travel();
+                [smallest, largest].map(f64::to_radians)
             }
             (None, Node::Of(Mount::Link(_))) => {
                 let play = self.scene.play.to_radians();

@@ -119,10 +119,10 @@ impl Writer<'_> {
         self.sdf_between(&name, kind, &parent, &child);
         self.xml.open("axis");
         self.xml.value("xyz", axis);
-        if let Some([least, most]) = self.range(node) {
+        if let Some([smallest, largest]) = self.range(node) {
             self.xml.open("limit");
-            self.xml.value("lower", least);
-            self.xml.value("upper", most);
+            self.xml.value("lower", smallest);
+            self.xml.value("upper", largest);
             if let Some(servo) = self.motor_on(node) {
                 let motor = &self.scene.motors.each[servo];
                 self.xml.value("effort", round(motor.stall * MILLI));

@@ -100,7 +100,7 @@ impl Writer<'_> {
                 _ => "0 0 1",
             };
             self.xml.leaf(format!(r#"axis xyz="{axis}""#));
-            if let Some([least, most]) = range {
+            if let Some([smallest, largest]) = range {
                 let (effort, rate) = match self.motor_on(node) {
                     Some(servo) => {
                         let motor = &self.scene.motors.each[servo];
@@ -111,7 +111,7 @@ impl Writer<'_> {
                 };
                 let (effort, rate) = (round(effort), round(rate));
                 self.xml.leaf(format!(
-                    r#"limit lower="{least}" upper="{most}" effort="{effort}" velocity="{rate}""#
+                    r#"limit lower="{smallest}" upper="{largest}" effort="{effort}" velocity="{rate}""#
                 ));
             }
             let [damping, friction] = self.resistance(node);

@@ -236,8 +236,8 @@ impl Bench<'_> {
 }
 
 impl Assembly {
-    /// The screws that cannot be put in or turned in the order of some steps while the
-    /// servos stand at a pose.
+    /// The screws that cannot be inserted or turned in the order of these steps while the servos
+    /// are at a pose.
     pub fn blocked(&self, steps: &[Step], pose: &Solution) -> Vec<Blocked> {
         let bench = Bench {
             assembly: self,

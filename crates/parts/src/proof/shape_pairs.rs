@@ -78,8 +78,8 @@ impl Task {
         let bodies = assembly.bodies();
         for (i, a) in bodies.iter().enumerate() {
             for (j, b) in bodies.iter().enumerate().skip(i + 1) {
-                let away = || sweep::apart(&rectangles[i], &rectangles[j], within);
-                if a.mount == b.mount || !which(a, b) || away() {
+                let is_apart = || sweep::apart(&rectangles[i], &rectangles[j], within);
+                if a.mount == b.mount || !which(a, b) || is_apart() {
                     continue;
                 }
                 let meet = assembly.may_touch(a, b);

@@ -114,9 +114,9 @@ fn the_pages_have_the_mass_of_robot_toml() {
 fn the_quickstart_goes_through_the_steps_of_the_guide_in_their_order() {
     let page = read("docs/quickstart.md");
     let lines = page.lines().filter_map(|line| line.strip_prefix("Guide: "));
-    let said = lines.flat_map(|line| line.trim_end_matches('.').split("; "));
-    let said: Vec<_> = said.map(str::to_owned).collect();
+    let text = lines.flat_map(|line| line.trim_end_matches('.').split("; "));
+    let text: Vec<_> = text.map(str::to_owned).collect();
     let steps = (1..).zip(steps(false));
     let expected = steps.map(|(number, step)| format!("step {number}, {}", step.title));
-    assert_eq!(said, expected.collect::<Vec<_>>());
+    assert_eq!(text, expected.collect::<Vec<_>>());
 }

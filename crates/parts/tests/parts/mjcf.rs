@@ -383,15 +383,15 @@ fn a_servo_turns_no_faster_and_no_stronger_than_it_can() {
             let mut nodes = document.descendants();
             let is = |node: &Node| node.has_tag_name("joint") && node.attribute("name") == Some(of);
             let joint = nodes.find(is).expect(of);
-            let [least, most] = numbers(*motor, "forcerange")[..] else {
+            let [smallest, largest] = numbers(*motor, "forcerange")[..] else {
                 panic!("two torques")
             };
             // 1.8 kg cm.
             assert!(
-                (most - 0.018 * 9.80665).abs() < 1e-6 && least == -most,
-                "{most}"
+                (largest - 0.018 * 9.80665).abs() < 1e-6 && smallest == -largest,
+                "{largest}"
             );
-            let rate = most / numbers(joint, "damping")[0];
+            let rate = largest / numbers(joint, "damping")[0];
             assert!((rate.to_degrees() - 500.0).abs() < 1e-3, "{rate}");
             let (low, high) = robot.servos()[servo].travel();
             let range = numbers(*motor, "ctrlrange");

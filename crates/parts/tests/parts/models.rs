@@ -150,8 +150,8 @@ fn their_bodies_are_those_of_mujocos_file_turned_ahead() {
                         assert!((found - wanted).abs() < 1e-8, "{name} {found} {wanted}");
                     }
                     let turned = found.turn - placed.turn + FRAC_PI_2;
-                    let off = turned.sin().hypot(1.0 - turned.cos());
-                    assert!(off < 1e-8, "{name} {turned}");
+                    let error = turned.sin().hypot(1.0 - turned.cos());
+                    assert!(error < 1e-8, "{name} {turned}");
                 }
             }
         }
@@ -181,8 +181,8 @@ fn the_two_halves_of_each_cut_joint_of_the_urdf_coincide() {
             .filter_map(|name| name.strip_suffix("_1_joint"))
         {
             let [one, two] = ["1", "2"].map(|number| frame(&format!("{first}_{number}")));
-            let off = (one[0] - two[0]).hypot(one[1] - two[1]);
-            assert!(off < 1e-8, "{name} {first} {off}");
+            let error = (one[0] - two[0]).hypot(one[1] - two[1]);
+            assert!(error < 1e-8, "{name} {first} {error}");
             count += 1;
         }
         assert_eq!(count, 12, "two ends, two sliders, two for each leg");
@@ -199,11 +199,11 @@ fn servos_have_their_names_ranges_and_powers_in_both() {
     let links = named(model, "link");
     assert!(in_sdf.keys().all(|joint| !links.contains_key(joint)));
     for (servo, name) in NAMES.into_iter().enumerate() {
-        let (least, most) = robot.servos()[servo].travel();
+        let (smallest, largest) = robot.servos()[servo].travel();
         // 1.8 kg cm and 500 deg/s.
         let wanted = [
-            least.to_radians(),
-            most.to_radians(),
+            smallest.to_radians(),
+            largest.to_radians(),
             0.018 * 9.80665,
             500f64.to_radians(),
         ];

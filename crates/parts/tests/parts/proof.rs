@@ -222,7 +222,7 @@ fn swapped_layers_are_found() {
 
 #[test]
 fn a_hole_beside_its_pin_is_found() {
-    let off = assembly("paper", "").altered(|bodies| {
+    let moved = assembly("paper", "").altered(|bodies| {
         for body in bodies.iter_mut().filter(|body| body.name == "coupler A4") {
             for cut in &mut body.prisms[0].cut {
                 for point in &mut cut.points {
@@ -231,7 +231,7 @@ fn a_hole_beside_its_pin_is_found() {
             }
         }
     });
-    let Clash::Overlap(found) = clash(&off, |body| body.name == "coupler A4") else {
+    let Clash::Overlap(found) = clash(&moved, |body| body.name == "coupler A4") else {
         panic!("no overlap");
     };
     assert!((found.mm + 0.2).abs() < 0.02, "{found}");

@@ -37,11 +37,11 @@ pub(crate) fn worst(gait: &Gait, index: usize, tables: &Tables, count: usize) ->
         let table = gait.table_angles(tables.sweeps(index, step));
         let float = gait.angles(phase);
         for servo in 0..4 {
-            let off = (table[servo] - float[servo]).abs();
-            squares += off * off;
-            if off > error.max {
+            let deviation = (table[servo] - float[servo]).abs();
+            squares += deviation * deviation;
+            if deviation > error.max {
                 error = TableError {
-                    max: off,
+                    max: deviation,
                     servo,
                     phase,
                     ..error
@@ -71,10 +71,10 @@ mod tests {
                     }
                 }
                 let worst = gait.error_over(COUNT);
-                let most = errors.into_iter().fold(0.0, f64::max);
-                assert_eq!(worst.max, most, "{name} {}", gait.name());
-                assert_eq!(errors[worst.servo], most);
-                assert!(worst.rms <= most && 2.0 * worst.rms >= most / COUNT as f64);
+                let largest = errors.into_iter().fold(0.0, f64::max);
+                assert_eq!(worst.max, largest, "{name} {}", gait.name());
+                assert_eq!(errors[worst.servo], largest);
+                assert!(worst.rms <= largest && 2.0 * worst.rms >= largest / COUNT as f64);
             }
         }
     }

@@ -263,9 +263,9 @@ impl Audit {
                 (&mut self.type1, &Check::TYPE1),
                 (&mut self.leg, &Check::LEG),
             ];
-            for (least, kind) in kinds {
-                if kind.contains(&what) && value < least.value {
-                    *least = LeastMargin { what, value, phase };
+            for (smallest, kind) in kinds {
+                if kind.contains(&what) && value < smallest.value {
+                    *smallest = LeastMargin { what, value, phase };
                 }
             }
         }

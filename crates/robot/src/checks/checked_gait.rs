@@ -16,8 +16,8 @@ use crate::measures::servo::FORWARD;
 use crate::tables::Tables;
 use crate::units::{FRAMES_PER_SECOND, STEPS_PER_DEGREE};
 
-/// A gait of robot.toml, every sample of which has been checked: in floating point, and as the
-/// firmware's tables have it.
+/// A gait of robot.toml, every sample of which has been checked, in floating point and in the
+/// firmware's tables.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CheckedGait {
     gait: Gait,
@@ -50,7 +50,7 @@ impl CheckedGait {
         })
     }
 
-    /// The gait as the firmware has it.
+    /// The gait in the firmware's tables.
     pub(crate) fn table(&self) -> &TableGait {
         &self.tables.gaits[self.index]
     }
@@ -267,9 +267,9 @@ mod tests {
                 );
                 for (seconds, phase) in frames {
                     // A whole cycle is phase 0 again.
-                    let off = (f64::from(phase) / 65536.0 - gait.phase(seconds)).rem_euclid(1.0);
+                    let error = (f64::from(phase) / 65536.0 - gait.phase(seconds)).rem_euclid(1.0);
                     assert!(
-                        off.min(1.0 - off) < 1e-4,
+                        error.min(1.0 - error) < 1e-4,
                         "{name} {} {seconds}",
                         gait.name()
                     );

@@ -1,9 +1,9 @@
 //! The effort of the servos in a gait: torque and rate beside the line of their motors.
 //!
-//! A motor's line leads from its torque at a stall to its rate without load. A servo that needs a
-//! torque at a rate uses torque / stall + rate / no-load rate of it; that is also the share of the
-//! supply's voltage that its motor needs. Above 1 it falls behind its pulses. The pads' friction,
-//! pins and sliders ask for the same torque at any pace, the rotor for less at a slower one.
+//! A motor's line leads from its stall torque to its no-load rate. A servo that needs a torque at a
+//! rate uses torque / stall + rate / no-load rate of it; that is also the share of the supply's
+//! voltage that its motor needs. Above 1 it falls behind its pulses. The pads' friction, pins and
+//! sliders ask for the same torque at any pace, the rotor for less at a slower one.
 
 use lizard_contact::{Ground, Motor, Motors, Walker};
 

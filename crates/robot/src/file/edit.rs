@@ -183,7 +183,7 @@ fn replace_gait(text: &str, name: &str, table: &str) -> (String, bool) {
     (result, is_replaced)
 }
 
-/// A routine as it is written, right or wrong.
+/// A routine as written in the file, valid or not.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct WrittenRoutine {

@@ -27,7 +27,7 @@ impl fmt::Display for Error {
         if !self.key.is_empty() {
             place += &format!(": {}", self.key);
         }
-        // Whoever reads it first wants to know what is wrong with the robot, then where that is written.
+        // A reader first wants to know what is wrong with the robot, then where the file says so.
         if let Some(meaning) = &self.meaning {
             return write!(f, "{meaning}: {} ({place})", self.problem);
         }

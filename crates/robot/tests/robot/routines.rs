@@ -263,6 +263,6 @@ fn a_round_takes_its_cycles_and_changes_and_leads_as_far_as_its_gaits() {
     let share = about.movement.turn.expect("known") / (5.0 * left);
     assert!((0.9..1.1).contains(&share), "{share}");
     assert_eq!((about.rounds, about.steps), (None, 2));
-    // Two feet pull against two: where it goes, pads decide that nobody can measure.
+    // Two feet pull against two: unmeasurable differences of the pads decide where it goes.
     assert_eq!(gaze.movement.forward, None);
 }

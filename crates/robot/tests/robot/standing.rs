@@ -30,8 +30,8 @@ fn on(stiffness: f64, twist: f64) -> Ground {
 
 #[test]
 fn four_tenths_on_a_diagonal_cost_as_much_as_another_solver_found() {
-    // An implementation of its own, in which both feet of a diagonal carry so much more
-    // at every instant, and the others as much less.
+    // A separate implementation, in which both feet of a diagonal always carry an extra load, and
+    // the others as much less.
     for (name, expected) in [
         ("walk", 24.8),
         ("crawl", 17.4),

@@ -198,7 +198,7 @@ fn sizes_come_from_the_elf() {
     assert_eq!(image.symbol("given").map(|symbol| symbol.size), Some(20));
 }
 
-/// The calls of the function `work` within so many cycles.
+/// The calls of the function `work` within a number of cycles.
 fn calls_of_work(image: Image, cycles: u64) -> Vec<Call> {
     let entry = image.symbol("work").expect("it is global").address as u32;
     uno(image).time_calls(entry, cycles)

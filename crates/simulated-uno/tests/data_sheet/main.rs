@@ -59,7 +59,7 @@ fn mark_cycles(uno: &Uno) -> Vec<u64> {
     uno.marks().iter().map(|mark| mark.cycle).collect()
 }
 
-/// The cycles between each of some events and the next.
+/// The cycles between consecutive events.
 fn distances(cycles: &[u64]) -> Vec<u64> {
     cycles.windows(2).map(|pair| pair[1] - pair[0]).collect()
 }

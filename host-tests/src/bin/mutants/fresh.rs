@@ -54,9 +54,9 @@ const SWAPS: [(&str, &str); 19] = [
 
 /// True if the file has code that fresh mistakes are made in.
 pub fn is_firmware(file: &str) -> bool {
-    let ours = ["crates/core/src/", "src/board/", "crates/pulses/src/"];
+    let folders = ["crates/core/src/", "src/board/", "crates/pulses/src/"];
     let host_only = HOST_ONLY.iter().any(|part| file.contains(part));
-    file.ends_with(".rs") && ours.iter().any(|folder| file.starts_with(folder)) && !host_only
+    file.ends_with(".rs") && folders.iter().any(|folder| file.starts_with(folder)) && !host_only
 }
 
 /// True if a mistake in the file can move a servo or change a saved value.
@@ -149,8 +149,8 @@ fn numbers(code: &str) -> Vec<(usize, &str)> {
     found
 }
 
-/// The mistakes in the order in which a seed draws them.
-pub fn drawn(mut mutants: Vec<Mutant>, seed: u64) -> Vec<Mutant> {
+/// Shuffles the mistakes by a seed.
+pub fn shuffle(mut mutants: Vec<Mutant>, seed: u64) -> Vec<Mutant> {
     Rng::with_seed(seed).shuffle(&mut mutants);
     mutants
 }

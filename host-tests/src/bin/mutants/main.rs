@@ -83,9 +83,9 @@ fn sample(parts: &[String], count: usize, seed: u64) -> Result<usize, String> {
     if !matches!(scratch.judge(&unchanged)?, Outcome::Lives) {
         return Err("a test fails without any mistake".into());
     }
-    // Noticed and tried: what moves a servo or a saved value, and the rest.
+    // Numbers of noticed and of tried mistakes: those that move a servo or a saved value, and the others.
     let mut tally = [[0; 2]; 2];
-    for mutant in fresh::drawn(mutants, seed) {
+    for mutant in fresh::shuffle(mutants, seed) {
         let [moving, rest] = tally;
         if moving[1] + rest[1] == count {
             break;
@@ -226,7 +226,7 @@ impl Scratch {
 
     /// Makes a mistake, runs the tests, and undoes it.
     fn judge(&self, mutant: &Mutant) -> Result<Outcome, String> {
-        // Of the copy: the tree may be edited meanwhile.
+        // The text is the copy's, since the tree may be edited meanwhile.
         let right = text(&self.folder.join("tree").join(&mutant.file))?;
         self.write(&mutant.file, mutant.make(&right)?.as_bytes())?;
         let fate = match &mutant.package {
@@ -241,7 +241,7 @@ impl Scratch {
         let Some(elf) = self.firmware()? else {
             return Ok(Outcome::NoProgram);
         };
-        // The likely ones first: all of them take a minute.
+        // The likely tests first, since all of them take a minute.
         for filter in mutant.test.as_deref().into_iter().chain([""]) {
             match tests(&elf, filter)? {
                 None => return Ok(Outcome::Caught("tests that hang".into())),
@@ -254,8 +254,8 @@ impl Scratch {
         Ok(Outcome::Lives)
     }
 
-    /// Runs the tests of a package of the copy: those that are to notice, then all; for a
-    /// fresh mistake the model checker's and those of the image, too.
+    /// Runs the tests of a package of the copy: those that should notice, then all; for a fresh
+    /// mistake the model checker's and those of the image, too.
     fn in_its_package(&self, package: &str, mutant: &Mutant) -> Result<Outcome, String> {
         if !self
             .cargo_test(package, &["--no-run"])?
@@ -317,7 +317,7 @@ fn tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
     let run = run_limited(
         &root().join("crates"),
         &[&arguments[..], &["--", filter]].concat(),
-        // As long as in continuous integration.
+        // The duration of continuous integration.
         &[
             ("LIZARD_ELF", elf.as_os_str()),
             ("LIZARD_FUZZ", "5".as_ref()),
@@ -327,7 +327,7 @@ fn tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
         return Ok(None);
     };
     if !printed.contains("test result:") {
-        // Begun, and ended by the limit of its processor time.
+        // The test was started, and ended by the limit of its processor time.
         if printed.contains("running ") {
             return Ok(None);
         }

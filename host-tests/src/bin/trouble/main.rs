@@ -59,8 +59,8 @@ fn main() -> ExitCode {
     }
     println!("\n{summary}");
     let seconds = summary.cycles / FREQUENCY;
-    let took = begin.elapsed().as_secs_f64();
-    println!("seed {seed}: {count} scenarios, {seconds} s simulated in {took:.0} s");
+    let elapsed = begin.elapsed().as_secs_f64();
+    println!("seed {seed}: {count} scenarios, {seconds} s simulated in {elapsed:.0} s");
     if summary.failures.is_empty() {
         ExitCode::SUCCESS
     } else {

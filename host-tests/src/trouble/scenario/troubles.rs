@@ -3,7 +3,7 @@
 use super::{Activity, MS, Script, Step, setup};
 
 impl Script<'_> {
-    /// Adds a trouble of a random kind, until it is over. In one of four a contact closes before.
+    /// Adds a trouble of a random kind and waits until it is over. In one of four cases a contact closes before.
     pub(super) fn add_trouble(&mut self, activity: Activity) {
         if self.rng.u8(0..4) == 0 {
             self.press();
@@ -69,7 +69,7 @@ impl Script<'_> {
         let first = self.rng.u16(stop - 50..slow + 50);
         let second = self.rng.u16(rest - 400..stop);
         self.steps.push(Step::Supply(first));
-        // Often a reading or two before the first level would count.
+        // Often one or two readings before the first level counts.
         self.wait(50);
         self.wait_up_to(100);
         self.steps.push(Step::Supply(second));
@@ -128,8 +128,8 @@ impl Script<'_> {
         self.steps.push(Step::Supply(5_000));
     }
 
-    /// Adds a supply that three servos pull down, for so long that a robot which never gives up
-    /// shows it. The servos wake by an order, a start, or both.
+    /// Adds a supply that three servos pull down, long enough to detect a robot that never gives
+    /// up. The servos wake by an order, a start, or both.
     fn add_weak_supply(&mut self, activity: Activity) {
         self.steps.push(Step::Weak(true));
         match activity {

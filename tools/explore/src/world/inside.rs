@@ -14,19 +14,20 @@ use lizard_rules::{Event, Limits, Rule, Time};
 use super::{FRAME, Verdict, World, broken};
 use crate::fingerprint;
 
-/// Cycles of a rounding, at either end of a frame.
+/// Rounding error at each end of a frame, cycles.
 const ROUNDING: u16 = 2;
 
 /// Frames within which any motion of this robot ends.
 const MOTION_FRAMES: u32 = 160;
 
-/// Lines of which each tells a gait or a routine to go on for some time, less than those frames at half the pace.
+/// Lines that start a gait or a routine for a limited time, shorter than those frames at half the
+/// pace.
 const COUNTED: [&str; 3] = ["walk 1", "trot 2", "round 1"];
 
-/// Frames in which a contact counts, and more.
+/// Frames after which a contact counts for certain.
 const DEBOUNCED: u8 = 5;
 
-/// Time in which the supply is measured and believed.
+/// Time in which a supply is measured often enough to count.
 const BELIEVED: Time = 14 * FRAME;
 
 /// The observer's limits for a robot.
@@ -34,7 +35,7 @@ pub(super) fn limits(robot: &Robot) -> Limits {
     let board = robot.supplies().board;
     Limits {
         levels: [board.slow, board.stop, board.rest].map(u32::from),
-        // The console tells at once when `boot` begins.
+        // The console reports at once when `boot` begins.
         boots_to_rest: true,
         ..Limits::default()
     }

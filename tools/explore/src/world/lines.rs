@@ -51,7 +51,7 @@ impl World {
         Ok(())
     }
 
-    /// Checks that a robot that is asked at one rate answers in the end.
+    /// Checks that the robot finds the rate at which it is asked, and answers.
     pub(super) fn is_found(&self) -> Verdict {
         let mut asked = self.running.clone();
         asked.board.transmitter.is_held = false;
@@ -111,7 +111,7 @@ impl World {
     /// Passes the robot's lines to the observer; they were decided at `since` or later.
     pub(super) fn listen(&mut self, since: Time) -> Verdict {
         let text = std::mem::take(&mut self.running.board.transmitter.text);
-        // Of the longest line only the first part may have been printed.
+        // The longest line may have been printed only in part.
         let (whole, rest) = text.rsplit_once("\r\n").unwrap_or(("", &text));
         rest.clone_into(&mut self.running.board.transmitter.text);
         for line in whole.split("\r\n").filter(|line| !line.is_empty()) {
@@ -129,10 +129,10 @@ impl World {
 
     /// Tells the observer about `boot` although nobody reads the output.
     pub(super) fn predict_boot(&mut self) {
-        let mut heard = self.running.clone();
-        heard.board.transmitter.is_held = false;
-        heard.settle();
-        let lines = heard.board.transmitter.text.lines();
+        let mut clone = self.running.clone();
+        clone.board.transmitter.is_held = false;
+        clone.settle();
+        let lines = clone.board.transmitter.text.lines();
         for line in lines.filter(|line| line.starts_with("# boot: ")) {
             self.observe(Event::Printed(self.now, line));
         }

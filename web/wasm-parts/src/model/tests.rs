@@ -35,17 +35,17 @@ fn legs_that_lag_are_where_the_drawing_has_them() {
             .into_iter()
             .zip([Mount::Crank(servo), Mount::Follower(servo)])
         {
-            let off = (mapped(place(mount), plan.joint) - joint).length();
-            assert!(off < 1e-9, "{mount:?} is off by {off} mm");
+            let error = (mapped(place(mount), plan.joint) - joint).length();
+            assert!(error < 1e-9, "{mount:?} is off by {error} mm");
         }
-        let off = (mapped(place(Mount::Foot(servo)), plan.foot) - leg.foot).length();
-        assert!(off < 1e-9, "foot {servo} is off by {off} mm");
+        let error = (mapped(place(Mount::Foot(servo)), plan.foot) - leg.foot).length();
+        assert!(error < 1e-9, "foot {servo} is off by {error} mm");
         let [from, to] = leg.strut;
         let along = Vector::new((to - from).length(), 0.0);
         let strut = place(Mount::Strut(servo));
-        let off = (mapped(strut, Vector::default()) - from).length()
+        let error = (mapped(strut, Vector::default()) - from).length()
             + (mapped(strut, along) - to).length();
-        assert!(off < 1e-9, "strut {servo} is off by {off} mm");
+        assert!(error < 1e-9, "strut {servo} is off by {error} mm");
     }
 }
 
@@ -59,9 +59,9 @@ fn without_lag_every_mount_is_where_the_assembly_has_it() {
     assert_eq!(places.len(), model.mounts.len());
     for (mount, place) in model.mounts.iter().zip(places) {
         let Placement { at, turn } = model.assembly().place(*mount, &pose);
-        let off = [at.x, at.y, turn.x, turn.y].into_iter().zip(place);
-        let off = off.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        assert!(off < 1e-9, "{mount:?}: {place:?}");
+        let error = [at.x, at.y, turn.x, turn.y].into_iter().zip(place);
+        let error = error.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(error < 1e-9, "{mount:?}: {place:?}");
     }
 }
 
@@ -87,8 +87,8 @@ fn corners(bytes: &[u8]) -> Vec<Vec<[f32; 3]>> {
 fn a_printed_solid_is_laid_into_the_space_of_its_body() {
     let model = model("strut");
     let (entry, solids) = (model.entry(), corners(&model.solids().expect("closed")));
-    let most = entry.bodies.iter().map(|body| body.solid).max();
-    assert_eq!(most, Some(solids.len() - 1));
+    let largest = entry.bodies.iter().map(|body| body.solid).max();
+    assert_eq!(largest, Some(solids.len() - 1));
     for (known, body) in entry.bodies.iter().zip(model.assembly().bodies()) {
         let m = known.place;
         let z = solids[known.solid].iter().map(|corner| {
@@ -109,12 +109,12 @@ fn a_printed_solid_is_laid_into_the_space_of_its_body() {
             let [x, y, _] = corner.map(f64::from);
             let at = Vector::new(m[0] * x + m[4] * y + m[12], m[1] * x + m[5] * y + m[13]);
             let shapes = body.prisms.iter().flat_map(|prism| &prism.add);
-            let off = shapes
+            let error = shapes
                 .map(|shape| shape.distance(&lizard_parts::Shape::disc(at, 0.0)))
                 .fold(f64::INFINITY, f64::min);
             assert!(
-                off < 1e-3,
-                "{} has a corner {off} mm outside of it",
+                error < 1e-3,
+                "{} has a corner {error} mm outside of it",
                 body.name
             );
         }

@@ -89,7 +89,7 @@ fn cycle(page: &mut Page, name: &str, frames: u32) -> (Travel, Vec<[f64; 4]>, f6
     let end = |frames: &[Frame]| frames.last().expect("frames").place;
     let slides = second.iter().map(|frame| frame.slides).collect();
     let lag = second.iter().flat_map(|frame| frame.lag);
-    let lag = lag.fold(0.0, |most: f64, lag| most.max(lag.abs()));
+    let lag = lag.fold(0.0, |largest: f64, lag| largest.max(lag.abs()));
     (end(&first).movement_to(end(&second)), slides, lag)
 }
 
@@ -103,8 +103,8 @@ fn a_cycle_frame_by_frame_leads_where_the_prediction_says() {
         for frames in [1, 2] {
             let (movement, _, _) = cycle(&mut page, name, frames);
             let near = |got: f64, wanted: Option<f64>, within: f64| {
-                let off = got - wanted.expect("decided");
-                assert!(off.abs() < within, "{name} {frames} {movement:?}");
+                let deviation = got - wanted.expect("decided");
+                assert!(deviation.abs() < within, "{name} {frames} {movement:?}");
             };
             // The poses in between are interpolated.
             near(movement.forward, wanted.forward, 0.4 * f64::from(frames));

@@ -59,8 +59,8 @@ fn a_reversed_gait_walks_as_the_core_in_reverse() {
         let again = bars.reversed().reversed();
         assert_eq!(again.gain, bars.gain, "{name}");
         for (again, start) in again.start.into_iter().zip(bars.start) {
-            let off = (again - start).rem_euclid(1.0);
-            assert!(off.min(1.0 - off) < 1e-9, "{name}: {again} and {start}");
+            let error = (again - start).rem_euclid(1.0);
+            assert!(error.min(1.0 - error) < 1e-9, "{name}: {again} and {start}");
         }
     }
 }

@@ -17,7 +17,7 @@ pub struct EndWalk<'a> {
     /// Least type-2 and type-1 margins, as robot.toml and as the firmware have them.
     limits: [f64; 2],
     fixed_limits: [i16; 2],
-    /// The least margin of a leg, as the firmware has it.
+    /// The least margin of a leg in the firmware's integers.
     fixed_leg: i16,
     end: End,
     cells: Cells<'a>,

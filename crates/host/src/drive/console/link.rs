@@ -272,7 +272,7 @@ fn to_link_error(error: io::Error) -> LinkError {
 
 /// True if an error of the system means that the board was unplugged.
 pub(crate) fn is_gone(error: &io::Error) -> bool {
-    // EIO, ENXIO, ENODEV: what Linux says of a USB port without its board.
+    // EIO, ENXIO, ENODEV: Linux's errors of a USB port without its board.
     matches!(error.raw_os_error(), Some(5 | 6 | 19))
         || matches!(
             error.kind(),

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// The signature of a chip, as its boot loader tells it (data sheets, "Signature Bytes").
+/// The signature of a chip, as its boot loader reports it (data sheets, "Signature Bytes").
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Chip(pub [u8; 3]);
 

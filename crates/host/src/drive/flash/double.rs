@@ -140,7 +140,7 @@ impl Double {
             }
             b'd' => self.write_page(&command[4..length - 1]),
             b'Q' => {
-                // ATmegaBOOT listens on, until nobody says anything for a while.
+                // ATmegaBOOT keeps listening until nothing arrives for a while.
                 self.is_listening = self.kind == Kind::AtmegaBoot;
                 self.was_left = true;
             }
@@ -183,7 +183,7 @@ impl Board for Double {
 impl Read for Double {
     fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
         if self.is_unplugged() {
-            // EIO, as Linux has it.
+            // EIO, as on Linux.
             return Err(io::Error::from_raw_os_error(5));
         }
         if self.out.is_empty() {

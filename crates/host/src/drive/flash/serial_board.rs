@@ -74,8 +74,8 @@ impl Board for SerialBoard {
         let fresh = std::mem::take(&mut self.is_fresh);
         match self.toggle_reset() {
             Ok(()) => {}
-            // A pseudo terminal, as a simulated board has it, has no such lines; but opening it
-            // resets that board. Nor have they a port that is gone, which then does not open.
+            // The pseudo terminal of a simulated board has no such lines, but opening it resets
+            // that board. A port that is gone has none either; it will not open.
             Err(_) if fresh => {}
             Err(_) => self.open_again()?,
         }

@@ -272,14 +272,14 @@ fn rose() -> Group {
         .add(text_middle("angles, seen from above", caption, 14.0))
         .add(edged(circle(middle, 46.0, "none"), GREY, 1.2))
         .add(arrow(middle, 30.0, 0.0, 70.0, DARK));
-    for (degrees, words, anchor, off) in [
+    for (degrees, words, anchor, offset) in [
         (0.0, "0° right", Anchor::Start, (8.0, 5.0)),
         (90.0, "90° head", Anchor::Middle, (0.0, -8.0)),
         (180.0, "180°", Anchor::End, (-8.0, 5.0)),
         (270.0, "270°", Anchor::Middle, (0.0, 19.0)),
     ] {
         let end = point_toward(middle, degrees, 52.0);
-        let point = (end.0 + off.0, end.1 + off.1);
+        let point = (end.0 + offset.0, end.1 + offset.1);
         group = group
             .add(line(middle, end, GREY, 1.2))
             .add(text(words, point, 14.0, DARK, anchor));

@@ -43,6 +43,6 @@ pub fn below(corner: (f64, f64), index: usize, pin: (f64, f64)) -> Path {
 
 /// The corner of such a wire: `corner` is the board's, at its lower right.
 pub fn beside(corner: (f64, f64), index: usize) -> (f64, f64) {
-    let off = GAP * (index as f64 + 1.0);
-    (corner.0 + off, corner.1 + off)
+    let offset = GAP * (index as f64 + 1.0);
+    (corner.0 + offset, corner.1 + offset)
 }

@@ -105,7 +105,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         also = format!(", and {} meshes in {}", meshes.len(), folder.display());
     }
     files::write(&args.file, text.as_bytes())?;
-    // Where the file is a stream, such as /dev/stdout, it alone is to be in it.
+    // A stream, such as /dev/stdout, gets nothing else.
     if !args.file.is_file() {
         return Ok(());
     }

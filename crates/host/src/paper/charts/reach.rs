@@ -21,9 +21,9 @@ const AXES: [Axis<'static>; 2] = [
 /// Half the width of the drawn square, and the width of its cells, mm.
 const REACH: f64 = 160.0;
 const CELL: f64 = 2.0;
-/// Servo angles are tried in a range about neutral, in steps, deg.
+/// Range of the tried servo angles to either side of neutral, deg.
 const RANGE: i32 = 80;
-/// Mechanism alone, and what the guard accepts: tail, sliders.
+/// Colours of the areas that the linkage allows and that the guard accepts.
 const TAIL: [&str; 2] = ["#cfe3f1", "#4a9bd0"];
 const SLIDERS: [&str; 2] = ["#f9e0cc", "#e08a4a"];
 const LEGS: &str = "#117733";
@@ -47,7 +47,7 @@ pub fn reach(robot: &Robot) -> String {
         y: (-REACH, REACH),
     };
     let tail = accepted_tail(robot);
-    let free = free_sliders(robot);
+    let linkage = linkage_sliders(robot);
     let sliders = accepted_sliders(robot);
     let cells = (2.0 * REACH / CELL) as usize;
     let mut group = plot.draw_grid(Group::new(), &AXES[0], &AXES[1]);
@@ -57,7 +57,7 @@ pub fn reach(robot: &Robot) -> String {
         let colours = [
             (sliders.contains(&key), SLIDERS[1]),
             (tail.contains(&key), TAIL[1]),
-            (free.contains(&key), SLIDERS[0]),
+            (linkage.contains(&key), SLIDERS[0]),
             (is_in_tail(robot, point), TAIL[0]),
         ];
         colours
@@ -66,8 +66,8 @@ pub fn reach(robot: &Robot) -> String {
             .map(|(_, colour)| colour)
     });
     for servo in 0..4 {
-        let full_circle = feet(robot, servo, (-180..=180).map(f64::from), false);
-        let is_guarded = feet(robot, servo, (-RANGE..=RANGE).map(f64::from), true);
+        let full_circle = foot_places(robot, servo, (-180..=180).map(f64::from), false);
+        let is_guarded = foot_places(robot, servo, (-RANGE..=RANGE).map(f64::from), true);
         group = group
             .add(
                 plot.curve(&full_circle, GREY, 1.2)
@@ -75,7 +75,7 @@ pub fn reach(robot: &Robot) -> String {
             )
             .add(plot.curve(&is_guarded, LEGS, 4.0))
             .add(
-                plot.curve(&walked(robot, servo), DARK, 8.0)
+                plot.curve(&foot_path(robot, servo), DARK, 8.0)
                     .set("stroke-opacity", 0.55),
             );
     }
@@ -123,28 +123,28 @@ fn draw_legend(mut group: Group) -> Group {
 }
 
 /// The angles of neutral with some servos turned.
-fn turned(robot: &Robot, turns: [f64; 4]) -> [f64; 4] {
+fn turned_angles(robot: &Robot, turns: [f64; 4]) -> [f64; 4] {
     let neutral: [f64; 4] = robot.neutral().into();
     std::array::from_fn(|servo| neutral[servo] + turns[servo])
 }
 
-/// Solutions that the guard accepts for two turns in steps of a degree.
-fn accepted(robot: &Robot, turns: impl Fn(f64, f64) -> [f64; 4]) -> Vec<Solution> {
+/// The solutions accepted by the guard for all pairs of turns in steps of a degree.
+fn accepted_solutions(robot: &Robot, turns: impl Fn(f64, f64) -> [f64; 4]) -> Vec<Solution> {
     let range = || (-RANGE..=RANGE).map(f64::from);
     let pairs = range().flat_map(|a| range().map(move |b| (a, b)));
     pairs
-        .filter_map(|(a, b)| robot.accepted(turned(robot, turns(a, b))))
+        .filter_map(|(a, b)| robot.accepted(turned_angles(robot, turns(a, b))))
         .collect()
 }
 
 fn accepted_tail(robot: &Robot) -> Cells {
-    let poses = accepted(robot, |a, b| [0.0, 0.0, a, b]);
+    let poses = accepted_solutions(robot, |a, b| [0.0, 0.0, a, b]);
     poses.iter().map(|pose| cell(pose.tail_point())).collect()
 }
 
-/// The robot's sides mirror each other, so that head and tail accept the most.
+/// The middles of the sliders with both sides mirrored, so that head and tail accept the most.
 fn accepted_sliders(robot: &Robot) -> Cells {
-    let poses = accepted(robot, |a, b| [a, -a, -b, b]);
+    let poses = accepted_solutions(robot, |a, b| [a, -a, -b, b]);
     let points = poses.iter().flat_map(|pose| {
         Side::ALL.map(|side| {
             let slider = match side {
@@ -163,7 +163,7 @@ fn middle(robot: &Robot, side: Side, rear: Vector, front: Vector) -> Vector {
 }
 
 /// The middles of both sliders for every turn of their arms within the stroke.
-fn free_sliders(robot: &Robot) -> Cells {
+fn linkage_sliders(robot: &Robot) -> Cells {
     let limits = robot.limits();
     let mut cells = Cells::new();
     for side in Side::ALL {
@@ -191,7 +191,7 @@ fn is_in_tail(robot: &Robot, point: Vector) -> bool {
 }
 
 /// The places of a foot while its servo turns from neutral and no other does.
-fn feet(
+fn foot_places(
     robot: &Robot,
     servo: usize,
     turns: impl Iterator<Item = f64>,
@@ -200,23 +200,25 @@ fn feet(
     let place = |turn: f64| {
         let mut turns = [0.0; 4];
         turns[servo] = turn;
-        let angles = turned(robot, turns);
+        let angles = turned_angles(robot, turns);
         let is_in = !is_guarded || robot.accepted(angles).is_some();
-        is_in.then(|| foot(robot, servo, angles[servo]))
+        is_in.then(|| foot_place(robot, servo, angles[servo]))
     };
     turns.filter_map(place).collect()
 }
 
-fn foot(robot: &Robot, servo: usize, angle: f64) -> (f64, f64) {
+fn foot_place(robot: &Robot, servo: usize, angle: f64) -> (f64, f64) {
     let foot = robot.legs()[servo].at(angle, angle).foot;
     (foot.x, foot.y)
 }
 
-fn walked(robot: &Robot, servo: usize) -> Vec<(f64, f64)> {
+fn foot_path(robot: &Robot, servo: usize) -> Vec<(f64, f64)> {
     let gait = robot.gait("walk").into_iter();
     let phases = gait.flat_map(|gait| (0..=100).map(move |i| gait.pose(f64::from(i) / 100.0)));
     let angle = |pose: Pose| <[f64; 4]>::from(pose)[servo];
-    phases.map(|pose| foot(robot, servo, angle(pose))).collect()
+    phases
+        .map(|pose| foot_place(robot, servo, angle(pose)))
+        .collect()
 }
 
 #[cfg(test)]
@@ -231,12 +233,12 @@ mod tests {
     #[test]
     fn what_the_guard_accepts_lies_in_what_the_links_allow() {
         let robot = paper();
-        let poses = accepted(&robot, |a, b| [0.0, 0.0, a, b]);
+        let poses = accepted_solutions(&robot, |a, b| [0.0, 0.0, a, b]);
         assert!(poses.len() > 300, "{}", poses.len());
         for pose in poses {
             assert!(is_in_tail(&robot, pose.tail_point()), "{pose:?}");
         }
-        let (sliders, free) = (accepted_sliders(&robot), free_sliders(&robot));
+        let (sliders, free) = (accepted_sliders(&robot), linkage_sliders(&robot));
         let outside = sliders.difference(&free).count();
         assert!(
             sliders.len() > 100 && outside * 20 < sliders.len(),
@@ -247,21 +249,21 @@ mod tests {
     #[test]
     fn areas_are_those_of_geometry() {
         let robot = paper();
-        // The tail's upper half, as `lizard design` has it for the head.
+        // The tail's upper half: the same area as that of the head in `lizard design`.
         let step = |i: i32| f64::from(i) - 160.5;
         let all = (0..321).flat_map(|i| (0..321).map(move |j| Vector::new(step(i), step(j))));
         let area = all.filter(|at| is_in_tail(&robot, *at)).count() as f64;
         assert!((area / 7446.3 - 1.0).abs() < 0.01, "{area}");
         // The middle of a slider is half the sum of two arms of 30 mm: in a disc of 30 mm.
-        for (x, y) in free_sliders(&robot) {
+        for (x, y) in linkage_sliders(&robot) {
             let (x, y) = (CELL * (f64::from(x) + 0.5), CELL * (f64::from(y) + 0.5));
-            let away = (x.abs() - 10.0).hypot(y);
-            assert!(away < 30.0 + 2.0 * CELL, "{x} {y}");
+            let distance = (x.abs() - 10.0).hypot(y);
+            assert!(distance < 30.0 + 2.0 * CELL, "{x} {y}");
         }
         // A foot keeps its distance of 45 mm from its hip, 35 mm to the side and 55 mm ahead.
-        for (x, y) in feet(&robot, 0, (-180..=180).map(f64::from), false) {
-            let away = (x + 35.0).hypot(y - 55.0);
-            assert!((away - 45.0).abs() < 0.01, "{x} {y} {away}");
+        for (x, y) in foot_places(&robot, 0, (-180..=180).map(f64::from), false) {
+            let distance = (x + 35.0).hypot(y - 55.0);
+            assert!((distance - 45.0).abs() < 0.01, "{x} {y} {distance}");
         }
     }
 }

@@ -83,9 +83,9 @@ impl Conditioning {
             min = min.min(lci(bars, circle.centre + direction * circle.radius));
         }
         for shaft in [bars.left_shaft(), bars.right_shaft()] {
-            let away = circle.centre - shaft;
+            let outward = circle.centre - shaft;
             for side in [circle.radius, -circle.radius] {
-                let touch = circle.centre + away * (side / away.length());
+                let touch = circle.centre + outward * (side / outward.length());
                 min = min.min(lci(bars, touch));
             }
         }

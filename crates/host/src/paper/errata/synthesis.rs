@@ -108,8 +108,8 @@ pub const EQUATIONS: &[Equation] = &[
         "the parallelogram does not operate in the singularity zone",
         "of the margin 0.3 short",
         |s| {
-            let (least, flat) = (0.3, 360.0 * s.random[0]);
-            Some((least - flat.to_radians().sin().abs()).max(0.0))
+            let (smallest, flat) = (0.3, 360.0 * s.random[0]);
+            Some((smallest - flat.to_radians().sin().abs()).max(0.0))
         },
     )
     .corrected(

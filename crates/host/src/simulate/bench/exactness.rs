@@ -74,13 +74,14 @@ impl Exactness {
 
     /// Peak to peak, cycles.
     pub fn jitter(&self) -> Option<u64> {
-        self.error.map(|[min, most]| most.abs_diff(min))
+        self.error
+            .map(|[smallest, largest]| largest.abs_diff(smallest))
     }
 
     /// Worst deviation of a width from its command, cycles.
     pub fn worst(&self) -> Option<u64> {
         self.error
-            .map(|[least, most]| least.unsigned_abs().max(most.unsigned_abs()))
+            .map(|[smallest, largest]| smallest.unsigned_abs().max(largest.unsigned_abs()))
     }
 }
 

@@ -15,8 +15,8 @@ pub struct Span {
     pub to: f64,
 }
 
-/// True if a command begins, ends or paces a motion. What is not a word of the console is the
-/// gait of some robot.
+/// True if a command begins, ends or paces a motion. Any other word is the name of a gait of some
+/// robot.
 fn changes_motion(command: &str) -> bool {
     let word = command.split_whitespace().next().unwrap_or_default();
     Word::find(word.as_bytes())

@@ -27,11 +27,11 @@ pub struct Row {
     pub way: PathParts,
     /// The gait's last complete cycle, and its prediction.
     pub cycle: Option<Cycle>,
-    /// The path that `lizard gaits` predicts for one round of a routine without inputs by these
-    /// servos; null for all else, and at another pace.
+    /// The path that `lizard gaits` predicts for one round of a routine without inputs, by these
+    /// servos; null for other commands and at another pace.
     pub round: Option<PathParts>,
-    /// The remaining figures are of the last complete cycle if another came before it at the
-    /// gait's own pace, else of all frames: the distance that each foot slid over the floor, mm, servo order.
+    /// Distance that each foot slid over the floor, mm, servo order. This and the figures below are
+    /// of the last complete cycle, if it follows another at the gait's own pace, else of all frames.
     pub foot_slip: [f64; 4],
     /// The largest lag of a leg behind its servo, deg.
     pub lag: f64,
@@ -80,8 +80,8 @@ impl From<Prediction> for PathParts {
     }
 }
 
-/// The prediction of a routine's round by these servos, if a command goes through one.
-fn round(robot: &Robot, command: &str, model: ServoModel) -> Option<(Round, Prediction)> {
+/// Predicts the round of a routine by these servos, if the command runs one round.
+fn predict_round(robot: &Robot, command: &str, model: ServoModel) -> Option<(Round, Prediction)> {
     let routine = robot.routine(command.strip_suffix(" 1")?)?;
     let round = Round::of(robot, routine);
     let way = match model {
@@ -121,7 +121,7 @@ impl Report {
             let last = cycle
                 .as_ref()
                 .map(|(_, frames)| replay.tally(frames.clone()));
-            let round = round(robot, &stage.command, model).filter(|_| !is_paced);
+            let round = predict_round(robot, &stage.command, model).filter(|_| !is_paced);
             let known = prediction.as_ref().or(round.as_ref().map(|(_, way)| way));
             let seconds = |n: usize| replay.start_s + n as f64 * lizard_twin::FRAME;
             let cycle_or_stage: &Tally = last.as_ref().unwrap_or(&tally_of_stage);
@@ -212,8 +212,12 @@ impl Report {
                     .map_or("-".to_owned(), |(_, value)| format!("{value:.3}")),
                 row.margin.map_or("", |(name, _)| name),
             )?;
-            let [least, most] = row.stroke.unwrap_or_default();
-            write!(out, " {least:>+6.1} {most:>+5.1} {:>7.0}", row.servo_rate)?;
+            let [smallest, largest] = row.stroke.unwrap_or_default();
+            write!(
+                out,
+                " {smallest:>+6.1} {largest:>+5.1} {:>7.0}",
+                row.servo_rate
+            )?;
             if springs {
                 let share = cycle.share_of_rigid.map(|share| 100.0 * share);
                 let share = share.map_or("-".to_owned(), |share| format!("{share:.0}"));

@@ -168,8 +168,8 @@ fn print(spreads: &[Spread], times: u32, out: &mut impl Write) -> io::Result<()>
     for spread in spreads {
         write!(out, "{:<12}", spread.gait)?;
         for line in &spread.lines {
-            let [own, most] = line.share.map(mark);
-            write!(out, "{:>18}", format!("{own} {most}"))?;
+            let [own, largest] = line.share.map(mark);
+            write!(out, "{:>18}", format!("{own} {largest}"))?;
         }
         writeln!(out)?;
     }

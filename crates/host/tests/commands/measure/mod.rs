@@ -387,7 +387,7 @@ fn a_film_is_read_through_ffmpeg_at_the_times_that_ffprobe_tells() {
 
 #[test]
 fn json_of_a_film_has_no_value_that_is_no_number() {
-    // serde_json writes what is no number as null.
+    // serde_json writes NaN and infinity as null.
     let folder = film("numbers", |i| format!("{i}.jpg"));
     let line = [
         "measure",

@@ -27,8 +27,8 @@ fn operands<'a>(text: &'a str, operator: &'a str) -> impl Iterator<Item = Vec<f6
 fn sheet_on(paper: &str) -> (String, [f64; 2]) {
     let path = scratch().join(format!("sheets/{paper}.pdf"));
     let name = path.to_str().expect("a name");
-    let said = run(&["measure", "sheet", "--paper", paper, "--output", name]).success();
-    assert!(said.contains("print it at 100 %"), "{said}");
+    let printed = run(&["measure", "sheet", "--paper", paper, "--output", name]).success();
+    assert!(printed.contains("print it at 100 %"), "{printed}");
     let text = String::from_utf8_lossy(&fs::read(&path).expect("it is written")).into_owned();
     let (_, media) = text.split_once("/MediaBox [").expect("a size");
     let (media, _) = media.split_once(']').expect("its end");

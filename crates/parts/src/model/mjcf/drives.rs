@@ -32,9 +32,9 @@ impl Writer<'_> {
                 true => Node::Horn(servo),
                 false => Node::Of(Mount::Link(servo)),
             };
-            let (joint, (least, most)) =
+            let (joint, (smallest, largest)) =
                 (joint.name(), self.assembly.robot().servos()[servo].travel());
-            let range = joined([least, most].map(|angle| round(angle.to_radians())));
+            let range = joined([smallest, largest].map(|angle| round(angle.to_radians())));
             self.xml.leaf(format!(
                 r#"position name="{name}" joint="{joint}" kp="{gain}" forcerange="{} {stall}" ctrlrange="{range}""#,
                 -stall

@@ -49,10 +49,10 @@ fn both_sides_count_to_the_sliders_travel() {
         let robot = lean(right, &[]).expect("it leans");
         let gait = robot.gait("lean").expect("lean");
         let moving = travels(&robot, gait)[usize::from(right)];
-        let (least, most) = gait.audit().stroke;
+        let (smallest, largest) = gait.audit().stroke;
         assert!(moving.0 < -5.0 && moving.1 > 3.0, "{moving:?}");
-        assert!((moving.0 - least).abs() < 0.05, "{least}");
-        assert!((most - moving.1).abs() < 0.05, "{most}");
+        assert!((moving.0 - smallest).abs() < 0.05, "{smallest}");
+        assert!((largest - moving.1).abs() < 0.05, "{largest}");
     }
 }
 
@@ -61,16 +61,16 @@ fn a_slider_that_runs_out_on_one_side_alone_is_named() {
     for (right, side) in [(false, "left"), (true, "right")] {
         let robot = lean(right, &[]).expect("it leans");
         let gait = robot.gait("lean").expect("lean");
-        let (least, most) = travels(&robot, gait)[usize::from(right)];
+        let (smallest, largest) = travels(&robot, gait)[usize::from(right)];
         for (from, to, word) in [
             (
                 "stroke_min = -19.0",
-                format!("stroke_min = {:.2}", least + 0.5),
+                format!("stroke_min = {:.2}", smallest + 0.5),
                 "below",
             ),
             (
                 "stroke_max = 41.0",
-                format!("stroke_max = {:.2}", most - 0.5),
+                format!("stroke_max = {:.2}", largest - 0.5),
                 "above",
             ),
         ] {
@@ -85,11 +85,11 @@ fn a_slider_that_runs_out_on_one_side_alone_is_named() {
         let enough = [
             (
                 "stroke_min = -19.0",
-                format!("stroke_min = {:.2}", least - 0.2),
+                format!("stroke_min = {:.2}", smallest - 0.2),
             ),
             (
                 "stroke_max = 41.0",
-                format!("stroke_max = {:.2}", most + 0.2),
+                format!("stroke_max = {:.2}", largest + 0.2),
             ),
         ];
         assert!(lean(right, &enough).is_ok());
@@ -145,10 +145,10 @@ fn a_swing_backward_is_as_fast_as_one_forward() {
 fn a_gait_may_be_as_fast_as_its_limit() {
     let fastest = robot("unequal");
     let speed = |gait: &CheckedGait| gait.audit().peak.speed;
-    let most = fastest.gaits().iter().map(speed).fold(0.0, f64::max);
+    let largest = fastest.gaits().iter().map(speed).fold(0.0, f64::max);
     let limit = |speed: f64| format!("gait_slew = {speed:?}");
-    assert!(with("unequal", &[("gait_slew = 330.0", &limit(most))]).is_ok());
-    let refused = with("unequal", &[("gait_slew = 330.0", &limit(most - 1e-6))]);
+    assert!(with("unequal", &[("gait_slew = 330.0", &limit(largest))]).is_ok());
+    let refused = with("unequal", &[("gait_slew = 330.0", &limit(largest - 1e-6))]);
     let refused = refused.expect_err("it is too fast").to_string();
     assert!(refused.contains("limits.gait_slew is"), "{refused}");
 }
@@ -175,15 +175,15 @@ fn a_gait_may_use_all_of_a_servos_travel() {
 #[test]
 fn every_end_of_every_travel_is_checked() {
     // A servo that is left a degree on one side cannot walk.
-    for (servo, least, most, neutral) in [
+    for (servo, smallest, largest, neutral) in [
         ("A1", "min_us = 610.0", "max_us = 2350.0", 1470.0),
         ("A2", "min_us = 560.0", "max_us = 2420.0", 1535.0),
         ("A3", "min_us = 700.0", "max_us = 2300.0", 1500.0),
         ("A4", "min_us = 590.0", "max_us = 2460.0", 1440.0),
     ] {
         for (from, to) in [
-            (least, format!("min_us = {}", neutral - 9.0)),
-            (most, format!("max_us = {}", neutral + 9.0)),
+            (smallest, format!("min_us = {}", neutral - 9.0)),
+            (largest, format!("max_us = {}", neutral + 9.0)),
         ] {
             let refused = with("unequal", &[(from, &to)]).expect_err(&to).to_string();
             assert!(
@@ -205,25 +205,25 @@ fn each_kind_of_margin_has_the_limit_of_its_kind() {
         ("leg = 0.38 ", &Check::LEG),
     ] {
         let name = key.split(' ').next().expect("a name");
-        let least = |gait: &CheckedGait| {
+        let smallest = |gait: &CheckedGait| {
             let audit = gait.audit();
             let [of] = [audit.type2, audit.type1, audit.leg]
                 .into_iter()
-                .filter(|least| kind.contains(&least.what))
+                .filter(|smallest| kind.contains(&smallest.what))
                 .collect::<Vec<_>>()[..]
             else {
                 panic!("{audit:?}")
             };
             of.value
         };
-        let least = unequal.gaits().iter().map(least).fold(1.0, f64::min);
+        let smallest = unequal.gaits().iter().map(smallest).fold(1.0, f64::min);
         let limit = |value: f64| format!("{name} = {value:?} ");
         // The firmware's guard is exact to a thousandth or two.
         assert!(
-            with("unequal", &[(key, &limit(least - 0.003))]).is_ok(),
+            with("unequal", &[(key, &limit(smallest - 0.003))]).is_ok(),
             "{name}"
         );
-        let refused = with("unequal", &[(key, &limit(least + 1e-6))]);
+        let refused = with("unequal", &[(key, &limit(smallest + 1e-6))]);
         let refused = refused.expect_err(name).to_string();
         assert!(refused.contains(&format!("margin {name}_")), "{refused}");
     }
@@ -241,17 +241,17 @@ fn a_gait_that_only_the_firmwares_guard_rejects_is_refused() {
         ("unequal", "type1 = 0.27 "),
     ] {
         let robot = robot(name);
-        let least = |gait: &CheckedGait| {
+        let smallest = |gait: &CheckedGait| {
             if key.starts_with("leg") {
                 gait.audit().leg.value
             } else {
                 gait.audit().type1.value
             }
         };
-        let least = robot.gaits().iter().map(least).fold(1.0, f64::min);
+        let smallest = robot.gaits().iter().map(smallest).fold(1.0, f64::min);
         let kind = key.split(' ').next().expect("a name");
         for i in 1..10 {
-            let limit = format!("{kind} = {:?} ", least - f64::from(i) * 1e-5);
+            let limit = format!("{kind} = {:?} ", smallest - f64::from(i) * 1e-5);
             let refused = with(name, &[(key, &limit)]).err();
             refusals.extend(refused.map(|error| error.to_string()));
         }
@@ -270,15 +270,15 @@ fn the_least_margins_are_those_at_their_phases() {
     for (name, robot) in all() {
         for gait in robot.gaits() {
             let audit = gait.audit();
-            for least in [audit.type2, audit.type1, audit.leg] {
-                let phase = (least.phase * 65536.0) as u16;
+            for smallest in [audit.type2, audit.type1, audit.leg] {
+                let phase = (smallest.phase * 65536.0) as u16;
                 let pose = gait.table_angles(phase).into();
                 let solved = robot.lizard().solve(&pose).expect("closes");
                 let (_, value) = solved
                     .conditions()
-                    .find(|(what, _)| *what == least.what)
+                    .find(|(what, _)| *what == smallest.what)
                     .expect("a condition");
-                assert_eq!(value, least.value, "{name} {}", gait.name());
+                assert_eq!(value, smallest.value, "{name} {}", gait.name());
             }
         }
     }

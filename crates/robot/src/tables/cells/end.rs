@@ -97,17 +97,17 @@ impl Condition for EndConditions {
             self.bars.crank_left * left.half() + self.bars.crank_right * right.half();
         let apart = pose.gap.length();
         let range = [(apart - crank_movement).max(0.0), apart + crank_movement];
-        let off = bounds::End::between(&self.bars, self.integers, range);
-        let uncrossed = pose.gap.x - crank_movement > off.along + HAIR;
-        if !(off.is_known && uncrossed) {
+        let errors = bounds::End::between(&self.bars, self.integers, range);
+        let uncrossed = pose.gap.x - crank_movement > errors.along + HAIR;
+        if !(errors.is_known && uncrossed) {
             return Verdict::Open;
         }
-        let coupler_turn = |coupler: f64| crank_movement / (coupler * off.least);
+        let coupler_turn = |coupler: f64| crank_movement / (coupler * errors.least);
         let elbows = [
-            left.half() + coupler_turn(self.bars.coupler_left) + off.type1_left,
-            right.half() + coupler_turn(self.bars.coupler_right) + off.type1_right,
+            left.half() + coupler_turn(self.bars.coupler_left) + errors.type1_left,
+            right.half() + coupler_turn(self.bars.coupler_right) + errors.type1_right,
         ];
-        let is_kept = off.least - off.type2 >= self.type2 + HAIR
+        let is_kept = errors.least - errors.type2 >= self.type2 + HAIR
             && type1
                 .iter()
                 .zip(elbows)
@@ -160,14 +160,14 @@ mod tests {
         let pose = rule.bars.close(AssemblyMode::Ahead, left, right);
         let pose = pose.expect("it stands");
         let apart = pose.gap.length();
-        let off = bounds::End::between(&rule.bars, rule.integers, [apart; 2]);
+        let errors = bounds::End::between(&rule.bars, rule.integers, [apart; 2]);
         let (lower, bound) = if pose.type1_left() < pose.type1_right() {
-            (pose.type1_left(), off.type1_left)
+            (pose.type1_left(), errors.type1_left)
         } else {
-            (pose.type1_right(), off.type1_right)
+            (pose.type1_right(), errors.type1_right)
         };
         let limits: [(Limit, f64, f64); 3] = [
-            (|rule| &mut rule.type2, pose.type2, off.type2),
+            (|rule| &mut rule.type2, pose.type2, errors.type2),
             (|rule| &mut rule.type1, lower, bound),
             (|rule| &mut rule.leg, left.y.min(right.y), DIRECTION),
         ];

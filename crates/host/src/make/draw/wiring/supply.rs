@@ -11,7 +11,7 @@ use crate::shared::ink::{DARK, RED, edged, line, rectangle, text_end, text_middl
 
 type Point = (f64, f64);
 
-/// The battery's left edge, its contacts' heights; its cells' left edge.
+/// The left edge of the battery, the heights of its contacts, and the left edge of its cells.
 const BATTERY: f64 = 560.0;
 const PLUS: f64 = 40.0;
 const MINUS: f64 = 112.0;
@@ -19,19 +19,19 @@ const BALANCE: [f64; 3] = [62.0, 76.0, 90.0];
 const CELLS: f64 = 600.0;
 /// The alarm's right edge.
 const ALARM: f64 = 500.0;
-/// Fuse, switch and the way behind it: left and right contacts.
+/// Left and right contacts of the fuse, the switch and the single way after it.
 const FUSE_AT: [f64; 2] = [458.0, 518.0];
 const SWITCH_AT: [f64; 2] = [362.0, 428.0];
 const WAY: [f64; 2] = [286.0, 322.0];
-/// From the middle of the way's hole to each of its two wires.
-const TWO: f64 = 5.0;
+/// Distance from the middle of the single way to each of the two wires at its left hole.
+const WIRE_OFFSET: f64 = 5.0;
 /// The converter's edges, and the heights of its contacts.
 const CONVERTER: [f64; 2] = [130.0, 235.0];
-const IN_PLUS: f64 = PLUS - TWO;
-const BELOW: f64 = 104.0;
+const CONVERTER_IN_PLUS: f64 = PLUS - WIRE_OFFSET;
+const CONVERTER_MINUS: f64 = 104.0;
 /// The capacitor's place: x, and the heights of its legs.
 const CAPACITOR: f64 = 150.0;
-/// Where the wires of the round plug go down.
+/// The x of the two wires that lead down to the round plug.
 const MARGINS: [f64; 2] = [20.0, 34.0];
 
 /// Ways of the ground strip, from 0.
@@ -46,7 +46,7 @@ const GROUND_OF: [(&str, usize); 5] = [
 /// The first way of the ground strip for a servo.
 pub const SERVOS: usize = GROUND_OF.len();
 
-fn way(name_of_part: &str) -> Point {
+fn ground_way(name_of_part: &str) -> Point {
     let index = GROUND_OF.iter().find(|(name, _)| *name == name_of_part);
     ground(index.map_or(0, |(_, way)| *way))
 }
@@ -57,10 +57,10 @@ pub fn wires(socket: Point) -> Vec<Wire> {
     let straight = |a: Point, b: Point| vec![a, b];
     let thick = |name: &str, path: Path, colour| Wire::new(name, path, colour, THICK);
     let out = supply(0);
-    let minus = way("battery");
-    let inner = way("converter-in");
-    let outer = way("converter-out");
-    let round = way("round-plug");
+    let minus = ground_way("battery");
+    let inner = ground_way("converter-in");
+    let outer = ground_way("converter-out");
+    let round = ground_way("round-plug");
     let mut wires = vec![
         thick(
             "battery-fuse",
@@ -79,7 +79,10 @@ pub fn wires(socket: Point) -> Vec<Wire> {
         ),
         thick(
             "way-converter",
-            straight((WAY[0], IN_PLUS), (CONVERTER[1], IN_PLUS)),
+            straight(
+                (WAY[0], CONVERTER_IN_PLUS),
+                (CONVERTER[1], CONVERTER_IN_PLUS),
+            ),
             RED,
         ),
         thick(
@@ -90,8 +93,8 @@ pub fn wires(socket: Point) -> Vec<Wire> {
         thick(
             "converter-in-ground",
             vec![
-                (CONVERTER[1], BELOW),
-                (252.0, BELOW),
+                (CONVERTER[1], CONVERTER_MINUS),
+                (252.0, CONVERTER_MINUS),
                 (252.0, inner.1),
                 inner,
             ],
@@ -100,8 +103,8 @@ pub fn wires(socket: Point) -> Vec<Wire> {
         thick(
             "converter-out-ground",
             vec![
-                (CONVERTER[0], BELOW),
-                (119.0, BELOW),
+                (CONVERTER[0], CONVERTER_MINUS),
+                (119.0, CONVERTER_MINUS),
                 (119.0, outer.1),
                 outer,
             ],
@@ -115,8 +118,8 @@ pub fn wires(socket: Point) -> Vec<Wire> {
         Wire::new(
             "round-plug-plus",
             vec![
-                (WAY[0], PLUS + TWO),
-                (268.0, PLUS + TWO),
+                (WAY[0], PLUS + WIRE_OFFSET),
+                (268.0, PLUS + WIRE_OFFSET),
                 (268.0, 138.0),
                 (MARGINS[0], 138.0),
                 (MARGINS[0], plug_plus.1),
@@ -140,7 +143,7 @@ pub fn wires(socket: Point) -> Vec<Wire> {
     let [above, below] = capacitor();
     wires.push(thick(
         "capacitor-ground",
-        straight(above, way("capacitor")),
+        straight(above, ground_way("capacitor")),
         BLACK,
     ));
     wires.push(thick("capacitor-supply", straight(below, supply(1)), RED));
@@ -158,14 +161,17 @@ fn round_plug((x, y): Point) -> [Point; 2] {
 
 /// The ends of the capacitor's legs, minus and plus.
 fn capacitor() -> [Point; 2] {
-    [(CAPACITOR, way("capacitor").1), (CAPACITOR, supply(1).1)]
+    [
+        (CAPACITOR, ground_way("capacitor").1),
+        (CAPACITOR, supply(1).1),
+    ]
 }
 
 fn draw_case(group: Group, corner: Point, size: Point, fill: &str) -> Group {
     group.add(edged(rectangle(corner, size, fill).set("rx", 5), DARK, 1.5))
 }
 
-/// The things that the wires join.
+/// Draws everything that the wires join.
 pub fn draw(socket: Point) -> Group {
     let mut group = draw_battery(Group::new());
     group = draw_alarm(group);
@@ -309,11 +315,23 @@ fn draw_converter(group: Group) -> Group {
         .add(text_middle("converter", (middle, 66.0), 14.0))
         .add(text_middle("to 5.0 V, 3 A", (middle, 84.0), 14.0))
         .add(text_start("OUT+", (left + 8.0, PLUS + 5.0), 12.0))
-        .add(text_start("OUT\u{2212}", (left + 8.0, BELOW + 5.0), 12.0))
-        .add(text_end("IN+", (right - 8.0, IN_PLUS + 5.0), 12.0))
-        .add(text_end("IN\u{2212}", (right - 8.0, BELOW + 5.0), 12.0))
+        .add(text_start(
+            "OUT\u{2212}",
+            (left + 8.0, CONVERTER_MINUS + 5.0),
+            12.0,
+        ))
+        .add(text_end(
+            "IN+",
+            (right - 8.0, CONVERTER_IN_PLUS + 5.0),
+            12.0,
+        ))
+        .add(text_end(
+            "IN\u{2212}",
+            (right - 8.0, CONVERTER_MINUS + 5.0),
+            12.0,
+        ))
         .add(end("converter-out-plus", (left, PLUS), RED))
-        .add(end("converter-out-minus", (left, BELOW), DARK))
-        .add(end("converter-in-plus", (right, IN_PLUS), RED))
-        .add(end("converter-in-minus", (right, BELOW), DARK))
+        .add(end("converter-out-minus", (left, CONVERTER_MINUS), DARK))
+        .add(end("converter-in-plus", (right, CONVERTER_IN_PLUS), RED))
+        .add(end("converter-in-minus", (right, CONVERTER_MINUS), DARK))
 }

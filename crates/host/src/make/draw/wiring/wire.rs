@@ -1,14 +1,15 @@
 //! A wire of the drawing, and the ends that it joins.
 //!
 //! Wires have horizontal and vertical parts only. Each is drawn with a white edge, so where it
-//! passes over an earlier one there is a gap in that, and nobody takes the crossing for a joint.
+//! passes over an earlier one there is a gap in that, so that the crossing does not look like a
+//! joint.
 
 use svg::node::element::{Circle, Group};
 
 use crate::make::draw::route::Path;
 use crate::shared::ink::{circle, curve, edged};
 
-/// Black, as wires and the balance plug have it.
+/// Black of wires and of the balance plug.
 pub const BLACK: &str = "#1b1b1b";
 /// The middle wire of a balance plug.
 pub const GREY_WIRE: &str = "#9a9a9a";
