@@ -61,9 +61,8 @@ fn the_image_runs_at_90_mm_a_second_on_pads_with_a_grain_and_still_turns() {
         let robot = RobotFile::changed("robots/grain.toml", "grain", &changes);
         let printed = lizard(&robot.of("twin --json"), "").success();
         let figure = |gait: &str, pointer: &str| {
-            let mut lines = printed.lines().map(|line| serde_json::from_str(line));
-            let line: Option<Value> =
-                lines.find_map(|line| line.ok().filter(|line: &Value| line["command"] == gait));
+            let mut lines = printed.lines().flat_map(serde_json::from_str::<Value>);
+            let line = lines.find(|line| line["command"] == gait);
             let figure = line.as_ref().and_then(|line| line.pointer(pointer));
             figure.and_then(Value::as_f64).expect(gait)
         };
