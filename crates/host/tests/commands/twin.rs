@@ -42,7 +42,7 @@ fn a_round_of_a_routine_leads_as_far_as_lizard_gaits_says_of_the_same_servos() {
 }
 
 #[test]
-fn a_gait_that_there_is_not_is_refused_with_those_there_are() {
+fn an_unknown_gait_is_refused_with_a_list_of_the_gaits() {
     for (gait, words) in [
         (
             "jump",

@@ -73,7 +73,7 @@ fn walking_and_turning_lead_where_the_contact_model_says() {
 }
 
 #[test]
-fn a_way_that_hangs_on_a_tie_is_not_told() {
+fn a_path_that_depends_on_a_tie_is_not_reported() {
     let robot = robot();
     let log = gait_frames(&robot, "look", 100);
     let run = Run {
@@ -91,7 +91,7 @@ fn a_way_that_hangs_on_a_tie_is_not_told() {
 }
 
 #[test]
-fn a_way_step_by_step_is_the_way_as_a_whole() {
+fn the_steps_of_a_path_add_up_to_the_path() {
     let robot = robot();
     for gait in ["arc-left", "right"] {
         let log = gait_frames(&robot, gait, 400);
@@ -126,7 +126,7 @@ fn a_way_step_by_step_is_the_way_as_a_whole() {
 }
 
 #[test]
-fn the_table_tells_widths_periods_slew_and_errors() {
+fn the_table_has_widths_periods_slew_and_errors() {
     let robot = robot();
     let mut frames = frames_of(&robot, 3, |seconds| {
         let mut angles: [f64; 4] = robot.neutral().into();
