@@ -1,11 +1,12 @@
 // Puts the project's addresses, which crates/Cargo.toml has, into the page.
 import { readFileSync } from 'node:fs';
 
-/** Fills in the address of the repository, or removes what mentions it while it has none. */
-export function quoted(html, cargo) {
-  const [, repository] = /^repository = "(.*)"/m.exec(cargo);
-  return html.replace(/<!-- with a repository: (.*) -->/g, (_, shown) => (repository ? shown.replaceAll('REPOSITORY', repository) : ''));
-}
+/** Fills in the addresses of the repository and of the page, or removes what mentions one while it is empty. */
+export const quoted = (html, cargo) =>
+  ['repository', 'homepage'].reduce((html, name) => {
+    const [, address] = new RegExp(`^${name} = "(.*?)"`, 'm').exec(cargo);
+    return html.replace(new RegExp(`<!-- with a ${name}: (.*) -->`, 'g'), (_, shown) => (address ? shown.replaceAll(name.toUpperCase(), address) : ''));
+  }, html);
 
 export const addresses = () => ({
   name: 'addresses',

@@ -1,5 +1,5 @@
-// The frames of two animations: of the README, one cycle of a walk in the page; of docs/web.md, the gait editor. Writes them into
-// a folder; scripts/page-picture makes the animations.
+// The frames of two animations: of the README, one cycle of a walk in the page; of docs/web.md, the gait editor. And the picture
+// that a chat shows beside a link. Writes them into a folder; scripts/page-picture makes the animations.
 import { mkdir } from 'node:fs/promises';
 import { join } from 'node:path';
 
@@ -36,4 +36,11 @@ await opened.waitForFunction(() => document.querySelector('#faster-said').textCo
 await opened.getByRole('button', { name: 'Use this gait' }).click();
 await opened.waitForFunction(() => document.querySelector('#gait-way').textContent === document.querySelector('#faster-rows tr:nth-child(2) td:last-child').textContent);
 await opened.locator('#gait-editor').screenshot({ path: join(folder, 'editor.png') });
+// The first screen with the robot in 3D.
+await opened.setViewportSize({ width: 1600, height: 840 });
+await opened.goto(`${address()}#room=start`);
+await opened.locator('#solid').click();
+await opened.waitForFunction(() => document.querySelector('#parts-said').textContent.startsWith('Click'));
+await opened.clock.runFor(1500);
+await opened.screenshot({ path: join(folder, 'preview.png') });
 await close();

@@ -237,7 +237,7 @@ async function start(): Promise<void> {
     },
     silent(isSilent) {
       alarm.silent(isSilent);
-      if (isSilent) measure?.end('the robot is silent');
+      if (isSilent) measure?.stop('the robot is silent');
     },
     stopping: (isStopping) => alarm.stopping(isStopping),
     link(link) {

@@ -103,8 +103,8 @@ export const lags = ({ kind, play }: Floor) => kind !== 'rigid' || play > 0;
 /** A model of the servos. */
 export interface ServoModel {
   name: string;
-  /** Stall torque, kg cm, and time for 60 deg, s, both at a supply in V; null for ideal servos. */
-  figures: [number, number, number] | null;
+  /** Stall torque, kg cm, and time for 60 deg, s, both at a supply in V; and their supply in the robot, V. Null for ideal servos. */
+  figures: [number, number, number, number] | null;
 }
 
 export interface Refused {
@@ -376,7 +376,7 @@ export class Robot {
     this.ask('set_floor', floor);
   }
 
-  /** Selects the servo model by its name in the description. */
+  /** Selects the servo model by its name in the description, perhaps on another supply in V, as `own at 4.2`. */
   setServos(name: string): void {
     this.ask('set_servos', name);
   }

@@ -20,7 +20,7 @@ import {
 import { type Banner, banner, type Status, status, reportedPose } from './status';
 import { type Cause, messageOf } from './trouble';
 import { SimulatedBoard } from './uno/board';
-import { GAITS, WORDS } from './words';
+import { DONE, GAITS, WORDS } from './words';
 
 /** Frames of 20 ms between two poses of a board; a radio at 9600 baud carries no more. */
 const WATCH = { usb: 2, radio: 10, simulated: 1 };
@@ -48,8 +48,6 @@ const KEPT_SECONDS = 31;
 
 /** The fault of a robot that has received nothing for the time of `deadman`. */
 const LINK_FAULT = 'link';
-/** The line at the end of a gait with a count, and of a routine. */
-export const DONE = '# done';
 /** The reason why nothing is written by radio. */
 export const BY_CABLE = 'a radio does not reset a board and is too slow for it: connect its USB cable to write to it';
 

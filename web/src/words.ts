@@ -25,6 +25,9 @@ export const WORDS = {
 /** Gaits that the page starts by name: every robot has `stand`, and `walk` is preferred. */
 export const GAITS = { stand: 'stand', walk: 'walk' } as const;
 
+/** The line at the end of a gait with a count, and of a routine. */
+export const DONE = '# done';
+
 /** The firmware's line after a reset if nothing was ever saved. */
 export const NOTHING_SAVED = '# calibration: none is saved';
 

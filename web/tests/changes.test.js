@@ -168,7 +168,7 @@ test('the pace slider shows the robot\'s pace after a typed line and after a res
   assert.match(await type(opened, 'status', 'ok gait=stand'), / speed=100( |$)/);
 });
 
-test("the share of the servos' line is that of the robot's pace", async () => {
+test("the share of the servos' line is that of the robot's pace and of the servos' supply", async () => {
   const opened = await openStanding();
   await unfold(opened, '#power');
   const note = async (pace) => {
@@ -182,6 +182,25 @@ test("the share of the servos' line is that of the robot's pace", async () => {
   const half = await note(50);
   // docs/gaits.md: the hardest gait uses 0.81 and 0.50.
   assert.deepEqual([full, half], [0.81, 0.5]);
+  // Those of docs/gaits.md to a hundredth, with a mark from 0.9.
+  const shows = async (...shares) => {
+    const lines = await opened.locator('#gaits .line').allInnerTexts();
+    assert.equal(lines.length, shares.length);
+    for (const [n, line] of lines.entries()) {
+      const share = Number(line.match(/line (\d\.\d\d)$/)[1]);
+      assert.ok(Math.abs(share - shares[n]) < 0.011, `${line}, not ${shares[n]}`);
+      assert.equal(line.startsWith('⚠'), share >= 0.9, line);
+    }
+  };
+  await shows(0.45, 0.48, 0.5, 0.45, 0.5, 0.5, 0.45, 0.45, 0.24);
+  await type(opened, 'speed 100', 'ok speed 100');
+  await slide(opened, 'Supply of the servos', '4.2');
+  await opened.locator('#line-note.warning').waitFor();
+  await opened.waitForFunction(() => [...document.querySelectorAll('#gaits .line')].at(-1).textContent > 'line 0.3');
+  await shows(0.82, 0.91, 0.93, 0.82, 0.92, 0.92, 0.82, 0.82, 0.33);
+  // Another model comes with a supply of its own.
+  await opened.locator('#servos').selectOption('MG90S');
+  assert.equal(await opened.getByLabel('Supply of the servos').inputValue(), '4.8');
 });
 
 test('sliders without an effect on rigid legs with ideal servos are disabled, with a note', async () => {

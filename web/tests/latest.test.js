@@ -1,18 +1,10 @@
 // If questions arrive faster than a worker answers, only the last one is answered.
 import assert from 'node:assert/strict';
-import { readFile } from 'node:fs/promises';
-import { createRequire } from 'node:module';
 import { test } from 'node:test';
-import { pathToFileURL } from 'node:url';
 
-/** Loads the class as a browser would, compiled to JavaScript. */
-async function loadClass() {
-  const source = new URL('../src/latest.ts', import.meta.url);
-  const vite = createRequire(new URL('../package.json', import.meta.url)).resolve('vite');
-  const { transformWithOxc } = await import(pathToFileURL(vite));
-  const { code } = await transformWithOxc(await readFile(source, 'utf8'), 'latest.ts');
-  return (await import(`data:text/javascript,${encodeURIComponent(code)}`)).LatestQuestion;
-}
+import { source } from './source.js';
+
+const { LatestQuestion } = await source('latest.ts');
 
 /** A worker that answers when a test says so. */
 class FakeWorker {
@@ -34,7 +26,7 @@ class FakeWorker {
 test('of the questions asked while the worker is busy only the last is answered', async () => {
   const worker = new FakeWorker();
   const said = [];
-  const questions = new (await loadClass())(worker, 'module', (answer) => said.push(answer));
+  const questions = new LatestQuestion(worker, 'module', (answer) => said.push(answer));
   for (const question of ['first', 'second', 'third']) questions.ask(question);
   assert.deepEqual(worker.asked, ['module', 'first']);
   worker.answer();
@@ -46,7 +38,7 @@ test('of the questions asked while the worker is busy only the last is answered'
 test('a question asked when an answer arrives replaces the waiting one, or is answered after it', async () => {
   const worker = new FakeWorker();
   const said = [];
-  const questions = new (await loadClass())(worker, 'module', (answer) => {
+  const questions = new LatestQuestion(worker, 'module', (answer) => {
     said.push(answer);
     if (answer === 'answer to first') questions.ask('newest');
   });

@@ -7,6 +7,7 @@ import { dirname, join } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
 
 import { address, openBlank, close, complaints, openWithCamera, page, closePages } from './browser.js';
+import { fakeSerial } from './fake-serial.js';
 
 const { LIZARD } = process.env;
 const ROBOT = new URL('../../robots/paper.toml', import.meta.url).pathname;
@@ -194,6 +195,24 @@ test('Stop ends the protocol and stops the robot; leaving the room also does so,
   await opened.locator('nav a', { hasText: 'Drive' }).click();
   await opened.waitForFunction(() => window.lizard.gait === 'stop');
   assert.equal(await opened.evaluate(() => document.querySelector('#measure-view video').srcObject), null);
+});
+
+test('a board whose link is cut is no longer driven, the room reports it, and the recorded cycles are measured', async () => {
+  await openWithCamera(join(walk, 'film.y4m'));
+  const opened = await openRoom({ acceptDownloads: true });
+  await opened.evaluate(fakeSerial);
+  // Nobody begins to set up a robot by radio.
+  await opened.evaluate(() => Object.assign(window, { flashed: 'paper', awake: true, profile: '00001101-0000-1000-8000-00805f9b34fb' }));
+  await opened.locator('#connect').click();
+  await opened.waitForFunction(() => window.lizard.isReal && window.lizard.gait === 'stand' && window.lizard.mayAsk);
+  await startDriving(opened, ['walk', 'left'], 8);
+  await opened.waitForFunction(() => window.lizard.gait === 'walk');
+  await opened.waitForTimeout(6000);
+  await opened.evaluate(() => window.unplug());
+  await waitForMessage(opened, 'said', 'Ended before all gaits were walked: the link to the robot was cut');
+  assertTrue(JSON.parse(await download(opened, 'json')).gaits[0]);
+  assert.ok(!/left/.test(await opened.evaluate(() => window.heard)), 'no further gait was sent');
+  assert.equal(await opened.evaluate(() => window.lizard.gait), 'stand', 'and none to the simulated board that follows');
 });
 
 test('the sheet is that of the command, for both paper sizes', async () => {

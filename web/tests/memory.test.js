@@ -1,8 +1,12 @@
-// An hour of dragging leaks nothing: the memory of WebAssembly does not grow with the number of robots tried.
+// A page that stays open for an evening: what was tried and drawn leaves nothing behind.
 import assert from 'node:assert/strict';
-import { test } from 'node:test';
+import { after, afterEach, test } from 'node:test';
 
+import { address, close, complaints, open, page, closePages } from './browser.js';
 import { file, robot } from './wasm.js';
+
+afterEach(closePages);
+after(close);
 
 const toml = await file('robot.toml', 'utf8');
 
@@ -37,4 +41,41 @@ test('refused gaits and those tried for an offer use no more memory', async () =
     assert.equal(instead[0].what, 'amplitude');
   });
   assert.equal(grew, 0);
+});
+
+/** Time in each room, in each of two rounds, s. In the first the page fills what it keeps: the last pulses, the log, the track. */
+const STAY = Number(process.env.STAY ?? 8);
+/** What a round may add though nothing leaks, bytes: code that the browser has compiled once more. */
+const LEVEL = 400_000;
+
+test('a robot that walks while somebody goes through the rooms twice takes no more memory the second time', async (t) => {
+  await open();
+  const opened = await page({ reducedMotion: 'no-preference' });
+  await opened.waitForFunction(() => window.lizard.gait === 'walk');
+  const tools = await opened.context().newCDPSession(opened);
+  await tools.send('Performance.enable');
+  const rooms = await opened.evaluate(() => [...document.querySelectorAll('.room')].map(({ id }) => id.replace('room-', '')));
+  assert.ok(rooms.length > 5);
+  const round = async () => {
+    const used = [];
+    for (const room of rooms) {
+      await opened.goto(`${address()}#room=${room}`);
+      await opened.waitForTimeout(STAY * 1000);
+      await tools.send('HeapProfiler.collectGarbage');
+      const { metrics } = await tools.send('Performance.getMetrics');
+      const of = (wanted) => metrics.find(({ name }) => name === wanted).value;
+      used.push({ room, heap: of('JSHeapUsedSize'), nodes: of('Nodes'), listeners: of('JSEventListeners') });
+    }
+    return used;
+  };
+  const first = await round();
+  for (const [n, { room, ...then }] of (await round()).entries()) {
+    const { heap, nodes, listeners } = first.at(-1);
+    t.diagnostic(`${room}: ${first[n].heap}, then ${then.heap} bytes; ${first[n].nodes}, then ${then.nodes} nodes`);
+    assert.ok(then.heap < heap + LEVEL, `${room}: ${heap}, then ${then.heap} bytes`);
+    assert.ok(then.nodes < nodes + 200, `${room}: ${nodes}, then ${then.nodes} nodes`);
+    assert.ok(then.listeners < listeners + 20, `${room}: ${listeners}, then ${then.listeners} listeners`);
+  }
+  assert.equal(await opened.evaluate(() => window.lizard.gait), 'walk');
+  assert.deepEqual(complaints, []);
 });

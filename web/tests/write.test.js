@@ -135,7 +135,7 @@ test('a board unplugged during a write has no robot, reports that, moves nothing
   await until(opened, 'it is written', async () => (await text(opened, '#flash-said')).startsWith('writing'), 20);
   await opened.clock.runFor(60);
   await opened.evaluate(() => window.unplug());
-  await waitForMessage(opened, /^not written: .*\. Only a part of the robot is on the board, which moves nothing until it is rewritten: try again$/);
+  await waitForMessage(opened, /^not written: .*\. Perhaps only a part of the robot is on the board, which then moves nothing: try again$/);
   await until(opened, 'it may be connected', () => opened.locator('#connect').isEnabled());
   await opened.evaluate(() => (window.same = true));
   await opened.locator('#connect').click();
@@ -165,7 +165,7 @@ test('a board unplugged while the firmware is written does nothing, and can be w
   await waitForMessage(opened, /^writing/);
   await opened.clock.runFor(1500);
   await opened.evaluate(() => window.unplug());
-  await waitForMessage(opened, /^not written: .*\. Only a part of it is on the board, which does nothing until it is rewritten: try again$/);
+  await waitForMessage(opened, /^not written: .*\. Perhaps only a part of it is on the board, which then does nothing: try again$/);
   // Its own behaviour, without the page.
   const pulses = await opened.evaluate(() => {
     window.otherBoard.reset('external');

@@ -230,10 +230,13 @@ impl LagEnergy {
         match &self.motor {
             None => 0.0,
             Some(_) if self.is_rigid() => lag,
-            Some(motor) => motor.balance(self.stop, eps, |place| {
-                let (_, torque, stiffness) = self.expand_leg(lag - place, eps);
-                (torque, stiffness)
-            }),
+            Some(motor) => {
+                let kinks = [lag - self.play, lag + self.play];
+                motor.balance(kinks, self.stop, eps, |place| {
+                    let (_, torque, stiffness) = self.expand_leg(lag - place, eps);
+                    (torque, stiffness)
+                })
+            }
         }
     }
 

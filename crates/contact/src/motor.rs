@@ -173,7 +173,7 @@ impl MotorStep {
         };
         let deviation = place - self.unloaded;
         let from_still = place - self.unmoved;
-        let length = from_still.hypot(eps);
+        let length = (from_still * from_still + eps * eps).sqrt();
         let (direction, curvature) = match length > 0.0 {
             true => (from_still / length, eps * eps / (length * length * length)),
             false => (0.0, 0.0),
@@ -197,11 +197,19 @@ impl MotorStep {
     }
 
     /// The place at which the motor's torque equals the load's. `slope` gives the load's torque
-    /// and stiffness at a place; the torque is at most `max`.
-    pub fn balance(&self, max: f64, eps: f64, slope: impl Fn(f64) -> (f64, f64)) -> f64 {
+    /// and stiffness at a place; the torque is at most `max`, and changes fast at the `kinks`.
+    pub fn balance(
+        &self,
+        kinks: [f64; 2],
+        max: f64,
+        eps: f64,
+        slope: impl Fn(f64) -> (f64, f64),
+    ) -> f64 {
         let reach = (self.stall + self.drag + self.slider.abs() + max) / self.inertial_stiffness;
         let (mut low, mut high) = (self.unloaded - reach, self.unloaded + reach);
-        let mut place = self.unloaded;
+        let guess = self.unloaded_end().max(kinks[0]).min(kinks[1]);
+        let mut place = guess.max(low).min(high);
+        let mut longest = reach;
         for _ in 0..MAX_ITERATIONS {
             let (_, torque, stiffness) = self.expand(place, eps);
             let (load, load_stiffness) = slope(place);
@@ -210,14 +218,21 @@ impl MotorStep {
                 true => high = place,
                 false => low = place,
             }
-            let next = place - error / (stiffness + load_stiffness);
-            let next = match low < next && next < high {
-                true => next,
-                false => f64::midpoint(low, high),
-            };
-            if (next - place).abs() <= f64::EPSILON * reach {
-                return next;
+            let newton = place - error / (stiffness + load_stiffness);
+            let far = (newton - place).abs();
+            if far <= f64::EPSILON * (reach + place.abs()) {
+                return newton;
             }
+            // Newton's steps shrink, unless a kink lies in between.
+            let is_between = |place: &f64| low < *place && *place < high;
+            let next = match is_between(&newton) && far <= longest {
+                true => newton,
+                false => {
+                    let kink = kinks.into_iter().find(is_between);
+                    kink.unwrap_or(f64::midpoint(low, high))
+                }
+            };
+            longest = (next - place).abs();
             place = next;
         }
         place

@@ -13,7 +13,7 @@ use crate::bodies::assembly::Assembly;
 use crate::decimals;
 use crate::hold::SpringEffect;
 use crate::layers::body::{Body, Kind, Prism};
-use crate::layers::fitting::{BATTERIES, Fitting};
+use crate::layers::fitting::{BATTERIES, Example, Fitting};
 use crate::layers::outline::Outline;
 use crate::part::{Part, volume};
 use crate::price::Price;
@@ -379,30 +379,42 @@ pub fn to_buy(items: &[Item]) -> String {
 /// products that fit.
 pub fn places(battery: [f64; 3]) -> String {
     let size = |[x, y, z]: [f64; 3]| format!("{x} x {y} x {z}");
+    let list = |examples: &mut dyn Iterator<Item = Example>| {
+        let names: Vec<_> = examples.map(|example| example.to_string()).collect();
+        names.join("; ")
+    };
     let mut text =
         "| thing | place | room, mm | held by | for example, mm |\n|---|---|---|---|---|\n"
             .to_owned();
-    let fits = |mm: [f64; 3]| (0..3).all(|axis| mm[axis] <= battery[axis]);
-    let batteries = BATTERIES.into_iter().filter(|(_, mm)| fits(*mm));
-    let batteries: Vec<String> = batteries
-        .map(|(name, mm)| format!("{name}: {}", size(mm)))
-        .collect();
+    let fits = |example: &Example| (0..3).all(|axis| example.size[axis] <= battery[axis]);
     text += &format!(
         "| battery | on the plate, in the middle | {} | the battery strap | {} |\n",
         size(battery),
-        batteries.join("; ")
+        list(&mut BATTERIES.into_iter().filter(fits))
     );
     for fitting in Fitting::ALL {
         let facts = fitting.facts();
-        let examples = facts
-            .examples
-            .map(|(name, mm)| format!("{name}: {}", size(mm)));
         let (name, place, hold) = (facts.name, facts.place, facts.hold);
-        let (room, examples) = (size(facts.size), examples.join("; "));
+        let (room, examples) = (size(facts.size), list(&mut facts.examples.into_iter()));
         text += &format!("| {name} | {place} | {room} | {hold} | {examples} |\n");
     }
-    text
+    text + OTHERS
 }
+
+/// The words below the places: where sizes come from, and those of everything else.
+const OTHERS: &str = "
+`~` is a usual size in shops, of which no drawing was found. The other sizes are of data sheets or standards, with their tolerances.
+
+| everything else | size, mm, by a standard or as common products have it |
+|---|---|
+| screws | ISO 7380-1: head 5.7 x 1.65, 2 mm key; ISO 4017: head 5.5 x 2 (M3) |
+| lock nuts | DIN 985: 5.5 over flats, 4 high (M3) |
+| standoffs | 5.5 over flats at most, thread in both ends: Harwin R30-100; Wuerth WA-SSTII (~5) |
+| fuse | IEC 60127: 5 x 20 of glass; ISO 8820-3: mini blade |
+| cable ties | HellermannTyton T18R: 2.5 x 100; Panduit PLT1M: ~2.5 x 99 |
+| servos | TowerPro SG90: 22.2 x 11.8 x 31, copies ~22.8 x 12.6; MG90S: ~22.8 x 12.2 x 28.5; measure yours for `[parts.servo]` |
+| board | Arduino UNO R3: 68.6 x 53.4; Elegoo UNO R3: the same outline, holes and sockets |
+";
 
 /// The guide's words about rigid struts.
 const RIGID: &str = "The struts are rigid: a foot follows its servo but for the play of pins and gears. A foot that is caught \

@@ -65,7 +65,7 @@ pub use files::{File, part_files};
 pub use guide::papers::papers;
 pub use hold::SpringEffect;
 pub use layers::body::{Body, Kind, Mount, Prism};
-pub use layers::fitting::{BATTERIES, Fitting, FittingFacts};
+pub use layers::fitting::{BATTERIES, Example, Fitting, FittingFacts};
 pub use layers::outline::{Loop, Outline, Side};
 pub use layers::placement::Placement;
 pub use layers::shape::Shape;

@@ -24,6 +24,7 @@ const SERIAL_PROFILE = '00001101-0000-1000-8000-00805f9b34fb';
 const ARDUINO = [0x2341, 0x2a03];
 /** The message of a browser that cannot connect a board. */
 export const NO_SERIAL = 'This browser cannot reach a board on USB: it has no Web Serial. Chrome, Chromium, Edge and newer Firefox have it, on localhost and over https.';
+const GONE = 'the board is not connected any more';
 /** Length of the pulse on the reset line, ms. */
 const RESET = 50;
 
@@ -81,17 +82,18 @@ export class PortLink implements Link {
   }
 
   async write(bytes: Uint8Array): Promise<void> {
-    if (!this.port.writable) throw new Error('the port is closed');
-    this.writer ??= this.port.writable.getWriter();
-    await this.writer.write(bytes);
+    const { writable } = this.port;
+    if (!writable || this.closing) throw new Error(GONE);
+    this.writer ??= writable.getWriter();
+    await this.writer.write(bytes).catch(() => Promise.reject(new Error(GONE)));
   }
 
   async reset(): Promise<void> {
     if (this.kind === 'radio') return;
-    await this.port.setSignals({ dataTerminalReady: false, requestToSend: false });
-    await sleep(RESET);
-    await this.port.setSignals({ dataTerminalReady: true, requestToSend: true });
-    await sleep(RESET);
+    for (const isLow of [false, true]) {
+      await this.port.setSignals({ dataTerminalReady: isLow, requestToSend: isLow }).catch(() => Promise.reject(new Error(GONE)));
+      await sleep(RESET);
+    }
   }
 
   wait(ms: number): Promise<void> {

@@ -1,7 +1,18 @@
-// Drives gaits one after another before a camera, and keeps when the robot walked each of them. Anything else that the robot
-// does meanwhile ends it: Stop, another gait, a cut link.
-import { DONE } from '../session';
-import { GAITS, WORDS } from '../words';
+// Drives gaits one after another before a camera, keeps the robot on the sheet, and keeps when it walked each of them. Anything
+// else that the robot does meanwhile ends it: Stop, another gait, a cut link.
+import { DONE, GAITS, WORDS } from '../words';
+import type { Back } from './seen';
+
+/** Cycles of a way back at most, the ways tried, and the largest part of one that may lead aside. */
+const BACK = { cycles: 12, tries: 2, aside: 0.7 };
+/** Least way of a cycle of a gait that leads back, mm, and its largest turn, deg. */
+const LEADS = { way: 3, turn: 2 };
+/** Distance from the middle from which a longer gait is begun, if that helps, mm. */
+const MIDDLE = 80;
+/** Way outward near the end at which a walk is ended, mm: a gait swings within its cycle. */
+const OUTWARD = 20;
+/** Time for which the robot may walk unseen, s. */
+const UNSEEN = 2;
 
 /** A gait that the robot walked, on the film's clock. */
 export interface Walk {
@@ -10,6 +21,13 @@ export interface Walk {
   speed: number;
   /** Begin and end, s. */
   during: [number, number];
+}
+
+/** The predicted movement of a cycle of a gait: mm and deg. */
+export interface Way {
+  command: string;
+  forward: number;
+  turn: number;
 }
 
 export interface Plan {
@@ -30,74 +48,179 @@ export interface Stage {
   now: () => number;
   /** Waits some seconds. */
   wait: (seconds: number) => Promise<void>;
-  /** Has the robot turned back or put back, if it is near the end of what the camera sees; resolves when it is not. */
-  inside: () => Promise<void>;
+  /** The ways of all gaits that are known. */
+  ways: () => Way[];
+  /** Has a person put the robot back; resolves when that is done, or when the protocol is over. */
+  putBack: () => Promise<void>;
   say: (text: string) => void;
 }
 
 /** Thrown where the robot did something else than the protocol. */
 export class Interrupted extends Error {}
 
+/** A gait under way. */
+interface Waiting {
+  gait: string;
+  /** The robot's least distance from the middle so far, mm; null until the robot has taken the gait. */
+  nearest: number | null;
+  /** True if it is being ended before its last cycle. */
+  isCut: boolean;
+  /** The time at which it was over, on the film's clock, s. */
+  end: number | null;
+  done: () => void;
+  fail: (error: Error) => void;
+}
+
+const distance = ({ ahead, aside }: Back) => Math.hypot(ahead, aside);
+
 export class Protocol {
   readonly walks: Walk[] = [];
-  private waiting: { gait: string; done: () => void; fail: (error: Error) => void } | null = null;
+  private waiting: Waiting | null = null;
+  /** The protocol's own last line. */
+  private own = '';
   /** Called when it is over. */
   onEnd: () => void = () => {};
   /** The reason why it is over, or null. */
   private over: Interrupted | null = null;
+  /** The robot's last place, and its time on the film's clock, s. */
+  private last: { back: Back; seconds: number } | null = null;
 
   constructor(private readonly stage: Stage) {}
 
-  /** Walks all gaits. Throws {@link Interrupted}, and then the walks before it are still there. */
+  /** Walks all gaits. Throws {@link Interrupted}, and then the walks so far are still there. */
   async run({ gaits, cycles, speed, pause }: Plan): Promise<void> {
     const { stage } = this;
     await this.ask(`${WORDS.speed} ${speed}`);
     for (const [i, gait] of gaits.entries()) {
-      await stage.inside();
-      this.check();
+      const { forward = 0 } = stage.ways().find(({ command }) => command === gait) ?? {};
+      await this.goBack(cycles * forward);
       await this.wait(pause);
       stage.say(`${i + 1} of ${gaits.length}: ${gait}, ${cycles} cycles`);
-      const begin = stage.now();
-      await this.walk(gait, cycles);
-      this.walks.push({ gait, speed, during: [begin, stage.now()] });
+      await this.walk(gait, cycles, (during) => this.walks.push({ gait, speed, during }));
     }
     await this.wait(pause);
   }
 
-  /** Walks a gait to the end of its cycles. */
-  async walk(gait: string, cycles: number): Promise<void> {
-    const walked = new Promise<void>((done, fail) => (this.waiting = { gait, done, fail }));
-    // It may be over before the answer.
-    walked.catch(() => {});
-    await this.ask(`${gait} ${cycles}`);
-    await walked;
+  /** Takes the robot's place in a picture, if it shows one. Ends a walk that leads off the sheet. */
+  look(back: Back | null): void {
+    if (!back) return;
+    this.last = { back, seconds: this.stage.now() };
+    const { waiting } = this;
+    if (waiting === null || waiting.nearest === null) return;
+    waiting.nearest = Math.min(waiting.nearest, distance(back));
+    if (back.isNear && distance(back) > waiting.nearest + OUTWARD) this.cut(waiting);
   }
 
-  /** Takes a line that was sent to the robot. */
+  /** Takes a line that was sent to the robot, also by somebody else. */
   sent(line: string): void {
+    const walks = ({ command }: Way) => line === command || line.startsWith(`${command} `);
     if (line === WORDS.stop) this.end('it was stopped');
+    else if (line !== this.own && this.stage.ways().some(walks)) this.end(`the robot was sent "${line}"`);
   }
 
   /** Takes a line of the robot; the one at the end of a gait comes before its new activity. */
   received(line: string): void {
-    if (line !== DONE) return;
-    this.waiting?.done();
+    if (line !== DONE || !this.waiting) return;
+    this.finish(this.waiting);
     this.waiting = null;
   }
 
   /** Takes the robot's present activity. */
   doing(activity: string): void {
-    const mine: string[] = this.waiting ? [this.waiting.gait] : [WORDS.stop, GAITS.stand];
-    if (mine.includes(activity)) return;
+    const { waiting } = this;
+    const walks = waiting?.gait === activity;
+    const stands = activity === WORDS.stop || activity === GAITS.stand;
+    if (walks || (stands && (waiting === null || waiting.isCut))) return;
     this.end(activity === '' ? 'the link to the robot was cut, or it was reset' : `the robot does "${activity}"`);
+  }
+
+  /** Ends it for a reason from outside, as when the camera is off, and stops a robot that walks. */
+  stop(why: string): void {
+    const walks = this.waiting !== null;
+    this.end(why);
+    if (walks) void this.stage.ask(WORDS.stop);
   }
 
   /** Ends it: nothing more is sent. */
   end(why: string): void {
     this.over ??= new Interrupted(why);
-    this.waiting?.fail(this.over);
+    if (this.waiting) this.finish(this.waiting, this.over);
     this.waiting = null;
     this.onEnd();
+  }
+
+  /** The robot's place, if it was seen just now. */
+  private get place(): Back | null {
+    return this.last && this.stage.now() - this.last.seconds < UNSEEN ? this.last.back : null;
+  }
+
+  /**
+   * Brings the robot back from the end of the sheet: by a gait that leads to the middle, or else by hand. From a place that is
+   * only too near for the way ahead, mm, it goes to the middle if a gait leads there.
+   */
+  private async goBack(way: number): Promise<void> {
+    for (let n = 0; ; n++) {
+      const { place, stage } = this;
+      const isFit = place !== null && !place.isNear;
+      const leaves = place !== null && n === 0 && distance(place) > MIDDLE && Math.hypot(place.ahead - way, place.aside) > place.reach;
+      if (isFit && !leaves) return;
+      const gait = place && n < BACK.tries && Math.abs(place.ahead) > BACK.aside * distance(place) ? this.toward(place.ahead) : null;
+      if (place && gait) {
+        stage.say(`Back to the middle by ${gait.command}`);
+        await this.walk(gait.command, Math.min(BACK.cycles, Math.max(1, Math.round(place.ahead / gait.forward))));
+      } else if (isFit) return;
+      else await stage.putBack();
+      this.check();
+    }
+  }
+
+  /** The gait that goes farthest ahead, or back, and hardly turns. */
+  private toward(ahead: number): Way | null {
+    const way = ({ forward, turn }: Way) => (Math.abs(turn) < LEADS.turn ? forward * Math.sign(ahead) : 0);
+    const [best] = this.stage.ways().sort((a, b) => way(b) - way(a));
+    return best && way(best) > LEADS.way ? best : null;
+  }
+
+  /** Walks a gait to its last cycle, or to the end of the sheet, and gives `keep` its begin and end. */
+  private async walk(gait: string, cycles: number, keep: (during: [number, number]) => void = () => {}): Promise<void> {
+    const { stage } = this;
+    const waiting: Waiting = { gait, nearest: null, isCut: false, end: null, done: () => {}, fail: () => {} };
+    const walked = new Promise<void>((done, fail) => Object.assign(waiting, { done, fail }));
+    // It may be over before the answer.
+    walked.catch(() => {});
+    this.waiting = waiting;
+    const begin = stage.now();
+    await this.ask(`${gait} ${cycles}`);
+    waiting.nearest = this.place ? distance(this.place) : Infinity;
+    void this.watch(waiting);
+    try {
+      await walked;
+    } finally {
+      keep([begin, waiting.end ?? begin]);
+    }
+    if (!waiting.isCut) return;
+    await this.ask(GAITS.stand);
+    this.waiting = null;
+  }
+
+  /** Ends a walk once the robot is not seen any more. */
+  private async watch(waiting: Waiting): Promise<void> {
+    while (this.waiting === waiting && !waiting.isCut) {
+      if (!this.place) return this.cut(waiting);
+      await this.stage.wait(UNSEEN / 4);
+    }
+  }
+
+  /** Ends a walk before its last cycle; the robot walks on until it is told to stand. */
+  private cut(waiting: Waiting): void {
+    waiting.isCut = true;
+    this.finish(waiting);
+  }
+
+  private finish(waiting: Waiting, error?: Error): void {
+    waiting.end ??= this.stage.now();
+    if (error) waiting.fail(error);
+    else waiting.done();
   }
 
   private check(): void {
@@ -111,7 +234,8 @@ export class Protocol {
 
   private async ask(line: string): Promise<void> {
     this.check();
-    if (!(await this.stage.ask(line))) this.end(`the robot did not take "${line}"`);
+    this.own = line;
+    if (!(await this.stage.ask(line))) this.stop(`the robot did not take "${line}"`);
     this.check();
   }
 }

@@ -19,6 +19,16 @@ const minus = (a: Pixel, b: Pixel): Pixel => [a[0] - b[0], a[1] - b[1]];
 const length = ([x, y]: Pixel) => Math.hypot(x, y);
 const mean = (points: Pixel[]): Pixel => [0, 1].map((i) => points.reduce((sum, point) => sum + (point[i] ?? 0), 0) / points.length) as Pixel;
 
+/** The way of the deck's tag to the middle of the floor's, mm: ahead, and to the right. */
+export interface Back {
+  ahead: number;
+  aside: number;
+  /** Length of that way at which the robot is near the end, mm. */
+  reach: number;
+  /** True if the robot is that far away, or near the picture's edge. */
+  isNear: boolean;
+}
+
 export class Seen {
   size: [number, number] = [1, 1];
   /** The tags of the last picture. */
@@ -66,8 +76,8 @@ export class Seen {
     return `Not seen: ${hidden.length > 0 ? `${hidden.join(', ')} and ${last}` : last}.`;
   }
 
-  /** The way of the deck's tag to the middle of the floor's, mm: ahead, and to the side; null if it is unknown. */
-  get back(): { ahead: number; aside: number; isNear: boolean } | null {
+  /** The robot's way back to the middle; null if it is unknown. */
+  get back(): Back | null {
     const { heading, deck, size } = this;
     const floor = this.floor.filter((tag) => tag !== undefined);
     if (!heading || !deck || floor.length === 0) return null;
@@ -79,9 +89,9 @@ export class Seen {
     const far = length(heading);
     const ahead = ((way[0] * heading[0] + way[1] * heading[1]) / far) * scale;
     const aside = ((way[0] * heading[1] - way[1] * heading[0]) / far) * scale;
-    const reach = Math.max(...middles.map((each) => length(minus(each, middle)))) * scale;
+    const reach = Math.max(...middles.map((each) => length(minus(each, middle)))) * scale + NEAR;
     const edge = Math.min(at[0], at[1], size[0] - at[0], size[1] - at[1]) * scale;
-    return { ahead, aside, isNear: Math.hypot(ahead, aside) > reach + NEAR || edge < FROM_EDGE };
+    return { ahead, aside, reach, isNear: Math.hypot(ahead, aside) > reach || edge < FROM_EDGE };
   }
 
   /** Forgets the path. */

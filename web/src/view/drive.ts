@@ -1,4 +1,5 @@
-// A button for each gait, with its predicted displacement per cycle, and one for each routine.
+// A button for each gait, with its predicted displacement per cycle and the share of their torque-speed line that its servos
+// use, and one for each routine.
 import type { Description, GaitPrediction, Displacement } from '../robot';
 import type { Answer } from '../link/dialogue';
 import { WORDS } from '../words';
@@ -24,7 +25,7 @@ export function short(displacement: Displacement | null): string {
 
 export class Drive {
   private readonly list = element('gaits');
-  private buttons: { command: string; button: HTMLButtonElement; note: HTMLElement; moves: boolean }[] = [];
+  private buttons: { command: string; button: HTMLButtonElement; note: HTMLElement; line: HTMLElement; moves: boolean }[] = [];
   private readonly predictions = new Map<string, GaitPrediction>();
   /** The robot's pace, percent. */
   private pace = 100;
@@ -59,12 +60,13 @@ export class Drive {
     this.buttons = [...gaits, ...routines.map((command) => ({ command, moves: false }))].map(({ command, moves }) => {
       const note = make('span', {});
       const room = make('small', {}, note);
+      const line = make('span', { className: 'line', title: 'share of their torque-speed line that its servos use at this pace' });
       if (moves) room.dataset.room = LONGEST;
       // A long name gets the room of two buttons.
-      const button = make('button', { type: 'button', ariaPressed: 'false', className: command.length > LONG ? 'long' : '' }, command, room);
+      const button = make('button', { type: 'button', ariaPressed: 'false', className: command.length > LONG ? 'long' : '' }, command, room, ...(moves ? [line] : []));
       button.dataset.command = command;
       this.list.append(button);
-      return { command, button, note, moves };
+      return { command, button, note, line, moves };
     });
     this.predictions.clear();
     this.message.hidden = true;
@@ -86,13 +88,15 @@ export class Drive {
     this.showLine();
   }
 
-  /** Shows the gait that asks most of the servos at the robot's pace, once all are predicted. */
+  /** Shows how much each gait asks of the servos at the robot's pace, and, once all are predicted, which asks most. */
   private showLine(): void {
     const isKnown = this.buttons.every(({ command, moves }) => !moves || this.predictions.has(command));
     let [hardest, largest] = ['', 0];
-    for (const [command, { lines }] of isKnown ? this.predictions : []) {
-      const line = lines?.[Math.ceil((this.pace * lines.length) / 100) - 1] ?? 0;
-      if (line > largest) [hardest, largest] = [command, line];
+    for (const { command, line } of this.buttons) {
+      const { lines } = this.predictions.get(command) ?? {};
+      const share = lines?.[Math.ceil((this.pace * lines.length) / 100) - 1];
+      line.textContent = share === undefined ? '' : `${share >= TIGHT ? '⚠ ' : ''}line ${share.toFixed(2)}`;
+      if (isKnown && share !== undefined && share > largest) [hardest, largest] = [command, share];
     }
     const note = element('line-note');
     note.classList.toggle('warning', largest >= TIGHT);

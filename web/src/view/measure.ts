@@ -18,9 +18,6 @@ import { drawSight } from './sight';
 
 /** Least way of a cycle of a gait that goes somewhere: mm, deg. */
 const LEAST = { way: 3, turn: 2 };
-/** Cycles of a way back at most, and the largest part of it that may lead aside. */
-const BACK = 12;
-const ASIDE = 0.7;
 const NUMBERS: Record<string, Range & { value: number | null }> = {
   speed: { min: 10, max: 100, step: 5, value: 100 },
   cycles: { min: 4, max: 50, step: 1, value: 8 },
@@ -85,7 +82,7 @@ export class MeasureView {
 
   /** Takes another robot. */
   showRobot({ gaits }: Description): void {
-    this.end('another robot was chosen');
+    this.stop('another robot was chosen');
     const moving = gaits.filter(({ moves }) => moves).map(({ command }) => command);
     const chosen = this.gait.value;
     this.gait.replaceChildren(...moving.map((command) => new Option(command)));
@@ -106,14 +103,14 @@ export class MeasureView {
     for (const box of this.boxes.querySelectorAll('input')) box.checked = this.ticked.get(box.name) ?? goes.get(box.name) ?? false;
   }
 
-  /** Ends driving for a reason from outside. */
-  end(why: string): void {
-    this.protocol?.end(why);
+  /** Ends driving for a reason from outside, and stops the robot. */
+  stop(why: string): void {
+    this.protocol?.stop(why);
   }
 
   /** Takes another link: a real robot is driven by the page. */
   link(isReal: boolean): void {
-    this.end('the link to the robot has changed');
+    this.protocol?.end('the link to the robot has changed');
     this.driver.value = isReal ? 'page' : 'other';
     this.show();
   }
@@ -176,7 +173,7 @@ export class MeasureView {
 
   /** Switches the camera off and ends what uses it. */
   private leave(): void {
-    this.end('the camera was switched off');
+    this.stop('the camera was switched off');
     this.source.stop();
     if (this.doing !== 'compute') this.doing = 'nothing';
     this.show();
@@ -187,6 +184,7 @@ export class MeasureView {
     const isKept = this.doing === 'record' || this.doing === 'play' || (this.doing === 'drive' && !this.isPutBack);
     try {
       this.seen.take(await film.look(picture, seconds, isKept));
+      this.protocol?.look(this.seen.back);
       drawSight(this.view.querySelector('canvas') as HTMLCanvasElement, this.seen);
     } catch (error) {
       this.say(messageOf(error), true);
@@ -249,10 +247,12 @@ export class MeasureView {
       ask: async (line) => (await session.ask(line))?.ok === true,
       now: () => this.source.now,
       wait: (seconds) => session.link.wait(1000 * seconds),
-      inside: () => this.inside(protocol),
+      ways: () => this.choices().map(({ command, displacement: { forward, turn } }) => ({ command, forward: forward ?? 0, turn: turn ?? Infinity })),
+      putBack: () => this.putBack(protocol),
       say: (text) => this.say(text),
     });
     this.protocol = protocol;
+    protocol.look(this.seen.back);
     this.doing = 'drive';
     this.show();
     try {
@@ -260,8 +260,7 @@ export class MeasureView {
       await this.compute(protocol.walks);
     } catch (error) {
       if (!(error instanceof Interrupted) || protocol.walks.length === 0) throw error;
-      await this.compute(protocol.walks);
-      this.say(`Ended before all gaits were walked: ${error.message}. Those before are measured.`, true);
+      await this.compute(protocol.walks, [`Ended before all gaits were walked: ${error.message}.`]);
     } finally {
       this.protocol = null;
       this.isPutBack = false;
@@ -270,32 +269,10 @@ export class MeasureView {
     }
   }
 
-  /** Drives the robot back to the middle where a gait leads there, or else has it put there, if it is near the end of the sheet. */
-  private async inside(protocol: Protocol): Promise<void> {
-    for (let n = 0; this.seen.back?.isNear ?? !this.seen.deck; n++) {
-      const back = this.seen.back;
-      const far = back ? Math.hypot(back.ahead, back.aside) : 0;
-      const gait = back && Math.abs(back.ahead) > ASIDE * far ? this.toward(back.ahead) : null;
-      if (!back || !gait || n > 1) {
-        await this.putBack(protocol);
-        continue;
-      }
-      this.say(`Back to the middle by ${gait.command}`);
-      await protocol.walk(gait.command, Math.min(BACK, Math.max(1, Math.round(back.ahead / (gait.displacement.forward ?? Infinity)))));
-    }
-  }
-
-  /** The gait that goes farthest ahead, or back, and hardly turns. */
-  private toward(ahead: number): { command: string; displacement: GaitPrediction } | null {
-    const way = ({ displacement: { forward, turn } }: { displacement: GaitPrediction }) => (Math.abs(turn ?? Infinity) < LEAST.turn ? (forward ?? 0) * Math.sign(ahead) : 0);
-    const best = this.choices().reduce<ReturnType<typeof this.choices>[number] | null>((best, each) => (way(each) > (best ? way(best) : LEAST.way) ? each : best), null);
-    return best;
-  }
-
   private async putBack(protocol: Protocol): Promise<void> {
     this.isPutBack = true;
     this.goButton.hidden = false;
-    this.say('The robot is near the end of what the camera measures: put it back to the middle of the strips, and press the button.', true);
+    this.say('The robot is near the end of what the camera measures, or its tag is hidden: put it back to the middle of the strips, and press the button.', true);
     await new Promise<void>((done) => {
       this.goButton.onclick = () => done();
       protocol.onEnd = done;
@@ -304,25 +281,25 @@ export class MeasureView {
     this.isPutBack = false;
   }
 
-  /** Measures walks in the film, and shows the results and what could not be measured. */
-  private async compute(walks: (Omit<Walk, 'during'> & Partial<Walk>)[]): Promise<void> {
+  /** Measures walks in the film, and shows the results, what went wrong before, and what could not be measured. */
+  private async compute(walks: (Omit<Walk, 'during'> & Partial<Walk>)[], troubles: string[] = []): Promise<void> {
     this.doing = 'compute';
     this.say('Measuring…');
     this.show();
     const film = await this.loaded();
     const { toml } = this.session();
     const { height = null, ruler } = this.values;
-    const [results, refusals]: [Results[], string[]] = [[], []];
+    const results: Results[] = [];
     for (const { gait, speed, during = null } of walks) {
       try {
         results.push(await film.measure({ toml, gait: this.nameOf(gait), speed, height, ruler: ruler ?? 100, during }));
       } catch (error) {
-        refusals.push(`${gait}: ${messageOf(error)}.`);
+        troubles.push(`${gait}: ${messageOf(error)}.`);
       }
     }
     this.doing = 'nothing';
     this.measured.show(results);
-    this.say(refusals.join(' '), true);
+    this.say(troubles.join(' '), true);
   }
 
   /** The name of a gait in robot.toml by its command. */

@@ -25,6 +25,7 @@ const CONTACTS: Record<string, string> = { button: 'button pressed', nose: 'wall
 export class World {
   private readonly drive = element<HTMLSelectElement>('drive');
   private readonly servos = element<HTMLSelectElement>('servos');
+  private readonly volts = element<HTMLInputElement>('servo-volts');
   private readonly supply = element<HTMLInputElement>('supply');
 
   /** Calls `onChange` when the predictions have changed. */
@@ -46,11 +47,10 @@ export class World {
     const { supply } = this;
     supply.addEventListener('input', () => this.show(supply, supply.valueAsNumber.toFixed(2)));
     supply.addEventListener('change', () => this.session().setSupply(supply.valueAsNumber));
-    this.servos.addEventListener('change', () => {
-      this.session().setServos(this.servos.value);
-      this.enableSliders(this.session().floor);
-      this.onChange();
-    });
+    this.servos.addEventListener('change', () => this.setServos(this.servos.value));
+    const { volts } = this;
+    volts.addEventListener('input', () => this.show(volts, volts.valueAsNumber.toFixed(2)));
+    volts.addEventListener('change', () => this.setServos(`${this.servos.value} at ${volts.value}`));
   }
 
   /** Shows the values of the session's robot. */
@@ -67,13 +67,33 @@ export class World {
     }
     this.enableSliders(floor);
     this.servos.replaceChildren(...description.models.map((model) => new Option(describe(model), model.name)));
-    this.servos.value = this.session().servos;
+    this.showServos();
     this.supply.value = String(this.session().volts);
     this.show(this.supply, this.supply.valueAsNumber.toFixed(2));
     const [slow, stop, rest] = description.supply;
     this.showInputs();
     element('supply-note').textContent =
       `Below ${slow} V gaits go at half their pace, below ${stop} V the robot stops, below ${rest} V the pulses end.`;
+  }
+
+  private setServos(servos: string): void {
+    this.session().setServos(servos);
+    this.showServos();
+    this.enableSliders(this.session().floor);
+    this.onChange();
+  }
+
+  /** Shows the servo model and its supply: its own one, or as set. */
+  private showServos(): void {
+    const { description, servos } = this.session();
+    const [name = '', supply] = servos.split(' at ');
+    this.servos.value = name;
+    const figures = description.models.find((model) => model.name === name)?.figures;
+    this.volts.disabled = !figures;
+    if (!figures) return;
+    this.volts.max = String(Math.max(6, figures[3]));
+    this.volts.value = supply ?? String(figures[3]);
+    this.show(this.volts, this.volts.valueAsNumber.toFixed(2));
   }
 
   /** A box to tick for each input of the robot: in the simulation its contact is closed as long as the box is ticked. */

@@ -73,8 +73,8 @@ export class Writer {
 
 /** The consequence of an interrupted write. */
 const TORN = {
-  robot: '. Only a part of the robot is on the board, which moves nothing until it is rewritten: try again',
-  all: '. Only a part of it is on the board, which does nothing until it is rewritten: try again',
+  robot: '. Perhaps only a part of the robot is on the board, which then moves nothing: try again',
+  all: '. Perhaps only a part of it is on the board, which then does nothing: try again',
 };
 
 /** Formats a time in seconds, with a decimal below 9.5 s. */

@@ -79,8 +79,9 @@ const IDEAL: &str = "ideal";
 pub struct ModelEntry {
     /// Name of the model.
     pub name: &'static str,
-    /// Stall torque, kg cm, and time for 60 deg, s, both at a supply in V; `None` for ideal servos.
-    pub figures: Option<[f64; 3]>,
+    /// Stall torque, kg cm, and time for 60 deg, s, both at a supply in V; and their supply in the
+    /// robot, V. `None` for ideal servos.
+    pub figures: Option<[f64; 4]>,
 }
 
 impl ModelEntry {
@@ -88,7 +89,12 @@ impl ModelEntry {
     fn all(robot: &Robot) -> Vec<Self> {
         let entry = |name, servo: &ServoType| Self {
             name,
-            figures: Some([servo.stall_kg_cm, servo.s_per_60_deg, servo.at_volts]),
+            figures: Some([
+                servo.stall_kg_cm,
+                servo.s_per_60_deg,
+                servo.at_volts,
+                servo.volts,
+            ]),
         };
         let mut all = vec![entry(OWN, robot.servo_type())];
         all.extend(ServoType::ALL.iter().map(|servo| entry(servo.model, servo)));
@@ -100,16 +106,22 @@ impl ModelEntry {
     }
 }
 
-/// The servos of this name on a robot; `None` for an unknown name.
+/// The servos of this name on a robot, on their own supply or, as `copy at 4.2`, on another one in V;
+/// `None` for an unknown name, or a supply that robot.toml cannot have.
 pub(crate) fn servo_model(robot: &Robot, name: &str) -> Option<ServoModel> {
-    match name {
-        OWN => Some(ServoModel::of(robot)),
-        IDEAL => Some(ServoModel::Ideal),
-        _ => {
-            let servo = ServoType::ALL.iter().find(|servo| servo.model == name)?;
-            Some(ServoModel::Motors(robot.motors_of(servo, servo.volts)))
-        }
-    }
+    let (name, supply) = match name.split_once(" at ") {
+        Some((name, volts)) => (name, Some(volts.parse().ok()?)),
+        None => (name, None),
+    };
+    let servo = match name {
+        IDEAL => return Some(ServoModel::Ideal),
+        OWN => robot.servo_type(),
+        _ => ServoType::ALL.iter().find(|servo| servo.model == name)?,
+    };
+    let volts = supply.unwrap_or(servo.volts);
+    let (min, max) = ServoType::SUPPLIES;
+    let is_possible = (min..=max).contains(&volts);
+    is_possible.then(|| ServoModel::Motors(robot.motors_of(servo, volts)))
 }
 
 /// The chassis seen from above, as [`Plate`]: mm, chassis frame.

@@ -199,8 +199,8 @@ impl Page {
         }
     }
 
-    /// Sets the model of the servos by its name in [`Description::models`]; an unknown name
-    /// changes nothing if a robot was read.
+    /// Sets the model of the servos by its name in [`Description::models`], perhaps with a supply in
+    /// V, as `own at 4.2`; an unknown name changes nothing if a robot was read.
     pub fn set_servos(&mut self, name: &str) {
         let Some(twin) = &mut self.twin else {
             self.model = Some(name.to_owned());

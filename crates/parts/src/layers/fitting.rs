@@ -3,6 +3,8 @@
 //! Shops have them in many sizes, so each has a room on the robot that common products fit
 //! into; two of them are named with their sizes, and a test holds that they fit.
 
+use std::fmt;
+
 use lizard_robot::{FUSE, SWITCH};
 
 use crate::price::Price;
@@ -12,12 +14,42 @@ pub const STRAP: [f64; 2] = [16.0, 1.5];
 /// Pitch of the ways of a terminal strip of the 3 A size, mm.
 pub const PITCH: f64 = 8.0;
 
-/// Batteries of two lithium cells that go into the room of `[parts] battery`, with the size that
-/// people who have them give, mm.
-pub const BATTERIES: [(&str, [f64; 3]); 2] = [
-    ("GL Racing 2S 450 mAh", [21.0, 56.0, 14.0]),
-    ("JJRC H8D 2S 500 mAh", [25.0, 55.0, 12.5]),
+/// Batteries of two lithium cells that go into the room of `[parts] battery`.
+pub const BATTERIES: [Example; 2] = [
+    Example::usual("GL Racing 2S 450 mAh", [21.0, 56.0, 14.0]),
+    Example::usual("JJRC H8D 2S 500 mAh", [25.0, 55.0, 12.5]),
 ];
+
+/// A product that goes into a room, or a kind of it where shops name no make.
+#[derive(Clone, Copy, Debug)]
+pub struct Example {
+    /// The maker's name or number of it.
+    pub name: &'static str,
+    /// To the right, forward, up, mm; with the tolerances of its data sheet, if this gives any.
+    pub size: [f64; 3],
+    /// True if a data sheet or a drawing says so; false for what shops and users give.
+    pub drawn: bool,
+}
+
+impl Example {
+    const fn drawn(name: &'static str, size: [f64; 3]) -> Self {
+        let drawn = true;
+        Self { name, size, drawn }
+    }
+
+    const fn usual(name: &'static str, size: [f64; 3]) -> Self {
+        let drawn = false;
+        Self { name, size, drawn }
+    }
+}
+
+impl fmt::Display for Example {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let about = if self.drawn { "" } else { "~" };
+        let [x, y, z] = self.size;
+        write!(f, "{}: {about}{x} x {y} x {z}", self.name)
+    }
+}
 
 /// A thing that is bought and put on the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,17 +99,16 @@ pub struct FittingFacts {
     pub place: &'static str,
     /// What fastens it there.
     pub hold: &'static str,
-    /// Two products, or kinds of them where shops name no make, with a usual size, mm; no maker's
-    /// drawing was at hand.
-    pub examples: [(&'static str, [f64; 3]); 2],
+    /// Two products that go into the room.
+    pub examples: [Example; 2],
 }
 
 /// The two common makes of terminal strips with a pitch of 8 mm, as pieces of some ways.
-const fn strips(ways: f64) -> [(&'static str, [f64; 3]); 2] {
+const fn strips(ways: f64) -> [Example; 2] {
     let length = ways * PITCH;
     [
-        ("3 A polythene strip, 2.5 mm2", [16.0, length - 2.0, 13.0]),
-        ("Weidmueller MK 3", [17.0, length, 14.0]),
+        Example::usual("3 A polythene strip, 2.5 mm2", [16.0, length - 2.0, 13.0]),
+        Example::usual("Weidmueller MK 3", [17.0, length, 14.0]),
     ]
 }
 
@@ -111,8 +142,8 @@ impl Fitting {
                 place: "under the deck, towards the head",
                 hold: "foam tape, and a cable tie through the deck's window",
                 examples: [
-                    ("Pololu D36V28F5", [17.8, 17.8, 8.8]),
-                    ("MP1584EN board", [17.0, 22.0, 5.0]),
+                    Example::usual("Pololu D36V28F5", [17.8, 17.8, 8.9]),
+                    Example::usual("MP1584EN board", [17.0, 22.0, 4.0]),
                 ],
             },
             Self::Capacitor => FittingFacts {
@@ -123,8 +154,8 @@ impl Fitting {
                 place: "under the plate, behind the strip for +5 V",
                 hold: "the same cable tie as the strip",
                 examples: [
-                    ("Rubycon 10ZLH1000MEFC8X16, 10 V", [8.0, 16.0, 8.0]),
-                    ("Rubycon 16ZLH1000MEFC10X16, 16 V", [10.0, 16.0, 10.0]),
+                    Example::drawn("Panasonic EEU-FR1A102, 10 V", [10.5, 18.0, 10.5]),
+                    Example::drawn("Rubycon 16ZLH1000MEFC10X16, 16 V", [10.5, 18.0, 10.5]),
                 ],
             },
             Self::Alarm => FittingFacts {
@@ -135,8 +166,8 @@ impl Fitting {
                 place: "under the deck, towards the tail",
                 hold: "foam tape, and a cable tie around the deck",
                 examples: [
-                    ("BX100 for 1 to 8 cells", [25.0, 40.0, 11.0]),
-                    ("HobbyKing alarm for 2 to 4 cells", [23.0, 37.0, 11.0]),
+                    Example::usual("BX100 for 1 to 8 cells", [25.0, 40.0, 11.0]),
+                    Example::usual("HobbyKing alarm for 2 to 4 cells", [23.0, 37.0, 11.0]),
                 ],
             },
             Self::Ground => FittingFacts {
@@ -178,13 +209,13 @@ impl Fitting {
             Self::Resistor => FittingFacts {
                 name: "resistor",
                 grams: 0.2,
-                size: [2.6, 6.6, 2.6],
+                size: [2.6, 6.8, 2.6],
                 what: "resistor 10 kOhm, 0.25 W, from a servo's signal to ground",
                 place: "beside the signal strip, outside",
                 hold: "its own wires, screwed into the strip",
                 examples: [
-                    ("Yageo CFR-25JB-52-10K, carbon film", [2.4, 6.3, 2.4]),
-                    ("Yageo MFR-25FBF52-10K, metal film", [2.4, 6.3, 2.4]),
+                    Example::drawn("Yageo CFR-25JB-52-10K, carbon film", [2.6, 6.8, 2.6]),
+                    Example::drawn("Yageo MFR-25FBF52-10K, metal film", [2.6, 6.8, 2.6]),
                 ],
             },
             Self::Switch => FittingFacts {
@@ -195,8 +226,8 @@ impl Fitting {
                 place: "on the deck's right wing, rear end, lying on its side with the rocker outward",
                 hold: "foam tape, and a cable tie around the wing's end and through its slot",
                 examples: [
-                    ("KCD1-101, 6 A at 250 V AC", [26.0, 21.0, 15.0]),
-                    ("Marquardt 1801, 6 A at 250 V AC", [26.0, 21.0, 15.0]),
+                    Example::usual("KCD1-101, 6 A at 250 V AC", [25.0, 21.0, 15.0]),
+                    Example::usual("Marquardt 1801.1146", [26.0, 21.0, 15.0]),
                 ],
             },
             Self::Fuse => FittingFacts {
@@ -207,8 +238,8 @@ impl Fitting {
                 place: "on the deck's right wing, front half",
                 hold: "foam tape, and a cable tie through the wing's slots",
                 examples: [
-                    ("holder for mini blade fuses (ATM)", [10.0, 40.0, 13.5]),
-                    ("holder for glass fuses 5 x 20 mm", [13.0, 44.0, 13.0]),
+                    Example::usual("holder for mini blade fuses (ATM)", [10.0, 40.0, 13.5]),
+                    Example::usual("holder for glass fuses 5 x 20 mm", [13.0, 44.0, 13.0]),
                 ],
             },
             Self::Plug => FittingFacts {
@@ -219,8 +250,8 @@ impl Fitting {
                 place: "on the plate, before the battery, on edge",
                 hold: "foam tape on the battery's end",
                 examples: [
-                    ("XT30 pair", [26.0, 5.5, 10.5]),
-                    ("JST RCY (BEC) pair", [26.0, 6.0, 8.0]),
+                    Example::usual("Amass XT30U pair", [26.0, 5.2, 10.2]),
+                    Example::usual("JST RCY (BEC) pair", [26.0, 6.0, 8.0]),
                 ],
             },
             Self::RoundPlug => FittingFacts {
@@ -231,8 +262,8 @@ impl Fitting {
                 place: "in the UNO's round socket",
                 hold: "the socket; its wires in a cable tie at the deck",
                 examples: [
-                    ("moulded, with cable", [10.0, 36.0, 10.0]),
-                    ("with screw terminals", [14.0, 38.0, 12.5]),
+                    Example::usual("moulded, with cable", [10.0, 36.0, 10.0]),
+                    Example::usual("with screw terminals", [14.0, 38.0, 12.5]),
                 ],
             },
             Self::Strap => FittingFacts {
@@ -243,8 +274,8 @@ impl Fitting {
                 place: "around battery and plate, through the slots beside the battery",
                 hold: "itself",
                 examples: [
-                    ("hook-and-loop cable strap", [16.0, 150.0, 1.5]),
-                    ("non-slip battery strap, cut to length", [16.0, 150.0, 1.5]),
+                    Example::usual("hook-and-loop cable strap", [16.0, 150.0, 1.5]),
+                    Example::usual("non-slip battery strap, cut to length", [16.0, 150.0, 1.5]),
                 ],
             },
             Self::Radio => FittingFacts {
@@ -255,8 +286,8 @@ impl Fitting {
                 place: "on the deck's left wing, front half",
                 hold: "foam tape",
                 examples: [
-                    ("HM-10, bare board", [13.0, 27.0, 3.0]),
-                    ("HC-05 or HM-10 on a carrier", [16.0, 37.0, 7.0]),
+                    Example::drawn("HM-10, bare board", [13.0, 27.0, 2.2]),
+                    Example::usual("HC-05 or HM-10 on a carrier", [16.0, 37.0, 7.0]),
                 ],
             },
         }

@@ -39,10 +39,10 @@ fn both_products_named_for_a_fitting_go_into_the_room_of_its_body() {
                 };
                 let [low, high] = body.z();
                 let room = sorted([range(|at| at.x), range(|at| at.y), high - low]);
-                for (product, size) in facts.examples {
-                    let size = sorted(size);
+                for product in facts.examples {
+                    let size = sorted(product.size);
                     let fits = size.iter().zip(room).all(|(of, room)| *of <= room + 1e-9);
-                    assert!(fits, "{product}: {size:?} in {room:?}");
+                    assert!(fits, "{product} in {room:?}");
                 }
             }
         }
@@ -54,14 +54,33 @@ fn both_batteries_that_are_named_go_into_the_room_of_every_robots_battery() {
     for name in ROBOTS {
         let assembly = assembly(name, "");
         let room = assembly.robot().parts().battery;
-        for (product, size) in BATTERIES {
-            let fits = size.iter().zip(room).all(|(of, room)| *of <= room);
-            assert!(fits, "{name}: {product}: {size:?} in {room:?}");
-            assert!(places(room).contains(product));
+        for product in BATTERIES {
+            let fits = product.size.iter().zip(room).all(|(of, room)| *of <= room);
+            assert!(fits, "{name}: {product} in {room:?}");
+            assert!(places(room).contains(product.name));
         }
         // A room in which none fits names none.
-        assert!(!places([20.0, 30.0, 10.0]).contains(BATTERIES[0].0));
+        assert!(!places([20.0, 30.0, 10.0]).contains(BATTERIES[0].name));
     }
+}
+
+#[test]
+fn screws_and_nuts_that_are_drawn_have_the_sizes_of_their_standards() {
+    let screw = lizard_robot::Parts::default().screw;
+    // ISO 7380-1 for M3: head at most 5.70 x 1.65 mm; DIN 985: 5.5 mm over flats, 4.0 mm high.
+    assert_eq!([screw.diameter, screw.head], [3.0, 5.7]);
+    assert!((1.65..1.75).contains(&screw.head_height));
+    assert_eq!([screw.nut, screw.nut_height], [5.5, 4.0]);
+}
+
+#[test]
+fn a_size_of_which_no_drawing_was_found_is_marked() {
+    let [by_data_sheet, usual] = Fitting::Radio.facts().examples;
+    assert_eq!(
+        by_data_sheet.to_string(),
+        "HM-10, bare board: 13 x 27 x 2.2"
+    );
+    assert!(usual.to_string().ends_with(": ~16 x 37 x 7"), "{usual}");
 }
 
 #[test]

@@ -51,11 +51,14 @@ const SG90: ServoType = ServoType {
 };
 
 impl ServoType {
-    /// A servo with a fast digital controller.
+    /// The least and the greatest supply of servos, V.
+    pub const SUPPLIES: (f64, f64) = (2.0, 9.0);
+
+    /// A servo of the size of an SG-90 with a digital controller: Hitec's HS-5065MG.
     pub(crate) const DIGITAL: Self = Self {
         model: "digital",
-        source: "assumed: an MG90S with half the rotor, full torque at 1 deg and a dead band of 2 us",
-        s_per_60_deg: 0.1,
+        source: "Hitec's list for the HS-5065MG; dead band, rotor and full torque assumed",
+        s_per_60_deg: 0.14,
         dead_band_us: 2.0,
         spin_up_ms: 10.0,
         full_torque_deg: 1.0,
@@ -91,12 +94,12 @@ impl ServoType {
         };
         let number =
             |name, default, (min, max), unit| section.number_or(name, default, min, max, unit);
-        let at_volts = number("at_volts", base.at_volts, (2.0, 9.0), "V")?;
+        let at_volts = number("at_volts", base.at_volts, Self::SUPPLIES, "V")?;
         Ok(Self {
             stall_kg_cm: number("stall_kg_cm", base.stall_kg_cm, (0.1, 100.0), "kg cm")?,
             s_per_60_deg: number("s_per_60_deg", base.s_per_60_deg, (0.02, 2.0), "s")?,
             at_volts,
-            volts: number("volts", at_volts, (2.0, 9.0), "V")?,
+            volts: number("volts", at_volts, Self::SUPPLIES, "V")?,
             dead_band_us: number("dead_band_us", base.dead_band_us, (0.0, 100.0), "us")?,
             spin_up_ms: number("spin_up_ms", base.spin_up_ms, (0.5, 200.0), "ms")?,
             full_torque_deg: number("full_torque_deg", base.full_torque_deg, (0.1, 45.0), "deg")?,

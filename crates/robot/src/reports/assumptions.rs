@@ -17,6 +17,12 @@ const MIN_MOVEMENT: (f64, f64) = (1.0, 0.5);
 /// deg.
 const MIRROR_TOLERANCE: f64 = 0.02;
 
+/// Where the assumptions are that no input of the model varies.
+const BEYOND_THE_MODEL: &str = "\
+The model cannot vary the floor's edges and slopes, a lost pad, servos that drive in bursts, a mass centre farther off, \
+or the mass of the limbs.\n\
+docs/limits.md has a table of them by MuJoCo, for the paper's robot.";
+
 /// The inputs that an assumption varies.
 #[derive(Clone, Copy)]
 struct Inputs {
@@ -95,7 +101,7 @@ const ALL: [Assumption; 21] = assumptions! {
     "dead band of a servo", "us", 2.0 to 20.0, number(servo.dead_band_us);
     // A servo that trial 3 of docs/measure.md accepts: 11 or 9 us for each deg, not 10.
     "angle of the servos over the one sent", "", 0.91 to 1.11, number(scale);
-    "fast digital servos", "(0 no, 1 yes)", 0.0 to 1.0, case(|inputs| {
+    "digital servos", "(0 no, 1 yes)", 0.0 to 1.0, case(|inputs| {
         inputs.servo = ServoType {
             volts: inputs.servo.volts,
             ..ServoType::DIGITAL
@@ -280,13 +286,13 @@ impl fmt::Display for Assumptions {
                 .to_string()
         };
         let rest: Vec<String> = rest.into_iter().map(columns).collect();
-        match rest.is_empty() {
-            true => Ok(()),
-            false => writeln!(
+        if !rest.is_empty() {
+            writeln!(
                 f,
                 "\nLess than {MIN_CHANGE_PERCENT:.0} %:\n{}",
                 rest.join("\n")
-            ),
+            )?;
         }
+        writeln!(f, "\n{BEYOND_THE_MODEL}")
     }
 }

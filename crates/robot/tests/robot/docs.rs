@@ -1,6 +1,8 @@
 //! docs/gaits.md shows the output of the commands, docs/twin.md the cost of springs.
 
-use lizard_robot::{Assumptions, Drive, Ground, Kind, Report, Sensitivity, ServoTable, Walked};
+use lizard_robot::{
+    Assumptions, Drive, Effort, Ground, Kind, Report, Robot, Sensitivity, ServoTable, TIGHT, Walked,
+};
 
 use crate::{gait, paper};
 
@@ -107,4 +109,35 @@ fn the_page_on_the_twin_shows_the_cost_of_springs() {
         page.contains(&format!("| mass | {} g, what", ground.body.mass)),
         "{TWIN}"
     );
+}
+
+/// Makes a robot's row of the table of paces: the hardest gait at the supply at which the robot stops.
+fn half_pace(file: &str) -> String {
+    let path = format!("{}/../../robots/{file}.toml", env!("CARGO_MANIFEST_DIR"));
+    let robot = Robot::load(&path).unwrap_or_else(|error| panic!("{error}"));
+    let [own, _, stop] = robot.reported_volts();
+    let efforts = robot.gaits().iter().map(|gait| {
+        let effort = Effort::of(gait, robot.ground(), &robot.motors());
+        (gait.name(), effort)
+    });
+    let line = |effort: &Effort, pace| effort.line_share(pace, stop / own);
+    let (name, hardest) = efforts
+        .max_by(|(_, a), (_, b)| line(a, 1.0).total_cmp(&line(b, 1.0)))
+        .expect("a gait");
+    let [full, half] = [1.0, 0.5].map(|pace| line(&hardest, pace));
+    // A share of the line on a supply is the whole line on that share of the supply.
+    let enough = 100.0 * hardest.pace(TIGHT * stop / own);
+    format!("| `{file}` | `{name}` | {stop:.1} | {full:.2} | {half:.2} | {enough:.0} |\n")
+}
+
+#[test]
+#[ignore = "make docs-check: it takes most of a minute"]
+fn the_page_on_the_twin_shows_what_half_the_pace_leaves() {
+    let page = std::fs::read_to_string(TWIN).expect(TWIN);
+    let rows = ["paper", "own-gaits", "unequal", "large", "grain"].map(half_pace);
+    let text = format!(
+        "| file | hardest gait | V | its line at full pace | at half | pace for {TIGHT} of the line, % |\n|---|---|---|---|---|---|\n{}",
+        rows.concat()
+    );
+    check(TWIN, &page, &filled(&page, "half the pace", &text));
 }

@@ -139,11 +139,18 @@ fn servos_with_a_dead_band_are_predicted_to_lose_it() {
     for (copy, own) in copy.into_iter().zip(own) {
         assert!(copy > 1.3 * own, "a weaker servo uses more: {copy} {own}");
     }
-    // docs/gaits.md has these two, of half the pace and of all of it.
+    // docs/gaits.md has these two, of half the pace and of all of it, and that of 4 V.
     assert!(
         (own[9] - 0.45).abs() < 0.005 && (own[19] - 0.72).abs() < 0.005,
         "{own:?}"
     );
+    page.set_servos("own at 4.0");
+    let weak = page.predict(walk).and_then(|movement| movement.lines);
+    assert!((weak.expect("shares")[19] - 0.86).abs() < 0.005, "{weak:?}");
+    // No such supply: nothing changes.
+    page.set_servos("own at 12");
+    page.set_servos("own at a wall");
+    assert_eq!(page.predict(walk).and_then(|movement| movement.lines), weak);
 }
 
 #[test]

@@ -1,0 +1,224 @@
+// The robot driven before a camera, as a person would wish it: a world of its own with a robot that walks other than predicted, hands
+// that hide it, lines that get lost, and a link that is cut.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+
+import { source } from './source.js';
+
+const { Protocol } = await source('measure/protocol.ts');
+
+/** Moments in a second; way of the floor's tags from their middle, and beyond that to the end that the film still measures, mm. */
+const MOMENTS = 20;
+const TAGS = 210;
+const NEAR = 50;
+const BEYOND = 200;
+/** Time after which a robot that hears nothing stops, s. */
+const DEADMAN = 0.9;
+const WAYS = [
+  { command: 'walk', forward: 33, turn: 0.1 },
+  { command: 'back', forward: -30, turn: -0.1 },
+  { command: 'left', forward: 1, turn: 20 },
+  { command: 'arc left', forward: 22, turn: 7 },
+];
+
+/** Random numbers, the same in every run. */
+function randomOf(seed) {
+  let state = seed * 2654435761;
+  const random = () => {
+    state = (Math.imul(state, 1664525) + 1013904223) | 0;
+    return (state >>> 8) / 2 ** 24;
+  };
+  return { random, between: (low, high) => low + (high - low) * random(), from: (list) => list[Math.floor(random() * list.length)] };
+}
+
+class World {
+  seconds = 0;
+  place = { x: 0, y: 0, heading: 0 };
+  /** The gait under way and the cycles that are left of it, or what the robot does else. */
+  activity = 'stand';
+  left = 0;
+  phase = 0;
+  /** Ways over the predicted ones. */
+  factor = 1;
+  delay = 0.1;
+  isHidden = false;
+  isCut = false;
+  /** Lines that arrive at the robot, and those that were sent after the cut. */
+  lines = [];
+  late = [];
+  farthest = 0;
+  timers = [];
+  hands = 0;
+
+  constructor() {
+    this.protocol = new Protocol({
+      ask: (line) => this.ask(line),
+      now: () => this.seconds,
+      wait: (seconds) => this.wait(seconds),
+      ways: () => WAYS,
+      putBack: () => this.putBack(),
+      say: () => {},
+    });
+  }
+
+  wait(seconds) {
+    return new Promise((done) => this.timers.push({ due: this.seconds + seconds, done }));
+  }
+
+  get back() {
+    const { x, y, heading } = this.place;
+    const [ahead, aside] = [-x * Math.cos(heading) - y * Math.sin(heading), x * Math.sin(heading) - y * Math.cos(heading)];
+    return { ahead, aside, reach: TAGS + NEAR, isNear: Math.hypot(x, y) > TAGS + NEAR };
+  }
+
+  /** The robot acts at once, and its answer comes later. */
+  async ask(line) {
+    this.protocol.sent(line);
+    if (this.isCut) this.late.push(line);
+    else this.lines.push(line);
+    const [, gait = line, count] = /^(.+?) (\d+)$/.exec(line) ?? [];
+    const acts = gait !== 'speed';
+    if (acts && !this.isCut) [this.activity, this.left, this.phase] = [gait, Number(count), 0];
+    await this.wait(this.delay);
+    if (this.isCut) return this.wait(2).then(() => false);
+    if (acts) this.protocol.doing(gait);
+    return true;
+  }
+
+  async putBack() {
+    this.hands += 1;
+    await Promise.race([this.wait(3), new Promise((over) => (this.protocol.onEnd = over))]);
+    this.isHidden = false;
+    this.place = { x: 10, y: -15, heading: 2 };
+    await this.wait(0.2);
+  }
+
+  cut(isSaid) {
+    this.isCut = true;
+    if (isSaid === 'silent') this.protocol.stop('the robot is silent');
+    else this.protocol.doing('');
+    void this.wait(DEADMAN).then(() => (this.activity = 'stop'));
+  }
+
+  move() {
+    const way = WAYS.find(({ command }) => command === this.activity);
+    if (!way) return;
+    // Within a cycle a robot swings.
+    const forward = (way.forward * this.factor + 25 * Math.cos(2 * Math.PI * this.phase)) / MOMENTS;
+    const { place } = this;
+    place.heading += ((way.turn * Math.PI) / 180) / MOMENTS;
+    place.x += forward * Math.cos(place.heading);
+    place.y += forward * Math.sin(place.heading);
+    this.phase += 1 / MOMENTS;
+    if (this.phase < this.left - 1e-9) return;
+    this.activity = 'stop';
+    if (this.isCut) return;
+    this.protocol.received('# done');
+    this.protocol.doing('stop');
+  }
+
+  async moment() {
+    this.seconds += 1 / MOMENTS;
+    this.move();
+    this.farthest = Math.max(this.farthest, Math.hypot(this.place.x, this.place.y));
+    this.protocol.look(this.isHidden ? null : this.back);
+    const due = this.timers.filter((timer) => timer.due <= this.seconds);
+    this.timers = this.timers.filter((timer) => timer.due > this.seconds);
+    for (const { done } of due) done();
+    await new Promise(setImmediate);
+  }
+
+  /** Runs a plan to its end, and five seconds on; `happens` is called in each moment. Returns the reason of an early end. */
+  async run(plan, happens = () => {}) {
+    let [isOver, why] = [false, null];
+    this.protocol.look(this.back);
+    const over = this.protocol.run(plan).catch((error) => (why = error.message)).then(() => (isOver = true));
+    for (let after = 0; after < 5 * MOMENTS; after += isOver ? 1 : 0) {
+      assert.ok(this.seconds < 1000, `it goes on: ${this.lines}`);
+      happens();
+      await this.moment();
+    }
+    await over;
+    return why;
+  }
+}
+
+const PLAN = { gaits: ['walk', 'left', 'arc left', 'back', 'walk'], cycles: 8, speed: 100, pause: 1 };
+/** Some hundred worlds, each with random places, robots and answers. */
+async function worlds(count, act) {
+  for (let seed = 1; seed <= count; seed++) {
+    const chance = randomOf(seed);
+    const world = new World();
+    const [far, side] = [chance.between(0, TAGS + NEAR), chance.between(0, 2 * Math.PI)];
+    world.place = { x: far * Math.cos(side), y: far * Math.sin(side), heading: chance.between(0, 2 * Math.PI) };
+    world.delay = chance.between(0.01, 0.5);
+    await act(world, chance, seed);
+    const walks = WAYS.some(({ command }) => command === world.activity);
+    assert.ok(!walks, `world ${seed}: the robot goes on with ${world.activity}`);
+    assert.ok(world.farthest < TAGS + BEYOND, `world ${seed}: ${world.farthest} mm from the middle`);
+  }
+}
+
+test('a robot that goes as predicted walks every gait, from the middle all cycles of it, and hands are seldom needed', async () => {
+  let [hands, whole, all] = [0, 0, 0];
+  await worlds(60, async (world, _, seed) => {
+    assert.equal(await world.run(PLAN), null);
+    const { walks } = world.protocol;
+    assert.deepEqual(walks.map(({ gait }) => gait), PLAN.gaits, `world ${seed}`);
+    for (const [i, { during: [begin, end] }] of walks.entries()) {
+      assert.ok(i === 0 || begin > walks[i - 1].during[1] + PLAN.pause - 0.1);
+      assert.ok(end - begin < PLAN.cycles + 0.7, `world ${seed}: ${end - begin} s`);
+      whole += end - begin > PLAN.cycles - 0.1 ? 1 : 0;
+      all += 1;
+    }
+    hands += world.hands;
+  });
+  assert.ok(whole > 0.8 * all, `${whole} of ${all} walks have all cycles`);
+  assert.ok(hands < 0.5 * 60, `${hands}`);
+});
+
+test('a walk of many cycles ends at the end of the sheet, and the robot comes back by itself', async () => {
+  const world = new World();
+  assert.equal(await world.run({ ...PLAN, gaits: ['walk', 'walk'], cycles: 50 }), null);
+  assert.deepEqual(world.lines, ['speed 100', 'walk 50', 'stand', 'back 9', 'walk 50', 'stand']);
+  for (const { during: [begin, end] } of world.protocol.walks) assert.ok(end - begin > 7 && end - begin < 12, `${end - begin} s`);
+  assert.equal(world.hands, 0);
+});
+
+test('a robot that walks farther, less far or the other way, and is hidden now and then, does not leave the sheet', () =>
+  worlds(150, async (world, { random, from, between }) => {
+    world.factor = from([-1, 0.5, 1.2, between(0.8, 1.2)]);
+    const happens = () => {
+      if (random() < 0.005) world.isHidden = true;
+      else if (random() < 0.02) world.isHidden = false;
+    };
+    assert.equal(await world.run({ ...PLAN, cycles: from([4, 8, 20]) }, happens), null);
+  }));
+
+test('after a cut, a silence or a stop the robot is not driven, the reason is said, and what it walked is kept', () =>
+  worlds(150, async (world, { from, between }, seed) => {
+    const [what, when] = [from(['', 'silent', 'stop', 'left']), between(0.5, 60)];
+    let driven = null;
+    let seen = [];
+    const happens = () => {
+      if (driven !== null || world.seconds < when) return;
+      driven = world.lines.length;
+      seen = world.protocol.walks.slice();
+      if (what === '' || what === 'silent') world.cut(what);
+      else void world.ask(what === 'stop' ? what : 'left 3');
+    };
+    const why = await world.run({ ...PLAN, gaits: ['walk', 'back', 'walk', 'back', 'walk', 'back', 'walk'] }, happens);
+    const lines = [...world.lines.slice(driven), ...world.late].filter((line) => line !== 'stop');
+    assert.deepEqual(lines, what === 'left' ? ['left 3'] : [], `world ${seed}, ${what}`);
+    assert.match(why, { '': /cut/, silent: /silent/, stop: /stopped/, left: /the robot was sent "left 3"/ }[what]);
+    assert.deepEqual(world.protocol.walks.slice(0, seen.length), seen);
+    for (const { during: [begin, end] } of world.protocol.walks) assert.ok(begin <= end && end <= when + world.delay + 0.1, `world ${seed}: ${begin} to ${end} s`);
+  }));
+
+test('a camera that is switched off stops a robot that walks', async () => {
+  const world = new World();
+  const happens = () => world.seconds > 4 && world.activity === 'walk' && world.protocol.stop('the camera was switched off');
+  assert.equal(await world.run(PLAN, happens), 'the camera was switched off');
+  assert.deepEqual(world.lines, ['speed 100', 'walk 8', 'stop']);
+  assert.equal(world.protocol.walks.length, 1);
+});
