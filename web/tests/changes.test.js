@@ -194,7 +194,7 @@ test("the share of the servos' line is that of the robot's pace and of the servo
   };
   await shows(0.45, 0.48, 0.5, 0.45, 0.5, 0.5, 0.45, 0.45, 0.24);
   await type(opened, 'speed 100', 'ok speed 100');
-  await slide(opened, 'Supply of the servos', '4.2');
+  await setSlider(opened, 'Supply of the servos', '4.2');
   await opened.locator('#line-note.warning').waitFor();
   await opened.waitForFunction(() => [...document.querySelectorAll('#gaits .line')].at(-1).textContent > 'line 0.3');
   await shows(0.82, 0.91, 0.93, 0.82, 0.92, 0.92, 0.82, 0.82, 0.33);
