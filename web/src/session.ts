@@ -128,7 +128,7 @@ export class Session {
   /** The time of the robot's last line, on the page's clock, ms. */
   private lastLineAt = performance.now();
   /** Banners received: a board that restarts has lost its unsaved settings. */
-  beginnings = 0;
+  banners = 0;
   /** The firmware, which is the same for every robot. */
   private code: Uint8Array | null = null;
   private set: Floor | null = null;
@@ -461,7 +461,7 @@ export class Session {
 
   private greeted(line: string): void {
     const { dialogue } = this;
-    const beginning = ++this.beginnings;
+    const number = ++this.banners;
     this.doing('stand');
     this.setPace(FULL_PACE);
     this.watching = false;
@@ -473,7 +473,7 @@ export class Session {
     this.mayAsk = false;
     void this.link.wait(BOOTS).then(() => {
       // The board may have restarted meanwhile, or the boot loader may use the line.
-      if (this.beginnings !== beginning || dialogue.over) return;
+      if (this.banners !== number || dialogue.over) return;
       this.mayAsk = true;
       if (this.isReal && !this.watching) void this.watch();
     });

@@ -159,7 +159,7 @@ export class Setup implements Tools {
     const { guide } = this;
     if (guide?.isCurrent) {
       try {
-        if (await guide.takeBack()) message = 'The first connection was left: the robot has the calibration that it had before.';
+        if (await guide.restore()) message = 'The first connection was left: the robot has the calibration that it had before.';
       } catch (error) {
         message = `The first connection was left, and the robot may have a calibration that is not saved, until its reset: ${messageOf(error)}`;
       }
