@@ -120,7 +120,7 @@ async function start(): Promise<void> {
   const calibrate = new Calibrate(now);
   let writing = false;
   const writer = new Writer(now, (busy) => {
-    writing = health.held = busy;
+    writing = health.isPaused = busy;
     // The boot loader uses the line, so nothing else may take it.
     choice.enabled = !busy;
     connect.disabled = busy || !hasSerial();

@@ -133,18 +133,18 @@ export class Session {
   private code: Uint8Array | null = null;
   private set: Floor | null = null;
   private bootLoader: string | null = null;
-  private way: { time: number; frame: Frame }[] = [];
+  private path: { time: number; frame: Frame }[] = [];
   private time = 0;
   /** Time for which the robot was followed so far, s: simulated, or measured by a board's poses. */
   clock = 0;
   private step = FRAME_SECONDS;
   private onBanner: () => void = () => {};
   /** The board's firmware and robot; undefined until known. */
-  private there: BoardBanner | undefined;
+  private boardBanner: BoardBanner | undefined;
   /** True if a board without this firmware has the boot loader of a UNO. */
   hasLoader = false;
   /** True while a board on USB sends its poses. */
-  private watching = false;
+  private isWatching = false;
   /** Number of choices so far: a file that arrives after a later choice is dropped. */
   private choices = 0;
 
@@ -216,7 +216,7 @@ export class Session {
     this.description = answer;
     this.section = this.robot.section();
     this.robot.setFloor(this.floor);
-    this.way = [];
+    this.path = [];
     this.last = this.robot.pose(answer.servos.map(({ neutral }) => neutral) as Four<number>, 1);
     this.listener.robot(answer);
     return null;
@@ -227,7 +227,7 @@ export class Session {
     if (!this.isReal) await this.simulate(keepsSaved && this.link instanceof UnoLink ? this.link.board.eeprom : undefined);
     else {
       this.listener.link(this.link);
-      if (this.there !== undefined) this.listener.found(this.there);
+      if (this.boardBanner !== undefined) this.listener.found(this.boardBanner);
     }
   }
 
@@ -243,22 +243,22 @@ export class Session {
 
   /** True if this firmware answers. */
   get answers(): boolean {
-    return this.there !== undefined && this.there !== null;
+    return this.boardBanner !== undefined && this.boardBanner !== null;
   }
 
   /** The firmware and robot at the other end; undefined until known. */
   get has(): BoardBanner | undefined {
-    return this.there;
+    return this.boardBanner;
   }
 
   /** True if the board has exactly this robot. */
   get hasThis(): boolean {
-    return isBanner(this.there) && this.there.robot?.hash === this.description.hash;
+    return isBanner(this.boardBanner) && this.boardBanner.robot?.hash === this.description.hash;
   }
 
   /** The board's robot by its banner, where it is not the page's. */
   get otherRobot(): { name: string; hash: string } | null {
-    return isBanner(this.there) && !this.hasThis ? this.there.robot : null;
+    return isBanner(this.boardBanner) && !this.hasThis ? this.boardBanner.robot : null;
   }
 
   /** Time since the robot's last line, s. */
@@ -297,11 +297,11 @@ export class Session {
     // Opening a port on USB has reset the board. Bytes sent before its banner would go to the boot loader.
     const isRadio = link.kind === 'radio';
     const greeted = !isRadio && (await this.greeting());
-    for (let n = 0; !greeted && this.there === undefined && n < ASKS[link.kind]; n++) {
+    for (let n = 0; !greeted && this.boardBanner === undefined && n < ASKS[link.kind]; n++) {
       if (this.link === link && (await this.replies())) this.found('unknown');
     }
     if (this.link !== link) return false;
-    if (this.there) await this.watch();
+    if (this.boardBanner) await this.watch();
     else if (isRadio) this.silentModule(link);
     else await this.identify(link);
     return this.link === link;
@@ -322,7 +322,7 @@ export class Session {
     if (!isInReach) return;
     for (let n = 0; n < ASKS.radio && this.link === link; n++) {
       if ((await this.status()) === null) continue;
-      if (!this.there) this.found('unknown');
+      if (!this.boardBanner) this.found('unknown');
       this.listener.trouble('board', null);
       return this.watch();
     }
@@ -360,7 +360,7 @@ export class Session {
 
   /** Makes a board send its poses. */
   private async watch(): Promise<void> {
-    this.watching = true;
+    this.isWatching = true;
     await this.ask(`${WORDS.watch} ${WATCH[this.link.kind]}`);
   }
 
@@ -405,7 +405,7 @@ export class Session {
 
   /** Stops a board that is about to be disconnected; returns true if it confirms, or does not have this firmware. */
   async stop(): Promise<boolean> {
-    if (!this.isReal || !this.there) return true;
+    if (!this.isReal || !this.boardBanner) return true;
     const { link, dialogue } = this;
     const answer = dialogue.ask(WORDS.stop).catch(() => null);
     return Promise.race([answer, link.wait(STOPS)]).then(Boolean);
@@ -415,8 +415,8 @@ export class Session {
     this.dialogue?.end();
     await this.link?.close();
     this.link = link;
-    this.there = undefined;
-    this.watching = false;
+    this.boardBanner = undefined;
+    this.isWatching = false;
     this.mayAsk = false;
     this.listen();
     this.doing('');
@@ -464,7 +464,7 @@ export class Session {
     const number = ++this.banners;
     this.doing('stand');
     this.setPace(FULL_PACE);
-    this.watching = false;
+    this.isWatching = false;
     this.deadman.forget();
     this.listener.trouble('board', null);
     this.found(banner(line) ?? 'unknown');
@@ -475,18 +475,18 @@ export class Session {
       // The board may have restarted meanwhile, or the boot loader may use the line.
       if (this.banners !== number || dialogue.over) return;
       this.mayAsk = true;
-      if (this.isReal && !this.watching) void this.watch();
+      if (this.isReal && !this.isWatching) void this.watch();
     });
   }
 
   private found(has: BoardBanner): void {
-    this.there = has;
+    this.boardBanner = has;
     this.listener.found(has);
   }
 
   private setPace(percent: number): void {
     // A cycle at two paces does not count.
-    if (percent !== this.pace) this.way = [];
+    if (percent !== this.pace) this.path = [];
     this.pace = percent;
     this.listener.speed(percent);
   }
@@ -494,7 +494,7 @@ export class Session {
   private doing(gait: string): void {
     this.gait = gait;
     this.rests();
-    this.way = [];
+    this.path = [];
     this.listener.doing(gait);
   }
 
@@ -570,7 +570,7 @@ export class Session {
    * firmware is not the page's, and then nothing was written.
    */
   async flashRobot(progress: Progress): Promise<void> {
-    const { there, code, section, description } = this;
+    const { boardBanner: there, code, section, description } = this;
     if (!code) throw new Error('the firmware has not come yet');
     if (there === null) throw new Unfit('this firmware is not on the board: write firmware and robot');
     if (isBanner(there) && there.version !== description.version) {
@@ -587,8 +587,8 @@ export class Session {
       throw new Unfit(`a Nano has ${NANO_BOOT} bytes of flash before its boot section, and this takes ${piece.at + piece.bytes.length}; gaits can be left out until it fits`);
     }
     this.dialogue.end();
-    this.there = undefined;
-    this.watching = false;
+    this.boardBanner = undefined;
+    this.isWatching = false;
     this.mayAsk = false;
     try {
       await flash(link, piece, progress, under);
@@ -610,7 +610,7 @@ export class Session {
       this.listener.trouble('board', `What was written to the ${link.name} is not this firmware: it does not greet.`);
       return 'it does not greet as this firmware does';
     }
-    const has = isBanner(this.there) ? this.there.robot?.hash : null;
+    const has = isBanner(this.boardBanner) ? this.boardBanner.robot?.hash : null;
     return hash !== null && has !== hash ? 'but it does not say that it has this robot: write firmware and robot' : null;
   }
 
@@ -650,22 +650,22 @@ export class Session {
     this.time += seconds;
     this.step = seconds;
     this.last = frame;
-    this.way.push({ time: this.time, frame });
-    while (this.way[0].time < this.time - KEPT_SECONDS) this.way.shift();
+    this.path.push({ time: this.time, frame });
+    while (this.path[0].time < this.time - KEPT_SECONDS) this.path.shift();
     this.listener.frame(frame, widths, seconds);
   }
 
   /** Displacement in the last complete cycle of the gait; null before one is complete. */
   measured(): Measured | null {
     const gait = this.description.gaits.find(({ command }) => command === this.gait);
-    const now = this.way[this.way.length - 1];
+    const now = this.path[this.path.length - 1];
     if (!gait?.moves || !now) return null;
     // The nearest known frame: a board on USB does not send every frame.
     const start = now.time - (gait.period * FULL_PACE) / this.pace;
-    const from = this.way.findLastIndex(({ time }) => time <= start + this.step / 2);
+    const from = this.path.findLastIndex(({ time }) => time <= start + this.step / 2);
     if (from < 0) return null;
-    const lags = this.way.slice(from + 1).flatMap(({ frame }) => frame.lag.map(Math.abs));
-    const way = this.robot.between(this.way[from].frame.place, now.frame.place);
+    const lags = this.path.slice(from + 1).flatMap(({ frame }) => frame.lag.map(Math.abs));
+    const way = this.robot.between(this.path[from].frame.place, now.frame.place);
     return { ...way, lag: Math.max(0, ...lags) };
   }
 
@@ -677,7 +677,7 @@ export class Session {
   /** Takes the robot back to its start. */
   home(): void {
     this.robot.restart();
-    this.way = [];
+    this.path = [];
   }
 
   /** Floor, mass and leg drive: as set in the page, or else as in the file. */

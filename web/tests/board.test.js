@@ -89,7 +89,7 @@ test('a board with another robot of the list is reported, and one press shows it
   await opened.locator('#trouble', { hasText: 'is drawn and predicted here as large.toml with your changes' }).waitFor();
   await opened.evaluate(() => {
     const { lizard } = window;
-    lizard.there.robot.hash = '00000000';
+    lizard.boardBanner.robot.hash = '00000000';
     return lizard.change(lizard.toml.replace('period = 1.3', 'period = 1.35')).then(() => null);
   });
   await opened.locator('#trouble', { hasText: 'This page does not know it: open its robot.toml in Build, or write this one.' }).waitFor();

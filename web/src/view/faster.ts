@@ -29,7 +29,7 @@ export class FasterView {
   private readonly numbers = { rate: null as number | null, rounds: 5, seed: 1 };
   private search: FasterSearch | null = null;
   /** The gait to beat, and its trial. */
-  private beaten: Bars | null = null;
+  private reference: Bars | null = null;
   private before: Trial | null = null;
   private best: Best | null = null;
   /** The gait that the found one replaced. */
@@ -68,7 +68,7 @@ export class FasterView {
     if (!bars) return this.say('There is no gait to start from.');
     const { toml, floor, servos } = this.session();
     this.toml = toml;
-    this.beaten = bars;
+    this.reference = bars;
     this.before = this.best = null;
     this.result.hidden = true;
     this.start.textContent = WORDS.stop;
@@ -146,12 +146,12 @@ export class FasterView {
   }
 
   private async compare(): Promise<void> {
-    const { beaten, best } = this;
-    if (!beaten || !best) return;
+    const { reference, best } = this;
+    if (!reference || !best) return;
     const { robot, toml, isReal } = this.session();
     // This change only put the found gait into the robot, so the result stays.
     if (!isReal) this.toml = robot.putGait(toml, best.bars);
-    await this.edited.compare(beaten, best.bars, element('faster-ways'));
+    await this.edited.compare(reference, best.bars, element('faster-ways'));
   }
 
   private say(text: string): void {
