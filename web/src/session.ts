@@ -65,7 +65,7 @@ export interface Listener {
   /** Called when the robot's activity changes: a gait or a command. */
   doing(gait: string): void;
   /** Called when the board's firmware and robot are known. */
-  found(has: BoardBanner): void;
+  found(banner: BoardBanner): void;
   /** Called with the robot's pace, percent. */
   speed(percent: number): void;
   /** Called with each answer to `status`. */
@@ -93,7 +93,7 @@ export interface Measured {
 /** Start of a Nano's boot section (high fuse 0xDA). A UNO's begins 1.5 KB later. */
 const NANO_BOOT = 0x7800;
 
-const isBanner = (has: BoardBanner | undefined): has is Banner => typeof has === 'object' && has !== null;
+const isBanner = (banner: BoardBanner | undefined): banner is Banner => typeof banner === 'object' && banner !== null;
 
 export class Session {
   description!: Description;
@@ -247,18 +247,18 @@ export class Session {
   }
 
   /** The firmware and robot at the other end; undefined until known. */
-  get has(): BoardBanner | undefined {
+  get banner(): BoardBanner | undefined {
     return this.boardBanner;
   }
 
   /** True if the board has exactly this robot. */
-  get hasThis(): boolean {
+  get hasThisRobot(): boolean {
     return isBanner(this.boardBanner) && this.boardBanner.robot?.hash === this.description.hash;
   }
 
   /** The board's robot by its banner, where it is not the page's. */
   get otherRobot(): { name: string; hash: string } | null {
-    return isBanner(this.boardBanner) && !this.hasThis ? this.boardBanner.robot : null;
+    return isBanner(this.boardBanner) && !this.hasThisRobot ? this.boardBanner.robot : null;
   }
 
   /** Time since the robot's last line, s. */
@@ -276,13 +276,13 @@ export class Session {
     this.bootLoader ??= await files.bootLoader();
     const pins = this.description.servos.map(({ pin }) => pin);
     const board = new SimulatedBoard(this.image, this.bootLoader, this.description.rail, saved);
-    for (const [name, pin] of this.description.inputs) board.contact(pin, this.closed.has(name));
+    for (const [name, pin] of this.description.inputs) board.setContact(pin, this.closed.has(name));
     const events = {
       frame: (widths: Four<number>) => this.widths(widths),
       pulse: (pin: number, rise: number, width: number) => this.listener.pulse(pin, rise, width),
     };
     await this.attach(new UnoLink(board, pins, events));
-    this.simulated?.supply(this.volts);
+    this.simulated?.setSupply(this.volts);
   }
 
   /** Takes a board that the user has picked and identifies it; returns true if it is still there. Throws an error for the user. */
@@ -479,9 +479,9 @@ export class Session {
     });
   }
 
-  private found(has: BoardBanner): void {
-    this.boardBanner = has;
-    this.listener.found(has);
+  private found(banner: BoardBanner): void {
+    this.boardBanner = banner;
+    this.listener.found(banner);
   }
 
   private setPace(percent: number): void {
@@ -601,17 +601,17 @@ export class Session {
   }
 
   /** Waits for a board that was just written, with the robot of a hash if one is given; returns what is wrong, or null. */
-  async begins(hash: string | null): Promise<string | null> {
+  async waitForBanner(hash: string | null): Promise<string | null> {
     const { link } = this;
     const greeted = await this.greeting();
     if (this.link !== link) return null;
     if (!greeted) {
       this.found(null);
-      this.listener.trouble('board', `What was written to the ${link.name} is not this firmware: it does not greet.`);
-      return 'it does not greet as this firmware does';
+      this.listener.trouble('board', `What was written to the ${link.name} is not this firmware: it sends no banner.`);
+      return 'it sends no banner of this firmware';
     }
-    const has = isBanner(this.boardBanner) ? this.boardBanner.robot?.hash : null;
-    return hash !== null && has !== hash ? 'but it does not say that it has this robot: write firmware and robot' : null;
+    const found = isBanner(this.boardBanner) ? this.boardBanner.robot?.hash : null;
+    return hash !== null && found !== hash ? 'but it does not say that it has this robot: write firmware and robot' : null;
   }
 
   private get simulated(): Simulated | null {
@@ -703,12 +703,12 @@ export class Session {
     if (isClosed) this.closed.add(name);
     else this.closed.delete(name);
     const input = this.description.inputs.find(([other]) => other === name);
-    if (input) this.simulated?.contact(input[1], isClosed);
+    if (input) this.simulated?.setContact(input[1], isClosed);
   }
 
   setSupply(volts: number): void {
     this.volts = volts;
-    this.simulated?.supply(volts);
+    this.simulated?.setSupply(volts);
     this.keep();
   }
 }

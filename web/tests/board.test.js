@@ -80,7 +80,7 @@ test('a board with another robot of the list is reported, and one press shows it
   await offer.waitFor();
   assert.match(await text(opened, '#trouble'), /^The board on USB has another robot, large, and is drawn and predicted here as robot\.toml\./);
   await offer.click();
-  await opened.waitForFunction(() => window.lizard.file === 'large' && window.lizard.hasThis);
+  await opened.waitForFunction(() => window.lizard.file === 'large' && window.lizard.hasThisRobot);
   assert.match(await text(opened, '#where'), /^on a board on USB, robot large [0-9a-f]{8}$/);
   await opened.locator('#trouble', { hasText: 'another robot' }).waitFor({ state: 'detached' });
   assert.equal(await opened.evaluate(() => window.lizard.isReal), true);
@@ -186,7 +186,7 @@ test('a HEX file of another program is identified, and written only when the use
   await opened.locator('#flash-yes').click();
   await until(opened, 'it is written', async () => /^(not )?written/.test(await text(opened, '#flash-said')));
   await opened.clock.runFor(3000);
-  await opened.locator('#trouble', { hasText: 'is not this firmware: it does not greet.' }).waitFor();
+  await opened.locator('#trouble', { hasText: 'is not this firmware: it sends no banner.' }).waitFor();
   await opened.getByRole('button', { name: 'Write firmware and robot to it' }).waitFor();
 });
 

@@ -35,7 +35,7 @@ export class FasterView {
   /** The gait that the found one replaced. */
   private replaced: Bars | null = null;
   private toml = '';
-  private all = 0;
+  private total = 0;
   /** The WebAssembly module with the search, loaded on demand. */
   private module: Promise<WebAssembly.Module> | null = null;
 
@@ -83,12 +83,12 @@ export class FasterView {
 
   private handle(answer: Answer): void {
     switch (answer.of) {
-      case 'begun':
+      case 'start':
         this.before = answer.before;
-        this.all = this.bar.max = answer.all;
+        this.total = this.bar.max = answer.all;
         this.bar.value = 0;
         return this.say(`Trying ${answer.all} gaits whose servos turn at most ${answer.rate.toFixed(0)} °/s…`);
-      case 'tried':
+      case 'progress':
         this.bar.value = answer.done;
         return;
       case 'best':
@@ -103,7 +103,7 @@ export class FasterView {
     this.reset();
     if ('refused' in answer) return this.say(`This gait cannot be made faster: ${answer.refused}.`);
     const { best, done } = answer;
-    const tried = done < this.all ? `Stopped after ${done} of ${this.all} gaits. ` : '';
+    const tried = done < this.total ? `Stopped after ${done} of ${this.total} gaits. ` : '';
     if (best?.better) {
       this.show(best);
       const { comparison } = best;

@@ -128,7 +128,7 @@ export class Keep {
       this.moment.value = String(time);
       if (time >= recording.seconds) this.playing = null;
     }
-    return recording.at(this.moment.valueAsNumber)?.frame ?? now;
+    return recording.frameAt(this.moment.valueAsNumber)?.frame ?? now;
   }
 
   /** The current frame of the second robot. */

@@ -26,7 +26,7 @@ fn gait_frames(robot: &Robot, name: &str, count: u64) -> FrameLog {
 }
 
 #[test]
-fn an_angle_survives_the_way_through_a_pulse() {
+fn an_angle_survives_the_conversion_to_a_pulse_and_back() {
     let robot = robot();
     let pose = [120.0, 45.0, 300.0, 230.0];
     let log = frames_of(&robot, 2, |_| pose);
@@ -116,12 +116,12 @@ fn the_steps_of_a_path_add_up_to_the_path() {
             left: path.left.expect("it is decided"),
             turn: path.turn.expect("it is decided"),
         };
-        let apart = |a: Travel, b: Travel| {
+        let distance = |a: Travel, b: Travel| {
             (a.forward - b.forward).hypot(a.left - b.left) + (a.turn - b.turn).abs()
         };
-        assert!(apart(travel(all), whole) < 1e-6, "{all:?} {whole:?}");
+        assert!(distance(travel(all), whole) < 1e-6, "{all:?} {whole:?}");
         let both = followed_by(travel(first), travel(second));
-        assert!(apart(travel(all), both) < 1e-6);
+        assert!(distance(travel(all), both) < 1e-6);
     }
 }
 
