@@ -58,7 +58,7 @@ fn scripts() -> TempDir {
 }
 
 #[test]
-fn without_a_board_it_says_what_to_connect() {
+fn without_a_board_the_message_says_what_to_connect() {
     let (printed, goes_on) = check(folder().path());
     assert!(!goes_on);
     assert!(printed.contains("no board found"), "{printed}");
@@ -118,7 +118,7 @@ fn a_port_that_another_program_has_open_names_the_program() {
 }
 
 #[test]
-fn without_permission_it_says_which_group_to_join() {
+fn without_permission_the_message_says_which_group_to_join() {
     let ports = folder();
     let port = ports.path().join("ttyACM0");
     File::create(&port).expect("a file");

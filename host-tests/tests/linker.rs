@@ -94,7 +94,7 @@ fn result(image: &Image) -> u16 {
 }
 
 #[test]
-fn functions_that_lie_in_another_order_compute_the_same_in_fewer_bytes() {
+fn functions_in_another_order_compute_the_same_in_fewer_bytes() {
     let [(plain, _), (short, savings)] = link_both_ways(&far_calls(""));
     assert_eq!(result(&plain), far_sum());
     assert_eq!(result(&short), far_sum());
@@ -107,7 +107,7 @@ fn functions_that_lie_in_another_order_compute_the_same_in_fewer_bytes() {
 }
 
 #[test]
-fn functions_stay_where_they_are_if_one_of_them_needs_the_next_behind_it() {
+fn functions_stay_in_place_if_one_of_them_falls_through_into_the_next() {
     // A function without an end, one whose last instruction may be skipped, and one with a
     // branch of short reach.
     for end in ["subi r24, 5", "sbrs r24, 0\\n ret", "rjmp lower"] {

@@ -84,7 +84,7 @@ fn frames_small_and_large_count_and_so_does_a_jump_at_the_end_of_a_function() {
 }
 
 #[test]
-fn the_deepest_interrupt_is_on_top_once() {
+fn the_deepest_interrupt_counts_once() {
     let image = assembler(&format!(
         "jmp start
         .org 0x2c

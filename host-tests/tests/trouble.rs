@@ -33,7 +33,7 @@ fn trouble_at_any_moment_breaks_no_rule() {
 }
 
 #[test]
-fn a_scenario_is_made_of_its_seed_and_number_alone() {
+fn a_scenario_follows_from_its_seed_and_number_alone() {
     for number in 0..100 {
         let scenario = Scenario::of(7, number, patrolling());
         assert_eq!(scenario, Scenario::of(7, number, patrolling()));

@@ -1,5 +1,5 @@
 // The page's address holds a room and a robot, after the # where no server sees them: a link is a robot, and so is a bookmark.
-import { packed } from './link-text';
+import { pack } from './link-text';
 import type { Session } from './session';
 
 /** Changes closer together than this are written as one, ms: browsers refuse an address that changes too often. */
@@ -40,7 +40,7 @@ export class Address {
 
   private async show(): Promise<void> {
     const { toml, original, file } = this.session();
-    const robot = toml === original ? null : await packed(toml);
+    const robot = toml === original ? null : await pack(toml);
     // The robot may have changed meanwhile; a later call then shows it.
     if (this.session().toml !== toml) return;
     const parts = new URLSearchParams();

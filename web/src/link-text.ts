@@ -16,8 +16,8 @@ async function pipe(bytes: Uint8Array<ArrayBuffer>, stream: CompressionStream | 
   return new Uint8Array(await new Blob(pieces).arrayBuffer());
 }
 
-/** A robot.toml as the part `robot` of an address. */
-export async function packed(toml: string): Promise<string> {
+/** Returns a robot.toml as the part `robot` of an address. */
+export async function pack(toml: string): Promise<string> {
   const bytes = await pipe(new TextEncoder().encode(toml), new CompressionStream('deflate-raw'));
   const letters = btoa(String.fromCharCode(...bytes));
   // base64url, which needs no escapes in an address.
@@ -36,11 +36,11 @@ async function withoutComments(toml: string): Promise<string> {
 
 /** A link to this page that opens a robot, short enough for a chat or a QR code. */
 export async function linkTo(toml: string): Promise<string> {
-  return `${location.href.split('#')[0]}#robot=${await packed(await withoutComments(toml))}`;
+  return `${location.href.split('#')[0]}#robot=${await pack(await withoutComments(toml))}`;
 }
 
 /** Reads the robot.toml of the part `robot`. Throws an error for the user. */
-export async function unpacked(part: string): Promise<string> {
+export async function unpack(part: string): Promise<string> {
   try {
     const letters = atob(part.replaceAll('-', '+').replaceAll('_', '/'));
     const bytes = Uint8Array.from(letters, (letter) => letter.charCodeAt(0));

@@ -120,7 +120,7 @@ async function start(): Promise<void> {
   const calibrate = new Calibrate(now);
   let writing = false;
   const writer = new Writer(now, (busy) => {
-    writing = health.held = busy;
+    writing = health.isPaused = busy;
     // The boot loader uses the line, so nothing else may take it.
     choice.enabled = !busy;
     connect.disabled = busy || !hasSerial();
@@ -162,9 +162,9 @@ async function start(): Promise<void> {
 
   const session: Session = new Session(robot, {
     robot(description) {
-      scope.robot(description);
-      margins.robot(description);
-      maps.robot(robot);
+      scope.setRobot(description);
+      margins.setRobot(description);
+      maps.setRobot(robot);
       drive.showRobot(description);
       // A board that stays connected goes on with its gait.
       drive.doing(session.gait);
@@ -190,7 +190,7 @@ async function start(): Promise<void> {
     frame(frame, widths, seconds) {
       floor.addToTrack(frame.place);
       keep.frame(frame, widths, seconds);
-      if (frame.scene) maps.at(frame.scene);
+      if (frame.scene) maps.add(frame.scene);
       if (widths) scope.frame(widths);
     },
     pulse: (pin, rise, width) => {
@@ -219,8 +219,8 @@ async function start(): Promise<void> {
       routines.doing(gait);
       texts();
     },
-    found(has) {
-      element('where').textContent = whereOf(session.link.name, has, session.description.hash);
+    found(banner) {
+      element('where').textContent = whereOf(session.link.name, banner, session.description.hash);
       setup.update();
       void boardRobot.follow();
       // On a slow machine the predictions come before the robot's banner.
@@ -404,10 +404,10 @@ async function start(): Promise<void> {
 }
 
 /** The message that names the board and its robot. */
-function whereOf(name: string, has: BoardBanner, hash: string): string {
-  if (has === null) return `on a ${name} without this firmware`;
-  if (has === 'unknown') return `on a ${name} that has not restarted: press its reset button to see which robot it has`;
-  const { robot } = has;
+function whereOf(name: string, banner: BoardBanner, hash: string): string {
+  if (banner === null) return `on a ${name} without this firmware`;
+  if (banner === 'unknown') return `on a ${name} that has not restarted: press its reset button to see which robot it has`;
+  const { robot } = banner;
   if (!robot) return `on a ${name} with this firmware and no robot in it: write this one`;
   const known = `robot ${robot.name} ${robot.hash}`;
   return robot.hash === hash ? `on a ${name}, ${known}` : `on a ${name} with another robot, ${known}: choose that one, or write this one`;

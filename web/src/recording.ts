@@ -31,7 +31,7 @@ export class Recording {
   }
 
   /** The latest frame at a time, s. */
-  at(time: number): RecordedFrame | null {
+  frameAt(time: number): RecordedFrame | null {
     const after = this.moments.findIndex((moment) => moment.time > time + 1e-9);
     return this.moments[after < 0 ? this.moments.length - 1 : Math.max(0, after - 1)] ?? null;
   }

@@ -65,7 +65,7 @@ export interface Listener {
   /** Called when the robot's activity changes: a gait or a command. */
   doing(gait: string): void;
   /** Called when the board's firmware and robot are known. */
-  found(has: BoardBanner): void;
+  found(banner: BoardBanner): void;
   /** Called with the robot's pace, percent. */
   speed(percent: number): void;
   /** Called with each answer to `status`. */
@@ -93,7 +93,7 @@ export interface Measured {
 /** Start of a Nano's boot section (high fuse 0xDA). A UNO's begins 1.5 KB later. */
 const NANO_BOOT = 0x7800;
 
-const isBanner = (has: BoardBanner | undefined): has is Banner => typeof has === 'object' && has !== null;
+const isBanner = (banner: BoardBanner | undefined): banner is Banner => typeof banner === 'object' && banner !== null;
 
 export class Session {
   description!: Description;
@@ -128,23 +128,23 @@ export class Session {
   /** The time of the robot's last line, on the page's clock, ms. */
   private lastLineAt = performance.now();
   /** Banners received: a board that restarts has lost its unsaved settings. */
-  beginnings = 0;
+  banners = 0;
   /** The firmware, which is the same for every robot. */
   private code: Uint8Array | null = null;
   private set: Floor | null = null;
   private bootLoader: string | null = null;
-  private way: { time: number; frame: Frame }[] = [];
+  private path: { time: number; frame: Frame }[] = [];
   private time = 0;
   /** Time for which the robot was followed so far, s: simulated, or measured by a board's poses. */
   clock = 0;
   private step = FRAME_SECONDS;
   private onBanner: () => void = () => {};
   /** The board's firmware and robot; undefined until known. */
-  private there: BoardBanner | undefined;
+  private boardBanner: BoardBanner | undefined;
   /** True if a board without this firmware has the boot loader of a UNO. */
   hasLoader = false;
   /** True while a board on USB sends its poses. */
-  private watching = false;
+  private isWatching = false;
   /** Number of choices so far: a file that arrives after a later choice is dropped. */
   private choices = 0;
 
@@ -216,7 +216,7 @@ export class Session {
     this.description = answer;
     this.section = this.robot.section();
     this.robot.setFloor(this.floor);
-    this.way = [];
+    this.path = [];
     this.last = this.robot.pose(answer.servos.map(({ neutral }) => neutral) as Four<number>, 1);
     this.listener.robot(answer);
     return null;
@@ -227,7 +227,7 @@ export class Session {
     if (!this.isReal) await this.simulate(keepsSaved && this.link instanceof UnoLink ? this.link.board.eeprom : undefined);
     else {
       this.listener.link(this.link);
-      if (this.there !== undefined) this.listener.found(this.there);
+      if (this.boardBanner !== undefined) this.listener.found(this.boardBanner);
     }
   }
 
@@ -243,22 +243,22 @@ export class Session {
 
   /** True if this firmware answers. */
   get answers(): boolean {
-    return this.there !== undefined && this.there !== null;
+    return this.boardBanner !== undefined && this.boardBanner !== null;
   }
 
   /** The firmware and robot at the other end; undefined until known. */
-  get has(): BoardBanner | undefined {
-    return this.there;
+  get banner(): BoardBanner | undefined {
+    return this.boardBanner;
   }
 
   /** True if the board has exactly this robot. */
-  get hasThis(): boolean {
-    return isBanner(this.there) && this.there.robot?.hash === this.description.hash;
+  get hasThisRobot(): boolean {
+    return isBanner(this.boardBanner) && this.boardBanner.robot?.hash === this.description.hash;
   }
 
   /** The board's robot by its banner, where it is not the page's. */
   get otherRobot(): { name: string; hash: string } | null {
-    return isBanner(this.there) && !this.hasThis ? this.there.robot : null;
+    return isBanner(this.boardBanner) && !this.hasThisRobot ? this.boardBanner.robot : null;
   }
 
   /** Time since the robot's last line, s. */
@@ -276,13 +276,13 @@ export class Session {
     this.bootLoader ??= await files.bootLoader();
     const pins = this.description.servos.map(({ pin }) => pin);
     const board = new SimulatedBoard(this.image, this.bootLoader, this.description.rail, saved);
-    for (const [name, pin] of this.description.inputs) board.contact(pin, this.closed.has(name));
+    for (const [name, pin] of this.description.inputs) board.setContact(pin, this.closed.has(name));
     const events = {
       frame: (widths: Four<number>) => this.widths(widths),
       pulse: (pin: number, rise: number, width: number) => this.listener.pulse(pin, rise, width),
     };
     await this.attach(new UnoLink(board, pins, events));
-    this.simulated?.supply(this.volts);
+    this.simulated?.setSupply(this.volts);
   }
 
   /** Takes a board that the user has picked and identifies it; returns true if it is still there. Throws an error for the user. */
@@ -297,11 +297,11 @@ export class Session {
     // Opening a port on USB has reset the board. Bytes sent before its banner would go to the boot loader.
     const isRadio = link.kind === 'radio';
     const greeted = !isRadio && (await this.greeting());
-    for (let n = 0; !greeted && this.there === undefined && n < ASKS[link.kind]; n++) {
+    for (let n = 0; !greeted && this.boardBanner === undefined && n < ASKS[link.kind]; n++) {
       if (this.link === link && (await this.replies())) this.found('unknown');
     }
     if (this.link !== link) return false;
-    if (this.there) await this.watch();
+    if (this.boardBanner) await this.watch();
     else if (isRadio) this.silentModule(link);
     else await this.identify(link);
     return this.link === link;
@@ -322,7 +322,7 @@ export class Session {
     if (!isInReach) return;
     for (let n = 0; n < ASKS.radio && this.link === link; n++) {
       if ((await this.status()) === null) continue;
-      if (!this.there) this.found('unknown');
+      if (!this.boardBanner) this.found('unknown');
       this.listener.trouble('board', null);
       return this.watch();
     }
@@ -360,7 +360,7 @@ export class Session {
 
   /** Makes a board send its poses. */
   private async watch(): Promise<void> {
-    this.watching = true;
+    this.isWatching = true;
     await this.ask(`${WORDS.watch} ${WATCH[this.link.kind]}`);
   }
 
@@ -405,7 +405,7 @@ export class Session {
 
   /** Stops a board that is about to be disconnected; returns true if it confirms, or does not have this firmware. */
   async stop(): Promise<boolean> {
-    if (!this.isReal || !this.there) return true;
+    if (!this.isReal || !this.boardBanner) return true;
     const { link, dialogue } = this;
     const answer = dialogue.ask(WORDS.stop).catch(() => null);
     return Promise.race([answer, link.wait(STOPS)]).then(Boolean);
@@ -415,8 +415,8 @@ export class Session {
     this.dialogue?.end();
     await this.link?.close();
     this.link = link;
-    this.there = undefined;
-    this.watching = false;
+    this.boardBanner = undefined;
+    this.isWatching = false;
     this.mayAsk = false;
     this.listen();
     this.doing('');
@@ -461,10 +461,10 @@ export class Session {
 
   private greeted(line: string): void {
     const { dialogue } = this;
-    const beginning = ++this.beginnings;
+    const number = ++this.banners;
     this.doing('stand');
     this.setPace(FULL_PACE);
-    this.watching = false;
+    this.isWatching = false;
     this.deadman.forget();
     this.listener.trouble('board', null);
     this.found(banner(line) ?? 'unknown');
@@ -473,20 +473,20 @@ export class Session {
     this.mayAsk = false;
     void this.link.wait(BOOTS).then(() => {
       // The board may have restarted meanwhile, or the boot loader may use the line.
-      if (this.beginnings !== beginning || dialogue.over) return;
+      if (this.banners !== number || dialogue.over) return;
       this.mayAsk = true;
-      if (this.isReal && !this.watching) void this.watch();
+      if (this.isReal && !this.isWatching) void this.watch();
     });
   }
 
-  private found(has: BoardBanner): void {
-    this.there = has;
-    this.listener.found(has);
+  private found(banner: BoardBanner): void {
+    this.boardBanner = banner;
+    this.listener.found(banner);
   }
 
   private setPace(percent: number): void {
     // A cycle at two paces does not count.
-    if (percent !== this.pace) this.way = [];
+    if (percent !== this.pace) this.path = [];
     this.pace = percent;
     this.listener.speed(percent);
   }
@@ -494,7 +494,7 @@ export class Session {
   private doing(gait: string): void {
     this.gait = gait;
     this.rests();
-    this.way = [];
+    this.path = [];
     this.listener.doing(gait);
   }
 
@@ -570,7 +570,7 @@ export class Session {
    * firmware is not the page's, and then nothing was written.
    */
   async flashRobot(progress: Progress): Promise<void> {
-    const { there, code, section, description } = this;
+    const { boardBanner: there, code, section, description } = this;
     if (!code) throw new Error('the firmware has not come yet');
     if (there === null) throw new Unfit('this firmware is not on the board: write firmware and robot');
     if (isBanner(there) && there.version !== description.version) {
@@ -587,8 +587,8 @@ export class Session {
       throw new Unfit(`a Nano has ${NANO_BOOT} bytes of flash before its boot section, and this takes ${piece.at + piece.bytes.length}; gaits can be left out until it fits`);
     }
     this.dialogue.end();
-    this.there = undefined;
-    this.watching = false;
+    this.boardBanner = undefined;
+    this.isWatching = false;
     this.mayAsk = false;
     try {
       await flash(link, piece, progress, under);
@@ -601,17 +601,17 @@ export class Session {
   }
 
   /** Waits for a board that was just written, with the robot of a hash if one is given; returns what is wrong, or null. */
-  async begins(hash: string | null): Promise<string | null> {
+  async waitForBanner(hash: string | null): Promise<string | null> {
     const { link } = this;
     const greeted = await this.greeting();
     if (this.link !== link) return null;
     if (!greeted) {
       this.found(null);
-      this.listener.trouble('board', `What was written to the ${link.name} is not this firmware: it does not greet.`);
-      return 'it does not greet as this firmware does';
+      this.listener.trouble('board', `What was written to the ${link.name} is not this firmware: it sends no banner.`);
+      return 'it sends no banner of this firmware';
     }
-    const has = isBanner(this.there) ? this.there.robot?.hash : null;
-    return hash !== null && has !== hash ? 'but it does not say that it has this robot: write firmware and robot' : null;
+    const found = isBanner(this.boardBanner) ? this.boardBanner.robot?.hash : null;
+    return hash !== null && found !== hash ? 'but it does not say that it has this robot: write firmware and robot' : null;
   }
 
   private get simulated(): Simulated | null {
@@ -650,22 +650,22 @@ export class Session {
     this.time += seconds;
     this.step = seconds;
     this.last = frame;
-    this.way.push({ time: this.time, frame });
-    while (this.way[0].time < this.time - KEPT_SECONDS) this.way.shift();
+    this.path.push({ time: this.time, frame });
+    while (this.path[0].time < this.time - KEPT_SECONDS) this.path.shift();
     this.listener.frame(frame, widths, seconds);
   }
 
   /** Displacement in the last complete cycle of the gait; null before one is complete. */
   measured(): Measured | null {
     const gait = this.description.gaits.find(({ command }) => command === this.gait);
-    const now = this.way[this.way.length - 1];
+    const now = this.path[this.path.length - 1];
     if (!gait?.moves || !now) return null;
     // The nearest known frame: a board on USB does not send every frame.
     const start = now.time - (gait.period * FULL_PACE) / this.pace;
-    const from = this.way.findLastIndex(({ time }) => time <= start + this.step / 2);
+    const from = this.path.findLastIndex(({ time }) => time <= start + this.step / 2);
     if (from < 0) return null;
-    const lags = this.way.slice(from + 1).flatMap(({ frame }) => frame.lag.map(Math.abs));
-    const way = this.robot.between(this.way[from].frame.place, now.frame.place);
+    const lags = this.path.slice(from + 1).flatMap(({ frame }) => frame.lag.map(Math.abs));
+    const way = this.robot.between(this.path[from].frame.place, now.frame.place);
     return { ...way, lag: Math.max(0, ...lags) };
   }
 
@@ -677,7 +677,7 @@ export class Session {
   /** Takes the robot back to its start. */
   home(): void {
     this.robot.restart();
-    this.way = [];
+    this.path = [];
   }
 
   /** Floor, mass and leg drive: as set in the page, or else as in the file. */
@@ -703,12 +703,12 @@ export class Session {
     if (isClosed) this.closed.add(name);
     else this.closed.delete(name);
     const input = this.description.inputs.find(([other]) => other === name);
-    if (input) this.simulated?.contact(input[1], isClosed);
+    if (input) this.simulated?.setContact(input[1], isClosed);
   }
 
   setSupply(volts: number): void {
     this.volts = volts;
-    this.simulated?.supply(volts);
+    this.simulated?.setSupply(volts);
     this.keep();
   }
 }

@@ -47,7 +47,7 @@ for (const module of [HM10, NORDIC]) {
   });
 }
 
-test('a robot whose link is cut stands still, and the page goes on with it by itself', async () => {
+test('a robot whose link is cut stands still, and the page reconnects by itself', async () => {
   const opened = await openDriven(HM10);
   await radio.run(1000);
   const at = await now(opened);
@@ -66,7 +66,7 @@ test('a robot whose link is cut stands still, and the page goes on with it by it
   await radio.until('it walks again', async () => (await doing(opened)) === 'walk');
 });
 
-test('a trim that was set out of reach is shown as the robot has it, once it is heard again', async () => {
+test('a trim set while out of reach is shown with the robot\'s value once the robot answers again', async () => {
   radio = await Radio.near(HM10);
   const { opened } = radio;
   await radio.pick();
@@ -83,7 +83,7 @@ test('a trim that was set out of reach is shown as the robot has it, once it is 
   await radio.until('it is read again', async () => (await trim.inputValue()) === '0');
 });
 
-test('a stop that was pressed out of reach is the first thing that the robot hears', async () => {
+test('a stop pressed while out of reach is the first line that the robot receives', async () => {
   const opened = await openDriven(HM10);
   await radio.cut();
   await radio.run(300);
@@ -106,7 +106,7 @@ test('a module behind which no robot answers is named', async () => {
   assert.equal(await opened.getByRole('button', { name: 'Write firmware and robot to it' }).count(), 0);
 });
 
-test('who picks no module is told of no trouble', async () => {
+test('picking no Bluetooth module reports no problem', async () => {
   radio = await Radio.near(HM10);
   const { opened } = radio;
   await radio.pick(false);
@@ -121,7 +121,7 @@ test('a machine without Bluetooth says so', async () => {
   await radio.opened.locator('#trouble', { hasText: 'No board is connected: This machine has no Bluetooth, or it is switched off.' }).waitFor();
 });
 
-test('a browser that may not use Bluetooth says where to allow it', async () => {
+test('if Bluetooth is forbidden, the page says where to allow it', async () => {
   radio = await Radio.near(HM10, { allowed: false, robot: false });
   const { opened } = radio;
   await opened.locator('#radio').click();
@@ -144,7 +144,7 @@ test('a phone whose screen goes off stops its robot with its last line', async (
   assert.ok(last - at < 400, `it moved for ${last - at} ms`);
 });
 
-test('a phone that sleeps without a word leaves a robot that stands still, and is told of it when it wakes', async () => {
+test('when a phone falls asleep without notice, its robot stands still, and the page learns of it on waking', async () => {
   const opened = await openDriven(HM10);
   const at = await opened.evaluate(() => window.boardMs());
   await radio.sleep(3000);
@@ -155,7 +155,7 @@ test('a phone that sleeps without a word leaves a robot that stands still, and i
   assert.equal(await doing(opened), 'stop');
 });
 
-test('an iPhone is told which browser can, before anything is pressed', async () => {
+test('an iPhone\'s user is told which browser works, before pressing anything', async () => {
   const opened = await page({ userAgent: 'Mozilla/5.0 (iPhone; CPU iPhone OS 26_0 like Mac OS X) AppleWebKit/605.1.15' }, () => {
     for (const name of ['serial', 'bluetooth']) Object.defineProperty(navigator, name, { value: undefined });
     delete Object.getPrototypeOf(navigator).serial;
@@ -164,4 +164,4 @@ test('an iPhone is told which browser can, before anything is pressed', async ()
   assert.equal(await opened.locator('#radio').isVisible(), false);
 });
 
-test('nothing was complained of', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

@@ -22,7 +22,7 @@ async function openWalking() {
   return opened;
 }
 
-test('a new UNO is named after some seconds, and is given the firmware by one button', async () => {
+test('a new UNO is identified after some seconds, and one button writes the firmware', async () => {
   const opened = await openWithBoard(null, 8000);
   await opened.locator('#trouble', { hasText: 'The board is an Arduino UNO, an ATmega328P by its boot loader, and this firmware is not on it.' }).waitFor();
   assert.equal(await text(opened, '#where'), 'on a board on USB without this firmware');
@@ -39,7 +39,7 @@ test('a new UNO is named after some seconds, and is given the firmware by one bu
   await opened.locator('#log div', { hasText: 'ok watch 2' }).first().waitFor();
 });
 
-test('a board that nothing answers from is asked about', async () => {
+test('a board that does not answer leads to a question about it', async () => {
   const opened = await page({}, fakeSerial);
   await opened.evaluate(() => (window.flashed = null));
   await opened.locator('#connect').click();
@@ -49,7 +49,7 @@ test('a board that nothing answers from is asked about', async () => {
   await opened.locator('#trouble', { hasText: 'Is it the right port, and a UNO?' }).waitFor();
 });
 
-test('a board that its port does not reset is asked what it does, and followed', async () => {
+test('a board that its port does not reset is asked for its state and tracked', async () => {
   const opened = await page({}, fakeSerial);
   await opened.evaluate(() => (window.awake = true));
   await opened.locator('#connect').click();
@@ -74,13 +74,13 @@ test('a robot is chosen for a board that is connected, and the board stays', asy
   assert.ok(await opened.evaluate(() => window.lizard.isReal && window.lizard.last.place.y > 1), 'it is still followed');
 });
 
-test('a board with another robot of the list is said to be drawn as this one, and its own is one press away', async () => {
+test('a board with another robot of the list is reported, and one press shows its own robot', async () => {
   const opened = await openWithBoard('large', 8000);
   const offer = opened.locator('#trouble').getByRole('button', { name: 'Show large' });
   await offer.waitFor();
   assert.match(await text(opened, '#trouble'), /^The board on USB has another robot, large, and is drawn and predicted here as robot\.toml\./);
   await offer.click();
-  await opened.waitForFunction(() => window.lizard.file === 'large' && window.lizard.hasThis);
+  await opened.waitForFunction(() => window.lizard.file === 'large' && window.lizard.hasThisRobot);
   assert.match(await text(opened, '#where'), /^on a board on USB, robot large [0-9a-f]{8}$/);
   await opened.locator('#trouble', { hasText: 'another robot' }).waitFor({ state: 'detached' });
   assert.equal(await opened.evaluate(() => window.lizard.isReal), true);
@@ -89,13 +89,13 @@ test('a board with another robot of the list is said to be drawn as this one, an
   await opened.locator('#trouble', { hasText: 'is drawn and predicted here as large.toml with your changes' }).waitFor();
   await opened.evaluate(() => {
     const { lizard } = window;
-    lizard.there.robot.hash = '00000000';
+    lizard.boardBanner.robot.hash = '00000000';
     return lizard.change(lizard.toml.replace('period = 1.3', 'period = 1.35')).then(() => null);
   });
   await opened.locator('#trouble', { hasText: 'This page does not know it: open its robot.toml in Build, or write this one.' }).waitFor();
 });
 
-test('a board that is left has been stopped', async () => {
+test('disconnecting a board stops it', async () => {
   const opened = await openWalking();
   await opened.locator('#connect').click();
   await opened.clock.runFor(1500);
@@ -104,7 +104,7 @@ test('a board that is left has been stopped', async () => {
   assert.match(await text(opened, '#where'), /simulated UNO/);
 });
 
-test('a board that does not say that it stops is spoken of', async () => {
+test('a board that does not confirm the stop is reported', async () => {
   const opened = await openWalking();
   await opened.evaluate(() => (window.otherBoard.send = () => {}));
   await opened.locator('#connect').click();
@@ -125,7 +125,7 @@ test('a page that is closed while a board walks stops it, and the browser asks',
   await opened.locator('#log div', { hasText: /^ok stop$/ }).waitFor();
 });
 
-test('after a reset the board is followed again', async () => {
+test('after a reset the board is tracked again', async () => {
   const opened = await openWalking();
   const followed = await opened.locator('#log div', { hasText: /^ok watch 2$/ }).count();
   await opened.locator('#reset').click();
@@ -137,7 +137,7 @@ test('after a reset the board is followed again', async () => {
   await until(opened, 'the robot of the page has gone 5 mm', async () => (await place()) - before > 5);
 });
 
-test('a board that restarts in the middle of an answer is followed again', async () => {
+test('a board that restarts in the middle of an answer is tracked again', async () => {
   const opened = await openWithBoard('robot', 4000);
   await waitForLine(opened, /^ok watch 2$/);
   // The page asks for the status twice a second.
@@ -156,7 +156,7 @@ test('a board that restarts in the middle of an answer is followed again', async
   await waitForLine(opened, /^ok watch 2$/, 2);
 });
 
-test('pulses that a board does not show are not made up', async () => {
+test('pulses are not invented for a board that does not show them', async () => {
   const opened = await openWithBoard('robot', 5000);
   await unfold(opened, '#pulses');
   await opened.clock.runFor(500);
@@ -165,7 +165,7 @@ test('pulses that a board does not show are not made up', async () => {
   await opened.getByText('A board on USB does not show its pulses here.').waitFor();
 });
 
-test('a HEX file of another program is named, and written only when a person says so', async () => {
+test('a HEX file of another program is identified, and written only when the user confirms', async () => {
   const opened = await openWithBoard('robot', 8000);
   await unfold(opened, '#flash');
   // A program that loops forever: rjmp .-2.
@@ -186,8 +186,8 @@ test('a HEX file of another program is named, and written only when a person say
   await opened.locator('#flash-yes').click();
   await until(opened, 'it is written', async () => /^(not )?written/.test(await text(opened, '#flash-said')));
   await opened.clock.runFor(3000);
-  await opened.locator('#trouble', { hasText: 'is not this firmware: it does not greet.' }).waitFor();
+  await opened.locator('#trouble', { hasText: 'is not this firmware: it sends no banner.' }).waitFor();
   await opened.getByRole('button', { name: 'Write firmware and robot to it' }).waitFor();
 });
 
-test('nothing was complained of', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

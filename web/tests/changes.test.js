@@ -78,7 +78,7 @@ async function typeRefused(opened, key, value) {
 
 const length = (opened, name) => opened.evaluate((name) => window.lizard.description.lengths.find(({ key }) => key === name).value, name);
 
-test('a length is refused by what would happen to the robot, with the nearest that does', async () => {
+test('a refused length is explained by its effect on the robot, with the nearest valid one', async () => {
   const opened = await openStanding();
   await unfold(opened, '#lengths-panel');
   await opened.locator('#sketch circle').first().waitFor();
@@ -97,7 +97,7 @@ test('a length is refused by what would happen to the robot, with the nearest th
   assert.equal(await length(opened, 'links.l12'), nearest);
 });
 
-test('the gait that is in the way is dropped, and the length is taken', async () => {
+test('a button drops the gait that forbids a length, and the length is accepted', async () => {
   const opened = await openStanding();
   await unfold(opened, '#lengths-panel');
   await opened.locator('#sketch circle').first().waitFor();
@@ -111,14 +111,14 @@ test('the gait that is in the way is dropped, and the length is taken', async ()
   await opened.waitForFunction(() => window.lizard.description.gaits.some(({ name }) => name === 'look'));
 });
 
-test('a file of which nothing was changed is given as it is', async () => {
+test('an unchanged file is downloaded unchanged', async () => {
   const opened = await openStanding();
   await unfold(opened, '#lengths-panel');
   const own = await readFile(new URL('../dist/files/robot.toml', import.meta.url), 'utf8');
   assert.equal(await download(opened), own);
 });
 
-test('a reload keeps what was changed', async () => {
+test('a reload keeps the user\'s changes', async () => {
   const opened = await openChanged();
   await opened.locator('#servos').selectOption('ideal');
   await opened.reload();
@@ -137,7 +137,7 @@ test('a reload keeps what was changed', async () => {
   assert.equal(await opened.locator('#mass').inputValue(), '412');
 });
 
-test('changes of a file that is another now are not taken, and that is said', async () => {
+test('stored changes to a file that has changed since are dropped, with a message', async () => {
   const opened = await openChanged();
   await opened.evaluate(() => {
     const key = Object.keys(localStorage)[0];
@@ -154,7 +154,7 @@ test('changes of a file that is another now are not taken, and that is said', as
   assert.deepEqual([readNumber(lost, 'leg', 'crank'), readNumber(lost, 'body', 'mass')], [40, 412], 'they are not lost');
 });
 
-test('the pace slider has what the robot has, after a typed line and after a reset', async () => {
+test('the pace slider shows the robot\'s pace after a typed line and after a reset', async () => {
   const opened = await openStanding();
   await advance(opened, 3000);
   await type(opened, 'speed 35', 'ok speed 35');
@@ -194,7 +194,7 @@ test("the share of the servos' line is that of the robot's pace and of the servo
   };
   await shows(0.45, 0.48, 0.5, 0.45, 0.5, 0.5, 0.45, 0.45, 0.24);
   await type(opened, 'speed 100', 'ok speed 100');
-  await slide(opened, 'Supply of the servos', '4.2');
+  await setSlider(opened, 'Supply of the servos', '4.2');
   await opened.locator('#line-note.warning').waitFor();
   await opened.waitForFunction(() => [...document.querySelectorAll('#gaits .line')].at(-1).textContent > 'line 0.3');
   await shows(0.82, 0.91, 0.93, 0.82, 0.92, 0.92, 0.82, 0.82, 0.33);
@@ -203,7 +203,7 @@ test("the share of the servos' line is that of the robot's pace and of the servo
   assert.equal(await opened.getByLabel('Supply of the servos').inputValue(), '4.8');
 });
 
-test('what moves nothing with rigid legs and ideal servos says so and cannot be set', async () => {
+test('sliders without an effect on rigid legs with ideal servos are disabled, with a note', async () => {
   const opened = await openStanding();
   for (const panel of ['#world', '#power']) await unfold(opened, panel);
   const note = opened.getByText('The legs are rigid, the servos ideal, and the feet stand evenly: friction and mass cancel out');
@@ -225,7 +225,7 @@ test('what moves nothing with rigid legs and ideal servos says so and cannot be 
   for (const label of ['Pad friction', 'Mass', 'Pull in the strut']) assert.ok(await opened.getByLabel(label).isEnabled(), label);
 });
 
-test('what is predicted of a robot comes with the page while it is as its file has it, and is made for every other', async () => {
+test('predictions come with the page for an unchanged robot, and are computed for any other', async () => {
   const opened = await openStanding();
   const made = () => opened.workers().filter((worker) => worker.url().includes('predictor-worker')).length;
   const notes = () => opened.locator('#gaits button[data-command] small').allInnerTexts();
@@ -257,4 +257,4 @@ test('what is predicted of a robot comes with the page while it is as its file h
   await opened.waitForFunction((walk) => document.querySelector('#gaits button[data-command="walk"] small').textContent === walk, walk);
 });
 
-test('nothing was complained of', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

@@ -34,7 +34,7 @@ const waitForEnd = (page) => page.waitForFunction(() => document.querySelector('
 /** Waits until a number of gaits have been tried. */
 const waitForTries = (page, count) => page.waitForFunction((count) => document.querySelector('#faster-progress').value >= count, count);
 
-test('it finds the gait that lizard tune finds with the same seed, which is tried and undone', async () => {
+test('the search finds the same gait as lizard tune with the same seed, which can be tried and undone', async () => {
   const page = await openEditor();
   const loaded = [];
   page.on('request', (request) => loaded.push(new URL(request.url()).pathname));
@@ -74,7 +74,7 @@ test('it finds the gait that lizard tune finds with the same seed, which is trie
   await page.waitForFunction(() => !window.lizard.toml.includes('[gait.mine]'));
 });
 
-test('stopped midway it has the best so far, and the page can search again', async () => {
+test('a search stopped midway returns the best gait so far, and the page can search again', async () => {
   const page = await openEditor({ rounds: 200 });
   await start(page);
   await waitForTries(page, 21);
@@ -94,7 +94,7 @@ test('stopped midway it has the best so far, and the page can search again', asy
   await waitForEnd(page);
 });
 
-test('what was found walks beside what there was, and goes as much farther as was promised', async () => {
+test('the found gait walks beside the previous one, and goes farther by the promised share', async () => {
   const page = await openEditor({ rounds: 200 });
   await page.locator('#solid').click();
   await start(page);
@@ -120,7 +120,7 @@ test('what was found walks beside what there was, and goes as much farther as wa
   assert.equal((await page.evaluate(() => window.lizard.toml)).match(/\[gait\.mine\]/g).length, 1);
 });
 
-test('of a turn the page shows the way round of both, and what was found turns as much faster as was promised', async () => {
+test('for a turn the page shows both angles, and the found gait turns faster by the promised share', async () => {
   const page = await openEditor({ gait: 'left', rounds: 200 });
   // The search cannot surpass the robot's own turn, so it starts from one with half the stroke in front.
   for (const [leg, share] of [['LF', '-0.5'], ['RF', '0.5']]) {
@@ -149,7 +149,7 @@ test('of a turn the page shows the way round of both, and what was found turns a
   assert.ok(Number(far) > 360, `${far} is more than a whole turn`);
 });
 
-test('a robot that is changed midway ends the search of the one of before', async () => {
+test('changing the robot ends a search for the previous one', async () => {
   const page = await openEditor({ rounds: 200 });
   await start(page);
   await waitForTries(page, 1);
@@ -171,7 +171,7 @@ test('a gait that cannot be made faster says so', async () => {
   assert.ok(await page.locator('#faster-result').isHidden());
 });
 
-test('what cannot be searched is refused with a message, and a number out of range is not taken', async () => {
+test('an impossible search is refused with a message, and a number out of range is ignored', async () => {
   const page = await openEditor({ gait: 'arc-left' });
   await start(page);
   await waitForEnd(page);
@@ -188,7 +188,7 @@ test('what cannot be searched is refused with a message, and a number out of ran
   assert.equal(await rate.inputValue(), '900', 'the last one that was taken');
 });
 
-test('it is used by the keyboard alone, fits a phone, and axe-core finds nothing in what it shows', async () => {
+test('the room works by keyboard alone, fits a phone, and axe-core finds nothing in it', async () => {
   const page = await openEditor({ rounds: 200 }, { viewport: { width: 320, height: 640 }, bypassCSP: true });
   await page.getByLabel('Seed of the random numbers').focus();
   await page.keyboard.press('Tab');
@@ -205,4 +205,4 @@ test('it is used by the keyboard alone, fits a phone, and axe-core finds nothing
   assert.equal(await page.evaluate(() => document.activeElement.id), 'faster-start', 'the focus stays');
 });
 
-test('nothing was complained of', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

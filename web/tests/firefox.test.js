@@ -13,7 +13,7 @@ const click = (opened, selector) => opened.evaluate((selector) => document.query
 const text = (opened, selector) => opened.evaluate((selector) => document.querySelector(selector).textContent, selector);
 const place = (opened) => opened.evaluate(() => window.lizard.last.place);
 
-test('the image of the board walks the predicted way, and Esc stops it', async () => {
+test('the image walks as predicted, and Esc stops it', async () => {
   const opened = await openStanding();
   assert.match(await text(opened, '#where'), /^on a simulated UNO, robot [a-z-]+ [0-9a-f]{8}$/);
   await click(opened, '#gaits button[data-command="walk"]');
@@ -27,7 +27,7 @@ test('the image of the board walks the predicted way, and Esc stops it', async (
   await assertStops(opened);
 });
 
-test('it says that no board can be connected exactly where this Firefox has no Web Serial', async () => {
+test('the page says that no board can be connected exactly if this Firefox lacks Web Serial', async () => {
   const opened = await openStanding();
   const { has, note, isOff } = await opened.evaluate(() => ({
     has: typeof navigator.serial?.requestPort === 'function',
@@ -76,4 +76,4 @@ test('once opened, it walks without a server', async () => {
   assert.ok((await place(opened)).y > 20);
 });
 
-test('nothing was complained of', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

@@ -32,7 +32,7 @@ async function drag(page, ring, from, to) {
   await page.mouse.up();
 }
 
-test('a gait to begin with is predicted as its button of Drive is', async () => {
+test('the editor\'s prediction of an unchanged gait is that of its button in Drive', async () => {
   const page = await openEditor();
   const button = page.locator('#gaits button[data-command="walk"] small');
   await page.waitForFunction(() => document.querySelector('#gaits button[data-command="walk"] small').textContent !== '');
@@ -55,7 +55,7 @@ test('a bar and its end are dragged, and the numbers follow', async () => {
   await page.waitForFunction((way) => document.querySelector('#gait-way').textContent === way, before);
 });
 
-test('a gait that is being made is there after a reload, and a stored one that is none is dropped', async () => {
+test('an edited gait survives a reload, and an invalid stored one is dropped', async () => {
   const page = await openEditor();
   await page.locator('#gait-name').fill('waddle');
   await page.getByLabel('LF starts at').fill('0.35');
@@ -76,7 +76,7 @@ test('a gait that is being made is there after a reload, and a stored one that i
   }
 });
 
-test('what would break a limit is refused, and a button has the nearest value that would do', async () => {
+test('a value that breaks a limit is refused, and a button offers the nearest valid one', async () => {
   const page = await openEditor();
   await page.locator('#gait-amplitude').fill('40');
   const button = page.locator('#gait-instead button', { hasText: 'Amplitude' });
@@ -93,7 +93,7 @@ test('what would break a limit is refused, and a button has the nearest value th
   await button.waitFor();
 });
 
-test('a number out of its range is marked and not taken, and is gone when it is left', async () => {
+test('a number out of range is marked and ignored, and restored when the box is left', async () => {
   const page = await openEditor();
   const table = await text(page, 'table');
   for (const [input, wrong, own] of [
@@ -113,7 +113,7 @@ test('a number out of its range is marked and not taken, and is gone when it is 
   assert.equal(await text(page, 'table'), table.replace('mine', 'other'));
 });
 
-test('a gait that is tried walks as far as was predicted, and stands in robot.toml', async () => {
+test('an edited gait walks as far as predicted, and is written into robot.toml', async () => {
   const page = await openEditor();
   const before = await text(page, 'way');
   await page.locator('#gait-name').fill('stride');
@@ -135,7 +135,7 @@ test('a gait that is tried walks as far as was predicted, and stands in robot.to
   await page.waitForFunction(() => !window.lizard.toml.includes('[gait.stride]'));
 });
 
-test('a gait that walks back can be changed, and any gait is turned round', async () => {
+test('a backward gait can be edited, and any gait reversed', async () => {
   const page = await openEditor();
   const ahead = Number.parseFloat(await text(page, 'way'));
   await page.getByRole('button', { name: 'Reverse' }).click();
@@ -162,4 +162,4 @@ test('left and right are exchanged', async () => {
   assert.ok(Math.abs(turn + Number.parseFloat(await text(page, 'turn'))) < 0.2);
 });
 
-test('nothing was complained of', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

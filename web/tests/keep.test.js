@@ -62,7 +62,7 @@ test('the table of a run has its poses, places and pulses, frame by frame', asyn
   assert.ok(last > 0, 'a pose of the session is in it');
 });
 
-test('a run is seen again from any moment, while the robot goes on', async () => {
+test('a run is replayed from any moment, while the robot continues', async () => {
   const page = await openKeep();
   await type(page, 'walk', 'ok walk');
   await button(page, 'Record').click();
@@ -128,4 +128,4 @@ test('two robots walk side by side, each as far as its gait leads alone', async 
   assert.equal(await said.innerText(), '');
 });
 
-test('nothing was complained of', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

@@ -23,7 +23,7 @@ class FakeWorker {
   }
 }
 
-test('what is asked while the worker is at work is answered last, and what was asked before that not at all', async () => {
+test('of the questions asked while the worker is busy only the last is answered', async () => {
   const worker = new FakeWorker();
   const said = [];
   const questions = new LatestQuestion(worker, 'module', (answer) => said.push(answer));
@@ -35,7 +35,7 @@ test('what is asked while the worker is at work is answered last, and what was a
   assert.deepEqual(said, ['answer to first', 'answer to third']);
 });
 
-test('who asks when an answer comes is answered after what was waiting, or in its place', async () => {
+test('a question asked when an answer arrives replaces the waiting one, or is answered after it', async () => {
   const worker = new FakeWorker();
   const said = [];
   const questions = new LatestQuestion(worker, 'module', (answer) => {

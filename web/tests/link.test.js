@@ -57,7 +57,7 @@ test('stop goes out at once, and a line that waits behind a lost answer is not s
   assert.equal(await text(opened, '#doing'), 'stop');
 });
 
-test('a stop that is lost is sent again until it is answered, and the page is red until then', async () => {
+test('a lost stop is sent again until it is answered, and the page is red until then', async () => {
   const opened = await openWalking();
   await dropLines(opened, []);
   await opened.keyboard.press('Escape');
@@ -85,7 +85,7 @@ test('a robot that rests is not asked to stop again', async () => {
   assert.equal(await isStopping(opened), false);
 });
 
-test('the beginning of a refusal that a radio has cut off is no answer to stop', async () => {
+test('a refusal that a radio has cut off is no answer to stop', async () => {
   const opened = await openWalking();
   await dropLines(opened, ['stop']);
   await opened.keyboard.press('Escape');
@@ -98,7 +98,7 @@ test('the beginning of a refusal that a radio has cut off is no answer to stop',
   await until(opened, 'it is answered', async () => !(await isStopping(opened)));
 });
 
-test('the answers to a stop that was sent often are not those of the next lines', async () => {
+test('answers to repeated stops are not taken for answers to the next lines', async () => {
   const opened = await openWalking();
   await opened.evaluate(() => {
     const board = window.otherBoard;
@@ -116,7 +116,7 @@ test('the answers to a stop that was sent often are not those of the next lines'
   assert.equal(await text(opened, '#doing'), 'stop');
 });
 
-test('a robot that is silent for 0.8 s is said to be, and for how long', async () => {
+test('a robot that is silent for 0.8 s is reported, with the time', async () => {
   const opened = await openWalking();
   await dropLines(opened, []);
   await opened.evaluate(() => (window.otherBoard.onByte = () => {}));
@@ -126,7 +126,7 @@ test('a robot that is silent for 0.8 s is said to be, and for how long', async (
   await opened.locator('#age', { hasText: /^[12]\.\d s ago$/ }).waitFor();
 });
 
-test('a gait that ended while nothing was heard is shown as ended', async () => {
+test('a gait that ended during a silence is shown as ended', async () => {
   const opened = await openWalking();
   await opened.evaluate(() => {
     const board = window.otherBoard;
@@ -177,7 +177,7 @@ async function isMoving(opened, ms) {
   return seen.some((widths) => widths.some((width, servo) => Math.abs(width - seen[0][servo]) > 1));
 }
 
-test('while a person drives, the board has a deadman and hears a line in every third of it', async () => {
+test('while a user drives, deadman is set, and a line is sent within every third of it', async () => {
   const opened = await openWalking();
   const lines = (await receivedText(opened)).split('\n');
   assert.ok(lines.indexOf('deadman 901') > 0 && lines.indexOf('deadman 901') < lines.indexOf('walk'), 'before it walks');
@@ -189,7 +189,7 @@ test('while a person drives, the board has a deadman and hears a line in every t
   assert.ok(!(await text(opened, '#log')).includes('deadman 901'), 'it is not shown');
 });
 
-test('a robot out of reach stands still, and says why when it is heard again', async () => {
+test('a robot out of reach stands still, and reports why when it is in reach again', async () => {
   const opened = await openWalking();
   assert.ok(await isMoving(opened, 500));
   await dropLines(opened, []);
@@ -201,7 +201,7 @@ test('a robot out of reach stands still, and says why when it is heard again', a
   await opened.locator('#log div', { hasText: '# fault: no line for as long as deadman says' }).waitFor();
 });
 
-test('a robot that its person has stopped has its own deadman again', async () => {
+test('stopping the robot restores its own deadman', async () => {
   const opened = await openWithBoard('robot', 8000);
   await type(opened, 'deadman 5000');
   await opened.locator('#gaits button[data-command="walk"]').click();
@@ -216,7 +216,7 @@ test('a robot that its person has stopped has its own deadman again', async () =
   assert.match(await receivedText(opened), /deadman 901\n[^]*save\n[^]*deadman 901\n[^]*stop\n[^]*deadman 5000\n(status\n)*$/);
 });
 
-test('a deadman that a page has left behind is not taken for the robot\'s own', async () => {
+test('a deadman left behind by a page is not taken for the robot\'s own', async () => {
   const opened = await openWithBoard('robot', 8000);
   await opened.evaluate(() => window.otherBoard.send([...'deadman 901\n'].map((letter) => letter.charCodeAt(0))));
   await opened.clock.runFor(500);
@@ -245,7 +245,7 @@ test('an HC-05 at 9600 baud, which the system knows as a serial port, is driven 
   await until(opened, 'it stops', async () => (await text(opened, '#doing')) === 'stop');
 });
 
-test('a page that nobody sees lets go', async () => {
+test('a hidden page releases the robot', async () => {
   const opened = await openWalking();
   await opened.evaluate(() => {
     Object.defineProperty(document, 'hidden', { value: true });
@@ -255,7 +255,7 @@ test('a page that nobody sees lets go', async () => {
   assert.equal(await opened.evaluate(() => window.lizard.gait), 'stop');
 });
 
-test('a page that nobody sees sends no more of what keeps a robot walking', async () => {
+test('a hidden page stops sending the lines that keep a robot walking', async () => {
   const opened = await openWalking();
   await dropLines(opened, ['stop']);
   await opened.evaluate(() => {
@@ -266,4 +266,4 @@ test('a page that nobody sees sends no more of what keeps a robot walking', asyn
   assert.equal(await isMoving(opened, 500), false);
 });
 
-test('nothing was complained of', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

@@ -85,7 +85,7 @@ function assertTrue(report) {
   }
 }
 
-test('the page drives the simulated robot before a camera, and measures the gait in the film, as the command does', async () => {
+test('the page drives the simulated robot before a camera, and measures the gait in the film as the command does', async () => {
   await openWithCamera(join(walk, 'film.y4m'));
   const opened = await openRoom({ acceptDownloads: true });
   await startDriving(opened, ['walk'], 5);
@@ -107,7 +107,7 @@ test('the page drives the simulated robot before a camera, and measures the gait
   assert.deepEqual([...(await download(opened, 'png')).subarray(1, 4)], [...Buffer.from('PNG')]);
 });
 
-test('a film file that the browser recorded is measured, and again for another gait', async () => {
+test('a film file recorded by the browser is measured, and again for another gait', async () => {
   await openWithCamera(join(walk, 'film.y4m'));
   const recorder = await openBlank();
   await recorder.goto(address());
@@ -141,7 +141,7 @@ test('a film file that the browser recorded is measured, and again for another g
   await waitForMessage(opened, 'said', /^words\.mp4 is no film that this browser can play/);
 });
 
-test('somebody else drives: what is recorded until Done is measured', async () => {
+test('if another program drives, the film recorded until Done is measured', async () => {
   await openWithCamera(join(walk, 'film.y4m'));
   const opened = await openRoom({ acceptDownloads: true });
   await switchCameraOn(opened);
@@ -152,7 +152,7 @@ test('somebody else drives: what is recorded until Done is measured', async () =
   assertTrue(JSON.parse(await download(opened, 'json')).gaits[0]);
 });
 
-test('a hidden tag is named while the camera looks, and no figure is made', async () => {
+test('a hidden tag is named while the camera is on, and no figure is computed', async () => {
   await openWithCamera(join(renderFilm('hidden', 640, 1, 2), 'film.y4m'));
   const opened = await openRoom();
   await switchCameraOn(opened, 'Not seen: the left tag of strip 2.');
@@ -169,7 +169,7 @@ test('a film without any tag says so', async () => {
   await switchCameraOn(opened, 'No tag of the sheet is seen');
 });
 
-test('a machine without a camera, and a person who refuses it, are told what else to do', async () => {
+test('without a camera, or if it is refused, the page offers an alternative', async () => {
   await openWithCamera(null);
   const opened = await openRoom();
   await opened.getByRole('button', { name: 'Camera' }).click();
@@ -179,7 +179,7 @@ test('a machine without a camera, and a person who refuses it, are told what els
   await waitForMessage(opened, 'said', /not allowed to use the camera.*take a film and open it here/);
 });
 
-test('Stop ends the protocol, and the robot stands; leaving the room does so, too, and switches the camera off', async () => {
+test('Stop ends the protocol and stops the robot; leaving the room also does so, and switches the camera off', async () => {
   await openWithCamera(join(walk, 'film.y4m'));
   const opened = await openRoom();
   await startDriving(opened, ['walk', 'left'], 20);
@@ -197,7 +197,7 @@ test('Stop ends the protocol, and the robot stands; leaving the room does so, to
   assert.equal(await opened.evaluate(() => document.querySelector('#measure-view video').srcObject), null);
 });
 
-test('a board whose link is cut is driven no more, the room says so, and what was seen of its gait is measured', async () => {
+test('a board whose link is cut is no longer driven, the room reports it, and the recorded cycles are measured', async () => {
   await openWithCamera(join(walk, 'film.y4m'));
   const opened = await openRoom({ acceptDownloads: true });
   await opened.evaluate(fakeSerial);
@@ -215,7 +215,7 @@ test('a board whose link is cut is driven no more, the room says so, and what wa
   assert.equal(await opened.evaluate(() => window.lizard.gait), 'stand', 'and none to the simulated board that follows');
 });
 
-test('the sheet is the one of the command, for both papers', async () => {
+test('the sheet is that of the command, for both paper sizes', async () => {
   await openWithCamera(null);
   const opened = await openRoom({ acceptDownloads: true });
   for (const [name, paper] of [['A4', 'a4'], ['letter', 'letter']]) {
@@ -227,4 +227,4 @@ test('the sheet is the one of the command, for both papers', async () => {
   }
 });
 
-test('nothing was complained of', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

@@ -21,7 +21,7 @@ async function memoryGrowth(times, does) {
   return page.memory.buffer.byteLength - before;
 }
 
-test('ten thousand robots with another length each are not kept', async () => {
+test('ten thousand robots with different lengths use no more memory', async () => {
   // With `stand` alone, because other gaits would only take time.
   const standing = toml.slice(0, toml.indexOf('[gait.walk]'));
   const grew = await memoryGrowth(10_000, (page, n) => {
@@ -32,7 +32,7 @@ test('ten thousand robots with another length each are not kept', async () => {
   assert.equal(grew, 0);
 });
 
-test('gaits that are refused are not kept, nor those that are tried to offer what would do', async () => {
+test('refused gaits and those tried for an offer use no more memory', async () => {
   let bars;
   const grew = await memoryGrowth(100, (page, n) => {
     bars ??= page.ask('bars', 1);

@@ -64,7 +64,7 @@ test('once opened, the page walks without a server, with any of its robots', asy
   assert.equal(await opened.locator('#trouble').isVisible(), false);
 });
 
-test('a newer page is offered, taken as a whole when a person says so, and the older one is gone then', async () => {
+test('a newer page is offered, loaded as a whole on request, and replaces the older one', async () => {
   const { own, server } = await serveCopy('newer');
   const opened = await openWithWorkers();
   await opened.goto(address(server));
@@ -85,7 +85,7 @@ test('a newer page is offered, taken as a whole when a person says so, and the o
   assert.equal((await caches()).length, 1);
 });
 
-test('a page of which a part is missing on the server is not taken, and the one that is kept goes on', async () => {
+test('a new page with a missing file is rejected, and the stored one stays in use', async () => {
   const { own, server, asked } = await serveCopy('torn');
   const opened = await openWithWorkers();
   await opened.goto(address(server));
@@ -132,4 +132,4 @@ test('the first load is below 500 KB compressed, and nothing is asked of another
   assert.deepEqual(strangers, []);
 });
 
-test('nothing was complained of', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

@@ -44,7 +44,7 @@ async function openWalking() {
   return { opened, metrics };
 }
 
-test('sixty pictures a second leave time to spare', async (t) => {
+test('at sixty pictures a second the processor is idle most of the time', async (t) => {
   const { opened, metrics } = await openWalking();
   const all = await measureCost(opened, metrics);
   // The simulation keeps real time: no picture exceeded its budget.
@@ -58,7 +58,7 @@ test('sixty pictures a second leave time to spare', async (t) => {
   assert.ok(computed.least < PICTURE / 3, `${computed.least} ms without painting`);
 });
 
-test('the slider of the springs does not keep the page from drawing', async () => {
+test('moving the slider of the springs does not block drawing', async () => {
   const { opened, metrics } = await openWalking();
   await opened.addStyleTag({ content: 'canvas { display: none !important }' });
   await opened.getByLabel('Driven by').selectOption('strut');
@@ -68,4 +68,4 @@ test('the slider of the springs does not keep the page from drawing', async () =
   assert.ok(least < PICTURE / 2, `${least} ms without painting`);
 });
 
-test('nothing was complained of', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

@@ -36,14 +36,14 @@ test('a lock that is held is waited for', async () => {
   assert.match(stdout, /^setup: another program installs packages; waiting for it, up to 60 s$/m);
 });
 
-test('a lock that is held for ever is waited for no longer than was said', async () => {
+test('waiting for a lock ends after the given time', async () => {
   const { status, stdout, tries } = await runUpdates(1000, HELD, 3);
   assert.notEqual(status, 0);
   assert.match(stdout, /held by process 4711/);
   assert.ok(tries <= 4, `${tries}`);
 });
 
-test('another trouble is said at once', async () => {
+test('another problem is reported at once', async () => {
   const { status, stdout, tries } = await runUpdates(1000, 'E: The repository has no Release file.', 60);
   assert.notEqual(status, 0);
   assert.match(stdout, /no Release file/);

@@ -39,7 +39,7 @@ test('the banner of the image is seen', async () => {
   assert.match(await text(opened, '#where'), /simulated UNO/);
 });
 
-test('walk moves the body by the predicted way', async () => {
+test('walk moves the body as predicted', async () => {
   const opened = await openStanding();
   const { predicted, measured } = await assertWalks(opened, 'walk');
   assertNear(measured.forward, predicted.forward, 0.03, 'mm ahead in a cycle');
@@ -49,7 +49,7 @@ test('walk moves the body by the predicted way', async () => {
   await assertStops(opened);
 });
 
-test('a gait that begins while the robot is asked for its state is not taken back', async () => {
+test('a gait started while a status is pending is not reverted', async () => {
   const opened = await openStanding();
   await opened.evaluate(() => {
     const { lizard } = window;
@@ -67,7 +67,7 @@ test('a gait that begins while the robot is asked for its state is not taken bac
   assert.deepEqual(await opened.evaluate(() => window.done), ['walk']);
 });
 
-test('a pace that is set while the robot is asked for its state is not taken back', async () => {
+test('a pace set while a status is pending is not reverted', async () => {
   const opened = await openStanding();
   await opened.evaluate(() => {
     const { lizard } = window;
@@ -186,7 +186,7 @@ test('a calibration is set, saved and kept', async () => {
   await calibrate(opened, (ms) => advance(opened, ms));
 });
 
-test('what boot is set to is done after a reset', async () => {
+test('the boot action runs after a reset', async () => {
   const opened = await openStanding();
   await type(opened, 'boot walk', 'ok boot walk');
   await type(opened, 'save', '> save');
@@ -238,7 +238,7 @@ test('an image is flashed by the real boot loader', async () => {
   assert.deepEqual(written, Array.from(image));
 });
 
-test('a HEX file that is none is refused before anything is written', async () => {
+test('an invalid HEX file is refused before anything is written', async () => {
   const opened = await openStanding();
   await unfold(opened, '#flash');
   const input = opened.getByLabel('HEX file');
@@ -269,7 +269,7 @@ test('a board by Web Serial is driven, mirrored, calibrated and flashed', async 
   assert.match(await text(opened, '#where'), /^on a simulated UNO, robot paper/);
 });
 
-test('a board that is unplugged is said to be gone, and the simulation goes on', async () => {
+test('unplugging the board is reported, and the simulation continues', async () => {
   const opened = await page({}, fakeSerial);
   await opened.locator('#connect').click();
   await opened.waitForFunction(() => window.otherBoard);
@@ -290,7 +290,7 @@ test('a supply that sinks stops the robot, and its fault is shown', async () => 
   await opened.locator('#log div', { hasText: '# supply: ' }).first().waitFor();
 });
 
-test('pads that grip more one way change the prediction', async () => {
+test('pads that grip more in one direction change the prediction', async () => {
   const opened = await openStanding();
   const before = (await displacements(opened, 'back')).predicted.forward;
   await opened.getByLabel('Friction back : ahead').fill('1.5');
@@ -308,7 +308,7 @@ async function setFromRight(opened, label, steps) {
   return slider.getAttribute('aria-valuetext');
 }
 
-test('weak springs take of the way what the contact model says', async () => {
+test('weak springs shorten the walk as the contact model predicts', async () => {
   const opened = await openStanding();
   // The contact model's own answer, without the loss by a dead band.
   await opened.locator('#servos').selectOption('ideal');
@@ -352,7 +352,7 @@ test('weak springs take of the way what the contact model says', async () => {
   assert.deepEqual([again.predicted.lag, again.measured.lag], [null, 0]);
 });
 
-test('a foot that is too long costs what the contact model says, and on soft feet nothing', async () => {
+test('a foot that is too long shortens the walk as the contact model predicts, and on soft feet not at all', async () => {
   const opened = await openStanding();
   await opened.locator('#servos').selectOption('ideal');
   await advance(opened, 2500);
@@ -398,6 +398,6 @@ test('at half the pace the last cycle is as long as predicted', async () => {
   assert.ok(Math.abs(cycle / predicted - 1) < 0.05, `${cycle} mm, predicted ${predicted}`);
 });
 
-test('nothing was complained of', () => {
+test('the browser reported no error or warning', () => {
   assert.deepEqual(complaints, []);
 });

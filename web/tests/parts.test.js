@@ -53,7 +53,7 @@ async function lookFromAbove(page) {
   for (let n = 0; n < 12; n++) await page.locator('#space').press('ArrowUp');
 }
 
-test('lengths that cannot be printed are told at once, with the nearest that can, as the program says it', async () => {
+test('lengths that cannot be printed are reported at once, with the nearest that can, as by the program', async () => {
   const page = await openStanding();
   await unfold(page, '#lengths-panel');
   const length = page.locator('#lengths input[name="leg.crank"]');
@@ -148,7 +148,7 @@ test('while a length is dragged, the two parts that meet are red in 3D, with the
   await within('no red parts', paints(false));
 });
 
-test('the files that another length changes are listed, and can be had alone', async () => {
+test('the files that a changed length affects are listed, and can be downloaded alone', async () => {
   const page = await openStanding();
   await unfold(page, '#parts');
   assert.ok(await page.locator('#parts-changed').isHidden(), 'nothing is changed');
@@ -177,7 +177,7 @@ test('the files that another length changes are listed, and can be had alone', a
   assert.match(await page.locator('#files-said').innerText(), new RegExp(`^${differ.length} of ${paths.length} files are not those of robot\\.toml:`));
 });
 
-test('whoever opens the page loads no parts, and less than half a megabyte', async () => {
+test('opening the page loads no parts, and less than half a megabyte', async () => {
   const page = await openBlank();
   const loaded = new Map();
   page.on('response', (response) => loaded.set(response.url().replace(address(), ''), response.body()));
@@ -222,7 +222,7 @@ test('the archive has the files of lizard parts, byte for byte', async () => {
   assert.match(await page.locator('#files-said').innerText(), new RegExp(`^${paths.length} files. No two parts come nearer than ${least} mm`));
 });
 
-test('what is being made can be stopped, and is then not saved', async () => {
+test('making the files can be stopped, and then nothing is saved', async () => {
   const page = await openStanding();
   let downloads = 0;
   page.on('download', () => (downloads += 1));
@@ -243,7 +243,7 @@ test('what is being made can be stopped, and is then not saved', async () => {
   assert.equal(downloads, 0);
 });
 
-test('a part that is clicked says its name and its file', async () => {
+test('a clicked part shows its name and its file', async () => {
   const page = await openParts();
   await lookFromAbove(page);
   assert.match(await clickAt(page, 0.5, 0.5), /^board: board, bought; put on in step 3\.$/);
@@ -319,7 +319,7 @@ test('a robot that cannot be built says why', async () => {
   await page.getByText('There are no parts of this robot: parts.height is 10 mm').waitFor();
 });
 
-test('pictures in space leave the processor time where no chip paints them', async (t) => {
+test('3D pictures leave the processor time on a machine without a graphics chip', async (t) => {
   const page = await openParts();
   const browser = await within('the processes', page.context().browser().newBrowserCDPSession());
   const used = async () => {
@@ -340,4 +340,4 @@ test('pictures in space leave the processor time where no chip paints them', asy
   assert.ok(shown - hidden < 0.8, `${shown} of a core with the robot in space, ${hidden} without`);
 });
 
-test('nothing was complained of', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

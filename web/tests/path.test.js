@@ -41,7 +41,7 @@ async function draw(page, radius, corners = 40) {
 /** The head's point relative to the middle of the chassis, mm, as the page draws it. */
 const head = (page) => page.evaluate(() => window.lizard.last.scene.points[0]);
 
-test('a circle that was drawn is the way of the head, and stands in robot.toml', async () => {
+test('a drawn circle is the path of the head, and is written into robot.toml', async () => {
   const page = await openPanel();
   await draw(page, 6);
   await page.waitForFunction(() => /k = 1, amplitude = [56]\./.test(document.querySelector('#path-table').textContent));
@@ -63,7 +63,7 @@ test('a circle that was drawn is the way of the head, and stands in robot.toml',
   for (const mm of away) assert.ok(Math.abs(mm - 6) < 0.8, `${away.map((mm) => mm.toFixed(2))} mm from the middle of a circle of 6 mm`);
 });
 
-test('a line that is too large is refused, and a button has the largest size that would do', async () => {
+test('a line that is too large is refused, and a button offers the largest valid size', async () => {
   const page = await openPanel();
   await draw(page, 45);
   const button = page.locator('#path-instead button', { hasText: 'A size of' });
@@ -79,7 +79,7 @@ test('a line that is too large is refused, and a button has the largest size tha
   await button.waitFor();
 });
 
-test('by the keyboard a shape is chosen, for the tail as well', async () => {
+test('a shape can be chosen by the keyboard, for the tail as well', async () => {
   const page = await openPanel();
   const before = await text(page, 'table');
   await page.locator('#path-end').selectOption('tail');
@@ -93,7 +93,7 @@ test('by the keyboard a shape is chosen, for the tail as well', async () => {
   }
 });
 
-test('a tap is not a line, and that is said', async () => {
+test('a tap is refused, with a message that it is not a line', async () => {
   const page = await openPanel();
   const before = await text(page, 'table');
   await page.locator('#path-plane').evaluate((plane) => plane.scrollIntoView({ block: 'center' }));
@@ -110,4 +110,4 @@ test('a finger draws on a phone, and the page does not scroll meanwhile', async 
   assert.equal(await overflow(page), 0);
 });
 
-test('nothing was complained of', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

@@ -57,7 +57,7 @@ test('stick and stop are under the thumbs, and the robot fills the screen', asyn
   for (const hidden of ['header', '.console', '#gaits', '#reset']) assert.equal(await opened.locator(hidden).first().isVisible(), false, hidden);
 });
 
-test('it drives and stops, keeps the screen on, and lets it go dark afterwards', async () => {
+test('the remote drives and stops, and keeps the screen on while it is open', async () => {
   const opened = await openRemote();
   await opened.waitForFunction(() => document.querySelector('#gaits [data-command="walk"] small').textContent !== '');
   const { x, y, width } = await opened.locator('#stick').boundingBox();
@@ -81,4 +81,4 @@ test('a robot that stops by itself buzzes', async () => {
   assert.ok((await opened.evaluate(() => window.buzzes)) > 0);
 });
 
-test('nothing was complained of', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

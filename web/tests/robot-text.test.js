@@ -31,7 +31,7 @@ async function openText(options) {
   return page;
 }
 
-test('a text that is wrong is refused with its line, and the robot of before stays', async () => {
+test('a text with a mistake is refused with its line, and the previous robot stays', async () => {
   const page = await openText();
   const before = await toml(page);
   assert.equal(await box(page).inputValue(), before);
@@ -47,7 +47,7 @@ test('a text that is wrong is refused with its line, and the robot of before sta
   assert.equal(await box(page).inputValue(), wrong, 'nothing that was typed is lost');
 });
 
-test('a gait that cannot be is refused by what would happen to the robot, then by its place', async () => {
+test('a refused gait is explained by its effect on the robot, then by its place', async () => {
   const page = await openText();
   const wrong = (await toml(page)).replace('amplitude = 20.0', 'amplitude = 40.0');
   const line = wrong.split('\n').findIndex((text) => text.startsWith('[gait.walk]')) + 1;
@@ -59,7 +59,7 @@ test('a gait that cannot be is refused by what would happen to the robot, then b
   assert.ok(said.endsWith(`(robot.toml:${line}: gait.walk)`), said);
 });
 
-test('a text that is right becomes the robot, and is undone and done again step by step', async () => {
+test('a valid text becomes the robot, and is undone and redone step by step', async () => {
   const page = await openText();
   const first = await toml(page);
   const second = first.replace('amplitude = 15.0', 'amplitude = 14.0');
@@ -171,7 +171,7 @@ test('a link is a robot, also over a reload, and a phone reads it from the scree
   await page.waitForFunction(() => document.querySelector('#robot-drawn svg') === null);
 });
 
-test('a link keeps each # that is no comment', async () => {
+test('a link keeps each # outside of comments', async () => {
   const page = await openText();
   await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
   const text = `# one\n${(await toml(page)).replace('name = "paper"', 'name = "paper" # "two"')}\n  # three # "four"\n`;
@@ -186,7 +186,7 @@ test('a link keeps each # that is no comment', async () => {
   assert.doesNotMatch(await toml(other), /one|three/);
 });
 
-test('the address is the robot that is shown, at every change', async () => {
+test('after every change the address is that of the shown robot', async () => {
   const page = await openText();
   const first = await toml(page);
   assert.equal(page.url(), `${address()}#room=build`, 'the robot of the page itself needs none');
@@ -222,7 +222,7 @@ test('a hostile file runs no script', async () => {
   assert.equal(await page.locator('img').count(), 0);
 });
 
-test('a link and the list of robots put the own robot aside, and a button brings it back', async () => {
+test('opening a link or another robot puts the user\'s own robot aside, and a button restores it', async () => {
   const page = await openText();
   const own = (await toml(page)).replace('amplitude = 15.0', 'amplitude = 14.0');
   await box(page).fill(own);
@@ -251,7 +251,7 @@ test('a link and the list of robots put the own robot aside, and a button brings
   assert.equal(await page.locator('#robot optgroup[label="your own"]').count(), 0, 'none is left');
 });
 
-test('own robots stand in the list by their names, and each comes back as it was', async () => {
+test('the user\'s own robots are listed by their names, and each is restored unchanged', async () => {
   const page = await openText();
   const first = await toml(page);
   const own = (name) => first.replace('name = "paper"', `name = "${name}"`);
@@ -285,4 +285,4 @@ test('own robots stand in the list by their names, and each comes back as it was
   assert.deepEqual(await names(), ['anna']);
 });
 
-test('nothing was complained of', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

@@ -30,7 +30,7 @@ const box = (opened, selector) => opened.evaluate((selector) => document.querySe
 
 for (const options of SIZES.flatMap((size) => THEMES.map((colorScheme) => ({ ...size, colorScheme })))) {
   const { width, height } = options.viewport;
-  test(`every room fits ${width} x ${height} pixels in ${options.colorScheme} colours, with its act and stop on the screen, and without a fault of axe`, async () => {
+  test(`every room fits ${width} x ${height} pixels in ${options.colorScheme} colours, shows its main element and stop, and axe-core finds nothing`, async () => {
     const opened = await openStanding({ ...options, bypassCSP: true });
     await opened.addScriptTag({ path: AXE });
     for (const room of ROOMS) {
@@ -106,7 +106,7 @@ test('the three doors of the first screen lead to rooms', async () => {
   }
 });
 
-test('a room that is closed draws nothing, also where its panels are unfolded', async () => {
+test('a closed room draws nothing, even if its panels are unfolded', async () => {
   const opened = await openStanding();
   for (const panel of ['#maps', '#margins-panel', '#pulses', '#keep', '#power', '#routines', '#path-editor', '#parts']) await unfold(opened, panel);
   await opened.locator('#solid').click();
@@ -147,4 +147,4 @@ test('3D and the drawing from above are one press apart, and three.js is loaded 
   assert.ok(!(await opened.locator('#space').isVisible()));
 });
 
-test('nothing was complained of', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

@@ -59,7 +59,7 @@ async function drive(page, seconds) {
   }
 }
 
-test('a drive is recorded as the robot did it, and its replay goes where it is predicted to go', async () => {
+test('a drive is recorded by the robot\'s motions, and its replay goes where predicted', async () => {
   const page = await openRoutine(null);
   await page.waitForFunction(() => ['walk', 'left'].every((name) => document.querySelector(`#gaits button[data-command="${name}"] small`).textContent));
   await page.getByText('This robot has no routine yet.').waitFor();
@@ -109,7 +109,7 @@ test('a drive is recorded as the robot did it, and its replay goes where it is p
   assert.ok(Math.abs(heading - turned) < 0.03 * turned + 1, `turned by ${heading} deg, predicted ${turned}`);
 });
 
-test('what the robot said is recorded, and not what was pressed', async () => {
+test('the recording follows the robot\'s reports, not the pressed buttons', async () => {
   const page = await openRoutine(null);
   await press(page, 'Record a drive');
   // A line with three cycles ends by itself; a refused line starts no gait.
@@ -130,7 +130,7 @@ test('what the robot said is recorded, and not what was pressed', async () => {
   await page.getByText('Nothing is recorded: the robot has not walked.').waitFor();
 });
 
-test('as many cycles are recorded as were walked, at whatever phase of the gait before the walk began', async () => {
+test('the recorded number of cycles is that of the walk, at whatever phase of the previous gait it began', async () => {
   const page = await openRoutine(null);
   for (let tenth = 0; tenth < 10; tenth++) {
     await press(page, 'Record a drive');
@@ -146,7 +146,7 @@ test('as many cycles are recorded as were walked, at whatever phase of the gait 
   }
 });
 
-test('a drive of a board is recorded by its own phase, also where its link was cut', async () => {
+test('a drive of a board is recorded by its own phase, even if its link was cut', async () => {
   const page = await openWithBoard('robot', 8000);
   await unfold(page, '#routines');
   await press(page, 'Record a drive');
@@ -264,7 +264,7 @@ test('a finger drags a step, too', async () => {
   await page.waitForFunction(() => window.lizard.toml.includes('steps = ["left 6", "walk 3"]'));
 });
 
-test('a mistake is named at its block with its line and its step, and the robot of before goes on', async () => {
+test('a mistake is shown at its block with its line and its step, and the previous robot walks on', async () => {
   const page = await openRoutine();
   const before = await toml(page);
   const line = before.split('\n').findIndex((text) => text.startsWith('steps = ')) + 1;
@@ -293,7 +293,7 @@ test('a mistake is named at its block with its line and its step, and the robot 
   await waitForSteps(page, ['stand 1 s']);
 });
 
-test('a name that is no name, or taken, is refused, and what was recorded stays', async () => {
+test('an invalid or existing name is refused, and the recorded steps stay', async () => {
   const page = await openRoutine();
   await press(page, 'Record a drive');
   await page.evaluate(() => void window.lizard.ask('walk 2'));
@@ -316,13 +316,13 @@ test('a name that is no name, or taken, is refused, and what was recorded stays'
   assert.equal(await page.locator('#routine').inputValue(), 'two-steps');
 });
 
-test('a step that waits for ever, or many of them, do not hold the page up', async () => {
+test('a step that waits forever, or a large number of steps, does not block the page', async () => {
   const page = await openRoutine(['walk 1', ...Array(98).fill('stand 999 s')]);
   await page.getByText('The first 120 s of a round end 3').waitFor();
   await page.locator('#routine-steps li').nth(98).waitFor();
 });
 
-test('a routine is written to a board, which patrols by its name and says that it is done', async () => {
+test('a routine is written to a board, started by its name, and reports its end', async () => {
   const page = await openWithBoard('robot', 8000);
   await unfold(page, '#routines');
   await putRoutine(page, ['walk 2', 'rest 2 s', 'left 1']);
@@ -347,7 +347,7 @@ test('a routine is written to a board, which patrols by its name and says that i
   assert.match(await page.evaluate(() => window.heard), /deadman 901\n[^]*patrol\n[^]*deadman 0\n/);
 });
 
-test('a routine that rests is stopped when nobody sees the page any more', async () => {
+test('a resting routine is stopped when the page is hidden', async () => {
   const page = await openWithBoard('robot', 8000);
   await putRoutine(page, ['walk 1', 'rest 9 s', 'walk 99']);
   await page.locator('#flash-robot').evaluate((button) => button.click());
@@ -384,7 +384,7 @@ test('a board that is unplugged while a routine is written says so, and gets it 
   await until(page, 'it is written', async () => /^written and verified/.test(await text(page, '#routine-said')));
 });
 
-test('a firmware that reads another form of robot, as one without routines, says so, and the page says what to write', async () => {
+test('with a firmware for another robot format the page says what to write', async () => {
   const page = await openWithBoard('robot', 8000);
   await page.evaluate(() => {
     const { start } = window.lizard.description;
@@ -414,4 +414,4 @@ test('two pages in one browser keep a routine each', async () => {
   }
 });
 
-test('nothing was complained of', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

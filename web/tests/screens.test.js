@@ -80,7 +80,7 @@ test('a finger that moves up over the floor scrolls the page', async () => {
 /** Zoom of the floor, CSS pixels per mm. */
 const zoom = (opened) => opened.evaluate(() => Number(document.querySelector('#floor').dataset.zoom));
 
-test('the wheel scrolls the page, and zooms with Ctrl as far as the robot is to be seen', async () => {
+test('the wheel scrolls the page, and zooms with Ctrl as long as the robot stays visible', async () => {
   const opened = await openStanding({ viewport: { width: 1400, height: 700 } });
   await opened.goto(`${address()}#room=gaits`);
   await opened.waitForFunction(() => document.querySelector('#floor').dataset.zoom);
@@ -120,7 +120,7 @@ for (const [name, viewport] of [
   ['a tablet', { width: 768, height: 1024 }],
   ['a large desk', { width: 3840, height: 2160 }],
 ]) {
-  test(`${name} wide, with every panel open, nothing is beside the screen`, async () => {
+  test(`at a width of ${name} with every panel open, nothing is outside the screen`, async () => {
     const opened = await openStanding({ viewport });
     for (const panel of ['#lengths-panel', '#calibrate', '#flash', '#world', '#gait-editor', '#maps']) {
       await unfold(opened, panel);
@@ -136,7 +136,7 @@ for (const [name, viewport] of [
   });
 }
 
-test('where a finger points, no key is told of, and the list of robots shows a whole name', async () => {
+test('on a touch screen no keys are mentioned, and the list of robots shows whole names', async () => {
   for (const viewport of [{ width: 360, height: 640 }, { width: 844, height: 390 }, { width: 1024, height: 1366 }]) {
     const opened = await openStanding({ viewport, hasTouch: true, isMobile: true });
     for (const room of ['drive', 'build', 'board']) {
@@ -171,7 +171,7 @@ test('a page that was opened as a file says what it needs', async () => {
   await opened.locator('#where', { hasText: 'it needs a web server' }).waitFor();
 });
 
-test('long names of gaits have room, and no letter is outside of its button', async () => {
+test('long names of gaits fit on their buttons', async () => {
   for (const options of [PORTRAIT, { viewport: { width: 1400, height: 1000 } }]) {
     const opened = await openStanding(options);
     await opened.locator('#robot').selectOption('own-gaits');
@@ -191,7 +191,7 @@ test('long names of gaits have room, and no letter is outside of its button', as
   }
 });
 
-test('robots that say that they are for the tests come last, under that name', async () => {
+test('robots that are for the tests are listed last, under a heading', async () => {
   const opened = await page();
   const [plain, tests] = await opened.evaluate(() =>
     ['#robot > option', '#robot > optgroup[label="for tests"] > option'].map((selector) =>
@@ -202,7 +202,7 @@ test('robots that say that they are for the tests come last, under that name', a
   assert.deepEqual(tests, ['own-gaits', 'unequal']);
 });
 
-test('a word that the core spells otherwise is said to be unknown', async () => {
+test('a word that the core spells differently is reported as unknown', async () => {
   const opened = await openBlank();
   const wasm = await readFile(new URL('../dist/files/lizard.wasm', import.meta.url), 'latin1');
   assert.ok(wasm.includes('factory'));
@@ -235,4 +235,4 @@ test('a script that is not the page\'s own does not run', async () => {
   complaints.splice(0, complaints.length, ...complaints.filter((said) => !/Content Security Policy/.test(said)));
 });
 
-test('nothing was complained of', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

@@ -50,7 +50,7 @@ async function readCalibration(opened) {
   return (await opened.locator('#log div', { hasText: /^# A\d trim/ }).allInnerTexts()).slice(-4);
 }
 
-test('a new UNO becomes a robot that walks, is saved, and has a file that lizard calibrate restore takes', async () => {
+test('a new UNO becomes a calibrated robot that walks, and lizard calibrate restore accepts its file', async () => {
   const opened = await openWithBoard(null, 8000);
   await setup(opened).getByText('2 of 9: Write the firmware').waitFor();
   await setup(opened).getByText('The board on USB is a UNO by its boot loader, and this firmware is not on it.').waitFor();
@@ -144,14 +144,14 @@ test('a new UNO becomes a robot that walks, is saved, and has a file that lizard
   }
 });
 
-test('a board with another robot is told from this one, and is given this one alone', async () => {
+test('a board with another robot is recognized, and gets only the page\'s robot written', async () => {
   const opened = await openWithBoard('large', 5000);
   await setup(opened).getByText('has this firmware and another robot, large ').waitFor();
   await pressAndWait(opened, 'Write this robot alone', /^written and verified in [\d.]+ s$/);
   await until(opened, 'it greets', async () => (await setup(opened).getByText('has this firmware and this robot, robot.toml.').count()) > 0);
 });
 
-test('a board that answers nothing is asked about, and no step is a dead end', async () => {
+test('a board that does not answer is reported, and no step is a dead end', async () => {
   const opened = await page({}, fakeSerial);
   await opened.evaluate(() => (window.flashed = null));
   await opened.locator('#connect').click();
@@ -167,7 +167,7 @@ test('a board that answers nothing is asked about, and no step is a dead end', a
   await until(opened, 'the simulation is back', async () => /simulated UNO/.test(await text(opened, '#where')));
 });
 
-test('a board that says bytes without a meaning is told from a robot', async () => {
+test('a board that sends meaningless bytes is not taken for a robot', async () => {
   const opened = await page({}, fakeSerial);
   await opened.evaluate(() => (window.garbage = true));
   await opened.locator('#connect').click();
@@ -178,7 +178,7 @@ test('a board that says bytes without a meaning is told from a robot', async () 
   assert.ok(Math.max(0, ...lengths) < 1000, 'a line that never ends is cut');
 });
 
-test('a board that is unplugged at any step is said to be gone, and the path goes on where it was', async () => {
+test('unplugging the board is reported at any step, and the dialog continues where it was', async () => {
   const opened = await page({}, fakeSerial);
   const names = await opened.locator('#setup-steps button').allTextContents();
   assert.equal(names.length, 9);
@@ -215,7 +215,7 @@ test('a board that is unplugged while it is written says so, and can be written 
   await pressAndWait(opened, 'Write firmware and robot', /^written and verified/);
 });
 
-test('what began on a board does not go on in the simulation when it is unplugged', async () => {
+test('an action that began on a board does not continue in the simulation when the board is unplugged', async () => {
   const opened = await openWithBoard('robot', 4500);
   await step(opened, 'Trims');
   await opened.clock.runFor(500);
@@ -230,7 +230,7 @@ test('what began on a board does not go on in the simulation when it is unplugge
   await setup(opened).getByText('to the simulated UNO').waitFor();
 });
 
-test('the robot does not walk while somebody fits it together', async () => {
+test('the robot does not walk while it is being assembled', async () => {
   const opened = await openWithBoard('robot', 8000);
   await until(opened, 'the ways are known', async () => (await text(opened, '#gaits button[data-command="walk"] small')) !== '');
   await step(opened, 'Trims');
@@ -254,7 +254,7 @@ test('the robot does not walk while somebody fits it together', async () => {
   await until(opened, 'it is stopped', async () => (await opened.evaluate(() => window.lizard.gait)) !== 'walk');
 });
 
-test('a board that restarts in between is said to have lost what was not saved', async () => {
+test('a restart of the board is reported, with the loss of unsaved settings', async () => {
   const opened = await openWithBoard('robot', 4500);
   await setup(opened).getByText('3 of 9: Fit the horns').waitFor();
   await step(opened, 'Trims');
@@ -265,7 +265,7 @@ test('a board that restarts in between is said to have lost what was not saved',
   await pressAndWait(opened, '↺ 0.5°', /^The trim of A1 is 0\.50°/);
 });
 
-test('who leaves leaves the robot as it was, and comes back to the same step', async () => {
+test('leaving restores the robot, and the dialog opens again at the same step', async () => {
   const opened = await openWithBoard('robot', 4500);
   const before = await readCalibration(opened);
   await step(opened, 'Trims');
@@ -289,7 +289,7 @@ test('who leaves leaves the robot as it was, and comes back to the same step', a
   await setup(opened).getByText('Not proven yet: the sign of A2, A3, A4.').waitFor();
 });
 
-test('what the robot refuses is said in its words, and changes nothing', async () => {
+test('a refusal by the robot is shown in its words, and changes nothing', async () => {
   const opened = await openWithBoard('robot', 4500);
   const before = await readCalibration(opened);
   await step(opened, 'Limits');
@@ -306,7 +306,7 @@ boot = "stand"
 deadman = 0
 ${[1, 2, 3, 4].map((n) => `[servo.A${n}]\ntrim = ${n}.25\nlimit = [${[48.59, 311.41, 228.59, 131.41][n - 1]}, ${[228.59, 131.41, 48.59, 311.41][n - 1]}]\ndir = "+"\nscale = 10.0\n`).join('')}`;
 
-test('a kept file is given to the robot, and one that is none says what is wrong with it', async () => {
+test('a saved calibration file is sent to the robot, and an invalid one is refused with its mistake', async () => {
   const opened = await openWithBoard('robot', 4500);
   await step(opened, 'Keep');
   await opened.clock.runFor(1500);
@@ -388,4 +388,4 @@ for (const [name, options] of [
   });
 }
 
-test('nothing was complained of', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

@@ -66,7 +66,7 @@ test('the point of the head is dragged, and both couplers follow', async () => {
   await page.waitForFunction(() => window.lizard.description.lengths.find(({ key }) => key === 'links.l2').value === 50);
 });
 
-test('where a joint may not be, that is said while it is held, and it goes to the nearest place that does', async () => {
+test('a joint at an invalid place is refused during the drag, and goes to the nearest valid place', async () => {
   const page = await openSketch();
   await drag(page, 'point of the head', [0, -40]);
   await waitForMessage(page, /^l2 = l3 = [0-9.]+ mm is too short: /);
@@ -76,7 +76,7 @@ test('where a joint may not be, that is said while it is held, and it goes to th
   await page.waitForFunction((wanted) => window.lizard.description.lengths.find(({ key }) => key === 'links.l2').value === wanted, wanted);
 });
 
-test('a crank is made longer on one side alone where both need not be alike', async () => {
+test('a crank is lengthened on one side alone if the sides need not be equal', async () => {
   const page = await openSketch();
   await page.locator('#alike').uncheck();
   const [from, to] = await page.evaluate(() => {
@@ -91,7 +91,7 @@ test('a crank is made longer on one side alone where both need not be alike', as
   assert.equal(await length(page, 'links.l4'), 30);
 });
 
-test('a bar that is pressed leads to its number', async () => {
+test('a pressed bar selects its number', async () => {
   const page = await openSketch();
   await page.locator('#sketch line[data-key="links.l2"]').click({ force: true });
   assert.equal(await page.evaluate(() => document.activeElement.name), 'links.l2');
@@ -107,4 +107,4 @@ test('every joint and bar of a robot is on the drawing, also on a phone, and a t
   assert.equal(await overflow(page), 0);
 });
 
-test('nothing was complained of', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

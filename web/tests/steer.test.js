@@ -21,7 +21,7 @@ async function openReady(options = {}) {
 
 const waitForGait = (opened, gait) => opened.waitForFunction((gait) => document.querySelector('#doing').textContent === gait, gait);
 
-test('arrow keys walk, bend and turn for as long as they are held, and then it stops', async () => {
+test('arrow keys make the robot walk, bend and turn while they are held, and stop it when released', async () => {
   const opened = await openReady();
   const { keyboard } = opened;
   await keyboard.down('ArrowUp');
@@ -38,7 +38,7 @@ test('arrow keys walk, bend and turn for as long as they are held, and then it s
   await waitForGait(opened, 'stop');
 });
 
-test('letters drive as arrows do, but not where somebody types', async () => {
+test('letter keys drive as arrows do, except in a text field', async () => {
   const opened = await openReady();
   await opened.keyboard.down('d');
   await waitForGait(opened, 'right');
@@ -68,7 +68,7 @@ test('the stick on the screen walks where it is held', async () => {
   await waitForGait(opened, 'stop');
 });
 
-test('half a stick goes at half the pace, and the pace is the old one when it is let go', async () => {
+test('a half deflected stick drives at half the pace, and releasing it restores the pace', async () => {
   const opened = await openReady();
   await opened.evaluate(() => {
     window.pad = { axes: [0, 0], buttons: [{ pressed: false }] };
@@ -152,7 +152,7 @@ test('a button of a gamepad stops a gait that the page began', async () => {
   await waitForGait(opened, 'stop');
 });
 
-test('a second gamepad and the cross of buttons drive, too', async () => {
+test('a second gamepad and the direction pad drive, too', async () => {
   const opened = await openReady();
   await opened.evaluate(() => {
     const buttons = Array.from({ length: 16 }, (_, n) => ({ pressed: n === 12 }));
@@ -161,7 +161,7 @@ test('a second gamepad and the cross of buttons drive, too', async () => {
   await waitForGait(opened, 'walk');
 });
 
-test('a gamepad that is held while another window gets the keyboard does not walk on', async () => {
+test('a gamepad that is held while another window gets the focus does not keep the robot walking', async () => {
   const opened = await openReady();
   await opened.evaluate(() => (navigator.getGamepads = () => [{ axes: [0, -1], buttons: [] }]));
   await waitForGait(opened, 'walk');
@@ -171,7 +171,7 @@ test('a gamepad that is held while another window gets the keyboard does not wal
   assert.equal(await opened.locator('#doing').textContent(), 'stop');
 });
 
-test('the page opens with the robot walking slowly, but for those who want less motion', async () => {
+test('the page opens with the robot walking slowly, unless reduced motion is preferred', async () => {
   const moving = await page({ reducedMotion: 'no-preference' });
   await waitForGait(moving, 'walk');
   await moving.waitForFunction(() => document.querySelector('#speed').value === '50');
@@ -179,7 +179,7 @@ test('the page opens with the robot walking slowly, but for those who want less 
   assert.equal(await still.locator('#doing').textContent(), 'stand');
 });
 
-test('it opens with walk, too, where walk and trot are predicted before the robot says what it is', async () => {
+test('it also opens with walk if walk and trot are predicted before the robot\'s banner', async () => {
   const opened = await page({ reducedMotion: 'no-preference' }, () => {
     // As for a user's own robot, whose predictions do not come with the page.
     const { fetch } = window;
@@ -198,7 +198,7 @@ test('it opens with walk, too, where walk and trot are predicted before the robo
   await waitForGait(opened, 'walk');
 });
 
-test('a robot of other gaits is driven by its own', async () => {
+test('a robot with other gaits is driven by its own gaits', async () => {
   const opened = await openReady();
   await opened.locator('#robot').selectOption('own-gaits');
   await opened.waitForFunction(() => {
@@ -233,4 +233,4 @@ test('after a click on the pace, on the list of robots or on the floor the arrow
   assert.equal(await opened.locator('#doing').textContent(), 'stop');
 });
 
-test('nothing was complained of', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

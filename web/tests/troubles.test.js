@@ -11,7 +11,7 @@ after(close);
 
 const trouble = (opened) => opened.locator('#trouble');
 
-test('a robot file that cannot be read stays said while the robot of before goes on', async () => {
+test('the message about an unreadable robot file stays while the previous robot walks on', async () => {
   const opened = await openStanding();
   await opened.route('**/files/large.toml', (route) => route.fulfill({ status: 404 }));
   await opened.locator('#robot').selectOption('large');
@@ -45,7 +45,7 @@ test('a page whose first robot cannot be read says so, and takes another one', a
   assert.equal(await trouble(opened).isVisible(), false);
 });
 
-test('a port that is busy stays said until a person puts it away', async () => {
+test('the message about a busy port stays until the user dismisses it', async () => {
   const opened = await page({}, fakeSerial);
   await opened.evaluate(() => {
     window.openPort = () => {
@@ -63,7 +63,7 @@ test('a port that is busy stays said until a person puts it away', async () => {
   assert.equal(await trouble(opened).isVisible(), false);
 });
 
-test('a person who picks no port is not told of a trouble', async () => {
+test('picking no port reports no problem', async () => {
   const opened = await page({}, fakeSerial);
   await opened.evaluate(() => {
     window.pick = () => {
@@ -78,7 +78,7 @@ test('a person who picks no port is not told of a trouble', async () => {
   assert.match(await text(opened, '#where'), /simulated UNO/);
 });
 
-test('a browser that may not use ports says why, and the simulation goes on', async () => {
+test('if ports are forbidden, the page says why, and the simulation continues', async () => {
   const opened = await openForbidden('serial');
   await opened.locator('#connect').click();
   await trouble(opened).getByText('Access to the feature "serial" is disallowed by permissions policy.').waitFor();
@@ -86,7 +86,7 @@ test('a browser that may not use ports says why, and the simulation goes on', as
   assert.match(await text(opened, '#where'), /simulated UNO/);
 });
 
-test('a browser without Web Serial says so to whoever only reads', async () => {
+test('without Web Serial the page says so before anything is pressed', async () => {
   const opened = await page({}, () => Object.defineProperty(navigator, 'serial', { value: undefined }));
   await opened.getByText('This browser cannot reach a board on USB').waitFor();
 });
@@ -106,4 +106,4 @@ test('a refused button says why beside the buttons, on a phone too', async () =>
   await said.waitFor({ state: 'hidden' });
 });
 
-test('nothing was complained of', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

@@ -62,7 +62,7 @@ async function openTwoPages() {
   return { first, second, until };
 }
 
-test('each of two pages shows what the robot does and stops what the other has begun', async () => {
+test('each of two pages shows the robot\'s activity, and stops a gait that the other has started', async () => {
   const { first, second, until } = await openTwoPages();
   for (const [driver, other] of [
     [first, second],
@@ -78,4 +78,4 @@ test('each of two pages shows what the robot does and stops what the other has b
   for (const opened of [first, second]) assert.equal(await opened.locator('#alarm').isVisible(), false);
 });
 
-test('nothing was complained of', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

@@ -26,7 +26,7 @@ async function openPanel(opened) {
   return opened;
 }
 
-test('a robot is on a board in a second or two, and the firmware and what is saved stay as they are', async () => {
+test('a robot is written in a second or two, and firmware and saved settings stay unchanged', async () => {
   const opened = await openPanel(await openWithBoard('large', 8000));
   await opened.evaluate(() => window.lizard.ask('trim 1 2').then(() => window.lizard.ask('save')) && null);
   await opened.clock.runFor(1500);
@@ -44,7 +44,7 @@ test('a robot is on a board in a second or two, and the firmware and what is sav
   assert.deepEqual(await opened.evaluate(() => Array.from(window.otherBoard.eeprom)), saved);
 });
 
-test('a gait that was made is written to a board, and the board walks so', async () => {
+test('an edited gait is written to a board, and the board walks it', async () => {
   const opened = await openWithBoard('robot', 8000);
   await unfold(opened, '#gait-editor');
   await opened.waitForFunction(() => /mm$/.test(document.querySelector('#gait-way').textContent));
@@ -62,7 +62,7 @@ test('a gait that was made is written to a board, and the board walks so', async
   assert.ok(await opened.evaluate(() => window.heard.includes('stride\n')));
 });
 
-test('a text that was edited is written to the board by one button', async () => {
+test('one button writes an edited text to the board', async () => {
   const opened = await openWithBoard('robot', 8000);
   await unfold(opened, '#robot-editor');
   const toml = (await opened.locator('#robot-text').inputValue()).replace('name = "paper"', 'name = "mine"').replace('period = 1.25', 'period = 1.5');
@@ -104,7 +104,7 @@ async function openUnknownBoard() {
   return openPanel(opened);
 }
 
-test('where a board has not said its firmware, its code is read and compared', async () => {
+test('if the firmware of a board is unknown, its code is read and compared', async () => {
   const opened = await openUnknownBoard();
   await robotAlone(opened);
   await waitForMessage(opened, /^comparing with the firmware on the board/);
@@ -128,7 +128,7 @@ test('where a board has not said its firmware, its code is read and compared', a
   await until(other, 'it goes on', async () => / robot large /.test(await text(other, '#where')));
 });
 
-test('a board that is unplugged half way has no robot, says so, moves nothing, and is written again', async () => {
+test('a board unplugged during a write has no robot, reports that, moves nothing, and can be written again', async () => {
   const opened = await openPanel(await openWithBoard('large', 8000));
   await robotAlone(opened);
   // Some of its twenty pages, which take 17 ms each.
@@ -149,7 +149,7 @@ test('a board that is unplugged half way has no robot, says so, moves nothing, a
   await until(opened, 'it stands', async () => (await pulsedPins(opened)).length === 4);
 });
 
-test('nothing is asked of a board that is written as soon as it has greeted', async () => {
+test('a board that is written right after its banner is asked nothing', async () => {
   const opened = await openPanel(await openWithBoard('robot', 2000));
   assert.match(await text(opened, '#where'), /^on a board on USB, robot paper /);
   await opened.locator('#flash-write').click();
@@ -158,7 +158,7 @@ test('nothing is asked of a board that is written as soon as it has greeted', as
   assert.equal(await opened.locator('#trouble').innerText(), '');
 });
 
-test('a board that is unplugged while the firmware is written does nothing, and is written again', async () => {
+test('a board unplugged while the firmware is written does nothing, and can be written again', async () => {
   const opened = await openPanel(await openWithBoard('robot', 8000));
   assert.equal((await pulsedPins(opened)).length, 4, 'it stands');
   await opened.locator('#flash-write').click();
@@ -186,9 +186,9 @@ test('a board that is unplugged while the firmware is written does nothing, and 
   assert.deepEqual(await flash(opened, 0, wanted.length), wanted);
 });
 
-test('nothing was complained of', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
 
-test('what would ruin a Nano is written only where a person says that the board is a UNO', async () => {
+test('an image that would overwrite a Nano\'s boot loader is written only after the user confirms a UNO', async () => {
   const opened = await openWithBoard('robot', 8000);
   await opened.evaluate(() => (window.vendor = 0x1a86));
   await opened.locator('#robot').selectOption('own-gaits');

@@ -382,7 +382,7 @@ mod tests {
     }
 
     #[test]
-    fn the_share_of_the_line_is_one_at_a_stall_and_at_the_rate_without_load() {
+    fn the_share_of_the_line_is_one_at_stall_and_at_the_no_load_speed() {
         let low = SG90.at_supply(0.875);
         for (torque, rate, supply) in [(176.5, 0.0, 1.0), (0.0, 500.0, 1.0), (88.25, 250.0, 1.0)] {
             assert!((SG90.line_share(torque, rate) - supply).abs() < 1e-12);

@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn a_foot_that_is_too_long_presses_itself_and_the_one_across() {
+    fn a_foot_that_is_too_long_loads_itself_and_the_one_across() {
         // 2 N/mm and 0.6 mm: a quarter of 1.2 N.
         let stance = twisted(0.6);
         assert!((stance.diagonal() - 0.3).abs() < 1e-12);

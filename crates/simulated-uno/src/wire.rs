@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn a_talker_alone_is_read_as_it_talks() {
+    fn a_single_sender_is_read_correctly() {
         let all: Vec<u8> = (0..=255).collect();
         for talker in [0, 1] {
             assert_eq!(received(&[(talker, &all, 70)]), whole(&all));
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_of_two_talkers_one_after_the_other_are_all_read() {
+    fn consecutive_bytes_of_two_senders_are_all_read() {
         let writes: [(usize, &[u8], u64); 3] = [
             (0, b"walk\n", 0),
             (1, b"stop\n", 5 * BYTE),
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn bits_of_two_talkers_at_the_same_moment_are_the_ones_that_both_have() {
+    fn simultaneous_bits_of_two_senders_are_combined_by_and() {
         let writes: [(usize, &[u8], u64); 2] = [(0, b"walk\n", 9), (1, b"stop\n", 9)];
         let both = std::array::from_fn::<u8, 5, _>(|at| b"walk\n"[at] & b"stop\n"[at]);
         assert_eq!(received(&writes), whole(&both));
@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn each_talker_is_read_at_its_own_rate_alone() {
+    fn each_sender_is_read_only_at_its_own_rate() {
         let rates = [9_600.0, 57_600.0];
         for (talker, rate) in rates.into_iter().enumerate() {
             let mut wire = Wire::new(rates);

@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn it_climbs_a_curved_ridge() {
+    fn the_search_climbs_a_curved_ridge() {
         let found = searched(&[vec![0.1, 0.9]], 60, 1, ridge);
         let best = &found[0].1;
         let error = (best[0] - 0.7).hypot(best[1] - 0.49);

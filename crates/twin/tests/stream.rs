@@ -135,7 +135,7 @@ fn angles_that_are_asked_for_do_what_their_pulses_do() {
 }
 
 #[test]
-fn a_cycle_is_what_its_frames_come_to() {
+fn a_cycle_is_the_sum_of_its_frames() {
     let robot = paper();
     for name in ["walk", "trot", "left"] {
         let gait = robot.gait(name).expect(name);

@@ -45,7 +45,7 @@ fn bench() -> FirmwareBench {
 }
 
 #[test]
-fn a_lines_answer_is_told_apart_from_the_information_before_it() {
+fn the_answer_to_a_line_is_distinguished_from_the_information_before_it() {
     let mut bench = bench();
     assert_eq!(bench.next_line(500).as_deref(), Some("# lizard test"));
     let (notes, answer) = bench.ask("?");

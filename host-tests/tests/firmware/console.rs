@@ -259,7 +259,7 @@ fn help_names_every_gait_and_every_command() {
 }
 
 #[test]
-fn status_tells_what_the_pulses_show() {
+fn status_agrees_with_the_pulses() {
     in_both(|fidelity| {
         let mut bench = robot_after(&first_moving_gait(), fidelity);
         bench.say("stop");
@@ -318,7 +318,7 @@ fn status_counts_fifty_frames_a_second_and_follows_the_phase() {
 }
 
 #[test]
-fn watch_reports_the_pose_of_every_nth_frame_until_it_is_told_not_to() {
+fn watch_reports_the_pose_of_every_nth_frame_until_it_is_switched_off() {
     in_both(|fidelity| {
         let mut bench = robot_after(&first_moving_gait(), fidelity);
         assert_eq!(bench.say("watch 7"), "ok watch 7");

@@ -27,7 +27,7 @@ fn notes(bench: &mut FirmwareBench, from: usize) -> Vec<(String, f64)> {
 }
 
 #[test]
-fn status_tells_the_supply_within_thirty_millivolts() {
+fn status_reports_the_supply_within_thirty_millivolts() {
     let mut bench = awake(Fidelity::DataSheet);
     let mut max_error = 0f64;
     for mv in (2_700..=5_500).step_by(35) {
@@ -231,7 +231,7 @@ fn assert_no_rail() {
 }
 
 #[test]
-fn status_tells_the_servos_rail_where_robot_toml_names_its_pin() {
+fn status_reports_the_servos_rail_if_robot_toml_names_its_pin() {
     let Some(rail) = robot().supplies().rail else {
         return assert_no_rail();
     };

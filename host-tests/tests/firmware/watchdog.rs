@@ -112,7 +112,7 @@ fn a_hang_in_a_walk_ends_in_the_pose_of_the_last_frame_until_an_order() {
 }
 
 #[test]
-fn a_timer_that_stands_still_or_interrupts_that_are_off_are_found_out() {
+fn a_stopped_timer_or_disabled_interrupts_are_detected() {
     for (register, value) in [(TCCR1B, 0), (TIMSK1, 0), (TIMSK1, 0x02), (TIMSK1, 0x04)] {
         let (mut bench, widths) = hold_pose();
         // In the tick's slot, where no pin is high.
@@ -129,7 +129,7 @@ fn a_timer_that_stands_still_or_interrupts_that_are_off_are_found_out() {
 }
 
 #[test]
-fn interrupts_that_stay_off_are_found_out_and_the_cause_is_known_from_the_chip() {
+fn disabled_interrupts_are_detected_and_the_chip_tells_the_cause() {
     let (mut bench, widths) = hold_pose();
     // SREG's I bit.
     let sreg = 0x5f;

@@ -75,7 +75,7 @@ fn check(name: &str, travel: Travel, largest: f64, forward: Option<f64>, turn: O
 }
 
 #[test]
-fn the_pulses_of_every_gait_lead_where_the_same_gait_in_floating_point_does() {
+fn the_pulses_of_every_gait_lead_as_far_as_the_gait_in_floating_point() {
     let mut seen = 0;
     // Only some of the random robots, since the contact model is slow.
     for named in &robots()[..robots().len() - 5] {

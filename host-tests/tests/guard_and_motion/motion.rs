@@ -179,7 +179,7 @@ fn servos_wake_one_after_another_where_they_were_left() {
 }
 
 #[test]
-fn stop_freezes_and_rest_silences_the_very_next_frame_and_a_gait_begins_anew() {
+fn stop_freezes_and_rest_silences_the_very_next_frame_and_a_gait_restarts() {
     for (n, named) in robots().iter().enumerate() {
         let mut rng = rng(6000 + n as u64);
         let robot = &named.robot;

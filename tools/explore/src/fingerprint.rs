@@ -97,18 +97,18 @@ fn pace(pace: u64) -> u64 {
 
 /// A number that two values share if no rule tells them apart.
 pub fn coarse(value: &impl fmt::Debug) -> u64 {
-    print(value, RULES)
+    fingerprint(value, RULES)
 }
 
 /// The same with every field except those that record that a line came.
 pub fn without_line_counters(value: &impl fmt::Debug) -> u64 {
-    print(value, A_LINE_CAME)
+    fingerprint(value, A_LINE_CAME)
 }
 
-fn print(value: &impl fmt::Debug, rules: &'static [Field]) -> u64 {
+fn fingerprint(value: &impl fmt::Debug, rules: &'static [Field]) -> u64 {
     let mut reader = Reader {
         rules,
-        print: Print::default(),
+        fingerprint: Fingerprint::default(),
         within: Vec::new(),
         last: 0,
         names_field: false,
@@ -116,20 +116,20 @@ fn print(value: &impl fmt::Debug, rules: &'static [Field]) -> u64 {
         skipped: None,
     };
     write!(reader, "{value:?}").expect("Debug does not fail");
-    reader.print.0
+    reader.fingerprint.0
 }
 
 /// A hash of numbers.
 #[derive(Clone, Copy)]
-pub struct Print(pub u64);
+pub struct Fingerprint(pub u64);
 
-impl Default for Print {
+impl Default for Fingerprint {
     fn default() -> Self {
         Self(0x9e37_79b9_7f4a_7c15)
     }
 }
 
-impl Print {
+impl Fingerprint {
     /// Adds a number to the hash.
     pub fn add(&mut self, value: u64) {
         let mixed = (self.0 ^ value).wrapping_mul(0xff51_afd7_ed55_8ccd);
@@ -141,7 +141,7 @@ impl Print {
 /// value, each by itself.
 struct Reader {
     rules: &'static [Field],
-    print: Print,
+    fingerprint: Fingerprint,
     /// The structs around the value: hashes of their names, 0 for a value without fields.
     within: Vec<u64>,
     /// The hash of the previous piece.
@@ -209,7 +209,7 @@ impl Reader {
 
     fn name(&mut self, field: &str) {
         let name = hash(field);
-        self.print.add(name);
+        self.fingerprint.add(name);
         let within = *self.within.last().unwrap_or(&0);
         let rule = self
             .rules
@@ -224,9 +224,9 @@ impl Reader {
 
     fn value(&mut self, piece: &str) {
         match (piece.parse::<u64>(), self.number) {
-            (Ok(number), Some((coarse, _))) => self.print.add(coarse(number)),
-            (Ok(number), None) => self.print.add(number),
-            (Err(_), _) => self.print.add(hash(piece)),
+            (Ok(number), Some((coarse, _))) => self.fingerprint.add(coarse(number)),
+            (Ok(number), None) => self.fingerprint.add(number),
+            (Err(_), _) => self.fingerprint.add(hash(piece)),
         }
     }
 }
@@ -235,7 +235,7 @@ impl Reader {
 mod tests {
     use super::*;
     use crate::small::small;
-    use crate::{Action, beginnings};
+    use crate::{Action, initial_states};
 
     #[derive(Clone, Copy, Debug)]
     #[allow(dead_code, reason = "read by Debug")]
@@ -268,19 +268,28 @@ mod tests {
 
     #[test]
     fn counters_are_left_out_coarse_fields_are_rounded_and_all_others_count() {
-        let print = coarse(&MOTION);
-        assert_eq!(coarse(&motion_with(|motion| motion.frames = 1_499)), print);
+        let fingerprint = coarse(&MOTION);
+        assert_eq!(
+            coarse(&motion_with(|motion| motion.frames = 1_499)),
+            fingerprint
+        );
         assert_eq!(
             coarse(&motion_with(|motion| motion.stance.awake = 5)),
-            print
+            fingerprint
         );
-        assert_ne!(coarse(&motion_with(|motion| motion.frames = 1_500)), print);
+        assert_ne!(
+            coarse(&motion_with(|motion| motion.frames = 1_500)),
+            fingerprint
+        );
         assert_ne!(
             coarse(&motion_with(|motion| motion.stance.awake = 6)),
-            print
+            fingerprint
         );
-        assert_ne!(coarse(&motion_with(|motion| motion.speed = 5)), print);
-        assert_ne!(coarse(&motion_with(|motion| motion.list[2] = 4)), print);
+        assert_ne!(coarse(&motion_with(|motion| motion.speed = 5)), fingerprint);
+        assert_ne!(
+            coarse(&motion_with(|motion| motion.list[2] = 4)),
+            fingerprint
+        );
         let exact = without_line_counters(&MOTION);
         assert_ne!(
             without_line_counters(&motion_with(|motion| motion.frames = 8)),
@@ -292,9 +301,9 @@ mod tests {
     fn every_rule_names_an_existing_field() {
         let robot = small();
         let mut text = String::new();
-        for beginning in beginnings::all(robot) {
+        for initial_state in initial_states::all(robot) {
             for action in [Action::Say("walk"), Action::Say("save"), Action::Frames(25)] {
-                let mut world = beginning.world.clone();
+                let mut world = initial_state.world.clone();
                 _ = world.apply(action);
                 let ram = world.running.board.ram.found(Default::default());
                 _ = write!(text, "{:?} {ram:?}", world.running.main);

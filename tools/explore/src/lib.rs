@@ -12,8 +12,8 @@
 //! [`VirtualBoard`]: lizard_core::virtual_board::VirtualBoard
 
 pub mod action;
-pub mod beginnings;
 pub mod fingerprint;
+pub mod initial_states;
 pub mod search;
 pub mod small;
 pub mod world;

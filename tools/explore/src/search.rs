@@ -16,7 +16,7 @@ use lizard_core::numbers::robot::Robot;
 use lizard_rules::{BrokenRule, Rule};
 
 use crate::action::Action;
-use crate::beginnings::{self, InitialState};
+use crate::initial_states::{self, InitialState};
 use crate::world::{Verdict, World};
 
 /// States that a thread takes at once.
@@ -46,21 +46,21 @@ struct Step {
     action: u8,
 }
 
-/// Searches from all beginnings, until this many distinct states are reached or none is left.
+/// Searches from all initial states, until this many distinct states are reached or none is left.
 pub fn search(robot: Robot<'static>, max: usize) -> SearchResult {
     let actions = Action::all();
-    let initial_states = beginnings::all(robot);
+    let initial_states = initial_states::all(robot);
     let known: Vec<Mutex<SeenStates>> = (0..64).map(|_| Mutex::default()).collect();
     let mut steps: Vec<Step> = Vec::new();
     let mut found = SearchResult::default();
     let mut now: Vec<(World, u32)> = Vec::new();
-    for (index, beginning) in initial_states.iter().enumerate() {
+    for (index, initial_state) in initial_states.iter().enumerate() {
         steps.push(Step {
             from: u32::MAX,
             action: 0,
         });
-        if is_new(&known, beginning.world.print()) {
-            now.push((beginning.world.clone(), index as u32));
+        if is_new(&known, initial_state.world.fingerprint()) {
+            now.push((initial_state.world.clone(), index as u32));
         }
     }
     let states = AtomicUsize::new(now.len());
@@ -118,9 +118,12 @@ struct Part {
     broken: Vec<(u32, u8, BrokenRule)>,
 }
 
-fn is_new(known: &[Mutex<SeenStates>], print: u64) -> bool {
-    let shard = &known[(print >> 58) as usize];
-    shard.lock().expect("no thread has failed").insert(print)
+fn is_new(known: &[Mutex<SeenStates>], fingerprint: u64) -> bool {
+    let shard = &known[(fingerprint >> 58) as usize];
+    shard
+        .lock()
+        .expect("no thread has failed")
+        .insert(fingerprint)
 }
 
 fn walk(
@@ -168,7 +171,7 @@ impl Part {
             };
             match apply_catching_panics(&mut next, *action) {
                 Err(broken) => self.broken.push((step.from, step.action, broken)),
-                Ok(()) if is_new(known, next.print()) => {
+                Ok(()) if is_new(known, next.fingerprint()) => {
                     states.fetch_add(1, Ordering::Relaxed);
                     self.reached.push((next, step));
                 }
@@ -201,9 +204,9 @@ fn describe(
         sequence.push(actions[usize::from(steps[at as usize].action)]);
         at = steps[at as usize].from;
     }
-    let beginning = &initial_states[at as usize];
-    let mut text = format!("  power on with {}", beginning.with);
-    let played = beginning
+    let initial_state = &initial_states[at as usize];
+    let mut text = format!("  power on with {}", initial_state.with);
+    let played = initial_state
         .actions
         .iter()
         .copied()

@@ -15,7 +15,7 @@ use lizard_core::virtual_board::{Eeprom, Running, reading};
 use lizard_rules::{BrokenRule, Event, MS, Observer, Rule, Time, led};
 
 use crate::action::Action;
-use crate::fingerprint::{self, Print};
+use crate::fingerprint::{self, Fingerprint};
 use crate::small::{BUTTON, NOSE};
 
 /// The verdict of the rules.
@@ -75,11 +75,11 @@ impl World {
         world
     }
 
-    /// The number that equal states share.
-    pub fn print(&self) -> u64 {
+    /// Returns the number that equal states share.
+    pub fn fingerprint(&self) -> u64 {
         let board = &self.running.board;
-        let mut print = Print(fingerprint::coarse(&self.running.main));
-        print.add(fingerprint::coarse(&self.observer.coarse()));
+        let mut fingerprint = Fingerprint(fingerprint::coarse(&self.running.main));
+        fingerprint.add(fingerprint::coarse(&self.observer.coarse()));
         let memory = board.memory.bytes();
         for record in COPIES.map(|copy| copy.0).into_iter().chain([RESTED.0]) {
             let record = &memory[usize::from(record)..][..usize::from(LENGTH)];
@@ -90,11 +90,11 @@ impl World {
                 &record[..2]
             };
             for byte in used {
-                print.add(u64::from(*byte));
+                fingerprint.add(u64::from(*byte));
             }
         }
-        print.add(fingerprint::coarse(&board.ram.found(None)));
-        print.add(u64::from(board.rate as u8) << 2 | u64::from(self.sender as u8));
+        fingerprint.add(fingerprint::coarse(&board.ram.found(None)));
+        fingerprint.add(u64::from(board.rate as u8) << 2 | u64::from(self.sender as u8));
         let truth = board.converter.truth();
         let flags = [
             board.memory.is_worn,
@@ -113,10 +113,10 @@ impl World {
             self.is_late,
             self.known > 0,
         ];
-        print.add(flags.iter().fold(u64::from(truth.reference), |all, flag| {
+        fingerprint.add(flags.iter().fold(u64::from(truth.reference), |all, flag| {
             all << 1 | u64::from(*flag)
         }));
-        print.0
+        fingerprint.0
     }
 
     /// True if the action is possible now.
@@ -269,7 +269,7 @@ impl World {
         if !was_held && self.running.motion().hazard().is_some() {
             self.observe(Event::Fault);
         }
-        // The decision was made at the beginning of the frame.
+        // The decision was made at the start of the frame.
         self.listen(since + MS)?;
         self.judge_writes()?;
         let is_heard = !self.running.board.transmitter.is_held && !self.running.is_over();

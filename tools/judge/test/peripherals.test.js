@@ -85,7 +85,7 @@ test('a watchdog that is not fed interrupts after 16 ms', () => {
   assert.equal(run(corrections, watchdog('nop'), 17 * MS).cpu.data[20], 1);
 });
 
-test('its reset ends the run: avr8js resets the processor alone', () => {
+test('a watchdog reset ends the run, because avr8js resets the processor alone', () => {
   const board = uno(corrections, watchdog('nop'));
   assert.throws(() => board.run(40 * MS), /^Error: the watchdog resets the UNO at cycle 51\d{4}, /);
 });

@@ -30,7 +30,7 @@ test('three bytes wait until they are read, in order, and a fourth is lost', () 
   assert.equal(data[24] & 0x80, 0, 'RXC has fallen');
 });
 
-test('the status of a byte says that it came garbled, and no other byte\'s does', () => {
+test('the status of a garbled byte reports the error, and that of no other byte', () => {
   const FE = 0x10;
   const board = uno([receiveBuffer], PROGRAM.replaceAll('0xc6     ; UDR0', '0xc0').replace('lds r22, 0xc6', 'lds r22, 0xc6\n    lds r23, 0xc0'));
   board.run(20);

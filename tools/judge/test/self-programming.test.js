@@ -31,7 +31,7 @@ test('a page is filled, erased and written', () => {
   assert.deepEqual([...words([selfProgramming])], [0x1234, 0xffff]);
 });
 
-test('SPMCSR says that it is done', () => {
+test('SPMCSR reports that the operation is done', () => {
   assert.equal(run([selfProgramming], program(true), 100).cpu.data[20] & 0x1f, 0);
 });
 

@@ -29,12 +29,12 @@ function status(corrections, control) {
   return data[17] >> 7;
 }
 
-test('a byte waits on when UCSR0B is written and the receiver stays on', () => {
+test('a waiting byte survives a write of UCSR0B if the receiver stays on', () => {
   assert.equal(status([], 0x18), 0, fixed('waiting-byte.js'));
   assert.equal(status([waitingByte], 0x18), 1);
 });
 
-test('its interrupt waits on, too', () => {
+test('the interrupt of a waiting byte stays pending, too', () => {
   const board = uno([waitingByte], program(0x98));
   board.deliver([{ cycle: 50, byte: 0x41 }]);
   while (board.cpu.data[17] === 0) board.run(board.cpu.cycles + 1);

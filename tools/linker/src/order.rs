@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn all_pieces_that_can_be_near_one_another_are() {
+    fn pieces_that_call_each_other_are_near_each_other_if_possible() {
         let pieces = pairs();
         let compiled: Vec<usize> = (0..21).collect();
         assert_eq!(pieces.far(&compiled), 11);

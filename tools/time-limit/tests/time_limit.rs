@@ -29,7 +29,7 @@ fn shell(script: &str) -> Command {
 }
 
 #[test]
-fn a_condition_that_never_holds_fails_with_what_was_waited_for() {
+fn a_condition_that_never_holds_fails_and_names_the_event() {
     let words = panic_message(|| SHORT.expect("the cows", || false));
     assert_eq!(words, "waited 100ms for the cows");
     assert!(!SHORT.wait_for(|| false));
@@ -48,7 +48,7 @@ fn a_condition_is_checked_until_it_holds() {
 }
 
 #[test]
-fn work_that_blocks_fails_with_what_was_waited_for() {
+fn work_that_blocks_fails_and_names_the_event() {
     let (_send, receive) = mpsc::channel::<()>();
     let words = panic_message(|| SHORT.within("a word of nobody", move || receive.recv()));
     assert_eq!(words, "waited 100ms for a word of nobody");
@@ -94,7 +94,7 @@ fn a_program_gets_its_input_and_both_its_outputs_are_read() {
 }
 
 #[test]
-fn a_program_that_prints_for_ever_fails_with_its_name() {
+fn a_program_that_prints_forever_fails_with_its_name() {
     let error = SHORT.output(&mut Command::new("yes"), b"");
     let error = error.expect_err("it never ends");
     assert_eq!(error.kind(), ErrorKind::TimedOut);

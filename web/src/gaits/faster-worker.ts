@@ -26,7 +26,7 @@ async function search({ module, toml, floor, servos, wish }: Question): Promise<
   robot.setServos(servos);
   const search = robot.makeFaster(wish);
   if (isRefused(search)) return say({ of: 'end', refused: search.refused });
-  say({ of: 'begun', ...search, before: robot.trial(wish.bars) as Trial });
+  say({ of: 'start', ...search, before: robot.trial(wish.bars) as Trial });
   const best = (robots: number): Best | null => {
     const found = robot.fasterFound(robots);
     // The search only returns gaits within the robot's limits.
@@ -39,7 +39,7 @@ async function search({ module, toml, floor, servos, wish }: Question): Promise<
     if (isStopped) break;
     const tried = robot.fasterStep();
     done = tried.done;
-    say({ of: 'tried', done });
+    say({ of: 'progress', done });
     if (done % LOOK !== 0 || done === search.all || tried.best === null || tried.best <= shown) continue;
     shown = tried.best;
     const now = best(ROBOTS.look);

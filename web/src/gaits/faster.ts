@@ -16,8 +16,8 @@ export interface Best extends Found {
 }
 
 export type Answer =
-  | { of: 'begun'; all: number; rate: number; before: Trial }
-  | { of: 'tried'; done: number }
+  | { of: 'start'; all: number; rate: number; before: Trial }
+  | { of: 'progress'; done: number }
   | { of: 'best'; best: Best }
   /** The last answer: the best of all gaits that were tried, if any was valid. */
   | { of: 'end'; best: Best | null; done: number }

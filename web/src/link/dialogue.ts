@@ -83,15 +83,15 @@ export class Dialogue {
   private readonly decoder = new TextDecoder('latin1');
   private text = '';
   private readonly waiting: Question[] = [];
-  private asked: Question | null = null;
+  private pending: Question | null = null;
   private stop: Stop | null = null;
   /** Pending while further answers to repeated `stop` lines may come, which belong to no other line. */
   private echoes: Promise<void> | null = null;
   private isSilent = false;
   /** The line that is sent repeatedly beside all others. */
-  private beat: { line: string } | null = null;
+  private repeated: { line: string } | null = null;
   /** The expected answer to that line. */
-  private beaten = '';
+  private repeatedAnswer = '';
   private notes: string[] = [];
   /** True while the line serves another purpose. */
   over = false;
@@ -118,8 +118,8 @@ export class Dialogue {
 
   /** Drops all questions: the board restarts, or the line is used by something else. */
   forget(): void {
-    const dropped = [...(this.asked ? [this.asked] : []), ...(this.stop?.ends ?? [])];
-    this.asked = null;
+    const dropped = [...(this.pending ? [this.pending] : []), ...(this.stop?.ends ?? [])];
+    this.pending = null;
     this.text = '';
     this.notes = [];
     if (this.stop) this.listener.stopping(false);
@@ -158,12 +158,12 @@ export class Dialogue {
 
   /** Sends a line every `every` ms, beside all others and without waiting for its answer; null ends that. */
   keepAlive(line: string | null, every = 0): void {
-    const beat = (this.beat = line === null ? null : { line });
-    if (!beat) return;
-    this.beaten = `ok ${beat.line}`;
+    const repeated = (this.repeated = line === null ? null : { line });
+    if (!repeated) return;
+    this.repeatedAnswer = `ok ${repeated.line}`;
     const go = async () => {
-      while (this.beat === beat && !this.over) {
-        this.link.write(this.encoder.encode(`${beat.line}\n`)).catch(() => {});
+      while (this.repeated === repeated && !this.over) {
+        this.link.write(this.encoder.encode(`${repeated.line}\n`)).catch(() => {});
         await this.link.wait(every);
       }
     };
@@ -175,8 +175,8 @@ export class Dialogue {
     this.listener.stopping(false);
     this.hears();
     // Answers come in order: that of the line before has been lost.
-    const { asked } = this;
-    this.asked = null;
+    const { pending: asked } = this;
+    this.pending = null;
     asked?.failed(new DroppedQuestion());
     for (const { answered } of stop.ends) answered(answer);
     const echoes = (this.echoes = stop.times > 1 ? this.link.wait(ECHOES) : null);
@@ -200,20 +200,20 @@ export class Dialogue {
   }
 
   private async next(): Promise<void> {
-    if (this.asked || this.stop || this.echoes || this.over) return;
+    if (this.pending || this.stop || this.echoes || this.over) return;
     const question = this.waiting.shift();
     if (!question) return;
-    this.asked = question;
+    this.pending = question;
     this.notes = [];
     if (!question.quiet) this.listener.sent(question.line);
     try {
       await this.link.write(this.encoder.encode(`${question.line}\n`));
-      void this.link.wait(SILENCE).then(() => this.asked === question && this.hears(false));
+      void this.link.wait(SILENCE).then(() => this.pending === question && this.hears(false));
       await this.link.wait(question.timeout);
-      if (this.asked === question) throw new Error(`no answer to "${question.line}"`);
+      if (this.pending === question) throw new Error(`no answer to "${question.line}"`);
     } catch (error) {
-      if (this.asked !== question) return;
-      this.asked = null;
+      if (this.pending !== question) return;
+      this.pending = null;
       question.failed(error instanceof Error ? error : new Error(String(error)));
       void this.next();
     }
@@ -232,7 +232,7 @@ export class Dialogue {
     const line = received.slice(Math.max(0, received.indexOf(GREETING))).replace(MODULE, '');
     if (line === '') return;
     this.listener.arrived(line);
-    const { asked: question, stop } = this;
+    const { pending: question, stop } = this;
     const answers = /^(ok|err)\b/.test(line);
     if (!answers) {
       // The settings that the page asks for by itself are not shown.
@@ -247,10 +247,10 @@ export class Dialogue {
       return;
     }
     const isFit = question !== null && fits(line, question.line);
-    const isQuiet = isFit ? question.quiet : line === this.beaten;
+    const isQuiet = isFit ? question.quiet : line === this.repeatedAnswer;
     if (!isQuiet) this.listener.received(line);
     if (!isFit) return;
-    this.asked = null;
+    this.pending = null;
     this.hears();
     const { notes } = this;
     this.notes = [];

@@ -29,20 +29,20 @@ export interface Simulated extends Link {
   /** Runs the board for some time. */
   advance(ms: number): void;
   /** Sets the voltage of the board's supply. */
-  supply(volts: number): void;
+  setSupply(volts: number): void;
   /** Opens or closes a contact between a pin, by its Arduino number, and ground. */
-  contact(pin: number, isClosed: boolean): void;
+  setContact(pin: number, isClosed: boolean): void;
 }
 
 /** Timers in simulated time. */
 export class Timers {
   private waiting: { due: number; done: () => void }[] = [];
 
-  until(due: number): Promise<void> {
+  waitUntil(due: number): Promise<void> {
     return new Promise((done) => this.waiting.push({ due, done }));
   }
 
-  at(now: number): void {
+  advanceTo(now: number): void {
     const over = this.waiting.filter(({ due }) => due <= now);
     if (over.length === 0) return;
     this.waiting = this.waiting.filter(({ due }) => due > now);

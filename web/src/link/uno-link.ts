@@ -37,7 +37,7 @@ export class UnoLink implements Simulated {
     board.onByte = (byte) => this.sent.push(byte);
     board.onPulse = (pin, rise, width) => {
       events.pulse(pin, rise, width);
-      this.frames.pulse(pin, rise, width);
+      this.frames.add(pin, rise, width);
     };
   }
 
@@ -51,13 +51,13 @@ export class UnoLink implements Simulated {
       this.board.run(slice);
       // The last instruction may overrun the slice.
       this.cyclesToRun -= this.board.cycle - before;
-      this.frames.at(this.board.cycle);
+      this.frames.advanceTo(this.board.cycle);
       if (this.sent.length > 0) {
         const bytes = Uint8Array.from(this.sent);
         this.sent = [];
         this.onBytes(bytes);
       }
-      this.timers.at(this.board.cycle);
+      this.timers.advanceTo(this.board.cycle);
     }
   }
 
@@ -72,18 +72,18 @@ export class UnoLink implements Simulated {
   }
 
   /** Sets the voltage of the board's supply. */
-  supply(volts: number): void {
-    this.board.supply(volts);
+  setSupply(volts: number): void {
+    this.board.setSupply(volts);
   }
 
   /** Opens or closes a contact between a pin, by its Arduino number, and ground. */
-  contact(pin: number, isClosed: boolean): void {
-    this.board.contact(pin, isClosed);
+  setContact(pin: number, isClosed: boolean): void {
+    this.board.setContact(pin, isClosed);
   }
 
   /** Waits for this time of the simulated board. */
   wait(ms: number): Promise<void> {
-    return this.timers.until(this.board.cycle + ms * CYCLES_PER_MS);
+    return this.timers.waitUntil(this.board.cycle + ms * CYCLES_PER_MS);
   }
 
   /** Does nothing: no port is open. */

@@ -7,7 +7,7 @@ const QUICK = 34;
 const PAUSE = 2;
 /** Longest pause, ms, since a hidden page measures times that are too long. */
 const LONGEST = 1500;
-/** Least resolution, as a share of the screen's points to a side. */
+/** Lowest resolution, as a share of the screen's points to a side. */
 const COARSEST = 0.5;
 const COARSER = 0.8;
 /** Quick pictures in a row after which the resolution rises again. */
@@ -15,9 +15,9 @@ const STEADY = 90;
 
 export class PaintBudget {
   /** Resolution of the next picture, as a share of the screen's points to a side. */
-  sharpness = 1;
+  resolution = 1;
   private fence: WebGLSync | null = null;
-  private begun = 0;
+  private start = 0;
   private next = 0;
   private quick = 0;
 
@@ -30,19 +30,19 @@ export class PaintBudget {
       if (gl.clientWaitSync(this.fence, 0, 0) === gl.TIMEOUT_EXPIRED) return false;
       gl.deleteSync(this.fence);
       this.fence = null;
-      const elapsed = now - this.begun;
+      const elapsed = now - this.start;
       if (elapsed > QUICK) {
         this.next = now + Math.min(LONGEST, PAUSE * elapsed);
-        this.sharpness = Math.max(COARSEST, this.sharpness * COARSER);
+        this.resolution = Math.max(COARSEST, this.resolution * COARSER);
         this.quick = 0;
-      } else if (++this.quick % STEADY === 0) this.sharpness = Math.min(1, this.sharpness / COARSER);
+      } else if (++this.quick % STEADY === 0) this.resolution = Math.min(1, this.resolution / COARSER);
     }
     return now >= this.next;
   }
 
   /** Notes that a picture was handed over; a picture painted `once` may take long. */
-  drawn(once: boolean, now = performance.now()): void {
-    this.begun = once ? Infinity : now;
+  notePicture(once: boolean, now = performance.now()): void {
+    this.start = once ? Infinity : now;
     this.fence = this.gl.fenceSync(this.gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     this.gl.flush();
   }

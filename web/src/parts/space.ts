@@ -227,7 +227,7 @@ export class Space {
     if (this.dirty) this.changed = now;
     // A still view is painted once more at full resolution.
     const still = now - this.changed > STILL;
-    const ratio = Math.min(2, devicePixelRatio) * (still ? 1 : this.paintBudget.sharpness);
+    const ratio = Math.min(2, devicePixelRatio) * (still ? 1 : this.paintBudget.resolution);
     const size = this.renderer.getSize(new Vector2());
     if (size.x !== width || size.y !== height || this.renderer.getPixelRatio() !== ratio) {
       this.renderer.setPixelRatio(ratio);
@@ -240,7 +240,7 @@ export class Space {
     this.dirty = false;
     this.ground(place);
     this.renderer.render(this.scene, this.camera);
-    this.paintBudget.drawn(still);
+    this.paintBudget.notePicture(still);
   }
 
   /** Moves the floor below the robot, which stays in the middle. */

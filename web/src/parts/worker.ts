@@ -5,9 +5,10 @@ import { messageOf } from '../trouble';
 import { PartsModel, Unfit } from './model';
 import type { Answer, Question } from './workshop';
 
-let known: PartsModel | null = null;
+/** The model of the page; null until it is read. */
+let current: PartsModel | null = null;
 
-const say = (answer: Answer, give: Transferable[] = []) => postMessage(answer, { transfer: give });
+const say = (answer: Answer, transfer: Transferable[] = []) => postMessage(answer, { transfer });
 
 addEventListener('message', ({ data }: MessageEvent<Question>) => {
   void answer(data).catch((error: unknown) => say({ of: data.ask, refused: messageOf(error), meeting: error instanceof Unfit ? error.meeting : null }));
@@ -16,15 +17,15 @@ addEventListener('message', ({ data }: MessageEvent<Question>) => {
 async function answer(question: Question): Promise<void> {
   switch (question.ask) {
     case 'model': {
-      known = null;
-      known = await PartsModel.read(question.module, question.toml);
-      const solids = known.solids();
-      const give = solids.flatMap(({ corners, triangles }) => [corners.buffer, triangles.buffer]);
-      say({ of: 'model', model: known.model, solids }, give);
+      current = null;
+      current = await PartsModel.read(question.module, question.toml);
+      const solids = current.solids();
+      const transfer = solids.flatMap(({ corners, triangles }) => [corners.buffer, triangles.buffer]);
+      say({ of: 'model', model: current.model, solids }, transfer);
       break;
     }
     case 'pose':
-      say({ of: 'pose', places: known?.pose(question.angles, question.lags) ?? null });
+      say({ of: 'pose', places: current?.pose(question.angles, question.lags) ?? null });
       break;
     case 'fit':
       say({ of: 'fit', least: (await PartsModel.read(question.module, question.toml)).prove() });

@@ -42,22 +42,22 @@ export class Recorder {
   }
 
   /** Takes the robot's current activity. */
-  doing(gait: string, at: number): void {
+  setGait(gait: string, at: number): void {
     if (gait === this.gait) return;
-    this.parts = this.closed(at);
+    this.parts = this.partsUntil(at);
     [this.gait, this.since, this.counted, this.cycles] = [gait, at, at, 0];
   }
 
   /** Takes a new pace, percent. */
-  speed(percent: number, at: number): void {
+  setPace(percent: number, at: number): void {
     this.count(at);
     this.pace = percent;
   }
 
   /** Takes the reported phase of the robot's gait. */
-  phase(reported: number, at: number): void {
+  setPhase(reported: number, at: number): void {
     this.count(at);
-    const phase = this.known?.reversed ? (1 - reported) % 1 : reported;
+    const phase = this.currentGait?.reversed ? (1 - reported) % 1 : reported;
     // The count is never too low: during the move to its first pose the robot still reports the phase of the previous gait.
     if (phase > this.cycles + SLACK) {
       this.cycles = 0;
@@ -68,31 +68,31 @@ export class Recorder {
 
   /** The steps until now, from the first gait to the last one. */
   steps(at: number): string[] {
-    const parts = this.closed(at).filter((part) => !isShort(part));
+    const parts = this.partsUntil(at).filter((part) => !isShort(part));
     const first = parts.findIndex((part) => !isPause(part));
     const last = parts.findLastIndex((part) => !isPause(part));
     const steps = first < 0 ? [] : parts.slice(first, last + 1);
     return steps.map(({ name, cycles, seconds }) => `${name} ${cycles || `${Number(seconds.toFixed(1))} s`}`);
   }
 
-  private get known(): Gait | undefined {
+  private get currentGait(): Gait | undefined {
     return this.gaits.find(({ command }) => command === this.gait);
   }
 
   private count(at: number): void {
-    const { period } = this.known ?? {};
+    const { period } = this.currentGait ?? {};
     if (period !== undefined) this.cycles += ((at - this.counted) * this.pace) / 100 / period;
     this.counted = at;
   }
 
   /** All parts, the current activity as the last one. */
-  private closed(at: number): Part[] {
+  private partsUntil(at: number): Part[] {
     this.count(at);
-    const { parts, gait, known } = this;
+    const { parts, gait, currentGait } = this;
     const seconds = at - this.since;
     const part = PAUSES.includes(gait)
       ? { name: GAITS.stand, cycles: 0, seconds }
-      : { name: gait, cycles: known ? Math.max(0, Math.floor(this.cycles + SLACK)) : 0, seconds };
+      : { name: gait, cycles: currentGait ? Math.max(0, Math.floor(this.cycles + SLACK)) : 0, seconds };
     const before = parts.at(-1);
     if (!before || !isPause(part) || !isPause(before)) return [...parts, part];
     return [...parts.slice(0, -1), { ...before, seconds: before.seconds + seconds }];

@@ -1,5 +1,5 @@
 // The robot's side of the first connection. Signs come before trims, because a servo with a wrong sign would turn
-// the wrong way. Nothing is stored before `save`; `takeBack` restores the old calibration.
+// the wrong way. Nothing is stored before `save`; `restore` restores the old calibration.
 import type { Answer } from '../link/dialogue';
 import type { Link } from '../link/link';
 import type { Four } from '../robot';
@@ -9,14 +9,14 @@ import { GAITS, WORDS } from '../words';
 import { angle, type Calibration, calibrationOf, copyOf, isSame, linesOf } from './calibration';
 
 /** Turns to try for proving a servo's sign, deg, until the robot accepts one. */
-const PROOFS = [10, 5, -10, -5];
+const SIGN_TURNS = [10, 5, -10, -5];
 /** Turns to try for measuring a servo's scale, deg. */
-const SPANS = [20, -20, 15, -15, 10, -10];
+const SCALE_TURNS = [20, -20, 15, -15, 10, -10];
 /** Longest wait for the end of a motion, ms, and the time between two questions. */
-const MOTION = 5000;
-const LOOK = 60;
+const MOTION_TIMEOUT = 5000;
+const POLL_INTERVAL = 60;
 /** Tolerance of a reached pose, deg. */
-const NEAR = 0.02;
+const TOLERANCE = 0.02;
 
 /** Thrown with the robot's reason for a refusal. */
 export class Refusal extends Error {}
@@ -30,34 +30,34 @@ export class Guide {
   /** The current calibration. */
   private now: Calibration;
   private readonly link: Link;
-  private readonly beginnings: number;
+  private readonly banners: number;
   /** The robot's neutral angles, deg, known once it has stood. */
   private neutral: Four<number> | null = null;
 
   private constructor(
     private readonly session: Session,
-    has: Calibration,
+    calibration: Calibration,
   ) {
-    this.before = has;
-    this.now = copyOf(has);
+    this.before = calibration;
+    this.now = copyOf(calibration);
     this.link = session.link;
-    this.beginnings = session.beginnings;
+    this.banners = session.banners;
   }
 
   /** Reads the robot's calibration; nothing moves. Throws an error for the user. */
   static async begin(session: Session): Promise<Guide> {
-    const has = calibrationOf((await sendLine(session, WORDS.cal)).notes);
-    if (!has) throw new Error('The robot does not say its calibration as this page knows it: write this firmware first.');
-    return new Guide(session, has);
+    const calibration = calibrationOf((await sendLine(session, WORDS.cal)).notes);
+    if (!calibration) throw new Error('The robot does not say its calibration as this page knows it: write this firmware first.');
+    return new Guide(session, calibration);
   }
 
   /** True if the board is still the same and has not restarted. */
   get isCurrent(): boolean {
-    return this.session.link === this.link && this.session.beginnings === this.beginnings;
+    return this.session.link === this.link && this.session.banners === this.banners;
   }
 
   /** The robot's calibration, saved or not. */
-  get has(): Readonly<Calibration> {
+  get calibration(): Readonly<Calibration> {
     return this.now;
   }
 
@@ -86,15 +86,15 @@ export class Guide {
 
   /** Turns one servo from its neutral angle; returns the turn, deg counter-clockwise. */
   async prove(servo: number): Promise<number> {
-    return this.turned(servo, PROOFS);
+    return this.turnServo(servo, SIGN_TURNS);
   }
 
   /** Turns one servo as far as measuring its scale needs; returns the turn, deg counter-clockwise. */
   async span(servo: number): Promise<number> {
-    return this.turned(servo, SPANS);
+    return this.turnServo(servo, SCALE_TURNS);
   }
 
-  private async turned(servo: number, choices: number[]): Promise<number> {
+  private async turnServo(servo: number, choices: number[]): Promise<number> {
     const neutral = await this.stand();
     let refusal: Refusal | null = null;
     for (const by of choices) {
@@ -177,7 +177,7 @@ export class Guide {
   }
 
   /** Restores the old calibration and makes the robot stand; returns true if anything had changed. */
-  async takeBack(): Promise<boolean> {
+  async restore(): Promise<boolean> {
     try {
       await this.stand();
     } catch (error) {
@@ -251,18 +251,18 @@ async function sendLine(session: Session, line: string): Promise<Answer> {
 
 /** Waits until the robot stands still, in a given pose if there is one; returns its pose, deg. */
 async function settle(session: Session, wanted: Four<number> | null = null): Promise<Four<number>> {
-  const isThere = (pose: Four<number>) => wanted?.every((each, n) => Math.abs(((each - pose[n] + 540) % 360) - 180) < NEAR) ?? true;
+  const isThere = (pose: Four<number>) => wanted?.every((each, n) => Math.abs(((each - pose[n] + 540) % 360) - 180) < TOLERANCE) ?? true;
   const { link } = session;
-  let still = null as { frames: number; pose: string } | null;
-  for (let waited = 0; ; waited += LOOK) {
+  let last = null as { frames: number; pose: string } | null;
+  for (let waited = 0; ; waited += POLL_INTERVAL) {
     const answer = await session.ask(WORDS.status, true);
     const now = answer && status(answer.text);
     const here = now?.pose;
     if (!now || !here || session.link !== link) throw new BoardChanged('The board has restarted or is gone; what was not saved is lost.');
     const pose = here.join();
-    if (still?.pose !== pose) still = { frames: now.frames, pose };
-    else if (now.frames - still.frames >= session.description.still && isThere(here)) return here;
-    if (waited >= MOTION) return here;
-    await link.wait(LOOK);
+    if (last?.pose !== pose) last = { frames: now.frames, pose };
+    else if (now.frames - last.frames >= session.description.still && isThere(here)) return here;
+    if (waited >= MOTION_TIMEOUT) return here;
+    await link.wait(POLL_INTERVAL);
   }
 }

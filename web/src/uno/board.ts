@@ -99,13 +99,13 @@ export class SimulatedBoard {
   }
 
   /** Sets the voltage of the board. */
-  supply(volts: number): void {
+  setSupply(volts: number): void {
     this.volts = volts;
     this.uno.adc.avcc = volts;
   }
 
   /** Opens or closes a contact between a pin and ground; while it is open, the pin's pull-up makes it high. */
-  contact(pin: number, isClosed: boolean): void {
+  setContact(pin: number, isClosed: boolean): void {
     this.contacts.set(pin, isClosed);
     this.level(pin, isClosed);
   }

@@ -7,7 +7,7 @@ const FOUR_SLOTS = 0.0165 * FREQUENCY;
 
 export class Frames {
   private widths: Four<number> = [0, 0, 0, 0];
-  private begun: number | null = null;
+  private start: number | null = null;
   private last = -1;
 
   /** Takes the servos' Arduino pin numbers, A1 to A4. */
@@ -16,28 +16,28 @@ export class Frames {
     private readonly onFrame: (widths: Four<number>, cycle: number) => void,
   ) {}
 
-  pulse(pin: number, rise: number, width: number): void {
+  add(pin: number, rise: number, width: number): void {
     const servo = this.pins.indexOf(pin);
     if (servo < 0) return;
     // The same servo again, or an earlier one, starts a new frame.
     if (servo <= this.last) this.close();
-    this.begun ??= rise;
+    this.start ??= rise;
     this.last = servo;
     this.widths[servo] = width;
     if (servo === 3) this.close();
   }
 
   /** Closes a frame in which not all servos have a pulse. */
-  at(cycle: number): void {
-    if (this.begun !== null && cycle - this.begun > FOUR_SLOTS) this.close();
+  advanceTo(cycle: number): void {
+    if (this.start !== null && cycle - this.start > FOUR_SLOTS) this.close();
   }
 
   private close(): void {
-    if (this.begun === null) return;
-    const { widths, begun } = this;
+    if (this.start === null) return;
+    const { widths, start } = this;
     this.widths = [0, 0, 0, 0];
-    this.begun = null;
+    this.start = null;
     this.last = -1;
-    this.onFrame(widths, begun);
+    this.onFrame(widths, start);
   }
 }

@@ -29,13 +29,13 @@ export class FasterView {
   private readonly numbers = { rate: null as number | null, rounds: 5, seed: 1 };
   private search: FasterSearch | null = null;
   /** The gait to beat, and its trial. */
-  private beaten: Bars | null = null;
+  private reference: Bars | null = null;
   private before: Trial | null = null;
   private best: Best | null = null;
   /** The gait that the found one replaced. */
   private replaced: Bars | null = null;
   private toml = '';
-  private all = 0;
+  private total = 0;
   /** The WebAssembly module with the search, loaded on demand. */
   private module: Promise<WebAssembly.Module> | null = null;
 
@@ -68,7 +68,7 @@ export class FasterView {
     if (!bars) return this.say('There is no gait to start from.');
     const { toml, floor, servos } = this.session();
     this.toml = toml;
-    this.beaten = bars;
+    this.reference = bars;
     this.before = this.best = null;
     this.result.hidden = true;
     this.start.textContent = WORDS.stop;
@@ -83,12 +83,12 @@ export class FasterView {
 
   private handle(answer: Answer): void {
     switch (answer.of) {
-      case 'begun':
+      case 'start':
         this.before = answer.before;
-        this.all = this.bar.max = answer.all;
+        this.total = this.bar.max = answer.all;
         this.bar.value = 0;
         return this.say(`Trying ${answer.all} gaits whose servos turn at most ${answer.rate.toFixed(0)} °/s…`);
-      case 'tried':
+      case 'progress':
         this.bar.value = answer.done;
         return;
       case 'best':
@@ -103,7 +103,7 @@ export class FasterView {
     this.reset();
     if ('refused' in answer) return this.say(`This gait cannot be made faster: ${answer.refused}.`);
     const { best, done } = answer;
-    const tried = done < this.all ? `Stopped after ${done} of ${this.all} gaits. ` : '';
+    const tried = done < this.total ? `Stopped after ${done} of ${this.total} gaits. ` : '';
     if (best?.better) {
       this.show(best);
       const { comparison } = best;
@@ -146,12 +146,12 @@ export class FasterView {
   }
 
   private async compare(): Promise<void> {
-    const { beaten, best } = this;
-    if (!beaten || !best) return;
+    const { reference, best } = this;
+    if (!reference || !best) return;
     const { robot, toml, isReal } = this.session();
     // This change only put the found gait into the robot, so the result stays.
     if (!isReal) this.toml = robot.putGait(toml, best.bars);
-    await this.edited.compare(beaten, best.bars, element('faster-ways'));
+    await this.edited.compare(reference, best.bars, element('faster-ways'));
   }
 
   private say(text: string): void {

@@ -38,7 +38,7 @@ export class GaitsView {
   private readonly panel = element<HTMLDetailsElement>('gait-editor');
   private readonly from = element<HTMLSelectElement>('gait-from');
   private readonly name = element<HTMLInputElement>('gait-name');
-  private readonly held = element<HTMLSelectElement>('gait-kind');
+  private readonly kindList = element<HTMLSelectElement>('gait-kind');
   private readonly circle = element<HTMLElement>('gait-circle') as unknown as SVGSVGElement;
   private readonly start: HTMLInputElement[] = [];
   private readonly gain: HTMLInputElement[] = [];
@@ -61,7 +61,7 @@ export class GaitsView {
     this.panel.addEventListener('toggle', () => this.showRobot());
     this.from.addEventListener('change', () => this.choose());
     this.name.addEventListener('input', () => this.change({ name: this.name.value.trim().replaceAll(' ', '-') }));
-    this.held.addEventListener('change', () => this.change({ held: this.held.value === 'held' }));
+    this.kindList.addEventListener('change', () => this.change({ held: this.kindList.value === 'held' }));
     for (const plain of Object.keys(NUMBERS) as Plain[]) {
       numberInput(element(`gait-${plain}`), NUMBERS[plain], (value) => value !== null && this.change({ [plain]: value }));
     }
@@ -173,7 +173,7 @@ export class GaitsView {
     for (const plain of Object.keys(NUMBERS) as Plain[]) put(element(`gait-${plain}`), gait[plain]);
     element<HTMLInputElement>('gait-duty').disabled = gait.held;
     if (document.activeElement !== this.name) this.name.value = gait.name;
-    this.held.value = gait.held ? 'held' : 'wave';
+    this.kindList.value = gait.held ? 'held' : 'wave';
     const long = gait.held ? HELD : gait.duty;
     LEGS.forEach((_, leg) => {
       const [start, radius] = [gait.start[leg] ?? 0, RINGS[leg] ?? 0];

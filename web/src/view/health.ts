@@ -11,7 +11,7 @@ export class Health {
   private readonly panel = element<HTMLDetailsElement>('power');
   private readonly list = element('health');
   private readonly values = new Map<string, HTMLElement>();
-  private asking = false;
+  private isAsking = false;
 
   constructor(private readonly session: () => Session) {
     for (const name of ['fault', 'guard', 'margin', 'vcc', 'late edges', 'bytes lost', 'last reset', 'restarts']) {
@@ -23,13 +23,13 @@ export class Health {
   }
 
   /** True while something else uses the line. */
-  held = false;
+  isPaused = false;
 
   private async ask(): Promise<void> {
-    if (this.asking || this.held || document.hidden || !this.session().mayAsk) return;
-    this.asking = true;
+    if (this.isAsking || this.isPaused || document.hidden || !this.session().mayAsk) return;
+    this.isAsking = true;
     const status = await this.session().status();
-    this.asking = false;
+    this.isAsking = false;
     if (status) this.show(status);
   }
 

@@ -38,8 +38,8 @@ interface Pair {
 export class Keep {
   private readonly panel = element<HTMLDetailsElement>('keep');
   private readonly moment = element<HTMLInputElement>('moment');
-  private readonly mine = element<HTMLSelectElement>('mine');
-  private readonly other = element<HTMLSelectElement>('other');
+  private readonly ownGait = element<HTMLSelectElement>('mine');
+  private readonly otherGait = element<HTMLSelectElement>('other');
   private recording: Recording | null = null;
   private isRecording = false;
   /** Start of the replay, ms of real time, and the moment it started from, s; null while it is paused or off. */
@@ -85,14 +85,14 @@ export class Keep {
     this.recording = null;
     this.isReplaying = false;
     this.removeCompanion();
-    const chosen = [this.mine.value, this.other.value];
-    for (const list of [this.mine, this.other]) {
+    const chosen = [this.ownGait.value, this.otherGait.value];
+    for (const list of [this.ownGait, this.otherGait]) {
       list.replaceChildren(...gaits.map(({ command }) => new Option(command)));
     }
     const known = gaits.map(({ command }) => command);
     const moving = gaits.filter(({ moves }) => moves).map(({ command }) => command);
-    this.mine.value = known.find((gait) => gait === chosen[0]) ?? moving[moving.length > 1 ? 1 : 0] ?? '';
-    this.other.value = known.find((gait) => gait === chosen[1]) ?? moving[0] ?? '';
+    this.ownGait.value = known.find((gait) => gait === chosen[0]) ?? moving[moving.length > 1 ? 1 : 0] ?? '';
+    this.otherGait.value = known.find((gait) => gait === chosen[1]) ?? moving[0] ?? '';
     this.say('');
     this.updateButtons();
   }
@@ -128,7 +128,7 @@ export class Keep {
       this.moment.value = String(time);
       if (time >= recording.seconds) this.playing = null;
     }
-    return recording.at(this.moment.valueAsNumber)?.frame ?? now;
+    return recording.frameAt(this.moment.valueAsNumber)?.frame ?? now;
   }
 
   /** The current frame of the second robot. */
@@ -240,7 +240,7 @@ export class Keep {
   }
 
   private chosen(): Pair {
-    const gaits: [string, string] = [this.mine.value, this.other.value];
+    const gaits: [string, string] = [this.ownGait.value, this.otherGait.value];
     return { toml: this.session().toml, gaits, names: [gaits[0], `Beside it, ${gaits[1]}`], output: element('keep-said') };
   }
 

@@ -18,13 +18,13 @@ class MapView {
     onPaletteChange(() => (this.still = null));
   }
 
-  robot(robot: Robot): void {
+  setRobot(robot: Robot): void {
     this.map = robot.map(this.end);
     this.still = null;
     this.trail = [];
   }
 
-  at(scene: Scene): void {
+  add(scene: Scene): void {
     this.trail.push(scene.map[this.end]);
     if (this.trail.length > TRAIL) this.trail.shift();
   }
@@ -94,12 +94,12 @@ class MapView {
 export class MapsView {
   private readonly maps = [new MapView(0), new MapView(1)];
 
-  robot(robot: Robot): void {
-    for (const map of this.maps) map.robot(robot);
+  setRobot(robot: Robot): void {
+    for (const map of this.maps) map.setRobot(robot);
   }
 
-  at(scene: Scene): void {
-    for (const map of this.maps) map.at(scene);
+  add(scene: Scene): void {
+    for (const map of this.maps) map.add(scene);
   }
 
   draw(): void {

@@ -8,7 +8,7 @@ export class MarginsView {
   private readonly panel = element<HTMLDetailsElement>('margins-panel');
   private bars: { row: HTMLElement; fill: HTMLElement; value: HTMLElement; limit: number }[] = [];
 
-  robot({ margins }: Description): void {
+  setRobot({ margins }: Description): void {
     const list = element('margins');
     list.replaceChildren();
     this.bars = margins.map(({ name, limit }) => {

@@ -6,24 +6,24 @@ export class Pace {
   private readonly slider = element<HTMLInputElement>('speed');
   private readonly out = element('speed-out');
   /** True while the user holds the slider, or its line has no answer. */
-  private held = false;
+  private isHeld = false;
 
   /** `ask` sends a line and resolves with its answer. */
   constructor(ask: (line: string) => Promise<unknown>) {
     this.slider.addEventListener('input', () => {
-      this.held = true;
+      this.isHeld = true;
       this.write(this.slider.valueAsNumber);
     });
     this.slider.addEventListener('change', () => {
-      this.held = true;
-      void ask(`${WORDS.speed} ${this.slider.value}`).finally(() => (this.held = false));
+      this.isHeld = true;
+      void ask(`${WORDS.speed} ${this.slider.value}`).finally(() => (this.isHeld = false));
     });
     this.write(this.slider.valueAsNumber);
   }
 
   /** Shows the robot's pace, percent. */
   show(percent: number): void {
-    if (this.held) return;
+    if (this.isHeld) return;
     this.slider.value = String(percent);
     this.write(percent);
   }

@@ -38,7 +38,7 @@ export class PartsView {
   /** The parts that meet, which are red. */
   private meeting: Meeting | null = null;
   /** The request of the last pose. */
-  private asked = '';
+  private requestedPose = '';
   private stop: (() => void) | null = null;
 
   constructor(private readonly session: () => Session) {
@@ -99,7 +99,7 @@ export class PartsView {
       this.solids?.end();
       this.solids = solids;
       this.model = model;
-      this.asked = '';
+      this.requestedPose = '';
       this.fill(model);
       this.space ??= this.open(Space);
       this.space?.showModel(model, meshes);
@@ -140,7 +140,7 @@ export class PartsView {
     if (!this.model) return;
     if ((step === null) !== (this.step === null)) this.apart.value = step === null ? '0' : '100';
     this.step = step;
-    this.asked = '';
+    this.requestedPose = '';
     const found = step === null ? undefined : this.model.steps[step - 1];
     const count = this.model.steps.length;
     this.say('step-title', found ? `${step} of ${count}: ${found.title}` : 'The whole robot');
@@ -173,7 +173,7 @@ export class PartsView {
   meet(meeting: Meeting | null): void {
     if (meeting === this.meeting) return;
     this.meeting = meeting;
-    this.asked = '';
+    this.requestedPose = '';
     this.pick(this.picked);
   }
 
@@ -194,13 +194,13 @@ export class PartsView {
     const moving = this.step === null && !this.meeting && frame?.scene != null;
     const [angles, lags] = moving ? [frame.scene?.angles ?? neutral, frame.lag] : [this.meeting?.pose ?? neutral, [0, 0, 0, 0]];
     const asked = [...angles, ...lags].map((angle) => angle.toFixed(2)).join(' ');
-    if (asked !== this.asked) {
-      this.asked = asked;
+    if (asked !== this.requestedPose) {
+      this.requestedPose = asked;
       void solids.pose(angles, lags).then((places) => {
         if (solids !== this.solids) return;
         if (places) space.pose(places);
         // Another pose was in progress, so this one is requested again.
-        else if (this.asked === asked) this.asked = '';
+        else if (this.requestedPose === asked) this.requestedPose = '';
       });
     }
     space.draw(moving ? frame.place : ORIGIN);

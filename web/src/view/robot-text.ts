@@ -1,6 +1,6 @@
 // The robot.toml as text: edited, opened, dropped into the box, undone, and shared as a link.
 import { partsOf } from '../address';
-import { linkTo, unpacked } from '../link-text';
+import { linkTo, unpack } from '../link-text';
 import type { Refused } from '../robot';
 import type { Session } from '../session';
 import { messageOf } from '../trouble';
@@ -86,7 +86,7 @@ export class RobotText {
   async fromAddress(hash = location.hash): Promise<boolean> {
     try {
       const part = partsOf(hash).get('robot');
-      const toml = part === null ? this.session().toml : await unpacked(part);
+      const toml = part === null ? this.session().toml : await unpack(part);
       return toml === this.session().toml || (await this.loadAndShow(toml));
     } catch (error) {
       reveal(this.box);

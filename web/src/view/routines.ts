@@ -67,18 +67,18 @@ export class RoutinesView {
 
   /** Takes the robot's activity. */
   doing(gait: string): void {
-    this.recorder?.doing(gait, this.session().clock);
+    this.recorder?.setGait(gait, this.session().clock);
     this.tell();
   }
 
   /** Takes the robot's pace, percent. */
   speed(percent: number): void {
-    this.recorder?.speed(percent, this.session().clock);
+    this.recorder?.setPace(percent, this.session().clock);
   }
 
   /** Takes the phase of the robot's gait. */
   phase(phase: number): void {
-    this.recorder?.phase(phase, this.session().clock);
+    this.recorder?.setPhase(phase, this.session().clock);
   }
 
   /** Shows the routines of the text, if the panel is open. */

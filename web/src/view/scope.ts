@@ -32,7 +32,7 @@ export class ScopeView {
   private hasPulses = true;
 
   /** Shows another robot. */
-  robot({ servos }: Description): void {
+  setRobot({ servos }: Description): void {
     this.pins = servos.map(({ pin }) => pin);
     this.pulses = [];
     const body = element('widths');

@@ -100,10 +100,10 @@ export class Setup implements Tools {
 
   /** Opens the step that a newly connected board needs first. */
   openNeededStep(): void {
-    const { has, hasThis, link } = this.session;
+    const { banner, hasThisRobot, link } = this.session;
     // A radio cannot write firmware, and the owner of a module has had a first walk.
     if (link.kind === 'radio' && this.box.hidden) return;
-    const step = has === null || (has !== 'unknown' && !hasThis) ? firmware : this.isNew ? horns : null;
+    const step = banner === null || (banner !== 'unknown' && !hasThisRobot) ? firmware : this.isNew ? horns : null;
     if (this.box.hidden) {
       if (!step) return;
       this.step = step;
@@ -159,7 +159,7 @@ export class Setup implements Tools {
     const { guide } = this;
     if (guide?.isCurrent) {
       try {
-        if (await guide.takeBack()) message = 'The first connection was left: the robot has the calibration that it had before.';
+        if (await guide.restore()) message = 'The first connection was left: the robot has the calibration that it had before.';
       } catch (error) {
         message = `The first connection was left, and the robot may have a calibration that is not saved, until its reset: ${messageOf(error)}`;
       }

@@ -27,7 +27,7 @@ export class Sketch {
   private readonly slider = new LengthSlider((edits, isLast) => this.tryOut(edits, isLast), () => this.askRobot());
   private toml = '';
   /** The dragged joint, as it was at the start of the drag. */
-  private held: Joint | null = null;
+  private dragged: Joint | null = null;
   /** True from the end of a drag until its last place is answered. */
   private isEnding = false;
 
@@ -45,7 +45,7 @@ export class Sketch {
     const { toml, description } = this.session();
     if (toml === this.toml) return;
     this.toml = toml;
-    this.held = null;
+    this.dragged = null;
     this.slider.showRobot(description.lengths);
     this.sketches ??= new LatestQuestion(new Worker(new URL('../sketch/worker.ts', import.meta.url), { type: 'module' }), this.module, (answer) => this.answered(answer));
     this.askRobot();
@@ -89,7 +89,7 @@ export class Sketch {
   private async end(toml: string | null): Promise<void> {
     const session = this.session();
     this.isEnding = false;
-    this.held = null;
+    this.dragged = null;
     if (toml !== null && toml !== session.toml) await session.change(toml);
     else this.goBack();
   }
@@ -125,12 +125,12 @@ export class Sketch {
       }),
     );
     const spots = [...scene.points, ...scene.legs.flatMap(({ foot, joints }) => [foot, ...joints]), ...scene.shafts].map(at);
-    if (isWhole && !this.held) {
+    if (isWhole && !this.dragged) {
       const [xs, ys] = [spots.map(([x]) => x), spots.map(([, y]) => y)];
       const [left, top] = [Math.min(...xs) - RIM, Math.min(...ys) - RIM];
       this.picture.setAttribute('viewBox', `${left} ${top} ${Math.max(...xs) + RIM - left} ${Math.max(...ys) + RIM - top}`);
     }
-    if (this.held) {
+    if (this.dragged) {
       // The dragged joint is drawn at its real place, as far as the lengths allow.
       joints(scene, () => 0).forEach(({ at: spot }, n) => this.place(this.drawnJoints.children[n], at(spot)));
       return;
@@ -148,7 +148,7 @@ export class Sketch {
     let start: [number, number] | null = null;
     const isDragged = ({ clientX, clientY }: PointerEvent) => {
       if (start && Math.hypot(clientX - start[0], clientY - start[1]) > STILL) start = null;
-      return this.held === joint && start === null;
+      return this.dragged === joint && start === null;
     };
     const mark = document.createElementNS(SVG, 'circle');
     mark.setAttribute('r', '3.6');
@@ -159,17 +159,17 @@ export class Sketch {
       if (this.isEnding) return;
       mark.setPointerCapture(event.pointerId);
       start = [event.clientX, event.clientY];
-      this.held = joint;
+      this.dragged = joint;
     });
     mark.addEventListener('pointermove', (event) => isDragged(event) && this.drag(joint, event));
     mark.addEventListener('pointerup', (event) => {
-      if (this.held !== joint) return;
-      if (!isDragged(event)) return void (this.held = null);
+      if (this.dragged !== joint) return;
+      if (!isDragged(event)) return void (this.dragged = null);
       this.drag(joint, event, true);
     });
     mark.addEventListener('pointercancel', () => {
-      if (this.held !== joint) return;
-      this.held = null;
+      if (this.dragged !== joint) return;
+      this.dragged = null;
       this.goBack();
     });
     return mark;

@@ -64,7 +64,7 @@ export class Writer {
     this.isWriting = false;
     this.busy(false);
     if (!isWritten) return false;
-    const wrong = await session.begins(hash);
+    const wrong = await session.waitForBanner(hash);
     if (wrong === null) return true;
     message.textContent = `written and verified; ${wrong}`;
     return false;

@@ -237,7 +237,7 @@ impl Model {
     /// guide; none after that.
     ///
     /// # Errors
-    /// Fails for a part whose layers make no body, a screw that cannot be reached.
+    /// Fails for a part whose layers make no body, or a screw that cannot be reached.
     pub fn files(&self, number: usize) -> Result<Vec<File>, Refused> {
         let robot = self.assembly.robot();
         let count = self.ordered().count();

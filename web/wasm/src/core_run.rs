@@ -83,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn it_greets_walks_and_keeps_what_is_saved() {
+    fn the_core_prints_its_banner_walks_and_keeps_saved_settings() {
         let robot = Robot::parse(include_str!("../../../robots/large.toml")).expect("right");
         let mut core = CoreRun::begin(*robot.firmware(), Eeprom::blank());
         let mut printed = String::new();
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn a_low_supply_stops_it() {
+    fn a_low_supply_stops_the_core() {
         let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
         let mut core = CoreRun::begin(*robot.firmware(), Eeprom::blank());
         let mut printed = String::new();

@@ -450,7 +450,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_lengths_twin_has_it_as_its_own_twin() {
+    fn a_length_is_the_twin_of_its_twin() {
         let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
         let lengths = Description::of(&robot).lengths;
         for length in &lengths {

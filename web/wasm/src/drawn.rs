@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn the_points_of_a_robot_with_it_go_round_the_circle_that_was_drawn() {
+    fn the_point_of_a_robot_with_the_gait_follows_the_drawn_circle() {
         let (robot, twin) = with_twin();
         for end in End::ALL {
             let drawn = circle(&robot, end, 6.0);

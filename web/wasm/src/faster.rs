@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn a_search_that_is_stopped_has_the_best_of_what_it_tried() {
+    fn a_stopped_search_has_the_best_gait_so_far() {
         let (robot, twin) = with_twin();
         let mut faster = Faster::begin(&twin, &wish("walk")).expect("it begins");
         assert_eq!(faster.begun().all, 40);

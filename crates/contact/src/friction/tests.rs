@@ -79,7 +79,7 @@ fn assert_least(pads: &Pads) {
 }
 
 #[test]
-fn nearly_two_against_two_is_still_decided_rightly() {
+fn a_near_tie_of_two_feet_against_two_is_decided_correctly() {
     // A sine walk: at each instant two legs go one way about as fast as two
     // go the other, so that only lever arms decide.
     for step in 0..1000 {

@@ -44,7 +44,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_is_the_sum_of_the_catalogue(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+        fn the_checksum_is_that_of_the_catalogue(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
             let catalogue = Crc::<u16>::new(&CRC_16_IBM_3740);
             prop_assert_eq!(Checksum::of(&bytes).0, catalogue.checksum(&bytes));
         }

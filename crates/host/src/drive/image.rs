@@ -35,7 +35,7 @@ pub struct Args {
 
 /// An image in a file, under the names of `--json`.
 #[derive(Serialize)]
-struct Made {
+struct ImageFile {
     file: String,
     /// The version of the firmware; null in a file with only the robot.
     firmware: Option<&'static str>,
@@ -64,17 +64,17 @@ pub fn run(args: Args) -> Result<(), Failure> {
         return Ok(io::stdout().lock().write_all(hex.as_bytes())?);
     };
     files::write(&path, hex.as_bytes())?;
-    let made = Made {
+    let image_file = ImageFile {
         file: path.display().to_string(),
         firmware: (!args.only_robot).then_some(env!("CARGO_PKG_VERSION")),
         robot: info::Robot::of(robot.firmware()),
         robot_bytes: robot.section().len(),
         robot_space: SPACE,
     };
-    json::print_json_or(args.json, &made, || made.text())
+    json::print_json_or(args.json, &image_file, || image_file.text())
 }
 
-impl Made {
+impl ImageFile {
     fn text(&self) -> String {
         let content = self
             .firmware

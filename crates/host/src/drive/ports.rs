@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_port_it_says_what_to_do() {
+    fn without_a_port_the_message_says_what_to_do() {
         assert!(text(&[]).contains("carries data") && text(&[]).contains("--sim"));
     }
 }

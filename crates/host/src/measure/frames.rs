@@ -90,7 +90,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_name_tells_a_time_only_with_its_unit() {
+    fn a_name_contains_a_time_only_with_its_unit() {
         assert_eq!(seconds("walk-1033ms"), Some(1.033));
         assert_eq!(seconds("1.5s"), Some(1.5));
         for none in ["frame-0001", "1.5", "s", "films", "1.2.3s"] {

@@ -57,7 +57,7 @@ struct ModeSolution {
 /// Prints the servo angles that put head and tail at these points, mm.
 ///
 /// # Errors
-/// Fails for a point out of reach, an output that cannot be written.
+/// Fails for a point out of reach, or an output that cannot be written.
 pub fn print(robot: &Robot, ends: [Option<Vector>; 2], json: bool) -> Result<(), Failure> {
     let [head, tail] = ends;
     let head = head.map(|point| solve(robot, End::Head, point));
@@ -97,7 +97,7 @@ fn solve_mode(robot: &Robot, end: End, point: Vector, a: InverseSolution) -> Mod
         Err(_) => (0.0, 0.0),
     };
     let angles = [a.theta_left, a.theta_right].map(|theta| end.mirror_angle(theta));
-    let mut reason: Vec<String> = end
+    let mut reasons: Vec<String> = end
         .servos()
         .into_iter()
         .zip(angles)
@@ -105,7 +105,7 @@ fn solve_mode(robot: &Robot, end: End, point: Vector, a: InverseSolution) -> Mod
         .collect();
     let behind = a.assembly_mode == AssemblyMode::Behind;
     if behind {
-        reason.push(
+        reasons.push(
             "another assembly mode: the end point would be behind the crank tips".to_string(),
         );
     }
@@ -113,7 +113,7 @@ fn solve_mode(robot: &Robot, end: End, point: Vector, a: InverseSolution) -> Mod
         // In the other assembly mode the type-2 margin is negative, which is stated.
         let stated = |check| behind && Check::TYPE2.contains(&check);
         let broken = robot.limits().end_violations(end, pose);
-        reason.extend(broken.filter(|v| !stated(v.what)).map(|v| v.to_string()));
+        reasons.extend(broken.filter(|v| !stated(v.what)).map(|v| v.to_string()));
     }
     ModeSolution {
         left: elbow_text(a.working_mode.left),
@@ -123,8 +123,8 @@ fn solve_mode(robot: &Robot, end: End, point: Vector, a: InverseSolution) -> Mod
         theta_right: angles[1],
         error_mm,
         margin,
-        reachable: reason.is_empty(),
-        why: reason,
+        reachable: reasons.is_empty(),
+        why: reasons,
     }
 }
 
@@ -150,14 +150,14 @@ fn report(robot: &Robot, head: Option<Loop>, tail: Option<Loop>) -> Report {
             None => {}
         }
     }
-    let mut reason: Vec<String> = Vec::new();
+    let mut reasons: Vec<String> = Vec::new();
     for part in [&head, &tail].into_iter().flatten() {
-        reason.extend(part.why.clone());
+        reasons.extend(part.why.clone());
     }
     if is_complete {
         match robot.lizard().solve(&Pose::from(angles)) {
-            Ok(solution) => reason.extend(verdict::reasons(robot, &solution)),
-            Err(infeasible) => reason.push(infeasible.to_string()),
+            Ok(solution) => reasons.extend(verdict::reasons(robot, &solution)),
+            Err(infeasible) => reasons.push(infeasible.to_string()),
         }
     }
     let [theta1, theta4, theta8, theta5] = angles.map(|angle| angle.rem_euclid(360.0));
@@ -170,8 +170,8 @@ fn report(robot: &Robot, head: Option<Loop>, tail: Option<Loop>) -> Report {
             theta8,
             theta5,
         }),
-        safe: reason.is_empty(),
-        why: reason,
+        safe: reasons.is_empty(),
+        why: reasons,
     }
 }
 

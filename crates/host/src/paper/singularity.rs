@@ -1,4 +1,4 @@
-//! `lizard pose --show singularities`: K and K*, their factors, and the way to the nearest
+//! `lizard pose --show singularities`: K and K*, their factors, and the turns to the nearest
 //! singular pose.
 
 use lizard_kinematics::{Blocks, End, FiveBar, SingularPose, Singularity, Solution, wrap};

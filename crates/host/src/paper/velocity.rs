@@ -69,7 +69,7 @@ impl From<DriveArgs> for Drive {
 /// Prints how fast each passive joint moves.
 ///
 /// # Errors
-/// Fails for a pose in which rates have no meaning, an output that cannot be written.
+/// Fails for a pose in which rates have no meaning, or an output that cannot be written.
 pub fn print(
     lizard: &Lizard,
     solution: &Solution,

@@ -297,7 +297,7 @@ mod tests {
 
     #[test]
     #[cfg(target_os = "linux")]
-    fn in_a_folder_that_takes_no_files_the_file_alone_is_named() {
+    fn in_a_read_only_folder_the_error_names_only_the_file() {
         let words = refusal(Path::new("/proc/self/a.toml"));
         assert!(
             words.starts_with("cannot write /proc/self/a.toml: "),

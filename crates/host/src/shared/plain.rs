@@ -39,7 +39,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_that_nobody_reads_loses_its_middle() {
+    fn a_line_too_long_to_read_loses_its_middle() {
         let [fits, long] = [900, 901].map(|count| "ä".repeat(count));
         assert_eq!(readable_lines(&fits), fits);
         let side = "ä".repeat(300);

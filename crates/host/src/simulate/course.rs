@@ -61,7 +61,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_servo_without_a_pulse_is_asked_for_what_it_was_asked_before() {
+    fn a_servo_without_a_pulse_keeps_its_previous_target() {
         let robot = crate::shared::robot_file::named("unequal");
         let log = FrameLog {
             widths: vec![

@@ -32,7 +32,7 @@ fn parts_together_print_byte_for_byte_what_one_process_prints() {
 }
 
 #[test]
-fn a_merge_refuses_what_is_not_all_of_one_computation() {
+fn a_merge_refuses_parts_that_are_not_one_complete_computation() {
     let words = paper("design --search --step 0.1");
     let parts = parts(&words, 2);
     let (last, first) = parts.split_once('\n').expect("two lines");
@@ -57,7 +57,7 @@ fn a_merge_refuses_what_is_not_all_of_one_computation() {
 }
 
 #[test]
-fn a_part_is_of_so_many_and_of_what_takes_long() {
+fn a_part_needs_a_valid_number_and_a_command_that_can_be_split() {
     let message = complaint("prove --part 3/2", "");
     assert!(
         message.contains("it must be as 2/8, from 1/8 to 8/8"),

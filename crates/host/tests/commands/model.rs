@@ -81,7 +81,7 @@ fn a_urdf_or_sdf_comes_with_the_meshes_that_it_names() {
 }
 
 #[test]
-fn what_a_format_does_not_have_is_refused_and_nothing_is_written() {
+fn options_that_a_format_lacks_are_refused_and_nothing_is_written() {
     let folder = tempfile::tempdir().expect("a folder");
     for (name, words, refusal) in [
         ("a.urfd", vec![], "the ending decides the format"),

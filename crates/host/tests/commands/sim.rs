@@ -7,7 +7,7 @@ fn complaint(arguments: &[&str]) -> String {
 }
 
 #[test]
-fn a_firmware_that_is_not_there_is_named() {
+fn a_missing_firmware_is_named() {
     let message = complaint(&["sim", "--elf", "no/such.elf"]);
     assert_eq!(
         message,

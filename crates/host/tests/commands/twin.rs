@@ -81,7 +81,7 @@ fn the_image_runs_at_90_mm_a_second_on_pads_with_a_grain_and_still_turns() {
 }
 
 #[test]
-fn a_gait_that_there_is_not_is_refused_with_those_there_are() {
+fn an_unknown_gait_is_refused_with_a_list_of_the_gaits() {
     for (gait, words) in [
         (
             "jump",

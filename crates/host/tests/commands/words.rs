@@ -24,7 +24,7 @@ fn words_under(help: &str, heading: &str) -> Vec<String> {
 }
 
 #[test]
-fn help_has_every_command_under_what_it_is_for_and_the_owners_first() {
+fn help_groups_all_commands_by_purpose_with_the_owners_first() {
     let help = output(&["--help"]);
     let headings = [
         "Drive the robot",
@@ -48,7 +48,7 @@ fn help_has_every_command_under_what_it_is_for_and_the_owners_first() {
 }
 
 #[test]
-fn a_roboticists_words_mean_the_same_commands() {
+fn terms_of_robotics_are_aliases_of_the_commands() {
     assert_eq!(
         output(&["monitor", "--help"]),
         output(&["console", "--help"])
@@ -59,7 +59,7 @@ fn a_roboticists_words_mean_the_same_commands() {
 }
 
 #[test]
-fn a_word_of_the_version_before_does_the_same_and_names_the_new_one() {
+fn a_command_of_the_previous_version_still_works_and_names_the_new_one() {
     for (old, new) in [
         ("fk --help", "pose --help"),
         ("inverse --head 5 120", "pose --head 5 120"),
@@ -113,7 +113,7 @@ fn a_word_of_20_000_letters_is_not_repeated_in_full() {
 }
 
 #[test]
-fn a_mistyped_word_is_answered_with_the_one_that_was_meant() {
+fn a_mistyped_word_is_answered_with_a_suggestion() {
     let paper = &robot("paper");
     for (words, expected) in [
         (&["claibrate"][..], "'calibrate'"),
@@ -225,7 +225,7 @@ fn every_command_has_a_manual_page_that_names_its_options() {
 }
 
 #[test]
-fn ports_are_a_list_for_scripts_and_for_people_never_nothing() {
+fn ports_are_listed_for_scripts_and_for_people_even_if_there_are_none() {
     let ports: serde_json::Value =
         serde_json::from_str(&output(&["info", "ports", "--json"])).expect("JSON");
     let ports = ports.as_array().expect("an array");
@@ -239,7 +239,7 @@ fn ports_are_a_list_for_scripts_and_for_people_never_nothing() {
 }
 
 #[test]
-fn bench_without_a_build_says_what_it_needs_and_where_it_comes_from() {
+fn bench_without_a_build_says_what_is_missing_and_how_to_get_it() {
     let words = complaint(&["sim", "bench"]);
     assert!(words.contains("`make firmware`"), "{words}");
     assert!(words.contains("lizard sim bench --elf "), "{words}");

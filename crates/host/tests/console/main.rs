@@ -150,7 +150,7 @@ fn calibrate_shows_a_step_for_each_key_and_leaves_the_robot_as_it_was() {
 }
 
 #[test]
-fn a_kept_session_is_drawn_and_summed_up() {
+fn a_recorded_session_is_drawn_and_summarized() {
     let folder = tempfile::tempdir().expect("a folder");
     let here = folder.path();
     let mut child = lizard(here, &["console", "--record", "a.jsonl", "--sim"])
@@ -239,7 +239,7 @@ fn a_board_that_is_not_a_lizard_is_described_by_its_output() {
 }
 
 #[test]
-fn of_a_board_that_falls_silent_the_lines_that_it_did_not_take_are_counted() {
+fn the_unanswered_lines_of_a_board_that_falls_silent_are_counted() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut asked: Vec<u8> = Vec::new();
     let device = Device::start(move |line| {
@@ -360,7 +360,7 @@ fn is_cooked(terminal: &File) -> bool {
 }
 
 #[test]
-fn control_z_gives_the_terminal_back_and_fg_goes_on() {
+fn control_z_restores_the_terminal_and_fg_continues() {
     let folder = tempfile::tempdir().expect("a folder");
     let uno = Uno::at(folder.path());
     let port = uno.port();
@@ -385,7 +385,7 @@ fn control_z_gives_the_terminal_back_and_fg_goes_on() {
 }
 
 #[test]
-fn a_program_whose_terminal_goes_away_ends() {
+fn a_program_whose_terminal_is_closed_ends() {
     let folder = tempfile::tempdir().expect("a folder");
     let uno = Uno::at(folder.path());
     let port = uno.port();
@@ -415,7 +415,7 @@ fn a_program_whose_terminal_goes_away_ends() {
 }
 
 #[test]
-fn a_simulated_robot_that_is_gone_is_not_said_to_go_on() {
+fn a_simulated_robot_that_has_ended_is_not_reported_as_continuing() {
     let folder = tempfile::tempdir().expect("a folder");
     let arguments = ["console", "--sim"];
     let mut person = AtTerminal::start(lizard(folder.path(), &arguments));

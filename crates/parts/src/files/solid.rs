@@ -67,7 +67,7 @@ struct Piece {
     to: usize,
     middle: usize,
     edge: usize,
-    forward: bool,
+    is_forward: bool,
 }
 
 impl Solid {
@@ -78,33 +78,33 @@ impl Solid {
             prisms.iter().map(cut).collect::<Vec<_>>()
         };
         let (bottoms, tops) = (cut_at(0.0), cut_at(1.0));
-        let mut maker = SolidBuilder::default();
+        let mut builder = SolidBuilder::default();
         let top = prisms.last().map(|last| last.z[1]);
         let heights = prisms.iter().map(|prism| prism.z[0]).chain(top);
-        maker.solid.heights = heights.collect();
+        builder.solid.heights = heights.collect();
         let nothing = Outline::default();
         let mut below: Vec<Vec<Piece>> = Vec::new();
         for level in 0..=prisms.len() {
             let lower = level.checked_sub(1).map_or(&nothing, |k| &tops[k]);
             let upper = bottoms.get(level).unwrap_or(&nothing);
-            let lower_pieces = maker.pieces(level, lower, upper);
-            let upper_pieces = maker.pieces(level, upper, lower);
-            maker.add_flats(level, (lower, &lower_pieces), (upper, &upper_pieces));
+            let lower_pieces = builder.pieces(level, lower, upper);
+            let upper_pieces = builder.pieces(level, upper, lower);
+            builder.add_flats(level, (lower, &lower_pieces), (upper, &upper_pieces));
             if let Some(layer) = level.checked_sub(1) {
                 let outlines = [&bottoms[layer], &tops[layer]];
-                maker.add_walls(level, outlines, &below, &lower_pieces);
+                builder.add_walls(level, outlines, &below, &lower_pieces);
             }
             below = upper_pieces;
         }
-        maker.solid.volume = prisms.iter().map(outline::volume).sum();
-        maker.solid
+        builder.solid.volume = prisms.iter().map(outline::volume).sum();
+        builder.solid
     }
 
     /// True if every edge has exactly two faces, which run along it in opposite directions.
     pub fn is_closed(&self) -> bool {
         let mut uses = vec![[0, 0]; self.edges.len()];
-        for &(edge, forward) in self.faces.iter().flat_map(|face| &face.loops).flatten() {
-            uses[edge][usize::from(forward)] += 1;
+        for &(edge, is_forward) in self.faces.iter().flat_map(|face| &face.loops).flatten() {
+            uses[edge][usize::from(is_forward)] += 1;
         }
         uses.iter().all(|uses| *uses == [1, 1])
     }
@@ -116,13 +116,13 @@ type Cut<'a> = (&'a Outline, &'a [Vec<Piece>]);
 #[derive(Default)]
 struct SolidBuilder {
     solid: Solid,
-    known: BTreeMap<(usize, usize, usize, usize), usize>,
+    edge_of: BTreeMap<(usize, usize, usize, usize), usize>,
     /// Middles of pieces, which tell two arcs between the same points apart.
     middles: Vec<Vector>,
-    uprights: BTreeMap<(usize, usize, usize), usize>,
+    upright_of: BTreeMap<(usize, usize, usize), usize>,
 }
 
-fn place(points: &mut Vec<Vector>, point: Vector) -> usize {
+fn find_or_add(points: &mut Vec<Vector>, point: Vector) -> usize {
     let near = |other: &Vector| (*other - point).square() < SAME_POINT_MM * SAME_POINT_MM;
     points.iter().position(near).unwrap_or_else(|| {
         points.push(point);
@@ -143,17 +143,17 @@ impl SolidBuilder {
                     add_meetings(side, to, *across, *end, &mut cuts);
                 }
                 let points = &mut self.solid.points;
-                let progress_and_index = |cut| (progress(side, to, cut), place(points, cut));
+                let progress_and_index = |cut| (progress(side, to, cut), find_or_add(points, cut));
                 let mut along: Vec<(f64, usize)> =
                     cuts.into_iter().map(progress_and_index).collect();
                 along[0].0 = 0.0;
                 along[1].0 = progress(side, to, to).max(SAME_POINT_MM);
                 along.sort_by(|a, b| a.0.total_cmp(&b.0));
                 along.dedup_by_key(|(_, point)| *point);
-                let whole = along.len() == 2;
+                let is_whole = along.len() == 2;
                 let piece = |pair: &[(f64, usize)]| {
                     let [(start, from), (end, to)] = [pair[0], pair[1]];
-                    let bulge = match whole {
+                    let bulge = match is_whole {
                         true => side.bulge,
                         false => bulge_of(end - start, side.bulge),
                     };
@@ -170,10 +170,10 @@ impl SolidBuilder {
             from: points[from],
             bulge,
         };
-        let middle = place(&mut self.middles, side.middle(points[to]));
+        let middle = find_or_add(&mut self.middles, side.middle(points[to]));
         let key = (level, from.min(to), from.max(to), middle);
         let edges = &mut self.solid.edges;
-        let edge = *self.known.entry(key).or_insert_with(|| {
+        let edge = *self.edge_of.entry(key).or_insert_with(|| {
             edges.push(Edge {
                 ends: [(from, level), (to, level)],
                 bulge,
@@ -185,7 +185,7 @@ impl SolidBuilder {
             to,
             middle,
             edge,
-            forward: edges[edge].ends[0].0 == from,
+            is_forward: edges[edge].ends[0].0 == from,
         }
     }
 
@@ -202,21 +202,21 @@ impl SolidBuilder {
         let find = |edge: usize| b.1.iter().flatten().find(|piece| piece.edge == edge);
         let mut outline = Vec::new();
         for piece in a.1.iter().flatten() {
-            let keep = match find(piece.edge) {
-                Some(same) => same.forward != piece.forward,
+            let is_kept = match find(piece.edge) {
+                Some(same) => same.is_forward != piece.is_forward,
                 None => !b.0.contains(self.middles[piece.middle]),
             };
-            if keep {
+            if is_kept {
                 outline.push(*piece);
             }
         }
         for piece in b.1.iter().flatten() {
-            let shared = a.1.iter().flatten().any(|other| other.edge == piece.edge);
-            if !shared && a.0.contains(self.middles[piece.middle]) {
+            let is_shared = a.1.iter().flatten().any(|other| other.edge == piece.edge);
+            if !is_shared && a.0.contains(self.middles[piece.middle]) {
                 outline.push(Piece {
                     from: piece.to,
                     to: piece.from,
-                    forward: !piece.forward,
+                    is_forward: !piece.is_forward,
                     ..*piece
                 });
             }
@@ -238,10 +238,10 @@ impl SolidBuilder {
                 point = next.to;
                 trail.push(next);
             }
-            let around = self.around(&trail);
-            let area = around.area();
+            let outline = self.loop_of(&trail);
+            let area = outline.area();
             if area > 0.0 {
-                let pieces = vec![vec![around]];
+                let pieces = vec![vec![outline]];
                 outer.push((area, Outline { pieces }, vec![trail]));
             } else {
                 holes.push(trail);
@@ -261,7 +261,7 @@ impl SolidBuilder {
                 }
                 let edges = trail.into_iter();
                 edges
-                    .map(|piece| (piece.edge, piece.forward != is_below))
+                    .map(|piece| (piece.edge, piece.is_forward != is_below))
                     .collect()
             };
             let loops = loops.into_iter().map(edges).collect();
@@ -269,12 +269,12 @@ impl SolidBuilder {
         }
     }
 
-    fn around(&self, trail: &[Piece]) -> Loop {
+    fn loop_of(&self, trail: &[Piece]) -> Loop {
         let side = |piece: &Piece| {
             let bulge = self.solid.edges[piece.edge].bulge;
             Side {
                 from: self.solid.points[piece.from],
-                bulge: if piece.forward { bulge } else { -bulge },
+                bulge: if piece.is_forward { bulge } else { -bulge },
             }
         };
         let sides = trail.iter().map(side).collect();
@@ -299,10 +299,14 @@ impl SolidBuilder {
             let (Some((from, to)), Some((high_from, high_to))) = (ends(low), ends(high)) else {
                 continue;
             };
-            let uprights = low.iter().map(|piece| (piece.edge, piece.forward));
+            let uprights = low.iter().map(|piece| (piece.edge, piece.is_forward));
             let mut edges: Vec<_> = uprights.collect();
             edges.push((self.upright([to, high_to], level), true));
-            edges.extend(high.iter().rev().map(|piece| (piece.edge, !piece.forward)));
+            edges.extend(
+                high.iter()
+                    .rev()
+                    .map(|piece| (piece.edge, !piece.is_forward)),
+            );
             edges.push((self.upright([from, high_from], level), false));
             let surface = match above.arc(above_end) {
                 Some((_, radius)) if from != high_from => {
@@ -318,13 +322,16 @@ impl SolidBuilder {
     /// The edge from a point at the level below to one at a level: upright, or along a slope.
     fn upright(&mut self, [low, high]: [usize; 2], level: usize) -> usize {
         let edges = &mut self.solid.edges;
-        *self.uprights.entry((low, high, level)).or_insert_with(|| {
-            edges.push(Edge {
-                ends: [(low, level - 1), (high, level)],
-                bulge: 0.0,
-            });
-            edges.len() - 1
-        })
+        *self
+            .upright_of
+            .entry((low, high, level))
+            .or_insert_with(|| {
+                edges.push(Edge {
+                    ends: [(low, level - 1), (high, level)],
+                    bulge: 0.0,
+                });
+                edges.len() - 1
+            })
     }
 }
 

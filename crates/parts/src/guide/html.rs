@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-/// The text with what stands between pairs of a mark put into an element.
-fn paired(text: &str, mark: &str, element: &str) -> String {
+/// Puts the text between each pair of marks into an element.
+fn replace_marks(text: &str, mark: &str, element: &str) -> String {
     let mut parts = text.split(mark);
     let mut result = parts.next().unwrap_or_default().to_owned();
     while let (Some(inside), Some(rest)) = (parts.next(), parts.next()) {
@@ -17,7 +17,7 @@ fn paired(text: &str, mark: &str, element: &str) -> String {
 pub fn html(markdown: &str) -> String {
     let escape = |text: &str| {
         let text = text.replace('&', "&amp;").replace('<', "&lt;");
-        paired(&paired(&text, "`", "code"), "**", "b")
+        replace_marks(&replace_marks(&text, "`", "code"), "**", "b")
     };
     let mut page = String::from(
         "<!DOCTYPE html>\n<html lang=\"en\"><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\">\n\
@@ -25,28 +25,28 @@ pub fn html(markdown: &str) -> String {
          img{max-width:100%}td,th{padding:.1rem .7rem;border-bottom:1px solid #ddd;text-align:left}\
          pre{background:#f4f4f4;padding:.6rem}</style>\n",
     );
-    let (mut table, mut code) = (false, false);
+    let (mut in_table, mut in_code) = (false, false);
     for line in markdown.lines() {
         if line.starts_with("```") {
-            page.push_str(if code { "</pre>\n" } else { "<pre>" });
-            code = !code;
-        } else if code {
+            page.push_str(if in_code { "</pre>\n" } else { "<pre>" });
+            in_code = !in_code;
+        } else if in_code {
             let _ = writeln!(page, "{}", escape(line));
         } else if let Some(cells) = line.strip_prefix('|') {
             if cells.starts_with("---") {
                 continue;
             }
-            let cell = if table { "td" } else { "th" };
-            page.push_str(if table { "<tr>" } else { "<table>\n<tr>" });
-            table = true;
+            let cell = if in_table { "td" } else { "th" };
+            page.push_str(if in_table { "<tr>" } else { "<table>\n<tr>" });
+            in_table = true;
             for text in cells.trim_end_matches('|').split('|') {
                 let _ = write!(page, "<{cell}>{}</{cell}>", escape(text.trim()));
             }
             page.push_str("</tr>\n");
         } else {
-            if table {
+            if in_table {
                 page.push_str("</table>\n");
-                table = false;
+                in_table = false;
             }
             if let Some(title) = line.strip_prefix("## ") {
                 let _ = writeln!(page, "<h2>{}</h2>", escape(title));

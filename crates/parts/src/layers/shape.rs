@@ -234,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn discs_and_bars_are_apart_by_their_middles_less_their_radii() {
+    fn the_gap_of_discs_and_bars_is_the_distance_of_their_middles_less_their_radii() {
         let disc = Shape::disc(at(10.0, 3.0), 2.0);
         let bar = Shape::bar(at(0.0, 0.0), at(20.0, 0.0), 0.5);
         assert_eq!(disc.distance(&bar), 0.5);

@@ -130,14 +130,14 @@ impl Bench<'_> {
         let width = |i: usize| body.prisms[i].add[0].width();
         let last = body.prisms.len().checked_sub(1)?;
         let head = (0..=last).max_by(|a, b| width(*a).total_cmp(&width(*b)))?;
-        let (above, prism) = (head == last, &body.prisms[head]);
+        let (is_above, prism) = (head == last, &body.prisms[head]);
         let place = self.assembly.place(body.mount, self.pose);
         Some(Axis {
             at: place.map(prism.add[0].middle()),
             radius: prism.add[0].width() / 2.0,
             length,
-            end: prism.z[usize::from(above)],
-            up: if above { 1.0 } else { -1.0 },
+            end: prism.z[usize::from(is_above)],
+            up: if is_above { 1.0 } else { -1.0 },
         })
     }
 
@@ -147,11 +147,11 @@ impl Bench<'_> {
         const TOUCH: f64 = 1e-6;
         let place = self.assembly.place(body.mount, self.pose);
         let [low, high] = room.z;
-        let beside = |z: [f64; 2]| z[0] > high - TOUCH || z[1] < low + TOUCH;
+        let is_beside = |z: [f64; 2]| z[0] > high - TOUCH || z[1] < low + TOUCH;
         let still = Vector::default();
         let meets = |shape: &Shape| room.shape.distance(&shape.placed(&place)) < -TOUCH;
         let holds = |hole: &Shape| room.shape.within(&hole.placed(&place), still) > -TOUCH;
-        let mut prisms = body.prisms.iter().filter(|prism| !beside(prism.z));
+        let mut prisms = body.prisms.iter().filter(|prism| !is_beside(prism.z));
         prisms.any(|prism| prism.add.iter().any(meets) && !prism.cut.iter().any(holds))
     }
 
@@ -171,14 +171,14 @@ impl Bench<'_> {
             hole.points.len() == 6 && depth > 0.0
         };
         let mut fixed = around.iter().filter(|body| body.mount == nut.mount);
-        let sunk = fixed.any(|body| body.prisms.iter().any(|prism| prism.cut.iter().any(holds)));
-        let away = -axis.up * SOCKET[1];
-        match sunk {
+        let is_sunk = fixed.any(|body| body.prisms.iter().any(|prism| prism.cut.iter().any(holds)));
+        let length = -axis.up * SOCKET[1];
+        match is_sunk {
             true => FreeSpace {
                 shape: flats,
-                ..axis.room(0.0, end, away)
+                ..axis.room(0.0, end, length)
             },
-            false => axis.room(corner + SOCKET[0], bears, end - bears + away),
+            false => axis.room(corner + SOCKET[0], bears, end - bears + length),
         }
     }
 
@@ -335,13 +335,13 @@ impl Assembly {
                 poses.extend(self.robot().accepted(angles));
             }
         }
-        let away = |solution: &Solution| {
+        let distance = |solution: &Solution| {
             let angles: [f64; 4] = solution.pose.into();
             let turns = angles.iter().zip(from).map(|(a, b)| (a - b).abs());
             turns.fold(0.0, f64::max)
         };
         let mut others: Vec<_> = self.poses(STEPS).collect();
-        others.sort_by(|a, b| away(a).total_cmp(&away(b)));
+        others.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
         poses.extend(others);
         poses
     }

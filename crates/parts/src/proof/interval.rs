@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn a_result_holds_what_any_two_numbers_of_its_operands_give() {
+    fn an_interval_contains_the_results_for_all_numbers_of_its_operands() {
         let mut random = 1_u64;
         let mut next = || {
             random = random

@@ -20,7 +20,7 @@ fn block() -> String {
 }
 
 #[test]
-fn the_page_has_the_values_of_what_is_left_out() {
+fn the_page_has_the_default_values() {
     let paper = read("robots/paper.toml");
     let robot = Robot::parse(&format!("{paper}\n{}", block())).expect("docs/build.md");
     let paper = Robot::parse(&paper).expect("robots/paper.toml");

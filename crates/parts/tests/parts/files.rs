@@ -25,7 +25,7 @@ fn holes(body: &Body) -> Vec<(f64, f64)> {
 
 /// Checks that some two holes of a body are this far apart.
 #[track_caller]
-fn spans(assembly: &Assembly, name: &str, mm: f64) {
+fn assert_hole_distance(assembly: &Assembly, name: &str, mm: f64) {
     let holes = holes(body(assembly, name));
     let error = |a: &(f64, f64), b: &(f64, f64)| ((a.0 - b.0).hypot(a.1 - b.1) - mm).abs();
     let near = holes
@@ -41,7 +41,7 @@ fn from_hole_to_hole_is_the_length_of_the_link() {
         let l = assembly.robot().lizard().links;
         let leg = assembly.robot().lizard().leg;
         for (coupler, length) in [("A1", l.l2), ("A2", l.l3), ("A3", l.l8), ("A4", l.l7)] {
-            spans(&assembly, &format!("coupler {coupler}"), length);
+            assert_hole_distance(&assembly, &format!("coupler {coupler}"), length);
         }
         // Crank and arm stand at a right angle on the shaft.
         for (link, crank, arm) in [
@@ -51,7 +51,7 @@ fn from_hole_to_hole_is_the_length_of_the_link() {
             ("A4", l.l6, l.l11),
         ] {
             let link = format!("link {link}");
-            spans(&assembly, &link, crank.hypot(arm));
+            assert_hole_distance(&assembly, &link, crank.hypot(arm));
             let holes = holes(assembly.body(&link).expect("a link"));
             for length in [crank, arm] {
                 let from_shaft = |hole: &(f64, f64)| (hole.0.hypot(hole.1) - length).abs() < 1e-9;
@@ -59,10 +59,10 @@ fn from_hole_to_hole_is_the_length_of_the_link() {
             }
         }
         for of in ["LF", "RF", "RH", "LH"] {
-            spans(&assembly, &format!("crank {of}"), leg.crank);
-            spans(&assembly, &format!("follower {of}"), leg.follower);
-            spans(&assembly, &format!("leg coupler {of}"), leg.coupler);
-            spans(&assembly, "plate", leg.ground);
+            assert_hole_distance(&assembly, &format!("crank {of}"), leg.crank);
+            assert_hole_distance(&assembly, &format!("follower {of}"), leg.follower);
+            assert_hole_distance(&assembly, &format!("leg coupler {of}"), leg.coupler);
+            assert_hole_distance(&assembly, "plate", leg.ground);
         }
     }
 }

@@ -6,7 +6,7 @@ use lizard_parts::{
     Assembly, Body, Kind, Outline, ScrewOperation, Stage, Step, TurningPlace, Unfit, steps,
 };
 
-use crate::{ROBOTS, assembly as with, neutral, slotted as assembly};
+use crate::{ROBOTS, assembly, neutral, slotted};
 
 fn order(assembly: &Assembly) -> Vec<Step> {
     steps(assembly.robot().drive().strut().is_some())
@@ -16,7 +16,7 @@ fn order(assembly: &Assembly) -> Vec<Step> {
 fn every_screw_of_every_robot_can_be_reached() {
     for name in ROBOTS {
         for kind in ["strut", "rigid"] {
-            let assembly = with(name, &format!("[leg.drive]\nkind = \"{kind}\""));
+            let assembly = assembly(name, &format!("[leg.drive]\nkind = \"{kind}\""));
             let access_poses = assembly.access_poses(&order(&assembly));
             let access_poses = access_poses.unwrap_or_else(|blocked| panic!("{name}: {blocked}"));
             // At neutral the follower covers a screw of its foot: the leg, which lies on
@@ -39,7 +39,7 @@ fn every_screw_of_every_robot_can_be_reached() {
 /// The blocked screws of the paper's robot with changed steps, each with the body in its
 /// way.
 fn blocked(change: impl FnOnce(&mut Vec<Step>)) -> Vec<(String, ScrewOperation, String)> {
-    let assembly = assembly("paper", "");
+    let assembly = slotted("paper", "");
     let mut steps = order(&assembly);
     change(&mut steps);
     let blocked = assembly.blocked(&steps, &neutral(&assembly));
@@ -71,7 +71,7 @@ fn a_wrong_order_is_found() {
 
 #[test]
 fn a_pad_without_a_hole_for_the_key_is_found_when_the_feet_are_levelled() {
-    let glued = assembly("paper", "").altered(|bodies| {
+    let glued = slotted("paper", "").altered(|bodies| {
         let pad = |body: &&mut Body| body.name == "pad LF";
         for body in bodies.iter_mut().filter(pad) {
             body.prisms[0].cut.clear();
@@ -97,7 +97,7 @@ fn a_pad_without_a_hole_for_the_key_is_found_when_the_feet_are_levelled() {
 #[test]
 fn a_strut_under_a_head_is_found() {
     // Heads that a key has to hold from below, where only pockets hold them.
-    let unequal = assembly("unequal", "").altered(|bodies| {
+    let unequal = slotted("unequal", "").altered(|bodies| {
         for body in bodies {
             if let Kind::HexScrew(length) = body.kind {
                 body.kind = Kind::Screw(length);
@@ -115,7 +115,7 @@ fn a_strut_under_a_head_is_found() {
 
 #[test]
 fn a_screw_that_nothing_lets_pass_refuses_the_robot() {
-    let covered = assembly("paper", "").altered(|bodies| {
+    let covered = slotted("paper", "").altered(|bodies| {
         // A board as large as the plate, on the legs.
         let plate = bodies.iter().find(|body| body.name == "plate").cloned();
         let mut lid = plate.expect("a plate");
@@ -136,10 +136,10 @@ fn a_screw_that_nothing_lets_pass_refuses_the_robot() {
 #[test]
 fn parts_that_move_together_are_not_in_one_place() {
     for name in ROBOTS {
-        assert_eq!(assembly(name, "").measures_fit(), Ok(()), "{name}");
+        assert_eq!(slotted(name, "").measures_fit(), Ok(()), "{name}");
     }
     // A standoff's screw whose head is in the boss of the board's screw.
-    let near = assembly("paper", "").altered(|bodies| {
+    let near = slotted("paper", "").altered(|bodies| {
         let screw = |body: &&mut Body| body.name == "screw standoff 1 above";
         for body in bodies.iter_mut().filter(screw) {
             let heads = body.prisms.iter_mut().map(|prism| &mut prism.add[0]);
@@ -155,7 +155,7 @@ fn parts_that_move_together_are_not_in_one_place() {
 #[test]
 fn above_a_head_that_can_be_reached_there_is_no_material() {
     for name in ["paper", "unequal"] {
-        let assembly = assembly(name, "");
+        let assembly = slotted(name, "");
         let pose = neutral(&assembly);
         let steps = order(&assembly);
         let blocked = assembly.blocked(&steps, &pose);

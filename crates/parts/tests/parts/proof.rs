@@ -7,7 +7,7 @@ use lizard_kinematics::{Side, Solution, Vector};
 use lizard_parts::{Assembly, Body, Clash, ENOUGH, MIN_GAP_MM, Mount, Shape};
 use lizard_robot::Robot;
 
-use crate::{GRAIN, ROBOTS, assembly as with, body, slotted as assembly};
+use crate::{GRAIN, ROBOTS, assembly, body, slotted};
 
 /// Numbers from 0 to 1, the same in every run.
 struct Random(u64);
@@ -50,8 +50,8 @@ fn poses(robot: &Robot, count: usize) -> Vec<Solution> {
 }
 
 /// Proves a robot's file, and compares the bounds with the distances at many poses.
-fn contains(name: &str) {
-    let assembly = assembly(name, "");
+fn assert_bounds_hold(name: &str) {
+    let assembly = slotted(name, "");
     let proof = assembly.prove(|_, _| ());
     assert_eq!(proof.judge(), Ok(()), "{name}");
     let mounts = |first: &str, second: &str| [first, second].map(|of| body(&assembly, of).mount);
@@ -83,23 +83,23 @@ fn contains(name: &str) {
 
 #[test]
 fn the_papers_robot_fits_and_no_pose_is_nearer_than_proved() {
-    contains("paper");
+    assert_bounds_hold("paper");
 }
 
 #[test]
 fn the_large_robot_fits_and_no_pose_is_nearer_than_proved() {
-    contains("large");
+    assert_bounds_hold("large");
 }
 
 #[test]
 fn the_unequal_robot_fits_and_no_pose_is_nearer_than_proved() {
-    contains("unequal");
+    assert_bounds_hold("unequal");
 }
 
 #[test]
 fn rigid_struts_keep_the_distances_of_slotted_ones() {
     let [sprung, rigid] = ["strut", "rigid"].map(|word| {
-        let assembly = with("paper", &format!("[leg.drive]\nkind = \"{word}\""));
+        let assembly = assembly("paper", &format!("[leg.drive]\nkind = \"{word}\""));
         let strut = |body: &Body| matches!(body.mount, Mount::Strut(_));
         let proof = assembly.prove_some(|a, b| strut(a) || strut(b), |_, _| ());
         assert_eq!(proof.judge(), Ok(()), "{word}");
@@ -110,14 +110,14 @@ fn rigid_struts_keep_the_distances_of_slotted_ones() {
 
 #[test]
 fn the_robots_with_gaits_of_their_own_have_the_papers_parts() {
-    let paper = assembly("paper", "");
+    let paper = slotted("paper", "");
     let plain = |of: Assembly| {
         of.altered(|bodies| bodies.retain(|body| body.kind != lizard_parts::Kind::Pad))
     };
     // Pads with a strip lie within the plain ones, as tests of the pads show.
     for (own, paper) in [
-        (assembly("own-gaits", ""), paper.clone()),
-        (plain(assembly(GRAIN, "")), plain(paper)),
+        (slotted("own-gaits", ""), paper.clone()),
+        (plain(slotted(GRAIN, "")), plain(paper)),
     ] {
         assert_eq!(own.bodies(), paper.bodies());
         assert_eq!(own.robot().limits(), paper.robot().limits());
@@ -137,20 +137,20 @@ fn every_file_of_robots_is_here() {
 }
 
 /// The clash among those pairs of bodies of which one is given.
-fn clash(assembly: &Assembly, of: impl Fn(&Body) -> bool) -> Clash {
+fn find_clash(assembly: &Assembly, of: impl Fn(&Body) -> bool) -> Clash {
     let proof = assembly.prove_some(|a, b| of(a) || of(b), |_, _| ());
     proof.judge().expect_err("nothing is found")
 }
 
 #[track_caller]
-fn overlap(clash: Clash, first: &str, second: &str) {
+fn assert_overlap(clash: Clash, first: &str, second: &str) {
     let Clash::Overlap(found) = clash else {
         panic!("{clash}");
     };
     assert!(found.mm < 0.0);
     let (a, b) = (&found.first, &found.second);
-    let right = |a: &str, b: &str| a.starts_with(first) && b.starts_with(second);
-    assert!(right(a, b) || right(b, a), "{found}");
+    let is_pair = |a: &str, b: &str| a.starts_with(first) && b.starts_with(second);
+    assert!(is_pair(a, b) || is_pair(b, a), "{found}");
 }
 
 #[test]
@@ -159,9 +159,9 @@ fn a_wrong_measure_is_found() {
         ("bar = 20.0", "link", "link A", ""),
         ("pivot = [22.0, 6.0]", "crank", "crank", "plate"),
     ] {
-        let wrong = assembly("paper", &format!("[parts]\n{parts}"));
-        overlap(
-            clash(&wrong, |body| body.name.starts_with(of)),
+        let wrong = slotted("paper", &format!("[parts]\n{parts}"));
+        assert_overlap(
+            find_clash(&wrong, |body| body.name.starts_with(of)),
             first,
             second,
         );
@@ -170,7 +170,7 @@ fn a_wrong_measure_is_found() {
 
 #[test]
 fn a_robot_far_from_fitting_is_refused_after_a_few_regions() {
-    let proof = assembly("paper", "[parts]\nbar = 24.0").prove(|_, _| ());
+    let proof = slotted("paper", "[parts]\nbar = 24.0").prove(|_, _| ());
     let Err(Clash::Overlap(found)) = proof.judge() else {
         panic!("no overlap");
     };
@@ -179,8 +179,8 @@ fn a_robot_far_from_fitting_is_refused_after_a_few_regions() {
 }
 
 /// The paper's robot with a screw that is longer by this much.
-fn longer(name: &str, by: f64, downwards: bool) -> Assembly {
-    assembly("paper", "").altered(|bodies| {
+fn with_longer_screw(name: &str, by: f64, downwards: bool) -> Assembly {
+    slotted("paper", "").altered(|bodies| {
         let mut all = bodies.iter_mut();
         let screw = all.find(|body| body.name == name).expect(name);
         let thin = |body: &Body, i: usize| body.prisms[i].add[0].width();
@@ -203,15 +203,15 @@ fn a_screw_that_is_too_long_is_found() {
         ("screw height LF", 26.0, false, "crank LF"),
         ("screw leg anchor LF", 5.0, false, "link A1"),
     ] {
-        let long = longer(name, by, downwards);
-        overlap(clash(&long, |body| body.name == name), name, other);
+        let long = with_longer_screw(name, by, downwards);
+        assert_overlap(find_clash(&long, |body| body.name == name), name, other);
     }
 }
 
 #[test]
 fn swapped_layers_are_found() {
     // The upper coupler of the head, laid where the lower one is.
-    let swapped = assembly("paper", "").altered(|bodies| {
+    let swapped = slotted("paper", "").altered(|bodies| {
         let place = |name: &str| {
             bodies
                 .iter()
@@ -223,13 +223,13 @@ fn swapped_layers_are_found() {
         bodies[lower].prisms[0].z = bodies[upper].prisms[0].z;
         bodies[upper].prisms[0].z = z;
     });
-    let found = clash(&swapped, |body| body.name.starts_with("coupler"));
-    overlap(found, "coupler A", "");
+    let found = find_clash(&swapped, |body| body.name.starts_with("coupler"));
+    assert_overlap(found, "coupler A", "");
 }
 
 #[test]
 fn a_hole_beside_its_pin_is_found() {
-    let moved = assembly("paper", "").altered(|bodies| {
+    let moved = slotted("paper", "").altered(|bodies| {
         for body in bodies.iter_mut().filter(|body| body.name == "coupler A4") {
             for cut in &mut body.prisms[0].cut {
                 for point in &mut cut.points {
@@ -238,7 +238,7 @@ fn a_hole_beside_its_pin_is_found() {
             }
         }
     });
-    let Clash::Overlap(found) = clash(&moved, |body| body.name == "coupler A4") else {
+    let Clash::Overlap(found) = find_clash(&moved, |body| body.name == "coupler A4") else {
         panic!("no overlap");
     };
     assert!((found.mm + 0.2).abs() < 0.02, "{found}");
@@ -247,16 +247,16 @@ fn a_hole_beside_its_pin_is_found() {
 
 #[test]
 fn parts_that_come_too_near_are_refused_with_their_pose() {
-    // So far as the guard lets the servo turn, the strut comes to the servo's screws.
-    let near = assembly("paper", "[parts]\nanchor = [22.0, 5.0]");
-    let found = clash(&near, |body| body.name.starts_with("strut"));
+    // At the end of the turn that the guard allows, the strut comes to the servo's screws.
+    let near = slotted("paper", "[parts]\nanchor = [22.0, 5.0]");
+    let found = find_clash(&near, |body| body.name.starts_with("strut"));
     let message = found.to_string();
     assert!(message.contains("strut"), "{message}");
     assert!(message.contains(" pose "), "{message}");
 }
 
 /// The bounds of a shape along x, shifted.
-fn along(shape: &Shape, from: f64) -> [f64; 2] {
+fn extent_along_x(shape: &Shape, from: f64) -> [f64; 2] {
     let x = shape.points.iter().map(|point| point.x + from);
     let low = x.clone().fold(f64::INFINITY, f64::min) - shape.radius;
     [low, x.fold(f64::NEG_INFINITY, f64::max) + shape.radius]
@@ -265,7 +265,7 @@ fn along(shape: &Shape, from: f64) -> [f64; 2] {
 #[test]
 fn a_rod_stays_in_its_sleeve_over_the_whole_stroke() {
     for name in ["paper", "large", "unequal"] {
-        let assembly = assembly(name, "");
+        let assembly = slotted(name, "");
         let (lizard, limits) = (assembly.robot().lizard(), assembly.robot().limits());
         for side in Side::ALL {
             let slider = lizard.side(side);
@@ -274,12 +274,12 @@ fn a_rod_stays_in_its_sleeve_over_the_whole_stroke() {
                 let mut shapes = body.prisms.iter().flat_map(|prism| &prism.add);
                 shapes.find(|shape| shape.points.len() > 2).expect(part)
             });
-            let [start, end] = along(sleeve, 0.0);
+            let [start, end] = extent_along_x(sleeve, 0.0);
             let mut smallest = f64::INFINITY;
             for step in 0..=100 {
                 let share = f64::from(step) / 100.0;
                 let stroke = limits.stroke_min + share * (limits.stroke_max - limits.stroke_min);
-                let [rear, front] = along(rod, slider.nominal + stroke);
+                let [rear, front] = extent_along_x(rod, slider.nominal + stroke);
                 smallest = smallest.min(front.min(end) - rear.max(start));
             }
             // At the longest the rod is drawn out to what it must keep.
@@ -298,21 +298,21 @@ fn a_rod_stays_in_its_sleeve_over_the_whole_stroke() {
 
 #[test]
 fn a_struts_screw_has_air_in_its_slot_all_the_way() {
-    let assembly = assembly("paper", "");
+    let assembly = slotted("paper", "");
     let strut = body(&assembly, "strut LF");
     let leg = assembly.layout().legs[0];
     let screw = assembly.robot().parts().screw.diameter / 2.0;
-    let begins = |cut: &&Shape| (cut.points[0].x - leg.strut_length).abs() < 1e-9;
+    let is_own = |cut: &&Shape| (cut.points[0].x - leg.strut_length).abs() < 1e-9;
     let mut slots = strut.prisms[0]
         .cut
         .iter()
         .filter(|cut| cut.points.len() == 2);
-    let slot = slots.find(begins).expect("a slot");
+    let slot = slots.find(is_own).expect("a slot");
     for step in 0..=10 {
-        let way = 5.0 * f64::from(step) / 10.0;
-        let pin = Shape::disc(Vector::new(leg.strut_length + way, 0.0), screw);
+        let travel = 5.0 * f64::from(step) / 10.0;
+        let pin = Shape::disc(Vector::new(leg.strut_length + travel, 0.0), screw);
         let air = pin.within(slot, Vector::default());
-        assert!((air - 0.1).abs() < 1e-9, "{way}: {air}");
+        assert!((air - 0.1).abs() < 1e-9, "{travel}: {air}");
     }
     let beyond = Shape::disc(Vector::new(leg.strut_length + 5.2, 0.0), screw);
     assert!(beyond.within(slot, Vector::default()) < 0.0);
@@ -320,5 +320,5 @@ fn a_struts_screw_has_air_in_its_slot_all_the_way() {
 
 #[test]
 fn the_least_distance_exceeds_a_printers_error() {
-    assert!(MIN_GAP_MM >= assembly("paper", "").robot().parts().fit);
+    assert!(MIN_GAP_MM >= slotted("paper", "").robot().parts().fit);
 }

@@ -301,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn a_comment_goes_behind_what_is_there_and_replaces_its_like() {
+    fn a_comment_is_appended_and_replaces_an_earlier_one_of_its_kind() {
         for (before, after) in [
             ("[links]\nl0 = 1.0", "[links]\nl0 = 1.0 # was: 2"),
             (

@@ -142,7 +142,7 @@ fn every_free_pin_is_an_input_and_a_taken_one_is_refused_with_its_owner() {
 }
 
 #[test]
-fn a_mistake_in_an_input_or_its_step_is_told_with_its_line_and_its_step() {
+fn a_mistake_in_an_input_or_its_step_is_reported_with_its_line_and_its_step() {
     for (tables, message) in [
         (
             "[input.knob]\npin = \"A1\"",

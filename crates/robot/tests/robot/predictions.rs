@@ -41,7 +41,7 @@ fn assert_near(name: &str, travel: Travel, forward: f64, turn: f64) {
 }
 
 #[test]
-fn every_gait_of_the_papers_robot_goes_where_it_was_meant_to() {
+fn every_gait_of_the_papers_robot_goes_where_it_should() {
     let robot = paper();
     for (name, forward, turn) in EXPECTED {
         assert_near(name, predict(robot, name), forward, turn);

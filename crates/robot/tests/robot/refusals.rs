@@ -62,7 +62,7 @@ fn every_mistake_gets_the_line_of_its_key_or_table() {
 }
 
 #[test]
-fn a_file_that_is_not_there_is_named() {
+fn a_missing_file_is_named() {
     let error = Robot::load("no/such/robot.toml")
         .expect_err("there is none")
         .to_string();

@@ -104,7 +104,7 @@ fn an_audit_has_the_least_margins_of_all_phases() {
 }
 
 #[test]
-fn the_fastest_frame_is_faster_than_all_others_whichever_way_they_go() {
+fn the_fastest_frame_is_the_fastest_in_either_direction() {
     each_gait(|file, robot, gait| {
         let frame = 0.02 / gait.period();
         let mut largest = 0.0f64;

@@ -112,7 +112,7 @@ fn eight_routines_of_sixteen_steps_fit_beside_the_papers_gaits_and_their_maps() 
 }
 
 #[test]
-fn a_mistake_is_told_with_its_line_and_its_step() {
+fn a_mistake_is_reported_with_its_line_and_its_step() {
     for (lines, message) in [
         (
             "steps = [\"walk 1\", \"wolk 4\"]",
@@ -211,7 +211,7 @@ fn a_mistake_is_told_with_its_line_and_its_step() {
 }
 
 #[test]
-fn a_name_that_is_taken_or_no_name_is_refused() {
+fn an_existing_or_invalid_name_is_refused() {
     for (name, message) in [
         (
             "walk",

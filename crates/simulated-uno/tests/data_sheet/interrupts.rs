@@ -56,7 +56,7 @@ fn a_compare_interrupt_from_sleep_costs_what_the_data_sheet_says() {
 }
 
 #[test]
-fn stock_simavr_enters_an_interrupt_for_nothing() {
+fn stock_simavr_enters_an_interrupt_in_no_time() {
     let mut uno = Uno::with_image(assembler(TICK), Fidelity::Stock);
     uno.run_cycles(100_000);
     let first = uno.pulses(LED)[0].start;

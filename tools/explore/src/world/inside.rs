@@ -41,8 +41,8 @@ pub(super) fn limits(robot: &Robot) -> Limits {
     }
 }
 
-/// The number that equal states of main share.
-fn print(running: &Running) -> u64 {
+/// Returns the number that equal states of main share.
+fn fingerprint(running: &Running) -> u64 {
     fingerprint::coarse(&running.main)
 }
 
@@ -152,7 +152,7 @@ impl World {
             running.run_without_reader(u32::from(DEBOUNCED));
         }
         if with.board.started_pulses() != without.board.started_pulses()
-            || print(&with) != print(&without)
+            || fingerprint(&with) != fingerprint(&without)
         {
             return broken(Rule::Contacts, format!("{activity:?}"));
         }

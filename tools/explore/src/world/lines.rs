@@ -44,8 +44,8 @@ impl World {
         self.running.board.send(&UNREADABLE);
         self.observe(Event::Byte);
         let after = self.settled();
-        let print = |running: &Running| fingerprint::without_line_counters(&running.main);
-        if print(&after) != print(&before) {
+        let fingerprint = |running: &Running| fingerprint::without_line_counters(&running.main);
+        if fingerprint(&after) != fingerprint(&before) {
             return broken(Rule::OtherRate, after.board.transmitter.text);
         }
         Ok(())
@@ -91,9 +91,9 @@ impl World {
         let Some(answer) = text.lines().find(|line| is_final(line)) else {
             return Ok(());
         };
-        let print = |running: &Running| fingerprint::without_line_counters(&running.main);
+        let fingerprint = |running: &Running| fingerprint::without_line_counters(&running.main);
         if answer.starts_with("err ")
-            && (print(&after) != print(before)
+            && (fingerprint(&after) != fingerprint(before)
                 || after.board.memory.bytes() != before.board.memory.bytes())
         {
             return broken(Rule::Refused, text.clone());

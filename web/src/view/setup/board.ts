@@ -12,14 +12,14 @@ export function nameOf({ file, toml, original }: Session): string {
 
 /** The message that identifies the board. */
 export function answerOf(session: Session): string {
-  const { link, has } = session;
-  if (has === undefined) return `The ${link.name} has not said yet what it is.`;
-  if (has === null && session.isReal && !session.hasLoader) return `The ${link.name} answers neither as this firmware nor as a boot loader. Is it the right port, and a UNO?`;
-  if (has === null) return `The ${link.name} is a UNO by its boot loader, and this firmware is not on it.`;
-  if (has === 'unknown') return `The ${link.name} has this firmware. For which robot it says only after its reset button was pressed.`;
-  if (session.hasThis) return `The ${link.name} has this firmware and this robot, ${nameOf(session)}.`;
-  if (!has.robot) return `The ${link.name} has this firmware and no robot, so it moves nothing. Write this one.`;
-  return `The ${link.name} has this firmware and another robot, ${has.robot.name} ${has.robot.hash}. Choose that robot above, or write this one.`;
+  const { link, banner } = session;
+  if (banner === undefined) return `The ${link.name} has not identified itself yet.`;
+  if (banner === null && session.isReal && !session.hasLoader) return `The ${link.name} answers neither as this firmware nor as a boot loader. Is it the right port, and a UNO?`;
+  if (banner === null) return `The ${link.name} is a UNO by its boot loader, and this firmware is not on it.`;
+  if (banner === 'unknown') return `The ${link.name} has this firmware. It names its robot only after its reset button is pressed.`;
+  if (session.hasThisRobot) return `The ${link.name} has this firmware and this robot, ${nameOf(session)}.`;
+  if (!banner.robot) return `The ${link.name} has this firmware and no robot, so it moves nothing. Write this one.`;
+  return `The ${link.name} has this firmware and another robot, ${banner.robot.name} ${banner.robot.hash}. Choose that robot above, or write this one.`;
 }
 
 export const board: Step = {

@@ -11,7 +11,7 @@ export const keep: Step = {
   needsRobot: true,
   parts({ guide, run, done, setCalibration, isDone }) {
     if (!guide) return [words('Reading the calibration…')];
-    const { servos } = guide.has;
+    const { servos } = guide.calibration;
     const rows = servos.map(({ trim, limit, dir, scale }, servo) => [
       nameOf(servo),
       dir,
@@ -33,7 +33,7 @@ export const keep: Step = {
     return [
       table('Calibration of the robot', ['servo', 'sign', 'trim', 'limits', 'µs per °'], rows),
       words(guide.isChanged ? 'Not saved yet.' : isDone('Keep') ? 'The board has saved it.' : 'Nothing has changed since the board was connected.'),
-      row(button('Save in the board', store, guide.isChanged), button('Save as a file', () => save('calibration.toml', [fileOf(guide.has)], 'application/toml'))),
+      row(button('Save in the board', store, guide.isChanged), button('Save as a file', () => save('calibration.toml', [fileOf(guide.calibration)], 'application/toml'))),
       row(make('label', { className: 'file' }, 'Open a saved file ', file)),
       note('The file is the same as that of `lizard calibrate backup`. A file that you open takes effect at once; the button saves it in the board.'),
     ];

@@ -25,7 +25,7 @@ export class Limits implements Step {
 
   parts(tools: Tools): Node[] {
     const { guide, servo, session } = tools;
-    const limit = guide?.has.servos[servo].limit ?? null;
+    const limit = guide?.calibration.servos[servo].limit ?? null;
     const place = this.at?.servo === servo ? this.at.degrees : session.description.servos[servo].neutral;
     const [from, to] = limit ?? [0, 0];
     const box = (label: string, value: number, set: (value: number) => void) => number(label, value, '0.01', set);

@@ -21,7 +21,7 @@ export class Scale implements Step {
 
   parts(tools: Tools): Node[] {
     const { guide, servo } = tools;
-    const has = guide?.has.servos[servo].scale;
+    const has = guide?.calibration.servos[servo].scale;
     const isTurned = this.turned?.servo === servo;
     return [
       words(`Mark where the crank of ${nameOf(servo)} points, turn it, and measure how far it went.`),

@@ -77,7 +77,7 @@ export class Signs implements Step {
     tools.run(async (guide) => {
       await guide.reverse(servo);
       this.forget();
-      return `The sign of A${servo + 1} is "${guide.has.servos[servo].dir}" now. Turn it once more and look.`;
+      return `The sign of A${servo + 1} is "${guide.calibration.servos[servo].dir}" now. Turn it once more and look.`;
     });
   }
 

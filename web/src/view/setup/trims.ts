@@ -13,13 +13,13 @@ export const trims: Step = {
   isByServo: true,
   drawing: ({ servo }) => ({ servo, by: null }),
   parts({ guide, servo, run, done, session }) {
-    const trim = guide?.has.servos[servo].trim;
+    const trim = guide?.calibration.servos[servo].trim;
     const neutral = session.description.servos[servo].neutral.toFixed(1);
     const turn = (by: number) => () =>
       run(async (guide) => {
         await guide.trim(servo, by);
         done('Trims');
-        return `The trim of A${servo + 1} is ${guide.has.servos[servo].trim.toFixed(2)}°.`;
+        return `The trim of A${servo + 1} is ${guide.calibration.servos[servo].trim.toFixed(2)}°.`;
       });
     const stand = () =>
       run(async (guide) => {

@@ -84,7 +84,7 @@ fn corners(bytes: &[u8]) -> Vec<Vec<[f32; 3]>> {
 }
 
 #[test]
-fn a_printed_solid_is_laid_into_the_space_of_its_body() {
+fn a_printed_solid_is_placed_exactly_into_its_body() {
     let model = model("strut");
     let (entry, solids) = (model.entry(), corners(&model.solids().expect("closed")));
     let largest = entry.bodies.iter().map(|body| body.solid).max();
@@ -143,7 +143,7 @@ fn a_printed_body_is_that_of_its_part_and_in_one_step() {
 }
 
 #[test]
-fn a_robot_that_no_part_can_be_of_is_refused_with_the_message_of_lizard_parts() {
+fn a_robot_without_possible_parts_is_refused_with_the_message_of_lizard_parts() {
     let low = format!("{PAPER}\n[parts]\nheight = 10.0");
     let refused = Model::read(&low).err().expect("refused");
     assert!(

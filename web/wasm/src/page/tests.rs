@@ -254,7 +254,7 @@ fn friction_that_differs_by_direction_changes_the_prediction() {
 }
 
 #[test]
-fn a_floor_that_is_written_is_read_back_and_what_it_does_not_change_stays() {
+fn a_written_floor_is_read_back_and_everything_else_stays() {
     let own = |text: &str| Floor::of(&Robot::parse(text).expect("right"));
     let written = |text: &str, floor| {
         let edited = Page::edit_floor(text, floor).expect("it has room");

@@ -98,7 +98,7 @@ fn a_refusal_offers_the_nearest_values_that_are_possible() {
 }
 
 #[test]
-fn the_table_stands_in_a_robot_toml() {
+fn the_table_is_valid_in_a_robot_toml() {
     let robot = paper();
     let mine = Bars {
         name: "mine".to_string(),
@@ -134,7 +134,7 @@ fn a_gait_takes_the_place_of_the_one_of_its_name() {
 }
 
 #[test]
-fn a_name_that_cannot_be_is_refused_without_other_values() {
+fn an_invalid_name_is_refused_without_other_values() {
     let (robot, twin) = with_twin();
     let no = trial(
         &Bars {

@@ -273,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn a_setting_that_the_present_ones_forbid_is_tried_again_after_the_others() {
+    fn a_setting_that_the_current_ones_forbid_is_retried_after_the_others() {
         // With 400 us either way a large trim and a large scale exclude each other.
         let narrow = PAPER.replace("min_us = 600.0", "min_us = 1100.0");
         let narrow = narrow.replace("max_us = 2400.0", "max_us = 1900.0");

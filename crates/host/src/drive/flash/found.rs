@@ -139,7 +139,7 @@ mod tests {
     use crate::drive::flash::image::BOOT;
 
     #[test]
-    fn flash_is_blank_or_has_half_a_program_or_another_one() {
+    fn flash_is_blank_or_has_an_incomplete_or_another_program() {
         let image = Image::new(vec![1, 2, 3]).expect("it fits");
         let text = |changes: &[(usize, u8)]| {
             let mut flash = vec![0xff; BOOT];

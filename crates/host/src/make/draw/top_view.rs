@@ -282,7 +282,7 @@ mod tests {
     }
 
     #[test]
-    fn a_foot_goes_forward_where_the_gaits_say_so() {
+    fn a_foot_moves_forward_when_its_gait_does() {
         use lizard_robot::servo::FORWARD;
         check(None, |view| {
             for servo in 0..4 {

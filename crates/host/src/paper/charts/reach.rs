@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_guard_accepts_lies_in_what_the_links_allow() {
+    fn poses_accepted_by_the_guard_lie_within_those_of_the_links() {
         let robot = paper();
         let poses = accepted_solutions(&robot, |a, b| [0.0, 0.0, a, b]);
         assert!(poses.len() > 300, "{}", poses.len());

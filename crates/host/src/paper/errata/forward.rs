@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use lizard_kinematics::{End, Links, Vector};
 
 use super::equation::Equation;
-use super::sample::{Sample, apart, cis};
+use super::sample::{Sample, angle_error, cis};
 
 /// The equations in the paper's order.
 pub const EQUATIONS: &[Equation] = &[
@@ -39,7 +39,10 @@ pub const EQUATIONS: &[Equation] = &[
         "deg",
         |s| {
             let (a, b, c) = abc(s, s.angles().t[4]);
-            Some(apart(2.0 * root(a, b, c, -1.0)?.atan(), s.angles().t[3]))
+            Some(angle_error(
+                2.0 * root(a, b, c, -1.0)?.atan(),
+                s.angles().t[3],
+            ))
         },
     )
     .corrected(
@@ -74,7 +77,7 @@ pub const EQUATIONS: &[Equation] = &[
             let (d, e, f) = def(s, 1.0);
             let under = e * e + 4.0 * d * f;
             let real = (under >= 0.0).then(|| (-e + under.sqrt()) / (2.0 * d))?;
-            Some(apart(2.0 * real.atan(), s.angles().t[2]))
+            Some(angle_error(2.0 * real.atan(), s.angles().t[2]))
         },
     )
     .corrected(
@@ -83,7 +86,7 @@ pub const EQUATIONS: &[Equation] = &[
             let (d, e, f) = def(s, -1.0);
             let under = e * e - 4.0 * d * f;
             let real = (under >= 0.0).then(|| (e - under.sqrt()) / (2.0 * d))?;
-            Some(apart(2.0 * real.atan(), s.angles().t[2]))
+            Some(angle_error(2.0 * real.atan(), s.angles().t[2]))
         },
     ),
     Equation::new("4.2 tail loop", "R6 + R7 - R8 - R9 - R5 = 0", "mm", |s| {
@@ -120,48 +123,48 @@ pub const EQUATIONS: &[Equation] = &[
         },
     ),
     Equation::new("4.2 left slider halves", "θ10 + θ11 = 0", "deg", |s| {
-        Some(apart(s.angles().t[10] + s.angles().t[11], 0.0))
+        Some(angle_error(s.angles().t[10] + s.angles().t[11], 0.0))
     })
-    .clockwise(|s| Some(apart(s.angles().t[10] + (PI - s.angles().t[11]), 0.0)))
+    .clockwise(|s| Some(angle_error(s.angles().t[10] + (PI - s.angles().t[11]), 0.0)))
     .corrected("θ11 = θ10 + 180°", |s| {
-        Some(apart(s.angles().t[11], s.angles().t[10] + PI))
+        Some(angle_error(s.angles().t[11], s.angles().t[10] + PI))
     }),
     Equation::new("4.2 right slider halves", "θ14 + θ15 = 0", "deg", |s| {
-        Some(apart(s.angles().t[14] + s.angles().t[15], 0.0))
+        Some(angle_error(s.angles().t[14] + s.angles().t[15], 0.0))
     })
-    .clockwise(|s| Some(apart(s.angles().t[14] + (PI - s.angles().t[15]), 0.0)))
+    .clockwise(|s| Some(angle_error(s.angles().t[14] + (PI - s.angles().t[15]), 0.0)))
     .corrected("θ15 = θ14 + 180°", |s| {
-        Some(apart(s.angles().t[15], s.angles().t[14] + PI))
+        Some(angle_error(s.angles().t[15], s.angles().t[14] + PI))
     }),
     Equation::new("4.2 arm on A1", "θ1 - θ12 + C1 = 0", "deg", |s| {
-        Some(apart(s.angles().t[1] + FRAC_PI_2, s.angles().t[12]))
+        Some(angle_error(s.angles().t[1] + FRAC_PI_2, s.angles().t[12]))
     }),
     Equation::new("4.2 arm on A2", "θ4 - θ16 + C2 = 0", "deg", |s| {
-        Some(apart(s.angles().t[4] + FRAC_PI_2, s.angles().t[16]))
+        Some(angle_error(s.angles().t[4] + FRAC_PI_2, s.angles().t[16]))
     })
     .clockwise(|s| {
-        Some(apart(
+        Some(angle_error(
             PI - s.angles().t[4] + FRAC_PI_2,
             PI - s.angles().t[16],
         ))
     })
     .corrected("θ16 = θ4 - C2", |s| {
-        Some(apart(s.angles().t[4] - FRAC_PI_2, s.angles().t[16]))
+        Some(angle_error(s.angles().t[4] - FRAC_PI_2, s.angles().t[16]))
     }),
     Equation::new("4.2 arm on A4", "θ9 - θ5 + C3 = 0", "deg", |s| {
-        Some(apart(s.angles().t[9] + FRAC_PI_2, s.angles().t[5]))
+        Some(angle_error(s.angles().t[9] + FRAC_PI_2, s.angles().t[5]))
     }),
     Equation::new("4.2 arm on A3", "θ13 - θ8 + C4 = 0", "deg", |s| {
-        Some(apart(s.angles().t[13] + FRAC_PI_2, s.angles().t[8]))
+        Some(angle_error(s.angles().t[13] + FRAC_PI_2, s.angles().t[8]))
     })
     .clockwise(|s| {
-        Some(apart(
+        Some(angle_error(
             PI - s.angles().t[13] + FRAC_PI_2,
             PI - s.angles().t[8],
         ))
     })
     .corrected("θ13 = θ8 + C4", |s| {
-        Some(apart(s.angles().t[13] - FRAC_PI_2, s.angles().t[8]))
+        Some(angle_error(s.angles().t[13] - FRAC_PI_2, s.angles().t[8]))
     }),
 ];
 
@@ -244,5 +247,8 @@ fn near_vanishing_a(s: &Sample) -> Option<f64> {
     };
     let (a, b, c) = abc(s, theta4);
     let printed = 2.0 * root(a, b, c, -1.0)?.atan();
-    Some(apart(printed, truth.theta_right_coupler() * PI / 180.0))
+    Some(angle_error(
+        printed,
+        truth.theta_right_coupler() * PI / 180.0,
+    ))
 }

@@ -3,7 +3,7 @@
 use lizard_kinematics::{Leg, Vector};
 
 use super::equation::Equation;
-use super::sample::{Sample, apart, cis};
+use super::sample::{Sample, angle_error, cis};
 
 /// The equations in the paper's order.
 pub const EQUATIONS: &[Equation] = &[
@@ -95,7 +95,7 @@ fn follower(s: &Sample, legs: &[usize], sign: f64, h: Option<f64>) -> Option<f64
         let g = c - ground / crank - ground * c / follower + last;
         let h = h.unwrap_or(-2.0 * theta.sin());
         let i = ground / crank - (ground / follower + 1.0) * c + last;
-        Some(apart(
+        Some(angle_error(
             2.0 * half_angle_tangent(g, h, i, sign)?.atan(),
             theta,
         ))
@@ -118,7 +118,10 @@ fn coupler(s: &Sample, legs: &[usize], slip: f64, sign: f64) -> Option<f64> {
         let j = c - ground / crank + slip * ground * c / coupler + last;
         let k = -2.0 * theta.sin();
         let l = ground / crank + (slip * ground / coupler - 1.0) * c + last;
-        Some(apart(2.0 * half_angle_tangent(j, k, l, sign)?.atan(), 0.0))
+        Some(angle_error(
+            2.0 * half_angle_tangent(j, k, l, sign)?.atan(),
+            0.0,
+        ))
     })
 }
 

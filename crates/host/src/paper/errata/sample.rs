@@ -55,12 +55,12 @@ impl Sample {
         let lizard = paper_lizard();
         let mut random = Random(1);
         std::iter::repeat_with(move || {
-            let mut within = |min: f64| min + 90.0 * random.next();
+            let mut angle_from = |min: f64| min + 90.0 * random.next();
             let pose = Pose {
-                theta1: within(90.0),
-                theta4: within(0.0),
-                theta8: 360.0 - within(0.0),
-                theta5: 360.0 - within(90.0),
+                theta1: angle_from(90.0),
+                theta4: angle_from(0.0),
+                theta8: 360.0 - angle_from(0.0),
+                theta5: 360.0 - angle_from(90.0),
             };
             let random = [random.next(), random.next()];
             let s = lizard.solve(&pose).ok()?;
@@ -102,7 +102,7 @@ pub fn cis(length: f64, radians: f64) -> Vector {
 }
 
 /// The difference of two directions in degrees, 0 to 180; radians in.
-pub fn apart(a: f64, b: f64) -> f64 {
+pub fn angle_error(a: f64, b: f64) -> f64 {
     lizard_kinematics::wrap((a - b) * 180.0 / PI).abs()
 }
 

@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn the_next_frame_is_one_that_has_not_opened_yet() {
+    fn the_next_frame_has_not_started_yet() {
         assert_eq!(next_start(500, 0), 500 + FRAME);
         assert_eq!(next_start(1_000_000, 0), 1_000_000);
         let next = next_start(1_000_000, 1_000_000);

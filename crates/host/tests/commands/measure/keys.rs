@@ -36,7 +36,7 @@ fn keys(files: &[&PathBuf], more: &[&str]) -> Outcome {
 }
 
 #[test]
-fn files_that_tell_nothing_are_refused_with_what_to_do() {
+fn files_without_information_are_refused_with_advice() {
     let foreign = file("foreign.json", r#"{"gaits":[{"gait":"walk","speed":100}]}"#);
     let message = keys(&[&foreign], &[]).refusal();
     assert!(

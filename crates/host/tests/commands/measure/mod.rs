@@ -192,7 +192,7 @@ fn gaits(object: &Value) -> Vec<(&str, usize)> {
 }
 
 #[test]
-fn a_film_of_several_gaits_is_told_apart_by_their_names_or_by_their_paths() {
+fn gaits_in_a_film_are_distinguished_by_their_names_or_by_their_paths() {
     let [walk, left] = ["walk", "left"].map(gait);
     let varies = Varies {
         cycle: [0.1, 0.1, 0.002],
@@ -265,7 +265,7 @@ fn a_film_of_several_gaits_is_told_apart_by_their_names_or_by_their_paths() {
 }
 
 #[test]
-fn what_cannot_be_measured_is_refused_in_a_sentence() {
+fn impossible_measurements_are_refused_with_a_message() {
     let folder = scratch().join("measure troubles");
     let _ = fs::remove_dir_all(&folder);
     let inside = |name: &str| folder.join(name);
@@ -342,7 +342,7 @@ fn a_film_without_ffmpeg_says_what_to_install() {
 /// Programs in place of ffmpeg and ffprobe: the film is its pictures already, and the times are those of a phone.
 #[test]
 #[cfg(unix)]
-fn a_film_is_read_through_ffmpeg_at_the_times_that_ffprobe_tells() {
+fn a_film_is_read_through_ffmpeg_at_the_times_from_ffprobe() {
     use std::fmt::Write as _;
     use std::os::unix::fs::PermissionsExt;
     let folder = scratch().join("ffmpeg");

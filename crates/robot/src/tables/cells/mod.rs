@@ -41,8 +41,9 @@ const NO_CELL: [i8; 2] = [1, 0];
 impl CellMaps {
     /// Computes the maps from the true measurements and their integers.
     pub(crate) fn new(lizard: &Lizard, numbers: &Content) -> Self {
-        let end = |end: End| map(&end::EndConditions::new(lizard, numbers, end), numbers);
-        let side = |side: Side| map(&side::StrokeCondition::new(lizard, numbers, side), numbers);
+        let end = |end: End| certify(&end::EndConditions::new(lizard, numbers, end), numbers);
+        let side =
+            |side: Side| certify(&side::StrokeCondition::new(lizard, numbers, side), numbers);
         Self {
             head: end(End::Head),
             tail: end(End::Tail),
@@ -62,7 +63,7 @@ impl CellMaps {
 }
 
 /// Finds the cells in which a condition is proved.
-fn map(rule: &impl Condition, numbers: &Content) -> Map {
+fn certify(rule: &impl Condition, numbers: &Content) -> Map {
     let [row, column] = rule.servos().map(|servo| Servo {
         neutral: numbers.neutral[servo],
         travel: numbers.calibration[servo],
@@ -74,7 +75,7 @@ fn map(rule: &impl Condition, numbers: &Content) -> Map {
     let all: Vec<[i8; 2]> = rows
         .map(|cell| {
             let across = row.span(cell, ROW_BITS);
-            certified(&columns, |cell| {
+            certified_columns(&columns, |cell| {
                 let along = column.span(cell, COLUMN_BITS);
                 Cell([across, along]).proves(rule)
             })
@@ -104,10 +105,10 @@ struct Servo {
 }
 
 impl Servo {
-    /// The cells that the servo's travel touches, of those that a map may have.
-    fn cells(&self, bits: u32, may: RangeInclusive<i32>) -> RangeInclusive<i32> {
+    /// The cells that the servo's travel touches, of those that a map can hold.
+    fn cells(&self, bits: u32, allowed: RangeInclusive<i32>) -> RangeInclusive<i32> {
         let [min, max] = [self.travel.min, self.travel.max].map(|end| i32::from(end.0 >> bits));
-        min.max(*may.start())..=max.min(*may.end())
+        min.max(*allowed.start())..=max.min(*allowed.end())
     }
 
     /// The chassis angles of a cell: of its first sweep to its last.
@@ -121,16 +122,16 @@ impl Servo {
 }
 
 /// The longest run of columns that keep a condition from the one nearest to neutral on.
-fn certified(columns: &RangeInclusive<i32>, keeps: impl Fn(i32) -> bool) -> [i8; 2] {
+fn certified_columns(columns: &RangeInclusive<i32>, is_kept: impl Fn(i32) -> bool) -> [i8; 2] {
     let mut outwards: Vec<i32> = columns.clone().collect();
     outwards.sort_by_key(|column| (2 * column + 1).abs());
-    let Some(nearest) = outwards.into_iter().find(|column| keeps(*column)) else {
+    let Some(nearest) = outwards.into_iter().find(|column| is_kept(*column)) else {
         return NO_CELL;
     };
-    let last = (nearest + 1..=*columns.end()).take_while(|column| keeps(*column));
+    let last = (nearest + 1..=*columns.end()).take_while(|column| is_kept(*column));
     let first = (*columns.start()..nearest)
         .rev()
-        .take_while(|column| keeps(*column));
+        .take_while(|column| is_kept(*column));
     [
         first.last().unwrap_or(nearest) as i8,
         last.last().unwrap_or(nearest) as i8,

@@ -17,7 +17,7 @@ pub(super) struct StrokeCondition {
     side: Side,
     slider: Slider,
     /// Error bound of the integers, mm.
-    off: f64,
+    error: f64,
     /// Least and greatest length of the slider, mm.
     min: f64,
     max: f64,
@@ -31,7 +31,7 @@ impl StrokeCondition {
         Self {
             side,
             slider,
-            off: bounds::slider(&slider, integers),
+            error: bounds::slider(&slider, integers),
             min: mm(integers.min),
             max: mm(integers.max),
         }
@@ -58,7 +58,7 @@ impl Condition for StrokeCondition {
             return Verdict::Broken;
         }
         let arm_movement = self.slider.front * front.half() + self.slider.rear * rear.half();
-        if room - arm_movement - self.off >= HAIR {
+        if room - arm_movement - self.error >= HAIR {
             Verdict::Kept
         } else {
             Verdict::Open
@@ -95,14 +95,14 @@ mod tests {
                 (-0.01, Verdict::Broken),
             ] {
                 let (min, max) = (rule.min, rule.max);
-                rule.min = length - clear * rule.off;
+                rule.min = length - clear * rule.error;
                 assert_eq!(
                     rule.judge(&cell),
                     verdict,
                     "{side} {clear} from the shortest"
                 );
                 rule.min = min;
-                rule.max = length + clear * rule.off;
+                rule.max = length + clear * rule.error;
                 assert_eq!(
                     rule.judge(&cell),
                     verdict,

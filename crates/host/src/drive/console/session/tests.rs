@@ -3,7 +3,7 @@ use super::*;
 const STATUS: &str = "ok gait=walk phase=0 pose=1,2,3,4 margin=0.5 guard=clear fault=none";
 
 #[test]
-fn a_persons_line_is_sent_when_the_answer_before_it_has_come() {
+fn a_users_line_is_sent_after_the_previous_answer() {
     let now = Instant::now();
     let mut session = Session::new(now, true, false);
     assert_eq!(session.next_line(now).as_deref(), Some("status"));
@@ -27,7 +27,7 @@ fn a_persons_line_is_sent_when_the_answer_before_it_has_come() {
 }
 
 #[test]
-fn a_status_that_the_person_asks_for_is_shown() {
+fn a_status_that_the_user_requests_is_shown() {
     let now = Instant::now();
     let mut session = Session::new(now, false, false);
     session.queue("status");
@@ -36,7 +36,7 @@ fn a_status_that_the_person_asks_for_is_shown() {
 }
 
 #[test]
-fn after_a_reset_nothing_is_waited_for() {
+fn after_a_reset_no_answer_is_expected() {
     let now = Instant::now();
     let mut session = Session::new(now, false, true);
     assert_eq!(session.next_line(now).as_deref(), Some("watch 1"));
@@ -52,7 +52,7 @@ fn after_a_reset_nothing_is_waited_for() {
 }
 
 #[test]
-fn poses_are_shown_only_if_the_person_asked_for_them() {
+fn poses_are_shown_only_on_request_of_the_user() {
     let now = Instant::now();
     let mut session = Session::new(now, false, true);
     session.next_line(now);
@@ -82,7 +82,7 @@ fn a_missing_answer_is_reported_once_and_the_next_line_is_sent() {
 }
 
 #[test]
-fn stop_waits_for_no_answer_and_drops_what_waits() {
+fn stop_waits_for_no_answer_and_drops_waiting_lines() {
     let now = Instant::now();
     let mut session = Session::new(now, true, false);
     assert_eq!(session.next_line(now).as_deref(), Some("status"));
@@ -248,7 +248,7 @@ fn words(lines: &[(u64, String)]) -> Vec<&str> {
 }
 
 #[test]
-fn while_a_person_drives_deadman_is_set_and_lines_keep_it_alive() {
+fn while_a_user_drives_deadman_is_set_and_lines_keep_the_robot_walking() {
     let now = Instant::now();
     let mut session = Session::new(now, true, false).with_person();
     session.queue("walk");
@@ -278,7 +278,7 @@ fn a_robot_that_just_began_to_walk_has_deadman_again_after_a_question() {
 }
 
 #[test]
-fn a_robot_that_has_stopped_gets_its_own_deadman_back() {
+fn a_robot_that_has_stopped_gets_its_own_deadman_restored() {
     let now = Instant::now();
     let mut session = Session::new(now, true, false).with_person();
     let own = |line: &str| robot(line).replace("700", "2000");
@@ -296,7 +296,7 @@ fn a_robot_that_has_stopped_gets_its_own_deadman_back() {
 }
 
 #[test]
-fn a_robot_that_its_person_leaves_goes_on_with_its_own_deadman() {
+fn a_robot_that_its_user_leaves_continues_with_its_own_deadman() {
     let now = Instant::now();
     let mut session = Session::new(now, true, false).with_person();
     session.queue("arc left");

@@ -233,7 +233,7 @@ fn another_chip_is_named_and_not_written() {
 }
 
 #[test]
-fn any_one_byte_that_is_lost_on_the_way_to_the_board_is_made_up_for() {
+fn any_one_byte_lost_on_the_way_to_the_board_is_recovered() {
     let old = [9; 500];
     let whole = run(Double::with(&old)).board;
     assert!(whole.received > 2000, "{} bytes", whole.received);
@@ -250,7 +250,7 @@ fn any_one_byte_that_is_lost_on_the_way_to_the_board_is_made_up_for() {
 }
 
 #[test]
-fn any_one_byte_that_is_lost_on_the_way_from_the_board_is_made_up_for() {
+fn any_one_byte_lost_on_the_way_from_the_board_is_recovered() {
     let old = [9; 500];
     let whole = run(Double::with(&old)).board;
     assert!(whole.sent > 30_000, "{} bytes", whole.sent);
@@ -297,7 +297,7 @@ fn a_board_unplugged_midway_does_nothing_until_the_next_upload() {
 }
 
 #[test]
-fn a_board_unplugged_before_the_first_page_has_what_it_had() {
+fn a_board_unplugged_before_the_first_page_is_unchanged() {
     let mut board = Double::with(&[9; 500]);
     board.unplugged_after = Some(0);
     let run = run(board);

@@ -30,7 +30,7 @@ const ENTRY: u16 = 2;
 
 /// The reason why a depth cannot be computed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("the depth of the stack cannot be worked out: {function}, at {address:#06x}, {what}")]
+#[error("the depth of the stack cannot be computed: {function}, at {address:#06x}, {what}")]
 pub struct StackError {
     /// The function that stands in the way.
     pub function: String,
@@ -54,7 +54,7 @@ pub struct StackDepth {
 }
 
 impl StackDepth {
-    /// Works out an image's depths. A vector table is recognised by the `jmp` at
+    /// Computes an image's depths. A vector table is recognised by the `jmp` at
     /// address 0; vectors that lead to avr-libc's `__bad_interrupt` are not in use.
     ///
     /// # Errors

@@ -26,7 +26,7 @@ fn gait_frames(robot: &Robot, name: &str, count: u64) -> FrameLog {
 }
 
 #[test]
-fn an_angle_survives_the_way_through_a_pulse() {
+fn an_angle_survives_the_conversion_to_a_pulse_and_back() {
     let robot = robot();
     let pose = [120.0, 45.0, 300.0, 230.0];
     let log = frames_of(&robot, 2, |_| pose);
@@ -73,7 +73,7 @@ fn walking_and_turning_lead_where_the_contact_model_says() {
 }
 
 #[test]
-fn a_way_that_hangs_on_a_tie_is_not_told() {
+fn a_path_that_depends_on_a_tie_is_not_reported() {
     let robot = robot();
     let log = gait_frames(&robot, "look", 100);
     let run = Run {
@@ -91,7 +91,7 @@ fn a_way_that_hangs_on_a_tie_is_not_told() {
 }
 
 #[test]
-fn a_way_step_by_step_is_the_way_as_a_whole() {
+fn the_steps_of_a_path_add_up_to_the_path() {
     let robot = robot();
     for gait in ["arc-left", "right"] {
         let log = gait_frames(&robot, gait, 400);
@@ -116,17 +116,17 @@ fn a_way_step_by_step_is_the_way_as_a_whole() {
             left: path.left.expect("it is decided"),
             turn: path.turn.expect("it is decided"),
         };
-        let apart = |a: Travel, b: Travel| {
+        let distance = |a: Travel, b: Travel| {
             (a.forward - b.forward).hypot(a.left - b.left) + (a.turn - b.turn).abs()
         };
-        assert!(apart(travel(all), whole) < 1e-6, "{all:?} {whole:?}");
+        assert!(distance(travel(all), whole) < 1e-6, "{all:?} {whole:?}");
         let both = followed_by(travel(first), travel(second));
-        assert!(apart(travel(all), both) < 1e-6);
+        assert!(distance(travel(all), both) < 1e-6);
     }
 }
 
 #[test]
-fn the_table_tells_widths_periods_slew_and_errors() {
+fn the_table_has_widths_periods_slew_and_errors() {
     let robot = robot();
     let mut frames = frames_of(&robot, 3, |seconds| {
         let mut angles: [f64; 4] = robot.neutral().into();

@@ -140,7 +140,7 @@ fn one_servo_alone_is_moved_and_only_after_the_space_bar_is_an_answer_taken() {
 }
 
 #[test]
-fn a_motion_that_has_begun_is_seen_before_the_robot_is_taken_to_stand() {
+fn a_motion_is_noticed_before_the_robot_counts_as_standing() {
     // The slowest that a robot may be, and the smallest turn of a key.
     let slow = PAPER.replacen("\nslew = 300.0", "\nslew = 10.0", 1);
     assert_ne!(slow, PAPER);
@@ -170,7 +170,7 @@ fn a_motion_that_has_begun_is_seen_before_the_robot_is_taken_to_stand() {
 }
 
 #[test]
-fn one_can_go_back_and_a_refused_trim_is_shown_and_changes_nothing() {
+fn steps_can_be_repeated_and_a_refused_trim_is_shown_and_changes_nothing() {
     let mut link = robot();
     let mut guide = Guide::new(&mut link).expect("it answers");
     press(&mut guide, &[Key::Back, Key::Next, Key::Next]);

@@ -72,7 +72,7 @@ fn after_a_cable_is_pulled_the_firmware_finds_no_robot_until_the_next_upload() {
 }
 
 #[test]
-fn any_one_byte_that_is_lost_while_a_robot_is_written_is_made_up_for() {
+fn any_one_byte_lost_while_a_robot_is_written_is_recovered() {
     let (before, paper) = (with_robot("own-gaits").flash, robot_image("paper"));
     let right = whole_image("paper");
     let whole = run_with(Double::with(&before), &paper).board;

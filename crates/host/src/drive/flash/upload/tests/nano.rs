@@ -21,7 +21,7 @@ fn an_old_nano_is_found_at_its_own_speed_and_keeps_its_boot_loader() {
 }
 
 #[test]
-fn a_byte_that_is_lost_on_the_way_to_an_old_nano_is_made_up_for_at_its_speed() {
+fn a_byte_lost_on_the_way_to_an_old_nano_is_recovered_at_its_speed() {
     let (code, large) = (whole_image("paper"), robot_image("large"));
     let nano = |lost| {
         let mut board = Double::old_nano();
