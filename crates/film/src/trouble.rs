@@ -22,7 +22,7 @@ pub enum Trouble {
     },
     /// A tag is seen twice.
     #[error(
-        "picture {number} shows tag {id} twice: which of them belongs to the robot is not guessed; take the other away"
+        "picture {number} shows tag {id} twice: which of them counts is not guessed; take the other away"
     )]
     Twice {
         /// Id of the tag.
@@ -45,9 +45,9 @@ pub enum Trouble {
         /// Id of the tag.
         id: usize,
     },
-    /// The deck's tag is not seen.
+    /// The card's tag is not seen.
     #[error(
-        "the tag on the robot's deck is in {seen} of {pictures} pictures only; nine of ten have to show it"
+        "the tag on the robot's deck, or on the horn, is in {seen} of {pictures} pictures only; nine of ten have to show it"
     )]
     DeckTag {
         /// Number of the pictures that show it.
@@ -85,9 +85,9 @@ pub enum Trouble {
         /// Their width for their distance, mm.
         edge: f64,
     },
-    /// The deck's tag is not at its height.
+    /// The card's tag is not at its height.
     #[error(
-        "the deck's tag is {found:.0} mm above the floor by its size, not {height:.0} mm: measure it and give \
+        "the tag on the deck, or on the horn, is {found:.0} mm above the strips by its size, not {height:.0} mm: measure it and give \
          --height, and print card and strips with one scale"
     )]
     Height {
@@ -98,7 +98,7 @@ pub enum Trouble {
     },
     /// The robot leaves the sheet.
     #[error(
-        "the robot is {distance:.0} mm away from the middle of the strips {seconds:.1} s after the beginning, \
+        "the robot, or the horn, is {distance:.0} mm away from the middle of the strips {seconds:.1} s after the beginning, \
          farther than the tags tell places: move the strips, or film fewer cycles"
     )]
     OutOfSheet {

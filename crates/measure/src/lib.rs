@@ -8,6 +8,7 @@
 //! For a path without a prediction, `lizard_film` is enough.
 
 mod board;
+mod engine;
 mod expected;
 mod named;
 mod report;

@@ -6,6 +6,7 @@ use lizard_film::{Mean, Measured, Point, Setup};
 use lizard_robot::{Place, Prediction, Robot, Travel, UNDECIDED};
 use serde::Serialize;
 
+use crate::engine::mujoco;
 use crate::named::{Candidate, Gaits, NamedWalk};
 use crate::watched_film::WatchedFilm;
 
@@ -57,6 +58,9 @@ pub struct GaitReport<'a> {
     /// The mean path within a cycle, and the point at which it is farthest from the predicted one.
     pub within: Vec<Within>,
     farthest: Option<Farthest>,
+    /// The way of a cycle by MuJoCo with ideal servos: mm ahead and to the left, deg.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mujoco: Option<[f64; 3]>,
     /// The predicted path of a cycle, evenly in time.
     #[serde(skip)]
     pub expected: &'a [Place],
@@ -287,6 +291,7 @@ impl<'a> GaitReport<'a> {
             each: measured.cycles.iter().map(way).collect(),
             within: measured.within.iter().map(within).collect(),
             farthest: Farthest::of(&measured.within, predicted),
+            mujoco: None,
             expected: &own.expected.path,
         }
     }
@@ -314,6 +319,12 @@ impl<'a> GaitReport<'a> {
         text += "a cycle      measured      sd   error  predicted\n";
         for (name, part) in PARTS.iter().zip(self.parts()) {
             text += &part.line(name);
+        }
+        if let Some([forward, left, turn]) = self.mujoco {
+            let _ = writeln!(
+                text,
+                "MuJoCo with ideal servos: {forward:+.2} mm ahead, {left:+.2} mm left, {turn:+.2} deg"
+            );
         }
         if let Some(farthest) = &self.farthest {
             text += &farthest.line(self.within.len());
@@ -366,6 +377,14 @@ impl<'a> Report<'a> {
             films: films.iter().map(film).collect(),
             gaits: of_gaits.iter().map(gait).collect(),
         }
+    }
+
+    /// Adds the ways by MuJoCo, which are known at full pace for the robots of the project's own files, by the text of the robot's file.
+    pub fn beside_mujoco(mut self, text: &str) -> Self {
+        for gait in self.gaits.iter_mut().filter(|gait| gait.speed == 100) {
+            gait.mujoco = mujoco(text, gait.gait);
+        }
+        self
     }
 
     /// The tables, for people.

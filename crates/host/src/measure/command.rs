@@ -79,7 +79,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
         };
     }
     let walks = gaits.walks(&films).map_err(Failure::Input)?;
-    let report = Report::new(&robot, args.speed, setup, &films, &gaits, &walks);
+    let report = Report::new(&robot, args.speed, setup, &films, &gaits, &walks)
+        .beside_mujoco(&args.robot.text()?);
     drop(spinner);
     if let Some(path) = args.picture {
         files::write(&path, picture::draw(&report).as_bytes())?;

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use lizard_film::Figure;
 use lizard_measure::{AGREES, verdict};
+use lizard_robot::edit::{NoSuchKey, with_comment, with_number};
 use serde::Serialize;
 
 /// A measured key of robot.toml.
@@ -21,6 +22,9 @@ pub(super) struct Key {
     agrees: bool,
     #[serde(skip)]
     decimals: usize,
+    /// The value in robot.toml over that for the supply of the measurement.
+    #[serde(skip)]
+    scale: f64,
 }
 
 impl Key {
@@ -41,7 +45,13 @@ impl Key {
             differs,
             agrees: differs.abs() <= AGREES,
             decimals,
+            scale: 1.0,
         }
+    }
+
+    /// The key whose value in robot.toml is so many times that for the supply of the measurement.
+    pub(super) fn scaled(self, scale: f64) -> Self {
+        Self { scale, ..self }
     }
 
     /// The key's name.
@@ -82,4 +92,24 @@ pub(super) fn lines(keys: &[Key]) -> String {
         );
     }
     text
+}
+
+/// Writes the keys that contradict a robot.toml into its text, each with a comment; all else stays as it is, byte for byte.
+///
+/// # Errors
+/// Fails if the text has no place for a key.
+pub(super) fn written(text: &str, keys: &[Key]) -> Result<String, NoSuchKey> {
+    let mut text = text.to_owned();
+    for key in keys.iter().filter(|key| !key.agrees) {
+        let name = format!("{}.{}", key.table, key.key);
+        let ([value, error, was], digits) = (
+            [key.measured, key.error, key.robot].map(|figure| figure * key.scale),
+            key.decimals,
+        );
+        let rounded: f64 = format!("{value:.digits$}").parse().unwrap_or(value);
+        text = with_number(&text, &name, rounded)?;
+        let rest = format!("{value:.digits$} +- {error:.digits$}, was {was:.digits$}");
+        text = with_comment(&text, &name, "measured:", &rest)?;
+    }
+    Ok(text)
 }

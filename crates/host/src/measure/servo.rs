@@ -1,20 +1,20 @@
 //! `lizard measure servo`: a servo in the jig.
 
-use std::fmt::Write as _;
+use std::fmt::{Display, Write as _};
 use std::path::{Path, PathBuf};
 
 use lizard_film::{Figure, Jig, Turns, Watched};
 use lizard_measure::WatchedFilm;
 use lizard_robot::servo::NAMES;
-use lizard_robot::{GRAVITY, Robot};
+use lizard_robot::{GRAVITY, Robot, edit};
 use serde::Serialize;
 
 use super::figures::{self, Key};
 use super::film::about;
 use super::filming::{Filming, height, number};
 use super::steps::{self, servo};
-use crate::shared::json;
 use crate::shared::progress::Spinner;
+use crate::shared::{files, json};
 use crate::{Failure, RobotFile};
 
 /// N mm for each kg cm.
@@ -30,7 +30,7 @@ const N_MM: f64 = 10.0 * GRAVITY;
   lizard measure steps --servo A1 --robot jig.toml | lizard console
   lizard measure servo film.mp4 --servo A1 --height 42 --robot jig.toml
   lizard measure servo film.mp4 --servo A1 --height 42 --robot jig.toml \\
-      --load loaded.mp4 --grams 100 --arm 20")]
+      --load loaded.mp4 --grams 100 --arm 20 --output measured.toml")]
 pub struct ServoArgs {
     /// A folder of pictures (PNG or JPEG), or a film
     film: PathBuf,
@@ -54,6 +54,9 @@ pub struct ServoArgs {
     volts: Option<f64>,
     #[command(flatten)]
     filming: Filming,
+    /// A file for the robot.toml with the keys that the film contradicts
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -95,6 +98,11 @@ struct Report {
     /// Supply for which the figures hold, V, and true if it is measured.
     volts: f64,
     is_volts_measured: bool,
+    /// The new robot.toml.
+    written: Option<PathBuf>,
+    /// Slew limit of the jig's robot.toml, deg/s.
+    #[serde(skip)]
+    slew: f64,
 }
 
 /// Measures a servo and prints the result.
@@ -102,7 +110,11 @@ struct Report {
 /// # Errors
 /// Fails for a film that cannot be read, or one that does not show what is needed.
 pub fn measure_servo(args: ServoArgs) -> Result<(), Failure> {
+    let text = args.robot.text()?;
     let robot = args.robot.load()?;
+    if let Some(output) = &args.output {
+        files::check_replaceable(output)?;
+    }
     let jig = Jig {
         way: steps::way(&robot, args.servo)?,
         slew: robot.pace().slew,
@@ -127,6 +139,10 @@ pub fn measure_servo(args: ServoArgs) -> Result<(), Failure> {
     };
     drop(spinner);
     let report = Report::new(&robot, &args, &watched, &free, stall);
+    if let Some(output) = &args.output {
+        let new = report.new_robot(&text)?;
+        files::write(output, new.as_bytes())?;
+    }
     json::print_json_or(args.json, &report, || report.text())
 }
 
@@ -153,14 +169,15 @@ impl Report {
         };
         let us = servo.us_per_degree;
         let mut figures = Vec::new();
-        let mut of_type = |key, decimals, figure: Figure, robot: f64| {
-            figures.push(Key::new("servo", key, decimals, figure, robot));
+        let mut of_type = |key, decimals, figure: Figure, robot: f64, scale: f64| {
+            figures
+                .push(Key::new("servo", key, decimals, figure, robot * scale).scaled(1.0 / scale));
         };
         let time = inverse(60.0, turns.rate);
-        of_type("s_per_60_deg", 4, time, kind.s_per_60_deg / supply);
+        of_type("s_per_60_deg", 4, time, kind.s_per_60_deg, 1.0 / supply);
         if let Some(stall) = stall {
             let stall = scaled(stall, 1.0 / N_MM);
-            of_type("stall_kg_cm", 2, stall, kind.stall_kg_cm * supply);
+            of_type("stall_kg_cm", 2, stall, kind.stall_kg_cm, supply);
         }
         if let Some(width) = turns.dead_band.width {
             of_type(
@@ -168,10 +185,17 @@ impl Report {
                 1,
                 scaled(width, us.abs()),
                 kind.dead_band_us,
+                1.0,
             );
         }
         if let Some(spin_up) = turns.spin_up {
-            of_type("spin_up_ms", 1, scaled(spin_up, 1000.0), kind.spin_up_ms);
+            of_type(
+                "spin_up_ms",
+                1,
+                scaled(spin_up, 1000.0),
+                kind.spin_up_ms,
+                1.0,
+            );
         }
         let table = format!("servo.{name}");
         figures.push(Key::new(
@@ -196,7 +220,21 @@ impl Report {
             turns_the_other_way: turns.gain.value < 0.0,
             volts,
             is_volts_measured: args.volts.is_some(),
+            written: args.output.clone(),
+            slew: robot.pace().slew,
         }
+    }
+
+    /// The robot.toml with the keys that the film contradicts, and the supply if it was measured.
+    fn new_robot(&self, text: &str) -> Result<String, Failure> {
+        let refused = |error: &dyn Display| Failure::Input(error.to_string());
+        let mut new = figures::written(text, &self.figures).map_err(|error| refused(&error))?;
+        if self.is_volts_measured {
+            new = edit::with_number(&new, "servo.volts", self.volts)
+                .map_err(|error| refused(&error))?;
+        }
+        Robot::parse(&new).map_err(|error| refused(&error))?;
+        Ok(new)
     }
 
     fn text(&self) -> String {
@@ -247,6 +285,14 @@ impl Report {
         }
         if self.figures.iter().all(|key| key.name() != "stall_kg_cm") {
             text += "Not told: stall_kg_cm, which takes a second film with a weight (--load).\n";
+        }
+        if let Some(written) = &self.written {
+            let _ = writeln!(
+                text,
+                "Written: {}, where [limits] slew is still {} deg/s, as the jig needs it.",
+                written.display(),
+                self.slew
+            );
         }
         text + "Never told by such a film: full_torque_deg, and neutral_us, which `lizard calibrate` sets.\n"
     }

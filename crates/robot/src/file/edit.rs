@@ -8,7 +8,7 @@ use toml::de::{DeTable, DeValue};
 pub const HIPS: [&str; 2] = ["leg.hip_forward", "leg.hip_side"];
 
 /// Keys that a robot.toml may leave out, and that are added when they get a value.
-const OPTIONAL: [&str; 11] = [
+const OPTIONAL: [&str; 16] = [
     HIPS[0],
     HIPS[1],
     "leg.drive.kind",
@@ -20,6 +20,11 @@ const OPTIONAL: [&str; 11] = [
     "ground.friction",
     "body.mass",
     "body.centre",
+    "servo.s_per_60_deg",
+    "servo.stall_kg_cm",
+    "servo.volts",
+    "servo.dead_band_us",
+    "servo.spin_up_ms",
 ];
 
 /// The error for a key that the text does not have, or that cannot be changed.
@@ -105,13 +110,19 @@ fn with_value(
         return Err(missing());
     }
     let line = format!("{name} = {value}");
-    let Some(entries) = find(document.get_ref(), table) else {
-        let end = if text.ends_with('\n') { "" } else { "\n" };
-        return Ok(format!("{text}{end}\n[{table}]\n{line}\n"));
+    let entries = match find(document.get_ref(), table) {
+        Some(entries) => entries.get_ref().as_table().ok_or_else(missing)?,
+        None => &DeTable::new(),
     };
-    let entries = entries.get_ref().as_table().ok_or_else(missing)?;
-    let last = entries.values().map(|value| value.span().end).max();
-    let end = line_end(text, last.ok_or_else(missing)?);
+    // A table of its own, as [servo.A1], has its lines elsewhere.
+    let own = entries.values().filter(|value| !value.get_ref().is_table());
+    let Some(last) = own.map(|value| value.span().end).max() else {
+        let end = if text.ends_with('\n') { "" } else { "\n" };
+        let longer = format!("{text}{end}\n[{table}]\n{line}\n");
+        let is_toml = DeTable::parse(&longer).is_ok();
+        return is_toml.then_some(longer).ok_or_else(missing);
+    };
+    let end = line_end(text, last);
     let mut longer = text.to_string();
     longer.insert_str(end, &format!("\n{line}"));
     // In a table that is written on one line, the new line would belong to another table.
@@ -278,6 +289,9 @@ mod tests {
         assert_eq!(changed, expected);
         let again = with_number(&changed, "leg.hip_side", 37.5).expect("there");
         assert_eq!(again, expected.replace("36.0", "37.5"));
+        // The lines of [servo.A1] are its own.
+        let servo = with_number(TEXT, "servo.volts", 4.5).expect("it may be set");
+        assert_eq!(servo, format!("{TEXT}\n[servo]\nvolts = 4.5\n"));
         for text in [
             "leg = { ground = 50.0 }\n",
             "leg.ground = 50.0\n",

@@ -88,8 +88,41 @@ fn a_film_of_a_horn_gives_the_lines_of_a_servo_that_turns_the_other_way() {
     ] {
         assert!(text.contains(words), "{words}: {text}");
     }
+    let new = measure(&["40", "--volts", "4.5", "--output", "measured.toml"]).success();
+    assert!(
+        new.contains("Written: measured.toml, where [limits] slew is still 1000 deg/s"),
+        "{new}"
+    );
+    let [before, after] = ["jig.toml", "measured.toml"]
+        .map(|file| fs::read_to_string(folder.join(file)).expect("a file"));
+    let changed: Vec<&str> = after
+        .lines()
+        .filter(|line| before.lines().all(|old| old != *line))
+        .collect();
+    let value = |key: &str| {
+        let line = changed.iter().find(|line| line.starts_with(key));
+        let line = line.unwrap_or_else(|| panic!("{key}: {changed:?}"));
+        let number = line[key.len()..].split(['=', '#']).nth(1).expect("a value");
+        number.trim().parse::<f64>().expect("a number")
+    };
+    assert!((value("us_per_degree") - 10.0 / servo.gain).abs() < 0.1);
+    // What it is at the 4.8 V of the file.
+    let time = 60.0 / servo.own_rate() * 4.5 / 4.8;
+    assert!((value("s_per_60_deg") - time).abs() < 0.003, "{changed:?}");
+    assert_eq!(value("volts"), 4.5);
+    assert!(
+        changed.iter().any(|line| line.contains(", was 10.00")),
+        "{changed:?}"
+    );
+    // Besides the line [servo] and a blank one, nothing else.
+    assert!(after.lines().count() - before.lines().count() < 8);
+    let kept = measure(&["40", "--output", "jig.toml"]).refusal();
+    assert!(kept.contains("jig.toml would be overwritten"), "{kept}");
     let refused = measure(&["90"]).refusal();
-    assert!(refused.contains("above the floor by its size"), "{refused}");
+    assert!(
+        refused.contains("the tag on the deck, or on the horn, is"),
+        "{refused}"
+    );
 }
 
 #[test]

@@ -146,6 +146,22 @@ fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
         object["each"].as_array().map(Vec::len),
         Some(part(&["cycles"]) as usize)
     );
+    let figures = crate::program::read("tools/physics/figures.json");
+    let figures: Value = serde_json::from_str(&figures).expect("figures");
+    let mujoco = &figures["paper"]["walk"]["rigid, level"]["mujoco"];
+    assert_eq!(&object["mujoco"], mujoco);
+    let changed = scratch().join("changed.toml");
+    let text = crate::program::read("robots/paper.toml");
+    fs::write(&changed, format!("{text}# mine\n")).expect("a file");
+    let changed = changed.to_str().expect("a name");
+    let own = run_in(
+        scratch(),
+        &[
+            "measure", folder, "--robot", changed, "--gait", "walk", "--height", "95", "--json",
+        ],
+        "",
+    );
+    assert_eq!(own.json()["gaits"][0]["mujoco"], Value::Null);
     let table = measure(&[]).success();
     assert!(table.contains("agrees"), "{table}");
     // The page's example is such a film.
