@@ -19,7 +19,7 @@ pub(crate) type Values = [f64; COUNT];
 /// Number of unknowns: the keys, then the card's parts.
 pub(crate) const UNKNOWNS: usize = COUNT + card::COUNT;
 /// Standard deviation of the model's own ways around smooth ones, mm and deg: servos have a dead band and pads stick, so
-/// a key that moves a little may shift a step by a frame. At 0.02 a sixth of the changed keys lay beyond two errors.
+/// a key that moves a little may shift a step by a frame.
 pub(crate) const MODEL_ERROR: f64 = 0.05;
 /// Gain of a step in the sum of squares below which a fit has ended; a parameter is then within a third of its error.
 const ENOUGH: f64 = 0.1;

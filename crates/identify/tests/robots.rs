@@ -161,7 +161,7 @@ fn keys_that_were_changed_are_found_within_two_errors_and_right_ones_stay() {
         "{within} of {told} changed keys within two errors, {moved} of {right} right ones moved"
     );
     assert!(told >= 12 && right >= 20, "{told} {right}");
-    assert!(within as f64 >= 0.8 * f64::from(told), "{within} of {told}");
+    assert!(within as f64 >= 0.9 * f64::from(told), "{within} of {told}");
     assert!(moved as f64 <= 0.1 * f64::from(right), "{moved} of {right}");
     assert_eq!(KEYS.len(), CHANGES.len());
 }
