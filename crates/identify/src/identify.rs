@@ -20,6 +20,9 @@ use crate::way::Way;
 const FOLDED: [usize; 3] = [PLAY, TWIST, RATIO];
 /// Distance from the file's value, in standard errors, from which on a key is moved.
 const MOVES: f64 = 2.0;
+/// Least rise of the sum of squares at that distance that is taken for one, and not for the model's roughness: errors
+/// become up to four times as large.
+const LEAST_RISE: f64 = 0.25;
 /// Share of its doubt that the ways may leave of a key that counts as told.
 const TOLD: f64 = 0.5;
 /// Correlation from which on two keys are said to look alike.
@@ -91,13 +94,12 @@ pub(crate) fn solve(
         limit,
         explains,
     } = fit_all(&problem)?;
-    let widened = if explains {
-        1.0
-    } else {
-        (full.chi_square / freedom).sqrt()
+    // What the model leaves unexplained is in the keys as well (the ratio of Birge, 1932).
+    let widened = match freedom < 1.0 {
+        true => 1.0,
+        false => (full.chi_square / freedom).sqrt().max(1.0),
     };
-    let errors: [f64; UNKNOWNS] =
-        std::array::from_fn(|i| widened * full.covariance[(i, i)].max(0.0).sqrt());
+    let errors = errors(&problem, &full).map(|error| widened * error);
     let (last, verdicts) = choose(&problem, &full, &errors)?;
     let still = problem.fit(&all[COUNT..], &problem.before());
     let still = still.ok_or(Trouble::NoFit)?;
@@ -155,7 +157,8 @@ struct Fit {
 /// Fits all unknowns.
 ///
 /// The model is not linear: which feet carry the body changes with the foot that is too long, and play changes nothing
-/// until it does. So a fit that does not explain the ways starts again where those keys are far to either side.
+/// until it does. So a fit that leaves more of the ways than a true model does on average starts again where those keys are
+/// far to either side. That it leaves no more than a true model may is not enough: a minimum beside the least one does that, too.
 fn fit_all(problem: &Problem) -> Result<Fit, Trouble> {
     let all: Vec<usize> = (0..UNKNOWNS).collect();
     let before = problem.before();
@@ -174,6 +177,7 @@ fn fit_all(problem: &Problem) -> Result<Fit, Trouble> {
         let freedom = freedom(problem, &full);
         let limit = if freedom < 1.0 { 0.0 } else { rare(freedom) };
         let explains = freedom < 1.0 || full.chi_square <= limit;
+        let is_common = freedom < 1.0 || full.chi_square <= freedom;
         let is_better = |best: &Fit| full.chi_square < best.full.chi_square;
         if best.as_ref().is_none_or(is_better) {
             best = Some(Fit {
@@ -183,11 +187,32 @@ fn fit_all(problem: &Problem) -> Result<Fit, Trouble> {
                 explains,
             });
         }
-        if explains {
+        if is_common {
             break;
         }
     }
     best.ok_or(Trouble::NoFit)
+}
+
+/// The standard errors of a fit of all unknowns.
+///
+/// Those of the slopes hold if the model is linear. It has folds: a foot that is a little longer takes over a load, a longer
+/// one changes nothing. So each key is moved by two errors to either side, the others following as they are correlated with
+/// it, which would raise the sum of squares by four; where it rises less, the error is so much larger.
+fn errors(problem: &Problem, full: &Solution) -> [f64; UNKNOWNS] {
+    let least = problem.cost(&full.at);
+    std::array::from_fn(|i| {
+        let error = full.covariance[(i, i)].max(0.0).sqrt();
+        if i >= COUNT || error > TOLD * problem.doubts[i] {
+            return error;
+        }
+        let rise = |side: f64| {
+            let along = |j: usize| full.at[j] + side * MOVES * full.covariance[(j, i)] / error;
+            problem.cost(&std::array::from_fn(along)) - least
+        };
+        let rise = rise(1.0).min(rise(-1.0)).max(LEAST_RISE);
+        error * (MOVES / rise.sqrt()).max(1.0)
+    })
 }
 
 /// The figures less what the fit of all unknowns used up: of each as much as the ways, and not its doubt, tell of it.

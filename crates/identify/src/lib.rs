@@ -7,8 +7,8 @@
 //! the deck ([`Card`]), which would otherwise pass for a drift.
 //!
 //! What the ways do not tell is not changed. A key whose error stays above half of its doubt counts as unknown
-//! ([`Verdict::Untold`]), one that would move by less than two errors as right ([`Verdict::Right`]). If the model
-//! cannot explain the ways, all errors grow by what is left ([`Goodness`]). [`Identified::text`] writes the new robot.toml.
+//! ([`Verdict::Untold`]), one that would move by less than two errors as right ([`Verdict::Right`]). If the model leaves more of
+//! the ways than their errors, the errors of all keys grow by as much ([`Goodness`]). [`Identified::text`] writes the new robot.toml.
 //!
 //! The crate starts no thread, and reads, stores and prints nothing.
 //!

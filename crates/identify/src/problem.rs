@@ -19,7 +19,7 @@ pub(crate) type Values = [f64; COUNT];
 /// Number of unknowns: the keys, then the card's parts.
 pub(crate) const UNKNOWNS: usize = COUNT + card::COUNT;
 /// Standard deviation of the model's own ways around smooth ones, mm and deg: servos have a dead band and pads stick, so
-/// a key that moves a little may shift a step by a frame. At 0.02 a sixth of the changed keys lay beyond two errors.
+/// a key that moves a little may shift a step by a frame.
 pub(crate) const MODEL_ERROR: f64 = 0.05;
 /// Gain of a step in the sum of squares below which a fit has ended; a parameter is then within a third of its error.
 const ENOUGH: f64 = 0.1;
@@ -28,8 +28,9 @@ const ROUGH: f64 = 2.0;
 /// Largest number of steps of a fit, and of halvings of a step that gains nothing.
 const STEPS: usize = 12;
 const HALVINGS: usize = 2;
-/// Steps of a key from where its slopes were computed, after which they are computed anew.
+/// Steps of a key from where its slopes were computed, after which they are computed anew: on the way, and where a fit ends.
 const FAR: f64 = 4.0;
+const NEAR: f64 = 1.0;
 
 /// The ways of a robot, and a model of it.
 pub(crate) struct Problem<'a> {
@@ -98,6 +99,14 @@ impl<'a> Problem<'a> {
         self.scaled(&self.seen(at), |part, mean| mean - part)
     }
 
+    /// The sum of squares that a fit of all unknowns makes small: of the ways' differences, and of what is known beforehand.
+    pub fn cost(&self, at: &[f64; UNKNOWNS]) -> f64 {
+        let ways = self.differences(at).into_flattened();
+        let before = self.before();
+        let known = (0..UNKNOWNS).map(|i| (at[i] - before[i]) / self.doubts[i]);
+        ways.into_iter().chain(known).map(|part| part * part).sum()
+    }
+
     fn scaled(&self, parts: &[[f64; 3]], of: impl Fn(f64, f64) -> f64) -> Vec<[f64; 3]> {
         let each = self.ways.iter().zip(parts);
         let scaled = |(way, parts): (&Way, &[f64; 3])| {
@@ -160,7 +169,11 @@ impl<'a> Problem<'a> {
             let step = &covariance * &gradient;
             let promised = step.dot(&gradient);
             if promised < ENOUGH {
-                break;
+                // The errors are those of the slopes here, which a fold makes others than where the fit began.
+                match self.forget_slopes(split(&at).0, NEAR) {
+                    true => continue,
+                    false => break,
+                }
             }
             let shorter = (0..=HALVINGS).map(|halvings| {
                 let mut next = at;
@@ -174,7 +187,8 @@ impl<'a> Problem<'a> {
             match better.next() {
                 Some(next) => (at, here) = next,
                 // Slopes from elsewhere may point the wrong way.
-                None if promised > ROUGH && self.forget_slopes(split(&at).0) => {}
+                None if promised > ROUGH && self.forget_slopes(split(&at).0, 0.0) => {}
+                None if self.forget_slopes(split(&at).0, NEAR) => {}
                 None => break,
             }
         }
@@ -188,10 +202,10 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// Has slopes computed anew unless they were at these values; returns true if so.
-    fn forget_slopes(&self, values: Values) -> bool {
+    /// Has slopes computed anew unless they were within so many steps of these values; returns true if so.
+    fn forget_slopes(&self, values: Values, steps: f64) -> bool {
         let mut slopes_at = self.slopes_at.borrow_mut();
-        let is_elsewhere = *slopes_at != Some(above_least(values));
+        let is_elsewhere = !slopes_at.is_some_and(|at| is_within(steps, at, above_least(values)));
         if is_elsewhere {
             *slopes_at = None;
         }
@@ -224,11 +238,7 @@ impl<'a> Problem<'a> {
     /// Where slopes are computed that hold at these values.
     fn slopes_near(&self, values: Values) -> Values {
         let mut slopes_at = self.slopes_at.borrow_mut();
-        let is_near = |at: &Values| {
-            let mut each = at.iter().zip(values).zip(&KEYS);
-            each.all(|((at, value), key)| (value - at).abs() <= FAR * key.step)
-        };
-        if let Some(at) = slopes_at.filter(is_near) {
+        if let Some(at) = slopes_at.filter(|at| is_within(FAR, *at, values)) {
             return at;
         }
         // Slopes at the least value are those to its free side.
@@ -236,6 +246,12 @@ impl<'a> Problem<'a> {
         *slopes_at = Some(values);
         values
     }
+}
+
+/// True if each key differs by at most so many of its steps.
+fn is_within(steps: f64, a: Values, b: Values) -> bool {
+    let mut each = a.iter().zip(b).zip(&KEYS);
+    each.all(|((a, b), key)| (a - b).abs() <= steps * key.step)
 }
 
 /// The values, or the least possible ones.

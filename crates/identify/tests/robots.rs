@@ -114,22 +114,22 @@ fn keys_that_were_changed_are_found_within_two_errors_and_right_ones_stay() {
         .collect();
     files.sort();
     assert_eq!(files.len(), 5);
-    let seeds = [1, 2].map(|seed| (&files, seed));
+    // Two robots of each file; SEED=2 has others.
+    let seed = std::env::var("SEED")
+        .ok()
+        .and_then(|word| word.parse().ok());
+    let first = 2 * seed.unwrap_or(1) - 1;
     let trials: Vec<Trial> = thread::scope(|scope| {
-        let run = |(files, seed): (&'_ Vec<PathBuf>, u64)| {
-            let files = files.clone();
-            scope.spawn(move || {
-                files
-                    .iter()
-                    .map(|file| Trial::new(file, seed))
-                    .collect::<Vec<_>>()
-            })
+        let robots = files
+            .iter()
+            .flat_map(|file| [(file, first), (file, first + 1)]);
+        let run = |(file, seed): (&PathBuf, u64)| {
+            let file = file.clone();
+            scope.spawn(move || Trial::new(&file, seed))
         };
-        let threads: Vec<_> = seeds.into_iter().map(run).collect();
-        threads
-            .into_iter()
-            .flat_map(|thread| thread.join().expect("a trial"))
-            .collect()
+        let threads: Vec<_> = robots.map(run).collect();
+        let ended = threads.into_iter().map(|thread| thread.join());
+        ended.map(|trial| trial.expect("a trial")).collect()
     });
     let (mut told, mut within, mut right, mut moved) = (0, 0, 0, 0);
     for trial in &trials {
@@ -161,7 +161,7 @@ fn keys_that_were_changed_are_found_within_two_errors_and_right_ones_stay() {
         "{within} of {told} changed keys within two errors, {moved} of {right} right ones moved"
     );
     assert!(told >= 12 && right >= 20, "{told} {right}");
-    assert!(within as f64 >= 0.8 * f64::from(told), "{within} of {told}");
+    assert!(within as f64 >= 0.9 * f64::from(told), "{within} of {told}");
     assert!(moved as f64 <= 0.1 * f64::from(right), "{moved} of {right}");
     assert_eq!(KEYS.len(), CHANGES.len());
 }

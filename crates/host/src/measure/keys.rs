@@ -26,7 +26,8 @@ const SAME_PERIOD: f64 = 0.005;
 #[command(after_help = "Example:
   lizard measure film.mp4 --json > film.json
   lizard measure keys film.json --output measured.toml
-  lizard gaits --robot measured.toml")]
+  lizard gaits --robot measured.toml
+  lizard tune --robot measured.toml")]
 pub struct KeysArgs {
     /// Files with what `lizard measure --json` printed
     #[arg(value_name = "FILE", required = true)]

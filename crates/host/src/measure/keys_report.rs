@@ -241,6 +241,12 @@ fn goodness(identified: &Identified) -> String {
         text += "That is too few figures to tell whether the model is right: film further gaits.\n";
     } else {
         let _ = writeln!(text, "The model explains these ways. Worst is {worst}.");
+        if widened >= 1.05 {
+            let _ = writeln!(
+                text,
+                "All errors above are {widened:.1} times as large, by what it leaves."
+            );
+        }
     }
     text
 }

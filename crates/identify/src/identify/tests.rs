@@ -3,7 +3,7 @@
 use fastrand::Rng;
 
 use super::*;
-use crate::key::PLAY;
+use crate::key::{PLAY, TWIST};
 use crate::problem::MODEL_ERROR;
 
 /// Number of gaits, and the standard error of each figure.
@@ -101,6 +101,28 @@ fn changed_keys_are_within_two_errors_in_95_of_100_and_right_ones_stay() {
     assert!((0.93..=0.985).contains(&share), "{share} of {changed}");
     assert!(moved / right < 0.05, "{} of {right}", moved / right);
     assert!(explained / ROBOTS as f64 > 0.97, "{explained}");
+}
+
+#[test]
+fn at_a_fold_the_error_is_that_of_the_flatter_side() {
+    /// A foot that is shorter than this does not stand, however short it is.
+    const FOLD: f64 = -0.5;
+    let folded = |values: &Values| {
+        let mut values = *values;
+        values[TWIST] = values[TWIST].max(FOLD);
+        model(&values)
+    };
+    let mut truth = start();
+    truth[TWIST] = FOLD;
+    let mut ways = measured(&truth, Card::default(), &mut Rng::with_seed(1));
+    for (way, travel) in ways.iter_mut().zip(model(&truth)) {
+        way.mean = [travel.forward, travel.left, travel.turn];
+    }
+    let error = |model: &dyn Fn(&Values) -> Vec<Travel>| {
+        solve(&ways, start(), model).expect("a fit").keys[TWIST].error
+    };
+    let [folded, smooth] = [error(&folded), error(&model)];
+    assert!(folded > 1.2 * smooth, "{folded} {smooth}");
 }
 
 #[test]
