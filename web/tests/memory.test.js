@@ -45,7 +45,7 @@ test('refused gaits and those tried for an offer use no more memory', async () =
 
 /** Time in each room, in each of two rounds, s. In the first the page fills what it keeps: the last pulses, the log, the track. */
 const STAY = Number(process.env.STAY ?? 8);
-/** What a round may add though nothing leaks, bytes: code that the browser has compiled once more. */
+/** Memory that a round may add without a leak, bytes: code that the browser has compiled once more. */
 const LEVEL = 400_000;
 
 test('a robot that walks while somebody goes through the rooms twice takes no more memory the second time', async (t) => {

@@ -143,7 +143,7 @@ impl Writer<'_> {
         self.xml.close();
     }
 
-    /// Where the spring of a body's joint is without force, m, and its stiffness, N/m.
+    /// The position at which the spring of a body's joint has no force, m, and its stiffness, N/m.
     fn spring(&self, node: Node) -> Option<[f64; 2]> {
         match (node, self.scene.pull) {
             (Node::Pad(_), _) => Some([0.0, self.leaf()[0]]),
