@@ -205,8 +205,8 @@ fn coil_volume(coil: &Coil) -> f64 {
 
 /// The rows for the inputs that a robot has.
 fn inputs(robot: &Robot) -> Vec<Item> {
-    let has = |name: &str| robot.inputs().each().any(|(input, _)| input == name);
-    let rows = INPUTS.into_iter().filter(|(name, _)| has(name));
+    let has_input = |name: &str| robot.inputs().each().any(|(input, _)| input == name);
+    let rows = INPUTS.into_iter().filter(|(name, _)| has_input(name));
     rows.map(|(_, row)| Item::loose(row)).collect()
 }
 

@@ -52,8 +52,11 @@ impl Goal {
         let (Some(forward), Some(turn)) = (movement.forward, movement.turn) else {
             return Err(NoGoal::Undecided(name()));
         };
-        let goes = |value: f64, min: f64| value.abs() >= min;
-        match (goes(forward, MIN_MOVEMENT.0), goes(turn, MIN_MOVEMENT.1)) {
+        let is_enough = |value: f64, min: f64| value.abs() >= min;
+        match (
+            is_enough(forward, MIN_MOVEMENT.0),
+            is_enough(turn, MIN_MOVEMENT.1),
+        ) {
             (true, false) => Ok(Self::Ahead(forward.signum())),
             (false, true) => Ok(Self::Turn(turn.signum())),
             (false, false) => Err(NoGoal::Nowhere(name())),

@@ -1,4 +1,4 @@
-//! What MuJoCo measures on the robot.
+//! The sensors of the MuJoCo model.
 
 use lizard_robot::servo::{LEGS, NAMES};
 
