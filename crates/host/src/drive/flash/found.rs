@@ -199,7 +199,7 @@ mod tests {
         build[0x1000] ^= 1;
         assert_eq!(
             text(&build, &image),
-            named(&paper).replace("has ", "has another build of ")
+            describe(&paper).replace("has ", "has another build of ")
         );
     }
 }

@@ -76,7 +76,7 @@ fn any_one_byte_lost_while_a_robot_is_written_is_recovered() {
     let (before, paper) = (with_robot("own-gaits").flash, robot_image("paper"));
     let right = whole_image("paper");
     let whole = run_with(Double::with(&before), &paper).board;
-    let is_right = |run: &Run, at: usize| {
+    let assert_recovered = |run: &Run, at: usize| {
         assert!(run.result.is_ok(), "byte {at}: {}", run.error());
         assert!(
             run.board.flash[..right.end()] == *right.bytes(),
@@ -86,12 +86,12 @@ fn any_one_byte_lost_while_a_robot_is_written_is_recovered() {
     for at in (0..whole.received).step_by(17) {
         let mut board = Double::with(&before);
         board.lost_to = Some(at);
-        assert_written(&run_with(board, &paper), at);
+        assert_recovered(&run_with(board, &paper), at);
     }
     for at in (0..whole.sent).step_by(101) {
         let mut board = Double::with(&before);
         board.lost_from = Some(at);
-        assert_written(&run_with(board, &paper), at);
+        assert_recovered(&run_with(board, &paper), at);
     }
 }
 
