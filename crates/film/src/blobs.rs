@@ -20,10 +20,16 @@ const FILLED: [f64; 2] = [0.3, 1.2];
 /// Four corners to within some pixels, clockwise as seen in the picture.
 pub(crate) type Quad = [Pixel; 4];
 
-/// Finds the blobs that are nearly quadrilaterals.
-pub(crate) fn quads(picture: &Picture) -> Vec<Quad> {
+/// Half the edge of the surroundings of a pixel in a picture, px.
+pub(crate) fn reach(picture: &Picture) -> usize {
+    let [_, height] = picture.size();
+    ((height as f64 * AROUND) as usize).max(LEAST / 2)
+}
+
+/// Finds the blobs that are nearly quadrilaterals, where a pixel's surroundings reach so far, px.
+pub(crate) fn quads(picture: &Picture, reach: usize) -> Vec<Quad> {
     let [width, height] = picture.size();
-    let mut dark = dark(picture);
+    let mut dark = dark(picture, reach);
     let mut quads = Vec::new();
     let (mut blob, mut open) = (Vec::new(), Vec::new());
     for start in 0..dark.len() {
@@ -61,9 +67,8 @@ pub(crate) fn quads(picture: &Picture) -> Vec<Quad> {
 }
 
 /// True for each pixel that is darker than its surroundings.
-fn dark(picture: &Picture) -> Vec<bool> {
+fn dark(picture: &Picture, reach: usize) -> Vec<bool> {
     let [width, height] = picture.size();
-    let reach = ((height as f64 * AROUND) as usize).max(LEAST / 2);
     // The sum of all pixels above and to the left, of a table that is one wider and higher.
     let mut sums = vec![0u32; (width + 1) * (height + 1)];
     for (y, row) in picture.grey().chunks(width).enumerate() {

@@ -7,7 +7,7 @@ use crate::path::{Seen, unwind};
 use crate::picture::{Picture, Pixel};
 use crate::scene::{FloorCorners, Measures, Scene, View};
 use crate::sheet::{CODES, DECK_TAG, FLOOR_TAGS};
-use crate::tags;
+use crate::tags::{self, Tag};
 use crate::trouble::Trouble;
 use crate::watched::{Sight, Watched};
 
@@ -36,19 +36,34 @@ pub struct Setup {
 pub struct Film {
     size: [usize; 2],
     frames: Vec<Frame>,
+    /// The tags of the last picture.
+    last: Tags,
 }
 
+/// The corners of tags by their ids.
+type Tags = [Option<[Pixel; 4]>; CODES.len()];
+
 impl Film {
+    /// Finds the tags of a picture, which is not kept: if all were seen in the last one, near their places there, which takes
+    /// a fraction of the time. If an id is seen twice, both are returned.
+    pub fn look(&mut self, picture: &Picture) -> Vec<Tag> {
+        let last = self.last.iter().enumerate();
+        let near = last.map(|(id, corners)| tags::near(picture, id, corners.as_ref()?));
+        let tags = near.collect::<Option<Vec<Tag>>>();
+        let tags = tags.unwrap_or_else(|| tags::read(picture));
+        self.last = [None; CODES.len()];
+        for tag in &tags {
+            self.last[tag.id] = Some(tag.corners);
+        }
+        tags
+    }
+
     /// Reads the next picture, taken at this time, and returns the corners of its tags by their ids.
     ///
     /// # Errors
     /// Fails if it has another size than the first one, is not later than the one before, or shows a
     /// tag twice.
-    pub fn add(
-        &mut self,
-        seconds: f64,
-        picture: &Picture,
-    ) -> Result<[Option<[Pixel; 4]>; CODES.len()], Trouble> {
+    pub fn add(&mut self, seconds: f64, picture: &Picture) -> Result<Tags, Trouble> {
         let number = self.frames.len() + 1;
         match self.frames.last() {
             None => self.size = picture.size(),
@@ -57,7 +72,7 @@ impl Film {
             Some(_) => {}
         }
         let mut tags = [None; CODES.len()];
-        for tag in tags::read(picture) {
+        for tag in self.look(picture) {
             if tags[tag.id].replace(tag.corners).is_some() {
                 return Err(Trouble::Twice { id: tag.id, number });
             }

@@ -32,6 +32,21 @@ impl Picture {
             .then(|| Self::new(width, height, grey.collect()))?
     }
 
+    /// The part of the picture between two corners, the second of which does not belong to it; `None` if it is empty or not inside.
+    pub(crate) fn part(
+        &self,
+        [left, top]: [usize; 2],
+        [right, bottom]: [usize; 2],
+    ) -> Option<Self> {
+        let rows = self.grey.chunks(self.width).take(bottom).skip(top);
+        let grey = rows.flat_map(|row| row.get(left..right).unwrap_or_default());
+        Self::new(
+            right.checked_sub(left)?,
+            bottom.checked_sub(top)?,
+            grey.copied().collect(),
+        )
+    }
+
     /// Width and height, px.
     pub fn size(&self) -> [usize; 2] {
         [self.width, self.height]

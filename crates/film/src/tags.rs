@@ -4,7 +4,7 @@
 //! only the sheet's are known here. They differ in eleven squares or more, however a tag is turned,
 //! so a few squares that cannot be read do no harm.
 
-use crate::blobs;
+use crate::blobs::{self, Quad};
 use crate::edges::{self, Square};
 use crate::homography::Homography;
 use crate::picture::{Picture, Pixel};
@@ -12,6 +12,9 @@ use crate::sheet::{CODES, SQUARES, is_white};
 
 /// Largest number of a tag's squares that are read wrong.
 const LARGEST_ERROR: usize = 3;
+
+/// Movement of a tag from one picture to the next to which it is looked for near its last place, over its size.
+const MOVES: f64 = 0.3;
 
 /// A tag in a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,7 +27,31 @@ pub struct Tag {
 
 /// Finds the tags of the sheet. If an id is seen twice, both are returned.
 pub fn read(picture: &Picture) -> Vec<Tag> {
-    let quads = blobs::quads(picture).into_iter();
+    tags(picture, blobs::quads(picture, blobs::reach(picture)))
+}
+
+/// Finds the tag of an id near its last place: the very tag that [`read`] finds if it moved by less than [`MOVES`] of its size.
+pub(crate) fn near(picture: &Picture, id: usize, last: &[Pixel; 4]) -> Option<Tag> {
+    let reach = blobs::reach(picture);
+    let size = picture.size();
+    let (mut low, mut high) = ([0; 2], size);
+    for i in 0..2 {
+        let [least, most] = [f64::min, f64::max].map(|of| last.iter().map(|at| at[i]).reduce(of));
+        let (least, most) = (least?, most?);
+        // Of the pixels of the tag the surroundings belong to the part, too.
+        let around = (most - least) * MOVES + reach as f64 + 2.0;
+        low[i] = (least - around).max(0.0) as usize;
+        high[i] = size[i].min((most + around).max(0.0) as usize);
+    }
+    let quads = blobs::quads(&picture.part(low, high)?, reach).into_iter();
+    let whole = quads.map(|quad| quad.map(|[x, y]| [x + low[0] as f64, y + low[1] as f64]));
+    let mut tags = tags(picture, whole).into_iter();
+    tags.find(|tag| tag.id == id)
+}
+
+/// The tags among quadrilaterals of a picture.
+fn tags(picture: &Picture, quads: impl IntoIterator<Item = Quad>) -> Vec<Tag> {
+    let quads = quads.into_iter();
     quads
         .filter_map(|quad| edges::refine(picture, quad))
         .filter_map(|square| decode(picture, &square))

@@ -6,10 +6,11 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use lizard_kinematics::{Solution, Vector};
-use lizard_robot::{Coil, Robot};
+use lizard_robot::{Coil, Parts, Robot};
 use serde::Serialize;
 
 use crate::bodies::assembly::Assembly;
+use crate::bodies::pads::NOTCH;
 use crate::decimals;
 use crate::hold::SpringEffect;
 use crate::layers::body::{Body, Kind, Prism};
@@ -108,7 +109,7 @@ pub struct Bill {
     pub bought: Vec<Item>,
     /// Things to buy for driving without a cable.
     pub radio: Vec<Item>,
-    /// Things to buy for the inputs that robot.toml names.
+    /// Things to buy for the inputs and the strips on pads that robot.toml has; an option, too.
     pub inputs: Vec<Item>,
     /// The sum of the price classes of all things to buy but options, euros.
     pub euros: [u32; 2],
@@ -203,11 +204,24 @@ fn coil_volume(coil: &Coil) -> f64 {
     (coil.coils() + 3.0) * PI * coil.mean() * PI * coil.wire * coil.wire / 4.0
 }
 
-/// The rows for the inputs that a robot has.
+/// The row for strips with a grain; `None` for plain pads.
+fn strip(parts: &Parts) -> Option<Item> {
+    /// Mass of a strip, g for each mm of its width: climbing skin of 1.2 kg/m^2, 30 mm long.
+    const STRIP: f64 = 0.036;
+    let what = format!(
+        "strip with a grain, {} x 30 mm, at most {NOTCH} mm thick: climbing skin of a ski (Pomoca Climb, Colltex; ~1.5 mm \
+         without hairs), or a strip of a brush with short, slanted bristles",
+        parts.strip
+    );
+    (parts.strip > 0.0).then(|| Item::bought(4, what, STRIP * parts.strip, Price::C))
+}
+
+/// The rows for the inputs and strips that a robot has.
 fn inputs(robot: &Robot) -> Vec<Item> {
     let has_input = |name: &str| robot.inputs().each().any(|(input, _)| input == name);
     let rows = INPUTS.into_iter().filter(|(name, _)| has_input(name));
-    rows.map(|(_, row)| Item::loose(row)).collect()
+    let rows = rows.map(|(_, row)| Item::loose(row));
+    rows.chain(strip(robot.parts())).collect()
 }
 
 impl Bill {
@@ -326,7 +340,7 @@ impl fmt::Display for Bill {
         )?;
         if !self.inputs.is_empty() {
             let rows = to_buy(&self.inputs);
-            writeln!(f, "Only for the inputs of robot.toml:\n\n{rows}")?;
+            writeln!(f, "Only for the inputs and strips of robot.toml:\n\n{rows}")?;
         }
         writeln!(
             f,

@@ -220,10 +220,14 @@ fn frame(body: &Body) -> Placement {
     let shapes = || body.prisms.iter().flat_map(|prism| &prism.add);
     let first = shapes().next();
     let at = first.map_or(Vector::default(), |shape| shape.points[0]);
-    let bar = shapes().find_map(|shape| match shape.points[..] {
-        [from, to, ..] => Some(to - from),
-        _ => None,
-    });
+    // A pad has a direction only by its notch.
+    let cuts = body.prisms.iter().flat_map(|prism| &prism.cut);
+    let bar = shapes()
+        .chain(cuts)
+        .find_map(|shape| match shape.points[..] {
+            [from, to, ..] => Some(to - from),
+            _ => None,
+        });
     Placement {
         at,
         turn: bar.map_or(Placement::CHASSIS.turn, |bar| bar * (1.0 / bar.length())),

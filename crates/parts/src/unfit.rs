@@ -138,6 +138,13 @@ impl Assembly {
                 ));
             }
         }
+        let [min, max] = pads::strip_widths(parts);
+        if parts.strip > 0.0 && !(min..=max).contains(&parts.strip) {
+            return refuse(format!(
+                "parts.strip is {} mm; a pad of parts.pad.width {} mm takes a strip of {min:.1} to {max:.1} mm, or 0 for none",
+                parts.strip, parts.pad.width
+            ));
+        }
         if parts.pad.dome().is_none_or(|dome| dome > parts.pad.height) {
             return refuse(format!(
                 "a dome of parts.pad.radius {} mm is narrower or higher than parts.pad.width {} mm and height {} mm \

@@ -6,6 +6,7 @@
 
 use std::cell::RefCell;
 
+use lizard_film::Picture;
 use lizard_measure::Paper;
 use serde::{Deserialize, Serialize};
 
@@ -65,15 +66,25 @@ pub extern "C" fn measure_output_length() -> usize {
 }
 
 /// Answers with the tags of the picture in the input, by [`Camera::add`] if it is to be kept, or else by
-/// [`Camera::look`].
+/// [`Camera::look`]. A grey picture has a byte for each pixel, a colourful one four.
 #[unsafe(no_mangle)]
-pub extern "C" fn measure_picture(width: usize, height: usize, seconds: f64, is_kept: bool) {
-    let size = [width, height];
+pub extern "C" fn measure_picture(
+    width: usize,
+    height: usize,
+    is_grey: bool,
+    seconds: f64,
+    is_kept: bool,
+) {
     INTERFACE.with_borrow_mut(|interface| {
-        interface.output = json(match is_kept {
-            true => interface.camera.add(size, &interface.input, seconds),
-            false => interface.camera.look(size, &interface.input),
-        });
+        let picture = match is_grey {
+            true => Picture::new(width, height, interface.input.clone()),
+            false => Picture::of_colours(width, height, &interface.input),
+        };
+        let picture = picture.ok_or_else(|| Refused::of("the picture is not whole"));
+        interface.output = json(picture.and_then(|picture| match is_kept {
+            true => interface.camera.add(&picture, seconds),
+            false => Ok(interface.camera.look(&picture)),
+        }));
     });
 }
 

@@ -13,7 +13,7 @@ pub struct Refused {
 }
 
 impl Refused {
-    fn of(reason: impl ToString) -> Self {
+    pub(crate) fn of(reason: impl ToString) -> Self {
         Self {
             refused: reason.to_string(),
         }
@@ -66,30 +66,20 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Finds the tags of a picture, four bytes for each pixel.
-    ///
-    /// # Errors
-    /// Fails if it has another size.
-    pub fn look(&self, size: [usize; 2], pixels: &[u8]) -> Result<Vec<TagEntry>, Refused> {
-        let tags = lizard_film::read(&picture(size, pixels)?).into_iter();
-        Ok(tags
-            .map(|Tag { id, corners }| TagEntry { id, corners })
-            .collect())
+    /// Finds the tags of a picture.
+    pub fn look(&mut self, picture: &Picture) -> Vec<TagEntry> {
+        let tags = self.film.look(picture).into_iter();
+        tags.map(|Tag { id, corners }| TagEntry { id, corners })
+            .collect()
     }
 
     /// Adds the next picture to the film, taken at this time, s, and finds its tags.
     ///
     /// # Errors
     /// Fails if it does not belong to the film, or shows a tag twice.
-    pub fn add(
-        &mut self,
-        size: [usize; 2],
-        pixels: &[u8],
-        seconds: f64,
-    ) -> Result<Vec<TagEntry>, Refused> {
-        let picture = picture(size, pixels)?;
+    pub fn add(&mut self, picture: &Picture, seconds: f64) -> Result<Vec<TagEntry>, Refused> {
         self.watched = None;
-        let tags = self.film.add(seconds, &picture).map_err(Refused::of)?;
+        let tags = self.film.add(seconds, picture).map_err(Refused::of)?;
         let entry = |(id, corners): (usize, &Option<_>)| {
             Some(TagEntry {
                 id,
@@ -130,9 +120,4 @@ impl Camera {
             path: film.path(),
         })
     }
-}
-
-fn picture([width, height]: [usize; 2], pixels: &[u8]) -> Result<Picture, Refused> {
-    Picture::of_colours(width, height, pixels)
-        .ok_or_else(|| Refused::of("the picture is not whole"))
 }

@@ -1,10 +1,10 @@
 //! How well films of a robot whose path is known are measured.
 
 use fastrand::Rng;
-use lizard_film::{Film, Gait, Mean, Measured, Sight};
+use lizard_film::{Film, Gait, Mean, Measured, Sight, read};
 
 use crate::render::{Studio, normal};
-use crate::studio::{TRUE_SIZE, film};
+use crate::studio::{TRUE_SIZE, film, small};
 use crate::walk::{Varies, Walk, gait, truth};
 
 /// Films some cycles with a random camera, and measures them.
@@ -204,5 +204,30 @@ fn a_camera_in_the_hand_measures_a_cycle_to_a_fifth_of_a_millimetre() {
             (part.mean - truth).abs() < largest && part.spread < largest,
             "{part:?}"
         );
+    }
+}
+
+#[test]
+fn tags_near_their_last_places_are_found_as_in_the_whole_picture_and_so_is_one_that_leaps() {
+    let mut rng = Rng::with_seed(9);
+    let mut studio = small(9, 25.0);
+    let mut film = Film::default();
+    for i in 0..12 {
+        let way = f64::from(i) * 4.0;
+        // Halfway a hand puts the robot back, and turns it. The camera is in another hand.
+        let robot = if i < 6 {
+            [way, 0.0, 0.0]
+        } else {
+            [-way, 15.0, 0.4]
+        };
+        studio.aim = [2.0 * normal(&mut rng), 2.0 * normal(&mut rng)];
+        let background = studio.background(&mut rng);
+        let picture = background.picture(f64::from(i), |_| robot, &mut rng);
+        let (mut seen, mut all) = (film.look(&picture), read(&picture));
+        for tags in [&mut seen, &mut all] {
+            tags.sort_by_key(|tag| tag.id);
+        }
+        assert_eq!(seen, all, "picture {i}");
+        assert_eq!(seen.len(), 5, "picture {i}");
     }
 }

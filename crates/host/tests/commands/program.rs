@@ -66,9 +66,14 @@ pub struct RobotFile(std::path::PathBuf);
 
 impl RobotFile {
     pub fn with(name: &str, changes: &[(&str, &str)]) -> Self {
-        let mut text = read("robots/paper.toml");
+        Self::changed("robots/paper.toml", name, changes)
+    }
+
+    /// The same of another file than the paper's robot.
+    pub fn changed(file: &str, name: &str, changes: &[(&str, &str)]) -> Self {
+        let mut text = read(file);
         for (from, to) in changes {
-            assert!(text.contains(from), "robots/paper.toml has no {from:?}");
+            assert!(text.contains(from), "{file} has no {from:?}");
             text = text.replacen(from, to, 1);
         }
         let path = std::env::temp_dir().join(format!("{}-{name}.toml", std::process::id()));

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::program::{RobotFile, lizard, paper};
+use crate::program::{RobotFile, lizard, paper, read};
 
 /// The object that a command prints for this name.
 fn object(line: &str, key: &str, name: &str) -> Value {
@@ -38,6 +38,45 @@ fn a_round_of_a_routine_leads_as_far_as_lizard_gaits_says_of_the_same_servos() {
     let gaze = object(&robot.of("gaits --json"), "routine", "gaze");
     for path in [&twin("gaze", "own")["way"], &gaze["by_servos"]] {
         assert!(path["forward"].is_null() && path["turn"].is_f64(), "{path}");
+    }
+}
+
+#[test]
+fn the_image_runs_at_90_mm_a_second_on_pads_with_a_grain_and_still_turns() {
+    let page = read("docs/gaits.md");
+    for (name, servo, friction, is_fast) in [
+        ("SG-90", "model = \"SG-90\"", "0.7", true),
+        (
+            "copy on 4.2 V",
+            "model = \"copy\"\nvolts = 4.2",
+            "1.0",
+            true,
+        ),
+        // The one servo with which it does not.
+        ("digital", "model = \"digital\"", "0.7", false),
+    ] {
+        let servo = format!("[servo]\n{servo}\n[servo.A1]");
+        let friction_key = format!("friction = {friction}");
+        let changes = [("[servo.A1]", &*servo), ("# friction = 0.7", &friction_key)];
+        let robot = RobotFile::changed("robots/grain.toml", "grain", &changes);
+        let printed = lizard(&robot.of("twin --json"), "").success();
+        let figure = |gait: &str, pointer: &str| {
+            let mut lines = printed.lines().flat_map(serde_json::from_str::<Value>);
+            let line = lines.find(|line| line["command"] == gait);
+            let figure = line.as_ref().and_then(|line| line.pointer(pointer));
+            figure.and_then(Value::as_f64).expect(gait)
+        };
+        let run = figure("run", "/cycle/speed");
+        let back = figure("back", "/cycle/way/forward");
+        let [left, arc] = ["left", "arc left"].map(|gait| figure(gait, "/cycle/way/turn"));
+        let row =
+            format!("| {name} | {friction} | {run:.0} | {left:.1} | {arc:.1} | {back:.1} |\n");
+        assert!(page.contains(&row), "docs/gaits.md has no {row}");
+        assert_eq!(run >= 90.0, is_fast, "{name}: {run} mm/s");
+        assert!(
+            left > 9.0 && arc > 6.0,
+            "{name} turns: {left} and {arc} deg"
+        );
     }
 }
 

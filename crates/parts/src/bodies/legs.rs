@@ -177,7 +177,10 @@ fn add_foot(builder: &mut Builder, servo: usize) {
     );
     let sunk = Prism::new([flats], [thread], [stack.leaf[0], nut]);
     builder.body(format!("height nut {leg}"), Kind::Nut, mount, [sunk]);
-    let pad = pads::layers(builder.parts, at, stack.floor);
+    // The coupler never turns, so a direction stays the same in its frame.
+    let along = builder.layout.legs[servo].along;
+    let ahead = Vector::new(along.y, along.x);
+    let pad = pads::layers(builder.parts, at, stack.floor, ahead);
     builder.body(format!("pad {leg}"), Kind::Pad, mount, pad);
 }
 

@@ -4,6 +4,10 @@
 //! where an edge touches it, it is hardly steeper than friction lets it climb. It is printed of
 //! a rubbery filament with its flat side on the bed. Below is a hole for the hex key; the head
 //! snaps in from above, through a mouth that is narrower than the head.
+//!
+//! A strip with a grain, as of climbing skin, can be glued along the dome from head to tail. Its front
+//! end is folded up into a notch of the rim, so that no edge of the floor meets it, and the notch
+//! shows how the pad has to be turned. At the notch the dome has terraces.
 
 use lizard_kinematics::Vector;
 use lizard_robot::Parts;
@@ -20,6 +24,10 @@ const RIM: f64 = 0.8;
 const SNAP: f64 = 0.65;
 /// Height of the cones that make the dome, mm: their slopes are within 0.02 mm of the ball.
 const CONE: f64 = 0.1;
+/// Depth of the notch for the end of a strip, mm: as thick as a strip may be.
+pub(crate) const NOTCH: f64 = 1.5;
+/// Least width of a strip, mm: more than the hole for the key takes of it.
+const STRIP: f64 = 5.0;
 /// Least material under the head, mm.
 const UNDER_HEAD: f64 = 1.0;
 
@@ -30,11 +38,35 @@ pub(crate) fn least_height(parts: &Parts) -> f64 {
 
 /// The least width of a pad, mm.
 pub(crate) fn least_width(parts: &Parts) -> f64 {
-    parts.screw.head + parts.fit + 2.0 * parts.wall
+    let notches = if parts.strip > 0.0 { 2.0 * NOTCH } else { 0.0 };
+    parts.screw.head + parts.fit + 2.0 * parts.wall + notches
 }
 
-/// The layers of a pad from the floor up.
-pub(crate) fn layers(parts: &Parts, point: Vector, floor: f64) -> Vec<Prism> {
+/// The least and the greatest width of a strip along a pad, mm.
+pub(crate) fn strip_widths(parts: &Parts) -> [f64; 2] {
+    [STRIP, 0.7 * parts.pad.width - 2.0 * parts.fit]
+}
+
+/// The notch in the rim of a pad, with the robot's head in a direction of length one. Its first side
+/// runs to the robot's right.
+fn notch(parts: &Parts, point: Vector, head: Vector) -> Shape {
+    let right = Vector::new(head.y, -head.x);
+    let (wide, half) = (parts.strip / 2.0 + parts.fit, parts.pad.width / 2.0);
+    let corner = |x: f64, y: f64| point + right * x + head * y;
+    let (low, high) = (half - NOTCH, half + 1.0);
+    Shape {
+        points: vec![
+            corner(-wide, low),
+            corner(wide, low),
+            corner(wide, high),
+            corner(-wide, high),
+        ],
+        radius: 0.0,
+    }
+}
+
+/// The layers of a pad from the floor up, with the robot's head in a direction of length one.
+pub(crate) fn layers(parts: &Parts, point: Vector, floor: f64, head: Vector) -> Vec<Prism> {
     let (pad, screw) = (parts.pad, parts.screw);
     let half = pad.width / 2.0;
     let top = floor + pad.height;
@@ -66,9 +98,18 @@ pub(crate) fn layers(parts: &Parts, point: Vector, floor: f64) -> Vec<Prism> {
         .collect();
     levels.sort_by(f64::total_cmp);
     levels.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
+    let notch = (parts.strip > 0.0).then(|| notch(parts, point, head));
     let layer = |pair: &[f64]| {
         let z = [pair[0], pair[1]];
-        Prism::cone(point, z.map(outline), hole(f64::midpoint(z[0], z[1])), z)
+        let (radii, hole) = (z.map(outline), hole(f64::midpoint(z[0], z[1])));
+        match &notch {
+            // A cone that is cut upright has an edge that is no arc.
+            Some(notch) if radii[0] > half - NOTCH => {
+                let disc = Shape::disc(point, radii[0]);
+                Prism::new([disc], [hole, notch.clone()], z)
+            }
+            _ => Prism::cone(point, radii, hole, z),
+        }
     };
     levels.windows(2).map(layer).collect()
 }

@@ -44,10 +44,17 @@ const BEFORE: &str = "No printed robot has walked yet. So print in this order, a
 Print all parts as they lie, in layers of 0.2 mm, **without supports**. A slicer may offer some under the two ends of a sleeve's \
 roof: that is a bridge of 6.4 mm, which needs none.";
 
+/// The step in which pads are put on their screws, and what is added to it for pads with a strip.
+const BENCH: &str = "Legs, on the bench";
+const STRIP: &str = " Before you press the heads in, glue a strip along each dome, from its notch to the other side. The tips of its hairs or \
+bristles point away from the notch; its front end is folded up and glued into the notch, so that no edge of the floor catches it. \
+Take all four from one piece, since each lifts its foot by its thickness, and cut a hole of 4 mm over the hole for the key.";
 /// The step after which each pad keeps its place, and what is added to it for pads with a grain.
 const LEVEL: &str = "Level the feet";
 const GRAIN: &str = " At last turn each pad on its screw until its grain is right: a finger glides smoothly over it \
 from head to tail. docs/gaits.md says more about pads with a grain.";
+const TO_HEAD: &str =
+    " The notches of all four pads, LF, RF, RH and LH, then point straight to the head.";
 
 /// The guide as Markdown and HTML, with its pictures at a pose, usually neutral.
 ///
@@ -55,9 +62,21 @@ from head to tail. docs/gaits.md says more about pads with a grain.";
 /// Returns [`Unfit::Blocked`] for a screw that cannot be reached.
 pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<File>, Unfit> {
     let mut steps = steps(assembly.robot().drive().strut().is_some());
-    if assembly.robot().ground().ratio > 1.0 {
-        let level = steps.iter_mut().find(|step| step.title == LEVEL);
-        level.expect("a step levels the feet").words += GRAIN;
+    let has_strip = assembly.robot().parts().strip > 0.0;
+    for (title, words, is_meant) in [
+        (BENCH, STRIP, has_strip),
+        (
+            LEVEL,
+            GRAIN,
+            has_strip || assembly.robot().ground().ratio > 1.0,
+        ),
+        (LEVEL, TO_HEAD, has_strip),
+    ] {
+        let step = steps.iter_mut().find(|step| step.title == title);
+        let step = step.expect("a step with this title");
+        if is_meant {
+            step.words += words;
+        }
     }
     let access_poses = assembly.access_poses(&steps)?;
     let parts = assembly.parts();

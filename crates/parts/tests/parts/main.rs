@@ -13,13 +13,14 @@ mod fittings;
 mod mjcf;
 mod models;
 mod order;
+mod pads;
 mod proof;
 mod surface;
 
 /// The files of robots/ but [`GRAIN`].
 const ROBOTS: [&str; 4] = ["paper", "large", "unequal", "own-gaits"];
 
-/// The file of robots/ whose parts are the paper's, as a test shows.
+/// The file of robots/ whose parts are the paper's but for the pads, as a test shows.
 const GRAIN: &str = "grain";
 
 /// The lines that put legs on slotted struts.

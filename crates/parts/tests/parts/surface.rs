@@ -2,11 +2,11 @@
 
 use lizard_parts::{Mesh, Solid};
 
-use crate::assembly;
+use crate::{GRAIN, assembly};
 
 #[test]
 fn every_printed_part_is_closed_and_has_its_volume() {
-    for name in ["paper", "large", "unequal"] {
+    for name in ["paper", "large", "unequal", GRAIN] {
         let assembly = assembly(name, "");
         let mut printed = 0;
         for body in assembly.bodies().iter().chain(assembly.alternatives()) {

@@ -45,6 +45,9 @@ pub struct Parts {
     pub screw: Screw,
     /// The pads on which the robot stands.
     pub pad: Pad,
+    /// Width of a strip with a grain, as of climbing skin, along each pad from head to tail; 0 leaves
+    /// it out.
+    pub strip: f64,
     /// The legs' springs, which are mounted in their struts.
     pub spring: Coil,
     /// Size of the battery: to the right, forward, up.
@@ -176,6 +179,7 @@ impl Default for Parts {
             horn: Horn::DEFAULT,
             screw: Screw::DEFAULT,
             pad: Pad::DEFAULT,
+            strip: 0.0,
             spring: Coil::paper(0.6),
             battery: [31.0, 56.0, 16.0],
             tail: 85.0,
@@ -184,7 +188,7 @@ impl Default for Parts {
     }
 }
 
-const KEYS: [&str; 19] = [
+const KEYS: [&str; 20] = [
     "fit",
     "wall",
     "bar",
@@ -200,6 +204,7 @@ const KEYS: [&str; 19] = [
     "horn",
     "screw",
     "pad",
+    "strip",
     "spring",
     "battery",
     "tail",
@@ -262,6 +267,7 @@ impl Parts {
             horn: Horn::read(&section)?,
             screw: Screw::read(&section)?,
             pad: Pad::read(&section)?,
+            strip: mm("strip", all.strip, 0.0, 100.0)?,
             spring: read_coil(&section, all.spring)?,
             battery,
             tail: mm("tail", all.tail, 0.0, 300.0)?,

@@ -32,6 +32,18 @@ pub struct Row {
     pub driven: Prediction,
 }
 
+impl Row {
+    /// True for a gait that walks, and not only moves a little while it looks around, with slow steps.
+    fn is_slow(&self) -> bool {
+        /// Least speed of a gait that walks: mm/s ahead, deg/s of turn.
+        const WALKS: (f64, f64) = (5.0, 2.0);
+        let speed = |part: Option<f64>| part.unwrap_or_default().abs() / self.period;
+        let movement = &self.movement;
+        let walks = speed(movement.forward) >= WALKS.0 || speed(movement.turn) >= WALKS.1;
+        walks && self.audit.peak.speed < SLOW
+    }
+}
+
 /// The figures of all gaits.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
@@ -61,6 +73,10 @@ const SEARCHES_LONG: &str = "many gaits: `cal`, or a line that names one, may ma
 /// The meaning of a dash in place of a prediction.
 pub const UNDECIDED: &str =
     "- undecided: two feet against two, where the smallest difference between the pads decides\n";
+
+/// Rate of the fastest servo, deg/s, below which a gait counts as slow: in MuJoCo, `walk` and its kin keep nine
+/// tenths of their way at an edge of 2 mm, and those below lose up to a third.
+const SLOW: f64 = 200.0;
 
 /// The note for routines with inputs, which depend on walls and fingers.
 pub const WITHOUT_CONTACTS: &str =
@@ -217,6 +233,16 @@ impl fmt::Display for Report {
         if movements.any(|movement| !movement.is_decided()) {
             write!(f, "\n{UNDECIDED}")?;
         }
+        let slow = self.rows.iter().filter(|row| row.is_slow());
+        let slow: Vec<_> = slow.map(|row| row.name.as_str()).collect();
+        if !slow.is_empty() {
+            writeln!(
+                f,
+                "\nslow steps: {}\nGaits below {SLOW:.0} deg/s lose up to a third of their way and half of their turn at an \
+                 edge of 2 mm (docs/judges.md).",
+                slow.join(", ")
+            )?;
+        }
         for row in self.rows.iter().filter(|row| row.line >= TIGHT) {
             write!(f, "\n{}", tight(&row.name, row.line))?;
         }
@@ -276,6 +302,48 @@ mod tests {
             assert!(
                 rows.len() > 10 && rows[1..].iter().all(|row| row.len() == long),
                 "{text}"
+            );
+        }
+    }
+
+    #[test]
+    fn gaits_that_lose_much_at_an_edge_in_mujoco_are_called_slow() {
+        let slow = |name: &str| {
+            let report = Report::of(&robot(name));
+            let rows = report.rows.iter().filter(|row| row.is_slow());
+            let names: Vec<_> = rows.map(|row| row.name.clone()).collect();
+            let text = report.to_string();
+            let note = text
+                .lines()
+                .find_map(|line| line.strip_prefix("slow steps: "));
+            assert_eq!(note.unwrap_or_default(), names.join(", "), "{text}");
+            names
+        };
+        for name in ["paper", "large", "unequal", "grain"] {
+            assert!(slow(name).is_empty(), "{name}");
+        }
+        // Those that the table of MuJoCo's figures marks.
+        let page = include_str!("../../../../docs/judges.md");
+        let (_, table) = page
+            .split_once("<!-- surfaces of robots/own-gaits.toml -->")
+            .expect("a table");
+        let (table, _) = table.split_once("<!-- end -->").expect("its end");
+        let marked = table.lines().filter(|line| line.contains('!'));
+        let marked: Vec<_> = marked
+            .filter_map(|line| line.strip_prefix("| ")?.split(',').next())
+            .collect();
+        assert!(marked.len() > 5, "{marked:?}");
+        let slow = slow("own-gaits");
+        for gait in marked {
+            assert!(
+                slow.iter().any(|name| name == gait),
+                "{gait} is not among {slow:?}"
+            );
+        }
+        for fast_or_still in ["stride", "nod", "wag"] {
+            assert!(
+                !slow.iter().any(|name| name == fast_or_still),
+                "{fast_or_still}"
             );
         }
     }

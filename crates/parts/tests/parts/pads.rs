@@ -1,0 +1,122 @@
+//! Pads for a strip with a grain: the notch for its end, and the direction that this shows.
+
+use lizard_kinematics::Vector;
+use lizard_parts::{Bill, Outline, Part, Shape, papers};
+use lizard_robot::servo::LEGS;
+
+use crate::{GRAIN, assembly, body, neutral};
+
+/// The notch of a pad: the only hole with corners.
+fn notch(prisms: &[lizard_parts::Prism]) -> Option<&Shape> {
+    let mut cuts = prisms.iter().flat_map(|prism| &prism.cut);
+    cuts.find(|cut| cut.points.len() > 1)
+}
+
+#[test]
+fn the_notches_of_all_four_pads_as_printed_and_put_on_point_to_the_head() {
+    let assembly = assembly(GRAIN, "");
+    let half = assembly.robot().parts().pad.width / 2.0;
+    let parts = assembly.parts();
+    let is_pad = |part: &&Part| part.rubbery;
+    let [pad] = parts.iter().filter(is_pad).collect::<Vec<_>>()[..] else {
+        panic!("one kind of pad");
+    };
+    assert_eq!(pad.count(), 4);
+    let (layers, closed) = pad.printed();
+    assert_eq!(closed, 1, "the hole for the key, as in a plain pad");
+    let notch = notch(&layers).expect("a notch in the file");
+    // A second pose: a foot never turns.
+    let poses = [[0.0; 4], [9.0, -8.0, 7.0, -6.0]].map(|turns| {
+        let angles: [f64; 4] = assembly.robot().neutral().into();
+        let angles = std::array::from_fn(|servo| angles[servo] + turns[servo]);
+        assembly.robot().accepted(angles).expect("a pose")
+    });
+    for (pose, leg) in poses.iter().flat_map(|pose| LEGS.map(|leg| (pose, leg))) {
+        let (pad_body, screw) = (
+            body(&assembly, &format!("pad {leg}")),
+            body(&assembly, &format!("screw height {leg}")),
+        );
+        let motion = pad.print_to_body(pad_body);
+        let place = assembly.place(pad_body.mount, pose);
+        let to_robot = |at: &Vector| {
+            let y = if motion.flipped { -at.y } else { at.y };
+            place.map(motion.frame.map(Vector::new(at.x, y)))
+        };
+        let axis = place.map(screw.prisms[0].add[0].middle());
+        for corner in &notch.points {
+            let from_axis = to_robot(corner) - axis;
+            // Robots of this project look along y.
+            assert!(
+                (from_axis.x.abs() - 4.2).abs() < 1e-9,
+                "{leg}: {from_axis:?}"
+            );
+            assert!(from_axis.y > half - 1.51, "{leg}: {from_axis:?}");
+        }
+    }
+}
+
+#[test]
+fn a_pad_for_a_strip_lies_within_a_plain_one_and_is_as_high() {
+    let [plain, marked] = ["paper", GRAIN].map(|name| assembly(name, ""));
+    for leg in LEGS {
+        let [plain, marked] = [&plain, &marked].map(|of| body(of, &format!("pad {leg}")));
+        assert_eq!(plain.z(), marked.z());
+        assert!(notch(&plain.prisms).is_none());
+        assert_eq!(plain.prisms.len(), marked.prisms.len());
+        let mut notched = 0;
+        for (plain, marked) in plain.prisms.iter().zip(&marked.prisms) {
+            assert_eq!(plain.z, marked.z);
+            let radius = |of: &lizard_parts::Prism, end: usize| of.add[0].radius - of.inset[end];
+            for end in [0, 1] {
+                let beyond = radius(marked, end) - radius(plain, end);
+                assert!((-0.3..1e-9).contains(&beyond), "{leg}: {beyond}");
+            }
+            if marked.cut.len() > plain.cut.len() {
+                let [less, more] = [marked, plain].map(|of| Outline::of(of).area());
+                assert!(less < more - 1.0, "{leg}: {less} {more}");
+                notched += 1;
+            }
+        }
+        // From where the dome is wider than the notch is near its axis.
+        assert!(notched > 5, "{leg}: {notched} layers");
+    }
+}
+
+#[test]
+fn a_strip_that_its_pad_cannot_carry_is_refused() {
+    for (width, fits) in [(4.0, false), (5.0, true), (14.5, true), (15.5, false)] {
+        let robot = assembly("paper", &format!("[parts]\nstrip = {width:.1}"));
+        let refusal = robot
+            .measures_fit()
+            .err()
+            .map(|refused| refused.to_string());
+        assert_eq!(refusal.is_none(), fits, "{width}");
+        assert!(refusal.is_none_or(|words| words.starts_with("parts.strip is")));
+    }
+}
+
+#[test]
+fn the_guide_of_a_robot_with_strips_says_how_they_are_glued_and_turned() {
+    for (name, has_strip) in [("paper", false), (GRAIN, true)] {
+        let assembly = assembly(name, "");
+        let pose = neutral(&assembly);
+        let bill = Bill::of(&assembly, &assembly.parts(), &pose);
+        let strips = bill
+            .inputs
+            .iter()
+            .filter(|item| item.what.starts_with("strip with a grain, 8 x 30 mm"));
+        assert_eq!(
+            strips.map(|item| item.count).sum::<usize>(),
+            4 * usize::from(has_strip)
+        );
+        let files = papers(&assembly, &bill, &pose).expect("a guide");
+        let text = files.iter().find(|file| file.path.ends_with("guide.md"));
+        let text = String::from_utf8_lossy(&text.expect("the guide").bytes).into_owned();
+        for words in [
+            "folded up and glued into the notch",
+            "point straight to the head",
+        ] {
+            assert_eq!(text.contains(words), has_strip, "{name}: {words}");
+        }
+    }
+}
