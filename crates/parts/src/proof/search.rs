@@ -217,7 +217,7 @@ impl<const N: usize> Search<'_, N> {
 }
 
 /// Bounds of a place, tightened by its value in the middle and the distance it can stray.
-fn tightened<const N: usize>(
+fn tighten<const N: usize>(
     bounds: &Placement<Slope<N>>,
     middle: &Placement,
     region: &Region<N>,
