@@ -94,15 +94,15 @@ pub fn may_use_frame_pointer(code: u16) -> bool {
         // ldd and std
         0x8000..=0x8fff | 0xa000..=0xafff => is_frame_pointer(first) || code & 8 != 0,
         // Other loads and stores
-        0x9000..=0x93ff => is(first) || code & 0x0f == 9 || code & 0x0f == 10,
+        0x9000..=0x93ff => is_frame_pointer(first) || code & 0x0f == 9 || code & 0x0f == 10,
         // One register operand
-        0x9400..=0x95ff => is(first),
+        0x9400..=0x95ff => is_frame_pointer(first),
         // adiw and sbiw
         0x9600..=0x97ff => code & 0x30 == 0x20,
         // cbi, sbi, sbic, sbis; rjmp, rcall and branches
         0x9800..=0x9bff | 0xc000..=0xdfff | 0xf000..=0xf7ff => false,
         // in and out; bld, bst, sbrc, sbrs
-        0xb000..=0xbfff | 0xf800..=0xffff => is(first),
+        0xb000..=0xbfff | 0xf800..=0xffff => is_frame_pointer(first),
     }
 }
 
