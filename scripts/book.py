@@ -1,4 +1,4 @@
-"""What the book has besides its pages: the project's addresses, and a search that works from a file."""
+"""Additions to the book's pages: the project's addresses, and a search that works from a file."""
 
 import json
 import tomllib

@@ -294,14 +294,14 @@ fn every_link_of_a_page_leads_somewhere() {
 #[test]
 fn the_book_has_every_page_of_docs_and_the_readme_is_short() {
     let book = fs::read_to_string(root().join("mkdocs.yml")).expect("the book's contents");
-    let named = |name: &str| book.matches(name).count();
+    let count_of = |name: &str| book.matches(name).count();
     for (page, _) in pages() {
         let name = page.file_name().expect("a name").to_str().expect("plain");
         if page.parent().is_some_and(|folder| folder.ends_with("docs")) {
             assert_eq!(
-                named(&format!("{name},"))
-                    + named(&format!("{name}]"))
-                    + named(&format!("{name}\n")),
+                count_of(&format!("{name},"))
+                    + count_of(&format!("{name}]"))
+                    + count_of(&format!("{name}\n")),
                 1,
                 "{name}"
             );

@@ -310,7 +310,7 @@ async function start(): Promise<void> {
   const replace = async (load: () => Promise<unknown>) => {
     const before = kept.get();
     await load();
-    own.replaced(before);
+    own.putAside(before);
   };
   choice.onChange(() => void (choice.chosenOwn === null ? replace(choose) : own.restore(choice.chosenOwn)));
 
@@ -354,7 +354,7 @@ async function start(): Promise<void> {
     troubles.say('robot', message, remedy);
   }
   if (await text.fromAddress()) address.begin();
-  if (isAsked) own.replaced(before);
+  if (isAsked) own.putAside(before);
   addEventListener('popstate', ({ state }) => {
     const { hash } = location;
     openRoom(hash);

@@ -108,9 +108,9 @@ export interface ServoModel {
 }
 
 export interface Refused {
-  /** What is wrong, and where. */
+  /** The mistake and its place. */
   refused: string;
-  /** What is wrong, without the place and its figures; null where the message has no shorter form. */
+  /** The mistake without its place and figures; null where the message has no shorter form. */
   meaning: string | null;
   line: number | null;
   key: string;

@@ -2,9 +2,9 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { source } from './source.js';
+import { importSource } from './source.js';
 
-const { LatestQuestion } = await source('latest.ts');
+const { LatestQuestion } = await importSource('latest.ts');
 
 /** A worker that answers when a test says so. */
 class FakeWorker {

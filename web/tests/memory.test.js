@@ -11,13 +11,13 @@ after(close);
 const toml = await file('robot.toml', 'utf8');
 
 /** Measures the growth of the memory over a number of repetitions, bytes, after a warm-up. */
-async function memoryGrowth(times, does) {
+async function memoryGrowth(times, action) {
   const page = await robot();
   page.ask('read', toml);
   const warm = times / 10;
-  for (let n = 0; n < warm; n++) does(page, n);
+  for (let n = 0; n < warm; n++) action(page, n);
   const before = page.memory.buffer.byteLength;
-  for (let n = warm; n < warm + times; n++) does(page, n);
+  for (let n = warm; n < warm + times; n++) action(page, n);
   return page.memory.buffer.byteLength - before;
 }
 
@@ -44,9 +44,9 @@ test('refused gaits and those tried for an offer use no more memory', async () =
 });
 
 /** Time in each room, in each of two rounds, s. In the first the page fills what it keeps: the last pulses, the log, the track. */
-const STAY = Number(process.env.STAY ?? 8);
-/** What a round may add though nothing leaks, bytes: code that the browser has compiled once more. */
-const LEVEL = 400_000;
+const SECONDS_IN_ROOM = Number(process.env.STAY ?? 8);
+/** Memory that a round may add without a leak, bytes: code that the browser has compiled once more. */
+const ALLOWANCE = 400_000;
 
 test('a robot that walks while somebody goes through the rooms twice takes no more memory the second time', async (t) => {
   await open();
@@ -60,7 +60,7 @@ test('a robot that walks while somebody goes through the rooms twice takes no mo
     const used = [];
     for (const room of rooms) {
       await opened.goto(`${address()}#room=${room}`);
-      await opened.waitForTimeout(STAY * 1000);
+      await opened.waitForTimeout(SECONDS_IN_ROOM * 1000);
       await tools.send('HeapProfiler.collectGarbage');
       const { metrics } = await tools.send('Performance.getMetrics');
       const of = (wanted) => metrics.find(({ name }) => name === wanted).value;
@@ -72,7 +72,7 @@ test('a robot that walks while somebody goes through the rooms twice takes no mo
   for (const [n, { room, ...then }] of (await round()).entries()) {
     const { heap, nodes, listeners } = first.at(-1);
     t.diagnostic(`${room}: ${first[n].heap}, then ${then.heap} bytes; ${first[n].nodes}, then ${then.nodes} nodes`);
-    assert.ok(then.heap < heap + LEVEL, `${room}: ${heap}, then ${then.heap} bytes`);
+    assert.ok(then.heap < heap + ALLOWANCE, `${room}: ${heap}, then ${then.heap} bytes`);
     assert.ok(then.nodes < nodes + 200, `${room}: ${nodes}, then ${then.nodes} nodes`);
     assert.ok(then.listeners < listeners + 20, `${room}: ${listeners}, then ${then.listeners} listeners`);
   }

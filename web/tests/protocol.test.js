@@ -3,9 +3,9 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { source } from './source.js';
+import { importSource } from './source.js';
 
-const { Protocol } = await source('measure/protocol.ts');
+const { Protocol } = await importSource('measure/protocol.ts');
 
 /** Moments in a second; way of the floor's tags from their middle, and beyond that to the end that the film still measures, mm. */
 const MOMENTS = 20;

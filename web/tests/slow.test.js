@@ -1,4 +1,4 @@
-// What a person waits for, in time on the wall. A busy machine only ever adds to it: the least of some tries counts.
+// Waits of a person, in real time. A busy machine only ever adds to them: the shortest of some tries counts.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 

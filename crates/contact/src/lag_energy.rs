@@ -60,7 +60,7 @@ pub(crate) struct Stretch {
 }
 
 /// The part of x above 0, rounded off within `eps`.
-fn above(x: f64, eps: f64) -> Expansion {
+fn rounded_ramp(x: f64, eps: f64) -> Expansion {
     let length = (x * x + eps * eps).sqrt();
     if length == 0.0 {
         return (0.0, 0.5, 0.0);
@@ -154,7 +154,7 @@ impl Side {
 
     /// Energy of a lag beyond the play.
     fn expand(&self, beyond: f64, eps: f64, stop: f64) -> Expansion {
-        let (excess, slope, curvature) = above(beyond, eps);
+        let (excess, slope, curvature) = rounded_ramp(beyond, eps);
         let kink = |torque: f64| (torque * excess, torque * slope, torque * curvature);
         let add = |a: Expansion, b: Expansion| (a.0 + b.0, a.1 + b.1, a.2 + b.2);
         match *self {
@@ -171,7 +171,7 @@ impl Side {
                     true => stretch.energy(beyond, force, rate, preload),
                     false => (0.0, 0.0, 0.0),
                 };
-                let (value, slope, curvature) = above(beyond - end_lag, eps);
+                let (value, slope, curvature) = rounded_ramp(beyond - end_lag, eps);
                 let end = match end_lag.is_finite() {
                     true => (stop * value, stop * slope, stop * curvature),
                     false => (0.0, 0.0, 0.0),
@@ -392,7 +392,7 @@ mod tests {
         }
         // Far below a kink the rounded value is eps^2 / 4 |x|, even where that is 1e16 times less
         // than x.
-        let (line, slope, _) = above(-0.5, 1e-9);
+        let (line, slope, _) = rounded_ramp(-0.5, 1e-9);
         assert!((line / 5e-19 - 1.0).abs() < 1e-9, "{line}");
         assert!((slope / 1e-18 - 1.0).abs() < 1e-9, "{slope}");
     }

@@ -47,10 +47,10 @@ impl Workspace {
 
     /// The area in mm^2, above and below the base together.
     pub fn area(&self) -> f64 {
-        let apart = 2.0 * self.half_base;
+        let distance = 2.0 * self.half_base;
         let (r, s) = (self.inner, self.outer);
         // Both rings: both large discs, less either small one.
-        lens_area(s, s, apart) - 2.0 * lens_area(r, s, apart) + lens_area(r, r, apart)
+        lens_area(s, s, distance) - 2.0 * lens_area(r, s, distance) + lens_area(r, r, distance)
     }
 
     /// The largest circle within the workspace; of two that mirror each other,
@@ -78,17 +78,17 @@ impl Workspace {
     }
 }
 
-/// Area common to two discs of radii `a`, `b` with centres `apart`.
-fn lens_area(a: f64, b: f64, apart: f64) -> f64 {
+/// Area common to two discs of radii `a`, `b` with centres at a `distance`.
+fn lens_area(a: f64, b: f64, distance: f64) -> f64 {
     let small = a.min(b);
-    if apart >= a + b {
+    if distance >= a + b {
         return 0.0;
     }
-    if apart <= (a - b).abs() {
+    if distance <= (a - b).abs() {
         return PI * small * small;
     }
     let angle = |r: f64, other: f64| {
-        let cosine = (apart * apart + r * r - other * other) / (2.0 * apart * r);
+        let cosine = (distance * distance + r * r - other * other) / (2.0 * distance * r);
         libm::acos(cosine.clamp(-1.0, 1.0))
     };
     let sector = |half: f64, r: f64| r * r * (half - libm::sin(half) * libm::cos(half));

@@ -218,8 +218,8 @@ fn strip(parts: &Parts) -> Option<Item> {
 
 /// The rows for the inputs and strips that a robot has.
 fn inputs(robot: &Robot) -> Vec<Item> {
-    let has = |name: &str| robot.inputs().each().any(|(input, _)| input == name);
-    let rows = INPUTS.into_iter().filter(|(name, _)| has(name));
+    let has_input = |name: &str| robot.inputs().each().any(|(input, _)| input == name);
+    let rows = INPUTS.into_iter().filter(|(name, _)| has_input(name));
     let rows = rows.map(|(_, row)| Item::loose(row));
     rows.chain(strip(robot.parts())).collect()
 }

@@ -1,4 +1,4 @@
-"""What a robot answers: its state, its pose in a frame, and why it refuses."""
+"""The answers of a robot: its state, its pose in a frame, and the reasons for its refusals."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the tests share: the default robot, and the program of the wheel."""
+"""Fixtures of all tests: the default robot, and the program of the wheel."""
 
 import subprocess
 import sys

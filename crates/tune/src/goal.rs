@@ -19,7 +19,9 @@ fn is_front(servo: usize) -> bool {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum NoGoal {
     /// The gait's movement depends on a tie between two pairs of feet.
-    #[error("where the gait `{0}` leads is undecided: two feet pull against two; tune another one")]
+    #[error(
+        "the direction of the gait `{0}` is undecided, since two feet pull against two; tune another gait"
+    )]
     Undecided(String),
     /// It stands, or returns to its start.
     #[error("the gait `{0}` goes nowhere")]
@@ -27,9 +29,9 @@ pub enum NoGoal {
     /// It walks along a curve.
     #[error(
         "the gait `{0}` goes ahead and turns; tune a straight gait or a turn on the spot, and make \
-         the bow of it by `like` and `gain`"
+         an arc of it with `like` and `gain`"
     )]
-    Bow(String),
+    Arc(String),
 }
 
 /// The direction of a gait's movement, and its sign: ahead and to the left positive.
@@ -52,12 +54,15 @@ impl Goal {
         let (Some(forward), Some(turn)) = (movement.forward, movement.turn) else {
             return Err(NoGoal::Undecided(name()));
         };
-        let goes = |value: f64, min: f64| value.abs() >= min;
-        match (goes(forward, MIN_MOVEMENT.0), goes(turn, MIN_MOVEMENT.1)) {
+        let is_enough = |value: f64, min: f64| value.abs() >= min;
+        match (
+            is_enough(forward, MIN_MOVEMENT.0),
+            is_enough(turn, MIN_MOVEMENT.1),
+        ) {
             (true, false) => Ok(Self::Ahead(forward.signum())),
             (false, true) => Ok(Self::Turn(turn.signum())),
             (false, false) => Err(NoGoal::Nowhere(name())),
-            (true, true) => Err(NoGoal::Bow(name())),
+            (true, true) => Err(NoGoal::Arc(name())),
         }
     }
 

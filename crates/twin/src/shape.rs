@@ -83,14 +83,17 @@ mod tests {
     #[test]
     fn a_leg_that_lags_leaves_its_servo_and_opens_its_strut() {
         let robot = paper();
-        let long = |leg: LegPlace| (leg.strut[1] - leg.strut[0]).length();
+        let strut_length = |leg: LegPlace| (leg.strut[1] - leg.strut[0]).length();
         let [rigid, lags] = [[0.0; 4], [6.0; 4]].map(|legs| shape(&robot, legs));
         for i in 0..4 {
             let (before, after) = (rigid.legs[i], lags.legs[i]);
             assert_eq!(before.pivots, after.pivots);
             assert_eq!(before.strut[0], after.strut[0], "the servo stands");
-            assert!((long(before) - robot.legs()[i].strut_length).abs() < 1e-9);
-            assert!((long(after) - long(before)).abs() > 1.5, "{after:?}");
+            assert!((strut_length(before) - robot.legs()[i].strut_length).abs() < 1e-9);
+            assert!(
+                (strut_length(after) - strut_length(before)).abs() > 1.5,
+                "{after:?}"
+            );
             assert!(after.foot.y > before.foot.y + 4.0);
         }
     }

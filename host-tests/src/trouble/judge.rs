@@ -283,11 +283,11 @@ fn check_orders_were_sent(record: &Record) -> Result<(), String> {
                 .any(|link| (at..at + 200 * MS).contains(&link.end))
         };
         let mut sent = record.sent.iter();
-        let is_it = |(at, sent): &(u64, String)| {
+        let is_same_line = |(at, sent): &(u64, String)| {
             let is_part = is_new && sent.ends_with(asked) || breaks(*at) && sent.starts_with(asked);
             *at < line.cycle && (sent == asked || is_part)
         };
-        if !sent.any(is_it) {
+        if !sent.any(is_same_line) {
             return Err(format!("{}, at {} ms", line.text, line.cycle / MS));
         }
     }

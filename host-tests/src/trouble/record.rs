@@ -195,11 +195,11 @@ impl Record {
     /// True if a `save` that arrived at this cycle was answered by `ok`.
     #[must_use]
     pub fn is_saved(&self, cycle: u64) -> bool {
-        let is_it = |exchange: &Exchange| {
+        let is_matching = |exchange: &Exchange| {
             let sent = exchange.asked..exchange.asked + 10 * MS;
             exchange.line == "save" && exchange.is_done() && sent.contains(&cycle)
         };
-        self.exchanges.iter().any(is_it)
+        self.exchanges.iter().any(is_matching)
     }
 
     /// True if the board has answered since the person took the radio, and since a reset that

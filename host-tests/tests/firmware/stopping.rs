@@ -163,12 +163,12 @@ fn a_pose_is_reached_by_all_servos_together_and_not_too_fast() {
             assert!(end.abs_diff(goal) <= 4, "{end}, not {goal}");
         }
         // Along a straight line: each servo has covered the same share of its distance.
-        let way = |widths: [u64; 4]| -> [f64; 4] {
+        let sweep_of = |widths: [u64; 4]| -> [f64; 4] {
             std::array::from_fn(|i| widths[i] as f64 - neutral_widths()[i] as f64)
         };
-        let whole = way(end);
+        let whole = sweep_of(end);
         for widths in &sent {
-            let covered = way(*widths);
+            let covered = sweep_of(*widths);
             for (covered_here, whole_here) in covered.into_iter().zip(whole) {
                 let error = covered_here - covered[0] / whole[0] * whole_here;
                 assert!(error.abs() <= 8.0, "{widths:?}");

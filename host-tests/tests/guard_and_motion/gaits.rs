@@ -279,9 +279,9 @@ fn the_wrap_of_the_phase_is_as_smooth_as_the_rest_of_the_cycle() {
     for (Named { name, robot }, float, gait) in gaits() {
         let pose = |phase: u32| gait.pose(robot.firmware().waves(), phase % CYCLE);
         // The longest distance between two neighbours, including that from the last phase to 0.
-        let way = |phase: u32| pose(phase).farthest(&pose(phase + (1 << 8)));
-        let longest = phases().step_by(7).map(way).max();
-        let around = phases().skip(PHASES as usize - 4).map(way).max();
+        let step_size = |phase: u32| pose(phase).farthest(&pose(phase + (1 << 8)));
+        let longest = phases().step_by(7).map(step_size).max();
+        let around = phases().skip(PHASES as usize - 4).map(step_size).max();
         assert!(
             around <= longest.map(|longest| longest + 1),
             "{name}: {}",

@@ -40,7 +40,7 @@ fn degrees(sweep: i32) -> f64 {
 }
 
 #[test]
-fn the_name_the_pins_and_the_supplies() {
+fn the_name_the_pins_and_the_supplies_are_read_back() {
     for_each_robot(|name, robot, toml, _| {
         let label: String = robot.label().map(char::from).collect();
         assert_eq!(label, toml.name(), "{name}");
@@ -52,17 +52,22 @@ fn the_name_the_pins_and_the_supplies() {
             "{name}"
         );
         let read = robot.supplies();
-        let is = |mv: u16, volts: f64| (f64::from(mv) - 1000.0 * volts).abs() <= 0.501;
-        let three = |of: lizard_core::numbers::supplies::Thresholds, volts: [f64; 3]| {
-            is(of.slow, volts[0]) && is(of.stop, volts[1]) && is(of.rest, volts[2])
+        let is_close = |mv: u16, volts: f64| (f64::from(mv) - 1000.0 * volts).abs() <= 0.501;
+        let are_close = |of: lizard_core::numbers::supplies::Thresholds, volts: [f64; 3]| {
+            is_close(of.slow, volts[0])
+                && is_close(of.stop, volts[1])
+                && is_close(of.rest, volts[2])
         };
-        assert!(is(read.reference, supplies.reference), "{name} {read:?}");
-        assert!(three(read.board, supplies.board), "{name} {read:?}");
+        assert!(
+            is_close(read.reference, supplies.reference),
+            "{name} {read:?}"
+        );
+        assert!(are_close(read.board, supplies.board), "{name} {read:?}");
         match supplies.rail {
             Some(rail) => {
                 let divided = supplies.reference * rail.ratio;
-                assert!(is(read.rail_reference, divided), "{name} {read:?}");
-                assert!(three(read.rail, rail.thresholds), "{name} {read:?}");
+                assert!(is_close(read.rail_reference, divided), "{name} {read:?}");
+                assert!(are_close(read.rail, rail.thresholds), "{name} {read:?}");
             }
             None => assert_eq!(read.rail_reference, 0, "{name}"),
         }
@@ -70,7 +75,7 @@ fn the_name_the_pins_and_the_supplies() {
 }
 
 #[test]
-fn the_servos() {
+fn the_servos_are_read_back() {
     for_each_robot(|name, robot, toml, _| {
         for (index, servo) in toml.servos().iter().enumerate() {
             let one = Servo::ALL[index];
@@ -92,11 +97,14 @@ fn the_servos() {
                     "{name} {one:?}: {error} cycles at {sweep}"
                 );
             }
-            let bears =
+            let is_in_range =
                 |sweep: i32| (servo.min_us - 1e-6..=servo.max_us + 1e-6).contains(&us(sweep));
             let (min, max) = (i32::from(read.min.0), i32::from(read.max.0));
             assert!(
-                bears(min) && !bears(min - 1) && bears(max) && !bears(max + 1),
+                is_in_range(min)
+                    && !is_in_range(min - 1)
+                    && is_in_range(max)
+                    && !is_in_range(max + 1),
                 "{name}"
             );
         }
@@ -104,7 +112,7 @@ fn the_servos() {
 }
 
 #[test]
-fn the_limits_the_slew_limit_and_what_the_gaits_need() {
+fn the_limits_the_slew_limit_and_what_the_gaits_need_are_read_back() {
     for_each_robot(|name, robot, toml, _| {
         let (read, limits) = (robot.limits(), toml.limits());
         for (read, exact) in [
@@ -147,7 +155,7 @@ fn the_limits_the_slew_limit_and_what_the_gaits_need() {
 }
 
 #[test]
-fn the_bars_and_the_sliders() {
+fn the_bars_and_the_sliders_are_read_back() {
     for_each_robot(|name, robot, toml, _| {
         let l = toml.lizard().links;
         for (end, [base, left, right, a, b]) in [
@@ -204,7 +212,7 @@ enum Shape {
 }
 
 #[test]
-fn the_curves_at_every_point_of_their_tables() {
+fn the_curves_at_every_point_of_their_tables_are_read_back() {
     for_each_robot(|name, robot, toml, flash| {
         let l = toml.lizard().links;
         for (end, [a, b], curves) in [
@@ -257,7 +265,7 @@ fn the_curves_at_every_point_of_their_tables() {
 }
 
 #[test]
-fn the_gaits_their_names_and_their_waveforms_at_every_phase() {
+fn the_gaits_their_names_and_their_waveforms_at_every_phase_are_read_back() {
     for_each_robot(|name, robot, toml, _| {
         assert_eq!(robot.gait_count(), toml.gaits().len(), "{name}");
         for (id, gait) in GaitId::all(robot.gait_count()).zip(toml.gaits()) {

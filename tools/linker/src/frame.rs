@@ -129,7 +129,7 @@ impl Frame {
 
     /// The edits that make the function use the shared routines.
     pub fn edits(&self, routines: Routines) -> Vec<Edit> {
-        let goes = |at, remove, code, symbol| Edit {
+        let replace = |at, remove, code, symbol| Edit {
             at,
             remove,
             insert: vec![encode_ldi_r26(self.room), code, 0],
@@ -140,11 +140,11 @@ impl Frame {
                 addend: 0,
             }],
         };
-        let mut edits = vec![goes(0, self.beginning, CALL, routines.save)];
+        let mut edits = vec![replace(0, self.beginning, CALL, routines.save)];
         edits.extend(
             self.ends
                 .iter()
-                .map(|(at, size)| goes(*at, *size, JMP, routines.restore)),
+                .map(|(at, size)| replace(*at, *size, JMP, routines.restore)),
         );
         edits
     }

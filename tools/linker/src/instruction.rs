@@ -78,7 +78,7 @@ pub const fn accesses_stack_pointer(code: u16) -> bool {
 /// True if an instruction has r28 or r29 as an operand, or uses Y. `lpm`, which has no operand,
 /// is also counted as one that does.
 pub fn may_use_frame_pointer(code: u16) -> bool {
-    let is = |register: u16| register == 28 || register == 29;
+    let is_frame_pointer = |register: u16| register == 28 || register == 29;
     let first = code >> 4 & 0x1f;
     let second = code >> 5 & 0x10 | code & 0x0f;
     let upper = 16 + (code >> 4 & 0x0f);
@@ -86,23 +86,23 @@ pub fn may_use_frame_pointer(code: u16) -> bool {
         // nop and movw, of register pairs
         0x0000..=0x01ff => upper == 16 + 14 || code & 0x0f == 14,
         // muls, mulsu and fmul*, of r16 to r31
-        0x0200..=0x03ff => is(upper) || is(16 + (code & 0x0f)),
+        0x0200..=0x03ff => is_frame_pointer(upper) || is_frame_pointer(16 + (code & 0x0f)),
         // Two register operands; mul
-        0x0400..=0x2fff | 0x9c00..=0x9fff => is(first) || is(second),
+        0x0400..=0x2fff | 0x9c00..=0x9fff => is_frame_pointer(first) || is_frame_pointer(second),
         // Immediate operand
-        0x3000..=0x7fff | 0xe000..=0xefff => is(upper),
+        0x3000..=0x7fff | 0xe000..=0xefff => is_frame_pointer(upper),
         // ldd and std
-        0x8000..=0x8fff | 0xa000..=0xafff => is(first) || code & 8 != 0,
+        0x8000..=0x8fff | 0xa000..=0xafff => is_frame_pointer(first) || code & 8 != 0,
         // Other loads and stores
-        0x9000..=0x93ff => is(first) || code & 0x0f == 9 || code & 0x0f == 10,
+        0x9000..=0x93ff => is_frame_pointer(first) || code & 0x0f == 9 || code & 0x0f == 10,
         // One register operand
-        0x9400..=0x95ff => is(first),
+        0x9400..=0x95ff => is_frame_pointer(first),
         // adiw and sbiw
         0x9600..=0x97ff => code & 0x30 == 0x20,
         // cbi, sbi, sbic, sbis; rjmp, rcall and branches
         0x9800..=0x9bff | 0xc000..=0xdfff | 0xf000..=0xf7ff => false,
         // in and out; bld, bst, sbrc, sbrs
-        0xb000..=0xbfff | 0xf800..=0xffff => is(first),
+        0xb000..=0xbfff | 0xf800..=0xffff => is_frame_pointer(first),
     }
 }
 

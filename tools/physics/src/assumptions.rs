@@ -22,7 +22,7 @@ const MIN_CHANGE_PERCENT: f64 = 10.0;
 /// A change of the paper's robot.
 #[derive(Clone, Copy)]
 pub struct Assumption {
-    /// What is changed.
+    /// The assumption that is changed.
     pub words: &'static str,
     /// A table of robot.toml, and keys that are added to it.
     keys: Option<(&'static str, &'static str)>,

@@ -29,7 +29,7 @@ impl Feet {
     pub const ALL: [Self; 3] = [Self::Level, Self::Stiff, Self::Soft];
 
     /// The excess length of the front left foot, mm.
-    pub fn long(self) -> f64 {
+    pub fn excess_length(self) -> f64 {
         match self {
             Self::Level => 0.0,
             Self::Stiff => 0.6,
@@ -77,7 +77,7 @@ impl Case {
         Ground {
             stance: Stance {
                 stiffness: self.feet.stiffness(robot),
-                twist: self.feet.long(),
+                twist: self.feet.excess_length(),
                 ..Stance::LEVEL
             },
             drive: match self.legs {

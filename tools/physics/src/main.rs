@@ -145,8 +145,8 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
                     &answers,
                 ));
             }
-            let what = |words| format!("{of}: {} ({}): {words}", row.gait, row.case);
-            faults.extend(words.into_iter().map(what));
+            let describe = |words| format!("{of}: {} ({}): {words}", row.gait, row.case);
+            faults.extend(words.into_iter().map(describe));
             found.store(of, &row.gait, row.case, answers);
         }
         println!("\n{}", table(of, robot, &found));
@@ -172,8 +172,8 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
                 None => Some(NOT_KEPT.to_owned()),
             });
         }
-        let what = |words| format!("{robot}: {gait} ({surface}): {words}");
-        faults.extend(words.into_iter().map(what));
+        let describe = |words| format!("{robot}: {gait} ({surface}): {words}");
+        faults.extend(words.into_iter().map(describe));
         let of = surfaces.entry((*robot).to_owned()).or_default();
         let of = of.entry(gait.clone()).or_default();
         of.insert(surface.to_string(), displacement);
@@ -195,8 +195,8 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
             let was = before.get(variant.name).and_then(|of| of.get(*gait));
             words.extend(describe_changes(was, &answers));
         }
-        let what = |words| format!("paper, {}: {gait}: {words}", variant.name);
-        faults.extend(words.into_iter().map(what));
+        let describe = |words| format!("paper, {}: {gait}: {words}", variant.name);
+        faults.extend(words.into_iter().map(describe));
         let of = by_servos.entry(variant.name.to_owned()).or_default();
         of.insert((*gait).to_owned(), answers);
     }
@@ -281,8 +281,8 @@ fn other(kept: &Grains, now: &Grains) -> Vec<String> {
         let pairs = answers.iter().zip(grains::RATIOS).enumerate();
         pairs.flat_map(move |(index, (answers, ratio))| {
             let words = describe_changes(kept.get(index), answers);
-            let what = move |words| format!("grain: {gait} (r {ratio}): {words}");
-            words.into_iter().map(what)
+            let describe = move |words| format!("grain: {gait} (r {ratio}): {words}");
+            words.into_iter().map(describe)
         })
     });
     each.collect()
@@ -295,13 +295,13 @@ type Named = BTreeMap<String, BTreeMap<String, Displacement>>;
 fn changed(stored: &Named, now: &Named) -> Vec<String> {
     let all = now
         .iter()
-        .flat_map(|(what, of)| of.iter().map(move |(name, is)| (what, name, is)));
-    let words = all.filter_map(|(what, name, is)| {
-        let words = match stored.get(what).and_then(|of| of.get(name)) {
+        .flat_map(|(group, of)| of.iter().map(move |(name, is)| (group, name, is)));
+    let words = all.filter_map(|(group, name, is)| {
+        let words = match stored.get(group).and_then(|of| of.get(name)) {
             Some(was) => differs("MuJoCo", *was, *is)?,
             None => NOT_KEPT.to_owned(),
         };
-        Some(format!("paper, {what}: {name}: {words}"))
+        Some(format!("paper, {group}: {name}: {words}"))
     });
     words.collect()
 }

@@ -129,7 +129,7 @@ pub(crate) fn scene_of(name: &str, assembly: &Assembly, gait: &str, case: Case) 
     let strut = robot.strut_of(&robot.parts().spring);
     Scene {
         name: name.to_owned(),
-        long: [case.feet.long(), 0.0, 0.0, 0.0],
+        long: [case.feet.excess_length(), 0.0, 0.0, 0.0],
         stiffness: case.feet.stiffness(robot),
         // As in `Case::ground`; `grains.rs` is for other pads.
         ratio: 1.0,

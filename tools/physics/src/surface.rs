@@ -302,7 +302,7 @@ pub fn surfaces_table(robot: &str, figures: &Figures, surfaces: &Surfaces) -> St
             _ = writeln!(text, "| {gait}, {} |{flat} |{displacements}", part.unit());
         }
     }
-    for (name, part) in [("a way", Part::Ahead), ("a turn", Part::Turn)] {
+    for (name, part) in [("a displacement", Part::Ahead), ("a turn", Part::Turn)] {
         let bars = of_robot.iter().map(|surface| match least(*surface, part) {
             Some(share) => format!(" {:.0} % |", 100.0 * share),
             None => " - |".to_owned(),

@@ -29,9 +29,9 @@ interface Pair {
   /** The robot.toml of the second one. */
   toml: string;
   gaits: [string, string];
-  /** What they are called in the figures. */
+  /** Their name in the figures. */
   names: [string, string];
-  /** Where the figures are written. */
+  /** The element for the figures. */
   output: HTMLElement;
 }
 

@@ -18,7 +18,7 @@ export class OwnRobot {
   }
 
   /** Puts the user's previous robot aside, if another one has replaced it, and offers to restore it. */
-  replaced(before: SavedChanges | null): void {
+  putAside(before: SavedChanges | null): void {
     if (!before || before.toml === before.original || before.toml === this.session().toml) return;
     this.setAside([before, ...kept.aside().filter(({ toml }) => toml !== before.toml)]);
     this.troubles.say('own', 'This is another robot. Your own one is put aside, and stays in the list of robots.', { label: 'Back to my own robot', act: () => void this.restore() });
@@ -36,7 +36,7 @@ export class OwnRobot {
     // Its file may be another one by now.
     if (!(await session.recall(own)) && (await session.change(own.toml))) return;
     this.setAside(all.filter((_, n) => n !== number));
-    this.replaced(before);
+    this.putAside(before);
   }
 
   private setAside(robots: SavedChanges[]): void {

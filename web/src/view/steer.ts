@@ -17,10 +17,10 @@ export interface Choice {
 }
 
 /** Dead zone of a stick. */
-const DEAD = 0.35;
+const DEAD_ZONE = 0.35;
 /** Deflection of a stick below which the robot goes at half its pace, and above which it returns to the full pace. */
-const HALF = 0.65;
-const WHOLE = 0.75;
+const HALF_PACE = 0.65;
+const FULL_PACE = 0.75;
 /** Lowest pace of the robot, percent. */
 const MIN_PACE = 10;
 /** The buttons of a gamepad's cross, in the browser's order; any other button stops the robot. */
@@ -32,10 +32,10 @@ const CROSS: Record<number, Direction> = {
 };
 
 /** Least cosine of the angle between a gait's displacement and the direction. */
-const NEAR = 0.8;
+const MIN_COSINE = 0.8;
 
 /** Least displacement of a gait that counts, mm and deg per cycle. */
-const LEAST = { ahead: 2, turn: 1 };
+const MIN_DISPLACEMENT = { ahead: 2, turn: 1 };
 
 /** The direction of each key. */
 const KEYS: Record<string, Direction> = {
@@ -55,19 +55,19 @@ const KEYS: Record<string, Direction> = {
  */
 export function gaitFor({ ahead, left }: Direction, choices: Choice[]): string | null {
   const size = Math.hypot(ahead, left);
-  if (size < DEAD) return null;
+  if (size < DEAD_ZONE) return null;
   const largest = (of: (displacement: Displacement) => number | null) => Math.max(...choices.map(({ displacement }) => Math.abs(of(displacement) ?? 0)), 0);
   const [farthest, widest] = [largest(({ forward }) => forward), largest(({ turn }) => turn)];
   // A drift counts as none, also where no gait that turns is predicted yet.
   const share = (value: number | null, smallest: number, largest: number) => (value !== null && Math.abs(value) >= smallest ? value / largest : 0);
   let best: { command: string; value: number } | null = null;
   for (const { command, displacement } of choices) {
-    const x = share(displacement.forward, LEAST.ahead, farthest);
-    const y = share(displacement.turn, LEAST.turn, widest);
+    const x = share(displacement.forward, MIN_DISPLACEMENT.ahead, farthest);
+    const y = share(displacement.turn, MIN_DISPLACEMENT.turn, widest);
     if (x === 0 && y === 0) continue;
     const long = Math.hypot(x, y);
     const cosine = (x * ahead + y * left) / (long * size);
-    if (cosine < NEAR) continue;
+    if (cosine < MIN_COSINE) continue;
     // Direction counts more than distance: an arc does not go straight.
     const value = cosine ** 4 * Math.min(1, long) ** 0.25;
     if (!best || value > best.value) best = { command, value };
@@ -91,7 +91,7 @@ export class Steer {
   /** The gait that was sent last; null while nothing is held. */
   private walking: string | null = null;
   /** The pace to go back to, percent, while a stick asks for half of it. */
-  private wholePace: number | null = null;
+  private fullPace: number | null = null;
 
   /** Takes functions that list the robot's gaits, that send a line, that say when nobody may drive, and the robot's pace, percent. */
   constructor(
@@ -101,9 +101,9 @@ export class Steer {
     private readonly pace: () => number,
   ) {
     // In the capture phase, before a slider or a view handles an arrow key.
-    document.addEventListener('keydown', (event) => this.key(event, true), true);
+    document.addEventListener('keydown', (event) => this.handleKey(event, true), true);
     document.addEventListener('pointerdown', ({ target }) => (this.touched = target), true);
-    document.addEventListener('keyup', (event) => this.key(event, false));
+    document.addEventListener('keyup', (event) => this.handleKey(event, false));
     // A user in another window does not see the robot.
     addEventListener('blur', () => {
       this.isAway = true;
@@ -140,7 +140,7 @@ export class Steer {
     }
     this.isPressed = isPressed;
     if (this.walking && this.isBarred()) this.release();
-    this.padCounts ||= Math.hypot(direction.ahead, direction.left) < DEAD;
+    this.padCounts ||= Math.hypot(direction.ahead, direction.left) < DEAD_ZONE;
     if (!this.padCounts || this.isAway || (direction.ahead === this.atPad.ahead && direction.left === this.atPad.left)) return;
     this.atPad = direction;
     this.follow();
@@ -155,18 +155,18 @@ export class Steer {
     this.drag(null);
   }
 
-  private key(event: KeyboardEvent, down: boolean): void {
+  private handleKey(event: KeyboardEvent, isDown: boolean): void {
     if (event.key === 'Tab') this.touched = null;
     if (!(event.code in KEYS)) return;
-    if (!down) {
+    if (!isDown) {
       if (this.held.delete(event.code)) this.follow();
       return;
     }
     const { target } = event;
     // The keys belong to a text field and to the setup; also to a slider, a list or a view that was reached with Tab.
-    const typed = 'textarea, [type="text"], [type="number"], #setup';
-    const taken = target instanceof Element && target.closest(target === this.touched ? typed : `${typed}, input, select, canvas, [role="log"]`) !== null;
-    if (taken || event.ctrlKey || event.altKey || event.metaKey) return;
+    const textFields = 'textarea, [type="text"], [type="number"], #setup';
+    const isTaken = target instanceof Element && target.closest(target === this.touched ? textFields : `${textFields}, input, select, canvas, [role="log"]`) !== null;
+    if (isTaken || event.ctrlKey || event.altKey || event.metaKey) return;
     event.preventDefault();
     if (event.repeat) return;
     this.held.add(event.code);
@@ -191,11 +191,11 @@ export class Steer {
       direction.left += KEYS[code]?.left ?? 0;
     }
     const size = Math.hypot(direction.ahead, direction.left);
-    const nothing = this.isBarred() || size < DEAD;
-    const isHalf = !nothing && size < (this.wholePace === null ? HALF : WHOLE);
-    if (isHalf && this.wholePace === null) {
-      this.wholePace = this.pace();
-      this.send(`${WORDS.speed} ${Math.max(MIN_PACE, Math.round(this.wholePace / 2))}`);
+    const nothing = this.isBarred() || size < DEAD_ZONE;
+    const isHalf = !nothing && size < (this.fullPace === null ? HALF_PACE : FULL_PACE);
+    if (isHalf && this.fullPace === null) {
+      this.fullPace = this.pace();
+      this.send(`${WORDS.speed} ${Math.max(MIN_PACE, Math.round(this.fullPace / 2))}`);
     }
     const gait = nothing ? null : gaitFor(direction, this.choices());
     // Without a gait for this direction the current one goes on.
@@ -203,9 +203,9 @@ export class Steer {
       this.walking = gait;
       this.send(gait ?? WORDS.stop);
     }
-    if (!isHalf && this.wholePace !== null) {
-      this.send(`${WORDS.speed} ${this.wholePace}`);
-      this.wholePace = null;
+    if (!isHalf && this.fullPace !== null) {
+      this.send(`${WORDS.speed} ${this.fullPace}`);
+      this.fullPace = null;
     }
   }
 }

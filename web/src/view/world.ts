@@ -19,7 +19,7 @@ const FORMATS = {
 type SliderName = keyof typeof FORMATS;
 const SLIDERS = Object.keys(FORMATS) as SliderName[];
 
-/** What closes the contact of an input. */
+/** The event that closes the contact of each input. */
 const CONTACTS: Record<string, string> = { button: 'button pressed', nose: 'wall at the nose' };
 
 export class World {

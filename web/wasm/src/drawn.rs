@@ -47,8 +47,9 @@ impl DrawnGait {
     fn smoothed(&self, robot: &Robot) -> Option<Path> {
         let neutral = neutral(robot, self.end()?);
         let scaled = |[x, y]: &[f64; 2]| {
-            let about = |of: usize, value: f64| neutral[of] + self.size * (value - neutral[of]);
-            [about(0, *x), about(1, *y)]
+            let scale_about_neutral =
+                |of: usize, value: f64| neutral[of] + self.size * (value - neutral[of]);
+            [scale_about_neutral(0, *x), scale_about_neutral(1, *y)]
         };
         let points: Vec<[f64; 2]> = self.points.iter().map(scaled).collect();
         let even = evenly(&points)?;

@@ -9,7 +9,7 @@ use serde::Serialize;
 pub struct Refused {
     /// The message for the user: what is wrong, and where.
     pub refused: String,
-    /// What is wrong, without the place and its figures; `None` where the message has no shorter form.
+    /// The mistake without its place and figures; `None` where the message has no shorter form.
     pub meaning: Option<String>,
     /// Line of the file, counted from 1; `None` if the refusal belongs to no line.
     pub line: Option<usize>,

@@ -1,8 +1,8 @@
 //! Commands with others below them, such as `lizard calibrate backup`.
 //!
-//! What does the same to a file as a command does to a board, or measures what another one runs,
-//! is below it, so that the list of commands stays short. The modules of the commands know
-//! nothing of this.
+//! A command that does to a file what another one does to a board, or that measures what
+//! another one runs, is below it, so that the list of commands stays short. The modules of the
+//! commands know nothing of this.
 
 use clap::{Args, Subcommand};
 

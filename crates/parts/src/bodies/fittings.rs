@@ -171,7 +171,7 @@ fn add_sized_block(
     builder.body(name, Kind::Fitting(fitting), Mount::Chassis, [prism]);
 }
 
-/// What hangs under the deck and under the plate.
+/// The fittings under the deck and under the plate.
 fn add_below_plate(builder: &mut Builder) {
     let stack = builder.stack;
     // Under the strap, and under the heads of the standoffs' screws.
@@ -200,7 +200,7 @@ fn add_below_plate(builder: &mut Builder) {
     }
 }
 
-/// What lies on the deck's wings.
+/// The fittings on the deck's wings.
 fn add_on_deck(builder: &mut Builder) {
     let top = builder.stack.deck[1];
     let half = |fitting: Fitting| length(fitting, 0) / 2.0;

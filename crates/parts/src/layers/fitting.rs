@@ -93,11 +93,11 @@ pub struct FittingFacts {
     pub grams: f64,
     /// The room for it: to the right, forward, up, mm.
     pub size: [f64; 3],
-    /// What to buy, without rating and size.
+    /// The article to buy, without rating and size.
     pub what: &'static str,
     /// The position on the robot.
     pub place: &'static str,
-    /// What fastens it there.
+    /// The fastening there.
     pub hold: &'static str,
     /// Two products that go into the room.
     pub examples: [Example; 2],
@@ -131,7 +131,7 @@ impl Fitting {
         Self::Radio,
     ];
 
-    /// What is known about it.
+    /// The facts about it.
     pub fn facts(self) -> FittingFacts {
         match self {
             Self::Converter => FittingFacts {

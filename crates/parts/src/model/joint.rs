@@ -53,7 +53,7 @@ impl Writer<'_> {
         Some(range.map(round))
     }
 
-    /// How much shorter and longer than at neutral a slider may be, mm.
+    /// The range of a slider's length, mm from its length at neutral.
     fn stroke(&self, side: Side) -> [f64; 2] {
         let limits = self.assembly.robot().limits();
         let now = self.neutral.side(side).s;

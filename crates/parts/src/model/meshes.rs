@@ -9,11 +9,11 @@ use crate::model::pieces::Piece;
 
 /// The looks that the parts of a body have.
 pub(super) fn looks(pieces: &[Piece], node: Node) -> impl Iterator<Item = Look> {
-    let has = move |look: &Look| {
+    let is_present = move |look: &Look| {
         let mut own = pieces.iter().filter(|piece| piece.node == node);
         own.any(|piece| Look::of(piece.kind) == *look)
     };
-    Look::ALL.into_iter().filter(has)
+    Look::ALL.into_iter().filter(is_present)
 }
 
 /// The file's name of the parts of a body that have a look.

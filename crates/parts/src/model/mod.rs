@@ -72,20 +72,20 @@ impl<'a> Pieces<'a> {
     /// to [`Pieces::of`].
     #[must_use]
     pub fn mjcf(&self, neutral: &Solution, scene: &Scene) -> String {
-        self.written(neutral, scene, |writer| writer.mjcf())
+        self.write_with(neutral, scene, |writer| writer.write_mjcf())
     }
 
     /// The robot of such a scene as URDF, whose meshes ([`Pieces::meshes`]) lie in `folder`: a path
     /// or an address with a slash at its end.
     #[must_use]
     pub fn urdf(&self, neutral: &Solution, scene: &Scene, folder: &str) -> String {
-        self.written(neutral, scene, |writer| writer.urdf(folder))
+        self.write_with(neutral, scene, |writer| writer.write_urdf(folder))
     }
 
     /// The robot of such a scene as SDF, with meshes as in [`Pieces::urdf`].
     #[must_use]
     pub fn sdf(&self, neutral: &Solution, scene: &Scene, folder: &str) -> String {
-        self.written(neutral, scene, |writer| writer.sdf(folder))
+        self.write_with(neutral, scene, |writer| writer.write_sdf(folder))
     }
 
     /// The meshes that URDF and SDF name, by the names that they have in their folder.
@@ -95,7 +95,7 @@ impl<'a> Pieces<'a> {
         meshes::files(&self.pieces, &nodes)
     }
 
-    fn written(
+    fn write_with(
         &self,
         neutral: &Solution,
         scene: &Scene,

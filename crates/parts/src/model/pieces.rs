@@ -31,9 +31,9 @@ pub(super) struct Piece {
 pub(super) fn pieces(assembly: &Assembly, scene: &Scene) -> Result<Vec<Piece>, Unfit> {
     let slotted = scene.pull.is_some();
     let is_strut = |body: &&Body| matches!(body.mount, Mount::Strut(_));
-    let has = |bodies: &[Body]| bodies.iter().any(|body| body.kind == Kind::Spring);
+    let has_spring = |bodies: &[Body]| bodies.iter().any(|body| body.kind == Kind::Spring);
     // The scene may have the struts of the other kind.
-    let swap = has(assembly.bodies()) != slotted;
+    let swap = has_spring(assembly.bodies()) != slotted;
     let own = assembly.bodies().iter();
     let own = own.filter(|body| !(swap && is_strut(body)));
     let other = assembly.alternatives().iter().filter(|_| swap);

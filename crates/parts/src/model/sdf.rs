@@ -14,21 +14,21 @@ const VERSION: &str = "1.7";
 
 impl Writer<'_> {
     /// Writes the whole file, whose meshes lie in a folder or below an address.
-    pub(super) fn sdf(&mut self, folder: &str) {
+    pub(super) fn write_sdf(&mut self, folder: &str) {
         let name = escaped(&self.scene.name);
         self.xml.declaration();
         self.xml.open(format!(r#"sdf version="{VERSION}""#));
         self.xml.open(format!(r#"model name="{name}""#));
         for node in self.nodes() {
-            self.sdf_link(node, folder);
+            self.write_sdf_link(node, folder);
         }
         for node in self.nodes() {
-            self.sdf_joint(node);
+            self.write_sdf_joint(node);
         }
         for closed in closed::all(self.assembly, self.scene.pull.is_some()) {
             let [first, second] = closed.bodies.map(Node::identifier);
             // All axes are upright already. Two upright pins would hold what one holds.
-            self.sdf_between(&closed.identifier(), "ball", &first, &second);
+            self.write_sdf_connection(&closed.identifier(), "ball", &first, &second);
             let at = metres([closed.at.x, closed.at.y, 0.0]);
             let pose = format!(r#"pose relative_to="{first}""#);
             self.xml.value(pose, format_args!("{at} 0 0 0"));
@@ -36,7 +36,7 @@ impl Writer<'_> {
         }
     }
 
-    fn sdf_link(&mut self, node: Node, folder: &str) {
+    fn write_sdf_link(&mut self, node: Node, folder: &str) {
         self.xml
             .open(format!(r#"link name="{}""#, node.identifier()));
         let place = self.place_on_parent(node);
@@ -44,14 +44,14 @@ impl Writer<'_> {
         match self.parent(node) {
             Some(parent) => {
                 let pose = format!(r#"pose relative_to="{}""#, parent.identifier());
-                self.pose(&pose, [place.at.x, place.at.y, 0.0], turn);
+                self.write_pose(&pose, [place.at.x, place.at.y, 0.0], turn);
             }
             // The model's x is ahead, its y to the left.
-            None => self.pose("pose", [0.0, 0.0, self.height()], turn - FRAC_PI_2),
+            None => self.write_pose("pose", [0.0, 0.0, self.height()], turn - FRAC_PI_2),
         }
         let mass = self.mass(node);
         self.xml.open("inertial");
-        self.pose("pose", mass.centre(), 0.0);
+        self.write_pose("pose", mass.centre(), 0.0);
         self.xml.value("mass", round(mass.mass * MILLI));
         self.xml.open("inertia");
         let names = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
@@ -76,14 +76,14 @@ impl Writer<'_> {
             self.xml.close();
         }
         if let Node::Pad(servo) = node {
-            self.sdf_pad(servo);
+            self.write_sdf_pad(servo);
         }
         self.xml.close();
     }
 
-    fn sdf_pad(&mut self, servo: usize) {
+    fn write_sdf_pad(&mut self, servo: usize) {
         self.xml.open(r#"collision name="pad""#);
-        self.pose("pose", self.pad_middle(servo), 0.0);
+        self.write_pose("pose", self.pad_middle(servo), 0.0);
         self.xml.open("geometry");
         self.xml.open("sphere");
         let radius = round(self.assembly.robot().parts().pad.radius * MILLI);
@@ -101,7 +101,7 @@ impl Writer<'_> {
         }
     }
 
-    fn sdf_joint(&mut self, node: Node) {
+    fn write_sdf_joint(&mut self, node: Node) {
         let Some(parent) = self.parent(node) else {
             return;
         };
@@ -116,7 +116,7 @@ impl Writer<'_> {
             parent.identifier(),
             node.identifier(),
         );
-        self.sdf_between(&name, kind, &parent, &child);
+        self.write_sdf_connection(&name, kind, &parent, &child);
         self.xml.open("axis");
         self.xml.value("xyz", axis);
         if let Some([smallest, largest]) = self.range(node) {
@@ -143,7 +143,7 @@ impl Writer<'_> {
         self.xml.close();
     }
 
-    /// Where the spring of a body's joint is without force, m, and its stiffness, N/m.
+    /// The position at which the spring of a body's joint has no force, m, and its stiffness, N/m.
     fn spring(&self, node: Node) -> Option<[f64; 2]> {
         match (node, self.scene.pull) {
             (Node::Pad(_), _) => Some([0.0, self.leaf()[0]]),
@@ -155,14 +155,14 @@ impl Writer<'_> {
     }
 
     /// Begins a joint.
-    fn sdf_between(&mut self, name: &str, kind: &str, parent: &str, child: &str) {
+    fn write_sdf_connection(&mut self, name: &str, kind: &str, parent: &str, child: &str) {
         self.xml
             .open(format!(r#"joint name="{name}" type="{kind}""#));
         self.xml.value("parent", parent);
         self.xml.value("child", child);
     }
 
-    fn pose(&mut self, element: &str, at: [f64; 3], turn: f64) {
+    fn write_pose(&mut self, element: &str, at: [f64; 3], turn: f64) {
         let (at, turn) = (metres(at), round(turn));
         self.xml.value(element, format_args!("{at} 0 0 {turn}"));
     }

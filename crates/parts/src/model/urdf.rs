@@ -21,7 +21,7 @@ const BASE: &str = "base_link";
 
 impl Writer<'_> {
     /// Writes the whole file, whose meshes lie in a folder or below an address.
-    pub(super) fn urdf(&mut self, folder: &str) {
+    pub(super) fn write_urdf(&mut self, folder: &str) {
         let name = escaped(&self.scene.name);
         self.xml.declaration();
         self.xml.open(format!(r#"robot name="{name}""#));
@@ -32,21 +32,21 @@ impl Writer<'_> {
         }
         self.xml.leaf(format!(r#"link name="{BASE}""#));
         for node in self.nodes() {
-            self.urdf_link(node, folder);
-            self.urdf_joint(node);
+            self.write_urdf_link(node, folder);
+            self.write_urdf_joint(node);
         }
         for closed in closed::all(self.assembly, self.scene.pull.is_some()) {
-            self.coinciding(&closed);
+            self.write_coinciding_frames(&closed);
         }
     }
 
-    fn urdf_link(&mut self, node: Node, folder: &str) {
+    fn write_urdf_link(&mut self, node: Node, folder: &str) {
         self.xml
             .open(format!(r#"link name="{}""#, node.identifier()));
         let mass = self.mass(node);
         let [xx, yy, zz, xy, xz, yz] = mass.written_tensor();
         self.xml.open("inertial");
-        self.origin(mass.centre(), 0.0);
+        self.write_origin(mass.centre(), 0.0);
         self.xml
             .leaf(format!(r#"mass value="{}""#, round(mass.mass * MILLI)));
         self.xml.leaf(format!(
@@ -66,7 +66,7 @@ impl Writer<'_> {
         }
         if let Node::Pad(servo) = node {
             self.xml.open("collision");
-            self.origin(self.pad_middle(servo), 0.0);
+            self.write_origin(self.pad_middle(servo), 0.0);
             self.xml.open("geometry");
             let radius = round(self.assembly.robot().parts().pad.radius * MILLI);
             self.xml.leaf(format!(r#"sphere radius="{radius}""#));
@@ -76,7 +76,7 @@ impl Writer<'_> {
         self.xml.close();
     }
 
-    fn urdf_joint(&mut self, node: Node) {
+    fn write_urdf_joint(&mut self, node: Node) {
         let range = self.range(node);
         let kind = match (node.freedom(), range) {
             // A URDF has no springs, on which the feet move.
@@ -92,8 +92,8 @@ impl Writer<'_> {
         };
         let turn = place.turn.angle().to_radians() + turned;
         let name = self.joint_name(node);
-        self.urdf_between(&name, kind, &parent, &node.identifier());
-        self.origin([place.at.x, place.at.y, up], turn);
+        self.write_urdf_connection(&name, kind, &parent, &node.identifier());
+        self.write_origin([place.at.x, place.at.y, up], turn);
         if kind != "fixed" {
             let axis = match node.freedom() {
                 Freedom::Along => "1 0 0",
@@ -128,21 +128,21 @@ impl Writer<'_> {
     }
 
     /// Begins a joint.
-    fn urdf_between(&mut self, name: &str, kind: &str, parent: &str, child: &str) {
+    fn write_urdf_connection(&mut self, name: &str, kind: &str, parent: &str, child: &str) {
         self.xml
             .open(format!(r#"joint name="{name}" type="{kind}""#));
         self.xml.leaf(format!(r#"parent link="{parent}""#));
         self.xml.leaf(format!(r#"child link="{child}""#));
     }
 
-    fn origin(&mut self, at: [f64; 3], turn: f64) {
+    fn write_origin(&mut self, at: [f64; 3], turn: f64) {
         let (at, turn) = (metres(at), round(turn));
         self.xml
             .leaf(format!(r#"origin xyz="{at}" rpy="0 0 {turn}""#));
     }
 
     /// Writes the two frames of a joint that closes a loop: one on each body.
-    fn coinciding(&mut self, closed: &Closed) {
+    fn write_coinciding_frames(&mut self, closed: &Closed) {
         let [first, second] = closed.bodies;
         let point = self.place(first).map(closed.at);
         let on_second = self.place(second).unmap(point);
@@ -150,8 +150,8 @@ impl Writer<'_> {
             let frame = format!("closing_{}_{}", closed.identifier(), number + 1);
             self.xml.leaf(format!(r#"link name="{frame}""#));
             let joint = format!("{frame}_joint");
-            self.urdf_between(&joint, "fixed", &node.identifier(), &frame);
-            self.origin([at.x, at.y, 0.0], 0.0);
+            self.write_urdf_connection(&joint, "fixed", &node.identifier(), &frame);
+            self.write_origin([at.x, at.y, 0.0], 0.0);
             self.xml.close();
         }
     }

@@ -1,4 +1,4 @@
-//! What the writers of all formats share: the robot at neutral, as bodies on bodies.
+//! The writer that all formats share: the robot at neutral, as bodies on bodies.
 
 use lizard_kinematics::Solution;
 

@@ -150,9 +150,9 @@ impl Bench<'_> {
         let is_beside = |z: [f64; 2]| z[0] > high - TOUCH || z[1] < low + TOUCH;
         let still = Vector::default();
         let meets = |shape: &Shape| room.shape.distance(&shape.placed(&place)) < -TOUCH;
-        let holds = |hole: &Shape| room.shape.within(&hole.placed(&place), still) > -TOUCH;
+        let encloses = |hole: &Shape| room.shape.within(&hole.placed(&place), still) > -TOUCH;
         let mut prisms = body.prisms.iter().filter(|prism| !is_beside(prism.z));
-        prisms.any(|prism| prism.add.iter().any(meets) && !prism.cut.iter().any(holds))
+        prisms.any(|prism| prism.add.iter().any(meets) && !prism.cut.iter().any(encloses))
     }
 
     /// The space that a nut needs on its screw.
@@ -166,12 +166,16 @@ impl Bench<'_> {
             true => (high, low),
             false => (low, high),
         };
-        let holds = |hole: &Shape| {
+        let encloses = |hole: &Shape| {
             let depth = flats.within(&hole.placed(&place), Vector::default());
             hole.points.len() == 6 && depth > 0.0
         };
         let mut fixed = around.iter().filter(|body| body.mount == nut.mount);
-        let is_sunk = fixed.any(|body| body.prisms.iter().any(|prism| prism.cut.iter().any(holds)));
+        let is_sunk = fixed.any(|body| {
+            body.prisms
+                .iter()
+                .any(|prism| prism.cut.iter().any(encloses))
+        });
         let length = -axis.up * SOCKET[1];
         match is_sunk {
             true => FreeSpace {

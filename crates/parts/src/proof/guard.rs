@@ -165,7 +165,7 @@ impl<'a> Guard<'a> {
         let bounds = turned(self.robot, servos, angles);
         let middle = turned(self.robot, servos, region.middle);
         let broken = |(check, bounds, middle): (Check, Slope<N>, f64)| {
-            let value = bounds.tightened(middle, &region.half).value;
+            let value = bounds.tighten(middle, &region.half).value;
             let [low, high] = [value.low, value.high].map(|value| self.broken(check, value));
             low.is_some() && low == high
         };

@@ -167,10 +167,10 @@ impl<const N: usize> Search<'_, N> {
         let [(a, around_a), (b, around_b)] = self.task.mounts.map(|mount| {
             let place = self.assembly.place_on(mount, &middle);
             let bounds = self.assembly.place_on(mount, &bounds);
-            (place, tightened(&bounds, &place, &region))
+            (place, tighten(&bounds, &place, &region))
         });
         let place = b.seen_from(&a);
-        let bounds = tightened(&around_b.seen_from(&around_a), &place, &region);
+        let bounds = tighten(&around_b.seen_from(&around_a), &place, &region);
         let strays = [bounds.at, bounds.turn].map(|vector| {
             let [x, y] =
                 [vector.x, vector.y].map(|coordinate| coordinate.largest_change(&region.half));
@@ -217,14 +217,14 @@ impl<const N: usize> Search<'_, N> {
 }
 
 /// Bounds of a place, tightened by its value in the middle and the distance it can stray.
-fn tightened<const N: usize>(
+fn tighten<const N: usize>(
     bounds: &Placement<Slope<N>>,
     middle: &Placement,
     region: &Region<N>,
 ) -> Placement<Slope<N>> {
     let tighten = |bounds: Vector<Slope<N>>, middle: Vector| {
-        let x = bounds.x.tightened(middle.x, &region.half);
-        Vector::new(x, bounds.y.tightened(middle.y, &region.half))
+        let x = bounds.x.tighten(middle.x, &region.half);
+        Vector::new(x, bounds.y.tighten(middle.y, &region.half))
     };
     Placement {
         at: tighten(bounds.at, middle.at),

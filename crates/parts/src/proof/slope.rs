@@ -37,7 +37,7 @@ impl<const N: usize> Slope<N> {
     /// Tightens the bounds of the number by its value in the middle and the distance that it can
     /// stray. Bounds from operations are often much wider, because each operation takes
     /// its operands to be independent.
-    pub fn tightened(self, middle: f64, half: &[f64; N]) -> Self {
+    pub fn tighten(self, middle: f64, half: &[f64; N]) -> Self {
         /// A bound of the rounding error of `middle`.
         const ROUNDING: f64 = 1e-9;
         let strays = self.largest_change(half) + ROUNDING;

@@ -258,22 +258,24 @@ fn a_hexagon_pocket_of_a_link_has_a_wall_around_it() {
 fn parts_that_are_alike_but_for_left_and_right_are_marked() {
     for name in ["paper", "large", "unequal"] {
         let parts = assembly(name, "").parts();
-        let what = |part: &Part| {
+        let describe = |part: &Part| {
             let name = &part.bodies[0];
             name.rsplit_once(' ')
-                .map_or(&**name, |(what, _)| what)
+                .map_or(&**name, |(words, _)| words)
                 .to_owned()
         };
         let mut marks = Vec::new();
         for part in &parts {
-            let others = parts.iter().filter(|other| what(other) == what(part));
+            let others = parts
+                .iter()
+                .filter(|other| describe(other) == describe(part));
             let spacer = part.name.starts_with("spacer");
             let alone = others.count() == 1 || spacer;
             assert_eq!(part.mark.is_empty(), alone, "{}", part.name);
             if part.mark.is_empty() {
                 continue;
             }
-            marks.push((what(part), part.mark.clone()));
+            marks.push((describe(part), part.mark.clone()));
             // There was room for it: some of the part is gone.
             let (printed, roofs) = part.printed();
             let solid = Solid::of(&printed);
@@ -286,12 +288,12 @@ fn parts_that_are_alike_but_for_left_and_right_are_marked() {
         marks.sort();
         marks.dedup();
         assert_eq!(marks.len(), count, "{name}: two kinds have one mark");
-        let has = |what: &str, mark: &str| marks.contains(&(what.to_owned(), mark.to_owned()));
-        for (what, mark) in match name {
+        let has_mark = |part: &str, mark: &str| marks.contains(&(part.to_owned(), mark.to_owned()));
+        for (part, mark) in match name {
             "unequal" => [("link", "1"), ("link", "2"), ("crank", "3")],
             _ => [("link", "13"), ("link", "24"), ("crank", "24")],
         } {
-            assert!(has(what, mark), "{name}: {marks:?}");
+            assert!(has_mark(part, mark), "{name}: {marks:?}");
         }
     }
 }

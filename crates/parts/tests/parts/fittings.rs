@@ -91,10 +91,10 @@ fn a_radio_module_of_either_common_size_has_a_place() {
     };
     let xs = place.prisms[0].add[0].points.iter().map(|point| point.x);
     let ys = place.prisms[0].add[0].points.iter().map(|point| point.y);
-    let long = |of: Vec<f64>| {
+    let extent = |of: Vec<f64>| {
         of.iter().copied().fold(f64::MIN, f64::max) - of.iter().copied().fold(f64::MAX, f64::min)
     };
-    let (wide, long) = (long(xs.collect()), long(ys.collect()));
+    let (wide, long) = (extent(xs.collect()), extent(ys.collect()));
     assert!(wide >= 16.0 && long >= 37.0, "{wide} {long}");
 }
 

@@ -381,8 +381,9 @@ fn a_servo_turns_no_faster_and_no_stronger_than_it_can() {
             assert_eq!(motor.attribute("name"), Some(NAMES[servo]));
             let of = motor.attribute("joint").expect("a joint");
             let mut nodes = document.descendants();
-            let is = |node: &Node| node.has_tag_name("joint") && node.attribute("name") == Some(of);
-            let joint = nodes.find(is).expect(of);
+            let is_joint =
+                |node: &Node| node.has_tag_name("joint") && node.attribute("name") == Some(of);
+            let joint = nodes.find(is_joint).expect(of);
             let [smallest, largest] = numbers(*motor, "forcerange")[..] else {
                 panic!("two torques")
             };

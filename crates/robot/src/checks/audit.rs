@@ -87,7 +87,7 @@ impl LeastMargin {
 
 /// A limit that a gait breaks.
 pub(crate) struct Broken {
-    /// What would happen to the robot.
+    /// The consequence for the robot.
     pub meaning: String,
     /// The figures.
     pub problem: String,

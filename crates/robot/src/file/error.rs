@@ -11,7 +11,7 @@ pub struct Error {
     pub line: Option<usize>,
     /// Full name of the key, such as `servo.A1.pin`; empty for a mistake of the file.
     pub key: String,
-    /// What the mistake means for the robot, without keys and figures; `None` where `problem` says it.
+    /// The consequence of the mistake for the robot, without keys and figures; `None` where `problem` says it.
     pub meaning: Option<String>,
     /// The message without file, line, key and meaning.
     pub problem: String,

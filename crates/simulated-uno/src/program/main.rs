@@ -104,7 +104,7 @@ fn run(arguments: &Arguments, image: Image, out: &mut impl Write) -> io::Result<
                 out,
                 "{:>10.2} ms  > {}",
                 uno.ms(),
-                report::shown(&line.text)
+                report::escape(&line.text)
             )?;
             uno.send(line.text.as_bytes());
             uno.send(b"\n");
@@ -114,7 +114,7 @@ fn run(arguments: &Arguments, image: Image, out: &mut impl Write) -> io::Result<
         text.print(&uno.take_transmitted(), out)?;
     }
     text.finish(out)?;
-    report::pins(&edges, arguments.pulses, out)?;
+    report::print_pins(&edges, arguments.pulses, out)?;
     report::end(&uno, flash, out)?;
     out.flush()?;
     Ok(match uno.state() {

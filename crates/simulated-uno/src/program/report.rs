@@ -42,26 +42,30 @@ impl Text {
     fn print_line(&mut self, out: &mut impl Write) -> io::Result<()> {
         let ms = self.cycle as f64 / CYCLES_PER_MS as f64;
         let text = String::from_utf8_lossy(&self.line);
-        writeln!(out, "{ms:>10.2} ms  {}", shown(text.trim_end_matches('\r')))?;
+        writeln!(
+            out,
+            "{ms:>10.2} ms  {}",
+            escape(text.trim_end_matches('\r'))
+        )?;
         self.line.clear();
         Ok(())
     }
 }
 
 /// Escapes control characters, so that a text cannot command the terminal.
-pub fn shown(text: &str) -> String {
-    let mut shown = String::new();
+pub fn escape(text: &str) -> String {
+    let mut escaped = String::new();
     for letter in text.chars() {
         match letter.is_control() {
-            true => shown.extend(letter.escape_default()),
-            false => shown.push(letter),
+            true => escaped.extend(letter.escape_default()),
+            false => escaped.push(letter),
         }
     }
-    shown
+    escaped
 }
 
 /// Prints the pulses of all pins that had any: a line for each pin, or for each pulse.
-pub fn pins(edges: &[Edge], shows_all: bool, out: &mut impl Write) -> io::Result<()> {
+pub fn print_pins(edges: &[Edge], shows_all: bool, out: &mut impl Write) -> io::Result<()> {
     let us = |cycles: u64| cycles as f64 / CYCLES_PER_US as f64;
     writeln!(out)?;
     if edges.is_empty() {

@@ -127,8 +127,8 @@ fn run(parts: &[String]) -> Result<usize, String> {
         made.map_err(|e| format!("mutants.txt, line {}: {}: {e}", mutant.line, mutant.file))?;
     }
     let wanted = |mutant: &&Mutant| {
-        let named = |part: &String| mutant.file.contains(part) || mutant.wrong.contains(part);
-        parts.is_empty() || parts.iter().any(named)
+        let is_named = |part: &String| mutant.file.contains(part) || mutant.wrong.contains(part);
+        parts.is_empty() || parts.iter().any(is_named)
     };
     let list: Vec<&Mutant> = list.iter().filter(wanted).collect();
     let scratch = Scratch::copy()?;

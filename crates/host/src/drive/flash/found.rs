@@ -171,12 +171,18 @@ mod tests {
         let mut flash = image.bytes().to_vec();
         flash.resize(BOOT, 0xff);
         let lizard = format!("the board has lizard {}", env!("CARGO_PKG_VERSION"));
-        let named = |robot: &Robot| format!("{lizard} robot {}", label(robot.firmware()));
+        let describe = |robot: &Robot| format!("{lizard} robot {}", label(robot.firmware()));
         let text = |flash: &[u8], image: &Image| FlashContents::in_flash(flash, image).to_string();
-        assert_eq!(text(&flash, &image), format!("{} already", named(&paper)));
-        assert_eq!(text(&flash, &alone), format!("{} already", named(&paper)));
+        assert_eq!(
+            text(&flash, &image),
+            format!("{} already", describe(&paper))
+        );
+        assert_eq!(
+            text(&flash, &alone),
+            format!("{} already", describe(&paper))
+        );
         let other = file::image(&large).expect("it fits");
-        assert_eq!(text(&flash, &other), named(&paper));
+        assert_eq!(text(&flash, &other), describe(&paper));
         // A sketch, shorter than the firmware, whose robot is still there.
         let mut sketch = flash.clone();
         sketch[..1000].fill(0x95);
@@ -193,7 +199,7 @@ mod tests {
         build[0x1000] ^= 1;
         assert_eq!(
             text(&build, &image),
-            named(&paper).replace("has ", "has another build of ")
+            describe(&paper).replace("has ", "has another build of ")
         );
     }
 }

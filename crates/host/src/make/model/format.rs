@@ -9,9 +9,9 @@ use crate::Failure;
 pub(super) enum Format {
     /// MuJoCo's.
     Mjcf,
-    /// That of ROS.
+    /// The format of ROS.
     Urdf,
-    /// That of Gazebo.
+    /// The format of Gazebo.
     Sdf,
 }
 

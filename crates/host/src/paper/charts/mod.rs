@@ -45,7 +45,7 @@ pub struct Args {
 }
 
 #[derive(Serialize)]
-struct Drawn {
+struct ChartFiles {
     chart: &'static str,
     files: Vec<PathBuf>,
 }
@@ -53,7 +53,7 @@ struct Drawn {
 /// Draws all charts and writes them.
 ///
 /// # Errors
-/// Fails for a wrong robot.toml, a folder or a file that cannot be written.
+/// Fails for a wrong robot.toml, or a folder or a file that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let pose = args.pose.get().unwrap_or_else(|| robot.neutral());
@@ -62,13 +62,13 @@ pub fn run(args: Args) -> Result<(), Failure> {
     fs::create_dir_all(&args.folder).map_err(|error| files::write_failure(&args.folder, &error))?;
     let mut pictures = charts(&robot);
     pictures.push(("top-view", draw::top_view(&robot, &solution, true)));
-    let drawn: Vec<Drawn> = pictures
+    let drawn: Vec<ChartFiles> = pictures
         .iter()
         .map(|(name, svg)| {
             let path = args.folder.join(format!("{name}.svg"));
             files::write(&path, svg.as_bytes())?;
             let files = vec![path];
-            Ok(Drawn { chart: name, files })
+            Ok(ChartFiles { chart: name, files })
         })
         .collect::<Result<_, Failure>>()?;
     if args.json {

@@ -237,8 +237,8 @@ fn wires_only_cross_they_never_run_into_or_along_each_other() {
         wires.retain(|(name, _)| !name.starts_with("radio-"));
         let upright = |part: &[Point]| part[0].0 == part[1].0;
         for (wire, path) in &wires {
-            let straight = |part: &[Point]| part[0].0 == part[1].0 || part[0].1 == part[1].1;
-            assert!(path.windows(2).all(straight), "{wire}");
+            let is_straight = |part: &[Point]| part[0].0 == part[1].0 || part[0].1 == part[1].1;
+            assert!(path.windows(2).all(is_straight), "{wire}");
         }
         for (place, (a, path)) in wires.iter().enumerate() {
             for (b, other) in &wires[place + 1..] {
@@ -304,7 +304,7 @@ fn inputs_are_an_option_of_a_robot_that_has_them_between_their_pins_and_ground()
         let text = paper().replace("[limits]", &format!("{tables}\n[limits]"));
         Drawing::of(&wiring(&Robot::parse(&text).expect("a robot")))
     };
-    let has = |drawing: &Drawing, name: &str| {
+    let has_entry = |drawing: &Drawing, name: &str| {
         let mut ids = drawing.0.iter().map(|element| element.text("id"));
         ids.any(|id| id == name)
     };
@@ -313,13 +313,21 @@ fn inputs_are_an_option_of_a_robot_that_has_them_between_their_pins_and_ground()
     let both = draw(&format!("{button}\n{nose}"));
     for name in ["input-button-A1", "input-button-GND"] {
         assert_eq!(
-            [has(&none, name), has(&one, name), has(&both, name)],
+            [
+                has_entry(&none, name),
+                has_entry(&one, name),
+                has_entry(&both, name)
+            ],
             [false, true, true]
         );
     }
     for name in ["input-nose-D7", "input-nose-GND", "input-nose-5V"] {
         assert_eq!(
-            [has(&none, name), has(&one, name), has(&both, name)],
+            [
+                has_entry(&none, name),
+                has_entry(&one, name),
+                has_entry(&both, name)
+            ],
             [false, false, true]
         );
         let path = both.path(name);

@@ -17,10 +17,10 @@ const STIFF: &str = "0.99 0.999 0.0001";
 
 impl Writer<'_> {
     /// Writes the whole file.
-    pub(in super::super) fn mjcf(&mut self) {
+    pub(in super::super) fn write_mjcf(&mut self) {
         let name = escaped(&self.scene.name);
         self.xml.open(format!(r#"mujoco model="{name}""#));
-        self.options();
+        self.write_options();
         self.xml.open("custom");
         let ratio = round(self.scene.ratio);
         let data = format!(r#"numeric name="back over forward" data="{ratio}""#);
@@ -35,15 +35,15 @@ impl Writer<'_> {
             self.xml.leaf(data);
         }
         self.xml.close();
-        self.assets();
-        self.world();
-        self.loops();
-        self.actuators();
-        self.sensors();
-        self.keyframes();
+        self.write_assets();
+        self.write_world();
+        self.write_loops();
+        self.write_actuators();
+        self.write_sensors();
+        self.write_keyframes();
     }
 
-    fn options(&mut self) {
+    fn write_options(&mut self) {
         let xml = &mut self.xml;
         xml.leaf(r#"compiler angle="radian" autolimits="true""#);
         // Feet of a few g chatter on the default contacts.
@@ -63,7 +63,7 @@ impl Writer<'_> {
         xml.close();
     }
 
-    fn assets(&mut self) {
+    fn write_assets(&mut self) {
         const SIZE: &str = r#"width="256" height="256""#;
         let shown = self.shown();
         let xml = &mut self.xml;
@@ -88,12 +88,12 @@ impl Writer<'_> {
         xml.close();
     }
 
-    fn world(&mut self) {
+    fn write_world(&mut self) {
         self.xml.open("worldbody");
         self.xml
             .leaf(r#"light pos="0.3 -0.3 1" dir="-0.3 0.3 -1" type="directional""#);
-        self.floor();
-        self.body(Node::Of(Mount::Chassis));
+        self.write_floor();
+        self.write_body(Node::Of(Mount::Chassis));
         self.xml.close();
     }
 }

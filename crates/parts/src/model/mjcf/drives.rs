@@ -10,7 +10,7 @@ use crate::model::text::{MILLI, joined, metres, round};
 use crate::model::writer::Writer;
 
 impl Writer<'_> {
-    pub(super) fn loops(&mut self) {
+    pub(super) fn write_loops(&mut self) {
         self.xml.open("equality");
         for closed in closed::all(self.assembly, self.scene.pull.is_some()) {
             let [first, second] = closed.bodies.map(Node::name);
@@ -22,7 +22,7 @@ impl Writer<'_> {
         self.xml.close();
     }
 
-    pub(super) fn actuators(&mut self) {
+    pub(super) fn write_actuators(&mut self) {
         self.xml.open("actuator");
         for (servo, name) in NAMES.iter().enumerate() {
             let motor = self.scene.motors.each[servo];
@@ -45,7 +45,7 @@ impl Writer<'_> {
 
     /// Writes a keyframe for each frame of 20 ms, its time and the servos' angles, and last the
     /// standing robot.
-    pub(super) fn keyframes(&mut self) {
+    pub(super) fn write_keyframes(&mut self) {
         self.xml.open("keyframe");
         if let Some(course) = &self.scene.course {
             for (frame, targets) in course.frames.iter().enumerate() {

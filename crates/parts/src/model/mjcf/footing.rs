@@ -26,7 +26,7 @@ impl Floor {
 }
 
 impl Writer<'_> {
-    pub(super) fn floor(&mut self) {
+    pub(super) fn write_floor(&mut self) {
         self.xml.leaf(
             r#"geom name="floor" type="plane" size="0 0 0.05" material="floor" conaffinity="1""#,
         );
@@ -51,14 +51,14 @@ impl Writer<'_> {
 
     /// A pad. Viewers hide it and show the part. It has friction against sliding only, not
     /// against turning or rolling, and the same on all that lies on the floor.
-    pub(super) fn pad(&mut self, servo: usize) {
+    pub(super) fn write_pad(&mut self, servo: usize) {
         let pad = self.assembly.robot().parts().pad;
         let [x, y, middle] = self.pad_middle(servo);
         let lowest = middle - pad.radius;
         match self.scene.pads {
             Pads::Domes(radius) => {
                 let shape = format!(r#"type="sphere" size="{}""#, round(radius * MILLI));
-                self.pad_shape(servo, "", &shape, [x, y, lowest + radius]);
+                self.write_pad_shape(servo, "", &shape, [x, y, lowest + radius]);
             }
             Pads::Terraces(layer) => {
                 // A layer is as wide as the dome in the layer's middle.
@@ -68,17 +68,17 @@ impl Writer<'_> {
                 for (number, up) in layers.enumerate() {
                     let name = format!(" {number}");
                     let at = [x, y, lowest + up];
-                    self.pad_shape(servo, &name, &disc(wide(up), layer), at);
+                    self.write_pad_shape(servo, &name, &disc(wide(up), layer), at);
                 }
             }
             Pads::Flat(diameter) => {
                 let at = [x, y, lowest + FLAT / 2.0];
-                self.pad_shape(servo, "", &disc(diameter / 2.0, FLAT), at);
+                self.write_pad_shape(servo, "", &disc(diameter / 2.0, FLAT), at);
             }
         }
     }
 
-    fn pad_shape(&mut self, servo: usize, name: &str, shape: &str, at: [f64; 3]) {
+    fn write_pad_shape(&mut self, servo: usize, name: &str, shape: &str, at: [f64; 3]) {
         let (leg, at, friction) = (LEGS[servo], metres(at), self.scene.floor.friction[servo]);
         self.xml.leaf(format!(
             r#"geom name="pad {leg}{name}" {shape} pos="{at}" group="3" contype="1" priority="1" condim="3" friction="{friction} 0 0" solref="{CONTACT}" solimp="0.95 0.99 0.0005""#

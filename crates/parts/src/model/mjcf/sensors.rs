@@ -1,4 +1,4 @@
-//! What MuJoCo measures on the robot.
+//! The sensors of the MuJoCo model.
 
 use lizard_robot::servo::{LEGS, NAMES};
 
@@ -11,7 +11,7 @@ const SITE: f64 = 1.05;
 impl Writer<'_> {
     /// Writes the servos' angles, rates and torques, the force on each pad, and the place, the
     /// direction and the rates of the chassis.
-    pub(super) fn sensors(&mut self) {
+    pub(super) fn write_sensors(&mut self) {
         self.xml.open("sensor");
         for name in NAMES {
             for (what, kind) in [("angle", "pos"), ("rate", "vel"), ("torque", "frc")] {
@@ -35,7 +35,7 @@ impl Writer<'_> {
     }
 
     /// The place on a pad where its load is measured.
-    pub(super) fn pad_site(&mut self, servo: usize) {
+    pub(super) fn write_pad_site(&mut self, servo: usize) {
         let radius = self.assembly.robot().parts().pad.radius;
         let (leg, at) = (LEGS[servo], metres(self.pad_middle(servo)));
         let size = round(SITE * radius * MILLI);

@@ -11,7 +11,7 @@ use crate::model::text::{MILLI, joined, metres, round};
 use crate::model::writer::Writer;
 
 impl Writer<'_> {
-    pub(super) fn body(&mut self, node: Node) {
+    pub(super) fn write_body(&mut self, node: Node) {
         let place = self.place_on_parent(node);
         let is_chassis = self.parent(node).is_none();
         let up = if is_chassis { self.height() } else { 0.0 };
@@ -21,7 +21,7 @@ impl Writer<'_> {
         self.xml.open(format!(
             r#"body name="{name}" pos="{at}" quat="{cos} 0 0 {sin}""#
         ));
-        self.joint(node);
+        self.write_joint(node);
         let mass = self.mass(node);
         let (centre, grams) = (metres(mass.centre()), round(mass.mass * MILLI));
         let tensor = joined(mass.written_tensor());
@@ -34,8 +34,8 @@ impl Writer<'_> {
                 .leaf(format!(r#"geom type="mesh" mesh="{name}" rgba="{colour}""#));
         }
         if let Node::Pad(servo) = node {
-            self.pad(servo);
-            self.pad_site(servo);
+            self.write_pad(servo);
+            self.write_pad_site(servo);
         }
         if is_chassis {
             self.xml.leaf(r#"site name="chassis" group="3""#);
@@ -45,14 +45,14 @@ impl Writer<'_> {
         }
         for child in self.nodes() {
             if self.parent(child) == Some(node) {
-                self.body(child);
+                self.write_body(child);
             }
         }
         self.xml.close();
     }
 
     /// Writes the joint of a body with its parent, under the body's name.
-    pub(super) fn joint(&mut self, node: Node) {
+    pub(super) fn write_joint(&mut self, node: Node) {
         let name = node.name();
         let (kind, axis) = match node.freedom() {
             Freedom::Free => {

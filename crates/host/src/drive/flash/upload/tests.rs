@@ -74,7 +74,7 @@ fn run_as(board: Double, image: &Image, target: Target) -> Run {
 
 impl Run {
     /// Checks that the board has the image, was told to start it, and has its boot loader.
-    fn is_right(&self) -> Done {
+    fn assert_written(&self) -> Done {
         let done = *self.result.as_ref().expect("it is written");
         let (flash, blank) = (&self.board.flash, Double::blank().flash);
         assert_eq!(flash[..600], bytes(600, 3));
@@ -83,13 +83,13 @@ impl Run {
         done
     }
 
-    fn words(&self) -> String {
+    fn error(&self) -> String {
         let error = self.result.as_ref().expect_err("it is not written");
         error.to_string()
     }
 
-    /// The chip starts in a loop: `rjmp .-2`.
-    fn does_nothing(&self) -> bool {
+    /// True if the program is an endless loop: `rjmp .-2`.
+    fn starts_in_a_loop(&self) -> bool {
         self.board.flash[..2] == [0xff, 0xcf]
     }
 }
@@ -104,7 +104,7 @@ fn robot_image(name: &str) -> Image {
 }
 
 /// The name of the robot that the firmware would load.
-fn its_robot(board: &Double) -> Option<String> {
+fn robot_name(board: &Double) -> Option<String> {
     robot_in(&board.flash[..BOOT]).map(|robot| robot.label().map(char::from).collect())
 }
 
@@ -116,7 +116,7 @@ fn whole_image(name: &str) -> Image {
 #[test]
 fn a_blank_board_gets_every_page_of_the_image_and_no_other() {
     let run = run(Double::blank());
-    let done = run.is_right();
+    let done = run.assert_written();
     assert_eq!((done.written, done.kept), (5, 0));
     assert_eq!(run.found, ["the board has no program"]);
     assert!(run.board.flash[0x280..0x7e00].iter().all(|&it| it == 0xff));
@@ -126,7 +126,7 @@ fn a_blank_board_gets_every_page_of_the_image_and_no_other() {
 #[test]
 fn the_first_page_is_a_loop_that_does_nothing_until_all_others_are_written() {
     let run = run(Double::with(&[9; 5000]));
-    run.is_right();
+    run.assert_written();
     assert_eq!(run.found, ["the board has another program, of 5000 bytes"]);
     assert_eq!(run.board.written, [&PAGES[..], &[0]].concat());
 }
@@ -134,7 +134,7 @@ fn the_first_page_is_a_loop_that_does_nothing_until_all_others_are_written() {
 #[test]
 fn a_board_that_has_the_image_is_only_started() {
     let run = run(with_image());
-    let done = run.is_right();
+    let done = run.assert_written();
     assert_eq!((done.written, done.kept), (0, 5));
     assert_eq!(run.found, ["the board has this program already"]);
     assert!(run.board.written.is_empty());
@@ -145,7 +145,7 @@ fn only_pages_that_differ_are_written() {
     let mut board = with_image();
     board.flash[0x105] ^= 1;
     let run = run(board);
-    let done = run.is_right();
+    let done = run.assert_written();
     assert_eq!(run.board.written, [0, 0x100, 0]);
     assert_eq!((done.written, done.kept), (2, 3));
 }
@@ -155,7 +155,7 @@ fn a_loader_that_answers_only_the_third_call_is_waited_for() {
     let mut board = Double::blank();
     board.ignored_calls = 2;
     let run = run(board);
-    run.is_right();
+    run.assert_written();
     assert_eq!(run.board.resets, 1);
 }
 
@@ -164,7 +164,7 @@ fn output_of_the_old_program_before_the_answer_is_skipped() {
     let mut board = Double::with(&[9; 500]);
     // The output contains both bytes of an answer, but not next to each other.
     board.garbage = b"# t=1\r\n\x14\x15\x10ok\r\n".repeat(30);
-    run(board).is_right();
+    run(board).assert_written();
 }
 
 #[test]
@@ -174,7 +174,7 @@ fn a_board_that_never_answers_is_called_after_four_resets_and_not_written() {
     let run = run(board);
     assert!(matches!(run.result, Err(UploadError::Nobody)));
     assert!(
-        run.words()
+        run.error()
             .starts_with("no boot loader answers. Is it a UNO or a Nano?")
     );
     assert_eq!((run.board.resets, run.again), (4, 3));
@@ -222,7 +222,7 @@ fn another_chip_is_named_and_not_written() {
         board.signature = signature;
         let run = run(board);
         assert!(run.board.written.is_empty());
-        run.words()
+        run.error()
     };
     assert_eq!(
         words([0x1e, 0x95, 0x14]),
@@ -242,7 +242,7 @@ fn any_one_byte_lost_on_the_way_to_the_board_is_recovered() {
         let mut board = Double::with(&old);
         board.lost_to = Some(at);
         let run = run(board);
-        assert!(run.result.is_ok(), "byte {at}: {}", run.words());
+        assert!(run.result.is_ok(), "byte {at}: {}", run.error());
         let flash = &run.board.flash;
         assert!(flash[..600] == bytes(600, 3), "byte {at}");
         assert_eq!(run.found.len(), 1, "byte {at}: told once what was found");
@@ -259,8 +259,8 @@ fn any_one_byte_lost_on_the_way_from_the_board_is_recovered() {
         let mut board = Double::with(&old);
         board.lost_from = Some(at);
         let run = run(board);
-        assert!(run.result.is_ok(), "byte {at}: {}", run.words());
-        run.is_right();
+        assert!(run.result.is_ok(), "byte {at}: {}", run.error());
+        run.assert_written();
     }
 }
 
@@ -270,10 +270,10 @@ fn a_byte_that_the_flash_does_not_keep_is_named_and_the_board_does_nothing() {
     let right = image().bytes()[0x85];
     board.worn = Some((0x85, right & right.wrapping_neg()));
     let run = run(board);
-    let words = run.words();
+    let words = run.error();
     assert!(words.contains("the byte at address 0x0085"), "{words}");
     assert!(words.ends_with("run this command again"), "{words}");
-    assert!(run.does_nothing());
+    assert!(run.starts_in_a_loop());
     assert_eq!(run.again, 0, "another reset does not mend flash");
 }
 
@@ -283,16 +283,16 @@ fn a_board_unplugged_midway_does_nothing_until_the_next_upload() {
         let mut board = Double::with(&[9; 500]);
         board.unplugged_after = Some(pages);
         let cut = run(board);
-        let words = cut.words();
+        let words = cut.error();
         assert!(words.starts_with("the port is gone"), "{words}");
         assert!(
             words.contains("half a program now, and does nothing"),
             "{words}"
         );
-        assert!(cut.does_nothing(), "after {pages} pages");
+        assert!(cut.starts_in_a_loop(), "after {pages} pages");
         let mut board = cut.board;
         board.unplugged_after = None;
-        run(board).is_right();
+        run(board).assert_written();
     }
 }
 
@@ -302,7 +302,7 @@ fn a_board_unplugged_before_the_first_page_is_unchanged() {
     board.unplugged_after = Some(0);
     let run = run(board);
     assert!(
-        run.words()
+        run.error()
             .ends_with("Nothing was written: the board is unchanged")
     );
     assert_eq!(run.board.flash[..500], [9; 500]);

@@ -53,23 +53,23 @@ fn signal_x(way: usize) -> f64 {
     SIGNALS.0 + SIGNALS.1 * way as f64
 }
 
-/// Where a servo's signal goes into the signal strip.
+/// The hole of the signal strip for a servo's signal.
 pub fn servo(index: usize) -> (f64, f64) {
     (signal_x(way(index)), SIGNALS_AT.0)
 }
 
-/// Where the wire from the ground strip goes into the signal strip.
+/// The hole of the signal strip for the wire from the ground strip.
 pub fn signal_ground() -> (f64, f64) {
     (signal_x(MIDDLE), SIGNALS_AT.0)
 }
 
-/// Where the jumper to the board leaves the signal strip.
+/// The hole of the signal strip for the jumper to the board.
 pub fn board(index: usize) -> (f64, f64) {
     let outward = if index < 2 { -JUMPER } else { JUMPER };
     (signal_x(way(index)) + outward, SIGNALS_AT.1)
 }
 
-/// Where the board's ground leaves the signal strip.
+/// The hole of the signal strip for the board's ground.
 pub fn board_ground() -> (f64, f64) {
     (signal_x(MIDDLE), SIGNALS_AT.1)
 }

@@ -54,7 +54,7 @@ fn ground_way(name_of_part: &str) -> Point {
 /// All wires of the supply; `socket` is the middle of the board's round socket.
 pub fn wires(socket: Point) -> Vec<Wire> {
     let [plug_plus, plug_minus] = round_plug(socket);
-    let straight = |a: Point, b: Point| vec![a, b];
+    let segment = |a: Point, b: Point| vec![a, b];
     let thick = |name: &str, path: Path, colour| Wire::new(name, path, colour, THICK);
     let out = supply(0);
     let minus = ground_way("battery");
@@ -64,22 +64,22 @@ pub fn wires(socket: Point) -> Vec<Wire> {
     let mut wires = vec![
         thick(
             "battery-fuse",
-            straight((BATTERY, PLUS), (FUSE_AT[1], PLUS)),
+            segment((BATTERY, PLUS), (FUSE_AT[1], PLUS)),
             RED,
         ),
         thick(
             "fuse-switch",
-            straight((FUSE_AT[0], PLUS), (SWITCH_AT[1], PLUS)),
+            segment((FUSE_AT[0], PLUS), (SWITCH_AT[1], PLUS)),
             RED,
         ),
         thick(
             "switch-way",
-            straight((SWITCH_AT[0], PLUS), (WAY[1], PLUS)),
+            segment((SWITCH_AT[0], PLUS), (WAY[1], PLUS)),
             RED,
         ),
         thick(
             "way-converter",
-            straight(
+            segment(
                 (WAY[0], CONVERTER_IN_PLUS),
                 (CONVERTER[1], CONVERTER_IN_PLUS),
             ),
@@ -143,12 +143,12 @@ pub fn wires(socket: Point) -> Vec<Wire> {
     let [above, below] = capacitor();
     wires.push(thick(
         "capacitor-ground",
-        straight(above, ground_way("capacitor")),
+        segment(above, ground_way("capacitor")),
         BLACK,
     ));
-    wires.push(thick("capacitor-supply", straight(below, supply(1)), RED));
+    wires.push(thick("capacitor-supply", segment(below, supply(1)), RED));
     for (number, (y, colour)) in (1..).zip(BALANCE.into_iter().zip([RED, GREY_WIRE, BLACK])) {
-        let path = straight((BATTERY, y), (ALARM, y));
+        let path = segment((BATTERY, y), (ALARM, y));
         wires.push(Wire::new(format!("balance-{number}"), path, colour, LEG));
     }
     wires

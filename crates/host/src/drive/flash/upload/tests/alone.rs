@@ -53,11 +53,11 @@ fn after_a_cable_is_pulled_the_firmware_finds_no_robot_until_the_next_upload() {
         let mut board = Double::with(&before);
         board.unplugged_after = Some(written);
         let cut = run_with(board, &large);
-        let words = cut.words();
+        let words = cut.error();
         assert!(words.starts_with("the port is gone"), "{words}");
         assert!(words.contains("fault=robot and moves no servo"), "{words}");
         assert!(cut.board.flash[..0x6e00] == code, "the code");
-        assert_eq!(its_robot(&cut.board), None, "after {written} pages");
+        assert_eq!(robot_name(&cut.board), None, "after {written} pages");
         let mut board = cut.board;
         board.unplugged_after = None;
         let mended = run_with(board, &large);
@@ -66,8 +66,8 @@ fn after_a_cable_is_pulled_the_firmware_finds_no_robot_until_the_next_upload() {
             "{:?}",
             mended.found
         );
-        assert!(mended.result.is_ok(), "{}", mended.words());
-        assert_eq!(its_robot(&mended.board).as_deref(), Some("large"));
+        assert!(mended.result.is_ok(), "{}", mended.error());
+        assert_eq!(robot_name(&mended.board).as_deref(), Some("large"));
     }
 }
 
@@ -76,8 +76,8 @@ fn any_one_byte_lost_while_a_robot_is_written_is_recovered() {
     let (before, paper) = (with_robot("own-gaits").flash, robot_image("paper"));
     let right = whole_image("paper");
     let whole = run_with(Double::with(&before), &paper).board;
-    let is_right = |run: &Run, at: usize| {
-        assert!(run.result.is_ok(), "byte {at}: {}", run.words());
+    let assert_recovered = |run: &Run, at: usize| {
+        assert!(run.result.is_ok(), "byte {at}: {}", run.error());
         assert!(
             run.board.flash[..right.end()] == *right.bytes(),
             "byte {at}"
@@ -86,12 +86,12 @@ fn any_one_byte_lost_while_a_robot_is_written_is_recovered() {
     for at in (0..whole.received).step_by(17) {
         let mut board = Double::with(&before);
         board.lost_to = Some(at);
-        is_right(&run_with(board, &paper), at);
+        assert_recovered(&run_with(board, &paper), at);
     }
     for at in (0..whole.sent).step_by(101) {
         let mut board = Double::with(&before);
         board.lost_from = Some(at);
-        is_right(&run_with(board, &paper), at);
+        assert_recovered(&run_with(board, &paper), at);
     }
 }
 
@@ -104,7 +104,7 @@ fn a_robot_alone_is_refused_if_the_code_on_the_board_cannot_read_it() {
         let before = board.flash.clone();
         let run = run_with(board, &large);
         assert!(run.board.flash == before && run.board.written.is_empty());
-        run.words()
+        run.error()
     };
     let reason =
         "a robot alone moves nothing: write both, without --only-robot. Nothing was written";

@@ -7,7 +7,7 @@ fn an_old_nano_is_found_at_its_own_speed_and_keeps_its_boot_loader() {
     let mut board = Double::old_nano();
     board.flash[..500].fill(9);
     let run = run_with(board, &whole_image("paper"));
-    assert!(run.result.is_ok(), "{}", run.words());
+    assert!(run.result.is_ok(), "{}", run.error());
     assert_eq!(
         (run.board.resets, run.again),
         (2, 1),
@@ -33,8 +33,12 @@ fn a_byte_lost_on_the_way_to_an_old_nano_is_recovered_at_its_speed() {
     assert!(bytes > 1000, "{bytes} bytes");
     for at in (0..bytes).step_by(17) {
         let run = nano(Some(at));
-        assert!(run.result.is_ok(), "byte {at}: {}", run.words());
-        assert_eq!(its_robot(&run.board).as_deref(), Some("large"), "byte {at}");
+        assert!(run.result.is_ok(), "byte {at}: {}", run.error());
+        assert_eq!(
+            robot_name(&run.board).as_deref(),
+            Some("large"),
+            "byte {at}"
+        );
         assert!(
             run.board.resets <= 4,
             "byte {at}: {} resets",
@@ -53,7 +57,7 @@ fn an_image_that_reaches_into_a_nanos_boot_section_is_refused() {
         let before = board.flash.clone();
         let run = run_as(board, &image, target);
         assert!(run.board.flash == before && run.board.written.is_empty());
-        run.words()
+        run.error()
     };
     let any = Target::default();
     let named = |model| Target {
@@ -80,9 +84,9 @@ fn an_image_that_reaches_into_a_nanos_boot_section_is_refused() {
     );
     for target in [any, named(Model::Uno)] {
         let run = run_as(Double::blank(), &image, target);
-        assert!(run.result.is_ok(), "{}", run.words());
+        assert!(run.result.is_ok(), "{}", run.error());
     }
     // What is short enough is written without a question.
     let run = run_as(Double::blank(), &whole_image("paper"), in_doubt);
-    assert!(run.result.is_ok(), "{}", run.words());
+    assert!(run.result.is_ok(), "{}", run.error());
 }
