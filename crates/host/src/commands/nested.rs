@@ -102,7 +102,8 @@ pub fn calibrate(args: With<drive::console::calibrate::Args, OfCalibrate>) -> Re
 #[derive(Subcommand)]
 pub enum OfMeasure {
     Sheet(crate::measure::SheetArgs),
-    Servo(crate::measure::ServoArgs),
+    // Boxed, so that the commands are about equally large.
+    Servo(Box<crate::measure::ServoArgs>),
     Steps(crate::measure::StepsArgs),
     Slope(crate::measure::SlopeArgs),
     Keys(crate::measure::KeysArgs),
@@ -113,7 +114,7 @@ pub enum OfMeasure {
 pub fn measure(args: With<crate::measure::Args, OfMeasure>) -> Result<(), Failure> {
     match args.below {
         Some(OfMeasure::Sheet(args)) => crate::measure::write_sheet(args),
-        Some(OfMeasure::Servo(args)) => crate::measure::measure_servo(args),
+        Some(OfMeasure::Servo(args)) => crate::measure::measure_servo(*args),
         Some(OfMeasure::Steps(args)) => crate::measure::print_steps(args),
         Some(OfMeasure::Slope(args)) => crate::measure::measure_slope(args),
         Some(OfMeasure::Keys(args)) => crate::measure::find_keys(args),
