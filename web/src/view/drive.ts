@@ -95,7 +95,9 @@ export class Drive {
     for (const { command, line } of this.buttons) {
       const { lines } = this.predictions.get(command) ?? {};
       const share = lines?.[Math.ceil((this.pace * lines.length) / 100) - 1];
-      line.textContent = share === undefined ? '' : `${share >= TIGHT ? '⚠ ' : ''}line ${share.toFixed(2)}`;
+      const isTight = share !== undefined && share >= TIGHT;
+      line.classList.toggle('tight', isTight);
+      line.textContent = share === undefined ? '' : `${isTight ? '⚠ ' : ''}line ${share.toFixed(2)}`;
       if (isKnown && share !== undefined && share > largest) [hardest, largest] = [command, share];
     }
     const note = element('line-note');
