@@ -570,14 +570,14 @@ export class Session {
    * firmware is not the page's, and then nothing was written.
    */
   async flashRobot(progress: Progress): Promise<void> {
-    const { boardBanner: there, code, section, description } = this;
+    const { boardBanner, code, section, description } = this;
     if (!code) throw new Error('the firmware has not come yet');
-    if (there === null) throw new Unfit('this firmware is not on the board: write firmware and robot');
-    if (isBanner(there) && there.version !== description.version) {
-      throw new Unfit(`the board has firmware ${there.version}, and this robot is for ${description.version}: write firmware and robot`);
+    if (boardBanner === null) throw new Unfit('this firmware is not on the board: write firmware and robot');
+    if (isBanner(boardBanner) && boardBanner.version !== description.version) {
+      throw new Unfit(`the board has firmware ${boardBanner.version}, and this robot is for ${description.version}: write firmware and robot`);
     }
     // Without a banner the firmware's version is unknown, so its code is compared.
-    await this.write({ at: description.start, bytes: section }, progress, isBanner(there) ? null : { at: 0, bytes: code });
+    await this.write({ at: description.start, bytes: section }, progress, isBanner(boardBanner) ? null : { at: 0, bytes: code });
   }
 
   private async write(piece: Piece, progress: Progress, under: Piece | null): Promise<void> {

@@ -317,23 +317,39 @@ fn a_film_whose_rate_is_off_by_some_percent_shows_the_way_of_a_cycle_and_its_tim
     }
 }
 
-#[test]
-fn a_tag_that_is_seen_twice_is_not_guessed() {
+/// A picture of the sheet and the card, and beside it the same once more, or nothing.
+fn doubled(is_twice: bool) -> Picture {
     let mut rng = Rng::with_seed(2);
     let picture = studio()
         .background(&mut rng)
         .picture(0.0, |_| [0.0; 3], &mut rng);
     let [width, height] = picture.size();
-    let twice: Vec<u8> = picture
-        .grey()
-        .chunks(width)
-        .flat_map(|row| [row, row].concat())
-        .collect();
-    let twice = Picture::new(2 * width, height, twice).expect("a picture");
-    let trouble = Film::default().add(0.0, &twice).expect_err("two of each");
+    let nothing = vec![200; width];
+    let rows = picture.grey().chunks(width);
+    let rows = rows.flat_map(|row| [row, if is_twice { row } else { &nothing[..] }].concat());
+    Picture::new(2 * width, height, rows.collect()).expect("a picture")
+}
+
+#[test]
+fn a_tag_that_is_seen_twice_is_not_guessed() {
+    let trouble = Film::default()
+        .add(0.0, &doubled(true))
+        .expect_err("two of each");
     assert!(
         matches!(trouble, Trouble::Twice { number: 1, .. }),
         "{trouble}"
+    );
+}
+
+#[test]
+fn a_second_copy_of_a_tag_that_comes_later_is_noticed_within_sixteen_pictures() {
+    let mut film = Film::default();
+    film.add(0.0, &doubled(false)).expect("one of each");
+    let twice = doubled(true);
+    let trouble = (1..=16).find_map(|n| film.add(f64::from(n) / 30.0, &twice).err());
+    assert!(
+        matches!(trouble, Some(Trouble::Twice { .. })),
+        "{trouble:?}"
     );
 }
 

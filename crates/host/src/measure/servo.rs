@@ -231,6 +231,7 @@ impl Report {
         let mut new = figures::written(text, &self.figures).map_err(|error| refused(&error))?;
         if self.is_volts_measured {
             new = edit::with_number(&new, "servo.volts", self.volts)
+                .and_then(|new| edit::with_comment(&new, "servo.volts", "measured:", "by hand"))
                 .map_err(|error| refused(&error))?;
         }
         Robot::parse(&new).map_err(|error| refused(&error))?;
