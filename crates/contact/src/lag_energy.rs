@@ -5,7 +5,7 @@
 //! a stop a slope that no pad can climb. It has kinks at the lags that are most likely.
 //! They are rounded off within `eps`, like the lengths of slides in `friction.rs`.
 
-use crate::motor::{Expansion, MotorStep};
+use crate::motor_step::{Expansion, MotorStep};
 
 /// The energy of a lag, in the units of the contact problem: forces over the mean friction of a
 /// pad, mm and radians.

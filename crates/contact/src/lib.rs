@@ -49,6 +49,7 @@ mod lag_energy;
 mod legs;
 mod linear;
 mod motor;
+mod motor_step;
 mod place;
 mod prediction;
 mod stance;

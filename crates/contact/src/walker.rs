@@ -8,7 +8,8 @@ use crate::feet::Feet;
 use crate::friction::{Compliance, Displacement, Inertia, Pads, Point, Twist};
 use crate::ground::Ground;
 use crate::lag_energy::LagEnergy;
-use crate::motor::{MotorStep, Motors, ServoState};
+use crate::motor::Motors;
+use crate::motor_step::{MotorStep, ServoState};
 use crate::place::Place;
 
 /// Largest sweep of a step, deg. A larger one is divided into equal steps.

@@ -12,7 +12,6 @@ use lizard_robot::{Bars, edit};
 use serde::{Deserialize, Serialize};
 use serde_json::Result;
 
-use crate::description::Movement;
 use crate::drawn::DrawnGait;
 #[cfg(feature = "tune")]
 use crate::faster::SearchTask;
@@ -20,6 +19,7 @@ use crate::floor::Floor;
 use crate::lengths::{self, Lengths};
 use crate::page::Page;
 use crate::place::Place;
+use crate::prediction::Movement;
 use crate::trial::EditedGait;
 
 /// A question of the page, with its arguments.

@@ -6,11 +6,8 @@ use lizard_core::numbers::section::START;
 use lizard_kinematics::Check;
 use lizard_robot::edit::HIPS;
 use lizard_robot::servo::{LEGS, NAMES};
-use lizard_robot::{
-    CheckedGait, Effort, Ground, Plate, Prediction, Robot, STILL_FRAMES, ServoType, SpringCost,
-    Travel, healthy_rail_mv,
-};
-use lizard_twin::{ServoModel, Twin};
+use lizard_robot::{Plate, Robot, STILL_FRAMES, ServoType, healthy_rail_mv};
+use lizard_twin::ServoModel;
 use serde::Serialize;
 
 use crate::floor::Floor;
@@ -335,114 +332,6 @@ fn lengths(robot: &Robot) -> Vec<LinkEntry> {
         feet.mount,
     );
     links.chain(legs).chain(aside).chain([mount]).collect()
-}
-
-/// The movement of a cycle as the page reads it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Movement {
-    /// Ahead, mm; `None` if it is undetermined.
-    forward: Option<f64>,
-    /// To the left, mm; `None` if it is undetermined.
-    left: Option<f64>,
-    /// Counter-clockwise, deg; `None` if it is undetermined.
-    turn: Option<f64>,
-}
-
-impl From<Travel> for Movement {
-    fn from(movement: Travel) -> Self {
-        Self {
-            forward: Some(movement.forward),
-            left: Some(movement.left),
-            turn: Some(movement.turn),
-        }
-    }
-}
-
-impl From<Prediction> for Movement {
-    fn from(movement: Prediction) -> Self {
-        let Prediction {
-            forward,
-            left,
-            turn,
-        } = movement;
-        Self {
-            forward,
-            left,
-            turn,
-        }
-    }
-}
-
-impl Movement {
-    /// The movement ahead, mm; `None` if it is undetermined.
-    #[must_use]
-    pub fn forward(&self) -> Option<f64> {
-        self.forward
-    }
-}
-
-/// The steps of the page's slider up to the gait's own pace.
-const PACES: usize = 20;
-
-/// The prediction of a cycle of a gait.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct GaitPrediction {
-    /// Movement of the body.
-    #[serde(flatten)]
-    pub movement: Movement,
-    /// Largest lag of a leg, deg; `None` if legs are rigid.
-    pub lag: Option<f64>,
-    /// The distance relative to that of rigid legs; `None` if legs are rigid, or rigid legs go
-    /// nowhere.
-    pub share: Option<f64>,
-    /// Largest share of a servo's line at each step of the pace; none with ideal servos.
-    pub lines: Option<[f64; PACES]>,
-}
-
-impl GaitPrediction {
-    /// Predicts a gait with the current floor and servos of a twin.
-    #[must_use]
-    pub fn of(twin: &Twin, gait: &CheckedGait) -> Self {
-        let prediction = Self::ideal(gait, twin.ground());
-        let ServoModel::Motors(motors) = twin.servos() else {
-            return prediction;
-        };
-        let movement = prediction.movement;
-        let went = twin.cycle(gait).travel();
-        let effort = Effort::of(gait, twin.ground(), &motors);
-        let line = |step: usize| effort.line_share((step + 1) as f64 / PACES as f64, 1.0);
-        Self {
-            movement: Movement {
-                forward: movement.forward.and(Some(went.forward)),
-                left: movement.left.and(Some(went.left)),
-                turn: movement.turn.and(Some(went.turn)),
-            },
-            lines: Some(std::array::from_fn(line)),
-            ..prediction
-        }
-    }
-
-    /// Predicts a gait with ideal servos.
-    fn ideal(gait: &CheckedGait, ground: &Ground) -> Self {
-        match SpringCost::of(gait, ground) {
-            Some(SpringCost {
-                movement,
-                lag,
-                share,
-            }) => Self {
-                movement: movement.into(),
-                lag: Some(lag),
-                share,
-                lines: None,
-            },
-            None => Self {
-                movement: gait.predict(ground).into(),
-                lag: None,
-                share: None,
-                lines: None,
-            },
-        }
-    }
 }
 
 #[cfg(test)]

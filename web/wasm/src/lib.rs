@@ -24,6 +24,7 @@ mod page;
 #[cfg(test)]
 mod paper;
 mod place;
+mod prediction;
 mod refused;
 mod room;
 mod round;
@@ -31,10 +32,7 @@ mod scene;
 mod trial;
 
 pub use core_run::{CoreFrame, CoreRun};
-pub use description::{
-    Description, GaitEntry, GaitPrediction, LinkEntry, MarginEntry, ModelEntry, Movement,
-    ServoEntry,
-};
+pub use description::{Description, GaitEntry, LinkEntry, MarginEntry, ModelEntry, ServoEntry};
 pub use drawn::DrawnGait;
 #[cfg(feature = "tune")]
 pub use faster::{Faster, Found, Progress, SearchExtent, SearchTask};
@@ -43,6 +41,7 @@ pub use lengths::{Lengths, NearestLengths, WithoutGait};
 pub use map::{Curve, Map, MapPoint};
 pub use page::{Edited, Frame, Page};
 pub use place::Place;
+pub use prediction::{GaitPrediction, Movement};
 pub use refused::Refused;
 pub use room::ReachArea;
 pub use round::RoundPath;

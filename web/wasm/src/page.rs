@@ -10,13 +10,14 @@ use lizard_twin::{ServoModel, State, Twin};
 use serde::Serialize;
 
 use crate::core_run::{CoreFrame, CoreRun};
-use crate::description::{Description, GaitPrediction, servo_model};
+use crate::description::{Description, servo_model};
 use crate::drawn::DrawnGait;
 #[cfg(feature = "tune")]
 use crate::faster::{Faster, SearchExtent, SearchTask};
 use crate::floor::{Floor, Legs};
 use crate::map::Map;
 use crate::place::Place;
+use crate::prediction::GaitPrediction;
 use crate::refused::Refused;
 use crate::room::ReachArea;
 use crate::round::RoundPath;

@@ -8,8 +8,8 @@ use lizard_robot::{Bars, Robot, edit};
 use lizard_twin::Twin;
 use serde::{Deserialize, Serialize};
 
-use crate::description::GaitPrediction;
 use crate::drawn::DrawnGait;
+use crate::prediction::GaitPrediction;
 use crate::refused::Refused;
 
 /// The smallest gait that is offered: tenths of a deg, or hundredths of the drawn size.

@@ -1,93 +1,18 @@
-//! The file for MuJoCo, read by a reader of XML and placed by its own numbers alone.
+//! The file for MuJoCo says what robot.toml says.
 
 use std::collections::BTreeMap;
 
-use lizard_kinematics::{End, Side, Solution, Vector};
-use lizard_parts::{Assembly, Bill, Block, Course, Mesh, Pads, Pull, Scene, Solid, mjcf};
+use lizard_kinematics::{End, Side, Vector};
+use lizard_parts::{Assembly, Bill, Block, Course, Mesh, Pads, Pull, Solid};
 use lizard_robot::Robot;
 use lizard_robot::servo::{LEGS, NAMES};
 use roxmltree::{Document, Node};
 
+use crate::mjcf_reader::{bodies, child, elements, neutral, numbers, written};
 use crate::{GRAIN, ROBOTS, with};
 
 fn robot(name: &str) -> Robot {
     with(name, "")
-}
-
-pub fn neutral(robot: &Robot) -> Solution {
-    let solved = robot.lizard().solve(&robot.neutral());
-    solved.expect("neutral closes")
-}
-
-pub fn written(robot: &Robot, change: impl FnOnce(&mut Scene)) -> String {
-    let assembly = Assembly::new(robot);
-    let mut scene = Scene::of(&assembly);
-    change(&mut scene);
-    mjcf(&assembly, &neutral(robot), &scene).expect("it is made")
-}
-
-pub fn numbers(node: Node, attribute: &str) -> Vec<f64> {
-    let text = node.attribute(attribute).expect(attribute);
-    let parts = text.split(' ');
-    parts.map(|part| part.parse().expect("a number")).collect()
-}
-
-/// A body of the file: where it is in the world, m, and how far it is turned.
-#[derive(Clone, Copy)]
-pub struct Placed {
-    pub at: [f64; 3],
-    pub turn: f64,
-}
-
-impl Placed {
-    pub fn point(&self, point: &[f64]) -> [f64; 3] {
-        let (sin, cos) = self.turn.sin_cos();
-        [
-            self.at[0] + cos * point[0] - sin * point[1],
-            self.at[1] + sin * point[0] + cos * point[1],
-            self.at[2] + point[2],
-        ]
-    }
-}
-
-/// Bodies by their names.
-pub type Bodies<'a> = BTreeMap<String, (Placed, Node<'a, 'a>)>;
-
-/// Every body of a file.
-pub fn bodies<'a>(document: &'a Document) -> Bodies<'a> {
-    fn walk<'a>(parent: Node<'a, 'a>, on: Placed, all: &mut Bodies<'a>) {
-        for body in parent.children().filter(|node| node.has_tag_name("body")) {
-            let quat = numbers(body, "quat");
-            assert_eq!(quat[1..3], [0.0; 2], "it stays upright");
-            let placed = Placed {
-                at: on.point(&numbers(body, "pos")),
-                turn: on.turn + 2.0 * quat[3].atan2(quat[0]),
-            };
-            let name = body.attribute("name").expect("a name").to_owned();
-            assert!(all.insert(name, (placed, body)).is_none(), "one of a name");
-            walk(body, placed, all);
-        }
-    }
-    let mut all = BTreeMap::new();
-    let world = find(document, "worldbody");
-    let at = [0.0; 3];
-    walk(world, Placed { at, turn: 0.0 }, &mut all);
-    all
-}
-
-fn find<'a>(document: &'a Document, tag: &str) -> Node<'a, 'a> {
-    child(document.root_element(), tag)
-}
-
-/// The elements within an element of the root.
-fn elements<'a>(document: &'a Document, tag: &str) -> Vec<Node<'a, 'a>> {
-    let children = find(document, tag).children();
-    children.filter(Node::is_element).collect()
-}
-
-pub fn child<'a>(node: Node<'a, 'a>, tag: &str) -> Node<'a, 'a> {
-    let found = node.children().find(|node| node.has_tag_name(tag));
-    found.expect(tag)
 }
 
 /// Mass, g, and mass centre of all bodies: forward, left, above the plate, mm.

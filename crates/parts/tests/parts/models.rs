@@ -9,7 +9,7 @@ use lizard_robot::Robot;
 use lizard_robot::servo::NAMES;
 use roxmltree::{Document, Node};
 
-use crate::mjcf::{Placed, bodies, child, neutral, numbers, written};
+use crate::mjcf_reader::{Placed, bodies, child, neutral, numbers, written};
 use crate::{ROBOTS, with};
 
 /// URDF and SDF of a robot, and the names of their meshes.

@@ -1,0 +1,189 @@
+//! A servo's motor in a short step of time, as one convex function of the servo's place at its end: the motor's torque, its
+//! damping and its rotor's change of speed are the slopes of it. So the contact problem of `friction.rs` takes a servo as it
+//! takes a spring.
+
+use crate::motor::Motor;
+
+/// The motion of a servo at the beginning of a step, in rad and rad/s.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ServoState {
+    /// Angle that the pulse asks for.
+    pub target: f64,
+    /// Angle of the servo.
+    pub servo: f64,
+    /// Rate of the servo.
+    pub rate: f64,
+}
+
+/// The value, slope and curvature of an energy.
+pub(crate) type Expansion = (f64, f64, f64);
+
+/// The energy of a motor in a short time step, as a function of the servo's place: the angle, rad,
+/// by which it is behind a reference, the angle that it would have at an unchanged rate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct MotorStep {
+    /// Target ahead of the reference, rad.
+    ahead: f64,
+    /// Half the dead band: the error up to which there is no torque, rad.
+    idle: f64,
+    /// Error beyond the dead band at which the torque is full, rad.
+    full: f64,
+    /// Torque at stall.
+    stall: f64,
+    /// Stiffness that the rotor's inertia and the damping have in a step of this length.
+    inertial_stiffness: f64,
+    /// Place to which inertia and damping alone would lead, rad.
+    unloaded: f64,
+    /// Place of a servo that does not turn in this step, rad.
+    unmoved: f64,
+    /// Torque of dry friction.
+    drag: f64,
+    /// Torque of the slider on the servo.
+    slider: f64,
+}
+
+impl MotorStep {
+    /// Describes a step of `seconds`. `drag` and `slider` are the torques of dry friction and of
+    /// the slider, N mm; the unit of all forces inside is `force` N.
+    pub fn new(
+        motor: &Motor,
+        turn: ServoState,
+        seconds: f64,
+        [drag, slider]: [f64; 2],
+        force: f64,
+    ) -> Self {
+        let inertia = motor.inertia() / (seconds * seconds);
+        let inertial_stiffness = inertia + motor.damping() / seconds;
+        let unloaded_turn = turn.rate * seconds;
+        Self {
+            ahead: turn.target - turn.servo - unloaded_turn,
+            idle: motor.idle.to_radians(),
+            full: motor.full.to_radians(),
+            stall: motor.stall / force,
+            inertial_stiffness: inertial_stiffness / force,
+            unloaded: unloaded_turn * (1.0 - inertia / inertial_stiffness),
+            unmoved: unloaded_turn,
+            drag: drag / force,
+            slider: slider / force,
+        }
+    }
+
+    /// Energy at a place, its slope and its curvature, with the kink of dry friction rounded off
+    /// within `eps` rad.
+    pub fn expand(&self, place: f64, eps: f64) -> Expansion {
+        let error = self.ahead + place;
+        let excess = (error.abs() - self.idle).max(0.0);
+        let gain = self.stall / self.full;
+        let (energy, torque, stiffness) = match excess < self.full {
+            true if excess > 0.0 => (gain * excess * excess / 2.0, gain * excess, gain),
+            true => (0.0, 0.0, 0.0),
+            false => (self.stall * (excess - self.full / 2.0), self.stall, 0.0),
+        };
+        let deviation = place - self.unloaded;
+        let from_still = place - self.unmoved;
+        let length = (from_still * from_still + eps * eps).sqrt();
+        let (direction, curvature) = match length > 0.0 {
+            true => (from_still / length, eps * eps / (length * length * length)),
+            false => (0.0, 0.0),
+        };
+        (
+            energy
+                + self.inertial_stiffness * deviation * deviation / 2.0
+                + self.drag * length
+                + self.slider * place,
+            torque.copysign(error)
+                + self.inertial_stiffness * deviation
+                + self.drag * direction
+                + self.slider,
+            stiffness + self.inertial_stiffness + self.drag * curvature,
+        )
+    }
+
+    /// Place at the end of the step without a load, to the first order, rad.
+    pub fn unloaded_end(&self) -> f64 {
+        -self.expand(0.0, 0.0).1 / self.inertial_stiffness
+    }
+
+    /// The place at which the motor's torque equals the load's. `slope` gives the load's torque
+    /// and stiffness at a place; the torque is at most `max`, and changes fast at the `kinks`.
+    pub fn balance(
+        &self,
+        kinks: [f64; 2],
+        max: f64,
+        eps: f64,
+        slope: impl Fn(f64) -> (f64, f64),
+    ) -> f64 {
+        let reach = (self.stall + self.drag + self.slider.abs() + max) / self.inertial_stiffness;
+        let (mut low, mut high) = (self.unloaded - reach, self.unloaded + reach);
+        let guess = self.unloaded_end().max(kinks[0]).min(kinks[1]);
+        let mut place = guess.max(low).min(high);
+        let mut longest = reach;
+        for _ in 0..MAX_ITERATIONS {
+            let (_, torque, stiffness) = self.expand(place, eps);
+            let (load, load_stiffness) = slope(place);
+            let error = torque - load;
+            match error > 0.0 {
+                true => high = place,
+                false => low = place,
+            }
+            let newton = place - error / (stiffness + load_stiffness);
+            let far = (newton - place).abs();
+            if far <= f64::EPSILON * (reach + place.abs()) {
+                return newton;
+            }
+            // Newton's steps shrink, unless a kink lies in between.
+            let is_between = |place: &f64| low < *place && *place < high;
+            let next = match is_between(&newton) && far <= longest {
+                true => newton,
+                false => {
+                    let kink = kinks.into_iter().find(is_between);
+                    kink.unwrap_or(f64::midpoint(low, high))
+                }
+            };
+            longest = (next - place).abs();
+            place = next;
+        }
+        place
+    }
+}
+
+/// Iterations of a balance at most: as many as bisection alone would need.
+const MAX_ITERATIONS: usize = 60;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_energy_of_a_step_has_its_torque_as_slope() {
+        let motor = Motor {
+            stall: 176.5,
+            rate: 500.0,
+            spin_up: 0.02,
+            full: 3.0,
+            idle: 0.0,
+        };
+        let turn = ServoState {
+            target: 0.2,
+            servo: 0.05,
+            rate: 3.0,
+        };
+        let motor_step = MotorStep::new(&motor, turn, 0.0025, [12.0, -4.0], 0.7);
+        for step in -40..40 {
+            let place = f64::from(step) / 200.0 + 1e-4;
+            let expanded_at = |place: f64| motor_step.expand(place, 1e-3);
+            let (before, after) = (expanded_at(place - 1e-6), expanded_at(place + 1e-6));
+            let (_, torque, stiffness) = expanded_at(place);
+            let slope = (after.0 - before.0) / 2e-6;
+            assert!(
+                (slope - torque).abs() < 1e-3 * torque.abs().max(1.0),
+                "{place}"
+            );
+            let bend = (after.1 - before.1) / 2e-6;
+            assert!(
+                (bend / stiffness - 1.0).abs() < 1e-2,
+                "{place} {bend} {stiffness}"
+            );
+        }
+    }
+}
