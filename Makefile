@@ -143,14 +143,14 @@ clean: ## remove everything that was built
 	@scripts/build-web
 
 # The firmware is needed because a test compares its section for robot.toml with the page's.
-# ONLY=measure narrows it down to a file, EXCEPT=measure leaves one out.
+# ONLY=measure+slow narrows it down to files, one after the other; EXCEPT=measure+slow leaves them out.
 .web-test:
 	@env -u LIZARD_ROBOT $(MAKE) .firmware ROBOT=
 	@scripts/setup-web --test
 	@scripts/setup-book
 	@scripts/build-web
 	@cd crates && cargo build $(ALL) --bin lizard --quiet && cargo build -p lizard-film --example studio --quiet
-	@LIZARD=$(HOST)/debug/lizard $$(cat target/web-node) --test --test-concurrency=2 --test-timeout=900000 $(or $(ONLY:%=web/tests/%.test.js),$(filter-out $(EXCEPT:%=web/tests/%.test.js),$(wildcard web/tests/*.test.js)))
+	@LIZARD=$(HOST)/debug/lizard $$(cat target/web-node) --test --test-concurrency=$(if $(ONLY),1,2) --test-timeout=900000 $(or $(patsubst %,web/tests/%.test.js,$(subst +, ,$(ONLY))),$(filter-out $(patsubst %,web/tests/%.test.js,$(subst +, ,$(EXCEPT))),$(wildcard web/tests/*.test.js)))
 
 # The second line puts the program at the path that the documentation names.
 .cli:
