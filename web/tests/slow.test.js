@@ -1,5 +1,5 @@
 // Waits of a person, in real time: nothing runs beside this file. What is busy all the same only ever adds to them, so
-// the shortest of some tries counts.
+// one try in time is enough.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
@@ -9,7 +9,7 @@ before(open);
 afterEach(closePages);
 after(close);
 
-const TRIES = 5;
+const TRIES = 12;
 /** From the page's address to the first step of the robot at full speed, ms. */
 const FIRST_STEP = 1500;
 /** From a press of Stop to its line on the way to the robot and its answer, ms, on a processor six times as slow. */
@@ -20,14 +20,15 @@ const MOVING = { reducedMotion: 'no-preference' };
 const tools = (opened) => within('the tools of the browser', opened.context().newCDPSession(opened));
 const walks = () => window.lizard?.gait === 'walk';
 
-async function least(measure) {
-  const times = [];
-  for (let n = 0; n < TRIES; n++) times.push(await measure());
-  return Math.min(...times);
+/** Measures until a time is short enough, at most TRIES times, and returns the shortest. */
+async function least(enough, measure) {
+  let shortest = Infinity;
+  for (let n = 0; n < TRIES && shortest > enough; n++) shortest = Math.min(shortest, await measure());
+  return shortest;
 }
 
 test('the first step comes soon after the page was asked for', async (t) => {
-  const time = await least(async () => {
+  const time = await least(FIRST_STEP, async () => {
     const opened = await openBlank(MOVING);
     await opened.goto(address());
     await opened.waitForFunction(walks);
@@ -45,7 +46,7 @@ test('on a slow phone the opening walk begins, and Stop stops it in 0.3 s', asyn
   await (await tools(opened)).send('Emulation.setCPUThrottlingRate', { rate: SLOW });
   await opened.goto(address());
   await opened.waitForFunction(walks);
-  const time = await least(async () => {
+  const time = await least(STOP, async () => {
     await opened.evaluate(() => {
       addEventListener('pointerdown', ({ timeStamp }) => {
         const look = () => (window.lizard.gait === 'stop' ? (window.stopped = performance.now() - timeStamp) : requestAnimationFrame(look));
