@@ -103,12 +103,15 @@ test('the page drives the simulated robot before a camera, and measures the gait
     assert.ok(Math.abs(report[part].mean - expected[part].mean) < 2 * (report[part].error + expected[part].error), part);
   }
   assert.ok(report.cycles >= 2 && report.cycles <= 5, `${report.cycles}`);
+  assert.deepEqual(report.mujoco, expected.mujoco);
+  const cells = await opened.locator('#measured tr', { hasText: 'ahead, mm' }).first().locator('td').allTextContents();
+  assert.equal(cells.at(-1), `+${expected.mujoco[0].toFixed(2)}`);
   assert.match(String(await download(opened, 'csv')), /^gait,speed,cycles,forward_mean.*\nwalk,100,\d/);
-  assert.match(String(await download(opened, 'svg')), /^<svg .*ahead, mm.*<\/svg>$/);
+  assert.match(String(await download(opened, 'svg')), /^<svg .*walk, 100 %, .*ahead, mm.*<\/svg>$/s);
   assert.deepEqual([...(await download(opened, 'png')).subarray(1, 4)], [...Buffer.from('PNG')]);
 });
 
-test('a film file recorded by the browser is measured, and again for another gait', async () => {
+test('the gait in a film file recorded by the browser is found by its path; with another gait it is not measured', async () => {
   await openWithCamera(join(walk, 'film.y4m'));
   const recorder = await openBlank();
   await recorder.goto(address());
@@ -133,9 +136,10 @@ test('a film file recorded by the browser is measured, and again for another gai
   await opened.locator('#measure-results').waitFor();
   const { gaits: [report] } = JSON.parse(await download(opened, 'json'));
   assertTrue(report);
+  assert.equal(report.gait, 'walk');
   await opened.locator('#measure-gait').selectOption('left');
   await opened.getByRole('button', { name: 'Measure again' }).click();
-  await waitForMessage(opened, 'said', /^left: the path is not that of this gait/);
+  await waitForMessage(opened, 'said', /^left: the path is not that of this gait.*; it is like walk\./);
   assert.ok(!(await opened.locator('#measure-results').isVisible()));
   // A file that is no film.
   await opened.locator('#measure-file').setInputFiles({ name: 'words.mp4', mimeType: 'video/mp4', buffer: Buffer.from('words') });

@@ -143,7 +143,9 @@ class World {
   }
 }
 
-const PLAN = { gaits: ['walk', 'left', 'arc left', 'back', 'walk'], cycles: 8, speed: 100, pause: 1 };
+/** Gaits with cycles of a second. */
+const gaits = (...commands) => commands.map((command) => ({ command, period: 1 }));
+const PLAN = { gaits: gaits('walk', 'left', 'arc left', 'back', 'walk'), cycles: 8, speed: 100, pause: 1 };
 /** Some hundred worlds, each with random places, robots and answers. */
 async function worlds(count, act) {
   for (let seed = 1; seed <= count; seed++) {
@@ -164,10 +166,13 @@ test('a robot that goes as predicted walks every gait, from the middle all cycle
   await worlds(60, async (world, _, seed) => {
     assert.equal(await world.run(PLAN), null);
     const { walks } = world.protocol;
-    assert.deepEqual(walks.map(({ gait }) => gait), PLAN.gaits, `world ${seed}`);
-    for (const [i, { during: [begin, end] }] of walks.entries()) {
+    const names = walks.map(({ gait }) => gait);
+    assert.deepEqual(names.filter((name, i) => name !== names[i - 1]), PLAN.gaits.map(({ command }) => command), `world ${seed}`);
+    for (const [i, { gait, during: [begin, end] }] of walks.entries()) {
       assert.ok(i === 0 || begin > walks[i - 1].during[1] + PLAN.pause - 0.1);
       assert.ok(end - begin < PLAN.cycles + 0.7, `world ${seed}: ${end - begin} s`);
+      const ofGait = walks.filter((walk) => walk.gait === gait).map(({ during: [from, to] }) => to - from);
+      assert.ok(ofGait.reduce((a, b) => a + b) > PLAN.cycles - 4, `world ${seed}: ${gait}, ${ofGait} s`);
       whole += end - begin > PLAN.cycles - 0.1 ? 1 : 0;
       all += 1;
     }
@@ -177,11 +182,16 @@ test('a robot that goes as predicted walks every gait, from the middle all cycle
   assert.ok(hands < 0.5 * 60, `${hands}`);
 });
 
-test('a walk of many cycles ends at the end of the sheet, and the robot comes back by itself', async () => {
+test('a walk of many cycles ends at the end of the sheet, the robot comes back by itself and walks the rest', async () => {
   const world = new World();
-  assert.equal(await world.run({ ...PLAN, gaits: ['walk', 'walk'], cycles: 50 }), null);
-  assert.deepEqual(world.lines, ['speed 100', 'walk 50', 'stand', 'back 9', 'walk 50', 'stand']);
-  for (const { during: [begin, end] } of world.protocol.walks) assert.ok(end - begin > 7 && end - begin < 12, `${end - begin} s`);
+  assert.equal(await world.run({ ...PLAN, gaits: gaits('walk'), cycles: 30 }), null);
+  const times = world.protocol.walks.map(({ during: [begin, end] }) => end - begin);
+  for (const time of times) assert.ok(time > 3.9 && time < 17, `${time} s`);
+  const sum = times.reduce((a, b) => a + b);
+  assert.ok(sum > 26 && sum < 34, `${times} s`);
+  assert.ok(times.length > 2);
+  assert.deepEqual(world.lines.slice(0, 3), ['speed 100', 'walk 30', 'stand']);
+  assert.match(world.lines.slice(3).join(), /^(back \d+,walk \d+(,stand)?,?)+$/);
   assert.equal(world.hands, 0);
 });
 
@@ -207,7 +217,7 @@ test('after a cut, a silence or a stop the robot is not driven, the reason is sa
       if (what === '' || what === 'silent') world.cut(what);
       else void world.ask(what === 'stop' ? what : 'left 3');
     };
-    const why = await world.run({ ...PLAN, gaits: ['walk', 'back', 'walk', 'back', 'walk', 'back', 'walk'] }, happens);
+    const why = await world.run({ ...PLAN, gaits: gaits('walk', 'back', 'walk', 'back', 'walk', 'back', 'walk') }, happens);
     const lines = [...world.lines.slice(driven), ...world.late].filter((line) => line !== 'stop');
     assert.deepEqual(lines, what === 'left' ? ['left 3'] : [], `world ${seed}, ${what}`);
     assert.match(why, { '': /cut/, silent: /silent/, stop: /stopped/, left: /the robot was sent "left 3"/ }[what]);

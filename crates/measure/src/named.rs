@@ -121,16 +121,17 @@ impl<'a> Gaits<'a> {
         measured.collect()
     }
 
-    /// Measures the first of the named gaits between two times of a film, s, or in all of it.
+    /// Measures one of the named gaits, by its number among them, between two times of a film, s, or in all of it.
     ///
     /// # Errors
     /// Fails with a sentence for the user if the film does not show the gait then.
     pub fn walk<'f>(
         &self,
+        gait: usize,
         film: &'f WatchedFilm,
         during: Option<[f64; 2]>,
     ) -> Result<NamedWalk<'f>, String> {
-        let own = self.known().first();
+        let own = self.named.get(gait);
         let own = own.ok_or_else(|| Trouble::NoGait.to_string())?;
         let walk = Walk {
             film,
@@ -140,7 +141,7 @@ impl<'a> Gaits<'a> {
         let measured = measured.map_err(|trouble| self.not(walk, own, trouble))?;
         Ok(NamedWalk {
             walk,
-            gait: 0,
+            gait,
             measured,
         })
     }
@@ -165,7 +166,7 @@ impl<'a> Gaits<'a> {
             Likeness::None(trouble) => (trouble.to_string(), false),
         };
         let hint = match hint {
-            true => "; name the gaits of all walks with --gait",
+            true => "; name the gait of each walk",
             false => "",
         };
         Err(format!("{}: {why}{hint}", walk.at()))

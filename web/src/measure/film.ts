@@ -40,7 +40,7 @@ export class Film {
     return this.ask({ ask: 'clear' });
   }
 
-  /** Measures a gait in the film. Throws the reason where the film does not show it. */
+  /** Measures gaits in the film. Throws the reason where the film does not show what is needed. */
   measure(asked: Asked): Promise<Results> {
     return this.ask({ ask: 'measure', asked });
   }

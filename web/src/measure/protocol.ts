@@ -13,12 +13,12 @@ const MIDDLE = 80;
 const OUTWARD = 20;
 /** Time for which the robot may walk unseen, s. */
 const UNSEEN = 2;
+/** Least cycles of a walk: the first and the last one are not measured. One that is cut earlier counts as so many, so that it ends. */
+export const FEWEST = 4;
 
 /** A gait that the robot walked, on the film's clock. */
 export interface Walk {
   gait: string;
-  /** Percent. */
-  speed: number;
   /** Begin and end, s. */
   during: [number, number];
 }
@@ -31,8 +31,9 @@ export interface Way {
 }
 
 export interface Plan {
-  /** Commands of the gaits. */
-  gaits: string[];
+  /** The gaits, each with the time of a cycle at full speed, s. */
+  gaits: { command: string; period: number }[];
+  /** Cycles of each: what the end of the sheet cuts off is walked once the robot is back. */
   cycles: number;
   /** Percent. */
   speed: number;
@@ -91,12 +92,15 @@ export class Protocol {
   async run({ gaits, cycles, speed, pause }: Plan): Promise<void> {
     const { stage } = this;
     await this.ask(`${WORDS.speed} ${speed}`);
-    for (const [i, gait] of gaits.entries()) {
-      const { forward = 0 } = stage.ways().find(({ command }) => command === gait) ?? {};
-      await this.goBack(cycles * forward);
-      await this.wait(pause);
-      stage.say(`${i + 1} of ${gaits.length}: ${gait}, ${cycles} cycles`);
-      await this.walk(gait, cycles, (during) => this.walks.push({ gait, speed, during }));
+    for (const [i, { command, period }] of gaits.entries()) {
+      const { forward = 0 } = stage.ways().find((way) => way.command === command) ?? {};
+      for (let left = cycles; left >= FEWEST; ) {
+        await this.goBack(left * forward);
+        await this.wait(pause);
+        stage.say(`${i + 1} of ${gaits.length}: ${command}, ${left} cycles`);
+        const [begin, end] = await this.walk(command, left, (during) => this.walks.push({ gait: command, during }));
+        left -= Math.max(FEWEST, Math.floor(((end - begin) * speed) / 100 / period));
+      }
     }
     await this.wait(pause);
   }
@@ -181,8 +185,8 @@ export class Protocol {
     return best && way(best) > LEADS.way ? best : null;
   }
 
-  /** Walks a gait to its last cycle, or to the end of the sheet, and gives `keep` its begin and end. */
-  private async walk(gait: string, cycles: number, keep: (during: [number, number]) => void = () => {}): Promise<void> {
+  /** Walks a gait to its last cycle, or to the end of the sheet; returns its begin and end, which `keep` gets even if it was interrupted. */
+  private async walk(gait: string, cycles: number, keep: (during: [number, number]) => void = () => {}): Promise<[number, number]> {
     const { stage } = this;
     const waiting: Waiting = { gait, nearest: null, isCut: false, end: null, done: () => {}, fail: () => {} };
     const walked = new Promise<void>((done, fail) => Object.assign(waiting, { done, fail }));
@@ -198,9 +202,11 @@ export class Protocol {
     } finally {
       keep([begin, waiting.end ?? begin]);
     }
-    if (!waiting.isCut) return;
-    await this.ask(GAITS.stand);
-    this.waiting = null;
+    if (waiting.isCut) {
+      await this.ask(GAITS.stand);
+      this.waiting = null;
+    }
+    return [begin, waiting.end ?? begin];
   }
 
   /** Ends a walk once the robot is not seen any more. */

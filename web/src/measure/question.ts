@@ -33,28 +33,35 @@ export interface Report {
   forward: Part;
   left: Part;
   turn: Part;
+  /** The way of a cycle by MuJoCo with ideal servos: mm ahead and to the left, deg; it is known for some robots. */
+  mujoco?: [number, number, number];
 }
 
+/** Gaits in a film; walks of the same gait count together. */
 export interface Results {
-  report: Report;
-  /** As a table. */
-  text: string;
-  /** The path as CSV. */
-  path: string;
+  gaits: Report[];
+  /** The reasons why walks cannot be measured. */
+  troubles: string[];
 }
 
 /** A gait that the robot walked in the film. */
+export interface AskedWalk {
+  /** Its name in robot.toml. */
+  gait: string;
+  /** Begin and end of the walk on the film's clock, s; null for the whole film. */
+  during: [number, number] | null;
+}
+
 export interface Asked {
   toml: string;
-  gait: string;
   /** Percent. */
   speed: number;
   /** Height of the deck's tag, mm; null for that of the board. */
   height: number | null;
   /** Length of the line of 100 mm, mm. */
   ruler: number;
-  /** Begin and end of the walk on the film's clock, s; null for the whole film. */
-  during: [number, number] | null;
+  /** The walks; if there are none, those between rests, each of the gait that it is clearly like. */
+  walks: AskedWalk[];
 }
 
 export type Question =

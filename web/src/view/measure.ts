@@ -1,10 +1,10 @@
 // The room in which a camera measures the robot: what it sees, the protocol or a film of somebody, and the results.
 import { Film } from '../measure/film';
-import { Interrupted, Protocol, type Walk } from '../measure/protocol';
-import type { Results } from '../measure/question';
+import { FEWEST, Interrupted, Protocol, type Walk } from '../measure/protocol';
+import type { AskedWalk } from '../measure/question';
 import { Seen } from '../measure/seen';
 import { Source } from '../measure/source';
-import type { Description, GaitPrediction } from '../robot';
+import type { Description, Gait, GaitPrediction } from '../robot';
 import type { Session } from '../session';
 import { messageOf } from '../trouble';
 import { WORDS } from '../words';
@@ -20,7 +20,7 @@ import { drawSight } from './sight';
 const LEAST = { way: 3, turn: 2 };
 const NUMBERS: Record<string, Range & { value: number | null }> = {
   speed: { min: 10, max: 100, step: 5, value: 100 },
-  cycles: { min: 4, max: 50, step: 1, value: 8 },
+  cycles: { min: FEWEST, max: 50, step: 1, value: 8 },
   pause: { min: 0.5, max: 30, step: 0.5, value: 1 },
   height: { min: 0, max: 500, step: 0.5, value: null },
   ruler: { min: 85, max: 115, step: 0.1, value: 100 },
@@ -85,8 +85,8 @@ export class MeasureView {
     this.stop('another robot was chosen');
     const moving = gaits.filter(({ moves }) => moves).map(({ command }) => command);
     const chosen = this.gait.value;
-    this.gait.replaceChildren(...moving.map((command) => new Option(command)));
-    if (moving.includes(chosen)) this.gait.value = chosen;
+    this.gait.replaceChildren(new Option('found by its path', ''), ...gaits.filter(({ moves }) => moves).map(({ command, name }) => new Option(command, name)));
+    if ([...this.gait.options].some(({ value }) => value === chosen)) this.gait.value = chosen;
     this.boxes.replaceChildren(
       make('legend', {}, 'Gaits'),
       ...moving.map((command) => {
@@ -204,22 +204,23 @@ export class MeasureView {
       await this.source.file(file);
       if (this.doing !== 'play') return;
       this.hasFilm = true;
-      await this.compute([this.whole]);
+      await this.compute(this.whole);
     } finally {
       this.doing = 'nothing';
     }
   }
 
-  /** The chosen gait in the whole film. */
-  private get whole(): Omit<Walk, 'during'> {
-    return { gait: this.gait.value, speed: this.values.speed ?? 100 };
+  /** The chosen gait in the whole film; no walk if its gaits are to be found by their paths. */
+  private get whole(): AskedWalk[] {
+    const gait = this.gait.value;
+    return gait === '' ? [] : [{ gait, during: null }];
   }
 
   /** Starts to record or to drive; ends that; or measures the file again. */
   private async start(): Promise<void> {
-    if (this.doing === 'record') return this.compute([this.whole]);
+    if (this.doing === 'record') return this.compute(this.whole);
     if (this.doing === 'drive') return void this.session().ask(WORDS.stop);
-    if (this.hasFilm) return this.compute([this.whole]);
+    if (this.hasFilm) return this.compute(this.whole);
     const isPage = this.driver.value === 'page';
     const gaits = isPage ? this.drivable() : [];
     await (await this.loaded()).clear();
@@ -230,9 +231,10 @@ export class MeasureView {
   }
 
   /** The gaits to drive. Throws the reason why none can be. */
-  private drivable(): string[] {
+  private drivable(): Gait[] {
     const session = this.session();
-    const gaits = [...this.boxes.querySelectorAll('input')].filter(({ checked }) => checked).map(({ name }) => name);
+    const ticked = [...this.boxes.querySelectorAll('input')].filter(({ checked }) => checked).map(({ name }) => name);
+    const gaits = session.description.gaits.filter(({ command }) => ticked.includes(command));
     if (this.isBarred()) throw new Error('Hands may be in the robot: leave the set-up first.');
     if (session.otherRobot) throw new Error(`The board has another robot, ${session.otherRobot.name}: choose that one, or write this one to the board.`);
     if (!session.answers) throw new Error(`No robot answers from the ${session.link.name}.`);
@@ -240,9 +242,10 @@ export class MeasureView {
     return gaits;
   }
 
-  private async drive(gaits: string[]): Promise<void> {
+  private async drive(gaits: Gait[]): Promise<void> {
     const session = this.session();
-    const { speed, cycles, pause } = this.values;
+    const { cycles, pause } = this.values;
+    const speed = this.values.speed ?? 100;
     const protocol = new Protocol({
       ask: async (line) => (await session.ask(line))?.ok === true,
       now: () => this.source.now,
@@ -256,17 +259,23 @@ export class MeasureView {
     this.doing = 'drive';
     this.show();
     try {
-      await protocol.run({ gaits, cycles: cycles ?? 8, speed: speed ?? 100, pause: pause ?? 1 });
-      await this.compute(protocol.walks);
+      await protocol.run({ gaits, cycles: cycles ?? 8, speed, pause: pause ?? 1 });
+      await this.compute(this.named(protocol.walks), speed);
     } catch (error) {
       if (!(error instanceof Interrupted) || protocol.walks.length === 0) throw error;
-      await this.compute(protocol.walks, [`Ended before all gaits were walked: ${error.message}.`]);
+      await this.compute(this.named(protocol.walks), speed, [`Ended before all gaits were walked: ${error.message}`]);
     } finally {
       this.protocol = null;
       this.isPutBack = false;
       this.doing = 'nothing';
       this.goButton.hidden = true;
     }
+  }
+
+  /** Walks under the names of their gaits in robot.toml. */
+  private named(walks: Walk[]): AskedWalk[] {
+    const { gaits } = this.session().description;
+    return walks.map(({ gait, during }) => ({ gait: gaits.find(({ command }) => command === gait)?.name ?? gait, during }));
   }
 
   private async putBack(protocol: Protocol): Promise<void> {
@@ -282,29 +291,22 @@ export class MeasureView {
   }
 
   /** Measures walks in the film, and shows the results, what went wrong before, and what could not be measured. */
-  private async compute(walks: (Omit<Walk, 'during'> & Partial<Walk>)[], troubles: string[] = []): Promise<void> {
+  private async compute(walks: AskedWalk[], speed = this.values.speed ?? 100, troubles: string[] = []): Promise<void> {
     this.doing = 'compute';
     this.say('Measuring…');
     this.show();
     const film = await this.loaded();
-    const { toml } = this.session();
     const { height = null, ruler } = this.values;
-    const results: Results[] = [];
-    for (const { gait, speed, during = null } of walks) {
-      try {
-        results.push(await film.measure({ toml, gait: this.nameOf(gait), speed, height, ruler: ruler ?? 100, during }));
-      } catch (error) {
-        troubles.push(`${gait}: ${messageOf(error)}.`);
-      }
+    try {
+      const measured = await film.measure({ toml: this.session().toml, speed, height, ruler: ruler ?? 100, walks });
+      this.measured.show(measured.gaits);
+      troubles.push(...measured.troubles);
+    } catch (error) {
+      this.measured.show([]);
+      troubles.push(messageOf(error));
     }
     this.doing = 'nothing';
-    this.measured.show(results);
-    this.say(troubles.join(' '), true);
-  }
-
-  /** The name of a gait in robot.toml by its command. */
-  private nameOf(command: string): string {
-    return this.session().description.gaits.find((gait) => gait.command === command)?.name ?? command;
+    this.say(troubles.map((trouble) => `${trouble}.`).join(' '), true);
   }
 
   private async saveSheet(): Promise<void> {

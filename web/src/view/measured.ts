@@ -1,35 +1,36 @@
 // The results of the room that measures: a table, and the same to keep, to share and to print.
-import { card, COLUMN_NAMES, csv, rows } from '../measure/card';
-import type { Results } from '../measure/question';
+import { card, csv, heads, rows, titleOf } from '../measure/card';
+import type { Report } from '../measure/question';
 import { element } from './canvas';
 import { save } from './download';
-import { table } from './make';
+import { make, table } from './make';
 
 /** Pixels of the PNG for each unit of the SVG. */
 const SHARP = 2;
 
 export class Measured {
-  private results: Results[] = [];
+  private gaits: Report[] = [];
 
   /** Takes a function that returns the robot's name. */
   constructor(private readonly name: () => string) {
     const on = (id: string, act: () => void) => element(`measured-${id}`).addEventListener('click', act);
     on('svg', () => save('measured.svg', [this.card], 'image/svg+xml'));
     on('png', () => void this.savePng());
-    on('csv', () => save('measured.csv', [csv(this.results)], 'text/csv'));
-    on('json', () => save('measured.json', [JSON.stringify({ gaits: this.results.map(({ report }) => report) }, null, 2)], 'application/json'));
+    on('csv', () => save('measured.csv', [csv(this.gaits)], 'text/csv'));
+    on('json', () => save('measured.json', [JSON.stringify({ gaits: this.gaits }, null, 2)], 'application/json'));
     on('print', () => print());
   }
 
   /** Shows the results of some gaits. */
-  show(results: Results[]): void {
-    this.results = results;
-    element('measure-results').hidden = results.length === 0;
-    element('measured').replaceChildren(table('A cycle as measured', COLUMN_NAMES, rows(results)));
+  show(gaits: Report[]): void {
+    this.gaits = gaits;
+    element('measure-results').hidden = gaits.length === 0;
+    const parts = gaits.flatMap((report) => [make('h4', {}, titleOf(report)), table(titleOf(report), heads(report), rows(report))]);
+    element('measured').replaceChildren(...parts);
   }
 
   private get card(): string {
-    return card(this.name(), this.results);
+    return card(this.name(), this.gaits);
   }
 
   private async savePng(): Promise<void> {

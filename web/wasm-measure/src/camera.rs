@@ -29,32 +29,37 @@ pub struct TagEntry {
     pub corners: [[f64; 2]; 4],
 }
 
-/// A gait that the robot walked in the film.
+/// A question for the movement of gaits in the film.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Asked {
     /// The robot.toml.
     pub toml: String,
-    /// The gait's name.
-    pub gait: String,
     /// The pace, percent.
     pub speed: u8,
     /// Height of the deck's tag above the floor, mm; `None` for that of the board.
     pub height: Option<f64>,
     /// Length of the line that should be 100 mm long, mm.
     pub ruler: f64,
+    /// The walks; if there are none, those between rests, each of the gait that it is clearly like.
+    pub walks: Vec<AskedWalk>,
+}
+
+/// A gait that the robot walked in the film.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct AskedWalk {
+    /// The gait's name.
+    pub gait: String,
     /// Begin and end of the walk on the film's clock, s; `None` for the whole film.
     pub during: Option<[f64; 2]>,
 }
 
-/// The report of a gait in its three forms.
+/// The movement of gaits.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Results {
-    /// A gait as `lizard measure --json` writes it.
-    pub report: serde_json::Value,
-    /// As a table.
-    pub text: String,
-    /// The path as CSV.
-    pub path: String,
+    /// The gaits as `lizard measure --json` writes them; walks of the same gait count together.
+    pub gaits: serde_json::Value,
+    /// The reasons why walks cannot be measured, as sentences with their gaits.
+    pub troubles: Vec<String>,
 }
 
 /// A film that is being taken.
@@ -89,20 +94,23 @@ impl Camera {
         Ok(tags.iter().enumerate().filter_map(entry).collect())
     }
 
-    /// Measures a gait in the film.
+    /// Measures gaits in the film.
     ///
     /// # Errors
-    /// Fails if the film does not show what is needed, or the robot has no such gait.
+    /// Fails if the film does not show what is needed, the robot has no such gait, or a walk for which no gait is given
+    /// is not clearly like one.
     pub fn measure(&mut self, asked: &Asked) -> Result<Results, Refused> {
         let robot = Robot::parse(&asked.toml).map_err(Refused::of)?;
-        let gait = robot.gait(&asked.gait).filter(|gait| gait.moves());
-        let gait =
-            gait.ok_or_else(|| Refused::of(format!("no gait `{}` moves this robot", asked.gait)))?;
+        let gait = |walk: &AskedWalk| {
+            let gait = robot.gait(&walk.gait).filter(|gait| gait.moves());
+            gait.ok_or_else(|| Refused::of(format!("no gait `{}` moves this robot", walk.gait)))
+        };
+        let named: Vec<_> = asked.walks.iter().map(gait).collect::<Result<_, _>>()?;
         let setup = Setup {
             scale: asked.ruler / sheet::RULER,
             height: asked.height.unwrap_or_else(|| height_of_board(&robot)),
         };
-        let gaits = Gaits::new(&robot, &[gait], f64::from(asked.speed) / 100.0);
+        let gaits = Gaits::new(&robot, &named, f64::from(asked.speed) / 100.0);
         let film = match self.watched.take() {
             Some((with, film)) if with == setup => film,
             _ => WatchedFilm {
@@ -111,13 +119,24 @@ impl Camera {
             },
         };
         let (_, film) = self.watched.insert((setup, film));
-        let walk = gaits.walk(film, asked.during).map_err(Refused::of)?;
         let films = std::slice::from_ref(&*film);
-        let report = Report::new(&robot, asked.speed, setup, films, &gaits, &[walk]);
+        let mut troubles = Vec::new();
+        let walks = match asked.walks.is_empty() {
+            true => gaits.walks(films).map_err(Refused::of)?,
+            false => {
+                let measured = asked.walks.iter().enumerate().filter_map(|(i, asked)| {
+                    let walk = gaits.walk(i, &films[0], asked.during);
+                    walk.map_err(|why| troubles.push(format!("{}: {why}", asked.gait)))
+                        .ok()
+                });
+                measured.collect()
+            }
+        };
+        let report = Report::new(&robot, asked.speed, setup, films, &gaits, &walks);
+        let report = report.beside_mujoco(&asked.toml);
         Ok(Results {
-            report: serde_json::to_value(report.gaits.first()).map_err(Refused::of)?,
-            text: report.text(),
-            path: film.path(),
+            gaits: serde_json::to_value(&report.gaits).map_err(Refused::of)?,
+            troubles,
         })
     }
 }

@@ -1,7 +1,7 @@
 //! The robot measured by the page's camera: the very film and report of `lizard measure`.
 //!
 //! A browser hands over pictures, one by one, with their times; it gets back the tags that each shows. Afterwards it asks for
-//! the report of each gait that the robot walked meanwhile. [`Camera`] holds the film; `abi` is the interface to
+//! the report of the gaits that the robot walked meanwhile. [`Camera`] holds the film; `abi` is the interface to
 //! JavaScript. It is a WebAssembly module of its own, which the page loads only when needed.
 //!
 //! # When not to use it
@@ -10,4 +10,4 @@
 mod abi;
 mod camera;
 
-pub use camera::{Asked, Camera, Refused, Results, TagEntry};
+pub use camera::{Asked, AskedWalk, Camera, Refused, Results, TagEntry};
