@@ -104,6 +104,8 @@ test('the page drives the simulated robot before a camera, and measures the gait
   }
   assert.ok(report.cycles >= 2 && report.cycles <= 5, `${report.cycles}`);
   assert.deepEqual(report.mujoco, expected.mujoco);
+  assert.ok(report.range.least < report.forward.predicted && report.forward.predicted < report.range.most, JSON.stringify(report.range));
+  assert.equal(report.range.least_by, expected.range.least_by);
   const cells = await opened.locator('#measured tr', { hasText: 'ahead, mm' }).first().locator('td').allTextContents();
   assert.equal(cells.at(-1), `+${expected.mujoco[0].toFixed(2)}`);
   assert.match(String(await download(opened, 'csv')), /^gait,speed,cycles,forward_mean.*\nwalk,100,\d/);

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use lizard_film::{Mean, Measured, Point, Setup};
-use lizard_robot::{Place, Prediction, Robot, Travel, UNDECIDED};
+use lizard_robot::{MovementRange, Place, Prediction, Robot, Travel, UNDECIDED};
 use serde::Serialize;
 
 use crate::engine::mujoco;
@@ -61,9 +61,24 @@ pub struct GaitReport<'a> {
     /// The way of a cycle by MuJoCo with ideal servos: mm ahead and to the left, deg.
     #[serde(skip_serializing_if = "Option::is_none")]
     mujoco: Option<[f64; 3]>,
+    /// The predicted way if an assumption is another one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    range: Option<Range>,
     /// The predicted path of a cycle, evenly in time.
     #[serde(skip)]
     pub expected: &'a [Place],
+}
+
+/// The predicted way ahead or turn of a cycle if one assumption at a time takes the ends of its plausible range.
+#[derive(Debug, Serialize)]
+struct Range {
+    part: &'static str,
+    /// mm or deg.
+    least: f64,
+    most: f64,
+    /// The assumptions that make it so; null for those of robot.toml.
+    least_by: Option<&'static str>,
+    most_by: Option<&'static str>,
 }
 
 /// A walk between two rests.
@@ -233,6 +248,30 @@ impl Farthest {
     }
 }
 
+impl Range {
+    fn of(range: &MovementRange) -> Self {
+        let [least, most] = [range.least, range.most];
+        Self {
+            part: PARTS[if range.is_turn { 2 } else { 0 }],
+            least: least.movement,
+            most: most.movement,
+            least_by: least.assumption,
+            most_by: most.assumption,
+        }
+    }
+
+    fn line(&self) -> String {
+        let (name, unit) = self.part.split_once(", ").unwrap_or((self.part, ""));
+        let end = |movement: f64, by: Option<&str>| {
+            let by = by.unwrap_or("as in robot.toml");
+            format!("{movement:+.2} {unit} ({by})")
+        };
+        let least = end(self.least, self.least_by);
+        let most = end(self.most, self.most_by);
+        format!("predicted {name} if one assumption is otherwise: {least} to {most}\n")
+    }
+}
+
 impl<'a> GaitReport<'a> {
     /// The mean over the walks of a gait.
     fn new(
@@ -292,6 +331,7 @@ impl<'a> GaitReport<'a> {
             within: measured.within.iter().map(within).collect(),
             farthest: Farthest::of(&measured.within, predicted),
             mujoco: None,
+            range: None,
             expected: &own.expected.path,
         }
     }
@@ -319,6 +359,9 @@ impl<'a> GaitReport<'a> {
         text += "a cycle      measured      sd   error  predicted\n";
         for (name, part) in PARTS.iter().zip(self.parts()) {
             text += &part.line(name);
+        }
+        if let Some(range) = &self.range {
+            text += &range.line();
         }
         if let Some([forward, left, turn]) = self.mujoco {
             let _ = writeln!(
@@ -383,6 +426,16 @@ impl<'a> Report<'a> {
     pub fn beside_mujoco(mut self, text: &str) -> Self {
         for gait in self.gaits.iter_mut().filter(|gait| gait.speed == 100) {
             gait.mujoco = mujoco(text, gait.gait);
+        }
+        self
+    }
+
+    /// Adds the ranges of the predictions; takes a second for each gait.
+    pub fn with_ranges(mut self, robot: &Robot) -> Self {
+        for report in &mut self.gaits {
+            let gait = robot.gait(report.gait);
+            let pace = f64::from(report.speed) / 100.0;
+            report.range = gait.map(|gait| Range::of(&MovementRange::of(robot, gait, pace)));
         }
         self
     }

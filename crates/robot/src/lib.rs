@@ -49,8 +49,8 @@ pub use measures::{
 };
 pub use reports::verdict;
 pub use reports::{
-    Assumptions, PACES, Report, Round, Row, Sensitivity, ServoTable, SpringCost, UNDECIDED,
-    WITHOUT_CONTACTS, plausible,
+    Assumptions, Extreme, MovementRange, PACES, Report, Round, Row, Sensitivity, ServoTable,
+    SpringCost, UNDECIDED, WITHOUT_CONTACTS, plausible,
 };
 pub use robot::Robot;
 pub use tables::{CellMaps, CoreRobot, flash};

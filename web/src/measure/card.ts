@@ -30,6 +30,14 @@ export function rows(report: Report): string[][] {
   });
 }
 
+/** A sentence on the range of a prediction. */
+export function rangeOf({ range }: Report): string {
+  if (!range) return '';
+  const [name = '', unit = ''] = range.part.split(', ');
+  const end = (value: number, by: string | null) => `${signed(value)} ${unit} (${by ?? 'as in robot.toml'})`;
+  return `Predicted ${name} if one assumption is otherwise: ${end(range.least, range.least_by)} to ${end(range.most, range.most_by)}.`;
+}
+
 const escaped = (text: string) => text.replace(/[&<>]/g, (c) => `&#${c.charCodeAt(0)};`);
 const text = (x: number, y: number, words: string, more = '') => `<text x="${x}" y="${y}" ${more}>${escaped(words)}</text>`;
 
@@ -43,7 +51,7 @@ export function card(robot: string, gaits: Report[]): string {
   const body = gaits
     .map((report) => {
       y += LINE / 2;
-      return row([titleOf(report)], 'font-weight="bold"') + row(heads(report), 'fill="#5a5f57"') + rows(report).map((line) => row(line)).join('');
+      return row([titleOf(report)], 'font-weight="bold"') + row(heads(report), 'fill="#5a5f57"') + rows(report).map((line) => row(line)).join('') + row([rangeOf(report)], 'fill="#5a5f57" font-size="12"');
     })
     .join('');
   return (

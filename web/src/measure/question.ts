@@ -35,6 +35,18 @@ export interface Report {
   turn: Part;
   /** The way of a cycle by MuJoCo with ideal servos: mm ahead and to the left, deg; it is known for some robots. */
   mujoco?: [number, number, number];
+  range?: Range;
+}
+
+/** The predicted way ahead or turn of a cycle if one assumption at a time is otherwise: mm or deg. */
+export interface Range {
+  /** Its name and unit. */
+  part: string;
+  least: number;
+  most: number;
+  /** The assumptions that make it so; null for those of robot.toml. */
+  least_by: string | null;
+  most_by: string | null;
 }
 
 /** Gaits in a film; walks of the same gait count together. */

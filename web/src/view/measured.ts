@@ -1,5 +1,5 @@
 // The results of the room that measures: a table, and the same to keep, to share and to print.
-import { card, csv, heads, rows, titleOf } from '../measure/card';
+import { card, csv, heads, rangeOf, rows, titleOf } from '../measure/card';
 import type { Report } from '../measure/question';
 import { element } from './canvas';
 import { save } from './download';
@@ -25,7 +25,7 @@ export class Measured {
   show(gaits: Report[]): void {
     this.gaits = gaits;
     element('measure-results').hidden = gaits.length === 0;
-    const parts = gaits.flatMap((report) => [make('h4', {}, titleOf(report)), table(titleOf(report), heads(report), rows(report))]);
+    const parts = gaits.flatMap((report) => [make('h4', {}, titleOf(report)), table(titleOf(report), heads(report), rows(report)), make('p', { className: 'note' }, rangeOf(report))]);
     element('measured').replaceChildren(...parts);
   }
 

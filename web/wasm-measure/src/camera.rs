@@ -133,7 +133,7 @@ impl Camera {
             }
         };
         let report = Report::new(&robot, asked.speed, setup, films, &gaits, &walks);
-        let report = report.beside_mujoco(&asked.toml);
+        let report = report.with_ranges(&robot).beside_mujoco(&asked.toml);
         Ok(Results {
             gaits: serde_json::to_value(&report.gaits).map_err(Refused::of)?,
             troubles,

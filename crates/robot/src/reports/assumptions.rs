@@ -34,6 +34,26 @@ struct Inputs {
     scale: f64,
 }
 
+impl Inputs {
+    /// The inputs of a robot's prediction.
+    fn of(robot: &Robot) -> Self {
+        let joints = robot.motors().joints;
+        Self {
+            ground: *robot.ground(),
+            servo: *robot.servo_type(),
+            joints: [joints.drag, joints.slider],
+            scale: 1.0,
+        }
+    }
+
+    /// The movement of a cycle at a pace, 1 for the gait's own.
+    fn walk(&self, robot: &Robot, gait: &CheckedGait, pace: f64) -> Travel {
+        let Motors { each, mut joints } = robot.motors_of(&self.servo, self.servo.volts);
+        [joints.drag, joints.slider] = self.joints;
+        gait.driven_scaled(&self.ground, &Motors { each, joints }, pace, self.scale)
+    }
+}
+
 /// An assumption: its words, its unit, its range, and the inputs that it varies.
 struct Assumption {
     words: &'static str,
@@ -162,25 +182,14 @@ pub struct Assumptions {
 impl Assumptions {
     /// Walks a robot's gaits with its servos at both ends of every range; takes some seconds.
     pub fn of(robot: &Robot) -> Self {
-        let joints = robot.motors().joints;
-        let nominal = Inputs {
-            ground: *robot.ground(),
-            servo: *robot.servo_type(),
-            joints: [joints.drag, joints.slider],
-            scale: 1.0,
-        };
-        let simulate = |gait: &CheckedGait, inputs: &Inputs| {
-            let Motors { each, mut joints } = robot.motors_of(&inputs.servo, inputs.servo.volts);
-            [joints.drag, joints.slider] = inputs.joints;
-            gait.driven_scaled(&inputs.ground, &Motors { each, joints }, 1.0, inputs.scale)
-        };
-        let gaits = without_mirror_images(robot, |gait| simulate(gait, &nominal));
+        let nominal = Inputs::of(robot);
+        let gaits = without_mirror_images(robot, |gait| nominal.walk(robot, gait, 1.0));
         let row = |assumption: &Assumption| {
             let change = |gait: &CheckedGait, before: &Travel, value: f64| {
                 let mut changed = nominal;
                 assumption.variation.set(&mut changed, value);
                 let component = principal_component(before);
-                100.0 * (component(&simulate(gait, &changed)) / component(before) - 1.0)
+                100.0 * (component(&changed.walk(robot, gait, 1.0)) / component(before) - 1.0)
             };
             let changes = |(gait, before): &(&CheckedGait, Travel)| {
                 assumption.range.map(|value| change(gait, before, value))
@@ -202,6 +211,63 @@ impl Assumptions {
                 .collect(),
             rows,
         }
+    }
+}
+
+/// A movement in a cycle, mm ahead or deg of turn, and the assumption that makes it so.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Extreme {
+    /// The movement.
+    pub movement: f64,
+    /// The assumption in words; `None` if it is as in robot.toml.
+    pub assumption: Option<&'static str>,
+}
+
+/// The least and the most that a gait moves if one assumption at a time takes either end of its plausible range.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MovementRange {
+    /// True for a gait that turns on the spot, whose turn this is; false for the way ahead.
+    pub is_turn: bool,
+    /// The smallest movement with its sign.
+    pub least: Extreme,
+    /// The largest.
+    pub most: Extreme,
+}
+
+impl MovementRange {
+    /// Walks a gait at a pace, 1 for its own, with its servos at both ends of every range.
+    pub fn of(robot: &Robot, gait: &CheckedGait, pace: f64) -> Self {
+        let nominal = Inputs::of(robot);
+        let travel = nominal.walk(robot, gait, pace);
+        let component = principal_component(&travel);
+        let assumed = Extreme {
+            movement: component(&travel),
+            assumption: None,
+        };
+        let ends = ALL.iter().flat_map(|assumption| {
+            assumption.range.map(|value| {
+                let mut changed = nominal;
+                assumption.variation.set(&mut changed, value);
+                Extreme {
+                    movement: component(&changed.walk(robot, gait, pace)),
+                    assumption: Some(assumption.words),
+                }
+            })
+        });
+        let mut range = Self {
+            is_turn: is_turn(&travel),
+            least: assumed,
+            most: assumed,
+        };
+        for end in ends {
+            if end.movement < range.least.movement {
+                range.least = end;
+            }
+            if end.movement > range.most.movement {
+                range.most = end;
+            }
+        }
+        range
     }
 }
 
@@ -231,12 +297,17 @@ fn without_mirror_images(
     gaits
 }
 
+/// True for a gait that turns on the spot: by more deg than it goes mm ahead.
+fn is_turn(movement: &Travel) -> bool {
+    movement.turn.abs() >= movement.forward.abs()
+}
+
 /// The part of the movement that a gait is for: ahead, or the turn of a gait that turns on
 /// the spot.
 fn principal_component(movement: &Travel) -> fn(&Travel) -> f64 {
-    match movement.forward.abs() > movement.turn.abs() {
-        true => |movement| movement.forward,
-        false => |movement| movement.turn,
+    match is_turn(movement) {
+        true => |movement| movement.turn,
+        false => |movement| movement.forward,
     }
 }
 
