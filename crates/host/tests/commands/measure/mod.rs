@@ -150,18 +150,28 @@ fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
     let figures: Value = serde_json::from_str(&figures).expect("figures");
     let mujoco = &figures["paper"]["walk"]["rigid, level"]["mujoco"];
     assert_eq!(&object["mujoco"], mujoco);
-    let changed = scratch().join("changed.toml");
+    // A comment changes nothing, another mass does.
     let text = crate::program::read("robots/paper.toml");
-    fs::write(&changed, format!("{text}# mine\n")).expect("a file");
-    let changed = changed.to_str().expect("a name");
-    let own = run_in(
-        scratch(),
-        &[
-            "measure", folder, "--robot", changed, "--gait", "walk", "--height", "95", "--json",
-        ],
-        "",
-    );
-    assert_eq!(own.json()["gaits"][0]["mujoco"], Value::Null);
+    let heavier = text.replace("mass = 435.0", "mass = 500.0");
+    assert_ne!(heavier, text);
+    for (text, mujoco) in [(format!("# mine\n{text}"), mujoco), (heavier, &Value::Null)] {
+        let changed = scratch().join("changed.toml");
+        fs::write(&changed, text).expect("a file");
+        let changed = changed.to_str().expect("a name");
+        let own = run_in(
+            scratch(),
+            &[
+                "measure", folder, "--robot", changed, "--gait", "walk", "--height", "95", "--json",
+            ],
+            "",
+        );
+        assert_eq!(&own.json()["gaits"][0]["mujoco"], mujoco);
+    }
+    let range = &object["range"];
+    let predicted = part(&["forward", "predicted"]);
+    let [least, most] = ["least", "most"].map(|end| range[end].as_f64().expect("a number"));
+    assert!(least < predicted - 5.0 && predicted + 1.0 < most, "{range}");
+    assert_eq!(range["least_by"], "mounting of the legs");
     let table = measure(&[]).success();
     assert!(table.contains("agrees"), "{table}");
     // The page's example is such a film.
