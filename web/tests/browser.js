@@ -218,8 +218,9 @@ export async function page(options = {}, before = undefined, at = address()) {
       };
     });
     await opened.clock.install({ time: 0 });
-    // Otherwise the clock would also advance by itself, at a pace that depends on the machine.
-    await opened.clock.pauseAt(1000);
+    // Otherwise the clock would also advance by itself, at a pace that depends on the machine, and it has done so since it was
+    // installed: it is paused at a time that even a busy machine has not reached.
+    await opened.clock.pauseAt(60_000);
     await opened.addInitScript(before);
   }
   await opened.goto(at);
