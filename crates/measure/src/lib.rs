@@ -11,6 +11,7 @@ mod board;
 mod engine;
 mod expected;
 mod named;
+mod range;
 mod report;
 mod sheet;
 mod watched_film;

@@ -3,11 +3,12 @@
 use std::fmt::Write as _;
 
 use lizard_film::{Mean, Measured, Point, Setup};
-use lizard_robot::{MovementRange, Place, Prediction, Robot, Travel, UNDECIDED};
+use lizard_robot::{Place, Prediction, Robot, Travel, UNDECIDED};
 use serde::Serialize;
 
 use crate::engine::mujoco;
 use crate::named::{Candidate, Gaits, NamedWalk};
+use crate::range::Range;
 use crate::watched_film::WatchedFilm;
 
 /// Distance from the prediction, in standard errors, to which a measurement agrees with it.
@@ -67,18 +68,6 @@ pub struct GaitReport<'a> {
     /// The predicted path of a cycle, evenly in time.
     #[serde(skip)]
     pub expected: &'a [Place],
-}
-
-/// The predicted way ahead or turn of a cycle if one assumption at a time takes the ends of its plausible range.
-#[derive(Debug, Serialize)]
-struct Range {
-    part: &'static str,
-    /// mm or deg.
-    least: f64,
-    most: f64,
-    /// The assumptions that make it so; null for those of robot.toml.
-    least_by: Option<&'static str>,
-    most_by: Option<&'static str>,
 }
 
 /// A walk between two rests.
@@ -248,30 +237,6 @@ impl Farthest {
     }
 }
 
-impl Range {
-    fn of(range: &MovementRange) -> Self {
-        let [least, most] = [range.least, range.most];
-        Self {
-            part: PARTS[if range.is_turn { 2 } else { 0 }],
-            least: least.movement,
-            most: most.movement,
-            least_by: least.assumption,
-            most_by: most.assumption,
-        }
-    }
-
-    fn line(&self) -> String {
-        let (name, unit) = self.part.split_once(", ").unwrap_or((self.part, ""));
-        let end = |movement: f64, by: Option<&str>| {
-            let by = by.unwrap_or("as in robot.toml");
-            format!("{movement:+.2} {unit} ({by})")
-        };
-        let least = end(self.least, self.least_by);
-        let most = end(self.most, self.most_by);
-        format!("predicted {name} if one assumption is otherwise: {least} to {most}\n")
-    }
-}
-
 impl<'a> GaitReport<'a> {
     /// The mean over the walks of a gait.
     fn new(
@@ -435,7 +400,7 @@ impl<'a> Report<'a> {
         for report in &mut self.gaits {
             let gait = robot.gait(report.gait);
             let pace = f64::from(report.speed) / 100.0;
-            report.range = gait.map(|gait| Range::of(&MovementRange::of(robot, gait, pace)));
+            report.range = gait.map(|gait| Range::of(robot, gait, pace));
         }
         self
     }
