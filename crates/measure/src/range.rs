@@ -3,7 +3,7 @@
 use lizard_robot::{CheckedGait, MovementRange, Robot};
 use serde::Serialize;
 
-use crate::report::PARTS;
+use crate::part::PARTS;
 
 /// The predicted way ahead or turn of a cycle if one assumption at a time takes the ends of its plausible range.
 #[derive(Debug, Serialize)]

@@ -2,22 +2,18 @@
 
 use std::fmt::Write as _;
 
-use lizard_film::{Mean, Measured, Point, Setup};
+use lizard_film::{Measured, Point, Setup};
 use lizard_robot::{Place, Prediction, Robot, Travel, UNDECIDED};
 use serde::Serialize;
 
 use crate::engine::mujoco;
 use crate::named::{Candidate, Gaits, NamedWalk};
+use crate::part::{PARTS, Part};
 use crate::range::Range;
 use crate::watched_film::WatchedFilm;
 
-/// Distance from the prediction, in standard errors, to which a measurement agrees with it.
-pub const AGREES: f64 = 2.0;
-/// The same for the largest of the differences within a cycle: of 72 that happen by chance, one is larger in one of 30 films.
+/// `AGREES` for the largest of the differences within a cycle: of 72 that happen by chance, one is larger in one of 30 films.
 const ALL_AGREE: f64 = 3.5;
-/// The names of a movement's parts.
-pub const PARTS: [&str; 3] = ["ahead, mm", "left, mm", "turn, deg"];
-
 /// The result under the names of `--json`.
 #[derive(Debug, Serialize)]
 pub struct Report<'a> {
@@ -106,22 +102,6 @@ struct Farthest {
     agrees: bool,
 }
 
-/// One part of a movement.
-#[derive(Debug, Serialize)]
-pub struct Part {
-    /// The mean.
-    pub mean: f64,
-    /// Standard deviation of single cycles.
-    sd: f64,
-    /// Standard error of the mean.
-    pub error: f64,
-    /// Null if two feet pull against two.
-    pub predicted: Option<f64>,
-    /// The mean less the prediction, in standard errors.
-    differs: Option<f64>,
-    agrees: Option<bool>,
-}
-
 #[derive(Debug, Serialize)]
 struct Way {
     forward: f64,
@@ -142,48 +122,6 @@ struct CameraLine {
     /// Height of the deck's tag, mm: as given, and by its size.
     deck: f64,
     deck_by_size: f64,
-}
-
-/// Agreement in a word, or by how many standard errors a figure differs.
-pub fn verdict(differs: f64) -> String {
-    if differs.abs() <= AGREES {
-        return "agrees".to_owned();
-    }
-    let word = if differs > 0.0 { "more" } else { "less" };
-    format!("{:.1} errors {word}", differs.abs())
-}
-
-impl Part {
-    fn new(mean: Mean, predicted: Option<f64>) -> Self {
-        // A film without any spread is a drawing; its error is not zero.
-        let differs = predicted.map(|predicted| (mean.mean - predicted) / mean.error.max(1e-6));
-        Self {
-            mean: mean.mean,
-            sd: mean.spread,
-            error: mean.error,
-            predicted,
-            differs,
-            agrees: differs.map(|differs| differs.abs() <= AGREES),
-        }
-    }
-
-    /// Agreement with the prediction in a word, or by how many errors it differs.
-    pub fn verdict(&self) -> String {
-        self.differs.map_or("-".to_owned(), verdict)
-    }
-
-    fn line(&self, name: &str) -> String {
-        let predicted = self
-            .predicted
-            .map_or("-".to_owned(), |value| format!("{value:+.2}"));
-        format!(
-            "{name:<12}{:>+9.2}{:>8.2}{:>8.2}{predicted:>11}   {}\n",
-            self.mean,
-            self.sd,
-            self.error,
-            self.verdict()
-        )
-    }
 }
 
 impl<'a> Span<'a> {

@@ -1,0 +1,68 @@
+//! A part of a movement, way ahead, way to the left or turn, beside its prediction.
+
+use lizard_film::Mean;
+use serde::Serialize;
+
+/// Distance from the prediction, in standard errors, to which a measurement agrees with it.
+pub const AGREES: f64 = 2.0;
+/// The names of a movement's parts.
+pub const PARTS: [&str; 3] = ["ahead, mm", "left, mm", "turn, deg"];
+
+/// One part of a movement.
+#[derive(Debug, Serialize)]
+pub struct Part {
+    /// The mean.
+    pub mean: f64,
+    /// Standard deviation of single cycles.
+    sd: f64,
+    /// Standard error of the mean.
+    pub error: f64,
+    /// Null if two feet pull against two.
+    pub predicted: Option<f64>,
+    /// The mean less the prediction, in standard errors.
+    differs: Option<f64>,
+    pub(crate) agrees: Option<bool>,
+}
+
+/// Agreement in a word, or by how many standard errors a figure differs.
+pub fn verdict(differs: f64) -> String {
+    if differs.abs() <= AGREES {
+        return "agrees".to_owned();
+    }
+    let word = if differs > 0.0 { "more" } else { "less" };
+    format!("{:.1} errors {word}", differs.abs())
+}
+
+impl Part {
+    pub(crate) fn new(mean: Mean, predicted: Option<f64>) -> Self {
+        // A film without any spread is a drawing; its error is not zero.
+        let differs = predicted.map(|predicted| (mean.mean - predicted) / mean.error.max(1e-6));
+        Self {
+            mean: mean.mean,
+            sd: mean.spread,
+            error: mean.error,
+            predicted,
+            differs,
+            agrees: differs.map(|differs| differs.abs() <= AGREES),
+        }
+    }
+
+    /// Agreement with the prediction in a word, or by how many errors it differs.
+    pub fn verdict(&self) -> String {
+        self.differs.map_or("-".to_owned(), verdict)
+    }
+
+    /// The line of a table.
+    pub(crate) fn line(&self, name: &str) -> String {
+        let predicted = self
+            .predicted
+            .map_or("-".to_owned(), |value| format!("{value:+.2}"));
+        format!(
+            "{name:<12}{:>+9.2}{:>8.2}{:>8.2}{predicted:>11}   {}\n",
+            self.mean,
+            self.sd,
+            self.error,
+            self.verdict()
+        )
+    }
+}
