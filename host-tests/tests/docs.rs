@@ -81,6 +81,7 @@ fn the_page_of_the_firmware_has_every_field_of_a_robots_section_at_its_place() {
             curves,
             parts,
             rail,
+            slow_pace,
             pins,
             maps
         ]

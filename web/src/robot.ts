@@ -49,6 +49,8 @@ export interface Description {
   margins: { name: string; limit: number }[];
   stroke: [number, number];
   supply: [number, number, number];
+  /** Percent of their own pace to which the first of them limits gaits. */
+  slow_pace: number;
   /** The converter's channel of the servos' rail, and the volts there. */
   rail: [number, number] | null;
   /** The inputs: name, and Arduino number of the pin. */

@@ -80,6 +80,9 @@ const SUPPLIES: Supplies = Supplies {
     },
 };
 
+/// Another pace of a low supply than robots without a measured rail have, percent.
+pub const SLOW_PACE: u8 = 67;
+
 /// A robot in integers, and what it was made from.
 #[derive(Clone, Debug)]
 pub struct Sample {
@@ -118,6 +121,7 @@ impl Sample {
             name: "sample".to_string(),
             pins: [9, 10, 5, 6],
             rail: Some(14),
+            slow_pace: SLOW_PACE,
             maps: core::array::from_fn(|_| Map::default()),
             ends: ends.each_ref().map(Loop::content),
             sides: [side(kinematics::Side::Left), side(kinematics::Side::Right)],

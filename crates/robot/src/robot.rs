@@ -92,18 +92,21 @@ impl Robot {
         let name = name(&root)?;
         let mut measures = Measures::read(&root)?;
         let robot = Self::with_measures(name, measures.clone(), &root)?;
-        let Some(rail) = measures
-            .supplies
-            .rail
-            .as_mut()
-            .filter(|rail| rail.by_servos)
-        else {
+        let Some(rail) = &mut measures.supplies.rail else {
             return Ok(robot);
         };
         let (ground, motors) = (robot.ground(), robot.motors());
-        let used = |gait: &CheckedGait| Effort::of(gait, ground, &motors).line_share(1.0, 1.0);
-        let hardest = robot.gaits().iter().map(used).fold(0.0, f64::max);
-        rail.slowed(hardest, TIGHT, robot.servo_type().volts);
+        let effort = |gait: &CheckedGait| Effort::of(gait, ground, &motors);
+        let efforts: Vec<Effort> = robot.gaits().iter().map(effort).collect();
+        let volts = robot.servo_type().volts;
+        let lines = efforts.iter().map(|effort| effort.line_share(1.0, 1.0));
+        rail.slow_down(lines.fold(0.0, f64::max), TIGHT, volts);
+        // A share of the line on a supply is the whole line on that share of the supply.
+        let [_, stop, _] = rail.thresholds;
+        let paces = efforts
+            .iter()
+            .map(|effort| effort.pace(TIGHT * stop / volts));
+        measures.supplies.limit_pace(paces.fold(1.0, f64::min));
         Self::with_measures(name, measures, &root)
     }
 

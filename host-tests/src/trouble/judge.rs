@@ -39,7 +39,7 @@ fn limits(robot: &Robot, scenario: &Scenario) -> Limits {
         frame_left: 25 * lizard_rules::MS,
         report_time: 300 * lizard_rules::MS,
         queued: 150 * lizard_rules::MS,
-        // A patrol rests for a second, or longer at half the pace.
+        // A patrol rests for a second, or longer on a low supply.
         longest_rest: 2_500 * lizard_rules::MS,
         boots_to_rest: mentions("boot rest"),
         brown_outs_clear_ram: true,

@@ -63,10 +63,12 @@ fn assert_reacts_at(
         .iter()
         .map(|(reaction, _)| reaction.as_str())
         .collect();
+    let pace = robot().supplies().slow_pace;
+    let low = format!("low: no saving, speed up to {pace}");
     assert_eq!(
         words,
         [
-            "low: half speed, no saving",
+            low.as_str(),
             "too low to move: stopped",
             "too low to hold: pulses ended"
         ]
@@ -105,7 +107,7 @@ fn a_sinking_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
 }
 
 #[test]
-fn a_low_supply_halves_the_pace_and_refuses_to_write_the_memory() {
+fn a_low_supply_limits_the_pace_and_refuses_to_write_the_memory() {
     let mut bench = robot_after(&first_moving_gait(), Fidelity::DataSheet);
     let pace = |bench: &mut FirmwareBench| {
         let before = Status::of(bench).number("phase");
@@ -122,9 +124,13 @@ fn a_low_supply_halves_the_pace_and_refuses_to_write_the_memory() {
         refused.starts_with("err 8 the supply is too low"),
         "{refused}"
     );
-    let half = pace(&mut bench);
+    let slow = pace(&mut bench);
+    let expected = f64::from(robot().supplies().slow_pace) / 100.0;
     assert!(full > 0.0, "it walks");
-    assert!((half / full - 0.5).abs() < 0.1, "{half} of {full}");
+    assert!(
+        (slow / full - expected).abs() < 0.1,
+        "{slow} of {full}, not {expected}"
+    );
     bench.say("rest");
     bench.run_ms(400);
     assert_eq!(

@@ -51,6 +51,7 @@ fn the_name_the_pins_and_the_supplies_are_read_back() {
             supplies.rail.map(|rail| rail.pin),
             "{name}"
         );
+        assert_eq!(robot.slow_pace(), supplies.slow_pace, "{name}");
         let read = robot.supplies();
         let is_close = |mv: u16, volts: f64| (f64::from(mv) - 1000.0 * volts).abs() <= 0.501;
         let are_close = |of: lizard_core::numbers::supplies::Thresholds, volts: [f64; 3]| {

@@ -179,6 +179,8 @@ pub struct Description {
     pub stroke: (f64, f64),
     /// Voltages below which the board slows down, stops and rests.
     pub supply: [f64; 3],
+    /// Percent of their own pace to which the first of them limits gaits.
+    pub slow_pace: u8,
     /// Channel of the converter that measures the servos' rail, and the volts there; `None` if it is
     /// not measured.
     pub rail: Option<(u8, f64)>,
@@ -250,6 +252,7 @@ impl Description {
                 .zip(core.rail_pin())
                 .map(|(mv, pin)| (pin - 14, mv / 1000.0)),
             inputs: robot.inputs().each().collect(),
+            slow_pace: core.slow_pace(),
             supply: [board.slow, board.stop, board.rest].map(|mv| f64::from(mv) / 1000.0),
             floor: Floor::of(robot),
             models: ModelEntry::all(robot),

@@ -258,12 +258,14 @@ pub(super) fn notice(out: &mut impl Output, notice: Notice, control: &Control) {
             out.byte(b' ');
             out.byte(b'V');
             match control.safety().supply().level() {
-                Level::Good => Text::LevelGood,
-                Level::Slow => Text::LevelSlow,
-                Level::Stop => Text::LevelStop,
-                Level::Rest => Text::LevelRest,
+                Level::Good => Text::LevelGood.print(out),
+                Level::Slow => {
+                    let pace = control.motion().robot().slow_pace();
+                    digits::count(out, Text::LevelSlow, pace.into())
+                }
+                Level::Stop => Text::LevelStop.print(out),
+                Level::Rest => Text::LevelRest.print(out),
             }
-            .print(out)
         }
         Notice::Boot => {
             Text::NoticeBoot.print(out);

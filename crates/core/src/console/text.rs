@@ -66,7 +66,7 @@ texts! {
     WhyRobotDamaged = "the robot in the flash is damaged, write it again";
     WhyStack = "the stack has grown into the data, stopped";
     LevelGood = ", good";
-    LevelSlow = ", low: half speed, no saving";
+    LevelSlow = ", low: no saving, speed up to ";
     LevelStop = ", too low to move: stopped";
     LevelRest = ", too low to hold: pulses ended";
 

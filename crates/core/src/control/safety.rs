@@ -143,7 +143,7 @@ impl Safety {
         self.is_lit
     }
 
-    /// True if the supply limits gaits to half their pace.
+    /// True if the supply limits the pace of gaits.
     pub fn is_slow(&self) -> bool {
         self.supply.level() > Level::Good
     }

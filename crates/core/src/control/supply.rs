@@ -32,7 +32,7 @@ pub enum Level {
     /// Everything is allowed.
     #[default]
     Good,
-    /// Gaits are limited to half their pace, and the EEPROM is not written.
+    /// Gaits are limited to [`slow_pace`](crate::numbers::robot::Robot::slow_pace), and the EEPROM is not written.
     Slow,
     /// The robot may stand still only.
     Stop,

@@ -60,9 +60,6 @@ const WAKE_INTERVAL_FRAMES: u8 = 5;
 /// The gaits' own pace, percent.
 const FULL_PERCENT: u8 = 100;
 
-/// The largest pace that a weak supply allows, percent of the gaits' own.
-const SLOW_PERCENT: u8 = 50;
-
 /// Frames from the first pulse until all four are awake and motion may begin.
 pub const AWAKE: u8 = 4 * WAKE_INTERVAL_FRAMES;
 
@@ -80,7 +77,7 @@ pub struct Motion {
     has_ended: bool,
     /// Percent of the gaits' own pace.
     speed: u8,
-    /// True while the supply limits the pace to [`SLOW_PERCENT`].
+    /// True while the supply limits the pace to [`Robot::slow_pace`].
     is_slow: bool,
     /// True while the pulses move to a new calibration's widths.
     is_settling: bool,
@@ -253,7 +250,7 @@ impl Motion {
         self.speed = percent;
     }
 
-    /// Limits gaits to half their pace, or ends the limit.
+    /// Limits gaits to the pace of a low supply, or ends the limit.
     pub fn set_slow(&mut self, is_slow: bool) {
         self.is_slow = is_slow;
     }
@@ -366,7 +363,7 @@ impl Motion {
                 gait, phase, pace, ..
             } => {
                 let percent = if self.is_slow {
-                    self.speed.min(SLOW_PERCENT)
+                    self.speed.min(self.robot.slow_pace())
                 } else {
                     self.speed
                 };

@@ -105,10 +105,15 @@ impl<'a> Robot<'a> {
 
     /// The Arduino number of the pin where the servos' rail is measured, 14 to 19.
     pub fn rail_pin(&self) -> Option<u8> {
-        match self.number::<u16>(offset_of!(Numbers, rail)) {
+        match self.number(offset_of!(Numbers, rail)) {
             0 => None,
-            pin => Some(pin as u8),
+            pin => Some(pin),
         }
+    }
+
+    /// Percent of their own pace to which a low supply limits gaits.
+    pub fn slow_pace(&self) -> u8 {
+        self.number(offset_of!(Numbers, slow_pace))
     }
 
     /// The bars of an end, in that end's own frame.

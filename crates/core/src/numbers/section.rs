@@ -103,7 +103,9 @@ lizard_avr::plain! {
         /// The parts, in the order of [`Part`].
         pub parts: [Place; PARTS],
         /// The Arduino number of the pin where the servos' rail is measured; 0 if it is not.
-        pub rail: u16,
+        pub rail: u8,
+        /// Percent of their own pace to which a low supply limits gaits, 10 to 100.
+        pub slow_pace: u8,
         /// The Arduino numbers of the servos' pins; 14 to 19 are A0 to A5.
         pub pins: [u8; 4],
         /// The heads of the maps of head, tail, left and right. The last of the numbers,

@@ -4,7 +4,7 @@ lizard_avr::plain! {
     /// Voltages of one supply below which the robot reacts, mV, falling.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Thresholds {
-        /// The voltage below which gaits slow to half their pace and the EEPROM is not written.
+        /// The voltage below which gaits slow down and the EEPROM is not written.
         pub slow: u16,
         /// The voltage below which the robot freezes.
         pub stop: u16,

@@ -40,6 +40,9 @@ pub struct Supplies {
     pub board: [f64; 3],
     /// The servos' rail; `None` if it is not measured.
     pub rail: Option<Rail>,
+    /// Percent of their own pace to which gaits are limited below the first threshold. It follows from
+    /// the servos if their rail is measured; the board's supply says nothing about their line.
+    pub slow_pace: u8,
 }
 
 /// A rail that is measured at an analogue pin, through a divider.
@@ -59,16 +62,30 @@ pub struct Rail {
 /// than the 0.15 V by which a supply must recover before the robot is fast again.
 const APART: f64 = 0.25;
 
+/// The pace of a low supply whose servos' line is not known, percent.
+const DEFAULT_PACE: u8 = 50;
+/// The slowest pace that `speed` takes, percent.
+const SLOWEST_PACE: f64 = 10.0;
+
 impl Rail {
     /// Lets the robot slow down below the voltage at which the hardest of its gaits would use
     /// `share` of its servos' line, if robot.toml leaves that to the servos; `line` is what it uses
     /// at `volts`.
-    pub(crate) fn slowed(&mut self, line: f64, share: f64, volts: f64) {
+    pub(crate) fn slow_down(&mut self, line: f64, share: f64, volts: f64) {
         let [slow, stop, _] = &mut self.thresholds;
         let min = *stop + APART;
         // To hundredths. The supply itself must count as good, or nothing would be saved.
         let slow_volts = (100.0 * volts * line / share).round() / 100.0;
-        *slow = slow_volts.min(volts - APART).max(min);
+        if self.by_servos {
+            *slow = slow_volts.min(volts - APART).max(min);
+        }
+    }
+}
+
+impl Supplies {
+    /// Limits gaits on a low supply to a share of their own pace.
+    pub(crate) fn limit_pace(&mut self, pace: f64) {
+        self.slow_pace = (100.0 * pace).floor().max(SLOWEST_PACE) as u8;
     }
 }
 
@@ -78,6 +95,7 @@ impl Default for Supplies {
             reference: REFERENCE,
             board: DEFAULTS,
             rail: None,
+            slow_pace: DEFAULT_PACE,
         }
     }
 }
@@ -94,6 +112,7 @@ impl Supplies {
             reference: section.number_or("reference", REFERENCE, min, max, "V")?,
             board: read_thresholds(&section, BOARD, DEFAULTS)?,
             rail: read_rail(&section, servos)?,
+            slow_pace: DEFAULT_PACE,
         })
     }
 
@@ -273,6 +292,48 @@ mod tests {
         // Two lithium cells, and servos for them.
         let two = slow("at_volts = 8.0", "stop = 6.4\nrest = 6.0", "0.7");
         assert!((6.65..7.75).contains(&two), "{two}");
+    }
+
+    /// The pace of the paper's robot on another floor with other thresholds, and by search among its efforts.
+    fn paces(servo: &str, rail: &str, friction: f64) -> [u8; 2] {
+        let tables = format!(
+            "[supply.rail]\npin = \"A3\"\nratio = 2.0\n{rail}\n{BEFORE}\nfriction = {friction}"
+        );
+        let servo = format!("[servo]\n{servo}\n[servo.A1]");
+        let robot = with("paper", &[("[servo.A1]", &servo), (BEFORE, &tables)]).expect(rail);
+        let [_, stop, _] = robot.supplies().rail.expect("a rail").thresholds;
+        let own = robot.servo_type().volts;
+        let effort = |gait| crate::Effort::of(gait, robot.ground(), &robot.motors());
+        let efforts: Vec<_> = robot.gaits().iter().map(effort).collect();
+        let is_followed = |percent: &u8| {
+            let line =
+                |effort: &crate::Effort| effort.line_share(f64::from(*percent) / 100.0, stop / own);
+            efforts.iter().all(|effort| line(effort) <= crate::TIGHT)
+        };
+        let found = (10..=100).rev().find(is_followed).unwrap_or(10);
+        [robot.firmware().slow_pace(), found]
+    }
+
+    #[test]
+    fn below_its_threshold_a_robot_is_as_fast_as_its_servos_line_allows_where_it_stops() {
+        let [even, searched] = paces("", "", 0.7);
+        assert_eq!(even, searched);
+        let [rough, searched] = paces("", "", 0.9);
+        assert_eq!(rough, searched);
+        assert!((11..even).contains(&rough) && even < 100, "{rough} {even}");
+        // Where the threshold is given, too; a robot that stops sooner may go faster.
+        let [given, searched] = paces("", "slow = 4.7\nstop = 4.5", 0.9);
+        assert_eq!(given, searched);
+        assert!(given > rough, "{given} {rough}");
+        // No pace is slow enough, or none is too fast.
+        assert_eq!(paces("model = \"copy\"", "stop = 3.0\nrest = 2.8", 1.2), [10, 10]);
+        assert_eq!(paces("model = \"MG90S\"", "", 0.2), [100, 100]);
+    }
+
+    #[test]
+    fn without_a_rail_a_low_supply_halves_the_pace() {
+        let robot = with("paper", &[]).expect("the paper's");
+        assert_eq!(robot.firmware().slow_pace(), 50);
     }
 
     #[test]

@@ -35,6 +35,8 @@ struct Row {
 pub struct ServoTable {
     servo: ServoType,
     volts: [f64; 3],
+    /// Percent of their own pace to which a low supply limits gaits.
+    slow_pace: u8,
     rows: Vec<Row>,
 }
 
@@ -64,6 +66,7 @@ impl ServoTable {
         Self {
             servo,
             volts,
+            slow_pace: robot.supplies().slow_pace,
             rows: moving.map(row).collect(),
         }
     }
@@ -93,11 +96,13 @@ impl fmt::Display for ServoTable {
             at_volts,
             ..
         } = self.servo;
+        let slow_pace = self.slow_pace;
         writeln!(
             f,
             "Servos: {stall_kg_cm} kg cm and {s_per_60_deg} s for 60 deg at {at_volts} V; the rest as {model} ({source}).\n\
              The share of their torque-speed line, and one cycle: mm ahead, and deg where it turns. Above 1 a servo\n\
-             falls behind its pulses. The second and the third supply are those at which the robot slows down and stops."
+             falls behind its pulses. The second and the third supply are those at which the robot slows down, to\n\
+             speed {slow_pace} at most, and stops."
         )?;
         let width = widest(self.rows.iter().map(|row| row.name.as_str()));
         for (i, pace) in PACES.into_iter().enumerate() {

@@ -56,6 +56,7 @@ pub(crate) fn content(
         servo_hash: servo_hash(&pins, &neutral, &calibrations),
         pins,
         rail: supplies.rail.map(|rail| rail.pin),
+        slow_pace: supplies.slow_pace,
         neutral,
         calibration: calibrations,
         reach,

@@ -111,33 +111,47 @@ fn the_page_on_the_twin_shows_the_cost_of_springs() {
     );
 }
 
-/// Makes a robot's row of the table of paces: the hardest gait at the supply at which the robot stops.
-fn half_pace(file: &str) -> String {
+/// Makes a robot's row of the table of paces: the hardest gait at the supply at which the robot stops, and the
+/// pace at which none is harder than a low supply allows.
+fn slow_pace(file: &str) -> String {
     let path = format!("{}/../../robots/{file}.toml", env!("CARGO_MANIFEST_DIR"));
     let robot = Robot::load(&path).unwrap_or_else(|error| panic!("{error}"));
     let [own, _, stop] = robot.reported_volts();
-    let efforts = robot.gaits().iter().map(|gait| {
-        let effort = Effort::of(gait, robot.ground(), &robot.motors());
-        (gait.name(), effort)
-    });
+    let efforts: Vec<_> = robot
+        .gaits()
+        .iter()
+        .map(|gait| {
+            let effort = Effort::of(gait, robot.ground(), &robot.motors());
+            (gait.name(), effort)
+        })
+        .collect();
     let line = |effort: &Effort, pace| effort.line_share(pace, stop / own);
     let (name, hardest) = efforts
+        .iter()
         .max_by(|(_, a), (_, b)| line(a, 1.0).total_cmp(&line(b, 1.0)))
         .expect("a gait");
-    let [full, half] = [1.0, 0.5].map(|pace| line(&hardest, pace));
-    // A share of the line on a supply is the whole line on that share of the supply.
-    let enough = 100.0 * hardest.pace(TIGHT * stop / own);
-    format!("| `{file}` | `{name}` | {stop:.1} | {full:.2} | {half:.2} | {enough:.0} |\n")
+    let is_within = |percent: &u8| {
+        let pace = f64::from(*percent) / 100.0;
+        efforts
+            .iter()
+            .all(|(_, effort)| line(effort, pace) <= TIGHT)
+    };
+    let percent = (10..=100).rev().find(is_within).expect("a pace");
+    if robot.supplies().rail.is_some() {
+        assert_eq!(robot.supplies().slow_pace, percent, "{file}");
+    }
+    let [full, slow] = [1.0, f64::from(percent) / 100.0].map(|pace| line(hardest, pace));
+    format!("| `{file}` | `{name}` | {stop:.1} | {full:.2} | {percent} | {slow:.2} |\n")
 }
 
 #[test]
 #[ignore = "make docs-check: it takes most of a minute"]
-fn the_page_on_the_twin_shows_what_half_the_pace_leaves() {
+fn the_page_on_the_twin_shows_the_paces_of_a_low_supply() {
     let page = std::fs::read_to_string(TWIN).expect(TWIN);
-    let rows = ["paper", "own-gaits", "unequal", "large", "grain"].map(half_pace);
+    let rows = ["paper", "own-gaits", "unequal", "large", "grain"].map(slow_pace);
     let text = format!(
-        "| file | hardest gait | V | its line at full pace | at half | pace for {TIGHT} of the line, % |\n|---|---|---|---|---|---|\n{}",
+        "| file | hardest gait | `stop`, V | its line at full pace | pace, % | its line then |\n|---|---|---|---|---|---|\n{}",
         rows.concat()
     );
-    check(TWIN, &page, &filled(&page, "half the pace", &text));
+    check(TWIN, &page, &filled(&page, "paces", &text));
 }

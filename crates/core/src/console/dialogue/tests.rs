@@ -25,7 +25,7 @@ use crate::memory::settings::Settings;
 use crate::motion::Activity;
 use crate::numbers::pose::{Pose, Pulses};
 use crate::numbers::units::Width;
-use crate::sample::{GAITS, Sample};
+use crate::sample::{GAITS, SLOW_PACE, Sample};
 use crate::step::Step;
 use crate::virtual_board::{Eeprom, VirtualBoard, is_final};
 use dialogue::{Dialogue, awake, neutral, pairs, standing, supply, widths};

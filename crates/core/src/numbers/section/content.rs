@@ -35,6 +35,8 @@ pub struct Content {
     pub pins: [u8; 4],
     /// The Arduino number of the pin where the servos' rail is measured.
     pub rail: Option<u8>,
+    /// Percent of their own pace to which a low supply limits gaits, 10 to 100.
+    pub slow_pace: u8,
     /// The servos' angles in the neutral pose.
     pub neutral: [Angle; 4],
     /// The servos' pulses and travel.
@@ -182,7 +184,8 @@ impl Content {
             supplies: self.supplies,
             curves,
             parts,
-            rail: self.rail.unwrap_or(0).into(),
+            rail: self.rail.unwrap_or(0),
+            slow_pace: self.slow_pace,
             pins: self.pins,
             maps: self.maps.each_ref().map(|map| MapHead {
                 first: map.first,

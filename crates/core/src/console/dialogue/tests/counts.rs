@@ -78,14 +78,16 @@ fn a_low_supply_makes_a_count_take_longer_and_does_not_end_it() {
             dialogue.run(40);
         }
         dialogue.say("sway 2");
-        (1..2_000)
+        (1..2_000_u32)
             .find(|_| dialogue.run(1) == ["# done"])
             .expect("an end")
     };
-    let (full, half) = (frames(None), frames(Some(4_400)));
+    let (full, slow) = (frames(None), frames(Some(4_400)));
+    // Without the frames in which it speeds up and brakes.
+    let most = full * 100 / u32::from(SLOW_PACE);
     assert!(
-        half > full + full / 2 && half < 2 * full,
-        "{full} and {half}"
+        slow > u32::midpoint(full, most) && slow < most,
+        "{full} and {slow}"
     );
 }
 

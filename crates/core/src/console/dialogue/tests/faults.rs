@@ -119,11 +119,12 @@ fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
     let printed = dialogue.run(40);
     assert!(
         printed[0].starts_with("# supply: 4.")
-            && printed[0].ends_with("V, low: half speed, no saving"),
+            && printed[0].ends_with(&format!("V, low: no saving, speed up to {SLOW_PACE}")),
         "{printed:?}"
     );
-    let half = f64::from(pace(&mut dialogue)) / f64::from(full);
-    assert!((half - 0.5).abs() < 0.02, "{half}");
+    let slow = f64::from(pace(&mut dialogue)) / f64::from(full);
+    let expected = f64::from(SLOW_PACE) / 100.0;
+    assert!((slow - expected).abs() < 0.02, "{slow}");
     dialogue.refuse("save", "8 the supply is too low");
     supply(&mut dialogue, 4_200);
     let printed = dialogue.run(40);
