@@ -65,12 +65,21 @@ pub struct Body {
     pub centre: Point,
 }
 
+/// Share of a robot's mass that moves with a pad: 15 g of the paper's 435 g are the foot, its coupler, and
+/// as much of crank and follower as their centres move with it.
+const LEG_SHARE: f64 = 15.0 / 435.0;
+
 impl Body {
     /// The default of robot.toml: the weight of the paper's parts.
     pub const DEFAULT: Self = Self {
         mass: 435.0,
         centre: [0.0; 2],
     };
+
+    /// Mass that moves with a pad, g.
+    pub(crate) fn leg_mass(&self) -> f64 {
+        LEG_SHARE * self.mass
+    }
 
     /// Mean load of a foot, N.
     pub fn mean_load(&self) -> f64 {

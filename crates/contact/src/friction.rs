@@ -55,13 +55,17 @@ pub(crate) struct Pads {
     pub body: Option<Inertia>,
 }
 
-/// A body that keeps the motion of the previous step unless forces change it.
+/// A body and legs that keep the motion of the previous step unless forces change it.
 #[derive(Clone, Copy)]
 pub(crate) struct Inertia {
-    /// Force for each mm of change, and torque for each rad.
+    /// Force for each mm by which the body's movement changes, and torque for each rad.
     pub stiffness: Twist,
     /// Twist of the step before.
     pub before: Twist,
+    /// Force for each mm by which a pad's slide changes: the mass of its leg.
+    pub leg_stiffness: f64,
+    /// Slides of the pads in the step before.
+    pub slides: [Point; 4],
 }
 
 /// The drives of legs that lag behind their servos.
@@ -250,7 +254,10 @@ impl Pads {
     fn expand(&self, displacement: &Displacement, eps: f64, scale: &Scale) -> Expansion {
         let (mut cost, mut gradient, mut hessian) = (0.0, [0.0; 3], [[0.0; 3]; 3]);
         let mut legs = [Row::default(); 4];
-        if let Some(Inertia { stiffness, before }) = self.body {
+        if let Some(Inertia {
+            stiffness, before, ..
+        }) = self.body
+        {
             for i in 0..3 {
                 let error = displacement.twist[i] - before[i];
                 cost += stiffness[i] * error * error / 2.0;
@@ -263,20 +270,31 @@ impl Pads {
             let [wx, wy] = self.weight(slide);
             let [ux, uy] = [wx * slide[0], wy * slide[1]];
             let length = (ux * ux + uy * uy + eps * eps).sqrt();
-            // Derivatives of the weighted slide by each unknown.
+            // Derivatives of the slide by each unknown.
             let rows = [
-                [wx * scale.twist[0], 0.0],
-                [0.0, wy * scale.twist[1]],
-                [-wx * y * scale.twist[2], wy * x * scale.twist[2]],
+                [scale.twist[0], 0.0],
+                [0.0, scale.twist[1]],
+                [-y * scale.twist[2], x * scale.twist[2]],
             ];
-            let slope = |[a, b]: Point| (a * ux + b * uy) / length;
-            let along = rows.map(slope);
-            cost += load * length;
+            let (inertia, change) = self.body.map_or((0.0, [0.0; 2]), |body| {
+                let before = body.slides[i];
+                (
+                    body.leg_stiffness,
+                    [slide[0] - before[0], slide[1] - before[1]],
+                )
+            });
+            let slope = |[a, b]: Point| (wx * a * ux + wy * b * uy) / length;
+            // Of the pad's friction and of its leg's inertia.
+            let pull = |row: Point| load * slope(row) + inertia * dot(row, change);
+            let bend = |a: Point, b: Point| {
+                let weighted = wx * wx * a[0] * b[0] + wy * wy * a[1] * b[1];
+                load * (weighted - slope(a) * slope(b)) / length + inertia * dot(a, b)
+            };
+            cost += load * length + inertia * dot(change, change) / 2.0;
             for i in 0..3 {
-                gradient[i] += load * along[i];
+                gradient[i] += pull(rows[i]);
                 for j in 0..3 {
-                    let dot = rows[i][0] * rows[j][0] + rows[i][1] * rows[j][1];
-                    hessian[i][j] += load * (dot - along[i] * along[j]) / length;
+                    hessian[i][j] += bend(rows[i], rows[j]);
                 }
             }
             let Some(compliance) = &self.compliance else {
@@ -284,20 +302,14 @@ impl Pads {
             };
             let unit = scale.lag[i];
             let [bx, by] = compliance.along[i];
-            let row = [-wx * bx * unit, -wy * by * unit];
-            let lag_slope = slope(row);
+            let row = [-bx * unit, -by * unit];
             let (energy, torque, stiffness) =
                 compliance.lag_energy[i].expand(displacement.lag[i], eps / scale.size * unit);
             cost += energy;
             let leg = Row {
-                slope: load * lag_slope + torque * unit,
-                curvature: load * (row[0] * row[0] + row[1] * row[1] - lag_slope * lag_slope)
-                    / length
-                    + stiffness * unit * unit,
-                mixed: std::array::from_fn(|k| {
-                    load * (rows[k][0] * row[0] + rows[k][1] * row[1] - along[k] * lag_slope)
-                        / length
-                }),
+                slope: pull(row) + torque * unit,
+                curvature: bend(row, row) + stiffness * unit * unit,
+                mixed: rows.map(|other| bend(other, row)),
             };
             for (i, mixed) in leg.mixed.into_iter().enumerate() {
                 gradient[i] -= mixed * leg.slope / leg.curvature;
@@ -365,7 +377,7 @@ fn largest(points: &[Point; 4]) -> f64 {
     parts.fold(0.0f64, |max, part| max.max(part.abs()))
 }
 
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+fn dot<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 

@@ -177,11 +177,26 @@ mod tests {
         };
         let mut walker = Walker::new(heavy, [0.0; 4]);
         let targets = [Some(8.0), Some(8.0), Some(-8.0), Some(-8.0)].map(|at| at.map(|x| 1e3 * x));
-        walker.drive(targets, 0.02, &motors(quick, JOINTS));
+        let mut angle_after = || {
+            walker.drive(targets, 0.02, &motors(quick, JOINTS));
+            walker.servos().map(f64::abs).iter().sum::<f64>() / 4.0
+        };
+        // Once rotor and legs are up to speed.
+        let mean = (-angle_after() + angle_after()) / 0.02;
         let torque = heavy.grip() * heavy.feet.reach;
         let rate = SG90.rate * (1.0 - torque / SG90.stall);
-        let mean = walker.servos().map(f64::abs).iter().sum::<f64>() / 4.0 / 0.02;
         assert!((mean / rate - 1.0).abs() < 0.1, "{mean} {rate}");
+    }
+
+    #[test]
+    fn on_ice_legs_that_swing_forward_push_the_body_back_by_their_share_of_the_mass() {
+        let ice = ground(435.0, 1e-4);
+        let walker = turned(ice, &motors(SG90, JOINTS), 20.0, 0.5);
+        let forward = ice.feet.at(walker.legs())[0][0] - ice.feet.at([0.0; 4])[0][0];
+        assert!(forward > 15.0, "{forward}");
+        let share = 4.0 * ice.body.leg_mass() / ice.body.mass;
+        let back = walker.place().travel().forward;
+        assert!((back + share * forward).abs() < 0.02, "{back} {forward}");
     }
 
     #[test]

@@ -4,7 +4,7 @@
 //! behind its servo. So a [`Walker`] follows a walk: it holds the servos, the lags and the place on
 //! the floor.
 
-use crate::feet::Feet;
+use crate::feet::{Body, Feet};
 use crate::friction::{Compliance, Displacement, Inertia, Pads, Point, Twist};
 use crate::ground::Ground;
 use crate::lag_energy::LagEnergy;
@@ -38,6 +38,8 @@ pub struct Walker {
     lag: [f64; 4],
     /// Speed of the body, mm/s and rad/s, while motors drive it.
     speed: Twist,
+    /// Speeds of the pads over the floor, mm/s, while motors drive them.
+    pad_speeds: [Point; 4],
     place: Place,
 }
 
@@ -80,6 +82,7 @@ impl Walker {
             servos: sweeps,
             rates: [0.0; 4],
             speed: [0.0; 3],
+            pad_speeds: [[0.0; 2]; 4],
             lag: [0.0; 4],
             place: Place::START,
         }
@@ -186,10 +189,13 @@ impl Walker {
             self.lag[i] = (behind - servo).to_degrees();
         }
         self.speed = displacement.twist.map(|part| part / seconds);
+        let slides = pads.slides(&displacement);
+        self.pad_speeds = slides.map(|slide| slide.map(|part| part / seconds));
         (pads, displacement)
     }
 
-    /// The inertia of the body in a step of time: as if its mass stood at the hips.
+    /// The inertia in a step of time: of the body, as if its mass stood at the hips, and of the legs, whose
+    /// mass is at the pads.
     fn inertia(&self, seconds: f64) -> Inertia {
         const KG_PER_G: f64 = 1e-3;
         const M_PER_MM: f64 = 1e-3;
@@ -198,12 +204,19 @@ impl Walker {
             hip_side: [front, hind],
             ..
         } = self.ground.feet;
-        let mass = self.ground.body.mass * KG_PER_G * M_PER_MM;
-        let stiffness = mass / (seconds * seconds * self.ground.grip());
+        let Body { mass, .. } = self.ground.body;
+        let leg = self.ground.body.leg_mass();
+        let stiffness_of =
+            |mass: f64| mass * KG_PER_G * M_PER_MM / (seconds * seconds * self.ground.grip());
+        let stiffness = stiffness_of(mass - 4.0 * leg);
         let square = hip_forward * hip_forward + (front * front + hind * hind) / 2.0;
         Inertia {
             stiffness: [stiffness, stiffness, stiffness * square],
             before: self.speed.map(|part| part * seconds),
+            leg_stiffness: stiffness_of(leg),
+            slides: self
+                .pad_speeds
+                .map(|speed| speed.map(|part| part * seconds)),
         }
     }
 
@@ -222,6 +235,7 @@ impl Walker {
     ) {
         let servos = self.servos;
         (self.rates, self.speed) = ([0.0; 4], [0.0; 3]);
+        self.pad_speeds = [[0.0; 2]; 4];
         let furthest = (0..4).fold(0.0f64, |largest, i| {
             largest.max((sweeps[i] - servos[i]).abs())
         });

@@ -105,7 +105,11 @@ impl Writer<'_> {
 /// The attribute of a joint's dry friction, N or N m; none without.
 fn friction_loss(friction: f64) -> String {
     match friction > 0.0 {
-        true => format!(r#" frictionloss="{}""#, round(friction)),
+        // MuJoCo's own default yields: a servo that hardly moves would have less friction.
+        true => format!(
+            r#" frictionloss="{}" solreffriction="0.001 1" solimpfriction="0.99 0.999 0.001""#,
+            round(friction)
+        ),
         false => String::new(),
     }
 }
