@@ -230,17 +230,9 @@ pub fn level(figures: &Figures, gait: &str) -> Displacement {
     answers.expect("figures.json has it").mujoco
 }
 
-/// The gaits that keep less than they should, each with its robot and surface. Those of `own-gaits`
-/// step slowly or little, and the slower, the more they lose; `back` of pads with a grain pushes
-/// against the grain.
-pub const BELOW: [(&str, &str, Surface); 9] = [
-    ("own-gaits", "stroll", Surface::Edge(20)),
-    ("own-gaits", "stroll-on", Surface::Edge(20)),
-    ("own-gaits", "veer-left", Surface::Edge(20)),
-    ("own-gaits", "veer-right", Surface::Edge(20)),
-    ("own-gaits", "veer-right-back", Surface::Edge(20)),
-    ("own-gaits", "veer-left-back", Surface::Edge(20)),
-    ("own-gaits", "creep", Surface::Edge(20)),
+/// The gaits that keep less than they should, each with its robot and surface: `back` of pads with a
+/// grain pushes against the grain.
+pub const BELOW: [(&str, &str, Surface); 2] = [
     (grains::ROBOT, "back", Surface::Edge(20)),
     (grains::ROBOT, "back", Surface::Blocks(10)),
 ];

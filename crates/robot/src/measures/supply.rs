@@ -326,7 +326,10 @@ mod tests {
         assert_eq!(given, searched);
         assert!(given > rough, "{given} {rough}");
         // No pace is slow enough, or none is too fast.
-        assert_eq!(paces("model = \"copy\"", "stop = 3.0\nrest = 2.8", 1.2), [10, 10]);
+        assert_eq!(
+            paces("model = \"copy\"", "stop = 3.0\nrest = 2.8", 1.2),
+            [10, 10]
+        );
         assert_eq!(paces("model = \"MG90S\"", "", 0.2), [100, 100]);
     }
 

@@ -236,8 +236,8 @@ mod tests {
         }
         let (on, once) = (gait("stroll-on"), gait("stroll"));
         assert_eq!(on.channels, once.channels);
-        // 2.4 s are 120 frames: 2^24 / 120.
-        assert_eq!(on.increment, 139_810);
+        // 1.28 s are 64 frames: 2^24 / 64.
+        assert_eq!(on.increment, 262_144);
     }
 
     #[test]

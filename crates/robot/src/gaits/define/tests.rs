@@ -28,9 +28,9 @@ fn a_gait_reversed_twice_goes_forward() {
         [false, true, false, false, true, true]
     );
     let on = robot.gait("stroll-on").expect("stroll-on");
-    assert_eq!((on.phase(0.6), on.period()), (0.25, 2.4));
+    assert_eq!((on.phase(0.32), on.period()), (0.25, 1.28));
     let back = robot.gait("stroll-back").expect("stroll-back");
-    assert_eq!((back.phase(0.4), back.period()), (0.75, 1.6));
+    assert_eq!((back.phase(0.3), back.period()), (0.75, 1.2));
 }
 
 #[test]
@@ -42,19 +42,19 @@ fn a_mirror_exchanges_the_legs_and_its_gains_count_after_it() {
     };
     assert_eq!(
         strides("stroll"),
-        [(12.5, 0.0), (12.5, 0.5), (12.5, 0.25), (12.5, 0.75)]
+        [(16.0, 0.0), (16.0, 0.5), (16.0, 0.25), (16.0, 0.75)]
     );
     assert_eq!(
         strides("veer-left"),
-        [(3.75, 0.0), (12.5, 0.5), (12.5, 0.25), (3.75, 0.75)]
+        [(8.0, 0.0), (16.0, 0.5), (16.0, 0.25), (8.0, 0.75)]
     );
     assert_eq!(
         strides("veer-right"),
-        [(12.5, 0.5), (3.75, 0.0), (3.75, 0.75), (12.5, 0.25)]
+        [(16.0, 0.5), (8.0, 0.0), (8.0, 0.75), (16.0, 0.25)]
     );
     assert_eq!(
         strides("veer-left-back"),
-        [(3.75, 0.0), (15.0, 0.5), (12.5, 0.25), (3.75, 0.75)]
+        [(8.0, 0.0), (19.2, 0.5), (16.0, 0.25), (8.0, 0.75)]
     );
 }
 
