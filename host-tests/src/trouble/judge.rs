@@ -40,7 +40,7 @@ fn limits(robot: &Robot, scenario: &Scenario) -> Limits {
         report_time: 300 * lizard_rules::MS,
         queued: 150 * lizard_rules::MS,
         // A patrol rests for a second, or longer on a low supply.
-        longest_rest: 2_500 * lizard_rules::MS,
+        longest_rest: 125_000 * lizard_rules::MS / i64::from(robot.supplies().slow_pace),
         boots_to_rest: mentions("boot rest"),
         brown_outs_clear_ram: true,
         is_narrowed: mentions("say limit ") && mentions("say factory"),
