@@ -73,7 +73,7 @@ export class World {
     const [slow, stop, rest] = description.supply;
     this.showInputs();
     element('supply-note').textContent =
-      `Below ${slow} V gaits go at ${description.slow_pace} % of their pace at most, below ${stop} V the robot stops, below ${rest} V the pulses end.`;
+      `Below ${slow} V gaits go at ${description.slow_pace} % of their pace at most and nothing is saved, below ${stop} V the robot stops, below ${rest} V the pulses end.`;
   }
 
   private setServos(servos: string): void {
