@@ -160,7 +160,7 @@ fn ten_minutes_of_random_commands_give_every_robot_its_recorded_pulses() {
     let recorded = [
         ("grain", (0xa932_205f_0ec5_bed7, 187_804)),
         ("large", (0x3a1b_1df5_bc67_f514, 184_384)),
-        ("own-gaits", (0xae25_006d_9e6b_7b9b, 152_328)),
+        ("own-gaits", (0xb28d_e650_7bf4_729a, 152_328)),
         ("paper", (0x3a1b_1df5_bc67_f514, 184_384)),
         ("unequal", (0xef9f_3060_6801_8a27, 164_444)),
     ];
