@@ -1,16 +1,6 @@
 // The files that `make web` puts beside the page: robots, the firmware's code, the boot loader.
 import type { Predictions } from './robot';
 
-/** The text in the first comment of a robot.toml that is meant for tests. */
-const FOR_TESTS = /\bIt is for the tests\b/;
-
-/** Returns true for a robot.toml that is meant for tests. */
-export function isForTests(toml: string): boolean {
-  const lines = toml.split('\n');
-  const end = lines.findIndex((line) => !line.startsWith('#'));
-  return FOR_TESTS.test(lines.slice(0, Math.max(0, end)).map((line) => line.slice(1).trim()).join(' '));
-}
-
 async function get(path: string): Promise<Response> {
   const response = await fetch(new URL(path, document.baseURI));
   if (!response.ok) throw new Error(`${path} is not there (${response.status}); was the page built by make web?`);
@@ -24,8 +14,8 @@ const json = async <T>(path: string): Promise<T> => (await get(path)).json() as 
 const compiled = async (path: string): Promise<WebAssembly.Module> => WebAssembly.compile(await (await get(path)).arrayBuffer());
 
 export const files = {
-  /** The names of the robots' files, without extension. */
-  robots: (): Promise<string[]> => json('files/robots.json'),
+  /** The names of the robots' files, without extension: all, and those that are meant for tests. */
+  robots: (): Promise<{ all: string[]; tests: string[] }> => json('files/robots.json'),
   toml: (name: string): Promise<string> => text(`files/${name}.toml`),
   /** The predictions of a robot's gaits; null where they are not there, since the page can make them, too. */
   predictions: (name: string): Promise<Predictions | null> => json<Predictions>(`files/${name}.predictions.json`).catch(() => null),

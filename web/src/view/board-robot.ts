@@ -46,7 +46,8 @@ export class BoardRobot {
     };
     const own = kept.aside().find(({ toml }) => isIt(toml));
     if (own) return own;
-    for (const file of await files.robots().catch(() => [])) {
+    const names = await files.robots().catch(() => ({ all: [] }));
+    for (const file of names.all) {
       const toml = await files.toml(file).catch(() => '');
       if (isIt(toml)) return { file, toml };
     }

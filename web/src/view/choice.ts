@@ -1,5 +1,5 @@
 // The list of robots; those that are meant for tests come last, under a heading.
-import { files, isForTests } from '../files';
+import { files } from '../files';
 import { element } from './canvas';
 
 export class Choice {
@@ -8,13 +8,13 @@ export class Choice {
 
   private constructor(
     private readonly robots: string[],
-    forTests: boolean[],
+    forTests: string[],
   ) {
     const tests = document.createElement('optgroup');
     tests.label = 'for tests';
-    robots.forEach((name, n) => {
+    robots.forEach((name) => {
       const option = new Option(`${name}.toml`, name);
-      if (forTests[n]) tests.append(option);
+      if (forTests.includes(name)) tests.append(option);
       else this.list.add(option);
     });
     if (tests.childElementCount > 0) this.list.append(tests);
@@ -36,10 +36,8 @@ export class Choice {
 
   /** Lists the robots beside the page. Throws an error for the user if they are missing. */
   static async load(): Promise<Choice> {
-    const robots = await files.robots();
-    // A file that cannot be read is reported when it is chosen.
-    const tomls = await Promise.all(robots.map((name) => files.toml(name).catch(() => '')));
-    return new Choice(robots, tomls.map(isForTests));
+    const { all, tests } = await files.robots();
+    return new Choice(all, tests);
   }
 
   /** Calls back when the user has chosen. */
