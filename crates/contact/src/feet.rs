@@ -76,8 +76,8 @@ impl Body {
         centre: [0.0; 2],
     };
 
-    /// Mass that moves with a pad, g.
-    pub(crate) fn leg_mass(&self) -> f64 {
+    /// The mass that moves with a pad, g.
+    pub fn leg_mass(&self) -> f64 {
         LEG_SHARE * self.mass
     }
 

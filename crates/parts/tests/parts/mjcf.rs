@@ -366,6 +366,38 @@ fn servos_and_joints_of_a_robot_file_are_those_of_the_engine() {
 }
 
 #[test]
+fn the_mass_that_the_contact_model_gives_a_leg_is_that_of_its_parts() {
+    for name in ROBOTS {
+        let robot = robot(name);
+        let text = written(&robot, |_| {});
+        let document = Document::parse(&text).expect("well formed");
+        let ground = robot.ground();
+        for leg in LEGS {
+            let part = |part: &str| {
+                let name = format!("{part} {leg}");
+                let mut nodes = document.descendants();
+                let body = nodes.find(|node| {
+                    node.has_tag_name("body") && node.attribute("name") == Some(&*name)
+                });
+                let inertial = child(body.expect("a part"), "inertial");
+                let centre = numbers(inertial, "pos");
+                (numbers(inertial, "mass")[0], centre[0].hypot(centre[1]))
+            };
+            // Foot and coupler move as the pad does; crank and follower turn about their ends.
+            let carried = part("foot").0 + part("leg coupler").0;
+            let turned = ["crank", "follower"].map(part);
+            let turned = turned.map(|(mass, lever)| mass * 1e3 * lever / ground.feet.reach);
+            let grams = 1e3 * (carried + turned[0] + turned[1]);
+            let model = ground.body.leg_mass();
+            assert!(
+                (grams / model - 1.0).abs() < 0.25,
+                "{name} {leg}: {grams} and {model} g"
+            );
+        }
+    }
+}
+
+#[test]
 fn a_course_has_the_angles_of_the_firmwares_tables_and_tells_its_last_cycle() {
     let robot = robot("own-gaits");
     let gait = robot.gait("stride").expect("stride");
