@@ -22,8 +22,8 @@ const IDLE = Uint8Array.from({ length: PAGE }, (_, n) => (n % 2 === 0 ? 0xff : 0
 const SIGNATURE = [0x1e, 0x95, 0x0f];
 const FLASH_SIZE = 32 * 1024;
 
-/** Time within which an answer must come, ms. */
-const TIMEOUT = 500;
+/** Time within which an answer must come, ms. Writing a page takes 20, but a busy machine may pass the bytes on a second later. */
+const TIMEOUT = 2000;
 /** Time after a reset in which the boot loader blinks and does not listen, ms. */
 const BLINKING_TIME = 400;
 /** Attempts to reach it in the rest of its second, in which it listens, and the time for each, ms. */

@@ -81,7 +81,8 @@ pub struct Timeouts {
     pub call: Duration,
     /// Time after the first answer, for late answers to earlier calls.
     pub quiet: Duration,
-    /// Time for an answer to any other command. Writing a page takes about 20 ms.
+    /// Time for an answer to any other command. Writing a page takes about 20 ms, but a busy
+    /// machine may pass the bytes on a second later.
     pub answer: Duration,
 }
 
@@ -91,7 +92,7 @@ impl Default for Timeouts {
             blinks: Duration::from_millis(400),
             call: Duration::from_millis(110),
             quiet: Duration::from_millis(40),
-            answer: Duration::from_millis(500),
+            answer: Duration::from_secs(2),
         }
     }
 }
