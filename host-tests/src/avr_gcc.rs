@@ -1,28 +1,36 @@
 //! Small AVR programs that tests compile: those of `simulated_uno`, and one that is changed
 //! between compiler and linker.
 
+use std::fs;
+
 use simulated_uno::Image;
+use simulated_uno::avr_gcc::run;
 pub use simulated_uno::avr_gcc::{assembler, c};
 
-/// Compiles C with avr-gcc, with a section for each function, and links it. Before linking,
-/// `change` may replace the object, and add assembly that is linked before it.
+const FLAGS: [&str; 4] = ["-O2", "-std=gnu11", "-mrelax", "-ffunction-sections"];
+
+/// Compiles C with avr-gcc to an object with a section for each function.
 ///
-/// # Panics
-/// If avr-gcc is missing or refuses the program; the message is avr-gcc's.
-pub fn compile_c_with_edited_object(
-    source: &str,
-    change: impl Fn(Vec<u8>) -> (Vec<u8>, &'static str),
-) -> Image {
+/// # Errors
+/// Returns avr-gcc's own message if it refuses the program.
+pub fn object_of_c(source: &str) -> Result<Vec<u8>, String> {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let [input, object, assembly, output] =
-        ["program.c", "program.o", "more.S", "program.elf"].map(|name| folder.path().join(name));
-    std::fs::write(&input, source).expect("the source is written");
-    let flags = ["-O2", "-std=gnu11", "-mrelax", "-ffunction-sections"];
-    let gcc = simulated_uno::avr_gcc::run;
-    gcc(&flags, &["-c".as_ref(), input.as_ref()], &object);
-    let (new, more) = change(std::fs::read(&object).expect("there is an object"));
-    std::fs::write(&object, new).expect("the object is written");
-    std::fs::write(&assembly, more).expect("the assembly is written");
-    gcc(&flags, &[assembly.as_ref(), object.as_ref()], &output);
-    Image::read(output).expect("avr-gcc's ELF loads")
+    let [input, object] = ["program.c", "program.o"].map(|name| folder.path().join(name));
+    fs::write(&input, source).expect("the source is written");
+    run(&FLAGS, &["-c".as_ref(), input.as_ref()], &object)?;
+    Ok(fs::read(&object).expect("there is an object"))
+}
+
+/// Links assembly and an object, in this order, with avr-gcc.
+///
+/// # Errors
+/// See [`object_of_c`].
+pub fn link(assembly: &str, object: &[u8]) -> Result<Image, String> {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let [source, input, output] =
+        ["more.S", "program.o", "program.elf"].map(|name| folder.path().join(name));
+    fs::write(&source, assembly).expect("the assembly is written");
+    fs::write(&input, object).expect("the object is written");
+    run(&FLAGS, &[source.as_ref(), input.as_ref()], &output)?;
+    Ok(Image::read(output).expect("avr-gcc's ELF loads"))
 }

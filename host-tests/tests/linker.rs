@@ -1,21 +1,17 @@
 //! The order in which our linker places functions does not change a program.
 
-use lizard_host_tests::avr_gcc::compile_c_with_edited_object;
+use lizard_host_tests::avr_gcc::{link, object_of_c};
 use lizard_linker::{ROUTINES, Savings, shrink};
 use simulated_uno::{Fidelity, Image, Uno};
 
 /// A program linked by avr-gcc and by our linker, and the savings.
 fn link_both_ways(program: &str) -> [(Image, Savings); 2] {
-    let savings = std::cell::Cell::new(Savings::default());
-    let plain = compile_c_with_edited_object(program, |object| (object, ROUTINES));
-    let short = compile_c_with_edited_object(program, |object| {
-        let (new, saved) = shrink(&object)
-            .expect("it is an object")
-            .expect("of an AVR");
-        savings.set(saved);
-        (new, ROUTINES)
-    });
-    [(plain, Savings::default()), (short, savings.get())]
+    let object = object_of_c(program).expect("it compiles");
+    let (short, savings) = shrink(&object)
+        .expect("it is an object")
+        .expect("of an AVR");
+    [(object, Savings::default()), (short, savings)]
+        .map(|(object, savings)| (link(ROUTINES, &object).expect("it links"), savings))
 }
 
 fn address(image: &Image, name: &str) -> u16 {

@@ -4,8 +4,8 @@
 //! timing follows from the data sheet by counting. It is easiest to read next to the
 //! expected result. Needs Debian's `gcc-avr` and `avr-libc`.
 //!
-//! All functions here panic with avr-gcc's own message if it refuses the program, because
-//! a test can do nothing else.
+//! All functions but [`run`] panic with avr-gcc's own message if it refuses the program,
+//! because a test can do nothing else.
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -50,9 +50,12 @@ pub fn assembler_at(address: u16, source: &str) -> Image {
 /// Runs avr-gcc for the UNO's chip at 16 MHz, with these flags and input files, so that it
 /// writes `output`.
 ///
+/// # Errors
+/// Returns avr-gcc's message if it refuses the program.
+///
 /// # Panics
-/// See [`c`].
-pub fn run(flags: &[&str], inputs: &[&OsStr], output: &Path) {
+/// If avr-gcc is missing.
+pub fn run(flags: &[&str], inputs: &[&OsStr], output: &Path) -> Result<(), String> {
     let mut gcc = Command::new("avr-gcc");
     gcc.args(["-mmcu=atmega328p", "-DF_CPU=16000000UL", "-Wall"])
         .args(flags)
@@ -61,11 +64,13 @@ pub fn run(flags: &[&str], inputs: &[&OsStr], output: &Path) {
         .args(inputs);
     let result = gcc.stdin(Stdio::null()).output();
     let result = result.expect("avr-gcc runs (Debian package gcc-avr)");
-    let errors = String::from_utf8_lossy(&result.stderr);
-    assert!(
-        result.status.success(),
-        "avr-gcc refuses the program:\n{errors}"
-    );
+    match result.status.success() {
+        true => Ok(()),
+        false => Err(format!(
+            "avr-gcc refuses the program:\n{}",
+            String::from_utf8_lossy(&result.stderr)
+        )),
+    }
 }
 
 fn build(source: &str, extension: &str, flags: &[&str]) -> Image {
@@ -73,6 +78,6 @@ fn build(source: &str, extension: &str, flags: &[&str]) -> Image {
     let input = folder.path().join(format!("program.{extension}"));
     let output = folder.path().join("program.elf");
     std::fs::write(&input, source).expect("the source is written");
-    run(flags, &[input.as_ref()], &output);
+    run(flags, &[input.as_ref()], &output).unwrap_or_else(|error| panic!("{error}"));
     Image::read(output).expect("avr-gcc's ELF loads")
 }

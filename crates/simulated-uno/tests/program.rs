@@ -46,7 +46,7 @@ fn run(file: &Path, arguments: &[&str]) -> Output {
 fn program(folder: &Path, source: &str) -> [std::path::PathBuf; 2] {
     let [c, elf, hex] = ["program.c", "program.elf", "program.hex"].map(|name| folder.join(name));
     fs::write(&c, source).expect("it is written");
-    avr_gcc::run(&["-O2", "-std=gnu11"], &[c.as_ref()], &elf);
+    avr_gcc::run(&["-O2", "-std=gnu11"], &[c.as_ref()], &elf).expect("it compiles");
     let mut objcopy = Command::new("avr-objcopy");
     objcopy
         .args(["-O", "ihex", "-R", ".eeprom"])

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use lizard_host_tests::avr_gcc::{assembler, compile_c_with_edited_object};
+use lizard_host_tests::avr_gcc::{assembler, link, object_of_c};
 use lizard_host_tests::root;
 use lizard_linker::frame::FIRST_REGISTERS;
 use lizard_linker::{ROUTINES, shrink};
@@ -96,16 +96,15 @@ fn results(image: &Image) -> (Vec<u8>, u16) {
 
 #[test]
 fn a_program_computes_the_same_with_shared_beginnings_and_ends() {
-    let plain = compile_c_with_edited_object(PROGRAM, |object| (object, ""));
-    let short = compile_c_with_edited_object(PROGRAM, |object| {
-        let (new, savings) = shrink(&object)
-            .expect("it is an object")
-            .expect("of an AVR");
-        assert!(savings.frames > 100, "{savings:?}");
-        // One of the three in `jumps` stays.
-        assert_eq!(savings.branches, 2, "{savings:?}");
-        (new, ROUTINES)
-    });
+    let object = object_of_c(PROGRAM).expect("it compiles");
+    let (shrunk, savings) = shrink(&object)
+        .expect("it is an object")
+        .expect("of an AVR");
+    assert!(savings.frames > 100, "{savings:?}");
+    // One of the three in `jumps` stays.
+    assert_eq!(savings.branches, 2, "{savings:?}");
+    let plain = link("", &object).expect("it links");
+    let short = link(ROUTINES, &shrunk).expect("it links");
     assert!(short.symbol("__frame_save_2").is_some());
     let ((plain, deep), (short, deeper)) = (results(&plain), results(&short));
     assert_eq!(plain, short);
@@ -135,10 +134,9 @@ int main(void) { result = last(1, 2, 3, 4, 5, 0x1234); done = 1; for (;;) {} }
 
 #[test]
 fn an_argument_on_the_stack_is_read_where_the_caller_put_it() {
-    let image = compile_c_with_edited_object(STACK_ARGUMENT, |object| {
-        let short = shrink(&object).expect("it is an object");
-        (short.expect("of an AVR").0, ROUTINES)
-    });
+    let object = object_of_c(STACK_ARGUMENT).expect("it compiles");
+    let short = shrink(&object).expect("it is an object");
+    let image = link(ROUTINES, &short.expect("of an AVR").0).expect("it links");
     let [done, result] = ["done", "result"].map(|name| address(&image, name));
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     uno.run_ms(10);

@@ -3,11 +3,12 @@
 //! They have up to 30 bytes of arguments, of which 18 fit into registers; their arrays lie on the
 //! stack, they call one another, and a timer interrupts them.
 
-use std::cell::Cell;
-use std::panic::catch_unwind;
+use std::iter;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::thread;
 
 use fastrand::Rng;
-use lizard_host_tests::avr_gcc::compile_c_with_edited_object;
+use lizard_host_tests::avr_gcc::{link, object_of_c};
 use lizard_host_tests::times;
 use lizard_linker::{ROUTINES, shrink};
 use simulated_uno::{Fidelity, Image, Uno};
@@ -153,39 +154,40 @@ fn results(image: &Image) -> Vec<[u8; 4]> {
     (0..FUNCTIONS as u16).map(of).collect()
 }
 
+/// The functions of a program that return something else when the linker has rewritten it, and
+/// whether it has; `None` if avr-gcc fails, since no register is left or a branch is too far.
+fn differences(seed: u64) -> Option<(Vec<usize>, bool)> {
+    let object = object_of_c(&program(&mut Rng::with_seed(seed))).ok()?;
+    let plain = link("", &object).ok()?;
+    let (object, savings) = shrink(&object)
+        .expect("it is an object")
+        .expect("of an AVR");
+    let short = link(ROUTINES, &object).expect("it links, as before");
+    let [plain, short] = [results(&plain), results(&short)];
+    let differ = (0..FUNCTIONS).filter(|&number| plain[number] != short[number]);
+    Some((differ.collect(), savings.frames > 0))
+}
+
 #[test]
 fn random_functions_with_arguments_on_the_stack_compute_the_same() {
-    let rewritten = Cell::new(0);
-    let (mut tried, mut differ) = (0, Vec::new());
-    for seed in 0..times(PROGRAMS) {
-        let source = program(&mut Rng::with_seed(seed));
-        // avr-gcc fails on a few: no register is left, or a branch is too far.
-        let Ok(plain) =
-            catch_unwind(|| compile_c_with_edited_object(&source, |object| (object, "")))
-        else {
-            continue;
-        };
-        let short = compile_c_with_edited_object(&source, |object| {
-            let (new, savings) = shrink(&object)
-                .expect("it is an object")
-                .expect("of an AVR");
-            rewritten.set(rewritten.get() + u64::from(savings.frames > 0));
-            (new, ROUTINES)
-        });
-        let both = results(&plain).into_iter().zip(results(&short));
-        for (number, (plain, short)) in both.enumerate() {
-            tried += 1;
-            if plain != short {
-                differ.push((seed, number));
-            }
-        }
+    let seeds = times(PROGRAMS);
+    let next = AtomicU64::new(0);
+    let claim = || Some(next.fetch_add(1, Relaxed)).filter(|&seed| seed < seeds);
+    let share = || -> Vec<_> {
+        iter::from_fn(claim)
+            .filter_map(|seed| Some((seed, differences(seed)?)))
+            .collect()
+    };
+    let cores = thread::available_parallelism().map_or(1, usize::from);
+    let tried: Vec<_> = thread::scope(|scope| {
+        let shares: Vec<_> = (0..cores).map(|_| scope.spawn(share)).collect();
+        let done = shares.into_iter().map(|share| share.join());
+        done.flat_map(|share| share.expect("no test of it failed"))
+            .collect()
+    });
+    for (seed, (differ, is_rewritten)) in &tried {
+        assert!(differ.is_empty(), "of program {seed}: {differ:?}");
+        assert!(is_rewritten, "program {seed} has frames to share");
     }
-    assert!(
-        differ.is_empty(),
-        "{} of {tried} differ: {differ:?}",
-        differ.len()
-    );
-    let programs = tried / FUNCTIONS as u64;
-    assert!(programs >= times(PROGRAMS) * 9 / 10, "{programs} programs");
-    assert_eq!(rewritten.get(), programs, "each has some that are");
+    assert!(tried.len() as u64 >= seeds * 9 / 10, "{}", tried.len());
 }
