@@ -6,8 +6,6 @@ import type { Link } from './link';
 
 /** The beginning of the firmware's first line. */
 export const GREETING = '# lizard ';
-/** The largest number of characters in a line that the console accepts. */
-export const LONGEST_LINE = 63;
 /** The largest length of a robot's line; longer ones are noise and are cut. */
 const LONGEST = 500;
 /** Time within which an answer must come, ms. */

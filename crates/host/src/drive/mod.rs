@@ -2,6 +2,7 @@
 //! settings, and replay a recorded session.
 
 pub mod console;
+mod deadline;
 pub mod flash;
 pub mod image;
 pub mod ports;

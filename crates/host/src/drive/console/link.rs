@@ -7,7 +7,9 @@
 
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use crate::drive::deadline::Deadline;
 
 /// The beginning of a robot's first line.
 pub const BANNER: &str = "# lizard ";
@@ -125,18 +127,18 @@ impl<P: Read + Write> Link<P> {
     /// # Errors
     /// Fails if nothing answers, or no lizard does.
     pub fn greet(&mut self) -> Result<Option<String>, LinkError> {
-        let end = Instant::now() + self.timeouts.banner;
+        let mut end = Deadline::after(self.timeouts.banner);
         let mut first = None;
-        while let Some(line) = self.line_before(end)? {
+        while let Some(line) = self.line_before(&mut end)? {
             if line.starts_with(BANNER) {
                 return Ok(Some(line));
             }
             first = first.or(Some(line));
         }
         for _ in 0..MAX_QUESTIONS {
-            let end = Instant::now() + self.timeouts.answer / 4;
+            let mut end = Deadline::after(self.timeouts.answer / 4);
             self.send("status")?;
-            while let Some(line) = self.line_before(end)? {
+            while let Some(line) = self.line_before(&mut end)? {
                 if line.starts_with(STATUS) {
                     return Ok(None);
                 }
@@ -164,9 +166,9 @@ impl<P: Read + Write> Link<P> {
     /// Fails if there is no answer, or the port is gone.
     pub fn ask(&mut self, line: &str) -> Result<Reply, LinkError> {
         self.send(line)?;
-        let end = Instant::now() + self.timeouts.answer;
+        let mut end = Deadline::after(self.timeouts.answer);
         let mut notes = Vec::new();
-        while let Some(answer) = self.line_before(end)? {
+        while let Some(answer) = self.line_before(&mut end)? {
             if !answer.starts_with('#') {
                 return Ok(Reply { notes, answer });
             }
@@ -198,7 +200,7 @@ impl<P: Read + Write> Link<P> {
     /// # Errors
     /// Fails if the port is gone.
     pub fn line(&mut self, wait: Duration) -> Result<Option<String>, LinkError> {
-        self.line_before(Instant::now() + wait)
+        self.line_before(&mut Deadline::after(wait))
     }
 
     /// Waits; lines that arrive meanwhile are dropped.
@@ -206,18 +208,18 @@ impl<P: Read + Write> Link<P> {
     /// # Errors
     /// Fails if the port is gone.
     pub fn pause(&mut self, time: Duration) -> Result<(), LinkError> {
-        let end = Instant::now() + time;
-        while self.line_before(end)?.is_some() {}
+        let mut end = Deadline::after(time);
+        while self.line_before(&mut end)?.is_some() {}
         Ok(())
     }
 
-    fn line_before(&mut self, end: Instant) -> Result<Option<String>, LinkError> {
+    fn line_before(&mut self, end: &mut Deadline) -> Result<Option<String>, LinkError> {
         loop {
             if let Some(line) = self.lines.pop_front() {
                 return Ok(Some(line));
             }
             self.receive()?;
-            if self.lines.is_empty() && Instant::now() >= end {
+            if end.has_passed() && self.lines.is_empty() {
                 return Ok(None);
             }
         }

@@ -14,10 +14,11 @@
 //! leave out.
 
 use std::io::{self, ErrorKind, Read, Write};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::image::{BOOT, NANO_BOOT, PAGE};
 use crate::drive::console::link::is_gone;
+use crate::drive::deadline::Deadline;
 
 const OK: u8 = 0x10;
 const IN_SYNC: u8 = 0x14;
@@ -214,12 +215,12 @@ impl<B: Board> Loader<B> {
 
     fn command(&mut self, bytes: &[u8], answer: &mut [u8]) -> Result<(), LoaderError> {
         self.board.write_all(&[bytes, &[END]].concat())?;
-        let end = Instant::now() + self.timeouts.answer;
-        if self.byte(end)? != IN_SYNC {
+        let mut end = Deadline::after(self.timeouts.answer);
+        if self.byte(&mut end)? != IN_SYNC {
             return Err(LoaderError::OutOfStep);
         }
-        self.take(answer, end)?;
-        if self.byte(end)? != OK {
+        self.take(answer, &mut end)?;
+        if self.byte(&mut end)? != OK {
             return Err(LoaderError::OutOfStep);
         }
         Ok(())
@@ -227,10 +228,10 @@ impl<B: Board> Loader<B> {
 
     /// Searches for [`IN_SYNC`] and [`OK`] after any other bytes.
     fn finds_answer(&mut self, time: Duration) -> Result<bool, LoaderError> {
-        let end = Instant::now() + time;
+        let mut end = Deadline::after(time);
         let mut last = 0;
         loop {
-            let byte = match self.byte(end) {
+            let byte = match self.byte(&mut end) {
                 Err(LoaderError::Silent) => return Ok(false),
                 byte => byte?,
             };
@@ -239,7 +240,7 @@ impl<B: Board> Loader<B> {
             }
             last = byte;
             // A board that never stops talking would block this loop.
-            if Instant::now() > end {
+            if end.has_passed() {
                 return Ok(false);
             }
         }
@@ -247,29 +248,28 @@ impl<B: Board> Loader<B> {
 
     /// Waits, and drops all bytes received meanwhile.
     fn skip(&mut self, time: Duration) -> Result<(), LoaderError> {
-        let end = Instant::now() + time;
+        let mut end = Deadline::after(time);
         let mut bytes = [0; 256];
         loop {
             self.read(&mut bytes)?;
-            if Instant::now() >= end {
+            if end.has_passed() {
                 return Ok(());
             }
         }
     }
 
-    fn byte(&mut self, end: Instant) -> Result<u8, LoaderError> {
+    fn byte(&mut self, end: &mut Deadline) -> Result<u8, LoaderError> {
         let mut byte = [0];
         self.take(&mut byte, end)?;
         Ok(byte[0])
     }
 
     /// Fills `bytes` and reads no more: further bytes may be for another reader.
-    fn take(&mut self, mut bytes: &mut [u8], end: Instant) -> Result<(), LoaderError> {
+    fn take(&mut self, mut bytes: &mut [u8], end: &mut Deadline) -> Result<(), LoaderError> {
         while !bytes.is_empty() {
             let count = self.read(bytes)?;
             bytes = &mut bytes[count..];
-            // Checked after reading, since this program may have been delayed, not the board.
-            if count == 0 && Instant::now() >= end {
+            if end.has_passed() && count == 0 {
                 return Err(LoaderError::Silent);
             }
         }
