@@ -1,4 +1,4 @@
-//! The code inside the program is the code that the source builds.
+//! The firmware's code inside the program `lizard` is the code that the source builds.
 //!
 //! Users without a compiler get `firmware/code.hex`. If the source changed without it, nobody would
 //! notice until a board behaves differently from its source.
@@ -94,7 +94,7 @@ fn the_code_inside_the_program_is_what_the_source_builds() {
         assert_eq!(wrong, None, "{RENEW} (the first byte that differs)");
         return;
     }
-    // Not by eprintln!, which a test that passes keeps to itself.
+    // Not by eprintln!, whose output is hidden if the test passes.
     let note = format!(
         "code_image: firmware/code.hex was made by other tools than those here, so its bytes are \
          not compared, but what both do in a minute. It was made by\n{made_by}and here are\n{}",

@@ -1,4 +1,4 @@
-//! The bytes of RAM that the start of the program does not clear; [`lizard_core::memory::kept`]
+//! The bytes of RAM that the start-up code does not clear; [`lizard_core::memory::kept`]
 //! defines what is in them.
 
 use core::arch::global_asm;
@@ -10,8 +10,8 @@ use lizard_core::numbers::rate::Rate;
 
 use servo_pulses::cells::Byte;
 
-// The start-up code does not clear the section, and the image holds nothing for it;
-// the compiler's own statics would be written into the image.
+// The start-up code does not clear the section, and the image holds no values for it. A
+// static of Rust would have initial values in the image.
 global_asm!(
     ".pushsection .noinit,\"aw\",@nobits",
     ".global lizard_kept",
@@ -43,9 +43,8 @@ impl Cells for Ram {
 
 #[inline(always)]
 fn cell(index: usize) -> &'static Byte {
-    // SAFETY: every byte of RAM has some value, and each is one that a `Byte` may
-    // have; nothing is believed of them before the checks. The core asks for cells
-    // below `CELLS` alone.
+    // SAFETY: a `Byte` may have any value, so whatever the RAM holds is valid; the core
+    // checks it before use, and asks for cells below `CELLS` alone.
     unsafe { &*(&raw const KEPT).cast::<Byte>().add(index) }
 }
 
@@ -53,7 +52,7 @@ fn cell(index: usize) -> &'static Byte {
 /// running. To be called once, with interrupts off, before the watchdog starts.
 pub fn restart(cpu: &CPU) -> Restart {
     let register = cpu.mcusr.read();
-    // Several may be set; none is where a boot loader has cleared them.
+    // Several flags may be set; none is if a boot loader has cleared them.
     let reported = if register.porf().bit_is_set() {
         Some(Cause::Power)
     } else if register.wdrf().bit_is_set() {

@@ -1,7 +1,7 @@
 //! Sleep until there is something to do.
 //!
 //! If an interrupt came between the check for work and the `sleep` instruction, the
-//! program would sleep through it, for up to 4 ms. So the check is made with interrupts
+//! program would sleep until the next one, up to 4 ms, with work waiting. So the check is made with interrupts
 //! off. `sei` allows them only after one more instruction, which is `sleep`.
 
 use core::arch::asm;
@@ -11,13 +11,13 @@ use avr_device::interrupt;
 
 use super::{pulses, serial};
 
-/// Chooses idle, the sleep in which the timer and the USART run on. To be called once.
+/// Selects idle mode, in which the timer and the USART keep running. To be called once.
 pub fn start(cpu: CPU) {
     cpu.smcr.write(|w| w.sm().idle().se().set_bit());
 }
 
-/// Sleeps until the tick is no longer this one, a byte waits to be read, or the last byte to
-/// be sent is on its way, which leaves room for the next line. Interrupts are off for fewer
+/// Sleeps until the tick is no longer this one, a byte waits to be read, or the send buffer has
+/// become empty, so that the next line has room. Interrupts are off for fewer
 /// than 40 cycles at a time.
 pub fn until_tick_or_byte(tick: u8) {
     let was_sending = serial::is_sending();
@@ -26,10 +26,10 @@ pub fn until_tick_or_byte(tick: u8) {
         if pulses::ticks() != tick || serial::has_input() || was_sending && !serial::is_sending() {
             break;
         }
-        // The `nop` is for stock simavr, which lets interrupts in an instruction
-        // later than the data sheet: `cli`, next, would lock them out for good.
-        // SAFETY: interrupts were on before `disable`, above, and every one of
-        // them has its handler.
+        // The `nop` is for stock simavr, which accepts an interrupt one instruction
+        // later than the chip: without it the `cli` that follows would block them for good.
+        // SAFETY: interrupts were on before `disable`, above, and every enabled one
+        // has a handler.
         unsafe { asm!("sei", "sleep", "nop", options(nostack, preserves_flags)) };
     }
     // SAFETY: as above.

@@ -5,7 +5,7 @@
 pub enum TurnsTrouble {
     /// The horn did not turn.
     #[error(
-        "the horn did not turn: {turn:.1} deg at most; is this the right servo, and has it power?"
+        "the horn did not turn: {turn:.1} deg at most; is this the right servo, and does it have power?"
     )]
     NotTurned {
         /// Largest turn, deg.
@@ -13,7 +13,7 @@ pub enum TurnsTrouble {
     },
     /// The film is too short.
     #[error(
-        "the film lasts {seconds:.0} s and the steps take {needed:.0} s: film from before the first to after the last"
+        "the film lasts {seconds:.0} s and the steps take {needed:.0} s: start before the first step and stop after the last"
     )]
     TooShort {
         /// Length of the film, s.
@@ -21,19 +21,19 @@ pub enum TurnsTrouble {
         /// Time of the steps, s.
         needed: f64,
     },
-    /// The steps take another time.
+    /// The steps take longer, or less time, than they should.
     #[error(
-        "the steps take {times} times as long as they should: for a film in slow motion, give the rate at which it \
-         was taken with --fps"
+        "the steps take {times} times as long as they should: for a film in slow motion, give with --fps the rate at \
+         which it was taken"
     )]
     AnotherPace {
-        /// The multiple.
+        /// Measured time of a step divided by the expected one.
         times: f64,
     },
-    /// The angles are not those of the steps.
+    /// The horn's angles do not match the steps.
     #[error(
-        "the horn does not turn in the steps of `lizard measure steps`: does the film show all of them, and does the \
-         servo follow?"
+        "the horn's angles do not match the steps of `lizard measure steps`: does the film show all of them, and does \
+         the servo follow?"
     )]
     NotTheSteps,
     /// Too few pictures of the turning horn.
@@ -42,13 +42,13 @@ pub enum TurnsTrouble {
          second or more, in more light"
     )]
     FewPictures {
-        /// Pictures in a second.
+        /// Pictures per second.
         rate: f64,
     },
-    /// The servo is held back by the slew limit.
+    /// The slew limit of the orders, not the servo, sets the measured rate.
     #[error(
-        "the servo turns at {rate:.0} deg/s, and the orders at {slew:.0} deg/s: it shows the orders' rate and not its \
-         own; flash a robot with [limits] slew = 1000"
+        "the servo turns at {rate:.0} deg/s, too near to the slew limit of {slew:.0} deg/s to show its own rate; flash \
+         a robot with [limits] slew = 1000"
     )]
     Ordered {
         /// Measured rate, deg/s.
@@ -56,20 +56,20 @@ pub enum TurnsTrouble {
         /// Slew limit of the orders, deg/s.
         slew: f64,
     },
-    /// The servo without load is slower to one side than with it.
+    /// The rates to both sides differ more without the load than with it.
     #[error(
-        "the servo turns less evenly to both sides without the load than with it: were the two films swapped?"
+        "the servo's rates to both sides differ more without the load than with it: were the two films swapped?"
     )]
     Swapped,
     /// The load does not slow the servo down enough.
     #[error(
-        "the load makes the servo slower by {percent:.1} % with an error of {error:.1} %: too little to tell its torque; \
+        "the load makes the servo slower by {percent:.1} % with an error of {error:.1} %: too little to compute its torque; \
          take a heavier weight, or film more pictures a second"
     )]
     LoadNotSeen {
         /// Loss of rate, percent.
         percent: f64,
-        /// Its standard error.
+        /// Standard error of the loss, percent.
         error: f64,
     },
 }

@@ -1,25 +1,27 @@
-//! The range of a prediction over the plausible values of what it assumes.
+//! The range of a prediction while one of its assumptions varies over its plausible values.
 
 use lizard_robot::{CheckedGait, MovementRange, Robot};
 use serde::Serialize;
 
 use crate::part::PARTS;
 
-/// The predicted way ahead or turn of a cycle if one assumption at a time takes the ends of its plausible range.
+/// The least and the largest predicted way ahead, or turn, of a cycle if one assumption at a time is set to
+/// either end of its plausible range.
 #[derive(Debug, Serialize)]
 pub(crate) struct Range {
     /// The part of the movement, one of [`PARTS`].
     part: &'static str,
-    /// mm or deg.
+    /// The least predicted movement, mm or deg.
     least: f64,
+    /// The largest.
     most: f64,
-    /// The assumptions that make it so; null for those of robot.toml.
+    /// The assumption that is changed at each end; null if all are as in robot.toml.
     least_by: Option<&'static str>,
     most_by: Option<&'static str>,
 }
 
 impl Range {
-    /// The range of a gait at a pace, 1 for its own.
+    /// Computes the range of a gait at this pace; 1 is the gait's own.
     pub(crate) fn of(robot: &Robot, gait: &CheckedGait, pace: f64) -> Self {
         let range = MovementRange::of(robot, gait, pace);
         let [least, most] = [range.least, range.most];
@@ -32,7 +34,7 @@ impl Range {
         }
     }
 
-    /// The line of a table.
+    /// The range as a line of text.
     pub(crate) fn line(&self) -> String {
         let (name, unit) = self.part.split_once(", ").unwrap_or((self.part, ""));
         let end = |movement: f64, by: Option<&str>| {

@@ -2,22 +2,21 @@
 
 use core::arch::asm;
 
-/// Stores `low` in `port` a fixed number of cycles after Timer1 counts `count` (low byte
-/// first), or at once if that is past. Sets the bits of `change` only if it is on time.
-/// Returns 0xff if it was on time, else 0.
+/// Stores `low | change` in `port` a fixed number of cycles after Timer1 reaches `count` (low
+/// byte first), and returns 0xff. If that count has passed, stores `low` at once and returns 0.
 ///
 /// A falling edge uses this with a `change` of 0: the instructions are the same, so
 /// their cost cancels out of the width.
 ///
 /// # Safety
-/// `port` is the PORT register of a servo pin and `low` is right for its other
-/// pins until the store, so interrupts are off; `count` is at most 255 ahead.
+/// `port` is the PORT register of a servo pin and `low` has the right levels for its other pins
+/// until the store, so interrupts are off; `count` is at most 255 cycles ahead.
 #[inline(always)]
 pub unsafe fn store_at(count: [u8; 2], port: *mut u8, low: u8, change: u8) -> u8 {
     let [left, high] = count;
     let on_time: u8;
     // SAFETY: reads TCNT1 (low byte first, which latches the high one), and
-    // writes `port`, which the caller answers for.
+    // writes `port`, for which the caller is responsible.
     unsafe {
         asm!(
             // left = count - now
@@ -25,16 +24,16 @@ pub unsafe fn store_at(count: [u8; 2], port: *mut u8, low: u8, change: u8) -> u8
             "sub {left}, {now}",
             "lds {now}, {tcnt1h}",
             "sbc {on_time}, {now}",
-            // The borrow says late: on_time = 0, else 0xff; and if late left = 0 and
-            // nothing is set.
+            // A borrow means late: then on_time, left and change become 0; otherwise
+            // on_time is 0xff.
             "sbc {on_time}, {on_time}",
             "com {on_time}",
             "and {left}, {on_time}",
             "and {change}, {on_time}",
             "or {value}, {change}",
-            // Three cycles a turn; left ends as 253, 254 or 255, and the rest, 0
-            // to 2 cycles, is made of branches to the next instruction, which
-            // take two cycles when taken and one when not.
+            // Each turn of the loop takes three cycles; it ends with left = 253, 254 or
+            // 255. The other 0 to 2 cycles come from branches to the next instruction:
+            // two cycles if taken, one if not.
             "2: subi {left}, 3",
             "brcc 2b",
             "cpi {left}, 254",

@@ -1,4 +1,4 @@
-//! The comparison of the gait that was found with the given one.
+//! The comparison of the gait that the search has found with the given gait.
 
 use lizard_kinematics::Check;
 use lizard_robot::CheckedGait;
@@ -12,9 +12,9 @@ use crate::variation::quantiles;
 pub struct Comparison {
     /// Unit of the speeds: mm/s, or deg/s for a turn.
     pub unit: &'static str,
-    /// Largest speed of a servo, deg/s.
+    /// Largest servo speed that both gaits may use, deg/s.
     pub rate: f64,
-    /// The given gait, at the pace at which its servos have that speed.
+    /// The given gait, at the pace at which its fastest servo has that speed.
     pub gait: Figures,
     /// The gait that was found.
     pub tuned: Figures,
@@ -35,7 +35,7 @@ pub struct Figures {
     pub period: f64,
     /// Speed of its fastest servo, deg/s.
     pub rate: f64,
-    /// Name of its smallest margin, and its value, a sine.
+    /// Name and value of its smallest margin; the value is the sine of an angle.
     pub margin: (&'static str, f64),
     /// Speed by the contact model, with ideal servos.
     pub predicted: f64,
@@ -68,12 +68,12 @@ impl Comparison {
         }
     }
 
-    /// True if the gait that was found is faster on the slow robots and on most of all.
+    /// True if the gait that was found has the higher 5 % value, and is faster on more than half of the robots.
     pub fn is_better(&self) -> bool {
         self.tuned.speeds[0] > self.gait.speeds[0] && 2 * self.faster > self.robots
     }
 
-    /// Gain in the speed that 95 % of the robots exceed, as a share.
+    /// Gain in the speed that 95 % of the robots exceed, as a share of the given gait's.
     pub fn gain(&self) -> f64 {
         self.tuned.speeds[0] / self.gait.speeds[0] - 1.0
     }

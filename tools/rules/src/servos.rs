@@ -7,27 +7,26 @@ use crate::event::{MS, NEVER, Pulse, Time};
 use crate::observer::Observer;
 use crate::rule::Rule;
 
-/// Longest time between two pulses; beyond it a frame was left out.
+/// Longest time from one pulse of a servo to its next if no frame between them was left out.
 const MAX_PULSE_GAP: Time = 30 * MS;
 
-/// The longest time by which a gait outlasts `deadman`.
+/// Longest time for which a gait may go on after `deadman` has run out.
 const LATE: Time = 40 * MS;
 
-/// Cycles by which the pulses of a servo that stands may differ.
+/// Largest difference of consecutive pulses of a servo that stands still, cycles.
 const STEADY: u32 = 16;
 
 /// Longest time from an order to rest to the end of the last pulse.
 const UNTIL_REST: Time = 45 * MS;
 
-/// Shortest time from a start to `boot`, since the first tick comes before a frame has
-/// passed.
+/// Shortest time from a start to `boot`: 3 s, less about a frame, since the first tick comes
+/// early.
 const BOOT: Time = 2_975 * MS;
 
-/// First pulses closer together than this are in the same frame or in consecutive ones, although
-/// servos must wake 0.1 s apart.
+/// Shortest time between the first pulses of two servos that wake: 0.1 s, less about a frame.
 const MIN_WAKE_GAP: Time = 75 * MS;
 
-/// Time from the end of the pulses to the reset after a hang: the watchdog's second stage and a
+/// Longest time from the end of the pulses to the reset after a hang: the watchdog's second stage and a
 /// frame.
 const UNTIL_RESET: Time = 160 * MS;
 
@@ -36,9 +35,9 @@ const UNTIL_RESET: Time = 160 * MS;
 pub(crate) struct Permission {
     /// True while pulses may begin.
     pub may: bool,
-    /// The time at which it ends, and true if an order ends it.
+    /// The time at which the permission ends, if it is known, and true if an order has set it.
     end: Option<(Time, bool)>,
-    /// The time at which `boot` grants it.
+    /// The earliest time at which `boot` grants the permission.
     pub boot: Option<Time>,
 }
 
@@ -52,7 +51,8 @@ impl Permission {
         }
     }
 
-    /// Cancels the permission by an order: another event came first, so the order may be ignored.
+    /// Cancels the end that an order has set: another event came first, so the robot may not have
+    /// carried the order out.
     pub(crate) fn cancel_order(&mut self) {
         self.end.take_if(|(_, is_order)| *is_order);
     }
@@ -96,11 +96,11 @@ impl Permission {
 /// The event since a servo's last whole pulse that matters for the next one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Since {
-    /// No event that allows a leap.
+    /// No event, so that a leap is not allowed.
     Nothing,
-    /// A reset that left RAM alone, of a robot that had pulses.
+    /// A reset that kept the RAM, while the robot had pulses.
     Reset,
-    /// A reset of a robot that rested.
+    /// A reset while the robot rested.
     ResetInRest,
     /// The servo's position is unknown.
     Unknown,
@@ -120,10 +120,11 @@ pub(crate) struct Servo {
     pub since: Since,
     /// True if a hang interrupted the pulses.
     pub is_hung: bool,
-    /// True if a reset made the robot forget where the servo is.
+    /// True if the robot has forgotten the servo's position in a reset.
     pub is_lost: bool,
-    /// True if settings have changed.
+    /// True if the servo's settings have changed since its last whole pulse.
     pub is_calibrated: bool,
+    /// The time up to which interrupts are blocked, so that pulses may be missing.
     held_up: Time,
 }
 
@@ -140,7 +141,7 @@ impl Servo {
         held_up: NEVER,
     };
 
-    /// Skips frames without a pulse, since interrupts are blocked.
+    /// Notes that pulses may be missing up to a time, since interrupts are blocked.
     pub(crate) fn miss_pulses(&mut self, until: Time) {
         self.held_up = until;
         if self.since == Since::Nothing {
@@ -156,6 +157,8 @@ impl Servo {
         }
     }
 
+    /// Notes a restart: true if the pulses hung before it, if pulses were allowed, if the robot takes over
+    /// its position, and if its rest pose is still known.
     pub(crate) fn restart(
         &mut self,
         is_hung: bool,

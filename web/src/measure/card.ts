@@ -1,4 +1,4 @@
-// The results as a table, as a picture to share, and for a spreadsheet.
+// Formats the results as a table, as an SVG picture to share, and as CSV for a spreadsheet.
 import type { Part, Report } from './question';
 
 const WIDTH = 700;
@@ -30,7 +30,7 @@ export function rows(report: Report): string[][] {
   });
 }
 
-/** A sentence on the range of a prediction. */
+/** A sentence that gives the range of a prediction. */
 export function rangeOf({ range }: Report): string {
   if (!range) return '';
   const [name = '', unit = ''] = range.part.split(', ');
@@ -41,7 +41,7 @@ export function rangeOf({ range }: Report): string {
 const escaped = (text: string) => text.replace(/[&<>]/g, (c) => `&#${c.charCodeAt(0)};`);
 const text = (x: number, y: number, words: string, more = '') => `<text x="${x}" y="${y}" ${more}>${escaped(words)}</text>`;
 
-/** An SVG picture of the gaits of a robot. */
+/** An SVG picture of the results of a robot's gaits. */
 export function card(robot: string, gaits: Report[]): string {
   let y = HEAD;
   const row = (cells: string[], more = '') => {
@@ -60,7 +60,7 @@ export function card(robot: string, gaits: Report[]): string {
   );
 }
 
-/** The gaits as a table for a spreadsheet. */
+/** The results as CSV: a heading, and one line for each gait. */
 export function csv(gaits: Report[]): string {
   const line = (report: Report) => [report.gait, report.speed, report.cycles, ...PARTS.flatMap((part) => FIELDS.map((field) => report[part][field] ?? ''))];
   const head = ['gait', 'speed', 'cycles', ...PARTS.flatMap((part) => FIELDS.map((field) => `${part}_${field}`))];

@@ -1,4 +1,4 @@
-// Collects single pulses into frames: the four widths within 20 ms.
+// Collects single pulses into frames: the widths of all four servos within 20 ms.
 import type { Four } from '../robot';
 import { FREQUENCY } from './board';
 
@@ -10,7 +10,7 @@ export class Frames {
   private start: number | null = null;
   private last = -1;
 
-  /** Takes the servos' Arduino pin numbers, A1 to A4. */
+  /** Takes the Arduino pin numbers of the four servos, in their order. */
   constructor(
     private readonly pins: number[],
     private readonly onFrame: (widths: Four<number>, cycle: number) => void,
@@ -27,7 +27,7 @@ export class Frames {
     if (servo === 3) this.close();
   }
 
-  /** Closes a frame in which not all servos have a pulse. */
+  /** Closes the frame if its time is over at this cycle, even if not all servos have had a pulse. */
   advanceTo(cycle: number): void {
     if (this.start !== null && cycle - this.start > FOUR_SLOTS) this.close();
   }

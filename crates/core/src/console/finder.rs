@@ -1,31 +1,31 @@
-//! Finds the rate at which others send.
+//! Finds the baud rate of the sender on the serial line.
 //!
-//! A radio module has a rate of its own, which only the bytes themselves reveal. At a
-//! wrong rate most bytes come garbled or occur in no text. After a few of them the next
-//! slower rate is tried. Up to the sender's own rate, the receiver is then always the faster of
-//! the two, which never reads the end of a line.
+//! A radio module has a baud rate of its own, which only the received bytes reveal. At a wrong
+//! rate most bytes are garbled, or are bytes that no text contains. After a few of them the next
+//! slower rate is tried. So until the sender's rate is reached, the receiver is the faster of the
+//! two, and a receiver that is too fast never reads the end of a line.
 //!
 //! The rate changes only in a pause, so that the next byte is read from its beginning.
 
 use crate::numbers::rate::Rate;
 
-/// Wrong bytes after which a rate is left.
+/// Number of wrong bytes after which a rate is given up.
 const WRONG_BYTES: i8 = 4;
 
-/// Additional wrong bytes for a rate that has carried a command: noise, or another sender,
-/// must not cut off a robot that is being driven.
+/// Additional wrong bytes that a rate may have once it has carried a command: noise, or another
+/// sender, must not cut off a robot that is being driven.
 const MORE_AFTER_COMMAND: i8 = 28;
 
-/// Length of the shortest command that is obeyed at a rate that has carried none, bytes. Some `pose`
-/// lines at 57 600 baud read as `cal` at 9600.
+/// Length of the shortest command, in bytes, that is obeyed at a rate that has not carried a command
+/// yet. A shorter one may be misread: some `pose` lines sent at 57 600 baud read as `cal` at 9600.
 const MIN_COMMAND_BYTES: usize = 4;
 
-/// The present rate, and the wrong bytes at it.
+/// The present rate, and the number of wrong bytes received at it.
 #[derive(Clone, Copy, Debug)]
 pub struct RateFinder {
     rate: Rate,
-    /// Wrong bytes since the last command, from `-MORE_AFTER_COMMAND` on, or since the last change
-    /// of rate, from 0 on.
+    /// Number of wrong bytes; it counts up from `-MORE_AFTER_COMMAND` after a command, and from 0
+    /// after a change of rate.
     wrong_bytes: i8,
     /// True if a byte came since the last frame, or may have come.
     has_received: bool,
@@ -44,7 +44,7 @@ impl RateFinder {
         }
     }
 
-    /// Takes a byte; any that is not ASCII is wrong, so [`crate::console::line::GARBLED`] is.
+    /// Notes a byte. One that is not ASCII counts as wrong, so [`crate::console::line::GARBLED`] does.
     pub fn note_byte(&mut self, byte: u8) {
         self.has_received = true;
         if !byte.is_ascii() && self.wrong_bytes < WRONG_BYTES {
@@ -57,7 +57,8 @@ impl RateFinder {
         self.has_received = true;
     }
 
-    /// Takes a command of this length; returns false if it may be a misread one.
+    /// Notes a command of this length in bytes; returns false, and notes nothing, if it may be another
+    /// line that was read at a wrong rate.
     pub fn note_command(&mut self, length: usize) -> bool {
         if self.is_guess && length < MIN_COMMAND_BYTES {
             return false;
@@ -67,7 +68,8 @@ impl RateFinder {
         true
     }
 
-    /// Changes the rate if it must be wrong and nothing came in this frame; returns the new one.
+    /// Ends a frame. If the rate has had too many wrong bytes and nothing came in this frame, changes to
+    /// the next rate and returns it.
     pub fn end_frame(&mut self) -> Option<Rate> {
         let is_pause = !core::mem::take(&mut self.has_received);
         if !is_pause || self.wrong_bytes < WRONG_BYTES {

@@ -25,7 +25,7 @@ use crate::numbers::units::{Angle, Sweep, thousandths_from_phase};
 /// until it is written.
 pub(super) const LONGEST_NAMES: u8 = 125;
 
-/// The numbers of the lines that `cal` prints.
+/// The numbers of `cal`'s lines after those of the servos, 0 to 3.
 const CAL_BOOT: u8 = 4;
 const CAL_DEADMAN: u8 = 5;
 const CAL_END: u8 = 6;
@@ -170,7 +170,7 @@ fn health(out: &mut impl Output, control: &Control, counters: Counters) {
     digits::count(out, Text::StatusResets, control.resets().into());
     let robot = control.motion().robot();
     let reading = control.safety().supply().reading();
-    // Only a robot says by which reference a voltage is to be computed.
+    // Without a robot the reference voltage is unknown, so no voltage can be computed.
     if robot.is_none() || reading.reference == 0 {
         return;
     }

@@ -1,4 +1,5 @@
-//! Walks whose truth is known: the twin's path, cycle after cycle, with what a robot varies.
+//! Walks whose true path is known: the twin's path, cycle after cycle, with the random deviations of a
+//! built robot.
 
 use fastrand::Rng;
 use lizard_film::Gait;
@@ -38,7 +39,7 @@ pub fn gait(name: &str) -> Gait {
     }
 }
 
-/// Parts of a cycle that vary independently of each other: a foot slips now and then.
+/// Number of parts of a cycle; each deviates independently, as if a foot slipped now and then.
 const PARTS: usize = 12;
 
 /// A walk of some cycles.
@@ -46,7 +47,7 @@ pub struct Walk {
     gait: Gait,
     period: f64,
     begins: Vec<Place>,
-    /// What each cycle has more than the gait, from its begin to its end.
+    /// The deviation of each cycle from the gait, from its begin to its end: mm, mm, rad.
     extras: Vec<[[f64; 3]; PARTS + 1]>,
 }
 
@@ -122,7 +123,7 @@ impl Walk {
 
 /// Walks one after another, each from where the one before ended, with rests between them.
 pub struct Show {
-    /// Each walk and the time at which it has its first rest, s.
+    /// Each walk, and the time at which its first rest begins, s.
     walks: Vec<(f64, Walk)>,
     seconds: f64,
 }
@@ -155,7 +156,7 @@ impl Show {
         self.seconds
     }
 
-    /// The times in which the robot moves.
+    /// The begin and end of each walk's movement, s.
     pub fn spans(&self) -> Vec<[f64; 2]> {
         let span = |(at, walk): &(f64, Walk)| [at + REST, at + walk.seconds() - REST];
         self.walks.iter().map(span).collect()
@@ -187,7 +188,7 @@ fn place([forward, left, heading]: [f64; 3]) -> Place {
     }
 }
 
-/// A place as seen from another one, on the floor.
+/// Converts a place that is seen from another one to a place on the floor.
 fn then(from: Place, seen: Place) -> Place {
     let [forward, left] = from.on_floor([seen.forward, seen.left]);
     place([forward, left, from.heading + seen.heading])

@@ -13,7 +13,7 @@ use crate::shared::{files, robot_file};
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
   lizard new my.toml && lizard gaits --robot my.toml
-  lizard new robot.toml    # in this folder and below, found without --robot")]
+  lizard new robot.toml    # commands in this folder and below find it without --robot")]
 pub struct Args {
     /// The new file
     file: PathBuf,
@@ -22,7 +22,7 @@ pub struct Args {
 /// Writes the file.
 ///
 /// # Errors
-/// Fails if it already exists, or cannot be made.
+/// Fails if it already exists or cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let name = args.file.display();
     let file = File::create_new(&args.file);

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
-/// Prints a value as JSON, or else as this text.
+/// Prints the value as a line of JSON if `json` is true, else as the text that `text` returns.
 ///
 /// # Errors
 /// Fails if standard output cannot be written.

@@ -1,4 +1,5 @@
-//! Adds a routine that uses both inputs and most gaits, for measurements and random tests.
+//! Adds a routine that uses a button, a nose contact and up to nine gaits, for measurements and random
+//! tests.
 
 use lizard_robot::{Error, Robot};
 
@@ -7,15 +8,16 @@ use super::sim::tour;
 /// The name of the routine.
 pub const PATROL: &str = "patrol";
 
-/// Most gaits in a patrol after the first.
+/// The largest number of gaits in a patrol after the first.
 const MAX_MORE_GAITS: usize = 8;
 
-/// The pins that are tried for a missing input, in this order.
+/// The Arduino pins that are tried for a missing input, in this order: A1 to A4 are no servos here.
 const PINS: [&str; 8] = ["A1", "A2", "A3", "A4", "A5", "D12", "D8", "D7"];
 
 /// Adds a button, a nose contact and the routine [`PATROL`] to the robot file `text`. The routine
-/// waits for the button, walks to a wall, goes through up to nine gaits that move and does the
-/// last steps. A robot that has a routine of this name is returned as it is.
+/// waits for the button, walks with the first gait until the nose touches something, goes through
+/// up to eight other gaits, and ends with `last_steps`. A robot that has a routine of this name
+/// is returned unchanged.
 ///
 /// # Errors
 /// Fails if the text is not a valid robot file, or has no room for the inputs or the routine.
@@ -31,7 +33,7 @@ pub fn with_patrol(text: &str, last_steps: &[&str]) -> Result<Robot, Error> {
         }
         let with = |pin: &str| format!("{text}\n[input.{name}]\npin = \"{pin}\"\n");
         let free = PINS.iter().find(|pin| Robot::parse(&with(pin)).is_ok());
-        // With no pin free, an occupied one, so that the last `parse` reports the error.
+        // If no pin is free, an occupied one is taken, so that the last `parse` reports the error.
         text = with(free.unwrap_or(&PINS[0]));
     }
     let gaits: Vec<String> = tour::moving(&robot)

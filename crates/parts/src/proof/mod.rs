@@ -1,16 +1,15 @@
 //! Proof that no two parts meet at any pose that the guard accepts.
 //!
-//! Poses are not sampled. The servos' angles are divided into regions. For each region
-//! the proof shows either that the guard accepts no pose in it, or that the parts stay
-//! apart in all of it: in its middle they have a distance, and no point can move from
-//! there by more than its rate times the region's half width. Rates come from the closed
-//! forms of the mechanism, taken on bounds instead of numbers (`interval.rs`,
-//! `slope.rs`), which bound a coupler near a singularity as well as a crank. If a region
-//! proves nothing, its halves are tried (`search.rs`).
+//! Poses are not sampled. The space of the servos' angles is divided into regions. For each
+//! region the proof shows either that the guard accepts no pose in it, or that the parts stay
+//! apart in all of it: their distance in its middle is known, and no point moves within the
+//! region by more than its largest rate times the region's half width. The rates come from the
+//! closed forms of the mechanism in interval arithmetic (`interval.rs`, `slope.rs`), which
+//! holds for a coupler near a singularity, too. A region that is too large to prove either is
+//! halved (`search.rs`).
 //!
-//! The position of two parts to each other depends only on the servos of their mounts
-//! ([`Mount::servos`](crate::Mount::servos)): which are one or two, rarely three. So the
-//! whole proof takes seconds. `shape_pairs.rs` lists what has to keep clear of what,
+//! The relative position of two parts depends only on the servos of their mounts
+//! ([`Mount::servos`](crate::Mount::servos)): one or two, rarely three. So the whole proof takes seconds. `shape_pairs.rs` lists what has to keep clear of what,
 //! `sweep.rs` leaves out pairs that are never close, `guard.rs` knows what the guard
 //! certainly refuses.
 
@@ -36,12 +35,12 @@ pub use search::ENOUGH;
 use search::Found;
 use shape_pairs::Task;
 
-/// Least distance of parts that are not made to meet, mm: more than the error of a printer.
+/// Least allowed distance of parts that are not made to meet, mm: more than the error of a printer.
 pub const MIN_GAP_MM: f64 = 0.2;
 /// Overlap of parts made to meet that still counts as touching, mm.
 const TOUCH: f64 = 0.02;
 
-/// Grid of angles per servo at which the joints are checked.
+/// Number of angles per servo in the grid of poses at which the joints are checked.
 const JOINT_STEPS: u32 = 6;
 
 /// The least distance of two bodies.
@@ -57,14 +56,14 @@ pub struct NearestPair {
     /// [`ENOUGH`], or if none is found.
     pub seen: Option<Clearance>,
     /// Servo angles, deg, near which no larger distance could be proved, if the bound is
-    /// much below the distance seen. The guard hardly accepts them, if at all.
+    /// much below the distance seen. They are near the guard's limits, or just beyond.
     pub doubt: Option<[f64; 4]>,
 }
 
 /// A proof that a robot's parts keep clear of each other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proof {
-    /// The nearest two bodies of each two mounts, without those that are made to meet;
+    /// The nearest two bodies of each pair of mounts, without those that are made to meet;
     /// the nearest first.
     pub apart: Vec<NearestPair>,
     /// The same for bodies that are made to meet, such as a pin and its hole: the gap
@@ -87,7 +86,7 @@ pub enum Clash {
     /// Two parts that come too near to each other.
     #[error("{0}, which is less than {MIN_GAP_MM} mm")]
     Narrow(Box<Clearance>),
-    /// Two parts that may overlap at poses that the guard hardly accepts.
+    /// Two parts that may overlap at poses near the guard's limits, or just beyond.
     #[error("{0}")]
     Unsure(Box<NearestPair>),
 }
@@ -133,8 +132,8 @@ impl Proof {
     /// Decides whether the parts fit.
     ///
     /// # Errors
-    /// Returns the two parts that overlap most, with the pose and the overlap; else two that come
-    /// nearer than [`MIN_GAP_MM`].
+    /// Returns the worst pair: parts that overlap, that come nearer than [`MIN_GAP_MM`], or that could
+    /// not be proved to keep that distance.
     pub fn judge(&self) -> Result<(), Clash> {
         let apart = self
             .apart
@@ -150,7 +149,7 @@ impl Proof {
     }
 }
 
-/// The questions of a proof: for each two mounts the least distance of their bodies. Each
+/// The questions of a proof: for each pair of mounts the least distance of their bodies. Each
 /// can be answered without the others, even on another machine.
 pub struct Questions<'a> {
     assembly: &'a Assembly,
@@ -196,7 +195,7 @@ impl<'a> Questions<'a> {
         self.within(index, search::MAX_REGIONS)
     }
 
-    /// Answers one question after at most `max` regions.
+    /// Answers one question; checks at most `max` regions.
     fn within(&self, index: usize, max: u64) -> Answer {
         let mut task = self.tasks[index].clone();
         let pinned = match task.meet {
@@ -212,8 +211,9 @@ impl<'a> Questions<'a> {
     }
 
     /// Makes the proof. Answers that [`Questions::one`] gave elsewhere are taken from `known`,
-    /// by their index. The proof ends at the first parts that do not fit. After parts that
-    /// may not fit, the rest is checked less closely and not taken from `known`.
+    /// by their index. The proof ends at the first parts that do not fit, unless the quick check has
+    /// found some: then each of its worst pairs is bounded. After parts that may not fit, the other
+    /// questions are answered with fewer regions, and not from `known`.
     pub fn answer(
         &self,
         mut known: impl FnMut(usize) -> Option<Answer>,
@@ -245,7 +245,7 @@ impl<'a> Questions<'a> {
             } else {
                 proof.apart.push(near);
             }
-            // One clash is enough, and if parts hardly fit, each question takes long.
+            // One clash is enough. Where parts barely fit, each question takes long.
             match clash {
                 Some(Clash::Unsure(_)) => max = search::MAX_REGIONS / 10,
                 Some(_) if !self.seen => break,

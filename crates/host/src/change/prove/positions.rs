@@ -1,4 +1,4 @@
-//! Every position of a servo, in the firmware's integers and in floating point.
+//! All positions of a servo, both in the firmware's integers and in floating point.
 
 use lizard_core::guard::trig::Direction;
 use lizard_core::numbers::units::Sweep;
@@ -7,7 +7,7 @@ use lizard_robot::CoreRobot;
 
 /// All positions of one servo, in steps of 1/65536 turn over its whole travel.
 pub struct Positions {
-    /// Sweep of the first position from neutral.
+    /// Sweep from neutral to the first position, in steps of 1/65536 turn.
     first: i16,
     /// The angle of each position in the chassis frame, degrees.
     pub degrees: Vec<f64>,
@@ -18,7 +18,7 @@ pub struct Positions {
 }
 
 impl Positions {
-    /// All positions of a servo, by its index, as the firmware counts them.
+    /// Computes all positions of the servo with this index, 0 to 3, in the firmware's steps.
     pub fn of(guard: &CoreRobot, servo: usize) -> Self {
         let neutral = guard.neutral()[servo];
         let calibration = guard.calibration()[servo];
@@ -43,7 +43,7 @@ impl Positions {
         positions
     }
 
-    /// The sweep from neutral of a position.
+    /// The sweep from neutral to the position with this index.
     pub fn sweep(&self, position: usize) -> Sweep {
         Sweep((i32::from(self.first) + position as i32) as i16)
     }

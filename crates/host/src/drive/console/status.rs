@@ -6,15 +6,15 @@ const NO_ROBOT: &str = "robot";
 /// The state that a robot reports.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Status {
-    /// A gait with dashes for blanks, or pose, stop, rest.
+    /// The name of a gait, with hyphens for spaces, or `pose`, `stop` or `rest`.
     pub gait: String,
     /// Servo angles, degrees, chassis frame; `None` without a robot in the flash.
     pub pose: Option<[f64; 4]>,
     /// Frames since power-on.
     pub frames: u64,
-    /// The smallest margin; `None` without a robot in the flash.
+    /// The smallest of the guard's margins, a sine; `None` without a robot in the flash.
     pub margin: Option<f64>,
-    /// True if the guard holds the robot.
+    /// True if the guard holds the robot in its last safe pose.
     pub is_held: bool,
     /// The fault's name, if there is one.
     pub fault: Option<String>,
@@ -22,9 +22,9 @@ pub struct Status {
     pub vcc: Option<f64>,
     /// Supply of the servos, volts, if it is measured.
     pub rail: Option<f64>,
-    /// Edges that came late.
+    /// Pulse edges that came late.
     pub late: u32,
-    /// Bytes that were lost.
+    /// Received bytes that were lost.
     pub rx_lost: u32,
 }
 
@@ -63,7 +63,7 @@ impl Status {
         })
     }
 
-    /// True if the servos turn, or may turn at any moment.
+    /// True in a gait or routine, which goes on moving by itself.
     pub fn is_moving(&self) -> bool {
         !matches!(self.gait.as_str(), "stand" | "pose" | "stop" | "rest")
     }

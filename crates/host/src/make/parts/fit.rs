@@ -1,4 +1,4 @@
-//! `lizard fit`: how near the robot's parts come to each other, proved.
+//! `lizard fit`: proves how close the robot's parts come to each other.
 
 use std::io::{self, Write};
 
@@ -22,7 +22,7 @@ use crate::shared::spread::{Spread, Spreads};
   lizard fit
   lizard fit --robot robots/unequal.toml --all")]
 pub struct Args {
-    /// Print every pair that comes closer than 2 mm, not only the closest
+    /// Print every pair for which less than 1.8 mm is proved, not only the closest ten
     #[arg(long)]
     all: bool,
     /// Print one JSON object
@@ -48,11 +48,11 @@ struct Pair<'a> {
     second: &'a str,
     /// The proved least distance, mm.
     proved: f64,
-    /// The distance at a pose that the guard accepts, mm.
+    /// The least distance found at a pose that the guard accepts, mm; null if none is found.
     seen: Option<f64>,
-    /// The pose at which they meet: A1 to A4, deg.
+    /// The pose with that distance: A1 to A4, deg.
     pose: Option<[f64; 4]>,
-    /// The smallest region of poses that could not be proved, deg.
+    /// A1 to A4, deg, near which no larger distance could be proved; null without a doubt.
     doubt: Option<[f64; 4]>,
 }
 
@@ -60,11 +60,13 @@ struct Pair<'a> {
 #[derive(Serialize)]
 struct Report<'a> {
     fits: bool,
-    /// The reason why they cannot be judged.
+    /// The reason why the parts do not fit; null if they do.
     reason: Option<String>,
+    /// The closest pairs that must stay apart.
     apart: Vec<Pair<'a>>,
+    /// The closest pairs that are made to touch.
     meeting: Vec<Pair<'a>>,
-    /// The ranges of A1 to A4, deg.
+    /// The ranges of A1 to A4 over all poses that the guard accepts, deg.
     ranges: [[f64; 2]; 4],
     pairs: usize,
     regions: u64,
@@ -83,15 +85,15 @@ impl<'a> From<&'a NearestPair> for Pair<'a> {
     }
 }
 
-/// A bar of pairs of mounts.
+/// Template of the progress bar, which counts pairs of mounts.
 const PAIRS: &str = "{wide_bar} {pos}/{len} looking for parts that meet";
 
-/// Proves it, with a bar.
+/// Proves that the parts fit, with a progress bar.
 pub(super) fn proof(assembly: &Assembly) -> Proof {
     complete_proof(&Questions::new(assembly, |_, _| true), None)
 }
 
-/// The proof, of answers that are known or else are found here.
+/// Makes the proof from the answers that are known, and finds the others.
 fn complete_proof(questions: &Questions, answers: Option<Vec<Answer>>) -> Proof {
     let bar = bar(questions.count(), PAIRS);
     let answers = |index: usize| answers.as_ref()?.get(index).cloned();
@@ -103,7 +105,7 @@ fn complete_proof(questions: &Questions, answers: Option<Vec<Answer>>) -> Proof 
 /// Proves that the parts fit and prints the clearances.
 ///
 /// # Errors
-/// Fails for a wrong robot.toml, measures that do not go together, parts that meet.
+/// Fails for a wrong robot.toml, measures that contradict each other, or parts that come too close.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.spread.robot.load()?;
     let assembly = Assembly::new(&robot);
@@ -143,7 +145,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 }
 
 fn print(proof: &Proof, shows_all: bool, out: &mut impl Write) -> io::Result<()> {
-    /// Rows that are printed without --all.
+    /// The largest number of rows in a list without --all.
     const SHOWN_ROWS: usize = 10;
     writeln!(
         out,

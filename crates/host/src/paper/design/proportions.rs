@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// r1 + r2 + r3.
 pub const SUM: f64 = 0.9;
 
-/// The shortest link that a design may have; shorter ones make D overflow.
+/// The smallest r1, r2 or r3 that a design may have; values nearer to 0 make D overflow.
 const MIN_LINK: f64 = 0.001;
 
 /// A point of the design space.
@@ -22,7 +22,7 @@ pub struct Proportions {
 }
 
 impl Proportions {
-    /// Measured from a gecko's head, as the paper says.
+    /// The paper's proportions, which it says were measured on a gecko's head.
     pub const PAPER: Self = Self {
         r1: 0.3,
         r2: 0.5,
@@ -33,7 +33,7 @@ impl Proportions {
     /// (then r1 + r2 > r3 and the mechanism can be assembled), sum 0.9.
     ///
     /// # Errors
-    /// Returns the message that says which constraint is broken.
+    /// Returns a message that says which constraint is violated.
     pub fn new(r1: f64, r2: f64, r3: f64) -> Result<Self, String> {
         for (name, value, max) in [("r1", r1, SUM), ("r2", r2, SUM), ("r3", r3, SUM / 2.0)] {
             if !(value > 0.0 && value < max) {
@@ -60,7 +60,7 @@ impl Proportions {
         Ok(Self { r1, r2, r3 })
     }
 
-    /// The five-bar whose dimensional factor D is this, mm.
+    /// The five-bar with dimensional factor `d`, mm.
     pub fn at_scale(&self, d: f64) -> FiveBar {
         FiveBar {
             base: 2.0 * self.r3 * d,

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use lizard_kinematics::{Leg, Links, Lizard, Pose, Solution, Vector};
 
-/// The paper's table of links as printed: l16 twice, l17 never.
+/// The paper's table of link lengths as printed, mm: it names l16 twice and l17 never.
 pub const TABLE: [(&[usize], f64); 5] = [
     (&[0, 5], 20.0),
     (&[1, 4, 6, 9, 14, 11, 16, 19], 30.0),
@@ -13,7 +13,7 @@ pub const TABLE: [(&[usize], f64); 5] = [
     (&[10, 15], 135.0),
 ];
 
-/// The paper's robot; the second l16 of its table read as l17.
+/// The paper's robot, with the second l16 of its table taken as l17.
 pub fn paper_lizard() -> Lizard {
     let mut l = [0.0; 20];
     for (links, length) in TABLE {
@@ -32,7 +32,7 @@ pub fn paper_lizard() -> Lizard {
     }
 }
 
-/// A solved pose, and random numbers for equations that are not about a pose.
+/// A pose with its solution, and two random numbers for equations that do not depend on a pose.
 pub struct Sample {
     /// The robot of all samples.
     pub lizard: Lizard,
@@ -42,7 +42,7 @@ pub struct Sample {
     pub random: [f64; 2],
 }
 
-/// All angles of the paper in radians, chassis frame, counter-clockwise.
+/// All angles of the paper, in radians, counter-clockwise in the chassis frame.
 pub struct Angles {
     /// theta1 to theta16; index 0 is unused.
     pub t: [f64; 17],
@@ -70,7 +70,7 @@ impl Sample {
         .take(count)
     }
 
-    /// Every angle of the paper.
+    /// Computes the paper's angles theta1 to theta16.
     pub fn angles(&self) -> Angles {
         let p = &self.s.pose;
         let mut t = [0.0; 17];
@@ -96,12 +96,12 @@ impl Sample {
     }
 }
 
-/// A vector from length and angle in radians.
+/// The vector with this length and this angle in radians.
 pub fn cis(length: f64, radians: f64) -> Vector {
     Vector::new(length * radians.cos(), length * radians.sin())
 }
 
-/// The difference of two directions in degrees, 0 to 180; radians in.
+/// The difference of two angles in radians, in degrees from 0 to 180.
 pub fn angle_error(a: f64, b: f64) -> f64 {
     lizard_kinematics::wrap((a - b) * 180.0 / PI).abs()
 }

@@ -1,4 +1,4 @@
-//! The maps against the integer guard, which knows nothing of them.
+//! Compares the maps with the integer guard, which does not use them.
 
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::numbers::gaits::GaitId;
@@ -34,7 +34,7 @@ fn measures(robot: &Robot) -> Measures {
     }
 }
 
-/// Links and limits of random robots without symmetry.
+/// Random robots without symmetry: their links, limits and servos vary.
 fn random() -> impl Strategy<Value = Measures> {
     let paper = robot("paper");
     let end = || (15.0..40.0, 22.0..45.0, 45.0..75.0, 45.0..75.0, 22.0..45.0);
@@ -78,10 +78,10 @@ fn random() -> impl Strategy<Value = Measures> {
     })
 }
 
-/// A map, and the conditions that it proves.
+/// A map, and the conditions of the guard that hold in its cells.
 struct Part<'a> {
     map: &'a Map,
-    /// Servos of row and column, by their indices.
+    /// Indices of the servo of the rows and that of the columns.
     servos: [usize; 2],
     /// Indices in [`Clearance::margins`].
     margins: &'static [usize],
@@ -89,7 +89,7 @@ struct Part<'a> {
     slider: Option<usize>,
 }
 
-/// A robot in integers, and its maps.
+/// A robot as the firmware has it, in integers, and the maps to be checked.
 struct Subject {
     name: String,
     robot: CoreRobot,
@@ -266,7 +266,7 @@ fn maps_fit_into_a_section_and_begin_and_end_with_a_cell() {
                 panic!("{name}: a map of {} rows", map.rows.len());
             };
             assert!(first[0] <= first[1] && last[0] <= last[1], "{name}");
-            // Neutral is in all of them.
+            // Every map contains the neutral pose.
             assert!(map.cells().contains(Sweep(0), Sweep(0)), "{name}");
         }
     }

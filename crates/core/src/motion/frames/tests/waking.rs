@@ -1,4 +1,4 @@
-//! A robot that rests, and servos that wake.
+//! Rest, and how the servos wake one after another when it ends.
 
 use super::*;
 
@@ -113,5 +113,3 @@ fn a_command_during_waking_waits_until_all_servos_are_awake() {
     motion.run(LONG_ENOUGH);
     assert_eq!(motion.pose(), &Pose(THERE.map(Sweep)));
 }
-
-// Holding.
