@@ -162,7 +162,7 @@ fn differences(seed: u64) -> Option<(Vec<usize>, bool)> {
     let (object, savings) = shrink(&object)
         .expect("it is an object")
         .expect("of an AVR");
-    let short = link(ROUTINES, &object).expect("it links, as before");
+    let short = link(ROUTINES, &object).expect("it links as before");
     let [plain, short] = [results(&plain), results(&short)];
     let differ = (0..FUNCTIONS).filter(|&number| plain[number] != short[number]);
     Some((differ.collect(), savings.frames > 0))
@@ -182,7 +182,7 @@ fn random_functions_with_arguments_on_the_stack_compute_the_same() {
     let tried: Vec<_> = thread::scope(|scope| {
         let shares: Vec<_> = (0..cores).map(|_| scope.spawn(share)).collect();
         let done = shares.into_iter().map(|share| share.join());
-        done.flat_map(|share| share.expect("no test of it failed"))
+        done.flat_map(|share| share.expect("no thread panics"))
             .collect()
     });
     for (seed, (differ, is_rewritten)) in &tried {

@@ -11,6 +11,7 @@ mod files;
 mod fit;
 mod fittings;
 mod mjcf;
+mod mjcf_masses;
 mod mjcf_reader;
 mod models;
 mod order;

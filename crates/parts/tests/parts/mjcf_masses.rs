@@ -1,0 +1,94 @@
+//! The masses in the file for MuJoCo are those of robot.toml, of the bill and of the contact model.
+
+use lizard_parts::{Assembly, Bill};
+use lizard_robot::Robot;
+use lizard_robot::servo::LEGS;
+use roxmltree::Document;
+
+use crate::mjcf_reader::{bodies, child, neutral, numbers, written};
+use crate::{ROBOTS, with};
+
+/// Mass, g, and mass centre of all bodies: forward, left, above the plate, mm.
+pub fn weighed(text: &str) -> (f64, [f64; 3]) {
+    let document = Document::parse(text).expect("well formed");
+    let (mut mass, mut moment) = (0.0, [0.0; 3]);
+    let all = bodies(&document);
+    for (placed, body) in all.values() {
+        let inertial = child(*body, "inertial");
+        let grams = 1000.0 * numbers(inertial, "mass")[0];
+        assert!(grams > 0.0, "{body:?}");
+        let at = placed.point(&numbers(inertial, "pos"));
+        mass += grams;
+        for (sum, part) in moment.iter_mut().zip(at) {
+            *sum += grams * part * 1000.0;
+        }
+    }
+    let plate = 1000.0 * all["chassis"].0.at[2];
+    let [right, forward, up] = moment.map(|part| part / mass);
+    (mass, [forward, -right, up - plate])
+}
+
+/// A robot of a file with another mass, g, and another mass centre, mm.
+fn with_body(name: &str, mass: f64, [ahead, left]: [f64; 2]) -> Robot {
+    let path = format!("{}/../../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(&path).expect(&path);
+    let (before, after) = text.split_once("\nmass = ").expect("a mass");
+    let (_, after) = after.split_once('\n').expect("its line");
+    let keys = format!("\nmass = {mass:.1}\ncentre = [{ahead:.1}, {left:.1}]\n");
+    Robot::parse(&format!("{before}{keys}{after}")).expect(name)
+}
+
+#[test]
+fn its_bodies_weigh_what_robot_toml_says_and_where() {
+    for name in ROBOTS {
+        let own = with(name, "").ground().body;
+        for (mass, centre) in [
+            (own.mass, own.centre),
+            (500.0, [20.0, -9.0]),
+            (350.0, [-15.0, 0.0]),
+        ] {
+            let robot = with_body(name, mass, centre);
+            let bill = Bill::of(&Assembly::new(&robot), &[], &neutral(&robot));
+            let (grams, [ahead, left, up]) = weighed(&written(&robot, |_| {}));
+            // A chord cuts off a little of each round end.
+            assert!((grams / mass - 1.0).abs() < 2e-3, "{name} {grams} {mass}");
+            let error = (ahead - centre[0]).hypot(left - centre[1]);
+            assert!(error < 0.05, "{name} {ahead} {left} {centre:?}");
+            // Wires count at the height of the plate.
+            let moment = (grams * up / (bill.grams * bill.centre[2]) - 1.0).abs();
+            assert!(moment < 0.01, "{name} {up} {:?}", bill.centre);
+        }
+    }
+}
+
+#[test]
+fn the_mass_that_the_contact_model_gives_a_leg_is_that_of_its_parts() {
+    for name in ROBOTS {
+        let robot = with(name, "");
+        let text = written(&robot, |_| {});
+        let document = Document::parse(&text).expect("well formed");
+        let ground = robot.ground();
+        for leg in LEGS {
+            let part = |part: &str| {
+                let name = format!("{part} {leg}");
+                let mut nodes = document.descendants();
+                let body = nodes.find(|node| {
+                    node.has_tag_name("body") && node.attribute("name") == Some(&*name)
+                });
+                let inertial = child(body.expect("a part"), "inertial");
+                let centre = numbers(inertial, "pos");
+                (numbers(inertial, "mass")[0], centre[0].hypot(centre[1]))
+            };
+            // Foot and coupler move as the pad does; crank and follower turn about their ends.
+            let carried = part("foot").0 + part("leg coupler").0;
+            let turned = ["crank", "follower"].map(part);
+            let turned = turned.map(|(mass, lever)| mass * 1e3 * lever / ground.feet.reach);
+            let grams = 1e3 * (carried + turned[0] + turned[1]);
+            let model = ground.body.leg_mass();
+            assert!(
+                (grams / model - 1.0).abs() < 0.25,
+                "{name} {leg}: {grams} and {model} g"
+            );
+        }
+    }
+}
