@@ -67,7 +67,7 @@ fit: ## proof that no two parts meet at any pose that the guard accepts
 	$(call prepared,.fit)
 prove: ## compare the guard with floating point at every pose; a minute or two
 	$(call prepared,.prove)
-physics: ## every gait by the contact model and the engine MuJoCo; WRITE=1 stores the figures, ONE_IN=5 takes every fifth
+physics: ## every gait by the contact model and the engine MuJoCo; WRITE=1 stores the figures, ONE_IN=10 takes every tenth
 	$(call prepared,.physics)
 mutants: ## make mistakes on purpose, report those that no test notices; PART=board, core or kinematics; SAMPLE=60 SEED=1: fresh ones, with the rate
 	$(call prepared,.mutants)

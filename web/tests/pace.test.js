@@ -68,4 +68,30 @@ test('moving the slider of the springs does not block drawing', async () => {
   assert.ok(least < PICTURE / 2, `${least} ms without painting`);
 });
 
+test('the floor is painted while the robot moves, and not while it stands', async () => {
+  const opened = await page({}, () => {
+    window.painted = 0;
+    const { getContext } = HTMLCanvasElement.prototype;
+    HTMLCanvasElement.prototype.getContext = function (...values) {
+      if (this.id === 'floor') window.painted += 1;
+      return getContext.apply(this, values);
+    };
+  });
+  /** Counts the paintings of a second. */
+  const painted = async () => {
+    const before = await opened.evaluate(() => window.painted);
+    await opened.clock.runFor(1000);
+    return (await opened.evaluate(() => window.painted)) - before;
+  };
+  await opened.clock.runFor(4000);
+  assert.equal(await painted(), 0, 'standing');
+  await opened.locator('#zoom-in').click();
+  assert.ok((await painted()) > 0, 'zoomed');
+  await opened.emulateMedia({ colorScheme: 'dark' });
+  assert.ok((await painted()) > 0, 'in dark colours');
+  assert.equal(await painted(), 0, 'standing again');
+  await opened.evaluate(() => void window.lizard.ask('walk'));
+  assert.ok((await painted()) > 20, 'walking');
+});
+
 test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

@@ -2,7 +2,7 @@
 import type { Frame, Place, Plate } from '../robot';
 import { circle, element, surface } from './canvas';
 import { drawLizard } from './lizard';
-import { palette } from './palette';
+import { onPaletteChange, palette } from './palette';
 
 const GRID = 50;
 /** Least zoom, CSS pixels per mm: the robot, some 250 mm long, stays larger than 60 pixels. */
@@ -16,6 +16,9 @@ const TRACK_STEP = 0.5;
 
 /** Distance of a second robot's start to the right, mm. */
 const SECOND_OFFSET = 280;
+
+/** Distance from its goal at which the view stops moving, mm: a tenth of a pixel at the most zoom. */
+const AT_GOAL = 0.01;
 
 /** Sideways movement after which a finger drags the floor, CSS pixels. */
 const DRAG_THRESHOLD = 12;
@@ -43,10 +46,12 @@ export class Floor {
   private following = true;
   /** The tracks of the robot and of the second robot. */
   private tracks: { x: number; y: number }[][] = [[], []];
-  /** True if the floor is drawn even behind the robot in 3D, for a film or a picture. */
+  /** True if the floor is painted in every frame, even behind the robot in 3D: for a film or a picture. */
   unseen = false;
   /** The last drawn frame, for a picture as PNG or SVG. */
   private shown: [Plate, Frame | null, Frame | null] | null = null;
+  /** All that the picture on the canvas depends on, but for the colours; empty if it must be painted. */
+  private painted = '';
   private readonly touches = new Map<number, Touch>();
   /** True while the pointer drags the floor. */
   private dragging = false;
@@ -82,6 +87,10 @@ export class Floor {
       { passive: false },
     );
     this.canvas.addEventListener('keydown', (event) => this.key(event));
+    const forget = () => (this.painted = '');
+    onPaletteChange(forget);
+    // A browser that is short of memory empties canvases.
+    this.canvas.addEventListener('contextrestored', forget);
   }
 
   /** Clears the tracks. */
@@ -99,26 +108,35 @@ export class Floor {
     if (track.length > LONGEST_TRACK) track.splice(0, LONGEST_TRACK / 4);
   }
 
-  /** Draws the floor and the robots. */
+  /** Draws the floor and the robots, unless the canvas shows them already: painting takes half a core of a slow machine. */
   draw(plate: Plate, frame: Frame | null, second: Frame | null): void {
-    const area = surface(this.canvas, true);
-    if (!area) return;
-    const { pen, width, height } = area;
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    if (width === 0 || height === 0) return;
     this.shown = [plate, frame, second];
     if (this.fits) this.zoom = Math.min(width / (VIEW + (second ? SECOND_OFFSET : 0)), height / VIEW);
-    if (this.following && frame) {
-      // Smoothed, so that a step does not shake the view.
-      const middle = second ? [(frame.place.x + second.place.x + SECOND_OFFSET) / 2, (frame.place.y + second.place.y) / 2] : [frame.place.x, frame.place.y];
-      this.centre.x += ((middle[0] ?? 0) - this.centre.x) * 0.08;
-      this.centre.y += ((middle[1] ?? 0) - this.centre.y) * 0.08;
-    }
+    if (this.following && frame) this.followTo(frame.place, second && second.place);
     // The scale of the picture, for tests.
     const zoom = this.zoom.toFixed(4);
     if (this.canvas.dataset.zoom !== zoom) this.canvas.dataset.zoom = zoom;
+    const robots = [frame, second].map((robot) => robot && [robot.place, robot.scene, robot.slides]);
+    const picture = JSON.stringify([width, height, devicePixelRatio, this.zoom, this.centre, plate, robots, this.tracks.map((track) => [track.length, track.at(-1)])]);
+    if (picture === this.painted && !this.unseen) return;
+    const area = surface(this.canvas, true);
+    if (!area) return;
+    const { pen } = area;
     const label = this.paint(pen, width, height);
     pen.fillStyle = palette().ink;
     pen.font = '12px system-ui, sans-serif';
     pen.fillText(label.text, label.x, label.y);
+    this.painted = picture;
+  }
+
+  /** Moves the view towards the robot, or the middle of two: smoothed, so that a step does not shake it. */
+  private followTo(robot: Place, second: Place | null): void {
+    const goal = second ? { x: (robot.x + second.x + SECOND_OFFSET) / 2, y: (robot.y + second.y) / 2 } : robot;
+    const [x, y] = [goal.x - this.centre.x, goal.y - this.centre.y];
+    const share = Math.hypot(x, y) < AT_GOAL ? 1 : 0.08;
+    this.centre = { x: this.centre.x + x * share, y: this.centre.y + y * share };
   }
 
   /** Widens the view to two robots. */
