@@ -1,8 +1,8 @@
 //! Drive a board on USB: list the ports, write the firmware, open its console, calibrate it, save its
 //! settings, and replay a recorded session.
 
+mod clock;
 pub mod console;
-mod deadline;
 pub mod flash;
 pub mod image;
 pub mod ports;

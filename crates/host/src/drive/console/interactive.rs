@@ -18,6 +18,7 @@ use super::session::Session;
 use super::terminal;
 use super::turn_error::TurnError;
 use crate::Failure;
+use crate::drive::clock::Clock;
 
 /// Dialogue to the robot
 ///
@@ -60,8 +61,10 @@ pub fn console(args: ConsoleArgs) -> Result<(), Failure> {
 
 fn dialogue(finder: &BoardFinder, file: Option<PathBuf>) -> Result<(), Failure> {
     let (board, banner) = finder.open_and_greet()?;
+    let mut clock = Clock::start();
     let mut dialogue = Dialogue {
-        session: Session::new(Instant::now(), true, file.is_some()).with_person(),
+        session: Session::new(clock.now(), true, file.is_some()).with_person(),
+        clock,
         recorder: None,
         mark: "",
     };
@@ -92,6 +95,8 @@ fn dialogue(finder: &BoardFinder, file: Option<PathBuf>) -> Result<(), Failure> 
 /// A session and the file that records it.
 struct Dialogue {
     session: Session,
+    /// The clock of the session, so that a pause of this program is no silence of the robot.
+    clock: Clock,
     recorder: Option<FileRecorder>,
     mark: &'static str,
 }
@@ -104,7 +109,7 @@ impl Dialogue {
         board: &mut Connection,
         mut show: impl FnMut(&str) -> io::Result<()>,
     ) -> Result<(), TurnError> {
-        if let Some(line) = self.session.next_line(Instant::now()) {
+        if let Some(line) = self.session.next_line(self.clock.now()) {
             board.link.send(&line)?;
         }
         // At most 51 lines, since the keys wait meanwhile.
@@ -116,7 +121,7 @@ impl Dialogue {
                 show(&line)?;
             }
         }
-        let overdue = self.session.overdue(Instant::now());
+        let overdue = self.session.overdue(self.clock.now());
         for event in self.session.take_events() {
             self.record(event)?;
         }
@@ -146,7 +151,7 @@ impl Dialogue {
         if opening_resets {
             // A script needs only the answers, unless it is recorded.
             let is_recorded = self.recorder.is_some();
-            self.session = Session::new(Instant::now(), is_recorded, is_recorded);
+            self.session = Session::new(self.clock.now(), is_recorded, is_recorded);
         }
         let lines = lines_of_stdin();
         let mut ended = false;
@@ -154,7 +159,7 @@ impl Dialogue {
         while !(ended && self.session.is_idle()) || asks_last {
             if ended && self.session.is_idle() {
                 asks_last = false;
-                self.session.poll(Instant::now());
+                self.session.poll(self.clock.now());
             }
             while !ended {
                 match lines.try_recv() {
@@ -259,7 +264,7 @@ impl Dialogue {
                     PromptEvent::Line(line) => {
                         screen.print(&format!("> {line}"))?;
                         if line.eq_ignore_ascii_case("stop") {
-                            self.session.stop(Instant::now());
+                            self.session.stop(self.clock.now());
                         } else {
                             self.session.queue(&line);
                         }
@@ -285,7 +290,7 @@ impl Dialogue {
                 let banner = banner.unwrap_or_default();
                 screen.print(&format!("{} is back: {banner}", board.name))?;
                 let watches = self.recorder.is_some();
-                self.session = Session::new(Instant::now(), true, watches).with_person();
+                self.session = Session::new(self.clock.now(), true, watches).with_person();
                 Ok(Some(board))
             }
             Err(LinkError::Gone) => Ok(None),

@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};
 use std::time::Duration;
 
-use crate::drive::deadline::Deadline;
+use crate::drive::clock::Deadline;
 
 /// The beginning of a robot's first line.
 pub const BANNER: &str = "# lizard ";

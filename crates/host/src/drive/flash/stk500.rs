@@ -17,8 +17,8 @@ use std::io::{self, ErrorKind, Read, Write};
 use std::time::Duration;
 
 use super::image::{BOOT, NANO_BOOT, PAGE};
+use crate::drive::clock::Deadline;
 use crate::drive::console::link::is_gone;
-use crate::drive::deadline::Deadline;
 
 const OK: u8 = 0x10;
 const IN_SYNC: u8 = 0x14;

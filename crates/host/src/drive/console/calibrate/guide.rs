@@ -4,13 +4,14 @@
 //! arrow.
 
 use std::io::{Read, Write};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use lizard_robot::STILL_FRAMES;
 
 use super::super::calibration::Calibration;
 use super::super::link::{BANNER, Link, LinkError};
 use super::super::status::Status;
+use crate::drive::clock::Deadline;
 use step::{STEPS, Step};
 pub use view::View;
 
@@ -341,7 +342,7 @@ fn hundredths(value: f64) -> f64 {
 
 /// Waits until the robot stands still, and returns its pose.
 fn settle<P: Read + Write>(link: &mut Link<P>) -> Result<[f64; 4], LinkError> {
-    let end = Instant::now() + MOTION_TIMEOUT;
+    let mut deadline = Deadline::after(MOTION_TIMEOUT);
     let mut last: Option<Status> = None;
     loop {
         let reply = link.command("status")?;
@@ -357,10 +358,11 @@ fn settle<P: Read + Write>(link: &mut Link<P>) -> Result<[f64; 4], LinkError> {
         let since = last
             .as_ref()
             .and_then(|last| frames.checked_sub(last.frames));
+        let is_over = deadline.has_passed();
         match since {
-            Some(0..STILL_FRAMES) if Instant::now() < end => {}
+            Some(0..STILL_FRAMES) if !is_over => {}
             Some(_) if last.is_some_and(|last| last.pose == Some(pose)) => return Ok(pose),
-            _ if Instant::now() >= end => return Ok(pose),
+            _ if is_over => return Ok(pose),
             _ => last = Some(status),
         }
         link.pause(LOOK)?;

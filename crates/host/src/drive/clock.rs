@@ -1,0 +1,87 @@
+//! Time that does not pass while this program stands still, and a time limit by it.
+//!
+//! A machine that sleeps or is too busy holds this program up. Afterwards the clock of the machine says that the time is
+//! over, although nothing had a chance to arrive or to be read.
+
+use std::time::{Duration, Instant};
+
+/// The longest time that counts between two looks at the clock. A read ends after some milliseconds.
+const LONGEST_STEP: Duration = Duration::from_millis(100);
+
+/// A clock that falls behind that of the machine by every pause of this program.
+#[derive(Debug)]
+pub struct Clock {
+    now: Instant,
+    last_look: Instant,
+}
+
+impl Clock {
+    /// Starts at the time of the machine. [`Clock::now`] must be called after each read.
+    pub fn start() -> Self {
+        let now = Instant::now();
+        Self {
+            now,
+            last_look: now,
+        }
+    }
+
+    /// Returns the time, without pauses.
+    pub fn now(&mut self) -> Instant {
+        self.now_at(Instant::now())
+    }
+
+    fn now_at(&mut self, look: Instant) -> Instant {
+        let step = look.saturating_duration_since(self.last_look);
+        self.now += step.min(LONGEST_STEP);
+        self.last_look = look;
+        self.now
+    }
+}
+
+/// A time limit that begins when it is made.
+#[derive(Debug)]
+pub struct Deadline {
+    clock: Clock,
+    end: Instant,
+}
+
+impl Deadline {
+    /// Starts a time limit. [`Deadline::has_passed`] must be called after each read.
+    pub fn after(time: Duration) -> Self {
+        let clock = Clock::start();
+        let end = clock.now + time;
+        Self { clock, end }
+    }
+
+    /// True if the time is over.
+    pub fn has_passed(&mut self) -> bool {
+        self.clock.now() >= self.end
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn time_passes_while_the_program_runs_and_hardly_in_a_pause() {
+        let ms = Duration::from_millis;
+        let mut clock = Clock::start();
+        let start = clock.now;
+        for (look, passed) in [(10, 10), (100, 100), (3000, 200), (3049, 249), (3050, 250)] {
+            assert_eq!(
+                clock.now_at(start + ms(look)),
+                start + ms(passed),
+                "{look} ms"
+            );
+        }
+    }
+
+    #[test]
+    fn a_time_limit_passes_after_its_time() {
+        let mut none = Deadline::after(Duration::ZERO);
+        assert!(none.has_passed());
+        let mut long = Deadline::after(Duration::from_secs(3600));
+        assert!(!long.has_passed());
+    }
+}
