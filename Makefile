@@ -71,7 +71,7 @@ physics: ## every gait by the contact model and the engine MuJoCo; WRITE=1 store
 	$(call prepared,.physics)
 mutants: ## make mistakes on purpose, report those that no test notices; PART=board, core or kinematics; SAMPLE=60 SEED=1: fresh ones, with the rate
 	$(call prepared,.mutants)
-other-robots: ## every test of the image on the files of robots/ and on random valid robots; SEED=1 COUNT=10
+other-robots: ## every test of the image on the files of robots/ and on random valid robots; SEED=1 COUNT=10, EXCEPT=large
 	$(call prepared,.other-robots)
 trouble: ## stalls, resets, dips of the supply and drives by radio at random moments; SEED=1, COUNT=10000, ONLY=number
 	$(call prepared,.trouble)
@@ -229,7 +229,7 @@ WALKS := target/walks.log
 	@scripts/mutants $(or $(PART),board) $(ONLY)
 
 .other-robots: .firmware
-	@scripts/other-robots $(or $(SEED),1) $(or $(COUNT),10)
+	@scripts/other-robots $(or $(SEED),1) $(or $(COUNT),10) all $(EXCEPT)
 
 # ONLY=4711 repeats one scenario of the seed and prints its dialogue.
 .trouble: .firmware
